@@ -140,16 +140,19 @@ Description describe_stability() {
     d.json["limits"].push_back(
         {{"name", limit.name}, {"formula", limit.formula}, {"applies", limit.applies}, {"source", limit.source}});
   }
-  d.text = fmt::format(
-      "stability maps\n{}\n",
-      wrapped(fmt::format(
-          "A run of {} steps is judged by its motion alone, quarter by quarter; the amplitude is the largest speed.",
-          kMapSteps)));
+  d.text =
+      fmt::format("stability maps\n{}\n",
+                  wrapped(fmt::format(
+                      "A run of {} steps at a surface is judged by its motion, quarter by quarter; the amplitude is "
+                      "the largest speed. One that is too short to tell is made up to 64 times as long.",
+                      kMapSteps)));
   for (auto motion = kMotionClasses.rbegin(); motion != kMotionClasses.rend(); ++motion)  // "all else" last
     d.text += entry(motion_class_name(*motion), text_of(*motion).rule, 2, 13);
   for (
       const char* paragraph :
-      {"Limits count stable and dying out as stable: the tool comes to rest if the run goes on.",
+      {"Limits count stable and dying out as stable: the tool comes to rest if the run goes on. A run that goes through "
+       "the surface, loses contact, is stuck or never touches (describe outcomes) has a class of its own and is not "
+       "stable, however calm it is.",
        "The analytic limit, under leapfrog 4 - 2 lambda B dt / M - lambda K dt^2 / M = 0 with lambda = lambda_max(S), is "
        "given where the tool is alone with springs that stay in contact and the force is -K S p. Under "
        "velocity_verlet and rk4 it is that of the eigenvalues of a step; the implicit integrators have none. With a "

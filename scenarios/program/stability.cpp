@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include <array>
@@ -236,8 +237,18 @@ void name_found(const StabilityOptions& options, const std::string& name, const 
       options.seed, options.evaluations);
 }
 
+/// How the runs of a search ended: "812 completes, 3 went_through".
+std::string outcomes_text(const SearchResult& found) {
+  std::vector<std::string> texts;
+  for (const auto& [outcome, count] : found.outcomes)
+    texts.push_back(fmt::format("{} {}", count, outcome_name(outcome)));
+  return fmt::format("{}", fmt::join(texts, ", "));
+}
+
 Json found_json(const std::string& algorithm, const StabilityOptions& options, const SearchResult& found,
                 const fs::path& file) {
+  Json outcomes = Json::object();
+  for (const auto& [outcome, count] : found.outcomes) outcomes[std::string(outcome_name(outcome))] = count;
   return {{"algorithm", algorithm},
           {"objective", options.objective},
           {"at_rest", found.at_rest},
@@ -247,6 +258,7 @@ Json found_json(const std::string& algorithm, const StabilityOptions& options, c
           {"duration_s", found.trajectory.back().time},
           {"outcome", outcome_name(found.run.result.outcome)},
           {"evaluations", found.evaluations},
+          {"outcomes", std::move(outcomes)},
           {"scenario", file.string()}};
 }
 
@@ -267,6 +279,7 @@ int search(const StabilityOptions& options) {
   require_writable_directory(out);
 
   Table table(kSearchHeadings);
+  std::string ends;
   Json json = Json::array();
   for (const LoadedScenario& scene : scenes) {
     const std::string& algorithm = scene.scenario.rendering.algorithm;
@@ -279,9 +292,11 @@ int search(const StabilityOptions& options) {
     table.add({algorithm, significant(found.at_rest), significant(found.found), significant(found.badness),
                std::to_string(found.trajectory.size()), significant(found.trajectory.back().time),
                std::string(outcome_name(found.run.result.outcome)), std::to_string(found.evaluations), file.string()});
+    ends += wrapped(
+        fmt::format("{}: of {} runs before minimising {}", algorithm, options.evaluations, outcomes_text(found)), 0);
     json.push_back(found_json(algorithm, options, found, file));
   }
-  print(options.output, table.text(), json);
+  print(options.output, table.text() + "\n" + ends, json);
   return kSuccess;
 }
 

@@ -72,9 +72,9 @@ void write_points(const fs::path& directory, const StabilityMap& map, const std:
   for (const MapResult& result : results) {
     const std::string overrides = overrides_text(result.subject);
     for (const MapPoint& p : result.points) {
-      csv.row(std::string_view(result.subject.algorithm), p.x, p.y, motion_class_name(p.motion), p.lambda, p.margin,
+      csv.row(std::string_view(result.subject.algorithm), p.x, p.y, run_verdict_name(p.verdict), p.lambda, p.margin,
               std::string_view(result.subject.integrator->info.name),
-              p.motion_from_far ? motion_class_name(*p.motion_from_far) : std::string_view(),
+              p.verdict_from_far ? run_verdict_name(*p.verdict_from_far) : std::string_view(),
               std::string_view(overrides));
     }
   }
@@ -104,23 +104,33 @@ std::optional<double> largest_difference(const MapResult& result) {
   return largest;
 }
 
-std::size_t count_of(const MapResult& result, MotionClass motion) {
+std::size_t count_of(const MapResult& result, RunVerdict verdict) {
   return static_cast<std::size_t>(std::count_if(result.points.begin(), result.points.end(),
-                                                [motion](const MapPoint& p) { return p.motion == motion; }));
+                                                [verdict](const MapPoint& p) { return p.verdict == verdict; }));
+}
+
+/// The classes of motion, which tables always show, then those of runs that did not stay at the surface, if any.
+std::vector<RunVerdict> shown_verdicts(std::span<const MapResult> results) {
+  std::vector<RunVerdict> shown;
+  for (const RunVerdict verdict : kRunVerdicts) {
+    const auto has = [verdict](const MapResult& result) { return count_of(result, verdict) > 0; };
+    if (verdict <= RunVerdict::diverged || std::any_of(results.begin(), results.end(), has)) shown.push_back(verdict);
+  }
+  return shown;
 }
 
 /// Draws the classes of the runs, or of the runs from far. '=' marks the analytic limit: the first diverged run beyond
-/// it.
+/// it, 'o' a run that did not stay at the surface.
 std::string drawn_classes(const MapResult& result, bool from_far) {
-  constexpr std::array<char, 4> kMarks = {'.', ':', '~', '#'};  // in the order of the enumeration
+  constexpr std::string_view kMarks = ".:~#o";  // in the order of the enumeration
   const std::size_t n = result.size;
   const MapAxis &x = result.map->x, &y = result.map->y;
   const auto cell = [&](std::size_t column, std::size_t row) {
     const MapPoint& point = result.points[column * n + row];
-    const MotionClass motion = from_far ? point.motion_from_far.value() : point.motion;
+    const RunVerdict verdict = from_far ? point.verdict_from_far.value() : point.verdict;
     const auto beyond = [&](std::size_t j) { return y.at(j, n) > result.boundary[column].analytic.value_or(1e300); };
-    const bool limit = motion == MotionClass::diverged && beyond(row) && (row == 0 || !beyond(row - 1));
-    return limit ? '=' : kMarks[static_cast<std::size_t>(motion)];
+    const bool limit = verdict == RunVerdict::diverged && beyond(row) && (row == 0 || !beyond(row - 1));
+    return limit ? '=' : kMarks[std::min(static_cast<std::size_t>(verdict), kMarks.size() - 1)];
   };
   std::vector<std::string> labels(n);
   for (const std::size_t row : {std::size_t{0}, n - 1}) labels[row] = significant(y.at(row, n), 3);
@@ -133,7 +143,9 @@ std::string drawing(const MapResult& result) {
                                  overrides.empty() ? "" : "\nbut " + overrides, drawn_classes(result, false));
   if (result.map->far)
     text += fmt::format("\nfrom {} times as far:\n\n{}", *result.map->far, drawn_classes(result, true));
-  return text + "  . stable  : dying out  ~ vibrating  # diverged  = diverged, first beyond the analytic limit\n\n";
+  text += "  . stable  : dying out  ~ vibrating  # diverged  = diverged, first beyond the analytic limit";
+  const auto left = [](const MapPoint& p) { return p.verdict > RunVerdict::diverged; };
+  return text + (std::any_of(result.points.begin(), result.points.end(), left) ? "  o left the surface\n\n" : "\n\n");
 }
 
 /// More drawings are too many to read; those of a single algorithm are all drawn.
@@ -141,7 +153,7 @@ constexpr std::size_t kMostDrawn = 4;
 
 bool are_alike(const MapResult& a, const MapResult& b) {
   const auto same_motion = [](const MapPoint& p, const MapPoint& q) {
-    return p.motion == q.motion && p.motion_from_far == q.motion_from_far;
+    return p.verdict == q.verdict && p.verdict_from_far == q.verdict_from_far;
   };
   const auto same_edge = [](const BoundaryPoint& p, const BoundaryPoint& q) { return p.simulation == q.simulation; };
   return std::equal(a.points.begin(), a.points.end(), b.points.begin(), b.points.end(), same_motion) &&
@@ -183,37 +195,42 @@ Json result_json(const MapResult& result) {
                {"integrator", result.subject.integrator->info.name},
                {"overrides", result.subject.overrides},
                {"boundary", std::move(rows)}};
-  for (const MotionClass motion : kMotionClasses) {
-    json[std::string(motion_class_name(motion))] = count_of(result, motion);
-  }
+  for (const RunVerdict verdict : shown_verdicts({&result, 1}))
+    json[std::string(run_verdict_name(verdict))] = count_of(result, verdict);
   return json;
 }
 
-std::vector<std::string> cells_of(const MapResult& result) {
+std::vector<std::string> cells_of(const MapResult& result, const std::vector<RunVerdict>& shown) {
   const auto difference = largest_difference(result);
   const auto without =
       std::count_if(result.boundary.begin(), result.boundary.end(), [](const BoundaryPoint& p) { return !p.analytic; });
   std::vector<std::string> cells = {result.map->name, result.subject.algorithm, result.subject.integrator->info.name};
-  for (const MotionClass motion : kMotionClasses) {
-    cells.push_back(std::to_string(count_of(result, motion)));
-  }
+  for (const RunVerdict verdict : shown) cells.push_back(std::to_string(count_of(result, verdict)));
   cells.push_back(difference ? deserved(100.0 * *difference, 100.0 * kMapPrecision, 2) : "-");
   cells.push_back(std::to_string(without));
   return cells;
 }
 
+std::vector<Table::Column> headings_of(std::span<const RunVerdict> shown) {
+  std::vector<Table::Column> headings = {
+      {"map", false, "a map of stability --map; \"hapbench describe stability\" has all of them"},
+      {"algorithm", false},
+      {"integrator", false}};
+  for (const RunVerdict verdict : shown) {
+    const std::string name(run_verdict_name(verdict));
+    headings.push_back({name, true, name});
+    std::replace(headings.back().title.begin(), headings.back().title.end(), '_', ' ');
+  }
+  headings.push_back({"off theory %"});
+  headings.push_back(
+      {"no theory", true, "number of places along x at which there is no limit in theory; no_theory says why"});
+  return headings;
+}
+
 }  // namespace
 
 std::vector<Table::Column> map_headings() {
-  return {{"map", false, "a map of stability --map; \"hapbench describe stability\" has all of them"},
-          {"algorithm", false},
-          {"integrator", false},
-          {"stable"},
-          {"dying out", true, "dying_out"},
-          {"vibrating"},
-          {"diverged"},
-          {"off theory %"},
-          {"no theory", true, "number of places along x at which there is no limit in theory; no_theory says why"}};
+  return headings_of(kRunVerdicts);
 }
 
 int stability_maps_command(const StabilityOptions& options) {
@@ -222,17 +239,16 @@ int stability_maps_command(const StabilityOptions& options) {
   const fs::path out = results_directory(options.out, "stability_maps");
   require_writable_directory(out);
 
-  Table table(map_headings());
   const bool draw = options.chosen_algorithms().size() == 1 || maps.size() * subjects.size() <= kMostDrawn;
   std::string drawings;
   std::set<std::string> without_theory;
   Json json = Json::array();
+  std::vector<MapResult> all;
   for (const StabilityMap* map : maps) {
     std::vector<MapResult> results;
     for (const MapSubject& subject : subjects) {
       const JobOptions jobs = options.job_options(fmt::format("{} {}", map->name, label(subject)));
       results.push_back(stability_map(*map, subject, options.size, jobs));
-      table.add(cells_of(results.back()));
       json.push_back(result_json(results.back()));
       for (const BoundaryPoint& p : results.back().boundary)
         if (!p.no_theory.empty()) without_theory.insert(fmt::format("no theory in {}: {}", map->name, p.no_theory));
@@ -240,7 +256,11 @@ int stability_maps_command(const StabilityOptions& options) {
     drawings += drawings_of(results, draw);
     write_points(out, *map, results);
     write_boundary(out, *map, results);
+    all.insert(all.end(), results.begin(), results.end());
   }
+  const std::vector<RunVerdict> shown = shown_verdicts(all);
+  Table table(headings_of(shown));
+  for (const MapResult& result : all) table.add(cells_of(result, shown));
   if (!draw)
     drawings += fmt::format("more than {} maps are not drawn; --algorithms NAME draws those of one\n\n", kMostDrawn);
   std::string remarks;

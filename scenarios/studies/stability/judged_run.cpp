@@ -302,7 +302,7 @@ static JudgedRun judged_once(const LoadedScenario& loaded, const std::shared_ptr
     if (const auto known = verdict_of(outcome)) return *known;
     return verdict_of(motion, settled, most_vibration);
   };
-  JudgedRun run{verdict(), settled, last.way.value()};
+  JudgedRun run{verdict(), settled, last.way.value(), classifier.at_rest()};
   run.undecided = is_stable(run.verdict) && classifier.is_undecided();
   return run;
 }

@@ -157,14 +157,15 @@ struct JudgedRun {
   RunVerdict verdict = RunVerdict::stable;
   SettledState settled;
   std::uint64_t way = 0;  ///< a hash of all positions of the handle: runs that differ in it moved differently
+  bool at_rest = false;   ///< MotionClassifier::at_rest
   /// Neither at rest nor long enough for an oscillation, after it was made four times as long up to three times.
   bool undecided = false;
 };
 
 /// Runs the scenario's first trial, without records, and judges it, longer where that is too short to tell and no
 /// script ends (JudgedRun::undecided); where there are bounds and it is stable, runs it again for its metrics. `shell`
-/// is make_shell of the scenario. Throws Stopped when a signal ends it. Precondition: the position is free, and there
-/// are 4 steps or more.
+/// is make_shell of the scenario, null for springs, which have neither an inside nor a place to leave. Throws Stopped
+/// when a signal ends it. Precondition: the position is free, and there are 4 steps or more.
 JudgedRun judged_run(const LoadedScenario& loaded, std::shared_ptr<const PointShell> shell,
                      const StabilityRule& rule = {});
 

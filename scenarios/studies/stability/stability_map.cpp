@@ -37,22 +37,23 @@ class FirstRow final : public Observer {
 };
 
 struct Probe {
-  MotionClass motion;
+  RunVerdict verdict;
   Vec3 lambdas;  ///< eigenvalues of S, ascending
   bool linear;   ///< true when the force is -K S p
 };
 
 Probe probe(const StabilityMap& map, const Scenario& scenario) {
   FirstRow first;
-  MotionClassifier classifier(static_cast<std::uint64_t>(scenario.time.steps));
-  Simulation simulation(simulation_config(scenario), assemble(scenario), {&first, &classifier});
-  MotionClass motion = classify(simulation, classifier);
-  if (map.friction_stops && comes_to_rest(motion) && !classifier.at_rest()) motion = MotionClass::vibrating;
+  Simulation(simulation_config(scenario), assemble(scenario), {&first}).step();
+  LoadedScenario loaded;
+  loaded.scenario = scenario;
+  JudgedRun run = judged_run(loaded, nullptr);
+  if (map.friction_stops && is_stable(run.verdict) && !run.at_rest) run.verdict = RunVerdict::vibrating;
   const double K = scenario.rendering.stiffness;
   // Sums of up to a hundred springs; exact_shaping's weights are good to 1e-12.
   const double rounding = 1e-10 * K * (1.0 + first.S.norm()) * first.position.norm();
   const bool linear = (first.spring + K * (first.S * first.position)).norm() <= rounding;
-  return {motion, Eigen::SelfAdjointEigenSolver<Mat3>(first.S, Eigen::EigenvaluesOnly).eigenvalues(), linear};
+  return {run.verdict, Eigen::SelfAdjointEigenSolver<Mat3>(first.S, Eigen::EigenvaluesOnly).eigenvalues(), linear};
 }
 
 /// True when no device and no hand take part in the motion of the tool on the springs.
@@ -69,11 +70,11 @@ Scenario scene(const StabilityMap& map, const MapSubject& subject, double x, dou
 MapPoint map_point(const StabilityMap& map, const MapSubject& subject, double x, double y) {
   const Scenario scenario = scene(map, subject, x, y);
   const Probe run = probe(map, scenario);
-  MapPoint point{x, y, run.motion, run.lambdas[2], {}, {}};
+  MapPoint point{x, y, run.verdict, run.lambdas[2], {}, {}};
   if (map.far) {
     Scenario far = scenario;
     far.initial.position *= *map.far;
-    point.motion_from_far = probe(map, far).motion;
+    point.verdict_from_far = probe(map, far).verdict;
   }
   if (!is_alone(scenario) || !run.linear) return point;
   const double K = scenario.rendering.stiffness, M = scenario.rendering.mass;
@@ -145,8 +146,8 @@ BoundaryPoint boundary_point(const StabilityMap& map, const MapSubject& subject,
   const Scenario start = scene(map, subject, x, map.y.low);
   const bool is_of_bounded = map.edge == MapEdge::largest_bounded && !saturates(start);
   point.simulation = edge_in_y(map, kMapPrecision, [&](double y) {
-    const MotionClass motion = probe(map, scene(map, subject, x, y)).motion;
-    return is_of_bounded ? motion != MotionClass::diverged : comes_to_rest(motion);
+    const RunVerdict verdict = probe(map, scene(map, subject, x, y)).verdict;
+    return is_stable(verdict) || (is_of_bounded && verdict == RunVerdict::vibrating);
   });
   const Probe run = probe(map, start);
   if (!run.linear) {

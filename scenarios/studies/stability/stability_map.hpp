@@ -12,7 +12,7 @@
 #include "scenarios/description/scenario.hpp"
 #include "scenarios/studies/stability/judged_run.hpp"
 
-/// Maps of stable, dying, vibrating and diverged runs (judged_run.hpp), with the analytic limit where there is one, and
+/// Maps of the verdicts on runs (judged_run.hpp), with the analytic limit where there is one, and
 /// the scenes behind `hapbench stability --map`: two numbers vary, everything else is as on the platform (M = 0.1 kg,
 /// step 0.5 ms, zeta = 0.7), and for the impedance device as stated in map_scenes.cpp.
 namespace hapbench {
@@ -76,12 +76,12 @@ Scenario with_overrides(const StabilityMap& map, Scenario scenario, const std::v
 /// One run of a map.
 struct MapPoint {
   double x = 0.0, y = 0.0;
-  MotionClass motion = MotionClass::stable;
+  RunVerdict verdict = RunVerdict::stable;
   double lambda = 0.0;  ///< lambda_max(S) of the first row
   /// SpringDamper::margin; empty where the theory does not apply and for integrators without a closed form of it.
   std::optional<double> margin;
-  /// The class of the run from further away; empty in maps without such runs (StabilityMap::far).
-  std::optional<MotionClass> motion_from_far;
+  /// That on the run from further away; empty in maps without such runs (StabilityMap::far).
+  std::optional<RunVerdict> verdict_from_far;
 };
 
 /// Relative width at which the bisection on runs stops: a twentieth of the 2 % within which theory and runs must agree.

@@ -277,22 +277,32 @@ class Bench {
     loaded.files = NamedFiles(loaded.scenario);
     return run_with_shell(loaded, scene_.shell, std::nullopt, false).summary;
   }
+  double badness(const Trajectory& trajectory) const { return finite_badness(run(trajectory)); }
+
+  /// The badness of each, on several threads; counts how the runs end.
+  std::vector<double> badness(const std::vector<Trajectory>& trajectories, const JobOptions& jobs) {
+    std::vector<double> all(trajectories.size());
+    std::vector<Outcome> ends(trajectories.size());
+    for_each_job(all.size(), jobs, [&](std::size_t i) {
+      const RunSummary summary = run(trajectories[i]);
+      all[i] = finite_badness(summary);
+      ends[i] = summary.result.outcome;
+    });
+    for (const Outcome end : ends) ++outcomes_[end];
+    return all;
+  }
+  const std::map<Outcome, std::uint64_t>& outcomes() const { return outcomes_; }
+
+ private:
   /// Zero when it is not finite: a search cannot climb there.
-  double badness(const Trajectory& trajectory) const {
-    const double value = badness_of(badness_, run(trajectory));
+  double finite_badness(const RunSummary& summary) const {
+    const double value = badness_of(badness_, summary);
     return std::isfinite(value) ? value : 0.0;
   }
 
-  /// The badness of each, on several threads.
-  std::vector<double> badness(const std::vector<Trajectory>& trajectories, const JobOptions& jobs) const {
-    std::vector<double> all(trajectories.size());
-    for_each_job(all.size(), jobs, [&](std::size_t i) { all[i] = badness(trajectories[i]); });
-    return all;
-  }
-
- private:
   const SearchScene& scene_;
   Badness badness_;
+  std::map<Outcome, std::uint64_t> outcomes_;
 };
 
 /// The best trajectory so far.
@@ -311,7 +321,7 @@ struct Best {
 };
 
 /// One round of the search, from run number `begin` to before `end`.
-Best search_round(const Bench& bench, const TrajectoryDraws& draws, const SearchOptions& options, std::uint64_t begin,
+Best search_round(Bench& bench, const TrajectoryDraws& draws, const SearchOptions& options, std::uint64_t begin,
                   std::uint64_t end) {
   // Each trajectory draws from a generator seeded by its place in the search, so that threads do not matter.
   const auto random = [&](std::uint64_t run) { return Random(Random::derive(options.seed, run)); };
@@ -339,7 +349,7 @@ Best search_round(const Bench& bench, const TrajectoryDraws& draws, const Search
 
 /// Round after round, each from new random trajectories, so that one hill does not hide the others: more evaluations
 /// never find less.
-Best search(const Bench& bench, const TrajectoryDraws& draws, const SearchOptions& options) {
+Best search(Bench& bench, const TrajectoryDraws& draws, const SearchOptions& options) {
   Best best;
   for (std::uint64_t begin = 0; begin < options.evaluations; begin += kRound) {
     const std::uint64_t end = std::min(options.evaluations, begin + kRound);
@@ -402,12 +412,13 @@ SearchResult search_adversary(const Scenario& scenario, const SearchOptions& opt
   const SearchScene scene = search_scene(scenario);
   const OrientationFields& orientation = *scenario.motion.orientation;
   const TrajectoryDraws draws(options.bounds, scene.planar, orientation.tilt(0.0), orientation.azimuth(0.0));
-  const Bench bench(scene, options.badness);
+  Bench bench(scene, options.badness);
 
   SearchResult result;
   result.at_rest = bench.badness(draws.at_rest());
   Best best = search(bench, draws, options);
   result.evaluations = options.evaluations;
+  result.outcomes = bench.outcomes();
   result.found = best.badness;
   minimise(bench, draws, options.evaluations, best, result.evaluations);
   result.evaluations += 2;

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -108,6 +109,9 @@ struct SearchResult {
   double at_rest = 0.0;           ///< of the tool held as it starts, without force
   RunSummary run;                 ///< of the scenario; outcome, metrics and energy only
   std::uint64_t evaluations = 0;  ///< runs, all in all
+  /// How the runs of the search ended, before minimising: a motion in which the tool goes through the surface or never
+  /// touches it says little about a law, however bad it is.
+  std::map<Outcome, std::uint64_t> outcomes;
 };
 
 /// The badness of a finished run; needs its energy for `created`.

@@ -59,7 +59,7 @@ TEST_P(SpringMap, HasItsEdgeWithinTwoPercentOfTheAnalyticLimitAndDivergesOnlyBey
     ASSERT_TRUE(point.margin);
     // At 1 % from the limit and more, the growth of kMapSteps steps cannot be overlooked.
     if (std::abs(*point.margin) < 0.04) continue;
-    EXPECT_EQ(point.motion == MotionClass::diverged, *point.margin < 0.0) << point.x << " " << point.y;
+    EXPECT_EQ(point.verdict == RunVerdict::diverged, *point.margin < 0.0) << point.x << " " << point.y;
   }
 }
 
@@ -91,7 +91,7 @@ TEST(StabilityMap, WithoutDampingVibratesUpToTheLimit) {
   const MapResult result = stability_map(*find_stability_map("damping_ratio"), {"summation"}, 6, kTwoThreads);
   for (const MapPoint& point : result.points) {
     if (point.x == 0.0) {
-      EXPECT_EQ(point.motion, point.y < 1.6e6 ? MotionClass::vibrating : MotionClass::diverged) << point.y;
+      EXPECT_EQ(point.verdict, point.y < 1.6e6 ? RunVerdict::vibrating : RunVerdict::diverged) << point.y;
     }
   }
   EXPECT_NEAR(*result.boundary[0].analytic, 1.6e6, 1e-3);  // 4 M / dt^2
@@ -106,7 +106,7 @@ TEST(StabilityMap, OfTheAdmittanceDeviceHasTheEdgeOfItsLoop) {
   const double edge = *result.boundary[0].analytic;
   EXPECT_GT(edge, 1000.0);
   EXPECT_GT(result.boundary[0].simulation, edge);
-  EXPECT_EQ(result.points.front().motion, MotionClass::stable);
+  EXPECT_EQ(result.points.front().verdict, RunVerdict::stable);
   // A servo eight samples late comes to rest under no hand.
   EXPECT_EQ(*result.boundary[1].analytic, 0.0);
   EXPECT_EQ(result.boundary[1].simulation, 0.0);
@@ -147,9 +147,9 @@ TEST(StabilityMap, OfFrictionHasFourRegions) {
   const MapResult result = stability_map(*find_stability_map("friction_quantisation"), {"summation"}, 4, kTwoThreads);
   for (const MapPoint& point : result.points) {
     SCOPED_TRACE(testing::Message() << point.x << " " << point.y);
-    ASSERT_TRUE(point.motion_from_far);
-    EXPECT_EQ(comes_to_rest(point.motion), point.y > 1.0) << "friction covers the steps of the encoder";
-    EXPECT_EQ(*point.motion_from_far == MotionClass::diverged, point.x < 1.0) << "damping covers the sampling";
+    ASSERT_TRUE(point.verdict_from_far);
+    EXPECT_EQ(is_stable(point.verdict), point.y > 1.0) << "friction covers the steps of the encoder";
+    EXPECT_EQ(*point.verdict_from_far == RunVerdict::diverged, point.x < 1.0) << "damping covers the sampling";
   }
   for (const BoundaryPoint& point : result.boundary) {
     EXPECT_FALSE(point.analytic);
@@ -212,7 +212,7 @@ TEST(StabilityMap, DoesNotDependOnTheNumberOfThreads) {
   const MapResult one = stability_map(map, {"exact_shaping"}, 4, {1, ""}),
                   four = stability_map(map, {"exact_shaping"}, 4, {4, ""});
   for (std::size_t i = 0; i < one.points.size(); ++i) {
-    EXPECT_EQ(one.points[i].motion, four.points[i].motion);
+    EXPECT_EQ(one.points[i].verdict, four.points[i].verdict);
     EXPECT_EQ(one.points[i].lambda, four.points[i].lambda);
     EXPECT_EQ(one.points[i].margin, four.points[i].margin);
   }

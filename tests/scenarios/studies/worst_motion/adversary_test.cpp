@@ -48,6 +48,9 @@ TEST(Adversary, KeepsNinetyPercentWhileMinimising) {
     EXPECT_LE(found.trajectory.size(), search.bounds.waypoints);
     EXPECT_LE(found.trajectory.back().time, search.bounds.duration);
     EXPECT_LE(found.evaluations, 2 * search.evaluations + 2);
+    std::uint64_t runs = 0;
+    for (const auto& [outcome, count] : found.outcomes) runs += count;
+    EXPECT_EQ(runs, search.evaluations);
     EXPECT_EQ(found.badness, badness_of(badness, found.run));
   }
 }
