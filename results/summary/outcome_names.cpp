@@ -15,8 +15,9 @@ constexpr OutcomeInfo kOutcomes[] = {
      "one along the path",
      true},
     {"stuck",
-     "all steps are done, but a tool that a hand of type drag leads stood still in the end while its target went on by "
-     "more than the tool's width: it came less than a tenth of that",
+     "all steps are done, but the tool stood still in the end while the target of its hand (drag, impedance or "
+     "mass_spring_damper) went on by more than the tool's width: it came less than a tenth of that, and not because it "
+     "pressed on the surface",
      true},
     {"no_contact", "all steps are done, and the tool never touched the environment", true},
     {"lost_contact",
@@ -25,8 +26,9 @@ constexpr OutcomeInfo kOutcomes[] = {
      "no contact in the last 0.05 s or longer",
      true},
     {"went_through",
-     "all steps are done, but a freely moving tool passed the surface: its tip centre came deeper than its half width, or "
-     "its core (half a width behind its tip) left the environment on another side than it had entered, or ended inside",
+     "all steps are done, but the tool passed the surface, by itself or led by a script: its tip centre came deeper than "
+     "its half width, or its core (half a width behind its tip) left the environment on another side than it had "
+     "entered, or ended inside",
      true},
     {"diverges", "a value stopped being finite or left its bound (describe bounds)", true}};
 static_assert(static_cast<std::size_t>(Outcome::diverges) == std::size(kOutcomes) - 1);

@@ -45,17 +45,47 @@ void DragCourseObserver::on_step(const StepRecord& record) noexcept {
   c.asked = std::min(hand_.drag().speed * record.time, path.length());
   c.way = std::max(c.way, hand_.nearest());
   c.place = record.tool.pose.position;
-  c.force = record.force.rendered.norm();
+  force_ = record.force.rendered.norm();
   if (record.colliding > 0) last_contact_ = record.time;
   if (c.asked < static_cast<double>(stand_) * c.width / kStands) return;
-  const DragCourse::Stand now{record.time, c.asked, c.way}, before = stands_[stand_ % kStands];
+  const Stand now{record.time, c.asked, c.way}, before = stands_[stand_ % kStands];
   stands_[stand_ % kStands] = now;
   if (stand_++ < kStands) return;
   if (now.way - before.way >= kComes * (now.asked - before.asked)) {
-    c.stuck.reset();
-  } else if (!c.stuck) {
-    c.stuck = before;
+    stuck_.reset();
+  } else if (!stuck_) {
+    stuck_ = before;
   }
+}
+
+void StuckObserver::on_step(const StepRecord& record) noexcept {
+  constexpr double kComes = 0.1;      // of the target's way, at least, where the tool does not stand
+  constexpr double kRows = 1 / 32.0;  // of a mean over some rows, which chatter does not turn
+  const Vec3& place = record.tool.pose.position;
+  const Vec3 target(hand_.target[0](record.time), hand_.target[1](record.time), hand_.target[2](record.time));
+  push_ += kRows * (record.force.spring - push_);
+  stuck_.place = place;
+  stuck_.force = record.force.rendered.norm();
+  const auto extend = [](Box& box, const Vec3& p) {
+    box = {box.min.cwiseMin(p), box.max.cwiseMax(p)};
+    return (box.max - box.min).norm();
+  };
+  stuck_.way = extend(ways_, place);
+  stuck_.target_way = extend(target_ways_, target);
+  if (!began_ || stuck_.way > kComes * std::max(width_, stuck_.target_way)) {
+    began_ = true;
+    ways_ = {place, place};
+    target_ways_ = {target, target};
+    across_ = stuck_.way = stuck_.target_way = 0.0;
+    stuck_.since = record.time;
+  }
+  Vec3 across = target - place;
+  if (const double push2 = push_.squaredNorm(); push2 > 0.0) across -= across.dot(push_) / push2 * push_;
+  across_ = std::max(across_, across.norm());
+}
+
+std::optional<Stuck> StuckObserver::stuck() const {
+  return stuck_.target_way > width_ && across_ > width_ ? std::optional(stuck_) : std::nullopt;
 }
 
 DragCourse DragCourseObserver::course() const {
@@ -63,6 +93,8 @@ DragCourse DragCourseObserver::course() const {
   const SurfacePoint foot = hand_.path().at(hand_.nearest());
   course.height = foot.normal.dot(course.place - foot.position);
   course.path = hand_.path().length();
+  if (stuck_)
+    course.stuck = {stuck_->time, course.way - stuck_->way, course.asked - stuck_->asked, course.place, force_};
   course.to_cover = way_to_cover(fields_, time_);
   course.short_path = short_path_warning(fields_, course.path, course.to_cover, course.width);
   const bool presses = hand_.drag().force(time_) > 0.0;
@@ -76,12 +108,6 @@ std::vector<std::string> drag_warnings(const DragCourse& c, Outcome outcome) {
     const std::string where = c.height < 0.0 ? "below it, past an edge" : "above it";
     warnings.push_back(fmt::format("the dragged tool lost the surface at {:.4g} s and ended {} {}", *c.lost,
                                    length_text(std::abs(c.height)), where));
-  } else if (c.stuck && outcome != Outcome::went_through) {
-    warnings.push_back(
-        fmt::format("the dragged tool stood still since {:.4g} s, coming {} further while its target went on by {}; it "
-                    "was at [{:.4g}, {:.4g}, {:.4g}] m under a force of {:.3g} N in the end",
-                    c.stuck->time, length_text(c.way - c.stuck->way), length_text(c.asked - c.stuck->asked),
-                    c.place.x(), c.place.y(), c.place.z(), c.force));
   }
   if (c.short_path) {
     warnings.push_back(fmt::format("{}; the tool was at [{:.4g}, {:.4g}, {:.4g}] m in the end", *c.short_path,
@@ -194,14 +220,14 @@ std::string size_and_place(const Box& box) {
 }  // namespace
 
 Outcome outcome_of(const Scenario& scenario, const Encounter& e) {
-  const bool is_free = std::holds_alternative<FreePosition>(scenario.motion.position);
-  if (is_free && e.passage && e.passage->went_through()) return Outcome::went_through;
+  if (e.passage && e.passage->went_through()) return Outcome::went_through;
   if (e.metrics.steps_in_contact == 0) return Outcome::no_contact;
+  const bool is_free = std::holds_alternative<FreePosition>(scenario.motion.position);
   const bool left = e.approach.last > diagonal(e.environment) + e.tool.reach();
   const bool lost = e.drag && e.drag->lost;
   if ((is_free && left) || lost) return Outcome::lost_contact;
   if (e.drag && e.drag->not_dragged()) return Outcome::not_dragged;
-  return e.drag && e.drag->stuck ? Outcome::stuck : Outcome::completes;
+  return e.stuck ? Outcome::stuck : Outcome::completes;
 }
 
 EncounterObservers::EncounterObservers(const Scenario& scenario, const NamedFiles& files, const SimulationParts& parts,
@@ -214,6 +240,9 @@ EncounterObservers::EncounterObservers(const Scenario& scenario, const NamedFile
   if (parts.shell && parts.shell->size() > 0) approach_.emplace(parts.shell->bounds());
   if (const auto* hand = dynamic_cast<const DragHand*>(parts.hand.get()))
     drag_.emplace(*hand, std::get<DragHandFields>(scenario.hand), parts.tool->half_width());
+  const bool is_free = std::holds_alternative<FreePosition>(scenario.motion.position);
+  if (const ImpedanceHandFields* hand = spring_of(scenario.hand); hand != nullptr && is_free)
+    stuck_.emplace(*hand, 2.0 * parts.tool->half_width());
 }
 
 std::vector<Observer*> EncounterObservers::all() {
@@ -221,12 +250,17 @@ std::vector<Observer*> EncounterObservers::all() {
   if (inside_) observers.push_back(&*inside_);
   if (approach_) observers.push_back(&*approach_);
   if (drag_) observers.push_back(&*drag_);
+  if (stuck_) observers.push_back(&*stuck_);
   return observers;
 }
 
 Encounter EncounterObservers::encounter(const Metrics& metrics, const ToolShape& tool) const {
   Encounter encounter{metrics, approach_->approach(), approach_->environment(), tool};
-  if (drag_) encounter.drag = drag_->course();
+  if (drag_) {
+    encounter.drag = drag_->course();
+    encounter.stuck = encounter.drag->stuck;
+  }
+  if (stuck_) encounter.stuck = stuck_->stuck();
   if (inside_) encounter.passage = inside_->passage();
   return encounter;
 }
@@ -245,6 +279,12 @@ void EncounterObservers::judge(const Scenario& scenario, Metrics& metrics, const
   if (outcome == Outcome::completes) {
     outcome = outcome_of(scenario, seen);
     if (auto warning = warning_about(scenario, outcome, seen)) warnings.push_back(*warning);
+    const double deepest = metrics.inside ? metrics.inside->max.value_or(0.0) : 0.0;
+    if (outcome == Outcome::completes && deepest > tool.half_width())
+      warnings.push_back(
+          fmt::format("a part of the tool was {} inside, more than its half width of {}, though its tip "
+                      "centre was not",
+                      length_text(deepest), length_text(tool.half_width())));
   }
   if (seen.drag) {
     for (std::string& warning : drag_warnings(*seen.drag, outcome)) warnings.push_back(std::move(warning));
@@ -268,9 +308,10 @@ std::string millimetres(const Vec3& place) {
 }
 
 /// How a tool passed the surface, as one sentence.
-std::string passage_text(const Passage& p, double half_width) {
-  const char* const begins =
-      p.began_inside ? "the tool began inside the environment" : "the tool went through the surface";
+std::string passage_text(const Passage& p, double half_width, bool is_led) {
+  const char* const begins = p.began_inside ? "the tool began inside the environment"
+                             : is_led       ? "the script led the tool through the surface"
+                                            : "the tool went through the surface";
   const std::string end =
       p.left ? fmt::format("left on another side at {:.4g} s at {}", p.left->time, millimetres(p.left->place))
       : p.last_depth > 0.0 ? fmt::format("{} below it in the end", length_text(p.last_depth))
@@ -292,7 +333,15 @@ std::string passage_text(const Passage& p, double half_width) {
 std::optional<std::string> warning_about(const Scenario& scenario, Outcome outcome, const Encounter& e) {
   if (outcome == Outcome::went_through) {
     const bool odd = out_of_proportion(e.tool, e.environment);
-    return passage_text(*e.passage, e.tool.half_width()) + (odd ? "; " + scale_question(scenario) : "");
+    const bool is_led = !std::holds_alternative<FreePosition>(scenario.motion.position);
+    return passage_text(*e.passage, e.tool.half_width(), is_led) + (odd ? "; " + scale_question(scenario) : "");
+  }
+  if ((outcome == Outcome::stuck || outcome == Outcome::not_dragged) && e.stuck) {
+    return fmt::format(
+        "the tool stood still since {:.4g} s, coming {} further while its target went on by {}; it was at "
+        "{} under a force of {:.3g} N in the end",
+        e.stuck->since, length_text(e.stuck->way), length_text(e.stuck->target_way), millimetres(e.stuck->place),
+        e.stuck->force);
   }
   if (outcome == Outcome::no_contact) {
     return fmt::format("never in contact: the tip came as close as {} (at {:.4g} s) to the environment ({}){}",

@@ -130,12 +130,11 @@ TEST(ScenarioTool, RefusesToBeTakenForACylinder) {
 
 TEST(ScenarioTool, WarnsThatTheProxyHasNoGuaranteeWhereItIsNotConvex) {
   for (const auto& [fields, algorithm, warnings] :
-       {std::tuple{kHourglass, "proxy", 1u}, std::tuple{kHourglass, "mean", 0u}, std::tuple{kCube, "proxy", 0u}}) {
+       {std::tuple{kHourglass, "proxy", 1}, std::tuple{kHourglass, "mean", 0}, std::tuple{kCube, "proxy", 0}}) {
     const RunReport report = run_scenario(loaded(scene(fields, algorithm)), std::nullopt, false);
-    EXPECT_EQ(report.summary.warnings.size(), warnings) << fields << " " << algorithm;
-    for (const std::string& warning : report.summary.warnings) {
-      EXPECT_NE(warning.find("the tool is not convex"), std::string::npos) << warning;
-    }
+    const auto about_that = [](const std::string& warning) { return warning.find("the tool is not convex") == 0; };
+    const auto& all = report.summary.warnings;
+    EXPECT_EQ(std::count_if(all.begin(), all.end(), about_that), warnings) << fields << " " << algorithm;
   }
 }
 
