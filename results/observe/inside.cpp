@@ -2,9 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <queue>
+#include <tuple>
 #include <utility>
 
 #include "results/observe/metrics.hpp"
+#include "sim/contact/inside_bound.hpp"
 
 namespace hapbench {
 namespace {
@@ -12,10 +16,16 @@ namespace {
 /// Relative to the tool's half width: the least step in which the core's way is looked at, and over which normals are
 /// measured; relative to the depth: what a depth of the tip centre may be wrong by.
 constexpr double kLeastStep = 2e-3, kDifference = 1e-3, kDepthWithin = 0.02;
-constexpr double kMostLooks = 256.0;  ///< at the core's way in a row
-/// Rows whose deepest point is looked for after a run, and how well (InsideSearch): a few per cent of a run of seconds.
-constexpr std::size_t kDeepest = 6, kSettled = 12;
+constexpr double kMostSteps = 256.0;  ///< along the core's way in a row
+/// Parts of a run of which a row is kept, rows in settled contact whose deepest point is looked for after it, how well
+/// (InsideSearch).
+constexpr std::size_t kParts = 16384, kSettled = 12;
+/// Look-ups for the deepest row; a solid in closed form answers ten times as fast.
+constexpr std::size_t kMostLooks = 20000, kMostLooksAtForms = 100000;
 constexpr double kTolerance = 0.2;
+/// Rows are bound together where the tip centre's places differ by less than this in half widths, and the axes in
+/// length; one search is enough for rows in which no point of the tool differs by more than this.
+constexpr double kTogether = 0.1, kAlike = 0.01;
 
 /// Distance from the tip centre back to the place half a width within the body.
 double way_to_core(const ToolShape& tool) {
@@ -29,6 +39,7 @@ double way_to_core(const ToolShape& tool) {
 
 InsideMetrics& InsideMetrics::operator+=(const InsideMetrics& other) {
   max = std::max(max, other.max);  // an empty optional is less than any number
+  at_most = std::max(at_most, other.at_most);
   settled.insert(settled.end(), other.settled.begin(), other.settled.end());
   rows += other.rows;
   centre_inside += other.centre_inside;
@@ -42,16 +53,21 @@ std::optional<double> InsideMetrics::settled_median() const {
   return 0.5 * (sorted[(sorted.size() - 1) / 2] + sorted[sorted.size() / 2]);
 }
 
+PoseSamples::Sample PoseSamples::joined(const Sample& a, const Sample& b) const noexcept {
+  const auto& [kept, other] = b.key > a.key ? std::tie(b, a) : std::tie(a, b);
+  const double moved = (kept.pose.position - other.pose.position).norm(),
+               turned = (kept.pose.axis - other.pose.axis).norm();
+  return {kept.pose, kept.key, std::max(kept.moved, other.moved + moved), std::max(kept.turned, other.turned + turned),
+          std::max(kept.way, other.way + tool_.moved_at_most(kept.pose, other.pose))};
+}
+
 void PoseSamples::add(const ToolPose& pose, double key) noexcept {
   if (rows_++ % rows_of_part_ != 0) {
-    if (key > samples_.back().key) samples_.back() = {pose, key};
+    samples_.back() = joined(samples_.back(), {pose, key});
     return;
   }
   if (samples_.size() == most_) {
-    for (std::size_t i = 0; i < most_ / 2; ++i) {
-      const Sample &a = samples_[2 * i], &b = samples_[2 * i + 1];
-      samples_[i] = b.key > a.key ? b : a;
-    }
+    for (std::size_t i = 0; i < most_ / 2; ++i) samples_[i] = joined(samples_[2 * i], samples_[2 * i + 1]);
     samples_.resize(most_ / 2);
     rows_of_part_ *= 2;
   }
@@ -66,8 +82,8 @@ InsideObserver::InsideObserver(std::shared_ptr<const ToolShape> tool, std::share
       every_(every),
       search_(*tool_, *solid_),
       back_(way_to_core(*tool_)),
-      deepest_(2 * kDeepest),
-      settled_(kSettled) {
+      deepest_(kParts, *tool_),
+      settled_(kSettled, *tool_) {
   if (every_ > 0) metrics_.settled.reserve(steps / every_ + 1);
 }
 
@@ -120,7 +136,7 @@ void InsideObserver::follow_core(const Vec3& place, double time) noexcept {
     free_way_ -= length;
     return;
   }
-  const double least = std::max(kLeastStep * tool_->half_width(), length / kMostLooks);
+  const double least = std::max(kLeastStep * tool_->half_width(), length / kMostSteps);
   double done = began_ ? std::min(free_way_, length) : 0.0;
   for (;;) {
     const Vec3 here = length > 0.0 ? Vec3(from + done / length * way) : place;
@@ -154,16 +170,69 @@ void InsideObserver::note_core(const Vec3& place, const SurfaceDistance& phi, do
 InsideMetrics InsideObserver::metrics() {
   InsideMetrics metrics = metrics_;
   if (every_ > 0) return metrics;
-  std::vector<PoseSamples::Sample> deepest = deepest_.all();
-  std::stable_sort(deepest.begin(), deepest.end(), [](const auto& a, const auto& b) { return a.key > b.key; });
-  deepest.resize(std::min(deepest.size(), kDeepest));
-  for (const auto& sample : deepest)
-    metrics.max = std::max(metrics.max, search_.depth(sample.pose, metrics.max.value_or(0.0), kTolerance));
+  find_deepest(metrics);
   for (const auto& sample : settled_.all()) {
     if (const auto depth = search_.depth(sample.pose, 0.0, kTolerance)) metrics.settled.push_back(*depth);
   }
   for (const double depth : metrics.settled) metrics.max = std::max(metrics.max, std::optional(depth));
   return metrics;
+}
+
+/// Branch and bound over the run: its parts are halved where they may be deeper than the deepest row known, those with
+/// the largest bound first, down to rows that hardly differ, of which one is searched.
+void InsideObserver::find_deepest(InsideMetrics& metrics) {
+  struct Stretch {
+    std::size_t first, end;
+    double way, bound;  ///< how far the rows are from the one in the middle, and how deep they are at most [m]
+    bool operator<(const Stretch& other) const { return bound < other.bound; }
+  };
+  const std::vector<PoseSamples::Sample>& parts = deepest_.all();
+  if (parts.empty()) return;
+  const double width = tool_->half_width();
+  const auto search = [&](const ToolPose& pose, double way) {
+    const double tolerance = InsideSearch::kTolerance - way / width;
+    metrics.max = std::max(metrics.max, search_.depth(pose, metrics.max.value_or(0.0), tolerance));
+  };
+  const auto enough = [&] {
+    return (1.0 + InsideSearch::kTolerance) * metrics.max.value_or(0.0) + InsideSearch::kTolerance * width;
+  };
+  search(std::max_element(parts.begin(), parts.end(), [](auto& a, auto& b) { return a.key < b.key; })->pose, 0.0);
+  InsideBound bound(*tool_, *solid_);
+  const auto bounded = [&](std::size_t first, std::size_t end) {
+    const ToolPose& pose = parts[(first + end) / 2].pose;
+    Stretch s{first, end, 0.0, 0.0};
+    double moved = 0.0, turned = 0.0;
+    for (std::size_t i = first; i < end; ++i) {
+      const PoseSamples::Sample& part = parts[i];
+      moved = std::max(moved, part.moved + (part.pose.position - pose.position).norm());
+      turned = std::max(turned, part.turned + (part.pose.axis - pose.axis).norm());
+      s.way = std::max(s.way, part.way + tool_->moved_at_most(pose, part.pose));
+    }
+    const bool last = end - first == 1;
+    s.bound = last || (moved < kTogether * width && turned < kTogether)
+                  ? bound.at(pose, moved, turned, enough(), last && s.way > kAlike * width)
+                  : bound.roughly_at(pose, moved, turned);
+    return s;
+  };
+  const std::size_t most_looks = solid_->bytes() > 0 ? kMostLooks : kMostLooksAtForms;
+  std::priority_queue<Stretch> open;
+  open.push(bounded(0, parts.size()));
+  double rest = 0.0;  // the largest bound of parts that can neither be halved nor searched
+  while (!open.empty() && open.top().bound > enough() && bound.looks() + search_.looks() < most_looks) {
+    const Stretch s = open.top();
+    open.pop();
+    const std::size_t middle = (s.first + s.end) / 2;
+    if (s.way <= kAlike * width) {
+      search(parts[middle].pose, s.way);
+    } else if (s.end - s.first == 1) {
+      rest = std::max(rest, s.bound);
+    } else {
+      open.push(bounded(s.first, middle));
+      open.push(bounded(middle, s.end));
+    }
+  }
+  if (!open.empty()) rest = std::max(rest, open.top().bound);
+  if (rest > enough()) metrics.at_most = rest;
 }
 
 }  // namespace hapbench

@@ -14,9 +14,10 @@ class MetricsObserver;
 
 /// How deep the tool was in the environment in a run, as metric_list(Metrics) documents it.
 struct InsideMetrics {
-  std::optional<double> max;    ///< [m]
-  std::vector<double> settled;  ///< of rows in settled contact [m]
-  std::uint64_t rows = 0;       ///< with the tip centre where the inside is known
+  std::optional<double> max;      ///< [m]
+  std::optional<double> at_most;  ///< no row is deeper [m]; none where that is `max` within InsideSearch::kTolerance
+  std::vector<double> settled;    ///< of rows in settled contact [m]
+  std::uint64_t rows = 0;         ///< with the tip centre where the inside is known
   std::uint64_t centre_inside = 0;
 
   InsideMetrics& operator+=(const InsideMetrics& other);
@@ -43,38 +44,44 @@ struct Passage {
   bool went_through() const noexcept { return deep || left || ends_inside; }
 };
 
-/// Keeps poses of a run in a fixed memory: of some parts of equally many rows each the one with the
-/// largest key.
+/// Keeps poses of a run in a fixed memory: of some parts of equally many rows each the one with the largest key, and
+/// how far the others are from it.
 class PoseSamples {
  public:
   struct Sample {
     ToolPose pose;
     double key;
+    double moved = 0.0, turned = 0.0;  ///< the most by which tip centre [m] and axis of a row differ
+    double way = 0.0;                  ///< the most by which any point of the tool does [m]
   };
-  explicit PoseSamples(std::size_t most) : most_(most) { samples_.reserve(most); }  ///< even
+  /// `most`: even. The tool must outlive the samples.
+  PoseSamples(std::size_t most, const ToolShape& tool) : most_(most), tool_(tool) { samples_.reserve(most); }
   void add(const ToolPose& pose, double key) noexcept;
   const std::vector<Sample>& all() const noexcept { return samples_; }
 
  private:
   std::size_t most_;
+  const ToolShape& tool_;
+  Sample joined(const Sample& a, const Sample& b) const noexcept;
+
   std::vector<Sample> samples_;
   std::uint64_t rows_ = 0, rows_of_part_ = 1;
 };
 
-/// Watches how deep the tool is. A row costs some nanoseconds: a point cannot pass the surface before it has moved by
-/// its distance, so that few rows need a look; the deepest point of the tool is looked for after the run only, in the
-/// poses with the deepest contact or centre and in some rows in settled contact; or in
-/// every `every`-th row when that is asked for. Allocates in the constructor and after the run only.
+/// Watches how deep the tool is. A row costs some ten nanoseconds: a point cannot pass the surface before it has moved
+/// by its distance, so that few rows need a look. The deepest point of the tool is looked for after the run only: in
+/// the rows with the deepest contact or centre, in those that may be deeper still (InsideBound), and in some in settled
+/// contact; or in every `every`-th row when that is asked for. Allocates in the constructor and after the run only.
 class InsideObserver final : public Observer {
  public:
-  /// `metrics`, if given, observes before this and tells which rows are in settled contact. `every`: 0 for no rows; of
-  /// `steps` rows in all.
+  /// `metrics`, if given, observes before this and tells which rows are in settled contact. `every`: 0 where no row is
+  /// looked at during the run. `steps`: how many rows the run has.
   InsideObserver(std::shared_ptr<const ToolShape> tool, std::shared_ptr<const Solid> solid,
                  const MetricsObserver* metrics = nullptr, std::uint64_t every = 0, std::uint64_t steps = 0);
 
   void on_step(const StepRecord& record) noexcept override;
 
-  /// Of the last row, if it is one of the every `every`-th [m]; none where it is unknown.
+  /// How deep the tool was in the last row [m]; none where nobody knows and in rows that are not looked at.
   const std::optional<double>& depth() const noexcept { return depth_; }
   const Passage& passage() const noexcept { return passage_; }
   /// After the run; looks for the deepest points.
@@ -84,6 +91,7 @@ class InsideObserver final : public Observer {
   void follow_tip(const StepRecord& record) noexcept;
   void follow_core(const Vec3& place, double time) noexcept;
   void note_core(const Vec3& place, const SurfaceDistance& phi, double time) noexcept;
+  void find_deepest(InsideMetrics& metrics);
 
   std::shared_ptr<const ToolShape> tool_;
   std::shared_ptr<const Solid> solid_;

@@ -231,9 +231,9 @@ MetricList inside_list(const Metrics& m) {
   const auto rows = static_cast<double>(inside.rows);
   return {
       {"inside_max_m", "m",
-       "largest distance below the environment's surface of any point of the tool, at any depth; of the six "
-       "parts of the run with the deepest contact or tip centre, with record.inside of all recorded rows; that of some "
-       "point of the tool, as a rule the deepest; none of springs and beyond the border of an open surface",
+       "largest distance below the environment's surface of any point of the tool in any row, with record.inside in any "
+       "recorded row; no row is deeper by more than 2 % of it and of the tool's half width, or a warning tells by how "
+       "much; none of springs and beyond the border of an open surface",
        inside.max, Better::less},
       {"inside_settled_m", "m",
        "median of that distance over up to twelve rows in settled contact, evenly spread, or with record.inside over all "

@@ -72,7 +72,8 @@ struct Metrics {
   double velocity_total_variation = 0.0;
   std::uint64_t force_reversals = 0;
   std::optional<double> vibration_power;  ///< nothing at a sampling rate of 60 Hz or less, or without rows
-  /// Of the handle in the last quarter [m/s]; of several runs the largest.
+  /// Root mean square of the handle's speed above 30 Hz in the last quarter of the run, the largest of several runs
+  /// [m/s].
   std::optional<double> last_quarter_vibration = {};
   double depth_max = 0.0;           ///< never negative
   std::optional<RatioRange> ratio;  ///< of all rendered contacts; nothing without contact

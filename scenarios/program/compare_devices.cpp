@@ -268,7 +268,7 @@ class Answers {
                        more);
   }
 
-  /// What happens below a low end, and where nothing is stable.
+  /// Lines that tell for which devices runs below the low end fail, and how, and where no stiffness at all is stable.
   std::string ends_text() const {
     std::map<std::string, std::vector<std::string>> below, none;
     const auto name = [this](const DeviceLimit& limit) {

@@ -274,6 +274,11 @@ Outcome EncounterObservers::outcome(const Scenario& scenario, const Metrics& met
 void EncounterObservers::judge(const Scenario& scenario, Metrics& metrics, const ToolShape& tool, Outcome& outcome,
                                std::vector<std::string>& warnings) {
   if (inside_) metrics.inside = inside_->metrics();
+  if (metrics.inside && metrics.inside->at_most) {
+    warnings.push_back(
+        fmt::format("inside_max_m, {}, may be too low: no row is deeper than {}; record.inside=true looks at every row",
+                    length_text(metrics.inside->max.value_or(0.0)), length_text(*metrics.inside->at_most)));
+  }
   if (!approach_) return;
   const Encounter seen = encounter(metrics, tool);
   if (outcome == Outcome::completes) {

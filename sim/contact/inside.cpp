@@ -25,6 +25,7 @@ InsideSearch::InsideSearch(const ToolShape& tool, const Solid& solid)
 
 std::optional<double> InsideSearch::depth(const ToolPose& pose, double known, double tolerance) noexcept {
   best_ = known;
+  looks_ += 8;  // of the tip and where it leads
   tolerance_ = tolerance;
   const SurfaceDistance tip = solid_.at(pose.position);
   const LookedUp looked{pose.position, tip.value};
@@ -83,6 +84,7 @@ void InsideSearch::look(const ToolPose& pose, const Cell* parents, std::size_t c
     // Nothing is deeper than the way to the surface that is known.
     const double way = (place - cell.looked.place).norm();
     if (!may_be_deepest(radius + way - cell.looked.value)) continue;
+    ++looks_;
     const SurfaceDistance phi = solid_.at(place, &cell.looked);
     if (phi.value >= radius) continue;
     cell.looked = {place, phi.value};

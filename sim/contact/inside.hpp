@@ -32,6 +32,7 @@ class InsideSearch {
   std::optional<double> depth(const ToolPose& pose, double known = 0.0, double tolerance = kTolerance) noexcept;
 
   static constexpr double kTolerance = 0.02;
+  std::size_t looks() const noexcept { return looks_; }  ///< distances of all searches so far, about
 
  private:
   struct Cell {
@@ -53,6 +54,7 @@ class InsideSearch {
   AlignedDoubles x_, y_, z_;  ///< an answer of the tool
   std::vector<Cell> cells_;   ///< that may hold the deepest point, as a stack
   double best_ = 0.0, tolerance_ = kTolerance;
+  std::size_t looks_ = 0;
   bool beyond_border_ = false;  ///< a point there may be deeper
 };
 

@@ -19,7 +19,7 @@ void register_laws();              ///< law/<algorithm>/{50,250,1000}
 void register_proxy();             ///< proxy/solve/T2
 void register_steps();             ///< step/<one of kSteps>, in step.cpp
 void register_latencies();         ///< latency/<step>: counters of single steps
-void register_ideal_trajectory();  ///< ideal_trajectory/row
+void register_ideal_trajectory();  ///< ideal_trajectory/row, inside/row/{free,pressed}
 void register_shells();            ///< shell/build
 void register_skips();             ///< skip/<what>/{taken,off}
 

@@ -3,6 +3,7 @@
 #include <numbers>
 
 #include "results/observe/ideal_trajectory.hpp"
+#include "results/observe/inside.hpp"
 #include "tests/bench/bench.hpp"
 #include "tests/bench/task_scene.hpp"
 
@@ -56,8 +57,29 @@ void row(benchmark::State& state) {
 
 }  // namespace
 
+namespace {
+
+/// A row of the observer of how deep the tool is, while the tip slides to and fro at this height over the block.
+void inside_row(benchmark::State& state, double height) {
+  const Scene scene;
+  InsideObserver observer(std::make_shared<const Cylinder>(scene.tool), make_solid(scene.block));
+  StepRecord record;
+  const double depth = std::max(0.0, -height);
+  for (auto _ : state) {
+    record.tool.pose.position = {0.004 + 1e-6 * static_cast<double>(++record.step % 512), 0.0, height};
+    record.force.depth_max = depth;
+    observer.on_step(record);
+  }
+  const double found = observer.metrics().max.value_or(-1.0);
+  if (std::abs(found - depth) > InsideSearch::kTolerance * (depth + scene.tool.radius())) refute(state, "wrong depth");
+}
+
+}  // namespace
+
 void register_ideal_trajectory() {
   benchmark::RegisterBenchmark("ideal_trajectory/row", row);
+  benchmark::RegisterBenchmark("inside/row/free", inside_row, 0.002);
+  benchmark::RegisterBenchmark("inside/row/pressed", inside_row, -0.0001);
 }
 
 }  // namespace hapbench::bench

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "sim/contact/inside_bound.hpp"
 #include "sim/tool/bur.hpp"
 #include "tests/support/meshes.hpp"
 #include "tests/support/tool_kinds.hpp"
@@ -116,12 +117,42 @@ TEST(Inside, AgreesWithADenseSampleOfTheTool) {
       EXPECT_LE(*depth, sample + 2.0 * std::sqrt(3.0) * step) << kind.name << " in " << place.name;
       most = std::max(most, sample - *depth);
       deep += *depth > 0.0 ? 1 : 0;
+      // Neither here nor at a pose from which this one is not far may the bound be lower.
+      InsideBound bound(*tool.shape, *place.solid);
+      EXPECT_GE(std::max(0.0, bound.at(pose, 0.0, 0.0, 0.0, true)), *depth - 1e-12)
+          << kind.name << " in " << place.name;
+      EXPECT_GE(std::max(0.0, bound.at(pose, 0.0, 0.0, 0.0, false)), *depth - 1e-12)
+          << kind.name << " in " << place.name;
+      ToolPose beside = pose;
+      beside.position += Vec3(0.0001 * random.uniform(), 0.0, 0.0002 * random.uniform());
+      beside.axis = Vec3(-std::sin(tilt + 0.05), 0.0, -std::cos(tilt + 0.05));
+      const double moved = (beside.position - pose.position).norm(), turned = (beside.axis - pose.axis).norm();
+      EXPECT_GE(std::max(0.0, bound.at(beside, moved, turned, 0.0, true)), *depth - 1e-12)
+          << kind.name << " in " << place.name;
+      EXPECT_GE(std::max(0.0, bound.roughly_at(beside, moved, turned)), *depth - 1e-12)
+          << kind.name << " in " << place.name;
       // A bound that is known already spares the search, not the answer.
       EXPECT_EQ(search.depth(pose, *depth).value_or(-1.0), *depth) << kind.name << " in " << place.name;
     }
   }
   EXPECT_GT(deep, 20);
   RecordProperty("largest_shortfall_um", std::to_string(1e6 * most));
+}
+
+/// A round tip lies in one ball, a tenth of the tolerance larger for rounding; a leaning flat one touches a ball about
+/// a place behind it along the normal, where two of the tried ones may be a factor of two apart.
+TEST(Inside, HasATightBoundOverAMesh) {
+  const TriangleSoup cube = test::cube(0.004, {0.0, 0.0, -0.004});
+  const auto solid = make_solid(cube.vertices, cube.triangles);
+  const Revolved round = ball();
+  const Cylinder flat(kRadius, 0.01, Tip::flat);
+  for (const double tilt : {0.0, 0.1, 0.3, 0.6}) {
+    ToolPose pose = at({0.0003, 0.0002, kRadius - 0.0001});
+    pose.axis = {-std::sin(tilt), 0.0, -std::cos(tilt)};
+    EXPECT_NEAR(InsideBound(round, *solid).at(pose, 0.0, 0.0, 0.0, true), 0.0001, 2e-3 * kRadius) << tilt;
+    pose.position.z() = kRadius * std::sin(tilt) - 0.0001;
+    EXPECT_NEAR(InsideBound(flat, *solid).at(pose, 0.0, 0.0, 0.0, true), 0.0001, 0.1 * kRadius) << tilt;
+  }
 }
 
 TEST(Inside, OfAMeshToolIsThatOfItsMesh) {
