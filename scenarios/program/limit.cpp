@@ -96,11 +96,6 @@ std::string value_text(const std::optional<double>& value) {
   return !value ? "-" : std::isinf(*value) || *value == 0.0 ? "none" : significant(*value, 6);
 }
 
-/// In percent; "0" where it is within the width of the search.
-std::string difference_text(double difference, const std::optional<double>& width) {
-  return width && std::abs(difference) <= *width ? "0" : deserved(difference, width, 2);
-}
-
 Table table_of(const std::vector<FieldLimit>& limits, const LimitQuestion& question) {
   Table table(limit_headings(question.smallest));
   for (const FieldLimit& limit : limits) {
@@ -110,7 +105,7 @@ Table table_of(const std::vector<FieldLimit>& limits, const LimitQuestion& quest
     table.add({limit.algorithm, limit.other_value ? deserved(*limit.other_value, other, 6) : "none",
                other_beyond_text(limit), limit.value ? deserved(*limit.value, tolerance, 6) : "none",
                beyond_text(limit), value_text(limit.theory),
-               difference ? difference_text(100.0 * *difference, width) : "-", std::to_string(limit.runs.size()),
+               difference ? deserved_difference(100.0 * *difference, width) : "-", std::to_string(limit.runs.size()),
                std::to_string(limit.inconsistent.size())});
   }
   return table;

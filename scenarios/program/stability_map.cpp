@@ -206,7 +206,7 @@ std::vector<std::string> cells_of(const MapResult& result, const std::vector<Run
       std::count_if(result.boundary.begin(), result.boundary.end(), [](const BoundaryPoint& p) { return !p.analytic; });
   std::vector<std::string> cells = {result.map->name, result.subject.algorithm, result.subject.integrator->info.name};
   for (const RunVerdict verdict : shown) cells.push_back(std::to_string(count_of(result, verdict)));
-  cells.push_back(difference ? deserved(100.0 * *difference, 100.0 * kMapPrecision, 2) : "-");
+  cells.push_back(difference ? deserved_difference(100.0 * *difference, 100.0 * kMapPrecision) : "-");
   cells.push_back(std::to_string(without));
   return cells;
 }

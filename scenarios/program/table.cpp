@@ -203,6 +203,10 @@ std::string deserved(double value, const std::optional<double>& tolerance, int d
   return last < 0 ? fmt::format("{:.{}f}", value, -last) : fmt::format("{:.0f}", std::round(value / unit) * unit);
 }
 
+std::string deserved_difference(double difference, const std::optional<double>& tolerance) {
+  return tolerance && std::abs(difference) <= *tolerance ? "0" : deserved(difference, tolerance, 2);
+}
+
 std::string character_map(const MapColumns& columns, const std::string& row_name,
                           const std::vector<std::string>& row_labels,
                           const std::function<char(std::size_t column, std::size_t row)>& cell) {

@@ -116,6 +116,12 @@ TEST(Deserved, HasItsUsualDigitsWithoutAToleranceOrBeneathIt) {
   EXPECT_EQ(deserved(std::nan(""), 1e-3), "-");
 }
 
+TEST(Deserved, OfADifferenceWithinItsToleranceIsNothing) {
+  EXPECT_EQ(deserved_difference(-0.062, 0.1), "0");
+  EXPECT_EQ(deserved_difference(-1.234, 0.1), "-1.2");
+  EXPECT_EQ(deserved_difference(-1.234, {}), "-1.2");
+}
+
 TEST(CharacterMap, HasTheFirstRowBelow) {
   const auto cell = [](std::size_t column, std::size_t row) { return row == 0 ? 'a' : column == 1 ? 'c' : 'b'; };
   EXPECT_EQ(character_map({"x", 2, "1", "9"}, "y", {"low", "high"}, cell),
