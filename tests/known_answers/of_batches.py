@@ -4,8 +4,8 @@ import math
 import numpy as np
 from scipy import stats
 
-from answers import EXACT, ROUNDING, Run, Table, scene
-from physics import PLAIN
+from answers import EXACT, ROUNDING, Run, Table, norms, scene
+from physics import BINNED, PLAIN, Phases, nearest_rank
 
 UP = {"type": "springs", "groups": [{"direction": [0, 1, 0], "count": 2}]}
 LAWS = ["mean", "virtual_coupling", "summation", "shaped_stiffness"]
@@ -200,3 +200,47 @@ def compared(bench):
     found = np.lexsort(table.vectors(*table.names).T)
     for i, name in enumerate(("x_m", "y_m", "z_m", "nx", "ny", "nz")):
         bench.add(f"shell.csv:{name}", table[name][found], points[order, i], "of the file, in some order", EXACT, ("of another column", points[order, (i + 1) % 6]))
+
+
+@scene
+def sampled_finer(bench):
+    """Laws on a plane at half the distance of its points and at half the step: single runs, measured at the same times, judged by the rule."""
+    laws, by, scene_name = ["summation", "proxy", "shaped_stiffness", "highest_depth"], ["force_step_p99_N", "force_max_N"], "plane_wiped_round"
+    coarse = ["--set", "environment.spacing_m=0.0004"]
+    bench.hapbench("compare", scene_name, *coarse, "--algorithms", ",".join(laws), "--by", ",".join(by), "--check", "--out", "check")
+    table = Table(bench.folder / "check" / "ranking.csv")
+    half = {"spacing": ["--set", "environment.spacing_m=0.0002"], "step": [*coarse, "--set", "time.step_s=0.000244140625", "--set", "time.steps=4096"]}
+
+    def measured(law, words, every):
+        run = bench.run(scene_name, *words, "--set", f"rendering.algorithm={law}", "--set", "expect={}", out=f"{law}_{len(words)}_{words[1][-3:]}")
+        rows = run.table()
+        f, touching = rows.vectors("fx_N", "fy_N", "fz_N")[::every], rows["colliding"][::every] > 0
+        steps = norms(np.diff(f, axis=0, prepend=f[:1]))[Phases(touching, 1 / 2048).settled]
+        return [nearest_rank(steps, 0.99), norms(f).max()]
+
+    before = {law: measured(law, coarse, 1) for law in laws}
+    after = {(change, law): measured(law, words, 2 if change == "step" else 1) for change, words in half.items() for law in laws}
+    known, order = [], [(change, m) for change in half for m in range(2)]
+    for change, m in order:
+        a, b = [before[law][m] for law in laws], [after[change, law][m] for law in laws]
+        floor = 1e-3 * max(a + b)
+        apart = lambda x, y: abs(x - y) > 0.1 * max(x, y) and abs(x - y) > floor
+        pairs = [(i, j) for i in range(4) for j in range(i)]
+        flips = any(apart(a[i], a[j]) and apart(b[i], b[j]) and (a[i] < a[j]) != (b[i] < b[j]) for i, j in pairs)
+        verdict = "flips" if flips else "drifts" if any(map(apart, a, b)) else "holds"
+        known += [(scene_name, change, by[m], law, a[i], b[i], verdict, laws[np.argmin(a)], laws[np.argmin(b)]) for i, law in enumerate(laws)]
+    known = dict(zip(("scenario", "halved", "metric", "algorithm", "before", "after", "verdict", "best_before", "best_after"), map(list, zip(*known))))
+    for name, values in known.items():
+        numbers = name in ("before", "after")
+        wrong = known["after" if name == "before" else "before"] if numbers else ["holds"] * 16 if name == "verdict" else values[::-1] if len(set(values)) > 1 else ["none"] * 16
+        bench.add(f"ranking.csv:{name}", table[name], values, "single runs, every row or every second", BINNED if numbers else EXACT,
+                  ("the other sampling, or order", wrong))
+    told = [("0.4 mm -> 0.2 mm" in text, "0.488 -> 0.244 ms" in text) for text in table["change"]]
+    bench.add("ranking.csv:change", [a for pair in told for a in pair], [x for change in known["halved"] for x in (change == "spacing", change == "step")],
+              "half of each", EXACT, ("both at once", [True] * 32))
+    bench.scenario("springs", time={"step_s": 0.001, "steps": 300}, environment=UP, initial={"position_m": [1e-4, -1e-3, 0]},
+                   rendering={"algorithm": "mean", **PLAIN, "damping_ratio": 0.1})
+    bench.hapbench("compare", "springs.json", "--algorithms", "mean,summation", "--check", "--out", "springs")
+    words = sorted(set(table["verdict"]) | set(Table(bench.folder / "springs" / "ranking.csv")["verdict"]))
+    for word in ("holds", "drifts", "flips", "unchecked"):
+        bench.add(f"{word} (verdict of compare --check on a metric)", word in words, True, "by the rule, above; springs have no points", EXACT, ("never", False))

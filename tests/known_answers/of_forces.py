@@ -140,3 +140,34 @@ def recorded_force(bench):
     bench.columns("force_reference.csv", table, [
         (f"mf{x}_N", np.where(has, m[:, i], np.nan), how, STEPPED, "held beyond", m[:, i]) for i, x in enumerate("xyz")] + [
         (f"force_error_{x}_N", np.where(has, (f - m)[:, i], np.nan), how, STEPPED, "held beyond", (f - m)[:, i]) for i, x in enumerate("xyz")])
+
+
+@scene
+def imported(bench):
+    """A recording whose places come in steps of 10, 20 and 5 um: what import says of it."""
+    t = np.arange(400) * 0.002
+    p = np.column_stack([np.round(1e-3 * np.sin(7 * t) / 1e-5) * 1e-5, np.round(2e-3 * np.cos(5 * t) / 2e-5) * 2e-5, np.round(-1e-3 * t / 5e-6) * 5e-6])
+    f = np.column_stack([np.full(400, 0.1), np.full(400, 0.2), np.sin(t)])
+    bench.write("rec.csv", "t,x,y,z,fx,fy,fz", np.column_stack([t, p, f]))
+    told = bench.json("import", "rec.csv", "--columns", "time=t,position=x,force=fx", "--out", "stroke.csv")
+    speed = norms(np.diff(p, axis=0)) / 0.002
+    close = Within("times and places as written, with all their digits", relative=1e-9, absolute=1e-15)
+    q = np.array([1e-5, 2e-5, 5e-6])
+    bench.add("quantum (number of import)", told["quantum_m"], q, "steps they were rounded to", close, ("least difference of places", [1e-18] * 3))
+    for key, known, within, says, naive in (
+            ("quantum_m", q, close, "mean step", q * 2), ("quantum_force_N", 20000 * 2e-5, close, "of the finest axis", 0.1),
+            ("rows_read", 400, EXACT, "with the header", 401), ("rows_left_out", 0, EXACT, "the header", 1), ("samples", 400, EXACT, "intervals", 399),
+            ("rate_Hz", 500, close, "samples over duration", 400 / 0.798), ("resampled", False, EXACT, "rounded times", True),
+            ("first_time_s", 0.0, EXACT, "the second", 0.002), ("duration_s", 0.798, close, "samples over rate", 0.8), ("gaps", 0, EXACT, "one", 1),
+            ("interval_s", [0.002] * 3, close, "in milliseconds", [2.0] * 3), ("box_m", [p.min(axis=0), p.max(axis=0)], close, "about the mean",
+                                                                               [p.min(axis=0) - p.mean(axis=0), p.max(axis=0) - p.mean(axis=0)]),
+            ("speed_max_m_per_s", speed.max(), close, "largest component", np.abs(np.diff(p, axis=0)).max() / 0.002),
+            ("speed_p99_m_per_s", np.percentile(speed, 99), Within("ranks of 99 % differ by one of 399", relative=0.02), "mean", speed.mean()),
+            ("has_roll", False, EXACT, "poses", True), ("tip_direction", [0, 0, -1], ROUNDING, "up", [0, 0, 1]), ("tip_direction_spread_rad", 0.0, ROUNDING, "some", 1.0),
+            ("unit_deviation", 0.0, ROUNDING, "some", 1.0), ("force_min_N", norms(f).min(), close, "of z", f[:, 2].min()),
+            ("force_max_N", norms(f).max(), close, "of z", f[:, 2].max()), ("smoothing", None, EXACT, "some", 5), ("warnings", [], EXACT, "some", ["steps"]),
+            ("file", "stroke.csv", EXACT, "the recording", "rec.csv"), ("next", "hapbench new stroke", EXACT, "run", "hapbench run rec.csv")):
+        value = told[key][:19] if key == "next" else list(told[key].values()) if key == "interval_s" else told[key]
+        bench.add(f"import --json: {key}", value, known, "numpy on the recording", within, (says, naive))
+    for i, key in enumerate(("min", "median", "max")):
+        bench.add(f"import --json: {key}", told["interval_s"][key], 0.002, "numpy on the recording", close, ("in milliseconds", 2.0))

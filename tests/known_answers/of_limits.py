@@ -226,6 +226,14 @@ def devices(bench):
               ROUNDING, ("the resolution asked", [resolution * limit for limit in limits]))
     bench.add("compare --json: low_tolerance_N_per_m", [told[key]["low_tolerance_N_per_m"] for key in keys], [None, None], "the range begins stable", EXACT,
               ("the resolution", [resolution] * 2))
+    # The order of the laws turned round: of summation over mean, so that 1 / lambda_max is not 1.
+    (bench.folder / "same.json").write_text((bench.folder / "mine.json").read_text(encoding="utf-8"), encoding="utf-8")
+    text = bench.hapbench("compare", "both_ways.json", "--devices", "mine.json,same.json", "--algorithms", "mean,summation", "--resolution", resolution, "--out", "t")
+    ratio = limits[0] / limits[1]
+    for heading, shown, wrong in (("1 / lambda_max(S)", f"{ratio:.2g} ({1 / 2:.2g}, 2)", f"{ratio:.2g} (2, 2)"),
+                                  ("K lambda_max", f"K lambda_max: {2 * ratio:.2g} ... {2 * ratio:.2g}", f"K lambda_max: {ratio:.2g} ...")):
+        bench.add(f"{heading} (stiffness, of compare --devices)", [shown in text, wrong in text], [True, False], "limits and S of two springs", EXACT,
+                  ("lambda_max, or of K alone", [False, True]))
     classes = [j[v.index(x)] for j, v, x in zip(judged, tried, beyond)]
     bench.add("device_limits.csv:class_beyond", [cell[key]["class_beyond"] for key in keys], classes, how, EXACT, ("diverged", ["diverged"] * 2))
     bench.add("device_limits.csv:class_below", [cell[key]["class_below"] for key in keys], ["end of the range"] * 2, "stable at the low end", EXACT,

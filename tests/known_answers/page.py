@@ -23,6 +23,7 @@ it and `open_fields.txt`.
 """
 TAIL = "\n<!-- /generated -->\n"
 # Members of JSON that say where and how, not what.
+NO_WORDS = {"file of the results"}
 NO_ANSWERS = {"provenance", "name", "algorithm", "scenario"}
 
 
@@ -56,7 +57,7 @@ def printed_fields(benches):
         shared = table["name"] in ("sweep.csv", "comparison.csv")
         fields += [f"{table['name']}:{name}" for name in names if not shared or name not in metrics]
         fields += [f"{table['name']}:metrics"] if shared else []
-    fields += [f"{word['name']} ({word['kind']})" for word in described("words")["words"]]
+    fields += [f"{word['name']} ({word['kind']})" for word in described("words")["words"] if word["kind"] not in NO_WORDS]
     found = [(command, *keys_of(data)) for bench in benches for command, data in bench.printed]  # runs of compare are those of run
     groups = {(command, key) for command, _, grouping in found for key in grouping}
     keys = {(command, key) for command, leaves, _ in found for key in leaves if key not in parts or command != "run"} - groups
