@@ -21,7 +21,7 @@ constexpr double kMostSteps = 256.0;  ///< along the core's way in a row
 /// (InsideSearch).
 constexpr std::size_t kParts = 16384, kSettled = 12;
 /// Look-ups for the deepest row; a solid in closed form answers ten times as fast.
-constexpr std::size_t kMostLooks = 20000, kMostLooksAtForms = 100000;
+constexpr std::size_t kMostLooks = 8000, kMostLooksAtForms = 100000;
 constexpr double kTolerance = 0.2;
 /// Rows are bound together where the tip centre's places differ by less than this in half widths, and the axes in
 /// length; one search is enough for rows in which no point of the tool differs by more than this.
@@ -55,10 +55,7 @@ std::optional<double> InsideMetrics::settled_median() const {
 
 PoseSamples::Sample PoseSamples::joined(const Sample& a, const Sample& b) const noexcept {
   const auto& [kept, other] = b.key > a.key ? std::tie(b, a) : std::tie(a, b);
-  const double moved = (kept.pose.position - other.pose.position).norm(),
-               turned = (kept.pose.axis - other.pose.axis).norm();
-  return {kept.pose, kept.key, std::max(kept.moved, other.moved + moved), std::max(kept.turned, other.turned + turned),
-          std::max(kept.way, other.way + tool_.moved_at_most(kept.pose, other.pose))};
+  return {kept.pose, kept.key, std::max(kept.way, other.way + tool_.moved_at_most(kept.pose, other.pose))};
 }
 
 void PoseSamples::add(const ToolPose& pose, double key) noexcept {
@@ -204,8 +201,8 @@ void InsideObserver::find_deepest(InsideMetrics& metrics) {
     double moved = 0.0, turned = 0.0;
     for (std::size_t i = first; i < end; ++i) {
       const PoseSamples::Sample& part = parts[i];
-      moved = std::max(moved, part.moved + (part.pose.position - pose.position).norm());
-      turned = std::max(turned, part.turned + (part.pose.axis - pose.axis).norm());
+      moved = std::max(moved, part.way + (part.pose.position - pose.position).norm());
+      turned = std::max(turned, part.way / tool_->reach() + (part.pose.axis - pose.axis).norm());
       s.way = std::max(s.way, part.way + tool_->moved_at_most(pose, part.pose));
     }
     const bool last = end - first == 1;

@@ -51,8 +51,7 @@ class PoseSamples {
   struct Sample {
     ToolPose pose;
     double key;
-    double moved = 0.0, turned = 0.0;  ///< the most by which tip centre [m] and axis of a row differ
-    double way = 0.0;                  ///< the most by which any point of the tool does [m]
+    double way = 0.0;  ///< the most by which a point of the tool is elsewhere in another row [m]
   };
   /// `most`: even. The tool must outlive the samples.
   PoseSamples(std::size_t most, const ToolShape& tool) : most_(most), tool_(tool) { samples_.reserve(most); }

@@ -74,12 +74,20 @@ std::vector<InsideBound::Ball> InsideBound::balls_of(const Stretch& stretch) con
   return balls;
 }
 
+/// The bound by one ball, without a look where the last one tells that this is enough or, if only enough will do,
+/// cannot be.
 InsideBound::Look InsideBound::look(Ball& ball, const Question& q) {
-  ++looks_;
   const Vec3 centre = q.pose.position + ball.place * q.pose.axis;
+  const double beyond = ball.radius + q.moved + std::abs(ball.place) * q.turned;
+  if (ball.near) {
+    const double way = (centre - ball.near->place).norm(), bound = beyond - ball.near->value + way;
+    if (bound <= q.enough || (!q.best && bound - 2.0 * way > q.enough)) return {bound, true};
+  }
+  ++looks_;
   const SurfaceDistance phi = solid_.at(centre, ball.near ? &*ball.near : nullptr);
-  ball.near = LookedUp{centre, phi.value};
-  return {ball.radius - phi.value + q.moved + std::abs(ball.place) * q.turned, phi.known};
+  ball.near.reset();
+  if (phi.known) ball.near = LookedUp{centre, phi.value};
+  return {beyond - phi.value, phi.known};
 }
 
 double InsideBound::of(std::size_t k, const Question& question) {
@@ -115,7 +123,7 @@ double InsideBound::at(const ToolPose& pose, double moved, double turned, double
 
 double InsideBound::roughly_at(const ToolPose& pose, double moved, double turned) {
   if (stretches_[0].balls.empty()) stretches_[0].balls = balls_of(stretches_[0]);
-  return look(stretches_[0].balls.front(), {pose, moved, turned, 0.0, false}).bound;
+  return look(stretches_[0].balls.front(), {pose, moved, turned, 0.0, true}).bound;
 }
 
 }  // namespace hapbench

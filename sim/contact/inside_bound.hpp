@@ -36,7 +36,7 @@ class InsideBound {
  private:
   struct Ball {
     double place, radius;          ///< of its centre on the axis from the tip centre on [m]
-    std::optional<LookedUp> near;  ///< where it was last
+    std::optional<LookedUp> near;  ///< where it was last, if that is known to be inside or outside
   };
   struct Stretch {
     double from, to;  ///< on the axis [m]
