@@ -130,33 +130,38 @@ constexpr const char* kMotion = "class of motion, of limit and stability";
 constexpr const char* kTime = "number of timing.json";
 constexpr const char* kHolds = "verdict of compare --check on a metric";
 constexpr const char* kVerdict = "verdict on a claim";
-constexpr const char* kFile = "file of the results";
+constexpr const char* kResultFile = "file of the results";
 constexpr const char* kStiffness = "stiffness, of compare --devices";
 
 /// Words that no enumeration has.
 constexpr Word kWords[] = {
     {"step_p50_s", kTime, "what half of the steps take at most, each by itself, without observers and recorders [s]"},
     {"step_p99_s", kTime, "what 99 % of the steps take at most, each by itself, without observers and recorders [s]"},
-    {"scenario.effective.json", kFile, "the scenario with every default filled in; run again it gives the same files"},
-    {"timing.json", kFile, "of record.timing: wall times, percentiles, missed deadlines and histogram of single steps"},
-    {"sweep.json", kFile, "what a sweep's table is a function of: scenario, overrides, points, named files, program"},
-    {"sweep.journal", kFile, "rows of a sweep that is under way or was interrupted, from which --resume goes on"},
-    {"sweep_shard_I_of_N.csv", kFile, "rows of a shard of a sweep, for \"hapbench merge\"; columns as in sweep.csv"},
-    {"hapbench_results.json", kFile, "what a comparison wrote into its folder, which the next one there removes"},
-    {"report.html", kFile, "a page to read and replay, of report, compare --html or scripts/reproduce"},
-    {"plot.svg", kFile, "the picture of plot"},
-    {"figures.json", kFile, "figures that scripts/figures drew, with their captions and the files they were drawn of"},
-    {"claims.json", kFile, "the ledger of reproduce: claims, what was measured, verdicts, robustness"},
-    {"claims.md", kFile, "the ledger of reproduce, for people"},
-    {"choices.json", kFile, "what the thesis leaves open and what was chosen; \"describe choices_schema\""},
-    {"choices.md", kFile, "the choices on record, for people"},
-    {"robustness.csv", kFile, "of reproduce --robustness: the choices and verdicts of each sample"},
-    {"robustness.json", kFile,
+    {"scenario.effective.json", kResultFile,
+     "the scenario with every default filled in; run again it gives the same files"},
+    {"timing.json", kResultFile,
+     "of record.timing: wall times, percentiles, missed deadlines and histogram of single steps"},
+    {"sweep.json", kResultFile,
+     "what a sweep's table is a function of: scenario, overrides, points, named files, program"},
+    {"sweep.journal", kResultFile, "rows of a sweep that is under way or was interrupted, from which --resume goes on"},
+    {"sweep_shard_I_of_N.csv", kResultFile,
+     "rows of a shard of a sweep, for \"hapbench merge\"; columns as in sweep.csv"},
+    {"hapbench_results.json", kResultFile, "what a comparison wrote into its folder, which the next one there removes"},
+    {"report.html", kResultFile, "a page to read and replay, of report, compare --html or scripts/reproduce"},
+    {"plot.svg", kResultFile, "the picture of plot"},
+    {"figures.json", kResultFile,
+     "figures that scripts/figures drew, with their captions and the files they were drawn of"},
+    {"claims.json", kResultFile, "the ledger of reproduce: claims, what was measured, verdicts, robustness"},
+    {"claims.md", kResultFile, "the ledger of reproduce, for people"},
+    {"choices.json", kResultFile, "what the thesis leaves open and what was chosen; \"describe choices_schema\""},
+    {"choices.md", kResultFile, "the choices on record, for people"},
+    {"robustness.csv", kResultFile, "of reproduce --robustness: the choices and verdicts of each sample"},
+    {"robustness.json", kResultFile,
      "how many samples have the verdict on record, and which choices decide it, for each claim"},
-    {"robustness.md", kFile, "robustness.json for people"},
-    {"subjects.csv", kFile,
+    {"robustness.md", kResultFile, "robustness.json for people"},
+    {"subjects.csv", kResultFile,
      "of reproduce --subjects: what was drawn for each sample, and how far it is from the tables"},
-    {"subjects.json", kFile, "the subjects of appendix D as they were inferred"},
+    {"subjects.json", kResultFile, "the subjects of appendix D as they were inferred"},
     {"1 / lambda_max(S)", kStiffness,
      "how many contacts along one direction would be as stiff as one of K, for the mean S at the limit: 1 means that the "
      "hand meets K itself at most, 0.1 that ten springs add up along some direction"},
@@ -198,7 +203,7 @@ std::vector<Description> describe_word(const std::string& name) {
   if (name == "words") return {describe_words()};
   std::vector<Description> found;
   for (const Word& word : all_words()) {
-    if (name != word.name && !(word.kind == kFile && is_named(word.name, name))) continue;
+    if (name != word.name && !(word.kind == kResultFile && is_named(word.name, name))) continue;
     std::string text = fmt::format("{}: {}\n{}", bold(stdout, word.name), word.kind, wrapped(word.meaning));
     if (word.kind == kMotion) text += "  in numbers: hapbench describe stability\n";
     found.push_back({text, {{"kind", word.kind}, {"name", word.name}, {"meaning", word.meaning}}});

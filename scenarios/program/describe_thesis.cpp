@@ -114,7 +114,7 @@ Description describe_place(const Place& place) {
 namespace {
 
 /// A list of results/reference/LIST.json.
-Json on_record(const std::string& list) {
+Json list_on_record(const std::string& list) {
   const std::filesystem::path file = installed_folder("results/reference") / (list + ".json");
   try {
     return parse_json(read_text_file(file, kLargestJsonFile)).at(list);
@@ -157,18 +157,18 @@ Description describe_choice(const Json& choice) {
 }  // namespace
 
 Json claims_on_record() {
-  return on_record("claims");
+  return list_on_record("claims");
 }
 
 std::vector<Description> describe_choice(const std::string& name) {
-  for (const Json& choice : on_record("choices"))
+  for (const Json& choice : list_on_record("choices"))
     if (choice.at("id") == name) return {describe_choice(choice)};
   return {};
 }
 
 std::vector<std::string> choice_names() {
   std::vector<std::string> names;
-  for (const Json& choice : on_record("choices")) names.push_back(choice.at("id"));
+  for (const Json& choice : list_on_record("choices")) names.push_back(choice.at("id"));
   return names;
 }
 
