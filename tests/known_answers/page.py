@@ -23,6 +23,7 @@ it and `open_fields.txt`.
 """
 TAIL = "\n<!-- /generated -->\n"
 # Members of JSON that say where and how, not what.
+NO_TABLES = {"run", "import"}  # commands whose JSON does not repeat a table
 NO_WORDS = {"file of the results"}
 NO_ANSWERS = {"provenance", "name", "algorithm", "scenario"}
 
@@ -62,7 +63,7 @@ def printed_fields(benches):
     groups = {(command, key) for command, _, grouping in found for key in grouping}
     keys = {(command, key) for command, leaves, _ in found for key in leaves if key not in parts or command != "run"} - groups
     of_runs = {key for command, key in keys if command == "run"}
-    fields += [f"{command} --json: {key}" for command, key in sorted(keys) if command == "run" or key not in columns | of_runs]
+    fields += [f"{command} --json: {key}" for command, key in sorted(keys) if command in NO_TABLES or key not in columns | of_runs]
     return list(dict.fromkeys(fields))
 
 
