@@ -40,6 +40,7 @@ double way_to_core(const ToolShape& tool) {
 InsideMetrics& InsideMetrics::operator+=(const InsideMetrics& other) {
   max = std::max(max, other.max);  // an empty optional is less than any number
   at_most = std::max(at_most, other.at_most);
+  if (at_most <= max) at_most.reset();
   settled.insert(settled.end(), other.settled.begin(), other.settled.end());
   rows += other.rows;
   centre_inside += other.centre_inside;
