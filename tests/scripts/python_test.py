@@ -170,6 +170,7 @@ class Errors(Scratch):
                               env={**ENVIRONMENT, "PYTHONPATH": str(SOURCE / "scripts/python")})
         self.assertEqual(done.stdout.splitlines()[0], "300", done.stderr)
         self.assertIn("compiled module", done.stdout)
+        self.assertIn("-DHAPBENCH_BUILD_PYTHON=ON && cmake --build --preset release --target bin/hapbench _hapbench", done.stdout)
 
 
 class Studies(Scratch):
