@@ -55,7 +55,7 @@ std::optional<HighPass> vibration_filter(double dt);
 /// `compare --devices` judge a run by.
 class LastQuarterVibration {
  public:
-  /// Of a run of `steps` rows, `dt` seconds apart.
+  /// The run has `steps` rows, `dt` seconds apart.
   LastQuarterVibration(std::uint64_t steps, double dt) : steps_(steps), high_pass_(vibration_filter(dt)) {}
   void add(std::uint64_t step, const Vec3& velocity) noexcept;
   /// Over the quarter that was begun last [m/s]; none at 60 Hz or less and without rows.
