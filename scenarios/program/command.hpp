@@ -66,6 +66,9 @@ void capture_output(CapturedOutput* output) noexcept;
 /// tool has explained why on standard error.
 void write_report(const std::filesystem::path& folder, bool quiet);
 
+/// Draws the run in a folder into a file, FILE.svg. Throws IoError likewise.
+void write_way(const std::filesystem::path& folder, const std::filesystem::path& file, bool quiet);
+
 /// Warns on standard error of results of more than 100 MB.
 void announce_large_output(double bytes);
 

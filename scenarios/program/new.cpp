@@ -5,20 +5,31 @@
 
 #include "results/io/atomic_file.hpp"
 #include "scenarios/description/load_scenario.hpp"
+#include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/command.hpp"
 #include "scenarios/program/fields_text.hpp"
 #include "scenarios/program/scenario_start.hpp"
 #include "scenarios/program/table.hpp"
 #include "scenarios/run/assemble.hpp"
+#include "scenarios/run/progress_bar.hpp"
+#include "scenarios/run/run_scenario.hpp"
 
 namespace hapbench {
 namespace {
 
 namespace fs = std::filesystem;
 
+constexpr double kNotGiven = -1.0;
+
 struct NewOptions {
   std::string kind;
   std::string from;
+  std::string on;
+  double scale = kNotGiven;
+  std::string side = "z";
+  std::vector<std::string> path;
+  std::string at;
+  bool preview = false;
   std::string out;
   OutputOptions output;
 };
@@ -43,6 +54,46 @@ void check_source(const StartKind& kind, const std::string& from) {
     throw InputError(fmt::format("--from {}: cannot be read: no such file", from));
 }
 
+Vec3 place_in(const char* option, const std::string& text) {
+  const Words parts = parts_of(text, ',');
+  Vec3 place = Vec3::Zero();
+  bool is_place = parts.size() == 3;
+  for (std::size_t i = 0; is_place && i < parts.size(); ++i) {
+    const auto number = finite_number(parts[i]);
+    is_place = number.has_value();
+    if (number) place[static_cast<Eigen::Index>(i)] = *number;
+  }
+  if (!is_place) throw InputError(fmt::format("{}: got \"{}\"; allowed: X,Y,Z in metres", option, text));
+  return place;
+}
+
+/// The options that say where the scene starts. Throws InputError for those that the kind has no use for.
+StartOptions start_options(const NewOptions& options, const StartKind& kind) {
+  const std::string name = kind.name;
+  const bool drags = name == "drag" || name == "bur", lands = drags || name == "mesh" || name == "shell";
+  const bool has_mesh = !options.on.empty() || (kind.source == StartSource::mesh && !options.from.empty());
+  const auto require = [](bool is_right, const char* option, const char* allowed) {
+    if (!is_right) throw InputError(fmt::format("{}: allowed: {}", option, allowed));
+  };
+  require(options.on.empty() || name == "stroke", "--on", "for stroke");
+  require(options.path.empty() || (drags && options.path.size() > 1 && options.at.empty()), "--path",
+          "for drag and bur, two points or more, and without --at");
+  require(options.at.empty() || lands, "--at", "for mesh, shell, drag and bur");
+  require(options.side == "z" || (lands && !options.from.empty()), "--side",
+          "for mesh, shell, drag and bur with --from");
+  require(options.scale == kNotGiven || (has_mesh && options.scale > 0.0), "--scale", "above 0, of a mesh's file");
+  if (std::error_code ignored; !options.on.empty() && !fs::exists(options.on, ignored))
+    throw InputError(fmt::format("--on {}: cannot be read: no such file", options.on));
+  StartOptions start;
+  if (!options.from.empty()) start.source = options.from;
+  if (!options.on.empty()) start.on = options.on;
+  if (options.scale != kNotGiven) start.scale = options.scale;
+  start.side = options.side;
+  for (const std::string& point : options.path) start.path.push_back(place_in("--path", point));
+  if (!options.at.empty()) start.at = place_in("--at", options.at);
+  return start;
+}
+
 int list_kinds(const OutputOptions& output) {
   Table table({{"KIND", false}, {"what it starts with", false}});
   Json json = Json::array();
@@ -54,6 +105,14 @@ int list_kinds(const OutputOptions& output) {
   return kSuccess;
 }
 
+/// Runs the new scenario, as `run` does, and draws it.
+void draw_preview(const fs::path& scenario, const fs::path& picture, bool quiet) {
+  const fs::path run = results_directory("", scenario.stem().string());
+  require_writable_directory(run);
+  run_scenario(load_scenario(scenario), run, !quiet);
+  write_way(run, picture, quiet);
+}
+
 int write_new(const NewOptions& options) {
   if (options.kind.empty()) return list_kinds(options.output);
   const StartKind& kind = kind_named(options.kind);
@@ -62,9 +121,16 @@ int write_new(const NewOptions& options) {
   const fs::path out =
       !options.out.empty() ? options.out : (source.empty() ? "" : source.stem().string() + "_") + kind.name + ".json";
   std::error_code ignored;
+  const fs::path picture = fs::path(out).replace_extension(".svg");
+  if (options.preview && fs::exists(picture, ignored))
+    throw InputError(fmt::format("{} exists; choose another name with --out", picture.string()));
   if (fs::exists(out, ignored)) throw InputError(fmt::format("{} exists; choose another with --out", out.string()));
   const fs::path directory = out.parent_path();
-  const ScenarioStart start = scenario_start(kind, source.empty() ? std::nullopt : std::optional(source), directory);
+  const StartOptions chosen = start_options(options, kind);
+  const ScenarioStart start = [&] {
+    const WaitNotice notice("trying the scene", !options.output.quiet);
+    return scenario_start(kind, chosen, directory);
+  }();
   const Json json = parse_json(start.text);
   LoadedScenario loaded = read_scenario(json, directory);
   loaded.file = out;
@@ -73,16 +139,20 @@ int write_new(const NewOptions& options) {
   write_file_atomically(out, start.text);
 
   print_warnings(start.warnings);
+  if (options.preview) draw_preview(out, picture, options.output.quiet || options.output.json);
   const std::vector<FieldMeaning> meanings = field_meanings(json);
   std::string text = fmt::format("{}: {}\n", out.string(), kind.summary);
   for (const std::string& note : start.notes) text += note + "\n";
+  if (options.preview) text += fmt::format("picture of a run in {}\n", picture.string());
   text += "\n";
   for (const FieldMeaning& field : meanings) text += entry(field.path, field.meaning, 0, 34);
   text += "\n";
   text += fmt::format("\"hapbench describe scenario\" shows all fields; next: hapbench run {}\n", out.string());
   Json fields = Json::object();
   for (const FieldMeaning& field : meanings) fields[field.path] = field.meaning;
-  print(options.output, text, {{"file", out.string()}, {"notes", start.notes}, {"fields", fields}});
+  Json json_text = {{"file", out.string()}, {"notes", start.notes}, {"fields", fields}};
+  if (options.preview) json_text["picture"] = picture.string();
+  print(options.output, text, json_text);
   return kSuccess;
 }
 
@@ -92,6 +162,13 @@ void add_new(CommandLine& line) {
   auto [command, options] = line.command("new", "Write a scenario to start from and explain its fields", write_new);
   command.add("kind", options.kind, "the kind of scenario; without it, the kinds are listed").words(kind_names);
   command.add("--from", options.from, "the file of the mesh, shell or stroke to start from");
+  command.add("--on", options.on, "of a stroke: the mesh that it is played back over, in place of a plane");
+  command.add("--scale", options.scale, "length of the mesh's unit [m], 0.001 for millimetres (default: guessed)");
+  command.add("--side", options.side, "from which the tool comes: x, y, z (default), or --side=-x, -y, -z")
+      .one_of({"x", "y", "z", "-x", "-y", "-z"});
+  command.add("--path", options.path, "X,Y,Z [m] of a point to drag over; give it for each, two or more").repeatable();
+  command.add("--at", options.at, "X,Y,Z [m]: start over the place of the surface that is nearest to it");
+  command.flag("--preview", options.preview, "run the scene and draw it: the surface, the tool on its way; FILE.svg");
   command.add("--out", options.out, "the file to write, which must not exist (default: [FROM_]KIND.json)");
   add_output_options(command, options.output);
 }

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "sim/core/types.hpp"
+
 /// Scenario files to start from: each scene runs at once and touches something, and has only the fields that a newcomer
 /// changes first.
 namespace hapbench {
@@ -25,6 +27,19 @@ struct StartKind {
 /// All kinds, in the order in which they are shown.
 const std::vector<StartKind>& start_kinds();
 
+/// The sections of a kind on a mesh in place of its plane.
+std::string on_mesh(const StartKind& kind);
+
+/// What a start is made from and where it starts, as far as it is said.
+struct StartOptions {
+  std::optional<std::filesystem::path> source = {};  ///< exactly where the kind wants one
+  std::optional<std::filesystem::path> on = {};      ///< the mesh that a stroke is played back over
+  std::optional<double> scale = {};                  ///< [m] for each unit of the mesh's file
+  std::string side = "z";                            ///< from which the tool comes: x, y, z, -x, -y or -z
+  std::vector<Vec3> path = {};                       ///< of a drag, two points or more [m]
+  std::optional<Vec3> at = {};                       ///< the tool starts over the surface's place nearest to it [m]
+};
+
 /// A start.
 struct ScenarioStart {
   std::string text;                ///< of the scenario file
@@ -32,11 +47,13 @@ struct ScenarioStart {
   std::vector<std::string> warnings;
 };
 
-/// Makes a start for a file in `directory`. A mesh gets the unit, of m, cm and mm, that brings its length closest to a
-/// tooth's 10 mm, and points a tenth of the tool's diameter apart. The tool is 1 mm thick, or a fiftieth of a longer
+/// Makes a start for a file in `directory`. A mesh gets the unit, of mm, m and cm, in which it is 3 to 300 mm long, as
+/// what tools of a millimetre and more work on, or which comes closest; in doubt the notes have both readings. Its
+/// points are as far apart as a test allows (guessed_spacing). The tool is 1 mm thick, or a fiftieth of a longer
 /// object, and starts 1 mm above the middle of the highest places; a drag starts where it has room and covers most of
-/// it. Precondition: a source exactly where the kind wants one. Throws InputError when it cannot be used.
-ScenarioStart scenario_start(const StartKind& kind, const std::optional<std::filesystem::path>& source,
+/// it. Normals of an open mesh that point away from the tool are turned round. Throws InputError when a file cannot be
+/// used.
+ScenarioStart scenario_start(const StartKind& kind, const StartOptions& options,
                              const std::filesystem::path& directory);
 
 }  // namespace hapbench

@@ -16,6 +16,7 @@
 #include "scenarios/run/recorders.hpp"
 #include "scenarios/run/scene_facts.hpp"
 #include "scenarios/run/stop_signal.hpp"
+#include "scenarios/studies/stability/device_limits.hpp"
 
 namespace hapbench {
 namespace {
@@ -95,6 +96,13 @@ Json messages(const InputError& error) {
   return texts;
 }
 
+/// True for a file with the fields of a scenario's device alone, which `compare --devices` takes.
+bool is_device_file(const std::filesystem::path& file) {
+  const ScenarioText text = read_scenario_text(file);
+  return text.json.is_object() && !text.json.contains("environment") && !text.json.contains("time") &&
+         (text.json.contains(kTypeField) || text.json.contains("preset"));
+}
+
 int validate(const ValidateOptions& options) {
   std::string text;
   Json verdicts = Json::array();
@@ -102,7 +110,15 @@ int validate(const ValidateOptions& options) {
   for (const std::string& argument : options.files) {
     try {
       const WaitNotice notice(argument, !options.output.quiet);
-      const LoadedScenario loaded = load_scenario(find_scenario(argument), options.overrides);
+      const std::filesystem::path file = find_scenario(argument);
+      if (is_device_file(file)) {
+        device_of_file(file);  // throws what is wrong with it
+        text += fmt::format("{}: a valid device, not a scenario: {}\n", argument,
+                            shell_line({"hapbench", "compare", "--devices", argument}));
+        verdicts.push_back({{"file", argument}, {"valid", true}, {"kind", "device"}});
+        continue;
+      }
+      const LoadedScenario loaded = load_scenario(file, options.overrides);
       const std::vector<std::string> warnings = check_named_files(loaded);
       print_warnings(loaded.warnings);
       print_warnings(warnings);

@@ -294,15 +294,16 @@ void EncounterObservers::judge(const Scenario& scenario, Metrics& metrics, const
   if (seen.drag) {
     for (std::string& warning : drag_warnings(*seen.drag, outcome)) warnings.push_back(std::move(warning));
   }
+  if (!std::holds_alternative<MeshToolFields>(scenario.tool)) return;
   if (auto warning = scale_warning(scenario, tool, seen.environment)) warnings.push_back(*warning);
 }
 
 std::optional<std::string> scale_warning(const Scenario& scenario, const ToolShape& tool, const Box& environment) {
-  if (!std::holds_alternative<MeshToolFields>(scenario.tool) || !out_of_proportion(tool, environment))
-    return std::nullopt;
-  return fmt::format("the tool is {} thick and reaches {}, the environment is {}: {}",
+  if (!out_of_proportion(tool, environment)) return std::nullopt;
+  const bool is_mesh = std::holds_alternative<MeshToolFields>(scenario.tool);
+  return fmt::format("the tool is {} thick and reaches {}, the environment is {}: {}{}",
                      length_text(2.0 * tool.half_width()), length_text(tool.reach()), size_text(environment),
-                     scale_question(scenario));
+                     is_mesh ? "" : "are the tool's lengths in metres, or ", scale_question(scenario));
 }
 
 namespace {

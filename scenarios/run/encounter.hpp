@@ -180,7 +180,7 @@ class EncounterObservers {
   std::optional<StuckObserver> stuck_;
 };
 
-/// For a tool from a mesh whose size is out of proportion with the environment's, a question about its scale.
+/// For a tool whose size is out of proportion with the environment's, a question about scales.
 std::optional<std::string> scale_warning(const Scenario& scenario, const ToolShape& tool, const Box& environment);
 
 /// For `went_through`, `no_contact`, `lost_contact` and `stuck`, what happened and what the likely cause is; none for

@@ -41,6 +41,94 @@ void place_tool(const ToolShape& tool, const ToolPose& pose, const PointShell& s
   }
 }
 
+/// Lengths and times this far apart are of different units: mm for m is a factor of 1000, cm for m one of 100.
+constexpr double kUnitsApart = 100.0;
+constexpr double kUsualStep = 0.001;  ///< of haptic loops [s]
+
+std::string times_text(double factor) {
+  return fmt::format("{:.0f} times", factor);
+}
+
+/// Where the tool starts, against its own size and the environment's.
+std::optional<std::string> start_warning(const ToolShape& tool, const SceneFacts::Surface& surface) {
+  const double least = std::min((surface.box.max - surface.box.min).norm(), tool.reach());
+  if (surface.gap > kUnitsApart * least) {
+    return fmt::format("the tool starts {} from the environment, {} the size of {}: is its place in metres?",
+                       length_text(surface.gap), times_text(surface.gap / least),
+                       least == tool.reach() ? "the tool" : "the environment");
+  }
+  return std::nullopt;
+}
+
+/// A recorded stroke, against the environment, the tool and the time step.
+std::vector<std::string> stroke_warnings(const Stroke& stroke, const TimeFields& time, const ToolShape& tool,
+                                         const Box& environment) {
+  const auto samples = stroke.motion.samples();
+  Box box{samples.front().position, samples.front().position};
+  double closest = std::numeric_limits<double>::infinity();
+  for (const RecordedMotion::Sample& sample : samples) {
+    box = {box.min.cwiseMin(sample.position), box.max.cwiseMax(sample.position)};
+    closest = std::min(closest, distance_to(environment, sample.position));
+  }
+  const double size = (environment.max - environment.min).norm(), way = (box.max - box.min).norm();
+  const std::string of = fmt::format("the stroke's places are within {}", size_text(box));
+  std::vector<std::string> warnings;
+  if (way > kUnitsApart * size) {
+    warnings.push_back(fmt::format("{}, {} the environment's size: are they in metres?", of, times_text(way / size)));
+  } else if (way > 0.0 && kUnitsApart * way < tool.half_width()) {
+    warnings.push_back(fmt::format("{}, a hundredth of the tool's half width, {}: are they in metres?", of,
+                                   length_text(tool.half_width())));
+  }
+  if (closest > kUnitsApart * size)
+    warnings.push_back(fmt::format("the stroke stays {} away from the environment, {} its size: are places in metres?",
+                                   length_text(closest), times_text(closest / size)));
+  if (samples.size() < 2) return warnings;
+  const double interval = (samples.back().time - samples.front().time) / static_cast<double>(samples.size() - 1);
+  if (interval > kUnitsApart * time.step || interval * kUnitsApart < time.step) {
+    warnings.push_back(fmt::format(
+        "the stroke has a sample each {:.3g} ms, the run a step each {:.3g} ms: are times in seconds, and is "
+        "time.step_s right?",
+        1e3 * interval, 1e3 * time.step));
+  }
+  return warnings;
+}
+
+/// What looks like one unit taken for another, before a run.
+std::vector<std::string> unit_warnings(const LoadedScenario& loaded, const ToolShape& tool,
+                                       const SceneFacts::Surface& surface) {
+  const Scenario& scenario = loaded.scenario;
+  std::vector<std::string> warnings;
+  const auto add = [&warnings](std::optional<std::string> warning) {
+    if (warning) warnings.push_back(std::move(*warning));
+  };
+  add(scale_warning(scenario, tool, surface.box));
+  add(start_warning(tool, surface));
+  if (std::holds_alternative<RecordedPosition>(scenario.motion.position)) {
+    for (std::string& warning :
+         stroke_warnings(*loaded.files.at(kMotionFile).stroke(), scenario.time, tool, surface.box))
+      warnings.push_back(std::move(warning));
+  }
+  return warnings;
+}
+
+/// Says that a tool starts behind a surface, on the side away from its normals, and not in contact alone.
+std::optional<std::string> wrong_side_warning(const PointShell& shell, const ToolShape& tool, const Vec3& tip) {
+  std::size_t nearest = 0;
+  double distance = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < shell.size(); ++i) {
+    const double d = (shell.point(i).position - tip).norm();
+    if (d < distance) nearest = i, distance = d;
+  }
+  constexpr double kBehind = 0.7;  // cosine of 45 degrees: not beside an edge
+  const SurfacePoint point = shell.point(nearest);
+  const double behind = point.normal.dot(point.position - tip);
+  if (behind < tool.half_width() || behind < kBehind * distance) return std::nullopt;
+  return fmt::format(
+      "the tool starts {} behind the surface, on the side its normals point away from: does it start inside, or are the "
+      "normals of an open scan inverted (environment.flip_normals)?",
+      length_text(behind));
+}
+
 ToolFacts tool_facts(const Scenario& scenario, const NamedFiles& files, const ToolShape& tool) {
   ToolFacts facts{tool_names()[scenario.tool.index()], tool.half_width(), tool.reach(), tool.convex(), {}};
   const auto* mesh = dynamic_cast<const MeshTool*>(&tool);
@@ -60,9 +148,13 @@ SceneFacts scene_facts(const LoadedScenario& loaded) {
   SceneFacts facts;
   if (const auto* hand = std::get_if<TrackingHandFields>(&scenario.hand))
     facts.trials = hand->subjects.size() * static_cast<std::size_t>(hand->trials);
+  const double step = scenario.time.step;
+  if (step > kUnitsApart * kUsualStep || kUnitsApart * step < kUsualStep)
+    facts.warnings.push_back(
+        fmt::format("time.step_s is {:.3g} s; haptic loops step each 1 ms: is it in seconds?", step));
   const auto tool = make_tool(scenario, loaded.files);
   facts.tool = tool_facts(scenario, loaded.files, *tool);
-  facts.warnings = tool_warnings(scenario.rendering, *tool);
+  for (std::string& warning : tool_warnings(scenario.rendering, *tool)) facts.warnings.push_back(std::move(warning));
   facts.memory = expected_memory(scenario, loaded.files);
   const auto shell = make_shell(scenario, loaded.files);
   throw_if_stopped();  // that may have taken seconds
@@ -73,14 +165,16 @@ SceneFacts scene_facts(const LoadedScenario& loaded) {
   SceneFacts::Surface& surface = facts.surface.emplace(SceneFacts::Surface{});
   surface.box = shell->bounds();
   surface.points = shell->size();
-  if (auto warning = scale_warning(scenario, *tool, surface.box)) facts.warnings.push_back(*warning);
   if (const auto* hand = dynamic_cast<const DragHand*>(parts.hand.get())) {
     const auto& fields = std::get<DragHandFields>(scenario.hand);
     const double way = way_to_cover(fields, scenario.time.step * static_cast<double>(scenario.time.steps));
     if (auto warning = short_path_warning(fields, hand->path().length(), way, 2.0 * tool->half_width()))
       facts.warnings.push_back(*warning);
   }
-  place_tool(*tool, first_pose(scenario, parts), *shell, surface);
+  const ToolPose pose = first_pose(scenario, parts);
+  place_tool(*tool, pose, *shell, surface);
+  for (std::string& warning : unit_warnings(loaded, *tool, surface)) facts.warnings.push_back(std::move(warning));
+  if (auto warning = wrong_side_warning(*shell, *tool, pose.position)) facts.warnings.push_back(*warning);
   return facts;
 }
 

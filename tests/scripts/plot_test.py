@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from fixture import hapbench, main
+from fixture import PROGRAM, SOURCE, hapbench, main, must, ran, scratch_folder
 from pictures_fixture import Given, make_runs
 
 from hapbench.columns import header, read_columns
@@ -276,6 +276,17 @@ class Plot(Given):
                 ((mesh, "--from", "0.2", "--to", "0.1"), "--from before --to"), ((sweep, "--from", "1"), "--from: "), ((sweep, mesh), "one sweep alone"), ((mesh, "--metric", "x"), "is for a sweep"), ((bare,), "record.trajectory=true")):
             error = hapbench("plot", *words, expected=2)
             self.assertTrue(error.startswith("hapbench: error: ") and said in error and error.count("\n") == 1, error)
+
+    def test_new_draws_a_preview(self):
+        folder = scratch_folder(self)
+        said = json.loads(must(PROGRAM, "new", "bur", "--from", SOURCE / "scenarios/examples/data/bumpy.obj", "--preview", "--json", cwd=folder))
+        self.assertEqual(said["picture"], "bumpy_bur.svg")
+        picture = (folder / "bumpy_bur.svg").read_text()
+        for text in ("tip x", "tip z", "outlines: tool on its way", "dots: section of the surface"):
+            self.assertTrue(text in picture, text)
+        again = ran(PROGRAM, "new", "bur", "--preview", "--out", "bumpy_bur.json", cwd=folder)
+        self.assertEqual(again.returncode, 2)
+        self.assertIn("bumpy_bur.svg exists", again.stderr)
 
 
 if __name__ == "__main__":

@@ -1,13 +1,16 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <regex>
 
 #include "scenarios/input/mesh_file.hpp"
 #include "sim/geometry/analytic_shells.hpp"
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/file_tree.hpp"
+#include "tests/scenarios/support/mesh_texts.hpp"
 #include "tests/scenarios/support/program.hpp"
 #include "tests/scenarios/support/scenarios.hpp"
+#include "tests/support/meshes.hpp"
 
 /// hapbench new and shell, and effective scenarios: files that are read again.
 namespace hapbench::start_and_shell_test {
@@ -64,6 +67,143 @@ TEST_F(NewCommand, GuessesTheUnitOfAMesh) {
   EXPECT_EQ(scale_of("5", "millimetres"), 0.001);
   EXPECT_EQ(scale_of("0.6", "centimetres"), 0.01);
   EXPECT_EQ(scale_of("0.006", "metres"), 1.0);
+  // A bone of 0.12 is one of 120 mm, and so is one of 120.
+  const auto scale_of_rod = [&](double length) {
+    TriangleSoup rod = test::cube(0.5);
+    for (Vec3& corner : rod.vertices) corner = length * corner.cwiseProduct(Vec3(1.0, 0.02, 0.02));
+    test::write_plainly(directory_ / "rod.obj", test::obj_text(rod));
+    fs::remove(path("rod.json"));
+    EXPECT_EQ(hapbench({"new", "mesh", "--from", path("rod.obj"), "--out", path("rod.json")}).status, 0);
+    return Json::parse(test::read_file(directory_ / "rod.json"))["environment"]["scale"].get<double>();
+  };
+  EXPECT_EQ(scale_of_rod(0.12), 1.0);
+  EXPECT_EQ(scale_of_rod(120.0), 0.001);
+  EXPECT_EQ(scale_of_rod(0.3), 1.0);
+  EXPECT_EQ(scale_of_rod(2.0), 0.01);
+}
+
+TEST_F(NewCommand, SaysBothReadingsOfAUnitInDoubt) {
+  const auto note_of = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> words = {"new", "mesh", "--from", data("cube.obj"), "--out", path("cube.json"), "--json"};
+    words.insert(words.end(), more.begin(), more.end());
+    fs::remove(path("cube.json"));
+    return hapbench(words).json()["notes"][0].get<std::string>();
+  };
+  EXPECT_EQ(note_of({}),
+            "longest edge of the mesh's box: 10, taken for mm: 10 mm; in cm it would be 100 mm: --scale 0.01");
+  EXPECT_EQ(note_of({"--scale", "0.002"}), "longest edge of the mesh's box: 10, with scale 0.002 20 mm");
+}
+
+/// An open sheet of 8 x 8 mm with a hump, its normals up or down.
+class NewOnASheet : public NewCommand {
+ protected:
+  NewOnASheet() {
+    const TriangleSoup up = test::sheet(16, 16, [](int i, int j) {
+      const double x = 0.5 * i - 4.0, y = 0.5 * j - 4.0;
+      return Vec3(x, y, std::exp(-0.1 * (x * x + y * y)));
+    });
+    test::write_plainly(directory_ / "up.obj", test::obj_text(up));
+    test::write_plainly(directory_ / "down.obj", test::obj_text(test::reversed(up)));
+  }
+  /// The scenario that is written, after it ran and touched.
+  Json made(std::vector<std::string> words, std::string* said = nullptr) const {
+    words.insert(words.begin(), "new");
+    words.insert(words.end(), {"--out", path("made.json")});
+    fs::remove(path("made.json"));
+    const ProgramRun written = hapbench(words);
+    EXPECT_EQ(written.status, 0) << written.err;
+    if (said != nullptr) *said = written.out + written.err;
+    const ProgramRun run = hapbench({"run", path("made.json"), "--out", path("run"), "--json"});
+    EXPECT_EQ(run.status, 0) << run.err;
+    EXPECT_GT(run.json()[0]["metrics"]["contact_share"], 0.3);
+    return Json::parse(test::read_file(directory_ / "made.json"));
+  }
+};
+
+TEST_F(NewOnASheet, TurnsNormalsThatPointAwayFromTheTool) {
+  const std::string as_it_is = made({"bur", "--from", path("up.obj")}).dump();
+  EXPECT_EQ(as_it_is.find("flip_normals"), std::string::npos) << as_it_is;
+  std::string said;
+  const Json turned = made({"bur", "--from", path("down.obj")}, &said);
+  EXPECT_EQ(turned["environment"]["flip_normals"], true);
+  EXPECT_NE(said.find("its normals point away from side z and are turned round"), std::string::npos) << said;
+  // Without that the tool starts behind the surface.
+  const std::string behind = hapbench({"validate", path("made.json"), "--set", "environment.flip_normals=false"}).err;
+  EXPECT_NE(behind.find("1.5 mm behind the surface"), std::string::npos) << behind;
+  EXPECT_EQ(hapbench({"validate", path("made.json")}).err.find("behind"), std::string::npos);
+  EXPECT_NE(hapbench({"validate", path("made.json"), "--set", "environment.file=" + data("cube.obj")})
+                .err.find("is closed, so that its outside is known"),
+            std::string::npos);
+}
+
+TEST_F(NewOnASheet, StartsWhereItIsTold) {
+  const Json below = made({"mesh", "--from", path("down.obj"), "--side=-z", "--at", "0.002,-0.001,0.0006"});
+  EXPECT_FALSE(below["environment"].contains("flip_normals"));
+  const Json start = below["initial"]["position_m"];
+  // One point is kept in each cube of 0.1 mm: its diagonal.
+  EXPECT_NEAR(start[0], 0.002, 1.8e-4);
+  EXPECT_NEAR(start[1], -0.001, 1.8e-4);
+  EXPECT_LT(start[2], -0.0005);
+  EXPECT_EQ(below["motion"]["orientation"]["up"], (Json{0, 0, -1}));
+  const Json path_given = made({"drag", "--from", path("up.obj"), "--path", "-0.002,0,0", "--path", "0.002,0.001,0"});
+  EXPECT_EQ(path_given["hand"]["path_m"], (Json{{-0.002, 0, 0}, {0.002, 0.001, 0}}));
+  EXPECT_FALSE(path_given["hand"].contains("direction"));
+  EXPECT_NEAR(path_given["initial"]["position_m"][0], -0.002, 2e-4);
+}
+
+TEST_F(NewOnASheet, ComesFromEverySideOfAClosedBody) {
+  for (const std::string side : {"-x", "y", "-z"}) {
+    const Json json = made({"mesh", "--from", data("cube.obj"), "--side=" + side});
+    const auto axis = static_cast<std::size_t>(side.back() - 'x');
+    const double sign = side.front() == '-' ? -1.0 : 1.0;
+    EXPECT_DOUBLE_EQ(json["initial"]["position_m"][axis].get<double>(), sign * 0.0065) << side;
+  }
+  made({"drag", "--from", data("cube.obj"), "--side=x"});
+}
+
+/// At half of its spacing no order flips, by the test of compare.
+TEST_F(NewOnASheet, ChoosesPointsThatKeepTheRanking) {
+  std::string said;
+  const Json json = made({"bur", "--from", path("up.obj")}, &said);
+  EXPECT_NE(said.find("apart: with half of that no order flips"), std::string::npos) << said;
+  const Json check = hapbench({"compare", path("made.json"), "--algorithms", "shaped_stiffness,mean,proxy,summation",
+                               "--check", "--json", "--out", path("check")})
+                         .json();
+  for (const Json& row : check["ranking"]) {
+    if (row["halved"] == "spacing") {
+      EXPECT_NE(row["verdict"], "flips") << row;
+    }
+  }
+}
+
+TEST_F(NewOnASheet, PlaysAStrokeBackOverAMesh) {
+  // Along x, 0.1 mm below the hump's top, in metres.
+  test::write_plainly(
+      directory_ / "stroke.csv",
+      "time_s,px_m,py_m,pz_m,axis_x,axis_y,axis_z\n0,-0.002,0,0.0009,0,0,-1\n1,0.002,0,0.0009,0,0,-1\n");
+  const Json json = made({"stroke", "--from", path("stroke.csv"), "--on", path("up.obj")});
+  EXPECT_EQ(json["environment"]["type"], "mesh");
+  EXPECT_EQ(json["environment"]["scale"], 0.001);
+  EXPECT_EQ(json["motion"]["position"]["file"], "stroke.csv");
+}
+
+TEST_F(NewOnASheet, RefusesWhatAKindHasNoUseFor) {
+  const std::string mesh = path("up.obj");
+  const std::vector<std::pair<std::vector<std::string>, std::string>> refused = {
+      {{"mesh", "--from", mesh, "--path", "0,0,0"}, "--path: allowed: for drag and bur, two points or more"},
+      {{"drag", "--from", mesh, "--path", "0,0,0", "--path", "1,2"}, "--path: got \"1,2\"; allowed: X,Y,Z in metres"},
+      {{"hole", "--at", "0,0,0"}, "--at: allowed: for mesh, shell, drag and bur"},
+      {{"drag", "--side=x"}, "--side: allowed: for mesh, shell, drag and bur with --from"},
+      {{"drag", "--scale", "1"}, "--scale: allowed: above 0, of a mesh's file"},
+      {{"mesh", "--from", mesh, "--scale", "0"}, "--scale: allowed: above 0"},
+      {{"mesh", "--from", mesh, "--on", mesh}, "--on: allowed: for stroke"}};
+  for (const auto& [words, said] : refused) {
+    std::vector<std::string> all = {"new"};
+    all.insert(all.end(), words.begin(), words.end());
+    const ProgramRun run = hapbench(all);
+    EXPECT_EQ(run.status, 2) << said;
+    EXPECT_NE(run.err.find(said), std::string::npos) << run.err;
+  }
 }
 
 TEST_F(NewCommand, DragsOverAMeshToo) {
@@ -79,6 +219,71 @@ TEST_F(NewCommand, NeverOverwrites) {
   EXPECT_EQ(run.status, 2);
   EXPECT_NE(run.err.find("plane.json exists; choose another with --out"), std::string::npos) << run.err;
   EXPECT_EQ(test::read_file(directory_ / "plane.json"), "mine");
+}
+
+/// `hapbench validate` on lengths and times of other units.
+class ValidateOfUnits : public NewCommand {
+ protected:
+  std::string warnings_of(const std::vector<std::string>& overrides, const std::string& scene = "bur_fissure") const {
+    std::vector<std::string> words = {"validate", scene};
+    for (const std::string& override : overrides) words.insert(words.end(), {"--set", override});
+    const ProgramRun run = hapbench(words);
+    EXPECT_EQ(run.status, 0) << run.err;
+    return run.err;
+  }
+};
+
+TEST_F(ValidateOfUnits, WarnsOfMillimetresForMetres) {
+  const std::string tool = warnings_of({"tool.diameter_m=1.2"});
+  EXPECT_NE(tool.find("the tool is 1.2 m thick"), std::string::npos) << tool;
+  const std::string start = warnings_of({"initial.position_m=[-2.1,-2.1,5.5]"});
+  EXPECT_NE(start.find("the tool starts 6."), std::string::npos) << start;
+  EXPECT_NE(start.find("is its place in metres?"), std::string::npos) << start;
+  const std::string mesh = warnings_of({"environment.scale=1", "environment.spacing_m=0.15"});
+  EXPECT_NE(mesh.find("the environment is 10 x 10 x 9.45 m"), std::string::npos) << mesh;
+}
+
+TEST_F(ValidateOfUnits, WarnsOfStrokesAndStepsOfOtherUnits) {
+  EXPECT_NE(warnings_of({"time.step_s=0.5", "time.steps=20"}).find("is it in seconds?"), std::string::npos);
+  const auto of_stroke = [&](const std::string& rows, const std::string& step = "0.001") {
+    test::write_plainly(directory_ / "s.csv", "time_s,px_m,py_m,pz_m,axis_x,axis_y,axis_z\n" + rows);
+    Json json = {{"time", {{"step_s", 0.001}, {"steps", 1000}}},
+                 {"environment", {{"type", "plane"}}},
+                 {"motion", {{"position", {{"type", "file"}, {"file", "s.csv"}}}}}};
+    json["time"]["step_s"] = std::stod(step);
+    test::write_plainly(directory_ / "s.json", json.dump());
+    return warnings_of({}, path("s.json"));
+  };
+  EXPECT_EQ(of_stroke("0,0,0,0,0,0,-1\n0.01,0.001,0,0,0,0,-1\n"), "");
+  const std::string large = of_stroke("0,0,0,0,0,0,-1\n0.01,10,0,0,0,0,-1\n");
+  EXPECT_NE(large.find("the environment's size: are they in metres?"), std::string::npos) << large;
+  const std::string small = of_stroke("0,0,0,0,0,0,-1\n0.01,1e-6,0,0,0,0,-1\n");
+  EXPECT_NE(small.find("a hundredth of the tool's half width"), std::string::npos) << small;
+  const std::string far = of_stroke("0,0,0,5,0,0,-1\n0.01,0.001,0,5,0,0,-1\n");
+  EXPECT_NE(far.find("the stroke stays 5 m away from the environment"), std::string::npos) << far;
+  const std::string slow = of_stroke("0,0,0,0,0,0,-1\n0.5,0.001,0,0,0,0,-1\n");
+  EXPECT_NE(slow.find("the stroke has a sample each 500 ms, the run a step each 1 ms"), std::string::npos) << slow;
+}
+
+TEST_F(ValidateOfUnits, KnowsADeviceFile) {
+  test::write_plainly(directory_ / "mine.json", R"({"type": "impedance", "preset": "touch", "delay_samples": 2})");
+  const ProgramRun run = hapbench({"validate", path("mine.json")});
+  EXPECT_EQ(run.status, 0) << run.err;
+  EXPECT_NE(run.out.find("a valid device, not a scenario: hapbench compare --devices "), std::string::npos) << run.out;
+  test::write_plainly(directory_ / "mine.json", R"({"type": "impedance", "preset": "tuch"})");
+  const ProgramRun wrong = hapbench({"validate", path("mine.json")});
+  EXPECT_EQ(wrong.status, 2);
+  EXPECT_EQ(test::lines_of(wrong.err).size(), 1u) << wrong.err;
+  EXPECT_NE(wrong.err.find("touch"), std::string::npos) << wrong.err;
+}
+
+/// A warning of a bundled scene would be a false one.
+TEST_F(ValidateOfUnits, FindsNoUnitsWrongInBundledScenes) {
+  for (const test::NamedScenario& scenario : test::bundled_scenario_files()) {
+    const ProgramRun run = test::hapbench_here({"validate", scenario.name});
+    for (const char* words : {"in metres?", "in seconds?", "behind the surface", "time.step_s right?", "right?"})
+      EXPECT_EQ(run.err.find(words), std::string::npos) << scenario.name << run.err;
+  }
 }
 
 class ShellCommand : public testing::Test {
