@@ -101,6 +101,7 @@ std::vector<std::string> unit_warnings(const LoadedScenario& loaded, const ToolS
   const auto add = [&warnings](std::optional<std::string> warning) {
     if (warning) warnings.push_back(std::move(*warning));
   };
+  if (surface.box.min == surface.box.max) return warnings;  // a single point has no size
   add(scale_warning(scenario, tool, surface.box));
   add(start_warning(tool, surface));
   if (std::holds_alternative<RecordedPosition>(scenario.motion.position)) {
