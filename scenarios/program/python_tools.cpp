@@ -99,7 +99,7 @@ void add_common(Command& command, PictureOptions& options, const std::string& ru
 namespace {
 
 /// Runs the tool beside this program and waits; `doing` is what the user is told.
-void finish(ToolCommand& command, const char* doing, const std::filesystem::path& folder, bool quiet) {
+void finish_tool(ToolCommand& command, const char* doing, const std::filesystem::path& folder, bool quiet) {
   std::fflush(stdout);
   pid_t tool = 0;
   if (const int error = posix_spawn(&tool, command.launcher(), nullptr, nullptr, command.arguments().data(), environ))
@@ -118,7 +118,7 @@ void write_report(const std::filesystem::path& folder, bool quiet) {
   ToolCommand command("report", quiet);
   command.add("--");
   command.add(folder.string());
-  finish(command, "writing the report", folder, quiet);
+  finish_tool(command, "writing the report", folder, quiet);
 }
 
 void write_way(const std::filesystem::path& folder, const std::filesystem::path& file, bool quiet) {
@@ -127,7 +127,7 @@ void write_way(const std::filesystem::path& folder, const std::filesystem::path&
   command.add("--out", file.string());
   command.add("--");
   command.add(folder.string());
-  finish(command, "drawing", folder, quiet);
+  finish_tool(command, "drawing", folder, quiet);
 }
 
 void add_plot(CommandLine& line) {

@@ -60,11 +60,12 @@ struct MeshUnit {
 };
 
 /// Objects are worked on by tools of a millimetre and more, which are a hundredth to a third of them.
-constexpr double kShortest = 0.003, kLongest = 0.3;  // [m]
+constexpr double kShortestObject = 0.003, kLongestObject = 0.3;  // [m]
 
 /// How far the length in that unit is from those of such objects: 0 within, else the logarithm of the ratio.
 double misfit(double length, const MeshUnit& unit) {
-  return std::max({0.0, std::log(kShortest / (length * unit.metres)), std::log(length * unit.metres / kLongest)});
+  return std::max(
+      {0.0, std::log(kShortestObject / (length * unit.metres)), std::log(length * unit.metres / kLongestObject)});
 }
 
 /// The units in the order in which they are believed: by their misfit, then the usual ones first.
@@ -203,7 +204,7 @@ class Start {
     std::vector<Vec3> places;
     for (const auto& sample : stroke->motion.samples()) places.push_back(sample.position);
     const Box way = box_of(places);
-    const double size = std::max((way.max - way.min).norm(), kShortest);
+    const double size = std::max((way.max - way.min).norm(), kShortestObject);
     const auto gap_of = [&](double scale) {
       const Box scaled{box.min * (scale / 0.001), box.max * (scale / 0.001)};
       double gap = std::numeric_limits<double>::infinity();
