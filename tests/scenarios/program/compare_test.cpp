@@ -174,8 +174,8 @@ TEST_F(CompareCommand, SaysThatTheSamplingMakesTheWinner) {
 
 TEST_F(CompareCommand, ComparesWithTheMeasuredForce) {
   const ProgramRun run = hapbench({"compare", "recorded_wipe", "--algorithms", "mean,proxy", "--out", out_});
-  EXPECT_NE(run.out.find("\nagainst the reference force\n"), std::string::npos) << run.out;
-  EXPECT_NE(run.out.find("force_error_relative  force_direction_error_rad  force_artefact_share\n"), std::string::npos);
+  EXPECT_NE(run.out.find("\nrendered force against the reference, measured or ideal\n"), std::string::npos) << run.out;
+  EXPECT_NE(run.out.find("error  normal  tangential  direction  artefacts    lag\n"), std::string::npos) << run.out;
 }
 
 /// Comparisons of several scenarios or seeds.
