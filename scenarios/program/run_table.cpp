@@ -169,9 +169,9 @@ std::vector<Table::Column> latency_headings() {
 std::string targets_text(const RunReport& report) {
   if (report.summary.section("targets") == nullptr) return "";
   const auto cell = [](const SubjectMean& m, int digits) {
-    return m.subjects == 0
-               ? "-"
-               : fmt::format("{} +- {}", deserved(m.mean, 0.1 * m.standard_error, digits), significant(m.standard_error, 2));
+    return m.subjects == 0 ? "-"
+                           : fmt::format("{} +- {}", deserved(m.mean, 0.1 * m.standard_error, digits),
+                                         significant(m.standard_error, 2));
   };
   Table table(kTargetHeadings);
   for (const PlaceMetrics& place : place_metrics(report.targets)) {

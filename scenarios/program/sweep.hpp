@@ -15,8 +15,8 @@ namespace hapbench {
 std::string chosen_metric(const SweepPlan& plan, const std::string& asked_for);
 
 /// The counts of outcomes, and above them for a sweep of one field the runs (up to 100) with their main metrics, for a
-/// grid of two fields (up to 400 cells) the metric as a table and a map of characters, else the 20 runs with the least of
-/// the metric. Precondition: `metric` is among the plan's.
+/// grid of two fields (up to 400 cells) the metric as a table and a map of characters, else the 20 runs with the least
+/// of the metric. Precondition: `metric` is among the plan's.
 std::string summary_text(const SweepPlan& plan, const SweepReport& report, const std::string& metric);
 /// The counts, and the rows that the report has.
 Json summary_json(const SweepPlan& plan, const SweepReport& report);

@@ -1,5 +1,5 @@
-/* Preloaded (LD_PRELOAD), it lets calls that change files fail: the n-th of the process, or that one and all after it, as on
- * a disk that is full. Counted are calls on files below FAIL_BELOW, standard output not among them.
+/* Preloaded (LD_PRELOAD), it lets calls that change files fail: the n-th of the process, or that one and all after it,
+ * as on a disk that is full. Counted are calls on files below FAIL_BELOW, standard output not among them.
  *
  *   FAIL_AT     n, from 1; 0 counts only
  *   FAIL_WITH   number of the error
@@ -64,14 +64,14 @@ __attribute__((destructor)) static void count(void) {
 
 #define REAL(name) ((__typeof__(&name))dlsym(RTLD_NEXT, #name))
 
-#define OPENS(name)                                              \
-  int name(const char* path, int flags, ...) {                   \
-    va_list more;                                                \
-    va_start(more, flags);                                       \
+#define OPENS(name)                                                 \
+  int name(const char* path, int flags, ...) {                      \
+    va_list more;                                                   \
+    va_start(more, flags);                                          \
     const mode_t mode = flags & O_CREAT ? va_arg(more, mode_t) : 0; \
-    va_end(more);                                                \
-    if (flags & O_CREAT && is_below(path) && fails()) return -1; \
-    return REAL(name)(path, flags, mode);                        \
+    va_end(more);                                                   \
+    if (flags & O_CREAT && is_below(path) && fails()) return -1;    \
+    return REAL(name)(path, flags, mode);                           \
   }
 OPENS(open)
 OPENS(open64)
