@@ -11,7 +11,7 @@
 namespace hapbench {
 namespace {
 
-/// What a thread is doing. Handlers of signals read all of them, so they are never freed.
+/// The call in which a thread is. States are never freed, because handlers of signals on any thread read them.
 struct ThreadState {
   std::atomic<const char*> plugin = nullptr;  ///< null outside of plugins
   std::atomic<const char*> function = nullptr;
@@ -22,15 +22,18 @@ static_assert(std::atomic<const char*>::is_always_lock_free, "a signal handler m
 
 std::atomic<ThreadState*> threads{nullptr};
 thread_local ThreadState* this_thread = nullptr;
+std::atomic<bool> handles_crashes{false};
 int status_of_exit = 0;
 
 ThreadState& state() {
   if (this_thread == nullptr) {
     this_thread = new ThreadState;
-    stack_t stack = {};
-    stack.ss_sp = this_thread->handler_stack.data();
-    stack.ss_size = this_thread->handler_stack.size();
-    ::sigaltstack(&stack, nullptr);
+    if (handles_crashes) {  // else the host may have a stack of its own for its handlers
+      stack_t stack = {};
+      stack.ss_sp = this_thread->handler_stack.data();
+      stack.ss_size = this_thread->handler_stack.size();
+      ::sigaltstack(&stack, nullptr);
+    }
     this_thread->next = threads;
     while (!threads.compare_exchange_weak(this_thread->next, this_thread)) {
     }
@@ -78,6 +81,7 @@ PluginCall::~PluginCall() {
 }
 
 void name_plugins_that_end_the_process(int exit_status) {
+  handles_crashes = true;
   status_of_exit = exit_status;
   std::atexit(on_exit);
   struct sigaction action {};

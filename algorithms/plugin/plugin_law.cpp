@@ -107,7 +107,7 @@ void PluginLaw::reset() noexcept {
 }
 
 template <class Call>
-bool PluginLaw::runs(const char* function, const Call& call) noexcept {
+bool PluginLaw::runs(const char* function, const Call& call) const noexcept {
   std::array<char, 200> problem{};
   try {
     const PluginCall running(plugin_.name, function);
@@ -122,7 +122,7 @@ bool PluginLaw::runs(const char* function, const Call& call) noexcept {
   return false;
 }
 
-LawForce PluginLaw::failed(const char* problem) noexcept {
+LawForce PluginLaw::failed(const char* problem) const noexcept {
   std::snprintf(fault_.data(), fault_.size(), "%s %s", plugin_.name, problem);
   // The text is printed in one line and written as JSON, whatever the plugin answers.
   for (char& c : fault_) c = c == '\0' || (c >= ' ' && c <= '~') ? c : '?';
@@ -172,13 +172,8 @@ SpringState PluginLaw::spring_state(const ContactBuffer& contacts, const Vec3& s
   if (plugin_.springs != nullptr) {
     SpringState state;
     const HapbenchContacts view = view_of(contacts);
-    try {
-      const PluginCall running(plugin_.name, "springs");
-      plugin_.springs(law_, &view, tip.data(), &state.energy, state.moment.data());
-    } catch (...) {
-      note_fault((std::string(plugin_.name) + " throws in springs").c_str());
+    if (!runs("springs", [&] { plugin_.springs(law_, &view, tip.data(), &state.energy, state.moment.data()); }))
       state.energy = kNaN;
-    }
     return state;
   }
   return SingleSpringLaw::spring_state(contacts, spring, tip);

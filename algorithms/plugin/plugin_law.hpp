@@ -29,11 +29,11 @@ class PluginLaw final : public SingleSpringLaw {
   const char* fault() const noexcept override { return fault_[0] == '\0' ? nullptr : fault_.data(); }
 
  private:
-  LawForce failed(const char* problem) noexcept;
+  LawForce failed(const char* problem) const noexcept;
   LawForce failed(int error) noexcept;
   /// Calls `call`, which runs the plugin's function of that name; an exception is a fault. Returns whether none came.
   template <class Call>
-  bool runs(const char* function, const Call& call) noexcept;
+  bool runs(const char* function, const Call& call) const noexcept;
   void destroy() noexcept;
 
   const HapbenchPlugin& plugin_;
@@ -41,7 +41,7 @@ class PluginLaw final : public SingleSpringLaw {
   void* law_ = nullptr;
   /// The plugin's weights, between canaries that find writes beyond them.
   std::vector<double> guarded_weights_;
-  std::array<char, 256> fault_{};  ///< empty without a fault
+  mutable std::array<char, 256> fault_{};  ///< empty without a fault; `springs` may have one, too
 };
 
 /// The entry of the table for a law behind the C interface, from the file `origin`. The plugin must outlive it. Throws

@@ -10,6 +10,7 @@
 #include <cerrno>
 #include <cstring>
 #include <random>
+#include <set>
 #include <utility>
 
 namespace hapbench {
@@ -47,6 +48,15 @@ bool remove_if_abandoned(const fs::path& path) {
   const bool removed = ::flock(descriptor, LOCK_EX | LOCK_NB) == 0 && ::unlink(path.c_str()) == 0;
   ::close(descriptor);
   return removed;
+}
+
+/// Removes what killed processes left in a folder that is about to be written to.
+void clean_up(const fs::path& folder) {
+  try {
+    remove_stale_temporaries(folder.empty() ? "." : folder);
+  } catch (const IoError&) {
+    // A folder that may be written but not listed.
+  }
 }
 
 }  // namespace
@@ -153,6 +163,10 @@ void FileSet::write(const fs::path& target, std::string_view contents) {
 
 void FileSet::commit() {
   for (AtomicFile& file : files_) file.complete();
+  std::set<fs::path> folders;
+  for (const AtomicFile& file : files_) folders.insert(file.target().parent_path());
+  for (const fs::path& name : removed_) folders.insert(name.parent_path());
+  for (const fs::path& folder : folders) clean_up(folder);
   // Earlier files step aside under temporary names, so that they can come back.
   struct Aside {
     fs::path name, place;
@@ -181,11 +195,7 @@ void FileSet::commit() {
 }
 
 void write_file_atomically(const fs::path& target, std::string_view contents) {
-  try {
-    remove_stale_temporaries(target.parent_path().empty() ? "." : target.parent_path());
-  } catch (const IoError&) {
-    // A folder that may be written but not listed.
-  }
+  clean_up(target.parent_path());
   AtomicFile file(target);
   file.append(contents);
   file.commit();

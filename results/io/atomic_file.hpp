@@ -94,7 +94,8 @@ class FileSet {
   /// The file, if there is one, goes with the others' replacement. Files go in this order and before any comes, which
   /// come in the order in which they were taken.
   void remove(std::filesystem::path file) { removed_.push_back(std::move(file)); }
-  /// Throws IoError, after which everything is as it was. Call once, last.
+  /// After remove_stale_temporaries in all folders concerned. Throws IoError, after which everything is as it was. Call
+  /// once, last.
   void commit();
 
  private:
@@ -106,7 +107,7 @@ class FileSet {
 void write_file_atomically(const std::filesystem::path& target, std::string_view contents);
 
 /// Removes the temporaries of AtomicFile that killed processes left in `directory` and returns how many. Temporaries
-/// that are being written stay, and so does every other file. Call when a run starts to write there. A directory that
+/// that are being written stay, and so does every other file. A directory that
 /// does not exist has none; one that cannot be listed throws IoError. A file that cannot be removed is left.
 std::size_t remove_stale_temporaries(const std::filesystem::path& directory);
 

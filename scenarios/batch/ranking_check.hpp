@@ -54,7 +54,7 @@ struct RankingColumn {
   Finer finer = Finer::spacing;
   std::string change;  ///< the field and its values, or why there is no change
   std::string metric;  ///< empty without a change
-  /// Of each law; none when it failed or has none.
+  /// The number of each law; none where a law failed or has no such number.
   std::vector<std::optional<double>> before = {}, after = {};
   ColumnVerdict verdict = {Holding::unchecked};
   std::optional<std::size_t> best_before = {}, best_after = {};  ///< of a metric of which less or more is better

@@ -34,7 +34,7 @@ struct BatchPlan {
   std::vector<ScenarioText> scenarios;
   std::vector<std::string> names;     ///< unique names of the scenarios' files, without extension
   std::vector<std::string> warnings;  ///< without duplicates
-  /// Of each scenario, after those of all runs; none when empty.
+  /// Further overrides of each scenario, which come after those of the definition; may be empty as a whole.
   std::vector<std::vector<std::string>> scenario_overrides;
   std::int64_t stride = 1;  ///< TimeFields::stride of all runs
 

@@ -162,7 +162,6 @@ SweepReport run_sweep(const SweepPlan& plan, const SweepOptions& options) {
   Journal journal(
       file, journal_title(plan, options.part(), options.keep_runs), options.resume,
       [&](Journal::Place place, std::string_view row) { note(rows, plan, options.part(), file, place, row); });
-  remove_stale_temporaries(options.directory);
   SweepReport report;
   report.resumed = rows.count();
   compute_rows(plan, options, journal, rows, report);

@@ -42,12 +42,13 @@ double memory_limit() {
                                                                                   : kInfinity;
 }
 
+std::string memory_limit_text() {
+  return fmt::format("{}, three quarters of what was free or what --memory sets", bytes_text(memory_limit()));
+}
+
 void require_memory(double bytes, const std::string& what) {
   if (bytes <= memory_limit()) return;
-  throw InputError(
-      fmt::format("{} would take about {}; allowed: {}, three quarters of what was free or what --memory "
-                  "sets",
-                  what, bytes_text(bytes), bytes_text(memory_limit())));
+  throw InputError(fmt::format("{} would take about {}; allowed: {}", what, bytes_text(bytes), memory_limit_text()));
 }
 
 std::string bytes_text(double bytes) {

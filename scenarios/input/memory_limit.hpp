@@ -10,8 +10,10 @@ namespace hapbench {
 /// Beyond it an allocation throws std::bad_alloc. Never raises a limit that the system or the user has set.
 void limit_memory(std::optional<double> bytes);
 
-/// What limit_memory allowed, or the limit that was there [B]; infinite without one.
+/// The limit that holds, whoever set it [B]; infinite without one.
 double memory_limit();
+/// It in words, with what sets it.
+std::string memory_limit_text();
 
 /// Refuses, before it is begun, work that is expected to take more than memory_limit(). Throws InputError, whose text
 /// says what needs so much and how the limit is raised.

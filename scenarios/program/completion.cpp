@@ -51,6 +51,14 @@ WordList beginning_with(const std::string& typed, const std::string& before, con
   return found;
 }
 
+WordList long_options(const CommandText& command) {
+  WordList names;
+  for (const OptionText& option : command.options) {
+    if (!option.is_argument) names.push_back(option.name.substr(option.name.rfind(',') + 1));
+  }
+  return names;
+}
+
 /// The option of that name that takes a value, or null.
 const OptionText* option_named(const CommandText& command, const std::string& name) {
   for (const OptionText& option : command.options) {
@@ -89,11 +97,7 @@ WordList completed(const CommandText& command, const WordList& words) {
     typed.erase(0, equals + 1);
   }
   if (option == nullptr && typed.starts_with("-")) {
-    WordList names;
-    for (const OptionText& known : command.options) {
-      if (!known.is_argument) names.push_back(known.name.substr(known.name.rfind(',') + 1));
-    }
-    return beginning_with(typed, before, names);
+    return beginning_with(typed, before, long_options(command));
   }
   if (option == nullptr) option = next_argument(command, {words.begin(), words.end() - 1});
   if (option == nullptr || !option->words) return {};
@@ -132,7 +136,7 @@ WordList completions(const std::vector<CommandText>& texts, const WordList& word
   WordList found;
   if (joined.size() == 1) {
     WordList names;
-    if (!joined.back().empty()) names = {"--help", "--version", "--plugin", "--memory"};
+    if (!joined.back().empty()) names = long_options(texts.front());
     for (auto command = texts.begin() + 1; command != texts.end(); ++command) names.push_back(command->name);
     found = beginning_with(joined.back(), "", names);
   } else {

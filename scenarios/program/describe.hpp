@@ -29,8 +29,8 @@ std::vector<Description> describe_word(const std::string& name);
 /// The names it knows.
 std::vector<std::string> described_words();
 
-/// What stands under a heading of a printed table, such as ">30Hz rms N" or its first line, ">30Hz". Ignores case and
-/// blanks.
+/// The columns and metrics under a heading of a printed table, such as ">30Hz rms N" or its first line, ">30Hz".
+/// Ignores case and blanks.
 std::vector<Description> describe_heading(const std::string& name);
 
 /// The claim of that id, in either case; or the bundled scenarios and claims that name that place of the thesis, as

@@ -181,11 +181,15 @@ std::vector<Word> all_words() {
   return all;
 }
 
+Json json_of(const Word& word) {
+  return {{"kind", word.kind}, {"name", word.name}, {"meaning", word.meaning}};
+}
+
 Description describe_words() {
   Description d{"words that the program prints\n\n", {{"kind", "words"}, {"words", Json::array()}}};
   for (const Word& word : all_words()) {
     d.text += fmt::format("  {} ({})\n{}", word.name, word.kind, wrapped(word.meaning, 6));
-    d.json["words"].push_back({{"kind", word.kind}, {"name", word.name}, {"meaning", word.meaning}});
+    d.json["words"].push_back(json_of(word));
   }
   return d;
 }
@@ -206,7 +210,7 @@ std::vector<Description> describe_word(const std::string& name) {
     if (name != word.name && !(word.kind == kResultFile && is_named(word.name, name))) continue;
     std::string text = fmt::format("{}: {}\n{}", bold(stdout, word.name), word.kind, wrapped(word.meaning));
     if (word.kind == kMotion) text += "  in numbers: hapbench describe stability\n";
-    found.push_back({text, {{"kind", word.kind}, {"name", word.name}, {"meaning", word.meaning}}});
+    found.push_back({text, json_of(word)});
   }
   return found;
 }

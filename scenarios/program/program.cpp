@@ -98,8 +98,7 @@ int run_program_to_exit(int argc, char** argv) {
   } catch (const IoError& error) {
     return fail(error.what());
   } catch (const std::bad_alloc&) {
-    return fail(fmt::format("out of memory: {} are allowed, three quarters of what was free or what --memory sets",
-                            bytes_text(memory_limit())));
+    return fail("out of memory; allowed: " + memory_limit_text());
   } catch (const std::exception& error) {
     return fail(one_line(fmt::format("internal fault: {}", error.what())));
   }

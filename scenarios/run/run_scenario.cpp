@@ -262,7 +262,6 @@ void create_output(NewDirectories& directories, const fs::path& directory) {
   std::error_code error;
   directories.create(directory, error);
   if (error) throw IoError("create", directory, error);
-  remove_stale_temporaries(directory);
 }
 
 std::vector<fs::path> trial_directories(const fs::path& directory) {
@@ -392,7 +391,6 @@ void write_results(const fs::path& directory, const Scenario& scenario, const Ru
 void remove_run(const fs::path& directory) {
   std::error_code ignored;
   if (!fs::is_directory(directory, ignored)) return;
-  remove_stale_temporaries(directory);
   FileSet files;
   remove_earlier_run(directory, files);
   files.remove(directory / "scenario.effective.json");

@@ -202,6 +202,7 @@ TEST(FileSet, ReplacesFilesTogether) {
   const TemporaryDirectory dir;
   write_plainly(dir / "a", "old a");
   write_plainly(dir / "gone", "old");
+  kill_a_writer_of(dir / "a");
   FileSet files;
   files.remove(dir / "gone");
   files.remove(dir / "never there");
