@@ -20,6 +20,10 @@ struct Provenance {
   std::string cpu;          ///< model name
   std::string plugin = {};  ///< file of the plugin whose algorithm was used; else empty
   std::string plugin_hash = {};  ///< of that file's content
+
+  /// The source and the build, for results that only the same program may go on with; empty when the commit does not
+  /// identify the source.
+  std::string identity() const;
 };
 
 /// Returns the provenance of the running program. Reads /proc/cpuinfo.

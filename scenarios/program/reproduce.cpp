@@ -64,7 +64,7 @@ bool is_current(const fs::path& directory, const LoadedScenario& loaded) {
     const Json summary = parse_json(read_text_file(directory / "summary.json", kLargestJsonFile));
     const Json& made = summary.at("provenance");
     return made.at("scenario_hash") == scenario_hash(loaded.scenario, loaded.files) &&
-           made.at("commit") == provenance().commit && !provenance().commit.ends_with("-dirty");
+           made.at("commit") == provenance().commit && !provenance().identity().empty();
   } catch (const std::exception&) {
     return false;  // missing, damaged or of another version: run it
   }

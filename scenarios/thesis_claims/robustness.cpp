@@ -12,7 +12,6 @@
 
 #include "results/io/atomic_file.hpp"
 #include "results/io/json_text.hpp"
-#include "results/summary/provenance.hpp"
 #include "scenarios/batch/journal.hpp"
 #include "scenarios/batch/parallel_for.hpp"
 #include "scenarios/batch/sampling.hpp"
@@ -286,19 +285,10 @@ std::string header(const RobustnessPlan& plan) {
   return fmt::format("{}", fmt::join(columns, ","));
 }
 
-/// The source and the build that compute the verdicts; empty when the commit does not identify the source.
-std::string program_identity() {
-  const Provenance p = provenance();
-  if (p.commit == "unknown" || p.commit.ends_with("-dirty")) return "";
-  return fmt::format("{} {} {} {}", p.commit, p.compiler, p.build_type, p.flags);
-}
-
 /// A text that identifies everything the verdicts depend on.
-std::string definition(const RobustnessPlan& plan) {
-  Json content = {{"table", header(plan)},
-                  {"choices", plan.choices.hash()},
-                  {"samples", plan.samples()},
-                  {"program", program_identity()}};
+std::string definition(const RobustnessPlan& plan, const std::string& program) {
+  Json content = {
+      {"table", header(plan)}, {"choices", plan.choices.hash()}, {"samples", plan.samples()}, {"program", program}};
   for (const BundledScenario& bundled : bundled_scenarios()) {
     const LoadedScenario loaded = load_scenario(bundled.file);
     content["scenarios"].push_back(scenario_hash(loaded.scenario, loaded.files));
@@ -339,9 +329,9 @@ std::vector<std::size_t> samples_to_do(const RobustnessPlan& plan, const fs::pat
 
 RobustnessReport run_robustness(const RobustnessPlan& plan, const RobustnessOptions& options) {
   const fs::path file = options.directory / "robustness.journal", scratch = options.directory / "robustness";
-  const std::string title = definition(plan);
+  const std::string title = definition(plan, options.program);
   // Results of a program without an identity cannot be trusted: compute them again.
-  const bool resume = !options.anew && !program_identity().empty() && Journal::is_of(file, title);
+  const bool resume = !options.anew && !options.program.empty() && Journal::is_of(file, title);
   std::vector<std::string> rows;
   Journal journal(file, title, resume, [&rows](Journal::Place, std::string_view row) { rows.emplace_back(row); });
   RobustnessReport report;

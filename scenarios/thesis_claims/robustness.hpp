@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "results/summary/provenance.hpp"
 #include "scenarios/thesis_claims/choices.hpp"
 #include "scenarios/thesis_claims/claims.hpp"
 
@@ -107,10 +108,11 @@ std::vector<ClaimRobustness> robustness_of(const RobustnessPlan& plan, const std
                                            const std::vector<std::vector<std::string>>& verdicts);
 
 struct RobustnessOptions {
-  std::filesystem::path directory;  ///< of the journal and of results while they are needed; exists
-  std::size_t jobs = 1;             ///< samples at once
-  bool anew = false;                ///< use nothing that an interrupted run has left
-  bool progress = false;            ///< allow a progress bar
+  std::filesystem::path directory;                ///< of the journal and of results while they are needed; exists
+  std::size_t jobs = 1;                           ///< samples at once
+  bool anew = false;                              ///< use nothing that an interrupted run has left
+  bool progress = false;                          ///< allow a progress bar
+  std::string program = provenance().identity();  ///< whose samples are continued; empty: those of none
 };
 
 /// The verdicts of all samples.

@@ -94,7 +94,7 @@ class Robustness : public testing::Test {
                            {{"springs_unlimited_mean", {"metrics"}}}, samples);
   }
   RobustnessReport run(const RobustnessPlan& plan, std::size_t jobs) const {
-    return run_robustness(plan, {directory_.path(), jobs, false, false});
+    return run_robustness(plan, {.directory = directory_.path(), .jobs = jobs, .program = "a commit"});
   }
   test::TemporaryDirectory directory_;
 };
