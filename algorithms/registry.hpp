@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cmath>
 #include <deque>
 #include <functional>
 #include <memory>
@@ -12,6 +11,7 @@
 #include "algorithms/depth/depth_model.hpp"
 #include "algorithms/laws/force_law.hpp"
 #include "algorithms/rendering_config.hpp"
+#include "sim/core/math.hpp"
 #include "sim/core/model_info.hpp"
 
 /// The table of algorithms. An algorithm of this tree is a source file that defines its AlgorithmEntry and a row in
@@ -40,7 +40,7 @@ struct WedgeStiffness {
 
 /// The wedge under weights that add up to `weight` on either face: S = weight (u1 u1^T + u2 u2^T).
 inline WedgeStiffness wedge_of_weight(double weight, double half_angle) {
-  return {2.0 * weight * std::pow(std::sin(half_angle), 2), 2.0 * weight * std::pow(std::cos(half_angle), 2)};
+  return {2.0 * weight * math::square(math::sin(half_angle)), 2.0 * weight * math::square(math::cos(half_angle))};
 }
 
 /// Known properties of an algorithm; null if unknown. Each derivation stands beside its algorithm.

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "device_model/impedance_device.hpp"
+#include "sim/core/math.hpp"
 
 namespace hapbench {
 namespace {
@@ -67,12 +68,12 @@ double time_of_rest(const MotionLaw& law, double v, double g) noexcept {
   if (square < 0.0) {
     const double w = std::sqrt(-square);
     if (v == 0.0) return g == 0.0 ? kNever : std::numbers::pi / w;
-    return v > 0.0 ? std::atan2(v * w, -n) / w : std::atan2(-v * w, n) / w;
+    return v > 0.0 ? math::atan2(v * w, -n) / w : math::atan2(-v * w, n) / w;
   }
   const double t = -v / n, d = std::sqrt(square);
   if (!(t > 0.0) || d * t >= 1.0) return kNever;
   // For small arguments the quotient is t to rounding, and d may be zero.
-  return d * t < 1e-8 ? t : std::atanh(d * t) / d;
+  return d * t < 1e-8 ? t : math::atanh(d * t) / d;
 }
 
 HandleMotion::HandleMotion(const ImpedanceDeviceConfig& device, const AttachedHand& hand)

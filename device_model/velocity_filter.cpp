@@ -4,11 +4,13 @@
 #include <cmath>
 #include <numbers>
 
+#include "sim/core/math.hpp"
+
 namespace hapbench {
 
 VelocityFilter::VelocityFilter(const VelocityFilterConfig& config, double dt) : config_(config), dt_(dt) {
   if (const auto* low_pass = std::get_if<LowPassFilter>(&config))
-    taken_ = -std::expm1(-2.0 * std::numbers::pi * low_pass->cutoff * dt);
+    taken_ = -math::expm1(-2.0 * std::numbers::pi * low_pass->cutoff * dt);
 }
 
 void VelocityFilter::reset(const Vec3& position) noexcept {

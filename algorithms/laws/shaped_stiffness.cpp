@@ -1,10 +1,10 @@
 #include "algorithms/laws/shaped_stiffness.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "algorithms/parameters.hpp"
 #include "algorithms/registry.hpp"
+#include "sim/core/math.hpp"
 #include "sim/core/simd.hpp"
 
 namespace hapbench {
@@ -31,7 +31,7 @@ Mat3 shape_weights(ContactBuffer& contacts, int iterations) noexcept {
 }
 
 double shaped_wedge_weight(double w) noexcept {
-  return 1.0 / (1.0 + std::pow(std::cos(2.0 * w), 2));
+  return 1.0 / (1.0 + math::square(math::cos(2.0 * w)));
 }
 
 namespace {

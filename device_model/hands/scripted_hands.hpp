@@ -1,9 +1,9 @@
 #pragma once
 
 #include <array>
-#include <cmath>
 #include <utility>
 
+#include "sim/core/math.hpp"
 #include "sim/core/profile.hpp"
 #include "sim/loop/hand.hpp"
 
@@ -66,7 +66,7 @@ class ImpedanceHand final : public Hand {
 
 /// Unit vector at `angle` [rad] from -z, towards +x turned by `azimuth` [rad] about z. Exactly -z at angle 0.
 inline Vec3 push_direction(double angle, double azimuth) {
-  return {std::sin(angle) * std::cos(azimuth), std::sin(angle) * std::sin(azimuth), -std::cos(angle)};
+  return {math::sin(angle) * math::cos(azimuth), math::sin(angle) * math::sin(azimuth), -math::cos(angle)};
 }
 
 }  // namespace hapbench

@@ -5,6 +5,8 @@
 #include <numbers>
 #include <utility>
 
+#include "sim/core/math.hpp"
+
 namespace hapbench {
 namespace {
 
@@ -21,7 +23,7 @@ TrackingHand::TrackingHand(const Subject& subject, TargetTask task, double initi
       initial_tilt_(initial_tilt),
       dt_(dt),
       seed_(seed),
-      noise_memory_(std::exp(-kTwoPi * subject.noise_bandwidth * dt)),
+      noise_memory_(math::exp(-kTwoPi * subject.noise_bandwidth * dt)),
       seen_(1 + static_cast<std::size_t>(std::lround(subject.reaction_delay / dt))),
       random_(seed) {
   reset();

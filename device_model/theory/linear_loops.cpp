@@ -8,10 +8,12 @@
 #include <numbers>
 #include <unsupported/Eigen/MatrixFunctions>
 
+#include "sim/core/math.hpp"
+
 namespace hapbench {
 
 double spectral_radius(const Eigen::MatrixXd& A) {
-  return Eigen::EigenSolver<Eigen::MatrixXd>(A, false).eigenvalues().cwiseAbs().maxCoeff();
+  return std::sqrt(Eigen::EigenSolver<Eigen::MatrixXd>(A, false).eigenvalues().cwiseAbs2().maxCoeff());
 }
 
 namespace {
@@ -36,7 +38,7 @@ Eigen::Matrix<double, 2, 3> motion_over(const SampledLoop& loop, double share) {
 
 double SampledLoop::filter_memory() const {
   const auto* filter = std::get_if<LowPassFilter>(&device.velocity_filter);
-  return filter != nullptr ? std::exp(-2.0 * std::numbers::pi * filter->cutoff * period) : 0.0;
+  return filter != nullptr ? math::exp(-2.0 * std::numbers::pi * filter->cutoff * period) : 0.0;
 }
 
 const char* SampledLoop::nonlinearity() const {

@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <complex>
 #include <limits>
 #include <numbers>
+
+#include "sim/core/math.hpp"
 
 namespace hapbench {
 namespace {
@@ -29,10 +30,10 @@ struct PassivityAt {
 
 PassivityAt passivity_at(const SampledLoop& loop, double theta) {
   const double d = loop.device.delay_samples, a = loop.filter_memory();
-  const std::complex<double> e = std::polar(1.0, -theta), filter = (1.0 - a) / (1.0 - a * e);
-  // (1 - e)^2 = -2 (1 - cos theta) e
-  return {loop.period * std::sin((d + 0.5) * theta) / (2.0 * std::sin(0.5 * theta)),
-          -(filter * std::polar(1.0, -(d + 1.0) * theta)).real()};
+  // (1 - e)^2 = -2 (1 - cos theta) e, and F = (1 - a) / (1 - a e) = (1 - a) / (u + j v)
+  const double u = 1.0 - a * math::cos(theta), v = a * math::sin(theta), turn = (d + 1.0) * theta;
+  return {loop.period * math::sin((d + 0.5) * theta) / (2.0 * math::sin(0.5 * theta)),
+          -(1.0 - a) * (u * math::cos(turn) - v * math::sin(turn)) / (u * u + v * v)};
 }
 
 /// The least value of a function between two angles, on a grid and then on ever finer grids around its best point.

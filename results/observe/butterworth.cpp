@@ -1,8 +1,9 @@
 #include "results/observe/butterworth.hpp"
 
 #include <cassert>
-#include <cmath>
 #include <numbers>
+
+#include "sim/core/math.hpp"
 
 namespace hapbench {
 
@@ -13,10 +14,10 @@ namespace hapbench {
 Butterworth::Butterworth(Pass pass, double cutoff, double sampling_rate)
     : b1_over_b0_(pass == Pass::high ? -2.0 : 2.0) {
   assert(0.0 < cutoff && cutoff < 0.5 * sampling_rate);
-  const double k = std::tan(std::numbers::pi * cutoff / sampling_rate);
+  const double k = math::tan(std::numbers::pi * cutoff / sampling_rate);
   const double pole_angles[] = {std::numbers::pi / 8.0, 3.0 * std::numbers::pi / 8.0};
   for (std::size_t i = 0; i < biquads_.size(); ++i) {
-    const double k_over_q = k * 2.0 * std::cos(pole_angles[i]);
+    const double k_over_q = k * 2.0 * math::cos(pole_angles[i]);
     const double n = 1.0 / (1.0 + k_over_q + k * k);
     biquads_[i].b0 = pass == Pass::high ? n : k * k * n;
     biquads_[i].a1 = 2.0 * n * (k * k - 1.0);

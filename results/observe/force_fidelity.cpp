@@ -4,6 +4,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "sim/core/math.hpp"
+
 namespace hapbench {
 
 ReferenceForce::ReferenceForce(std::vector<Sample> samples) {
@@ -163,7 +165,7 @@ void ForceFidelityObserver::on_step(const StepRecord& record) noexcept {
   if (norm > kLeastForce && rendered_norm > kLeastForce) {
     ++sums_.direction_rows;
     // Near 0, the cosine alone would lose half its digits.
-    sums_.direction_error += std::atan2(wanted.cross(rendered).norm(), wanted.dot(rendered));
+    sums_.direction_error += math::atan2(wanted.cross(rendered).norm(), wanted.dot(rendered));
   }
   if (record.step % every_ == 0 && kept_reference_.size() < kept_reference_.capacity()) {
     kept_reference_.push_back(wanted);

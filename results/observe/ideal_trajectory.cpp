@@ -7,6 +7,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "sim/core/math.hpp"
+
 namespace hapbench {
 namespace {
 
@@ -22,7 +24,7 @@ const std::array<Turn, kSamples> kTurns = [] {
   std::array<Turn, kSamples> turns{};
   for (std::size_t i = 0; i < kSamples; ++i) {
     const double angle = static_cast<double>(i) * kStep;
-    turns[i] = {std::cos(angle), std::sin(angle)};
+    turns[i] = {math::cos(angle), math::sin(angle)};
   }
   return turns;
 }();
@@ -46,7 +48,7 @@ class Side {
     const double deep = depth(end), up_to_cone = to_cone(end);
     return up_to_cone > 0.0 ? std::max(deep, depth(end + std::min(up_to_cone, length_) * up_)) : deep;
   }
-  double deepest(double angle) const { return deepest({std::cos(angle), std::sin(angle)}); }
+  double deepest(double angle) const { return deepest({math::cos(angle), math::sin(angle)}); }
 
  private:
   /// Depth below the block's surface, negative outside [m]. In the block it is the exact distance.
@@ -136,7 +138,7 @@ double interpenetration(const BlockWithHole& block, const Cylinder& tool, const 
 std::optional<TipPlace> ideal_place(const BlockWithHole& block, double tool_radius, double tilt) {
   if (!(tilt > 0.0 && tilt < std::numbers::pi / 2)) return std::nullopt;
   const double R = block.hole_diameter / 2, r = tool_radius;
-  const double cosine = std::cos(tilt), sine = std::sin(tilt);
+  const double cosine = math::cos(tilt), sine = math::sin(tilt);
   const TipPlace place{-R + r * cosine, (r * (1.0 + cosine * cosine) - 2.0 * R * cosine) / sine};
   const bool edge_in_hole = place.height + r * sine<0.0, above_bottom = place.height - r * sine> - block.hole_depth;
   if (!edge_in_hole || !above_bottom) return std::nullopt;
@@ -153,7 +155,7 @@ void IdealTrajectoryObserver::on_step(const StepRecord& record) noexcept {
   if (record.step % every_ != 0) return;
   const ToolPose& pose = record.tool.pose;
   const Vec3 lean{-pose.axis.x(), -pose.axis.y(), 0.0};
-  const double sine = lean.norm(), tilt = std::atan2(sine, -pose.axis.z());
+  const double sine = lean.norm(), tilt = math::atan2(sine, -pose.axis.z());
   const auto ideal = ideal_place(block_, tool_.radius(), tilt);
   if (!ideal) {
     ++sums_.rows_without_ideal;

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "results/observe/contact_forces.hpp"
+#include "sim/core/math.hpp"
 
 namespace hapbench {
 namespace {
@@ -28,7 +29,7 @@ PerceptionObserver::PerceptionObserver(const PerceptionThresholds& thresholds, c
     : thresholds_(thresholds),
       reference_(reference),
       dt_(dt),
-      envelope_gain_(-std::expm1(-dt / kEnvelopeTime)),
+      envelope_gain_(-math::expm1(-dt / kEnvelopeTime)),
       force_high_pass_(vibration_filter(dt)) {
   if (thresholds_.band_is_sampled(dt)) {
     if (thresholds_.band_from > 0.0) band_from_.emplace(thresholds_.band_from, 1.0 / dt);

@@ -12,6 +12,7 @@
 #include "scenarios/batch/statistics.hpp"
 #include "scenarios/description/metric_sections.hpp"
 #include "scenarios/run/encounter.hpp"
+#include "sim/core/math.hpp"
 
 namespace hapbench {
 namespace {
@@ -184,13 +185,13 @@ LawStanding law_standing(const League& league, std::size_t algorithm) {
     for (std::size_t m = 0; m < league.runs.metrics.size(); ++m) {
       const Standing& standing = league.at(s, algorithm, m);
       if (standing.rank) ranks.push_back(static_cast<double>(*standing.rank));
-      if (standing.ratio_to_best) logarithms.push_back(std::log(*standing.ratio_to_best));
+      if (standing.ratio_to_best) logarithms.push_back(math::log(*standing.ratio_to_best));
     }
     if (league.failures(s, algorithm) > 0) law.fails.push_back(s);
     if (wins(league, s, algorithm)) law.wins.push_back(s);
   }
   if (!ranks.empty()) law.mean_rank = mean_of(ranks);
-  if (!logarithms.empty() && law.fails.empty()) law.mean_ratio = std::exp(mean_of(logarithms));
+  if (!logarithms.empty() && law.fails.empty()) law.mean_ratio = math::exp(mean_of(logarithms));
   law.ratios = logarithms.size();
   return law;
 }

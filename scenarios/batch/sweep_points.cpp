@@ -10,6 +10,7 @@
 #include "results/io/json_text.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/text_lines.hpp"
+#include "sim/core/math.hpp"
 
 namespace hapbench {
 namespace {
@@ -46,7 +47,7 @@ double value_between(const Range& range, double i, double last) {
   const double a = range.from, b = range.to;
   if (!range.logarithmic || i == 0.0 || i == last) return linear_value(a, b, i, last);
   // Decimal logarithms make decades exact.
-  return std::clamp(std::pow(10.0, linear_value(std::log10(a), std::log10(b), i, last)), std::min(a, b),
+  return std::clamp(math::pow(10.0, linear_value(math::log10(a), math::log10(b), i, last)), std::min(a, b),
                     std::max(a, b));
 }
 

@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <vector>
 
 #include "scenarios/batch/parallel_for.hpp"
 #include "scenarios/batch/ranking_check.hpp"
 #include "scenarios/program/ranking_text.hpp"
 #include "scenarios/run/scene_facts.hpp"
+#include "sim/core/math.hpp"
 
 namespace hapbench {
 namespace {
@@ -50,7 +50,7 @@ GuessedSpacing guessed_spacing(const Json& scene, const std::filesystem::path& d
   std::optional<League> before;
   for (const double parts : {5.0, 10.0, 20.0, 40.0}) {
     const double spacing = test.diameter / parts, half = 0.5 * spacing;
-    const double points = static_cast<double>(test.points) * std::pow(test.spacing / half, 2);
+    const double points = static_cast<double>(test.points) * math::square(test.spacing / half);
     if (points > kMostTested) {
       fault += fault.empty() ? "half of it is beyond the test" : "; finer is beyond the test";
       break;

@@ -19,6 +19,7 @@
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/encounter.hpp"
 #include "scenarios/run/scene_facts.hpp"
+#include "sim/core/math.hpp"
 #include "sim/core/types.hpp"
 #include "sim/geometry/point_shell.hpp"
 #include "sim/mesh/triangle_soup.hpp"
@@ -65,7 +66,7 @@ constexpr double kShortestObject = 0.003, kLongestObject = 0.3;  // [m]
 /// How far the length in that unit is from those of such objects: 0 within, else the logarithm of the ratio.
 double misfit(double length, const MeshUnit& unit) {
   return std::max(
-      {0.0, std::log(kShortestObject / (length * unit.metres)), std::log(length * unit.metres / kLongestObject)});
+      {0.0, math::log(kShortestObject / (length * unit.metres)), math::log(length * unit.metres / kLongestObject)});
 }
 
 /// The units in the order in which they are believed: by their misfit, then the usual ones first.
@@ -212,7 +213,7 @@ class Start {
       return std::max(0.0, gap - 0.5 * diameter_);
     };
     const auto misfit_of = [&](double scale) {
-      return gap_of(scale) / size + 0.1 * std::abs(std::log((box.max - box.min).norm() * (scale / 0.001) / size));
+      return gap_of(scale) / size + 0.1 * std::abs(math::log((box.max - box.min).norm() * (scale / 0.001) / size));
     };
     const double guessed = std::ranges::min({0.001, 1.0, 0.01}, {}, misfit_of);
     const double scale = options_.scale.value_or(guessed);

@@ -61,7 +61,7 @@ const Field<RootLocusPoint> kRootLocusFields[] = {
      [](const RootLocusPoint& p) -> Cell { return p.second.real(); }},
     {{"second_imaginary", "1", "its imaginary part"}, [](const RootLocusPoint& p) -> Cell { return p.second.imag(); }},
     {{"spectral_radius", "1", "largest |eigenvalue|; above 1: unstable"},
-     [](const RootLocusPoint& p) -> Cell { return std::max(std::abs(p.first), std::abs(p.second)); }}};
+     [](const RootLocusPoint& p) -> Cell { return spectral_radius(p.first, p.second); }}};
 
 Json limits_json(const LoadedScenario& loaded, const std::vector<StabilityLimit>& limits) {
   Json rows = Json::array();

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <iterator>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -15,6 +14,7 @@
 #include "scenarios/program/result_tables.hpp"
 #include "scenarios/program/run_table.hpp"
 #include "scenarios/program/sweep.hpp"
+#include "sim/core/math.hpp"
 
 namespace hapbench {
 namespace {
@@ -145,7 +145,7 @@ class Levels {
   bool empty() const { return least_ > greatest_; }
   char mark(double value) const {
     if (!(greatest_ > least_)) return kMarks.front();
-    const auto scaled = [this](double x) { return is_logarithmic() ? std::log(x) : x; };
+    const auto scaled = [this](double x) { return is_logarithmic() ? math::log(x) : x; };
     const double part =
         (scaled(value) - scaled(least_)) / (scaled(greatest_) - scaled(least_)) * static_cast<double>(kMarks.size());
     return kMarks[std::min(static_cast<std::size_t>(std::max(part, 0.0)), kMarks.size() - 1)];

@@ -11,6 +11,8 @@
 #include <cstring>
 #include <sstream>
 
+#include "sim/core/math.hpp"
+
 namespace hapbench {
 namespace {
 
@@ -194,12 +196,12 @@ std::string significant(const std::optional<double>& value, int digits) {
 std::string deserved(double value, const std::optional<double>& tolerance, int digits) {
   const double size = std::abs(value);
   if (!tolerance || !(*tolerance > 0.0 && *tolerance < size) || !std::isfinite(size)) return significant(value, digits);
-  const int last = static_cast<int>(std::floor(std::log10(*tolerance)));
+  const int last = static_cast<int>(std::floor(math::log10(*tolerance)));
   if (size < 1e-4 || last < -12) {
-    const int deserve = static_cast<int>(std::floor(std::log10(size))) - last + 1;
+    const int deserve = static_cast<int>(std::floor(math::log10(size))) - last + 1;
     return significant(value, std::clamp(deserve, 1, 12));
   }
-  const double unit = std::pow(10.0, last);
+  const double unit = math::pow(10.0, last);
   return last < 0 ? fmt::format("{:.{}f}", value, -last) : fmt::format("{:.0f}", std::round(value / unit) * unit);
 }
 

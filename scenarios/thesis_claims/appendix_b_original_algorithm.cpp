@@ -7,6 +7,7 @@
 #include "algorithms/registry.hpp"
 #include "scenarios/thesis_claims/claims.hpp"
 #include "scenarios/thesis_claims/measurements.hpp"
+#include "sim/core/math.hpp"
 
 /// Claims of appendix B: what is wrong with the original algorithm, on contacts made for it.
 namespace hapbench {
@@ -44,7 +45,7 @@ constexpr double kHalfAngles[] = {10.0, 20.0, 30.0, 40.0, 50.0, 60.0, 70.0, 80.0
 Measured measure_groove(const Evidence& e) {
   Measured measured;
   for (const double degrees : kHalfAngles) {
-    const double angle = degrees * std::numbers::pi / 180.0, s = std::sin(angle), c = std::cos(angle);
+    const double angle = degrees * std::numbers::pi / 180.0, s = math::sin(angle), c = math::cos(angle);
     MeasuredCase& m = measured.emplace_back(MeasuredCase{fmt::format("{}°", degrees), {}});
     for (const std::string scene : {"groove_friction", "groove_swing"}) {
       for (const std::string algorithm : {"original_averaging", "shaped_stiffness"}) {

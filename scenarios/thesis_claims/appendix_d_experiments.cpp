@@ -8,6 +8,7 @@
 
 #include "scenarios/batch/statistics.hpp"
 #include "scenarios/thesis_claims/experiments.hpp"
+#include "sim/core/math.hpp"
 
 /// Claims of appendix D: the man-machine experiments with simulated subjects.
 namespace hapbench {
@@ -66,7 +67,7 @@ double half_a_digit(double printed) {
   const auto point = text.find('.');
   // Every mean of appendix D is printed with a digit behind the point, 1.0 too.
   const auto digits = point == std::string::npos ? 1 : text.size() - point - 1;
-  return 0.5 * std::pow(10.0, -static_cast<double>(digits));
+  return 0.5 * math::pow(10.0, -static_cast<double>(digits));
 }
 
 namespace {
@@ -93,7 +94,7 @@ Compared compare(const MeasuredCase& m, const PublishedNumbers& published, const
   const PublishedNumber& of_shaped = published[id + "." + column->published + ".shaped_stiffness"];
   const auto difference = [](const std::vector<double>& ours, const PublishedNumber& p) {
     const double beyond = std::max(std::abs(mean_of(ours) - p.mean) - half_a_digit(p.mean), 0.0);
-    return beyond == 0.0 ? 0.0 : beyond / std::hypot(p.spread, standard_error(ours));
+    return beyond == 0.0 ? 0.0 : beyond / math::hypot(p.spread, standard_error(ours));
   };
   Compared c;
   c.t = paired_t(original, shaped);

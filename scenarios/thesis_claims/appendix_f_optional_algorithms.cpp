@@ -6,6 +6,7 @@
 #include "algorithms/registry.hpp"
 #include "scenarios/studies/precision/measure.hpp"
 #include "scenarios/thesis_claims/claims.hpp"
+#include "sim/core/math.hpp"
 
 /// Claims of appendix F: the thesis's optional algorithms.
 namespace hapbench {
@@ -69,7 +70,7 @@ std::vector<double> outward_boosts(const Evidence& e) {
   std::vector<double> boosts;
   e.for_each_row(loaded, [&](const StepRecord& row) {
     if (boosts.size() == std::size(kBoostTilts) || row.rendered->empty()) return;
-    const double tilt = std::acos(-row.tool.pose.axis.y());
+    const double tilt = math::acos(-row.tool.pose.axis.y());
     if (tilt < kBoostTilts[boosts.size()]) return;
     Vec3 plain = Vec3::Zero();
     for (std::size_t i = 0; i < row.rendered->size(); ++i) plain -= row.rendered->depth[i] * row.rendered->gradient(i);

@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <complex>
 #include <limits>
 #include <numbers>
 
 #include "scenarios/thesis_claims/claims.hpp"
 #include "scenarios/thesis_claims/measurements.hpp"
+#include "sim/core/math.hpp"
 
 /// Claims of 2.7, 3.5 and 4.5: the limit of the input force.
 namespace hapbench {
@@ -137,16 +137,16 @@ Shaking shake(const Evidence& e, double frequency, bool limited) {
   const LoadedScenario loaded = e.load("shaking_in_free_air", overrides);
   const double omega = 2.0 * std::numbers::pi * frequency;
   const double start = loaded.scenario.time.step * static_cast<double>(loaded.scenario.time.steps) - 1.0;
-  std::complex<double> force, position;
+  Eigen::Vector2d force = Eigen::Vector2d::Zero(), position = force;
   Shaking shaking;
   e.for_each_row(loaded, [&](const StepRecord& row) {
     if (row.time < start) return;
-    const auto phase = std::polar(1.0, -omega * row.time);
+    const Eigen::Vector2d phase(math::cos(omega * row.time), -math::sin(omega * row.time));
     force += row.hand_force.x() * phase;
     position += row.handle.position.x() * phase;
     shaking.force_max = std::max(shaking.force_max, row.hand_force.norm());
   });
-  shaking.apparent_mass = std::abs(force) / (omega * omega * std::abs(position));
+  shaking.apparent_mass = force.norm() / (omega * omega * position.norm());
   return shaking;
 }
 

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "scenarios/thesis_claims/claims.hpp"
+#include "sim/core/math.hpp"
 
 namespace hapbench {
 
@@ -56,9 +57,9 @@ void SwingDecay::add(double x) {
 
 std::optional<double> SwingDecay::damping_ratio() const {
   if (extremes_ < 2) return std::nullopt;
-  const double q = std::pow(last_extreme_ / first_extreme_, 1.0 / static_cast<double>(extremes_ - 1));
+  const double q = math::pow(last_extreme_ / first_extreme_, 1.0 / static_cast<double>(extremes_ - 1));
   if (q >= 1.0) return 0.0;
-  const double log_q = std::log(q);
+  const double log_q = math::log(q);
   return -log_q / std::sqrt(std::numbers::pi * std::numbers::pi + log_q * log_q);
 }
 

@@ -1,12 +1,12 @@
 #include "scenarios/thesis_claims/stiffest_contacts.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <vector>
 
 #include "algorithms/laws/exact_shaping.hpp"
 #include "sim/contact/contact_buffer.hpp"
 #include "sim/contact/stiffness_tensor.hpp"
+#include "sim/core/math.hpp"
 #include "sim/core/random.hpp"
 
 namespace hapbench {
@@ -63,7 +63,7 @@ Directions random_directions(Random& random) {
     contact.direction = random.direction();
     if (planar) contact.direction.z() = 0.0;
     contact.direction.normalize();
-    contact.weight = std::pow(10.0, random.uniform(-2.0, 2.0));
+    contact.weight = math::pow(10.0, random.uniform(-2.0, 2.0));
   }
   return contacts;
 }
@@ -71,7 +71,7 @@ Directions random_directions(Random& random) {
 Directions neighbour(Directions contacts, double step, Random& random) {
   WeightedDirection& contact = contacts[random.below(contacts.size())];
   contact.direction = (contact.direction + step * random.direction()).normalized();
-  contact.weight *= std::exp(step * random.uniform(-2.0, 2.0));
+  contact.weight *= math::exp(step * random.uniform(-2.0, 2.0));
   return contacts;
 }
 
@@ -87,7 +87,7 @@ StiffestContacts stiffest_contacts(int iterations) {
     Directions best = random_directions(random);
     double highest = stiffness(best);
     for (int i = 0; i < kStepsOfAClimb; ++i) {
-      const double step = kFirstStep * std::pow(1e-3, static_cast<double>(i) / kStepsOfAClimb);
+      const double step = kFirstStep * math::pow(1e-3, static_cast<double>(i) / kStepsOfAClimb);
       Directions next = neighbour(best, step, random);
       const double reached = stiffness(next);
       if (reached <= highest) continue;

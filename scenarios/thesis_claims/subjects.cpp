@@ -21,6 +21,7 @@
 #include "scenarios/run/stop_signal.hpp"
 #include "scenarios/thesis_claims/experiments.hpp"
 #include "sim/core/hash.hpp"
+#include "sim/core/math.hpp"
 
 namespace hapbench {
 namespace {
@@ -156,7 +157,7 @@ std::vector<std::string> subject_measures() {
 double standardised_difference(const PublishedNumbers& published, const std::string& id, double measured) {
   if (std::isnan(measured)) return kLargestDifference;
   const PublishedNumber& p = published[id];
-  double variance = static_cast<double>(kSubjects) * p.spread * p.spread + std::pow(half_a_digit(p.mean), 2);
+  double variance = static_cast<double>(kSubjects) * p.spread * p.spread + math::square(half_a_digit(p.mean));
   if (id.find(".success.") != std::string::npos) variance += 0.25 / static_cast<double>(kTargetsPerPlace);
   return std::min(std::abs(measured - p.mean) / std::sqrt(variance), kLargestDifference);
 }
@@ -175,7 +176,7 @@ SubjectSample run_subject(const SubjectsPlan& plan, std::size_t sample) {
       for (const Measure& m : kTrialMeasures) {
         const SubjectMean& mean = places.at(e.place).*m.mean;
         if (mean.subjects > 0) result.measured[next] = mean.mean;
-        sum += std::pow(standardised_difference(plan.evidence.published, ids[next], result.measured[next]), 2);
+        sum += math::square(standardised_difference(plan.evidence.published, ids[next], result.measured[next]));
         ++next;
       }
       if (sum > kGiveUp * kGiveUp * static_cast<double>(ids.size())) return result;
@@ -215,9 +216,9 @@ SubjectSample read_row(std::string_view text) {
 /// Everything that a sample depends on, not how many there are: more samples go on where fewer ended. Empty for a
 /// program that cannot be told from another one.
 std::string definition(const SubjectsPlan& plan) {
-  const Provenance p = provenance();
-  if (p.commit == "unknown" || p.commit.ends_with("-dirty")) return "";
-  Json content = {{"table", header()}, {"seed", kSeed}, {"program", {p.commit, p.compiler, p.build_type, p.flags}}};
+  const std::string program = provenance().identity();
+  if (program.empty()) return "";
+  Json content = {{"table", header()}, {"seed", kSeed}, {"program", program}};
   for (const char* algorithm : kTrialAlgorithms) {
     for (const char* task : {"vertical", "rotational"}) {
       const LoadedScenario loaded = plan.evidence.load(scenario_of(task, algorithm));
@@ -332,7 +333,7 @@ void compare(const std::vector<TargetRow>& rows, const Experiment& e, const char
     const std::string id = fmt::format("{}.{}.{}", e.id, m.name, algorithm);
     const PublishedNumber& p = published[id];
     const SubjectMean& mean = places.at(e.place).*m.mean;
-    const double allowed = kOutOfReach * std::hypot(p.spread, mean.standard_error) + half_a_digit(p.mean);
+    const double allowed = kOutOfReach * math::hypot(p.spread, mean.standard_error) + half_a_digit(p.mean);
     const bool any = mean.subjects > 0;
     beside.push_back({{"id", id},
                       {"fitted", e.fitted},

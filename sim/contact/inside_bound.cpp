@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "sim/core/math.hpp"
 #include "sim/tool/mesh_tool.hpp"
 
 namespace hapbench {
@@ -40,13 +41,13 @@ double InsideBound::radius(const Stretch& stretch, double place) const {
   double furthest = 0.0;
   for (std::size_t i = 0; i < outline_.size(); ++i) {
     const ProfilePoint& p = outline_[i];
-    if (p.s >= stretch.from && p.s <= stretch.to) furthest = std::max(furthest, std::hypot(p.s - place, p.rho));
+    if (p.s >= stretch.from && p.s <= stretch.to) furthest = std::max(furthest, math::hypot(p.s - place, p.rho));
     if (i + 1 == outline_.size()) break;
     const ProfilePoint& q = outline_[i + 1];
     for (const double end : {stretch.from, stretch.to}) {
       if ((p.s - end) * (q.s - end) >= 0.0) continue;
       const double rho = p.rho + (end - p.s) / (q.s - p.s) * (q.rho - p.rho);
-      furthest = std::max(furthest, std::hypot(end - place, rho));
+      furthest = std::max(furthest, math::hypot(end - place, rho));
     }
   }
   return furthest + margin_;

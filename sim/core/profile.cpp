@@ -1,8 +1,9 @@
 #include "sim/core/profile.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <numbers>
+
+#include "sim/core/math.hpp"
 
 namespace hapbench {
 namespace {
@@ -16,7 +17,7 @@ double evaluate(const Profile::Ramp& r, double t) {
 }
 
 double evaluate(const Profile::Sine& s, double t) {
-  return s.mean + s.amplitude * std::sin(2.0 * std::numbers::pi * t / s.period_s + s.phase_rad);
+  return s.mean + s.amplitude * math::sin(2.0 * std::numbers::pi * t / s.period_s + s.phase_rad);
 }
 
 /// Value and time derivative.
@@ -31,8 +32,8 @@ std::pair<double, double> on_leg(const Profile::Waypoints& w, double t) {
   const double s = (t - last->first) / duration;
   if (w.interpolation == Profile::Interpolation::linear) return {last->second + s * rise, rise / duration};
   const double angle = std::numbers::pi * s;
-  return {last->second + (0.5 - 0.5 * std::cos(angle)) * rise,
-          0.5 * std::numbers::pi * std::sin(angle) * rise / duration};
+  return {last->second + (0.5 - 0.5 * math::cos(angle)) * rise,
+          0.5 * std::numbers::pi * math::sin(angle) * rise / duration};
 }
 
 double evaluate(const Profile::Waypoints& w, double t) {
@@ -49,7 +50,7 @@ double rate_of(const Profile::Ramp& r, double) {
 
 double rate_of(const Profile::Sine& s, double t) {
   const double omega = 2.0 * std::numbers::pi / s.period_s;
-  return s.amplitude * omega * std::cos(omega * t + s.phase_rad);
+  return s.amplitude * omega * math::cos(omega * t + s.phase_rad);
 }
 
 double rate_of(const Profile::Waypoints& w, double t) {

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "sim/core/math.hpp"
 #include "sim/core/types.hpp"
 
 namespace hapbench {
@@ -31,8 +32,8 @@ class Random {
   /// Normal with mean 0 and standard deviation 1 (Box-Muller). Discards the second number of each pair, so that the
   /// stream does not depend on earlier calls.
   double normal() {
-    const double r = std::sqrt(-2.0 * std::log(1.0 - uniform()));
-    return r * std::cos(2.0 * std::numbers::pi * uniform());
+    const double r = std::sqrt(-2.0 * math::log(1.0 - uniform()));
+    return r * math::cos(2.0 * std::numbers::pi * uniform());
   }
 
   /// Shuffles the items (Fisher-Yates).
@@ -44,14 +45,14 @@ class Random {
   /// Uniform on the unit circle in the plane z = 0.
   Vec3 direction_in_plane() {
     const double a = 2.0 * std::numbers::pi * uniform();
-    return {std::cos(a), std::sin(a), 0.0};
+    return {math::cos(a), math::sin(a), 0.0};
   }
   /// Uniform on the unit sphere.
   Vec3 direction() {
     const double z = uniform(-1.0, 1.0);
     const double a = 2.0 * std::numbers::pi * uniform();
     const double r = std::sqrt(1.0 - z * z);
-    return {r * std::cos(a), r * std::sin(a), z};
+    return {r * math::cos(a), r * math::sin(a), z};
   }
 
  private:

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "sim/core/math.hpp"
+
 namespace hapbench {
 namespace {
 
@@ -31,7 +33,7 @@ double length(double a, double b) {
 
 /// Length of a cone's wall from apex to mouth [m].
 double slant(const ConicalHole& cone) {
-  return cone.depth / std::cos(cone.half_angle);
+  return cone.depth / math::cos(cone.half_angle);
 }
 
 }  // namespace
@@ -99,12 +101,12 @@ std::vector<SurfacePoint> surface_points(const Slot& slot) {
 /// Sums the rings' circumferences over the spacing, plus four points for the rounding of each.
 double point_count(const ConicalHole& cone) {
   const double rings = intervals(slant(cone), cone.spacing);
-  const double mouth = std::sin(cone.half_angle) * slant(cone);
+  const double mouth = math::sin(cone.half_angle) * slant(cone);
   return 1.0 + rings * (4.0 + std::numbers::pi * mouth * (1.0 + 1.0 / rings) / cone.spacing);
 }
 
 std::vector<SurfacePoint> surface_points(const ConicalHole& cone) {
-  const double sine = std::sin(cone.half_angle), cosine = std::cos(cone.half_angle);
+  const double sine = math::sin(cone.half_angle), cosine = math::cos(cone.half_angle);
   const double length = slant(cone), rings = intervals(length, cone.spacing);
   std::vector<SurfacePoint> points = {{{0, 0, -cone.depth}, {0, 0, 1}}};
   for (double k = 1; k <= rings; ++k) {
@@ -114,7 +116,7 @@ std::vector<SurfacePoint> surface_points(const ConicalHole& cone) {
     for (double i = 0; i < quarter; ++i) {
       // Quarter turns swap coordinates instead of computing them anew, so that they agree to the bit.
       const double angle = (i + 0.5) / quarter * std::numbers::pi / 2;
-      const double c = std::cos(angle), s = std::sin(angle);
+      const double c = math::cos(angle), s = math::sin(angle);
       for (const auto& [x, y] : {std::pair(c, s), std::pair(-s, c), std::pair(-c, -s), std::pair(s, -c)}) {
         points.push_back({{radius * x, radius * y, z}, {-cosine * x, -cosine * y, sine}});
       }
@@ -140,7 +142,7 @@ double signed_distance(const Hole2d& hole, const Vec3& q) {
 }
 
 double signed_distance(const ConicalHole& cone, const Vec3& q) {
-  const double sine = std::sin(cone.half_angle), cosine = std::cos(cone.half_angle);
+  const double sine = math::sin(cone.half_angle), cosine = math::cos(cone.half_angle);
   const double rho = length(q.x(), q.y()), z = q.z() + cone.depth;  // from the apex
   const double inwards = sine * z - cosine * rho;
   const double along = sine * rho + cosine * z, beyond = along - std::clamp(along, 0.0, slant(cone));

@@ -6,6 +6,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "sim/core/math.hpp"
 #include "sim/tool/closed_surface.hpp"
 
 namespace hapbench {
@@ -44,7 +45,7 @@ class ShapeSolid final : public Solid {
   bool is_known(const Vec3& q) const noexcept {
     if constexpr (std::is_same_v<Shape, BlockWithHole>) return true;
     if constexpr (std::is_same_v<Shape, ConicalHole>)
-      return q.head<2>().norm() <= shape_.depth * std::tan(shape_.half_angle);
+      return q.head<2>().norm() <= shape_.depth * math::tan(shape_.half_angle);
     const Vec3 low = region().min, high = region().max;
     return q.x() >= low.x() && q.x() <= high.x() && q.y() >= low.y() && q.y() <= high.y() && q.z() >= low.z() &&
            (!std::is_same_v<Shape, Slot> || q.z() <= high.z());
@@ -71,7 +72,7 @@ std::unique_ptr<const Solid> make_solid(const Hole2d& hole) {
 }
 
 std::unique_ptr<const Solid> make_solid(const ConicalHole& cone) {
-  const double radius = cone.depth * std::tan(cone.half_angle);
+  const double radius = cone.depth * math::tan(cone.half_angle);
   return std::make_unique<ShapeSolid<ConicalHole>>(cone, Box{{-radius, -radius, -kFar}, {radius, radius, 0.0}});
 }
 
@@ -180,7 +181,7 @@ class MeshSolid final : public Solid {
     for (std::size_t t = 0; t < surface_.triangles.size(); ++t) {
       for (std::size_t k = 0; k < 3; ++k) {
         const Vec3 &a = place(t, k), b = place(t, (k + 1) % 3), c = place(t, (k + 2) % 3);
-        const double angle = std::atan2((b - a).cross(c - a).norm(), (b - a).dot(c - a));
+        const double angle = math::atan2((b - a).cross(c - a).norm(), (b - a).dot(c - a));
         vertex_normals_[surface_.triangles[t][k]] += angle * normal(t);
       }
     }

@@ -1,10 +1,10 @@
 #include "sim/loop/simulation.hpp"
 
-#include <cmath>
 #include <limits>
 #include <numbers>
 #include <utility>
 
+#include "sim/core/math.hpp"
 #include "sim/tool/tool_state.hpp"
 
 namespace hapbench {
@@ -93,7 +93,7 @@ double Simulation::roll_at(double t) const noexcept {
 /// that takes the fraction 1 - e^(-2 pi f t) of the new value.
 Vec3 Simulation::angular_velocity_after(double part, const Vec3& axis, double roll) const noexcept {
   const double time = part * config_.dt;
-  const double taken = -std::expm1(-2.0 * std::numbers::pi * *angular_velocity_cutoff_ * time);
+  const double taken = -math::expm1(-2.0 * std::numbers::pi * *angular_velocity_cutoff_ * time);
   const ToolPose from{Vec3::Zero(), tool_.pose.axis, turn_rolls_ ? roll_ : 0.0};
   const ToolPose to{Vec3::Zero(), axis, turn_rolls_ ? roll : 0.0};
   return (1.0 - taken) * tool_.angular_velocity + taken * turn(from, to) / time;

@@ -1,15 +1,16 @@
 #include "sim/task/target_task.hpp"
 
-#include <cmath>
 #include <numbers>
 #include <utility>
+
+#include "sim/core/math.hpp"
 
 namespace hapbench {
 namespace {
 
 /// Moves a first-order low-pass on by dt seconds, in which its input is held. Without a cutoff it takes the input over.
 void follow(double& output, double input, std::optional<double> cutoff, double dt) noexcept {
-  output = cutoff ? output - std::expm1(-2.0 * std::numbers::pi * *cutoff * dt) * (input - output) : input;
+  output = cutoff ? output - math::expm1(-2.0 * std::numbers::pi * *cutoff * dt) * (input - output) : input;
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "sim/contact/push_hits.hpp"
+#include "sim/core/math.hpp"
 #include "sim/core/simd.hpp"
 #include "sim/tool/axial.hpp"
 #include "sim/tool/tool_shape.hpp"
@@ -142,7 +143,7 @@ inline Box box_around(const AxisPart& part, const ToolPose& pose, double radius)
 /// A row of balls that contains a cylinder: each ball contains a slice as long as the cylinder is wide.
 inline ToolShape::Cover row_of_balls(double radius, double length) {
   const double balls = std::ceil(length / (2.0 * radius));
-  return {static_cast<std::size_t>(balls), (1.0 + 1e-9) * std::hypot(radius, length / balls / 2.0)};
+  return {static_cast<std::size_t>(balls), (1.0 + 1e-9) * math::hypot(radius, length / balls / 2.0)};
 }
 
 /// ToolShape::moved_at_most of a solid of revolution. The shortest rotation from one axis to the other moves a point by

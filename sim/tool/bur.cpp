@@ -6,6 +6,8 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "sim/core/math.hpp"
+
 namespace hapbench {
 namespace {
 
@@ -36,11 +38,11 @@ class Outline {
   /// axis; ends exactly at `end`.
   void arc_to(double centre_s, double centre_rho, double radius, double from, double to, const ProfilePoint& end) {
     // A chord over the angle a has the sagitta r (1 - cos(a / 2)).
-    const double widest = 2.0 * std::acos(std::max(0.0, 1.0 - sagitta_ / radius));
+    const double widest = 2.0 * math::acos(std::max(0.0, 1.0 - sagitta_ / radius));
     const double count = std::ceil((from - to) / widest);
     for (double k = 1.0; k < count; k += 1.0) {
       const double angle = from + (to - from) * k / count;
-      line_to(centre_s + radius * std::cos(angle), centre_rho + radius * std::sin(angle));
+      line_to(centre_s + radius * math::cos(angle), centre_rho + radius * math::sin(angle));
     }
     line_to(end.s, end.rho);
   }
@@ -57,7 +59,7 @@ constexpr double kAbreast = 0.5 * std::numbers::pi;  ///< angle of the place bes
 BurProfile ball(double radius, double neck) {
   const double begins = -std::sqrt((radius - neck) * (radius + neck));
   Outline outline(2.0 * radius, neck, begins);
-  outline.arc_to(0.0, 0.0, radius, std::atan2(neck, begins), kAbreast, {0.0, radius});
+  outline.arc_to(0.0, 0.0, radius, math::atan2(neck, begins), kAbreast, {0.0, radius});
   return {std::move(outline).points(), Tip::round};
 }
 
@@ -80,12 +82,12 @@ BurProfile round_cylinder(double radius, double length, double shank) {
 /// normal n = (cos touches, sin touches) has <n, (begins, neck)> = radius.
 BurProfile pear(double radius, double length, double neck) {
   const double begins = radius - length;
-  const double distance = std::hypot(begins, neck);
+  const double distance = math::hypot(begins, neck);
   if (distance <= radius)
     refuse("the length of a pear bur", length, "more than", radius + std::sqrt((radius - neck) * (radius + neck)));
-  const double touches = std::atan2(neck, begins) - std::acos(radius / distance);
+  const double touches = math::atan2(neck, begins) - math::acos(radius / distance);
   Outline outline(2.0 * radius, neck, begins);
-  outline.line_to(radius * std::cos(touches), radius * std::sin(touches));
+  outline.line_to(radius * math::cos(touches), radius * math::sin(touches));
   outline.arc_to(0.0, 0.0, radius, touches, kAbreast, {0.0, radius});
   return {std::move(outline).points(), Tip::round};
 }
@@ -97,10 +99,10 @@ BurProfile flame(double radius, double length, double neck) {
     refuse("the length of a flame bur", length, "at least", 3.0 * std::max(rise, 0.5 * radius));
   Outline outline(2.0 * radius, neck, -length);
   const double rear_arc = (rear * rear + rise * rise) / (2.0 * rise);
-  outline.arc_to(-front, radius - rear_arc, rear_arc, kAbreast + std::asin(rear / rear_arc), kAbreast,
+  outline.arc_to(-front, radius - rear_arc, rear_arc, kAbreast + math::asin(rear / rear_arc), kAbreast,
                  {-front, radius});
   const double front_arc = (front * front + radius * radius) / (2.0 * radius);
-  outline.arc_to(-front, radius - front_arc, front_arc, kAbreast, kAbreast - std::asin(front / front_arc), {0.0, 0.0});
+  outline.arc_to(-front, radius - front_arc, front_arc, kAbreast, kAbreast - math::asin(front / front_arc), {0.0, 0.0});
   return {std::move(outline).points(), Tip::flat};
 }
 

@@ -6,6 +6,7 @@
 #include <limits>
 #include <memory>
 
+#include "sim/core/math.hpp"
 #include "sim/tool/axial.hpp"
 
 namespace hapbench {
@@ -93,7 +94,7 @@ double largest_square_within(double r) {
 }
 
 Cylinder::Cylinder(double radius, double length, Tip tip)
-    : ToolShape(radius, std::hypot(length, radius)),
+    : ToolShape(radius, math::hypot(length, radius)),
       radius_(radius),
       length_(length),
       tip_(tip),

@@ -4,6 +4,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "sim/core/math.hpp"
 #include "sim/tool/revolved.hpp"
 
 namespace hapbench {
@@ -138,7 +139,7 @@ class Checker {
 };
 
 Meridian::Line line_between(const ProfilePoint& a, const ProfilePoint& b) {
-  const double length = std::hypot(b.s - a.s, b.rho - a.rho);
+  const double length = math::hypot(b.s - a.s, b.rho - a.rho);
   const double ns = -(b.rho - a.rho) / length, nr = (b.s - a.s) / length;
   return {{ns, nr, ns * a.s + nr * a.rho}, nr * a.s - ns * a.rho, length};
 }
@@ -153,7 +154,7 @@ Meridian::Meridian(std::vector<ProfilePoint> points, Tip end)
     low = std::min(low, p.s);
     high = std::max(high, p.s);
     widest = std::max(widest, p.rho);
-    reach = std::max(reach, std::hypot(p.s, p.rho));
+    reach = std::max(reach, math::hypot(p.s, p.rho));
   }
   if (tip == Tip::round) ball = profile.back().rho;
   add_lines();

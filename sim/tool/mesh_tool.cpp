@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "sim/contact/push_hits.hpp"
+#include "sim/core/math.hpp"
 #include "sim/tool/cylinder.hpp"
 #include "sim/tool/grid_spline.hpp"
 
@@ -228,9 +229,9 @@ ToolShape::Cover MeshTool::cover(double margin) const {
   const Vec3 extent = grid_->high() - grid_->low() + Vec3::Constant(3.0 * margin + 4.0 * grid_->error_bound());
   Eigen::Index longest = 0;
   const double length = extent.maxCoeff(&longest);
-  const double across = std::hypot(extent[(longest + 1) % 3], extent[(longest + 2) % 3]);
+  const double across = math::hypot(extent[(longest + 1) % 3], extent[(longest + 2) % 3]);
   const double balls = std::ceil(length / across);
-  return {static_cast<std::size_t>(balls), (1.0 + 1e-9) * 0.5 * std::hypot(across, length / balls)};
+  return {static_cast<std::size_t>(balls), (1.0 + 1e-9) * 0.5 * math::hypot(across, length / balls)};
 }
 
 double MeshTool::moved_at_most(const ToolPose& from, const ToolPose& to) const noexcept {
@@ -248,7 +249,7 @@ std::vector<ProfilePoint> MeshTool::outline() const {
       for (std::size_t k = 0; k < nodes.count[2]; ++k) {
         const double depth = -grid_->values()[nodes.index(i, j, k)];
         if (depth < 0.0) continue;
-        widest[k] = std::max(widest[k], std::hypot(nodes.coordinate(0, i), nodes.coordinate(1, j)) + depth);
+        widest[k] = std::max(widest[k], math::hypot(nodes.coordinate(0, i), nodes.coordinate(1, j)) + depth);
       }
     }
   }

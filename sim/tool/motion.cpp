@@ -1,24 +1,24 @@
 #include "sim/tool/motion.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <stdexcept>
 #include <utility>
 
+#include "sim/core/math.hpp"
 #include "sim/tool/tool_state.hpp"
 
 namespace hapbench {
 
 Vec3 tool_axis(const Orientation& orientation, double tilt, double azimuth) noexcept {
   const Vec3 sideways = orientation.up.cross(orientation.lean);
-  const Vec3 lean = std::cos(azimuth) * orientation.lean + std::sin(azimuth) * sideways;
-  return -(std::cos(tilt) * orientation.up + std::sin(tilt) * lean);
+  const Vec3 lean = math::cos(azimuth) * orientation.lean + math::sin(azimuth) * sideways;
+  return -(math::cos(tilt) * orientation.up + math::sin(tilt) * lean);
 }
 
 double tool_roll(const Orientation& orientation, double tilt, double azimuth, double roll) noexcept {
   const Vec3 sideways = orientation.up.cross(orientation.lean);
-  const Vec3 lean = std::cos(azimuth) * orientation.lean + std::sin(azimuth) * sideways;
-  const Vec3 side = std::cos(tilt) * lean - std::sin(tilt) * orientation.up;  // lean, turned as up is to -axis
+  const Vec3 lean = math::cos(azimuth) * orientation.lean + math::sin(azimuth) * sideways;
+  const Vec3 side = math::cos(tilt) * lean - math::sin(tilt) * orientation.up;  // lean, turned as up is to -axis
   return roll_towards(tool_axis(orientation, tilt, azimuth), side) + roll;
 }
 
@@ -72,7 +72,11 @@ RecordedMotion::Leg RecordedMotion::leg_at(double t) const noexcept {
 }
 
 Eigen::Quaterniond RecordedMotion::orientation_in(const Leg& leg) noexcept {
-  return leg.from->orientation->slerp(leg.fraction, *leg.to->orientation);
+  const Eigen::Quaterniond turn = leg.from->orientation->conjugate() * *leg.to->orientation;
+  const double sine = turn.vec().norm();  // of half the angle
+  if (sine == 0.0) return *leg.from->orientation;
+  const double angle = 2.0 * math::atan2(turn.w() < 0.0 ? -sine : sine, std::abs(turn.w()));
+  return *leg.from->orientation * turn_about(turn.vec() / sine, leg.fraction * angle);
 }
 
 Vec3 RecordedMotion::axis_at(double t) const noexcept {

@@ -1,8 +1,9 @@
 #pragma once
 
-#include <cmath>
 #include <numbers>
 #include <vector>
+
+#include "sim/core/math.hpp"
 
 namespace hapbench {
 
@@ -23,7 +24,7 @@ inline void add_round_tip(double radius, std::vector<ProfilePoint>& outline) {
   constexpr int kLegs = 48;
   for (int i = 1; i < kLegs; ++i) {
     const double angle = std::numbers::pi / 2.0 * i / kLegs;
-    outline.push_back({radius * std::sin(angle), radius * std::cos(angle)});
+    outline.push_back({radius * math::sin(angle), radius * math::cos(angle)});
   }
   outline.push_back({radius, 0.0});
 }

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "sim/core/aligned.hpp"
+#include "sim/core/math.hpp"
 #include "sim/geometry/triangle_tree.hpp"
 
 namespace hapbench {
@@ -279,7 +280,7 @@ double SignedDistanceGrid::suggested_spacing(std::span<const Vec3> vertices) {
   // Of the 128 nodes along an edge of a cube, 7 lie beyond it. The minimum extent limits the number of nodes of a flat
   // box, most of which lie beyond it.
   const Vec3 extent = (high - low).cwiseMax(0.01 * (high - low).maxCoeff());
-  return std::cbrt(extent.prod()) / 121.0;
+  return math::pow(extent.prod(), 1.0 / 3.0) / 121.0;
 }
 
 double SignedDistanceGrid::error_bound() const noexcept {

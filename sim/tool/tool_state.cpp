@@ -1,5 +1,7 @@
 #include "sim/tool/tool_state.hpp"
 
+#include "sim/core/math.hpp"
+
 namespace hapbench {
 namespace {
 
@@ -17,17 +19,19 @@ Mat3 shortest_turn(const Vec3& axis) noexcept {
 }  // namespace
 
 Mat3 ToolPose::rotation() const noexcept {
-  return Eigen::AngleAxisd(roll, axis).toRotationMatrix() * shortest_turn(axis);
+  return turn_about(axis, roll).toRotationMatrix() * shortest_turn(axis);
 }
 
 double roll_towards(const Vec3& axis, const Vec3& side) noexcept {
   const Vec3 x = shortest_turn(axis).col(0);
-  return std::atan2(axis.cross(x).dot(side), x.dot(side));
+  return math::atan2(axis.cross(x).dot(side), x.dot(side));
 }
 
 Vec3 whole_turn(const ToolPose& from, const ToolPose& to) noexcept {
-  const Eigen::AngleAxisd whole(Mat3(to.rotation() * from.rotation().transpose()));
-  return whole.angle() * whole.axis();
+  const Eigen::Quaterniond whole(Mat3(to.rotation() * from.rotation().transpose()));
+  const double sine = whole.vec().norm();  // of half the angle
+  if (sine == 0.0) return Vec3::Zero();
+  return whole.vec() * (2.0 * math::atan2(whole.w() < 0.0 ? -sine : sine, std::abs(whole.w())) / sine);
 }
 
 }  // namespace hapbench

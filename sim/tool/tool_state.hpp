@@ -1,8 +1,8 @@
 #pragma once
 
 #include <Eigen/Geometry>
-#include <cmath>
 
+#include "sim/core/math.hpp"
 #include "sim/core/types.hpp"
 
 namespace hapbench {
@@ -31,6 +31,14 @@ struct ToolState {
   Vec3 angular_velocity = Vec3::Zero();
 };
 
+/// The turn about a unit axis, right-handed [rad].
+inline Eigen::Quaterniond turn_about(const Vec3& axis, double angle) noexcept {
+  Eigen::Quaterniond q;
+  q.w() = math::cos(0.5 * angle);
+  q.vec() = math::sin(0.5 * angle) * axis;
+  return q;
+}
+
 /// The roll of the pose with this axis whose own x axis lies along `side`, in (-pi, pi]. Unit vectors, perpendicular.
 double roll_towards(const Vec3& axis, const Vec3& side) noexcept;
 
@@ -38,7 +46,7 @@ double roll_towards(const Vec3& axis, const Vec3& side) noexcept;
 inline Vec3 turn(const Vec3& a, const Vec3& b) noexcept {
   const Vec3 cross = a.cross(b);
   const double sine = cross.norm();
-  return sine > 0.0 ? Vec3(cross * (std::atan2(sine, a.dot(b)) / sine)) : Vec3::Zero();
+  return sine > 0.0 ? Vec3(cross * (math::atan2(sine, a.dot(b)) / sine)) : Vec3::Zero();
 }
 
 /// The rotation vector that turns one pose to the other, roll included [rad].

@@ -10,6 +10,7 @@
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/stop_signal.hpp"
+#include "sim/core/math.hpp"
 
 namespace hapbench {
 namespace {
@@ -70,7 +71,7 @@ Order observed_order(std::span<const double> x, std::span<const double> error) {
   const auto order = [&](std::size_t back) {
     if (valid.size() < back) return std::numeric_limits<double>::quiet_NaN();
     const std::size_t coarse = valid[valid.size() - back], fine = valid[valid.size() - back + 1];
-    return std::log(error[coarse] / error[fine]) / std::log(x[coarse] / x[fine]);
+    return math::log(error[coarse] / error[fine]) / math::log(x[coarse] / x[fine]);
   };
   return {order(2), std::abs(order(2) - order(3))};
 }

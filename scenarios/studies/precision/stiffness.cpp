@@ -1,12 +1,12 @@
 #include <fmt/format.h>
 
-#include <cmath>
 #include <numbers>
 
 #include "algorithms/registry.hpp"
 #include "results/summary/outcome_names.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/studies/precision/measure.hpp"
+#include "sim/core/math.hpp"
 
 namespace hapbench {
 
@@ -25,7 +25,7 @@ Scenario with_wedge(Scenario scenario, double half_angle) {
     throw InputError(InputError::Kind::relation, "/environment",
                      "got no wedge; allowed for this study: springs in two groups of the same count");
   }
-  const double c = std::cos(half_angle), s = std::sin(half_angle);
+  const double c = math::cos(half_angle), s = math::sin(half_angle);
   springs->groups[0].direction = {c, -s, 0.0};
   springs->groups[1].direction = {-c, -s, 0.0};
   return scenario;

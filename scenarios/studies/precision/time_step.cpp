@@ -7,6 +7,7 @@
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/studies/precision/measure.hpp"
+#include "sim/core/math.hpp"
 
 namespace hapbench {
 namespace {
@@ -120,7 +121,7 @@ static PrecisionResult study_time_step(const Scenario& given, const PrecisionOpt
   // The reference's own error over the row's; at first order where none is seen.
   const double order = result.orders.front().order.value;
   for (std::size_t i = 0; i < result.rows.size(); ++i)
-    result.rows[i].tolerance = std::pow(kReference * kFactors[i], order > 0.0 ? -order : -1.0);
+    result.rows[i].tolerance = math::pow(kReference * kFactors[i], order > 0.0 ? -order : -1.0);
   return result;
 }
 

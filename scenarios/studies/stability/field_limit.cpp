@@ -20,6 +20,7 @@
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/studies/stability/stability_limits.hpp"
 #include "sim/core/bisection.hpp"
+#include "sim/core/math.hpp"
 
 namespace hapbench {
 namespace {
@@ -52,7 +53,7 @@ class FieldWay {
     if (!question_.own) return std::nullopt;
     const auto [from, to, logarithmic] = question_.range;
     const double part =
-        logarithmic ? std::log(*question_.own / from) / std::log(to / from) : (*question_.own - from) / (to - from);
+        logarithmic ? math::log(*question_.own / from) / math::log(to / from) : (*question_.own - from) / (to - from);
     return question_.smallest ? 1.0 - part : part;
   }
   /// True while bisection to this resolution (LimitQuestion) has to go on between two parts.

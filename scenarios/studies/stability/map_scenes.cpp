@@ -9,6 +9,7 @@
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/studies/stability/stability_map.hpp"
+#include "sim/core/math.hpp"
 
 namespace hapbench {
 namespace {
@@ -54,7 +55,7 @@ Scenario contacts_scene(double count, double K, std::string_view algorithm) {
 
 /// Two faces with this angle between them, open upwards: 0 is a slit, pi a floor.
 Scenario wedge_scene(double angle, double K, std::string_view algorithm) {
-  const double c = std::cos(0.5 * angle), s = std::sin(0.5 * angle);
+  const double c = math::cos(0.5 * angle), s = math::sin(0.5 * angle);
   return springs({{{c, -s, 0.0}, 1}, {{-c, -s, 0.0}, 1}}, K, algorithm);
 }
 
@@ -229,7 +230,7 @@ constexpr StabilityMap kMaps[] = {
 
 double MapAxis::at(std::size_t i, std::size_t n) const noexcept {
   const double part = n > 1 ? static_cast<double>(i) / static_cast<double>(n - 1) : 0.0;
-  const double value = scale == Scale::linear ? low + part * (high - low) : low * std::pow(high / low, part);
+  const double value = scale == Scale::linear ? low + part * (high - low) : low * math::pow(high / low, part);
   return whole ? std::round(value) : value;
 }
 

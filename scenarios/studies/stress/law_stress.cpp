@@ -10,13 +10,14 @@
 #include "algorithms/registry.hpp"
 #include "sim/contact/contact_query.hpp"
 #include "sim/contact/stiffness_tensor.hpp"
+#include "sim/core/math.hpp"
 
 namespace hapbench {
 namespace {
 
 /// A number whose logarithm is uniform.
 double log_uniform(Random& random, double low, double high) {
-  return low * std::pow(high / low, random.uniform());
+  return low * math::pow(high / low, random.uniform());
 }
 
 /// A vector in a random direction whose length is log-uniform. Its draws are statements of their own: compilers take

@@ -3,6 +3,7 @@
 #include <limits>
 #include <optional>
 
+#include "sim/core/math.hpp"
 #include "sim/loop/integrators/spring_damper.hpp"
 #include "sim/loop/integrators/table.hpp"
 
@@ -53,7 +54,7 @@ std::optional<double> leapfrog_limit(const RaisedSpringDamper& problem) {
   if (problem.damping) {
     return std::max(0.0, (4.0 - 2.0 * lambda * *problem.damping * dt / M) * M / (lambda * dt * dt));
   }
-  return std::pow(positive_root(lambda * dt * dt / M, 2.0 * problem.damping_ratio * lambda * dt / std::sqrt(M)), 2);
+  return math::square(positive_root(lambda * dt * dt / M, 2.0 * problem.damping_ratio * lambda * dt / std::sqrt(M)));
 }
 
 /// Velocity Verlet: half a kick with the row's force, drift, half a kick with the force at the new position and the

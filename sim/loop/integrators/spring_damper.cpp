@@ -78,9 +78,13 @@ std::pair<std::complex<double>, std::complex<double>> SpringDamper::eigenvalues(
   return eigenvalues_of(step_matrix());
 }
 
+double spectral_radius(std::complex<double> a, std::complex<double> b) {
+  return std::max(math::hypot(a.real(), a.imag()), math::hypot(b.real(), b.imag()));
+}
+
 double SpringDamper::spectral_radius() const {
   const auto [first, second] = eigenvalues();
-  return std::max(std::abs(first), std::abs(second));
+  return hapbench::spectral_radius(first, second);
 }
 
 bool SpringDamper::is_stable() const {

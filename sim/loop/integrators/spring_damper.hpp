@@ -10,6 +10,9 @@
 /// The linear system on which the stability of integrators is judged (thesis A.3).
 namespace hapbench {
 
+/// The larger modulus of two numbers.
+double spectral_radius(std::complex<double> a, std::complex<double> b);
+
 /// One spring-damper, M x'' = -lambda (K x + B x'), under an integrator: each step is a linear map of (x, v).
 struct SpringDamper {
   double K = 0.0;       ///< [N/m]
@@ -26,7 +29,6 @@ struct SpringDamper {
   Eigen::Vector2d input_step() const;
   /// The two eigenvalues of the step matrix.
   std::pair<std::complex<double>, std::complex<double>> eigenvalues() const;
-  /// Their larger modulus.
   double spectral_radius() const;
   /// True while no eigenvalue leaves the unit circle by more than rounding. Uses trace and determinant, because
   /// eigenvalues near -1 have errors of the order of the square root of rounding.

@@ -1,0 +1,14 @@
+// Runs while hapbench is built, with the flags of its kernels, before anything that depends on it.
+#include "sim/core/simd_check.hpp"
+
+#include <cstdio>
+
+int main() {
+  const std::string wrong = hapbench::simd::wrong_operation(hapbench::simd::kOperations);
+  if (wrong.empty()) return 0;
+  std::fprintf(stderr,
+               "hapbench: compiled by this compiler, \"%s\" of eight doubles at a time is wrong; use another one or "
+               "-DHAPBENCH_SIMD=OFF\n",
+               wrong.c_str());
+  return 1;
+}
