@@ -24,22 +24,26 @@ void PenaltyRendering::prepare(const Scene& scene) {
   if (local_average_) local_average_->prepare(scene);
   if (reduction_) reduction_->prepare(scene);
   law_->prepare(scene.capacity);
+  damping_and_limits_.prepare(scene);
 }
 
 void PenaltyRendering::reset() noexcept {
   if (local_average_) local_average_->reset();
   if (reduction_) reduction_->reset();
   law_->reset();
+  damping_and_limits_.release();
 }
 
 void PenaltyRendering::compute(const ToolState& tool, ContactBuffer& contacts, RenderedForce& out) noexcept {
   out = kNoForce;
   in_contact_ = false;
+  if (contacts.empty()) damping_and_limits_.release();
   if (contacts.empty() && skips_ == Skips::on) return;
 
   out.depth_max = contacts.largest_depth();
   if (local_average_) local_average_->process(contacts);
   if (reduction_) reduce(contacts);
+  if (contacts.empty()) damping_and_limits_.release();
   if (contacts.empty() && skips_ == Skips::on) return;
 
   const LawForce& law = law_force_ = law_->evaluate(contacts);
@@ -49,7 +53,17 @@ void PenaltyRendering::compute(const ToolState& tool, ContactBuffer& contacts, R
   // Required by the model and no skip: S is zero without contacts, so the whole velocity would count as tangential.
   if (contacts.empty()) return;
   in_contact_ = true;
-  out.rendered = damping_and_limits_.rendered_force(law.spring, law.S, velocity_at(contacts, tool));
+  if (!damping_and_limits_.needs_loads()) {
+    out.rendered = damping_and_limits_.rendered_force(law.spring, law.S, velocity_at(contacts, tool));
+    return;
+  }
+  out.rendered = damping_and_limits_.rendered_force(law.spring, law.S, velocity_at(contacts, tool), loads_of(contacts));
+  out.friction = damping_and_limits_.friction_state();
+}
+
+/// The loads of weighted springs; else the spring force as one load along itself.
+Mat3 PenaltyRendering::loads_of(const ContactBuffer& contacts) const noexcept {
+  return law_->gives_weights() ? Mat3(K_ * load_tensor(contacts)) : load_along(law_force_.spring);
 }
 
 ContactVelocity PenaltyRendering::velocity_at(const ContactBuffer& contacts, const ToolState& tool) const noexcept {
@@ -68,7 +82,10 @@ void PenaltyRendering::reduce(ContactBuffer& contacts) noexcept {
 }
 
 SpringState PenaltyRendering::spring_state(const ToolState& tool, const ContactBuffer& contacts) const noexcept {
-  return contacts.empty() ? SpringState{} : law_->spring_state(contacts, law_force_.spring, tool.pose.position);
+  if (contacts.empty()) return {};
+  SpringState state = law_->spring_state(contacts, law_force_.spring, tool.pose.position);
+  state.energy += damping_and_limits_.stored_energy();
+  return state;
 }
 
 ForceJacobian PenaltyRendering::jacobian() const noexcept {

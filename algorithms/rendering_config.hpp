@@ -26,6 +26,13 @@ inline constexpr const char* kOwnContacts = "own";
 /// Collision libraries whose contacts a run can use instead, each in a module of its own (algorithms/peers).
 inline constexpr std::array kPeers = {"fcl", "bullet"};
 
+/// Dry friction in place of the thesis's viscous one; see stages/dry_friction.hpp.
+struct DryFrictionConfig {
+  double mu = 0.3;                  ///< friction coefficient [1]
+  std::optional<double> stiffness;  ///< K_t of the bristle [N/m]; none: K
+  double damping_ratio = 1.0;       ///< zeta_t of the bristle with the virtual mass
+};
+
 /// Parameters of the rendering: how contacts become a force. Names are those of registry.hpp. Units: N, m, s, kg.
 struct RenderingConfig {
   std::string algorithm = "shaped_stiffness";
@@ -35,12 +42,15 @@ struct RenderingConfig {
   bool local_average = false;
   std::optional<ReductionConfig> reduction;
 
-  double stiffness = 20000.0;              ///< K [N/m]
-  double damping_ratio = 0.7;              ///< zeta
-  double mass = 0.2;                       ///< M of the virtual tool [kg]
-  std::optional<double> damping;           ///< B [N s/m]; none: 2 zeta sqrt(K M)
-  double mu_s = 0.0;                       ///< viscous friction [N s/m]
-  double mu_f = 0.0;                       ///< viscous friction per newton of spring force [s/m]
+  double stiffness = 20000.0;                     ///< K [N/m]
+  double damping_ratio = 0.7;                     ///< zeta
+  double mass = 0.2;                              ///< M of the virtual tool [kg]
+  std::optional<double> damping;                  ///< B [N s/m]; none: 2 zeta sqrt(K M)
+  double mu_s = 0.0;                              ///< viscous friction [N s/m]
+  double mu_f = 0.0;                              ///< viscous friction per newton of spring force [s/m]
+  std::optional<DryFrictionConfig> dry_friction;  ///< then mu_s and mu_f are 0
+  /// chi [s/m] of damping that grows with depth (Hunt and Crossley); then there is no B.
+  std::optional<double> hunt_crossley;
   std::optional<double> max_damping;       ///< B_max [N s/m]
   std::optional<double> max_force;         ///< F_max [N]
   std::optional<double> virtual_coupling;  ///< K_vc [N/m]; none: K

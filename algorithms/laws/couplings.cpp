@@ -25,6 +25,8 @@ class SeriesLaw : public ForceLaw {
     return {-K_ * series_.solve(weighted_depth(contacts)), 0.5 * (S + S.transpose())};
   }
 
+  bool gives_weights() const noexcept override { return false; }
+
   /// The coupling passes velocities on as it does depths.
   Vec3 turning_velocity(const ContactBuffer& contacts, const Mat3& S, const ToolState& tool) const noexcept override {
     return series_.solve(ForceLaw::turning_velocity(contacts, S, tool));
@@ -196,6 +198,8 @@ class StaticCoupling final : public ForceLaw {
     state.energy += coupling_energy(shift_);
     return state;
   }
+
+  bool gives_weights() const noexcept override { return false; }
 
   /// The coupling passes velocities on as it does depths.
   Vec3 turning_velocity(const ContactBuffer& contacts, const Mat3& S, const ToolState& tool) const noexcept override {

@@ -43,6 +43,8 @@ class ForceLaw {
   /// are the arguments. By default that of weighted springs: sum c_i <omega x r_i, u_i> u_i, with r_i from the tip
   /// centre to the colliding point. O(n).
   virtual Vec3 turning_velocity(const ContactBuffer& contacts, const Mat3& S, const ToolState& tool) const noexcept;
+  /// False for laws that are no weighted springs, whose contacts have no loads of their own.
+  virtual bool gives_weights() const noexcept { return true; }
   /// Describes the fault of external code since the last reset, or null. After a fault the force is NaN.
   virtual const char* fault() const noexcept { return nullptr; }
   /// Inner iterations since the last reset.
@@ -61,6 +63,7 @@ class SingleSpringLaw : public ForceLaw {
 
   SpringState spring_state(const ContactBuffer& contacts, const Vec3& spring, const Vec3& tip) const noexcept override;
   Vec3 turning_velocity(const ContactBuffer& contacts, const Mat3& S, const ToolState& tool) const noexcept override;
+  bool gives_weights() const noexcept override { return gives_weights_; }
 
  protected:
   bool gives_weights_ = false;  ///< the last `evaluate` gave weighted springs after all, for laws that may do either

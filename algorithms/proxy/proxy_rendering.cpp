@@ -53,10 +53,12 @@ void ProxyRendering::prepare(const Scene& scene) {
     recovery_ = kRecoverySpeed * scene.tool->half_width() * scene.dt;
   }
   near_contacts_ = std::make_unique<ContactBuffer>(constraints_->capacity());
+  damping_and_limits_.prepare(scene);
 }
 
 void ProxyRendering::reset() noexcept {
   constraints_->reset();
+  damping_and_limits_.release();
   placed_ = false;
   work_ = {};
 }
@@ -71,7 +73,14 @@ void ProxyRendering::compute(const ToolState& tool, ContactBuffer& contacts, Ren
   out.spring = spring_ = K_ * (proxy_ - tool.pose.position);
   out.S = held_;
   // Without contact, S = 0 would make the whole velocity tangential, so friction must not be applied.
-  out.rendered = contacts.empty() ? spring_ : damping_and_limits_.rendered_force(spring_, held_, velocity_at(tool));
+  if (contacts.empty()) {
+    out.rendered = spring_;
+    damping_and_limits_.release();
+    return;
+  }
+  out.rendered = damping_and_limits_.rendered_force(
+      spring_, held_, velocity_at(tool), damping_and_limits_.needs_loads() ? load_along(spring_) : Mat3(Mat3::Zero()));
+  out.friction = damping_and_limits_.friction_state();
 }
 
 ContactVelocity ProxyRendering::velocity_at(const ToolState& tool) const noexcept {
@@ -194,7 +203,7 @@ void ProxyRendering::hand_over_holding(ContactBuffer& contacts) const noexcept {
 /// tip centre.
 SpringState ProxyRendering::spring_state(const ToolState&, const ContactBuffer&) const noexcept {
   if (K_ == 0.0) return {};
-  SpringState state{spring_.squaredNorm() / (2.0 * K_), Vec3::Zero()};
+  SpringState state{spring_.squaredNorm() / (2.0 * K_) + damping_and_limits_.stored_energy(), Vec3::Zero()};
   for_each_holding(*near_contacts_, [&](std::size_t i) {
     const double weight = near_contacts_->weight[i];
     // In the compromise, the violations store energy, too.

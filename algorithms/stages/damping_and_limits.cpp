@@ -18,6 +18,10 @@ constexpr ParameterInfo kDampingParameters[] = {
     {parameter::kMass, "M of the virtual tool; default 0.2 in planar scenes, else 0.1"},
     {parameter::kMuS, "mu_s; default 0 for springs, else 5"},
     {parameter::kMuF, "mu_f; default 0 for springs, else 10"},
+    {parameter::kDryMu, "mu of dry friction, in place of mu_s and mu_f"},
+    {parameter::kDryStiffness, "K_t of its bristle; null: K"},
+    {parameter::kDryDampingRatio, "zeta_t of its bristle with the virtual mass"},
+    {parameter::kChi, "chi of Hunt-Crossley damping, in place of B"},
     {parameter::kMaxDamping, "B_max; null: off"},
     {parameter::kMaxForce, "F_max; null: off"},
 };
@@ -30,13 +34,17 @@ const ModelInfo kDampingAndLimitsInfo = {
     .formula =
         "f_dn = -B S v, B = 2 zeta sqrt(K M); f_dt = -(mu_s + mu_f |f_spring|)(v - S v); B scaled to "
         "lambda_max(B S) <= B_max; |f_render| <= F_max. With angular_damping S v + sum c_i <omega x r_i, u_i> u_i in "
-        "place of S v, v + omega x r_mean in place of v",
+        "place of S v, v + omega x r_mean in place of v. Hunt-Crossley damping: f_dn = -chi sum N_i <v, u_i> u_i, "
+        "N_i = K c_i d_i. Dry friction: g = K_t e + (K_t dt + B_t) P v cut to mu sum N_i, P = I - sum N_i u_i u_i^T / "
+        "sum N_i, e <- (dt g + B_t e) / (K_t dt + B_t), f_dt = -P g",
     .source =
         "thesis 2.5, 2.6, A.2.1, B.2, C.4.3; mu_s and mu_f, called Coulomb friction there, are viscous; "
-        "angular_damping is ours, after the future work of 4.3 and 4.4",
+        "angular_damping is ours, after the future work of 4.3 and 4.4; dry friction after Kikuuwe et al. 2006, damping "
+        "that grows with depth after Hunt and Crossley 1975",
     .known_failure =
         "without angular_damping, a tool that only turns has no velocity to damp (thesis 4.4); with it, a turn pushes "
-        "the tip sideways, since no torque is rendered; limits leave stiff scenes under-damped (A.2)",
+        "the tip sideways, since no torque is rendered; limits leave stiff scenes under-damped (A.2); "
+        "the bristle of dry friction chatters where the explicit step is unstable with K_t",
     .parameters = kDampingParameters,
 };
 
@@ -44,13 +52,25 @@ double normal_damping(const RenderingConfig& config) noexcept {
   return config.damping.value_or(2.0 * config.damping_ratio * std::sqrt(config.stiffness * config.mass));
 }
 
+Mat3 load_along(const Vec3& force) noexcept {
+  const double size = force.norm();
+  return size > 0.0 ? Mat3(force * force.transpose() / size) : Mat3(Mat3::Zero());
+}
+
 DampingAndLimits::DampingAndLimits(const RenderingConfig& config)
-    : B_(normal_damping(config)),
+    : B_(config.hunt_crossley ? 1.0 : normal_damping(config)),
       mu_s_(config.mu_s),
       mu_f_(config.mu_f),
+      chi_(config.hunt_crossley),
       max_damping_(config.max_damping),
       max_force_(config.max_force),
-      skips_(config.skips) {}
+      skips_(config.skips) {
+  if (config.dry_friction) dry_friction_.emplace(*config.dry_friction, config);
+}
+
+void DampingAndLimits::prepare(const Scene& scene) noexcept {
+  if (dry_friction_) dry_friction_->prepare(scene);
+}
 
 double DampingAndLimits::limited_damping(const Mat3& S) const noexcept {
   if (max_damping_) {
@@ -61,14 +81,25 @@ double DampingAndLimits::limited_damping(const Mat3& S) const noexcept {
 }
 
 Mat3 DampingAndLimits::damping_matrix(const Vec3& spring, const Mat3& S) const noexcept {
-  return limited_damping(S) * S + friction(spring) * (Mat3::Identity() - S);
+  Mat3 damping = chi_ ? damping_ : Mat3(limited_damping(S) * S);
+  if (dry_friction_) return damping + dry_friction_->damping_matrix();
+  return damping + friction(spring) * (Mat3::Identity() - S);
 }
 
-Vec3 DampingAndLimits::rendered_force(const Vec3& spring, const Mat3& S,
-                                      const ContactVelocity& velocity) const noexcept {
-  Vec3 force = spring - limited_damping(S) * velocity.normal;
+Vec3 DampingAndLimits::rendered_force(const Vec3& spring, const Mat3& S, const ContactVelocity& velocity,
+                                      const Mat3& loads) noexcept {
+  Vec3 force;
+  if (chi_) {
+    damping_ = *chi_ * loads;
+    damping_ *= limited_damping(damping_);
+    force = spring - damping_ * velocity.mean;
+  } else {
+    force = spring - limited_damping(S) * velocity.normal;
+  }
   const auto tangential = [&]() -> Vec3 { return friction(spring) * (velocity.mean - velocity.normal); };
-  if (mu_s_ != 0.0 || mu_f_ != 0.0) {
+  if (dry_friction_) {
+    force += dry_friction_->force(loads, velocity.mean);
+  } else if (mu_s_ != 0.0 || mu_f_ != 0.0) {
     force -= tangential();
   } else if (skips_ == Skips::off) {
     force -= tangential() + Vec3::Zero();  // 0 and never -0: f - (-0) would turn a -0 of the force into 0

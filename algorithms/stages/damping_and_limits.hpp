@@ -1,6 +1,7 @@
 #pragma once
 
 #include "algorithms/rendering_config.hpp"
+#include "algorithms/stages/dry_friction.hpp"
 #include "sim/core/model_info.hpp"
 #include "sim/loop/force_algorithm.hpp"
 
@@ -17,6 +18,9 @@ struct ContactVelocity {
 /// B of the normal damping [N s/m]: `config.damping`, or 2 zeta sqrt(K M).
 double normal_damping(const RenderingConfig& config) noexcept;
 
+/// One load ||f|| along the force f, as sum N_i u_i u_i^T [N]; zero for no force.
+Mat3 load_along(const Vec3& force) noexcept;
+
 /// Damping, friction and limits, the same for every law (thesis 2.5, 2.6, A.2.1, B.2, C.4.3):
 ///
 ///   f_dn = -B v_n, v_n = S v, B = 2 zeta sqrt(K M);  v_t = v - v_n, f_dt = -(mu_s + mu_f |f_spring|) v_t
@@ -32,6 +36,13 @@ double normal_damping(const RenderingConfig& config) noexcept;
 /// Known failure: the device renders the translation of that motion only. A turn drives the tip sideways with energy of
 /// the turning hand, which the hand does not feel.
 ///
+/// Two alternatives, both ours, read the loads N_i = K c_i d_i > 0 of the contacts, for algorithms without weights one
+/// load ||f_spring|| along f_spring:
+///
+///   Hunt and Crossley (1975): f_dn = -chi sum N_i <v, u_i> u_i in place of -B v_n, so that the force is continuous at
+///   contact on and off and never pulls while |<v, u_i>| < 1 / chi
+///   DryFriction in place of f_dt
+///
 /// Max damping: the normal damping is scaled by B_max / lambda_max(B S) when that is below 1. Max force: f_render is
 /// scaled to norm F_max when it is longer. The friction coefficients are viscous, although the thesis calls them
 /// Coulomb friction.
@@ -39,22 +50,38 @@ class DampingAndLimits {
  public:
   explicit DampingAndLimits(const RenderingConfig& config);
 
-  /// f_render [N] from f_spring [N], S and the velocity of the tool. Eigenvalues are computed only if damping is
-  /// limited. Zero friction is computed only with Skips::off.
-  Vec3 rendered_force(const Vec3& spring, const Mat3& S, const ContactVelocity& velocity) const noexcept;
+  void prepare(const Scene& scene) noexcept;
+  /// At the start of a run, and in steps without contact.
+  void release() noexcept {
+    if (dry_friction_) dry_friction_->release();
+  }
 
-  /// -df_render/dv [N s/m] without the force limit: B S + (mu_s + mu_f |f_spring|)(I - S).
+  /// True when `rendered_force` reads loads.
+  bool needs_loads() const noexcept { return dry_friction_ || chi_; }
+  /// f_render [N] from f_spring [N], S, the velocity of the tool and sum N_i u_i u_i^T [N], zero unless they are
+  /// needed. Eigenvalues are computed only if damping is limited. Zero friction is computed only with Skips::off.
+  Vec3 rendered_force(const Vec3& spring, const Mat3& S, const ContactVelocity& velocity,
+                      const Mat3& loads = Mat3::Zero()) noexcept;
+
+  /// -df_render/dv [N s/m] without the force limit: B S + (mu_s + mu_f |f_spring|)(I - S), or what stands for the two.
   Mat3 damping_matrix(const Vec3& spring, const Mat3& S) const noexcept;
+
+  double stored_energy() const noexcept { return dry_friction_ ? dry_friction_->energy() : 0.0; }  ///< of friction [J]
+  Friction friction_state() const noexcept { return dry_friction_ ? dry_friction_->state() : Friction::none; }
 
   double damping() const { return B_; }  ///< B [N s/m]
 
  private:
+  /// B, or 1 for chi N_i, cut so that no eigenvalue of it times the tensor is above the limit.
   double limited_damping(const Mat3& S) const noexcept;
   double friction(const Vec3& spring) const noexcept { return mu_s_ + mu_f_ * spring.norm(); }
 
   double B_;
   double mu_s_;
   double mu_f_;
+  std::optional<DryFriction> dry_friction_;
+  std::optional<double> chi_;    ///< of Hunt and Crossley [s/m]
+  Mat3 damping_ = Mat3::Zero();  ///< chi sum N_i u_i u_i^T of the last force, limited [N s/m]
   std::optional<double> max_damping_;
   std::optional<double> max_force_;
   Skips skips_;

@@ -85,6 +85,41 @@ static void describe(Fields& f, ReductionConfig& reduction) {
           });
 }
 
+static void describe(Fields& f, DryFrictionConfig& dry) {
+  number(f, parameter::kDryMu, dry.mu, "coefficient of friction");
+  number(f, parameter::kDryStiffness, dry.stiffness, "K_t of the bristle by which the tool sticks; null: K");
+  number(f, parameter::kDryDampingRatio, dry.damping_ratio, "zeta_t of the bristle with the virtual mass");
+}
+
+/// The thesis's viscous friction, whose defaults depend on the scene, or dry friction in its place.
+static void describe_friction(Fields& f, RenderingConfig& rendering) {
+  constexpr TypeName kTypes[] = {{"viscous", "the thesis's, proportional to the velocity; the default"},
+                                 {"dry", "sticks up to mu times the load and slides above (ours)"}};
+  f.alternatives("friction", kTypes, Untyped::first, rendering.dry_friction ? 1 : 0,
+                 [&rendering](Fields& fields, std::size_t type) {
+                   if (type == 1) {
+                     DryFrictionConfig dry = rendering.dry_friction.value_or(DryFrictionConfig{});
+                     describe(fields, dry);
+                     if (!fields.reads()) return;
+                     rendering.dry_friction = dry;
+                     rendering.mu_s = rendering.mu_f = 0.0;
+                     return;
+                   }
+                   number(fields, parameter::kMuS, rendering.mu_s, "viscous friction; default 0 for springs, else 5",
+                          Presence::no_default);
+                   number(fields, parameter::kMuF, rendering.mu_f,
+                          "viscous friction per newton of spring force; default 0 for springs, else 10",
+                          Presence::no_default);
+                 });
+}
+
+static void describe_hunt_crossley(Fields& f, double& chi) {
+  constexpr TypeName kTypes[] = {{"hunt_crossley", "-chi K sum c_i d_i <v, u_i> u_i: no step at contact on and off"}};
+  f.alternatives("damping", kTypes, Untyped::refused, 0, [&chi](Fields& fields, std::size_t) {
+    number(fields, parameter::kChi, chi, "chi", Presence::required);
+  });
+}
+
 void describe(Fields& f, RenderingConfig& rendering) {
   static const std::vector<std::string> kDepthModels = depth_model_names();
   f.name("algorithm", rendering.algorithm, algorithm_names(), "algorithm", "force algorithm");
@@ -110,12 +145,11 @@ void describe(Fields& f, RenderingConfig& rendering) {
          "first-order low-pass of the angular velocity that angular_damping sees; null: none");
   number(f, parameter::kMass, rendering.mass, "M of the virtual tool; default 0.2 in planar scenes, else 0.1",
          Presence::no_default);
-  f.group("friction", "tangential damping", [&rendering](Fields& friction) {
-    number(friction, parameter::kMuS, rendering.mu_s, "viscous friction; default 0 for springs, else 5",
-           Presence::no_default);
-    number(friction, parameter::kMuF, rendering.mu_f,
-           "viscous friction per newton of spring force; default 0 for springs, else 10", Presence::no_default);
-  });
+  f.field("damping", "damping that grows with depth, in place of damping_ratio; null: off",
+          rendering.hunt_crossley ? Presence::no_default : Presence::left_out,
+          [&rendering](Fields& damping) { damping.nullable(rendering.hunt_crossley, describe_hunt_crossley); });
+  f.field("friction", "friction along the surface", Presence::has_default,
+          [&rendering](Fields& friction) { describe_friction(friction, rendering); });
   f.group("limits", "optional limits", [&rendering](Fields& limits) {
     number(limits, parameter::kMaxDamping, rendering.max_damping, "B_max; null: off");
     number(limits, parameter::kMaxForce, rendering.max_force, "F_max; null: off");

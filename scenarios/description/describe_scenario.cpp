@@ -15,6 +15,7 @@
 #include "scenarios/description/writer.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/json_file.hpp"
+#include "sim/loop/integrators/spring_damper.hpp"
 
 namespace hapbench {
 
@@ -232,9 +233,29 @@ void warn_of_unread_rendering(const Scenario& scenario, const Json& json, std::v
     warnings.push_back(
         fmt::format("{}: has no effect on this algorithm; it is a parameter of {}", pointer, fmt::join(names, ", ")));
   }
+  for (const char* field : {"damping_ratio", "damping_N_s_per_m"}) {
+    const std::string pointer = std::string("/rendering/") + field;
+    if (scenario.rendering.hunt_crossley && is_given(pointer))
+      warnings.push_back(fmt::format("{}: has no effect beside rendering.damping", pointer));
+  }
   constexpr const char* kCutoff = "/rendering/angular_velocity_cutoff_Hz";
   if (is_given(kCutoff) && !scenario.rendering.angular_damping)
     warnings.push_back(fmt::format("{}: has no effect without rendering.angular_damping", kCutoff));
+}
+
+/// A warning where the integrator does not step the bristle of dry friction stably: the tool never comes to rest.
+void warn_of_stiff_bristle(const Scenario& scenario, std::vector<std::string>& warnings) {
+  const RenderingConfig& r = scenario.rendering;
+  const bool is_explicit = scenario.integrator.type->stability_limit != nullptr;
+  if (!r.dry_friction || !is_explicit || handle_moves_tool(scenario.device)) return;
+  const double K = r.dry_friction->stiffness.value_or(r.stiffness), dt = scenario.time.step;
+  const double B = 2.0 * r.dry_friction->damping_ratio * std::sqrt(K * r.mass);
+  // Sticking, f = -K (e + dt v) - B v and e <- e + dt v, which leapfrog steps as it does a spring.
+  if (SpringDamper{.K = K, .B = B, .M = r.mass, .dt = dt}.is_stable()) return;
+  warnings.push_back(fmt::format(
+      "/rendering/friction: a tool that sticks will chatter: a bristle of {:.4g} N/m is too stiff for steps of {:.4g} s "
+      "and a mass of {:.4g} kg",
+      K, dt, r.mass));
 }
 
 /// The first script within `json`, found at `at`, that a run of so long [s] does not play. The reader has checked it.
@@ -278,6 +299,7 @@ std::vector<std::string> relation_warnings(const Scenario& scenario, const Json&
   std::vector<std::string> warnings;
   warn_of_idle_device(scenario, warnings);
   warn_of_unread_rendering(scenario, json, warnings);
+  warn_of_stiff_bristle(scenario, warnings);
   if (scenario.perception && !scenario.perception->band_is_sampled(scenario.time.step)) {
     warnings.push_back(fmt::format(
         "/perception/band_Hz: ends at {} Hz, but {:.4g} samples a second show less than {:.4g} Hz: the metrics of this "

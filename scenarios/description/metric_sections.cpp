@@ -6,6 +6,7 @@
 
 #include "results/observe/energy_ledger.hpp"
 #include "results/observe/force_fidelity.hpp"
+#include "results/observe/friction.hpp"
 #include "results/observe/ideal_trajectory.hpp"
 #include "results/observe/lost_torque.hpp"
 #include "results/observe/perception.hpp"
@@ -98,6 +99,11 @@ const SectionKind kSections[] = {
     {"torque", [](const Scenario& s, bool) { return std::size_t{s.record.torque}; },
      [](const TrialParts&) -> std::unique_ptr<Observer> { return std::make_unique<LostTorqueObserver>(); },
      summary_of_one<LostTorqueObserver>, list_without_values<LostTorqueObserver>},
+    {"friction", [](const Scenario& s, bool) { return std::size_t{s.rendering.dry_friction.has_value()}; },
+     [](const TrialParts& p) -> std::unique_ptr<Observer> {
+       return std::make_unique<FrictionObserver>(p.scenario.time.step);
+     },
+     summary_of_one<FrictionObserver>, list_without_values<FrictionObserver>},
     {"perception", [](const Scenario& s, bool) { return std::size_t{s.perception.has_value()}; }, observe_perception,
      summary_of_one<PerceptionObserver>, list_without_values<PerceptionObserver>},
     {"targets", target_places, observe_targets, summary_of_targets, targets_without_values, true}};

@@ -260,6 +260,10 @@ bool allows_parts(const Json& schema) {
   return std::all_of(schema.begin(), schema.end(), allows_parts);
 }
 
+bool is_object_of_optional_fields(const Json& schema) {
+  return schema.contains("properties") && !schema.contains("required") && !schema.contains("oneOf");
+}
+
 /// For a file that extends another and so may leave out anything: only fields that mean something without the other
 /// file are checked. The schema of a file in full is found at `at`.
 Json partial_schema(const ValueGuide& full, const std::string& at) {
@@ -268,6 +272,9 @@ Json partial_schema(const ValueGuide& full, const std::string& at) {
     Json& part = schema["properties"][field.name];
     if (allows_parts(field.value.schema)) {
       part = {{"$ref", at + "/properties/" + field.name}};
+    } else if (is_object_of_optional_fields(field.value.schema)) {
+      part = partial_schema(field.value, at + "/properties/" + field.name);
+      part["description"] = field.meaning;
     } else {
       part = {{"description", field.meaning}};
     }

@@ -10,11 +10,15 @@ namespace hapbench {
 using simd::load;
 using simd::Pack;
 
-Mat3 stiffness_tensor(const ContactBuffer& contacts) {
+namespace {
+
+/// Sum of factor(i) u_i u_i^T, a pack at a time.
+template <class Factor>
+Mat3 tensor_of(const ContactBuffer& contacts, const Factor& factor) {
   Pack xx(0.0), xy(0.0), xz(0.0), yy(0.0), yz(0.0), zz(0.0);
   for (std::size_t i = 0; i < contacts.padded_size(); i += simd::lanes) {
     const Pack x = load(&contacts.ux[i]), y = load(&contacts.uy[i]), z = load(&contacts.uz[i]);
-    const Pack c = load(&contacts.weight[i]);
+    const Pack c = factor(i);
     const Pack cx = c * x, cy = c * y;
     xx += cx * x;
     xy += cx * y;
@@ -31,6 +35,18 @@ Mat3 stiffness_tensor(const ContactBuffer& contacts) {
   S(1, 2) = S(2, 1) = simd::sum(yz);
   S(2, 2) = simd::sum(zz);
   return S;
+}
+
+}  // namespace
+
+Mat3 stiffness_tensor(const ContactBuffer& contacts) {
+  return tensor_of(contacts, [&](std::size_t i) { return load(&contacts.weight[i]); });
+}
+
+Mat3 load_tensor(const ContactBuffer& contacts) {
+  return tensor_of(contacts, [&](std::size_t i) {
+    return simd::max(load(&contacts.weight[i]) * load(&contacts.depth[i]), Pack(0.0));
+  });
 }
 
 Vec3 weighted_depth(const ContactBuffer& contacts) {

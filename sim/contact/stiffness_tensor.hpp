@@ -10,6 +10,10 @@ namespace hapbench {
 /// S from the buffer's weights. O(n).
 Mat3 stiffness_tensor(const ContactBuffer& contacts);
 
+/// Sum of c_i d_i u_i u_i^T over the contacts with c_i d_i > 0 [m]; times K, the loads along their directions, whose
+/// trace is their sum. O(n).
+Mat3 load_tensor(const ContactBuffer& contacts);
+
 /// Sum c_i d_i u_i [m]: the rendered penetration depth vector, thesis Eq. 6. O(n).
 Vec3 weighted_depth(const ContactBuffer& contacts);
 

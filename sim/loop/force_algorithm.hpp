@@ -24,12 +24,16 @@ struct Scene {
   const Vec3* input = nullptr;
 };
 
+/// What dry friction does in one step.
+enum class Friction : std::uint8_t { none, sticks, slides };
+
 /// The result of an algorithm in one step.
 struct RenderedForce {
   Vec3 spring = Vec3::Zero();    ///< f_spring [N], on the tool
   Vec3 rendered = Vec3::Zero();  ///< f_render = spring + damping + friction, limited [N]
   Mat3 S = Mat3::Zero();         ///< stiffness tensor in units of K
   double depth_max = 0.0;        ///< largest penetration depth of the colliding points, before any point stage [m]
+  Friction friction = Friction::none;  ///< none without load or without dry friction
 };
 
 /// Elastic energy of the penalty springs of one step, and the torque that they would exert.

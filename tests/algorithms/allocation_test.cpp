@@ -213,6 +213,8 @@ TEST_P(NoAllocationOf, AnIntegrator) {
     const Instance instance{algorithm.info->name, "surface_normal", &kStages[1], springs};
     RenderingConfig config;
     config.algorithm = instance.algorithm;
+    config.dry_friction = DryFrictionConfig{};
+    config.hunt_crossley = 1.0;
     config.reduction = instance.stages->reduction;
     config.mu_s = 5.0;
     config.mu_f = 10.0;

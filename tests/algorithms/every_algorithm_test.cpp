@@ -150,6 +150,18 @@ TEST_P(Answer, DampingAndFrictionNeverDriveTheTool) {
   }
 }
 
+TEST_P(Answer, DryFrictionAndDampingThatGrowsWithDepthOpposeAMotionFromRest) {
+  config.dry_friction = DryFrictionConfig{};
+  config.hunt_crossley = 2.0;
+  const Vec3 at_rest = test::Probe(setting, config).force_at(setting.pose, Vec3::Zero()).rendered;
+  Random random(3);
+  for (int i = 0; i < 20; ++i) {
+    const Vec3 velocity = 0.1 * random.direction();
+    const Vec3 drag = test::Probe(setting, config).force_at(setting.pose, velocity).rendered - at_rest;
+    EXPECT_LE(drag.dot(velocity), 1e-12 * (1.0 + drag.norm() + at_rest.norm()));
+  }
+}
+
 TEST_P(Answer, ATurnIsFeltWithAngularDampingOnly) {
   const Vec3 velocity(0.02, -0.03, 0.01), turn(0.5, -1.0, 2.0);
   config.mu_s = 5.0;

@@ -170,3 +170,35 @@ def imported(bench):
         bench.add(f"import --json: {key}", value, known, "numpy on the recording", within, (says, naive))
     for i, key in enumerate(("min", "median", "max")):
         bench.add(f"import --json: {key}", told["interval_s"][key], 0.002, "numpy on the recording", close, ("in milliseconds", 2.0))
+
+
+@scene
+def bristle(bench):
+    """A tool rubbed to and fro under dry friction, pressed ever deeper into one spring."""
+    K, M, dt, n, mu, kt, zeta = 1000.0, 0.01, 0.0005, 2000, 0.4, 2000.0, 0.5
+    path = {"x_m": {"type": "sine", "mean": 0, "amplitude": 1e-3, "period_s": 0.25, "phase_rad": 0.3}, "y_m": 0,
+            "z_m": {"type": "waypoints", "points": [[0, -1e-3], [1, -2e-3]]}}
+    run = bench.run(bench.scenario(
+        "bristle", time={"step_s": dt, "steps": n}, motion={"position": {"type": "prescribed", **path}},
+        environment={"type": "springs", "groups": [{"direction": [0, 0, -1], "count": 1}]}, record={"trajectory": True},
+        rendering={"algorithm": "summation", "stiffness_N_per_m": K, "damping_ratio": 0, "mass_kg": M,
+                   "friction": {"type": "dry", "mu": mu, "stiffness_N_per_m": kt, "damping_ratio": zeta}}))
+    t = np.arange(n) * dt
+    p = np.column_stack([profile(path[a], t) for a in ("x_m", "y_m", "z_m")])
+    v = np.diff(p[:, 0], prepend=2 * p[0, 0] - p[1, 0]) / dt
+    load = -K * p[:, 2]
+    bt = 2 * zeta * math.sqrt(kt * M)
+    e, force, slides = 0.0, np.zeros(n), np.zeros(n, bool)
+    for k in range(n):
+        g = kt * e + (kt * dt + bt) * v[k]
+        slides[k] = abs(g) > mu * load[k]
+        g = np.clip(g, -mu * load[k], mu * load[k])
+        e = (dt * g + bt * e) / (kt * dt + bt)
+        force[k] = -g
+    began = int(np.sum(slides[1:] & ~slides[:-1]))
+    law = "METHOD's bristle, row by row"
+    bench.metrics(run, [
+        ("friction.stick_share", int(np.sum(~slides)) / n, law, EXACT, "rows with the force below mu N", float(np.mean(np.abs(force) < 0.99 * mu * load))),
+        ("friction.slips_per_s", began / (n * dt), law, EXACT, "rows that slide", slides.sum() / (n * dt))])
+    rendered = run.table("trajectory.csv")
+    bench.columns("trajectory.csv", rendered, [("fx_N", force, law, STEPPED, "Coulomb's alone", -mu * load * np.sign(v))])

@@ -146,6 +146,10 @@ Json::json_pointer pointer_to(std::string field) {
 /// The message of the reader when the field holds an object.
 std::string refusal_of_an_object_in(const char* field) {
   Json json = test::minimal_scenario("plane");
+  const std::string_view path = field;
+  if (path.starts_with("rendering.damping.")) json["rendering"]["damping"]["type"] = "hunt_crossley";
+  if (path.starts_with("rendering.friction.") && path.find("mu_") == path.npos)
+    json["rendering"]["friction"]["type"] = "dry";
   json[pointer_to(field)] = Json::object();
   const auto error = test::input_error_of([&] { read_scenario(json, ""); });
   return error ? error->what() : "";

@@ -60,7 +60,8 @@ std::vector<NamedScenario> rich_scenarios() {
       "environment": {"type": "block_with_hole", "size_m": [0.006, 0.006, 0.004], "hole_diameter_m": 0.002,
         "hole_depth_m": 0.002, "grid_m": 0.0002, "density": "binary", "vertices": "per_cell"},
       "initial": {"position_m": [0.0006, 0, -0.001]},
-      "rendering": {"local_average": true}})")},
+      "rendering": {"local_average": true, "damping": {"type": "hunt_crossley", "chi_s_per_m": 3},
+        "friction": {"type": "dry", "mu": 0.2, "stiffness_N_per_m": 500, "damping_ratio": 0.5}}})")},
           {"recorded_shell", Json::parse(R"({
       "time": {"step_s": 0.0005, "steps": 1e2, "stop_when": []},
       "environment": {"type": "point_shell", "file": "shell.csv", "grid_m": 0.0005},
