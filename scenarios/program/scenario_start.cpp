@@ -215,7 +215,9 @@ class Start {
     const auto misfit_of = [&](double scale) {
       return gap_of(scale) / size + 0.1 * std::abs(math::log((box.max - box.min).norm() * (scale / 0.001) / size));
     };
-    const double guessed = std::ranges::min({0.001, 1.0, 0.01}, {}, misfit_of);
+    // Not std::ranges::min, which clang 14 does not compile.
+    const double guessed =
+        std::min({0.001, 1.0, 0.01}, [&](double a, double b) { return misfit_of(a) < misfit_of(b); });
     const double scale = options_.scale.value_or(guessed);
     values_["scale"] = scale;
     values_["spacing"] = 0.1 * diameter_;

@@ -194,6 +194,23 @@ double cos(double x) noexcept {
   return sine_in(r.quadrant + 1, r.rest);
 }
 
+SineCosine sine_cosine(double x) noexcept {
+  if (x == 0.0) return {x, 1.0};
+  if (!std::isfinite(x)) return {kNaN, kNaN};
+  const Reduced r = reduced(x);
+  const double sine = sine_of(r.rest), cosine = cosine_of(r.rest);
+  switch (r.quadrant) {
+    case 0:
+      return {sine, cosine};
+    case 1:
+      return {cosine, -sine};
+    case 2:
+      return {-sine, -cosine};
+    default:
+      return {-cosine, sine};
+  }
+}
+
 double tan(double x) noexcept {
   if (x == 0.0) return x;
   if (!std::isfinite(x)) return kNaN;

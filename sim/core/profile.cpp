@@ -31,9 +31,8 @@ std::pair<double, double> on_leg(const Profile::Waypoints& w, double t) {
   const double duration = next->first - last->first, rise = next->second - last->second;
   const double s = (t - last->first) / duration;
   if (w.interpolation == Profile::Interpolation::linear) return {last->second + s * rise, rise / duration};
-  const double angle = std::numbers::pi * s;
-  return {last->second + (0.5 - 0.5 * math::cos(angle)) * rise,
-          0.5 * std::numbers::pi * math::sin(angle) * rise / duration};
+  const auto [sine, cosine] = math::sine_cosine(std::numbers::pi * s);
+  return {last->second + (0.5 - 0.5 * cosine) * rise, 0.5 * std::numbers::pi * sine * rise / duration};
 }
 
 double evaluate(const Profile::Waypoints& w, double t) {

@@ -9,17 +9,29 @@
 
 namespace hapbench {
 
+namespace {
+
+/// The axis reversed, and the lean, turned as `up` is to it.
+struct Leaning {
+  Vec3 up, side;
+};
+
+Leaning leaning(const Orientation& orientation, double tilt, double azimuth) noexcept {
+  const auto [around, onward] = math::sine_cosine(azimuth);
+  const auto [sine, cosine] = math::sine_cosine(tilt);
+  const Vec3 lean = onward * orientation.lean + around * orientation.up.cross(orientation.lean);
+  return {cosine * orientation.up + sine * lean, cosine * lean - sine * orientation.up};
+}
+
+}  // namespace
+
 Vec3 tool_axis(const Orientation& orientation, double tilt, double azimuth) noexcept {
-  const Vec3 sideways = orientation.up.cross(orientation.lean);
-  const Vec3 lean = math::cos(azimuth) * orientation.lean + math::sin(azimuth) * sideways;
-  return -(math::cos(tilt) * orientation.up + math::sin(tilt) * lean);
+  return -leaning(orientation, tilt, azimuth).up;
 }
 
 double tool_roll(const Orientation& orientation, double tilt, double azimuth, double roll) noexcept {
-  const Vec3 sideways = orientation.up.cross(orientation.lean);
-  const Vec3 lean = math::cos(azimuth) * orientation.lean + math::sin(azimuth) * sideways;
-  const Vec3 side = math::cos(tilt) * lean - math::sin(tilt) * orientation.up;  // lean, turned as up is to -axis
-  return roll_towards(tool_axis(orientation, tilt, azimuth), side) + roll;
+  const auto [up, side] = leaning(orientation, tilt, azimuth);
+  return roll_towards(-up, side) + roll;
 }
 
 static Vec3 axis_of(const Eigen::Quaterniond& orientation) noexcept {

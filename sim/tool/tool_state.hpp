@@ -33,9 +33,10 @@ struct ToolState {
 
 /// The turn about a unit axis, right-handed [rad].
 inline Eigen::Quaterniond turn_about(const Vec3& axis, double angle) noexcept {
+  const auto [sine, cosine] = math::sine_cosine(0.5 * angle);
   Eigen::Quaterniond q;
-  q.w() = math::cos(0.5 * angle);
-  q.vec() = math::sin(0.5 * angle) * axis;
+  q.w() = cosine;
+  q.vec() = sine * axis;
   return q;
 }
 

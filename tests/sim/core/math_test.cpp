@@ -147,6 +147,17 @@ TEST(Math, ZerosInfinitiesAndOtherDomainsAreAsInTheStandard) {
   EXPECT_TRUE(same(math::atanh(1.0), kInf) && std::isnan(math::atanh(1.1)) && std::isnan(math::asin(1.1)));
 }
 
+TEST(Math, SineAndCosineTogetherAreTheSameBits) {
+  Random random(5);
+  for (int i = 0; i < 100'000; ++i) {
+    const double x = random.uniform(-100.0, 100.0);
+    const auto [sine, cosine] = math::sine_cosine(x);
+    ASSERT_EQ(sine, math::sin(x)) << x;
+    ASSERT_EQ(cosine, math::cos(x)) << x;
+  }
+  EXPECT_TRUE(std::signbit(math::sine_cosine(-0.0).sine) && std::isnan(math::sine_cosine(kInf).cosine));
+}
+
 /// Every compiler and instruction set gives these bits; the value was computed by g++ 12 for AVX-512 and by clang 14
 /// without optimisation for SSE2.
 TEST(Math, GivesTheSameBitsEverywhere) {
