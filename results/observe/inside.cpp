@@ -59,16 +59,13 @@ PoseSamples::Sample PoseSamples::joined(const Sample& a, const Sample& b) const 
   return {kept.pose, kept.key, std::max(kept.way, other.way + tool_.moved_at_most(kept.pose, other.pose))};
 }
 
-void PoseSamples::add(const ToolPose& pose, double key) noexcept {
-  if (rows_++ % rows_of_part_ != 0) {
-    samples_.back() = joined(samples_.back(), {pose, key});
-    return;
-  }
+void PoseSamples::begin_part(const ToolPose& pose, double key) noexcept {
   if (samples_.size() == most_) {
     for (std::size_t i = 0; i < most_ / 2; ++i) samples_[i] = joined(samples_[2 * i], samples_[2 * i + 1]);
     samples_.resize(most_ / 2);
     rows_of_part_ *= 2;
   }
+  rows_left_ = rows_of_part_ - 1;
   samples_.push_back({pose, key});
 }
 
@@ -87,59 +84,63 @@ InsideObserver::InsideObserver(std::shared_ptr<const ToolShape> tool, std::share
 
 void InsideObserver::on_step(const StepRecord& record) noexcept {
   const ToolPose& pose = record.tool.pose;
-  follow_tip(record);
-  follow_core(pose.position - back_ * pose.axis, record.time);
-  began_ = true;
-  const bool settled = settled_by_ != nullptr && settled_by_->in_settled_contact();
-  depth_.reset();
-  if (every_ > 0) {
-    if (record.step % every_ != 0) return;
-    depth_ = search_.depth(pose);
-    if (!depth_) return;
-    metrics_.max = std::max(metrics_.max, depth_);
-    if (settled) metrics_.settled.push_back(*depth_);
-    return;
+  const double free2 = side_ == Side::inside ? tip_free2_inside_ : tip_free2_;
+  if (!((pose.position - tip_looked_).squaredNorm() < free2)) look_at_tip(record);
+  if (tip_phi_.known) {
+    ++metrics_.rows;
+    if (tip_phi_.value < 0.0) ++metrics_.centre_inside;
   }
+  const Vec3 core = pose.position - back_ * pose.axis;
+  const double length = (core - core_).norm();
+  if (free_way_ > length) {
+    free_way_ -= length;
+    core_ = core;
+  } else {
+    march(core, began_ ? length : 0.0, record.time);
+  }
+  const bool settled = settled_by_ != nullptr && settled_by_->in_settled_contact();
+  if (every_ > 0) return search_row(record, settled);
   // The depth of contacts tells until the core is inside, and from there on that of the tip centre.
   const bool deep = side_ == Side::inside;
   deepest_.add(pose, deep ? tool_->half_width() + std::max(0.0, -tip_phi_.value) : record.force.depth_max);
   if (settled) settled_.add(pose, 0.0);
 }
 
-void InsideObserver::follow_tip(const StepRecord& record) noexcept {
+void InsideObserver::search_row(const StepRecord& record, bool settled) noexcept {
+  depth_.reset();
+  if (record.step % every_ == 0) depth_ = search_.depth(record.tool.pose);
+  if (!depth_) return;
+  metrics_.max = std::max(metrics_.max, depth_);
+  if (settled) metrics_.settled.push_back(*depth_);
+}
+
+void InsideObserver::look_at_tip(const StepRecord& record) noexcept {
   const Vec3& tip = record.tool.pose.position;
+  tip_phi_ = solid_->at(tip);
+  tip_looked_ = tip;
+  passage_.last_depth = tip_phi_.known ? -tip_phi_.value : 0.0;
   const double width = tool_->half_width(), size = std::abs(tip_phi_.value);
   // The depth of a tool that is deep is of interest itself, and so is where the border is passed.
-  const bool deep = tip_phi_.value < 0.0 && (size > width || side_ == Side::inside);
-  const double free = !tip_phi_.known || deep ? kDepthWithin * size : size;
-  if (!began_ || !((tip - tip_looked_).squaredNorm() < free * free)) {
-    tip_phi_ = solid_->at(tip);
-    tip_looked_ = tip;
-  }
-  passage_.last_depth = tip_phi_.known ? -tip_phi_.value : 0.0;
-  if (!tip_phi_.known) return;
-  ++metrics_.rows;
-  if (tip_phi_.value >= 0.0) return;
-  ++metrics_.centre_inside;
-  passage_.deepest = std::max(passage_.deepest, -tip_phi_.value);
-  if (!passage_.deep && -tip_phi_.value > width) passage_.deep = {record.time, tip};
+  const double near = kDepthWithin * size;
+  const bool below = tip_phi_.value < 0.0;
+  tip_free2_ = tip_phi_.known && !(below && size > width) ? size * size : near * near;
+  tip_free2_inside_ = tip_phi_.known && !below ? size * size : near * near;
+  if (!tip_phi_.known || !below) return;
+  passage_.deepest = std::max(passage_.deepest, size);
+  if (!passage_.deep && size > width) passage_.deep = {record.time, tip};
 }
 
 /// Marches along the way since the row before in steps on which the core cannot meet the surface.
-void InsideObserver::follow_core(const Vec3& place, double time) noexcept {
+void InsideObserver::march(const Vec3& place, double length, double time) noexcept {
   const Vec3 from = std::exchange(core_, place);
   const Vec3 way = place - from;
-  const double length = began_ ? way.norm() : 0.0;
-  if (began_ && free_way_ > length) {
-    free_way_ -= length;
-    return;
-  }
   const double least = std::max(kLeastStep * tool_->half_width(), length / kMostSteps);
-  double done = began_ ? std::min(free_way_, length) : 0.0;
+  double done = std::min(free_way_, length);
   for (;;) {
     const Vec3 here = length > 0.0 ? Vec3(from + done / length * way) : place;
     const SurfaceDistance phi = solid_->at(here);
     note_core(here, phi, time);
+    began_ = true;
     if (done >= length || !std::isfinite(done)) {
       free_way_ = std::abs(phi.value);
       return;

@@ -55,16 +55,27 @@ class PoseSamples {
   };
   /// `most`: even. The tool must outlive the samples.
   PoseSamples(std::size_t most, const ToolShape& tool) : most_(most), tool_(tool) { samples_.reserve(most); }
-  void add(const ToolPose& pose, double key) noexcept;
+  void add(const ToolPose& pose, double key) noexcept {
+    if (rows_left_ == 0) return begin_part(pose, key);
+    --rows_left_;
+    Sample& part = samples_.back();
+    const double moved = tool_.moved_at_most(part.pose, pose);
+    if (key > part.key) {
+      part = {pose, key, part.way + moved};
+    } else if (moved > part.way) {
+      part.way = moved;
+    }
+  }
   const std::vector<Sample>& all() const noexcept { return samples_; }
 
  private:
   std::size_t most_;
   const ToolShape& tool_;
   Sample joined(const Sample& a, const Sample& b) const noexcept;
+  void begin_part(const ToolPose& pose, double key) noexcept;
 
   std::vector<Sample> samples_;
-  std::uint64_t rows_ = 0, rows_of_part_ = 1;
+  std::uint64_t rows_left_ = 0, rows_of_part_ = 1;  ///< rows to come of the last part
 };
 
 /// Watches how deep the tool is. A row costs some ten nanoseconds: a point cannot pass the surface before it has moved
@@ -87,8 +98,9 @@ class InsideObserver final : public Observer {
   InsideMetrics metrics();
 
  private:
-  void follow_tip(const StepRecord& record) noexcept;
-  void follow_core(const Vec3& place, double time) noexcept;
+  void look_at_tip(const StepRecord& record) noexcept;
+  void march(const Vec3& place, double length, double time) noexcept;
+  void search_row(const StepRecord& record, bool settled) noexcept;
   void note_core(const Vec3& place, const SurfaceDistance& phi, double time) noexcept;
   void find_deepest(InsideMetrics& metrics);
 
@@ -104,6 +116,8 @@ class InsideObserver final : public Observer {
 
   bool began_ = false;
   Vec3 tip_looked_ = Vec3::Zero();  ///< where the tip centre's distance was last looked up
+  /// The square of the way from there that needs no look [m^2], with the core outside and inside.
+  double tip_free2_ = 0.0, tip_free2_inside_ = 0.0;
   SurfaceDistance tip_phi_;
   Vec3 core_ = Vec3::Zero();  ///< in the row before
   double free_way_ = 0.0;     ///< of the core, on which it cannot meet the surface [m]
