@@ -13,6 +13,7 @@
 #include "device_model/impedance_device.hpp"
 #include "scenarios/input/memory_limit.hpp"
 #include "scenarios/plugins/load_plugin.hpp"
+#include "scenarios/run/scene_facts.hpp"
 #include "sim/contact/contact_source.hpp"
 #include "sim/core/random.hpp"
 #include "sim/loop/simulation.hpp"
@@ -128,6 +129,7 @@ std::vector<std::string> check_named_files(const LoadedScenario& loaded) {
     const std::string pointer = warning.substr(0, warning.find(": "));
     warning = file_of(loaded, pointer).string() + ": " + warning;
   }
+  if (auto warning = with_file(loaded, [&] { return inverted_scan_warning(loaded); })) warnings.push_back(*warning);
   return warnings;
 }
 

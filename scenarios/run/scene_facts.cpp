@@ -130,6 +130,13 @@ std::optional<std::string> wrong_side_warning(const PointShell& shell, const Too
       length_text(behind));
 }
 
+/// An environment of files whose inside only its normals tell.
+bool is_open_scan(const Scenario& scenario, const NamedFiles& files) {
+  if (std::holds_alternative<PointShellEnvironment>(scenario.environment)) return true;
+  return std::holds_alternative<MeshEnvironment>(scenario.environment) &&
+         !files.at(kEnvironmentFile).mesh().open_edges().empty();
+}
+
 ToolFacts tool_facts(const Scenario& scenario, const NamedFiles& files, const ToolShape& tool) {
   ToolFacts facts{tool_names()[scenario.tool.index()], tool.half_width(), tool.reach(), tool.convex(), {}};
   const auto* mesh = dynamic_cast<const MeshTool*>(&tool);
@@ -175,8 +182,21 @@ SceneFacts scene_facts(const LoadedScenario& loaded) {
   const ToolPose pose = first_pose(scenario, parts);
   place_tool(*tool, pose, *shell, surface);
   for (std::string& warning : unit_warnings(loaded, *tool, surface)) facts.warnings.push_back(std::move(warning));
-  if (auto warning = wrong_side_warning(*shell, *tool, pose.position)) facts.warnings.push_back(*warning);
+  // check_named_files has warned of an open scan.
+  if (!is_open_scan(scenario, loaded.files)) {
+    if (auto warning = wrong_side_warning(*shell, *tool, pose.position)) facts.warnings.push_back(*warning);
+  }
   return facts;
+}
+
+std::optional<std::string> inverted_scan_warning(const LoadedScenario& loaded) {
+  const Scenario& scenario = loaded.scenario;
+  if (!is_open_scan(scenario, loaded.files)) return std::nullopt;
+  const bool is_free = std::holds_alternative<FreePosition>(scenario.motion.position);
+  const auto shell = make_shell(scenario, loaded.files);
+  if (shell->size() == 0) return std::nullopt;
+  const Vec3 tip = is_free ? scenario.initial.position : make_motion(scenario, loaded.files)->position_at(0.0);
+  return wrong_side_warning(*shell, *make_tool(scenario, loaded.files), tip);
 }
 
 namespace {

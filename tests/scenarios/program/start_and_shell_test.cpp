@@ -131,6 +131,20 @@ TEST_F(NewOnASheet, TurnsNormalsThatPointAwayFromTheTool) {
   const std::string behind = hapbench({"validate", path("made.json"), "--set", "environment.flip_normals=false"}).err;
   EXPECT_NE(behind.find("1.5 mm behind the surface"), std::string::npos) << behind;
   EXPECT_EQ(hapbench({"validate", path("made.json")}).err.find("behind"), std::string::npos);
+  // Those that run it say the same, once.
+  const std::string made_json = path("made.json"), turn = "environment.flip_normals=", out = path("out");
+  const std::string words = behind.substr(behind.find("the tool starts 1.5 mm behind"));
+  for (const std::vector<std::string>& command : std::vector<std::vector<std::string>>{
+           {"run", made_json, "--set", turn + "false"},
+           {"compare", made_json, "--algorithms", "mean,proxy", "--set", turn + "false"},
+           {"sweep", made_json, "--vary", "environment.flip_normals=true,false"}}) {
+    std::vector<std::string> full = command;
+    full.insert(full.end(), {"--set", "time.steps=10", "--set", "expect={}", "--out", out});
+    const std::string err = hapbench(full).err;
+    const std::size_t first = err.find(words);
+    EXPECT_NE(first, std::string::npos) << command[0] << ": " << err;
+    EXPECT_EQ(err.find("mm behind the surface", first + words.size()), std::string::npos) << err;
+  }
   EXPECT_NE(hapbench({"validate", path("made.json"), "--set", "environment.file=" + data("cube.obj")})
                 .err.find("is closed, so that its outside is known"),
             std::string::npos);
