@@ -15,9 +15,9 @@ constexpr OutcomeInfo kOutcomes[] = {
      "one along the path",
      true},
     {"stuck",
-     "all steps are done, but the tool stood still in the end while the target of its hand (drag, impedance or "
-     "mass_spring_damper) went on by more than the tool's width: it came less than a tenth of that, and not because it "
-     "pressed on the surface",
+     "all steps are done, but the tool stood still in the end while the target of its hand (drag, impedance, "
+     "mass_spring_damper, or of tracking the intended position) went on by more than the tool's width: it came less than "
+     "a tenth of that, and not because it pressed on the surface",
      true},
     {"no_contact", "all steps are done, and the tool never touched the environment", true},
     {"lost_contact",

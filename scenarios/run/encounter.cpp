@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "device_model/hands/tracking_hand.hpp"
 #include "results/observe/contact_forces.hpp"
 #include "results/summary/outcome_names.hpp"
 #include "scenarios/input/input_error.hpp"
@@ -62,7 +63,7 @@ void StuckObserver::on_step(const StepRecord& record) noexcept {
   constexpr double kComes = 0.1;      // of the target's way, at least, where the tool does not stand
   constexpr double kRows = 1 / 32.0;  // of a mean over some rows, which chatter does not turn
   const Vec3& place = record.tool.pose.position;
-  const Vec3 target(hand_.target[0](record.time), hand_.target[1](record.time), hand_.target[2](record.time));
+  const Vec3 target = target_(record.time);
   push_ += kRows * (record.force.spring - push_);
   stuck_.place = place;
   stuck_.force = record.force.rendered.norm();
@@ -176,14 +177,17 @@ std::string scale_question(const Scenario& scenario) {
   return "are the sizes of environment in metres?";
 }
 
+Vec3 target_at(const ImpedanceHandFields& hand, double time) {
+  return {hand.target[0](time), hand.target[1](time), hand.target[2](time)};
+}
+
 /// The least distance of the target of a hand's spring from the environment, at a thousand and one times of the run.
 double closest_target(const ImpedanceHandFields& hand, const TimeFields& time, const Box& environment) {
   constexpr int kLooks = 1000;
   double closest = std::numeric_limits<double>::infinity();
   for (int i = 0; i <= kLooks; ++i) {
     const double t = time.step * static_cast<double>(time.steps) * i / kLooks;
-    const Vec3 target(hand.target[0](t), hand.target[1](t), hand.target[2](t));
-    closest = std::min(closest, distance_to(environment, target));
+    closest = std::min(closest, distance_to(environment, target_at(hand, t)));
   }
   return closest;
 }
@@ -241,8 +245,11 @@ EncounterObservers::EncounterObservers(const Scenario& scenario, const NamedFile
   if (const auto* hand = dynamic_cast<const DragHand*>(parts.hand.get()))
     drag_.emplace(*hand, std::get<DragHandFields>(scenario.hand), parts.tool->half_width());
   const bool is_free = std::holds_alternative<FreePosition>(scenario.motion.position);
+  const double width = 2.0 * parts.tool->half_width();
   if (const ImpedanceHandFields* hand = spring_of(scenario.hand); hand != nullptr && is_free)
-    stuck_.emplace(*hand, 2.0 * parts.tool->half_width());
+    stuck_.emplace([hand](double time) { return target_at(*hand, time); }, width);
+  if (const auto* hand = dynamic_cast<const TrackingHand*>(parts.hand.get()))
+    stuck_.emplace([hand](double) { return hand->intended(); }, width);
 }
 
 std::vector<Observer*> EncounterObservers::all() {

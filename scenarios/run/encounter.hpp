@@ -2,8 +2,10 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "algorithms/rendering_config.hpp"
@@ -88,13 +90,14 @@ class DragCourseObserver final : public Observer {
   DragCourse course_;
 };
 
-/// Finds a tool that a hand's spring cannot move. A spring whose target goes into the surface presses the tool on it,
+/// Finds a tool that a hand's spring cannot move, that of a subject at a display, too: its target is the intended
+/// position. A spring whose target goes into the surface presses the tool on it,
 /// which is no sticking: so the tool is stuck only where the target came away from it by more than its width across the
 /// direction in which the springs of the contacts push. No allocation; about 30 ns a row.
 class StuckObserver final : public Observer {
  public:
-  /// `hand` must outlive the observer. `width`: the tool's [m].
-  StuckObserver(const ImpedanceHandFields& hand, double width) : hand_(hand), width_(width) {}
+  /// `target`: of the spring, at the time of the row that was the last [s]. `width`: the tool's [m].
+  StuckObserver(std::function<Vec3(double)> target, double width) : target_(std::move(target)), width_(width) {}
 
   void on_step(const StepRecord& record) noexcept override;
 
@@ -102,7 +105,7 @@ class StuckObserver final : public Observer {
   std::optional<Stuck> stuck() const;
 
  private:
-  const ImpedanceHandFields& hand_;
+  std::function<Vec3(double)> target_;
   double width_;
   Vec3 push_ = Vec3::Zero();  ///< spring force, its mean over the last rows [N]
   Box ways_, target_ways_;    ///< around the places of tool and target since it stands

@@ -109,6 +109,9 @@ std::string spring(const std::string& x, const std::string& z) {
          R"(,"z_m":)" + way(z) + "}}";
 }
 
+const std::string kSubject =
+    R"(hand={"type":"tracking","task":{"places_m":[[0.0015,0,0],[-0.0015,0,0]],"targets_per_place":1}})";
+
 double flat_in_plane(const Vec3& p) {
   return std::max(0.0, -p.z());
 }
@@ -204,6 +207,12 @@ std::vector<Case> cases() {
       {"a spring that swings what friction holds",
        {spring("[[0,0],[0.05,0],[0.15,0.003],[0.3,0]]", "[[0,0.0006],[0.05,-0.002]]"),
         R"(rendering.friction={"mu_s_N_s_per_m":0,"mu_f_s_per_m":1e6})", R"(integrator={"type":"implicit_euler"})"},
+       {Outcome::stuck}},
+      // Targets 3 mm apart on a display, which the subject's own spring follows.
+      {"a subject who follows targets", {kSubject, "time.steps=6000"}, kFine},
+      {"a subject whose tool friction holds",
+       {kSubject, "time.steps=6000", R"(rendering.friction={"mu_s_N_s_per_m":0,"mu_f_s_per_m":1e6})",
+        R"(integrator={"type":"implicit_euler"})"},
        {Outcome::stuck}},
       {"a spring that trembles",
        {spring("[[0,0],[0.1,0.0002],[0.2,-0.0002],[0.3,0]]", "[[0,0.0006],[0.05,-0.002]]")},
