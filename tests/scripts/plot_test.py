@@ -12,6 +12,7 @@ from fixture import PROGRAM, SOURCE, hapbench, main, must, ran, scratch_folder
 from pictures_fixture import Given, make_runs
 
 from hapbench.columns import header, read_columns
+from hapbench_figures.stability import CLASSES
 from hapbench_pictures.given import given_runs, labels, named
 from hapbench_pictures.panels import looks
 from hapbench_pictures.plot import legend_columns, legend_of, plot
@@ -146,16 +147,17 @@ class Plot(Given):
         folder = self.copy("sweep")
         table = (folder / "sweep.csv").read_text().splitlines()
         names = table[0].split(",")
-        failed, empty = table[1].split(","), table[2].split(",")
+        failed, empty, through = (line.split(",") for line in table[1:4])
         failed[names.index("outcome")], failed[names.index("speed_max_m_per_s")] = "diverges", "1e9"
         empty[names.index("speed_max_m_per_s")] = ""
-        (folder / "sweep.csv").write_text("\n".join([table[0], ",".join(failed), ",".join(empty), *table[3:]]) + "\n")
+        through[names.index("outcome")], through[names.index("expected")] = "went_through", "false"
+        (folder / "sweep.csv").write_text("\n".join([table[0], *map(",".join, (failed, empty, through)), *table[4:]]) + "\n")
         said = hapbench("plot", folder, "--metric", "speed_max_m_per_s")
-        self.assertIn("x diverges   ? no value", said)
-        self.assertIn(" |xx??", said)
+        self.assertIn("W went through   D diverges   ? no value", said)
+        self.assertIn(" |DD??WW", said)
         self.assertNotIn("e+09", said)
         picture = (folder / "plot.svg").read_text()
-        for text in ("diverges", "no value"):
+        for text in ("diverges", "went through", "no value", CLASSES["went_through"][1].lower(), CLASSES["diverges"][1].lower()):
             self.assertIn(text, picture)
 
     def test_what_matters_in_a_sample_of_three_fields(self):

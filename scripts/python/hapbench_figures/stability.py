@@ -66,6 +66,14 @@ CLASSES = {
     "vibrating": ("vibrating", "#E0A030", ""),
     "thrown_out": ("thrown out", "#B05A1E", ""),
     "diverged": ("diverged", "#7A2E00", ""),
+    # Classes of runs that tell nothing of stability, and outcomes of a sweep's runs.
+    "went_through": ("went through", "#8E7CC3", "xxxxx"),
+    "stuck": ("stuck", "#5B7F95", "....."),
+    "lost_contact": ("lost contact", "#B05A1E", "\\\\\\\\\\"),
+    "not_dragged": ("not dragged", "#C9B458", "-----"),
+    "no_contact": ("no contact", "#E2E2E2", ""),
+    "diverges": ("diverges", "#7A2E00", ""),
+    "error": ("error", "#3A3A3A", "+++++"),
     # Classes of pairs of runs, one from near and one from far.
     "passive": ("comes to rest from near and far", style.PALE, ""),
     "locally_stable": ("from near only", "#E9F3FA", "/////"),

@@ -4,13 +4,14 @@ import operator
 import re
 import textwrap
 from dataclasses import replace
+from functools import cached_property
 
 import numpy as np
 from matplotlib import colors
 from matplotlib.patches import Patch, Rectangle
 
 from hapbench.columns import read_records
-from hapbench_figures.stability import edges
+from hapbench_figures.stability import CLASSES, edges, look_of_class
 from hapbench_command import nearest
 from hapbench_looks import look
 from hapbench_report.json_input import InputError, at, load_object
@@ -22,8 +23,7 @@ from .sketch import HEIGHT, MARGIN, Canvas
 
 USUAL = ("force_rms_above_30Hz_N", "force_max_N")
 FAILURES = ("diverges", "error")
-# Looks of runs that failed, and of places without a number.
-FAILED = {"facecolor": "#E2E2E2", "edgecolor": "#8E8E8E", "hatch": "////", "lw": 0}
+# The look of places without a number.
 NO_VALUE = {"facecolor": "#F4F4F4", "edgecolor": "#C8C8C8", "lw": 0.5}
 MOST_TICKS = 12
 SHADES = {True: " ░▒▓█", False: " .:+#"}
@@ -73,9 +73,25 @@ class Sweep:
         """Runs whose metric says nothing: diverged, not computed, or ended not as expected."""
         return np.array([row["outcome"] in FAILURES or row.get("expected") == "false" for row in self.rows])
 
+    @cached_property
+    def classes(self):
+        """The outcomes of such runs in the order of stability maps, each with whose it is."""
+        outcomes, failed = np.array([row["outcome"] for row in self.rows]), self.failed
+        names = sorted(set(outcomes[failed]), key=lambda name: ([*CLASSES, name].index(name), name))
+        return {name: failed & (outcomes == name) for name in names}
+
     @property
     def how_failed(self):
-        return ", ".join(dict.fromkeys(row["outcome"].replace("_", " ") for row, failed in zip(self.rows, self.failed) if failed))
+        """How many of them there are of each."""
+        return ", ".join(f"{mine.sum()} {name.replace('_', ' ')}" for name, mine in self.classes.items())
+
+    @cached_property
+    def letters(self):
+        """Of each class, for sketches: its first letter that none before it has."""
+        found = {}
+        for name in self.classes:
+            found[name] = next((c for c in name.upper() if c.isalpha() and c not in found.values()), "#")
+        return found
 
     @property
     def metric_values(self):
@@ -146,7 +162,7 @@ def draw_sweep(sweep):
 
 def draw_cloud(sweep):
     """The metric over each field; over two fields of numbers also in colours over both."""
-    columns, values, failed = [sweep.column(field) for field in sweep.fields], sweep.metric_values, sweep.failed
+    columns, values = [sweep.column(field) for field in sweep.fields], sweep.metric_values
     both = len(columns) == 2 and not any(isinstance(column, list) for column in columns)
     panels = len(columns) + both
     wide = min(PANELS_WIDE, panels)
@@ -157,9 +173,7 @@ def draw_cloud(sweep):
     for i, (ax, column) in enumerate(zip(axes.flat, columns)):
         x, names = places_of(column)
         ax.plot(x, values, ls="", marker="o", ms=2.5, alpha=0.7, color=PETROL)
-        if failed.any():
-            ax.plot(x[failed], np.zeros(failed.sum()), ls="", marker="x", color=FAILED["edgecolor"],
-                    transform=ax.get_xaxis_transform(), clip_on=False, label=sweep.how_failed)
+        mark_classes(ax, sweep, x)
         if names:
             ax.set_xticks(range(len(names)), [name.replace("_", "\n") for name in names])
         elif sweep.is_logarithmic(i):
@@ -169,13 +183,21 @@ def draw_cloud(sweep):
         if found[i]:
             ax.set_title(sensitivity_text(found[i]), fontsize=7.5)
         ax.set(xlabel=sweep.axis(i), ylabel="" if i % wide else axis(sweep.metric))
-    if failed.any():
+    if sweep.classes:
         axes[0, 0].legend()
     if both:
         draw_map(figure, axes.flat[len(columns)], sweep, columns)
     for ax in axes.flat[panels:]:
         ax.axis("off")
     return figure
+
+
+def mark_classes(ax, sweep, x, y=None):
+    """Marks of runs without a number in the looks of their classes: at their places, or below the axis."""
+    for name, mine in sweep.classes.items():
+        title, colour, _ = look_of_class(name)
+        below = {"transform": ax.get_xaxis_transform(), "clip_on": False} if y is None else {}
+        ax.plot(x[mine], np.zeros(mine.sum()) if y is None else y[mine], ls="", marker="x", color=colour, label=title, **below)
 
 
 def places_of(column):
@@ -208,12 +230,8 @@ def draw_curves(ax, sweep, columns, texts):
         order = np.arange(len(x)) if over in texts else np.argsort(x)
         label = str(name).replace("_", " ")
         ax.plot(np.array(x)[order], sweep.metric_values[rows][order], marker="o", label=label or None, color=look(str(name)).colour)
-    failed = sweep.failed
-    if failed.any():
-        x = [value for value, yes in zip(columns[over], failed) if yes]
-        ax.plot(x, np.zeros(len(x)), ls="", marker="x", color=FAILED["edgecolor"], transform=ax.get_xaxis_transform(), clip_on=False,
-                label=sweep.how_failed)
-    if others or failed.any():
+    mark_classes(ax, sweep, np.array(columns[over]))
+    if others or sweep.classes:
         ax.legend()
     if over not in texts:
         integer_ticks(ax.xaxis, columns[over])
@@ -232,25 +250,26 @@ def integer_ticks(of, values):
 
 
 def draw_map(figure, ax, sweep, columns):
-    values, failed = sweep.metric_values, sweep.failed
+    values, classes = sweep.metric_values, sweep.classes
     norm = colors.LogNorm() if spread_logarithmically(values) else None
     grid = on_grid(columns, values)
     if grid is None:
         ok = np.isfinite(values)
         drawn = ax.scatter(columns[1][ok], columns[0][ok], c=values[ok], norm=norm, cmap="viridis")
-        ax.scatter(columns[1][failed], columns[0][failed], marker="x", color=FAILED["edgecolor"])
-        without = np.zeros(0)
+        mark_classes(ax, sweep, columns[1], columns[0])
+        shown = {}
     else:
         x, y = edges(grid[1]), edges(grid[0])
-        fallen = on_grid(columns, failed.astype(float))[2] == 1
-        without = ~np.isfinite(grid[2]) & ~fallen
+        shown = {name: on_grid(columns, mine.astype(float))[2] == 1 for name, mine in classes.items()}
+        shown[None] = ~np.isfinite(grid[2]) & ~sum(shown.values(), np.zeros(grid[2].shape, bool))
         drawn = ax.pcolormesh(x, y, np.ma.masked_invalid(grid[2]), norm=norm, cmap="viridis")
-        for cells, look_of_them in ((without, NO_VALUE), (fallen, FAILED)):
+        for name, cells in shown.items():
             for line, column in np.argwhere(cells):
-                ax.add_patch(Rectangle((x[column], y[line]), x[column + 1] - x[column], y[line + 1] - y[line], **look_of_them))
+                ax.add_patch(Rectangle((x[column], y[line]), x[column + 1] - x[column], y[line + 1] - y[line], **patch_of(name)))
         ax.grid(False)
-    entries = [Patch(label=words, **how) for words, how, any_ in
-               ((sweep.how_failed, FAILED, failed.any()), ("no value", NO_VALUE, without.any())) if any_]
+    entries = [Patch(label=look_of_class(name)[0] if name else "no value", **patch_of(name)) for name, cells in shown.items() if cells.any()]
+    if grid is None and classes:
+        ax.legend()
     if entries:
         ax.legend(handles=entries, loc="lower right", bbox_to_anchor=(1, 1), ncol=2, borderaxespad=0.2)
     for i, set_scale, of, column in ((1, ax.set_xscale, ax.xaxis, columns[1]), (0, ax.set_yscale, ax.yaxis, columns[0])):
@@ -260,6 +279,14 @@ def draw_map(figure, ax, sweep, columns):
     ax.set(xlabel=sweep.axis(1), ylabel=sweep.axis(0))
     if np.isfinite(values).any():
         figure.colorbar(drawn, label=axis(sweep.metric))
+
+
+def patch_of(name):
+    """The look of a class's cell; None: of a cell without a number."""
+    if name is None:
+        return NO_VALUE
+    _, colour, hatch = look_of_class(name)
+    return {"facecolor": colour, "edgecolor": PETROL, "hatch": hatch, "lw": 0}
 
 
 def on_grid(columns, values):
@@ -280,7 +307,10 @@ def sketch_sweep(sweep, terminal):
     if len(columns) == 2 and not any(isinstance(column, list) for column in columns):
         grid = on_grid(columns, values)
         if grid is not None:
-            return shaded(sweep, grid, on_grid(columns, sweep.failed.astype(float))[2] == 1, terminal)
+            letters = np.full(grid[2].shape, "")
+            for name, mine in sweep.classes.items():
+                letters[on_grid(columns, mine.astype(float))[2] == 1] = sweep.letters[name]
+            return shaded(sweep, grid, letters, terminal)
     order = np.lexsort([places_of(column)[0] for column in reversed(columns)])
     rows, values = [sweep.rows[i] for i in order], values[order]
     labels = [", ".join(f"{float(row[field]):.6g}" if is_number(row[field]) else row[field] for field in sweep.fields) for row in rows]
@@ -296,7 +326,7 @@ def sketch_sweep(sweep, terminal):
 
 
 def sketch_cloud(sweep, terminal):
-    values, failed, lines = sweep.metric_values, sweep.failed, []
+    values, lines = sweep.metric_values, []
     bend = np.log if spread_logarithmically(values) else np.asarray
     ok = np.isfinite(values)
     low, high = (values[ok].min(), values[ok].max()) if ok.any() else (0.0, 0.0)
@@ -316,14 +346,14 @@ def sketch_cloud(sweep, terminal):
         first, last = (names[0], names[-1]) if names else (f"{x.min():.4g}", f"{x.max():.4g}")
         between = " ... " if names or not sweep.is_logarithmic(i) else " ... (logarithmic) "
         lines += [" " * MARGIN + (", ".join(names) if names else first + between + last), ""]
-    return lines + sensitivity_table(sweep, found, ok.sum(), failed.sum(), terminal)
+    return lines + sensitivity_table(sweep, found, ok.sum(), terminal)
 
 
-def sensitivity_table(sweep, found, runs, failed, terminal):
+def sensitivity_table(sweep, found, runs, terminal):
     """How much each field matters, the most first, and how that was told."""
     if not sweep.sampled:
         return []
-    without = f"; {failed} failed" if failed else ""
+    without = f"; {sweep.how_failed}" if sweep.classes else ""
     if not any(found):
         return [f"how much each field matters cannot be told from {runs} runs with this metric{without}; needed: {LEAST_ROWS}, of several values"]
     wide = max(map(len, sweep.fields))
@@ -339,7 +369,7 @@ def sensitivity_table(sweep, found, runs, failed, terminal):
         "error, by jackknife", terminal.width)]
 
 
-def shaded(sweep, grid, failed, terminal):
+def shaded(sweep, grid, letters, terminal):
     rows, cells, values = grid
     shades = SHADES[terminal.unicode]
     finite = values[np.isfinite(values)]
@@ -347,13 +377,13 @@ def shaded(sweep, grid, failed, terminal):
     low, high = (float(finite.min()), float(finite.max())) if finite.size else (0.0, 0.0)
     span = (bend(high) - bend(low)) or 1.0
     key = [f"{axis(sweep.metric)}: {shades[0]!r} {low:.4g} ... {shades[-1]!r} {high:.4g}"]
-    key += [f"x {sweep.how_failed}"] if failed.any() else []
-    key += ["? no value"] if (~np.isfinite(values) & ~failed).any() else []
+    key += [f"{letter} {name.replace('_', ' ')}" for name, letter in sweep.letters.items()]
+    key += ["? no value"] if (~np.isfinite(values) & (letters == "")).any() else []
     lines = ["   ".join(key)]
     for i in reversed(range(len(rows))):
-        def shade(value, fallen):
+        def shade(value, letter):
             if not np.isfinite(value):
-                return "xx" if fallen else "??"
+                return 2 * (letter or "?")
             return 2 * shades[int((bend(value) - bend(low)) / span * (len(shades) - 1) + 0.5)]
-        lines.append(f"{rows[i]:>12.4g} |" + "".join(map(shade, values[i], failed[i]))[:terminal.width - 15])
+        lines.append(f"{rows[i]:>12.4g} |" + "".join(map(shade, values[i], letters[i]))[:terminal.width - 15])
     return [*lines, f"{'':>12} {cells[0]:.4g} ... {cells[-1]:.4g}  {sweep.axis(1)}; upwards {sweep.axis(0)}"]
