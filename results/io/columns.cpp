@@ -42,6 +42,17 @@ std::optional<double> number_of(const Metric::Value& value) {
   return real != nullptr ? std::optional(*real) : std::nullopt;
 }
 
+Metric Metric::within(double of_it, double beside) && {
+  relative = of_it;
+  absolute = beside;
+  return std::move(*this);
+}
+
+std::optional<double> Metric::tolerance() const {
+  const auto number = number_of(value);
+  return if_any(number && (relative > 0.0 || absolute > 0.0), relative * std::abs(number.value_or(0.0)) + absolute);
+}
+
 std::string cell_text(const Metric::Value& value) {
   if (const auto* count = std::get_if<std::uint64_t>(&value)) return std::to_string(*count);
   const auto* number = std::get_if<double>(&value);

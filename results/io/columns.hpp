@@ -91,6 +91,7 @@ struct Metric {
   const char* meaning;  ///< what it says and how it is computed; ||.|| is the Euclidean norm, f is f_render
   Value value;
   Better better;
+  double relative = 0.0, absolute = 0.0;  ///< parts of the tolerance, as `within` gives them
 
   /// From a number, a count, one of them that need not exist, or a Value.
   template <class Given>
@@ -101,6 +102,11 @@ struct Metric {
         meaning(meaning_given),
         value(value_from(given)),
         better(direction) {}
+
+  /// The metric with what it may be wrong by: a part of its value, and so much beside [its unit].
+  Metric within(double of_it, double beside) &&;
+  /// By how much the value may be wrong; none where that is not known or there is no value.
+  std::optional<double> tolerance() const;
 
  private:
   static Value value_from(const Value& given) { return given; }

@@ -183,6 +183,7 @@ ForceFidelity ForceFidelityObserver::metrics() const {
   const auto lag = lag_between(kept_reference_, kept_rendered_, dt_ * static_cast<double>(every_), kMostLag);
   if (lag) {
     found.lag = lag->time;
+    found.lag_within = 0.5 * dt_ * static_cast<double>(every_);
     found.lag_period = lag->period;
   }
   return found;
@@ -190,31 +191,34 @@ ForceFidelity ForceFidelityObserver::metrics() const {
 
 MetricList metric_list(const ForceFidelity& f) {
   const bool any = f.rows > 0;
-  return {{"rows", "1", "rows that have a reference force f_m: measured with the stroke, or ideal", f.rows},
-          {"reference_force_rms_N", "N", "root mean square of ||f_m||", if_any(any, f.reference_rms)},
-          {"force_error_rms_N", "N", "root mean square of ||f - f_m||", if_any(any, f.error_rms), Better::less},
-          {"force_error_relative", "1", "force_error_rms_N / reference_force_rms_N", f.relative(), Better::less},
-          {"force_error_normal_rms_N", "N",
-           "root mean square of n n^T (f - f_m); n is f_spring / ||f_spring||, what is rendered before damping and "
-           "friction, or where nothing is rendered f_m / ||f_m||",
-           if_any(any, f.normal_rms), Better::less},
-          {"force_error_tangential_rms_N", "N", "root mean square of (I - n n^T) (f - f_m), with the same n",
-           if_any(any, f.tangential_rms), Better::less},
-          {"force_artefact_share", "1",
-           "root mean square of the part of f across f_m, all of it where f_m is zero, over that of ||f||",
-           f.artefact_share(), Better::less},
-          {"direction_rows", "1", "rows in which ||f|| and ||f_m|| are both above 0.1 N", f.direction_rows},
-          {"force_direction_error_rad", "rad", "mean angle between f and f_m of those rows",
-           if_any(f.direction_rows > 0, f.direction_error), Better::less},
-          {"force_lag_s", "s",
-           "time by which f follows f_m: where their correlation (Pearson's, all components) is greatest, within "
-           "0.1 s; of equally great ones, as of a periodic force, that nearest to 0; none where it is greatest at the "
-           "ends of this range or where a force does not vary",
-           f.lag},
-          {"force_lag_period_s", "s",
-           "the lag is known up to multiples of this only: spacing of equally great correlations (to 0.01); none "
-           "where the lag is unambiguous",
-           f.lag_period}};
+  return {
+      {"rows", "1", "rows that have a reference force f_m: measured with the stroke, or ideal", f.rows},
+      {"reference_force_rms_N", "N", "root mean square of ||f_m||", if_any(any, f.reference_rms)},
+      {"force_error_rms_N", "N", "root mean square of ||f - f_m||", if_any(any, f.error_rms), Better::less},
+      {"force_error_relative", "1", "force_error_rms_N / reference_force_rms_N", f.relative(), Better::less},
+      {"force_error_normal_rms_N", "N",
+       "root mean square of n n^T (f - f_m); n is f_spring / ||f_spring||, what is rendered before damping and "
+       "friction, or where nothing is rendered f_m / ||f_m||",
+       if_any(any, f.normal_rms), Better::less},
+      {"force_error_tangential_rms_N", "N", "root mean square of (I - n n^T) (f - f_m), with the same n",
+       if_any(any, f.tangential_rms), Better::less},
+      {"force_artefact_share", "1",
+       "root mean square of the part of f across f_m, all of it where f_m is zero, over that of ||f||",
+       f.artefact_share(), Better::less},
+      {"direction_rows", "1", "rows in which ||f|| and ||f_m|| are both above 0.1 N", f.direction_rows},
+      {"force_direction_error_rad", "rad", "mean angle between f and f_m of those rows",
+       if_any(f.direction_rows > 0, f.direction_error), Better::less},
+      Metric("force_lag_s", "s",
+             "time by which f follows f_m: where their correlation (Pearson's, all components) is greatest, within "
+             "0.1 s; of equally great ones, as of a periodic force, that nearest to 0; none where it is greatest at "
+             "the ends of this range or where a force does not vary; told to half the time between the rows that "
+             "are compared",
+             f.lag)
+          .within(0.0, f.lag_within),
+      {"force_lag_period_s", "s",
+       "the lag is known up to multiples of this only: spacing of equally great correlations (to 0.01); none "
+       "where the lag is unambiguous",
+       f.lag_period}};
 }
 
 }  // namespace hapbench

@@ -46,6 +46,7 @@ struct ForceFidelity {
   std::uint64_t direction_rows = 0;
   double direction_error = 0.0;      ///< [rad]
   std::optional<double> lag;         ///< [s]
+  double lag_within = 0.0;           ///< half the time between the rows that are compared [s]
   std::optional<double> lag_period;  ///< [s], of an ambiguous lag
 
   /// rms error in units of that of f_m; nothing where f_m is zero throughout.

@@ -38,7 +38,13 @@ double way_to_core(const ToolShape& tool) {
 }  // namespace
 
 InsideMetrics& InsideMetrics::operator+=(const InsideMetrics& other) {
+  const auto bound = [](const InsideMetrics& m) {
+    return (1.0 + InsideSearch::kTolerance) * m.max.value_or(0.0) + m.max_within;
+  };
+  const double deepest = std::max(bound(*this), bound(other));
   max = std::max(max, other.max);  // an empty optional is less than any number
+  max_within = deepest - (1.0 + InsideSearch::kTolerance) * max.value_or(0.0);
+  settled_within = std::max(settled_within, other.settled_within);
   at_most = std::max(at_most, other.at_most);
   if (at_most <= max) at_most.reset();
   settled.insert(settled.end(), other.settled.begin(), other.settled.end());
@@ -168,12 +174,17 @@ void InsideObserver::note_core(const Vec3& place, const SurfaceDistance& phi, do
 
 InsideMetrics InsideObserver::metrics() {
   InsideMetrics metrics = metrics_;
+  const double width = tool_->half_width(), error = search_.error();
+  metrics.max_within = metrics.settled_within = InsideSearch::kTolerance * width + error;
   if (every_ > 0) return metrics;
   find_deepest(metrics);
+  metrics.settled_within = kTolerance * width + error;
   for (const auto& sample : settled_.all()) {
     if (const auto depth = search_.depth(sample.pose, 0.0, kTolerance)) metrics.settled.push_back(*depth);
   }
   for (const double depth : metrics.settled) metrics.max = std::max(metrics.max, std::optional(depth));
+  if (metrics.at_most)
+    metrics.max_within = *metrics.at_most - (1.0 + InsideSearch::kTolerance) * metrics.max.value_or(0.0) + error;
   return metrics;
 }
 

@@ -17,7 +17,9 @@ struct InsideMetrics {
   std::optional<double> max;      ///< [m]
   std::optional<double> at_most;  ///< no row is deeper [m]; none where that is `max` within InsideSearch::kTolerance
   std::vector<double> settled;    ///< of rows in settled contact [m]
-  std::uint64_t rows = 0;         ///< with the tip centre where the inside is known
+  /// By how much `max` and `settled` may be too low, beside InsideSearch::kTolerance of them [m].
+  double max_within = 0.0, settled_within = 0.0;
+  std::uint64_t rows = 0;  ///< with the tip centre where the inside is known
   std::uint64_t centre_inside = 0;
 
   InsideMetrics& operator+=(const InsideMetrics& other);

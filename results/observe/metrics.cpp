@@ -230,15 +230,17 @@ MetricList inside_list(const Metrics& m) {
   const InsideMetrics inside = m.inside.value_or(InsideMetrics{});
   const auto rows = static_cast<double>(inside.rows);
   return {
-      {"inside_max_m", "m",
-       "largest distance below the environment's surface of any point of the tool in any row, with record.inside in any "
-       "recorded row; no row is deeper by more than 2 % of it and of the tool's half width, or a warning tells by how "
-       "much; none of springs and beyond the border of an open surface",
-       inside.max, Better::less},
-      {"inside_settled_m", "m",
-       "median of that distance over up to twelve rows in settled contact, evenly spread, or with record.inside over all "
-       "recorded ones",
-       if_any(m.contact.settled >= kLeastSettled, inside.settled_median()).value_or(std::nullopt), Better::less},
+      Metric("inside_max_m", "m",
+             "largest distance below the environment's surface of any point of the tool in any row, with record.inside "
+             "in any recorded row; no row is deeper by more than 2 % of it and of the tool's half width, or a warning "
+             "tells by how much; none of springs and beyond the border of an open surface",
+             inside.max, Better::less)
+          .within(InsideSearch::kTolerance, inside.max_within),
+      Metric("inside_settled_m", "m",
+             "median of that distance over up to twelve rows in settled contact, evenly spread, or with record.inside "
+             "over all recorded ones",
+             if_any(m.contact.settled >= kLeastSettled, inside.settled_median()).value_or(std::nullopt), Better::less)
+          .within(InsideSearch::kTolerance, inside.settled_within),
       {"centre_inside_share", "1",
        "share of the rows with the tip centre below the surface; a flat tip's is when it is pressed in",
        if_any(inside.rows > 0, static_cast<double>(inside.centre_inside) / rows), Better::less},

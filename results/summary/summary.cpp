@@ -49,6 +49,14 @@ ordered_json metrics_json(const MetricList& list) {
   return json;
 }
 
+/// Of the metrics that have one, by their full names.
+ordered_json tolerances_json(const MetricList& list) {
+  ordered_json json = ordered_json::object();
+  for (const Metric& metric : list)
+    if (const auto tolerance = metric.tolerance()) json[metric.name] = *tolerance;
+  return json;
+}
+
 ordered_json metrics_json(const Metrics& m) {
   ordered_json json = metrics_json(metric_list(m));
   const Vec3& p = m.final_position;
@@ -104,6 +112,7 @@ ordered_json summary_json(const RunSummary& run) {
     json[section.name] = metrics_json(section.metrics);
     json[section.name].update(section.more);
   }
+  json["tolerances"] = tolerances_json(metric_list(run));
   json["state_hash"] = hash_text(run.metrics.state_hash);
   json["work"] = work_json(run.work);
   json["provenance"] = provenance_json(run.provenance, run.scenario_hash);

@@ -59,6 +59,17 @@ std::vector<double> known(const std::vector<std::optional<double>>& values) {
   return numbers;
 }
 
+std::optional<double> mean_tolerance(const League& league, std::size_t scenario, std::size_t algorithm,
+                                     std::size_t metric) {
+  std::vector<double> known;
+  for (const std::size_t k : league.common[scenario]) {
+    const LeagueRun& run = league.runs.run(scenario, algorithm, k);
+    if (!run.failed && metric < run.tolerances.size() && run.tolerances[metric])
+      known.push_back(*run.tolerances[metric]);
+  }
+  return known.empty() ? std::nullopt : std::optional(mean_of(known));
+}
+
 bool is_same(double a, double b) {
   return std::abs(a - b) <= kSameRank * std::max(std::abs(a), std::abs(b));
 }
@@ -88,6 +99,7 @@ class ScenarioStandings {
       Standing standing;
       const std::vector<double> numbers = known(values_[a]);
       if (!numbers.empty()) standing.mean = mean_of(numbers);
+      standing.tolerance = mean_tolerance(league, scenario, a, metric);
       if (numbers.size() >= 2 && league.seeds_matter[scenario]) {
         standing.spread = standard_deviation(numbers);
         standing.standard_error = standard_error(numbers);
@@ -281,7 +293,11 @@ LeagueRuns league_runs(const BatchPlan& plan, const BatchReport& report, const s
                         !std::holds_alternative<FreePosition>(scenario.motion.position);
     run.failed = !is_led && (is_failure(run.outcome) || !outcome_is_expected(scenario.expect, summary.result.outcome));
     run.state_hash = summary.metrics.state_hash;
-    for (const std::string& name : league.metrics) run.metrics.push_back(number_of(value_of(list, name)));
+    for (const std::string& name : league.metrics) {
+      const auto metric = std::ranges::find(list, name, &Metric::name);
+      run.metrics.push_back(metric == list.end() ? std::nullopt : number_of(metric->value));
+      run.tolerances.push_back(metric == list.end() ? std::nullopt : metric->tolerance());
+    }
     league.runs.push_back(std::move(run));
   }
   return league;

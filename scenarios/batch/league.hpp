@@ -21,6 +21,7 @@ struct LeagueRun {
   bool failed = false;           ///< its metrics do not count
   std::uint64_t state_hash = 0;  ///< equal for runs that a seed does not change
   std::vector<std::optional<double>> metrics;
+  std::vector<std::optional<double>> tolerances = {};  ///< of these; may be shorter
 };
 
 /// The runs of a league.
@@ -46,6 +47,8 @@ struct Standing {
   std::optional<double> mean;    ///< none when its runs failed or no run has the metric
   std::optional<double> spread;  ///< sample standard deviation; none for one seed or if seeds change nothing
   std::optional<double> standard_error = {};  ///< of the mean: spread / sqrt(common seeds); none without a spread
+  /// By how much the mean may be wrong: the mean of what its numbers may be wrong by; none where none is known.
+  std::optional<double> tolerance = {};
   /// 1 + the number of better algorithms. Those without failures come first, ordered by their means; means within
   /// kSameRank of the first of a group share its rank, and algorithms without a mean come last of these (a tool that is
   /// thrown out at once has no settled force). The others follow by their number of failed seeds. None if no algorithm

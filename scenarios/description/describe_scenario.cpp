@@ -475,14 +475,14 @@ static void describe(Fields& f, ExpectFields& expect) {
           [&expect](Fields& value) { describe_outcomes(value, expect.outcomes); });
   f.group("metrics", "bounds on the run's metrics, min and max of each; \"hapbench list metrics\" shows them",
           [&expect](Fields& metrics) {
-            for (const auto& [name, unit, meaning, value, better] : kMetrics) {
-              const auto known = expect.metrics.find(name);
+            for (const Metric& metric : kMetrics) {
+              const auto known = expect.metrics.find(metric.name);
               std::optional<MetricBound> bound;
               if (known != expect.metrics.end()) bound = known->second;
-              metrics.if_any(name, bound, meaning, [](Fields& b, MetricBound& limits) {
+              metrics.if_any(metric.name, bound, metric.meaning, [](Fields& b, MetricBound& limits) {
                 b.shared("metric_bound", [&limits](Fields& s) { s.object(limits); });
               });
-              if (bound) expect.metrics[name] = *bound;
+              if (bound) expect.metrics[metric.name] = *bound;
             }
           });
 }

@@ -19,8 +19,16 @@ namespace {
 
 /// A number of few characters: "1440" in place of "1.44e+03", and never "-0".
 std::string cell(std::optional<double> value, int digits = 3) {
+  if (value && digits < 3) value = std::stod(significant(*value, digits));
   if (value && std::abs(*value) >= 100.0 && std::abs(*value) < 1e6) return fmt::format("{:.0f}", *value);
   return significant(value.value_or(std::numeric_limits<double>::quiet_NaN()) + 0.0, digits);
+}
+
+/// The metric of that name with the digits that its tolerance leaves it; `factor`: to the unit that is shown.
+std::string metric_cell(const MetricList& metrics, std::string_view name, double factor) {
+  const auto metric = std::ranges::find(metrics, name, &Metric::name);
+  const auto value = metric == metrics.end() ? std::nullopt : number_of(metric->value);
+  return value ? cell(factor * *value, deserved_digits(*value, metric->tolerance(), 3)) : "-";
 }
 
 /// A time in microseconds of at most four characters, so that tables are as wide on a slow machine as on a fast one:
@@ -62,8 +70,8 @@ std::string cell_below(const RunHeading& heading, const RunReport& report, const
   const std::string_view first = heading.shows[0];
   if (first == "outcome") return std::string(outcome_name(report.summary.result.outcome));
   if (first == "step_p50_s") return report.timing.step_p50 ? short_time(*report.timing.step_p50) : "-";
+  if (heading.shows[1] == nullptr) return metric_cell(metrics, first, heading.factor);
   const auto value = number_of(value_of(metrics, first));
-  if (heading.shows[1] == nullptr) return cell(value ? std::optional(heading.factor * *value) : std::nullopt);
   const auto other = number_of(value_of(metrics, heading.shows[1]));
   return value && other ? fmt::format("{}..{}", cell(value, 2), cell(other, 2)) : "-";
 }
@@ -210,10 +218,8 @@ std::string fidelity_text(std::span<const RunReport> reports) {
     any = true;
     const MetricList metrics = metric_list(report.summary);
     std::vector<std::string> cells = {distinct_name(report, reports)};
-    for (const RunHeading& heading : kFidelityHeadings) {
-      const auto value = number_of(value_of(metrics, heading.shows[0]));
-      cells.push_back(cell(value ? std::optional(heading.factor * *value) : std::nullopt));
-    }
+    for (const RunHeading& heading : kFidelityHeadings)
+      cells.push_back(metric_cell(metrics, heading.shows[0], heading.factor));
     table.add(std::move(cells));
   }
   return any ? fmt::format("\nrendered force against the reference, measured or ideal\n\n{}", table.text()) : "";

@@ -1,14 +1,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
+#include <cmath>
 #include <iterator>
 #include <limits>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <utility>
 
 #include "scenarios/batch/league.hpp"
 #include "scenarios/batch/sweep_table.hpp"
+#include "scenarios/description/metric_sections.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/result_tables.hpp"
@@ -29,6 +33,14 @@ bool has_metric(const SweepPlan& plan, std::string_view name) {
 std::string shown_value(const std::string& text) {
   const auto number = finite_number(text);
   return number ? significant(*number, 6) : text;
+}
+
+/// How many digits of a metric stand in a table. The rows do not hold tolerances; what is known of them without a run
+/// is a part of the value.
+int digits_of(std::string_view metric, double value, int most) {
+  static const MetricList known = metrics_without_values();
+  const auto found = std::ranges::find(known, metric, &Metric::name);
+  return found == known.end() ? most : deserved_digits(value, found->relative * std::abs(value), most);
 }
 
 bool has_failed(const SweepRow& row) {
@@ -67,7 +79,7 @@ std::string runs_text(const SweepPlan& plan, std::span<const SweepRow> rows) {
     cells.push_back(row.outcome);
     for (const RunHeading& heading : metrics) {
       const double value = row.number(plan, heading.shows[0]).value_or(std::numeric_limits<double>::quiet_NaN());
-      cells.push_back(significant(heading.factor * value, 3));
+      cells.push_back(significant(heading.factor * value, digits_of(heading.shows[0], value, 3)));
     }
     table.add(std::move(cells));
   }
@@ -112,7 +124,7 @@ class Grid {
   std::vector<GridCell> cells_;
 };
 
-std::string table_text(const Grid& grid) {
+std::string table_text(const Grid& grid, std::string_view metric) {
   std::vector<Table::Column> columns = {
       {fmt::format("{} \\ {}", grid.down().path, grid.across().path), !holds_texts(grid.down())}};
   for (std::size_t i = 0; i < grid.across().size(); ++i) columns.push_back({shown_value(grid.across().value(i))});
@@ -121,7 +133,8 @@ std::string table_text(const Grid& grid) {
     std::vector<std::string> cells = {shown_value(grid.down().value(j))};
     for (std::size_t i = 0; i < grid.across().size(); ++i) {
       const GridCell& cell = grid.at(i, j);
-      cells.push_back(!cell.failure.empty() ? cell.failure : significant(cell.value));
+      const int digits = digits_of(metric, cell.value.value_or(0.0), 4);
+      cells.push_back(!cell.failure.empty() ? cell.failure : significant(cell.value, digits));
     }
     table.add(std::move(cells));
   }
@@ -162,27 +175,45 @@ class Levels {
   double greatest_ = -std::numeric_limits<double>::infinity();
 };
 
+/// Of each outcome that is a failure its first letter that no other has, in capitals.
+std::map<std::string, char> failure_letters(const std::vector<GridCell>& cells) {
+  std::map<std::string, char> letters;
+  for (const GridCell& cell : cells)
+    if (!cell.failure.empty()) letters[cell.failure] = '#';
+  std::string used = "_";
+  for (auto& [outcome, letter] : letters) {
+    const std::size_t free = outcome.find_first_not_of(used);
+    if (free == std::string::npos) continue;
+    used += outcome[free];
+    letter = static_cast<char>(std::toupper(outcome[free]));
+  }
+  return letters;
+}
+
 std::string map_text(const Grid& grid, std::string_view metric) {
   const Levels levels(grid.cells());
   if (levels.empty()) return "";
+  const std::map<std::string, char> letters = failure_letters(grid.cells());
   const auto mark = [&](std::size_t i, std::size_t j) {
     const GridCell& cell = grid.at(i, j);
-    return !cell.failure.empty() ? '#' : cell.value ? levels.mark(*cell.value) : '?';
+    return !cell.failure.empty() ? letters.at(cell.failure) : cell.value ? levels.mark(*cell.value) : '?';
   };
   std::vector<std::string> labels;
   for (std::size_t j = 0; j < grid.down().size(); ++j) labels.push_back(shown_value(grid.down().value(j)));
   const Axis& across = grid.across();
   const MapColumns columns{across.path, across.size(), shown_value(across.value(0)),
                            shown_value(across.value(across.size() - 1))};
-  return fmt::format("{}  {}: {}; # failed, ? no value\n", character_map(columns, grid.down().path, labels, mark),
-                     metric, levels.legend());
+  std::string failures;
+  for (const auto& [outcome, letter] : letters) failures += fmt::format("{} {}, ", letter, outcome);
+  return fmt::format("{}  {}: {}; {}? no value\n", character_map(columns, grid.down().path, labels, mark), metric,
+                     levels.legend(), failures);
 }
 
 std::string grid_text(const SweepPlan& plan, const std::vector<SweepRow>& rows, std::string_view metric) {
   const bool is_grid = plan.points.axes().size() == 2 && !plan.points.sampling();
   if (!is_grid || rows.size() != plan.points.size() || rows.size() > kMostCells) return "";
   const Grid grid(plan, rows, metric);
-  std::string text = fmt::format("{}\n\n{}\n", metric, table_text(grid));
+  std::string text = fmt::format("{}\n\n{}\n", metric, table_text(grid, metric));
   constexpr std::size_t kMostAcross = 40;  // a wider map does not fit beside its labels
   if (grid.across().size() <= kMostAcross) text += map_text(grid, metric) + "\n";
   return text;

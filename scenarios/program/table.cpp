@@ -193,13 +193,18 @@ std::string significant(const std::optional<double>& value, int digits) {
   return value ? significant(*value, digits) : "-";
 }
 
+int deserved_digits(double value, const std::optional<double>& tolerance, int most) {
+  if (!tolerance || !(*tolerance > 0.0) || value == 0.0 || !std::isfinite(value)) return most;
+  const double digits = std::floor(std::log10(std::abs(value))) - std::floor(std::log10(*tolerance)) + 1.0;
+  return static_cast<int>(std::clamp(digits, 1.0, static_cast<double>(most)));
+}
+
 std::string deserved(double value, const std::optional<double>& tolerance, int digits) {
   const double size = std::abs(value);
   if (!tolerance || !(*tolerance > 0.0 && *tolerance < size) || !std::isfinite(size)) return significant(value, digits);
   const int last = static_cast<int>(std::floor(math::log10(*tolerance)));
   if (size < 1e-4 || last < -12) {
-    const int deserve = static_cast<int>(std::floor(math::log10(size))) - last + 1;
-    return significant(value, std::clamp(deserve, 1, 12));
+    return significant(value, deserved_digits(value, tolerance, 12));
   }
   const double unit = math::pow(10.0, last);
   return last < 0 ? fmt::format("{:.{}f}", value, -last) : fmt::format("{:.0f}", std::round(value / unit) * unit);

@@ -294,13 +294,14 @@ Measured measure_stability_limits(const Evidence& e) {
 }
 
 Finding judge_stability_limits(const Measured& measured, const PublishedNumbers& published) {
+  const auto digits = static_cast<int>(std::lround(-std::log10(kLimitTolerance)));  // what bisection leaves
   double worst = 0.0;
   std::string text;
   for (const MeasuredCase& m : measured) {
     const auto figure =
         std::find_if(std::begin(kFigures), std::end(kFigures), [&m](const Figure& f) { return f.name == m.name; });
     worst = std::max(worst, std::abs(m["limit"] / published[figure->published].mean - 1.0));
-    append_item(text, fmt::format("{} {:.6g}", m.name, m["limit"]), ", ");
+    append_item(text, fmt::format("{} {:.{}g}", m.name, m["limit"], digits), ", ");
   }
   return {decide(worst <= threshold(published, "same_limit"), false), text,
           fmt::format("the largest difference to the published figures is {:.2g} %", 100.0 * worst)};

@@ -32,6 +32,8 @@ class InsideSearch {
   std::optional<double> depth(const ToolPose& pose, double known = 0.0, double tolerance = kTolerance) noexcept;
 
   static constexpr double kTolerance = 0.02;
+  /// By how much depths may be wrong beside the tolerance [m]: the tool's grid, points in place of a surface.
+  double error() const noexcept { return error_; }
   std::size_t looks() const noexcept { return looks_; }  ///< distances of all searches so far, about
 
  private:
@@ -49,6 +51,7 @@ class InsideSearch {
 
   const ToolShape& tool_;
   const Solid& solid_;
+  double error_;
   ContactBuffer points_;  ///< what the tool is asked about
   ContactBuffer one_;
   AlignedDoubles x_, y_, z_;  ///< an answer of the tool

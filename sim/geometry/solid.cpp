@@ -240,6 +240,7 @@ class PointSolid final : public Solid {
     const bool goes_on = beyond == 0.0 || tree_.nearest(p + 2.0 * spacing_ / aside * along, 1.5 * spacing_).has_value();
     return {std::copysign(std::sqrt(h * h + beyond), h), goes_on};
   }
+  double error() const noexcept override { return 0.5 * spacing_; }
   std::size_t bytes() const noexcept override { return 300 * points_.size(); }
 
  private:

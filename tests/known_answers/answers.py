@@ -158,6 +158,12 @@ class Bench:
         for name, known, known_by, within, *naive in table:
             self.add(re.sub(r"^targets\.\d+", "targets.PLACE", name), run.metric(name), known, known_by, within, tuple(naive) or None)
 
+    def tolerance(self, run, metric, known, known_by, within, naive, exact):
+        """The row of a metric's tolerance, and one that the metric keeps it."""
+        printed = run.summary["tolerances"][metric]
+        self.add(f"run --json: tolerances.{metric}", printed, known, known_by, within, naive)
+        self.add(f"run --json: tolerances.{metric}", abs(run.metric(metric) - exact) <= printed, True, "the metric differs by less", EXACT)
+
     def columns(self, file, table, rows):
         """The same for the columns of a file, whose known values are series."""
         for name, known, known_by, within, *naive in rows:

@@ -91,6 +91,10 @@ def league(bench):
     errors = [number(row["standard_error"]) for row in printed["standings"]]
     bench.add("compare --json: standard_error", errors, np.array(known["spread"]) / np.sqrt(np.array(known["common_seeds"], float)),
               "spread over the root of the common seeds", ROUNDING, ("over all seeds", np.array(known["spread"]) / math.sqrt(SEEDS)))
+    single = next(iter(runs.values())).summary["tolerances"][BY[0]]
+    bench.add("compare --json: mean_tolerance", [number(row["mean_tolerance"]) for row in printed["standings"]],
+              [number(0.0078 * row["mean"] + 2.0 ** -30 if row["metric"] == BY[0] and row["mean"] is not None else None) for row in printed["standings"]],
+              "of p99 alone: 0.0078 of it and 2^-30 N", ROUNDING, ("of a single run", [single] * len(printed["standings"])))
     laws_of(bench, printed["laws"], ranks, ratios, scenes)
 
 
@@ -235,6 +239,10 @@ def sampled_finer(bench):
         wrong = known["after" if name == "before" else "before"] if numbers else ["holds"] * 16 if name == "verdict" else values[::-1] if len(set(values)) > 1 else ["none"] * 16
         bench.add(f"ranking.csv:{name}", table[name], values, "single runs, every row or every second", BINNED if numbers else EXACT,
                   ("the other sampling, or order", wrong))
+    for when in ("before", "after"):
+        within = np.where(np.array(table["metric"]) == by[0], 0.0078 * table[when] + 2.0 ** -30, np.nan)
+        bench.add(f"ranking.csv:tolerance_{when}", table[f"tolerance_{when}"], within, "of p99 alone: 0.0078 of it and 2^-30 N", ROUNDING,
+                  ("of every metric", 0.0078 * table[when]))
     told = [("0.4 mm -> 0.2 mm" in text, "0.488 -> 0.244 ms" in text) for text in table["change"]]
     bench.add("ranking.csv:change", [a for pair in told for a in pair], [x for change in known["halved"] for x in (change == "spacing", change == "step")],
               "half of each", EXACT, ("both at once", [True] * 32))

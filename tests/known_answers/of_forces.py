@@ -64,6 +64,7 @@ def late_force(bench):
          relative=1e-7), "over all rows", angles.mean()),
         ("fidelity.force_lag_s", lag, "numpy's correlation at every shift", fifth, "with the other sign", -lag),
         ("fidelity.force_lag_period_s", None, "the path repeats nothing", EXACT, "the ripple's period", 0.01)])
+    bench.tolerance(run, "fidelity.force_lag_s", 0.5 * dt, "half a row", ROUNDING, ("a parabola's top is exact", 0.0), lag)
     table = run.table("force_reference.csv")
     bench.columns("force_reference.csv", table, [
         ("step", np.arange(n), "0, 1, ...", EXACT, "from 1", np.arange(n) + 1), ("time_s", t, "k dt", EXACT, "after the step", t + dt)] + [

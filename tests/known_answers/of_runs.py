@@ -104,6 +104,9 @@ def touches(bench):
         ("final_position_m.x", r.p[-1, 0], "the path's last row", STEPPED, "a row later", profile(PATH["x_m"], np.array([0.6]))[0]),
         ("final_position_m.y", r.p[-1, 1], "the path", STEPPED, "a row later", -1e-4 - 1e-3 * 0.6),
         ("final_position_m.z", 1e-3, "the path", EXACT, "the deepest", r.p[:, 2].min())])
+    p99 = nearest_rank(r.steps[settled], 0.99)
+    bench.tolerance(run, "force_step_p99_N", p99 * (math.sqrt(33 / 32) - 1) / 2, "half a bin of the histogram of squares",
+                    Within("the bin's middle for the number, and 0.00775 rounded to 0.0078", relative=0.02), ("a whole bin", p99 * (math.sqrt(33 / 32) - 1)), p99)
     touch_tables(bench, run, r)
     full = bench.run(bench.folder / "touches.json", "--set", 'rendering.reduction={"threshold":0.995,"max_points":1}', out="full")
     bench.add("run --json: points_dropped", full.summary["work"]["points_dropped"], int((r.touched[:, :2].any(axis=1) & r.touched[:, 2]).sum()),

@@ -25,6 +25,7 @@ TAIL = "\n<!-- /generated -->\n"
 # Members of JSON that say where and how, not what.
 NO_TABLES = {"run", "import"}  # commands whose JSON does not repeat a table
 NO_WORDS = {"file of the results"}
+TOLERANCES = "tolerances"
 NO_ANSWERS = {"provenance", "name", "algorithm", "scenario"}
 
 
@@ -41,7 +42,8 @@ def keys_of(data):
         return set().union(*(keys for keys, _ in found)), set().union(*(groups for _, groups in found))
     if not isinstance(data, dict):
         return set(), set()
-    members = {key: value for key, value in data.items() if key not in NO_ANSWERS}
+    members = {key: value for key, value in data.items() if key not in NO_ANSWERS and key != TOLERANCES}
+    members.update({f"{TOLERANCES}.{name}": value for name, value in data.get(TOLERANCES, {}).items()})  # beside the metrics' own
     groups = {key for key, value in members.items() if isinstance(value, dict) or isinstance(value, list) and any(isinstance(v, dict) for v in value)}
     within = [keys_of(members[key]) for key in groups]
     return (set(members) - groups).union(*(keys for keys, _ in within)), groups.union(*(more for _, more in within))

@@ -1,6 +1,7 @@
 """HTML from values. Every text from outside goes through `text`."""
 import html
 import json
+import math
 import re
 from decimal import Decimal
 from pathlib import Path
@@ -138,11 +139,20 @@ def column(name, values=()):
     return (title, "mm", 1e3) if unit == "m" and sizes and median(sizes) < SMALL_M else (title, unit, 1)
 
 
-def columns(names, rows):
-    """Heading cells of numbers, and for each row its cells; `rows`: lists of numbers or None, of these names."""
+def deserved_digits(value, tolerance, most):
+    """How many of `most` significant digits a tolerance leaves a number, one at least."""
+    if not value or not tolerance:
+        return most
+    return max(1, min(most, math.floor(math.log10(abs(value))) - math.floor(math.log10(tolerance)) + 1))
+
+
+def columns(names, rows, tolerances=None):
+    """Heading cells of numbers, and for each row its cells; `rows`: lists of numbers or None, of these names, `tolerances`: of them."""
+    tolerances = tolerances or [[None] * len(names)] * len(rows)
     heads = [column(name, [v for v in values if v is not None]) for name, values in zip(names, zip(*rows))]
     return ([heading_cell(text(title), True, unit) for title, unit, _ in heads],
-            [[number_cell(None if v is None else v * factor, 3) for v, (_, _, factor) in zip(row, heads)] for row in rows])
+            [[number_cell(None if v is None else v * factor, deserved_digits(v, t, 3)) for v, t, (_, _, factor) in zip(row, within, heads)]
+             for row, within in zip(rows, tolerances)])
 
 
 def fill(file, values):

@@ -50,6 +50,12 @@ class Run(results.Run):
         metrics = self.summary.get("metrics")
         return number_or_none(metrics.get(key)) if isinstance(metrics, dict) else None
 
+    def tolerance(self, section, key):
+        """By how much a metric may be wrong; None where that is not known."""
+        found = self.summary.get("tolerances")
+        name = key if section == "metrics" else f"{section}.{key}"
+        return number_or_none(found.get(name)) if isinstance(found, dict) else None
+
     @cached_property
     def sections(self):
         """The groups of metrics in summary.json, by their names: what columns.json documents."""
@@ -84,7 +90,8 @@ def find_run(runs, name):
 
 
 def runs_section(runs):
-    numbers, cells = columns(METRICS, [[run.metric(name) for name in METRICS] for run in runs])
+    numbers, cells = columns(METRICS, [[run.metric(name) for name in METRICS] for run in runs],
+                             [[run.tolerance("metrics", name) for name in METRICS] for run in runs])
     rows = []
     for run, measured in zip(runs, cells):
         outcome = text(run.outcome.replace("_", " ")) + ("" if run.expected else ' <b class="bad">✗ unexpected</b>')

@@ -276,7 +276,8 @@ TEST(DescribeCommand, PrintsTheSchema) {
 }
 
 TEST(DescribeCommand, ExplainsEveryMetric) {
-  for (const auto& [name, unit, meaning, value, better] : metrics_without_values(1)) {
+  for (const Metric& metric : metrics_without_values(1)) {
+    const std::string& name = metric.name;
     const ProgramRun run = hapbench_here({"describe", name});
     EXPECT_EQ(run.status, 0) << name << run.err;
     EXPECT_EQ(run.out.find("metric " + name), 0u) << run.out;

@@ -116,6 +116,16 @@ TEST(Deserved, HasItsUsualDigitsWithoutAToleranceOrBeneathIt) {
   EXPECT_EQ(deserved(std::nan(""), 1e-3), "-");
 }
 
+TEST(Deserved, DigitsAreNeverNone) {
+  EXPECT_EQ(deserved_digits(0.0612, 0.0112, 3), 1);
+  EXPECT_EQ(deserved_digits(0.523, 0.02, 3), 2);
+  EXPECT_EQ(deserved_digits(0.0416, 0.0003, 3), 3);
+  EXPECT_EQ(deserved_digits(0.0416, 3e-9, 3), 3);
+  EXPECT_EQ(deserved_digits(0.005, 0.0101, 3), 1) << "no more than its size is known";
+  EXPECT_EQ(deserved_digits(1440.0, {}, 3), 3);
+  EXPECT_EQ(deserved_digits(0.0, 1.0, 3), 3);
+}
+
 TEST(Deserved, OfADifferenceWithinItsToleranceIsNothing) {
   EXPECT_EQ(deserved_difference(-0.062, 0.1), "0");
   EXPECT_EQ(deserved_difference(-1.234, 0.1), "-1.2");
