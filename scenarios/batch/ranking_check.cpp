@@ -162,7 +162,7 @@ FinerScene finer_scene(const BatchPlan& plan, std::size_t scenario, Finer finer)
   if (scene.overrides.empty()) return scene;
   try {
     std::vector<std::string> overrides = plan.definition.overrides;
-    overrides.push_back("rendering.algorithm=" + plan.definition.algorithms[0]);
+    overrides.push_back("rendering.algorithm=" + plan.definition.algorithms[0]);  // on record it has this one
     overrides.insert(overrides.end(), scene.overrides.begin(), scene.overrides.end());
     check_named_files(load_scenario(plan.scenarios[scenario], overrides));
   } catch (const InputError& error) {
@@ -188,11 +188,12 @@ std::optional<std::size_t> best_of(const std::vector<double>& keys, bool ranked)
   return static_cast<std::size_t>(best - keys.begin());
 }
 
-std::vector<std::optional<double>> numbers_of(const League& league, std::size_t scenario, std::size_t metric) {
+std::vector<std::optional<double>> numbers_of(const League& league, std::size_t scenario, std::size_t metric,
+                                              std::optional<double> Standing::*part) {
   std::vector<std::optional<double>> numbers;
   for (std::size_t a = 0; a < league.runs.algorithms.size(); ++a) {
     const bool failed = league.failures(scenario, a) > 0;
-    numbers.push_back(failed ? std::nullopt : league.at(scenario, a, metric).mean);
+    numbers.push_back(failed ? std::nullopt : league.at(scenario, a, metric).*part);
   }
   return numbers;
 }
@@ -205,8 +206,10 @@ void add_columns(const League& coarse, std::size_t before, const League& fine, s
     const std::vector<double> keys = keys_of(coarse, before, m), keys_after = keys_of(fine, after, m);
     RankingColumn& column = columns.emplace_back(named);
     column.metric = coarse.runs.metrics[m];
-    column.before = numbers_of(coarse, before, m);
-    column.after = numbers_of(fine, after, m);
+    column.before = numbers_of(coarse, before, m, &Standing::mean);
+    column.after = numbers_of(fine, after, m, &Standing::mean);
+    column.tolerance_before = numbers_of(coarse, before, m, &Standing::tolerance);
+    column.tolerance_after = numbers_of(fine, after, m, &Standing::tolerance);
     column.verdict = judged_column(keys, keys_after, ranked);
     column.best_before = best_of(keys, ranked);
     column.best_after = best_of(keys_after, ranked);
@@ -224,6 +227,7 @@ FinerPlan finer_plan(const BatchPlan& plan, Finer finer, std::vector<RankingColu
   FinerPlan fine{.plan = plan, .places = {}, .changes = {}};
   fine.plan.scenarios.clear();
   fine.plan.names.clear();
+  fine.plan.on_record.clear();
   if (finer == Finer::step) fine.plan.stride = 2;
   for (std::size_t s = 0; s < plan.scenarios.size(); ++s) {
     FinerScene scene = finer_scene(plan, s, finer);
@@ -233,6 +237,11 @@ FinerPlan finer_plan(const BatchPlan& plan, Finer finer, std::vector<RankingColu
     }
     fine.plan.scenarios.push_back(plan.scenarios[s]);
     fine.plan.names.push_back(plan.names[s]);
+    if (!plan.on_record.empty()) {
+      const auto each = static_cast<std::ptrdiff_t>(plan.size() / plan.scenarios.size());
+      const auto first = plan.on_record.begin() + static_cast<std::ptrdiff_t>(s) * each;
+      fine.plan.on_record.insert(fine.plan.on_record.end(), first, first + each);
+    }
     fine.plan.scenario_overrides.push_back(scene.overrides);
     fine.places.push_back(s);
     fine.changes.push_back(scene.change);
@@ -298,7 +307,11 @@ const Field<RankingRow> kRankingFields[] = {
     {{"best_before", "", "the best algorithm as compared; empty where nothing is ranked"},
      [](const RankingRow& r) { return r.name(r.column.best_before); }},
     {{"best_after", "", "the best with half the spacing or step"},
-     [](const RankingRow& r) { return r.name(r.column.best_after); }}};
+     [](const RankingRow& r) { return r.name(r.column.best_after); }},
+    {{"tolerance_before", "by name", "by how much `before` may be wrong; empty where that is not known"},
+     [](const RankingRow& r) { return r.number(r.column.tolerance_before); }},
+    {{"tolerance_after", "by name", "the same of `after`"},
+     [](const RankingRow& r) { return r.number(r.column.tolerance_after); }}};
 
 std::vector<RankingRow> ranking_rows(const RankingCheck& check) {
   std::vector<RankingRow> rows;

@@ -56,6 +56,7 @@ struct RankingColumn {
   std::string metric;  ///< empty without a change
   /// The number of each law; none where a law failed or has no such number.
   std::vector<std::optional<double>> before = {}, after = {};
+  std::vector<std::optional<double>> tolerance_before = {}, tolerance_after = {};  ///< of these
   ColumnVerdict verdict = {Holding::unchecked};
   std::optional<std::size_t> best_before = {}, best_after = {};  ///< of a metric of which less or more is better
 };

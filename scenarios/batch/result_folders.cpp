@@ -51,17 +51,6 @@ std::vector<fs::path> paths_in(const Json& json, const char* name) {
   return paths;
 }
 
-ResultList read_list(const fs::path& file) {
-  std::error_code error;
-  if (!fs::is_regular_file(file, error)) return {};
-  try {
-    const Json json = parse_json(read_text_file(file, kLargestJsonFile));
-    return {paths_in(json, "runs"), paths_in(json, "tables")};
-  } catch (const InputError&) {
-    return {};
-  }
-}
-
 void write_list(const fs::path& file, const ResultList& list) {
   const auto texts = [](const std::vector<fs::path>& paths) {
     Json json = Json::array();
@@ -104,9 +93,21 @@ ResultPairs pair_results(const fs::path& a, const fs::path& b) {
   return pairs;
 }
 
+ResultList results_on_record(const fs::path& directory) {
+  const fs::path file = directory / kResultListFile;
+  std::error_code error;
+  if (!fs::is_regular_file(file, error)) return {};
+  try {
+    const Json json = parse_json(read_text_file(file, kLargestJsonFile));
+    return {paths_in(json, "runs"), paths_in(json, "tables")};
+  } catch (const InputError&) {
+    return {};
+  }
+}
+
 void replace_earlier_results(const fs::path& directory, const ResultList& now) {
   const fs::path file = directory / kResultListFile;
-  const ResultList earlier = read_list(file);
+  const ResultList earlier = results_on_record(directory);
   std::error_code ignored;
   for (const fs::path& run : earlier.runs) {
     if (contains(now.runs, run) || !lies_below(directory, run)) continue;
@@ -122,7 +123,7 @@ void replace_earlier_results(const fs::path& directory, const ResultList& now) {
 }
 
 void forget_results_if_none(const fs::path& directory) {
-  const ResultList list = read_list(directory / kResultListFile);
+  const ResultList list = results_on_record(directory);
   std::error_code ignored;
   const auto is_there = [&](const fs::path& path) {
     return fs::exists(directory / path, ignored) && !fs::is_empty(directory / path, ignored);

@@ -37,6 +37,8 @@ struct BatchPlan {
   /// Further overrides of each scenario, which come after those of the definition; may be empty as a whole.
   std::vector<std::vector<std::string>> scenario_overrides;
   std::int64_t stride = 1;  ///< TimeFields::stride of all runs
+  /// Of a comparison on record the scenario of each run, with its algorithm, seed and start; none of others.
+  std::vector<ScenarioText> on_record = {};
 
   std::size_t size() const { return scenarios.size() * definition.algorithms.size() * definition.seeds; }
   BatchRun run(std::size_t number) const;
@@ -45,6 +47,10 @@ struct BatchPlan {
 /// Loads every scenario with every algorithm and reads the files they name. Throws InputError for the first that is
 /// wrong, for two scenarios of one name, and where jitter cannot shift the start because the motion prescribes it.
 BatchPlan plan_batch(BatchDefinition definition);
+
+/// The plan of a comparison whose results are in a folder, from the scenarios that its runs keep there; none where the
+/// folder holds no comparison of algorithms. Throws InputError when a scenario of it cannot be read.
+std::optional<BatchPlan> comparison_on_record(const std::filesystem::path& folder);
 
 /// The scenario of one run. Thread-safe. The start is shifted by a vector whose length is the definition's jitter and
 /// whose direction depends only on the run's seed, so that all algorithms start from the same places. Directions are

@@ -14,6 +14,8 @@
 #include "scenarios/batch/run_batch.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/description/metric_sections.hpp"
+#include "scenarios/input/json_file.hpp"
+#include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/compare_devices.hpp"
 #include "scenarios/program/ranking_text.hpp"
 #include "scenarios/program/result_tables.hpp"
@@ -72,14 +74,14 @@ bool checks_ranking(const CompareOptions& options) {
 }
 
 /// Makes the directories and removes the results of an earlier comparison from them.
-void prepare(const fs::path& out, const BatchPlan& plan, bool league, bool ranking) {
+void prepare(const fs::path& out, const BatchPlan& plan, bool league) {
   ResultList results;
   for (std::size_t i = 0; i < plan.size(); ++i) results.runs.push_back(run_directory(plan, i));
   for (std::size_t s = 0; s < plan.scenarios.size(); ++s) {
     results.tables.push_back(scenario_directory(plan, s) / "comparison.csv");
   }
   if (league) results.tables.emplace_back("league.csv");
-  if (ranking) results.tables.emplace_back(kRankingFile);
+  results.tables.emplace_back(kRankingFile);  // `report` makes it later, too
   for (const fs::path& run : results.runs) require_writable_directory(out / run);
   replace_earlier_results(out, results);
 }
@@ -178,8 +180,9 @@ Table standings(const League& league, std::size_t metric, Detail detail) {
       if (detail == Detail::rank) continue;
       cells.push_back(significant(standing.ratio_to_best, 3));
       if (detail == Detail::spread) {
-        cells.insert(cells.end(), {standing.mean ? deserved(*standing.mean, standing.standard_error) : "-",
-                                   significant(standing.spread, 2)});
+        const auto tolerance = std::max(standing.standard_error, standing.tolerance);
+        cells.insert(cells.end(),
+                     {standing.mean ? deserved(*standing.mean, tolerance) : "-", significant(standing.spread, 2)});
       }
     }
     table.add(std::move(cells));
@@ -314,16 +317,24 @@ Json summaries_json(const BatchPlan& plan, const BatchReport& report, bool leagu
 }
 
 /// Repeats the comparison more finely. Without a league its columns are those of the printed table.
-RankingCheck ranking_of(const CompareOptions& options, const BatchPlan& plan, const BatchReport& report) {
-  std::vector<std::string> metrics = options.metrics;
-  if (!wants_league(options, plan)) {
+RankingCheck ranking_of(const BatchPlan& plan, const BatchReport& report, bool league, std::vector<std::string> metrics,
+                        const BatchOptions& batch) {
+  if (!league) {
     metrics = compared_metrics();
     if (have_reference(report.runs)) metrics.insert(metrics.end(), kFidelityMetrics, std::end(kFidelityMetrics) - 1);
   }
-  BatchOptions batch;
-  batch.jobs = options.common.jobs > 0 ? options.common.jobs : available_threads();
-  batch.progress = !options.common.output.quiet;
   return check_ranking(plan, make_league(league_runs(plan, report, metrics)), batch);
+}
+
+/// The metrics of a league's table, in their order.
+std::vector<std::string> league_metrics(const fs::path& file) {
+  std::vector<std::string> metrics;
+  const std::string text = read_text_file(file, kLargestJsonFile);
+  for (CsvReader rows{LineReader(text), file}; rows.next();) {
+    const std::string metric(rows.cells().at(2));
+    if (std::find(metrics.begin(), metrics.end(), metric) == metrics.end()) metrics.push_back(metric);
+  }
+  return metrics;
 }
 
 /// Reports runs that diverge although their scenario does not expect it, the only expectation that concerns every
@@ -361,14 +372,17 @@ int compare(const CompareOptions& options) {
   const BatchPlan plan = plan_of(options);
   const fs::path out = directory_of(options, plan);
   print_warnings(plan.warnings);
-  prepare(out, plan, wants_league(options, plan), checks_ranking(options));
+  prepare(out, plan, wants_league(options, plan));
   announce_large_output(expected_bytes(plan));
 
   std::optional<RankingCheck> ranking;
   const BatchReport report = [&] {
     try {
       BatchReport runs = run_batch(plan, batch_options(options, plan, out));
-      if (checks_ranking(options)) ranking = ranking_of(options, plan, runs);
+      BatchOptions batch = batch_options(options, plan, out);
+      if (options.common.jobs == 0) batch.jobs = available_threads();
+      if (checks_ranking(options))
+        ranking = ranking_of(plan, runs, wants_league(options, plan), options.metrics, batch);
       return runs;
     } catch (const Stopped&) {
       forget_results_if_none(out);
@@ -401,6 +415,23 @@ int compare(const CompareOptions& options) {
 }
 
 }  // namespace
+
+void check_comparison(const fs::path& folder, bool quiet) {
+  std::error_code ignored;
+  const fs::path file = folder / kRankingFile, league = folder / "league.csv";
+  if (fs::is_regular_file(file, ignored)) return;
+  try {
+    const std::optional<BatchPlan> plan = comparison_on_record(folder);
+    if (!plan) return;
+    const BatchOptions batch{.directory = std::nullopt, .jobs = available_threads(), .progress = !quiet};
+    const BatchReport report = run_batch(*plan, batch);
+    const bool has_league = fs::is_regular_file(league, ignored);
+    const std::vector<std::string> metrics = has_league ? league_metrics(league) : std::vector<std::string>();
+    write_ranking(file, ranking_of(*plan, report, has_league, metrics, batch));
+  } catch (const InputError& error) {
+    print_note(fmt::format("{}: whether the ranking holds cannot be checked: {}", folder.string(), error.what()));
+  }
+}
 
 std::vector<Table::Column> league_headings() {
   return joined_headings({standing_columns(26, Detail::rank), standing_columns(1, Detail::spread), law_columns()});

@@ -12,8 +12,11 @@ namespace hapbench {
 namespace {
 
 std::string moved_text(const RankingCheck& check, const RankingColumn& column, std::size_t law) {
-  const auto number = [](const std::optional<double>& value) { return value ? significant(*value, 3) : "none"; };
-  return fmt::format("{} {} -> {}", check.algorithms[law], number(column.before[law]), number(column.after[law]));
+  const auto number = [](const std::optional<double>& value, const std::optional<double>& tolerance) {
+    return value ? significant(*value, deserved_digits(*value, tolerance, 3)) : "none";
+  };
+  return fmt::format("{} {} -> {}", check.algorithms[law], number(column.before[law], column.tolerance_before[law]),
+                     number(column.after[law], column.tolerance_after[law]));
 }
 
 /// The numbers behind a verdict.

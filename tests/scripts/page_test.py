@@ -5,7 +5,7 @@ import json
 import re
 import shlex
 
-from fixture import hapbench, main
+from fixture import PROGRAM, hapbench, main, ran
 from pictures_fixture import Given, make_runs
 
 setUpModule = make_runs
@@ -58,7 +58,29 @@ class Page(Given):
         for verdict in {row[7] for row in rows}:
             self.assertIn(verdict, section)
         self.assertIn("environment.spacing_m 0.1 mm -&gt; 50 um", section)
-        self.assertIn("not checked", self.page(self.root / "peg"))
+
+    def test_a_page_made_later_checks_the_ranking(self):
+        # The springs have no points, so that one half of the check has a reason in its place.
+        words = ["peg_in_hole_2d_shaped_stiffness", "springs_limited_mean", "--algorithms", "mean,shaped_stiffness", "--seeds", "2",
+                 "--jitter", "1e-6", "--by", "force_max_N,inside_max_m", "--set", "time.steps=200", "--quiet"]
+        hapbench("compare", *words, "--out", self.root / "later")
+        hapbench("compare", *words, "--check", "--out", self.root / "at_once")
+        page = self.page(self.root / "later")
+        self.assertEqual(*((self.root / name / "ranking.csv").read_bytes() for name in ("later", "at_once")))
+        self.assertIn("springs have no points", re.search(r'<section id="ranking".*?</section>', page, re.S)[0])
+        # Nothing of it is left when the comparison is made anew.
+        hapbench("compare", *words, "--out", self.root / "later")
+        self.assertFalse((self.root / "later" / "ranking.csv").exists())
+
+    def test_a_page_says_why_no_ranking_was_checked(self):
+        folder = self.copy("peg")
+        (folder / "ranking.csv").unlink(missing_ok=True)
+        file = folder / "mean" / "scenario.effective.json"
+        file.write_text(file.read_text().replace('"algorithm": "mean"', '"algorithm": "of_a_plugin"'))
+        done = ran(PROGRAM, "report", folder, "--out", self.root / "page.html")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertRegex(done.stderr, "whether the ranking holds cannot be checked: .*mean/scenario.effective.json.*of_a_plugin")
+        self.assertIn("cannot be checked", (self.root / "page.html").read_text(encoding="utf-8"))
 
     def test_the_commands_repeat_the_run(self):
         page = self.page(self.root / "springs")

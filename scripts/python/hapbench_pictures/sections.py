@@ -5,7 +5,7 @@ from pathlib import Path
 
 from hapbench.columns import read_records
 from hapbench_report.json_input import at, number_or_none
-from hapbench_report.markup import cell, columns, command, heading_cell, named, number, number_cell, table, text
+from hapbench_report.markup import cell, columns, command, deserved_digits, heading_cell, named, number, number_cell, table, text
 from hapbench_report.runs import plugin_text, provenance_of, provenance_section
 
 from .given import differing
@@ -80,7 +80,7 @@ def warnings_section(runs, labels):
 def metric_rows(runs, labels, section, names, *beside):
     """Headings and rows of a table of metrics, a row for each run; `beside`: pairs of a heading and its cells."""
     values = [[number_or_none(run.sections.get(section, {}).get(name)) for name in names] for run in runs]
-    headings, cells = columns(names, values)
+    headings, cells = columns(names, values, [[run.tolerance(section, name) for name in names] for run in runs])
     rows = [[cell(named(label), classes="name"), *(of[i] for _, of in beside), *own] for i, (label, own) in enumerate(zip(labels, cells))]
     return [heading_cell("Run"), *(heading for heading, _ in beside), *headings], rows
 
@@ -100,7 +100,8 @@ def every_metric(runs, labels):
     """All that the summaries measured, section by section."""
     names = dict.fromkeys((section, name) for run in runs for section, values in run.sections.items() for name in values)
     rows = [[cell(text(section)), cell(f"<code>{text(name)}</code>"),
-             *(metric_cell(run.sections.get(section, {}).get(name)) for run in runs)] for section, name in names]
+             *(metric_cell(run.sections.get(section, {}).get(name), run.tolerance(section, name)) for run in runs)]
+            for section, name in names]
     headings = [heading_cell("Section"), heading_cell("Metric"), *(heading_cell(text(label), True) for label in labels)]
     return table(headings, rows, "All metrics")
 
@@ -112,7 +113,7 @@ def ranking_section(words):
         if (folder / RANKING).is_file():
             found += ranking_table(read_records(folder / RANKING))
         elif (folder / COMPARISON).is_file() or (folder / LEAGUE).is_file():
-            found += f"<p class=note>{text(folder)}: not checked; <code>hapbench compare --check</code> does.</p>"
+            found += f"<p class=note>{text(folder)}: cannot be checked; <code>hapbench report</code> says why.</p>"
     return found
 
 
@@ -140,11 +141,12 @@ def ranking_table(records):
 def moved(record):
     if record is None:
         return ""
-    return " → ".join(number(float(record[key]), 3) if record[key] else "–" for key in ("before", "after"))
+    return " → ".join(number(float(record[key]), deserved_digits(float(record[key]), float(record.get(f"tolerance_{key}") or 0), 3))
+                      if record[key] else "–" for key in ("before", "after"))
 
 
-def metric_cell(value):
-    return number_cell(value, 5) if not isinstance(value, (list, dict, str)) else cell(text(json.dumps(value)), classes="number")
+def metric_cell(value, tolerance):
+    return number_cell(value, deserved_digits(value, tolerance, 5)) if not isinstance(value, (list, dict, str)) else cell(text(json.dumps(value)), classes="number")
 
 
 def scenario_section(runs, labels):
