@@ -22,7 +22,6 @@ constexpr double kMostSteps = 256.0;  ///< along the core's way in a row
 constexpr std::size_t kParts = 16384, kSettled = 12;
 /// Look-ups for the deepest row; a solid in closed form answers ten times as fast.
 constexpr std::size_t kMostLooks = 8000, kMostLooksAtForms = 100000;
-constexpr double kTolerance = 0.2;
 /// Rows are bound together where the tip centre's places differ by less than this in half widths, and the axes in
 /// length; one search is enough for rows in which no point of the tool differs by more than this.
 constexpr double kTogether = 0.1, kAlike = 0.01;
@@ -178,9 +177,8 @@ InsideMetrics InsideObserver::metrics() {
   metrics.max_within = metrics.settled_within = InsideSearch::kTolerance * width + error;
   if (every_ > 0) return metrics;
   find_deepest(metrics);
-  metrics.settled_within = kTolerance * width + error;
   for (const auto& sample : settled_.all()) {
-    if (const auto depth = search_.depth(sample.pose, 0.0, kTolerance)) metrics.settled.push_back(*depth);
+    if (const auto depth = search_.depth(sample.pose)) metrics.settled.push_back(*depth);
   }
   for (const double depth : metrics.settled) metrics.max = std::max(metrics.max, std::optional(depth));
   if (metrics.at_most)

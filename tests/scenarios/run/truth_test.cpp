@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -8,6 +9,8 @@
 #include <tuple>
 
 #include "results/summary/outcome_names.hpp"
+#include "scenarios/description/bundled_scenarios.hpp"
+#include "scenarios/description/load_scenario.hpp"
 #include "scenarios/description/parts.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/studies/stability/judged_run.hpp"
@@ -339,6 +342,22 @@ TEST_F(ScenesMadeToFool, AreSeenWithoutARecord) {
       EXPECT_NEAR(*few.settled_median(), *exact.settled_median(), 0.2 * *exact.max);
     }
   }
+}
+
+/// A drill that spins in a hole: its edge is in the wall by a fiftieth of its width, which a coarser search does not
+/// see.
+TEST(SettledDepth, OfEveryRowIsKnownToTheTolerance) {
+  LoadedScenario loaded = load_scenario(find_scenario("task3_spin_signed_distance"), {"time.steps=400", "expect={}"});
+  const InsideMetrics few = *run_scenario(loaded, std::nullopt, false).summary.metrics.inside;
+  loaded.scenario.record.inside = true;
+  RunTables tables;
+  const InsideMetrics all = *run_scenario(loaded, std::nullopt, false, &tables).summary.metrics.inside;
+  const double half_width = make_tool(loaded.scenario)->half_width();
+  const double least = *std::min_element(all.settled.begin(), all.settled.end());
+  ASSERT_GT(least, 1.5 * InsideSearch::kTolerance * half_width);
+  EXPECT_GE(*std::min_element(few.settled.begin(), few.settled.end()),
+            least - InsideSearch::kTolerance * (least + half_width));
+  EXPECT_EQ(few.settled_within, InsideSearch::kTolerance * half_width);
 }
 
 TEST_F(ScenesMadeToFool, AreNotStable) {
