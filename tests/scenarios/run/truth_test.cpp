@@ -347,7 +347,8 @@ TEST_F(ScenesMadeToFool, AreSeenWithoutARecord) {
 /// A drill that spins in a hole: its edge is in the wall by a fiftieth of its width, which a coarser search does not
 /// see.
 TEST(SettledDepth, OfEveryRowIsKnownToTheTolerance) {
-  LoadedScenario loaded = load_scenario(find_scenario("task3_spin_signed_distance"), {"time.steps=400", "expect={}"});
+  const std::vector<std::string> changes = {"time.steps=400", "expect={}"};
+  LoadedScenario loaded = load_scenario(find_scenario("task3_spin_signed_distance"), changes);
   const InsideMetrics few = *run_scenario(loaded, std::nullopt, false).summary.metrics.inside;
   loaded.scenario.record.inside = true;
   RunTables tables;
