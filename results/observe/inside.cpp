@@ -26,15 +26,14 @@ constexpr std::size_t kMostLooks = 8000, kMostLooksAtForms = 100000;
 /// length; one search is enough for rows in which no point of the tool differs by more than this.
 constexpr double kTogether = 0.1, kAlike = 0.01;
 
-/// Distance from the tip centre back to the place half a width within the body.
+}  // namespace
+
 double way_to_core(const ToolShape& tool) {
   ContactBuffer tip(1);
   tip.push(0, Vec3::Zero(), Vec3::UnitZ());
   tool.surface_constraints(ToolPose{}, Vec3::Zero(), 0.0, tip);
   return std::clamp(tool.half_width() - tip.depth[0], 0.0, tool.half_width());
 }
-
-}  // namespace
 
 InsideMetrics& InsideMetrics::operator+=(const InsideMetrics& other) {
   const auto bound = [](const InsideMetrics& m) {

@@ -26,6 +26,9 @@ struct InsideMetrics {
   std::optional<double> settled_median() const;
 };
 
+/// Distance from the tip centre back to the tool's core, the place half its width within the body [m].
+double way_to_core(const ToolShape& tool);
+
 /// How the tool passed the surface in a run: by its tip centre, and by its core, the place half the tool's width within
 /// the body behind its tip (of a ball the tip centre, of a flat tip half a width behind it).
 struct Passage {

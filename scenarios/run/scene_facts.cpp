@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "results/observe/inside.hpp"
 #include "scenarios/description/descriptions.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/encounter.hpp"
@@ -112,8 +113,8 @@ std::vector<std::string> unit_warnings(const LoadedScenario& loaded, const ToolS
   return warnings;
 }
 
-/// Says that a tool starts behind a surface, on the side away from its normals, and not in contact alone.
-std::optional<std::string> wrong_side_warning(const PointShell& shell, const ToolShape& tool, const Vec3& tip) {
+/// Says that a place of a tool is behind a surface by more than `least` [m], on the side away from its normals.
+std::optional<std::string> wrong_side_warning(const PointShell& shell, const Vec3& tip, double least) {
   std::size_t nearest = 0;
   double distance = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < shell.size(); ++i) {
@@ -123,7 +124,7 @@ std::optional<std::string> wrong_side_warning(const PointShell& shell, const Too
   constexpr double kBehind = 0.7;  // cosine of 45 degrees: not beside an edge
   const SurfacePoint point = shell.point(nearest);
   const double behind = point.normal.dot(point.position - tip);
-  if (behind < tool.half_width() || behind < kBehind * distance) return std::nullopt;
+  if (behind <= least || behind < kBehind * distance) return std::nullopt;
   return fmt::format(
       "the tool starts {} behind the surface, on the side its normals point away from: does it start inside, or are the "
       "normals of an open scan inverted (environment.flip_normals)?",
@@ -184,7 +185,8 @@ SceneFacts scene_facts(const LoadedScenario& loaded) {
   for (std::string& warning : unit_warnings(loaded, *tool, surface)) facts.warnings.push_back(std::move(warning));
   // check_named_files has warned of an open scan.
   if (!is_open_scan(scenario, loaded.files)) {
-    if (auto warning = wrong_side_warning(*shell, *tool, pose.position)) facts.warnings.push_back(*warning);
+    if (auto warning = wrong_side_warning(*shell, pose.position, tool->half_width()))
+      facts.warnings.push_back(*warning);
   }
   return facts;
 }
@@ -192,11 +194,13 @@ SceneFacts scene_facts(const LoadedScenario& loaded) {
 std::optional<std::string> inverted_scan_warning(const LoadedScenario& loaded) {
   const Scenario& scenario = loaded.scenario;
   if (!is_open_scan(scenario, loaded.files)) return std::nullopt;
-  const bool is_free = std::holds_alternative<FreePosition>(scenario.motion.position);
-  const auto shell = make_shell(scenario, loaded.files);
-  if (shell->size() == 0) return std::nullopt;
-  const Vec3 tip = is_free ? scenario.initial.position : make_motion(scenario, loaded.files)->position_at(0.0);
-  return wrong_side_warning(*shell, *make_tool(scenario, loaded.files), tip);
+  SimulationParts parts;
+  parts.tool = make_tool(scenario, loaded.files);
+  parts.shell = make_shell(scenario, loaded.files);
+  if (parts.shell->size() == 0) return std::nullopt;
+  add_hand_and_motion(scenario, loaded.files, {}, parts);
+  const ToolPose pose = first_pose(scenario, parts);
+  return wrong_side_warning(*parts.shell, pose.position - way_to_core(*parts.tool) * pose.axis, 0.0);
 }
 
 namespace {

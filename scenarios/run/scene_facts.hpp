@@ -48,9 +48,9 @@ struct SceneFacts {
 /// Builds the environment and places the tool. Throws InputError when a named file cannot be used.
 SceneFacts scene_facts(const LoadedScenario& loaded);
 
-/// Says that the tool starts behind an open scan, a mesh or points, whose normals may be inverted. None for other
-/// environments, which cost nothing. One pass over the points of the shell, some 4 ns each; the shell is the run's,
-/// made once in a process. Throws InputError when a named file cannot be used.
+/// Says that the tool starts with its core behind an open scan, a mesh or points, whose normals may be inverted. None
+/// for other environments, which cost nothing. One pass over the points of the shell, some 4 ns each; the shell is the
+/// run's, made once in a process. Throws InputError when a named file cannot be used.
 std::optional<std::string> inverted_scan_warning(const LoadedScenario& loaded);
 
 // ---- Quantities as people read them. ----

@@ -131,6 +131,17 @@ TEST_F(NewOnASheet, TurnsNormalsThatPointAwayFromTheTool) {
   const std::string behind = hapbench({"validate", path("made.json"), "--set", "environment.flip_normals=false"}).err;
   EXPECT_NE(behind.find("1.5 mm behind the surface"), std::string::npos) << behind;
   EXPECT_EQ(hapbench({"validate", path("made.json")}).err.find("behind"), std::string::npos);
+  // So does one whose shank goes through the surface, its tip 0.2 mm behind it.
+  Vec3 touching(turned["initial"]["position_m"][0], turned["initial"]["position_m"][1],
+                turned["initial"]["position_m"][2]);
+  touching.z() -= 0.0013;
+  const std::string place = "initial.position_m=" + Json({touching.x(), touching.y(), touching.z()}).dump();
+  for (const bool flip : {false, true}) {
+    const std::string said_of_it = hapbench({"validate", path("made.json"), "--set", place, "--set",
+                                             std::string("environment.flip_normals=") + (flip ? "true" : "false")})
+                                       .err;
+    EXPECT_EQ(said_of_it.find("behind the surface") != std::string::npos, !flip) << said_of_it;
+  }
   // Those that run it say the same, once.
   const std::string made_json = path("made.json"), turn = "environment.flip_normals=", out = path("out");
   const std::string words = behind.substr(behind.find("the tool starts 1.5 mm behind"));
