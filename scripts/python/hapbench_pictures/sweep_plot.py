@@ -320,7 +320,7 @@ def sketch_sweep(sweep, terminal):
     lines = [f"{', '.join(map(sweep.axis, range(len(sweep.fields))))}: {axis(sweep.metric)}"]
     for label, value, row in zip(labels, values, rows):
         bar = full * int(round(max(0.0, abs(value) / most) * room)) if np.isfinite(value) else row["outcome"]
-        number = f"{value:.4g}" if np.isfinite(value) else "?"
+        number = f"{value:.3g}" if np.isfinite(value) else "?"
         lines.append(f"{label[:wide]:<{wide}} {number:>11} {bar}")
     return lines
 
@@ -376,7 +376,7 @@ def shaded(sweep, grid, letters, terminal):
     bend = np.log if spread_logarithmically(finite) else (lambda x: x)
     low, high = (float(finite.min()), float(finite.max())) if finite.size else (0.0, 0.0)
     span = (bend(high) - bend(low)) or 1.0
-    key = [f"{axis(sweep.metric)}: {shades[0]!r} {low:.4g} ... {shades[-1]!r} {high:.4g}"]
+    key = [f"{axis(sweep.metric)}: {shades[0]!r} {low:.3g} ... {shades[-1]!r} {high:.3g}"]
     key += [f"{letter} {name.replace('_', ' ')}" for name, letter in sweep.letters.items()]
     key += ["? no value"] if (~np.isfinite(values) & (letters == "")).any() else []
     lines = ["   ".join(key)]
