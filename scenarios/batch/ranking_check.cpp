@@ -8,10 +8,9 @@
 #include <nlohmann/json.hpp>
 
 #include "results/io/csv_writer.hpp"
+#include "scenarios/batch/finer_scene.hpp"
 #include "scenarios/description/load_scenario.hpp"
 #include "scenarios/run/assemble.hpp"
-#include "scenarios/run/scene_facts.hpp"
-#include "sim/mesh/triangle_soup.hpp"
 
 namespace hapbench {
 namespace {
@@ -86,79 +85,11 @@ ColumnVerdict judged_column(std::span<const double> before, std::span<const doub
 
 namespace {
 
-/// A scenario sampled more finely: the overrides that do it, and how a reader is told.
-struct FinerScene {
-  std::vector<std::string> overrides;  ///< none where it cannot be
-  std::string change;
-};
-
-/// The field that sets the distance of the shell's points, and this distance [m]; none where nothing does.
-struct PointDistance {
-  const char* field;
-  double metres;
-  bool is_given = true;
-};
-
-struct PointDistanceOf {
-  const NamedFiles& files;
-
-  std::optional<PointDistance> operator()(const SpringsEnvironment&) const { return std::nullopt; }
-  std::optional<PointDistance> operator()(const PointShellEnvironment&) const { return std::nullopt; }
-  std::optional<PointDistance> operator()(const BlockEnvironment& block) const { return {{"grid_m", block.grid}}; }
-  std::optional<PointDistance> operator()(const MeshEnvironment& mesh) const {
-    if (mesh.spacing) return {{"spacing_m", *mesh.spacing}};
-    const TriangleSoup soup = files.at(kEnvironmentFile).mesh().triangles();
-    double area = 0.0;
-    for (const auto& [a, b, c] : soup.triangles) {
-      const Vec3& corner = soup.vertices[a];
-      area += 0.5 * (soup.vertices[b] - corner).cross(soup.vertices[c] - corner).norm();
-    }
-    return {{"spacing_m", std::sqrt(area / static_cast<double>(soup.vertices.size())), false}};
-  }
-  template <class Analytic>
-  std::optional<PointDistance> operator()(const Analytic& shape) const {
-    if constexpr (requires { shape.spacing; }) {
-      return {{"spacing_m", shape.spacing}};
-    } else {
-      return std::nullopt;
-    }
-  }
-};
-
-FinerScene with_half_spacing(const LoadedScenario& loaded) {
-  const Environment& environment = loaded.scenario.environment;
-  if (std::holds_alternative<SpringsEnvironment>(environment)) return {{}, "springs have no points"};
-  const auto distance = std::visit(PointDistanceOf{loaded.files}, environment);
-  if (!distance) return {{}, "no field sets the distance of the environment's points; only a finer file could tell"};
-  const double half = 0.5 * distance->metres;
-  return {{fmt::format("environment.{}={}", distance->field, half)},
-          fmt::format("environment.{} {}{} -> {}", distance->field, distance->is_given ? "" : "none, about ",
-                      length_text(distance->metres), length_text(half))};
-}
-
-FinerScene with_half_step(const Scenario& scenario) {
-  const TimeFields& time = scenario.time;
-  FinerScene finer{{fmt::format("time.step_s={}", 0.5 * time.step), fmt::format("time.steps={}", 2 * time.steps)},
-                   fmt::format("time.step_s {:.3g} -> {:.3g} ms", 1e3 * time.step, 0.5e3 * time.step)};
-  const auto keep_delay = [&finer](const char* field, auto steps) {
-    if (!(steps > 0)) return;
-    finer.overrides.push_back(fmt::format("{}={}", field, 2 * steps));
-    finer.change += fmt::format(", {} {} -> {}", field, steps, 2 * steps);
-  };
-  if (const auto* device = std::get_if<ImpedanceDeviceConfig>(&scenario.device))
-    keep_delay("device.delay_samples", device->delay_samples);
-  if (const auto* device = std::get_if<AdmittanceDeviceConfig>(&scenario.device))
-    keep_delay("device.servo.delay_samples", device->servo.delay);
-  if (!std::holds_alternative<FreePosition>(scenario.motion.position))
-    finer.change += "; the motion is prescribed, so that only laws with a memory notice";
-  return finer;
-}
-
 /// The scenario of that number in the plan, sampled more finely, after a look whether it can be.
 FinerScene finer_scene(const BatchPlan& plan, std::size_t scenario, Finer finer) {
   const std::size_t each = plan.size() / plan.scenarios.size();
   const LoadedScenario loaded = scenario_of(plan, scenario * each);
-  FinerScene scene = finer == Finer::spacing ? with_half_spacing(loaded) : with_half_step(loaded.scenario);
+  FinerScene scene = finer == Finer::spacing ? with_finer_spacing(loaded, 2) : with_finer_step(loaded.scenario, 2);
   if (scene.overrides.empty()) return scene;
   try {
     std::vector<std::string> overrides = plan.definition.overrides;
