@@ -77,7 +77,10 @@ Json axis_content(const Axis& axis) {
   if (!axis.range || (axis.steps > 0 && axis.steps <= kMostListed)) {
     Json values = Json::array();
     for (std::size_t i = 0; i < axis.size(); ++i) values.push_back(axis.value(i));
-    return {{"path", axis.path}, {"values", std::move(values)}};
+    Json content = {{"path", axis.path}, {"values", std::move(values)}};
+    for (const Axis::Along& along : axis.along)
+      content["along"].push_back({{"set", along.overrides}, {"metrics_every_rows", along.stride}});
+    return content;
   }
   Json content = {{"path", axis.path},
                   {"range", {axis.range->from, axis.range->to}},
@@ -164,7 +167,9 @@ std::vector<std::string> overrides_of(const SweepPlan& plan, std::size_t run) {
 }
 
 LoadedScenario scenario_of(const SweepPlan& plan, std::size_t run) {
-  return load_scenario(plan.scenario, overrides_of(plan, run));
+  LoadedScenario loaded = load_scenario(plan.scenario, overrides_of(plan, run));
+  loaded.scenario.time.stride = plan.points.stride(run);
+  return loaded;
 }
 
 }  // namespace hapbench

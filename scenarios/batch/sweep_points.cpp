@@ -193,7 +193,19 @@ std::vector<std::string> SweepPoints::values(std::size_t run) const {
 std::vector<std::string> SweepPoints::overrides(std::size_t run) const {
   std::vector<std::string> overrides = values(run);
   for (std::size_t a = 0; a < axes_.size(); ++a) overrides[a].insert(0, axes_[a].path + "=");
+  for (std::size_t a = 0; a < axes_.size(); ++a) {
+    if (axes_[a].along.empty()) continue;
+    const std::vector<std::string>& more = axes_[a].along[place(run, a)].overrides;
+    overrides.insert(overrides.end(), more.begin(), more.end());
+  }
   return overrides;
+}
+
+std::int64_t SweepPoints::stride(std::size_t run) const {
+  std::int64_t stride = 1;
+  for (std::size_t a = 0; a < axes_.size(); ++a)
+    if (!axes_[a].along.empty()) stride *= axes_[a].along[place(run, a)].stride;
+  return stride;
 }
 
 }  // namespace hapbench

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -31,6 +32,13 @@ struct Axis {
   std::vector<std::string> values = {};  ///< listed values, unless there is a range
   std::optional<Range> range = {};       ///< replaces listed values
   std::size_t steps = 0;                 ///< number of values of a range on a grid
+
+  /// What has to change along with a value: further overrides, and the TimeFields::stride of its runs.
+  struct Along {
+    std::vector<std::string> overrides;
+    std::int64_t stride = 1;
+  };
+  std::vector<Along> along = {};  ///< of each listed value; empty: nothing
 
   /// Number of values; 0 for the range of a sample.
   std::size_t size() const { return range ? steps : values.size(); }
@@ -75,8 +83,9 @@ class SweepPoints {
   std::string value(std::size_t run, std::size_t axis) const;
   /// One value for each axis.
   std::vector<std::string> values(std::size_t run) const;
-  /// The values as overrides "path=value".
+  /// The values as overrides "path=value", then what goes along with them.
   std::vector<std::string> overrides(std::size_t run) const;
+  std::int64_t stride(std::size_t run) const;
 
  private:
   std::vector<Axis> axes_;

@@ -294,7 +294,8 @@ class Search {
   FieldWay way_;
 };
 
-/// The scenario's own number at a path, or null.
+}  // namespace
+
 Json own_value(const Scenario& scenario, const std::string& path) {
   const Json effective = effective_scenario(scenario, scenario.directory);
   const Json* node = &effective;
@@ -310,6 +311,8 @@ Json own_value(const Scenario& scenario, const std::string& path) {
   }
   return *node;
 }
+
+namespace {
 
 /// The end nearest to 2^10 or 2^-10 times the value that the field allows.
 double allowed_end(double value, int sign, const std::function<bool(double)>& allowed) {

@@ -69,6 +69,9 @@ struct FieldLimit {
   std::optional<double> other_tolerance() const;
 };
 
+/// The scenario's own value at a path, or null.
+Json own_value(const Scenario& scenario, const std::string& path);
+
 /// The question about a field in a range, or by default between a thousandth and a thousandfold (2^10) of the
 /// scenario's own value, as far as the field allows. The range is logarithmic when both ends are above 0. Throws
 /// InputError when the field is no number, when the ends are none of its values, and, without a range, when its value

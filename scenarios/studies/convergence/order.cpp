@@ -1,0 +1,117 @@
+#include "scenarios/studies/convergence/order.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace hapbench {
+namespace {
+
+/// Smaller differences, relative to the results, are rounding errors of as many as 10^6 steps and say nothing about the
+/// order.
+constexpr double kRoundingShare = 1e-10;
+constexpr double kGciSafety = 1.25;        // Roache's factor for three and more levels
+constexpr double kAsymptoticWithin = 0.1;  // of GCI_21 / (r^p GCI_32) from 1
+constexpr std::size_t kLeastLevels = 3;
+
+/// The first level of those that count.
+std::size_t first_counted(std::span<const LevelResult> levels) {
+  std::size_t first = levels.size();
+  while (first > 0 && levels[first - 1].result && levels[first - 1].outcome == levels.back().outcome) --first;
+  return first;
+}
+
+std::string too_few_reason(std::span<const LevelResult> levels, std::size_t first) {
+  const std::size_t count = levels.size() - first;
+  if (first == 0) return fmt::format("{} levels are fewer than three", count);
+  const LevelResult& last = levels[first - 1];
+  if (count == 0)
+    return fmt::format("the finest run, at {}, has no value of the metric ({})", last.setting, last.outcome);
+  const std::string why = last.result ? fmt::format("ends with {}", last.outcome)
+                                      : fmt::format("has no value of the metric ({})", last.outcome);
+  return fmt::format("the run at {} {}, which leaves {} levels; an order takes three", last.setting, why, count);
+}
+
+/// The first count of contacts that differs between the levels.
+std::string switching_reason(std::span<const LevelResult> last) {
+  for (std::size_t i = 0; i < last.front().contacts.size(); ++i) {
+    const auto& [name, coarse] = last.front().contacts[i];
+    for (const LevelResult& level : last.subspan(1)) {
+      if (level.contacts[i].second == coarse) continue;
+      return fmt::format("contacts switch between the last levels ({} is {:.10g} at {}, {:.10g} at {})", name, coarse,
+                         last.front().setting, level.contacts[i].second, level.setting);
+    }
+  }
+  return "";
+}
+
+/// Why the orders and differences of the last four levels, or three, are not credible.
+std::string incredible_reason(std::span<const double> f, std::span<const std::optional<double>> orders, double most) {
+  const std::size_t last = f.size() - 1, from = last >= 3 ? last - 3 : 0;
+  for (std::size_t i = from + 2; i <= last; ++i) {
+    const double coarse = f[i - 2] - f[i - 1], fine = f[i - 1] - f[i];
+    if (coarse * fine < 0.0) return "the differences between the last levels change their sign";
+    if (!orders[i]) return "some of the last levels differ by rounding only";
+    if (*orders[i] <= 0.0) return fmt::format("the differences do not shrink (order {:.2g})", *orders[i]);
+    if (*orders[i] > most)
+      return fmt::format("the order {:.3g} is not credible: more than twice the formal one, {:g}", *orders[i],
+                         most / 2);
+  }
+  return "";
+}
+
+}  // namespace
+
+Convergence convergence_of(std::span<const LevelResult> levels, double ratio, double formal_order,
+                           const std::string& no_order) {
+  Convergence c;
+  c.orders.resize(levels.size());
+  c.errors.resize(levels.size());
+  const std::size_t first = first_counted(levels), count = levels.size() - first;
+  std::vector<double> f;
+  double largest = 0.0;
+  for (const LevelResult& level : levels.subspan(first)) {
+    f.push_back(*level.result);
+    largest = std::max(largest, std::abs(f.back()));
+  }
+  const auto is_rounding = [&](double difference) { return std::abs(difference) <= kRoundingShare * largest; };
+  for (std::size_t i = 2; i < count; ++i) {
+    const double coarse = f[i - 2] - f[i - 1], fine = f[i - 1] - f[i];
+    if (!is_rounding(coarse) && !is_rounding(fine) && coarse * fine > 0.0)
+      c.orders[first + i] = std::log(coarse / fine) / std::log(ratio);
+  }
+  if (count >= 2) {
+    const auto last = f.end() - static_cast<std::ptrdiff_t>(std::min(count, kLeastLevels));
+    c.band = {*std::min_element(last, f.end()), *std::max_element(last, f.end())};
+    for (std::size_t i = 0; i < count; ++i) {
+      double error = c.band->second - c.band->first;
+      for (std::size_t j = i + 1; j < count; ++j) error = std::max(error, std::abs(f[i] - f[j]));
+      c.errors[first + i] = error;
+    }
+  }
+
+  if (c.reason = no_order; !c.reason.empty()) return c;
+  if (count < kLeastLevels) {
+    c.reason = too_few_reason(levels, first);
+  } else if (is_rounding(f[count - 2] - f[count - 1])) {
+    c.reason = "the last levels differ by rounding only";
+  } else if (c.reason = switching_reason(levels.last(kLeastLevels)); c.reason.empty()) {
+    c.reason = incredible_reason(f, std::span(c.orders).subspan(first), 2.0 * formal_order);
+  }
+  if (!c.reason.empty()) return c;
+
+  const double p = *c.orders.back(), growth = std::pow(ratio, p), fine = f[count - 1] - f[count - 2];
+  c.order = p;
+  c.extrapolated = f[count - 1] + fine / (growth - 1.0);
+  if (f[count - 1] != 0.0) c.gci = kGciSafety * std::abs(fine) / (std::abs(f[count - 1]) * (growth - 1.0));
+  for (std::size_t i = 0; i < count; ++i) c.errors[first + i] = kGciSafety * std::abs(f[i] - *c.extrapolated);
+  const auto in_range = [&](std::size_t i) {  // of the levels i - 2, i - 1 and i
+    const double gci_21 = (f[i - 1] - f[i - 2]) / std::abs(f[i - 1]), gci_32 = (f[i] - f[i - 1]) / std::abs(f[i]);
+    return std::abs(gci_21 / (growth * gci_32) - 1.0) <= kAsymptoticWithin;
+  };
+  c.asymptotic = in_range(count - 1) && (count == kLeastLevels || in_range(count - 2));
+  return c;
+}
+
+}  // namespace hapbench

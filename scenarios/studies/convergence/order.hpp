@@ -1,0 +1,49 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+/// How far a number is from converged: observed order, Richardson's value and grid convergence index (Roache 1994; ASME
+/// V&V 20) of a metric at levels h, h/r, h/r^2, …; or why no order can be stated.
+namespace hapbench {
+
+/// What a run at one level gave.
+struct LevelResult {
+  std::string setting;           ///< the field's value, for reasons
+  std::string outcome;           ///< how the run ended
+  std::optional<double> result;  ///< none where the run failed or has no such number
+  /// Counts of contacts, by name. Where they differ between the last levels, contacts have switched between them, and
+  /// the differences are not those of one smooth motion.
+  std::vector<std::pair<std::string, double>> contacts = {};
+};
+
+/// The verdict on a metric.
+struct Convergence {
+  std::optional<double> order;         ///< observed at the three finest levels; none where none is credible
+  std::string reason;                  ///< why there is none, in a clause; empty with an order
+  std::optional<double> extrapolated;  ///< Richardson's value; only with an order, as the next two
+  std::optional<double> gci;           ///< of the finest level, relative to its result; none where that is 0
+  /// GCI_21 / (r^p GCI_32) is 1 within 0.1 at the three finest levels, and where a fourth one counts with the same p at
+  /// the three before: with p of its own the first is merely f_3 / f_2.
+  bool asymptotic = false;
+  /// Least and largest result of the last three levels that count, or of two; none with fewer.
+  std::optional<std::pair<double, double>> band;
+  /// Of each level: the order that it and the two before show; none where there is none.
+  std::vector<std::optional<double>> orders;
+  /// Of each level, in the metric's unit: with an order 1.25 |f - f*|, which at the finest level is its GCI; without
+  /// one the largest distance from a finer level, and at least the width of the band: what the levels show, no bound.
+  std::vector<std::optional<double>> errors;
+};
+
+/// Judges the results of levels from coarse to fine, each by `ratio` (> 1) finer than the one before. Those count that
+/// follow the last one that ended otherwise than the finest or has no result. No order is stated where `no_order` is
+/// the reason; with fewer than three of them; where contacts switch between the last three; where the last two differ
+/// by rounding only; where differences change their sign within the last four; or where an order within the last four
+/// is not in (0, 2 formal].
+Convergence convergence_of(std::span<const LevelResult> levels, double ratio, double formal_order,
+                           const std::string& no_order = "");
+
+}  // namespace hapbench

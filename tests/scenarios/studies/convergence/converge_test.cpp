@@ -1,0 +1,206 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "scenarios/description/bundled_scenarios.hpp"
+#include "scenarios/studies/convergence/level_sweep.hpp"
+#include "sim/loop/integrators/table.hpp"
+#include "tests/results/files.hpp"
+#include "tests/scenarios/support/errors.hpp"
+#include "tests/scenarios/support/scenarios.hpp"
+
+/// Convergence studies of scenes with a closed form, and of scenes that have no order.
+namespace hapbench::converge_test {
+namespace {
+
+struct Study {
+  LevelSweep levels;
+  SweepPlan plan;
+  SweepReport report;
+
+  Convergence of(const std::string& metric) const { return convergence_of(levels, plan, report.rows, metric); }
+  std::vector<std::optional<double>> results(const std::string& metric) const {
+    std::vector<std::optional<double>> results;
+    for (const SweepRow& row : report.rows) results.push_back(level_result(plan, row, metric));
+    return results;
+  }
+};
+
+Study studied(const ScenarioText& scenario, const std::string& path = kStepPath, std::size_t count = 5) {
+  const test::TemporaryDirectory directory;
+  LevelSweep levels = level_sweep(load_scenario(scenario, {}), path, count, 2.0);
+  SweepPlan plan = plan_sweep(scenario, {}, SweepPoints({levels.axis}), 1, false);
+  SweepOptions options;
+  options.directory = directory.path();
+  SweepReport report = run_sweep(plan, options);
+  return {std::move(levels), std::move(plan), std::move(report)};
+}
+Study studied(const Json& scenario, const std::string& path = kStepPath, std::size_t count = 5) {
+  return studied(ScenarioText{test::data_directory() / "converge.json", scenario}, path, count);
+}
+
+constexpr double kStep = 1e-3, kStiffness = 1000.0, kMass = 0.1, kStart = 1e-3;
+constexpr int kSteps = 40;
+/// Of the last row of the coarsest level, at which all are measured.
+constexpr double kLastTime = (kSteps - 1) * kStep;
+
+/// A mass on one spring that holds from both sides.
+Json spring(double zeta, const char* integrator) {
+  return {{"time", {{"step_s", kStep}, {"steps", kSteps}}},
+          {"environment", {{"type", "springs"}, {"groups", {{{"direction", {1, 0, 0}}, {"count", 1}}}}}},
+          {"initial", {{"position_m", {kStart, 0, 0}}}},
+          {"integrator", {{"type", integrator}}},
+          {"rendering",
+           {{"algorithm", "summation"},
+            {"stiffness_N_per_m", kStiffness},
+            {"mass_kg", kMass},
+            {"damping_ratio", zeta},
+            {"friction", {{"mu_s_N_s_per_m", 0}, {"mu_f_s_per_m", 0}}}}}};
+}
+
+/// Free oscillation from rest at `start` about 0.
+double oscillation(double start, double omega, double zeta, double t) {
+  const double damped = omega * std::sqrt(1.0 - zeta * zeta);
+  return start * std::exp(-zeta * omega * t) * (std::cos(damped * t) + zeta * omega / damped * std::sin(damped * t));
+}
+
+TEST(Converge, SmoothMotionHasTheOrderOfEveryIntegrator) {
+  const double omega = std::sqrt(kStiffness / kMass);
+  for (const IntegratorEntry* integrator : kIntegrators) {
+    for (const double zeta : {0.0, 0.2}) {
+      const Study study = studied(spring(zeta, integrator->info.name));
+      const int formal = zeta > 0.0 ? integrator->damped_order : integrator->order;
+      EXPECT_EQ(study.levels.formal_order, formal) << integrator->info.name;
+      const Convergence c = study.of("final_position_m.x");
+      ASSERT_TRUE(c.order) << integrator->info.name << " " << zeta << ": " << c.reason;
+      // Between the last levels omega h is 0.1 / 8 to 0.1 / 16; the next term is so much of the first, times some
+      // units.
+      EXPECT_NEAR(*c.order, formal, 0.1) << integrator->info.name << " " << zeta;
+      const double exact = oscillation(kStart, omega, zeta, kLastTime);
+      EXPECT_LE(std::abs(*c.extrapolated - exact), *c.errors.back()) << integrator->info.name << " " << zeta;
+      EXPECT_LT(*c.gci, 0.05) << "an index that holds everything says nothing";
+    }
+  }
+}
+
+/// A flat tip that rests on a plane and swings about its depth of rest, F / K, without leaving it.
+TEST(Converge, LastingContactWithAPlaneHasTheFormalOrder) {
+  constexpr double kForce = 1.0, kZeta = 0.1, kDeep = 0.5 * kForce / kStiffness;  // to 1.5 F / K
+  const Json scene = {{"time", {{"step_s", kStep}, {"steps", kSteps}}},
+                      {"environment", {{"type", "plane"}, {"size_m", 0.004}, {"spacing_m", 0.0004}}},
+                      {"tool", {{"diameter_m", 0.01}, {"length_m", 0.01}, {"tip", "flat"}}},
+                      {"initial", {{"position_m", {0, 0, -kDeep}}}},
+                      {"hand", {{"type", "force"}, {"x_N", 0}, {"y_N", 0}, {"z_N", -kForce}}},
+                      {"rendering",
+                       {{"algorithm", "mean"},
+                        {"stiffness_N_per_m", kStiffness},
+                        {"mass_kg", kMass},
+                        {"damping_ratio", kZeta},
+                        {"friction", {{"mu_s_N_s_per_m", 0}, {"mu_f_s_per_m", 0}}}}}};
+  const Convergence c = studied(scene).of("final_position_m.z");
+  ASSERT_TRUE(c.order) << c.reason;
+  EXPECT_NEAR(*c.order, 1.0, 0.1);
+  EXPECT_TRUE(c.asymptotic);
+  const double rest = -kForce / kStiffness;
+  const double exact = rest + oscillation(-kDeep - rest, std::sqrt(kStiffness / kMass), kZeta, kLastTime);
+  EXPECT_LE(std::abs(*c.extrapolated - exact), *c.errors.back());
+}
+
+TEST(Converge, PegWhoseContactsSwitchHasNoOrder) {
+  const Study study = studied(read_scenario_text(find_scenario("peg_in_hole_2d_shaped_stiffness")));
+  for (const char* metric : {"force_max_N", "force_rms_above_30Hz_N", "velocity_total_variation_m_per_s"}) {
+    const Convergence c = study.of(metric);
+    EXPECT_FALSE(c.order || c.extrapolated || c.gci) << metric;
+    EXPECT_TRUE(c.band) << metric;
+  }
+  EXPECT_NE(study.of("velocity_total_variation_m_per_s").reason.find("contacts switch"), std::string::npos);
+}
+
+/// All levels are measured at the same times: a prescribed motion gives the same force steps, whatever the step, and
+/// none that a quarter of the step makes a quarter of.
+TEST(Converge, MeasuresAtTheTimesOfTheCoarsestRows) {
+  Json scene = spring(0.2, "leapfrog");
+  scene["motion"] = {{"position",
+                      {{"type", "prescribed"},
+                       {"x_m", {{"type", "sine"}, {"mean", 0}, {"amplitude", 1e-3}, {"period_s", 0.013}}},
+                       {"y_m", 0},
+                       {"z_m", 0}}}};
+  scene["rendering"]["damping_ratio"] = 0;
+  const Study study = studied(scene);
+  for (const char* metric : {"force_max_N", "force_step_max_N", "force_reversals"}) {
+    const auto results = study.results(metric);
+    // Times are products of two roundings each, over a period of 2 pi 1e-3 m.
+    for (const auto& result : results) EXPECT_NEAR(*result, *results.front(), 1e-12 * *results.front()) << metric;
+    EXPECT_NE(study.of(metric).reason.find("rounding"), std::string::npos) << study.of(metric).reason;
+  }
+  EXPECT_EQ(study.report.rows[4].steps, 16u * kSteps);
+}
+
+TEST(Converge, KeepsTheLengthOfDelays) {
+  Json scene = spring(0.2, "leapfrog");
+  scene["device"] = {{"type", "impedance"}, {"handle_mass_kg", 0.1}, {"delay_samples", 1.5}};
+  const LevelSweep levels = level_sweep(load_scenario(ScenarioText{"x.json", scene}, {}), kStepPath, 3, 2.0);
+  EXPECT_EQ(levels.axis.values, (std::vector<std::string>{"0.001", "0.0005", "0.00025"}));
+  EXPECT_EQ(levels.axis.along[2].stride, 4);
+  EXPECT_EQ(levels.axis.along[2].overrides, (std::vector<std::string>{"time.steps=160", "device.delay_samples=6"}));
+  EXPECT_EQ(levels.formal_order, 1.0);
+}
+
+TEST(Converge, HasNoNumberWhereARunHasNone) {
+  EXPECT_NE(studied(spring(0.2, "leapfrog")).of("inside_max_m").reason.find("has no value of the metric"),
+            std::string::npos);
+  // Without damping leapfrog bears K dt^2 / M < 4: dt < 0.02 s, so that of 0.064, 0.032, 0.016, ... the first two
+  // diverge.
+  Json scene = spring(0.0, "leapfrog");
+  scene["time"] = {{"step_s", 0.064}, {"steps", 400}};
+  const Study study = studied(scene);
+  EXPECT_EQ(study.report.rows[0].outcome, "diverges");
+  EXPECT_EQ(study.report.rows[1].outcome, "diverges");
+  EXPECT_FALSE(study.results("force_max_N")[0]);
+  const Convergence c = study.of("force_max_N");
+  EXPECT_FALSE(c.errors[0] || c.errors[1]);
+  EXPECT_TRUE(c.errors[2] && c.band);
+  const Convergence three = studied(scene, kStepPath, 4).of("force_max_N");
+  EXPECT_NE(three.reason.find("which leaves 2 levels"), std::string::npos) << three.reason;
+}
+
+TEST(Converge, SaysWhereAFieldHasNoEffect) {
+  const Convergence c = studied(spring(0.2, "leapfrog"), "tool.diameter_m", 3).of("force_max_N");
+  EXPECT_FALSE(c.order);
+  EXPECT_EQ(c.reason, "tool.diameter_m has no effect here: all runs are the same, bit for bit");
+}
+
+TEST(Converge, StatesNoOrderOfNoise) {
+  Json scene = spring(0.2, "leapfrog");
+  scene["device"] = {{"type", "admittance"}, {"sensor", {{"noise_N", 0.01}}}};
+  const LoadedScenario loaded = load_scenario(ScenarioText{"x.json", scene}, {});
+  EXPECT_EQ(level_sweep(loaded, kStepPath, 3, 2.0).no_order,
+            "the noise of the force sensor is drawn anew in every step");
+  EXPECT_EQ(level_sweep(loaded, "tool.diameter_m", 3, 2.0).no_order, "") << "other fields draw the same noise";
+}
+
+TEST(Converge, RefusesFieldsThatAreNoLengths) {
+  const LoadedScenario loaded = load_scenario(ScenarioText{"x.json", spring(0.2, "leapfrog")}, {});
+  for (const char* path : {"time.steps", "rendering.algorithm", "environment.spacing_m", "environment.bilateral",
+                           "initial.position_m.1"}) {
+    const auto error = test::input_error_of([&] { level_sweep(loaded, path, 3, 2.0); });
+    ASSERT_TRUE(error) << path;
+    EXPECT_NE(std::string(error->what()).find("a number > 0 and no integer"), std::string::npos) << error->what();
+  }
+  EXPECT_TRUE(test::input_error_of([&] { level_sweep(loaded, kStepPath, 3, 1.5); }));
+  EXPECT_EQ(level_sweep(loaded, "tool.diameter_m", 3, 1.25).axis.values.size(), 3u);
+}
+
+TEST(Converge, BeginsAMeshWithItsOwnPoints) {
+  const Json scene = test::minimal_scenario("mesh");
+  const LoadedScenario loaded = load_scenario(ScenarioText{test::data_directory() / "x.json", scene}, {});
+  // A cube of 10 mm: 8 vertices on 600 mm^2.
+  const double apart = std::sqrt(6e-4 / 8.0);
+  const LevelSweep levels = level_sweep(loaded, "environment.spacing_m", 3, 2.0);
+  EXPECT_NEAR(std::stod(levels.axis.values[0]), apart, 1e-9);
+  EXPECT_NEAR(std::stod(levels.axis.values[2]), apart / 4.0, 1e-9);
+  EXPECT_EQ(level_sweep(loaded, "environment.spacing_m", 3, 2.0, true).axis.values[0], "null");
+}
+
+}  // namespace
+}  // namespace hapbench::converge_test
