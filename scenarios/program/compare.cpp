@@ -20,6 +20,7 @@
 #include "scenarios/program/ranking_text.hpp"
 #include "scenarios/program/result_tables.hpp"
 #include "scenarios/program/run_table.hpp"
+#include "scenarios/program/sure.hpp"
 #include "scenarios/run/encounter.hpp"
 #include "scenarios/run/recorders.hpp"
 #include "scenarios/run/stop_signal.hpp"
@@ -37,6 +38,7 @@ struct CompareOptions {
   double jitter = 0.0;
   bool html = false;
   bool check = false;
+  bool sure = false;
   Skips skips = Skips::on;
   CompareDevicesOptions common;  ///< all others, most of which a comparison of algorithms has, too
 };
@@ -74,7 +76,7 @@ bool checks_ranking(const CompareOptions& options) {
 }
 
 /// Makes the directories and removes the results of an earlier comparison from them.
-void prepare(const fs::path& out, const BatchPlan& plan, bool league) {
+void prepare(const fs::path& out, const BatchPlan& plan, bool league, bool sure) {
   ResultList results;
   for (std::size_t i = 0; i < plan.size(); ++i) results.runs.push_back(run_directory(plan, i));
   for (std::size_t s = 0; s < plan.scenarios.size(); ++s) {
@@ -82,6 +84,11 @@ void prepare(const fs::path& out, const BatchPlan& plan, bool league) {
   }
   if (league) results.tables.emplace_back("league.csv");
   results.tables.emplace_back(kRankingFile);  // `report` makes it later, too
+  for (std::size_t s = 0; sure && s < plan.scenarios.size(); ++s) {
+    for (const char* file :
+         {"sure_step/sweep.csv", "sure_step/sweep.json", "sure_spacing/sweep.csv", "sure_spacing/sweep.json"})
+      results.tables.push_back(scenario_directory(plan, s) / file);
+  }
   for (const fs::path& run : results.runs) require_writable_directory(out / run);
   replace_earlier_results(out, results);
 }
@@ -337,6 +344,20 @@ std::vector<std::string> league_metrics(const fs::path& file) {
   return metrics;
 }
 
+/// Refines the runs of each scenario, adds what was found to their summaries, and tells it.
+std::string add_sure(const CompareOptions& options, const BatchPlan& plan, const fs::path& out, Json& summaries) {
+  std::string text;
+  const std::vector<std::string>& algorithms = plan.definition.algorithms;
+  for (std::size_t s = 0; s < plan.scenarios.size(); ++s) {
+    const SureStudy study(plan.scenarios[s], options.common.overrides, algorithms, out / scenario_directory(plan, s),
+                          options.common.jobs, options.common.output);
+    if (plan.scenarios.size() > 1) text += "\n" + plan.names[s] + "\n";
+    text += study.text("algorithm", algorithms);
+    for (std::size_t a = 0; a < algorithms.size(); ++a) summaries[s * algorithms.size() + a]["sure"] = study.json(a);
+  }
+  return text;
+}
+
 /// Reports runs that diverge although their scenario does not expect it, the only expectation that concerns every
 /// algorithm: all of a single comparison, the first of a batch. Returns the exit status.
 int verdict(const BatchPlan& plan, const BatchReport& report, bool league) {
@@ -372,7 +393,7 @@ int compare(const CompareOptions& options) {
   const BatchPlan plan = plan_of(options);
   const fs::path out = directory_of(options, plan);
   print_warnings(plan.warnings);
-  prepare(out, plan, wants_league(options, plan));
+  prepare(out, plan, wants_league(options, plan), options.sure);
   announce_large_output(expected_bytes(plan));
 
   std::optional<RankingCheck> ranking;
@@ -399,6 +420,7 @@ int compare(const CompareOptions& options) {
     last = ranking_text(*ranking) + last;
   }
   Json json = summaries_json(plan, report, wants_league(options, plan));
+  if (options.sure) last = add_sure(options, plan, out, json) + last;
   if (wants_league(options, plan)) {
     const League league = make_league(league_runs(plan, report, options.metrics));
     write_league(out / "league.csv", league);
@@ -468,14 +490,17 @@ void add_compare(CommandLine& line) {
       .needs(devices);
   command.add("--resolution", common.resolution, "with --devices: relative width of a limit (default: 0.01)")
       .needs(devices);
-  command.add("--seeds", options.seeds, "run each K times, time k with the scenario's seed + k (default: 1)")
-      .range(1, 10'000)
-      .excludes(devices);
-  command
-      .add("--jitter", options.jitter,
-           "shift the start by a vector of this length [m] whose direction depends on the seed and is the same for all "
-           "algorithms: gives a spread where nothing else is random")
-      .excludes(devices);
+  const CommandOption seeds =
+      command.add("--seeds", options.seeds, "run each K times, time k with the scenario's seed + k (default: 1)")
+          .range(1, 10'000)
+          .excludes(devices);
+  const CommandOption jitter =
+      command
+          .add(
+              "--jitter", options.jitter,
+              "shift the start by a vector of this length [m] whose direction depends on the seed and is the same for all "
+              "algorithms: gives a spread where nothing else is random")
+          .excludes(devices);
   command
       .add("--by", options.metrics,
            "metrics of the league, less is better: names of summary.json, separated by commas (default: " +
@@ -495,6 +520,14 @@ void add_compare(CommandLine& line) {
             "also repeat it at half the distance of the shell's points and at half the step, and say of each metric "
             "whether the ranking holds, drifts or flips (\"hapbench describe flips\"); --html does")
       .excludes(devices);
+  command
+      .flag(
+          "--sure", options.sure,
+          "also run each at a half and a quarter of the step, and of the distance of the shell's points, and print how "
+          "far that moves each number; of single seeds without jitter")
+      .excludes(devices)
+      .excludes(seeds)
+      .excludes(jitter);
   add_skip_option(command, options.skips);
   add_output_options(command, common.output);
   command.footer(

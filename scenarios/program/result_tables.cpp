@@ -136,7 +136,7 @@ std::vector<Table::Column> joined_headings(const std::vector<std::vector<Table::
 
 std::vector<Table::Column> printed_headings() {
   return joined_headings({run_headings(), league_headings(), limit_headings(false), limit_headings(true),
-                          device_headings(), stability_headings(), precision_headings("step"),
+                          converge_headings(), device_headings(), stability_headings(), precision_headings("step"),
                           precision_headings("call"), diff_headings(), sweep_headings(), shard_headings(),
                           claim_headings()});
 }
@@ -157,6 +157,8 @@ std::vector<DescribedTable> result_tables() {
   tables.push_back({"device_runs.csv", "of compare --devices: one line per run", device_run_columns()});
   tables.push_back({"limit.csv", "of limit: one line per algorithm", limit_columns()});
   tables.push_back({"limit_runs.csv", "of limit: one line per run", all(limit_run_columns())});
+  tables.push_back({"converge.csv", "of converge: one line per metric", converge_columns()});
+  tables.push_back({"converge_levels.csv", "of converge: one line per metric and level", converge_level_columns()});
   tables.push_back({"sweep.csv", "of sweep: one line per run", sweep_columns()});
   tables.push_back({"limits.csv", "of stability SCENARIO: one line per limit", stability_limit_columns()});
   tables.push_back({"root_locus.csv", "of stability SCENARIO: eigenvalues of a step as the case's number grows",

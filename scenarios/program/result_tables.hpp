@@ -33,6 +33,8 @@ inline constexpr Column kInconsistentColumn = {
 inline constexpr Column kAstrayColumn = {"astray", "1", "the same as inconsistent_runs, by its former name"};
 
 // The columns of tables that are defined as fields in the sources of their commands.
+std::vector<Column> converge_columns();
+std::vector<Column> converge_level_columns();
 std::vector<Column> limit_columns();
 std::span<const Column> limit_run_columns();
 std::vector<Column> device_limit_columns();
@@ -44,6 +46,7 @@ std::vector<Column> stress_columns();
 // The headings of printed tables, from which the tables are made; without those that are names of fields, metrics,
 // scenes or algorithms.
 std::vector<Table::Column> claim_headings();
+std::vector<Table::Column> converge_headings();
 std::vector<Table::Column> device_headings();
 std::vector<Table::Column> diff_headings();
 std::vector<Table::Column> league_headings();

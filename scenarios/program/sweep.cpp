@@ -187,7 +187,8 @@ int reprint(const SweepCommand& command) {
   return kSuccess;
 }
 
-/// Whoever starts an interrupted sweep anew must know that its finished runs are lost.
+}  // namespace
+
 void check_journal(const SweepPlan& plan, const SweepOptions& options) {
   const fs::path file = options.directory / (stem_of(options.shard) + ".journal");
   const std::size_t rows = Journal::count_rows(file);
@@ -201,6 +202,8 @@ void check_journal(const SweepPlan& plan, const SweepOptions& options) {
   print_note(
       fmt::format("{}: {} finished runs of another sweep, which was interrupted, are discarded", file.string(), rows));
 }
+
+namespace {
 
 int sweep(const SweepCommand& command) {
   if (!command.status.empty()) {

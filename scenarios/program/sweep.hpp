@@ -21,6 +21,10 @@ std::string summary_text(const SweepPlan& plan, const SweepReport& report, const
 /// The counts, and the rows that the report has.
 Json summary_json(const SweepPlan& plan, const SweepReport& report);
 
+/// Refuses to begin anew, without --resume, where the finished runs of the same sweep would be lost, and tells when
+/// those of another are.
+void check_journal(const SweepPlan& plan, const SweepOptions& options);
+
 struct SlurmOptions {
   std::size_t shards = 0;
   int cpus = 1;           ///< per task, which does as many runs at once

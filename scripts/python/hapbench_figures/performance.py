@@ -71,9 +71,14 @@ def draw_study(ax, results, study, column, label, scale, time_column, title):
         right = 300 if study == "integrators" else 1  # room for their names
         above = 2 if ax.get_legend() else 1
         ax.set(xlim=with_room(ax.dataLim.x0, right * ax.dataLim.x1), ylim=with_room(ax.dataLim.y0, above * ax.dataLim.y1))
+    number_ticks(ax)
+
+
+def number_ticks(ax):
+    """Numbers at 1, 2 and 5 along logarithmic axes that show too few powers of ten."""
     for axis in (ax.xaxis, ax.yaxis):
         low, high = axis.get_view_interval()
-        if high / low < 60:  # too few powers of ten: every tick has its number
+        if high / low < 60:
             axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
             axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
             axis.set_minor_formatter(NullFormatter())

@@ -1,4 +1,4 @@
-"""The pictures of `stability --map` and `limit`: classes of runs as coloured cells or marks, with the limits found; and
+"""The pictures of `stability --map`, `limit` and `converge`: classes of runs as coloured cells or marks, with the limits found; and
 which study a folder holds."""
 import copy
 from pathlib import Path
@@ -11,6 +11,7 @@ from hapbench_looks import look
 from hapbench_report.json_input import InputError
 from hapbench_style import BLACK, PETROL, SETTINGS, plt
 
+from .converge_plot import LEVELS, draw_converge
 from .given import axis
 
 MAP, LIMIT, LIMIT_RUNS = "stability_map_", "limit.csv", "limit_runs.csv"
@@ -26,7 +27,7 @@ def given_study(words):
 
 def is_study(path):
     return path.name.startswith(MAP) and path.is_file() or any(path.glob(f"{MAP}*.csv")) or \
-        any((path / name).is_file() for name in (LIMIT_RUNS, DEVICES))
+        any((path / name).is_file() for name in (LIMIT_RUNS, DEVICES, LEVELS))
 
 
 def study_figures(path):
@@ -35,6 +36,8 @@ def study_figures(path):
         with plt.rc_context(SETTINGS):
             if (path / LIMIT_RUNS).is_file():
                 return [("", draw_limit(Results(path)))]
+            if (path / LEVELS).is_file():
+                return [("", draw_converge(Results(path)))]
             if (path / DEVICES).is_file():
                 return [("", draw_devices(Results(path)))]
             results = Results(path.parent if path.is_file() else path)

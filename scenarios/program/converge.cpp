@@ -1,0 +1,358 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "results/io/csv_writer.hpp"
+#include "scenarios/batch/league.hpp"
+#include "scenarios/batch/parallel_for.hpp"
+#include "scenarios/description/bundled_scenarios.hpp"
+#include "scenarios/description/metric_sections.hpp"
+#include "scenarios/input/text_lines.hpp"
+#include "scenarios/program/command.hpp"
+#include "scenarios/program/result_tables.hpp"
+#include "scenarios/program/sure.hpp"
+#include "scenarios/program/sweep.hpp"
+#include "scenarios/run/assemble.hpp"
+#include "scenarios/run/stop_signal.hpp"
+#include "scenarios/studies/stability/field_limit.hpp"
+
+namespace hapbench {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kFewestLevels = 3, kMostLevels = 9;
+constexpr double kLargestRatio = 10.0;
+
+struct ConvergeOptions {
+  std::string scenario;
+  std::vector<std::string> metrics;
+  std::string field = kStepPath;
+  int levels = 5;
+  double ratio = 2.0;
+  std::string to;
+  bool resume = false;
+  unsigned jobs = 0;  ///< 0: one per thread of the machine
+  std::string out;
+  std::vector<std::string> overrides;
+  OutputOptions output;
+};
+
+/// The levels of a field with what a metric came to at each, and the verdict.
+struct ConvergeStudy {
+  const LevelSweep& levels;
+  std::span<const SweepRow> rows;
+  std::span<const std::optional<double>> seconds;  ///< of each run; none for one that was done before
+  std::string metric;
+  std::vector<std::optional<double>> results;
+  Convergence found;
+
+  /// Relative to the finest result, as the grid convergence index.
+  std::optional<double> relative_error(std::size_t level) const {
+    if (!found.errors[level] || *results.back() == 0.0) return std::nullopt;
+    return *found.errors[level] / std::abs(*results.back());
+  }
+};
+
+// ---- Files and JSON
+
+struct LevelRow {
+  const ConvergeStudy& study;
+  std::size_t level;
+};
+using LevelField = Field<LevelRow>;
+
+const LevelField kLevelFields[] = {
+    {{"metric", "", "name of the metric; its unit is part of the name"},
+     [](const LevelRow& r) -> Cell { return r.study.metric; },
+     LevelField::In::csv},
+    {{"field", "", "path of the field that is refined"},
+     [](const LevelRow& r) -> Cell { return r.study.levels.axis.path; },
+     LevelField::In::csv},
+    {{"value", "by field", "value of the field at this level"},
+     [](const LevelRow& r) { return cell_if(finite_number(r.study.levels.axis.values[r.level])); }},
+    {{"outcome", "", "how the run ended"}, [](const LevelRow& r) -> Cell { return r.study.rows[r.level].outcome; }},
+    {{"result", "by name",
+      "the metric, empty when the run has none; with shorter steps those of motion, force and "
+      "contact are taken at the times of the coarsest rows"},
+     [](const LevelRow& r) { return cell_if(r.study.results[r.level]); }},
+    {{"order", "1",
+      "observed order p = ln((f_1 - f_2) / (f_2 - f_3)) / ln r of this level and the two before; empty "
+      "where the differences have unlike signs or are rounding"},
+     [](const LevelRow& r) { return cell_if(r.study.found.orders[r.level]); }},
+    {{"error", "by name",
+      "with an order 1.25 |f - f*|, f* the extrapolated value; without one the largest distance from a finer level, or what the last three differ by where that is more; empty where fewer than two count"},
+     [](const LevelRow& r) { return cell_if(r.study.found.errors[r.level]); }},
+    {{"seconds", "s",
+      "processor time of the run without the making of its shell, of a short one the least of five; null for a level that was "
+      "done before --resume"},
+     [](const LevelRow& r) { return cell_if(r.study.seconds[r.level]); },
+     LevelField::In::json}};
+
+using OrderField = Field<ConvergeStudy>;
+
+const OrderField kOrderFields[] = {
+    {{"metric", "", "name of the metric; its unit is part of the name"},
+     [](const ConvergeStudy& s) -> Cell { return s.metric; }},
+    {{"field", "", "path of the field that is refined"},
+     [](const ConvergeStudy& s) -> Cell { return s.levels.axis.path; }},
+    {{"formal_order", "1",
+      "of the integrator; 1 with a device, which holds the force between samples; 2 of all fields "
+      "but the step"},
+     [](const ConvergeStudy& s) -> Cell { return s.levels.formal_order; }},
+    {{"order", "1", "observed at the three finest levels; empty where none is credible"},
+     [](const ConvergeStudy& s) { return cell_if(s.found.order); }},
+    {{"reason", "", "why no order is stated; empty with one"},
+     [](const ConvergeStudy& s) -> Cell { return s.found.reason; }},
+    {{"extrapolated", "by name", "Richardson's value f* = f_3 + (f_3 - f_2) / (r^p - 1); only with an order"},
+     [](const ConvergeStudy& s) { return cell_if(s.found.extrapolated); }},
+    {{"gci", "1",
+      "grid convergence index of the finest level, 1.25 |f_3 - f_2| / (|f_3| (r^p - 1)): its relative error "
+      "with a factor of safety; only with an order"},
+     [](const ConvergeStudy& s) { return cell_if(s.found.gci); }},
+    {{"asymptotic", "",
+      "true when GCI_21 / (r^p GCI_32) is 1 within 0.1 at the last three levels and, with the same p, "
+      "at the three before"},
+     [](const ConvergeStudy& s) -> Cell { return s.found.asymptotic; }},
+    {{"low", "by name", "least result of the last three levels that ended as the finest"},
+     [](const ConvergeStudy& s) { return s.found.band ? Cell(s.found.band->first) : Cell(); },
+     OrderField::In::csv},
+    {{"high", "by name", "the largest"},
+     [](const ConvergeStudy& s) { return s.found.band ? Cell(s.found.band->second) : Cell(); },
+     OrderField::In::csv}};
+
+std::vector<LevelRow> level_rows(const std::vector<ConvergeStudy>& studies) {
+  std::vector<LevelRow> rows;
+  for (const ConvergeStudy& study : studies)
+    for (std::size_t i = 0; i < study.rows.size(); ++i) rows.push_back({study, i});
+  return rows;
+}
+
+/// Times in a file of their own: the others are the same bytes in every run.
+void write_studies(const fs::path& directory, const std::vector<ConvergeStudy>& studies) {
+  FileSet files;
+  write_csv(directory / "converge.csv", kOrderFields, studies, &files);
+  write_csv(directory / "converge_levels.csv", kLevelFields, level_rows(studies), &files);
+  std::string times = "value,seconds\n";
+  const ConvergeStudy& any = studies.front();
+  for (std::size_t i = 0; i < any.rows.size(); ++i)
+    times +=
+        fmt::format("{},{}\n", any.levels.axis.values[i], any.seconds[i] ? fmt::format("{}", *any.seconds[i]) : "");
+  files.write(directory / "converge_levels_timing.csv", times);
+  files.commit();
+}
+
+Json study_json(const ConvergeStudy& study) {
+  Json json;
+  add_row(json, kOrderFields, study);
+  json["band"] = study.found.band ? Json::array({study.found.band->first, study.found.band->second}) : Json(nullptr);
+  Json& levels = json["levels"] = Json::array();
+  for (std::size_t i = 0; i < study.rows.size(); ++i) add_row(levels.emplace_back(), kLevelFields, {study, i});
+  return json;
+}
+
+// ---- Text
+
+std::string verdict_text(const ConvergeStudy& study) {
+  const Convergence& c = study.found;
+  if (c.order) {
+    const double error = *study.found.errors.back();
+    const bool three = std::ranges::count_if(c.errors, [](const auto& e) { return e.has_value(); }) == 3;
+    return fmt::format("order {:.2f}, {}: tends to {}{}", *c.order,
+                       three          ? "of three levels alone"
+                       : c.asymptotic ? "asymptotic"
+                                      : "not yet asymptotic",
+                       sure_text(*c.extrapolated, error), c.gci ? fmt::format(", GCI {:.2g} %", 100.0 * *c.gci) : "");
+  }
+  if (!c.band) return fmt::format("no order: {}", c.reason);
+  const auto [low, high] = *c.band;
+  return fmt::format("no order: {}; last levels {}", c.reason,
+                     low == high
+                         ? significant(low, 6)
+                         : fmt::format("{} ... {}", sure_number(low, high - low), sure_number(high, high - low)));
+}
+
+/// The coarsest level whose error and those of all finer ones are below, and what it costs.
+std::string enough_text(const ConvergeStudy& study, double most) {
+  const std::vector<std::string>& values = study.levels.axis.values;
+  std::size_t first = study.rows.size();
+  while (first > 0 && study.relative_error(first - 1) && *study.relative_error(first - 1) < most) --first;
+  const std::string below = fmt::format("below {:g} %: ", 100.0 * most);
+  const auto& finest = study.seconds.back();
+  if (first < study.rows.size()) {
+    const auto &seconds = study.seconds[first], &own = study.seconds.front();
+    return below + fmt::format("{} = {} ({:.2g} %{}){}{}", study.levels.axis.path, values[first],
+                               100.0 * *study.relative_error(first),
+                               study.found.order ? "" : " by what the levels show",
+                               seconds ? fmt::format(", {:.2g} s a run", *seconds) : "",
+                               first == 0       ? ", the coarsest that was tried"
+                               : seconds && own ? fmt::format(", {:.2g} times the first level's", *seconds / *own)
+                                                : "");
+  }
+  const auto error = study.relative_error(study.rows.size() - 1);
+  if (!study.found.asymptotic || !error || !finest) return below + "no level is known to be";
+  const double finer = std::pow(*error / most, 1.0 / *study.found.order);
+  const auto value = finite_number(values.back());
+  return below +
+         fmt::format("no level is; by this order {} = {:.2g} would be{}", study.levels.axis.path, *value / finer,
+                     study.levels.axis.path == kStepPath ? fmt::format(", in about {:.2g} s", *finest * finer) : "");
+}
+
+std::string study_text(const ConvergeStudy& study, std::optional<double> most) {
+  const std::string& path = study.levels.axis.path;
+  std::vector<Table::Column> columns = converge_headings();
+  columns.insert(columns.begin(), {path});
+  columns.insert(columns.begin() + 2, {study.metric});
+  Table table(columns);
+  for (std::size_t i = 0; i < study.rows.size(); ++i) {
+    const auto error = study.relative_error(i);
+    const Convergence& c = study.found;
+    table.add({study.levels.axis.values[i], study.rows[i].outcome,
+               study.results[i] ? sure_number(*study.results[i], c.errors[i]) : "-",
+               c.order && c.orders[i] ? fmt::format("{:.2f}", *c.orders[i]) : "-",
+               error ? significant(100.0 * *error, 2) : "-", significant(study.seconds[i], 2)});
+  }
+  std::string text = table.text() + "\n" + wrapped(verdict_text(study), 0);
+  if (most) text += wrapped(enough_text(study, *most), 0);
+  return text + "\n";
+}
+
+// ---- Command
+
+double share_of(const std::string& text) {
+  const bool percent = text.ends_with('%');
+  const auto number = finite_number(std::string_view(text).substr(0, text.size() - (percent ? 1 : 0)));
+  const double share = number.value_or(0.0) * (percent ? 0.01 : 1.0);
+  if (!(share > 0.0 && share < 1.0))
+    throw InputError(fmt::format("--to: got \"{}\"; allowed: a relative error, as 1% or 0.01", text));
+  return share;
+}
+
+std::vector<ConvergeStudy> studies_of(const LevelSweep& levels, const SweepPlan& plan, const SweepReport& report,
+                                      std::span<const std::optional<double>> seconds,
+                                      const std::vector<std::string>& metrics) {
+  std::vector<ConvergeStudy> studies;
+  for (const std::string& metric : metrics) {
+    ConvergeStudy& study = studies.emplace_back(
+        ConvergeStudy{levels, report.rows, seconds, metric, {}, convergence_of(levels, plan, report.rows, metric)});
+    for (const SweepRow& row : report.rows) study.results.push_back(level_result(plan, row, metric));
+  }
+  return studies;
+}
+
+int converge(const ConvergeOptions& options) {
+  // All input is checked before anything runs or is written.
+  if (!(options.ratio > 1.0 && options.ratio <= kLargestRatio))
+    throw InputError(fmt::format("--ratio: got {}; allowed: more than 1, at most {}", options.ratio, kLargestRatio));
+  const auto most = options.to.empty() ? std::nullopt : std::optional(share_of(options.to));
+  const fs::path file = find_scenario(options.scenario);
+  const ScenarioText scenario = read_scenario_text(file);
+  const LoadedScenario loaded = load_scenario(scenario, options.overrides);
+  check_named_files(loaded);  // the plan tells its warnings
+  if (own_value(loaded.scenario, options.field).is_null()) {
+    std::vector<std::string> given = options.overrides;
+    given.push_back(options.field + "=1");
+    load_scenario(scenario, given);  // a field that does not exist, or takes no number, says so itself
+  }
+  const LevelSweep levels = with_file(loaded, [&] {
+    return level_sweep(loaded, options.field, static_cast<std::size_t>(options.levels), options.ratio);
+  });
+  SweepOptions sweep;
+  sweep.directory = results_directory(options.out, "converge_" + file.stem().string());
+  sweep.jobs = options.jobs == 0 ? available_threads() : options.jobs;
+  sweep.resume = options.resume;
+  sweep.progress = !options.output.quiet;
+  const SweepPlan plan =
+      plan_sweep(scenario, options.overrides, SweepPoints({levels.axis}), sweep.jobs, sweep.progress);
+  std::vector<std::string> metrics = options.metrics;
+  if (metrics.empty()) metrics = {chosen_metric(plan, "")};
+  require_names("--metric: got", metrics, plan.metrics);
+  print_warnings(plan.warnings);
+  require_writable_directory(sweep.directory);
+  check_journal(plan, sweep);
+
+  std::vector<std::optional<double>> seconds(plan.points.size());
+  sweep.timed = [&seconds](std::size_t run, double time) { seconds[run] = time; };
+  const SweepReport report = run_sweep(plan, sweep);
+  if (report.signal != 0) throw Stopped{report.signal};
+  const std::vector<ConvergeStudy> studies = studies_of(levels, plan, report, seconds, metrics);
+  write_studies(sweep.directory, studies);
+  std::string text = fmt::format("{}: {} from {} in ratios of {:g}, formal order {:g}\n\n", loaded.scenario.name,
+                                 levels.axis.path, levels.axis.values.front(), levels.ratio, levels.formal_order);
+  Json json = Json::array();
+  for (const ConvergeStudy& study : studies) {
+    text += study_text(study, most);
+    json.push_back(study_json(study));
+  }
+  const std::string where = sweep.directory.string();
+  print(options.output, text + fmt::format("results in {0}; \"hapbench plot {0}\" draws them\n", where),
+        studies.size() == 1 ? json.front() : json);
+  if (!report.failed) return kSuccess;
+  print_error(fmt::format("{}: {} of {} runs failed, the first: {} = {}: {}", file.string(), report.counts.failed,
+                          report.counts.runs, levels.axis.path, levels.axis.values[report.failed->run],
+                          one_line(report.failed->problem)));
+  return kInternalFault;
+}
+
+}  // namespace
+
+std::vector<Column> converge_columns() {
+  return columns_of(kOrderFields);
+}
+
+std::vector<Column> converge_level_columns() {
+  std::vector<Column> columns = columns_of(kLevelFields);
+  columns.push_back({"seconds", "s",
+                     "of converge_levels_timing.csv: processor time of the run without the making of its shell, of a "
+                     "short one the least of five; empty for a level that was done before --resume"});
+  return columns;
+}
+
+std::vector<Table::Column> converge_headings() {
+  return {{"outcome", false},
+          {"order", true, "order"},
+          {"error %", true, "of converge: error over the result of the finest level"},
+          {"run s", true,
+           "of converge: processor time of the level's run [s]; of one under some milliseconds the least of five"}};
+}
+
+void add_converge(CommandLine& line) {
+  auto [command, options] =
+      line.command("converge", "Say how far metrics of a scene are from converged, in the step or any field", converge,
+                   "the same command with --resume continues");
+  command.add("scenario", options.scenario, "scenario file, or name of a bundled scenario")
+      .words(all_scenarios)
+      .required();
+  command
+      .add("--metric", options.metrics,
+           fmt::format("names of summary.json, separated by commas (default: {})", kDefaultMetrics[0]))
+      .words([] { return metric_names(); })
+      .comma_separated();
+  command
+      .add("--vary", options.field,
+           "the field to refine: time.step_s (default), environment.grid_m, environment.spacing_m, tool.grid_m or any "
+           "other number above 0 that gets better as it falls")
+      .words(scenario_field_paths);
+  command.add("--levels", options.levels, "number of levels, the scenario's own value the coarsest (default: 5)")
+      .range(kFewestLevels, kMostLevels);
+  command.add("--ratio", options.ratio, "of each level to the next; whole for the step (default: 2)");
+  command.add("--to", options.to, "also name the coarsest level with a smaller relative error, as 1%, and its cost");
+  add_jobs(command, options.jobs, "runs at once; only times depend on it (default: one per thread)");
+  command.flag("--resume", options.resume, "continue an interrupted study of the same definition");
+  command.add("--out", options.out, "directory of the results (default: results/out/converge_NAME)");
+  add_overrides(command, options.overrides, "override a field of all levels: path=value");
+  add_output_options(command, options.output);
+  command.footer(
+      "Observed order p = ln((f_1 - f_2) / (f_2 - f_3)) / ln r, Richardson's value f_3 + (f_3 - f_2) / (r^p - 1) and the "
+      "grid convergence index 1.25 |f_3 - f_2| / (|f_3| (r^p - 1)) of the three finest levels (Roache; ASME V&V 20). No "
+      "order is stated, and the reason said, where contacts switch between them, where differences change their sign, "
+      "grow or are rounding, where the order is more than twice the formal one, or where fewer than three levels end as "
+      "the finest; the last levels are the answer then. Runs of shorter steps last as long, delays of devices keep their "
+      "length, and metrics of motion, force and contact are taken at the times of the coarsest rows: a peak between "
+      "these rows is not seen. Files: converge.csv, converge_levels.csv and the sweep they are made of.");
+}
+
+}  // namespace hapbench
