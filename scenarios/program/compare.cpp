@@ -524,7 +524,7 @@ void add_compare(CommandLine& line) {
       .flag(
           "--sure", options.sure,
           "also run each at a half and a quarter of the step, and of the distance of the shell's points, and print how "
-          "far that moves each number; of single seeds without jitter")
+          "far that moves each number")
       .excludes(devices)
       .excludes(seeds)
       .excludes(jitter);

@@ -24,6 +24,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr const char *kOrders = "converge.csv", *kLevels = "converge_levels.csv",
+                     *kTimes = "converge_levels_timing.csv";
 constexpr int kFewestLevels = 3, kMostLevels = 9;
 constexpr double kLargestRatio = 10.0;
 
@@ -79,11 +81,11 @@ const LevelField kLevelFields[] = {
       "the metric, empty when the run has none; with shorter steps those of motion, force and "
       "contact are taken at the times of the coarsest rows"},
      [](const LevelRow& r) { return cell_if(r.study.results[r.level]); }},
-    {{"order", "1",
+    {{"observed_order", "1",
       "observed order p = ln((f_1 - f_2) / (f_2 - f_3)) / ln r of this level and the two before; empty "
       "where the differences have unlike signs or are rounding"},
      [](const LevelRow& r) { return cell_if(r.study.found.orders[r.level]); }},
-    {{"error", "by name",
+    {{"error_estimate", "by name",
       "with an order 1.25 |f - f*|, f* the extrapolated value; without one the largest distance from a finer level, or what the last three differ by where that is more; empty where fewer than two count"},
      [](const LevelRow& r) { return cell_if(r.study.found.errors[r.level]); }},
     {{"seconds", "s",
@@ -103,8 +105,10 @@ const OrderField kOrderFields[] = {
       "of the integrator; 1 with a device, which holds the force between samples; 2 of all fields "
       "but the step"},
      [](const ConvergeStudy& s) -> Cell { return s.levels.formal_order; }},
-    {{"order", "1", "observed at the three finest levels; empty where none is credible"},
-     [](const ConvergeStudy& s) { return cell_if(s.found.order); }},
+    {{"observed_order", "1", "at the three finest levels; empty where none is credible"},
+     [](const ConvergeStudy& s) { return cell_if(s.found.order); },
+     OrderField::In::csv},
+    {{"order", "1", "the same"}, [](const ConvergeStudy& s) { return cell_if(s.found.order); }, OrderField::In::json},
     {{"reason", "", "why no order is stated; empty with one"},
      [](const ConvergeStudy& s) -> Cell { return s.found.reason; }},
     {{"extrapolated", "by name", "Richardson's value f* = f_3 + (f_3 - f_2) / (r^p - 1); only with an order"},
@@ -134,14 +138,14 @@ std::vector<LevelRow> level_rows(const std::vector<ConvergeStudy>& studies) {
 /// Times in a file of their own: the others are the same bytes in every run.
 void write_studies(const fs::path& directory, const std::vector<ConvergeStudy>& studies) {
   FileSet files;
-  write_csv(directory / "converge.csv", kOrderFields, studies, &files);
-  write_csv(directory / "converge_levels.csv", kLevelFields, level_rows(studies), &files);
+  write_csv(directory / kOrders, kOrderFields, studies, &files);
+  write_csv(directory / kLevels, kLevelFields, level_rows(studies), &files);
   std::string times = "value,seconds\n";
   const ConvergeStudy& any = studies.front();
   for (std::size_t i = 0; i < any.rows.size(); ++i)
     times +=
         fmt::format("{},{}\n", any.levels.axis.values[i], any.seconds[i] ? fmt::format("{}", *any.seconds[i]) : "");
-  files.write(directory / "converge_levels_timing.csv", times);
+  files.write(directory / kTimes, times);
   files.commit();
 }
 
@@ -273,6 +277,9 @@ int converge(const ConvergeOptions& options) {
   print_warnings(plan.warnings);
   require_writable_directory(sweep.directory);
   check_journal(plan, sweep);
+  // Those of another sweep must not stand beside this one if it is stopped.
+  std::error_code ignored;
+  for (const char* name : {kOrders, kLevels, kTimes}) fs::remove(sweep.directory / name, ignored);
 
   std::vector<std::optional<double>> seconds(plan.points.size());
   sweep.timed = [&seconds](std::size_t run, double time) { seconds[run] = time; };
@@ -313,7 +320,7 @@ std::vector<Column> converge_level_columns() {
 
 std::vector<Table::Column> converge_headings() {
   return {{"outcome", false},
-          {"order", true, "order"},
+          {"order", true, "observed_order"},
           {"error %", true, "of converge: error over the result of the finest level"},
           {"run s", true,
            "of converge: processor time of the level's run [s]; of one under some milliseconds the least of five"}};

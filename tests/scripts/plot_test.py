@@ -253,6 +253,17 @@ class Plot(Given):
         (limit / "limit_runs.csv").write_text("algorithm,class\nmean,stable\n")
         self.assertIn("is not a table that hapbench wrote", hapbench("plot", limit, expected=2))
 
+    def test_convergence(self):
+        folder = self.root / "converge"
+        hapbench("converge", "springs_oscillation", "--metric", "force_max_N,inside_max_m,final_position_m.x", "--levels", 4, "--out", folder, "--quiet")
+        self.assertEqual(hapbench("plot", folder), f"picture in {folder}/plot.svg\n")
+        picture = (folder / "plot.svg").read_text()
+        for text in ("force max, order 1.0", "inside max, no order", "final position m.x, order 1.", "formal order 1", "time step [s]",
+                     "relative error", "processor time of the run [s]"):
+            self.assertIn(text, picture)
+        hapbench("converge", "springs_oscillation", "--metric", "inside_max_m", "--out", folder, "--quiet")
+        self.assertIn("nothing to draw: no level has an error above 0", hapbench("plot", folder, expected=2))
+
     def test_devices(self):
         folder = self.root / "devices"
         own = self.root / "my$own$.json"
