@@ -117,7 +117,7 @@ Json SureStudy::json(std::size_t algorithm) const {
   for (const std::string& metric : step_->plan.metrics) {
     const Number found = number(algorithm, metric);
     json[metric] = {{"value", or_null(found.value)},
-                    {"error", or_null(found.error)},
+                    {"error_estimate", or_null(found.error)},
                     {"error_of_step", or_null(found.step)},
                     {"error_of_spacing", or_null(found.spacing)}};
   }

@@ -46,7 +46,8 @@ def same_but_for_times(a, b):
 
 def _words(text):
     text = re.sub(r"\S+ us \(\w+\)", "TIME us", text)
-    if re.search(r" us/$", text, re.M):  # a table whose last column is a time
+    text = re.sub(r"\S+\s+(s\s+a\s+run|times\s+the\s+first)", r"TIME \1", text)
+    if re.search(r" (us/|run s)$", text, re.M):  # a table whose last column is a time
         text = re.sub(r" [\d.e+-]+$", " TIME", text, flags=re.M)
     return re.sub(r"-{3,}", "---", text).split()
 

@@ -20,18 +20,18 @@ def draw_converge(results):
     field, shown = orders[0]["field"], []
     for i, verdict in enumerate(orders):
         rows = [row for row in levels if row["metric"] == verdict["metric"]]
-        h, error = numbers(rows, "value"), numbers(rows, "error") / np.abs(numbers(rows, "result")[-1])
+        h, error = numbers(rows, "value"), numbers(rows, "error_estimate") / np.abs(numbers(rows, "result")[-1])
         error[~(np.isfinite(error) & (error > 0))] = np.nan
         colour, mark, line = LOOKS[i % len(LOOKS)]
         name = column(verdict["metric"])[0]
-        name += f", order {float(verdict['order']):.2f}" if verdict["order"] else ", no order"
-        look = {"color": colour, "marker": mark, "ls": line if verdict["order"] else "none", "mfc": colour if verdict["order"] else "white"}
+        name += f", order {float(verdict['observed_order']):.2f}" if verdict["observed_order"] else ", no order"
+        look = {"color": colour, "marker": mark, "ls": line if verdict["observed_order"] else "none", "mfc": colour if verdict["observed_order"] else "white"}
         left.plot(h, error, label=name, **look)
         right.plot(times, error, **look)
         shown.append((h, error))
     if not any(np.isfinite(error).any() for _, error in shown):
         raise InputError("nothing to draw: no level has an error above 0; converge.csv says why")
-    ordered = [pair for pair, verdict in zip(shown, orders) if verdict["order"]]
+    ordered = [pair for pair, verdict in zip(shown, orders) if verdict["observed_order"]]
     if ordered:
         (h, error), formal = ordered[0], float(orders[0]["formal_order"])
         at = np.nanargmax(error)

@@ -129,7 +129,7 @@ TEST_F(ConvergeCommand, SureIsOfTheRunItself) {
   EXPECT_EQ(one["sure"], two["sure"]);
   const Json& force = one["sure"]["force_max_N"];
   EXPECT_EQ(force["value"], one["metrics"]["force_max_N"]);
-  EXPECT_EQ(force["error"].get<double>(),
+  EXPECT_EQ(force["error_estimate"].get<double>(),
             force["error_of_step"].get<double>() + force["error_of_spacing"].get<double>());
   for (const char* part : {"step", "spacing"}) {
     const auto rows = table(fmt::format("run/sure_{}/sweep.csv", part));
@@ -150,7 +150,7 @@ TEST_F(ConvergeCommand, SureSaysWhatItDoesNotKnow) {
   EXPECT_NE(out.find("29 +- 1"), std::string::npos) << "force_max_N\n" << out;
   // Diverges, so that it has no number; and points so far apart that the tip slips between them.
   const Json json = hapbench({"run", "single_spring_unstable", "--sure", "--json", "--out", file("b")}).json();
-  EXPECT_TRUE(json[0]["sure"]["force_max_N"]["error"].is_null());
+  EXPECT_TRUE(json[0]["sure"]["force_max_N"]["error_estimate"].is_null());
   EXPECT_TRUE(json[0]["sure"]["force_max_N"]["value"].is_null());
   const Words wide = {"run",   "plane_pressed_round",         "--sure", "--out",    file("c"),
                       "--set", "environment.spacing_m=0.003", "--set",  "expect={}"};
