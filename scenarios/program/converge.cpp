@@ -295,7 +295,7 @@ int converge(const ConvergeOptions& options) {
     json.push_back(study_json(study));
   }
   const std::string where = sweep.directory.string();
-  print(options.output, text + fmt::format("results in {0}; \"hapbench plot {0}\" draws them\n", where),
+  print(options.output, text + fmt::format("results in {0}\n\"hapbench plot {0}\" draws them\n", where),
         studies.size() == 1 ? json.front() : json);
   if (!report.failed) return kSuccess;
   print_error(fmt::format("{}: {} of {} runs failed, the first: {} = {}: {}", file.string(), report.counts.failed,
