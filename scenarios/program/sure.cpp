@@ -53,7 +53,10 @@ SureStudy::SureStudy(const ScenarioText& scenario, const std::vector<std::string
     options.directory = directory / folder;
     require_writable_directory(options.directory);
     SweepReport report = run_sweep(plan, options);
-    if (report.signal != 0) throw Stopped{report.signal};
+    if (report.signal != 0) {
+      std::filesystem::remove(options.directory / "sweep.journal");  // it is not resumed
+      throw Stopped{report.signal};
+    }
     return Part{std::move(levels), std::move(plan), std::move(report)};
   };
   step_ = ran(kStepPath, "sure_step");

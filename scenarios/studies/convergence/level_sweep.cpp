@@ -79,7 +79,10 @@ LevelSweep level_sweep(const LoadedScenario& loaded, const std::string& path, st
     double value = coarsest_value(loaded, path);
     for (std::size_t i = 0; i < levels; ++i, value /= ratio)
       sweep.axis.values.emplace_back(std::string_view(NumberText(value)));
-    if (as_it_is && own_value(loaded.scenario, path).is_null()) sweep.axis.values.front() = "null";
+    if (as_it_is && own_value(loaded.scenario, path).is_null()) {
+      sweep.axis.values.front() = "null";
+      sweep.no_order = "the mesh's own points are not as far apart everywhere as those of the other levels";
+    }
   }
   sweep.ratio = ratio;
   return sweep;
