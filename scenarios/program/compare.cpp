@@ -387,6 +387,8 @@ int compare(const CompareOptions& options) {
     if (options.skips == Skips::off) throw InputError("--no-skip: got it beside --devices; allowed: without");
     return compare_devices(options.common);
   }
+  if (options.sure && (options.seeds > 1 || options.jitter != 0.0))
+    throw InputError("--sure: got it beside --seeds or --jitter; allowed: for the scenarios as they are");
   if (options.common.scenarios.empty())
     throw InputError("compare: scenarios is required; \"hapbench compare --help\" explains");
   // All input is checked before anything runs or is written.
@@ -490,17 +492,14 @@ void add_compare(CommandLine& line) {
       .needs(devices);
   command.add("--resolution", common.resolution, "with --devices: relative width of a limit (default: 0.01)")
       .needs(devices);
-  const CommandOption seeds =
-      command.add("--seeds", options.seeds, "run each K times, time k with the scenario's seed + k (default: 1)")
-          .range(1, 10'000)
-          .excludes(devices);
-  const CommandOption jitter =
-      command
-          .add(
-              "--jitter", options.jitter,
-              "shift the start by a vector of this length [m] whose direction depends on the seed and is the same for all "
-              "algorithms: gives a spread where nothing else is random")
-          .excludes(devices);
+  command.add("--seeds", options.seeds, "run each K times, time k with the scenario's seed + k (default: 1)")
+      .range(1, 10'000)
+      .excludes(devices);
+  command
+      .add("--jitter", options.jitter,
+           "shift the start by a vector of this length [m] whose direction depends on the seed and is the same for all "
+           "algorithms: gives a spread where nothing else is random")
+      .excludes(devices);
   command
       .add("--by", options.metrics,
            "metrics of the league, less is better: names of summary.json, separated by commas (default: " +
@@ -525,9 +524,7 @@ void add_compare(CommandLine& line) {
           "--sure", options.sure,
           "also run each at a half and a quarter of the step, and of the distance of the shell's points, and print how "
           "far that moves each number")
-      .excludes(devices)
-      .excludes(seeds)
-      .excludes(jitter);
+      .excludes(devices);
   add_skip_option(command, options.skips);
   add_output_options(command, common.output);
   command.footer(

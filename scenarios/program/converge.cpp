@@ -68,60 +68,45 @@ struct LevelRow {
 using LevelField = Field<LevelRow>;
 
 const LevelField kLevelFields[] = {
-    {{"metric", "", "name of the metric; its unit is part of the name"},
+    {{"metric", "", "name of the metric"},
      [](const LevelRow& r) -> Cell { return r.study.metric; },
      LevelField::In::csv},
-    {{"field", "", "path of the field that is refined"},
-     [](const LevelRow& r) -> Cell { return r.study.levels.axis.path; },
-     LevelField::In::csv},
-    {{"value", "by field", "value of the field at this level"},
+    {{"value", "by field", "value of the field that is refined"},
      [](const LevelRow& r) { return cell_if(finite_number(r.study.levels.axis.values[r.level])); }},
     {{"outcome", "", "how the run ended"}, [](const LevelRow& r) -> Cell { return r.study.rows[r.level].outcome; }},
-    {{"result", "by name",
-      "the metric, empty when the run has none; with shorter steps those of motion, force and "
-      "contact are taken at the times of the coarsest rows"},
+    {{"result", "by name", "the metric, at the times of the coarsest rows; empty where the run has none or diverges"},
      [](const LevelRow& r) { return cell_if(r.study.results[r.level]); }},
-    {{"observed_order", "1",
-      "observed order p = ln((f_1 - f_2) / (f_2 - f_3)) / ln r of this level and the two before; empty "
-      "where the differences have unlike signs or are rounding"},
+    {{"observed_order", "1", "p = ln((f_1 - f_2) / (f_2 - f_3)) / ln r of this level and the two before, if any"},
      [](const LevelRow& r) { return cell_if(r.study.found.orders[r.level]); }},
     {{"error_estimate", "by name",
-      "with an order 1.25 |f - f*|, f* the extrapolated value; without one the largest distance from a finer level, or what the last three differ by where that is more; empty where fewer than two count"},
+      "with an order 1.25 |f - f*|, else the largest distance from a finer level or in the band"},
      [](const LevelRow& r) { return cell_if(r.study.found.errors[r.level]); }},
-    {{"seconds", "s",
-      "processor time of the run without the making of its shell, of a short one the least of five; null for a level that was "
-      "done before --resume"},
+    {{"seconds", "s", "processor time of the run, of a short one the least of five; in converge_levels_timing.csv"},
      [](const LevelRow& r) { return cell_if(r.study.seconds[r.level]); },
      LevelField::In::json}};
 
 using OrderField = Field<ConvergeStudy>;
 
 const OrderField kOrderFields[] = {
-    {{"metric", "", "name of the metric; its unit is part of the name"},
-     [](const ConvergeStudy& s) -> Cell { return s.metric; }},
-    {{"field", "", "path of the field that is refined"},
-     [](const ConvergeStudy& s) -> Cell { return s.levels.axis.path; }},
+    {{"metric", "", "name of the metric"}, [](const ConvergeStudy& s) -> Cell { return s.metric; }},
+    {{"field", "", "path of the field"}, [](const ConvergeStudy& s) -> Cell { return s.levels.axis.path; }},
     {{"formal_order", "1",
-      "of the integrator; 1 with a device, which holds the force between samples; 2 of all fields "
-      "but the step"},
+      "of the integrator; 1 with a device, which holds the force between samples; 2 of other fields"},
      [](const ConvergeStudy& s) -> Cell { return s.levels.formal_order; }},
     {{"observed_order", "1", "at the three finest levels; empty where none is credible"},
      [](const ConvergeStudy& s) { return cell_if(s.found.order); },
      OrderField::In::csv},
     {{"order", "1", "the same"}, [](const ConvergeStudy& s) { return cell_if(s.found.order); }, OrderField::In::json},
-    {{"reason", "", "why no order is stated; empty with one"},
-     [](const ConvergeStudy& s) -> Cell { return s.found.reason; }},
+    {{"reason", "", "why no order is stated"}, [](const ConvergeStudy& s) -> Cell { return s.found.reason; }},
     {{"extrapolated", "by name", "Richardson's value f* = f_3 + (f_3 - f_2) / (r^p - 1); only with an order"},
      [](const ConvergeStudy& s) { return cell_if(s.found.extrapolated); }},
     {{"gci", "1",
-      "grid convergence index of the finest level, 1.25 |f_3 - f_2| / (|f_3| (r^p - 1)): its relative error "
-      "with a factor of safety; only with an order"},
+      "grid convergence index 1.25 |f_3 - f_2| / (|f_3| (r^p - 1)) of the finest level; only with an order"},
      [](const ConvergeStudy& s) { return cell_if(s.found.gci); }},
     {{"asymptotic", "",
-      "true when GCI_21 / (r^p GCI_32) is 1 within 0.1 at the last three levels and, with the same p, "
-      "at the three before"},
+      "true when GCI_21 / (r^p GCI_32) is 1 within 0.1 at the last three levels and the three before"},
      [](const ConvergeStudy& s) -> Cell { return s.found.asymptotic; }},
-    {{"low", "by name", "least result of the last three levels that ended as the finest"},
+    {{"low", "by name", "least result of the band: of the last three levels that ended as the finest"},
      [](const ConvergeStudy& s) { return s.found.band ? Cell(s.found.band->first) : Cell(); },
      OrderField::In::csv},
     {{"high", "by name", "the largest"},
@@ -141,10 +126,9 @@ void write_studies(const fs::path& directory, const std::vector<ConvergeStudy>& 
   write_csv(directory / kOrders, kOrderFields, studies, &files);
   write_csv(directory / kLevels, kLevelFields, level_rows(studies), &files);
   std::string times = "value,seconds\n";
-  const ConvergeStudy& any = studies.front();
-  for (std::size_t i = 0; i < any.rows.size(); ++i)
+  for (std::size_t i = 0; const auto& seconds : studies.front().seconds)
     times +=
-        fmt::format("{},{}\n", any.levels.axis.values[i], any.seconds[i] ? fmt::format("{}", *any.seconds[i]) : "");
+        fmt::format("{},{}\n", studies.front().levels.axis.values[i++], seconds ? fmt::format("{}", *seconds) : "");
   files.write(directory / kTimes, times);
   files.commit();
 }
@@ -163,13 +147,13 @@ Json study_json(const ConvergeStudy& study) {
 std::string verdict_text(const ConvergeStudy& study) {
   const Convergence& c = study.found;
   if (c.order) {
-    const double error = *study.found.errors.back();
     const bool three = std::ranges::count_if(c.errors, [](const auto& e) { return e.has_value(); }) == 3;
     return fmt::format("order {:.2f}, {}: tends to {}{}", *c.order,
                        three          ? "of three levels alone"
                        : c.asymptotic ? "asymptotic"
                                       : "not yet asymptotic",
-                       sure_text(*c.extrapolated, error), c.gci ? fmt::format(", GCI {:.2g} %", 100.0 * *c.gci) : "");
+                       sure_text(*c.extrapolated, c.errors.back()),
+                       c.gci ? fmt::format(", GCI {:.2g} %", 100.0 * *c.gci) : "");
   }
   if (!c.band) return fmt::format("no order: {}", c.reason);
   const auto [low, high] = *c.band;
@@ -181,28 +165,24 @@ std::string verdict_text(const ConvergeStudy& study) {
 
 /// The coarsest level whose error and those of all finer ones are below, and what it costs.
 std::string enough_text(const ConvergeStudy& study, double most) {
-  const std::vector<std::string>& values = study.levels.axis.values;
   std::size_t first = study.rows.size();
   while (first > 0 && study.relative_error(first - 1) && *study.relative_error(first - 1) < most) --first;
-  const std::string below = fmt::format("below {:g} %: ", 100.0 * most);
-  const auto& finest = study.seconds.back();
+  const std::string below = fmt::format("below {:g} %: ", 100.0 * most), &path = study.levels.axis.path;
   if (first < study.rows.size()) {
     const auto &seconds = study.seconds[first], &own = study.seconds.front();
-    return below + fmt::format("{} = {} ({:.2g} %{}){}{}", study.levels.axis.path, values[first],
-                               100.0 * *study.relative_error(first),
-                               study.found.order ? "" : " by what the levels show",
-                               seconds ? fmt::format(", {:.2g} s a run", *seconds) : "",
-                               first == 0       ? ", the coarsest that was tried"
-                               : seconds && own ? fmt::format(", {:.2g} times the first level's", *seconds / *own)
-                                                : "");
+    return below +
+           fmt::format("{} = {} ({:.2g} %{}){}", path, study.levels.axis.values[first],
+                       100.0 * *study.relative_error(first), study.found.order ? "" : " by what the levels show",
+                       first == 0 ? ", the coarsest that was tried"
+                       : seconds && own
+                           ? fmt::format(", {:.2g} s a run, {:.2g} times the first level's", *seconds, *seconds / *own)
+                           : "");
   }
   const auto error = study.relative_error(study.rows.size() - 1);
-  if (!study.found.asymptotic || !error || !finest) return below + "no level is known to be";
+  if (!study.found.asymptotic || !error) return below + "no level is known to be";
   const double finer = std::pow(*error / most, 1.0 / *study.found.order);
-  const auto value = finite_number(values.back());
-  return below +
-         fmt::format("no level is; by this order {} = {:.2g} would be{}", study.levels.axis.path, *value / finer,
-                     study.levels.axis.path == kStepPath ? fmt::format(", in about {:.2g} s", *finest * finer) : "");
+  return below + fmt::format("no level is; by this order {} = {:.2g} would be", path,
+                             *finite_number(study.levels.axis.values.back()) / finer);
 }
 
 std::string study_text(const ConvergeStudy& study, std::optional<double> most) {
@@ -233,18 +213,6 @@ double share_of(const std::string& text) {
   if (!(share > 0.0 && share < 1.0))
     throw InputError(fmt::format("--to: got \"{}\"; allowed: a relative error, as 1% or 0.01", text));
   return share;
-}
-
-std::vector<ConvergeStudy> studies_of(const LevelSweep& levels, const SweepPlan& plan, const SweepReport& report,
-                                      std::span<const std::optional<double>> seconds,
-                                      const std::vector<std::string>& metrics) {
-  std::vector<ConvergeStudy> studies;
-  for (const std::string& metric : metrics) {
-    ConvergeStudy& study = studies.emplace_back(
-        ConvergeStudy{levels, report.rows, seconds, metric, {}, convergence_of(levels, plan, report.rows, metric)});
-    for (const SweepRow& row : report.rows) study.results.push_back(level_result(plan, row, metric));
-  }
-  return studies;
 }
 
 int converge(const ConvergeOptions& options) {
@@ -285,7 +253,11 @@ int converge(const ConvergeOptions& options) {
   sweep.timed = [&seconds](std::size_t run, double time) { seconds[run] = time; };
   const SweepReport report = run_sweep(plan, sweep);
   if (report.signal != 0) throw Stopped{report.signal};
-  const std::vector<ConvergeStudy> studies = studies_of(levels, plan, report, seconds, metrics);
+  std::vector<ConvergeStudy> studies;
+  for (const std::string& metric : metrics) {
+    studies.push_back({levels, report.rows, seconds, metric, {}, convergence_of(levels, plan, report.rows, metric)});
+    for (const SweepRow& row : report.rows) studies.back().results.push_back(level_result(plan, row, metric));
+  }
   write_studies(sweep.directory, studies);
   std::string text = fmt::format("{}: {} from {} in ratios of {:g}, formal order {:g}\n\n", loaded.scenario.name,
                                  levels.axis.path, levels.axis.values.front(), levels.ratio, levels.formal_order);
@@ -298,9 +270,8 @@ int converge(const ConvergeOptions& options) {
   print(options.output, text + fmt::format("results in {0}\n\"hapbench plot {0}\" draws them\n", where),
         studies.size() == 1 ? json.front() : json);
   if (!report.failed) return kSuccess;
-  print_error(fmt::format("{}: {} of {} runs failed, the first: {} = {}: {}", file.string(), report.counts.failed,
-                          report.counts.runs, levels.axis.path, levels.axis.values[report.failed->run],
-                          one_line(report.failed->problem)));
+  print_error(fmt::format("{}: {} of {} runs failed, the first: {}", file.string(), report.counts.failed,
+                          report.counts.runs, one_line(report.failed->problem)));
   return kInternalFault;
 }
 
@@ -312,9 +283,7 @@ std::vector<Column> converge_columns() {
 
 std::vector<Column> converge_level_columns() {
   std::vector<Column> columns = columns_of(kLevelFields);
-  columns.push_back({"seconds", "s",
-                     "of converge_levels_timing.csv: processor time of the run without the making of its shell, of a "
-                     "short one the least of five; empty for a level that was done before --resume"});
+  columns.push_back(std::end(kLevelFields)[-1].column);
   return columns;
 }
 
@@ -353,13 +322,12 @@ void add_converge(CommandLine& line) {
   add_overrides(command, options.overrides, "override a field of all levels: path=value");
   add_output_options(command, options.output);
   command.footer(
-      "Observed order p = ln((f_1 - f_2) / (f_2 - f_3)) / ln r, Richardson's value f_3 + (f_3 - f_2) / (r^p - 1) and the "
-      "grid convergence index 1.25 |f_3 - f_2| / (|f_3| (r^p - 1)) of the three finest levels (Roache; ASME V&V 20). No "
-      "order is stated, and the reason said, where contacts switch between them, where differences change their sign, "
-      "grow or are rounding, where the order is more than twice the formal one, or where fewer than three levels end as "
-      "the finest; the last levels are the answer then. Runs of shorter steps last as long, delays of devices keep their "
-      "length, and metrics of motion, force and contact are taken at the times of the coarsest rows: a peak between "
-      "these rows is not seen. Files: converge.csv, converge_levels.csv and the sweep they are made of.");
+      "Observed order p, Richardson's value and grid convergence index of the three finest levels (Roache; ASME V&V 20; "
+      "\"hapbench describe converge.csv\"). No order is stated, and the reason said, where contacts switch between them, "
+      "where differences change their sign, grow or are rounding, where the order is more than twice the formal one, or "
+      "where fewer than three levels end as the finest; the last levels are the answer then. Runs of shorter steps last as "
+      "long, delays of devices keep their length, and metrics of motion, force and contact are taken at the times of the "
+      "coarsest rows: a peak between these rows is not seen. Files: converge.csv, converge_levels.csv, sweep.csv.");
 }
 
 }  // namespace hapbench

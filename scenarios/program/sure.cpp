@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <ranges>
 
 #include "scenarios/batch/finer_scene.hpp"
 #include "scenarios/batch/parallel_for.hpp"
@@ -72,33 +72,25 @@ SureStudy::SureStudy(const ScenarioText& scenario, const std::vector<std::string
   }
 }
 
-std::optional<double> SureStudy::error(const std::optional<Part>& part, std::size_t algorithm,
-                                       const std::string& metric) const {
-  const auto rows = std::span(part->report.rows).subspan(algorithm * kSureLevels, kSureLevels);
-  return convergence_of(part->levels, part->plan, rows, metric).errors.front();
-}
-
 SureStudy::Number SureStudy::number(std::size_t algorithm, const std::string& metric) const {
-  Number number;
-  number.value = level_result(step_->plan, step_->report.rows[algorithm * kSureLevels], metric);
-  number.step = error(step_, algorithm, metric);
-  if (spacing_) number.spacing = error(spacing_, algorithm, metric);
+  const auto error = [&](const Part& part) {
+    const auto rows = std::span(part.report.rows).subspan(algorithm * kSureLevels, kSureLevels);
+    return convergence_of(part.levels, part.plan, rows, metric).errors.front();
+  };
+  Number number{level_result(step_->plan, step_->report.rows[algorithm * kSureLevels], metric), error(*step_)};
+  if (spacing_) number.spacing = error(*spacing_);
   if (number.step && (number.spacing || !spacing_)) number.error = *number.step + number.spacing.value_or(0.0);
   return number;
 }
 
 std::string SureStudy::text(const std::string& title, const std::vector<std::string>& names) const {
   std::vector<Table::Column> columns = {{title, false}};
-  std::vector<RunHeading> headings;
-  for (const RunHeading& heading : kRunHeadings) {
-    if (heading.factor == 0.0) continue;
-    headings.push_back(heading);
-    columns.push_back({heading.title});
-  }
+  const auto shown = std::views::filter([](const RunHeading& heading) { return heading.factor != 0.0; });
+  for (const RunHeading& heading : kRunHeadings | shown) columns.push_back({heading.title});
   Table table(columns);
   for (std::size_t a = 0; a < names.size(); ++a) {
     std::vector<std::string> cells = {names[a]};
-    for (const RunHeading& heading : headings) {
+    for (const RunHeading& heading : kRunHeadings | shown) {
       const Number found = number(a, heading.shows[0]);
       const auto error = found.error ? std::optional(heading.factor * *found.error) : std::nullopt;
       cells.push_back(found.value ? sure_text(heading.factor * *found.value, error) : "-");

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <filesystem>
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -31,10 +30,8 @@ class SureStudy {
             const OutputOptions& output);
 
   struct Number {
-    std::optional<double> value;
-    std::optional<double> step, spacing;  ///< errors by either; none where not known
-    /// Their sum; none where one that there is to know is not known.
-    std::optional<double> error;
+    std::optional<double> value, step = {}, spacing = {};  ///< of the run, and its errors by either if they are known
+    std::optional<double> error = {};  ///< their sum; none where one that there is to know is not known
   };
   Number number(std::size_t algorithm, const std::string& metric) const;
 
@@ -49,8 +46,6 @@ class SureStudy {
     SweepPlan plan;
     SweepReport report;
   };
-  std::optional<double> error(const std::optional<Part>& part, std::size_t algorithm, const std::string& metric) const;
-
   std::optional<Part> step_, spacing_;
   std::string no_spacing_;  ///< why there is no part of that name
 };

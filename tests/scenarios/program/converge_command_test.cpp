@@ -172,6 +172,8 @@ TEST_F(ConvergeCommand, RefusesWhatItCannotRefine) {
   refused({"--levels", "2"}, "--levels");
   refused({"--to", "5"}, "a relative error, as 1% or 0.01");
   refused({"--metric", "force"}, "--metric: got \"force\"");
+  const Words seeds = {"compare", "springs_oscillation", "--sure", "--seeds", "2", "--out", file("out")};
+  EXPECT_EQ(hapbench(seeds).err.find("hapbench: error: --sure: got it beside --seeds"), 0u);
   EXPECT_FALSE(fs::exists(directory_ / "out"));
 }
 
