@@ -18,6 +18,7 @@
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/stop_signal.hpp"
 #include "scenarios/studies/stability/field_limit.hpp"
+#include "sim/core/math.hpp"
 
 namespace hapbench {
 namespace {
@@ -180,7 +181,7 @@ std::string enough_text(const ConvergeStudy& study, double most) {
   }
   const auto error = study.relative_error(study.rows.size() - 1);
   if (!study.found.asymptotic || !error) return below + "no level is known to be";
-  const double finer = std::pow(*error / most, 1.0 / *study.found.order);
+  const double finer = math::pow(*error / most, 1.0 / *study.found.order);
   return below + fmt::format("no level is; by this order {} = {:.2g} would be", path,
                              *finite_number(study.levels.axis.values.back()) / finer);
 }

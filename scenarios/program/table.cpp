@@ -195,7 +195,7 @@ std::string significant(const std::optional<double>& value, int digits) {
 
 int deserved_digits(double value, const std::optional<double>& tolerance, int most) {
   if (!tolerance || !(*tolerance > 0.0) || value == 0.0 || !std::isfinite(value)) return most;
-  const double digits = std::floor(std::log10(std::abs(value))) - std::floor(std::log10(*tolerance)) + 1.0;
+  const double digits = std::floor(math::log10(std::abs(value))) - std::floor(math::log10(*tolerance)) + 1.0;
   return static_cast<int>(std::clamp(digits, 1.0, static_cast<double>(most)));
 }
 

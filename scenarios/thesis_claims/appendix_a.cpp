@@ -9,6 +9,7 @@
 #include "scenarios/studies/stability/stability_limits.hpp"
 #include "scenarios/thesis_claims/claims.hpp"
 #include "scenarios/thesis_claims/measurements.hpp"
+#include "sim/core/math.hpp"
 
 /// Claim of A.1: the planar peg.
 /// Claims of A.2: a mass on many springs.
@@ -294,7 +295,7 @@ Measured measure_stability_limits(const Evidence& e) {
 }
 
 Finding judge_stability_limits(const Measured& measured, const PublishedNumbers& published) {
-  const auto digits = static_cast<int>(std::lround(-std::log10(kLimitTolerance)));  // what bisection leaves
+  const auto digits = static_cast<int>(std::lround(-math::log10(kLimitTolerance)));  // what bisection leaves
   double worst = 0.0;
   std::string text;
   for (const MeasuredCase& m : measured) {

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/core/math.hpp"
+
 namespace hapbench {
 namespace {
 
@@ -79,7 +81,7 @@ Convergence convergence_of(std::span<const LevelResult> levels, double ratio, do
   for (std::size_t i = 2; i < count; ++i) {
     const double coarse = f[i - 2] - f[i - 1], fine = f[i - 1] - f[i];
     if (!is_rounding(coarse) && !is_rounding(fine) && coarse * fine > 0.0)
-      c.orders[first + i] = std::log(coarse / fine) / std::log(ratio);
+      c.orders[first + i] = math::log(coarse / fine) / math::log(ratio);
   }
   if (count >= 2) {
     const auto last = f.end() - static_cast<std::ptrdiff_t>(std::min(count, kLeastLevels));
@@ -101,7 +103,7 @@ Convergence convergence_of(std::span<const LevelResult> levels, double ratio, do
   }
   if (!c.reason.empty()) return c;
 
-  const double p = *c.orders.back(), growth = std::pow(ratio, p), fine = f[count - 1] - f[count - 2];
+  const double p = *c.orders.back(), growth = math::pow(ratio, p), fine = f[count - 1] - f[count - 2];
   c.order = p;
   c.extrapolated = f[count - 1] + fine / (growth - 1.0);
   if (f[count - 1] != 0.0) c.gci = kGciSafety * std::abs(fine) / (std::abs(f[count - 1]) * (growth - 1.0));
