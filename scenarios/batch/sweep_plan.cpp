@@ -59,10 +59,11 @@ void append_new(std::vector<std::string>& warnings, const std::vector<std::strin
 /// Reads the files that the scenarios of these runs name, adds their warnings to the plan and what they measured to the
 /// sections, and returns their hashes.
 Json check_files(SweepPlan& plan, const std::vector<std::size_t>& runs, SectionParts& sections) {
+  constexpr std::size_t kMostScans = 8;  // whose shells are made before the runs
   Json hashes = Json::array();
   for (const std::size_t run : runs) {
     LoadedScenario loaded = scenario_of(plan, run);
-    append_new(plan.warnings, check_named_files(loaded));
+    append_new(plan.warnings, check_named_files(loaded, hashes.size() < kMostScans));
     if (std::holds_alternative<RecordedPosition>(loaded.scenario.motion.position))
       add_sections(sections, sections_of(loaded.scenario, loaded.files.at(kMotionFile).stroke()->force.has_value()));
     loaded.scenario.name.clear();  // may be that of the scenario's file

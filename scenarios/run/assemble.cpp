@@ -105,7 +105,7 @@ std::vector<std::string> named_file_warnings(const LoadedScenario& loaded) {
   return warnings;
 }
 
-std::vector<std::string> check_named_files(const LoadedScenario& loaded) {
+std::vector<std::string> check_named_files(const LoadedScenario& loaded, bool looks_at_scan) {
   const Scenario& scenario = loaded.scenario;
   with_file(loaded, [&] { require_contact_source(scenario); });
   for (const auto& file : loaded.files.all()) {
@@ -129,6 +129,7 @@ std::vector<std::string> check_named_files(const LoadedScenario& loaded) {
     const std::string pointer = warning.substr(0, warning.find(": "));
     warning = file_of(loaded, pointer).string() + ": " + warning;
   }
+  if (!looks_at_scan) return warnings;
   if (auto warning = with_file(loaded, [&] { return inverted_scan_warning(loaded); })) warnings.push_back(*warning);
   return warnings;
 }

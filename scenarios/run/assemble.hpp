@@ -10,9 +10,9 @@
 namespace hapbench {
 
 /// Reads and parses the files that the scenario names, so that faults in them are found before anything is written;
-/// `loaded.files` keeps them for the run. Returns warnings about what is odd in them, each with file and pointer.
-/// Throws InputError.
-std::vector<std::string> check_named_files(const LoadedScenario& loaded);
+/// `loaded.files` keeps them for the run. Returns warnings about what is odd in them, each with file and pointer, and,
+/// if it may make the shell for that, inverted_scan_warning. Throws InputError.
+std::vector<std::string> check_named_files(const LoadedScenario& loaded, bool looks_at_scan = true);
 
 /// The same warnings with the pointer alone in front, as results keep them: equal wherever the files lie. Precondition:
 /// the files can be used.
