@@ -3,9 +3,10 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <nlohmann/json.hpp>
-#include <ranges>
 
 #include "scenarios/batch/finer_scene.hpp"
 #include "scenarios/batch/parallel_for.hpp"
@@ -85,12 +86,13 @@ SureStudy::Number SureStudy::number(std::size_t algorithm, const std::string& me
 
 std::string SureStudy::text(const std::string& title, const std::vector<std::string>& names) const {
   std::vector<Table::Column> columns = {{title, false}};
-  const auto shown = std::views::filter([](const RunHeading& heading) { return heading.factor != 0.0; });
-  for (const RunHeading& heading : kRunHeadings | shown) columns.push_back({heading.title});
+  std::vector<RunHeading> headings;
+  std::ranges::copy_if(kRunHeadings, std::back_inserter(headings), [](const auto& h) { return h.factor != 0.0; });
+  for (const RunHeading& heading : headings) columns.push_back({heading.title});
   Table table(columns);
   for (std::size_t a = 0; a < names.size(); ++a) {
     std::vector<std::string> cells = {names[a]};
-    for (const RunHeading& heading : kRunHeadings | shown) {
+    for (const RunHeading& heading : headings) {
       const Number found = number(a, heading.shows[0]);
       const auto error = found.error ? std::optional(heading.factor * *found.error) : std::nullopt;
       cells.push_back(found.value ? sure_text(heading.factor * *found.value, error) : "-");
