@@ -9,7 +9,6 @@
 
 #include "sim/core/hash.hpp"
 #include "tests/results/files.hpp"
-#include "tests/scenarios/support/environment_variable.hpp"
 #include "tests/scenarios/support/file_tree.hpp"
 
 namespace hapbench::test {
@@ -20,28 +19,17 @@ using Json = nlohmann::ordered_json;  // the order of the file, which a new name
 
 constexpr const char* kRenew = "HAPBENCH_RENEW_NUMBERS";
 
-/// Makes the C library (glibc 2.33 and later) take the processor for one without fused multiply-add.
-constexpr const char* kWithoutFma = "glibc.cpu.hwcaps=-FMA,-FMA4,-AVX2";
-
-struct RecordLine {
-  RecordedNumbers usual, without_fma;
-};
-using Record = std::map<std::string, RecordLine>;
-
 fs::path record_file() {
   return fs::path(HAPBENCH_TEST_DATA) / "numbers.txt";
 }
 
-Record read_record() {
-  Record record;
+NumbersByName read_record() {
+  NumbersByName record;
   for (const std::string& text : lines_of(read_file(record_file()))) {
     std::istringstream words(text);
     std::string name;
-    RecordLine line;
-    words >> name >> line.usual.state >> line.usual.tables;
-    line.without_fma = line.usual;
-    words >> line.without_fma.state >> line.without_fma.tables;
-    record[name] = line;
+    words >> name;
+    words >> record[name].state >> record[name].tables;
   }
   return record;
 }
@@ -50,25 +38,13 @@ bool is_command(const std::string& name) {
   return name.find(':') != std::string::npos;
 }
 
-void renew(bool of_commands, const NumbersByName& usual, const NumbersByName& without_fma) {
-  Record record = read_record();
+void renew(bool of_commands, const NumbersByName& found) {
+  NumbersByName record = read_record();
   std::erase_if(record, [&](const auto& line) { return is_command(line.first) == of_commands; });
-  for (const auto& [name, numbers] : usual) record[name] = {numbers, without_fma.at(name)};
+  record.insert(found.begin(), found.end());
   std::string text;
-  for (const auto& [name, line] : record) {
-    text += name + " " + line.usual.state + " " + line.usual.tables;
-    if (line.without_fma != line.usual) text += " " + line.without_fma.state + " " + line.without_fma.tables;
-    text += "\n";
-  }
+  for (const auto& [name, numbers] : record) text += name + " " + numbers.state + " " + numbers.tables + "\n";
   write_plainly(record_file(), text);
-}
-
-bool has_fma() {
-#if defined(__x86_64__)
-  return __builtin_cpu_supports("fma") && __builtin_cpu_supports("avx2");
-#else
-  return false;
-#endif
 }
 
 void add_table(Hash64& hash, const std::string& text) {
@@ -128,27 +104,17 @@ RecordedNumbers numbers_below(const fs::path& directory) {
   return numbers;
 }
 
-void expect_recorded(bool of_commands, const std::function<NumbersByName()>& measured) {
-  const NumbersByName found = measured();
+void expect_recorded(bool of_commands, const NumbersByName& found) {
   ASSERT_FALSE(found.empty());
   if (std::getenv(kRenew) != nullptr) {
-    ASSERT_TRUE(has_fma()) << "the record is renewed on an x86-64 with fused multiply-add";
-    const EnvironmentVariable tunables("GLIBC_TUNABLES", kWithoutFma);
-    renew(of_commands, found, measured());
+    renew(of_commands, found);
     return;
   }
-  NumbersByName usual, without_fma;
-  for (const auto& [name, line] : read_record()) {
-    if (is_command(name) != of_commands) continue;
-    usual[name] = line.usual;
-    without_fma[name] = line.without_fma;
-  }
-  const std::string with = differences(found, usual), without = differences(found, without_fma);
-  // Whichever the C library does, it does throughout.
-  EXPECT_TRUE(with.empty() || without.empty())
-      << "other numbers than those on record:\n"
-      << (with.size() <= without.size() ? with : without) << "If they are meant to change, renew " << record_file()
-      << " with " << kRenew << "=1, and say in the commit which change and why.";
+  NumbersByName record = read_record();
+  std::erase_if(record, [&](const auto& line) { return is_command(line.first) != of_commands; });
+  EXPECT_EQ(differences(found, record), "")
+      << "other numbers than those on record; if they are meant to change, renew " << record_file() << " with "
+      << kRenew << "=1, and say in the commit which change and why.";
 }
 
 }  // namespace hapbench::test

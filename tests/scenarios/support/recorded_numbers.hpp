@@ -1,14 +1,12 @@
 #pragma once
 
 #include <filesystem>
-#include <functional>
 #include <map>
 #include <string>
 
 /// The numbers on record, in tests/data/numbers.txt: a line "name state_hash tables_hash" for each bundled scenario and
-/// for some commands. They show that a change of the code has changed no number; no text is in them. They hold on every
-/// x86-64 and for every compiler. The C library computes sines and exponentials in another way on processors without
-/// fused multiply-add: where that shows, both hashes of such a processor follow in the line.
+/// for some commands. They show that a change of the code has changed no number; no text is in them. They hold for
+/// every processor and compiler.
 ///
 /// This renews the record after a change that is meant to change numbers, to be committed with it:
 ///
@@ -27,8 +25,7 @@ using NumbersByName = std::map<std::string, RecordedNumbers>;
 RecordedNumbers numbers_below(const std::filesystem::path& directory);
 
 /// Compares numbers by name with those on record; fails where any differs, is missing or, among names that do or do not
-/// contain a colon as `of_commands` says, is left over. `measured` is called once more, with the C library as it is on
-/// other processors, when the record is renewed. Precondition: it gets its numbers from other processes.
-void expect_recorded(bool of_commands, const std::function<NumbersByName()>& measured);
+/// contain a colon as `of_commands` says, is left over.
+void expect_recorded(bool of_commands, const NumbersByName& found);
 
 }  // namespace hapbench::test
