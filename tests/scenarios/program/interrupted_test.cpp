@@ -211,7 +211,10 @@ class InterruptedSweep : public testing::Test {
   /// a busy machine may let the test wait for longer than a sweep takes.
   template <class Attempt>
   void until_in_time(Attempt attempt) {
-    for (; !attempt(); runs_ *= 4) fs::remove_all(directory_ / "out");
+    for (; !attempt(); runs_ *= 4) {
+      ASSERT_LT(runs_, 10'000'000) << "the program does not run";
+      fs::remove_all(directory_ / "out");
+    }
   }
   /// A sweep that is killed when `rows` rows are in its journal.
   void leave_killed_sweep(std::size_t rows) {
