@@ -94,7 +94,8 @@ class Reproduce(unittest.TestCase):
         self.assertTrue(err.startswith("hapbench: error: "), err)
 
     def test_a_signal_ends_its_parts(self):
-        process = self.start(f"#!/bin/sh\ntouch {shlex.quote(str(self.root))}/began\nexec sleep 50\n")
+        # Without a program of its own that would outlive the shell and write while the folder is removed.
+        process = self.start(f"#!/bin/sh\n: >{shlex.quote(str(self.root))}/began\nexec sleep 50\n")
         while not (self.root / "began").exists():
             time.sleep(0.02)
         process.send_signal(signal.SIGTERM)
