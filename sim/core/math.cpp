@@ -145,9 +145,15 @@ struct Binary {
 };
 
 Binary binary(double x) {
-  Binary b;
-  b.m = std::frexp(x, &b.k);
-  return b.m < 0x1.6a09e667f3bcdp-1 ? Binary{b.k - 1, 2.0 * b.m} : b;
+  int subnormal = 0;
+  if (x < std::numeric_limits<double>::min()) {
+    x *= 0x1p54;
+    subnormal = -54;
+  }
+  // Doubles of one sign are ordered as their bits: how many exponents they are above sqrt(1/2).
+  const auto bits = std::bit_cast<std::int64_t>(x);
+  const std::int64_t k = (bits - std::bit_cast<std::int64_t>(0x1.6a09e667f3bcdp-1)) >> 52;
+  return {static_cast<int>(k) + subnormal, std::bit_cast<double>(bits - k * (std::int64_t{1} << 52))};
 }
 
 /// ln x to 2^-64 of itself, for finite x > 0: k ln 2 + 2 s (1 + s^2/3 + s^4/5 + …) with s = (m - 1) / (m + 1),
