@@ -198,7 +198,7 @@ void add_twice(CommandLine& line) {
 
 }  // namespace hapbench
 """),
-        tree.edit("    add_validate;", "    add_twice,\n", before=True),
+        tree.edit("add_validate;", "add_twice, ", before=True),
         tree.edit("constexpr AddCommand* kCommands[] = {", "add_twice, "),
         tree.edit("    sweep.cpp\n", "    twice.cpp\n"),
     }
