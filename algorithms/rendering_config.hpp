@@ -64,6 +64,8 @@ struct RenderingConfig {
   /// Given values of parameters that belong to one algorithm alone (OwnParameter), by algorithm and name.
   std::map<std::string, std::map<std::string, double>> parameters;
 
+  bool has_friction() const { return mu_s != 0.0 || mu_f != 0.0 || dry_friction; }
+
   /// ForceAlgorithm::angular_velocity_cutoff of an algorithm with this damping.
   std::optional<double> angular_velocity_read() const {
     if (!angular_damping) return std::nullopt;

@@ -26,7 +26,7 @@ double order_in_step(const Scenario& scenario) {
   const IntegratorEntry& integrator = *scenario.integrator.type;
   if (!std::holds_alternative<IdealDeviceFields>(scenario.device)) return 1.0;
   const RenderingConfig& r = scenario.rendering;
-  return normal_damping(r) > 0.0 || r.mu_s > 0.0 || r.mu_f > 0.0 ? integrator.damped_order : integrator.order;
+  return normal_damping(r) > 0.0 || r.has_friction() ? integrator.damped_order : integrator.order;
 }
 
 std::string noise_reason(const Scenario& scenario) {
