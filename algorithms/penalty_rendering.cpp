@@ -37,13 +37,14 @@ void PenaltyRendering::reset() noexcept {
 void PenaltyRendering::compute(const ToolState& tool, ContactBuffer& contacts, RenderedForce& out) noexcept {
   out = kNoForce;
   in_contact_ = false;
-  if (contacts.empty()) damping_and_limits_.release();
-  if (contacts.empty() && skips_ == Skips::on) return;
+  if (!contacts.empty() || skips_ == Skips::off) render(tool, contacts, out);
+  if (!in_contact_) damping_and_limits_.release();
+}
 
+void PenaltyRendering::render(const ToolState& tool, ContactBuffer& contacts, RenderedForce& out) noexcept {
   out.depth_max = contacts.largest_depth();
   if (local_average_) local_average_->process(contacts);
   if (reduction_) reduce(contacts);
-  if (contacts.empty()) damping_and_limits_.release();
   if (contacts.empty() && skips_ == Skips::on) return;
 
   const LawForce& law = law_force_ = law_->evaluate(contacts);
@@ -53,16 +54,13 @@ void PenaltyRendering::compute(const ToolState& tool, ContactBuffer& contacts, R
   // Required by the model and no skip: S is zero without contacts, so the whole velocity would count as tangential.
   if (contacts.empty()) return;
   in_contact_ = true;
-  if (!damping_and_limits_.needs_loads()) {
-    out.rendered = damping_and_limits_.rendered_force(law.spring, law.S, velocity_at(contacts, tool));
-    return;
-  }
   out.rendered = damping_and_limits_.rendered_force(law.spring, law.S, velocity_at(contacts, tool), loads_of(contacts));
   out.friction = damping_and_limits_.friction_state();
 }
 
-/// The loads of weighted springs; else the spring force as one load along itself.
+/// The loads of weighted springs; else the spring force as one load along itself. Zero where nothing reads them.
 Mat3 PenaltyRendering::loads_of(const ContactBuffer& contacts) const noexcept {
+  if (!damping_and_limits_.needs_loads()) return Mat3::Zero();
   return law_->gives_weights() ? Mat3(K_ * load_tensor(contacts)) : load_along(law_force_.spring);
 }
 

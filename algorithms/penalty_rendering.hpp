@@ -28,6 +28,7 @@ class PenaltyRendering final : public ForceAlgorithm {
   const char* fault() const noexcept override { return law_->fault(); }
 
  private:
+  void render(const ToolState& tool, ContactBuffer& contacts, RenderedForce& out) noexcept;
   void reduce(ContactBuffer& contacts) noexcept;
   Mat3 loads_of(const ContactBuffer& contacts) const noexcept;
   ContactVelocity velocity_at(const ContactBuffer& contacts, const ToolState& tool) const noexcept;

@@ -49,7 +49,7 @@ class TrackingHand final : public Hand {
   Vec3 force(double t, const HandView& view) noexcept override;
   const TargetTask* task() const noexcept override { return &task_; }
 
-  /// Where the subject wants the handle to be, x_e [m].
+  /// The position of the handle that the subject intends, x_e [m].
   const Vec3& intended() const noexcept { return intended_; }
   /// Tilt of the tool, including noise [rad].
   double tilt() const noexcept { return tilt_; }

@@ -31,9 +31,14 @@ void add_cell(ordered_json& object, const Column& column, const Cell& cell) {
       cell);
 }
 
-Metric::Value value_of(const MetricList& list, std::string_view name) {
+const Metric* find_metric(const MetricList& list, std::string_view name) {
   const auto metric = std::find_if(list.begin(), list.end(), [name](const Metric& m) { return m.name == name; });
-  return metric != list.end() ? metric->value : Metric::Value();
+  return metric != list.end() ? &*metric : nullptr;
+}
+
+Metric::Value value_of(const MetricList& list, std::string_view name) {
+  const Metric* metric = find_metric(list, name);
+  return metric != nullptr ? metric->value : Metric::Value();
 }
 
 std::optional<double> number_of(const Metric::Value& value) {

@@ -128,6 +128,8 @@ std::optional<Value> if_any(bool exists, Value value) {
 /// names and documents its metrics; the names do not depend on the run, except that each target place has its own.
 using MetricList = std::vector<Metric>;
 
+/// The metric of that name; null when there is none.
+const Metric* find_metric(const MetricList& list, std::string_view name);
 /// The value of that name; none when there is no such metric.
 Metric::Value value_of(const MetricList& list, std::string_view name);
 /// A value as a number.

@@ -49,7 +49,7 @@ ordered_json metrics_json(const MetricList& list) {
   return json;
 }
 
-/// Of the metrics that have one, by their full names.
+/// The tolerances of the metrics that have one, by the full names of these.
 ordered_json tolerances_json(const MetricList& list) {
   ordered_json json = ordered_json::object();
   for (const Metric& metric : list)

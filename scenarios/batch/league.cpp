@@ -294,9 +294,9 @@ LeagueRuns league_runs(const BatchPlan& plan, const BatchReport& report, const s
     run.failed = !is_led && (is_failure(run.outcome) || !outcome_is_expected(scenario.expect, summary.result.outcome));
     run.state_hash = summary.metrics.state_hash;
     for (const std::string& name : league.metrics) {
-      const auto metric = std::ranges::find(list, name, &Metric::name);
-      run.metrics.push_back(metric == list.end() ? std::nullopt : number_of(metric->value));
-      run.tolerances.push_back(metric == list.end() ? std::nullopt : metric->tolerance());
+      const Metric* metric = find_metric(list, name);
+      run.metrics.push_back(metric == nullptr ? std::nullopt : number_of(metric->value));
+      run.tolerances.push_back(metric == nullptr ? std::nullopt : metric->tolerance());
     }
     league.runs.push_back(std::move(run));
   }

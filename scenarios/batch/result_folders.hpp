@@ -35,7 +35,7 @@ inline constexpr const char* kResultListFile = "hapbench_results.json";
 /// be written.
 void replace_earlier_results(const std::filesystem::path& directory, const ResultList& now);
 
-/// That list; empty where there is none that can be read.
+/// Reads the list of results that a command left in a directory; empty where there is none or it cannot be read.
 ResultList results_on_record(const std::filesystem::path& directory);
 
 /// Removes the list if none of the files it names exists, for instance after a command was stopped in its first run.

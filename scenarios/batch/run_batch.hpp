@@ -37,7 +37,8 @@ struct BatchPlan {
   /// Further overrides of each scenario, which come after those of the definition; may be empty as a whole.
   std::vector<std::vector<std::string>> scenario_overrides;
   std::int64_t stride = 1;  ///< TimeFields::stride of all runs
-  /// Of a comparison on record the scenario of each run, with its algorithm, seed and start; none of others.
+  /// The scenario of each run, complete with algorithm, seed and start, of a comparison read back from its results
+  /// (comparison_on_record); empty for a comparison that is planned from its scenarios.
   std::vector<ScenarioText> on_record = {};
 
   std::size_t size() const { return scenarios.size() * definition.algorithms.size() * definition.seeds; }

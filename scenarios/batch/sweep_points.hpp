@@ -33,7 +33,7 @@ struct Axis {
   std::optional<Range> range = {};       ///< replaces listed values
   std::size_t steps = 0;                 ///< number of values of a range on a grid
 
-  /// What has to change along with a value: further overrides, and the TimeFields::stride of its runs.
+  /// Changes that go with a value of the axis: further overrides, and the TimeFields::stride of its runs.
   struct Along {
     std::vector<std::string> overrides;
     std::int64_t stride = 1;

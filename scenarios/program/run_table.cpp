@@ -26,8 +26,8 @@ std::string cell(std::optional<double> value, int digits = 3) {
 
 /// The metric of that name with the digits that its tolerance leaves it; `factor`: to the unit that is shown.
 std::string metric_cell(const MetricList& metrics, std::string_view name, double factor) {
-  const auto metric = std::ranges::find(metrics, name, &Metric::name);
-  const auto value = metric == metrics.end() ? std::nullopt : number_of(metric->value);
+  const Metric* metric = find_metric(metrics, name);
+  const auto value = metric == nullptr ? std::nullopt : number_of(metric->value);
   return value ? cell(factor * *value, deserved_digits(*value, metric->tolerance(), 3)) : "-";
 }
 
@@ -275,7 +275,7 @@ std::vector<Column> comparison_columns() {
       {"algorithm", "", "force algorithm"}, {"outcome", "", "how the run ended"}, {"steps", "1", "rows of the run"}};
   const MetricList metrics = metrics_without_values();
   for (const char* name : kComparedMetrics) {
-    const auto& metric = *std::ranges::find(metrics, name, &Metric::name);
+    const Metric& metric = *find_metric(metrics, name);
     columns.push_back({name, metric.unit, metric.meaning});
   }
   return columns;

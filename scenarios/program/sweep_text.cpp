@@ -39,8 +39,8 @@ std::string shown_value(const std::string& text) {
 /// is a part of the value.
 int digits_of(std::string_view metric, double value, int most) {
   static const MetricList known = metrics_without_values();
-  const auto found = std::ranges::find(known, metric, &Metric::name);
-  return found == known.end() ? most : deserved_digits(value, found->relative * std::abs(value), most);
+  const Metric* found = find_metric(known, metric);
+  return found == nullptr ? most : deserved_digits(value, found->relative * std::abs(value), most);
 }
 
 bool has_failed(const SweepRow& row) {

@@ -4,8 +4,6 @@
 #include <array>
 #include <cmath>
 
-#include "sim/tool/mesh_tool.hpp"
-
 namespace hapbench {
 namespace {
 
@@ -23,14 +21,13 @@ constexpr double kOnTool = 1e-9, kDifference = 1e-3, kCoarse = 0.25;
 InsideSearch::InsideSearch(const ToolShape& tool, const Solid& solid)
     : tool_(tool),
       solid_(solid),
-      error_(solid.error()),
+      error_(solid.error() + tool.surface_error()),
       points_(2 * kAtOnce),
       one_(1),
       x_(2 * simd::lanes),
       y_(x_),
       z_(x_) {
   cells_.reserve(kMostCells);
-  if (const auto* mesh = dynamic_cast<const MeshTool*>(&tool)) error_ += mesh->grid().error_bound();
 }
 
 std::optional<double> InsideSearch::depth(const ToolPose& pose, double known, double tolerance) noexcept {

@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "sim/core/math.hpp"
-#include "sim/tool/mesh_tool.hpp"
 
 namespace hapbench {
 namespace {
@@ -16,12 +15,6 @@ constexpr double kShort = 0.02, kLong = 1.0, kPolyline = 2e-4;
 /// Centres beside that of the smallest ball, in half widths.
 constexpr double kBeside[] = {0.25, -0.25, 0.5, -0.5, 1.0, -1.0, 2.0, -2.0, 4.0, -4.0, 8.0};
 
-/// What the outline of a tool on a grid may leave out: a cell's diagonal.
-double left_out(const ToolShape& tool) {
-  const auto* mesh = dynamic_cast<const MeshTool*>(&tool);
-  return mesh == nullptr ? 0.0 : 2.0 * mesh->grid().error_bound();
-}
-
 }  // namespace
 
 InsideBound::InsideBound(const ToolShape& tool, const Solid& solid)
@@ -29,7 +22,8 @@ InsideBound::InsideBound(const ToolShape& tool, const Solid& solid)
       solid_(solid),
       half_width_(tool.half_width()),
       outline_(tool.outline()),
-      margin_(kPolyline * half_width_ + left_out(tool)) {
+      // The outline of a tool on a grid may leave out a cell's diagonal.
+      margin_(kPolyline * half_width_ + 2.0 * tool.surface_error()) {
   const auto [far, tip] = std::minmax_element(outline_.begin(), outline_.end(),
                                               [](const ProfilePoint& a, const ProfilePoint& b) { return a.s < b.s; });
   stretches_.push_back({far->s, tip->s});

@@ -44,15 +44,15 @@ class Random {
 
   /// Uniform on the unit circle in the plane z = 0.
   Vec3 direction_in_plane() {
-    const double a = 2.0 * std::numbers::pi * uniform();
-    return {math::cos(a), math::sin(a), 0.0};
+    const auto [sine, cosine] = math::sine_cosine(2.0 * std::numbers::pi * uniform());
+    return {cosine, sine, 0.0};
   }
   /// Uniform on the unit sphere.
   Vec3 direction() {
     const double z = uniform(-1.0, 1.0);
-    const double a = 2.0 * std::numbers::pi * uniform();
+    const auto [sine, cosine] = math::sine_cosine(2.0 * std::numbers::pi * uniform());
     const double r = std::sqrt(1.0 - z * z);
-    return {r * math::cos(a), r * math::sin(a), z};
+    return {r * cosine, r * sine, z};
   }
 
  private:

@@ -87,8 +87,7 @@ Eigen::Quaterniond RecordedMotion::orientation_in(const Leg& leg) noexcept {
   const Eigen::Quaterniond turn = leg.from->orientation->conjugate() * *leg.to->orientation;
   const double sine = turn.vec().norm();  // of half the angle
   if (sine == 0.0) return *leg.from->orientation;
-  const double angle = 2.0 * math::atan2(turn.w() < 0.0 ? -sine : sine, std::abs(turn.w()));
-  return *leg.from->orientation * turn_about(turn.vec() / sine, leg.fraction * angle);
+  return *leg.from->orientation * turn_about(turn.vec() / sine, leg.fraction * angle_of(turn, sine));
 }
 
 Vec3 RecordedMotion::axis_at(double t) const noexcept {

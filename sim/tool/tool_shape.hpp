@@ -62,6 +62,8 @@ class ToolShape {
   double half_width() const noexcept { return half_width_; }
   /// Distance of the body's furthest point from the tip centre.
   double reach() const noexcept { return reach_; }
+  /// By how much the body's surface may lie elsewhere than that of what it stands for [m]: a mesh on a grid.
+  virtual double surface_error() const noexcept { return 0.0; }
   /// A proxy keeps every point out of a convex body only.
   virtual bool convex() const noexcept = 0;
   /// The outline for drawings, in the axial half plane: from the far end on the axis to the foremost point on the axis,

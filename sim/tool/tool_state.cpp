@@ -31,7 +31,7 @@ Vec3 whole_turn(const ToolPose& from, const ToolPose& to) noexcept {
   const Eigen::Quaterniond whole(Mat3(to.rotation() * from.rotation().transpose()));
   const double sine = whole.vec().norm();  // of half the angle
   if (sine == 0.0) return Vec3::Zero();
-  return whole.vec() * (2.0 * math::atan2(whole.w() < 0.0 ? -sine : sine, std::abs(whole.w())) / sine);
+  return whole.vec() * (angle_of(whole, sine) / sine);
 }
 
 }  // namespace hapbench

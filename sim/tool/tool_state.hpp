@@ -40,6 +40,11 @@ inline Eigen::Quaterniond turn_about(const Vec3& axis, double angle) noexcept {
   return q;
 }
 
+/// The angle of the turn of a unit quaternion in (-pi, pi], about q.vec(), whose length is `sine` > 0.
+inline double angle_of(const Eigen::Quaterniond& q, double sine) noexcept {
+  return 2.0 * math::atan2(q.w() < 0.0 ? -sine : sine, std::abs(q.w()));
+}
+
 /// The roll of the pose with this axis whose own x axis lies along `side`, in (-pi, pi]. Unit vectors, perpendicular.
 double roll_towards(const Vec3& axis, const Vec3& side) noexcept;
 

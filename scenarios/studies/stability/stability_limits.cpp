@@ -119,8 +119,7 @@ void require_bilateral_springs(const Scenario& scenario) {
     fail("/environment/type", "stability limits exist for \"springs\" only: elsewhere contacts come and go");
   if (!springs->bilateral) fail("/environment/bilateral", "got false; allowed for stability: true");
   if (!springs->signed_depths) fail("/environment/signed", "got false; allowed for stability: true");
-  if (scenario.rendering.mu_s != 0.0 || scenario.rendering.mu_f != 0.0 || scenario.rendering.dry_friction)
-    fail("/rendering/friction", "allowed for stability: none");
+  if (scenario.rendering.has_friction()) fail("/rendering/friction", "allowed for stability: none");
   if (scenario.rendering.hunt_crossley) fail("/rendering/damping", "allowed for stability: null");
   if (scenario.rendering.max_damping) fail("/rendering/limits/max_damping_N_s_per_m", "allowed for stability: null");
   if (scenario.rendering.max_force) fail("/rendering/limits/max_force_N", "allowed for stability: null");
