@@ -6,14 +6,6 @@
 
 using hapbench::allocations_of_thread;
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define HAPBENCH_SANITIZED
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
-#define HAPBENCH_SANITIZED
-#endif
-#endif
-
 #ifdef HAPBENCH_SANITIZED
 
 // AddressSanitizer and ThreadSanitizer own malloc and offer hooks instead.

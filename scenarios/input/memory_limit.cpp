@@ -26,20 +26,41 @@ double free_memory() {
   return kInfinity;
 }
 
+#ifdef HAPBENCH_SANITIZED
+// The sanitizers' own maps of memory, terabytes of addresses, would count as the program's data.
+rlimit sanitized_limit = {RLIM_INFINITY, RLIM_INFINITY};
+
+int get_limit(rlimit& limit) {
+  limit = sanitized_limit;
+  return 0;
+}
+
+void set_limit(const rlimit& limit) {
+  sanitized_limit = limit;
+}
+#else
+int get_limit(rlimit& limit) {
+  return ::getrlimit(RLIMIT_DATA, &limit);
+}
+
+void set_limit(const rlimit& limit) {
+  ::setrlimit(RLIMIT_DATA, &limit);
+}
+#endif
+
 }  // namespace
 
 void limit_memory(std::optional<double> bytes) {
   rlimit limit = {};
-  if (::getrlimit(RLIMIT_DATA, &limit) != 0) return;
+  if (get_limit(limit) != 0) return;
   const double wanted = std::min(bytes.value_or(0.75 * free_memory()), static_cast<double>(limit.rlim_max));
   limit.rlim_cur = wanted < 0x1p62 ? static_cast<rlim_t>(wanted) : limit.rlim_max;
-  ::setrlimit(RLIMIT_DATA, &limit);
+  set_limit(limit);
 }
 
 double memory_limit() {
   rlimit limit = {};
-  return ::getrlimit(RLIMIT_DATA, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY ? static_cast<double>(limit.rlim_cur)
-                                                                                  : kInfinity;
+  return get_limit(limit) == 0 && limit.rlim_cur != RLIM_INFINITY ? static_cast<double>(limit.rlim_cur) : kInfinity;
 }
 
 std::string memory_limit_text() {

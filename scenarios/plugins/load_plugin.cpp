@@ -43,7 +43,7 @@ constexpr Interface kContactSources = {.kind = "source of contacts",
 
 /// Symbols of the library and its dependencies take precedence over ours. Sanitizers replace functions of all
 /// libraries, so they exclude that.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#ifdef HAPBENCH_SANITIZED
 constexpr int kApart = RTLD_NOW | RTLD_LOCAL;
 #else
 constexpr int kApart = RTLD_NOW | RTLD_LOCAL | RTLD_DEEPBIND;
