@@ -28,7 +28,7 @@ constexpr OutcomeInfo kOutcomes[] = {
     {"went_through",
      "all steps are done, but the tool passed the surface, by itself or led by a script: its tip centre came deeper than "
      "its half width, or its core (half a width behind its tip) left the environment on another side than it had "
-     "entered, or ended inside",
+     "entered, or ended inside, or another part of it, as its shank, came deeper than its half width",
      true},
     {"diverges", "a value stopped being finite or left its bound (describe bounds)", true}};
 static_assert(static_cast<std::size_t>(Outcome::diverges) == std::size(kOutcomes) - 1);

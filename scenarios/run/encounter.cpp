@@ -224,7 +224,7 @@ std::string size_and_place(const Box& box) {
 }  // namespace
 
 Outcome outcome_of(const Scenario& scenario, const Encounter& e) {
-  if (e.passage && e.passage->went_through()) return Outcome::went_through;
+  if (e.passage && (e.passage->went_through() || e.inside_max > e.tool.half_width())) return Outcome::went_through;
   if (e.metrics.steps_in_contact == 0) return Outcome::no_contact;
   const bool is_free = std::holds_alternative<FreePosition>(scenario.motion.position);
   const bool left = e.approach.last > diagonal(e.environment) + e.tool.reach();
@@ -273,9 +273,11 @@ Encounter EncounterObservers::encounter(const Metrics& metrics, const ToolShape&
 }
 
 Outcome EncounterObservers::outcome(const Scenario& scenario, const Metrics& metrics, const ToolShape& tool,
-                                    Outcome outcome) const {
+                                    Outcome outcome) {
   if (!approach_ || outcome != Outcome::completes) return outcome;
-  return outcome_of(scenario, encounter(metrics, tool));
+  Encounter seen = encounter(metrics, tool);
+  if (inside_) seen.inside_max = inside_->metrics().max.value_or(0.0);
+  return outcome_of(scenario, seen);
 }
 
 void EncounterObservers::judge(const Scenario& scenario, Metrics& metrics, const ToolShape& tool, Outcome& outcome,
@@ -287,16 +289,11 @@ void EncounterObservers::judge(const Scenario& scenario, Metrics& metrics, const
                     length_text(metrics.inside->max.value_or(0.0)), length_text(*metrics.inside->at_most)));
   }
   if (!approach_) return;
-  const Encounter seen = encounter(metrics, tool);
+  Encounter seen = encounter(metrics, tool);
+  if (metrics.inside) seen.inside_max = metrics.inside->max.value_or(0.0);
   if (outcome == Outcome::completes) {
     outcome = outcome_of(scenario, seen);
     if (auto warning = warning_about(scenario, outcome, seen)) warnings.push_back(*warning);
-    const double deepest = metrics.inside ? metrics.inside->max.value_or(0.0) : 0.0;
-    if (outcome == Outcome::completes && deepest > tool.half_width())
-      warnings.push_back(
-          fmt::format("a part of the tool was {} inside, more than its half width of {}, though its tip "
-                      "centre was not",
-                      length_text(deepest), length_text(tool.half_width())));
   }
   if (seen.drag) {
     for (std::string& warning : drag_warnings(*seen.drag, outcome)) warnings.push_back(std::move(warning));
@@ -321,7 +318,7 @@ std::string millimetres(const Vec3& place) {
 }
 
 /// How a tool passed the surface, as one sentence.
-std::string passage_text(const Passage& p, double half_width, bool is_led) {
+std::string passage_text(const Passage& p, double half_width, double inside_max, bool is_led) {
   const char* const begins = p.began_inside ? "the tool began inside the environment"
                              : is_led       ? "the script led the tool through the surface"
                                             : "the tool went through the surface";
@@ -338,7 +335,9 @@ std::string passage_text(const Passage& p, double half_width, bool is_led) {
     return fmt::format("{}: it entered at {} and left on another side, at {:.4g} s at {}", begins,
                        millimetres(p.entered), p.left->time, millimetres(p.left->place));
   }
-  return fmt::format("{}: its core ended inside, its tip centre {}", begins, end);
+  if (p.ends_inside) return fmt::format("{}: its core ended inside, its tip centre {}", begins, end);
+  return fmt::format("{}: a part of it was {} inside, more than its half width of {}, though its tip centre was not",
+                     begins, length_text(inside_max), length_text(half_width));
 }
 
 }  // namespace
@@ -347,7 +346,8 @@ std::optional<std::string> warning_about(const Scenario& scenario, Outcome outco
   if (outcome == Outcome::went_through) {
     const bool odd = out_of_proportion(e.tool, e.environment);
     const bool is_led = !std::holds_alternative<FreePosition>(scenario.motion.position);
-    return passage_text(*e.passage, e.tool.half_width(), is_led) + (odd ? "; " + scale_question(scenario) : "");
+    return passage_text(*e.passage, e.tool.half_width(), e.inside_max, is_led) +
+           (odd ? "; " + scale_question(scenario) : "");
   }
   if ((outcome == Outcome::stuck || outcome == Outcome::not_dragged) && e.stuck) {
     return fmt::format(

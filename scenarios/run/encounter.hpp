@@ -146,15 +146,17 @@ struct Encounter {
   const ToolShape& tool;
   std::optional<DragCourse> drag = {};  ///< of a hand that drags
   std::optional<Passage> passage = {};  ///< of an environment with an inside
+  double inside_max = 0.0;              ///< of any part of the tool in any row [m]
   std::optional<Stuck> stuck = {};      ///< of a hand with a target
 };
 
 /// The outcome of a run that completed, once it is known what it touched: `went_through` when the tool passed the
-/// surface (Passage), by itself or led by a script; `no_contact` when no row had a colliding
-/// point; `lost_contact` when a tool that moves freely ended further from the environment's box than the box is wide
-/// and the tool reaches together, as one does that was thrown out or pushed past, or when a dragged tool lost the
-/// surface; `not_dragged` when one came nowhere (DragCourse): it was pressed, and its calm numbers tell nothing of a
-/// drag; `stuck` when it came to stand while the target of its hand went on; else `completes`.
+/// surface (Passage), by itself or led by a script, or a part of it was deeper than its half width; `no_contact` when
+/// no row had a colliding point; `lost_contact` when a tool that moves freely ended further from the environment's box
+/// than the box is wide and the tool reaches together, as one does that was thrown out or pushed past, or when a
+/// dragged tool lost the surface; `not_dragged` when one came nowhere (DragCourse): it was pressed, and its calm
+/// numbers tell nothing of a drag; `stuck` when it came to stand while the target of its hand went on; else
+/// `completes`.
 Outcome outcome_of(const Scenario& scenario, const Encounter& encounter);
 
 /// Watches a run with a point shell for all that decides its outcome.
@@ -169,7 +171,7 @@ class EncounterObservers {
   const InsideObserver* inside() const { return inside_ ? &*inside_ : nullptr; }
 
   /// The outcome of the run that ended with `outcome`, which stays unless it is `completes`.
-  Outcome outcome(const Scenario& scenario, const Metrics& metrics, const ToolShape& tool, Outcome outcome) const;
+  Outcome outcome(const Scenario& scenario, const Metrics& metrics, const ToolShape& tool, Outcome outcome);
   /// After the run: adds the depth to its metrics, finds its outcome and adds warnings about it.
   void judge(const Scenario& scenario, Metrics& metrics, const ToolShape& tool, Outcome& outcome,
              std::vector<std::string>& warnings);

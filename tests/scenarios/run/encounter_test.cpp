@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "results/observe/metrics.hpp"
+#include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/description/metric_sections.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/run_scenario.hpp"
@@ -315,6 +316,21 @@ TEST(Drag, TellsOfAToolThatWentThrough) {
   EXPECT_NE(warnings_of(report).find("the tool went through the surface: its tip centre was more than its half width"),
             std::string::npos)
       << warnings_of(report);
+}
+
+/// A drill turned into the wall of its hole about its resting tip: the axis of its shank is in the wall in the end,
+/// while the tip centre and the core behind it have always been in the hole.
+TEST(Outcome, OfAShankThatIsInside) {
+  const LoadedScenario loaded = load_scenario(find_scenario("pure_rotation"), {});
+  const RunReport report = run_scenario(loaded, std::nullopt, false);
+  EXPECT_EQ(report.summary.result.outcome, Outcome::went_through);
+  EXPECT_TRUE(report.unmet.empty());
+  // By 0.2 rad the shank only presses on the rim.
+  const std::vector<std::string> half = {"motion.orientation.tilt_rad=0.2", "expect={}"};
+  EXPECT_EQ(
+      run_scenario(load_scenario(find_scenario("pure_rotation"), half), std::nullopt, false).summary.result.outcome,
+      Outcome::completes);
+  EXPECT_NE(warnings_of(report).find("a part of it was 0.86"), std::string::npos) << warnings_of(report);
 }
 
 }  // namespace
