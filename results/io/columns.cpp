@@ -48,6 +48,7 @@ std::optional<double> number_of(const Metric::Value& value) {
 }
 
 Metric Metric::within(double of_it, double beside) && {
+  bounded = true;
   relative = of_it;
   absolute = beside;
   return std::move(*this);
@@ -55,7 +56,7 @@ Metric Metric::within(double of_it, double beside) && {
 
 std::optional<double> Metric::tolerance() const {
   const auto number = number_of(value);
-  return if_any(number && (relative > 0.0 || absolute > 0.0), relative * std::abs(number.value_or(0.0)) + absolute);
+  return if_any(number && bounded, relative * std::abs(number.value_or(0.0)) + absolute);
 }
 
 std::string cell_text(const Metric::Value& value) {

@@ -92,6 +92,7 @@ struct Metric {
   Value value;
   Better better;
   double relative = 0.0, absolute = 0.0;  ///< parts of the tolerance, as `within` gives them
+  bool bounded = false;                   ///< has a tolerance where it has a value
 
   /// From a number, a count, one of them that need not exist, or a Value.
   template <class Given>

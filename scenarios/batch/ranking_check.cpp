@@ -41,14 +41,14 @@ struct Apart {
   bool operator()(double a, double b) const { return relative_change(a, b) > kHeld && !(std::abs(a - b) <= floor); }
 };
 
-Apart apart_in(std::span<const double> before, std::span<const double> after) {
+Apart apart_in(std::span<const double> before, std::span<const double> after, double tolerance) {
   double largest = 0.0;
   for (const auto& column : {before, after}) {
     for (const double number : column) {
       if (std::isfinite(number)) largest = std::max(largest, std::abs(number));
     }
   }
-  return {kSameRank * largest};
+  return {std::max(kSameRank * largest, tolerance)};
 }
 
 }  // namespace
@@ -57,8 +57,9 @@ std::span<const HoldingInfo> holding_infos() noexcept {
   return kHoldings;
 }
 
-ColumnVerdict judged_column(std::span<const double> before, std::span<const double> after, bool ranked) {
-  const Apart apart = apart_in(before, after);
+ColumnVerdict judged_column(std::span<const double> before, std::span<const double> after, bool ranked,
+                            double tolerance) {
+  const Apart apart = apart_in(before, after, tolerance);
   const std::size_t laws = before.size();
   ColumnVerdict verdict;
   double furthest = -1.0;
@@ -129,6 +130,15 @@ std::vector<std::optional<double>> numbers_of(const League& league, std::size_t 
   return numbers;
 }
 
+/// What two numbers of the column may be wrong by together.
+double twice_the_largest(const RankingColumn& column) {
+  double largest = 0.0;
+  for (const auto* tolerances : {&column.tolerance_before, &column.tolerance_after}) {
+    for (const auto& tolerance : *tolerances) largest = std::max(largest, tolerance.value_or(0.0));
+  }
+  return 2.0 * largest;
+}
+
 /// The columns of a scenario that has the places `before` and `after` in the two leagues.
 void add_columns(const League& coarse, std::size_t before, const League& fine, std::size_t after,
                  const RankingColumn& named, std::vector<RankingColumn>& columns) {
@@ -141,7 +151,7 @@ void add_columns(const League& coarse, std::size_t before, const League& fine, s
     column.after = numbers_of(fine, after, m, &Standing::mean);
     column.tolerance_before = numbers_of(coarse, before, m, &Standing::tolerance);
     column.tolerance_after = numbers_of(fine, after, m, &Standing::tolerance);
-    column.verdict = judged_column(keys, keys_after, ranked);
+    column.verdict = judged_column(keys, keys_after, ranked, twice_the_largest(column));
     column.best_before = best_of(keys, ranked);
     column.best_after = best_of(keys_after, ranked);
   }

@@ -88,6 +88,7 @@ SweepPlan plan_of(const fs::path& file) {
                    .points = points_of(json),
                    .warnings = {},
                    .metrics = {},
+                   .bounded = {},
                    .content = {},
                    .definition = json.at("definition")};
     return plan;
@@ -111,7 +112,12 @@ SweepOnRecord read_sweep(const fs::path& folder, const std::vector<std::string>&
   const std::size_t first_metric =
       found.plan.points.axes().size() + 4;  // behind index, fields, outcome, expected, steps
   if (columns.size() <= first_metric) fail_in_file(file, "is not the table of a sweep");
-  found.plan.metrics.assign(columns.begin() + static_cast<std::ptrdiff_t>(first_metric), columns.end() - 1);
+  for (std::size_t c = first_metric; c + 1 < columns.size(); ++c) {
+    if (columns[c].starts_with(kToleranceOf))
+      found.plan.bounded.push_back(columns[c].substr(kToleranceOf.size()));
+    else
+      found.plan.metrics.push_back(columns[c]);
+  }
   if (line != sweep_header(found.plan)) fail_in_file(file, "is not the table of the sweep that sweep.json describes");
 
   std::vector<Condition> all;

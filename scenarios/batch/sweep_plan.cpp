@@ -139,6 +139,7 @@ SweepPlan plan_sweep(ScenarioText scenario, std::vector<std::string> overrides, 
                  .points = std::move(points),
                  .warnings = {},
                  .metrics = {},
+                 .bounded = {},
                  .content = {},
                  .definition = ""};
   const std::vector<std::size_t> runs = runs_to_check(plan.points);
@@ -155,7 +156,10 @@ SweepPlan plan_sweep(ScenarioText scenario, std::vector<std::string> overrides, 
   std::set<std::size_t> runs_with_files;
   for (const auto& [files, run] : first_runs) runs_with_files.insert(run);
   const Json hashes = check_files(plan, {runs_with_files.begin(), runs_with_files.end()}, sections);
-  plan.metrics = metric_names(sections);
+  for (const Metric& metric : metrics_without_values(sections)) {
+    plan.metrics.push_back(metric.name);
+    if (metric.bounded) plan.bounded.push_back(metric.name);
+  }
   plan.content = content_of(plan, hashes, plugins);
   plan.definition = hash_text(hash_of(json_text(plan.content)));
   return plan;

@@ -18,6 +18,7 @@ struct SweepPlan {
 
   std::vector<std::string> warnings;  ///< of the runs that were checked, without duplicates
   std::vector<std::string> metrics;   ///< that some of these runs have
+  std::vector<std::string> bounded;   ///< those of the metrics whose rows say by how much they may be wrong
   /// Everything that determines the rows: scenario, overrides, points, hashes of the files the scenarios name, program.
   Json content;
   std::string definition;  ///< FNV-1a of the content, as 16 hexadecimal digits

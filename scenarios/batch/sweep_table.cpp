@@ -106,12 +106,19 @@ std::optional<double> SweepRow::number(const SweepPlan& plan, std::string_view m
   return number_of(metrics[static_cast<std::size_t>(column)]);
 }
 
+std::optional<double> SweepRow::tolerance(const SweepPlan& plan, std::string_view metric) const {
+  const auto name = std::find(plan.bounded.begin(), plan.bounded.end(), metric);
+  if (name == plan.bounded.end()) return std::nullopt;
+  return number_of(tolerances[static_cast<std::size_t>(name - plan.bounded.begin())]);
+}
+
 SweepRow sweep_row(const SweepPlan& plan, std::size_t run, const RunSummary& summary) {
   SweepRow row{.run = run,
                .outcome = std::string(outcome_name(summary.result.outcome)),
                .expected = summary.expected,
                .steps = static_cast<std::size_t>(summary.result.rows),
                .metrics = {},
+               .tolerances = {},
                .state_hash = hash_text(summary.metrics.state_hash)};
   const MetricList metrics = metric_list(summary);
   auto next = metrics.begin();  // the columns are in the same order, but some runs have more metrics than others
@@ -126,6 +133,11 @@ SweepRow sweep_row(const SweepPlan& plan, std::size_t run, const RunSummary& sum
                     "sweeps whose first runs record what the others record",
                     next->name));
   }
+  for (const std::string& name : plan.bounded) {
+    const Metric* metric = find_metric(metrics, name);
+    const auto tolerance = metric != nullptr ? metric->tolerance() : std::nullopt;
+    row.tolerances.push_back(tolerance ? Metric::Value(*tolerance) : Metric::Value());
+  }
   return row;
 }
 
@@ -135,6 +147,7 @@ SweepRow error_row(const SweepPlan& plan, std::size_t run) {
           .expected = false,
           .steps = std::nullopt,
           .metrics = std::vector<Metric::Value>(plan.metrics.size()),
+          .tolerances = std::vector<Metric::Value>(plan.bounded.size()),
           .state_hash = ""};
 }
 
@@ -143,6 +156,7 @@ std::string sweep_header(const SweepPlan& plan) {
   for (const Axis& axis : plan.points.axes()) columns.push_back(axis.path);
   columns.insert(columns.end(), {"outcome", "expected", "steps"});
   columns.insert(columns.end(), plan.metrics.begin(), plan.metrics.end());
+  for (const std::string& metric : plan.bounded) columns.push_back(std::string(kToleranceOf) + metric);
   columns.emplace_back("state_hash");
   return fmt::format("{}", fmt::join(columns, ","));
 }
@@ -150,7 +164,9 @@ std::string sweep_header(const SweepPlan& plan) {
 std::string row_text(const SweepPlan& plan, const SweepRow& row) {
   std::string text = fmt::format("{},{},{},{},{}", row.run, fmt::join(plan.points.values(row.run), ","), row.outcome,
                                  row.expected, row.steps ? std::to_string(*row.steps) : "");
-  for (const Metric::Value& value : row.metrics) text += "," + cell_text(value);
+  for (const auto* values : {&row.metrics, &row.tolerances}) {
+    for (const Metric::Value& value : *values) text += "," + cell_text(value);
+  }
   return text + "," + row.state_hash;
 }
 
@@ -158,7 +174,9 @@ std::optional<SweepRow> parse_row(const SweepPlan& plan, std::string_view text) 
   const Words cells = parts_of(text, ',');
   const std::size_t axes = plan.points.axes().size(), first_metric = leading_columns(plan);
   const auto run = whole_number(cells[0]);
-  if (!run || *run >= plan.points.size() || cells.size() != first_metric + plan.metrics.size() + 1) return std::nullopt;
+  if (!run || *run >= plan.points.size() ||
+      cells.size() != first_metric + plan.metrics.size() + plan.bounded.size() + 1)
+    return std::nullopt;
   for (std::size_t a = 0; a < axes; ++a)
     if (cells[1 + a] != plan.points.value(*run, a)) return std::nullopt;
   SweepRow row{.run = *run,
@@ -166,9 +184,11 @@ std::optional<SweepRow> parse_row(const SweepPlan& plan, std::string_view text) 
                .expected = cells[2 + axes] == "true",
                .steps = whole_number(cells[3 + axes]),
                .metrics = {},
+               .tolerances = {},
                .state_hash = std::string(cells.back())};
   row.metrics.reserve(plan.metrics.size());
-  for (std::size_t m = 0; m < plan.metrics.size(); ++m) row.metrics.push_back(value_in(cells[first_metric + m]));
+  for (std::size_t m = first_metric; m + 1 < cells.size(); ++m)
+    (row.metrics.size() < plan.metrics.size() ? row.metrics : row.tolerances).push_back(value_in(cells[m]));
   return row;
 }
 
@@ -180,6 +200,8 @@ Json row_json(const SweepPlan& plan, const SweepRow& row) {
   json["expected"] = row.expected;
   json["steps"] = row.steps ? Json(*row.steps) : Json(nullptr);
   for (std::size_t m = 0; m < plan.metrics.size(); ++m) json[plan.metrics[m]] = json_of(row.metrics[m]);
+  for (std::size_t m = 0; m < plan.bounded.size(); ++m)
+    json[std::string(kToleranceOf) + plan.bounded[m]] = json_of(row.tolerances[m]);
   json["state_hash"] = row.state_hash.empty() ? Json(nullptr) : Json(row.state_hash);
   return json;
 }

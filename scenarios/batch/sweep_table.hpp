@@ -41,14 +41,17 @@ inline constexpr std::string_view kErrorOutcome = "error";
 /// A row of sweep.csv.
 struct SweepRow {
   std::size_t run = 0;
-  std::string outcome;                 ///< kErrorOutcome: the row has no steps, metrics and state hash
-  bool expected = false;               ///< the scenario's expectations are met
-  std::optional<std::size_t> steps;    ///< steps that were simulated
-  std::vector<Metric::Value> metrics;  ///< one for each of the plan's metrics
+  std::string outcome;                    ///< kErrorOutcome: the row has no steps, metrics and state hash
+  bool expected = false;                  ///< the scenario's expectations are met
+  std::optional<std::size_t> steps;       ///< steps that were simulated
+  std::vector<Metric::Value> metrics;     ///< one for each of the plan's metrics
+  std::vector<Metric::Value> tolerances;  ///< of each of the plan's bounded metrics
   std::string state_hash;
 
   /// The value of a metric of the plan as a number; none when the run has none. Precondition: the plan has the metric.
   std::optional<double> number(const SweepPlan& plan, std::string_view metric) const;
+  /// By how much that metric may be wrong; none where that is not known.
+  std::optional<double> tolerance(const SweepPlan& plan, std::string_view metric) const;
 };
 
 /// The row of a finished run. Throws InputError if the run has a metric for which there is no column.
@@ -56,7 +59,10 @@ SweepRow sweep_row(const SweepPlan& plan, std::size_t run, const RunSummary& sum
 /// The row of a run that an exception ended.
 SweepRow error_row(const SweepPlan& plan, std::size_t run);
 
-/// Column names: run number, the varied fields, outcome, expected, steps, every metric, state_hash.
+/// Stands before the name of a metric in the heading of its tolerance, as in summary.json.
+inline constexpr std::string_view kToleranceOf = "tolerances.";
+
+/// Column names: run number, the varied fields, outcome, expected, steps, every metric, the tolerances, state_hash.
 std::string sweep_header(const SweepPlan& plan);
 /// The row as a line without its end.
 std::string row_text(const SweepPlan& plan, const SweepRow& row);

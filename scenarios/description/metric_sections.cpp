@@ -133,15 +133,13 @@ void add_sections(SectionParts& sections, const SectionParts& more) {
   }
 }
 
-std::vector<std::string> metric_names(const SectionParts& sections) {
+MetricList metrics_without_values(const SectionParts& sections) {
   MetricList metrics = common_metrics();
   for (const SectionKind& kind : kSections) {
     const auto section = sections.find(kind.name);
     if (section != sections.end()) append(metrics, kind.name, kind.without_values(section->second));
   }
-  std::vector<std::string> names;
-  for (Metric& metric : metrics) names.push_back(std::move(metric.name));
-  return names;
+  return metrics;
 }
 
 std::vector<std::string> metric_names() {

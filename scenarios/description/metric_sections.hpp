@@ -26,8 +26,8 @@ SectionParts sections_of(const Scenario& scenario, bool has_reference_force);
 /// Adds the sections that another run has.
 void add_sections(SectionParts& sections, const SectionParts& more);
 
-/// The metrics of runs with these sections, in the order of the summary.
-std::vector<std::string> metric_names(const SectionParts& sections);
+/// The metrics of runs with these sections, in the order of the summary, with unit and meaning, without values.
+MetricList metrics_without_values(const SectionParts& sections);
 /// The metrics of all sections: those that `expect` may bound. Tasks have two places, as those of the thesis.
 std::vector<std::string> metric_names();
 /// The same with unit and meaning, without values.

@@ -6,6 +6,7 @@
 #include "results/record/recorder.hpp"
 #include "scenarios/batch/league.hpp"
 #include "scenarios/batch/ranking_check.hpp"
+#include "scenarios/batch/sweep_table.hpp"
 #include "scenarios/description/metric_sections.hpp"
 #include "scenarios/description/scenario.hpp"
 #include "scenarios/program/run_table.hpp"
@@ -94,6 +95,15 @@ std::vector<Column> sweep_columns() {
                                  {"expected", "", "true when it ended as the scenario's expect says"},
                                  {"steps", "1", "rows of the run"}};
   for (const Metric& metric : kShownMetrics) columns.push_back({metric.name.c_str(), metric.unit, metric.meaning});
+  static const std::vector<std::string> kTolerances = [] {
+    std::vector<std::string> names;
+    for (const Metric& metric : kShownMetrics) names.push_back(std::string(kToleranceOf) + metric.name);
+    return names;
+  }();
+  for (std::size_t i = 0; i < kShownMetrics.size(); ++i) {
+    if (kShownMetrics[i].bounded)
+      columns.push_back({kTolerances[i].c_str(), kShownMetrics[i].unit, "by how much the metric may be wrong"});
+  }
   columns.push_back(
       {"state_hash", "", "over the bits of position, velocity and force of every row: equal for equal runs"});
   return columns;

@@ -35,14 +35,6 @@ std::string shown_value(const std::string& text) {
   return number ? significant(*number, 6) : text;
 }
 
-/// How many digits of a metric stand in a table. The rows do not hold tolerances; what is known of them without a run
-/// is a part of the value.
-int digits_of(std::string_view metric, double value, int most) {
-  static const MetricList known = metrics_without_values();
-  const Metric* found = find_metric(known, metric);
-  return found == nullptr ? most : deserved_digits(value, found->relative * std::abs(value), most);
-}
-
 bool has_failed(const SweepRow& row) {
   return row.outcome == kErrorOutcome || is_failure(row.outcome);
 }
@@ -79,7 +71,8 @@ std::string runs_text(const SweepPlan& plan, std::span<const SweepRow> rows) {
     cells.push_back(row.outcome);
     for (const RunHeading& heading : metrics) {
       const double value = row.number(plan, heading.shows[0]).value_or(std::numeric_limits<double>::quiet_NaN());
-      cells.push_back(significant(heading.factor * value, digits_of(heading.shows[0], value, 3)));
+      const int digits = deserved_digits(value, row.tolerance(plan, heading.shows[0]), 3);
+      cells.push_back(significant(heading.factor * value, digits));
     }
     table.add(std::move(cells));
   }
@@ -93,6 +86,7 @@ bool holds_texts(const Axis& axis) {
 
 struct GridCell {
   std::optional<double> value;
+  std::optional<double> tolerance;
   std::string failure;  ///< outcome of a run that failed
 };
 
@@ -105,7 +99,8 @@ class Grid {
         down_(plan.points.axes()[first_down_ ? 0 : 1]) {
     for (const SweepRow& row : rows) {
       const bool failed = has_failed(row);
-      cells_.push_back({failed ? std::nullopt : row.number(plan, metric), failed ? row.outcome : ""});
+      cells_.push_back(
+          {failed ? std::nullopt : row.number(plan, metric), row.tolerance(plan, metric), failed ? row.outcome : ""});
     }
   }
 
@@ -124,7 +119,7 @@ class Grid {
   std::vector<GridCell> cells_;
 };
 
-std::string table_text(const Grid& grid, std::string_view metric) {
+std::string table_text(const Grid& grid) {
   std::vector<Table::Column> columns = {
       {fmt::format("{} \\ {}", grid.down().path, grid.across().path), !holds_texts(grid.down())}};
   for (std::size_t i = 0; i < grid.across().size(); ++i) columns.push_back({shown_value(grid.across().value(i))});
@@ -133,7 +128,7 @@ std::string table_text(const Grid& grid, std::string_view metric) {
     std::vector<std::string> cells = {shown_value(grid.down().value(j))};
     for (std::size_t i = 0; i < grid.across().size(); ++i) {
       const GridCell& cell = grid.at(i, j);
-      const int digits = digits_of(metric, cell.value.value_or(0.0), 4);
+      const int digits = deserved_digits(cell.value.value_or(0.0), cell.tolerance, 4);
       cells.push_back(!cell.failure.empty() ? cell.failure : significant(cell.value, digits));
     }
     table.add(std::move(cells));
@@ -213,7 +208,7 @@ std::string grid_text(const SweepPlan& plan, const std::vector<SweepRow>& rows, 
   const bool is_grid = plan.points.axes().size() == 2 && !plan.points.sampling();
   if (!is_grid || rows.size() != plan.points.size() || rows.size() > kMostCells) return "";
   const Grid grid(plan, rows, metric);
-  std::string text = fmt::format("{}\n\n{}\n", metric, table_text(grid, metric));
+  std::string text = fmt::format("{}\n\n{}\n", metric, table_text(grid));
   constexpr std::size_t kMostAcross = 40;  // a wider map does not fit beside its labels
   if (grid.across().size() <= kMostAcross) text += map_text(grid, metric) + "\n";
   return text;

@@ -144,6 +144,9 @@ def swept(bench):
     bench.add("sweep.csv:metrics", [table[name][1] for name in shared],
               [math.nan if runs[1].metric(name) is None else runs[1].metric(name) for name in shared], "a single run, the same digits", EXACT,
               ("the run before", [math.nan if runs[0].metric(name) is None else runs[0].metric(name) for name in shared]))
+    may_err = [name for name in table.names if name.startswith("tolerances.")]
+    known = [[run.summary["tolerances"].get(name.split(".", 1)[1], math.nan) for name in may_err] for run in runs]
+    bench.add("sweep.csv:tolerances", [table[name][1] for name in may_err], known[1], "a single run, the same digits", EXACT, ("the run before", known[0]))
     swept_words(bench, base, runs)
 
 

@@ -58,7 +58,7 @@ def printed_fields(benches):
         names = [column["name"] for column in table["columns"]]
         columns |= set(names)
         shared = table["name"] in ("sweep.csv", "comparison.csv")
-        fields += [f"{table['name']}:{name}" for name in names if not shared or name not in metrics]
+        fields += [f"{table['name']}:{name.split('.')[0] if name.startswith(TOLERANCES) else name}" for name in names if not shared or name not in metrics]
         fields += [f"{table['name']}:metrics"] if shared else []
     fields += [f"{word['name']} ({word['kind']})" for word in described("words")["words"] if word["kind"] not in NO_WORDS]
     found = [(command, *keys_of(data)) for bench in benches for command, data in bench.printed]  # runs of compare are those of run

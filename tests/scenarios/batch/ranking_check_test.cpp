@@ -44,6 +44,12 @@ TEST(JudgedColumn, OverlooksWhatIsSmallBesideTheLargest) {
   EXPECT_EQ(judged({0.0, 1.0}, {1e-12, 1.0}), Holding::holds);
 }
 
+TEST(JudgedColumn, OverlooksWhatTheNumbersMayBeWrongBy) {
+  const Numbers before{1.0, 1.5}, after{1.5, 1.0};
+  EXPECT_EQ(judged_column(before, after, true, 0.4).holding, Holding::flips);
+  EXPECT_EQ(judged_column(before, after, true, 0.5).holding, Holding::holds);
+}
+
 TEST(JudgedColumn, NamesTheLawsThatShowIt) {
   const ColumnVerdict flips = judged_column(Numbers{1.0, 1.5, 9.0}, Numbers{8.0, 1.5, 0.1}, true);
   EXPECT_EQ(flips.law, 0u);

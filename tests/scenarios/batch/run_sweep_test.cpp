@@ -120,6 +120,8 @@ TEST(SweepPlan, HasExactlyTheMetricsOfItsRuns) {
     for (const Metric& metric : metric_list(run_scenario(scenario_of(plan, 0), std::nullopt, false).summary))
       names.push_back(metric.name);
     EXPECT_EQ(plan.metrics, names) << name;
+    for (const std::string& bounded : plan.bounded)
+      EXPECT_NE(std::find(names.begin(), names.end(), bounded), names.end()) << bounded;
     all.insert(names.begin(), names.end());
   }
   for (const std::string& name : metric_names()) EXPECT_TRUE(all.contains(name)) << name;
