@@ -4,7 +4,6 @@
 #include "algorithms/registry.hpp"
 #include "device_model/device_presets.hpp"
 #include "device_model/theory/stiffness_limits.hpp"
-#include "results/io/json_text.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/description/load_scenario.hpp"
 #include "scenarios/program/command.hpp"
@@ -175,7 +174,7 @@ constexpr struct {
   Description (*describe)();
 } kSections[] = {{"choices_schema",
                   [] {
-                    return Description{json_text(choices_schema()), choices_schema()};
+                    return Description{"", choices_schema()};
                   }},
                  {"profile", describe_profile},
                  {"scenario",
@@ -184,7 +183,7 @@ constexpr struct {
                   }},
                  {"schema",
                   [] {
-                    return Description{json_text(scenario_schema()), scenario_schema()};
+                    return Description{"", scenario_schema()};
                   }},
                  {"stability", describe_stability}};
 
@@ -295,7 +294,9 @@ struct DescribeOptions {
 
 int describe(const DescribeOptions& options) {
   const Description d = describe_name(options.name);
-  print(options.output, d.text, d.json);
+  OutputOptions output = options.output;
+  output.json |= d.text.empty();
+  print(output, d.text, d.json);
   return kSuccess;
 }
 

@@ -11,7 +11,7 @@
 namespace hapbench {
 
 struct Description {
-  std::string text;
+  std::string text;  ///< empty for a schema, which is JSON however it is asked for
   Json json;
 };
 

@@ -273,6 +273,7 @@ TEST(DescribeCommand, ShowsWhatNamesAPlaceOfTheThesis) {
 
 TEST(DescribeCommand, PrintsTheSchema) {
   EXPECT_EQ(hapbench({"describe", "schema"}).out, json_text(scenario_schema()));
+  EXPECT_EQ(hapbench({"describe", "schema"}, {.columns = 80}).out, json_text(scenario_schema())) << "not wrapped";
 }
 
 TEST(DescribeCommand, ExplainsEveryMetric) {
