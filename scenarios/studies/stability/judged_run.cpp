@@ -329,7 +329,8 @@ bool unstable_without_contact(const LoadedScenario& loaded, std::optional<double
     return false;
   MotionClassifier classifier = classifier_of(scenario);
   LastQuarter quarter(scenario.time);
-  const auto nothing = std::make_shared<const PointShell>(std::vector<SurfacePoint>{}, 0.0);
+  constexpr double kCells = 1.0;  // [m], of the grid that local_average wants
+  const auto nothing = std::make_shared<const PointShell>(std::vector<SurfacePoint>{}, kCells);
   Simulation simulation(simulation_config(scenario), assemble(scenario, loaded.files, nothing, {}),
                         {&classifier, &quarter});
   const MotionClass motion = classify(simulation, classifier);

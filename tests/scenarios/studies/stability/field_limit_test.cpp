@@ -250,6 +250,17 @@ TEST(FieldLimit, TellsAToolThatFallsThrough) {
   for (const JudgedValue& run : missed.runs) EXPECT_EQ(run.verdict, RunVerdict::no_contact) << run.value;
 }
 
+/// What is asked about hand and device alone has no points, and yet a stage that merges the points of a cell.
+TEST(FieldLimit, OfASceneWithLocalAverageIsOne) {
+  Words words = {"time.steps=200"};
+  const auto is_alone = [&words] {
+    return ask({"tap_corner", "rendering.stiffness_N_per_m", words, Range{1e6, 1e8, true}}).front().unstable_alone;
+  };
+  const bool plain = is_alone();
+  words.push_back("rendering.local_average=true");
+  EXPECT_EQ(is_alone(), plain);
+}
+
 TEST(FieldLimit, RefusesWhatHasNone) {
   EXPECT_THROW(ask({"single_spring", "rendering.stifness_N_per_m"}), InputError);
   EXPECT_THROW(ask({"single_spring", "rendering.algorithm"}), InputError);
