@@ -2,6 +2,7 @@
 import json
 import math
 import os
+import sys
 from dataclasses import dataclass, field
 
 from .faults import Faults, fail, finite_number, plain, quoted, require_name, shown
@@ -152,7 +153,8 @@ def _smoothing(given):
 
 
 def _is_number(value):
-    return isinstance(value, (int, float)) and not isinstance(value, bool)
+    """A finite number of double precision, as JSON writes it; Python also reads NaN and integers of any length."""
+    return isinstance(value, (int, float)) and not isinstance(value, bool) and abs(value) <= sys.float_info.max
 
 
 def _is_column(value):
