@@ -2,6 +2,7 @@
 long."""
 import argparse
 import difflib
+import errno
 import fcntl
 import os
 import sys
@@ -49,6 +50,15 @@ def write(file, data):
             scratch.unlink(missing_ok=True)
     except OSError as error:
         raise OSError(error.errno, error.strerror, str(file)) from error
+
+
+def unwritable(error):
+    """Says why write() failed. Exit status: bad input where no file can be, a fault where the disk is full or broken."""
+    if error.errno in (errno.ENOSPC, errno.EDQUOT, errno.EIO):
+        say_error(f"cannot write {error.filename}: {error.strerror}")
+        return FAILED
+    say_error(f"--out {error.filename}: {error.strerror}")
+    return BAD_INPUT
 
 
 class Notice:

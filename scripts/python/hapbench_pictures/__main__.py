@@ -1,7 +1,7 @@
 """python -m hapbench_pictures plot|report WORDS…; the program `hapbench` calls it."""
 import sys
 
-from hapbench_command import BAD_INPUT, INTERRUPTED, SUCCESS, Notice, say_error
+from hapbench_command import BAD_INPUT, INTERRUPTED, SUCCESS, Notice, say_error, unwritable
 from hapbench_report.json_input import InputError
 
 
@@ -23,8 +23,7 @@ def main(words):
         sys.stderr.close()
         return SUCCESS
     except OSError as error:
-        say_error(f"--out {error.filename}: {error.strerror}")
-        return BAD_INPUT
+        return unwritable(error)
     except KeyboardInterrupt:
         print(f"hapbench: {command} stopped; nothing was written", file=sys.stderr)
         return INTERRUPTED

@@ -3,7 +3,7 @@ import sys
 import tempfile
 from pathlib import Path
 
-from hapbench_command import BAD_INPUT, SUCCESS, Arguments, Notice, say_error, write
+from hapbench_command import BAD_INPUT, SUCCESS, Arguments, Notice, say_error, unwritable, write
 
 from .figures import load_figures
 from .json_input import InputError
@@ -68,8 +68,7 @@ def main(words=None):
         say_error(error)
         return BAD_INPUT
     except OSError as error:
-        say_error(f"--out {error.filename}: {error.strerror}")
-        return BAD_INPUT
+        return unwritable(error)
     return SUCCESS
 
 
