@@ -7,9 +7,12 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <ranges>
 #include <string>
 #include <string_view>
+#include <vector>
 
+#include "algorithms/plugin/plugin_law.hpp"
 #include "scenarios/batch/journal.hpp"
 #include "scenarios/batch/sweep_table.hpp"
 #include "scenarios/description/load_scenario.hpp"
@@ -19,6 +22,7 @@
 #include "scenarios/input/mesh_file.hpp"
 #include "scenarios/input/motion_file.hpp"
 #include "scenarios/run/run_scenario.hpp"
+#include "scenarios/studies/stability/device_limits.hpp"
 
 /// libFuzzer's targets: each reader of files from outside, fed with bytes of libFuzzer's choice (scripts/fuzz). It
 /// reads them or refuses them by an InputError of one line; whatever else happens is a finding.
@@ -99,6 +103,44 @@ void read_shard(std::string_view text) {
   }
 }
 
+/// The file of a device, which `compare --devices` takes.
+void read_device(std::string_view text) {
+  device_of_file(file_with(text));
+}
+
+/// The table of a plugin whose texts and numbers are the bytes: it becomes a law or is refused.
+void read_plugin(std::string_view bytes) {
+  std::vector<std::string> texts;  // between bytes of zero
+  for (const std::string_view text : std::views::split(bytes, '\0') | std::views::transform([](auto part) {
+                                       return std::string_view(part.begin(), part.end());
+                                     }))
+    texts.emplace_back(text);
+  texts.resize(std::max<std::size_t>(texts.size(), 8));
+  const auto text = [&texts](std::size_t i) { return texts[i].starts_with('-') ? nullptr : texts[i].c_str(); };
+  std::vector<HapbenchParameter> parameters;
+  for (std::size_t i = 8; i + 2 < texts.size(); i += 3) {
+    std::array<double, 3> numbers = {0.0, 1.0, 0.5};
+    std::memcpy(numbers.data(), texts[i].data(), std::min(sizeof numbers, texts[i].size()));
+    parameters.push_back({text(i + 1), text(i + 2), numbers[0], numbers[1], numbers[2], text(5)});
+  }
+  HapbenchPlugin plugin = {};
+  plugin.version = HAPBENCH_PLUGIN_VERSION;
+  plugin.gives = static_cast<std::uint32_t>(texts[6].size());
+  plugin.name = text(0);
+  plugin.summary = text(1);
+  plugin.formula = text(2);
+  plugin.source = text(3);
+  plugin.known_failure = text(4);
+  plugin.parameters = texts[7].starts_with('-') ? nullptr : parameters.data();
+  plugin.parameter_count = parameters.size() + (texts[7].starts_with('+') ? std::size_t{1} << 40 : 0);
+  plugin.create = [](const double*, double, std::size_t) -> void* { return nullptr; };
+  plugin.evaluate = [](void*, const HapbenchContacts*, double*, HapbenchForce*) { return 0; };
+  try {
+    plugin_entry(plugin, {"fuzz.so", ""});
+  } catch (const std::invalid_argument&) {
+  }
+}
+
 constexpr char kObj[] = "x.obj", kPly[] = "x.ply", kStl[] = "x.stl", kOff[] = "x.off", kCsv[] = "x.csv";
 
 struct Target {
@@ -109,7 +151,8 @@ constexpr std::array kTargets = {
     Target{"scenario", read_scenario_text}, Target{"run", run_scenario_text},      Target{"mesh_obj", read_mesh<kObj>},
     Target{"mesh_ply", read_mesh<kPly>},    Target{"mesh_stl", read_mesh<kStl>},   Target{"mesh_off", read_mesh<kOff>},
     Target{"shell_csv", read_shell<kCsv>},  Target{"shell_ply", read_shell<kPly>}, Target{"stroke", read_stroke},
-    Target{"journal", read_journal},        Target{"shard", read_shard},
+    Target{"journal", read_journal},        Target{"shard", read_shard},           Target{"device", read_device},
+    Target{"plugin", read_plugin},
 };
 
 /// The target that FUZZ_TARGET names.
