@@ -46,16 +46,30 @@ Vec3 ForcePath::command(const Vec3& rendered) const noexcept {
 ImpedanceDevice::ImpedanceDevice(const ImpedanceDeviceConfig& config, double dt, const AttachedHand& hand)
     : encoder_step_(config.encoder_step),
       filter_(config.velocity_filter, dt),
+      noise_(config.position_noise),
+      seed_(config.seed),
+      random_(config.seed),
       path_(config, dt),
       motion_(config, hand),
       before_(free_motion(motion_.law(), path_.switch_part() * dt)),
-      after_(free_motion(motion_.law(), (1.0 - path_.switch_part()) * dt)) {}
+      after_(free_motion(motion_.law(), (1.0 - path_.switch_part()) * dt)) {
+  if (config.position_filter) position_filter_.emplace(*config.position_filter, dt);
+}
 
 void ImpedanceDevice::reset(const ToolState& tool) noexcept {
   motion_.reset({tool.pose.position, tool.velocity});
   path_.reset();
-  sampled_ = {rounded_to(tool.pose.position, encoder_step_), Vec3::Zero()};
+  if (noise_ > 0.0) random_ = Random(seed_);
+  sampled_ = {read_position(), Vec3::Zero()};
   filter_.reset(sampled_.position);
+  if (position_filter_) position_filter_->settle_at(sampled_.position);
+}
+
+Vec3 ImpedanceDevice::read_position() noexcept {
+  Vec3 position = motion_.handle().position;
+  if (noise_ > 0.0)
+    for (double& axis : position) axis += noise_ * random_.normal();
+  return rounded_to(position, encoder_step_);
 }
 
 void ImpedanceDevice::drive(const Vec3& rendered, const Vec3& hand_force) noexcept {
@@ -63,8 +77,9 @@ void ImpedanceDevice::drive(const Vec3& rendered, const Vec3& hand_force) noexce
   motion_.take_hand(hand_force);
   if (before_.time > 0.0) motion_.advance(motors.before, before_);
   motion_.advance(motors.after, after_);
-  sampled_.position = rounded_to(motion_.handle().position, encoder_step_);
+  sampled_.position = read_position();
   sampled_.velocity = filter_.read(sampled_.position);
+  if (position_filter_) sampled_.position = position_filter_->filter(sampled_.position);
 }
 
 }  // namespace hapbench

@@ -1,11 +1,13 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <vector>
 
 #include "device_model/handle_motion.hpp"
 #include "device_model/velocity_filter.hpp"
+#include "sim/core/random.hpp"
 #include "sim/loop/device.hpp"
 
 namespace hapbench {
@@ -18,9 +20,12 @@ struct ImpedanceDeviceConfig {
   double encoder_step = 0.0;   ///< q [m]; 0: exact
   double delay_samples = 0.0;  ///< d, from the sample to the force [periods], whole or fractional
   VelocityFilterConfig velocity_filter = {};
-  std::optional<double> force_max = {};   ///< norm at which the motors saturate [N]
-  double force_step = 0.0;                ///< resolution of each component [N]; 0: exact
-  std::optional<double> force_slew = {};  ///< fastest change of the force, by its norm [N/s]
+  std::optional<double> force_max = {};               ///< norm at which the motors saturate [N]
+  double force_step = 0.0;                            ///< resolution of each component [N]; 0: exact
+  std::optional<double> force_slew = {};              ///< fastest change of the force, by its norm [N/s]
+  std::optional<LowPassFilter> position_filter = {};  ///< of the encoder's positions, before they are rendered
+  double position_noise = 0.0;                        ///< standard deviation of each axis, before the encoder [m]
+  std::uint64_t seed = 0;                             ///< of the noise
 };
 
 /// Every component as the nearest multiple of `step`, halves away from zero; `v` itself for the step 0.
@@ -62,11 +67,12 @@ class ForcePath {
 /// The loop of an impedance display (Colgate and Brown, "Factors affecting the Z-width of a haptic display", ICRA 1994;
 /// Diolaiti et al., IEEE Transactions on Robotics 22(2), 2006):
 ///
-///   handle -> encoder -> x_k -> filter -> v_k -> f_render(x_k, v_k) -> resolution, saturation, slew -> delay d T
-///     -> hold -> motors -> handle <- hand
+///   handle -> noise -> encoder -> x_k -> filter -> v_k -> f_render(x_k, v_k) -> resolution, saturation, slew
+///     -> delay d T -> hold -> motors -> handle <- hand
 ///
 /// There is no virtual mass: the tool is at the measured position of the handle. x_k is the nearest multiple of q,
-/// halves away from zero, in each axis; v_0 = 0. The motors give no force before the first one arrives, at t = d T; a
+/// halves away from zero, in each axis, of the position with its noise; a position filter changes the x_k that is
+/// rendered, not that of the velocity. v_0 = 0. The motors give no force before the first one arrives, at t = d T; a
 /// fraction of d changes the force within the period. Between samples the handle moves exactly (HandleMotion).
 ///
 /// In the energy balance `actuator` is the work of the motors on the handle. f_in is zero because it drives nothing.
@@ -88,8 +94,15 @@ class ImpedanceDevice final : public Device {
   HandleState sampled() const noexcept override { return sampled_; }
 
  private:
+  /// The encoder's position.
+  Vec3 read_position() noexcept;
+
   double encoder_step_;
   VelocityFilter filter_;
+  std::optional<SampledLowPass> position_filter_;
+  double noise_;
+  std::uint64_t seed_;
+  Random random_;
   ForcePath path_;
   HandleMotion motion_;
   FreeMotion before_, after_;  ///< the two parts of a period

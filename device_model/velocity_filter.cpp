@@ -2,21 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
-
-#include "sim/core/math.hpp"
 
 namespace hapbench {
 
 VelocityFilter::VelocityFilter(const VelocityFilterConfig& config, double dt) : config_(config), dt_(dt) {
-  if (const auto* low_pass = std::get_if<LowPassFilter>(&config))
-    taken_ = -math::expm1(-2.0 * std::numbers::pi * low_pass->cutoff * dt);
+  if (const auto* low_pass = std::get_if<LowPassFilter>(&config)) low_pass_.emplace(*low_pass, dt);
 }
 
 void VelocityFilter::reset(const Vec3& position) noexcept {
   samples_[0] = position;
   next_ = known_ = 1;
   velocity_.setZero();
+  if (low_pass_) low_pass_->settle_at(velocity_);
 }
 
 Vec3 VelocityFilter::read(const Vec3& position) noexcept {
@@ -28,7 +25,7 @@ Vec3 VelocityFilter::read(const Vec3& position) noexcept {
     return velocity_;
   }
   const Vec3 difference = (position - sample(1)) / dt_;
-  velocity_ = taken_ == 1.0 ? difference : Vec3(velocity_ + taken_ * (difference - velocity_));
+  velocity_ = low_pass_ ? low_pass_->filter(difference) : difference;
   return velocity_;
 }
 

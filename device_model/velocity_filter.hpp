@@ -2,20 +2,16 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <variant>
 
+#include "device_model/low_pass.hpp"
 #include "sim/core/types.hpp"
 
 namespace hapbench {
 
 /// v_k = (x_k - x_(k-1)) / T.
 struct DifferenceFilter {};
-
-/// The difference d_k through a first-order low-pass, v_k = v_(k-1) + (1 - e^(-2 pi f T)) (d_k - v_(k-1)), which is the
-/// continuous low-pass of d_k held over the period.
-struct LowPassFilter {
-  double cutoff = 100.0;  ///< f [Hz], the half-power frequency of the continuous low-pass
-};
 
 /// First-order adaptive windowing, the end-fit of F. Janabi-Sharifi, V. Hayward and C.-S. J. Chen, "Discrete-time
 /// adaptive windowing for velocity estimation", IEEE Transactions on Control Systems Technology 8(6), 2000: the slope
@@ -28,9 +24,11 @@ struct AdaptiveWindowFilter {
   static constexpr std::size_t kLongest = 15;
 };
 
+/// With LowPassFilter: the continuous low-pass of the difference d_k held over its period, for order 1
+/// v_k = v_(k-1) + (1 - e^(-2 pi f T)) (d_k - v_(k-1)).
 using VelocityFilterConfig = std::variant<DifferenceFilter, LowPassFilter, AdaptiveWindowFilter>;
 
-/// Estimates a controller's velocity from sampled positions. Allocates nothing.
+/// Estimates a controller's velocity from sampled positions. Allocates in the constructor only.
 class VelocityFilter {
  public:
   /// dt: sampling period T [s].
@@ -50,7 +48,7 @@ class VelocityFilter {
 
   VelocityFilterConfig config_;
   double dt_;
-  double taken_ = 1.0;                                              ///< weight of a new difference in the low-pass
+  std::optional<SampledLowPass> low_pass_;
   std::array<Vec3, AdaptiveWindowFilter::kLongest + 1> samples_{};  ///< ring
   std::size_t next_ = 0;                                            ///< index of the next sample
   std::size_t known_ = 0;  ///< samples since the reset, at most the size of the ring

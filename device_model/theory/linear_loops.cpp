@@ -5,10 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
+#include <numeric>
 #include <unsupported/Eigen/MatrixFunctions>
-
-#include "sim/core/math.hpp"
 
 namespace hapbench {
 
@@ -23,7 +21,11 @@ constexpr double kLeastEdge = 1e-8;
 constexpr double kNoEdge = 1e6;
 
 /// Indices of the state of a SampledLoop.
-enum { kPosition, kVelocity, kLastPosition, kLastFiltered, kForces };
+enum { kPosition, kVelocity, kLastPosition, kModes };
+
+bool is_pair(const LowPassMode& mode) {
+  return mode.taken.imag() != 0.0;
+}
 
 /// The matrix M for which M (x, T v, T^2/m f) is (x, T v) after a share of the period under a constant force f.
 Eigen::Matrix<double, 2, 3> motion_over(const SampledLoop& loop, double share) {
@@ -36,9 +38,13 @@ Eigen::Matrix<double, 2, 3> motion_over(const SampledLoop& loop, double share) {
 
 }  // namespace
 
-double SampledLoop::filter_memory() const {
+std::vector<LowPassMode> SampledLoop::velocity_modes() const {
   const auto* filter = std::get_if<LowPassFilter>(&device.velocity_filter);
-  return filter != nullptr ? math::exp(-2.0 * std::numbers::pi * filter->cutoff * period) : 0.0;
+  return filter != nullptr ? low_pass_modes(*filter, period) : std::vector<LowPassMode>{};
+}
+
+std::vector<LowPassMode> SampledLoop::position_modes() const {
+  return device.position_filter ? low_pass_modes(*device.position_filter, period) : std::vector<LowPassMode>{};
 }
 
 const char* SampledLoop::nonlinearity() const {
@@ -48,34 +54,68 @@ const char* SampledLoop::nonlinearity() const {
   return nullptr;
 }
 
-Eigen::MatrixXd SampledLoop::state_matrix() const {
-  const double T = period, m = moving_mass(), a = filter_memory(), delay = device.delay_samples;
+Eigen::MatrixXd SampledLoop::step_map() const {
+  const double T = period, m = moving_mass(), delay = device.delay_samples;
   const Eigen::Index whole = static_cast<Eigen::Index>(std::floor(delay));
   const double part = delay - static_cast<double>(whole);
-  const Eigen::Index kept = whole + (part > 0.0 ? 1 : 0), n = kForces + kept;
+  const Eigen::Index kept = whole + (part > 0.0 ? 1 : 0);
+  std::vector<LowPassMode> velocity = velocity_modes();
+  if (velocity.empty()) velocity.push_back({1.0, 1.0});
+  const std::vector<LowPassMode> position = position_modes();
+  const auto states_of = [](const std::vector<LowPassMode>& modes) {
+    return std::accumulate(modes.begin(), modes.end(), Eigen::Index{0},
+                           [](Eigen::Index sum, const LowPassMode& mode) { return sum + (is_pair(mode) ? 2 : 1); });
+  };
+  const Eigen::Index forces = kModes + states_of(velocity) + states_of(position), n = forces + kept;
+  const auto unit = [n](Eigen::Index i) -> Eigen::RowVectorXd { return Eigen::RowVectorXd::Unit(n + 1, i); };
+  Eigen::MatrixXd A = Eigen::MatrixXd::Zero(n, n + 1);
 
-  Eigen::RowVectorXd filtered = Eigen::RowVectorXd::Zero(n);
-  filtered(kPosition) = 1.0 - a;
-  filtered(kLastPosition) = a - 1.0;
-  filtered(kLastFiltered) = a;
-  Eigen::RowVectorXd force = -(wall_damping * T / m) * filtered;
-  force(kPosition) -= stiffness * T * T / m;
+  // The output of a filter with the input `u`; its states are the next ones.
+  Eigen::Index next = kModes;
+  const auto filtered = [&](const std::vector<LowPassMode>& modes, const Eigen::RowVectorXd& u) {
+    Eigen::RowVectorXd output = Eigen::RowVectorXd::Zero(n + 1);
+    for (const LowPassMode& mode : modes) {
+      const Eigen::Index at = next;
+      next += is_pair(mode) ? 2 : 1;
+      const double t = mode.taken.real(), turned = mode.taken.imag();
+      A.row(at) = (1.0 - t) * unit(at) + (t * mode.share.real() - turned * mode.share.imag()) * u;
+      if (is_pair(mode)) {
+        A.row(at) += turned * unit(at + 1);
+        A.row(at + 1) =
+            (1.0 - t) * unit(at + 1) - turned * unit(at) + (t * mode.share.imag() + turned * mode.share.real()) * u;
+      }
+      output += A.row(at);
+    }
+    return output;
+  };
+  const Eigen::RowVectorXd measured = unit(kPosition) + unit(n);
+  A.row(kLastPosition) = measured;
+  Eigen::RowVectorXd force = -(wall_damping * T / m) * filtered(velocity, measured - unit(kLastPosition));
+  force -= stiffness * T * T / m * (position.empty() ? measured : filtered(position, measured));
   // The force of `age` samples ago.
   const auto force_of = [&](Eigen::Index age) -> Eigen::RowVectorXd {
-    return age == 0 ? force : Eigen::RowVectorXd(Eigen::RowVectorXd::Unit(n, kForces + age - 1));
+    return age == 0 ? force : unit(forces + age - 1);
   };
 
   const auto before = motion_over(*this, part), after = motion_over(*this, 1.0 - part);
-  Eigen::MatrixXd moving = Eigen::MatrixXd::Zero(2, n);
+  Eigen::MatrixXd moving = Eigen::MatrixXd::Zero(2, n + 1);
   moving.leftCols<2>() = before.leftCols<2>();
   if (part > 0.0) moving += before.col(2) * force_of(whole + 1);
-
-  Eigen::MatrixXd A = Eigen::MatrixXd::Zero(n, n);
   A.topRows<2>() = after.leftCols<2>() * moving + after.col(2) * force_of(whole);
-  A(kLastPosition, kPosition) = 1.0;
-  A.row(kLastFiltered) = filtered;
-  for (Eigen::Index age = 0; age < kept; ++age) A.row(kForces + age) = force_of(age);
+  for (Eigen::Index age = 0; age < kept; ++age) A.row(forces + age) = force_of(age);
   return A;
+}
+
+double speed_of_noise(const SampledLoop& loop) {
+  const Eigen::MatrixXd map = loop.step_map();
+  const Eigen::Index n = map.rows();
+  Eigen::MatrixXd A = map.leftCols(n), P = map.col(n) * map.col(n).transpose();
+  // P is the sum of A^i b b^T A^iT over the first 2^k periods.
+  for (int doubling = 0; doubling < 50; ++doubling) {
+    P += A * P * A.transpose();
+    A *= A;
+  }
+  return std::sqrt(P(kVelocity, kVelocity)) / loop.period;
 }
 
 double eigenvalue_edge(SampledLoop loop) {

@@ -36,11 +36,11 @@ double first_edge(double least, double most, StepMatrix step_matrix) {
 /// saturation, Coulomb friction, and steps of encoder and force. A handle m x'' = f - b x', with or without a hand,
 /// moves freely between samples. At sample k the wall answers
 ///
-///   f_k = -K x_k - B w_k,   w_k = a w_{k-1} + (1 - a) (x_k - x_{k-1}) / T
+///   f_k = -K y_k - B w_k,   w_k = F((y_k' - y_{k-1}') / T)
 ///
-/// which is held on the handle from t_k + d T for one period. a = 0 for the difference, a = exp(-2 pi f_c T) for its
-/// low-pass with cut-off f_c. The springs of the wall act to both sides; a wall that only pushes would let go of the
-/// handle.
+/// which is held on the handle from t_k + d T for one period. y' is the position with the sensor's noise, y that
+/// through the position filter, F the low-pass of the velocity filter, all by their modes (LowPassMode). The springs of
+/// the wall act to both sides; a wall that only pushes would let go of the handle.
 struct SampledLoop {
   ImpedanceDeviceConfig device;  ///< with m, b, d and the velocity filter
   AttachedHand hand;             ///< zeros: no hand
@@ -50,20 +50,30 @@ struct SampledLoop {
 
   double moving_mass() const { return device.handle_mass + hand.mass; }   ///< handle and hand [kg]
   double total_damping() const { return device.viscous + hand.damping; }  ///< handle and hand [N s/m]
-  /// True if the velocity is the difference of positions (or a window, which is not linear).
-  bool differentiates() const { return !std::holds_alternative<LowPassFilter>(device.velocity_filter); }
-  /// The share a of the filter's memory.
-  double filter_memory() const;
+  /// True if the velocity is the difference of positions (or a window, which is not linear) and neither is filtered.
+  bool differentiates() const {
+    return !std::holds_alternative<LowPassFilter>(device.velocity_filter) && !device.position_filter;
+  }
+  /// The modes of the low-pass of the velocity and of the position; none where there is no such filter.
+  std::vector<LowPassMode> velocity_modes() const;
+  std::vector<LowPassMode> position_modes() const;
   /// Says which property of the device the linear system does not have; null if none.
   const char* nonlinearity() const;
 
   /// The map of the state at sample k to that at k + 1,
-  ///   (x_k, T v_k, x_{k-1}, T w_{k-1}, T^2/m f_{k-1}, T^2/m f_{k-2}, …),
-  /// with the true velocity v of the handle, the moving mass m and as many forces as are on their way. All components
+  ///   (x_k, T v_k, y'_{k-1}, modes of T w_{k-1} and of y_{k-1}, T^2/m f_{k-1}, T^2/m f_{k-2}, …),
+  /// with the true velocity v of the handle, the moving mass m and as many forces as are on their way; a pair of poles
+  /// has two components, a real pole or none has one. All components
   /// are in metres, so that the eigenvalues are exact to rounding. The motion between samples is exact (matrix
   /// exponential).
-  Eigen::MatrixXd state_matrix() const;
+  Eigen::MatrixXd state_matrix() const { return step_map().leftCols(step_map().rows()); }
+  /// The state matrix, and behind it a column for the noise of sample k.
+  Eigen::MatrixXd step_map() const;
 };
+
+/// How much the noise of the sensor moves the handle: standard deviation of its true velocity over that of the noise
+/// [1/s], once a stable loop is stationary, from the covariance P = A P A^T + b b^T of its state.
+double speed_of_noise(const SampledLoop& loop);
 
 /// The exact limit: the largest K up to which no eigenvalue of the loop leaves the unit circle (first_edge), with the
 /// loop's other parameters. Zero if there is none above 1e-8 m / T^2. Takes about 0.5 ms.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <limits>
 #include <numbers>
 
@@ -21,19 +22,25 @@ std::optional<double> colgate_schenkel(const SampledLoop& loop) {
   return std::max(0.0, 2.0 * (loop.device.viscous - std::abs(loop.wall_damping)) / loop.period);
 }
 
-/// The condition b > K p + B r at one angle theta = omega T, with e = exp(-j theta) and F the velocity filter:
+/// The condition b > K p + B r at one angle theta = omega T, with e = exp(-j theta) and the filters F of the velocity
+/// and G of the position:
 ///
-///   p = T/2 Re{(1 - e) e^d} / (1 - cos theta),   r = 1/2 Re{(1 - e)^2 F e^d} / (1 - cos theta)
+///   p = T/2 Re{(1 - e) G e^d} / (1 - cos theta),   r = 1/2 Re{(1 - e)^2 F e^d} / (1 - cos theta)
 struct PassivityAt {
   double p, r;
 };
 
 PassivityAt passivity_at(const SampledLoop& loop, double theta) {
-  const double d = loop.device.delay_samples, a = loop.filter_memory();
-  // (1 - e)^2 = -2 (1 - cos theta) e, and F = (1 - a) / (1 - a e) = (1 - a) / (u + j v)
-  const double u = 1.0 - a * math::cos(theta), v = a * math::sin(theta), turn = (d + 1.0) * theta;
-  return {loop.period * math::sin((d + 0.5) * theta) / (2.0 * math::sin(0.5 * theta)),
-          -(1.0 - a) * (u * math::cos(turn) - v * math::sin(turn)) / (u * u + v * v)};
+  const double d = loop.device.delay_samples, turn = (d + 1.0) * theta, late = (d + 0.5) * theta;
+  const auto response = [theta](const std::vector<LowPassMode>& modes) {
+    std::complex<double> sum = modes.empty() ? 1.0 : 0.0;
+    for (const LowPassMode& mode : modes) sum += mode.response(theta);
+    return sum;
+  };
+  const std::complex<double> F = response(loop.velocity_modes()), G = response(loop.position_modes());
+  // 1 - e = 2 j sin(theta/2) e^(1/2) and (1 - e)^2 = -2 (1 - cos theta) e
+  return {loop.period * (G.real() * math::sin(late) - G.imag() * math::cos(late)) / (2.0 * math::sin(0.5 * theta)),
+          -(F.real() * math::cos(turn) + F.imag() * math::sin(turn))};
 }
 
 /// The least value of a function between two angles, on a grid and then on ever finer grids around its best point.
@@ -78,7 +85,8 @@ std::optional<double> gil_hulin(const SampledLoop& loop) {
 }
 
 std::optional<double> abbott_okamura(const SampledLoop& loop) {
-  if (!has_no_delay(loop) || loop.wall_damping != 0.0 || loop.device.encoder_step <= 0.0) return std::nullopt;
+  if (!has_no_delay(loop) || loop.wall_damping != 0.0 || loop.device.encoder_step <= 0.0 || loop.device.position_filter)
+    return std::nullopt;
   return std::min(2.0 * loop.device.viscous / loop.period, 2.0 * loop.device.coulomb / loop.device.encoder_step);
 }
 
@@ -98,7 +106,9 @@ constexpr StiffnessLimit kLimits[] = {
      .largest = colgate_schenkel},
     {.name = "passive_with_delay",
      .formula = "b > max over theta of K T sin((d + 1/2) theta) / (2 sin(theta/2)) - B Re{F e^(-j (d + 1) theta)}",
-     .source = "the general condition of Colgate and Schenkel for this wall, derived; F is the velocity filter",
+     .source =
+         "the general condition of Colgate and Schenkel for this wall, derived; F is the velocity filter, a filter of "
+         "the position is counted, too",
      .applies = "whole delays; passive for every passive hand",
      .largest = passive_with_delay},
     {.name = "stable_gil_hulin",

@@ -56,7 +56,9 @@ static void describe(Fields&, DifferenceFilter&) {}
 
 static void describe(Fields& f, LowPassFilter& filter) {
   f.number("cutoff_Hz", filter.cutoff, {0.0, 1e9, "Hz", true},
-           "of the first-order low-pass that takes 1 - exp(-2 pi cutoff_Hz step_s) of what is new (ours)");
+           "half power of the continuous Butterworth low-pass, whose input is held over the time step: the first order "
+           "takes 1 - exp(-2 pi cutoff_Hz step_s) of what is new (ours)");
+  f.integer("order", filter.order, {1, LowPassFilter::kHighest}, "of the low-pass (ours)");
 }
 
 static void describe(Fields& f, AdaptiveWindowFilter& filter) {
@@ -68,7 +70,7 @@ static void describe(Fields& f, VelocityFilterConfig& filter) {
   f.variant(
       filter, "velocity filter",
       {{"difference", "the last two positions over the time between them"},
-       {"low_pass", "the difference through a first-order low-pass"},
+       {"low_pass", "the difference through a Butterworth low-pass"},
        {"adaptive_window", "slope over the longest window that fits a straight line (Janabi-Sharifi et al. 2000)"}});
 }
 
@@ -110,6 +112,10 @@ static void describe(Fields& f, ImpedanceDeviceConfig& device) {
            "the motors' force is the nearest multiple of it in each axis; 0: exact");
   f.number("force_slew_N_per_s", device.force_slew, {0.0, 1e12, "N/s", true},
            "fastest change of the motors' force from step to step; null: any");
+  f.object("position_filter", device.position_filter,
+           "low-pass of the measured position before the scene sees it, not of that of the velocity; null: none");
+  f.number("position_noise_m", device.position_noise, {0.0, 1.0, "m"},
+           "standard deviation of the noise of each axis of the sensor, sample by sample and before encoder_step_m");
 }
 
 void describe(Fields& f, DeviceFields& device) {
@@ -133,7 +139,9 @@ std::unique_ptr<Device> make_device(const Scenario& scenario, Trial trial) {
     return std::make_unique<IdealDevice>(ideal->force_limit);
   }
   if (const auto* impedance = std::get_if<ImpedanceDeviceConfig>(&scenario.device)) {
-    return std::make_unique<ImpedanceDevice>(*impedance, scenario.time.step, attached_hand(scenario.hand));
+    ImpedanceDeviceConfig config = *impedance;
+    config.seed = derived_seed(scenario, trial, RandomUse::position_noise);
+    return std::make_unique<ImpedanceDevice>(config, scenario.time.step, attached_hand(scenario.hand));
   }
   AdmittanceDeviceConfig config = std::get<AdmittanceDeviceConfig>(scenario.device);
   if (scenario.motion.orientation) config.sensor.down = -scenario.motion.orientation->up.normalized();

@@ -240,9 +240,11 @@ TEST(NoAllocationInAStep, OfAnImpedanceDevice) {
                                .velocity_filter = {},
                                .force_max = 2.0,
                                .force_step = 0.01,
-                               .force_slew = 1000.0};
+                               .force_slew = 1000.0,
+                               .position_filter = LowPassFilter{200.0, 3},
+                               .position_noise = 1e-6};
   for (const VelocityFilterConfig& filter :
-       {VelocityFilterConfig(DifferenceFilter{}), VelocityFilterConfig(LowPassFilter{}),
+       {VelocityFilterConfig(DifferenceFilter{}), VelocityFilterConfig(LowPassFilter{100.0, 4}),
         VelocityFilterConfig(AdaptiveWindowFilter{})}) {
     device.velocity_filter = filter;
     const test::Setting setting = setting_of(instance);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <complex>
 #include <numbers>
 #include <vector>
 
@@ -82,8 +83,69 @@ TEST(VelocityFilter, LowPassAnswersAStepLikeTheContinuousOne) {
   }
 }
 
+/// The continuous Butterworth low-pass of second order, w = 2 pi f, answers a unit step by
+/// 1 - sqrt(2) e^(-w t / sqrt 2) sin(w t / sqrt 2 + pi / 4), that of third by 1 - e^(-w t) - (2 / sqrt 3) e^(-w t / 2)
+/// sin(sqrt 3 w t / 2).
+TEST(VelocityFilter, HigherOrdersAnswerAStepLikeTheContinuousOnes) {
+  constexpr double w = 2.0 * std::numbers::pi * 20.0;
+  VelocityFilter second(LowPassFilter{20.0, 2}, kT), third(LowPassFilter{20.0, 3}, kT);
+  second.reset(Vec3::Zero());
+  third.reset(Vec3::Zero());
+  for (int k = 1; k <= 200; ++k) {
+    const double t = k * kT, r = w * t / std::numbers::sqrt2, s = 0.5 * std::numbers::sqrt3 * w * t;
+    EXPECT_NEAR(second.read({t, 0, 0}).x(),
+                1.0 - std::numbers::sqrt2 * std::exp(-r) * std::sin(r + 0.25 * std::numbers::pi), 1e-12);
+    EXPECT_NEAR(third.read({t, 0, 0}).x(),
+                1.0 - std::exp(-w * t) - 2.0 / std::numbers::sqrt3 * std::exp(-0.5 * w * t) * std::sin(s), 1e-12);
+  }
+}
+
+/// Of a slow sine the sampled filter makes what |H|^2 = 1 / (1 + (f / f_c)^(2 n)) says, but for the share of the sine
+/// that holding it over a period loses, below (pi f T)^2.
+TEST(SampledLowPass, HasHalfThePowerAtItsCutOffWhateverItsOrder) {
+  for (std::size_t order = 1; order <= LowPassFilter::kHighest; ++order) {
+    for (const double f : {2.0, 4.0, 6.0}) {
+      std::complex<double> response = 0.0;
+      for (const LowPassMode& mode : low_pass_modes({4.0, order}, kT))
+        response += mode.response(2.0 * std::numbers::pi * f * kT);
+      const double power = 1.0 / (1.0 + std::pow(f / 4.0, 2.0 * static_cast<double>(order)));
+      EXPECT_NEAR(std::norm(response) / power, 1.0, 0.05) << order << " " << f;
+    }
+    SampledLowPass filter({4.0, order}, kT);
+    filter.settle_at({1, 2, 3});
+    // The shares of high orders are tens of times the input.
+    EXPECT_NEAR((filter.filter({1, 2, 3}) - Vec3(1, 2, 3)).norm(), 0.0, 1e-12) << order;
+  }
+}
+
+TEST(ImpedanceDevice, ItsNoiseIsThatOfTheSeedAndGaussian) {
+  ImpedanceDeviceConfig config;
+  config.position_noise = 2e-6;
+  const auto readings = [](const ImpedanceDeviceConfig& of) {
+    ImpedanceDevice device(of, kT);
+    std::vector<double> x;
+    device.reset({});
+    for (int k = 0; k < 20'000; ++k) {
+      x.push_back(device.sampled().position.y());
+      device.drive(Vec3::Zero(), Vec3::Zero());
+    }
+    device.reset({});
+    EXPECT_EQ(device.sampled().position.y(), x[0]) << "a reset repeats it";
+    return x;
+  };
+  const auto x = readings(config);
+  EXPECT_EQ(readings(config), x);
+  config.seed = 5;
+  EXPECT_NE(readings(config), x);
+  double squares = 0.0, beyond = 0.0;
+  for (const double value : x) squares += value * value, beyond += std::abs(value) > 2e-6 ? 1.0 : 0.0;
+  // Four standard errors of 20 000 values: 2 % of the deviation, 1.3 % of the 31.7 % beyond one.
+  EXPECT_NEAR(std::sqrt(squares / 20'000) / 2e-6, 1.0, 0.02);
+  EXPECT_NEAR(beyond / 20'000, 0.3173, 0.0132);
+}
+
 TEST(VelocityFilter, ALowPassAboveAllFrequenciesIsTheDifference) {
-  VelocityFilter low_pass(LowPassFilter{1e9}, kT), difference(DifferenceFilter{}, kT);
+  VelocityFilter low_pass(LowPassFilter{1e9, 3}, kT), difference(DifferenceFilter{}, kT);
   low_pass.reset(Vec3::Zero());
   difference.reset(Vec3::Zero());
   Random random(1);
@@ -148,7 +210,7 @@ TEST(VelocityFilter, AdaptiveWindowSmoothsARoundedRamp) {
 
 TEST(VelocityFilter, AResetForgetsEverything) {
   for (const VelocityFilterConfig& config :
-       {VelocityFilterConfig(DifferenceFilter{}), VelocityFilterConfig(LowPassFilter{50.0}),
+       {VelocityFilterConfig(DifferenceFilter{}), VelocityFilterConfig(LowPassFilter{50.0, 4}),
         VelocityFilterConfig(AdaptiveWindowFilter{1e-3})}) {
     VelocityFilter filter(config, kT);
     std::vector<Vec3> seen[2];

@@ -1,9 +1,11 @@
 """Bad input, in the words of the program."""
 import json
 import math
+import os
 import re
+import sys
 
-from hapbench_command import nearest
+from hapbench_command import INTERRUPTED, SUCCESS, nearest
 
 MOST_FAULTS = 20  # reported at once
 
@@ -46,3 +48,23 @@ def quoted(word):
 
 def plain(number):
     return repr(float(number)).removesuffix(".0")
+
+
+def run_asked(run):
+    """Prints the reply of `run` to the words NAME=VALUE of the command line, lists of values by their names: JSON, with
+    `faults` or `io_error` in its place. Returns the exit status."""
+    given = {}
+    for word in sys.argv[1:]:
+        # Independent of the locale: arguments are bytes, and texts are UTF-8.
+        name, _, value = os.fsencode(word).decode("utf-8", "surrogateescape").partition("=")
+        given.setdefault(name, []).append(value)
+    try:
+        reply = run(given)
+    except Faults as faults:
+        reply = {"faults": faults.list}
+    except OSError as error:
+        reply = {"io_error": error.errno}
+    except KeyboardInterrupt:
+        return INTERRUPTED
+    sys.stdout.buffer.write(json.dumps(reply, ensure_ascii=False).encode("utf-8", "replace"))
+    return SUCCESS

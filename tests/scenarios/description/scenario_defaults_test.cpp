@@ -212,7 +212,8 @@ TEST(ImpedanceDevice, WritesTheNumbersOfAPresetInFull) {
   const Json device = effective_device(R"({"type": "impedance", "preset": "touch", "force_max_N": null})");
   EXPECT_EQ(device, Json::parse(R"({"type": "impedance", "handle_mass_kg": 0.045, "viscous_N_s_per_m": 0.1,
     "coulomb_N": 0.2, "encoder_step_m": 5.5e-5, "delay_samples": 0.0, "velocity_filter": {"type": "difference"},
-    "force_max_N": null, "force_step_N": 0.0, "force_slew_N_per_s": null})"));
+    "force_max_N": null, "force_step_N": 0.0, "force_slew_N_per_s": null, "position_filter": null,
+    "position_noise_m": 0.0})"));
   EXPECT_EQ(effective_device(device.dump().c_str()), device) << "which is the same device again";
   EXPECT_EQ(effective_device(R"({"type": "impedance", "preset": "omega.3"})")["force_max_N"], 12.0);
 }

@@ -117,8 +117,9 @@ std::vector<NamedScenario> rich_scenarios() {
       "hand": {"type": "mass_spring_damper", "mass_kg": 0.3, "stiffness_N_per_m": 100, "damping_N_s_per_m": 1,
         "target": {"x_m": {"type": "ramp", "start": 0, "rate_per_s": 0.01}, "y_m": 0, "z_m": -0.01}},
       "device": {"type": "impedance", "handle_mass_kg": 0.1, "viscous_N_s_per_m": 0.2, "coulomb_N": 0.1,
-        "encoder_step_m": 1e-5, "delay_samples": 1.5, "velocity_filter": {"type": "low_pass", "cutoff_Hz": 80},
-        "force_max_N": 10, "force_step_N": 0.01, "force_slew_N_per_s": 2000},
+        "encoder_step_m": 1e-5, "delay_samples": 1.5, "velocity_filter": {"type": "low_pass", "cutoff_Hz": 80, "order": 3},
+        "force_max_N": 10, "force_step_N": 0.01, "force_slew_N_per_s": 2000,
+        "position_filter": {"cutoff_Hz": 200, "order": 2}, "position_noise_m": 1e-6},
       "record": {"energy": true}})")},
           {"preset_plane", Json::parse(R"({
       "time": {"step_s": 0.001, "steps": 100},

@@ -1,0 +1,175 @@
+"""`hapbench identify` on logs of a simulator of its own. Arguments: the built program, the source tree."""
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+import numpy as np
+
+PROGRAM, SOURCE = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve()
+sys.path.insert(0, str(SOURCE / "scripts" / "python"))
+sys.dont_write_bytecode = True
+from hapbench_identify.design import KINDS, design, travel_of  # noqa: E402
+from hapbench_identify.fit import fit  # noqa: E402
+from hapbench_identify.log import log_of  # noqa: E402
+from hapbench_identify.model import NAMES, positions  # noqa: E402
+
+TRUE = {"handle_mass_kg": 0.12, "viscous_N_s_per_m": 0.8, "coulomb_N": 0.15, "delay_samples": 1.35, "encoder_step_m": 1e-5}
+
+
+def played(time, force, mass, viscous, dry, late, finer=200, spring=0.0):
+    """Positions at `time` by small steps with the mean speed of each; dry friction stops the handle within a step."""
+    x = v = 0.0
+    places = [x]
+    arrivals = time + late
+    for start, end in zip(time, time[1:]):
+        h = (end - start) / finer
+        which = np.searchsorted(arrivals, start + h * (np.arange(finer) + 0.5), side="right") - 1
+        for k in which.tolist():
+            push = (force[k] if k >= 0 else 0.0) - viscous * v - spring * x
+            free = v + h * push / mass
+            grip = h * dry / mass
+            before, v = v, 0.0 if abs(free) <= grip else free - np.copysign(grip, free)
+            x += 0.5 * h * (before + v)
+        places.append(x)
+    return np.array(places)
+
+
+def run(*words):
+    return subprocess.run([PROGRAM, *map(str, words)], capture_output=True, text=True, stdin=subprocess.DEVNULL,
+                          env={**os.environ, "HAPBENCH_PYTHON": sys.executable})
+
+
+class Identify(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        scratch = tempfile.TemporaryDirectory(prefix="hapbench-identify-")
+        cls.addClassCleanup(scratch.cleanup)
+        cls.root = Path(scratch.name)
+        cls.time, cls.force = design("chirp", 1.5, 0.08, 1000.0, 2.0, 0.1)
+        m, b, c, d, _ = TRUE.values()
+        cls.places = played(cls.time, cls.force, m, b, c, 1e-3 * d, 400)
+
+    def log(self, places, time=None, force=None, name="log.csv"):
+        time, force = (self.time if time is None else time), (self.force if force is None else force)
+        (self.root / name).write_text("time_s,force_N,position_m\n" + "".join(f"{t!r},{f!r},{x!r}\n" for t, f, x in zip(
+            time.tolist(), force.tolist(), places.tolist())))
+        return self.root / name
+
+    def told(self, file, *words):
+        done = run("identify", file, "--json", "--out", self.root / "device.json", *words)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return json.loads(done.stdout), done.stderr
+
+    def assert_holds(self, told, names=TRUE, slack=0.0):
+        for name in names:
+            low, high = told[name]["interval"]
+            self.assertLessEqual(low - slack * TRUE[name], TRUE[name], name)
+            self.assertGreaterEqual(high + slack * TRUE[name], TRUE[name], name)
+
+    def test_the_model_is_what_small_steps_tend_to(self):
+        m, b, c, d, _ = TRUE.values()
+        exact = positions(self.time, self.force, (m, b, c, 1e-3 * d, 0.0, 0.0, 0.0))
+        errors = [np.abs(played(self.time[:500], self.force[:500], m, b, c, 1e-3 * d, n) - exact[:500]).max() for n in (20, 100, 400)]
+        self.assertLess(errors[2], 1e-6)
+        self.assertLess(errors[2], 0.4 * errors[0])
+
+    def test_a_log_in_steps_of_the_encoder_tells_the_device(self):
+        q = TRUE["encoder_step_m"]
+        told, _ = self.told(self.log(np.round(self.places / q) * q))
+        # What the small steps of this simulator leave is 3e-7 m, a tenth of the encoder's noise.
+        self.assert_holds(told)
+        for name, share in (("handle_mass_kg", 0.01), ("viscous_N_s_per_m", 0.05), ("coulomb_N", 0.05), ("delay_samples", 0.05)):
+            self.assertAlmostEqual(told[name]["value"] / TRUE[name], 1.0, delta=share)
+        self.assertAlmostEqual(told["residual_m"] / (q / np.sqrt(12.0)), 1.0, delta=0.15)
+        self.assertAlmostEqual(told["step_s"], 1e-3)
+        device = json.loads((self.root / "device.json").read_text())
+        self.assertAlmostEqual(device["handle_mass_kg"], told["handle_mass_kg"]["value"], delta=1e-6)
+        self.assertTrue((self.root / "device.svg").read_text().startswith("<?xml"))
+        self.assertEqual(run("validate", self.root / "device.json").returncode, 0)
+
+    def test_noise_missing_samples_jitter_and_units(self):
+        random = np.random.default_rng(3)
+        m, b, c, d, q = TRUE.values()
+        time = self.time + np.concatenate([[0.0], 2e-4 * random.uniform(-1.0, 1.0, len(self.time) - 1)])
+        places = played(time, self.force, m, b, c, 1e-3 * d, 100)
+        measured = np.round((places + 2e-5 * random.standard_normal(len(places))) / q) * q
+        kept = random.random(len(time)) > 0.03
+        kept[0] = True
+        file = self.log(1e3 * measured[kept], 1e6 * time[kept], self.force[kept])
+        told, warned = self.told(file, "--scale", "time=1e-6,position=1e-3")
+        self.assert_holds(told)
+        self.assertAlmostEqual(told["position_noise_m"]["value"], 2e-5, delta=1e-6)
+        self.assertIn(f"{np.count_nonzero(~kept)} samples are missing", warned)
+        self.assertIn("the clock is not even", warned)
+
+    def test_the_intervals_hold_as_often_as_they_say(self):
+        m, b, c, d, q = TRUE.values()
+        held = {name: 0 for name in NAMES[:4]}
+        logs = 24
+        for seed in range(logs):
+            random = np.random.default_rng(seed)
+            noisy = self.places[:1000] + 1e-5 * random.standard_normal(1000)
+            found = fit(log_of(self.time[:1000], self.force[:1000], np.round(noisy / q) * q))
+            for name, true, (low, high) in zip(held, (m, b, c, 1e-3 * d), found.intervals):
+                held[name] += low <= true <= high
+        # Of 24 intervals of 95 %, fewer than 19 hold once in 700 times.
+        self.assertTrue(all(count >= 19 for count in held.values()), held)
+
+    def test_what_the_log_cannot_tell_has_no_value(self):
+        m, _, _, _, q = TRUE.values()
+        places = played(self.time, self.force, m, 0.0, 0.0, 0.0, 100)
+        told, warned = self.told(self.log(np.round(places / 1e-4) * 1e-4))
+        for name in ("viscous_N_s_per_m", "coulomb_N", "delay_samples"):
+            if told[name]["value"] is None:
+                self.assertIn(f"{name}: the log cannot tell it from 0", warned)
+                self.assertNotIn(name, json.loads((self.root / "device.json").read_text()))
+        self.assertIsNone(told["coulomb_N"]["value"])
+        self.assertAlmostEqual(told["handle_mass_kg"]["value"] / m, 1.0, delta=0.02)
+
+    def test_it_says_when_something_else_is_on_the_handle(self):
+        m, b, c, d, q = TRUE.values()
+        for spring, why in ((2.0, "The device has something that this model has not"), (20.0, "Is a hand or a spring on the handle")):
+            places = played(self.time, self.force, m, b, c, 1e-3 * d, 100, spring)
+            done = run("identify", self.log(np.round(places / q) * q), "--out", self.root / "device.json")
+            self.assertIn(why, done.stderr)
+
+    def test_refuses_what_is_no_log(self):
+        for text, why in (("time_s,force_N\n" + "0,1\n" * 60, "columns: position: no"), ("time_s,force_N,position_m\n0,1,2\n", "at least 50"),
+                          ("time_s,force_N,position_m\n" + "".join(f"{i},1,{i}\n" for i in range(60)), "every force is 1"),
+                          ("time_s,force_N,position_m\n" + "".join(f"0,{i},{i}\n" for i in range(60)), "increasing times")):
+            (self.root / "bad.csv").write_text(text)
+            done = run("identify", self.root / "bad.csv", "--out", self.root / "none.json")
+            self.assertEqual(done.returncode, 2, done.stderr)
+            self.assertIn(why, done.stderr)
+            self.assertFalse((self.root / "none.json").exists())
+        self.assertIn("either a LOG or --design", run("identify").stderr)
+
+
+class Design(unittest.TestCase):
+    def test_signals_keep_their_limits(self):
+        for kind in KINDS:
+            for mass, force, travel in ((0.05, 1.0, 0.02), (0.3, 5.0, 0.1)):
+                time, values = design(kind, force, travel, 1000.0, 3.0, mass)
+                self.assertLessEqual(np.abs(values).max(), force * (1 + 1e-12), kind)
+                self.assertGreater(np.abs(values).max(), 0.1 * force, kind)
+                self.assertLessEqual(travel_of(time, values, mass), travel * (1 + 1e-9), kind)
+                # A free mass under held forces, by the trapezoidal rule, which is exact for it.
+                speed = np.concatenate([[0.0], np.cumsum(values[:-1])]) * 1e-3 / mass
+                place = np.concatenate([[0.0], np.cumsum(0.5 * (speed[1:] + speed[:-1]))]) * 1e-3
+                self.assertLessEqual(np.ptp(place), travel * (1 + 1e-9), kind)
+
+    def test_each_signal_tells_the_device(self):
+        m, b, c, d, q = TRUE.values()
+        for kind in KINDS:
+            time, force = design(kind, 1.5, 0.08, 1000.0, 2.0, 0.1)
+            found = fit(log_of(time, force, np.round(played(time, force, m, b, c, 1e-3 * d, 50) / q) * q))
+            for name, true, value in zip(NAMES, (m, b, c, 1e-3 * d), found.values):
+                self.assertAlmostEqual(value / true, 1.0, delta=0.1, msg=f"{kind} {name}")
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])
