@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 
+#include "sim/contact/late_contacts.hpp"
 #include "sim/core/types.hpp"
 
 namespace hapbench {
@@ -26,6 +27,10 @@ inline constexpr const char* kOwnContacts = "own";
 /// Collision libraries whose contacts a run can use instead, each in a module of its own (algorithms/peers).
 inline constexpr std::array kPeers = {"fcl", "bullet"};
 
+/// Contacts that a file gives: the recorded contacts of a prescribed motion, or a library of the user's own.
+inline constexpr const char* kTrace = "trace";
+inline constexpr const char* kContactPlugin = "plugin";
+
 /// Dry friction in place of the thesis's viscous one; see stages/dry_friction.hpp.
 struct DryFrictionConfig {
   double mu = 0.3;                  ///< friction coefficient [1]
@@ -38,7 +43,10 @@ struct RenderingConfig {
   std::string algorithm = "shaped_stiffness";
   int iterations = 3;  ///< m of the shaping iteration, for the laws that iterate
   std::string depth_model = "surface_normal";
-  std::string contact_source = kOwnContacts;  ///< or a peer's name (kPeers)
+  std::string contact_source = kOwnContacts;  ///< or a peer's name (kPeers), kTrace, kContactPlugin
+  std::string contact_file;                   ///< of the latter two, relative to the scenario file
+  std::string contact_config = "{}";          ///< of kContactPlugin: a JSON object
+  std::optional<Lateness> late;               ///< none: contacts of every row
   bool local_average = false;
   std::optional<ReductionConfig> reduction;
 

@@ -41,7 +41,7 @@ class Taker final : public btCollisionWorld::ContactResultCallback {
 
 class Bullet {
  public:
-  Bullet(const HapbenchSurface& surface, const HapbenchCylinder& drill)
+  Bullet(const HapbenchSurface& surface, const HapbenchTool& drill)
       : vertices_(surface.vertices, surface.vertices + 3 * surface.vertex_count),
         triangles_(surface.triangles, surface.triangles + 3 * surface.triangle_count),
         drill_(btVector3(drill.radius, drill.radius, drill.length / 2.0) * kMillimetres) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <span>
@@ -12,16 +13,16 @@ namespace hapbench {
 
 /// The functions of a contact source that is a class with
 ///
-///   Source(const HapbenchSurface& surface, const HapbenchCylinder& tool);
+///   Source(const HapbenchSurface& surface, const HapbenchTool& tool);
 ///   std::size_t contacts_at(const HapbenchPose& pose, std::span<HapbenchContact> room);
 ///
-/// both of which may throw.
+/// both of which may throw. Contacts without a direction or with a negative depth are left out.
 template <class Source>
 HapbenchContactSource contact_library(const char* name) {
   HapbenchContactSource library = {};
   library.version = HAPBENCH_CONTACTS_VERSION;
   library.name = name;
-  library.create = [](const HapbenchSurface* surface, const HapbenchCylinder* tool, char* fault,
+  library.create = [](const char*, const HapbenchSurface* surface, const HapbenchTool* tool, char* fault,
                       std::size_t fault_size) -> void* {
     try {
       return new Source(*surface, *tool);
@@ -36,7 +37,12 @@ HapbenchContactSource contact_library(const char* name) {
   library.contacts_at = [](void* source, const HapbenchPose* pose, HapbenchContact* contacts, std::size_t room,
                            char* fault, std::size_t fault_size) -> std::int64_t {
     try {
-      return static_cast<std::int64_t>(static_cast<Source*>(source)->contacts_at(*pose, {contacts, room}));
+      const std::size_t found = static_cast<Source*>(source)->contacts_at(*pose, {contacts, room});
+      const auto is_none = [](const HapbenchContact& c) {
+        const double *u = c.gradient, length2 = u[0] * u[0] + u[1] * u[1] + u[2] * u[2];
+        return !(length2 > 0.0 && c.depth >= 0.0);
+      };
+      return std::remove_if(contacts, contacts + found, is_none) - contacts;
     } catch (const std::exception& error) {
       std::snprintf(fault, fault_size, "%s", error.what());
     } catch (...) {

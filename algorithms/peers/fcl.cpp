@@ -14,7 +14,7 @@ using Surface = fcl::BVHModel<fcl::OBBRSSd>;
 
 class Fcl {
  public:
-  Fcl(const HapbenchSurface& surface, const HapbenchCylinder& drill) {
+  Fcl(const HapbenchSurface& surface, const HapbenchTool& drill) {
     std::vector<fcl::Vector3d> vertices;
     for (std::size_t i = 0; i < 3 * surface.vertex_count; i += 3)
       vertices.emplace_back(surface.vertices[i], surface.vertices[i + 1], surface.vertices[i + 2]);

@@ -1,17 +1,30 @@
 #include "algorithms/peers/peer_source.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <stdexcept>
+
+#include "algorithms/plugin/plugin_call.hpp"
 
 namespace hapbench {
 namespace {
 
+constexpr double kLargestLengthError = 1e-3;  ///< of a gradient
+
+/// The reason for which a contact cannot be used; null for none.
+const char* problem_of(const HapbenchContact& contact) {
+  if (!Vec3::Map(contact.point).allFinite() || !Vec3::Map(contact.gradient).allFinite() ||
+      !std::isfinite(contact.depth))
+    return "a contact that is not finite";
+  if (std::abs(Vec3::Map(contact.gradient).norm() - 1.0) > kLargestLengthError)
+    return "a contact whose gradient is no unit vector";
+  return contact.depth < 0.0 ? "a contact with a negative depth" : nullptr;
+}
+
 void push(const HapbenchContact& contact, ContactBuffer& contacts) {
   const Vec3 along = Vec3::Map(contact.gradient);
-  const double length = along.norm();
-  if (!(length > 0.0 && contact.depth >= 0.0)) return;
-  const Vec3 gradient = along / length;
+  const Vec3 gradient = along / along.norm();
   const std::size_t i = contacts.size();
   contacts.push(contact.index, Vec3::Map(contact.point), -gradient);
   contacts.depth[i] = contact.depth;
@@ -23,18 +36,22 @@ void push(const HapbenchContact& contact, ContactBuffer& contacts) {
 HapbenchPose peer_pose(const ToolPose& pose, double length) noexcept {
   const Vec3 centre = pose.position - 0.5 * length * pose.axis;
   const Mat3 r = pose.rotation();
-  return {.centre = {centre.x(), centre.y(), centre.z()},
+  const Vec3& tip = pose.position;
+  return {.tip = {tip.x(), tip.y(), tip.z()},
+          .centre = {centre.x(), centre.y(), centre.z()},
           .rotation = {r(0, 0), r(0, 1), r(0, 2), r(1, 0), r(1, 1), r(1, 2), r(2, 0), r(2, 1), r(2, 2)}};
 }
 
-Peer::Peer(const HapbenchContactSource& library, const PeerSurface& surface, const HapbenchCylinder& tool)
+Peer::Peer(const HapbenchContactSource& library, const std::string& config, const PeerSurface& surface,
+           const HapbenchTool& tool)
     : library_(&library) {
   const HapbenchSurface view = {.vertices = surface.vertices.data(),
                                 .vertex_count = surface.vertices.size() / 3,
                                 .triangles = surface.triangles.data(),
                                 .triangle_count = surface.triangles.size() / 3};
   std::array<char, 200> text{};
-  source_ = library.create(&view, &tool, text.data(), text.size());
+  const PluginCall running(library.name, "create");
+  source_ = library.create(config.c_str(), &view, &tool, text.data(), text.size());
   if (source_ != nullptr) return;
   set_fault(text.data());
   throw std::runtime_error(fault_.data());
@@ -48,14 +65,33 @@ void Peer::set_fault(const char* text) noexcept {
 std::size_t Peer::contacts_at(const HapbenchPose& pose, std::span<HapbenchContact> room) noexcept {
   if (fault() != nullptr) return 0;
   std::array<char, 200> text{};
-  const std::int64_t found = library_->contacts_at(source_, &pose, room.data(), room.size(), text.data(), text.size());
-  if (found >= 0) return std::min(static_cast<std::size_t>(found), room.size());
+  const auto found = [&] {
+    const PluginCall running(library_->name, "contacts_at");
+    return library_->contacts_at(source_, &pose, room.data(), room.size(), text.data(), text.size());
+  }();
+  text.back() = '\0';
+  if (found > static_cast<std::int64_t>(room.size()))
+    std::snprintf(text.data(), text.size(), "gives %lld contacts; allowed: at most %zu", static_cast<long long>(found),
+                  room.size());
+  else if (found >= 0)
+    return check(room.first(static_cast<std::size_t>(found)));
   set_fault(text.data());
   return 0;
 }
 
-PeerSource::PeerSource(const HapbenchContactSource& library, const PeerSurface& surface, const HapbenchCylinder& tool)
-    : peer_(library, surface, tool), length_(tool.length), room_(surface.triangles.size() / 3) {}
+std::size_t Peer::check(std::span<const HapbenchContact> contacts) noexcept {
+  for (const HapbenchContact& contact : contacts) {
+    const char* problem = problem_of(contact);
+    if (problem == nullptr) continue;
+    set_fault(problem);
+    return 0;
+  }
+  return contacts.size();
+}
+
+PeerSource::PeerSource(const HapbenchContactSource& library, const std::string& config, const PeerSurface& surface,
+                       const HapbenchTool& tool, std::size_t capacity)
+    : peer_(library, config, surface, tool), length_(tool.length), room_(capacity) {}
 
 void PeerSource::reset() noexcept {
   work_ = {};

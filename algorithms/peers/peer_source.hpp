@@ -10,25 +10,30 @@
 
 namespace hapbench {
 
+/// Room for the contacts of a library of the user's own, which need not come from triangles.
+inline constexpr std::size_t kMostPluginContacts = 10'000;
+
 /// An environment as triangles, as HapbenchSurface.
 struct PeerSurface {
   std::vector<double> vertices;
   std::vector<std::uint32_t> triangles;
 };
 
-/// The pose of a drill of this length [m] for a contact source behind the C interface.
+/// The pose of a tool of HapbenchTool::length [m] for a contact source behind the C interface.
 HapbenchPose peer_pose(const ToolPose& pose, double length) noexcept;
 
 /// A contact source behind the C interface, as the owner of its state.
 class Peer {
  public:
   /// `library` must outlive the peer. Throws std::runtime_error with the library's fault.
-  Peer(const HapbenchContactSource& library, const PeerSurface& surface, const HapbenchCylinder& tool);
+  Peer(const HapbenchContactSource& library, const std::string& config, const PeerSurface& surface,
+       const HapbenchTool& tool);
   ~Peer() { library_->destroy(source_); }
   Peer(const Peer&) = delete;
   Peer& operator=(const Peer&) = delete;
 
-  /// Fills `room` with the contacts at the pose and returns their number. After a fault, returns 0 until clear_fault.
+  /// Fills `room` with the contacts at the pose and returns their number. After a fault, which contacts that cannot be
+  /// used are, too, returns 0 until clear_fault.
   std::size_t contacts_at(const HapbenchPose& pose, std::span<HapbenchContact> room) noexcept;
   /// The fault of a query, in one line; null for none.
   const char* fault() const noexcept { return fault_[0] == '\0' ? nullptr : fault_.data(); }
@@ -36,6 +41,7 @@ class Peer {
 
  private:
   void set_fault(const char* text) noexcept;
+  std::size_t check(std::span<const HapbenchContact> contacts) noexcept;
 
   const HapbenchContactSource* library_;
   void* source_ = nullptr;
@@ -48,13 +54,14 @@ class Peer {
 /// Our contact is a point of the shell in the tool, with the way along its gradient out of the tool. A peer's is a
 /// triangle that the surface or the inside of the tool meets, with the shortest translation that separates the two,
 /// which may point to either side of a thin triangle deep in the tool. `index` is the triangle; the normal is the
-/// reversed gradient. Contacts without a direction or with a negative depth are left out.
+/// reversed gradient.
 ///
 /// Unlike other sources, it allocates in a step if the library does.
 class PeerSource final : public ContactSource {
  public:
   /// Throws std::runtime_error if the library cannot make its source.
-  PeerSource(const HapbenchContactSource& library, const PeerSurface& surface, const HapbenchCylinder& tool);
+  PeerSource(const HapbenchContactSource& library, const std::string& config, const PeerSurface& surface,
+             const HapbenchTool& tool, std::size_t capacity);
 
   /// After a fault of the library: no contacts until the next reset.
   void contacts_at(const ToolPose& pose, ContactBuffer& contacts) noexcept override;

@@ -8,6 +8,7 @@
 #include <span>
 
 #include "algorithms/registry.hpp"
+#include "sim/contact/late_contacts.hpp"
 #include "sim/core/simd.hpp"
 
 namespace hapbench {
@@ -53,6 +54,8 @@ void ProxyRendering::prepare(const Scene& scene) {
     recovery_ = kRecoverySpeed * scene.tool->half_width() * scene.dt;
   }
   near_contacts_ = std::make_unique<ContactBuffer>(constraints_->capacity());
+  late_ = scene.late;
+  if (late_ != nullptr && late_->lateness().linear) base_depth_ = near_contacts_->depth;
   damping_and_limits_.prepare(scene);
 }
 
@@ -60,17 +63,19 @@ void ProxyRendering::reset() noexcept {
   constraints_->reset();
   damping_and_limits_.release();
   placed_ = false;
+  found_.reset();
   work_ = {};
 }
 
 void ProxyRendering::compute(const ToolState& tool, ContactBuffer& contacts, RenderedForce& out) noexcept {
   out = {};
   out.depth_max = contacts.largest_depth();
-  if (!placed_) place(tool.pose.position);
-  // A tool in free air that is too far away for the proxy to follow has been placed there.
-  if (!follow(tool.pose) && contacts.empty()) place(tool.pose.position);
+  if (late_ == nullptr)
+    find(tool.pose, contacts.empty());
+  else
+    find_late(tool.pose, contacts.empty());
   hand_over_holding(contacts);
-  out.spring = spring_ = K_ * (proxy_ - tool.pose.position);
+  out.spring = spring_;
   out.S = held_;
   // Without contact, S = 0 would make the whole velocity tangential, so friction must not be applied.
   if (contacts.empty()) {
@@ -81,6 +86,45 @@ void ProxyRendering::compute(const ToolState& tool, ContactBuffer& contacts, Ren
   out.rendered = damping_and_limits_.rendered_force(
       spring_, held_, velocity_at(tool), damping_and_limits_.needs_loads() ? load_along(spring_) : Mat3(Mat3::Zero()));
   out.friction = damping_and_limits_.friction_state();
+}
+
+void ProxyRendering::find(const ToolPose& tool, bool free) noexcept {
+  if (!placed_) place(tool.position);
+  // A tool in free air that is too far away for the proxy to follow has been placed there.
+  if (!follow(tool) && free) place(tool.position);
+  spring_ = K_ * (proxy_ - tool.position);
+}
+
+void ProxyRendering::find_late(const ToolPose& tool, bool free) noexcept {
+  const LateContacts::Query* query = late_->used();
+  if (query == nullptr) {
+    place(tool.position);
+    spring_.setZero();
+    return;
+  }
+  const bool linear = late_->lateness().linear;
+  if (found_ != query->row) {
+    found_ = query->row;
+    find(query->pose, free);
+    if (linear) base_depth_ = near_contacts_->depth;
+  }
+  if (!linear) return;
+  move_planes(query->pose, tool);
+  const AllowedMove allowed = nearest_allowed(tool.position - base_, *near_contacts_);
+  work_.iterations += static_cast<std::uint64_t>(allowed.iterations);
+  held_ = allowed.held;
+  feasible_ = allowed.feasible;
+  share_ = allowed.share;
+  proxy_ = allowed.iterations == 0 ? tool.position : Vec3(base_ + allowed.move);
+  spring_ = K_ * (proxy_ - tool.position);
+}
+
+/// Turns the constraints about the place that they are of, as the tool has turned since.
+void ProxyRendering::move_planes(const ToolPose& from, const ToolPose& to) noexcept {
+  const Mat3 turned = turn_matrix(from, to) - Mat3::Identity();
+  ContactBuffer& planes = *near_contacts_;
+  for (std::size_t i = 0; i < planes.size(); ++i)
+    planes.depth[i] = base_depth_[i] + planes.gradient(i).dot(turned * (planes.point(i) - base_));
 }
 
 ContactVelocity ProxyRendering::velocity_at(const ToolState& tool) const noexcept {
@@ -108,7 +152,7 @@ ContactVelocity ProxyRendering::velocity_at(const ToolState& tool) const noexcep
 
 void ProxyRendering::place(const Vec3& position) noexcept {
   placed_ = true;
-  proxy_ = position;
+  proxy_ = base_ = position;
   held_.setZero();
   feasible_ = true;
   clear_ = false;
@@ -156,6 +200,7 @@ bool ProxyRendering::follow(const ToolPose& tool) noexcept {
     share_ = allowed.share;
     const double length = allowed.move.norm();
     const bool arrives = length <= margin;
+    base_ = proxy_;
     proxy_ += arrives ? allowed.move : Vec3(margin / length * allowed.move);
     if (!feasible_ || slowed_ < 1.0) {
       // Leaving takes many steps, so one pass in each step is enough.

@@ -36,6 +36,11 @@ inline constexpr double kRecoverySpeed = 40.0;
 /// the tool out. Instead, the depths are scaled so that the deepest point leaves at kRecoverySpeed. A proxy without
 /// points inside keeps the guarantee, however fast the tool turns. Planes of springs have no inside.
 ///
+/// With late contacts (LateContacts) the proxy follows the tool and looks for points in the rows of answers only, as of
+/// the tool's pose in the query. Held, its spring stays as it was then. Linear, the constraints of its last pass are
+/// planes in space that move and turn with the tool's material, and it goes to the allowed place nearest to the tool in
+/// every row, without passes: points beyond the margin are not seen before the next query.
+///
 /// f_spring = K (x - p). S is the projector onto the span of the gradients that hold the proxy back, so lambda_max(S)
 /// is 1 in contact. With angular damping v_n is S v plus the shortest velocity in that span whose components along the
 /// u_i are those of the turning tool, <omega x r_i, u_i>. The rendered contacts are those that hold the proxy, with
@@ -56,6 +61,9 @@ class ProxyRendering final : public ForceAlgorithm {
 
  private:
   void place(const Vec3& position) noexcept;
+  void find(const ToolPose& tool, bool free) noexcept;
+  void find_late(const ToolPose& tool, bool free) noexcept;
+  void move_planes(const ToolPose& from, const ToolPose& to) noexcept;
   /// Returns false if the passes did not suffice.
   bool follow(const ToolPose& tool) noexcept;
   AllowedMove next_move(const Vec3& wanted) noexcept;
@@ -70,6 +78,11 @@ class ProxyRendering final : public ForceAlgorithm {
   Skips skips_;
   std::unique_ptr<ProxyConstraints> constraints_;
   std::unique_ptr<ContactBuffer> near_contacts_;  ///< constraints of the last pass, with weights [m]
+
+  const LateContacts* late_ = nullptr;  ///< null: the proxy looks for points in every row
+  std::optional<std::uint64_t> found_;  ///< row of the query that the proxy has looked for points of
+  Vec3 base_ = Vec3::Zero();            ///< place of the proxy that the constraints of the last pass are of
+  AlignedDoubles base_depth_;           ///< their depths, where planes move
 
   bool placed_ = false;  ///< false before the first step
   Vec3 proxy_ = Vec3::Zero();

@@ -141,6 +141,26 @@ double worst_hand_edge(SampledLoop loop) {
   return least;
 }
 
+Eigen::MatrixXd HeldSpring::state_matrix() const {
+  SpringDamper damper = spring;
+  damper.K = 0.0;
+  const Eigen::DiagonalMatrix<double, 2> in_metres(1.0, spring.dt);
+  const Eigen::Matrix2d advance = in_metres * damper.step_matrix() * in_metres.inverse();
+  const Eigen::Vector2d pull = -spring.lambda * spring.K * (in_metres * damper.input_step());
+  const Eigen::Index size = 2 + (delay + every - 1) / every;
+  Eigen::MatrixXd moving = Eigen::MatrixXd::Identity(2, size);
+  for (std::int64_t row = 0; row < every; ++row) {
+    // How many queries before this one the one is that serves.
+    const std::int64_t before = row >= delay ? 0 : (delay - row + every - 1) / every;
+    moving = advance * moving;
+    moving.col(before == 0 ? 0 : 1 + before) += pull;
+  }
+  Eigen::MatrixXd A = Eigen::MatrixXd::Zero(size, size);
+  A.topRows<2>() = moving;
+  for (Eigen::Index past = 2; past < size; ++past) A(past, past == 2 ? 0 : past - 1) = 1.0;
+  return A;
+}
+
 namespace {
 
 /// Indices of the state of an AdmittanceLoop.

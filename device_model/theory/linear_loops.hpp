@@ -86,6 +86,20 @@ std::span<const AttachedHand> hand_family();
 /// The smallest eigenvalue_edge of the loop with each hand of the family in place of its own.
 double worst_hand_edge(SampledLoop loop);
 
+/// A virtual mass at a spring whose contacts are found every so manieth row, serve a delay later and are held in
+/// between (LateContacts): a sampled loop inside the one of the rows. The damper sees the velocity of every row.
+struct HeldSpring {
+  SpringDamper spring;     ///< as it would be with the contacts of every row
+  std::int64_t every = 1;  ///< [rows]
+  std::int64_t delay = 0;  ///< [rows]
+
+  /// The map of the state at a row with a query to that at the next such row,
+  ///   (x, T v, x at the query before, x at the one before that, …),
+  /// with the time step T and as many queries as may still serve. Exact for integrators that hold the force over a
+  /// step.
+  Eigen::MatrixXd state_matrix() const;
+};
+
 /// The loop of an AdmittanceDevice at a wall, as a linear system along one axis: the loop while neither the limiter of
 /// the input nor the servo saturates and the contact lasts. In each step, as in Simulation, the hand's force f = -k x_h
 /// - b v_h at the row drives the handle and the virtual mass, which the wall holds; the servo then follows the mass.

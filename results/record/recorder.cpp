@@ -97,6 +97,15 @@ constexpr Column kContactColumns[] = {
     {"gradient_z", "1", "z of the unit gradient u"},
     {"weight", "1", "c_i of the law; 0 for laws without weights"}};
 
+constexpr Column kContactTraceColumns[] = {kTimeColumn,
+                                           {"x_m", "m", "x of the colliding point"},
+                                           {"y_m", "m", "y of the colliding point"},
+                                           {"z_m", "m", "z of the colliding point"},
+                                           {"ux", "1", "x of the unit gradient u, along which the tool gets deeper"},
+                                           {"uy", "1", "y of the unit gradient u"},
+                                           {"uz", "1", "z of the unit gradient u"},
+                                           {"depth_m", "m", "penetration depth d"}};
+
 constexpr Column kStiffnessColumns[] = {
     kStepColumn,
     kTimeColumn,
@@ -185,6 +194,11 @@ constinit const ResultTable kTrajectoryTable = {
     kTrajectoryColumns};
 constinit const ResultTable kContactTable = {
     "contacts.csv", "with record.contacts: one line per rendered contact of each recorded row", kContactColumns};
+constinit const ResultTable kContactTraceTable = {
+    "contact_trace.csv",
+    "with record.contacts: one line per colliding point of each recorded row, before local average and reduction; "
+    "rendering.contact_source of type trace reads it",
+    kContactTraceColumns};
 constinit const ResultTable kStiffnessTable = {
     "stiffness_tensor.csv", "with record.stiffness_tensor: one line per recorded row", kStiffnessColumns};
 constinit const ResultTable kRatioTable = {
@@ -243,6 +257,14 @@ RowSource contact_rows() {
     }
   };
   return {.columns = kContactColumns, .write = write};
+}
+
+RowSource contact_trace_rows() {
+  const auto write = [](const StepRecord& record, TableWriter& table) {
+    const ContactBuffer& c = *record.found;
+    for (std::size_t i = 0; i < c.size(); ++i) table.row(record.time, c.point(i), c.gradient(i), c.depth[i]);
+  };
+  return {.columns = kContactTraceColumns, .write = write, .wants_found = true};
 }
 
 RowSource stiffness_rows() {

@@ -22,7 +22,8 @@ struct RowSource {
   std::span<const Column> columns;
   /// Writes the lines of one row, perhaps none. Allocates nothing.
   std::function<void(const StepRecord& record, TableWriter& table)> write;
-  bool wants_ratio = false, wants_roll = false, wants_springs = false;  ///< as those of Observer
+  /// As those of Observer.
+  bool wants_ratio = false, wants_roll = false, wants_springs = false, wants_found = false;
 };
 
 /// An observer that writes one table, to a file or into memory. A file's lines are written during the run through a
@@ -35,6 +36,7 @@ class Recorder final : public Observer {
   bool wants_ratio() const noexcept override { return source_.wants_ratio; }
   bool wants_roll() const noexcept override { return source_.wants_roll; }
   bool wants_springs() const noexcept override { return source_.wants_springs; }
+  bool wants_found() const noexcept override { return source_.wants_found; }
   void on_step(const StepRecord& record) noexcept override;
 
   /// After the run: puts the file under its final name, or leaves that to a set of files. Throws IoError, also for the
@@ -59,6 +61,8 @@ struct TrajectoryExtras {
 RowSource trajectory_rows(const TrajectoryExtras& extras = {});
 /// contacts.csv: one line per rendered contact, in the order in which the force law saw them.
 RowSource contact_rows();
+/// contact_trace.csv: one line per colliding point, in the order in which the search found them.
+RowSource contact_trace_rows();
 /// stiffness_tensor.csv: one line per row.
 RowSource stiffness_rows();
 
@@ -89,7 +93,7 @@ RowSource force_reference_rows(const ForceFidelityObserver& observer);
 void write_target_table(TableTarget target, const std::vector<TargetRow>& rows, FileSet* together = nullptr);
 
 /// The tables above with all their columns.
-extern const ResultTable kTrajectoryTable, kContactTable, kStiffnessTable, kRatioTable, kEnergyTable,
-    kIdealTrajectoryTable, kForceReferenceTable, kTargetTable;
+extern const ResultTable kTrajectoryTable, kContactTable, kContactTraceTable, kStiffnessTable, kRatioTable,
+    kEnergyTable, kIdealTrajectoryTable, kForceReferenceTable, kTargetTable;
 
 }  // namespace hapbench

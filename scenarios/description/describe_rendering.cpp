@@ -120,6 +120,45 @@ static void describe_hunt_crossley(Fields& f, double& chi) {
   });
 }
 
+static void describe(Fields& f, Lateness& late) {
+  constexpr Choice<bool> kBetween[] = {{"hold", false}, {"linear", true}};
+  f.integer(key(parameter::kEvery), late.every, integers(parameter::kEvery),
+            "contacts are found in every so manieth row, from row 0 on");
+  f.integer(key(parameter::kDelay), late.delay, integers(parameter::kDelay),
+            "rows from when contacts are found until they serve");
+  f.choice("between", late.linear, kBetween, "kind of contacts between queries",
+           "hold: depths as found; linear: depths follow the tool's motion along the gradients");
+  number(f, parameter::kDropout, late.dropout, "probability that a query after the first is lost, by the seed");
+}
+
+/// A name, or an object that names a file. The visitors hold on to the file's name.
+static void describe_contact_source(Fields& f, RenderingConfig& rendering) {
+  constexpr TypeName kTypes[] = {{kTrace, "contacts recorded at times, of a prescribed motion"},
+                                 {kContactPlugin, "a shared library by hapbench_contacts.h, whose code is run"}};
+  std::string& source = rendering.contact_source;
+  const bool is_plugin = source == kContactPlugin;
+  f.plain_or_object(
+      is_plugin || source == kTrace,
+      [&](Fields& plain) {
+        auto index = static_cast<std::size_t>(std::find(contact_sources().begin(), contact_sources().end(), source) -
+                                              contact_sources().begin());
+        plain.name(index, contact_sources(), "source of contacts");
+        if (plain.reads()) source = contact_sources()[index];
+      },
+      [&](Fields& object) {
+        object.alternatives(
+            "source of contacts", kTypes, Untyped::refused, is_plugin ? 1 : 0, [&](Fields& fields, std::size_t type) {
+              if (fields.reads()) source = kTypes[type].name;
+              using Kind = FileContent::Kind;
+              fields.file(rendering.contact_file, {type == 0 ? Kind::trace : Kind::library},
+                          type == 0 ? "CSV with the header time_s,x_m,y_m,z_m,ux,uy,uz,depth_m" : "the library");
+              if (type == 0) return;
+              fields.field("config", "handed to the library as JSON text", Presence::has_default,
+                           [&](Fields& config) { config.any_object(rendering.contact_config); });
+            });
+      });
+}
+
 void describe(Fields& f, RenderingConfig& rendering) {
   static const std::vector<std::string> kDepthModels = depth_model_names();
   f.name("algorithm", rendering.algorithm, algorithm_names(), "algorithm", "force algorithm");
@@ -129,10 +168,16 @@ void describe(Fields& f, RenderingConfig& rendering) {
             "m of the shaping iteration");
   f.name("depth_model", rendering.depth_model, kDepthModels, "depth model",
          "default surface_normal, or what the algorithm's definition fixes", Presence::no_default);
-  f.name(
-      "contact_source", rendering.contact_source, contact_sources(), "source of contacts",
-      "own: our search, with the depth model; else a library whose contacts, depths and directions are taken instead, "
-      "where the environment is a block_with_hole or a mesh and the tool a cylinder with a flat tip");
+  f.field(
+      "contact_source",
+      "own: our search, with the depth model; else whose contacts, depths and directions are taken instead: of fcl "
+      "and bullet, where the environment is a block_with_hole or a mesh and the tool a cylinder with a flat tip, or "
+      "of a file",
+      Presence::has_default, [&rendering](Fields& source) { describe_contact_source(source, rendering); });
+  f.field("contacts", "contacts that a slower loop finds (multi-rate rendering); null: every row has its own",
+          rendering.late ? Presence::no_default : Presence::left_out, [&rendering](Fields& contacts) {
+            contacts.nullable(rendering.late, [](Fields& late, Lateness& value) { late.object(value); });
+          });
   f.boolean(key(parameter::kLocalAverage), rendering.local_average,
             "merge colliding points that share a grid cell of the shell");
   f.object("reduction", rendering.reduction, "gradient-based reduction, whose kept points change in jumps; null: off");

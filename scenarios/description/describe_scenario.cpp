@@ -126,19 +126,27 @@ constexpr Rule kRules[] = {
      [](const Scenario& s) { return handle_moves_tool(s.device) && s.rendering.passivity_controller; }},
 };
 
-/// A peer finds contacts between triangles and a cylinder; they have no shell points.
+/// A peer finds contacts between triangles and a cylinder; those of a trace belong to its motion. Neither are points of
+/// our shell.
 void check_contact_source(const Scenario& scenario) {
   const RenderingConfig& rendering = scenario.rendering;
   if (rendering.contact_source == kOwnContacts) return;
   const auto* drill = std::get_if<CylinderFields>(&scenario.tool);
   const bool is_solid = std::holds_alternative<BlockEnvironment>(scenario.environment) ||
                         std::holds_alternative<MeshEnvironment>(scenario.environment);
-  const char* problem = !is_solid ? "unless the environment is a block_with_hole or a mesh"
-                        : drill == nullptr || drill->tip != Tip::flat ? "unless the tool is a cylinder with a flat tip"
-                        : rendering.local_average                     ? "with local_average, which merges shell points"
-                        : rendering.reduction && rendering.reduction->shuffle_seed
-                            ? "with reduction.shuffle_seed, which orders shell points"
-                            : nullptr;
+  const bool is_trace = rendering.contact_source == kTrace;
+  const bool is_peer = !is_trace && rendering.contact_source != kContactPlugin;
+  const char* problem =
+      is_peer && !is_solid ? "unless the environment is a block_with_hole or a mesh"
+      : is_peer && (drill == nullptr || drill->tip != Tip::flat) ? "unless the tool is a cylinder with a flat tip"
+      : std::holds_alternative<SpringsEnvironment>(scenario.environment) ? "with springs, which have no surface"
+      : is_trace &&
+              (std::holds_alternative<FreePosition>(scenario.motion.position) || handle_moves_tool(scenario.device))
+          ? "unless motion.position is prescribed, as it was when the contacts were recorded"
+      : rendering.local_average ? "with local_average, which merges shell points"
+      : rendering.reduction && rendering.reduction->shuffle_seed
+          ? "with reduction.shuffle_seed, which orders shell points"
+          : nullptr;
   if (problem == nullptr) return;
   fail("/rendering/contact_source",
        fmt::format("got \"{}\"; allowed: \"{}\", {}", rendering.contact_source, kOwnContacts, problem));

@@ -86,7 +86,7 @@ struct Choice {
 
 /// The content of a file that a scenario names, and how it is read.
 struct FileContent {
-  enum class Kind { point_shell, mesh, stroke };
+  enum class Kind { point_shell, mesh, stroke, trace, library };
   Kind kind;
   MeshSampling sampling = {};  ///< of a mesh
 };
@@ -124,8 +124,10 @@ class Fields {
                        FunctionRef<Fields&, std::size_t> entry) = 0;
   /// null, or what `value` describes.
   virtual void or_null(bool is_null, FunctionRef<> set_null, Body value) = 0;
-  /// A number, or an object.
-  virtual void number_or_object(bool is_object, Body number, Body object) = 0;
+  /// A number or a name, or an object.
+  virtual void plain_or_object(bool is_object, Body plain, Body object) = 0;
+  /// Any object, as JSON text: the program hands it on and does not look into it.
+  virtual void any_object(std::string& json) = 0;
   /// A value that is no list, or a list.
   virtual void one_or_list(bool is_list, Body one, Body list) = 0;
   /// An object whose field "type" is one of `types` and chooses the other fields; `what` says of what kind. `held` is

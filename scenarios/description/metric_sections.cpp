@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "results/observe/contact_age.hpp"
 #include "results/observe/energy_ledger.hpp"
 #include "results/observe/force_fidelity.hpp"
 #include "results/observe/friction.hpp"
@@ -64,6 +65,11 @@ std::unique_ptr<Observer> observe_perception(const TrialParts& p) {
   return std::make_unique<PerceptionObserver>(*p.scenario.perception, p.reference.get(), p.scenario.time.step);
 }
 
+std::unique_ptr<Observer> observe_contacts(const TrialParts& p) {
+  return std::make_unique<ContactAgeObserver>(dynamic_cast<const LateContacts&>(*p.simulation.source),
+                                              p.scenario.time.step, static_cast<std::uint64_t>(p.scenario.time.steps));
+}
+
 std::unique_ptr<Observer> observe_targets(const TrialParts& p) {
   return std::make_unique<TargetMetricsObserver>(p.subject, p.trial, *p.simulation.hand->task());
 }
@@ -104,6 +110,8 @@ const SectionKind kSections[] = {
        return std::make_unique<FrictionObserver>(p.scenario.time.step);
      },
      summary_of_one<FrictionObserver>, list_without_values<FrictionObserver>},
+    {"contacts", [](const Scenario& s, bool) { return std::size_t{s.rendering.late && s.rendering.late->any()}; },
+     observe_contacts, summary_of_one<ContactAgeObserver>, list_without_values<ContactAgeObserver>},
     {"perception", [](const Scenario& s, bool) { return std::size_t{s.perception.has_value()}; }, observe_perception,
      summary_of_one<PerceptionObserver>, list_without_values<PerceptionObserver>},
     {"targets", target_places, observe_targets, summary_of_targets, targets_without_values, true}};

@@ -79,7 +79,7 @@ void profile(Fields& f, std::string_view name, Profile& profile, const char* uni
   const NumberRange range = {-kLargestValue, kLargestValue, unit};
   const auto describe_profile = [&](Fields& value) {
     Parts parts = parts_of(profile);
-    value.number_or_object(
+    value.plain_or_object(
         !parts.is_constant,
         [&](Fields& v) {
           v.number(parts.constant, range);

@@ -14,6 +14,7 @@
 #include "scenarios/input/mesh_file.hpp"
 #include "scenarios/input/motion_file.hpp"
 #include "scenarios/input/text_lines.hpp"
+#include "scenarios/input/trace_file.hpp"
 #include "sim/core/hash.hpp"
 
 namespace hapbench {
@@ -77,6 +78,7 @@ class FileFinder final : public Fields {
   void integer(std::int64_t&, IntegerRange) override {}
   void boolean(bool&) override {}
   void text(std::string&, std::size_t) override {}
+  void any_object(std::string&) override {}
   void name(std::size_t&, const std::vector<std::string>&, const char*) override {}
   void vector3(Vec3&, NumberRange) override {}
   void pair(const char*, Body first, Body second) override {
@@ -90,7 +92,7 @@ class FileFinder final : public Fields {
   void or_null(bool is_null, FunctionRef<>, Body value) override {
     if (!is_null) value(*this);
   }
-  void number_or_object(bool is_object, Body, Body object) override {
+  void plain_or_object(bool is_object, Body, Body object) override {
     if (is_object) object(*this);
   }
   void one_or_list(bool is_list, Body one, Body list) override { (is_list ? list : one)(*this); }
@@ -208,6 +210,10 @@ NamedFile::Contents NamedFile::parsed() {
       return {.mesh = MeshFile(bytes_, path_, content_.sampling)};
     case FileContent::Kind::stroke:
       return {.stroke = stroke_in(bytes_, path_)};
+    case FileContent::Kind::trace:
+      return {.trace = trace_in(bytes_, path_)};
+    case FileContent::Kind::library:
+      return {};
   }
   return {};
 }

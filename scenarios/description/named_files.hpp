@@ -15,6 +15,7 @@
 #include "scenarios/description/fields.hpp"
 #include "scenarios/description/scenario.hpp"
 #include "scenarios/input/motion_file.hpp"
+#include "sim/contact/contact_trace.hpp"
 #include "sim/geometry/point_shell.hpp"
 
 namespace hapbench {
@@ -83,6 +84,7 @@ std::vector<FileReference> files_named_in(Scenario& scenario);
 inline constexpr std::string_view kEnvironmentFile = "/environment/file";
 inline constexpr std::string_view kToolFile = "/tool/file";
 inline constexpr std::string_view kMotionFile = "/motion/position/file";
+inline constexpr std::string_view kContactFile = "/rendering/contact_source/file";
 
 /// A file that a scenario names. It is read and parsed when something of it is first asked for, once for all scenarios
 /// of this process that take the same contents alike (SharedCache), and stays as it was then for this scenario. The
@@ -110,12 +112,17 @@ class NamedFile {
     const Stroke& stroke = *contents().stroke;
     return {contents_, &stroke};
   }
+  std::shared_ptr<const ContactTrace> trace() {
+    const ContactTrace& trace = *contents().trace;
+    return {contents_, &trace};
+  }
 
  private:
   struct Contents {
     std::vector<SurfacePoint> points = {};
     std::optional<MeshFile> mesh = {};
     std::optional<Stroke> stroke = {};
+    std::optional<ContactTrace> trace = {};
   };
 
   void check_extension() const;

@@ -20,7 +20,13 @@ struct Trial {
 };
 
 /// The uses of randomness that differ from trial to trial.
-enum class RandomUse : std::uint64_t { sensor_noise = 1, motor_noise = 2, target_order = 3, position_noise = 4 };
+enum class RandomUse : std::uint64_t {
+  sensor_noise = 1,
+  motor_noise = 2,
+  target_order = 3,
+  position_noise = 4,
+  lost_queries = 5
+};
 /// A seed of its own for each use in each trial: far apart in the 64 bits, whatever the scenario's seed.
 std::uint64_t derived_seed(const Scenario& scenario, Trial trial, RandomUse use);
 

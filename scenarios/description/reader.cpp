@@ -140,10 +140,18 @@ void Reader::or_null(bool, FunctionRef<> set_null, Body value) {
   value(*this);
 }
 
-void Reader::number_or_object(bool is_object, Body number, Body object) {
+void Reader::plain_or_object(bool is_object, Body plain, Body object) {
   if (json_.is_object()) return object(*this);
-  if (json_.is_number()) return number(*this);
-  refuse([&](Fields& f) { f.number_or_object(is_object, number, object); });
+  if (json_.is_number()) return plain(*this);
+  SchemaWriter kind;
+  plain(kind);
+  if (kind.schema().at("type") == json_.type_name()) return plain(*this);
+  refuse([&](Fields& f) { f.plain_or_object(is_object, plain, object); });
+}
+
+void Reader::any_object(std::string& json) {
+  if (!json_.is_object()) refuse([&](Fields& f) { f.any_object(json); });
+  json = json_.dump();
 }
 
 void Reader::one_or_list(bool, Body one, Body list) {

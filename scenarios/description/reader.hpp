@@ -26,7 +26,8 @@ class Reader final : public Fields {
   void entries(std::size_t length, ListSize size, FunctionRef<std::size_t> resize,
                FunctionRef<Fields&, std::size_t> entry) override;
   void or_null(bool is_null, FunctionRef<> set_null, Body value) override;
-  void number_or_object(bool is_object, Body number, Body object) override;
+  void plain_or_object(bool is_object, Body plain, Body object) override;
+  void any_object(std::string& json) override;
   void one_or_list(bool is_list, Body one, Body list) override;
   void alternatives(const char* what, std::span<const TypeName> types, Untyped untyped, std::size_t held,
                     FunctionRef<Fields&, std::size_t> fields) override;

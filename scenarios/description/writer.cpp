@@ -59,8 +59,12 @@ void Writer::or_null(bool is_null, FunctionRef<>, Body value) {
   if (!is_null) value(*this);
 }
 
-void Writer::number_or_object(bool is_object, Body number, Body object) {
-  (is_object ? object : number)(*this);
+void Writer::plain_or_object(bool is_object, Body plain, Body object) {
+  (is_object ? object : plain)(*this);
+}
+
+void Writer::any_object(std::string& json) {
+  json_ = Json::parse(json);
 }
 
 void Writer::one_or_list(bool is_list, Body one, Body list) {
@@ -170,8 +174,13 @@ void SchemaWriter::any_of(ValueGuide first, ValueGuide second) {
   guide_.allowed = first.allowed + ", or " + guide_.allowed;
 }
 
-void SchemaWriter::number_or_object(bool, Body number, Body object) {
-  any_of(guide_of(number), guide_of(object));
+void SchemaWriter::plain_or_object(bool, Body plain, Body object) {
+  any_of(guide_of(plain), guide_of(object));
+}
+
+void SchemaWriter::any_object(std::string&) {
+  guide_.schema = {{"type", "object"}};
+  guide_.allowed = "an object";
 }
 
 void SchemaWriter::one_or_list(bool, Body one, Body list) {

@@ -205,6 +205,24 @@ const HapbenchContactSource* find_peer(const std::string& name) {
   return found != opened.end() ? found->second : opened.emplace(name, open_peer(name)).first->second;
 }
 
+const HapbenchContactSource& contact_plugin(const fs::path& given) {
+  static std::mutex mutex;
+  static std::map<fs::path, const HapbenchContactSource*> loaded;
+  std::error_code error;
+  const fs::path file = fs::canonical(given, error);
+  if (error) fail_in_file(given, "cannot be loaded as a source of contacts: " + error.message());
+  const std::lock_guard lock(mutex);
+  const auto found = loaded.find(file);
+  if (found != loaded.end()) return *found->second;
+  hash_of_file(file);
+  const PluginCall loading(file.c_str(), "loading");
+  const auto& table = opened<HapbenchContactSource>(file, kApart, kContactSources);
+  if (table.name == nullptr || table.create == nullptr || table.destroy == nullptr || table.contacts_at == nullptr)
+    fail_in_file(file, "is no source of contacts that can be used: its name or one of its functions is missing");
+  loaded.emplace(file, &table);
+  return table;
+}
+
 std::string peer_package(const std::string& name) {
   return "lib" + name + "-dev";
 }

@@ -38,6 +38,10 @@ const std::vector<LoadedPlugin>& loaded_plugins();
 /// has not been built. Thread safe. Throws InputError if a module cannot be loaded.
 const HapbenchContactSource* find_peer(const std::string& name);
 
+/// The contact source of a library of the user's own, which is loaded at the first call and stays. Thread safe. Throws
+/// InputError.
+const HapbenchContactSource& contact_plugin(const std::filesystem::path& file);
+
 /// The Debian package that a peer needs, for messages. Precondition: the name is in kPeers.
 std::string peer_package(const std::string& name);
 

@@ -14,7 +14,8 @@
 #include "scenarios/input/memory_limit.hpp"
 #include "scenarios/plugins/load_plugin.hpp"
 #include "scenarios/run/scene_facts.hpp"
-#include "sim/contact/contact_source.hpp"
+#include "sim/contact/contact_trace.hpp"
+#include "sim/contact/late_contacts.hpp"
 #include "sim/core/random.hpp"
 #include "sim/loop/simulation.hpp"
 #include "sim/mesh/marching_cubes.hpp"
@@ -28,6 +29,7 @@ void add(std::vector<double>& numbers, const Vec3& p) {
 
 const HapbenchContactSource& peer_of(const Scenario& scenario) {
   const std::string& name = scenario.rendering.contact_source;
+  if (name == kContactPlugin) return contact_plugin(resolve_path(scenario, scenario.rendering.contact_file));
   if (const HapbenchContactSource* library = find_peer(name)) return *library;
   throw InputError(
       InputError::Kind::relation, "/rendering/contact_source",
@@ -49,22 +51,32 @@ PeerSurface peer_surface(const Scenario& scenario, const NamedFiles& files) {
         marching_cubes(density_field(block->block, block->grid, block->density), {.triangles = true});
     for (const SurfacePoint& vertex : mesh.vertices) add(surface.vertices, vertex.position);
     take(mesh.triangles);
-  } else {
+  } else if (std::holds_alternative<MeshEnvironment>(scenario.environment)) {
     const TriangleSoup mesh = files.at(kEnvironmentFile).mesh().triangles();
     for (const Vec3& vertex : mesh.vertices) add(surface.vertices, vertex);
     take(mesh.triangles);
+  } else {
+    const auto shell = make_shell(scenario, files);
+    for (std::size_t i = 0; i < shell->size(); ++i) add(surface.vertices, shell->point(i).position);
   }
   return surface;
 }
 
 void require_contact_source(const Scenario& scenario) {
-  if (scenario.rendering.contact_source != kOwnContacts) peer_of(scenario);
+  const std::string& source = scenario.rendering.contact_source;
+  if (source != kOwnContacts && source != kTrace) peer_of(scenario);
 }
 
 std::unique_ptr<ContactSource> make_peer_source(const Scenario& scenario, const NamedFiles& files) {
-  const Cylinder drill = make_cylinder(scenario.tool);
-  return std::make_unique<PeerSource>(peer_of(scenario), peer_surface(scenario, files),
-                                      HapbenchCylinder{.radius = drill.radius(), .length = drill.length()});
+  const auto* drill = std::get_if<CylinderFields>(&scenario.tool);
+  const bool is_flat = drill != nullptr && drill->tip == Tip::flat;
+  const HapbenchTool tool = {.radius = make_tool(scenario, files)->half_width(),
+                             .length = is_flat ? drill->length : 0.0};
+  const PeerSurface surface = peer_surface(scenario, files);
+  const RenderingConfig& rendering = scenario.rendering;
+  const bool is_plugin = rendering.contact_source == kContactPlugin;
+  return std::make_unique<PeerSource>(peer_of(scenario), rendering.contact_config, surface, tool,
+                                      is_plugin ? kMostPluginContacts : surface.triangles.size() / 3);
 }
 
 namespace {
@@ -157,12 +169,19 @@ SimulationParts assemble(const Scenario& scenario, const NamedFiles& files, std:
   if (std::holds_alternative<SpringsEnvironment>(scenario.environment)) {
     parts.springs = std::make_shared<const SpringSet>(make_springs(scenario));
     parts.source = std::make_unique<SpringSource>(parts.springs);
+  } else if (rendering.contact_source == kTrace) {
+    parts.source = std::make_unique<TraceSource>(files.at(kContactFile).trace(), scenario.time.step);
   } else if (rendering.contact_source != kOwnContacts) {
     parts.source = make_peer_source(scenario, files);
   } else {
     auto search = make_contact_query(*parts.shell, *parts.tool, rendering.skips);
     parts.source = std::make_unique<ShellSource>(*parts.shell, *parts.tool, std::move(search),
                                                  make_depth_model(rendering), rendering.skips);
+  }
+  if (rendering.late && rendering.late->any()) {
+    parts.source = std::make_unique<LateContacts>(std::move(parts.source), *rendering.late,
+                                                  parts.springs && parts.springs->bilateral,
+                                                  derived_seed(scenario, trial, RandomUse::lost_queries));
   }
   parts.algorithm = make_algorithm(rendering);
   add_hand_and_motion(scenario, files, trial, parts);

@@ -30,15 +30,16 @@ SimulationParts assemble(const Scenario& scenario, std::shared_ptr<const PointSh
 /// The only or first run, with a shell of its own.
 SimulationParts assemble(const Scenario& scenario);
 
-/// The scenario's environment as triangles: those whose vertices our shell has, or those of its mesh file.
-/// Precondition: it is a block_with_hole or a mesh. Throws InputError when the file cannot be used.
+/// The scenario's environment as triangles: those whose vertices our shell has, or those of its mesh file; without
+/// triangles, the points of other environments. Throws InputError when the file cannot be used.
 PeerSurface peer_surface(const Scenario& scenario, const NamedFiles& files);
 
-/// Loads the module of rendering.contact_source. Throws InputError, which says how to have it, when it is not there.
+/// Loads the module or library of rendering.contact_source. Throws InputError, which says how to have it, when it is
+/// not there.
 void require_contact_source(const Scenario& scenario);
 
 /// The contacts of rendering.contact_source. Building the library's tree over the triangles takes seconds for millions.
-/// Precondition: it is not kOwnContacts. Throws InputError.
+/// Precondition: it is a peer or kContactPlugin. Throws InputError.
 std::unique_ptr<ContactSource> make_peer_source(const Scenario& scenario, const NamedFiles& files);
 
 }  // namespace hapbench

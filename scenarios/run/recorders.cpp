@@ -39,6 +39,8 @@ const RecorderEntry kRecorders[] = {
      [](const RecordedTrial& t) { return trajectory_rows(extras(t.fields, t.inside)); }},
     {kContactTable, [](const RecordFields& f) { return f.contacts; },
      [](const RecordedTrial&) { return contact_rows(); }},
+    {kContactTraceTable, [](const RecordFields& f) { return f.contacts; },
+     [](const RecordedTrial&) { return contact_trace_rows(); }},
     {kStiffnessTable, [](const RecordFields& f) { return f.stiffness_tensor; },
      [](const RecordedTrial&) { return stiffness_rows(); }},
     {kRatioTable, [](const RecordFields& f) { return !f.ratio_iterations.empty(); }, ratios},
@@ -91,7 +93,7 @@ constexpr double kContactsOfARow = 30.0;
 
 double lines_a_row(const ResultTable& table, const RecordFields& record) {
   const std::string_view file = table.file;
-  if (file == "contacts.csv") return kContactsOfARow;
+  if (file == "contacts.csv" || file == "contact_trace.csv") return kContactsOfARow;
   return file == "ratios.csv" ? static_cast<double>(record.ratio_iterations.size()) : 1.0;
 }
 

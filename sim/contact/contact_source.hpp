@@ -20,6 +20,9 @@ class ContactSource {
   virtual void contacts_at(const ToolPose& pose, ContactBuffer& contacts) noexcept = 0;
   /// Upper bound of the number of contacts at a pose.
   virtual std::size_t capacity() const noexcept = 0;
+  /// Hands over the number of the present row, which changes before the first query of each row, to sources whose
+  /// answer depends on more than the pose. Called once, before the first step, unless no Simulation steps the source.
+  virtual void follow(const std::uint64_t* row) { static_cast<void>(row); }
   /// Returns to t = 0, counters included.
   virtual void reset() noexcept = 0;
   virtual const SearchWork& work() const noexcept = 0;

@@ -11,6 +11,8 @@
 
 namespace hapbench {
 
+class LateContacts;
+
 /// The scene as known to a force algorithm before the first step. Everything pointed to outlives the algorithm.
 struct Scene {
   std::size_t capacity = 0;            ///< maximum number of contacts in a step
@@ -18,6 +20,8 @@ struct Scene {
   const PointShell* shell = nullptr;   ///< the environment, unless it is springs
   const SpringSet* springs = nullptr;  ///< the environment, unless it is a shell
   double dt = 0.0005;                  ///< time step [s]
+  /// Tells algorithms that look for contacts themselves when to look; null: in every row.
+  const LateContacts* late = nullptr;
   /// The present row and its f_in [N], which drives the tool together with f_render over the coming step. They change
   /// before the first `compute` of each row. Null if the algorithm is not stepped by a Simulation.
   const std::uint64_t* row = nullptr;

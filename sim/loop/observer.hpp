@@ -23,6 +23,7 @@ struct StepRecord {
   const TargetTask* task = nullptr;         ///< of the hand at this row; null without such a task
   std::size_t colliding = 0;                ///< colliding points before any point stage
   const ContactBuffer* rendered = nullptr;  ///< contacts seen by the law; valid during on_step only
+  const ContactBuffer* found = nullptr;     ///< contacts before any point stage; null unless an observer wants them
   RatioRange ratio;                         ///< over the rendered contacts; filled only if an observer wants it
   SpringState springs;                      ///< filled only if an observer wants springs or energy
   std::optional<DeviceEnergy> device;       ///< filled only if an observer wants energy
@@ -43,6 +44,8 @@ class Observer {
   virtual bool wants_energy() const noexcept { return false; }
   /// True if on_step reads `springs`.
   virtual bool wants_springs() const noexcept { return wants_energy(); }
+  /// True if on_step reads `found`, which is otherwise not kept.
+  virtual bool wants_found() const noexcept { return false; }
   virtual void on_step(const StepRecord& record) noexcept = 0;
 };
 

@@ -4,6 +4,7 @@
 #include <numbers>
 #include <utility>
 
+#include "sim/contact/late_contacts.hpp"
 #include "sim/core/math.hpp"
 #include "sim/tool/tool_state.hpp"
 
@@ -51,6 +52,7 @@ Simulation::Simulation(SimulationConfig config, SimulationParts parts, std::vect
     springs_wanted_ |= observer->wants_springs();
     energy_wanted_ |= observer->wants_energy();
     roll_wanted_ |= observer->wants_roll();
+    if (observer->wants_found() && !found_) found_ = std::make_unique<ContactBuffer>(contacts_.capacity());
   }
   position_is_free_ = parts_.motion->position_is_free();
   handle_is_apart_ = parts_.device->energy().has_value();
@@ -59,11 +61,13 @@ Simulation::Simulation(SimulationConfig config, SimulationParts parts, std::vect
   tool_rolls_ = parts_.tool && !is_round(*parts_.tool);
   turn_rolls_ = tool_rolls_ || parts_.motion->scripts_roll();
   roll_wanted_ |= tool_rolls_ || (turn_rolls_ && angular_velocity_cutoff_);
+  parts_.source->follow(&record_.step);
   parts_.algorithm->prepare({.capacity = parts_.source->capacity(),
                              .tool = parts_.tool.get(),
                              .shell = parts_.shell.get(),
                              .springs = parts_.springs.get(),
                              .dt = config_.dt,
+                             .late = dynamic_cast<const LateContacts*>(parts_.source.get()),
                              .row = &record_.step,
                              .input = &record_.hand.input});
   reset();
@@ -75,6 +79,7 @@ void Simulation::reset() noexcept {
   result_ = {};
   record_ = {};
   record_.handle_moves_tool = handle_moves_tool_;
+  record_.found = found_.get();
   tool_ = {{config_.position, Vec3::Zero()}, config_.velocity};
   parts_.hand->reset();  // first, because a hand may determine the orientation
   move_tool_by_script();
@@ -149,6 +154,7 @@ bool Simulation::step() noexcept {
     end(Outcome::diverges);
     return true;
   }
+  if (found_) found_->assign(contacts_);
   r.colliding = contacts_.size();
   parts_.algorithm->compute(tool_, contacts_, r.force);
   if (!check_bounds()) return true;

@@ -138,6 +138,7 @@ class Simulation {
   bool ratio_wanted_ = false;
   bool springs_wanted_ = false;
   bool energy_wanted_ = false;
+  std::unique_ptr<ContactBuffer> found_;  ///< copy of the contacts as they were found; null unless wanted
   bool position_is_free_ = false;
   bool tool_rolls_ = false;                        ///< the tool is not round, so its pose has the roll
   bool turn_rolls_ = false;                        ///< the angular velocity includes the turn about the tool's axis

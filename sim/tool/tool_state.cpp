@@ -27,6 +27,20 @@ double roll_towards(const Vec3& axis, const Vec3& side) noexcept {
   return math::atan2(axis.cross(x).dot(side), x.dot(side));
 }
 
+Mat3 turn_matrix(const ToolPose& from, const ToolPose& to) noexcept {
+  const Vec3 v = from.axis.cross(to.axis);
+  const double cosine = from.axis.dot(to.axis);
+  Mat3 cross;
+  cross << 0.0, -v.z(), v.y(), v.z(), 0.0, -v.x(), -v.y(), v.x(), 0.0;
+  Mat3 turn = Mat3::Identity() + cross + cross * cross / (1.0 + cosine);
+  if (v.squaredNorm() == 0.0 && cosine < 0.0) {  // half a turn, about any axis across
+    const Vec3 across = from.axis.unitOrthogonal();
+    turn = 2.0 * across * across.transpose() - Mat3::Identity();
+  }
+  if (to.roll == from.roll) return turn;
+  return turn_about(to.axis, to.roll - from.roll).toRotationMatrix() * turn;
+}
+
 Vec3 whole_turn(const ToolPose& from, const ToolPose& to) noexcept {
   const Eigen::Quaterniond whole(Mat3(to.rotation() * from.rotation().transpose()));
   const double sine = whole.vec().norm();  // of half the angle

@@ -55,6 +55,10 @@ inline Vec3 turn(const Vec3& a, const Vec3& b) noexcept {
   return sine > 0.0 ? Vec3(cross * (math::atan2(sine, a.dot(b)) / sine)) : Vec3::Zero();
 }
 
+/// The matrix of the shortest turn from one pose's axis to the other's, followed by the turn about that by the
+/// difference of their rolls; exactly the identity where axes and rolls are equal.
+Mat3 turn_matrix(const ToolPose& from, const ToolPose& to) noexcept;
+
 /// The rotation vector that turns one pose to the other, roll included [rad].
 Vec3 whole_turn(const ToolPose& from, const ToolPose& to) noexcept;
 

@@ -87,6 +87,7 @@ struct Stages {
   bool local_average;
   std::optional<ReductionConfig> reduction;
   bool controlled = false;
+  std::optional<Lateness> late = {};
 };
 const Stages kStages[] = {
     {"plain", false, {}},
@@ -95,6 +96,8 @@ const Stages kStages[] = {
     {"averaged", true, {}},
     {"averaged_and_reduced", true, ReductionConfig{}},
     {"controlled", false, ReductionConfig{}, true},
+    {"held", false, {}, false, Lateness{.every = 3, .delay = 0, .dropout = 0.3}},
+    {"late_and_linear", false, ReductionConfig{}, true, Lateness{.every = 3, .delay = 7, .linear = true}},
 };
 
 struct Instance {
@@ -184,6 +187,7 @@ TEST_P(NoAllocation, InAStepOrAReset) {
   config.local_average = GetParam().stages->local_average;
   config.reduction = GetParam().stages->reduction;
   config.passivity_controller = GetParam().stages->controlled;
+  config.late = GetParam().stages->late;
   config.mu_s = 5.0;
   config.mu_f = 10.0;
   config.angular_damping = true;
@@ -194,7 +198,7 @@ TEST_P(NoAllocation, InAStepOrAReset) {
   Simulation simulation(run, parts_of(GetParam(), config), {&observer});
 
   EXPECT_EQ(allocations_of_two_runs(simulation), 0u);
-  EXPECT_EQ(observer.rows_with_contact, 600);
+  EXPECT_EQ(observer.rows_with_contact, 600 - (config.late ? 2 * config.late->delay : 0));
 }
 
 /// Some integrators search and render again within a step.

@@ -37,8 +37,8 @@ void check_scenario(const Scenario& scenario) {
   const auto* springs = std::get_if<SpringsEnvironment>(&scenario.environment);
   const RenderingConfig& r = scenario.rendering;
   const bool linear = springs != nullptr && springs->bilateral && springs->signed_depths && r.mu_f == 0.0 &&
-                      !r.dry_friction && !r.hunt_crossley && !r.max_damping && !r.max_force && !r.reduction &&
-                      !r.passivity_controller && std::holds_alternative<NoHandFields>(scenario.hand) &&
+                      !r.dry_friction && !r.hunt_crossley && !r.late && !r.max_damping && !r.max_force &&
+                      !r.reduction && !r.passivity_controller && std::holds_alternative<NoHandFields>(scenario.hand) &&
                       std::holds_alternative<FreePosition>(scenario.motion.position);
   if (linear) return;
   throw InputError(

@@ -78,10 +78,12 @@ extern const PrecisionStudy kStiffnessStudy;
 extern const PrecisionStudy kForceJumpsStudy;
 extern const PrecisionStudy kQueryTimeStudy;
 extern const PrecisionStudy kContactSourcesStudy;
+extern const PrecisionStudy kLateContactsStudy;
 
-inline constexpr std::array kPrecisionStudies = {
-    &kIntegratorsStudy, &kTimeStepStudy,  &kShapingStudy,    &kSpacingStudy,   &kReductionStudy,     &kMergingStudy,
-    &kAlgorithmsStudy,  &kStiffnessStudy, &kForceJumpsStudy, &kQueryTimeStudy, &kContactSourcesStudy};
+inline constexpr std::array kPrecisionStudies = {&kIntegratorsStudy, &kTimeStepStudy,       &kShapingStudy,
+                                                 &kSpacingStudy,     &kReductionStudy,      &kMergingStudy,
+                                                 &kAlgorithmsStudy,  &kStiffnessStudy,      &kForceJumpsStudy,
+                                                 &kQueryTimeStudy,   &kContactSourcesStudy, &kLateContactsStudy};
 
 /// Calls `work` with every row of a run.
 template <class Work>

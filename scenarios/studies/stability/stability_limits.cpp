@@ -121,6 +121,8 @@ void require_bilateral_springs(const Scenario& scenario) {
   if (!springs->signed_depths) fail("/environment/signed", "got false; allowed for stability: true");
   if (scenario.rendering.has_friction()) fail("/rendering/friction", "allowed for stability: none");
   if (scenario.rendering.hunt_crossley) fail("/rendering/damping", "allowed for stability: null");
+  if (scenario.rendering.late && scenario.rendering.late->any())
+    fail("/rendering/contacts", "allowed for stability: null");
   if (scenario.rendering.max_damping) fail("/rendering/limits/max_damping_N_s_per_m", "allowed for stability: null");
   if (scenario.rendering.max_force) fail("/rendering/limits/max_force_N", "allowed for stability: null");
   if (!std::holds_alternative<FreePosition>(scenario.motion.position))

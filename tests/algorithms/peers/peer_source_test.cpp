@@ -25,7 +25,7 @@ Script script;
 
 /// A library whose sources give the answer in `script`, or throw.
 struct FakePeer {
-  FakePeer(const HapbenchSurface& surface, const HapbenchCylinder&) {
+  FakePeer(const HapbenchSurface& surface, const HapbenchTool&) {
     if (surface.triangle_count == 0) throw std::runtime_error("nothing there");
   }
   std::size_t contacts_at(const HapbenchPose& pose, std::span<HapbenchContact> room) {
@@ -41,11 +41,11 @@ const HapbenchContactSource kFake = contact_library<FakePeer>("fake");
 std::unique_ptr<PeerSource> source_of(Script what) {
   script = std::move(what);
   const PeerSurface ten_triangles{{}, std::vector<std::uint32_t>(30)};
-  return std::make_unique<PeerSource>(kFake, ten_triangles, HapbenchCylinder{.radius = 0.001, .length = kLength});
+  return std::make_unique<PeerSource>(kFake, "{}", ten_triangles, HapbenchTool{.radius = 0.001, .length = kLength}, 10);
 }
 
 TEST(PeerSource, TakesPointDepthAndDirectionAsTheyAre) {
-  const auto source = source_of({{{7, {1, 2, 3}, {0, 0, -2}, 0.5}, {8, {4, 5, 6}, {1, 0, 0}, 0.0}}});
+  const auto source = source_of({{{7, {1, 2, 3}, {0, 0, -1}, 0.5}, {8, {4, 5, 6}, {1, 0, 0}, 0.0}}});
   ContactBuffer contacts(source->capacity());
   source->contacts_at({}, contacts);
   ASSERT_EQ(contacts.size(), 2u);
@@ -73,18 +73,50 @@ TEST(PeerSource, AsksAboutTheMiddleOfTheDrillWithItsShankAlongZ) {
   ContactBuffer contacts(source->capacity());
   const Vec3 axis = Vec3(1, 2, -3).normalized();
   source->contacts_at({{0.1, 0.2, 0.3}, axis}, contacts);
-  const auto& [centre, r] = script.pose;
+  const auto& [tip, centre, r] = script.pose;
+  EXPECT_EQ(Vec3::Map(tip), Vec3(0.1, 0.2, 0.3));
   EXPECT_TRUE(Vec3(centre[0], centre[1], centre[2]).isApprox(Vec3(0.1, 0.2, 0.3) - 0.5 * kLength * axis, 1e-15));
   EXPECT_TRUE(Vec3(r[2], r[5], r[8]).isApprox(-axis, 1e-15));
 }
 
 TEST(PeerSource, SaysWhyALibraryCannotMakeIt) {
   try {
-    const PeerSource source(kFake, {}, {.radius = 0.001, .length = kLength});
+    const PeerSource source(kFake, "{}", {}, {.radius = 0.001, .length = kLength}, 10);
     FAIL();
   } catch (const std::runtime_error& error) {
     EXPECT_STREQ(error.what(), "fake fails: nothing there");
   }
+}
+
+/// A library in C, which nothing filters, that gives one contact, or says that it gives more than there is room for.
+TEST(PeerSource, RefusesContactsThatCannotBeUsed) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  static HapbenchContact answer;
+  static std::int64_t count;
+  HapbenchContactSource library = kFake;
+  library.contacts_at = [](void*, const HapbenchPose*, HapbenchContact* contacts, std::size_t, char*, std::size_t) {
+    contacts[0] = answer;
+    return count;
+  };
+  const PeerSurface triangle{{}, std::vector<std::uint32_t>(3)};
+  PeerSource source(library, "{}", triangle, {.radius = 0.001, .length = kLength}, 10);
+  const auto fault_of = [&](const HapbenchContact& contact, std::int64_t n = 1) -> std::string {
+    answer = contact, count = n;
+    ContactBuffer contacts(source.capacity());
+    source.reset();
+    source.contacts_at({}, contacts);
+    EXPECT_EQ(contacts.size(), source.fault() == nullptr ? static_cast<std::size_t>(n) : 0u);
+    return source.fault() == nullptr ? "" : source.fault();
+  };
+  EXPECT_EQ(fault_of({0, {1, 2, 3}, {0, 0, -1}, 0.0}), "");
+  EXPECT_EQ(fault_of({0, {1, 2, 3}, {0, 0, -1.0009}, 1.0}), "");
+  EXPECT_EQ(fault_of({0, {1, 2, kInfinity}, {0, 0, -1}, 1.0}), "fake fails: a contact that is not finite");
+  EXPECT_EQ(fault_of({0, {1, 2, 3}, {0, 0, -kInfinity}, 1.0}), "fake fails: a contact that is not finite");
+  EXPECT_EQ(fault_of({0, {1, 2, 3}, {0, 0, -1}, kInfinity}), "fake fails: a contact that is not finite");
+  EXPECT_EQ(fault_of({0, {1, 2, 3}, {0, 0, -1.002}, 1.0}), "fake fails: a contact whose gradient is no unit vector");
+  EXPECT_EQ(fault_of({0, {1, 2, 3}, {0, 0, 0}, 1.0}), "fake fails: a contact whose gradient is no unit vector");
+  EXPECT_EQ(fault_of({0, {1, 2, 3}, {0, 0, -1}, -1e-9}), "fake fails: a contact with a negative depth");
+  EXPECT_EQ(fault_of({0, {1, 2, 3}, {0, 0, -1}, 1.0}, 11), "fake fails: gives 11 contacts; allowed: at most 10");
 }
 
 TEST(PeerSource, EndsTheRunWhenTheLibraryThrows) {

@@ -26,7 +26,7 @@ using Box = CGAL::Fuzzy_iso_box<Traits>;
 
 class KdTree {
  public:
-  KdTree(const HapbenchSurface& surface, const HapbenchCylinder& drill) : drill_(drill) {
+  KdTree(const HapbenchSurface& surface, const HapbenchTool& drill) : drill_(drill) {
     for (std::uint32_t i = 0; i < surface.vertex_count; ++i) {
       const double* p = &surface.vertices[3 * i];
       tree_.insert({{p[0], p[1], p[2]}, i});
@@ -59,7 +59,7 @@ class KdTree {
   }
 
  private:
-  HapbenchCylinder drill_;
+  HapbenchTool drill_;
   Tree tree_;
   std::vector<Numbered> near_;
   std::vector<std::uint32_t> points_;

@@ -91,7 +91,7 @@ const Ours& ours(const std::string& task) {
 void time_library(benchmark::State& state, const Library& library, const std::string& task) {
   const Ours& known = ours(task);
   const Cylinder drill = make_cylinder(task_scene(task).loaded.scenario.tool);
-  Peer peer(*library.source, surface_for(library), {.radius = drill.radius(), .length = drill.length()});
+  Peer peer(*library.source, "{}", surface_for(library), {.radius = drill.radius(), .length = drill.length()});
   std::vector<HapbenchContact> room(kRoom);
   double contacts = 0.0, agreed = 0.0, depth = 0.0, our_depth = 0.0;
   for (std::size_t k = 0; k < known.poses.size(); ++k) {

@@ -14,7 +14,7 @@ constexpr int kRoom = 0xffff;  // the most that it takes
 
 class Ode {
  public:
-  Ode(const HapbenchSurface& surface, const HapbenchCylinder& drill)
+  Ode(const HapbenchSurface& surface, const HapbenchTool& drill)
       : vertices_(surface.vertices, surface.vertices + 3 * surface.vertex_count),
         triangles_(surface.triangles, surface.triangles + 3 * surface.triangle_count),
         contacts_(kRoom) {

@@ -81,6 +81,7 @@ TEST(ScenarioSchema, HasAnExampleInTheTestsForEveryField) {
     }
   }
   seen.insert("extends");  // what is read in memory extends nothing; the tests below have it
+  seen.insert("config");   // of a library, which tests/data cannot hold; the tests of its sources have it
   for (const std::string& field : known) EXPECT_TRUE(seen.contains(field)) << field;
 }
 

@@ -304,7 +304,7 @@ TEST(TwoForms, AreToldApartByTheirJson) {
     const auto number = [](Fields& n, double& value) { n.number(value, {0.0, 9.0}); };
     f.fields([&](Fields& fields) {
       fields.field("solid", "", Presence::required, [&](Fields& v) {
-        v.number_or_object(
+        v.plain_or_object(
             true, [&](Fields& n) { number(n, parts.number); }, [&](Fields& o) { describe_any(o, parts.solid); });
       });
       fields.field("list", "", Presence::has_default, [&](Fields& v) {

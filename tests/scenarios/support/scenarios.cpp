@@ -69,6 +69,14 @@ std::vector<NamedScenario> rich_scenarios() {
       "device": {"type": "ideal", "force_limit_N": null},
       "rendering": {"algorithm": "exact_shaping", "local_average": true, "reduction": null},
       "record": {"contacts": true}})")},
+          {"traced_plane", Json::parse(R"({
+      "time": {"step_s": 0.0005, "steps": 20},
+      "environment": {"type": "plane", "size_m": 0.004, "spacing_m": 0.0002},
+      "motion": {"position": {"type": "prescribed", "x_m": 0, "y_m": 0,
+        "z_m": {"type": "ramp", "start": 0, "rate_per_s": -0.01}}},
+      "rendering": {"contact_source": {"type": "trace", "file": "trace.csv"},
+        "contacts": {"every": 2, "delay_samples": 1, "between": "linear", "dropout": 0.1}},
+      "record": {"contacts": true}})")},
           {"pushed_springs", Json::parse(R"({
       "time": {"step_s": 0.0005, "steps": 50},
       "environment": {"type": "springs", "bilateral": false, "signed": true, "groups": [{"direction": [0, -2, 0], "count": 0},

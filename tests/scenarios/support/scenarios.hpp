@@ -21,7 +21,7 @@ std::vector<NamedScenario> minimal_scenarios();
 Json minimal_scenario(const std::string& environment_type);
 
 /// Scenarios that between them give every field of the schema a value, in valid ways that the bundled ones do not use.
-/// They name the files cube.obj, shell.csv and stroke.csv, which tests/data holds.
+/// They name the files cube.obj, shell.csv, stroke.csv and trace.csv, which tests/data holds.
 std::vector<NamedScenario> rich_scenarios();
 
 /// Every scenario that comes with the program, with what it extends filled in.

@@ -1,0 +1,295 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "device_model/theory/linear_loops.hpp"
+#include "results/summary/summary.hpp"
+#include "scenarios/run/assemble.hpp"
+#include "scenarios/run/run_scenario.hpp"
+#include "scenarios/run/stop_signal.hpp"
+#include "sim/contact/late_contacts.hpp"
+#include "tests/results/files.hpp"
+#include "tests/scenarios/studies/precision/results.hpp"
+
+/// Runs whose contacts come late, from a file, or from a library of the user's own.
+namespace hapbench::contacts_from_elsewhere_test {
+namespace {
+
+namespace fs = std::filesystem;
+using test::bundled;
+
+struct Row {
+  Vec3 position, velocity, spring, rendered;
+};
+
+std::vector<Row> rows_of(const Scenario& scenario) {
+  class Rows final : public Observer {
+   public:
+    void on_step(const StepRecord& r) noexcept override {
+      rows.push_back({r.tool.pose.position, r.tool.velocity, r.force.spring, r.force.rendered});
+    }
+    std::vector<Row> rows;
+  } rows;
+  Simulation simulation(simulation_config(scenario), assemble(scenario), {&rows});
+  run_to_end(simulation);
+  return rows.rows;
+}
+
+void expect_same_bits(const std::vector<Row>& a, const std::vector<Row>& b) {
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t k = 0; k < a.size(); ++k) {
+    ASSERT_EQ(a[k].position, b[k].position) << k;
+    ASSERT_EQ(a[k].rendered, b[k].rendered) << k;
+  }
+}
+
+std::vector<std::string> late(std::int64_t every, std::int64_t delay, const char* between) {
+  return {"rendering.contacts.every=" + std::to_string(every),
+          "rendering.contacts.delay_samples=" + std::to_string(delay),
+          std::string("rendering.contacts.between=") + between};
+}
+
+// Held contacts of a spring are a sampled loop.
+
+TEST(HeldSpring, IsTheSampledLoopOfItsPeriodAndDelay) {
+  for (const double B : {0.0, 20.0}) {
+    for (const std::int64_t every : {1, 2, 5}) {
+      for (const std::int64_t delay : {0, 1, 3, 5, 12}) {
+        SCOPED_TRACE(testing::Message() << B << " " << every << " " << delay);
+        auto overrides = late(every, delay, "hold");
+        overrides.insert(overrides.end(), {"time.steps=300", "rendering.damping_N_s_per_m=" + std::to_string(B)});
+        const Scenario scenario = bundled("single_spring", overrides);
+        const auto rows = rows_of(scenario);
+        const double dt = scenario.time.step;
+        const HeldSpring loop{{.K = 20000.0, .B = B, .M = 0.1, .dt = dt}, every, delay};
+        const Eigen::MatrixXd A = loop.state_matrix();
+        // Before the first contacts, springs at the origin pull as none do.
+        Eigen::VectorXd state = Eigen::VectorXd::Unit(A.rows(), 0) * 1e-3;
+        double largest = 0.0;
+        for (std::size_t k = 0; k < rows.size(); k += static_cast<std::size_t>(every)) {
+          largest = std::max(largest, state.norm());
+          // Some roundings of the state in each of 300 rows.
+          ASSERT_NEAR(rows[k].position.x(), state[0], 1e-12 * largest) << k;
+          ASSERT_NEAR(rows[k].velocity.x() * dt, state[1], 1e-12 * largest) << k;
+          state = A * state;
+        }
+      }
+    }
+  }
+}
+
+TEST(HeldSpring, GrowsBeyondItsEdgeAndDiesOutBelow) {
+  for (const std::int64_t every : {1, 4, 8}) {
+    for (const std::int64_t delay : {0, 3}) {
+      const auto loop_at = [&](double K) {
+        return HeldSpring{{.K = K, .B = 1.4 * std::sqrt(0.1 * K), .M = 0.1, .dt = 0.0005}, every, delay};
+      };
+      const double edge = first_edge(1.0, 1e12, [&](double K) { return loop_at(K).state_matrix(); });
+      if (every == 1 && delay == 0) {
+        EXPECT_NEAR(edge, 433731.0, 1.0);  // METHOD 8.5
+      }
+      for (const double factor : {0.95, 1.05}) {
+        auto overrides = late(every, delay, "hold");
+        overrides.insert(overrides.end(),
+                         {"time.steps=6000", "rendering.stiffness_N_per_m=" + std::to_string(factor * edge)});
+        const auto rows = rows_of(bundled("single_spring", overrides));
+        const double end = rows.back().position.norm() + 0.0005 * rows.back().velocity.norm();
+        EXPECT_EQ(end < 1e-3, factor < 1.0) << every << " " << delay << " " << edge << " " << end;
+      }
+    }
+  }
+}
+
+// Linear contacts of a plane are fresh.
+
+TEST(LinearContacts, OfAPlaneAreFreshForEveryAlgorithm) {
+  // The tool is in contact from row 6 on, and what was found in row 7 serves from row 11 on.
+  constexpr std::size_t kInContact = 11;
+  for (const AlgorithmEntry& algorithm : algorithms()) {
+    SCOPED_TRACE(algorithm.info->name);
+    const std::vector<std::string> pressed = {
+        "rendering.algorithm=" + std::string(algorithm.info->name),
+        // The exit along the normal: other depths of points at the rim do not follow the tool.
+        "rendering.depth_model=normal_projection", R"(hand={"type":"none"})", "time.duration_s=0.05",
+        R"(motion.position={"type":"prescribed","x_m":0,"y_m":0,"z_m":{"type":"ramp","start":1e-6,"rate_per_s":-4e-4}})"};
+    auto overrides = late(7, 4, "linear");
+    overrides.insert(overrides.end(), pressed.begin(), pressed.end());
+    const auto fresh = rows_of(bundled("poke_plane", pressed)), linear = rows_of(bundled("poke_plane", overrides));
+    ASSERT_EQ(fresh.size(), linear.size());
+    // Not of a model with a memory of the steps, nor of depths to the nearest side.
+    const bool depths_are_the_normals =
+        algorithm.fixed_depth_model.empty() || algorithm.fixed_depth_model == "normal_projection";
+    for (std::size_t k = 0; k < fresh.size(); ++k) {
+      if (k < 4) {
+        EXPECT_EQ(linear[k].spring, Vec3(Vec3::Zero()));
+      } else if (k >= kInContact && depths_are_the_normals) {
+        // Solvers of the laws stop at 1e-6 of the force and better.
+        ASSERT_NEAR((linear[k].spring - fresh[k].spring).norm(), 0.0, 1e-6 * fresh[k].spring.norm()) << k;
+      }
+    }
+  }
+}
+
+/// The contacts of every row, by way of the held ones: a chance of 1e-300 loses none.
+TEST(LateContacts, OfEveryRowChangeNoBitForAnyAlgorithm) {
+  for (const AlgorithmEntry& algorithm : algorithms()) {
+    SCOPED_TRACE(algorithm.info->name);
+    const std::vector<std::string> law = {"rendering.algorithm=" + std::string(algorithm.info->name),
+                                          "time.duration_s=0.2", "rendering.angular_damping=true"};
+    auto none = law, held = law;
+    none.emplace_back("rendering.contacts={}");
+    held.emplace_back("rendering.contacts.dropout=1e-300");
+    const auto fresh = rows_of(bundled("drag_molar", law));
+    const Scenario defaults = bundled("drag_molar", none);
+    EXPECT_EQ(dynamic_cast<const LateContacts*>(assemble(defaults).source.get()), nullptr);
+    expect_same_bits(fresh, rows_of(defaults));
+    expect_same_bits(fresh, rows_of(bundled("drag_molar", held)));
+  }
+}
+
+/// f_spring between queries is that of the query, whoever finds the contacts.
+TEST(HeldContacts, HoldTheSpringForceOfEveryAlgorithm) {
+  for (const AlgorithmEntry& algorithm : algorithms()) {
+    SCOPED_TRACE(algorithm.info->name);
+    auto overrides = late(5, 0, "hold");
+    overrides.insert(overrides.end(), {"rendering.algorithm=" + std::string(algorithm.info->name),
+                                       "time.duration_s=0.2", "rendering.reduction=null"});
+    const auto rows = rows_of(bundled("drag_molar", overrides));
+    std::size_t held = 0, changes = 0;
+    for (std::size_t k = 1; k < rows.size(); ++k) {
+      if (k % 5 != 0) {
+        ASSERT_EQ(rows[k].spring, rows[k - 1].spring) << k;
+        held += static_cast<std::size_t>(rows[k].spring != Vec3(Vec3::Zero()));
+      } else {
+        changes += static_cast<std::size_t>(rows[k].spring != rows[k - 1].spring);
+      }
+    }
+    EXPECT_GT(held, 200u);
+    EXPECT_GT(changes, 50u);
+  }
+}
+
+TEST(LateContacts, ReportTheirAge) {
+  auto overrides = late(4, 3, "hold");
+  overrides.emplace_back("time.steps=103");
+  LoadedScenario loaded;
+  loaded.scenario = bundled("single_spring", overrides);
+  const auto metrics_of = [&] {
+    std::map<std::string, double> values;
+    for (const Metric& metric : metric_list(run_scenario(loaded, std::nullopt, false).summary))
+      if (const auto* number = std::get_if<double>(&metric.value)) values[metric.name] = *number;
+    return values;
+  };
+  // Rows 3 to 102 use contacts that are 3, 4, 5, 6, 3, … rows old.
+  auto metrics = metrics_of();
+  EXPECT_DOUBLE_EQ(metrics.at("contacts.age_p50_s"), 4 * 0.0005);
+  EXPECT_DOUBLE_EQ(metrics.at("contacts.age_p95_s"), 6 * 0.0005);
+  EXPECT_DOUBLE_EQ(metrics.at("contacts.age_max_s"), 6 * 0.0005);
+  EXPECT_EQ(metrics.at("contacts.lost_share"), 0.0);
+  loaded.scenario.rendering.late->dropout = 0.5;
+  metrics = metrics_of();
+  const double lost = metrics.at("contacts.lost_share");
+  EXPECT_NEAR(lost, 0.5, 0.3);  // three standard deviations of 25 draws
+  EXPECT_GT(metrics.at("contacts.age_max_s"), 6 * 0.0005);
+  EXPECT_EQ(metrics_of(), metrics);
+  std::set<double> ages;
+  for (loaded.scenario.seed = 2; loaded.scenario.seed < 6; ++loaded.scenario.seed)
+    ages.insert(metrics_of().at("contacts.lost_share"));
+  EXPECT_GT(ages.size(), 1u);
+}
+
+// A trace.
+
+class Trace : public testing::Test {
+ protected:
+  LoadedScenario loaded(const std::string& scene, const std::vector<std::string>& overrides) {
+    return load_scenario(find_scenario(scene), overrides);
+  }
+  const test::TemporaryDirectory folder_;
+  const fs::path directory_ = folder_.path();
+};
+
+TEST_F(Trace, OfARunGivesItsForcesBitForBit) {
+  for (const char* scene : {"plane_wiped_round", "cone_in_cone", "stroke_in_hole"}) {
+    for (const AlgorithmEntry& algorithm : algorithms()) {
+      SCOPED_TRACE(testing::Message() << scene << " " << algorithm.info->name);
+      if (!algorithm.reported_depth_model.empty()) continue;  // it finds its points itself
+      std::vector<std::string> overrides = {"rendering.algorithm=" + std::string(algorithm.info->name),
+                                            "rendering.damping_ratio=0.7", "time.steps=200"};
+      if (algorithm.may_reduce) overrides.emplace_back("rendering.reduction={}");
+      overrides.emplace_back("record.contacts=true");
+      const fs::path first = directory_ / "first", again = directory_ / "again";
+      run_scenario(loaded(scene, overrides), first, false);
+      overrides.emplace_back(R"(rendering.contact_source={"type":"trace","file":")" +
+                             (first / "contact_trace.csv").string() + "\"}");
+      const LoadedScenario traced = loaded(scene, overrides);
+      check_named_files(traced);
+      run_scenario(traced, again, false);
+      EXPECT_EQ(test::read_file(first / "trajectory.csv"), test::read_file(again / "trajectory.csv"));
+      EXPECT_EQ(test::read_file(first / "contact_trace.csv"), test::read_file(again / "contact_trace.csv"));
+    }
+  }
+}
+
+TEST_F(Trace, NeedsAMotionThatIsPrescribed) {
+  const auto said = [&](const std::string& scene, const std::string& more = "seed=1") -> std::string {
+    try {
+      loaded(scene, {R"(rendering.contact_source={"type":"trace","file":"t.csv"})", more});
+    } catch (const InputError& error) {
+      const std::string text = error.what();
+      return text.substr(text.find("/rendering"));
+    }
+    return "";
+  };
+  const std::string start = "/rendering/contact_source: got \"trace\"; allowed: \"own\", ";
+  EXPECT_EQ(said("drag_molar"),
+            start + "unless motion.position is prescribed, as it was when the contacts were recorded");
+  EXPECT_EQ(said("single_spring"), start + "with springs, which have no surface");
+  EXPECT_EQ(said("plane_wiped_round", "rendering.local_average=true"),
+            start + "with local_average, which merges shell points");
+  EXPECT_EQ(said("plane_wiped_round"), "");
+}
+
+// A library.
+
+TEST(ContactPlugin, OfASphereGivesTheForceOfASphere) {
+  const std::string source = R"(rendering.contact_source={"type":"plugin","file":")" HAPBENCH_TEST_PLUGINS
+                             R"(/sphere.so","config":{"radius_m":0.002}})";
+  const Scenario scenario =
+      bundled("plane_wiped_round",
+              {source, "rendering.friction.mu_s_N_s_per_m=0", "rendering.friction.mu_f_s_per_m=0",
+               R"(motion.position={"type":"prescribed","x_m":{"type":"ramp","start":-0.001,"rate_per_s":0.002},)"
+               R"("y_m":0,"z_m":0.0024})"});
+  const auto rows = rows_of(scenario);
+  std::size_t in_contact = 0;
+  for (const Row& row : rows) {
+    const double depth = std::max(0.0, 0.0025 - row.position.norm());
+    in_contact += static_cast<std::size_t>(depth > 0.0);
+    const Vec3 force = 20000.0 * depth * row.position.normalized();
+    ASSERT_TRUE(row.rendered.isApprox(force, 1e-12) || (row.rendered - force).norm() < 1e-12) << row.position;
+  }
+  EXPECT_GT(in_contact, 500u);
+}
+
+TEST(ContactPlugin, SaysWhatItMisses) {
+  const auto said = [](const std::string& file, const std::string& config) -> std::string {
+    try {
+      assemble(bundled("plane_wiped_round", {"rendering.contact_source={\"type\":\"plugin\",\"file\":\"" + file +
+                                             "\",\"config\":" + config + "}"}));
+    } catch (const std::exception& error) {
+      return error.what();
+    }
+    return "";
+  };
+  const std::string folder = HAPBENCH_TEST_PLUGINS "/";
+  EXPECT_EQ(said(folder + "sphere.so", "{\"radius\":1}"), "sphere fails: its config has no number radius_m");
+  EXPECT_NE(said(folder + "none.so", "{}").find("cannot be loaded as a source of contacts: No such file"),
+            std::string::npos);
+  EXPECT_NE(said(folder + "depth_weighted.so", "{}")
+                .find("is no source of contacts: it has no function \"hapbench_contacts\" (hapbench_contacts.h)"),
+            std::string::npos);
+  EXPECT_NE(said(folder + "sphere.so", "3").find("config: got 3; allowed: an object"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace hapbench::contacts_from_elsewhere_test
