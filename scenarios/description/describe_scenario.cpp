@@ -87,6 +87,10 @@ constexpr Rule kRules[] = {
     {"/record/ideal_trajectory",
      "got true; allowed: false, unless the environment is block_with_hole and the tool a cylinder with a flat tip",
      [](const Scenario& s) { return s.record.ideal_trajectory && !has_ideal_trajectory(s); }},
+    {"/integrator/tolerance_s", "allowed for integrator.type \"event\" only",
+     [](const Scenario& s) {
+       return s.integrator.type != &kEvent && s.integrator.options.tolerance != IntegratorOptions{}.tolerance;
+     }},
     {"/reference_force", "contradicts motion.position of type \"free\"; allowed with a way that is known beforehand",
      [](const Scenario& s) { return s.reference_force && is<FreePosition>(s.motion.position); }},
     {"/record/force_reference",
@@ -409,6 +413,9 @@ static void describe(Fields& f, IntegratorFields& integrator) {
   for (const IntegratorEntry* entry : kIntegrators) choices.push_back({entry->info.name, entry});
   f.choice("type", integrator.type, choices, "integrator",
            "leapfrog is the thesis's; \"hapbench describe NAME\" explains each", Presence::required);
+  f.number("tolerance_s", integrator.options.tolerance, {1e-15, 1.0, "s"},
+           "of event: within which it finds the times of contact on and off; 1e-9 unless it is given",
+           integrator.type == &kEvent ? Presence::no_default : Presence::left_out);
 }
 
 static void describe(Fields& f, DivergenceBounds& bounds) {

@@ -183,6 +183,7 @@ std::optional<double> input_force_limit(const DeviceFields& device);
 
 struct IntegratorFields {
   const IntegratorEntry* type = &kLeapfrog;  ///< never null
+  IntegratorOptions options;                 ///< of `event`
 };
 
 struct RecordFields {

@@ -153,6 +153,7 @@ SimulationConfig simulation_config(const Scenario& scenario) {
   config.steps = static_cast<std::uint64_t>(scenario.time.steps);
   config.mass = scenario.rendering.mass;
   config.integrator = scenario.integrator.type;
+  config.integrator_options = scenario.integrator.options;
   config.position = scenario.initial.position;
   config.velocity = scenario.initial.velocity;
   config.stop_when = stop_rules(scenario);

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "sim/contact/late_contacts.hpp"
+#include "sim/core/hash.hpp"
 #include "sim/core/math.hpp"
 #include "sim/tool/tool_state.hpp"
 
@@ -34,6 +35,16 @@ class Simulation::ForceWithinStep final : public ForceField {
     s_.parts_.algorithm->compute(tool, s_.contacts_, s_.within_step_);
     return s_.record_.hand.input + s_.within_step_.rendered;
   }
+  /// The sum over the rendered contacts does not depend on their order.
+  std::uint64_t contact_set() const noexcept override {
+    std::uint64_t set = 0;
+    for (std::size_t i = 0; i < s_.contacts_.size(); ++i) {
+      Hash64 hash;
+      hash.word(s_.contacts_.index[i]);
+      set += hash.value();
+    }
+    return set;
+  }
   ForceJacobian jacobian() const noexcept override { return s_.parts_.algorithm->jacobian(); }
 
  private:
@@ -43,7 +54,7 @@ class Simulation::ForceWithinStep final : public ForceField {
 Simulation::Simulation(SimulationConfig config, SimulationParts parts, std::vector<Observer*> observers)
     : config_(std::move(config)),
       parts_(std::move(parts)),
-      integrator_(config_.integrator->make()),
+      integrator_(config_.integrator->make(config_.integrator_options)),
       observers_(std::move(observers)),
       contacts_(parts_.source->capacity()) {
   ratio_wanted_ = springs_wanted_ = energy_wanted_ = config_.skips == Skips::off;

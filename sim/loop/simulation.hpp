@@ -57,6 +57,7 @@ struct SimulationConfig {
   std::uint64_t steps = 0;                         ///< rows 0 … steps - 1
   double mass = 0.2;                               ///< of the virtual tool, if there is one [kg]
   const IntegratorEntry* integrator = &kLeapfrog;  ///< of a virtual tool whose position is free; never null
+  IntegratorOptions integrator_options;
   Vec3 position = Vec3::Zero();     ///< of the tip centre at t = 0 [m]; ignored if the motion prescribes it
   Vec3 velocity = Vec3::Zero();     ///< at t = 0 [m/s]
   std::vector<StopRule> stop_when;  ///< the first one that holds counts

@@ -79,11 +79,12 @@ extern const PrecisionStudy kForceJumpsStudy;
 extern const PrecisionStudy kQueryTimeStudy;
 extern const PrecisionStudy kContactSourcesStudy;
 extern const PrecisionStudy kLateContactsStudy;
+extern const PrecisionStudy kEventsStudy;
 
-inline constexpr std::array kPrecisionStudies = {&kIntegratorsStudy, &kTimeStepStudy,       &kShapingStudy,
-                                                 &kSpacingStudy,     &kReductionStudy,      &kMergingStudy,
-                                                 &kAlgorithmsStudy,  &kStiffnessStudy,      &kForceJumpsStudy,
-                                                 &kQueryTimeStudy,   &kContactSourcesStudy, &kLateContactsStudy};
+inline constexpr std::array kPrecisionStudies = {
+    &kIntegratorsStudy,    &kTimeStepStudy,     &kShapingStudy,   &kSpacingStudy,    &kReductionStudy,
+    &kMergingStudy,        &kAlgorithmsStudy,   &kStiffnessStudy, &kForceJumpsStudy, &kQueryTimeStudy,
+    &kContactSourcesStudy, &kLateContactsStudy, &kEventsStudy};
 
 /// Calls `work` with every row of a run.
 template <class Work>

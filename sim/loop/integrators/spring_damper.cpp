@@ -32,7 +32,7 @@ Eigen::Vector2d stepped(const SpringDamper& s, double x, double v, double held) 
   tool.pose.position = x * Vec3::UnitX();
   tool.velocity = v * Vec3::UnitX();
   const Vec3 force = field.force_at(0.0, tool.pose.position, tool.velocity);
-  s.integrator->make()->step(tool, force, s.M, s.dt, field);
+  s.integrator->make({})->step(tool, force, s.M, s.dt, field);
   return {tool.pose.position.x(), tool.velocity.x()};
 }
 

@@ -23,7 +23,7 @@ TEST(IntegratorTable, HasUniqueNamesThatAreFound) {
   for (const IntegratorEntry* entry : kIntegrators) {
     EXPECT_TRUE(names.insert(entry->info.name).second) << entry->info.name;
     EXPECT_EQ(find_integrator(entry->info.name), entry);
-    EXPECT_NE(entry->make(), nullptr) << entry->info.name;
+    EXPECT_NE(entry->make({}), nullptr) << entry->info.name;
   }
   EXPECT_EQ(find_integrator("no_such"), nullptr);
   EXPECT_EQ(find_integrator(""), nullptr);

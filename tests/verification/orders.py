@@ -1,0 +1,226 @@
+"""Code verification: the observed order of convergence in the step against the formal one, for every integrator, device, hand and
+law, on motions that are known in closed form or by an independent computation. Without hapbench's code but for the runs.
+
+    python3 tests/verification/orders.py PROGRAM           # recomputes every seventh row and compares it with the table
+    python3 tests/verification/orders.py PROGRAM --write   # makes the table anew"""
+import csv
+import json
+import math
+import subprocess
+import sys
+import tempfile
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+from scipy.linalg import expm
+
+PROGRAM = Path(sys.argv[1]).resolve()
+PAGE = Path(__file__).resolve().parent / "README.md"
+BEGIN, END = "<!-- orders -->\n", "<!-- /orders -->\n"
+END_S = 0.02  # of a run [s]: 1.4 periods of the spring
+STEPS = [1e-3 / 2**i for i in range(6)]
+K, M, X0, V0 = 20000.0, 0.1, 1e-3, 0.2
+# Order without damping, and with it. Any force that is sampled and held over a step makes it 1.
+FORMAL = {"leapfrog": (1, 1), "velocity_verlet": (2, 1), "rk4": (4, 4), "implicit_euler": (1, 1), "implicit_midpoint": (2, 2), "event": (4, 4)}
+# An error C h^p (1 + D h) with D h below 0.07 at the finest step but one moves the order by less than log2(1.07) = 0.1.
+WITHIN = 0.1
+NONLINEAR = {"static_coupling"}  # its spring softens: no closed form
+ROUNDING = 1e-11  # of the motion's size: smaller errors are none of the step
+
+
+@dataclass
+class Case:
+    part: str
+    name: str
+    formal: float
+    scene: dict
+    exact: object  # step -> (position, velocity) at END_S
+    why: str = ""
+    changes: object = field(default=lambda step: {})  # of the scene, by the step
+    phases: int = 1  # starts within a step, of which the largest error counts
+
+
+def linear(A, b=np.zeros(2), x=(X0, V0), t=END_S):
+    """State of x' = A x + b after t."""
+    n = len(x)
+    joint = np.zeros((n + 1, n + 1))
+    joint[:n, :n], joint[:n, n] = A, b
+    return (expm(joint * t) @ np.append(x, 1.0))[:n]
+
+
+def damped(K, B, mass, b=0.0):
+    return lambda step: linear(np.array([[0.0, 1.0], [-K / mass, -B / mass]]), np.array([0.0, b / mass]))
+
+
+def driven(K, B, mass, amplitude, omega):
+    """With a force amplitude sin(omega t): the sine is two more states."""
+    A = np.array([[0, 1, 0, 0], [-K / mass, -B / mass, amplitude / mass, 0], [0, 0, 0, omega], [0, 0, -omega, 0]])
+    return lambda step: linear(A, np.zeros(4), (X0, V0, 0.0, 1.0))[:2]
+
+
+def late(K, b, mass, tau):
+    """m x'' = -b x' - K x(t - tau), the force 0 before tau: by Runge-Kutta in steps of tau / n with the past by cubic Hermite."""
+    n = 4000
+    h, x = tau / n, [np.array([X0, V0])]
+    a = lambda past, y: np.array([y[1], (-b * y[1] - K * past) / mass])
+    for k in range(round(END_S / h)):
+        i = k - n
+        y0, y1 = (x[i][0], x[i + 1][0]) if i >= 0 else (0.0, 0.0)
+        middle = 0.5 * (y0 + y1) + h / 8 * (x[i][1] - x[i + 1][1]) if i >= 0 else 0.0
+        y = x[-1]
+        k1 = a(y0, y)
+        k2 = a(middle, y + h / 2 * k1)
+        k3 = a(middle, y + h / 2 * k2)
+        k4 = a(y1, y + h * k3)
+        x.append(y + h / 6 * (k1 + 2 * k2 + 2 * k3 + k4))
+    return lambda step: x[-1]
+
+
+def scene(integrator="leapfrog", B=0.0, law="summation", **parts):
+    return {"name": "verified", "environment": {"type": "springs", "groups": [{"direction": [0, 0, 1], "count": 1}]},
+            "initial": {"position_m": [0, 0, X0], "velocity_m_per_s": [0, 0, V0]}, "integrator": {"type": integrator},
+            "rendering": {"algorithm": law, "stiffness_N_per_m": K, "damping_N_s_per_m": B, "mass_kg": M,
+                          "friction": {"mu_s_N_s_per_m": 0, "mu_f_s_per_m": 0}}, **parts}
+
+
+def hands():
+    """Name, the hand, and the exact motion of the mass that it moves against the spring, with the damping B."""
+    f, k, b, omega = 3.0, 500.0, 4.0, 2 * math.pi / 0.013
+    yield "none", {"type": "none"}, lambda B, mass: damped(K, B, mass)
+    yield "force, steady", {"type": "force", "z_N": f}, lambda B, mass: damped(K, B, mass, f)
+    yield "force, sine", {"type": "force", "z_N": {"type": "sine", "mean": 0, "amplitude": f, "period_s": 0.013}}, \
+        lambda B, mass: driven(K, B, mass, f, omega)
+    yield "push", {"type": "push", "force_N": f}, lambda B, mass: damped(K, B, mass, -f)
+    yield "impedance", {"type": "impedance", "stiffness_N_per_m": k, "damping_N_s_per_m": b, "target": {"x_m": 0, "y_m": 0, "z_m": 0.002}}, \
+        lambda B, mass: damped(K + k, B + b, mass, k * 0.002)
+
+
+GAP, BOUNCES = 4e-4, 32  # [m]
+
+
+def of_bounce(phase):
+    """Part of a step by which contact begins later, and stiffness: where in a step it begins and ends, as by chance."""
+    return phase, K * (1.0 + 0.4 * (phase * 0.6180339887 * BOUNCES % 1.0))
+
+
+def bounce(step, phase):
+    """Off a unilateral spring without damping, which takes half a period: the tool leaves as fast as it came."""
+    part, stiffness = of_bounce(phase)
+    t2 = GAP / V0 + part * step + math.pi / math.sqrt(stiffness / M)
+    return np.array([-V0 * (END_S - t2), -V0])
+
+
+def start_of_bounce(step, phase):
+    part, stiffness = of_bounce(phase)
+    return {"initial": {"position_m": [0, 0, -GAP - part * step * V0], "velocity_m_per_s": [0, 0, V0]},
+            "rendering": scene()["rendering"] | {"stiffness_N_per_m": stiffness}}
+
+
+def share_of(law):
+    """The part of K that a law renders of one spring, of the first row of a run: couplings are in series with it."""
+    return first_row(scene(law=law))["fspring_z_N"] / (-K * X0)
+
+
+def cases(laws):
+    ideal = {"device": {"type": "ideal"}}
+    for integrator, orders in FORMAL.items():
+        for B, order in zip((0.0, 20.0), orders):
+            yield Case("integrator", f"{integrator}, B = {B:g}", order, scene(integrator, B), damped(K, B, M))
+    for law in sorted(set(laws) - NONLINEAR):
+        share = share_of(law)
+        yield Case("law", law, 4, scene("rk4", 20.0, law), damped(share * K, share * 20.0, M), f"renders {share:.4g} K of one spring" if abs(share - 1) > 1e-12 else "")
+    for name, hand, exact in hands():
+        for integrator, orders in FORMAL.items():
+            held = name in ("force, sine", "impedance")
+            yield Case("hand", f"{name}; {integrator}", 1 if held else orders[1], scene(integrator, 20.0, hand=hand, **ideal), exact(20.0, M),
+                       "its force is sampled and held" if held else "")
+        if name == "impedance":
+            continue  # it pulls the handle, which lags behind the virtual tool
+        steady = name == "none" or name == "force, steady" or name == "push"
+        yield Case("device", f"admittance; {name}", 1, scene("leapfrog", 20.0, hand=hand, device={"type": "admittance", "force_limit_N": None}),
+                   exact(20.0, M), "" if steady else "its force is sampled and held")
+    for name, hand, exact in hands():
+        device = {"type": "impedance", "handle_mass_kg": M, "viscous_N_s_per_m": 6.0}
+        yield Case("device", f"impedance; {name}", 1, scene(B=0.0, hand=hand, device=device), exact(6.0, M), "the rendered force is held")
+    for samples in (1.0, 0.5, 1.37):
+        tau = 1e-3 * samples
+        device = {"type": "impedance", "handle_mass_kg": M, "viscous_N_s_per_m": 40.0}
+        yield Case("delay", f"{1e3 * tau:g} ms, {samples:g} samples of 1 ms", 1, scene(device=device), late(K, 40.0, M, tau), "the rendered force is held",
+                   lambda step, tau=tau: {"device": {**device, "delay_samples": tau / step}})
+    one_sided = {"environment": {"type": "springs", "bilateral": False, "groups": [{"direction": [0, 0, 1], "count": 1}]}}
+    for integrator, orders in FORMAL.items():
+        finds = integrator == "event"
+        # The force is continuous where a spring begins, its slope is not: second order for all that are of second order
+        # without damping. Outside of contact a leapfrog step is one of velocity Verlet, and so is the bounce.
+        formal = orders[0] if finds else 1 if integrator == "implicit_euler" else 2
+        yield Case("switching", f"bounce; {integrator}", formal, scene(integrator, 0.0) | one_sided, bounce,
+                   "" if finds else "the spring begins and ends between two rows", start_of_bounce, BOUNCES)
+
+
+def rows_of(content, rows):
+    """First and last row of a run; None where the program refuses the scene."""
+    with tempfile.TemporaryDirectory(prefix="hapbench-orders-") as folder:
+        file = Path(folder) / "scene.json"
+        file.write_text(json.dumps(content), encoding="utf-8")
+        done = subprocess.run([PROGRAM, "run", file, "--quiet", "--set", "expect={}", "--out", Path(folder) / "out"], capture_output=True, text=True)
+        if done.returncode not in (0, 3):
+            return None
+        with open(Path(folder) / "out" / "trajectory.csv", encoding="utf-8") as table:
+            read = [{name: float(cell or "nan") for name, cell in row.items()} for row in csv.DictReader(table)]
+        return (read[0], read[-1]) if len(read) == rows else None
+
+
+def first_row(content):
+    return rows_of(content | {"time": {"step_s": 1e-3, "steps": 1}}, 1)[0]
+
+
+def error_at(case, step, phase):
+    """Distance of the last row from the exact motion, as the root of an energy over that of the start."""
+    rows = round(END_S / step) + 1
+    moved = (step, phase) if case.phases > 1 else (step,)
+    read = rows_of(case.scene | case.changes(*moved) | {"time": {"step_s": step, "steps": rows}}, rows)
+    if read is None:
+        return None
+    x, v = case.exact(*moved)
+    energy = lambda x, v: 0.5 * (K * x * x + M * v * v)
+    return math.sqrt(energy(read[1]["pz_m"] - x, read[1]["vz_m_per_s"] - v) / energy(X0, V0))
+
+
+def row(case):
+    """Part, case, formal and observed order, the errors at the coarsest and the finest step, verdict."""
+    found = [[error_at(case, step, i / case.phases) for i in range(case.phases)] for step in STEPS]
+    if any(None in errors for errors in found):
+        return (case.part, case.name, f"{case.formal:g}", "-", "-", "-", "FAILS: refused")
+    errors = [max(errors) for errors in found]
+    useful = [error for error in errors if error > ROUNDING]
+    # The largest error of some starts is by chance up to half larger or smaller: log2(1.5) / 3 over three steps.
+    halvings, within = (3, 0.3) if case.phases > 1 else (1, WITHIN)
+    observed = math.log2(useful[-1 - halvings] / useful[-1]) / halvings
+    return (case.part, case.name, f"{case.formal:g}", f"{observed:.2f}", f"{errors[0]:.1e}", f"{errors[-1]:.1e}",
+            ("passes" if abs(observed - case.formal) <= within else "FAILS") + (f"; {case.why}" if case.why else ""))
+
+
+def main():
+    listed = json.loads(subprocess.run([PROGRAM, "list", "algorithms", "--json"], capture_output=True, text=True, check=True).stdout)
+    laws = [entry["name"] for entry in listed]
+    write = "--write" in sys.argv
+    every = [case for i, case in enumerate(cases(laws)) if write or i % 7 == 0]
+    with ThreadPoolExecutor() as pool:
+        rows = list(pool.map(row, every))
+    text = PAGE.read_text(encoding="utf-8")
+    if write:
+        lines = ["| part | case | formal | observed | error at 1 ms | at 1/32 ms | |", "|---|---|---|---|---|---|---|"]
+        lines += ["| " + " | ".join(r) + " |" for r in rows]
+        head, _, rest = text.partition(BEGIN)
+        PAGE.write_text(head + BEGIN + "\n" + "\n".join(lines) + "\n\n" + END + rest.partition(END)[2], encoding="utf-8")
+        print(f"{len(rows)} rows, {sum('FAILS' in r[-1] for r in rows)} fail")
+    missing = [r for r in rows if "| " + " | ".join(r) + " |" not in PAGE.read_text(encoding="utf-8")]
+    for r in missing:
+        print("not in the table:", r)
+    sys.exit(1 if missing or any("FAILS" in r[-1] for r in rows) else 0)
+
+
+if __name__ == "__main__":
+    main()
