@@ -44,12 +44,6 @@ bool lies_in_the_plane(const Environment& environment) {
                      [](const SpringGroup& group) { return group.direction.z() == 0.0; });
 }
 
-Vec3 jitter_of(const BatchDefinition& definition, const Scenario& scenario) {
-  Random random(Random::derive(kJitterStream, static_cast<std::uint64_t>(scenario.seed)));
-  return definition.jitter *
-         (lies_in_the_plane(scenario.environment) ? random.direction_in_plane() : random.direction());
-}
-
 void check_seeds_and_jitter(const BatchDefinition& definition, const LoadedScenario& loaded) {
   const Scenario& scenario = loaded.scenario;
   if (scenario.seed > kMostSeed - static_cast<std::int64_t>(definition.seeds - 1)) {
@@ -100,6 +94,11 @@ RunReport run_one(const BatchPlan& plan, const BatchOptions& options, std::size_
 }
 
 }  // namespace
+
+Vec3 start_shift(const Scenario& scenario, double length) {
+  Random random(Random::derive(kJitterStream, static_cast<std::uint64_t>(scenario.seed)));
+  return length * (lies_in_the_plane(scenario.environment) ? random.direction_in_plane() : random.direction());
+}
 
 BatchRun BatchPlan::run(std::size_t number) const {
   const std::size_t algorithms = definition.algorithms.size(), seeds = definition.seeds;
@@ -163,7 +162,7 @@ LoadedScenario scenario_of(const BatchPlan& plan, std::size_t number) {
   Scenario& scenario = loaded.scenario;
   scenario.seed += static_cast<std::int64_t>(run.seed);
   // Adding zero would change -0 to 0.
-  if (plan.definition.jitter != 0.0) scenario.initial.position += jitter_of(plan.definition, scenario);
+  if (plan.definition.jitter != 0.0) scenario.initial.position += start_shift(scenario, plan.definition.jitter);
   return loaded;
 }
 

@@ -53,9 +53,11 @@ BatchPlan plan_batch(BatchDefinition definition);
 /// folder holds no comparison of algorithms. Throws InputError when a scenario of it cannot be read.
 std::optional<BatchPlan> comparison_on_record(const std::filesystem::path& folder);
 
-/// The scenario of one run. Thread-safe. The start is shifted by a vector whose length is the definition's jitter and
-/// whose direction depends only on the run's seed, so that all algorithms start from the same places. Directions are
-/// uniform on the sphere, in planar scenes on the circle z = 0.
+/// A shift of the start [m] whose direction depends only on the scenario's seed, so that all algorithms start from the
+/// same places. Directions are uniform on the sphere, in planar scenes on the circle z = 0.
+Vec3 start_shift(const Scenario& scenario, double length);
+
+/// The scenario of one run. Thread-safe. The start is shifted by the definition's jitter (start_shift).
 LoadedScenario scenario_of(const BatchPlan& plan, std::size_t number);
 
 /// Directory of a run's files, relative to that of the batch: [SCENARIO/]ALGORITHM[/seed_K], where the scenario is

@@ -27,13 +27,6 @@ std::vector<std::string> device_names();
 /// The bundled scenes of a hand that taps on a flat wall, in a corner and in a hole.
 std::vector<std::string> default_device_scenes();
 
-/// The default of --vibration [m/s rms of the handle above 30 Hz]. It is a speed because hand-transmitted vibrations
-/// from 16 to 400 Hz of equal speed are about equally unpleasant (Griffin, "Frequency-dependence of psychophysical and
-/// physiological responses to hand-transmitted vibration", Industrial Health 50, 2012). Its value is our choice, the
-/// same as that of the classes of motion (judged_run.hpp); a hand that holds a cylinder feels less than a hundredth of
-/// it at 150 to 200 Hz (Brisben, Hsiao and Johnson, Journal of Neurophysiology 81, 1999).
-inline constexpr double kMostVibration = 1e-3;
-
 /// The number given to --vibration [m/s]. Throws InputError.
 double vibration_of(const std::string& text);
 /// The number given to --resolution. Throws InputError.

@@ -11,6 +11,7 @@
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/compare_devices.hpp"
+#include "scenarios/program/limit.hpp"
 #include "scenarios/program/result_tables.hpp"
 #include "scenarios/program/table.hpp"
 #include "scenarios/run/assemble.hpp"
@@ -36,25 +37,26 @@ struct LimitOptions {
   OutputOptions output;
 };
 
-std::optional<Range> range_of(const std::string& text) {
+}  // namespace
+
+std::optional<Range> range_of(const char* option, const std::string& text) {
   if (text.empty()) return std::nullopt;
   const Words ends = parts_of(text, ':');
   const auto from = finite_number(ends.front()), to = finite_number(ends.back());
   if (ends.size() != 2 || !from || !to || !(*from < *to)) {
-    throw InputError(fmt::format("--between: got \"{}\"; allowed: a:b with numbers a < b", text));
+    throw InputError(fmt::format("{}: got \"{}\"; allowed: a:b with numbers a < b", option, text));
   }
   return Range{*from, *to};
 }
 
-/// "--bound name=most" or "--bound name=least:most".
-void add_bound(const std::string& text, LimitQuestion& question) {
+void add_bound(const std::string& text, std::map<std::string, MetricBound>& bounds) {
   const Words parts = parts_of(text, '=');
   if (parts.size() == 2) {
     require_names("--bound: got", {std::string(parts[0])}, metric_names());
     const Words ends = parts_of(parts[1], ':');
     const auto least = finite_number(ends.front()), most = finite_number(ends.back());
     if (ends.size() <= 2 && least && most && *least <= *most) {
-      MetricBound& bound = question.bounds[std::string(parts[0])];
+      MetricBound& bound = bounds[std::string(parts[0])];
       bound.max = *most;
       if (ends.size() == 2) bound.min = *least;
       return;
@@ -64,16 +66,19 @@ void add_bound(const std::string& text, LimitQuestion& question) {
       fmt::format("--bound: got \"{}\"; allowed: metric=most or metric=least:most, as inside_settled_m=3e-4", text));
 }
 
+namespace {
+
 LimitQuestion question_of(const LimitOptions& options, const ScenarioText& scenario) {
   if (options.field.find('=') != std::string::npos) {
     throw InputError(
         fmt::format("--vary: got \"{}\"; allowed: a field alone, and its range as --between a:b", options.field));
   }
-  LimitQuestion question = limit_question(scenario, options.overrides, options.field, range_of(options.between));
+  LimitQuestion question =
+      limit_question(scenario, options.overrides, options.field, range_of("--between", options.between));
   question.smallest = options.smallest;
   if (!options.resolution.empty()) question.resolution = resolution_of(options.resolution);
   if (!options.vibration.empty()) question.most_vibration = vibration_of(options.vibration);
-  for (const std::string& bound : options.bounds) add_bound(bound, question);
+  for (const std::string& bound : options.bounds) add_bound(bound, question.bounds);
   return question;
 }
 

@@ -64,6 +64,8 @@ void StuckObserver::on_step(const StepRecord& record) noexcept {
   constexpr double kRows = 1 / 32.0;  // of a mean over some rows, which chatter does not turn
   const Vec3& place = record.tool.pose.position;
   const Vec3 target = target_(record.time);
+  // Before the first touch nothing tells the direction of the push: how far away the target was then does not count.
+  if (push_.isZero(0.0)) across_ = 0.0;
   push_ += kRows * (record.force.spring - push_);
   stuck_.place = place;
   stuck_.force = record.force.rendered.norm();

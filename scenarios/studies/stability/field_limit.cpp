@@ -25,9 +25,6 @@
 namespace hapbench {
 namespace {
 
-constexpr int kIntervals = 16;  // of the range, before bisection
-constexpr int kBeside = 3;      // values tried on either side of the edge, up to an interval away
-constexpr int kRounds = 6;      // of bisection, each towards an edge that values beside the last one showed
 constexpr int kDoublings = 10;  // from the scenario's value to either end of a range that nobody gave
 
 // Theory costs a thousandth of a run: it is scanned so much finer, and bisected to rounding whatever the runs'
@@ -39,121 +36,39 @@ std::string override_text(const std::string& path, double value, bool whole) {
   return whole ? fmt::format("{}={:.0f}", path, value) : fmt::format("{}={}", path, value);
 }
 
-/// Maps a range to parts of the way from the end that is expected to be stable (0) to the other end (1).
-class FieldWay {
- public:
-  explicit FieldWay(const LimitQuestion& question) : question_(question) {}
-
-  double value(double part) const {
-    const double value = question_.range.value_at(question_.smallest ? 1.0 - part : part);
-    return question_.whole ? std::round(value) : value;
-  }
-  /// The part of the scenario's own value.
-  std::optional<double> own() const {
-    if (!question_.own) return std::nullopt;
-    const auto [from, to, logarithmic] = question_.range;
-    const double part =
-        logarithmic ? math::log(*question_.own / from) / math::log(to / from) : (*question_.own - from) / (to - from);
-    return question_.smallest ? 1.0 - part : part;
-  }
-  /// True while bisection to this resolution (LimitQuestion) has to go on between two parts.
-  bool apart(double a, double b, double resolution) const {
-    const double low = std::min(value(a), value(b)), high = std::max(value(a), value(b));
-    if (question_.whole) return high - low > 1.0;
-    if (question_.range.logarithmic) return high > (1.0 + resolution) * low;
-    return high - low > resolution * (question_.range.to - question_.range.from);
-  }
-  double resolution() const { return question_.resolution; }
-
- private:
-  const LimitQuestion& question_;
-};
-
-/// The result of a search, as parts of the way.
-struct Edge {
-  std::optional<double> stable;  ///< the last stable part
-  std::optional<double> beyond;  ///< the first unstable part beyond it
-  std::optional<double> first;   ///< the first stable part of the interval that ends with `stable`
-  std::optional<double> before;  ///< the last unstable part before it
-};
-
-/// The edge behind the scenario's own value, or if that is not stable behind the first stable values of the way; of the
-/// parts `tried`, which hold at least both ends. With `beside`, tries values on either side of it, too, and goes on
-/// where one of them shows an edge before it; then finds the other end of the interval.
-Edge find_edge(const FieldWay& way, std::map<double, bool> tried, const std::function<bool(double)>& stable,
-               double resolution, bool beside) {
-  const auto holds = [&](double part) { return tried[part] = stable(part); };
-  const std::optional<double> own = way.own();
-  const double start = own && holds(*own) ? *own : 0.0;
-  const auto middle = [](double a, double b) { return 0.5 * (a + b); };
-  const auto apart = [&](double a, double b) { return way.apart(a, b, resolution); };
-  const auto with_other_end = [&](Edge edge) {
-    if (!beside) return edge;
-    auto first = tried.find(*edge.stable);
-    while (first != tried.begin() && std::prev(first)->second) --first;
-    double high = first->first;
-    edge.first = high;
-    if (first == tried.begin()) return edge;
-    double low = std::prev(first)->first;
-    bisect(high, low, holds, middle, [&](double a, double b) { return apart(b, a); });
-    edge.first = high;
-    edge.before = low;
-    return edge;
-  };
-  Edge edge;
-  for (int round = 0; round < kRounds; ++round) {
-    const auto is = [](bool wanted) { return [wanted](const auto& value) { return value.second == wanted; }; };
-    const auto first = std::find_if(tried.lower_bound(start), tried.end(), is(true));
-    if (first == tried.end()) return {};
-    const auto end = std::find_if(first, tried.end(), is(false));
-    if (end == tried.end()) return with_other_end({tried.rbegin()->first, {}, {}, {}});
-    double low = std::prev(end)->first, high = end->first;
-    if (edge.stable == low) return with_other_end(edge);
-    bisect(low, high, holds, middle, apart);
-    edge = {low, high, {}, {}};
-    if (!beside) return edge;
-    const double before = std::max(first->first, low - 1.0 / kIntervals),
-                 behind = std::min(1.0, high + 1.0 / kIntervals);
-    for (int i = 1; i <= kBeside; ++i) {
-      const double share = static_cast<double>(i) / (kBeside + 1);
-      holds(before + share * (low - before));
-      holds(high + share * (behind - high));
-    }
-  }
-  return with_other_end(edge);
-}
-
 /// Finds the limits of one scenario's algorithms.
 class Search {
  public:
   Search(const ScenarioText& scenario, const std::vector<std::string>& overrides, const LimitQuestion& question)
-      : scenario_(scenario), overrides_(overrides), question_(question), way_(question) {}
+      : scenario_(scenario), overrides_(overrides), question_(question) {}
 
   FieldLimit limit(const std::string& algorithm) {
     FieldLimit limit;
     limit.algorithm = algorithm;
     std::map<double, JudgedRun> runs;  // by value
     const auto judge = [&](double part) {
-      const double value = way_.value(part);
+      const double value = question_.value_at(part);
       const auto known = runs.find(value);
       return is_stable(
           (known == runs.end() ? runs.emplace(value, judged(algorithm, value)).first : known)->second.verdict);
     };
-    const auto at_part = [&](double part) { return JudgedValue{way_.value(part), runs.at(way_.value(part)).verdict}; };
+    const auto at_part = [&](double part) {
+      return JudgedValue{question_.value_at(part), runs.at(question_.value_at(part)).verdict};
+    };
     const Theory theory(*this, algorithm);
     std::map<double, bool> tried;
-    for (int i = 0; i <= kIntervals; ++i) tried[static_cast<double>(i) / kIntervals] = {};
+    for (int i = 0; i <= kEdgeIntervals; ++i) tried[static_cast<double>(i) / kEdgeIntervals] = {};
     for (const double part : theory.islands()) tried[part] = {};
     for (auto& [part, stable] : tried) stable = judge(part);
-    const Edge edge = find_edge(way_, std::move(tried), judge, way_.resolution(), true);
+    const FoundEdge edge = find_edge(question_, std::move(tried), judge, question_.resolution, true);
     if (edge.stable) {
-      limit.value = way_.value(*edge.stable);
+      limit.value = question_.value_at(*edge.stable);
       limit.settled = runs.at(*limit.value).settled;
     }
     if (edge.beyond) limit.beyond = at_part(*edge.beyond);
-    if (edge.first) limit.other_value = way_.value(*edge.first);
+    if (edge.first) limit.other_value = question_.value_at(*edge.first);
     if (edge.before) limit.other_beyond = at_part(*edge.before);
-    if (way_.own()) limit.own = at_part(*way_.own());
+    if (question_.own_part()) limit.own = at_part(*question_.own_part());
     for (const auto& [value, run] : runs) {
       limit.runs.push_back({value, run.verdict});
       if (limit.value && is_stable(run.verdict) != in_interval(value, limit))
@@ -197,7 +112,7 @@ class Search {
    public:
     Theory(const Search& search, const std::string& algorithm) : search_(search), algorithm_(algorithm) {
       for (const double end : {0.0, 1.0}) {
-        if (!has_theory(search.at(algorithm, search.way_.value(end)).scenario)) return;
+        if (!has_theory(search.at(algorithm, search.question_.value_at(end)).scenario)) return;
       }
       for (int i = 0; i <= kTheoryIntervals; ++i) {
         const double part = static_cast<double>(i) / kTheoryIntervals;
@@ -221,15 +136,17 @@ class Search {
     bool has_none() const { return !tried_.empty() && islands().empty(); }
     std::optional<double> edge() const {
       if (tried_.empty()) return std::nullopt;
-      const Edge edge = find_edge(
-          search_.way_, tried_, [this](double part) { return holds(part); }, kTheoryResolution, false);
+      const FoundEdge edge = find_edge(
+          search_.question_, tried_, [this](double part) { return holds(part); }, kTheoryResolution, false);
       if (!edge.stable) return std::nullopt;
-      if (edge.beyond) return search_.way_.value(*edge.stable);
+      if (edge.beyond) return search_.question_.value_at(*edge.stable);
       return search_.question_.smallest ? 0.0 : std::numeric_limits<double>::infinity();
     }
 
    private:
-    bool holds(double part) const { return step_is_stable(search_.at(algorithm_, search_.way_.value(part)).scenario); }
+    bool holds(double part) const {
+      return step_is_stable(search_.at(algorithm_, search_.question_.value_at(part)).scenario);
+    }
 
     const Search& search_;
     const std::string& algorithm_;
@@ -239,18 +156,18 @@ class Search {
   /// FieldLimit::linear
   std::optional<double> linear_edge(const std::string& algorithm, double lambda) const {
     const auto stable = [&](double part) {
-      return is_stable_step(device_loop(at(algorithm, way_.value(part)).scenario, lambda).state_matrix());
+      return is_stable_step(device_loop(at(algorithm, question_.value_at(part)).scenario, lambda).state_matrix());
     };
-    const Scenario first = at(algorithm, way_.value(0.0)).scenario;
+    const Scenario first = at(algorithm, question_.value_at(0.0)).scenario;
     if (!has_device(first) || device_loop(first, lambda).state_matrix().size() == 0) return std::nullopt;
     std::map<double, bool> tried;
-    for (int i = 0; i <= 2 * kIntervals; ++i) {
-      const double part = 0.5 * i / kIntervals;
+    for (int i = 0; i <= 2 * kEdgeIntervals; ++i) {
+      const double part = 0.5 * i / kEdgeIntervals;
       tried[part] = stable(part);
     }
-    const Edge edge = find_edge(way_, std::move(tried), stable, kTheoryResolution, false);
+    const FoundEdge edge = find_edge(question_, std::move(tried), stable, kTheoryResolution, false);
     if (!edge.stable) return std::nullopt;
-    return edge.beyond ? way_.value(*edge.stable) : std::numeric_limits<double>::infinity();
+    return edge.beyond ? question_.value_at(*edge.stable) : std::numeric_limits<double>::infinity();
   }
 
   /// True for springs that stay in contact, and devices whose loop is linear.
@@ -291,7 +208,6 @@ class Search {
   const ScenarioText& scenario_;
   const std::vector<std::string>& overrides_;
   const LimitQuestion& question_;
-  FieldWay way_;
 };
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include "scenarios/batch/parallel_for.hpp"
 #include "scenarios/batch/sweep_points.hpp"
 #include "scenarios/description/load_scenario.hpp"
+#include "scenarios/studies/stability/edge_search.hpp"
 #include "scenarios/studies/stability/judged_run.hpp"
 
 /// The largest or smallest value of a scenario's field at which its run is stable (judged_run.hpp), found on runs.
@@ -15,14 +16,8 @@ namespace hapbench {
 struct ScenarioText;
 
 /// The question: which limit of which field, and by which rule a run is stable.
-struct LimitQuestion : StabilityRule {
-  std::string path;                ///< of the field, dotted as in --set
-  Range range;                     ///< where it may lie, from < to; both ends are tried
-  std::optional<double> own = {};  ///< the scenario's value, if it lies in the range
-  bool whole = false;              ///< the field takes integers
-  bool smallest = false;
-  /// Width at which bisection stops: relative to the value in a logarithmic range, to the range in a linear one.
-  double resolution = 1e-3;
+struct LimitQuestion : StabilityRule, SearchWay {
+  std::string path;                        ///< of the field, dotted as in --set
   std::vector<std::string> warnings = {};  ///< of the scenario with the field given
 };
 

@@ -140,6 +140,13 @@ struct SettledState {
   double lambda_max = 0.0;  ///< largest eigenvalue of their mean S: the stiffness rendered, in units of K
 };
 
+/// What a handle may vibrate unless it is said otherwise [m/s rms above 30 Hz]. It is a speed because hand-transmitted
+/// vibrations from 16 to 400 Hz of equal speed are about equally unpleasant (Griffin, "Frequency-dependence of
+/// psychophysical and physiological responses to hand-transmitted vibration", Industrial Health 50, 2012). Its value is
+/// our choice, the same as that of the classes of motion; a hand that holds a cylinder feels less than a hundredth of
+/// it at 150 to 200 Hz (Brisben, Hsiao and Johnson, Journal of Neurophysiology 81, 1999).
+inline constexpr double kMostVibration = 1e-3;
+
 /// What a run has to do to be stable: the one rule of limits, maps of devices and comparisons.
 struct StabilityRule {
   /// Most vibration of the handle in the last quarter, which then decides between stable and vibrating whatever the
