@@ -492,6 +492,11 @@ void add_compare(CommandLine& line) {
       .needs(devices);
   command.add("--resolution", common.resolution, "with --devices: relative width of a limit (default: 0.01)")
       .needs(devices);
+  command
+      .add("--friction", common.friction,
+           "with --devices: K as an interval over each device's dry friction times 1 and these factors, such as 0,2")
+      .comma_separated()
+      .needs(devices);
   command.add("--seeds", options.seeds, "run each K times, time k with the scenario's seed + k (default: 1)")
       .range(1, 10'000)
       .excludes(devices);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -93,6 +94,10 @@ DeviceQuestion question_of(const CompareDevicesOptions& options) {
                             ? std::vector<std::string>{"shaped_stiffness", "summation"}
                             : chosen_names("--algorithms: got", options.algorithms, all_algorithms());
   question.overrides = options.overrides;
+  for (const std::string& override : options.overrides) {
+    if (!options.friction.empty() && overridden_path(override) == "device.coulomb_N")
+      throw InputError("--friction: got it beside --set device.coulomb_N; allowed: either");
+  }
   question.most_vibration = options.vibration.empty() ? kMostVibration : vibration_of(options.vibration);
   if (!options.resolution.empty()) question.resolution = resolution_of(options.resolution);
   return question;
@@ -178,6 +183,13 @@ std::string spread_text(std::vector<double> values) {
                      significant(median, 2));
 }
 
+bool has_dry_friction(const DeviceQuestion& question, const ComparedDevice& device) {
+  const ScenarioText& scene = question.scenes.front();
+  const Scenario scenario = load_scenario(scene, overrides_on(device, scene, question.overrides)).scenario;
+  const auto* impedance = std::get_if<ImpedanceDeviceConfig>(&scenario.device);
+  return impedance != nullptr && impedance->coulomb > 0.0;
+}
+
 /// The delay of the force of each impedance device, as "0 of touch, omega.3; 1 of mine"; empty when all are equal.
 std::string delays_text(const DeviceQuestion& question) {
   std::map<double, std::vector<std::string>> names;
@@ -234,6 +246,8 @@ class Answers {
     if (std::ranges::any_of(question_.devices, [](const auto& device) { return device.name.ends_with('*'); }))
       text += "*: a preset with numbers of --set, of which nothing is published\n";
     text += delays_text(question_);
+    if (std::ranges::any_of(question_.devices, [&](const auto& device) { return has_dry_friction(question_, device); }))
+      text += approach_text();
     if (std::ranges::any_of(
             limits_, [&](const DeviceLimit& limit) { return limit.limit.is_beyond_linear(question_.resolution); })) {
       text += wrapped(
@@ -256,6 +270,28 @@ class Answers {
   }
 
  private:
+  /// The approach that a K with dry friction belongs to, over all devices.
+  std::string approach_text() const {
+    std::pair touches(kNone, 0.0), presses(kNone, 0.0);
+    for (const DeviceLimit& found : limits_) {
+      if (!found.limit.value) continue;
+      const auto& [vibration, contacts, lambda_max, touch, press] = found.limit.settled;
+      touches = {std::min(touches.first, touch), std::max(touches.second, touch)};
+      presses = {std::min(presses.first, press), std::max(presses.second, press)};
+    }
+    const auto between = [](const std::pair<double, double>& ends) {
+      const std::string low = significant(ends.first, 2), high = significant(ends.second, 2);
+      return low == high ? low : low + " to " + high;
+    };
+    return wrapped(
+        fmt::format("dry friction, ours in every preset, holds a hand that presses slowly: K is that of this approach "
+                    "(first touch at {} m/s, pressed with {} N), not of a device; --friction 0,2 prints K as an "
+                    "interval over friction",
+                    between(touches), between(presses)),
+        0);
+  }
+  static constexpr double kNone = std::numeric_limits<double>::infinity();
+
   std::string title(std::size_t column) const { return scene(column) + "\n" + algorithm(column); }
 
   /// The first three names, and how many more there are.
@@ -309,7 +345,7 @@ class Answers {
       std::vector<std::string> cells = {question_.devices[d].name};
       for (std::size_t c = 1; c < this->columns(); ++c) {
         const auto stiffness = ratio(d, at(d, c)).stiffness;
-        const auto& [vibration, contacts, lambda_max] = at(d, c).settled;
+        const double lambda_max = at(d, c).settled.lambda_max, contacts = at(d, c).settled.contacts;
         cells.push_back(stiffness ? fmt::format("{} ({}, {:.0f})", significant(*stiffness, 2),
                                                 lambda_max > 0.0 ? significant(1.0 / lambda_max, 2) : "-", contacts)
                                   : "-");
@@ -440,6 +476,50 @@ double number_between(const char* option, const std::string& text, double least,
   throw InputError(fmt::format("{}: got \"{}\"; allowed: {} ... {}", option, text, least, greatest));
 }
 
+/// The least and the largest K over the dry friction of the devices times 1 and other factors; the text and the JSON.
+std::pair<std::string, Json> over_friction(const DeviceQuestion& question, const std::vector<DeviceLimit>& limits,
+                                           const std::vector<std::string>& factors, const JobOptions& jobs) {
+  DeviceQuestion scaled = question;
+  std::vector<std::size_t> of;  // the device of the question
+  scaled.devices.clear();
+  for (const std::string& factor : factors) {
+    const double times = number_between("--friction", factor, 0.0, 1e3);
+    for (std::size_t d = 0; d < question.devices.size(); ++d) {
+      const auto device = with_friction_times(question.devices[d], times);
+      if (!device) continue;
+      scaled.devices.push_back(*device);
+      of.push_back(d);
+    }
+  }
+  std::map<std::size_t, std::pair<double, double>> ends;  // by place in `limits`
+  const std::size_t columns = question.scenes.size() * question.algorithms.size();
+  const auto add = [&ends](std::size_t place, const FieldLimit& limit) {
+    const double K = limit.value.value_or(0.0);
+    const auto [known, is_new] = ends.try_emplace(place, K, K);
+    if (!is_new) known->second = {std::min(known->second.first, K), std::max(known->second.second, K)};
+  };
+  const std::vector<DeviceLimit> others = device_limits(scaled, jobs);
+  for (std::size_t i = 0; i < others.size(); ++i) add(of[i / columns] * columns + i % columns, others[i].limit);
+  Table table({{"device", false}, {"scenario", false}, {"algorithm", false}, {"least K"}, {"largest K"}});
+  Json json = Json::array();
+  for (auto& [place, end] : ends) {
+    const DeviceLimit& own = limits[place];
+    add(place, own.limit);
+    const std::string& name = question.devices[own.device].name;
+    const std::string scene = question.scenes[own.scene].file.stem().string();
+    table.add({name, scene, own.limit.algorithm, end.first > 0.0 ? stiffness_text(end.first) : "none",
+               end.second > 0.0 ? stiffness_text(end.second) : "none"});
+    json.push_back({{"device", name},
+                    {"scenario", scene},
+                    {"algorithm", own.limit.algorithm},
+                    {"least_N_per_m", end.first},
+                    {"largest_N_per_m", end.second}});
+  }
+  return {
+      fmt::format("\nK over dry friction of 1, {} times the device's\n\n{}", fmt::join(factors, ", "), table.text()),
+      {{"factors", factors}, {"limits", std::move(json)}}};
+}
+
 }  // namespace
 
 std::vector<std::string> device_names() {
@@ -496,8 +576,15 @@ int compare_devices(const CompareDevicesOptions& options) {
   const fs::path out = results_directory(options.out, "compare_devices");
   require_writable_directory(out);
   const std::vector<DeviceLimit> limits = device_limits(question, job_options(options.jobs, options.output, "compare"));
-  const Json json = write(out, question, limits);
-  print(options.output, Answers(question, limits).text() + fmt::format("\nresults in {}\n", out.string()), json);
+  Json json = write(out, question, limits);
+  std::string text = Answers(question, limits).text();
+  if (!options.friction.empty()) {
+    auto [table, interval] =
+        over_friction(question, limits, options.friction, job_options(options.jobs, options.output, "friction"));
+    text += table;
+    json["friction"] = std::move(interval);
+  }
+  print(options.output, text + fmt::format("\nresults in {}\n", out.string()), json);
   return kSuccess;
 }
 

@@ -14,9 +14,10 @@ struct CompareDevicesOptions {
   std::vector<std::string> scenarios;   ///< empty: default_device_scenes
   std::vector<std::string> algorithms;  ///< empty: shaped_stiffness and summation
   std::vector<std::string> overrides;
-  std::string vibration;   ///< largest allowed [m/s rms]; empty: kMostVibration
-  std::string resolution;  ///< relative width of a limit; empty: the default of DeviceQuestion
-  unsigned jobs = 0;       ///< 0: as many as the machine has threads
+  std::string vibration;              ///< largest allowed [m/s rms]; empty: kMostVibration
+  std::vector<std::string> friction;  ///< factors of the devices' dry friction, besides 1
+  std::string resolution;             ///< relative width of a limit; empty: the default of DeviceQuestion
+  unsigned jobs = 0;                  ///< 0: as many as the machine has threads
   std::string out;
   OutputOptions output;
 };

@@ -165,6 +165,25 @@ std::string remarks_text(const std::vector<FieldLimit>& limits, const LimitQuest
   return text;
 }
 
+/// With dry friction: the approach that the limits belong to.
+std::string approach_text(const std::vector<FieldLimit>& limits, const Scenario& scenario) {
+  const auto* device = std::get_if<ImpedanceDeviceConfig>(&scenario.device);
+  if (device == nullptr || device->coulomb == 0.0) return "";
+  std::string text;
+  for (const FieldLimit& limit : limits) {
+    if (!limit.value) continue;
+    text += wrapped(
+        fmt::format(
+            "{}: dry friction of {} N helps to hold the tool, so that this is the limit of an approach, not of the "
+            "device: of a handle that first touches at {} m/s and of a hand that presses with {} N; --set "
+            "device.coulomb_N=0 shows what is left without",
+            limit.algorithm, significant(device->coulomb, 3), significant(limit.settled.touch_speed, 2),
+            significant(limit.settled.press, 2)),
+        0);
+  }
+  return text;
+}
+
 /// A line of limit.csv.
 struct LimitRow {
   const FieldLimit& limit;
@@ -298,6 +317,7 @@ int limit(const LimitOptions& options) {
   print(options.output,
         question_text(question, loaded.scenario) + table_of(limits, question).text() + "\n" +
             wrapped(rule_text(question, is_moved(loaded.scenario)), 0) + remarks_text(limits, question) +
+            approach_text(limits, loaded.scenario) +
             (on_device && question.path == "rendering.stiffness_N_per_m" ? kWhichStiffness : "") +
             fmt::format("\nresults in {}\n", out.string()),
         limits_json(limits, question, is_moved(loaded.scenario)));

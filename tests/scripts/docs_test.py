@@ -1,6 +1,7 @@
 """The manuals keep what they promise: documented commands work, links lead somewhere, generated tables are those on
 record, and the first page keeps its size."""
 import json
+import math
 import os
 import re
 import shutil
@@ -61,6 +62,12 @@ def write_device(file):
     file.write_text(re.search(r"^    {\n.*?^    }$", manual, re.M | re.S)[0], encoding="ascii")
 
 
+def write_log(file):
+    """A mass of 0.1 kg that a force of 1 N swings once a second, in steps of 10 um."""
+    rows = "".join(f"{i / 100},{math.cos(math.tau * i / 100)},{round(2.533e4 * (1 - math.cos(math.tau * i / 100))) * 1e-5}\n" for i in range(200))
+    file.write_text(f"time_s,force_N,position_m\n{rows}", encoding="ascii")
+
+
 def compile_law(file):
     """The example in C, by the manual's line."""
     line = re.search(r"^    (gcc .*) -o \S+$", (SOURCE / "algorithms/README.md").read_text(encoding="utf-8"), re.M)[1]
@@ -79,6 +86,9 @@ class Bench:
         shutil.copy(SOURCE / "scenarios/examples/data/wipe.hapi.txt", folder / "log.txt")
         write_recording(folder / "rec.csv")
         write_device(folder / "mydevice.json")
+        write_log(folder / "log.csv")
+        shutil.copy(folder / "mydevice.json", folder / "log_device.json")
+        shutil.copy(SOURCE / "scenarios/validation/epfl_paddle.json", folder)
         compile_law(folder / "depth_weighted.so")
         self.must("new", "mesh", "--from", "my.stl", "--out", "my.json")
         for name in "abc":

@@ -77,6 +77,15 @@ ComparedDevice with_marked_name(ComparedDevice device, const std::vector<std::st
   return device;
 }
 
+std::optional<ComparedDevice> with_friction_times(ComparedDevice device, double factor) {
+  DeviceFields fields = read_device(Json::parse(device.json));
+  auto* impedance = std::get_if<ImpedanceDeviceConfig>(&fields);
+  if (impedance == nullptr || impedance->coulomb == 0.0) return std::nullopt;
+  impedance->coulomb *= factor;
+  device.json = written(fields).dump();
+  return device;
+}
+
 std::vector<std::string> overrides_on(const ComparedDevice& device, const ScenarioText& scene,
                                       const std::vector<std::string>& overrides) {
   std::vector<std::string> all = {"device=" + device.json};

@@ -32,6 +32,9 @@ ComparedDevice device_of_file(const std::filesystem::path& file);
 /// nothing is published of it. Other devices stay as they are.
 ComparedDevice with_marked_name(ComparedDevice device, const std::vector<std::string>& overrides);
 
+/// The same with its dry friction times a factor; nothing for a device that has none.
+std::optional<ComparedDevice> with_friction_times(ComparedDevice device, double factor);
+
 /// The devices, scenes and algorithms to compare. The overrides hold for all runs, also for fields of the devices.
 struct DeviceQuestion {
   std::vector<ComparedDevice> devices;

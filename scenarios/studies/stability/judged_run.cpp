@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "results/observe/contact_forces.hpp"
 #include "results/observe/metrics.hpp"
@@ -43,42 +44,56 @@ const MotionClassText& text_of(MotionClass motion) noexcept {
   return kTexts[static_cast<std::size_t>(motion)];
 }
 
-MotionClassifier MotionClassifier::of_moved_tool(std::uint64_t steps, double time_step) {
+MotionClassifier MotionClassifier::of_moved_tool(std::uint64_t steps, double time_step, double still) {
   MotionClassifier classifier(steps);
   classifier.is_moved_ = true;
   classifier.high_pass_ = vibration_filter(time_step);
+  if (still <= 0.5 * static_cast<double>(steps)) classifier.still_ = static_cast<std::uint64_t>(std::ceil(still));
   return classifier;
 }
 
+void MotionClassifier::Stretch::add(std::uint64_t quarter, const Vec3& velocity) noexcept {
+  Quarter& here = quarters[std::min<std::uint64_t>(3, quarter)];
+  here.amplitude = std::max(here.amplitude, velocity.norm());
+  for (int i = 0; i < 3; ++i) {
+    if (velocity[i] == 0.0) continue;
+    here.turns[static_cast<std::size_t>(i)] += velocity[i] * last_velocity[i] < 0.0;
+    last_velocity[i] = velocity[i];
+  }
+}
+
 void MotionClassifier::on_step(const StepRecord& record) noexcept {
-  Quarter& quarter = quarters_[std::min<std::uint64_t>(3, record.step * 4 / steps_)];
   if (high_pass_ && record.step == 0) high_pass_->settle_at(record.body_velocity());
   const Vec3 v = high_pass_ ? high_pass_->filter(record.body_velocity()) : record.body_velocity();
+  all_.add(record.step * 4 / steps_, v);
+  if (still_ && record.step >= *still_)
+    held_.add((record.step - *still_) * 4 / (steps_ - *still_), record.body_velocity());
   const double speed = v.norm();
-  quarter.amplitude = std::max(quarter.amplitude, speed);
   largest_speed_ = std::max(largest_speed_, speed);
-  for (int i = 0; i < 3; ++i) {
-    if (v[i] == 0.0) continue;
-    quarter.turns[static_cast<std::size_t>(i)] += v[i] * last_velocity_[i] < 0.0;
-    last_velocity_[i] = v[i];
-  }
   rows_at_rest_ = speed <= kRest * largest_speed_ ? rows_at_rest_ + 1 : 0;
 }
 
-bool MotionClassifier::oscillates_in(const Quarter& quarter) const noexcept {
-  return std::any_of(quarter.turns.begin(), quarter.turns.end(), [](std::uint64_t n) { return n >= kTurns; });
+bool MotionClassifier::Quarter::oscillates() const noexcept {
+  return std::any_of(turns.begin(), turns.end(), [](std::uint64_t n) { return n >= kTurns; });
 }
 
 bool MotionClassifier::is_undecided() const noexcept {
-  return !is_moved_ && !at_rest() && !oscillates_in(quarters_[3]) &&
-         quarters_[3].amplitude >= kLeft * quarters_[0].amplitude && quarters_[3].amplitude > 0.0;
+  const auto& q = all_.quarters;
+  return !is_moved_ && !at_rest() && !q[3].oscillates() && q[3].amplitude >= kLeft * q[0].amplitude &&
+         q[3].amplitude > 0.0;
 }
 
 MotionClass MotionClassifier::motion_class(Outcome outcome) const noexcept {
   if (outcome == Outcome::diverges) return MotionClass::diverged;
-  const auto& q = quarters_;
-  if (at_rest() || !oscillates_in(q[3])) return MotionClass::stable;
-  if (is_moved_ && q[3].amplitude < kFelt) return MotionClass::stable;
+  if (at_rest()) return MotionClass::stable;
+  // A hand that comes to rest may swing a little more for a while: below 30 Hz that is not called growth.
+  return std::max(all_.motion_class(is_moved_ ? kFelt : 0.0),
+                  std::min(held_.motion_class(kFelt), MotionClass::vibrating));
+}
+
+MotionClass MotionClassifier::Stretch::motion_class(double felt) const noexcept {
+  const auto& q = quarters;
+  if (!q[3].oscillates() || q[3].amplitude < felt) return MotionClass::stable;
   bool grows = true;
   for (std::size_t i = 1; i < q.size(); ++i) grows = grows && q[i].amplitude > kGrowth * q[i - 1].amplitude;
   if (grows) return MotionClass::diverged;
@@ -98,25 +113,37 @@ MotionClass classify(Simulation& simulation, const MotionClassifier& classifier)
 
 namespace {
 
-bool changes(const Profile& profile) {
-  return !profile.is_constant();
+constexpr double kAlways = std::numeric_limits<double>::infinity();
+
+/// The time until which a script moves [s]: 0 if it never does.
+double moves_until(const Profile& profile) {
+  if (profile.is_constant()) return 0.0;
+  const auto* way = std::get_if<Profile::Waypoints>(&profile.shape());
+  return way != nullptr ? way->points.back().first : kAlways;
 }
 
-bool any_changes(const std::array<Profile, 3>& profiles) {
-  return std::any_of(profiles.begin(), profiles.end(), changes);
+double any_moves_until(const std::array<Profile, 3>& profiles) {
+  return std::max({moves_until(profiles[0]), moves_until(profiles[1]), moves_until(profiles[2])});
 }
 
-struct HandMoves {
-  bool operator()(const NoHandFields&) const { return false; }
-  bool operator()(const ForceHandFields& hand) const { return any_changes(hand.force); }
-  bool operator()(const PushHandFields& hand) const { return changes(hand.force); }
-  bool operator()(const ImpedanceHandFields& hand) const { return any_changes(hand.target); }
-  bool operator()(const MassSpringDamperHandFields& hand) const { return any_changes(hand.spring.target); }
+struct HandMovesUntil {
+  double operator()(const NoHandFields&) const { return 0.0; }
+  double operator()(const ForceHandFields& hand) const { return any_moves_until(hand.force); }
+  double operator()(const PushHandFields& hand) const { return moves_until(hand.force); }
+  double operator()(const ImpedanceHandFields& hand) const { return any_moves_until(hand.target); }
+  double operator()(const MassSpringDamperHandFields& hand) const { return any_moves_until(hand.spring.target); }
   template <class Other>
-  bool operator()(const Other&) const {
-    return true;
+  double operator()(const Other&) const {
+    return kAlways;
   }
 };
+
+double script_moves_until(const Scenario& scenario) {
+  const auto& orientation = scenario.motion.orientation;
+  if (!orientation) return kAlways;
+  return std::max(
+      {moves_until(orientation->tilt), moves_until(orientation->azimuth), std::visit(HandMovesUntil{}, scenario.hand)});
+}
 
 /// Whether the tool ever touched, where it was last, and a hash of where it was.
 class LastPlace final : public Observer {
@@ -149,10 +176,13 @@ class LastQuarter final : public Observer {
     if (const std::uint64_t quarter = record.step * 4 / steps_; quarter != quarter_) {
       quarter_ = quarter;
       rows_in_contact_ = contacts_ = 0;
+      press_sum_ = 0.0;
       S_sum_.setZero();
     }
     vibration_.add(record.step, record.handle.velocity);
     if (record.rendered->size() == 0) return;
+    if (!touch_speed_) touch_speed_ = record.handle.velocity.norm();
+    press_sum_ += record.hand.measured.norm();
     ++rows_in_contact_;
     contacts_ += record.rendered->size();
     S_sum_ += record.force.S;
@@ -161,10 +191,12 @@ class LastQuarter final : public Observer {
   SettledState state() const {
     SettledState state;
     state.vibration = vibration_.value();
+    state.touch_speed = touch_speed_.value_or(0.0);
     if (rows_in_contact_ == 0) return state;
     const auto rows = static_cast<double>(rows_in_contact_);
     state.contacts = static_cast<double>(contacts_) / rows;
     state.lambda_max = lambda_max(S_sum_ / rows);
+    state.press = press_sum_ / rows;
     return state;
   }
 
@@ -172,12 +204,15 @@ class LastQuarter final : public Observer {
   std::uint64_t steps_;
   LastQuarterVibration vibration_;
   std::uint64_t quarter_ = 0, rows_in_contact_ = 0, contacts_ = 0;
+  std::optional<double> touch_speed_;
+  double press_sum_ = 0.0;
   Mat3 S_sum_ = Mat3::Zero();
 };
 
 MotionClassifier classifier_of(const Scenario& scenario) {
   const auto steps = static_cast<std::uint64_t>(scenario.time.steps);
-  return is_moved(scenario) ? MotionClassifier::of_moved_tool(steps, scenario.time.step) : MotionClassifier(steps);
+  if (!is_moved(scenario)) return MotionClassifier(steps);
+  return MotionClassifier::of_moved_tool(steps, scenario.time.step, script_moves_until(scenario) / scenario.time.step);
 }
 
 RunVerdict verdict_of(MotionClass motion, const SettledState& settled, std::optional<double> most_vibration) {
@@ -234,7 +269,8 @@ std::string rule_text(const StabilityRule& rule, bool moved) {
                                *rule.most_vibration, kVibrationCutoff)
                          : std::string("stable: comes to rest or dies out");
   if (!rule.most_vibration && moved)
-    text += ", as far as it is above 30 Hz and 1 mm/s, because a script moves the tool";
+    text +=
+        ", as far as it is above 30 Hz and 1 mm/s, because a script moves the tool; once it has ended, all beyond 1 mm/s counts";
   for (const auto& [metric, bound] : rule.bounds) {
     if (bound.min) text += fmt::format(", {} >= {}", metric, *bound.min);
     if (bound.max) text += fmt::format(", {} <= {}", metric, *bound.max);
@@ -248,9 +284,7 @@ std::string rule_text(const StabilityRule& rule, bool moved) {
 }
 
 bool is_moved(const Scenario& scenario) {
-  const auto& orientation = scenario.motion.orientation;
-  if (!orientation || changes(orientation->tilt) || changes(orientation->azimuth)) return true;
-  return std::visit(HandMoves{}, scenario.hand);
+  return script_moves_until(scenario) > 0.0;
 }
 
 namespace {
@@ -324,9 +358,12 @@ JudgedRun judged_run(const LoadedScenario& loaded, std::shared_ptr<const PointSh
 }
 
 bool unstable_without_contact(const LoadedScenario& loaded, std::optional<double> most_vibration) {
-  const Scenario& scenario = loaded.scenario;
-  if (spring_of(scenario.hand) == nullptr || std::holds_alternative<SpringsEnvironment>(scenario.environment))
+  if (spring_of(loaded.scenario.hand) == nullptr ||
+      std::holds_alternative<SpringsEnvironment>(loaded.scenario.environment))
     return false;
+  // Dry friction only takes energy. What its sticking and slipping leave of vibration is no fault of the loop.
+  Scenario scenario = loaded.scenario;
+  if (auto* device = std::get_if<ImpedanceDeviceConfig>(&scenario.device)) device->coulomb = 0.0;
   MotionClassifier classifier = classifier_of(scenario);
   LastQuarter quarter(scenario.time);
   constexpr double kCells = 1.0;  // [m], of the grid that local_average wants

@@ -64,8 +64,9 @@ class MotionClassifier final : public Observer {
   explicit MotionClassifier(std::uint64_t steps) : steps_(steps) {}
   /// For a tool that a script moves: only the part of its velocity above 30 Hz counts (all of it when steps are longer
   /// than a 60th of a second), and in the last quarter only amplitudes beyond 1 mm/s, about what a hand can feel there.
-  /// Such a tool is never at rest.
-  static MotionClassifier of_moved_tool(std::uint64_t steps, double time_step);
+  /// Such a tool is never at rest. Where the script ends in the first half of the run, at the row `still`, all motion
+  /// from then on counts besides, by quarters of what is left, beyond 1 mm/s again.
+  static MotionClassifier of_moved_tool(std::uint64_t steps, double time_step, double still);
 
   void on_step(const StepRecord& record) noexcept override;
 
@@ -84,14 +85,22 @@ class MotionClassifier final : public Observer {
   struct Quarter {
     double amplitude = 0.0;                ///< largest speed [m/s]
     std::array<std::uint64_t, 3> turns{};  ///< of each component
+    bool oscillates() const noexcept;
   };
-  bool oscillates_in(const Quarter& quarter) const noexcept;
+  /// A stretch of the run in quarters.
+  struct Stretch {
+    std::array<Quarter, 4> quarters{};
+    Vec3 last_velocity = Vec3::Zero();  ///< the last value of each component that was not zero
+    void add(std::uint64_t quarter, const Vec3& velocity) noexcept;
+    MotionClass motion_class(double felt) const noexcept;
+  };
 
   std::uint64_t steps_;
   bool is_moved_ = false;
   std::optional<HighPass> high_pass_;
-  std::array<Quarter, 4> quarters_{};
-  Vec3 last_velocity_ = Vec3::Zero();  ///< the last value of each component that was not zero
+  Stretch all_;
+  std::optional<std::uint64_t> still_;  ///< row from which on the script does not move the tool
+  Stretch held_;                        ///< from there on, without the filter
   double largest_speed_ = 0.0;
   int rows_at_rest_ = 0;
 };
@@ -129,15 +138,17 @@ inline bool is_stable(RunVerdict verdict) noexcept {
 }
 
 /// True when a script moves the hand or turns the tool: then the tool never comes to rest, and only what is above 30 Hz
-/// and 1 mm/s counts as motion.
+/// and 1 mm/s counts as motion, and once the script has ended all beyond 1 mm/s.
 bool is_moved(const Scenario& scenario);
 
-/// The last quarter of a run.
+/// The last quarter of a run, and how the tool came to touch.
 struct SettledState {
   /// Root mean square of the handle's speed above 30 Hz [m/s]; empty at sampling rates of 60 Hz or less.
   std::optional<double> vibration;
-  double contacts = 0.0;    ///< mean number of rendered contacts of the rows in contact
-  double lambda_max = 0.0;  ///< largest eigenvalue of their mean S: the stiffness rendered, in units of K
+  double contacts = 0.0;     ///< mean number of rendered contacts of the rows in contact
+  double lambda_max = 0.0;   ///< largest eigenvalue of their mean S: the stiffness rendered, in units of K
+  double touch_speed = 0.0;  ///< of the handle in the first row with a rendered contact [m/s]
+  double press = 0.0;        ///< mean force of the hand in rows in contact [N]
 };
 
 /// What a handle may vibrate unless it is said otherwise [m/s rms above 30 Hz]. It is a speed because hand-transmitted

@@ -77,7 +77,8 @@ def warnings_of(told, found, log):
 
 
 def draw(file, log, found):
-    from hapbench_style import AMBER, PETROL, panels, picture
+    from hapbench_style import AMBER, PETROL, SETTINGS, panels, picture, plt  # loads matplotlib, which --design does without
+    plt.rcParams.update(SETTINGS)
     figure, ((above,), (below,)) = panels(2, 1, 4.0, sharex=True)
     time = log.time - log.time[0]
     above.plot(time, 1e3 * log.position, color=PETROL, label="measured")

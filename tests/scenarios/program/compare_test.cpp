@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <limits>
 #include <set>
 
 #include "algorithms/registry.hpp"
@@ -400,6 +401,30 @@ TEST_F(CompareDevices, MarksAPresetWithOtherNumbers) {
   const ProgramRun delayed = with("device.delay_samples=1");
   EXPECT_NE(delayed.out.find("\ntouch*"), std::string::npos) << delayed.out;
   EXPECT_EQ(with("hand.mass_kg=0.1").out.find("touch*"), std::string::npos);
+}
+
+TEST_F(CompareDevices, PrintsAnIntervalOverDryFriction) {
+  const Words question = {"--algorithms", "mean", "--resolution", "0.5", "--friction", "0,2"};
+  const std::string text = compare("touch,ideal", "out", question).out;
+  EXPECT_NE(text.find("pressed with 0."), std::string::npos) << text;
+  EXPECT_NE(text.find("\nK over dry friction of 1, 0, 2 times the device's\n"), std::string::npos) << text;
+  Words json = question;
+  json.emplace_back("--json");
+  const Json answer = compare("touch,ideal", "out", json).json();
+  ASSERT_EQ(answer["friction"]["limits"].size(), 1u) << "ideal has no friction";
+  const Json& row = answer["friction"]["limits"][0];
+  double least = std::numeric_limits<double>::infinity(), largest = 0.0;
+  for (const char* friction : {"0", "0.2", "0.4"}) {  // touch has 0.2 N
+    const Words words = {
+        "--algorithms", "mean", "--resolution", "0.5", "--json", "--set", std::string("device.coulomb_N=") + friction};
+    const Json limit = compare("touch", "out", words).json()["limits"][0]["limit_N_per_m"];
+    const double K = limit.is_null() ? 0.0 : limit.get<double>();
+    least = std::min(least, K);
+    largest = std::max(largest, K);
+  }
+  EXPECT_EQ(row["least_N_per_m"], least);
+  EXPECT_EQ(row["largest_N_per_m"], largest);
+  EXPECT_EQ(compare("touch", "out", {"--friction", "2", "--set", "device.coulomb_N=0"}).status, 2);
 }
 
 TEST_F(CompareDevices, SaysWhichDelaysDiffer) {

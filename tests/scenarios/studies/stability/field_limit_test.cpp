@@ -174,6 +174,19 @@ TEST(FieldLimit, IsDecidedByTheVibrationThatIsAllowed) {
   EXPECT_EQ(none.runs.front().verdict, RunVerdict::vibrating);
 }
 
+/// A passive hand on a handle with dry friction is stable, although it sticks and slips.
+TEST(FieldLimit, DoesNotBlameDryFrictionForVibration) {
+  const Words rubbing = {R"(device={"type":"impedance","handle_mass_kg":0.136,"coulomb_N":0.25,"delay_samples":1})",
+                         "time.step_s=0.00035"};
+  const FieldLimit limit =
+      ask({"tap_wall", "rendering.stiffness_N_per_m", rubbing, Range{1e3, 1e6, true}}, {"summation"}).front();
+  ASSERT_TRUE(limit.value && limit.beyond);
+  EXPECT_EQ(limit.beyond->verdict, RunVerdict::vibrating);
+  EXPECT_FALSE(limit.unstable_alone);
+  EXPECT_GT(limit.settled.touch_speed, 0.0);
+  EXPECT_GT(limit.settled.press, 0.25) << "more than friction alone holds";
+}
+
 TEST(FieldLimit, OfAPlaneHasNoTheory) {
   const Words pressed = {R"(hand={"type":"force","z_N":-1})", "time.duration_s=0.5", "rendering.reduction=null"};
   const std::vector<FieldLimit> limits =

@@ -109,7 +109,7 @@ TEST(MotionClassifier, WhatDiesOutComesToRest) {
 /// The class of a tool that a hand moves to and fro, 20 mm/s at 1 Hz, and that vibrates besides.
 MotionClass class_of_moved_tool(double amplitude, double frequency) {
   constexpr double kStep = 0.0005;
-  MotionClassifier classifier = MotionClassifier::of_moved_tool(kSteps, kStep);
+  MotionClassifier classifier = MotionClassifier::of_moved_tool(kSteps, kStep, kSteps);
   StepRecord record;
   for (record.step = 0; record.step < kSteps; ++record.step) {
     const double t = kStep * static_cast<double>(record.step);
@@ -126,6 +126,29 @@ TEST(MotionClassifier, OfAMovedToolSeesWhatNoHandDoesAndWhatOneFeels) {
   EXPECT_EQ(class_of_moved_tool(0.01, 200.0), MotionClass::vibrating);
   EXPECT_EQ(class_of_moved_tool(0.0005, 200.0), MotionClass::stable) << "half a millimetre a second is not felt";
   EXPECT_EQ(class_of_moved_tool(0.01, 3.0), MotionClass::stable) << "a hand does that, too";
+}
+
+/// The class of a tool that a hand leads to a place in a quarter of the run and that swings there at 12 Hz.
+MotionClass class_of_swinging_tool(double amplitude, double decay, double still) {
+  constexpr double kStep = 0.0005;
+  MotionClassifier classifier = MotionClassifier::of_moved_tool(kSteps, kStep, still);
+  StepRecord record;
+  for (record.step = 0; record.step < kSteps; ++record.step) {
+    const double t = kStep * static_cast<double>(record.step), led = record.step < kSteps / 4 ? 0.02 : 0.0;
+    record.tool.velocity =
+        Vec3(led + amplitude * std::exp(-decay * t) * std::cos(2.0 * std::numbers::pi * 12.0 * t), 0.0, 0.0);
+    classifier.on_step(record);
+  }
+  return classifier.motion_class(Outcome::completes);
+}
+
+TEST(MotionClassifier, OfAScriptThatHasEndedSeesSlowSwingingToo) {
+  EXPECT_EQ(class_of_swinging_tool(0.01, 0.0, kSteps), MotionClass::stable) << "a script that goes on may swing itself";
+  EXPECT_EQ(class_of_swinging_tool(0.01, 0.0, kSteps / 4), MotionClass::vibrating);
+  EXPECT_EQ(class_of_swinging_tool(0.0005, 0.0, kSteps / 4), MotionClass::stable) << "not felt";
+  EXPECT_EQ(class_of_swinging_tool(0.0, 0.0, kSteps / 4), MotionClass::stable);
+  const double length = 0.0005 * kSteps;
+  EXPECT_TRUE(comes_to_rest(class_of_swinging_tool(0.01, 2.0 / length, kSteps / 4)));
 }
 
 TEST(MotionClassifier, SeparatesVibratingFromGrowingAtAPercentInAQuarter) {

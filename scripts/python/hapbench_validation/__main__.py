@@ -1,0 +1,36 @@
+"""scripts/validation: predicts the measured limits of scenarios/validation and writes its page, its figure and its numbers."""
+import json
+import sys
+from pathlib import Path
+
+from hapbench_command import SUCCESS, Arguments, Notice, write
+
+from .cases import FOLDER, ROOT, read_cases
+from .page import figure, page
+from .predict import Predictor, predictions, record
+
+RECORD, PAGE, FIGURE = FOLDER / "data" / "predictions.json", FOLDER / "README.md", FOLDER / "validation.svg"
+
+
+def main():
+    parser = Arguments(prog="scripts/validation", description=__doc__)
+    parser.add_argument("--program", type=Path, default=ROOT / "build" / "release" / "bin" / "hapbench", help="the built program")
+    parser.add_argument("--samples", type=int, default=240, help="of the unpublished inputs, for each fit (default 240)")
+    parser.add_argument("--jobs", type=int, default=2, help="runs at a time (default 2)")
+    parser.add_argument("--page", action="store_true", help="only write the page and the figure anew, from the recorded predictions")
+    given = parser.parse_args()
+    data, cases = read_cases()
+    if not given.page:
+        predictor = Predictor(given.program.resolve(), given.jobs)
+        with Notice("predicting") as notice:
+            found = predictions(predictor, data, cases, given.samples, notice.say)
+        text = json.dumps(record(given.program.resolve(), data, cases, found), indent=1, ensure_ascii=False)
+        write(RECORD, text + "\n")
+    recorded = json.loads(RECORD.read_text(encoding="utf-8"))
+    write(FIGURE, figure(data, cases, recorded))
+    write(PAGE, page(data, cases, recorded))
+    return SUCCESS
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,78 @@
+"""The page of scenarios/validation: its rules, its records and the program. Arguments: the built program, the source tree."""
+import math
+import re
+import sys
+import unittest
+from pathlib import Path
+
+PROGRAM, SOURCE = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve()
+sys.path.insert(0, str(SOURCE / "scripts" / "python"))
+sys.dont_write_bytecode = True
+import json  # noqa: E402
+
+import numpy as np  # noqa: E402
+from hapbench_validation.cases import FOLDER, drawn, read_cases  # noqa: E402
+from hapbench_validation.judge import points_of, verdict  # noqa: E402
+from hapbench_validation.page import judged, page  # noqa: E402
+from hapbench_validation.predict import Predictor  # noqa: E402
+
+DATA, CASES = read_cases()
+RECORDED = json.loads((FOLDER / "data" / "predictions.json").read_text(encoding="utf-8"))
+
+
+class Validation(unittest.TestCase):
+    def test_the_page_is_that_of_the_records(self):
+        self.assertEqual((FOLDER / "README.md").read_text(encoding="utf-8"), page(DATA, CASES, RECORDED), "scripts/validation --page renews it")
+
+    def test_every_link_of_the_page_leads_somewhere(self):
+        for link in re.findall(r"\]\(([^)#]+)", page(DATA, CASES, RECORDED)):
+            self.assertTrue(link.startswith("https:") or (FOLDER / link).exists(), link)
+
+    def test_the_program_still_predicts_what_is_recorded(self):
+        predictor = Predictor(PROGRAM, 2)
+        for name, case in CASES.items():
+            record = RECORDED["cases"][name]
+            for at in {0, len(case.B) // 2}:
+                edge = predictor.edge(case, record["samples"][0], case.B[at])
+                # The same program gives the same number; another compiler's may end the bisection one width off.
+                self.assertAlmostEqual(math.log(edge / record["edges"][0][at]), 0.0, delta=2.0 * RECORDED["resolution"], msg=f"{name} {at}")
+
+    def test_nothing_is_fitted_to_the_case_that_judges_it(self):
+        for name, case in CASES.items():
+            if case.role == "judged":
+                fitted = RECORDED["cases"][case.fit]["samples"]
+                self.assertEqual(CASES[case.fit].role, "fitted")
+                self.assertEqual([{k: s[k] for k in f} for s, f in zip(RECORDED["cases"][name]["samples"], fitted)], fitted)
+
+    def test_the_uncertainty_and_the_verdict_follow_the_rules(self):
+        case = CASES["A"]
+        exact = [case.K] * 5
+        for factor, word in ((1.0, "fitted"), (10.0, "fitted")):
+            self.assertEqual(verdict(case, points_of(case, np.array(exact) * factor, 1.3, 0.02), True)[0], word)
+        case = CASES["A'"]
+        for factor, word in ((1.0, "agrees"), (1.5, "agrees"), (2.0, "fails"), (0.5, "fails")):
+            edges = np.array([case.K] * 5) * factor
+            self.assertEqual(verdict(case, points_of(case, edges, 1.3, 0.02), True)[0], word, factor)
+        self.assertEqual(verdict(case, points_of(case, exact_of(case), 1.3, 0.02), False)[0], "not judged")
+        wide = np.array([case.K]) * np.array([[0.2], [0.4], [1.0], [2.5], [5.0]])
+        self.assertEqual(verdict(case, points_of(case, wide, 1.3, 0.02), True)[0], "agrees, weakly")
+        point = points_of(case, exact_of(case), 1.3, 0.0)[0]
+        self.assertAlmostEqual(point.uncertainty, math.hypot(math.log(1.3), 0.1 / 1.8 / math.sqrt(12.0)))
+        self.assertEqual(len(list(judged(DATA, CASES, RECORDED))), len(CASES))
+
+    def test_samples_fill_their_ranges(self):
+        for device in DATA["devices"].values():
+            samples = drawn(device["unpublished"], 64)
+            for name, (low, high, kind, _) in device["unpublished"].items():
+                values = sorted(sample[name] for sample in samples)
+                self.assertTrue(low <= values[0] and values[-1] <= high, name)
+                middle = math.sqrt(low * high) if kind == "log" else 0.5 * (low + high)
+                self.assertEqual(sum(value < middle for value in values), 32, name)
+
+
+def exact_of(case):
+    return np.array([case.K] * 3)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])
