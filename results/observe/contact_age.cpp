@@ -44,8 +44,8 @@ MetricList metric_list(const ContactAge& a) {
   return {{"age_p50_s", "s", "half of the rows use contacts found at most so long before", if_any(any, a.p50)},
           {"age_p95_s", "s", "95 % of the rows use contacts found at most so long before", if_any(any, a.p95)},
           {"age_max_s", "s", "largest time from the query of contacts to a row that uses them", if_any(any, a.max)},
-          {"queries", "1", "times that contacts were asked for, lost ones included", a.queries},
-          {"lost_share", "1", "share of these queries that were lost", if_any(a.queries > 0, a.lost_share)}};
+          {"asked", "1", "times that contacts were asked for, lost ones included", a.queries},
+          {"lost_share", "1", "share of these that were lost", if_any(a.queries > 0, a.lost_share)}};
 }
 
 }  // namespace hapbench

@@ -21,6 +21,7 @@
 #include "scenarios/input/json_file.hpp"
 #include "scenarios/input/mesh_file.hpp"
 #include "scenarios/input/motion_file.hpp"
+#include "scenarios/input/trace_file.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/studies/stability/device_limits.hpp"
 
@@ -91,6 +92,13 @@ void read_stroke(std::string_view text) {
   require(std::abs(motion.axis_at(1e9).norm() - 1.0) <= 1e-12, "an axis that is not unit");
 }
 
+void read_trace(std::string_view text) {
+  const ContactTrace trace = trace_in(text, "trace.csv");
+  for (const ContactTrace::Contact& contact : trace.contacts)
+    require(std::abs(contact.gradient.norm() - 1.0) <= 2e-12 && contact.depth >= 0.0, "a contact that cannot be used");
+  require(trace.most() <= trace.contacts.size(), "more contacts at a time than there are");
+}
+
 void read_journal(std::string_view text) {
   std::size_t rows = 0;
   Journal journal(file_with(text), "fuzz", true, [&rows](Journal::Place, std::string_view) { ++rows; });
@@ -152,7 +160,7 @@ constexpr std::array kTargets = {
     Target{"mesh_ply", read_mesh<kPly>},    Target{"mesh_stl", read_mesh<kStl>},   Target{"mesh_off", read_mesh<kOff>},
     Target{"shell_csv", read_shell<kCsv>},  Target{"shell_ply", read_shell<kPly>}, Target{"stroke", read_stroke},
     Target{"journal", read_journal},        Target{"shard", read_shard},           Target{"device", read_device},
-    Target{"plugin", read_plugin},
+    Target{"plugin", read_plugin},          Target{"trace", read_trace},
 };
 
 /// The target that FUZZ_TARGET names.

@@ -11,6 +11,7 @@ import of_limits  # noqa: F401
 import of_places  # noqa: F401
 import of_precision  # noqa: F401
 import of_runs  # noqa: F401
+import of_slow_contacts  # noqa: F401
 from answers import SCENES, Answer, Bench, Within
 from fixture import main, scratch_folder
 from page import OPEN, PAGE, open_fields, printed_fields, text_of

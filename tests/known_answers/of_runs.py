@@ -114,7 +114,7 @@ def touches(bench):
 
 
 def touch_tables(bench, run, r):
-    """trajectory.csv, stiffness_tensor.csv, ratios.csv and contacts.csv of the same run."""
+    """trajectory.csv, stiffness_tensor.csv, ratios.csv, contacts.csv and contact_trace.csv of the same run."""
     table, rows, touching = run.table(), "the formula", r.contact
     columns = [("step", np.arange(1200.0), "0, 1, ...", EXACT, "from 1", np.arange(1200.0) + 1),
                ("time_s", r.t, "k dt", EXACT, "after the step", r.t + r.dt)]
@@ -174,6 +174,13 @@ def contact_table(bench, run, r):
     for j, x in enumerate("xyz"):
         rows += [(f"gradient_{x}", U[:, j], "u of the spring", ROUNDING, "-u", -U[:, j] - (x == "y"))]
     bench.columns("contacts.csv", table, rows)
+    k, i = np.nonzero(r.touched)
+    U = DIRECTIONS[i]
+    bench.columns("contact_trace.csv", run.table("contact_trace.csv"), [
+        ("time_s", r.t[k], "k dt of what is touched", EXACT, "after the step", r.t[k] + r.dt),
+        *[(f"{x}_m", r.p[k, j], "the tip", STEPPED, "the row after", r.p[np.minimum(k + 1, 1199), j]) for j, x in enumerate("xyz")],
+        *[(f"u{x}", U[:, j], "u of the spring", ROUNDING, "-u", -U[:, j] - (x == "y")) for j, x in enumerate("xyz")],
+        ("depth_m", r.d[k, i], "<p, u>", STEPPED, "-z", -r.p[k, 2])])
 
 
 @scene

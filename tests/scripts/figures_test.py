@@ -65,7 +65,8 @@ def make_results(directory):
     for scene, scenario in (("peg", "tilt_sweep_shaped_stiffness"), ("wedge", "wedge_stiffness")):
         out = directory / "stiffness" / scene
         hapbench("compare", scenario, "--set=record.stiffness_tensor=true", "--out", out)
-    make_studies(directory / "precision")
+    for folder in ("precision", "precision_hole"):
+        make_studies(directory / folder)
     hapbench(*("stability", "--map", "all", "--algorithms", "shaped_stiffness,summation", "--size", "3"),
              *("--out", directory / "stability_maps"))
     hapbench(*("stability", "--map", "time_step,damping_ratio,device", "--algorithms", "shaped_stiffness", "--size", "3"),
@@ -119,10 +120,11 @@ def make_studies(directory):
         "reduction": ["shaped_stiffness 0.9", "exact_shaping off"],
         "spacing": ["signed_distance 0.0004", "binary 0.0002"],
         "algorithms": ["mean", "original_averaging", "one_without_a_look", "mean + angular_damping"],
+        "late_contacts": [f"shaped_stiffness {between} {every}" for between in ("hold", "linear") for every in (1, 8)],
         "query_time": ["neighbour_list 0.1mm", "neighbour_list 0.2mm", "every_point 0.1mm", "every_point 0.2mm"],
     }
     columns = ("step_s", "error_rms_m", "tensor_error_rms", "force_error_relative", "ideal_height_error_rms_m",
-               "pushed_m", "contacts_mean", "points_tested_mean")
+               "pushed_m", "contacts_mean", "points_tested_mean", "rate_Hz", "stiffness_max_N_per_m", "theory_N_per_m")
     for study, names in settings.items():
         rows = [f"{name},{'diverges' if name.startswith('original') else 'completes'}" + f",{0.001 / (i + 1)}" * len(columns)
                 for i, name in enumerate(names)]

@@ -44,13 +44,18 @@ bool is_stable_at(const Scenario& scenario, double stiffness, const std::shared_
   return is_stable(judged_run(loaded, shell, {.most_vibration = kMostVibrationOfLate}).verdict);
 }
 
-/// The largest stable K up to which every K tried is stable, from the scene's own on; none where even the least is not,
-/// or the largest is.
+/// The end of the stable values of K that begin at the scene's own, or if that is not stable, at the first power of two
+/// times it that is, upwards first: some laws are too soft for a scene. None where no K is, or the largest is stable.
 std::optional<double> largest_stiffness(const Scenario& scenario, const std::shared_ptr<const PointShell>& shell) {
-  const double own = scenario.rendering.stiffness, least = own / kStiffnessRange;
-  const auto stable = [&](double K) { return K < least || is_stable_at(scenario, K, shell); };
-  const double edge = largest_stable(own, kStiffnessWidth, stable, own * kStiffnessRange);
-  return edge >= least && std::isfinite(edge) ? std::optional(edge) : std::nullopt;
+  const double own = scenario.rendering.stiffness, least = own / kStiffnessRange, most = own * kStiffnessRange;
+  const auto stable = [&](double K) { return is_stable_at(scenario, K, shell); };
+  double from = own;
+  while (from <= most && !stable(from)) from *= 2.0;
+  if (from > most)
+    for (from = own / 2.0; from >= least && !stable(from);) from /= 2.0;
+  if (from < least) return std::nullopt;
+  const double edge = largest_stable(from, kStiffnessWidth, stable, most);
+  return std::isfinite(edge) ? std::optional(edge) : std::nullopt;
 }
 
 /// The largest stable K of one contact that lasts.

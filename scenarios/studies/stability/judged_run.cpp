@@ -323,7 +323,9 @@ static JudgedRun judged_once(const LoadedScenario& loaded, const std::shared_ptr
   for (Observer* observer : seen.all()) observers.push_back(observer);
   Simulation simulation(simulation_config(scenario), std::move(parts), observers);
   const MotionClass motion = classify(simulation, classifier);
-  const SettledState settled = quarter.state();
+  SettledState settled = quarter.state();
+  // A run that was cut short there would tell the vibration of an earlier quarter.
+  if (classifier.at_rest() && settled.vibration) settled.vibration = 0.0;
   Metrics touched;
   touched.steps_in_contact = last.touched ? 1 : 0;
   const Outcome outcome = seen.outcome(scenario, touched, *tool, simulation.result().outcome);

@@ -95,6 +95,7 @@ FIGURES = (
     Figure("torque", None, "The torque that is lost as the drill is turned", drill.lost),
     Figure("precision", None, "Work against precision", performance.work_precision),
     Figure("query-time", None, "Query time over penetration depth", performance.query_time),
+    Figure("late-contacts", None, "How stiff with late contacts", performance.late_contacts),
     Figure("latency", None, "Latency of a step", performance.latency),
     Figure("growth", None, "How cost grows", performance.growth),
     *(Figure(f"stability-{name}", None, f"Stability over {name.replace('_', ' ')}", stability.stability_map(name))

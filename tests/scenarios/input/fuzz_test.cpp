@@ -9,6 +9,7 @@
 #include "scenarios/input/json_file.hpp"
 #include "scenarios/input/mesh_file.hpp"
 #include "scenarios/input/motion_file.hpp"
+#include "scenarios/input/trace_file.hpp"
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/mesh_texts.hpp"
 #include "tests/scenarios/support/mutation.hpp"
@@ -137,6 +138,23 @@ TEST(Fuzz, RecordedMotionsAreReadOrRefused) {
   }));
 }
 
+TEST(Fuzz, TracesAreReadOrRefused) {
+  expect_mixture(fuzz({test::read_file(test::data_directory() / "trace.csv")}, test::cases(10'000), 4,
+                      [](const std::string& text) {
+                        const ContactTrace trace = trace_in(text, "trace.csv");
+                        std::size_t from = 0;
+                        for (std::size_t i = 0; i < trace.times.size(); ++i) {
+                          EXPECT_EQ(trace.times[i].first == from, i == 0) << text;
+                          EXPECT_TRUE(i == 0 || trace.times[i - 1].time < trace.times[i].time) << text;
+                          from = trace.times[i].first;
+                        }
+                        for (const ContactTrace::Contact& contact : trace.contacts) {
+                          EXPECT_NEAR(contact.gradient.norm(), 1.0, 2e-12) << text;
+                          EXPECT_GE(contact.depth, 0.0) << text;
+                        }
+                      }));
+}
+
 TEST(Fuzz, GarbageIsRefused) {
   Random random(5);
   for (std::size_t i = 0; i < test::cases(2000); ++i) {
@@ -145,6 +163,7 @@ TEST(Fuzz, GarbageIsRefused) {
     EXPECT_THROW(read_scenario(parse_json(garbage), ""), InputError);
     for (const char* name : {"g.csv", "g.ply"}) EXPECT_THROW(point_shell_in(garbage, name), InputError);
     EXPECT_THROW(stroke_in(garbage, "g.csv"), InputError);
+    EXPECT_THROW(trace_in(garbage, "g.csv"), InputError);
     for (const char* name : {"g.obj", "g.off", "g.stl", "g.ply"}) EXPECT_THROW(MeshFile(garbage, name, {}), InputError);
   }
 }

@@ -129,6 +129,17 @@ TEST(FieldLimit, OfADeviceAtAWallIsComparedWithItsLinearLoop) {
   EXPECT_TRUE(limit.is_beyond_linear(0.01));
 }
 
+/// At rest before the last quarter begins, the run is cut short: the quarter before has the start of 1 mm in it.
+TEST(FieldLimit, OfRunsThatComeToRestEarlyIsNoMatterOfTheirStart) {
+  const Words longer = {"time.steps=1000"};
+  const ScenarioText scenario = read_scenario_text(find_scenario("single_spring"));
+  LimitQuestion question = limit_question(scenario, longer, "rendering.stiffness_N_per_m", {});
+  question.most_vibration = 0.01;
+  const FieldLimit limit = field_limits(scenario, longer, {"summation"}, question, {1, ""}).front();
+  ASSERT_TRUE(limit.value && limit.theory);
+  EXPECT_NEAR(*limit.value, *limit.theory, 0.01 * *limit.theory);
+}
+
 TEST(FieldLimit, OfAFieldOfIntegersIsOne) {
   // n (2 B dt / M + K dt^2 / M) = 4 with B = 62.6 N s/m, K = 20 000 N/m: n = 5.9.
   const FieldLimit limit =
