@@ -270,7 +270,7 @@ std::string rule_text(const StabilityRule& rule, bool moved) {
                          : std::string("stable: comes to rest or dies out");
   if (!rule.most_vibration && moved)
     text +=
-        ", as far as it is above 30 Hz and 1 mm/s, because a script moves the tool; once it has ended, all beyond 1 mm/s counts";
+        ", as far as it is above 30 Hz and 1 mm/s, because a script moves the tool; where that ends in the first half of a run, all beyond 1 mm/s from then on";
   for (const auto& [metric, bound] : rule.bounds) {
     if (bound.min) text += fmt::format(", {} >= {}", metric, *bound.min);
     if (bound.max) text += fmt::format(", {} <= {}", metric, *bound.max);

@@ -39,8 +39,8 @@ def identify(given):
     told["position_noise_m"] = (noise, [math.sqrt(max(beyond - spread, 0.0)), math.sqrt(max(beyond + spread, 0.0))])
     told = {name: parameter(*told[name]) for name in UNITS}
     if told["handle_mass_kg"]["value"] is None:
-        fail(f"the log cannot tell the mass: the simulated position misses by {found.rms:.3g} m. Is a hand or a spring on the handle, or are "
-             "the units wrong? hapbench identify --design makes a signal that tells", given["file"][0])
+        fail(f"the log cannot tell the mass: the simulated position misses by {found.rms:.3g} m. Is a hand or a spring on the handle, or is a "
+             "sign or a unit wrong? hapbench identify --design makes a signal that tells", given["file"][0])
     warnings = log.warnings + warnings_of(told, found, log)
     out = Path(given["out"][0])
     device = {"type": "impedance"} | {name: float(f"{told[name]['value']:.6g}") for name in IN_DEVICE if told[name]["value"]}

@@ -13,6 +13,7 @@ from .cases import FOLDER, LEAST, MOST, drawn, overrides, samples_of, units_of
 RESOLUTION = 0.02
 FEWEST = 8  # samples that a fit must leave
 WAVES = 4   # of samples, each around the best of those before
+ROUGH = 4   # points by which a wave is judged
 
 
 class Predictor:
@@ -47,9 +48,9 @@ def rms_error(edges, measured):
 
 def fitted(predictor, case, space, samples, scatter):
     """Of many samples those whose whole curve is as close to the measured one as one session is to another. They are looked for
-    in waves: the first over the whole ranges, each later one around the best of those before, judged by every fourth point;
-    the best of all waves are then predicted at all points. Where too few are left, the best stay, and that is said."""
-    rough = list(range(0, len(case.B), max(1, len(case.B) // 5)))
+    in waves: the first over the whole ranges, each later one around the best of those before, judged by a few points. The
+    best of all waves are then predicted at all points. Where too few are left, the best stay, and that is said."""
+    rough = np.rint(np.linspace(0, len(case.B) - 1, ROUGH)).astype(int)
     measured, random = np.array(case.K), np.random.default_rng(1)
     units, errors = np.empty((0, len(space))), np.empty(0)
     for wave in range(WAVES):
@@ -58,7 +59,7 @@ def fitted(predictor, case, space, samples, scatter):
             new = units_of(space, count)
         else:
             best = units[np.argsort(errors)[:2 * FEWEST]]
-            new = best[random.integers(len(best), size=count)] + best.std(axis=0) * random.standard_normal((count, len(space)))
+            new = best[random.integers(len(best), size=count)] + 0.5 * best.std(axis=0) * random.standard_normal((count, len(space)))
             new = np.abs(np.clip(new, -0.999, 1.999))
             new = np.where(new > 1.0, 2.0 - new, new)
         errors = np.append(errors, rms_error(predictor.curves(case, samples_of(space, new), rough), measured[rough]))
@@ -88,7 +89,7 @@ def predictions(predictor, data, cases, samples, say):
             kept = found[case.fit]["samples"]
             kept = [sample | more for sample, more in zip(kept, drawn(case.more, len(kept), 2) if case.more else [{}] * len(kept))]
             found[case.name] = {"samples": kept, "edges": predictor.curves(case, kept).tolist()}
-        never = drawn(space | case.more, 2 * FEWEST, 3)
+        never = drawn(space | case.more, FEWEST, 3)
         found[case.name]["unfitted_edges"] = predictor.curves(case, never).tolist()
     return found
 
