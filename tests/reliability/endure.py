@@ -312,7 +312,7 @@ def faults(found, scratch):
     return {"calls": sum(map(int, lines)), "errors": [errno.errorcode[errno.ENOSPC], errno.errorcode[errno.EIO]]}
 
 
-TEXTS = ("scenario", "run", "shell_csv", "stroke", "journal", "shard", "device", "plugin")
+TEXTS = ("scenario", "run", "shell_csv", "stroke", "journal", "shard", "trace", "device", "plugin")
 
 
 def fuzz(share, found, scratch):
