@@ -244,7 +244,7 @@ TEST(LinearlyImplicit, CopesWithDampingThatDrives) {
     tool.velocity = random.direction();
     const Vec3 force = 1e3 * random.direction(), v = tool.velocity;
     HeldJacobian field(jacobian);
-    kImplicitEuler.make()->step(tool, force, kMass, 0.0005, field);
+    kImplicitEuler.make({})->step(tool, force, kMass, 0.0005, field);
     // Never more than twice what the explicit step would make of the same impulse.
     const Vec3 impulse = 0.0005 * (force - 0.0005 * (jacobian.stiffness * v));
     ASSERT_TRUE(tool.velocity.allFinite());
@@ -256,7 +256,7 @@ TEST(LinearlyImplicit, AnswersAnInfiniteJacobianWithTheExplicitStep) {
   for (const double bad : {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()}) {
     ToolState tool;
     HeldJacobian field({Mat3::Zero(), Mat3::Constant(bad)});
-    kImplicitMidpoint.make()->step(tool, {1, 0, 0}, 0.5, 0.25, field);
+    kImplicitMidpoint.make({})->step(tool, {1, 0, 0}, 0.5, 0.25, field);
     EXPECT_EQ(tool.velocity, Vec3(0.5, 0, 0));
   }
 }
@@ -366,8 +366,9 @@ class Counting final : public Integrator {
 };
 
 TEST(IntegratorInTheLoop, MayKeepAStateThatResetForgets) {
-  const IntegratorEntry counting = {
-      .info = {}, .make = []() -> std::unique_ptr<Integrator> { return std::make_unique<Counting>(); }};
+  const IntegratorEntry counting = {.info = {}, .make = [](const IntegratorOptions&) -> std::unique_ptr<Integrator> {
+                                      return std::make_unique<Counting>();
+                                    }};
   test::Recorder recorder;
   SimulationConfig config = config_of(&counting, 4);
   config.position = Vec3::Zero();
