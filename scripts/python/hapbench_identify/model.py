@@ -1,4 +1,4 @@
-"""The handle of METHOD's impedance device under held forces that come late: m x'' = u(t - delay) + offset - b x' - c sign(x'),
+"""The handle of an impedance device under held forces that come late: m x'' = u(t - delay) + offset - b x' - c sign(x'),
 integrated exactly, stops included."""
 import math
 

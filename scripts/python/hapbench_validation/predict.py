@@ -14,6 +14,7 @@ RESOLUTION = 0.02
 FEWEST = 8  # samples that a fit must leave
 WAVES = 4   # of samples, each around the best of those before
 ROUGH = 4   # points by which a wave is judged
+WHOLE = 96  # samples that are predicted at all points
 
 
 class Predictor:
@@ -59,19 +60,19 @@ def fitted(predictor, case, space, samples, scatter):
             new = units_of(space, count)
         else:
             best = units[np.argsort(errors)[:2 * FEWEST]]
-            new = best[random.integers(len(best), size=count)] + 0.5 * best.std(axis=0) * random.standard_normal((count, len(space)))
+            new = best[random.integers(len(best), size=count)] + best.std(axis=0) * random.standard_normal((count, len(space)))
             new = np.abs(np.clip(new, -0.999, 1.999))
             new = np.where(new > 1.0, 2.0 - new, new)
         errors = np.append(errors, rms_error(predictor.curves(case, samples_of(space, new), rough), measured[rough]))
         units = np.vstack([units, new])
-    near = np.argsort(errors)[:4 * FEWEST]
+    near = np.argsort(errors)[:WHOLE]
     near_samples = samples_of(space, units[near])
     whole = predictor.curves(case, near_samples)
     errors = rms_error(whole, measured)
     order = np.argsort(errors)
     within = [i for i in order if errors[i] <= math.log(scatter)]
     reached = len(within) >= FEWEST
-    kept = within if reached else list(order[:FEWEST])
+    kept = within[:4 * FEWEST] if reached else list(order[:FEWEST])
     return {"samples": [near_samples[i] for i in kept], "edges": whole[kept].tolist(), "tried": len(units), "reached": bool(reached),
             "rms_factors": np.exp(errors[kept]).round(4).tolist()}
 
