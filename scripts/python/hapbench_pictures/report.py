@@ -56,6 +56,7 @@ def sections(runs, names, words):
         ("replay", "Replay", "Replay", drawn and player(replays(*zip(*drawn)))),
         ("curves", "Curves", "Curves", drawn and curves_section(*zip(*drawn))),
         ("fidelity", "Fidelity", "Against the measured force", fidelity_section(runs, names)),
+        ("late", "Late contacts", "Contacts that came late", late_section(runs, names)),
         ("metrics", "Metrics", "Metrics", metrics_section(runs, names)),
         ("ranking", "Ranking", "Does the ranking hold?", ranking_section(words)),
         ("scenario", "Scenario", "Scenario", scenario_section(runs, names)),
@@ -113,6 +114,16 @@ def fidelity_section(runs, labels):
     about = ("<b>Rendered against measured force</b> The normal is that of what is rendered, before damping and friction; "
              "<code>hapbench describe</code> explains each")
     return table(*metric_rows(runs, labels, "fidelity", list(runs[0].sections["fidelity"])), about, "sortable") + force_curves(runs, labels)
+
+
+def late_section(runs, labels):
+    """Empty without a run whose contacts a slower loop finds."""
+    known = [(run, label) for run, label in zip(runs, labels) if run.sections.get("contacts")]
+    if not known:
+        return ""
+    runs, labels = zip(*known)
+    about = "<b>How old the contacts are that rows use</b> and how many queries were lost; <code>hapbench describe</code> explains each"
+    return table(*metric_rows(runs, labels, "contacts", list(runs[0].sections["contacts"])), about, "sortable")
 
 
 def force_curves(runs, labels):
