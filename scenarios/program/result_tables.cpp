@@ -138,7 +138,7 @@ std::vector<Table::Column> printed_headings() {
   return joined_headings({run_headings(), league_headings(), limit_headings(false), limit_headings(true),
                           converge_headings(), device_headings(), stability_headings(), precision_headings("step"),
                           precision_headings("call"), diff_headings(), sweep_headings(), shard_headings(),
-                          claim_headings()});
+                          tune_headings(), claim_headings()});
 }
 
 std::vector<DescribedTable> result_tables() {
@@ -159,6 +159,9 @@ std::vector<DescribedTable> result_tables() {
   tables.push_back({"limit_runs.csv", "of limit: one line per run", all(limit_run_columns())});
   tables.push_back({"converge.csv", "of converge: one line per metric", converge_columns()});
   tables.push_back({"converge_levels.csv", "of converge: one line per metric and level", converge_level_columns()});
+  tables.push_back({"tune.csv", "of tune: one line per algorithm", tune_columns()});
+  tables.push_back(
+      {"tune_trials.csv", "of tune: one line per algorithm, setting and K that was tried", tune_trial_columns()});
   tables.push_back({"sweep.csv", "of sweep: one line per run", sweep_columns()});
   tables.push_back({"limits.csv", "of stability SCENARIO: one line per limit", stability_limit_columns()});
   tables.push_back({"root_locus.csv", "of stability SCENARIO: eigenvalues of a step as the case's number grows",

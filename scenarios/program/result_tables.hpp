@@ -42,6 +42,8 @@ std::vector<Column> device_run_columns();
 std::vector<Column> stability_limit_columns();
 std::vector<Column> root_locus_columns();
 std::vector<Column> stress_columns();
+std::vector<Column> tune_columns();
+std::vector<Column> tune_trial_columns();
 
 // The headings of printed tables, from which the tables are made; without those that are names of fields, metrics,
 // scenes or algorithms.
@@ -58,6 +60,7 @@ std::vector<Table::Column> latency_headings();
 std::vector<Table::Column> shard_headings();
 std::vector<Table::Column> stability_headings();
 std::vector<Table::Column> sweep_headings();
+std::vector<Table::Column> tune_headings();
 
 std::vector<Table::Column> joined_headings(const std::vector<std::vector<Table::Column>>& tables);
 /// All of them, also those whose titles are names that `describe` knows.

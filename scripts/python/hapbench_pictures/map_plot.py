@@ -1,4 +1,4 @@
-"""The pictures of `stability --map`, `limit` and `converge`: classes of runs as coloured cells or marks, with the limits found; and
+"""The pictures of `stability --map`, `limit`, `tune` and `converge`: classes of runs as coloured cells or marks, with the limits found; and
 which study a folder holds."""
 import copy
 from pathlib import Path
@@ -13,6 +13,7 @@ from hapbench_style import BLACK, PETROL, SETTINGS, plt
 
 from .converge_plot import LEVELS, draw_converge
 from .given import axis
+from .tune_plot import TRIALS, draw_tune
 
 MAP, LIMIT, LIMIT_RUNS = "stability_map_", "limit.csv", "limit_runs.csv"
 
@@ -27,7 +28,7 @@ def given_study(words):
 
 def is_study(path):
     return path.name.startswith(MAP) and path.is_file() or any(path.glob(f"{MAP}*.csv")) or \
-        any((path / name).is_file() for name in (LIMIT_RUNS, DEVICES, LEVELS))
+        any((path / name).is_file() for name in (LIMIT_RUNS, DEVICES, LEVELS, TRIALS))
 
 
 def study_figures(path):
@@ -36,6 +37,8 @@ def study_figures(path):
         with plt.rc_context(SETTINGS):
             if (path / LIMIT_RUNS).is_file():
                 return [("", draw_limit(Results(path)))]
+            if (path / TRIALS).is_file():
+                return [("", draw_tune(Results(path)))]
             if (path / LEVELS).is_file():
                 return [("", draw_converge(Results(path)))]
             if (path / DEVICES).is_file():

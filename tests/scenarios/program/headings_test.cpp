@@ -85,6 +85,7 @@ TEST(Headings, OfEveryTableAreKnownToDescribe) {
       {"converge", "springs_oscillation", "--metric", "force_max_N,final_position_m.x", "--levels", "3"},
       {"run", "springs_oscillation", "--sure", "--out", "f"},
       {"compare", "springs_oscillation", "--sure", "--algorithms", "mean,summation", "--out", "g"},
+      {"tune", "single_spring"},
       {"stability", "single_spring"},
       {"stability", "--map", "time_step", "--size", "2", "--algorithms", "mean"},
       {"stability", "--stress", "--count", "10"},
@@ -102,8 +103,8 @@ TEST(Headings, OfEveryTableAreKnownToDescribe) {
   }
   for (const auto& file : std::filesystem::recursive_directory_iterator(directory.path())) {
     const std::string name = file.path().filename().string();
-    // The worst motion found is a scenario.
-    if (!file.is_regular_file() || name.starts_with("worst_")) continue;
+    // The worst motion found and the choice of tune are scenarios.
+    if (!file.is_regular_file() || name.starts_with("worst_") || name.ends_with("_tuned.json")) continue;
     EXPECT_TRUE(is_described(name)) << file.path();
   }
   EXPECT_GT(titles.size(), 80u);

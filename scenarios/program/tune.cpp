@@ -1,0 +1,452 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "results/io/csv_writer.hpp"
+#include "results/io/json_text.hpp"
+#include "scenarios/description/bundled_scenarios.hpp"
+#include "scenarios/description/metric_sections.hpp"
+#include "scenarios/input/text_lines.hpp"
+#include "scenarios/program/compare_devices.hpp"
+#include "scenarios/program/limit.hpp"
+#include "scenarios/program/result_tables.hpp"
+#include "scenarios/run/assemble.hpp"
+#include "scenarios/run/progress_bar.hpp"
+#include "scenarios/studies/stability/device_limits.hpp"
+#include "scenarios/studies/tuning/tune.hpp"
+
+namespace hapbench {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct TuneOptions {
+  std::string scenario;
+  std::string device;
+  std::vector<std::string> algorithms;
+  double margin = 2.0;
+  std::string inside, vibration, step;
+  std::vector<std::string> bounds;
+  std::vector<std::string> over;
+  std::string damping_ratio, mass;
+  bool filters = false;
+  unsigned jobs = 0;  ///< 0: as many as the machine has
+  std::string out;
+  std::vector<std::string> overrides;
+  OutputOptions output;
+};
+
+/// All that the command found.
+struct Tuning {
+  TuneQuestion question;
+  std::string scene;  ///< name of the scene, with that of the device
+  TuneRanges ranges;  ///< of the first law
+  std::vector<TunedLaw> laws;
+  std::vector<std::size_t> ranking;
+
+  const TunedLaw* recommended() const { return ranking.empty() ? nullptr : &laws[ranking[0]]; }
+  std::size_t runs() const {
+    std::size_t sum = 0;
+    for (const TunedLaw& law : laws) sum += law.runs;
+    return sum;
+  }
+};
+
+// ---- Files and JSON
+
+template <std::size_t i>
+Cell tune_metric(const TuneMetrics& metrics) {
+  const auto found = metrics.find(kTuneMetrics[i]);
+  return found == metrics.end() ? Cell() : Cell(found->second);
+}
+
+using TrialField = Field<std::pair<const TunedLaw*, const TuneTrial*>>;
+using TrialRow = std::pair<const TunedLaw*, const TuneTrial*>;
+
+const TrialField kTrialFields[] = {
+    {{"algorithm", "", "force algorithm"}, [](const TrialRow& r) -> Cell { return r.first->algorithm; }},
+    {{"stiffness_N_per_m", "N/m", "K"}, [](const TrialRow& r) -> Cell { return r.second->stiffness; }},
+    {{"damping_ratio", "1", "zeta; empty where it has no part"},
+     [](const TrialRow& r) { return cell_if(r.second->setting.damping_ratio); }},
+    {{"mass_kg", "kg", "virtual mass; empty where it is not searched"},
+     [](const TrialRow& r) { return cell_if(r.second->setting.mass); }},
+    {{"velocity_filter", "", "of the device, as JSON; empty: the scene's"},
+     [](const TrialRow& r) -> Cell { return r.second->setting.filter; }},
+    {{"feasible", "", "true when every constraint is kept"},
+     [](const TrialRow& r) -> Cell { return r.second->feasible(); }},
+    {{"binding", "",
+      "the first constraint that is not: settled (at K), margin (up to G K), a limited metric, or runs, the bound on them"},
+     [](const TrialRow& r) -> Cell { return r.second->binding; }},
+    {{"why", "", "the same in words"}, [](const TrialRow& r) -> Cell { return r.second->why; }},
+    {{"inside_max_m", "m", "of the scene's own run at K; empty where it was not asked for"},
+     [](const TrialRow& r) { return tune_metric<0>(r.second->metrics); }},
+    {{"force_rms_above_30Hz_N", "N", "likewise"}, [](const TrialRow& r) { return tune_metric<1>(r.second->metrics); }},
+    {{"settled_force_step_max_N", "N", "likewise"},
+     [](const TrialRow& r) { return tune_metric<2>(r.second->metrics); }}};
+
+using LawField = Field<TunedLaw>;
+
+template <class Value>
+Cell of_choice(const TunedLaw& law, Value value) {
+  return law.choice ? Cell(value(*law.choice)) : Cell();
+}
+
+const LawField kLawFields[] = {
+    {{"algorithm", "", "force algorithm"}, [](const TunedLaw& l) -> Cell { return l.algorithm; }},
+    {{"feasible", "", "false when nothing that was tried keeps all constraints"},
+     [](const TunedLaw& l) -> Cell { return l.choice.has_value(); }},
+    {{"stiffness_N_per_m", "N/m", "the largest K; empty when nothing is feasible"},
+     [](const TunedLaw& l) { return of_choice(l, [](const TuneTrial& t) { return t.stiffness; }); }},
+    {{"damping_ratio", "1", "zeta with it; empty where it has no part"},
+     [](const TunedLaw& l) { return l.choice ? cell_if(l.choice->setting.damping_ratio) : Cell(); }},
+    {{"mass_kg", "kg", "virtual mass with it, of an admittance device; else empty: the scene's"},
+     [](const TunedLaw& l) { return l.choice ? cell_if(l.choice->setting.mass) : Cell(); }},
+    {{"velocity_filter", "", "with it, as JSON; empty: the scene's"},
+     [](const TunedLaw& l) { return of_choice(l, [](const TuneTrial& t) { return t.setting.filter; }); }},
+    {{"lambda_max", "1",
+      "largest eigenvalue of the mean S in the end of the run: K lambda_max is the stiffness rendered"},
+     [](const TunedLaw& l) { return of_choice(l, [](const TuneTrial& t) { return t.lambda_max; }); }},
+    {{"binding", "",
+      "what a larger K does not keep: settled, margin, a limited metric, or range, the end of the search"},
+     [](const TunedLaw& l) -> Cell { return l.binding; }},
+    {{"why", "", "the same in words"}, [](const TunedLaw& l) -> Cell { return l.why; }},
+    {{"relax", "", "where nothing is feasible: which limit to relax, and to what"},
+     [](const TunedLaw& l) -> Cell { return l.relax; }},
+    {{"gain_margin", "1", "largest factor on K, up to 64, at which all runs and the loop in contact are settled"},
+     [](const TunedLaw& l) { return cell_if(l.margins.gain); },
+     LawField::In::csv},
+    {{"delay_margin_samples", "time steps", "likewise of further delay of the device, up to 64; empty without device"},
+     [](const TunedLaw& l) { return cell_if(l.margins.delay_samples); },
+     LawField::In::csv},
+    {{"damping_margin", "1", "damping ratio of the least damped mode of the loop in contact; empty without one"},
+     [](const TunedLaw& l) { return cell_if(l.margins.damping_ratio); },
+     LawField::In::csv},
+    {{"verified", "1", "full-length runs from K to G K that show the choice to be settled"},
+     [](const TunedLaw& l) -> Cell { return std::uint64_t{l.verified}; }},
+    {{"runs", "1", "simulations in all"}, [](const TunedLaw& l) -> Cell { return std::uint64_t{l.runs}; }}};
+
+Json numbers_of(const TuneMetrics& metrics) {
+  Json json = Json::object();
+  for (const auto& [name, value] : metrics) json[name] = value;
+  return json;
+}
+
+Json law_json(const TunedLaw& law) {
+  Json json;
+  add_row(json, kLawFields, law);
+  json["margins"] = {{"gain", or_null(law.margins.gain)},
+                     {"delay_samples", or_null(law.margins.delay_samples)},
+                     {"damping_ratio", or_null(law.margins.damping_ratio)}};
+  json["metrics"] = law.choice ? numbers_of(law.choice->metrics) : Json::object();
+  json["spread"] = numbers_of(law.spread);
+  return json;
+}
+
+Json limits_json(const TuneQuestion& question) {
+  Json limits = {{"margin", question.margin}};
+  for (const auto& [name, bound] : question.limits) {
+    if (bound.min) limits[name]["min"] = *bound.min;
+    if (bound.max) limits[name]["max"] = *bound.max;
+  }
+  return limits;
+}
+
+Json tuning_json(const Tuning& tuning, const fs::path& tuned) {
+  Json laws = Json::array();
+  for (const TunedLaw& law : tuning.laws) laws.push_back(law_json(law));
+  const auto name_of = [&](std::size_t place) {
+    return place < tuning.ranking.size() ? Json(tuning.laws[tuning.ranking[place]].algorithm) : Json(nullptr);
+  };
+  return {{"algorithms", std::move(laws)},
+          {"recommended", name_of(0)},
+          {"runner_up", name_of(1)},
+          {"limits", limits_json(tuning.question)},
+          {"scenario", tuned.empty() ? Json(nullptr) : Json(tuned.string())},
+          {"runs", tuning.runs()}};
+}
+
+/// The choice as a scenario that extends the scene; sections that --set or the device changed stand in it as a whole.
+Json tuned_scenario(const Tuning& tuning, const TunedLaw& law, const std::string& scene, const fs::path& out) {
+  const Scenario choice = load_scenario(tuning.question.scenario, law.overrides).scenario;
+  const Json effective = effective_scenario(choice, out);
+  const fs::path& file = tuning.question.scenario.file;
+  const bool bundled = !fs::exists(scene);
+  Json json = {
+      {"extends", bundled ? file.stem().string() : fs::relative(fs::absolute(file), fs::absolute(out)).string()},
+      {"name", file.stem().string() + "_tuned"},
+      {"description", fmt::format("{} tuned by hapbench tune: {}", choice.name, law.algorithm)}};
+  for (const std::string& override : tuning.question.overrides) {
+    const std::string section(overridden_path(override).substr(0, overridden_path(override).find('.')));
+    if (section != "name" && section != "expect") json[section] = effective.at(section);
+  }
+  if (!law.choice->setting.filter.empty()) json["device"] = effective.at("device");
+  Json& rendering = json["rendering"];
+  for (const char* name : {"algorithm", "stiffness_N_per_m", "damping_ratio", "damping_N_s_per_m", "mass_kg"})
+    rendering[name] = effective.at("rendering").at(name);
+  if (!law.choice->setting.damping_ratio) {
+    rendering.erase("damping_ratio");
+    rendering.erase("damping_N_s_per_m");
+  }
+  return json;
+}
+
+fs::path write_tuning(const Tuning& tuning, const std::string& scene, const fs::path& out) {
+  FileSet files;
+  write_csv(out / "tune.csv", kLawFields, tuning.laws, &files);
+  std::vector<TrialRow> trials;
+  for (const TunedLaw& law : tuning.laws)
+    for (const TuneTrial& trial : law.trials) trials.emplace_back(&law, &trial);
+  write_csv(out / "tune_trials.csv", kTrialFields, trials, &files);
+  fs::path tuned;
+  if (const TunedLaw* law = tuning.recommended()) {
+    tuned = out / (tuning.question.scenario.file.stem().string() + "_tuned.json");
+    files.write(tuned, json_text(tuned_scenario(tuning, *law, scene, out)));
+  }
+  files.commit();
+  return tuned;
+}
+
+// ---- Text
+
+std::string limits_text(const Tuning& tuning) {
+  std::string text = fmt::format("largest K that is settled up to {:g} K", tuning.question.margin);
+  for (const auto& [name, bound] : tuning.question.limits) {
+    if (bound.min) text += fmt::format(", {} >= {:g}", name, *bound.min);
+    if (bound.max) text += fmt::format(", {} <= {:g}", name, *bound.max);
+  }
+  const auto range = [](const char* name, const std::optional<Range>& found) {
+    return found ? fmt::format("; {} {:.3g} ... {:.3g}", name, found->from, found->to) : "";
+  };
+  return text + range("zeta", tuning.ranges.damping_ratio) + range("virtual mass [kg]", tuning.ranges.mass);
+}
+
+std::string setting_text(const TuneTrial& choice) {
+  std::string text = fmt::format("K = {:.4g} N/m", choice.stiffness);
+  if (choice.setting.damping_ratio) text += fmt::format(", zeta = {:.3g}", *choice.setting.damping_ratio);
+  if (choice.setting.mass) text += fmt::format(", virtual mass {:.3g} kg", *choice.setting.mass);
+  return choice.setting.filter.empty() ? text : text + ", velocity filter " + choice.setting.filter;
+}
+
+std::string margins_text(const TuneMargins& margins) {
+  const auto value = [](const std::optional<double>& margin, double most) {
+    return !margin ? "-" : fmt::format("{}{:.3g}", *margin >= most ? "over " : "", *margin);
+  };
+  return fmt::format("gain {}, delay {} samples more, damping ratio of the least damped mode {}",
+                     value(margins.gain, kMostGain * 0.99), value(margins.delay_samples, kMostDelay),
+                     significant(margins.damping_ratio, 2));
+}
+
+std::string metrics_text(const TunedLaw& law) {
+  std::vector<std::string> texts;
+  for (const char* name : kTuneMetrics) {
+    const auto value = law.choice->metrics.find(name);
+    if (value == law.choice->metrics.end()) continue;
+    const auto spread = law.spread.find(name);
+    texts.push_back(fmt::format("{} {:.3g}{}", name, value->second,
+                                spread == law.spread.end() ? "" : fmt::format(" +- {:.1g}", spread->second)));
+  }
+  return texts.empty() ? "no metrics" : fmt::format("{}", fmt::join(texts, ", "));
+}
+
+/// The price of the runner-up: its metrics over those of the recommended law.
+std::string cost_text(const TunedLaw& best, const TunedLaw& other) {
+  std::vector<std::string> texts;
+  for (const char* name : {"inside_settled_m", "force_rms_above_30Hz_N", "settled_force_step_max_N"}) {
+    const auto a = best.choice->metrics.find(name), b = other.choice->metrics.find(name);
+    if (a == best.choice->metrics.end() || b == other.choice->metrics.end() || !(a->second > 0.0)) continue;
+    texts.push_back(fmt::format("{:.2g} times the {}", b->second / a->second, name));
+  }
+  const double stiffness = other.choice->stiffness * other.choice->lambda_max /
+                           std::max(1e-300, best.choice->stiffness * best.choice->lambda_max);
+  texts.push_back(fmt::format("{:.2g} times the rendered stiffness", stiffness));
+  return fmt::format("{} ({}): {}", other.algorithm, setting_text(*other.choice), fmt::join(texts, ", "));
+}
+
+std::string recommendation_text(const Tuning& tuning) {
+  const TunedLaw* best = tuning.recommended();
+  if (best == nullptr) return "nothing is feasible\n";
+  std::string text = bold(stdout, fmt::format("use {}, {}", best->algorithm, setting_text(*best->choice))) + "\n";
+  const auto line = [&](const char* name, const std::string& what) { text += entry(name, what, 2, 14); };
+  line("stops at", fmt::format("{}: {}", best->binding, best->why));
+  line("margins", margins_text(best->margins));
+  line("expect", fmt::format("{} (+-: standard deviation over {} seeds)", metrics_text(*best), kSeeds));
+  if (tuning.ranking.size() > 1) line("runner-up", cost_text(*best, tuning.laws[tuning.ranking[1]]));
+  line("verified", fmt::format("by {} full-length runs from K to {:g} K, of {} runs in all", best->verified,
+                               tuning.question.margin, tuning.runs()));
+  return text;
+}
+
+Table tune_table(const std::vector<TunedLaw>& laws) {
+  Table table(tune_headings());
+  for (const TunedLaw& law : laws) {
+    if (!law.choice) {
+      table.add({law.algorithm, "none", "-", "-", "-", "-", "-", "-", law.binding});
+      continue;
+    }
+    const auto metric = [&](const char* name, double unit) {
+      const auto found = law.choice->metrics.find(name);
+      return found == law.choice->metrics.end() ? "-" : significant(found->second * unit, 3);
+    };
+    table.add({law.algorithm, significant(law.choice->stiffness, 4), significant(law.choice->setting.damping_ratio, 3),
+               significant(law.margins.gain, 3), significant(law.margins.delay_samples, 3),
+               metric("inside_settled_m", 1e3), metric("force_rms_above_30Hz_N", 1.0),
+               metric("settled_force_step_max_N", 1.0), law.binding});
+  }
+  return table;
+}
+
+std::string tuning_text(const Tuning& tuning) {
+  std::string text = wrapped(fmt::format("{}: {}", tuning.scene, limits_text(tuning)), 0) + "\n" +
+                     recommendation_text(tuning) + "\n" + tune_table(tuning.laws).text() + "\n";
+  for (const TunedLaw& law : tuning.laws) {
+    if (!law.choice)
+      text += wrapped(fmt::format("{}: nothing is feasible, {}; {}", law.algorithm, law.why, law.relax), 0);
+  }
+  return text;
+}
+
+// ---- Command
+
+void add_limit_option(const char* option, const std::string& text, double unit, const char* metric,
+                      TuneQuestion& question) {
+  if (text.empty()) return;
+  const auto most = finite_number(text);
+  if (!most || !(*most > 0.0)) throw InputError(fmt::format("{}: got \"{}\"; allowed: a number > 0", option, text));
+  question.limits[metric].max = *most * unit;
+}
+
+std::string device_text(const std::string& name, TuneQuestion& question) {
+  if (name.empty()) return "";
+  ComparedDevice device;
+  if (name.ends_with(".json")) {
+    device = device_of_file(name);
+  } else {
+    const std::vector<ComparedDevice> all = compared_devices();
+    require_names("--device: got", {name}, names_of(all, &ComparedDevice::name));
+    device = *std::ranges::find(all, name, &ComparedDevice::name);
+  }
+  question.overrides = overrides_on(device, question.scenario, question.overrides);
+  return " on " + device.name;
+}
+
+TuneQuestion tune_question(const TuneOptions& options, const fs::path& file) {
+  TuneQuestion question;
+  question.scenario = read_scenario_text(file);
+  question.overrides = options.overrides;
+  if (!(options.margin > 1.0 && options.margin <= 16.0))
+    throw InputError(fmt::format("--margin: got {}; allowed: more than 1, at most 16", options.margin));
+  question.margin = options.margin;
+  add_limit_option("--max-inside", options.inside, 1e-3, kTuneMetrics[0], question);
+  add_limit_option("--max-vibration", options.vibration, 1.0, kTuneMetrics[1], question);
+  add_limit_option("--max-step", options.step, 1.0, kTuneMetrics[2], question);
+  for (const std::string& bound : options.bounds) add_bound(bound, question.limits);
+  const std::vector<std::string> families(std::begin(kFamilyNames), std::end(kFamilyNames));
+  if (!options.over.empty()) question.over.clear();
+  for (const std::string& name : chosen_names("--over: got", options.over, families))
+    question.over.push_back(static_cast<FamilyOver>(std::ranges::find(families, name) - families.begin()));
+  if (const auto range = range_of("--damping-ratio", options.damping_ratio)) question.damping_ratio = *range;
+  question.mass = range_of("--mass", options.mass);
+  for (const auto* range : {&question.damping_ratio, question.mass ? &*question.mass : &question.damping_ratio})
+    if (!(range->from > 0.0))
+      throw InputError("--damping-ratio and --mass: got a range that reaches 0; allowed: a:b with 0 < a < b");
+  if (question.mass) question.mass->logarithmic = true;
+  question.filters = options.filters;
+  question.threads = options.jobs == 0 ? static_cast<unsigned>(available_threads()) : options.jobs;
+  return question;
+}
+
+int tune(const TuneOptions& options) {
+  const fs::path file = find_scenario(options.scenario);
+  Tuning tuning;
+  tuning.question = tune_question(options, file);
+  const std::string device = device_text(options.device, tuning.question);
+  const LoadedScenario loaded = load_scenario(tuning.question.scenario, tuning.question.overrides);
+  const std::vector<std::string> algorithms =
+      options.algorithms.empty() ? std::vector<std::string>{loaded.scenario.rendering.algorithm}
+                                 : chosen_names("--algorithms: got", options.algorithms, all_algorithms());
+  print_warnings(loaded.warnings);
+  print_warnings(check_named_files(loaded));
+  tuning.scene = loaded.scenario.name + device;
+  tuning.ranges = with_file(loaded, [&] { return tune_ranges(tuning.question, algorithms.front()); });
+  const fs::path out = results_directory(options.out, "tune_" + file.stem().string());
+  require_writable_directory(out);
+  tuning.laws.resize(algorithms.size());
+  ProgressBar bar("tune", algorithms.size(), !options.output.quiet);
+  for (std::size_t i = 0; i < algorithms.size(); ++i) {
+    tuning.laws[i] = tuned_law(tuning.question, algorithms[i]);
+    bar.show(i + 1);
+  }
+  tuning.ranking = ranking_of(tuning.laws);
+  const fs::path tuned = write_tuning(tuning, options.scenario, out);
+  std::string end = fmt::format("\nresults in {0}\n\"hapbench plot {0}\" draws them\n", out.string());
+  if (!tuned.empty()) end = fmt::format("\n\"hapbench run {}\" gives these metrics\n", tuned.string()) + end.substr(1);
+  print(options.output, tuning_text(tuning) + end, tuning_json(tuning, tuned));
+  return kSuccess;
+}
+
+}  // namespace
+
+std::vector<Column> tune_columns() {
+  return columns_of(kLawFields);
+}
+
+std::vector<Column> tune_trial_columns() {
+  return columns_of(kTrialFields);
+}
+
+std::vector<Table::Column> tune_headings() {
+  return {{"algorithm", false},
+          {"K", true, "of tune: the largest stiffness that keeps margin and limits [N/m]"},
+          {"zeta", true, "of tune: the damping ratio with it"},
+          {"gain", true, "of tune: gain_margin, the factor on K up to which all runs are settled"},
+          {"delay", true, "of tune: delay_margin_samples"},
+          {"inside mm", true, "inside_settled_m"},
+          {"vibration N", true, "force_rms_above_30Hz_N"},
+          {"step N", true, "settled_force_step_max_N"},
+          {"binding", false, "of tune: what a larger K does not keep"}};
+}
+
+void add_tune(CommandLine& line) {
+  auto [command, options] =
+      line.command("tune", "Say which stiffness and damping to use, in a scene on a device", tune);
+  command.add("scenario", options.scenario, "scenario file, or name of a bundled scenario")
+      .words(all_scenarios)
+      .required();
+  command.add("--device", options.device, "a preset, ideal, admittance, or a file NAME.json (default: the scene's)")
+      .words([] { return names_of(compared_devices(), &ComparedDevice::name); });
+  command.add("--algorithms", options.algorithms, "names separated by commas, or all (default: the scene's own)")
+      .words([] { return with_all(all_algorithms()); })
+      .comma_separated();
+  command.add("--margin", options.margin, "settled up to so many times K (default: 2)");
+  command.add("--max-inside", options.inside, "most that any point of the tool is inside [mm]: inside_max_m");
+  command.add("--max-vibration", options.vibration, "most force above 30 Hz [N rms]: force_rms_above_30Hz_N");
+  command.add("--max-step", options.step, "largest force step in settled contact [N]: settled_force_step_max_N");
+  command.add("--bound", options.bounds, "a limit on any other metric: metric=most or metric=least:most; repeatable");
+  command
+      .add("--over", options.over, "families of runs that have to hold: hands, seeds, speeds, or all (default: hands)")
+      .words([] {
+        return with_all({std::begin(kFamilyNames), std::end(kFamilyNames)});
+      })
+      .comma_separated();
+  command.add("--damping-ratio", options.damping_ratio,
+              "a:b, range of zeta; on an impedance device by the mass of its handle (default: 0.01:10)");
+  command.add("--mass", options.mass,
+              "a:b, range of the virtual mass on an admittance device [kg] (default: half to twice the scene's)");
+  command.flag("--filters", options.filters, "on an impedance device choose the velocity filter, too");
+  add_jobs(command, options.jobs, "runs at once; no result depends on it (default: one per thread)");
+  command.add("--out", options.out, "directory of the results (default: results/out/tune_NAME)");
+  add_overrides(command, options.overrides, "override a field of all runs: path=value");
+  add_output_options(command, options.output);
+  command.footer(fmt::format(
+      "For each law the largest K, over zeta (and virtual mass on an admittance device), at which the scene's own run and each of the "
+      "family is settled (stable or dying out, \"hapbench describe stability\"; where a script moves the tool, no more than 1 mm/s rms above 30 Hz at the handle) at K and at margin x K, the loop of "
+      "device, hand and surface while they touch is stable as far by its eigenvalues, and all limits are kept at K. Hands are "
+      "springs of 100 and 1000 N/m, on an impedance device's handle with 0.1 and 0.5 kg; the loop's, also none. Recommended is the law "
+      "that settles least deep; on springs, the one that renders most stiffness. At most {} runs a law search, and the choice is verified by runs of full length at {} gains. "
+      "Where nothing is feasible, it says which limit to relax. Files: tune.csv, tune_trials.csv, NAME_tuned.json, which run takes.",
+      kMostTuneRuns, kVerifiedGains));
+}
+
+}  // namespace hapbench

@@ -1,0 +1,590 @@
+#include "scenarios/studies/tuning/tune.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <functional>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "algorithms/stages/damping_and_limits.hpp"
+#include "device_model/theory/linear_loops.hpp"
+#include "scenarios/batch/parallel_for.hpp"
+#include "scenarios/batch/statistics.hpp"
+#include "scenarios/run/assemble.hpp"
+#include "scenarios/run/run_scenario.hpp"
+#include "scenarios/studies/stability/field_limit.hpp"
+#include "scenarios/studies/stability/stability_limits.hpp"
+#include "sim/core/math.hpp"
+
+namespace hapbench {
+namespace {
+
+constexpr const char* kStiffness = "rendering.stiffness_N_per_m";
+constexpr double kResolution = 5e-3;  // of K
+constexpr double kFinest = 1.004;     // ratio of zeta, or of the mass, at which the search ends
+constexpr const char* kFilters[] = {R"({"type":"difference"})", R"({"type":"low_pass","cutoff_Hz":50})",
+                                    R"({"type":"low_pass","cutoff_Hz":100})", R"({"type":"low_pass","cutoff_Hz":200})",
+                                    R"({"type":"adaptive_window"})"};
+
+const ImpedanceDeviceConfig* impedance_of(const Scenario& scenario) {
+  return std::get_if<ImpedanceDeviceConfig>(&scenario.device);
+}
+
+bool stay_in_contact(const Scenario& scenario) {
+  try {
+    require_bilateral_springs(scenario);
+    return true;
+  } catch (const InputError&) {
+    return false;
+  }
+}
+
+/// The runs of one family member at K and G K.
+struct MemberRuns {
+  JudgedRun at_K, at_GK;
+};
+
+/// Tunes one law of a question.
+class Tuner {
+ public:
+  Tuner(const TuneQuestion& question, const std::string& algorithm)
+      : question_(question), algorithm_(algorithm), ranges_(tune_ranges(question, algorithm)) {
+    const LoadedScenario own = at({}, ranges_.stiffness.from, {});
+    shell_ = make_shell(own.scenario, own.files);
+    family_.push_back({"the scene's own run"});
+    for (const FamilyOver over : question.over) {
+      for (FamilyMember& member : family_of(own, over)) family_.push_back(std::move(member));
+      over_hands_ = over_hands_ || over == FamilyOver::hands;
+    }
+    if (stay_in_contact(own.scenario)) {
+      const Mat3 S = stiffness_tensor_of(own.scenario);
+      springs_lambda_ = Eigen::SelfAdjointEigenSolver<Mat3>(S, Eigen::EigenvaluesOnly).eigenvalues()[2];
+    }
+  }
+
+  TunedLaw tuned() {
+    TunedLaw law;
+    law.algorithm = algorithm_;
+    Range range = ranges_.stiffness;
+    range.to /= question_.margin;
+    for (bool again = true; again;) {
+      search(range);
+      again = false;
+      if (!best_) break;
+      const auto failing = failing_gain(*best_, law.verified);
+      if (!failing) break;
+      // Not settled at a gain within the margin: any K whose margin reaches there is out.
+      range.to = best_->stiffness * *failing / question_.margin * (1.0 - kResolution);
+      again = range.to > range.from;
+      beyond_ = {};
+      cap_ = fmt::format("at {:.4g} N/m it is not settled", best_->stiffness * *failing);
+      best_.reset();
+    }
+    if (best_) {
+      if (best_->metrics.empty()) best_->metrics = metrics_of(*best_, 1)[0];
+      law.choice = best_;
+      law.binding = !beyond_.binding.empty() ? beyond_.binding : cap_.empty() ? "range" : "margin";
+      law.why = !beyond_.why.empty() ? beyond_.why : cap_.empty() ? "the end of the range that was searched" : cap_;
+      law.margins = margins(*best_);
+      law.spread = spread(*best_);
+      law.overrides = overrides(best_->setting, best_->stiffness);
+      along_stiffness(*best_);
+    } else {
+      explain(law);
+    }
+    for (const auto& [key, trial] : trials_) law.trials.push_back(trial);
+    law.runs = runs_;
+    return law;
+  }
+
+ private:
+  // ---- Runs
+
+  std::vector<std::string> overrides(const TuneSetting& setting, double stiffness) const {
+    std::vector<std::string> all = question_.overrides;
+    all.push_back("rendering.algorithm=" + algorithm_);
+    if (setting.damping_ratio) {
+      all.push_back("rendering.damping_N_s_per_m=null");
+      all.push_back(fmt::format("rendering.damping_ratio={}", *setting.damping_ratio));
+    }
+    if (setting.mass) all.push_back(fmt::format("rendering.mass_kg={}", *setting.mass));
+    if (!setting.filter.empty()) all.push_back("device.velocity_filter=" + setting.filter);
+    all.push_back(fmt::format("{}={}", kStiffness, stiffness));
+    return all;
+  }
+  LoadedScenario at(const TuneSetting& setting, double stiffness, const FamilyMember& member,
+                    const std::string& more = {}) const {
+    std::vector<std::string> all = overrides(setting, stiffness);
+    all.insert(all.end(), member.overrides.begin(), member.overrides.end());
+    if (!more.empty()) all.push_back(more);
+    return load_scenario(question_.scenario, all);
+  }
+
+  void in_parallel(std::size_t count, const std::function<void(std::size_t)>& job) {
+    runs_ += count;
+    for_each_job(count, {question_.threads, ""}, job);
+  }
+  /// Where a script moves the tool, it is never at rest: then what is felt decides, as in `compare --devices`.
+  JudgedRun judged(const LoadedScenario& loaded) const {
+    StabilityRule rule;
+    if (is_moved(loaded.scenario)) rule.most_vibration = kMostVibration;
+    return judged_run(loaded, shell_, rule);
+  }
+  TuneMetrics metrics_of(const LoadedScenario& loaded) const {
+    const RunSummary summary = run_with_shell(loaded, shell_, std::nullopt, false).summary;
+    TuneMetrics metrics;
+    const auto add = [&](const std::string& name) {
+      if (const auto value = metric_of(summary, name)) metrics[name] = *value;
+    };
+    for (const char* name : kTuneMetrics) add(name);
+    for (const auto& [name, bound] : question_.limits) add(name);
+    return metrics;
+  }
+  /// The runs of the members [first, last).
+  std::vector<MemberRuns> runs_of(const TuneTrial& trial, std::size_t first, std::size_t last) {
+    std::vector<MemberRuns> runs(last - first);
+    in_parallel(2 * runs.size(), [&](std::size_t job) {
+      const bool margin = job % 2 != 0;
+      (margin ? runs[job / 2].at_GK : runs[job / 2].at_K) =
+          judged(at(trial.setting, (margin ? question_.margin : 1.0) * trial.stiffness, family_[first + job / 2]));
+    });
+    return runs;
+  }
+  /// The metrics of the members [0, last).
+  std::vector<TuneMetrics> metrics_of(const TuneTrial& trial, std::size_t last) {
+    std::vector<TuneMetrics> metrics(last);
+    in_parallel(last, [&](std::size_t i) { metrics[i] = metrics_of(at(trial.setting, trial.stiffness, family_[i])); });
+    return metrics;
+  }
+
+  // ---- The loop in contact
+
+  /// The maps of a step of the loop with each hand it may have; with one empty name where there is but one.
+  std::vector<std::pair<std::string, Eigen::MatrixXd>> loops(const Scenario& scenario, double lambda) const {
+    if (std::holds_alternative<IdealDeviceFields>(scenario.device)) {
+      const RenderingConfig& r = scenario.rendering;
+      const SpringDamper tool{r.stiffness, normal_damping(r),       r.mass, scenario.time.step,
+                              lambda,      scenario.integrator.type};
+      return {{"", tool.step_matrix()}};
+    }
+    DeviceLoop device = device_loop(scenario, lambda);
+    std::vector<std::pair<std::string, Eigen::MatrixXd>> all = {{"", device.state_matrix()}};
+    auto* sampled = std::get_if<SampledLoop>(&device.loop);
+    const bool held = spring_of(scenario.hand) != nullptr || std::holds_alternative<DragHandFields>(scenario.hand);
+    if (sampled == nullptr || !held || !over_hands_) return all;
+    for (const AttachedHand& hand : hand_family()) {
+      sampled->hand = hand;
+      all.emplace_back(
+          hand.mass == 0.0 ? "no hand" : fmt::format("a hand of {} kg and {} N/m", hand.mass, hand.stiffness),
+          sampled->state_matrix());
+    }
+    return all;
+  }
+  /// The hand with which the loop is unstable somewhere from K to `gain` K; none where there is none.
+  std::optional<std::string> unstable_loop(Scenario scenario, double lambda, double stiffness, double gain) const {
+    if (!(lambda > 0.0)) return std::nullopt;
+    constexpr double kFiner = 1.1;
+    for (double K = gain * stiffness; K * kFiner > stiffness; K /= kFiner) {
+      scenario.rendering.stiffness = K;
+      for (const auto& [hand, step] : loops(scenario, lambda)) {
+        if (!is_stable_step(step)) return hand;
+      }
+    }
+    return std::nullopt;
+  }
+
+  // ---- Trials
+
+  static std::string with(const FamilyMember& member) {
+    return member.overrides.empty() ? "" : fmt::format(" ({})", member.name);
+  }
+
+  /// Finds the first of the members from `first` on that is not settled with the margin.
+  void judge_motion(TuneTrial& trial, std::size_t first, std::size_t last) {
+    const std::vector<MemberRuns> runs = runs_of(trial, first, last);
+    if (first == 0) trial.lambda_max = runs[0].at_K.settled.lambda_max;
+    for (std::size_t i = first; i < last; ++i) {
+      const auto& [at_K, at_GK] = runs[i - first];
+      if (!is_stable(at_K.verdict)) {
+        trial.too_soft = at_K.verdict >= RunVerdict::thrown_out && at_K.verdict <= RunVerdict::went_through;
+        return fail(trial, "settled", fmt::format("{}{}", run_verdict_name(at_K.verdict), with(family_[i])));
+      }
+      trial.settled = true;
+      if (!is_stable(at_GK.verdict)) {
+        return fail(trial, "margin",
+                    fmt::format("at {:g} K {}{}", question_.margin, run_verdict_name(at_GK.verdict), with(family_[i])));
+      }
+      if (springs_lambda_) continue;  // was asked before the runs
+      const Scenario scenario = at(trial.setting, trial.stiffness, family_[i]).scenario;
+      if (const auto hand = unstable_loop(scenario, at_K.settled.lambda_max, trial.stiffness, question_.margin))
+        return fail(trial, "margin", loop_text(hand->empty() ? family_[i].name : *hand));
+    }
+  }
+
+  /// Finds the first limit that a member does not keep, and the worst of each metric.
+  void judge_limits(TuneTrial& trial) {
+    if (question_.limits.empty()) return;
+    const std::vector<TuneMetrics> metrics = metrics_of(trial, family_.size());
+    trial.metrics = metrics[0];
+    for (const auto& [name, bound] : question_.limits) {
+      for (std::size_t i = 0; i < metrics.size(); ++i) {
+        const auto found = metrics[i].find(name);
+        const bool known = found != metrics[i].end();
+        const double value = known ? found->second : 0.0;
+        if (known) trial.worst[name] = std::max(value, trial.worst.try_emplace(name, value).first->second);
+        const bool more = known && bound.max && value > *bound.max, less = known && bound.min && value < *bound.min;
+        if ((known && !more && !less) || !trial.feasible()) continue;
+        trial.too_soft = more && (name.starts_with("inside") || name.starts_with("depth"));
+        fail(trial, name, (known ? fmt::format("{} {:.4g}", name, value) : name + " has no value") + with(family_[i]));
+      }
+    }
+    trial.limits_alone = !trial.feasible();
+  }
+
+  static void fail(TuneTrial& trial, const std::string& binding, const std::string& why) {
+    trial.binding = binding;
+    trial.why = why;
+  }
+  std::string loop_text(const std::string& hand) const {
+    return fmt::format("below {:g} K the loop in contact is unstable with {}", question_.margin, hand);
+  }
+
+  const TuneTrial& tried(const TuneSetting& setting, double stiffness) {
+    const auto [place, is_new] = trials_.try_emplace({setting, stiffness});
+    TuneTrial& trial = place->second;
+    if (!is_new) return trial;
+    trial.setting = setting;
+    trial.stiffness = stiffness;
+    if (springs_lambda_) {
+      const Scenario scenario = at(setting, stiffness, family_[0]).scenario;
+      const auto hand = unstable_loop(scenario, *springs_lambda_, stiffness, question_.margin);
+      if (hand) {
+        fail(trial, "margin", loop_text(hand->empty() ? "the device alone" : *hand));
+        return trial;
+      }
+    }
+    if (runs_ >= kMostTuneRuns) {
+      fail(trial, "runs", fmt::format("the search ended after {} runs", runs_));
+      return trial;
+    }
+    judge_motion(trial, 0, 1);
+    if (trial.feasible() && family_.size() > 1) judge_motion(trial, 1, family_.size());
+    if (trial.feasible()) judge_limits(trial);
+    return trial;
+  }
+  bool feasible(const TuneSetting& setting, double stiffness) { return tried(setting, stiffness).feasible(); }
+
+  // ---- Search
+
+  void search(const Range& range) {
+    const std::vector<TuneSetting> all = grid();
+    for (const TuneSetting& setting : all) improve(setting, range);
+    if (!best_) return;
+    const auto stepped = [](std::optional<double>& value, const std::optional<Range>& range_of, double ratio) {
+      if (!range_of) return false;
+      value = std::clamp(*value * ratio, range_of->from, range_of->to);
+      return true;
+    };
+    for (double ratio = math::pow(10.0, 0.125); ratio > kFinest; ratio = std::sqrt(ratio)) {
+      for (bool better = true; better;) {
+        better = false;
+        for (const double step : {ratio, 1.0 / ratio}) {
+          TuneSetting next = best_->setting;
+          if (stepped(next.damping_ratio, ranges_.damping_ratio, step)) better = improve(next, range) || better;
+          next = best_->setting;
+          if (stepped(next.mass, ranges_.mass, step)) better = improve(next, range) || better;
+        }
+      }
+    }
+  }
+
+  /// The scene's own setting first, which with equal K stays.
+  std::vector<TuneSetting> grid() const {
+    const Scenario own = at({}, ranges_.stiffness.from, {}).scenario;
+    std::vector<std::optional<double>> ratios = {std::nullopt};
+    if (ranges_.damping_ratio) {
+      const auto [from, to, logarithmic] = *ranges_.damping_ratio;
+      ratios = {std::clamp(own.rendering.damping_ratio, from, to)};
+      const int parts = std::max(1, static_cast<int>(std::round(4.0 * math::log(to / from) / math::log(10.0))));
+      for (int i = 0; i <= parts; ++i)
+        ratios.emplace_back(ranges_.damping_ratio->value_at(static_cast<double>(i) / parts));
+    }
+    std::vector<std::optional<double>> masses = {std::nullopt};
+    if (ranges_.mass) {
+      const auto [from, to, logarithmic] = *ranges_.mass;
+      masses = {std::clamp(own.rendering.mass, from, to), from, to};
+    }
+    std::vector<std::string> filters = {""};
+    if (question_.filters && impedance_of(own) != nullptr)
+      filters.insert(filters.end(), std::begin(kFilters), std::end(kFilters));
+    std::vector<TuneSetting> settings;
+    for (const std::string& filter : filters)
+      for (const auto& mass : masses)
+        for (const auto& ratio : ratios) settings.push_back({ratio, mass, filter});
+    return settings;
+  }
+
+  /// Raises K at this setting if it can be raised beyond the best; true if it was.
+  bool improve(const TuneSetting& setting, const Range& range) {
+    SearchWay way{.range = range, .resolution = kResolution};
+    way.range.logarithmic = true;
+    if (best_) {
+      way.range.from = best_->stiffness * (1.0 + kResolution);
+      if (!(way.range.from < range.to)) return false;
+      if (!feasible(setting, way.range.from)) {
+        if (setting == best_->setting) beyond_ = tried(setting, way.range.from);
+        return false;
+      }
+    }
+    const auto holds = [&](double part) { return feasible(setting, way.value_at(part)); };
+    std::map<double, bool> scan;
+    for (int i = 0; i <= kEdgeIntervals; ++i) {
+      const double part = static_cast<double>(i) / kEdgeIntervals;
+      scan[part] = holds(part);
+    }
+    if (const auto between = window(setting, way, scan)) scan[*between] = true;
+    const FoundEdge edge = find_edge(way, std::move(scan), holds, kResolution, false);
+    if (!edge.stable) return false;
+    best_ = tried(setting, way.value_at(*edge.stable));
+    beyond_ = edge.beyond ? tried(setting, way.value_at(*edge.beyond)) : TuneTrial();
+    return true;
+  }
+
+  /// Where no value of a scan is feasible: one between those that are too soft and those that are too stiff.
+  std::optional<double> window(const TuneSetting& setting, const SearchWay& way, const std::map<double, bool>& scan) {
+    const auto soft = [&](double part) { return tried(setting, way.value_at(part)).too_soft; };
+    for (auto at = scan.begin(); std::next(at) != scan.end(); ++at) {
+      if (at->second || !soft(at->first) || std::next(at)->second || soft(std::next(at)->first)) continue;
+      double low = at->first, high = std::next(at)->first;
+      while (way.apart(low, high, kResolution)) {
+        const double middle = 0.5 * (low + high);
+        if (feasible(setting, way.value_at(middle))) return middle;
+        (soft(middle) ? low : high) = middle;
+      }
+    }
+    return std::nullopt;
+  }
+
+  // ---- What is known of a choice
+
+  /// True when the runs of the whole family, with this gain and further override, are settled.
+  bool settled(const TuneTrial& trial, double gain, const std::string& more = {}) {
+    std::vector<char> stable(family_.size());
+    in_parallel(family_.size(), [&](std::size_t i) {
+      const LoadedScenario loaded = at(trial.setting, gain * trial.stiffness, family_[i], more);
+      const double lambda = springs_lambda_.value_or(trial.lambda_max);
+      stable[i] = !unstable_loop(loaded.scenario, lambda, trial.stiffness, gain) && is_stable(judged(loaded).verdict);
+    });
+    return std::ranges::all_of(stable, [](char one) { return one != 0; });
+  }
+
+  /// The first of the gains from 1 to G at which the choice is not settled.
+  std::optional<double> failing_gain(const TuneTrial& trial, std::size_t& verified) {
+    verified = 0;
+    for (int i = 0; i < kVerifiedGains; ++i) {
+      const double gain = math::pow(question_.margin, static_cast<double>(i) / (kVerifiedGains - 1));
+      if (!settled(trial, gain)) return gain;
+      verified += family_.size();
+    }
+    return std::nullopt;
+  }
+
+  /// The last of the values along a way up to which `holds`.
+  static double last_of(const SearchWay& way, const std::function<bool(double)>& holds) {
+    const auto at_part = [&](double part) { return holds(way.value_at(part)); };
+    std::map<double, bool> scan;
+    for (int i = 0; i <= kEdgeIntervals; ++i) {
+      const double part = static_cast<double>(i) / kEdgeIntervals;
+      scan[part] = (i == 0 || std::prev(scan.end())->second) && at_part(part);
+    }
+    return way.value_at(find_edge(way, scan, at_part, way.resolution, false).stable.value_or(0.0));
+  }
+
+  TuneMargins margins(const TuneTrial& choice) {
+    TuneMargins margins;
+    const double most = ranges_.stiffness.to / choice.stiffness;
+    if (most > question_.margin) {
+      const SearchWay gains{.range = {question_.margin, std::min(kMostGain, most), true}, .resolution = kResolution};
+      margins.gain = last_of(gains, [&](double gain) { return settled(choice, gain); });
+    }
+    const Scenario scenario = at(choice.setting, choice.stiffness, family_[0]).scenario;
+    const auto* admittance = std::get_if<AdmittanceDeviceConfig>(&scenario.device);
+    if (const auto* impedance = impedance_of(scenario); impedance != nullptr || admittance != nullptr) {
+      const double own = impedance != nullptr ? impedance->delay_samples : static_cast<double>(admittance->servo.delay);
+      const char* path = impedance != nullptr ? "device.delay_samples" : "device.servo.delay_samples";
+      const SearchWay delays{
+          .range = {0.0, kMostDelay}, .whole = impedance == nullptr, .resolution = 0.02 / kMostDelay};
+      margins.delay_samples =
+          last_of(delays, [&](double more) { return settled(choice, 1.0, fmt::format("{}={}", path, own + more)); });
+    }
+    const double lambda = springs_lambda_.value_or(choice.lambda_max);
+    if (!(lambda > 0.0)) return margins;
+    for (const auto& [hand, step] : loops(scenario, lambda)) {
+      const Eigen::VectorXcd modes = Eigen::EigenSolver<Eigen::MatrixXd>(step, false).eigenvalues();
+      for (const std::complex<double>& z : modes) {
+        const double size = math::hypot(z.real(), z.imag());
+        if (size < 1e-9) continue;  // a delay line
+        const double decay = -math::log(size), ratio = decay / math::hypot(decay, math::atan2(z.imag(), z.real()));
+        if (decay != 0.0) margins.damping_ratio = std::min(margins.damping_ratio.value_or(1.0), ratio);
+      }
+    }
+    return margins;
+  }
+
+  TuneMetrics spread(const TuneTrial& choice) {
+    const LoadedScenario own = at(choice.setting, choice.stiffness, family_[0]);
+    const std::vector<FamilyMember> seeds = family_of(own, FamilyOver::seeds);
+    std::vector<TuneMetrics> all(seeds.size() + 1, choice.metrics);
+    in_parallel(seeds.size(),
+                [&](std::size_t i) { all[i] = metrics_of(at(choice.setting, choice.stiffness, seeds[i])); });
+    TuneMetrics spread;
+    for (const auto& [name, value] : choice.metrics) {
+      std::vector<double> values;
+      for (const TuneMetrics& metrics : all)
+        if (const auto found = metrics.find(name); found != metrics.end()) values.push_back(found->second);
+      if (values.size() == all.size()) spread[name] = standard_deviation(values);
+    }
+    return spread;
+  }
+
+  /// Trials from a thirtieth of the choice's stiffness to thirty times, for pictures.
+  void along_stiffness(const TuneTrial& choice) {
+    const TuneSetting setting = choice.setting;
+    const Range around{choice.stiffness / 30.0, choice.stiffness * 30.0, true};
+    for (int i = 0; i <= kEdgeIntervals; ++i) {
+      const double K = around.value_at(static_cast<double>(i) / kEdgeIntervals);
+      if (!(K > ranges_.stiffness.from && K < ranges_.stiffness.to / question_.margin)) continue;
+      tried(setting, K);
+      TuneTrial& trial = trials_.at({setting, K});
+      if (trial.settled && trial.metrics.empty()) trial.metrics = metrics_of(trial, 1)[0];
+    }
+  }
+
+  // ---- Nothing feasible
+
+  /// How far a trial is beyond its limits: how many it does not keep, and the largest ratio of a value to what is
+  /// allowed; infinite where there is none.
+  std::pair<int, double> excess(const TuneTrial& trial) const {
+    std::pair<int, double> found{0, 0.0};
+    for (const auto& [name, bound] : question_.limits) {
+      const auto value = trial.worst.find(name);
+      const bool known = value != trial.worst.end() && bound.max && *bound.max > 0.0;
+      const double ratio = known ? value->second / *bound.max : std::numeric_limits<double>::infinity();
+      found.first += ratio > 1.0;
+      found.second = std::max(found.second, ratio);
+    }
+    return found;
+  }
+
+  void explain(TunedLaw& law) {
+    const TuneTrial* nearest = nullptr;
+    for (const auto& [key, trial] : trials_) {
+      if (trial.limits_alone && (nearest == nullptr || excess(trial) < excess(*nearest))) nearest = &trial;
+    }
+    if (nearest != nullptr) {
+      law.binding = nearest->binding;
+      law.why = nearest->why;
+      for (const auto& [name, bound] : question_.limits) {
+        const auto value = nearest->worst.find(name);
+        if (value == nearest->worst.end())
+          law.relax += fmt::format("drop the limit on {}, which has no value here; ", name);
+        else if (bound.max && value->second > *bound.max)
+          law.relax += fmt::format("{} <= {:.3g} in place of {:.3g}; ", name, value->second * 1.001, *bound.max);
+        else if (bound.min && value->second < *bound.min)
+          law.relax += fmt::format("{} >= {:.3g} in place of {:.3g}; ", name, value->second * 0.999, *bound.min);
+      }
+      law.relax += fmt::format("then K = {:.4g} N/m{}", nearest->stiffness, setting_text(nearest->setting));
+      return;
+    }
+    law.binding = "margin";
+    // Settled at K, but not with the margin: the largest one that some trial has.
+    std::vector<TuneTrial> settled_ones;
+    for (const auto& [key, trial] : trials_)
+      if (trial.binding == "margin" && trial.settled) settled_ones.push_back(trial);
+    constexpr std::size_t kMostAsked = 8;
+    double largest = 0.0;
+    for (std::size_t i = 0; i < std::min(kMostAsked, settled_ones.size()); ++i) {
+      const TuneTrial& trial = settled_ones[i * settled_ones.size() / std::min(kMostAsked, settled_ones.size())];
+      const SearchWay gains{.range = {1.0, question_.margin, true}, .resolution = 0.02};
+      if (!settled(trial, 1.0)) continue;
+      const double gain = last_of(gains, [&](double g) { return settled(trial, g); });
+      if (gain <= largest) continue;
+      largest = gain;
+      law.why = trial.why;
+      law.relax = fmt::format("margin {:.3g} in place of {:g}; then K = {:.4g} N/m{}", std::floor(gain * 100.0) / 100.0,
+                              question_.margin, trial.stiffness, setting_text(trial.setting));
+    }
+    if (largest > 0.0) return;
+    law.binding = "settled";
+    std::map<std::string, std::size_t> counts;
+    for (const auto& [key, trial] : trials_) ++counts[trial.why];
+    const auto most = std::ranges::max_element(counts, {}, [](const auto& entry) { return entry.second; });
+    law.why = fmt::format("no trial is settled; {} of {}: {}", most->second, trials_.size(), most->first);
+    law.relax = "no limit helps: the scene, the hand or the device has to change";
+  }
+  static std::string setting_text(const TuneSetting& setting) {
+    std::string text;
+    if (setting.damping_ratio) text += fmt::format(", zeta = {:.3g}", *setting.damping_ratio);
+    if (setting.mass) text += fmt::format(", {:.3g} kg", *setting.mass);
+    return setting.filter.empty() ? text : text + ", " + setting.filter;
+  }
+
+  const TuneQuestion& question_;
+  const std::string& algorithm_;
+  TuneRanges ranges_;
+  std::shared_ptr<const PointShell> shell_;
+  std::vector<FamilyMember> family_;  ///< the scene's own first
+  bool over_hands_ = false;
+  std::optional<double> springs_lambda_;  ///< of springs, which their place does not change
+  std::map<std::pair<TuneSetting, double>, TuneTrial> trials_;
+  std::size_t runs_ = 0;
+  std::optional<TuneTrial> best_;
+  TuneTrial beyond_;  ///< just beyond the best
+  std::string cap_;   ///< why the range ends early
+};
+
+}  // namespace
+
+TuneRanges tune_ranges(const TuneQuestion& question, const std::string& algorithm) {
+  std::vector<std::string> overrides = question.overrides;
+  overrides.push_back("rendering.algorithm=" + algorithm);
+  TuneRanges ranges;
+  ranges.stiffness = limit_question(question.scenario, overrides, kStiffness, {}).range;
+  const Scenario own = load_scenario(question.scenario, overrides).scenario;
+  if (!own.rendering.hunt_crossley) {
+    ranges.damping_ratio = question.damping_ratio;
+    ranges.damping_ratio->logarithmic = true;
+    // zeta is that of the virtual mass; what moves is the handle.
+    if (const auto* device = impedance_of(own)) {
+      const double scale = std::sqrt(device->handle_mass / own.rendering.mass);
+      ranges.damping_ratio->from *= scale;
+      ranges.damping_ratio->to *= scale;
+    }
+  }
+  if (std::holds_alternative<AdmittanceDeviceConfig>(own.device))
+    ranges.mass = question.mass.value_or(Range{0.5 * own.rendering.mass, 2.0 * own.rendering.mass, true});
+  return ranges;
+}
+
+TunedLaw tuned_law(const TuneQuestion& question, const std::string& algorithm) {
+  return Tuner(question, algorithm).tuned();
+}
+
+std::vector<std::size_t> ranking_of(const std::vector<TunedLaw>& laws) {
+  std::vector<std::size_t> order;
+  for (std::size_t i = 0; i < laws.size(); ++i)
+    if (laws[i].choice) order.push_back(i);
+  const auto key = [&](std::size_t i) {
+    const TuneTrial& choice = *laws[i].choice;
+    const auto depth = choice.metrics.find("inside_settled_m");
+    return depth != choice.metrics.end() ? depth->second : -choice.stiffness * choice.lambda_max;
+  };
+  std::ranges::stable_sort(order, {}, key);
+  return order;
+}
+
+}  // namespace hapbench

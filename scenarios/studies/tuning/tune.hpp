@@ -1,0 +1,115 @@
+#pragma once
+
+#include <array>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "scenarios/description/load_scenario.hpp"
+#include "scenarios/studies/stability/edge_search.hpp"
+#include "scenarios/studies/tuning/family.hpp"
+
+/// Which stiffness and damping to use: for a force law in a scene the largest K, over damping ratio and, on request or
+/// on an admittance device, velocity filter and virtual mass, at which the worst run of a family is settled with a gain
+/// margin and keeps limits on its metrics.
+namespace hapbench {
+
+/// The metrics of a choice, in the order of tables; the first three are what --max-inside, --max-vibration and
+/// --max-step bound.
+inline constexpr std::array kTuneMetrics = {"inside_max_m",     "force_rms_above_30Hz_N",  "settled_force_step_max_N",
+                                            "inside_settled_m", "force_mean_in_contact_N", "landing_force_max_N"};
+using TuneMetrics = std::map<std::string, double, std::less<>>;
+
+struct TuneQuestion {
+  ScenarioText scenario;
+  std::vector<std::string> overrides;
+  double margin = 2.0;                                 ///< G: settled up to G K
+  std::map<std::string, MetricBound> limits = {};      ///< on metrics of every run at K
+  std::vector<FamilyOver> over = {FamilyOver::hands};  ///< families, their runs together
+  Range damping_ratio = {0.01, 10.0, true};            ///< zeta; of an impedance device by the mass of its handle
+  std::optional<Range> mass = {};  ///< of the virtual mass on an admittance device [kg]; none: half to twice the own
+  bool filters = false;            ///< try velocity filters of an impedance device, too
+  unsigned threads = 1;
+};
+
+/// The fields that are chosen beside K; what is not searched keeps the scene's value.
+struct TuneSetting {
+  std::optional<double> damping_ratio, mass;
+  std::string filter;  ///< device.velocity_filter as JSON; empty: the scene's
+
+  auto operator<=>(const TuneSetting&) const = default;
+};
+
+/// A setting and K, tried.
+struct TuneTrial {
+  TuneSetting setting;
+  double stiffness = 0.0;
+  /// The constraint that is not kept: "settled" (at K), "margin" (at G K), "runs" (the bound on them is reached) or the
+  /// limited metric; empty where all are.
+  std::string binding;
+  std::string why;            ///< the same in words
+  bool too_soft = false;      ///< a stiffer one may keep it
+  bool settled = false;       ///< the own run is, at K
+  bool limits_alone = false;  ///< settled with the margin in all runs: only limits are not kept
+  TuneMetrics metrics;        ///< of the scene's own run; empty where they were not asked for
+  TuneMetrics worst;          ///< of the limited ones, the largest of the family's runs
+  double lambda_max = 0.0;    ///< largest eigenvalue of the mean S in the end of the own run: K lambda_max is rendered
+
+  bool feasible() const { return binding.empty(); }
+};
+
+/// What a choice can bear before the worst run of the family is not settled any more; none where it cannot be asked, as
+/// of the delay of an ideal device. At most kMostGain and kMostDelay.
+struct TuneMargins {
+  std::optional<double> gain;           ///< factor on K
+  std::optional<double> delay_samples;  ///< more delay of the device's force, or of an admittance device's servo
+  std::optional<double> damping_ratio;  ///< of the least damped mode of the loop in contact
+};
+inline constexpr double kMostGain = 64.0, kMostDelay = 64.0;
+
+/// The answer for one law.
+struct TunedLaw {
+  std::string algorithm;
+  std::optional<TuneTrial> choice;  ///< none: nothing is feasible
+  /// Of the stiffness just beyond the choice, or where nothing is feasible what was nearest: the constraint.
+  std::string binding, why;
+  std::string relax;  ///< where nothing is feasible: which limit to relax, and by how much
+  TuneMargins margins;
+  TuneMetrics spread;                  ///< standard deviation of the metrics over kSeeds seeds
+  std::vector<TuneTrial> trials;       ///< all, by setting and K; those along K at the choice's setting among them
+  std::size_t runs = 0;                ///< simulations in all
+  std::size_t verified = 0;            ///< full-length ones that show the choice to be settled from K to G K
+  std::vector<std::string> overrides;  ///< that make the scene the choice
+};
+
+/// Search of a law ends at so many simulations; margins, spread and verification take a few hundred more.
+inline constexpr std::size_t kMostTuneRuns = 6000;
+
+/// The range of zeta and of the virtual mass that are searched; none where they have no part.
+struct TuneRanges {
+  Range stiffness;
+  std::optional<Range> damping_ratio, mass;
+};
+TuneRanges tune_ranges(const TuneQuestion& question, const std::string& algorithm);
+
+/// Tunes one law. Deterministic whatever the number of threads.
+///
+/// A setting at K is feasible when, for the scene's own run and for each of the family,
+///   - the run at K is settled and keeps the limits: stable (judged_run.hpp), where a script moves the tool by
+///     kMostVibration,
+///   - the run at G K is settled, and
+///   - the loop of device, hand and surface while they touch (stability_limits.hpp) is stable up to G K by its
+///     eigenvalues, for an impedance device with each hand of hand_family() where a hand holds the handle.
+/// Values of zeta in ratios of 10^(1/4) are tried with each filter; where K can be raised by half a percent, it is, to
+/// its first edge; then zeta and mass are refined until a change by 0.4 % raises K no more. The choice is verified at
+/// kVerifiedGains gains from 1 to G; where one of these is not settled, the search starts again below it. Throws
+/// InputError for a scene without a free position, Stopped.
+TunedLaw tuned_law(const TuneQuestion& question, const std::string& algorithm);
+inline constexpr int kVerifiedGains = 5;
+
+/// The places of the laws with a choice, best first: the least settled depth, where the scene has none the largest K
+/// lambda_max.
+std::vector<std::size_t> ranking_of(const std::vector<TunedLaw>& laws);
+
+}  // namespace hapbench

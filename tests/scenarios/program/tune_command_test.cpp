@@ -1,0 +1,89 @@
+#include <gtest/gtest.h>
+
+#include "tests/results/files.hpp"
+#include "tests/scenarios/support/file_tree.hpp"
+#include "tests/scenarios/support/program.hpp"
+
+/// hapbench tune and hapbench explain: what they print, write and refuse.
+namespace hapbench::tune_command_test {
+namespace {
+
+namespace fs = std::filesystem;
+using Words = std::vector<std::string>;
+using test::hapbench;
+using test::lines_of;
+using test::read_file;
+
+class TuneCommand : public testing::Test {
+ protected:
+  std::string file(const std::string& name) const { return (directory_ / name).string(); }
+  Words words(const Words& more, const std::string& out = "out") const {
+    Words words = {"tune", "impedance_at_wall", "--out", file(out)};
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+  }
+  test::TemporaryDirectory directory_;
+};
+
+TEST_F(TuneCommand, ItsScenarioGivesTheMetricsThatWerePrinted) {
+  // Another device over the scene's, and one of its fields: sections that extending alone would mix.
+  const Json json = hapbench(words({"--device", "touch", "--set", "device.delay_samples=0.5", "--max-inside", "1",
+                                    "--algorithms", "shaped_stiffness,mean", "--json"}))
+                        .json();
+  ASSERT_EQ(json["algorithms"].size(), 2u);
+  ASSERT_TRUE(json["recommended"].is_string()) << json.dump(1);
+  const Json* best = nullptr;
+  for (const Json& law : json["algorithms"])
+    if (law["algorithm"] == json["recommended"]) best = &law;
+  ASSERT_NE(best, nullptr);
+  EXPECT_TRUE((*best)["feasible"].get<bool>());
+  EXPECT_GE((*best)["margins"]["gain"].get<double>(), 2.0);
+  EXPECT_EQ(json["limits"]["inside_max_m"]["max"], 1e-3);
+  const std::string tuned = file("out/impedance_at_wall_tuned.json");
+  EXPECT_EQ(json["scenario"], tuned);
+  const Json run = hapbench({"run", tuned, "--json", "--out", file("run")}).json();
+  EXPECT_EQ(run[0]["algorithm"], json["recommended"]);
+  for (const auto& [name, value] : (*best)["metrics"].items()) EXPECT_EQ(run[0]["metrics"][name], value) << name;
+  const Json effective = Json::parse(read_file(file("run/scenario.effective.json")));
+  EXPECT_EQ(effective["rendering"]["stiffness_N_per_m"], (*best)["stiffness_N_per_m"]);
+  EXPECT_EQ(effective["device"]["delay_samples"], 0.5);
+  std::size_t runs = 0;
+  for (const Json& law : json["algorithms"]) runs += law["runs"].get<std::size_t>();
+  EXPECT_EQ(json["runs"], runs);
+  EXPECT_EQ(lines_of(read_file(file("out/tune.csv"))).size(), 3u);
+  EXPECT_GT(lines_of(read_file(file("out/tune_trials.csv"))).size(), 30u);
+}
+
+TEST_F(TuneCommand, WritesTheSameBytesHoweverManyJobs) {
+  hapbench(words({"--jobs", "1", "--quiet"}, "a"));
+  hapbench(words({"--jobs", "3", "--quiet"}, "b"));
+  for (const char* name : {"tune.csv", "tune_trials.csv", "impedance_at_wall_tuned.json"})
+    EXPECT_EQ(read_file(directory_ / "a" / name), read_file(directory_ / "b" / name)) << name;
+}
+
+TEST_F(TuneCommand, SaysWhatToRelaxAndWritesNoScenario) {
+  const test::ProgramRun run = hapbench(words({"--max-inside", "1e-6"}));
+  EXPECT_EQ(run.status, 0);
+  EXPECT_NE(run.out.find("nothing is feasible"), std::string::npos) << run.out;
+  EXPECT_NE(run.out.find("in place of 1e-09"), std::string::npos) << run.out;
+  EXPECT_FALSE(fs::exists(file("out/impedance_at_wall_tuned.json")));
+}
+
+TEST_F(TuneCommand, RefusesWhatItCannotTune) {
+  const auto refused = [&](const Words& more, const std::string& said) {
+    const test::ProgramRun run = hapbench(words(more));
+    EXPECT_EQ(run.status, 2) << said;
+    EXPECT_NE(run.err.find(said), std::string::npos) << run.err;
+  };
+  refused({"--margin", "1"}, "more than 1, at most 16");
+  refused({"--max-inside", "deep"}, "--max-inside: got \"deep\"");
+  refused({"--device", "toch"}, "nearest valid name: \"touch\"");
+  refused({"--over", "hand"}, "nearest valid name: \"hands\"");
+  refused({"--damping-ratio", "0:1"}, "reaches 0");
+  EXPECT_EQ(hapbench({"tune", "recorded_wipe", "--out", file("out")}).status, 2) << "its motion is prescribed";
+  EXPECT_FALSE(fs::exists(directory_ / "out"));
+}
+
+
+}  // namespace
+}  // namespace hapbench::tune_command_test

@@ -1,0 +1,226 @@
+#include "scenarios/studies/tuning/tune.hpp"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "device_model/theory/linear_loops.hpp"
+#include "scenarios/description/bundled_scenarios.hpp"
+#include "scenarios/run/run_scenario.hpp"
+#include "sim/core/random.hpp"
+
+namespace hapbench::tune_test {
+namespace {
+
+using Words = std::vector<std::string>;
+
+TuneQuestion question(const char* scene, const Words& overrides) {
+  TuneQuestion question;
+  question.scenario = read_scenario_text(find_scenario(scene));
+  question.overrides = overrides;
+  return question;
+}
+
+/// What METHOD 15 allows: the search ends at half a percent of K, and the runs near the edge need a strip of less than
+/// 1 % below it to tell decay from vibration in 4000 steps (judged_run.hpp).
+constexpr double kWithin = 0.03;
+
+/// The largest of `edge` over B, by a grid and golden sections: an independent search.
+template <class Edge>
+double best_over_damping(Edge edge, double unit) {
+  double best = 0.0, at = 0.0;
+  for (double B = 1e-4 * unit; B < 3.0 * unit; B *= 1.02) {
+    const double K = edge(B);
+    if (K <= best) continue;
+    best = K;
+    at = B;
+  }
+  double low = at / 1.02, high = at * 1.02;
+  for (int i = 0; i < 20; ++i) {
+    const double a = high - 0.618 * (high - low), b = low + 0.618 * (high - low);
+    (edge(a) > edge(b) ? high : low) = edge(a) > edge(b) ? b : a;
+  }
+  return std::max(best, edge(0.5 * (low + high)));
+}
+
+struct RandomDevice {
+  SampledLoop loop;
+  Words overrides;
+};
+
+RandomDevice random_device(Random& random) {
+  const auto between = [&](double a, double b) { return a * std::pow(b / a, random.uniform()); };
+  RandomDevice made;
+  SampledLoop& loop = made.loop;
+  loop.period = between(2e-4, 2e-3);
+  loop.device.handle_mass = between(0.03, 1.0);
+  loop.device.viscous = between(0.05, 2.0);
+  loop.device.delay_samples = random.uniform() < 0.3 ? 0.0 : 4.0 * random.uniform();
+  std::string filter = R"({"type":"difference"})";
+  if (random.uniform() < 0.5) {
+    const double cutoff = between(30.0, 300.0);
+    loop.device.velocity_filter = LowPassFilter{cutoff};
+    filter = fmt::format(R"({{"type":"low_pass","cutoff_Hz":{}}})", cutoff);
+  }
+  made.overrides = {
+      fmt::format("time.step_s={}", loop.period), "time.steps=4000",
+      fmt::format(
+          R"(device={{"type":"impedance","handle_mass_kg":{},"viscous_N_s_per_m":{},"delay_samples":{},"velocity_filter":{}}})",
+          loop.device.handle_mass, loop.device.viscous, loop.device.delay_samples, filter)};
+  return made;
+}
+
+/// The largest edge of the loop over B.
+double exact_edge(SampledLoop loop) {
+  const auto edge = [&](double B) {
+    loop.wall_damping = B;
+    return eigenvalue_edge(loop);
+  };
+  return best_over_damping(edge, loop.device.handle_mass / loop.period);
+}
+
+TEST(Tune, OfOneSpringIsTheExactEdgeOverTheMargin) {
+  Random random(34);
+  for (int i = 0; i < 6; ++i) {
+    const RandomDevice device = random_device(random);
+    TuneQuestion asked = question("single_spring", device.overrides);
+    asked.margin = 1.5 + random.uniform();
+    const TunedLaw law = tuned_law(asked, "summation");
+    ASSERT_TRUE(law.choice) << device.overrides.back() << " " << law.why;
+    EXPECT_NEAR(law.choice->stiffness * asked.margin / exact_edge(device.loop), 1.0, kWithin)
+        << device.overrides[0] << " " << device.overrides.back();
+    EXPECT_EQ(law.binding, "margin");
+    EXPECT_EQ(law.verified, 5u) << "five gains of one run";
+  }
+}
+
+/// A hand on the handle: the least edge of the family, which the program's own map has as worst_hand.
+TEST(Tune, OfAHeldHandleIsTheEdgeOfTheWorstHand) {
+  Random random(35);
+  for (int i = 0; i < 3; ++i) {
+    RandomDevice device = random_device(random);
+    device.overrides.emplace_back(
+        R"(hand={"type":"mass_spring_damper","mass_kg":0.2,"stiffness_N_per_m":300,"damping_N_s_per_m":6,"target":{"x_m":0,"y_m":0,"z_m":0}})");
+    const TunedLaw law = tuned_law(question("single_spring", device.overrides), "summation");
+    ASSERT_TRUE(law.choice) << law.why;
+    SampledLoop loop = device.loop;
+    const auto edge = [&](double B) {
+      loop.wall_damping = B;
+      return worst_hand_edge(loop);
+    };
+    const double worst = best_over_damping(edge, loop.device.handle_mass / loop.period);
+    EXPECT_NEAR(2.0 * law.choice->stiffness / worst, 1.0, kWithin) << device.overrides[2];
+  }
+}
+
+/// A.3: K = M (2 (sqrt(1 + zeta^2) - zeta))^2 / dt^2, which is largest at the least zeta.
+TEST(Tune, OfAnIdealDeviceOnASpringIsTheClosedForm) {
+  for (const auto& [low, dt] : {std::pair(0.01, 5e-4), {0.1, 1e-3}, {0.7, 5e-4}}) {
+    TuneQuestion asked = question("single_spring", {fmt::format("time.step_s={}", dt), "time.steps=2000"});
+    asked.damping_ratio = {low, 2.0};
+    const TunedLaw law = tuned_law(asked, "summation");
+    ASSERT_TRUE(law.choice);
+    const double root = 2.0 * (std::sqrt(1.0 + low * low) - low), K = 0.1 * root * root / (dt * dt);
+    EXPECT_NEAR(2.0 * law.choice->stiffness / K, 1.0, 0.02);
+  }
+}
+
+/// On the admittance device at a wall: K of the best zeta and mass of the worst hand's loop, or less where runs shake
+/// before.
+TEST(Tune, OfTheDeviceAtAWallIsWithinTheEdgeOfTheWorstHand) {
+  TuneQuestion asked = question("device_at_wall", {"device.force_limit_N=null"});
+  asked.threads = 2;
+  const TunedLaw law = tuned_law(asked, "shaped_stiffness");
+  ASSERT_TRUE(law.choice) << law.why;
+  EXPECT_GE(*law.margins.gain, 2.0);
+  EXPECT_EQ(law.verified, 15u) << "five gains of the scene's own hand, of 100 and of 1000 N/m";
+}
+
+TEST(Tune, FallsWithDelayAndMargin) {
+  const auto tuned = [](double delay, double margin) {
+    TuneQuestion asked = question(
+        "single_spring",
+        {"time.steps=4000",
+         fmt::format(R"(device={{"type":"impedance","handle_mass_kg":0.1,"viscous_N_s_per_m":0.5,"delay_samples":{}}})",
+                     delay)});
+    asked.margin = margin;
+    return tuned_law(asked, "summation").choice->stiffness;
+  };
+  double last = INFINITY;
+  for (const double delay : {0.0, 0.5, 1.0, 2.0, 4.0}) {
+    const double K = tuned(delay, 2.0);
+    EXPECT_LT(K, last) << delay;
+    last = K;
+  }
+  last = INFINITY;
+  for (const double margin : {1.2, 1.5, 2.0, 4.0}) {
+    const double K = tuned(1.0, margin);
+    EXPECT_LT(K, last) << margin;
+    last = K;
+  }
+}
+
+const Words kOnTouch = {R"(device={"type":"impedance","preset":"omega.3"})"};
+
+TEST(Tune, KeepsLimitsAndSaysWhatBinds) {
+  TuneQuestion asked = question("drag_molar", kOnTouch);
+  asked.threads = 2;
+  asked.damping_ratio = {0.05, 0.5};
+  const TunedLaw free = tuned_law(asked, "shaped_stiffness");
+  ASSERT_TRUE(free.choice) << free.why;
+  EXPECT_LE(free.runs, kMostTuneRuns + 1000);
+  const double buzz = free.choice->metrics.at("force_rms_above_30Hz_N");
+  asked.limits["force_rms_above_30Hz_N"].max = 0.7 * buzz;
+  const TunedLaw quiet = tuned_law(asked, "shaped_stiffness");
+  ASSERT_TRUE(quiet.choice) << quiet.why;
+  EXPECT_LE(quiet.choice->worst.at("force_rms_above_30Hz_N"), 0.7 * buzz);
+  EXPECT_LE(quiet.choice->stiffness, 1.01 * free.choice->stiffness);
+  // What the choice is said to give is what a run gives.
+  const RunSummary run = run_scenario(load_scenario(asked.scenario, quiet.overrides), std::nullopt, false).summary;
+  for (const auto& [name, value] : quiet.choice->metrics) EXPECT_EQ(metric_of(run, name), value) << name;
+}
+
+TEST(Tune, SaysWhichLimitToRelaxAndByHowMuch) {
+  TuneQuestion asked = question("drag_molar", kOnTouch);
+  asked.threads = 2;
+  asked.damping_ratio = {0.05, 0.5};
+  asked.limits["inside_max_m"].max = 1e-6;
+  const TunedLaw none = tuned_law(asked, "shaped_stiffness");
+  EXPECT_FALSE(none.choice);
+  EXPECT_EQ(none.binding, "inside_max_m");
+  double needed = 0.0;
+  ASSERT_EQ(std::sscanf(none.relax.c_str(), "inside_max_m <= %lf in place of 1e-06", &needed), 1) << none.relax;
+  EXPECT_GT(needed, 1e-6);
+  asked.limits["inside_max_m"].max = 1.01 * needed;  // it is printed with three digits
+  EXPECT_TRUE(tuned_law(asked, "shaped_stiffness").choice);
+}
+
+TEST(Tune, DoesNotDependOnThreads) {
+  TuneQuestion asked = question("impedance_at_wall", {});
+  const TunedLaw one = tuned_law(asked, "shaped_stiffness");
+  asked.threads = 3;
+  const TunedLaw three = tuned_law(asked, "shaped_stiffness");
+  ASSERT_TRUE(one.choice && three.choice) << one.why;
+  EXPECT_EQ(one.choice->stiffness, three.choice->stiffness);
+  EXPECT_EQ(one.runs, three.runs);
+  EXPECT_EQ(one.why, three.why);
+  EXPECT_EQ(one.spread, three.spread);
+}
+
+TEST(Family, HastensScripts) {
+  const LoadedScenario loaded = load_scenario(find_scenario("device_at_wall"));
+  const auto speeds = family_of(loaded, FamilyOver::speeds);
+  ASSERT_EQ(speeds.size(), 2u);
+  const Scenario fast = load_scenario(read_scenario_text(loaded.file), speeds[1].overrides).scenario;
+  EXPECT_EQ(fast.time.steps, loaded.scenario.time.steps / 2);
+  const auto& slow_z = spring_of(loaded.scenario.hand)->target[2];
+  const auto& fast_z = spring_of(fast.hand)->target[2];
+  for (const double t : {0.0, 0.05, 0.2, 0.4}) EXPECT_DOUBLE_EQ(fast_z(t), slow_z(2.0 * t));
+  EXPECT_EQ(family_of(loaded, FamilyOver::hands).size(), 2u);
+  EXPECT_EQ(family_of(loaded, FamilyOver::seeds).size(), 4u);
+  EXPECT_TRUE(family_of(load_scenario(find_scenario("single_spring")), FamilyOver::hands).empty());
+}
+
+}  // namespace
+}  // namespace hapbench::tune_test
