@@ -84,6 +84,17 @@ TEST_F(TuneCommand, RefusesWhatItCannotTune) {
   EXPECT_FALSE(fs::exists(directory_ / "out"));
 }
 
+TEST_F(TuneCommand, ExplainTellsOfRuns) {
+  hapbench({"run", "drag_molar", "--out", file("calm"), "--quiet"});
+  hapbench({"run", "drag_molar", "--set", "rendering.stiffness_N_per_m=2e6", "--out", file("stiff"), "--quiet"});
+  EXPECT_EQ(hapbench({"explain", file("calm")}).out.find("nothing is wrong by "), 0u);
+  const Json json = hapbench({"explain", file("calm"), file("stiff"), "--json"}).json();
+  EXPECT_TRUE(json[0]["findings"].empty());
+  ASSERT_FALSE(json[1]["findings"].empty());
+  for (const Json& finding : json[1]["findings"]) EXPECT_GT(finding["value"], finding["threshold"]);
+  EXPECT_GE(hapbench({"explain", "--rules", "--json"}).json().size(), 12u);
+  EXPECT_EQ(hapbench({"explain", file("nothing")}).status, 2);
+}
 
 }  // namespace
 }  // namespace hapbench::tune_command_test
