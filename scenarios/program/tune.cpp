@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <tuple>
 
 #include "results/io/csv_writer.hpp"
 #include "results/io/json_text.hpp"
@@ -230,24 +231,32 @@ std::string setting_text(const TuneTrial& choice) {
 }
 
 std::string margins_text(const TuneMargins& margins) {
-  const auto value = [](const std::optional<double>& margin, double most) {
-    return !margin ? "-" : fmt::format("{}{:.3g}", *margin >= most ? "over " : "", *margin);
+  std::vector<std::string> texts;
+  const auto add = [&](const char* what, const std::optional<double>& margin, double most) {
+    if (margin)
+      texts.push_back(fmt::format(fmt::runtime(what), (*margin >= most ? "over " : "") + significant(*margin, 3)));
   };
-  return fmt::format("gain {}, delay {} samples more, damping ratio of the least damped mode {}",
-                     value(margins.gain, kMostGain * 0.99), value(margins.delay_samples, kMostDelay),
-                     significant(margins.damping_ratio, 2));
+  add("gain {}", margins.gain, 0.99 * kMostGain);
+  add("{} samples more delay", margins.delay_samples, kMostDelay);
+  add("least damped mode {}", margins.damping_ratio, 2.0);
+  return fmt::format("{}", fmt::join(texts, ", "));
 }
 
 std::string metrics_text(const TunedLaw& law) {
+  constexpr std::tuple<const char*, const char*, double> kTexts[kTuneMetrics.size()] = {
+      {"deepest inside", "mm", 1e3}, {"force above 30 Hz", "N rms", 1.0},
+      {"largest step", "N", 1.0},    {"settled inside", "mm", 1e3},
+      {"mean force", "N", 1.0},      {"landing", "N", 1.0}};
   std::vector<std::string> texts;
-  for (const char* name : kTuneMetrics) {
-    const auto value = law.choice->metrics.find(name);
+  for (std::size_t i = 0; i < kTuneMetrics.size(); ++i) {
+    const auto value = law.choice->metrics.find(kTuneMetrics[i]), spread = law.spread.find(kTuneMetrics[i]);
     if (value == law.choice->metrics.end()) continue;
-    const auto spread = law.spread.find(name);
-    texts.push_back(fmt::format("{} {:.3g}{}", name, value->second,
-                                spread == law.spread.end() ? "" : fmt::format(" +- {:.1g}", spread->second)));
+    const auto& [name, unit, factor] = kTexts[i];
+    texts.push_back(fmt::format("{} {:.3g}{} {}", name, factor * value->second,
+                                spread == law.spread.end() ? "" : fmt::format(" +- {:.1g}", factor * spread->second),
+                                unit));
   }
-  return texts.empty() ? "no metrics" : fmt::format("{}", fmt::join(texts, ", "));
+  return fmt::format("{}", fmt::join(texts, ", "));
 }
 
 /// The price of the runner-up: its metrics over those of the recommended law.
@@ -271,7 +280,7 @@ std::string recommendation_text(const Tuning& tuning) {
   const auto line = [&](const char* name, const std::string& what) { text += entry(name, what, 2, 14); };
   line("stops at", fmt::format("{}: {}", best->binding, best->why));
   line("margins", margins_text(best->margins));
-  line("expect", fmt::format("{} (+-: standard deviation over {} seeds)", metrics_text(*best), kSeeds));
+  line("expect", fmt::format("{} (+-: over {} seeds)", metrics_text(*best), kSeeds));
   if (tuning.ranking.size() > 1) line("runner-up", cost_text(*best, tuning.laws[tuning.ranking[1]]));
   line("verified", fmt::format("by {} full-length runs from K to {:g} K, of {} runs in all", best->verified,
                                tuning.question.margin, tuning.runs()));
@@ -380,8 +389,8 @@ int tune(const TuneOptions& options) {
   }
   tuning.ranking = ranking_of(tuning.laws);
   const fs::path tuned = write_tuning(tuning, options.scenario, out);
-  std::string end = fmt::format("\nresults in {0}\n\"hapbench plot {0}\" draws them\n", out.string());
-  if (!tuned.empty()) end = fmt::format("\n\"hapbench run {}\" gives these metrics\n", tuned.string()) + end.substr(1);
+  std::string end = tuned.empty() ? "" : fmt::format("\"hapbench run {}\" gives these metrics\n", tuned.string());
+  end += fmt::format("results in {0}\n\"hapbench plot {0}\" draws them\n", out.string());
   print(options.output, tuning_text(tuning) + end, tuning_json(tuning, tuned));
   return kSuccess;
 }

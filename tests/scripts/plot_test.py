@@ -264,6 +264,17 @@ class Plot(Given):
         hapbench("converge", "springs_oscillation", "--metric", "inside_max_m", "--out", folder, "--quiet")
         self.assertIn("nothing to draw: no level has an error above 0", hapbench("plot", folder, expected=2))
 
+    def test_tuning(self):
+        folder = self.root / "tune"
+        hapbench("tune", "impedance_at_wall", "--algorithms", "mean,shaped_stiffness", "--damping-ratio", "0.2:0.3", "--out", folder, "--quiet")
+        self.assertEqual(hapbench("plot", folder), f"picture in {folder}/plot.svg\n")
+        picture = (folder / "plot.svg").read_text()
+        for text in ("stiffness [N/m]", "deepest inside [mm]", "force above 30 Hz [N rms]", "the choice", "not feasible", "mean"):
+            self.assertIn(text, picture)
+        table = folder / "tune_trials.csv"
+        table.write_text(table.read_text().splitlines()[0] + "\n")
+        self.assertIn("nothing to draw: no trial is settled", hapbench("plot", folder, expected=2))
+
     def test_devices(self):
         folder = self.root / "devices"
         own = self.root / "my$own$.json"

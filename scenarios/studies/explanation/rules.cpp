@@ -16,17 +16,17 @@
 namespace hapbench {
 namespace {
 
-using Number = std::optional<double>;
+using RuleNumber = std::optional<double>;
 
 // ---- Numbers of the run
 
-Number ratio(const Number& a, const Number& b) {
-  return a && b && *b > 0.0 ? Number(*a / *b) : std::nullopt;
+RuleNumber quotient(const RuleNumber& a, const RuleNumber& b) {
+  return a && b && *b > 0.0 ? RuleNumber(*a / *b) : std::nullopt;
 }
 
-Number if_outcome(const RunFiles& run, std::initializer_list<const char*> names) {
+RuleNumber if_outcome(const RunFiles& run, std::initializer_list<const char*> names) {
   const bool is = std::ranges::any_of(names, [&](const char* name) { return run.outcome == name; });
-  return is ? Number(1.0) : std::nullopt;
+  return is ? RuleNumber(1.0) : std::nullopt;
 }
 
 /// Springs that come to rest have no force that a step of it could be compared with.
@@ -39,23 +39,23 @@ bool completed(const RunFiles& run) {
 
 /// The share of rows in contact of which `is` holds.
 template <class Is>
-Number share_in_contact(const RunFiles& run, Is is) {
+RuleNumber share_in_contact(const RunFiles& run, Is is) {
   std::size_t touching = 0, found = 0;
   for (const ReadRow& row : run.rows) {
     touching += row.touches;
     found += row.touches && is(row);
   }
-  return touching > 0 ? Number(static_cast<double>(found) / static_cast<double>(touching)) : std::nullopt;
+  return touching > 0 ? RuleNumber(static_cast<double>(found) / static_cast<double>(touching)) : std::nullopt;
 }
 
 /// Metrics of settled contact do not exist in short ones; those of a run that ends otherwise mean something else.
-Number vibration_share(const RunFiles& run) {
+RuleNumber vibration_share(const RunFiles& run) {
   if (!completed(run)) return std::nullopt;
-  return ratio(run.metric("force_rms_above_30Hz_N"), run.metric("force_mean_in_contact_N"));
+  return quotient(run.metric("force_rms_above_30Hz_N"), run.metric("force_mean_in_contact_N"));
 }
 
 /// Half the sign changes of the strongest component of the force above 30 Hz in the last quarter, over its time [Hz].
-Number buzz_frequency(const RunFiles& run) {
+RuleNumber buzz_frequency(const RunFiles& run) {
   const std::size_t first = run.rows.size() - run.rows.size() / 4;
   if (run.rows.size() < 40) return std::nullopt;
   const double step = run.rows[1].time - run.rows[0].time;
@@ -77,20 +77,16 @@ Number buzz_frequency(const RunFiles& run) {
 }
 
 /// K over the edge of the linear loop in contact, along the stiffest contact seen; none without contact or loop.
-Number share_of_edge(const RunFiles& run) {
+RuleNumber share_of_edge(const RunFiles& run) {
   const Scenario& scenario = run.scenario();
-  const Number lambda = run.metric("ratio_max");
+  const RuleNumber lambda = run.metric("ratio_max");
   const double K = scenario.rendering.stiffness;
   if (!lambda || !(*lambda > 0.0) || !(K > 0.0)) return std::nullopt;
-  const auto step_at = [&](double stiffness) -> Eigen::MatrixXd {
-    RenderingConfig r = scenario.rendering;
-    r.stiffness = stiffness;
-    if (std::holds_alternative<IdealDeviceFields>(scenario.device))
-      return SpringDamper{stiffness, normal_damping(r), r.mass, scenario.time.step, *lambda, scenario.integrator.type}
-          .step_matrix();
-    Scenario at = scenario;
-    at.rendering = r;
-    return device_loop(at, *lambda).state_matrix();
+  if (contact_step(scenario, *lambda).size() == 0) return std::nullopt;
+  Scenario at = scenario;
+  const auto step_at = [&](double stiffness) {
+    at.rendering.stiffness = stiffness;
+    return contact_step(at, *lambda);
   };
   return K / std::max(1e-12 * K, first_edge(1e-4 * K, 1e4 * K, step_at));
 }
@@ -101,7 +97,7 @@ bool shakes(const RunFiles& run) {
          run.metric("vibration_last_quarter_m_per_s").value_or(0.0) > kMostVibration;
 }
 
-Number half_width(const RunFiles& run) {
+RuleNumber tool_half_width(const RunFiles& run) {
   if (std::holds_alternative<SpringsEnvironment>(run.scenario().environment)) return std::nullopt;
   return scene_facts(run.loaded).tool.half_width;
 }
@@ -116,36 +112,36 @@ double way_in_contact(const RunFiles& run) {
 }
 
 /// The distance of the points over that at which four of them are in contact.
-Number coarseness(const RunFiles& run) {
+RuleNumber coarseness(const RunFiles& run) {
   const auto distance = point_distance(run.loaded);
-  const Number contacts = ratio(run.metric("colliding_mean"), run.metric("contact_share"));
+  const RuleNumber contacts = quotient(run.metric("colliding_mean"), run.metric("contact_share"));
   if (!distance || !contacts || !completed(run) || way_in_contact(run) < 10.0 * distance->metres) return std::nullopt;
   constexpr double kEnough = 4.0;
   return std::sqrt(kEnough / *contacts);
 }
 
 /// The force that a step of the encoder makes through B.
-Number encoder_force(const RunFiles& run) {
+RuleNumber encoder_force(const RunFiles& run) {
   const auto* device = std::get_if<ImpedanceDeviceConfig>(&run.scenario().device);
   if (device == nullptr) return std::nullopt;
   SampledLoop loop;
   loop.device = *device;
   loop.period = run.scenario().time.step;
   const double step = normal_damping(run.scenario().rendering) * device->encoder_step / loop.period;
-  return ratio(step * (1.0 - loop.filter_memory()), run.metric("force_mean_in_contact_N"));
+  return quotient(step * (1.0 - loop.filter_memory()), run.metric("force_mean_in_contact_N"));
 }
 
 /// B dt / m of the mass that moves, times the largest stiffness ratio: 2 is the limit of an explicit step.
-Number damping_number(const RunFiles& run) {
+RuleNumber damping_number(const RunFiles& run) {
   const Scenario& s = run.scenario();
   const auto* device = std::get_if<ImpedanceDeviceConfig>(&s.device);
-  const Number lambda = run.metric("ratio_max");
+  const RuleNumber lambda = run.metric("ratio_max");
   if (!lambda) return std::nullopt;
   return *lambda * normal_damping(s.rendering) * s.time.step /
          (device != nullptr ? device->handle_mass : s.rendering.mass);
 }
 
-Number drift(const RunFiles& run) {
+RuleNumber drift(const RunFiles& run) {
   const Scenario& scenario = run.scenario();
   if (run.rows.size() < 40 || !completed(run) || is_moved(scenario) ||
       !std::holds_alternative<FreePosition>(scenario.motion.position))
@@ -156,19 +152,19 @@ Number drift(const RunFiles& run) {
   const Vec3 push = run.rows[n - 1].force.normalized();
   Vec3 way = run.rows[n - 1].tip - run.rows[n - n / 4].tip;
   way -= way.dot(push) * push;
-  return ratio(way.norm(), half_width(run));
+  return quotient(way.norm(), tool_half_width(run));
 }
 
-Number motor_share(const RunFiles& run) {
+RuleNumber motor_share(const RunFiles& run) {
   const auto* device = std::get_if<ImpedanceDeviceConfig>(&run.scenario().device);
-  Number most = device != nullptr ? device->force_max : std::nullopt;
-  if (const Number limit = run.scenario().rendering.max_force) most = std::min(most.value_or(*limit), *limit);
+  RuleNumber most = device != nullptr ? device->force_max : std::nullopt;
+  if (const RuleNumber limit = run.scenario().rendering.max_force) most = std::min(most.value_or(*limit), *limit);
   if (!most) return std::nullopt;
   return share_in_contact(run, [&](const ReadRow& row) { return row.force.norm() >= 0.999 * *most; });
 }
 
-Number limiter_share(const RunFiles& run) {
-  const Number most = input_force_limit(run.scenario().device);
+RuleNumber limiter_share(const RunFiles& run) {
+  const RuleNumber most = input_force_limit(run.scenario().device);
   if (!most) return std::nullopt;
   return share_in_contact(run, [&](const ReadRow& row) { return row.driving.norm() >= 0.999 * *most; });
 }
@@ -201,20 +197,20 @@ constexpr ExplainRule kRules[] = {
      "a velocity filter or less zeta where the encoder is coarse, less K, a law with smaller steps; \"hapbench tune --max-vibration\"",
      vibration_share,
      [](const RunFiles& r) {
-       const Number f = buzz_frequency(r);
+       const RuleNumber f = buzz_frequency(r);
        return f ? fmt::format("at about {:.0f} Hz", *f) : std::string();
      }},
     {"pop", "largest force step in settled contact over the mean force", "1", 0.5,
      "it pops: a step of the force is {} of the mean force",
      "corners and thin parts make laws flip: shaped_stiffness or continuous_normal_projection; rendering.reduction null",
      [](const RunFiles& r) {
-       return completed(r) ? ratio(r.metric("settled_force_step_max_N"), r.metric("force_mean_in_contact_N"))
+       return completed(r) ? quotient(r.metric("settled_force_step_max_N"), r.metric("force_mean_in_contact_N"))
                            : std::nullopt;
      }},
     {"reduction", "largest force step where the kept contacts change, over the mean force in settled contact", "1", 0.1,
      "the force steps by {} of its mean when the kept contacts change", "rendering.reduction null, or merged_shaping",
      [](const RunFiles& r) {
-       return ratio(r.metric("reduction_force_step_max_N"), r.metric("force_mean_in_contact_N"));
+       return quotient(r.metric("reduction_force_step_max_N"), r.metric("force_mean_in_contact_N"));
      }},
     {"facets", "distance of the surface's points over that at which four are in contact, where the tool moves on them",
      "1", 1.15, "the surface is sampled too coarsely, facets are felt: {} times the distance that keeps four contacts",
@@ -227,12 +223,12 @@ constexpr ExplainRule kRules[] = {
      "the tool sinks in by {} of its half width",
      "more K; \"hapbench tune --max-inside\" tells whether the device allows it",
      [](const RunFiles& r) {
-       return completed(r) ? ratio(r.metric("inside_settled_m"), half_width(r)) : std::nullopt;
+       return completed(r) ? quotient(r.metric("inside_settled_m"), tool_half_width(r)) : std::nullopt;
      }},
     {"soft", "K over the stiffness along the softest contact", "1", 3.0,
      "along some contact it is {} times as soft as K says",
      "mean and DP get softer with contacts: shaped_stiffness does not",
-     [](const RunFiles& r) { return ratio(1.0, r.metric("ratio_min")); }},
+     [](const RunFiles& r) { return quotient(1.0, r.metric("ratio_min")); }},
     {"hard", "stiffness along the stiffest contact over K", "1", 3.0, "contacts add up to {} K",
      "summation gets stiffer with contacts: shaped_stiffness, or K divided by it",
      [](const RunFiles& r) { return r.metric("ratio_max"); }},
@@ -253,7 +249,7 @@ constexpr ExplainRule kRules[] = {
      limiter_share},
     {"bounces", "landings a second", "1/s", 8.0, "it bounces: {} landings a second",
      "more zeta, less K or a heavier tool",
-     [](const RunFiles& r) { return ratio(r.metric("landings"), r.metric("duration_s")); }},
+     [](const RunFiles& r) { return quotient(r.metric("landings"), r.metric("duration_s")); }},
     {"chatter", "turns of the force by more than 90 degrees a second in settled contact", "1/s", 10.0,
      "it chatters: the force turns round {} times a second",
      "contacts on opposite sides fight: shaped_stiffness or proxy; less K in a narrow hole",
@@ -267,7 +263,7 @@ constexpr ExplainRule kRules[] = {
     {"late", "time that 99 % of the steps take at most over the time step", "1", 1.0,
      "it is late: a step takes {} of its time",
      "fewer points, rendering.reduction, a cheaper law; \"hapbench run --latency\" has the distribution",
-     [](const RunFiles& r) { return ratio(r.step_time, r.scenario().time.step); }},
+     [](const RunFiles& r) { return quotient(r.step_time, r.scenario().time.step); }},
 };
 
 }  // namespace
@@ -279,7 +275,7 @@ std::span<const ExplainRule> explain_rules() {
 std::vector<Explanation> explained(const RunFiles& run) {
   std::vector<Explanation> findings;
   for (const ExplainRule& rule : kRules) {
-    const Number value = rule.value(run);
+    const RuleNumber value = rule.value(run);
     if (!value || !(*value > rule.threshold)) continue;
     std::string says = fmt::format(fmt::runtime(rule.says), fmt::format("{:.3g}", *value));
     const std::string more = rule.more != nullptr ? rule.more(run) : "";

@@ -231,14 +231,28 @@ constexpr double kLongestDelay = 200.0;
 
 }  // namespace
 
+double delay_of(const Scenario& scenario) {
+  if (const auto* impedance = std::get_if<ImpedanceDeviceConfig>(&scenario.device)) return impedance->delay_samples;
+  const auto* admittance = std::get_if<AdmittanceDeviceConfig>(&scenario.device);
+  return admittance != nullptr ? static_cast<double>(admittance->servo.delay) : 0.0;
+}
+
 DeviceLoop device_loop(const Scenario& scenario, double lambda) {
   const auto* impedance = std::get_if<ImpedanceDeviceConfig>(&scenario.device);
   const auto* admittance = std::get_if<AdmittanceDeviceConfig>(&scenario.device);
   DeviceLoop result = impedance != nullptr ? impedance_loop(scenario, *impedance, lambda)
                                            : admittance_loop(scenario, *admittance, lambda);
-  const double delay = impedance != nullptr ? impedance->delay_samples : static_cast<double>(admittance->servo.delay);
-  if (delay > kLongestDelay) result.no_theory = "a delay beyond 200 samples makes the loop too large to solve";
+  if (delay_of(scenario) > kLongestDelay)
+    result.no_theory = "a delay beyond 200 samples makes the loop too large to solve";
   return result;
+}
+
+Eigen::MatrixXd contact_step(const Scenario& scenario, double lambda) {
+  if (delay_of(scenario) > kLongestDelay) return {};
+  if (!std::holds_alternative<IdealDeviceFields>(scenario.device)) return device_loop(scenario, lambda).state_matrix();
+  const RenderingConfig& r = scenario.rendering;
+  return SpringDamper{r.stiffness, normal_damping(r), r.mass, scenario.time.step, lambda, scenario.integrator.type}
+      .step_matrix();
 }
 
 }  // namespace hapbench

@@ -80,4 +80,11 @@ struct DeviceLoop {
 /// Precondition: the device is not ideal; that has no loop of its own.
 DeviceLoop device_loop(const Scenario& scenario, double lambda);
 
+/// The delay of the device's force, or of its servo [samples].
+double delay_of(const Scenario& scenario);
+
+/// The map of a step of the tool at a wall of lambda K and lambda B: by the device's loop, of an ideal device by the
+/// integrator alone. Empty for a delay beyond 200 samples, which makes the loop too large to solve.
+Eigen::MatrixXd contact_step(const Scenario& scenario, double lambda);
+
 }  // namespace hapbench

@@ -8,6 +8,7 @@
 #include "device_model/theory/linear_loops.hpp"
 #include "scenarios/batch/run_batch.hpp"
 #include "scenarios/input/json_file.hpp"
+#include "scenarios/studies/stability/stability_limits.hpp"
 
 namespace hapbench {
 namespace {
@@ -81,6 +82,22 @@ std::vector<FamilyMember> speeds_of(const LoadedScenario& loaded) {
 std::vector<FamilyMember> family_of(const LoadedScenario& loaded, FamilyOver over) {
   if (over == FamilyOver::hands) return hands_of(loaded.scenario);
   return over == FamilyOver::seeds ? seeds_of(loaded) : speeds_of(loaded);
+}
+
+std::vector<std::pair<std::string, Eigen::MatrixXd>> contact_loops(const Scenario& scenario, double lambda,
+                                                                   bool over_hands) {
+  std::vector<std::pair<std::string, Eigen::MatrixXd>> all = {{"", contact_step(scenario, lambda)}};
+  if (all[0].second.size() == 0) return {};
+  const bool held = spring_of(scenario.hand) != nullptr || std::holds_alternative<DragHandFields>(scenario.hand);
+  if (!over_hands || !held || !std::holds_alternative<ImpedanceDeviceConfig>(scenario.device)) return all;
+  SampledLoop loop = std::get<SampledLoop>(device_loop(scenario, lambda).loop);
+  for (const AttachedHand& hand : hand_family()) {
+    loop.hand = hand;
+    all.emplace_back(
+        hand.mass == 0.0 ? "no hand" : fmt::format("a hand of {} kg and {} N/m", hand.mass, hand.stiffness),
+        loop.state_matrix());
+  }
+  return all;
 }
 
 }  // namespace hapbench

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "scenarios/description/load_scenario.hpp"
@@ -30,5 +32,11 @@ inline constexpr int kSeeds = 5;
 ///   seeds   further seeds, started 10 um away
 ///   speeds  the script of hand and tool at half and twice its speed
 std::vector<FamilyMember> family_of(const LoadedScenario& loaded, FamilyOver over);
+
+/// The maps of a step of the loop of device, hand and a wall of lambda K (contact_step), by the name of the hand, which
+/// is empty for the scene's own: with `over_hands`, on an impedance device that a hand holds, each of hand_family(),
+/// too. None where the loop is too large to solve.
+std::vector<std::pair<std::string, Eigen::MatrixXd>> contact_loops(const Scenario& scenario, double lambda,
+                                                                   bool over_hands);
 
 }  // namespace hapbench

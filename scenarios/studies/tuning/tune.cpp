@@ -10,7 +10,6 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "algorithms/stages/damping_and_limits.hpp"
 #include "device_model/theory/linear_loops.hpp"
 #include "scenarios/batch/parallel_for.hpp"
 #include "scenarios/batch/statistics.hpp"
@@ -23,7 +22,7 @@
 namespace hapbench {
 namespace {
 
-constexpr const char* kStiffness = "rendering.stiffness_N_per_m";
+constexpr const char* kTunedField = "rendering.stiffness_N_per_m";
 constexpr double kResolution = 5e-3;  // of K
 constexpr double kFinest = 1.004;     // ratio of zeta, or of the mass, at which the search ends
 constexpr const char* kFilters[] = {R"({"type":"difference"})", R"({"type":"low_pass","cutoff_Hz":50})",
@@ -113,7 +112,7 @@ class Tuner {
     }
     if (setting.mass) all.push_back(fmt::format("rendering.mass_kg={}", *setting.mass));
     if (!setting.filter.empty()) all.push_back("device.velocity_filter=" + setting.filter);
-    all.push_back(fmt::format("{}={}", kStiffness, stiffness));
+    all.push_back(fmt::format("{}={}", kTunedField, stiffness));
     return all;
   }
   LoadedScenario at(const TuneSetting& setting, double stiffness, const FamilyMember& member,
@@ -163,34 +162,13 @@ class Tuner {
 
   // ---- The loop in contact
 
-  /// The maps of a step of the loop with each hand it may have; with one empty name where there is but one.
-  std::vector<std::pair<std::string, Eigen::MatrixXd>> loops(const Scenario& scenario, double lambda) const {
-    if (std::holds_alternative<IdealDeviceFields>(scenario.device)) {
-      const RenderingConfig& r = scenario.rendering;
-      const SpringDamper tool{r.stiffness, normal_damping(r),       r.mass, scenario.time.step,
-                              lambda,      scenario.integrator.type};
-      return {{"", tool.step_matrix()}};
-    }
-    DeviceLoop device = device_loop(scenario, lambda);
-    std::vector<std::pair<std::string, Eigen::MatrixXd>> all = {{"", device.state_matrix()}};
-    auto* sampled = std::get_if<SampledLoop>(&device.loop);
-    const bool held = spring_of(scenario.hand) != nullptr || std::holds_alternative<DragHandFields>(scenario.hand);
-    if (sampled == nullptr || !held || !over_hands_) return all;
-    for (const AttachedHand& hand : hand_family()) {
-      sampled->hand = hand;
-      all.emplace_back(
-          hand.mass == 0.0 ? "no hand" : fmt::format("a hand of {} kg and {} N/m", hand.mass, hand.stiffness),
-          sampled->state_matrix());
-    }
-    return all;
-  }
   /// The hand with which the loop is unstable somewhere from K to `gain` K; none where there is none.
   std::optional<std::string> unstable_loop(Scenario scenario, double lambda, double stiffness, double gain) const {
     if (!(lambda > 0.0)) return std::nullopt;
     constexpr double kFiner = 1.1;
     for (double K = gain * stiffness; K * kFiner > stiffness; K /= kFiner) {
       scenario.rendering.stiffness = K;
-      for (const auto& [hand, step] : loops(scenario, lambda)) {
+      for (const auto& [hand, step] : contact_loops(scenario, lambda, over_hands_)) {
         if (!is_stable_step(step)) return hand;
       }
     }
@@ -412,18 +390,17 @@ class Tuner {
       margins.gain = last_of(gains, [&](double gain) { return settled(choice, gain); });
     }
     const Scenario scenario = at(choice.setting, choice.stiffness, family_[0]).scenario;
-    const auto* admittance = std::get_if<AdmittanceDeviceConfig>(&scenario.device);
-    if (const auto* impedance = impedance_of(scenario); impedance != nullptr || admittance != nullptr) {
-      const double own = impedance != nullptr ? impedance->delay_samples : static_cast<double>(admittance->servo.delay);
-      const char* path = impedance != nullptr ? "device.delay_samples" : "device.servo.delay_samples";
-      const SearchWay delays{
-          .range = {0.0, kMostDelay}, .whole = impedance == nullptr, .resolution = 0.02 / kMostDelay};
+    if (!std::holds_alternative<IdealDeviceFields>(scenario.device)) {
+      const bool impedance = impedance_of(scenario) != nullptr;
+      const double own = delay_of(scenario);
+      const char* path = impedance ? "device.delay_samples" : "device.servo.delay_samples";
+      const SearchWay delays{.range = {0.0, kMostDelay}, .whole = !impedance, .resolution = 0.02 / kMostDelay};
       margins.delay_samples =
           last_of(delays, [&](double more) { return settled(choice, 1.0, fmt::format("{}={}", path, own + more)); });
     }
     const double lambda = springs_lambda_.value_or(choice.lambda_max);
     if (!(lambda > 0.0)) return margins;
-    for (const auto& [hand, step] : loops(scenario, lambda)) {
+    for (const auto& [hand, step] : contact_loops(scenario, lambda, over_hands_)) {
       const Eigen::VectorXcd modes = Eigen::EigenSolver<Eigen::MatrixXd>(step, false).eigenvalues();
       for (const std::complex<double>& z : modes) {
         const double size = math::hypot(z.real(), z.imag());
@@ -512,7 +489,10 @@ class Tuner {
       const SearchWay gains{.range = {1.0, question_.margin, true}, .resolution = 0.02};
       if (!settled(trial, 1.0)) continue;
       const double gain = last_of(gains, [&](double g) { return settled(trial, g); });
-      if (gain <= largest) continue;
+      TuneTrial with_less = trial;
+      with_less.binding.clear();
+      if (gain > largest) judge_limits(with_less);
+      if (gain <= largest || !with_less.feasible()) continue;
       largest = gain;
       law.why = trial.why;
       law.relax = fmt::format("margin {:.3g} in place of {:g}; then K = {:.4g} N/m{}", std::floor(gain * 100.0) / 100.0,
@@ -520,11 +500,18 @@ class Tuner {
     }
     if (largest > 0.0) return;
     law.binding = "settled";
-    std::map<std::string, std::size_t> counts;
-    for (const auto& [key, trial] : trials_) ++counts[trial.why];
-    const auto most = std::ranges::max_element(counts, {}, [](const auto& entry) { return entry.second; });
-    law.why = fmt::format("no trial is settled; {} of {}: {}", most->second, trials_.size(), most->first);
-    law.relax = "no limit helps: the scene, the hand or the device has to change";
+    const TuneTrial *soft = nullptr, *stiff = nullptr;
+    for (const auto& [key, trial] : trials_) {
+      if (trial.too_soft ? soft == nullptr || trial.stiffness > soft->stiffness
+                         : stiff == nullptr || trial.stiffness < stiff->stiffness)
+        (trial.too_soft ? soft : stiff) = &trial;
+    }
+    const auto at_K = [](const TuneTrial& trial) {
+      return fmt::format("{} at {:.3g} N/m", trial.why, trial.stiffness);
+    };
+    law.why = soft != nullptr ? "too soft: " + at_K(*soft) : "";
+    if (stiff != nullptr) law.why += (soft != nullptr ? "; " : "") + ("too stiff: " + at_K(*stiff));
+    law.relax = "no limit is to blame: a gentler hand, a wider tool or another device, or other runs with --over";
   }
   static std::string setting_text(const TuneSetting& setting) {
     std::string text;
@@ -553,7 +540,7 @@ TuneRanges tune_ranges(const TuneQuestion& question, const std::string& algorith
   std::vector<std::string> overrides = question.overrides;
   overrides.push_back("rendering.algorithm=" + algorithm);
   TuneRanges ranges;
-  ranges.stiffness = limit_question(question.scenario, overrides, kStiffness, {}).range;
+  ranges.stiffness = limit_question(question.scenario, overrides, kTunedField, {}).range;
   const Scenario own = load_scenario(question.scenario, overrides).scenario;
   if (!own.rendering.hunt_crossley) {
     ranges.damping_ratio = question.damping_ratio;

@@ -21,7 +21,7 @@ def draw_tune(results):
     shown = np.empty((0, 3))
     for i, law in enumerate(laws):
         rows = [row for row in trials if row["algorithm"] == law["algorithm"] and row[VIBRATION]]
-        values = np.column_stack([numbers(rows, name) for name in (STIFFNESS, DEPTH, VIBRATION)])
+        values = np.column_stack([numbers(rows, name) * unit for name, unit in ((STIFFNESS, 1.0), (DEPTH, 1e3), (VIBRATION, 1.0))])
         feasible = np.array([row["feasible"] == "true" for row in rows], dtype=bool)
         shown = np.vstack([shown, values])
         colour, mark, _ = LOOKS[i % len(LOOKS)]
@@ -37,15 +37,16 @@ def draw_tune(results):
         raise InputError("nothing to draw: no trial is settled; tune.csv says why")
     left.plot([], [], ls="none", marker="o", ms=10, color=BLACK, mfc="none", label="the choice")
     left.plot([], [], ls="none", marker="s", color=GREY, mfc="white", label="not feasible")
-    for ax, x, y in ((left, STIFFNESS, DEPTH), (middle, STIFFNESS, VIBRATION), (right, DEPTH, VIBRATION)):
-        ax.set(xscale="log", yscale="log", xlabel=axis(x), ylabel=axis(y))
-        for name, limits in ((x, ax.set_xlim), (y, ax.set_ylim)):
-            column = shown[:, (STIFFNESS, DEPTH, VIBRATION).index(name)]
-            column = column[np.isfinite(column) & (column > 0)]
+    names = (axis(STIFFNESS), "deepest inside [mm]", "force above 30 Hz [N rms]")
+    for ax, x, y in ((left, 0, 1), (middle, 0, 2), (right, 1, 2)):
+        ax.set(xscale="log", yscale="log", xlabel=names[x], ylabel=names[y])
+        for i, limits in ((x, ax.set_xlim), (y, ax.set_ylim)):
+            column = shown[np.isfinite(shown[:, i]) & (shown[:, i] > 0), i]
             if column.size:
                 limits(with_room(column.min(), column.max()))
         number_ticks(ax)
-    left.legend(loc="lower left", bbox_to_anchor=(0, 1), ncol=4)
+    left.legend(loc="lower left", bbox_to_anchor=(0, 1), ncol=4).set_in_layout(False)  # it is wider than its panel
+    middle.set_title(" \n" * ((len(laws) + 5) // 4))  # its room
     return figure
 
 

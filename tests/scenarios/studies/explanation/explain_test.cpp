@@ -54,7 +54,7 @@ std::vector<Pair> pairs() {
        {"mesh_molar", {R"(rendering.reduction={"threshold":0.9})"}},
        {"mesh_molar", {R"(rendering.reduction=null)"}}},
       {"facets", {"bur_fissure", {"environment.spacing_m=0.0006"}}, {"bur_fissure"}},
-      {"deep", {"impedance_at_wall", {"rendering.stiffness_N_per_m=4200"}}, {"impedance_at_wall"}},
+      {"deep", {"impedance_at_wall", {"rendering.stiffness_N_per_m=3600"}}, {"impedance_at_wall"}},
       {"soft", {"corner_shaped_stiffness", {"rendering.algorithm=mean"}}, {"corner_shaped_stiffness"}},
       {"hard", {"drag_molar", {"rendering.algorithm=summation"}}, molar},
       {"damping", {"drag_molar", {"rendering.damping_ratio=8"}}, molar},
