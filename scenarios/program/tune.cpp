@@ -63,13 +63,15 @@ Cell tune_metric(const TuneMetrics& metrics) {
   return found == metrics.end() ? Cell() : Cell(found->second);
 }
 
+constexpr const char* kRatioColumn = "rendering.damping_ratio";
+
 using TrialField = Field<std::pair<const TunedLaw*, const TuneTrial*>>;
 using TrialRow = std::pair<const TunedLaw*, const TuneTrial*>;
 
 const TrialField kTrialFields[] = {
     {{"algorithm", "", "force algorithm"}, [](const TrialRow& r) -> Cell { return r.first->algorithm; }},
     {{"stiffness_N_per_m", "N/m", "K"}, [](const TrialRow& r) -> Cell { return r.second->stiffness; }},
-    {{"damping_ratio", "1", "zeta; empty where it has no part"},
+    {{kRatioColumn, "1", "zeta; empty where it has no part"},
      [](const TrialRow& r) { return cell_if(r.second->setting.damping_ratio); }},
     {{"mass_kg", "kg", "virtual mass; empty where it is not searched"},
      [](const TrialRow& r) { return cell_if(r.second->setting.mass); }},
@@ -94,14 +96,18 @@ Cell of_choice(const TunedLaw& law, Value value) {
   return law.choice ? Cell(value(*law.choice)) : Cell();
 }
 
+Cell chosen_ratio(const TunedLaw& law) {
+  return law.choice ? cell_if(law.choice->setting.damping_ratio) : Cell();
+}
+
 const LawField kLawFields[] = {
     {{"algorithm", "", "force algorithm"}, [](const TunedLaw& l) -> Cell { return l.algorithm; }},
     {{"feasible", "", "false when nothing that was tried keeps all constraints"},
      [](const TunedLaw& l) -> Cell { return l.choice.has_value(); }},
     {{"stiffness_N_per_m", "N/m", "the largest K; empty when nothing is feasible"},
      [](const TunedLaw& l) { return of_choice(l, [](const TuneTrial& t) { return t.stiffness; }); }},
-    {{"damping_ratio", "1", "zeta with it; empty where it has no part"},
-     [](const TunedLaw& l) { return l.choice ? cell_if(l.choice->setting.damping_ratio) : Cell(); }},
+    {{kRatioColumn, "1", "zeta with it; empty where it has no part"}, chosen_ratio, LawField::In::csv},
+    {{"damping_ratio", "1", "the same"}, chosen_ratio, LawField::In::json},
     {{"mass_kg", "kg", "virtual mass with it, of an admittance device; else empty: the scene's"},
      [](const TunedLaw& l) { return l.choice ? cell_if(l.choice->setting.mass) : Cell(); }},
     {{"velocity_filter", "", "with it, as JSON; empty: the scene's"},
@@ -223,8 +229,13 @@ std::string limits_text(const Tuning& tuning) {
   return text + range("zeta", tuning.ranges.damping_ratio) + range("virtual mass [kg]", tuning.ranges.mass);
 }
 
+/// With the digits that the search leaves it.
+std::string stiffness_text(const TuneTrial& choice) {
+  return deserved(choice.stiffness, 0.005 * choice.stiffness);
+}
+
 std::string setting_text(const TuneTrial& choice) {
-  std::string text = fmt::format("K = {:.4g} N/m", choice.stiffness);
+  std::string text = fmt::format("K = {} N/m", stiffness_text(choice));
   if (choice.setting.damping_ratio) text += fmt::format(", zeta = {:.3g}", *choice.setting.damping_ratio);
   if (choice.setting.mass) text += fmt::format(", virtual mass {:.3g} kg", *choice.setting.mass);
   return choice.setting.filter.empty() ? text : text + ", velocity filter " + choice.setting.filter;
@@ -259,18 +270,22 @@ std::string metrics_text(const TunedLaw& law) {
   return fmt::format("{}", fmt::join(texts, ", "));
 }
 
-/// The price of the runner-up: its metrics over those of the recommended law.
+/// The price of the runner-up, in times of the recommended law's metrics.
 std::string cost_text(const TunedLaw& best, const TunedLaw& other) {
+  const TuneTrial &a = *best.choice, &b = *other.choice;
   std::vector<std::string> texts;
-  for (const char* name : {"inside_settled_m", "force_rms_above_30Hz_N", "settled_force_step_max_N"}) {
-    const auto a = best.choice->metrics.find(name), b = other.choice->metrics.find(name);
-    if (a == best.choice->metrics.end() || b == other.choice->metrics.end() || !(a->second > 0.0)) continue;
-    texts.push_back(fmt::format("{:.2g} times the {}", b->second / a->second, name));
+  constexpr std::pair<const char*, const char*> kCosts[] = {{"inside_settled_m", "as deep"},
+                                                            {"force_rms_above_30Hz_N", "the force above 30 Hz"},
+                                                            {"settled_force_step_max_N", "the largest step"}};
+  for (const auto& [name, what] : kCosts) {
+    const auto here = a.metrics.find(name), there = b.metrics.find(name);
+    if (here != a.metrics.end() && there != b.metrics.end() && here->second > 0.0)
+      texts.push_back(fmt::format("{:.2g} times {}", there->second / here->second, what));
   }
-  const double stiffness = other.choice->stiffness * other.choice->lambda_max /
-                           std::max(1e-300, best.choice->stiffness * best.choice->lambda_max);
-  texts.push_back(fmt::format("{:.2g} times the rendered stiffness", stiffness));
-  return fmt::format("{} ({}): {}", other.algorithm, setting_text(*other.choice), fmt::join(texts, ", "));
+  if (a.lambda_max > 0.0)
+    texts.push_back(
+        fmt::format("{:.2g} times the rendered stiffness", b.stiffness * b.lambda_max / (a.stiffness * a.lambda_max)));
+  return fmt::format("{} ({}): {}", other.algorithm, setting_text(b), fmt::join(texts, ", "));
 }
 
 std::string recommendation_text(const Tuning& tuning) {
@@ -298,7 +313,7 @@ Table tune_table(const std::vector<TunedLaw>& laws) {
       const auto found = law.choice->metrics.find(name);
       return found == law.choice->metrics.end() ? "-" : significant(found->second * unit, 3);
     };
-    table.add({law.algorithm, significant(law.choice->stiffness, 4), significant(law.choice->setting.damping_ratio, 3),
+    table.add({law.algorithm, stiffness_text(*law.choice), significant(law.choice->setting.damping_ratio, 3),
                significant(law.margins.gain, 3), significant(law.margins.delay_samples, 3),
                metric("inside_settled_m", 1e3), metric("force_rms_above_30Hz_N", 1.0),
                metric("settled_force_step_max_N", 1.0), law.binding});

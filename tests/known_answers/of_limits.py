@@ -105,7 +105,7 @@ def tuned(bench):
     bench.add("tune.csv:stiffness_N_per_m", K, edge(B) / 2, by, near, ("without the margin", edge(B)))
     at_K = 2 * zeta * math.sqrt(K * m)  # B at K; along zeta it grows with the root of the gain
     gain = bisected(lambda g: loop(g * K, math.sqrt(g) * at_K).radius() < 1, 1.0, 64.0)
-    bench.add("tune.csv:damping_ratio", zeta, B / (2 * math.sqrt(edge(B) * m)), "B of the largest edge over 2 sqrt(K M) there", Within(
+    bench.add("tune.csv:rendering.damping_ratio", float(table["rendering.damping_ratio"][0]), B / (2 * math.sqrt(edge(B) * m)), "B of the largest edge over 2 sqrt(K M) there", Within(
         "K falls by as many percent as zeta is off on either side", relative=0.05), ("with B at K", B / (2 * math.sqrt(edge(B) / 2 * m))))
     late = bisected(lambda d: loop(K, at_K, d).radius() < 1, 0.0, 8.0)
     z = np.linalg.eigvals(loop(K, at_K).matrix)
@@ -128,7 +128,7 @@ def tuned(bench):
     bench.add("tune --json: max", limits["force_rms_above_30Hz_N"]["max"], 1e3, "as asked", EXACT, ("none", None))
     # Each trial by its own eigenvalues: feasible below half the edge of its zeta, but for the strip in which runs cannot tell.
     given = [row for row in trials.rows if row["feasible"] in ("true", "false")]
-    edges = [bisected(lambda k: loop(k, 2 * float(row["damping_ratio"]) * math.sqrt(k * m)).radius() < 1, 1e-3, 1e6) / 2 for row in given]
+    edges = [bisected(lambda k: loop(k, 2 * float(row["rendering.damping_ratio"]) * math.sqrt(k * m)).radius() < 1, 1e-3, 1e6) / 2 for row in given]
     clear = [(row, e) for row, e in zip(given, edges) if abs(float(row["stiffness_N_per_m"]) / e - 1) > 0.02]
     stable = [float(row["stiffness_N_per_m"]) < e for row, e in clear]
     bench.add("tune_trials.csv:feasible", [float(row["feasible"] == "true") for row, _ in clear], [float(s) for s in stable], by, EXACT,
@@ -137,13 +137,13 @@ def tuned(bench):
               ("settled", ["" if s else "settled" for s in stable]))
     bench.add("tune_trials.csv:why", [float("unstable" in row["why"]) for row, _ in clear], [float(not s) for s in stable], by, EXACT,
               ("always", [1.0] * len(stable)))
-    own = next(row for row in trials.rows if float(row["stiffness_N_per_m"]) == K and float(row["damping_ratio"]) == zeta)
+    own = next(row for row in trials.rows if float(row["stiffness_N_per_m"]) == K and float(row["rendering.damping_ratio"]) == zeta)
     for name, known, naive in (("algorithm", "summation", "mean"), ("mass_kg", "", "0.1"), ("velocity_filter", "", "difference"), ("inside_max_m", "", "0.001")):
         bench.add(f"tune_trials.csv:{name}", own[name], known, "as asked; springs have no inside", EXACT, ("another", naive))
     tried = bench.run(base, "--set", f"rendering.stiffness_N_per_m={K!r}", "--set", f"rendering.damping_ratio={zeta!r}", out="own")
     for name in ("force_rms_above_30Hz_N", "settled_force_step_max_N"):
         bench.add(f"tune_trials.csv:{name}", float(own[name]), tried.metric(name), "a run with --set", EXACT, ("in kN", tried.metric(name) / 1e3))
-    for name, cell in (("stiffness_N_per_m", K), ("damping_ratio", zeta)):
+    for name, cell in (("stiffness_N_per_m", K), ("rendering.damping_ratio", zeta)):
         bench.add(f"tune_trials.csv:{name}", sum(float(row[name]) == cell for row in trials.rows) > 0, True, "the choice was tried", EXACT,
                   ("twice it was", sum(float(row[name]) == 2 * cell for row in trials.rows) > 0))
 

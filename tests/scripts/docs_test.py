@@ -24,7 +24,8 @@ WANTS_PACKAGE = re.compile("which is not built here; allowed: .* or install ")
 # Minutes long: parsed, not run.
 LONG = {"precision", "reproduce", "--map", "--stress", "--search"}
 FEW_STEPS = ["--set", 'time={"step_s": 0.0005, "steps": 40}']
-SHORTER = {"run": FEW_STEPS, "compare": FEW_STEPS, "sweep": FEW_STEPS, "converge": [*FEW_STEPS, "--levels", "3"], "limit": [*FEW_STEPS, "--resolution", "0.5"]}
+SHORTER = {"run": FEW_STEPS, "compare": FEW_STEPS, "sweep": FEW_STEPS, "converge": [*FEW_STEPS, "--levels", "3"], "limit": [*FEW_STEPS, "--resolution", "0.5"],
+           "tune": [*FEW_STEPS, "--damping-ratio", "0.3:0.7"]}
 CORNERS = ((0, 0, 0), (6, 0, 0), (6, 6, 0), (0, 6, 0), (0, 0, 3), (6, 0, 3), (6, 6, 3), (0, 6, 3))
 FACES = ((0, 2, 1), (0, 3, 2), (4, 5, 6), (4, 6, 7), (0, 1, 5), (0, 5, 4), (1, 2, 6), (1, 6, 5), (2, 3, 7), (2, 7, 6),
          (3, 0, 4), (3, 4, 7))

@@ -29,6 +29,10 @@ RuleNumber if_outcome(const RunFiles& run, std::initializer_list<const char*> na
   return is ? RuleNumber(1.0) : std::nullopt;
 }
 
+std::string ending(const RunFiles& run) {
+  return run.ending;
+}
+
 /// Springs that come to rest have no force that a step of it could be compared with.
 bool completed(const RunFiles& run) {
   if (std::holds_alternative<SpringsEnvironment>(run.scenario().environment) &&
@@ -174,20 +178,22 @@ RuleNumber limiter_share(const RunFiles& run) {
 constexpr ExplainRule kRules[] = {
     {"diverged", "1 where the run left its bounds", "1", 0.5, "it diverged",
      "\"hapbench tune\" for K and zeta; a shorter time.step_s",
-     [](const RunFiles& r) { return if_outcome(r, {"diverges"}); }, [](const RunFiles& r) { return r.divergence; }},
+     [](const RunFiles& r) { return if_outcome(r, {"diverges"}); }, ending},
     {"sank", "1 where the tool went through the surface", "1", 0.5, "the tool went through the surface",
      "more K; a law that does not get softer with contacts, such as shaped_stiffness or proxy; a plate thicker than a step's way",
-     [](const RunFiles& r) { return if_outcome(r, {"went_through"}); }},
+     [](const RunFiles& r) { return if_outcome(r, {"went_through"}); }, ending},
     {"lost", "1 where the tool touched nothing, or not in the end", "1", 0.5, "the tool is not where the surface is",
      "environment.scale, initial.position_m and the hand's direction: \"hapbench validate\" shows them",
      [](const RunFiles& r) {
        return if_outcome(r, {"no_contact", "lost_contact"});
-     }},
+     },
+     ending},
     {"stuck", "1 where the hand went on and the tool did not", "1", 0.5, "the tool is stuck",
      "less friction, a stiffer hand, or another law: a proxy or least_squares may hold it in a corner",
      [](const RunFiles& r) {
        return if_outcome(r, {"stuck", "not_dragged"});
-     }},
+     },
+     ending},
     {"edge", "K over the edge of the loop of device, tool and stiffest contact, without dry friction, where it shakes",
      "1", 0.8, "K is {} times the edge of the stable loop",
      "less K, less delay or filter, another zeta: \"hapbench tune\"",

@@ -72,8 +72,10 @@ RunFiles read_run(const fs::path& folder) {
   collect(summary["metrics"], "", run);
   for (const char* section : {"passivity", "steps", "duration_s"})
     if (summary.contains(section)) collect(summary[section], section, run);
-  if (const Json divergence = summary.value("divergence", Json()); divergence.is_object())
-    run.divergence = divergence.dump();
+  if (const Json left = summary.value("divergence", Json()); left.is_object())
+    run.ending = fmt::format("{} in step {}", left.value("quantity", ""), left.value("step", 0));
+  else if (const Json warnings = summary.value("warnings", Json()); run.outcome != "completes" && !warnings.empty())
+    run.ending = warnings[0].is_string() ? warnings[0].get<std::string>() : "";
   if (fs::exists(folder / "trajectory.csv")) run.rows = read_rows(folder / "trajectory.csv");
   if (fs::exists(folder / "timing.json")) {
     const Json timing = read_json(folder / "timing.json");

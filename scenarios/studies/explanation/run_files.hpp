@@ -20,9 +20,9 @@ struct ReadRow {
 
 /// What a run left in its folder.
 struct RunFiles {
-  LoadedScenario loaded;                               ///< of scenario.effective.json
-  std::string outcome;                                 ///< of summary.json
-  std::string divergence;                              ///< what left its bounds, and when; empty unless it diverged
+  LoadedScenario loaded;  ///< of scenario.effective.json
+  std::string outcome;    ///< of summary.json
+  std::string ending;     ///< what left its bounds, or the warning about a run that missed; empty for others
   std::map<std::string, double, std::less<>> metrics;  ///< those that have a value, as `expect` names them
   std::vector<ReadRow> rows;                           ///< empty where no trajectory was recorded
   std::optional<double> step_time;                     ///< that 99 % of the steps take at most, by timing.json [s]

@@ -500,17 +500,22 @@ class Tuner {
     }
     if (largest > 0.0) return;
     law.binding = "settled";
-    const TuneTrial *soft = nullptr, *stiff = nullptr;
+    // Where too soft and too stiff meet, at a setting where only the margin is missing if there is one.
+    const TuneTrial *soft = nullptr, *stiff = nullptr, *before = nullptr;
     for (const auto& [key, trial] : trials_) {
-      if (trial.too_soft ? soft == nullptr || trial.stiffness > soft->stiffness
-                         : stiff == nullptr || trial.stiffness < stiff->stiffness)
-        (trial.too_soft ? soft : stiff) = &trial;
+      const bool meets = before != nullptr && before->setting == trial.setting && before->too_soft && !trial.too_soft;
+      if (meets && (stiff == nullptr || (!stiff->settled && trial.settled))) {
+        soft = before;
+        stiff = &trial;
+      }
+      before = &trial;
     }
-    const auto at_K = [](const TuneTrial& trial) {
-      return fmt::format("{} at {:.3g} N/m", trial.why, trial.stiffness);
-    };
-    law.why = soft != nullptr ? "too soft: " + at_K(*soft) : "";
-    if (stiff != nullptr) law.why += (soft != nullptr ? "; " : "") + ("too stiff: " + at_K(*stiff));
+    if (soft != nullptr) {
+      law.why = fmt::format("up to {:.4g} N/m too soft, {}; from there on too stiff, {}", soft->stiffness, soft->why,
+                            stiff->why);
+    } else {
+      law.why = before != nullptr ? before->why : "nothing was tried";
+    }
     law.relax = "no limit is to blame: a gentler hand, a wider tool or another device, or other runs with --over";
   }
   static std::string setting_text(const TuneSetting& setting) {
