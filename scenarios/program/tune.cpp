@@ -234,11 +234,8 @@ std::string stiffness_text(const TuneTrial& choice) {
   return deserved(choice.stiffness, 0.005 * choice.stiffness);
 }
 
-std::string setting_text(const TuneTrial& choice) {
-  std::string text = fmt::format("K = {} N/m", stiffness_text(choice));
-  if (choice.setting.damping_ratio) text += fmt::format(", zeta = {:.3g}", *choice.setting.damping_ratio);
-  if (choice.setting.mass) text += fmt::format(", virtual mass {:.3g} kg", *choice.setting.mass);
-  return choice.setting.filter.empty() ? text : text + ", velocity filter " + choice.setting.filter;
+std::string choice_text(const TuneTrial& choice) {
+  return fmt::format("K = {} N/m{}", stiffness_text(choice), setting_text(choice.setting));
 }
 
 std::string margins_text(const TuneMargins& margins) {
@@ -285,13 +282,13 @@ std::string cost_text(const TunedLaw& best, const TunedLaw& other) {
   if (a.lambda_max > 0.0)
     texts.push_back(
         fmt::format("{:.2g} times the rendered stiffness", b.stiffness * b.lambda_max / (a.stiffness * a.lambda_max)));
-  return fmt::format("{} ({}): {}", other.algorithm, setting_text(b), fmt::join(texts, ", "));
+  return fmt::format("{} ({}): {}", other.algorithm, choice_text(b), fmt::join(texts, ", "));
 }
 
 std::string recommendation_text(const Tuning& tuning) {
   const TunedLaw* best = tuning.recommended();
   if (best == nullptr) return "nothing is feasible\n";
-  std::string text = bold(stdout, fmt::format("use {}, {}", best->algorithm, setting_text(*best->choice))) + "\n";
+  std::string text = bold(stdout, fmt::format("use {}, {}", best->algorithm, choice_text(*best->choice))) + "\n";
   const auto line = [&](const char* name, const std::string& what) { text += entry(name, what, 2, 14); };
   line("stops at", fmt::format("{}: {}", best->binding, best->why));
   line("margins", margins_text(best->margins));

@@ -15,24 +15,15 @@
 #include "scenarios/batch/statistics.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/run_scenario.hpp"
-#include "scenarios/studies/stability/field_limit.hpp"
+#include "scenarios/studies/stability/judged_run.hpp"
 #include "scenarios/studies/stability/stability_limits.hpp"
 #include "sim/core/math.hpp"
 
 namespace hapbench {
 namespace {
 
-constexpr const char* kTunedField = "rendering.stiffness_N_per_m";
 constexpr double kResolution = 5e-3;  // of K
 constexpr double kFinest = 1.004;     // ratio of zeta, or of the mass, at which the search ends
-constexpr const char* kFilters[] = {R"({"type":"difference"})", R"({"type":"low_pass","cutoff_Hz":50})",
-                                    R"({"type":"low_pass","cutoff_Hz":100})", R"({"type":"low_pass","cutoff_Hz":200})",
-                                    R"({"type":"adaptive_window"})"};
-
-const ImpedanceDeviceConfig* impedance_of(const Scenario& scenario) {
-  return std::get_if<ImpedanceDeviceConfig>(&scenario.device);
-}
-
 bool stay_in_contact(const Scenario& scenario) {
   try {
     require_bilateral_springs(scenario);
@@ -54,6 +45,7 @@ class Tuner {
       : question_(question), algorithm_(algorithm), ranges_(tune_ranges(question, algorithm)) {
     const LoadedScenario own = at({}, ranges_.stiffness.from, {});
     shell_ = make_shell(own.scenario, own.files);
+    settings_ = settings_of(question, ranges_, own.scenario);
     family_.push_back({"the scene's own run"});
     for (const FamilyOver over : question.over) {
       for (FamilyMember& member : family_of(own, over)) family_.push_back(std::move(member));
@@ -106,13 +98,8 @@ class Tuner {
   std::vector<std::string> overrides(const TuneSetting& setting, double stiffness) const {
     std::vector<std::string> all = question_.overrides;
     all.push_back("rendering.algorithm=" + algorithm_);
-    if (setting.damping_ratio) {
-      all.push_back("rendering.damping_N_s_per_m=null");
-      all.push_back(fmt::format("rendering.damping_ratio={}", *setting.damping_ratio));
-    }
-    if (setting.mass) all.push_back(fmt::format("rendering.mass_kg={}", *setting.mass));
-    if (!setting.filter.empty()) all.push_back("device.velocity_filter=" + setting.filter);
-    all.push_back(fmt::format("{}={}", kTunedField, stiffness));
+    const std::vector<std::string> more = overrides_of(setting, stiffness);
+    all.insert(all.end(), more.begin(), more.end());
     return all;
   }
   LoadedScenario at(const TuneSetting& setting, double stiffness, const FamilyMember& member,
@@ -213,7 +200,10 @@ class Tuner {
         const auto found = metrics[i].find(name);
         const bool known = found != metrics[i].end();
         const double value = known ? found->second : 0.0;
-        if (known) trial.worst[name] = std::max(value, trial.worst.try_emplace(name, value).first->second);
+        if (known) {
+          double& worst = trial.worst.try_emplace(name, value).first->second;
+          worst = bound.max ? std::max(worst, value) : std::min(worst, value);
+        }
         const bool more = known && bound.max && value > *bound.max, less = known && bound.min && value < *bound.min;
         if ((known && !more && !less) || !trial.feasible()) continue;
         trial.too_soft = more && (name.starts_with("inside") || name.starts_with("depth"));
@@ -259,8 +249,7 @@ class Tuner {
   // ---- Search
 
   void search(const Range& range) {
-    const std::vector<TuneSetting> all = grid();
-    for (const TuneSetting& setting : all) improve(setting, range);
+    for (const TuneSetting& setting : settings_) improve(setting, range);
     if (!best_) return;
     const auto stepped = [](std::optional<double>& value, const std::optional<Range>& range_of, double ratio) {
       if (!range_of) return false;
@@ -278,32 +267,6 @@ class Tuner {
         }
       }
     }
-  }
-
-  /// The scene's own setting first, which with equal K stays.
-  std::vector<TuneSetting> grid() const {
-    const Scenario own = at({}, ranges_.stiffness.from, {}).scenario;
-    std::vector<std::optional<double>> ratios = {std::nullopt};
-    if (ranges_.damping_ratio) {
-      const auto [from, to, logarithmic] = *ranges_.damping_ratio;
-      ratios = {std::clamp(own.rendering.damping_ratio, from, to)};
-      const int parts = std::max(1, static_cast<int>(std::round(4.0 * math::log(to / from) / math::log(10.0))));
-      for (int i = 0; i <= parts; ++i)
-        ratios.emplace_back(ranges_.damping_ratio->value_at(static_cast<double>(i) / parts));
-    }
-    std::vector<std::optional<double>> masses = {std::nullopt};
-    if (ranges_.mass) {
-      const auto [from, to, logarithmic] = *ranges_.mass;
-      masses = {std::clamp(own.rendering.mass, from, to), from, to};
-    }
-    std::vector<std::string> filters = {""};
-    if (question_.filters && impedance_of(own) != nullptr)
-      filters.insert(filters.end(), std::begin(kFilters), std::end(kFilters));
-    std::vector<TuneSetting> settings;
-    for (const std::string& filter : filters)
-      for (const auto& mass : masses)
-        for (const auto& ratio : ratios) settings.push_back({ratio, mass, filter});
-    return settings;
   }
 
   /// Raises K at this setting if it can be raised beyond the best; true if it was.
@@ -391,7 +354,7 @@ class Tuner {
     }
     const Scenario scenario = at(choice.setting, choice.stiffness, family_[0]).scenario;
     if (!std::holds_alternative<IdealDeviceFields>(scenario.device)) {
-      const bool impedance = impedance_of(scenario) != nullptr;
+      const bool impedance = std::holds_alternative<ImpedanceDeviceConfig>(scenario.device);
       const double own = delay_of(scenario);
       const char* path = impedance ? "device.delay_samples" : "device.servo.delay_samples";
       const SearchWay delays{.range = {0.0, kMostDelay}, .whole = !impedance, .resolution = 0.02 / kMostDelay};
@@ -518,16 +481,10 @@ class Tuner {
     }
     law.relax = "no limit is to blame: a gentler hand, a wider tool or another device, or other runs with --over";
   }
-  static std::string setting_text(const TuneSetting& setting) {
-    std::string text;
-    if (setting.damping_ratio) text += fmt::format(", zeta = {:.3g}", *setting.damping_ratio);
-    if (setting.mass) text += fmt::format(", {:.3g} kg", *setting.mass);
-    return setting.filter.empty() ? text : text + ", " + setting.filter;
-  }
-
   const TuneQuestion& question_;
   const std::string& algorithm_;
   TuneRanges ranges_;
+  std::vector<TuneSetting> settings_;
   std::shared_ptr<const PointShell> shell_;
   std::vector<FamilyMember> family_;  ///< the scene's own first
   bool over_hands_ = false;
@@ -540,27 +497,6 @@ class Tuner {
 };
 
 }  // namespace
-
-TuneRanges tune_ranges(const TuneQuestion& question, const std::string& algorithm) {
-  std::vector<std::string> overrides = question.overrides;
-  overrides.push_back("rendering.algorithm=" + algorithm);
-  TuneRanges ranges;
-  ranges.stiffness = limit_question(question.scenario, overrides, kTunedField, {}).range;
-  const Scenario own = load_scenario(question.scenario, overrides).scenario;
-  if (!own.rendering.hunt_crossley) {
-    ranges.damping_ratio = question.damping_ratio;
-    ranges.damping_ratio->logarithmic = true;
-    // zeta is that of the virtual mass; what moves is the handle.
-    if (const auto* device = impedance_of(own)) {
-      const double scale = std::sqrt(device->handle_mass / own.rendering.mass);
-      ranges.damping_ratio->from *= scale;
-      ranges.damping_ratio->to *= scale;
-    }
-  }
-  if (std::holds_alternative<AdmittanceDeviceConfig>(own.device))
-    ranges.mass = question.mass.value_or(Range{0.5 * own.rendering.mass, 2.0 * own.rendering.mass, true});
-  return ranges;
-}
 
 TunedLaw tuned_law(const TuneQuestion& question, const std::string& algorithm) {
   return Tuner(question, algorithm).tuned();
