@@ -30,14 +30,14 @@ constexpr double kWithin = 0.03;
 template <class Edge>
 double best_over_damping(Edge edge, double unit) {
   double best = 0.0, at = 0.0;
-  for (double B = 1e-4 * unit; B < 3.0 * unit; B *= 1.02) {
+  for (double B = 1e-4 * unit; B < 3.0 * unit; B *= 1.06) {
     const double K = edge(B);
     if (K <= best) continue;
     best = K;
     at = B;
   }
-  double low = at / 1.02, high = at * 1.02;
-  for (int i = 0; i < 20; ++i) {
+  double low = at / 1.06, high = at * 1.06;
+  for (int i = 0; i < 25; ++i) {
     const double a = high - 0.618 * (high - low), b = low + 0.618 * (high - low);
     (edge(a) > edge(b) ? high : low) = edge(a) > edge(b) ? b : a;
   }
@@ -183,12 +183,12 @@ TEST(Tune, FallsWithDelayAndMargin) {
   }
 }
 
-const Words kOnTouch = {R"(device={"type":"impedance","preset":"omega.3"})"};
+const Words kOnOmega = {R"(device={"type":"impedance","preset":"omega.3"})"};
 
 TEST(Tune, KeepsLimitsAndSaysWhatBinds) {
-  TuneQuestion asked = question("drag_molar", kOnTouch);
+  TuneQuestion asked = question("drag_molar", kOnOmega);
   asked.threads = 2;
-  asked.damping_ratio = {0.05, 0.5};
+  asked.damping_ratio = {0.1, 0.3};
   const TunedLaw free = tuned_law(asked, "shaped_stiffness");
   ASSERT_TRUE(free.choice) << free.why;
   EXPECT_LE(free.runs, kMostTuneRuns + 1000);
@@ -204,9 +204,9 @@ TEST(Tune, KeepsLimitsAndSaysWhatBinds) {
 }
 
 TEST(Tune, SaysWhichLimitToRelaxAndByHowMuch) {
-  TuneQuestion asked = question("drag_molar", kOnTouch);
+  TuneQuestion asked = question("drag_molar", kOnOmega);
   asked.threads = 2;
-  asked.damping_ratio = {0.05, 0.5};
+  asked.damping_ratio = {0.1, 0.3};
   asked.limits["inside_max_m"].max = 1e-6;
   const TunedLaw none = tuned_law(asked, "shaped_stiffness");
   EXPECT_FALSE(none.choice);
