@@ -100,7 +100,7 @@ def tuned(bench):
     B = max(np.linspace(0.93 * B, 1.07 * B, 60), key=edge)
     K, zeta, runs = law["stiffness_N_per_m"], law["damping_ratio"], printed["runs"]
     by = "eigenvalues of the held loop"
-    near = Within("METHOD 15 allows 3 %: the search ends at 0.5 %, runs need a strip of 1 % to tell decay", relative=0.03)
+    near = Within("the search ends at 0.5 % of K and 0.4 % of zeta, runs need a strip of 1 % to tell decay", relative=0.03)
     margin = Within("bisection ends at 0.5 % of the gain, 0.02 samples and runs need a strip of 1 %", relative=0.03, absolute=0.02)
     bench.add("tune.csv:stiffness_N_per_m", K, edge(B) / 2, by, near, ("without the margin", edge(B)))
     at_K = 2 * zeta * math.sqrt(K * m)  # B at K; along zeta it grows with the root of the gain

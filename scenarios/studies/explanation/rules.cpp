@@ -129,8 +129,7 @@ RuleNumber coarseness(const RunFiles& run) {
 RuleNumber encoder_force(const RunFiles& run) {
   const auto* device = std::get_if<ImpedanceDeviceConfig>(&run.scenario().device);
   if (device == nullptr) return std::nullopt;
-  constexpr int kSamples =
-      100;  // in which the response of a filter of any order has its peak, or it passes next to nothing
+  constexpr int kSamples = 100;  // in which a filter of any order has its peak, or passes next to nothing
   VelocityFilter filter(device->velocity_filter, run.scenario().time.step);
   filter.reset(Vec3::Zero());
   double fastest = 0.0;

@@ -22,7 +22,7 @@ TuneQuestion question(const char* scene, const Words& overrides) {
   return question;
 }
 
-/// What METHOD 15 allows: the search ends at half a percent of K, and the runs near the edge need a strip of less than
+/// Three percent: the search ends at half a percent of K, and the runs near the edge need a strip of less than
 /// 1 % below it to tell decay from vibration in 4000 steps (judged_run.hpp).
 constexpr double kWithin = 0.03;
 
