@@ -86,7 +86,7 @@ TEST(HeldSpring, GrowsBeyondItsEdgeAndDiesOutBelow) {
       };
       const double edge = first_edge(1.0, 1e12, [&](double K) { return loop_at(K).state_matrix(); });
       if (every == 1 && delay == 0) {
-        EXPECT_NEAR(edge, 433731.0, 1.0);  // METHOD 8.5
+        EXPECT_NEAR(edge, 433731.0, 1.0);  // the closed form of a damped spring (thesis A.3)
       }
       for (const double factor : {0.95, 1.05}) {
         auto overrides = late(every, delay, "hold");

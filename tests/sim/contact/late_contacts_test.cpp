@@ -10,7 +10,8 @@
 #include "sim/contact/contact_trace.hpp"
 #include "sim/loop/simulation.hpp"
 
-/// Contacts that come late, against METHOD written down anew: from all poses of a run, without rings and buffers.
+/// Contacts that come late, against their definition written down anew: from all poses of a run, without rings and
+/// buffers.
 namespace hapbench::late_contacts_test {
 namespace {
 
@@ -46,7 +47,7 @@ std::vector<ToolPose> random_way(std::uint64_t seed, std::size_t rows, bool roll
   return way;
 }
 
-/// Q of METHOD 13: the smallest turn between the axes, then the difference of roll.
+/// Q of LateContacts: the smallest turn between the axes, then the difference of roll.
 Mat3 smallest_turn(const ToolPose& from, const ToolPose& to) {
   const Vec3 across = from.axis.cross(to.axis);
   const double angle = std::atan2(across.norm(), from.axis.dot(to.axis));
