@@ -47,7 +47,7 @@ def late_force(bench):
 
     lags = np.array([fits(s) for s in shifts])
     lag = shifts[np.argmax(lags)] * dt
-    formula = "METHOD's f and the profile"
+    formula = "the rendered force's formula and the profile"
     fifth = Within("a lag is told to a row", absolute=0.5 * dt)
     bench.metrics(run, [
         ("fidelity.rows", n, "every row has a reference", EXACT, "rows of both above 0.1 N", int(both.sum())),
@@ -197,7 +197,7 @@ def bristle(bench):
         e = (dt * g + bt * e) / (kt * dt + bt)
         force[k] = -g
     began = int(np.sum(slides[1:] & ~slides[:-1]))
-    law = "METHOD's bristle, row by row"
+    law = "the bristle's equations, row by row"
     bench.metrics(run, [
         ("friction.stick_share", int(np.sum(~slides)) / n, law, EXACT, "rows with the force below mu N", float(np.mean(np.abs(force) < 0.99 * mu * load))),
         ("friction.slips_per_s", began / (n * dt), law, EXACT, "rows that slide", slides.sum() / (n * dt))])

@@ -116,7 +116,7 @@ def pressed_ball(bench):
         ("centre_inside_share", np.mean(z < 0), "height below 0", ROUNDING, "rows in contact", touching.mean()),
         ("depth_max_m", chord, "from the grid's point in the ball's centre to the nearest chord of its outline", Within("a row's centre lies within "
          "1e-17 m of the plane", absolute=1e-15), "how deep the tool is", inside.max())])
-    two = "2 % of it and of the half width, by METHOD"
+    two = "2 % of it and of the half width, the bound of the search"
     for name, exact in (("inside_max_m", inside.max()), ("inside_settled_m", float(np.median(inside[settled])))):
         bench.tolerance(run, name, 0.02 * (exact + a), two, ROUNDING, ("2 % of it", 0.02 * exact), exact)
     few = bench.run(bench.folder / "pressed_ball.json", "--set", "record.inside=false", out="few", statuses=(0, 3))
