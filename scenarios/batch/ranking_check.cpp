@@ -34,21 +34,33 @@ double relative_change(double before, double after) {
   return std::abs(after - before) / std::max(std::abs(before), std::abs(after));
 }
 
+/// A number of a column and what it may be wrong by.
+struct Number {
+  double value, tolerance;
+};
+
+Number at(const RankedNumbers& column, std::size_t law) {
+  return {column.values[law], column.tolerances.empty() ? 0.0 : column.tolerances[law]};
+}
+
 /// Tells numbers of a column apart.
 struct Apart {
   double floor;  ///< smaller differences do not count
 
-  bool operator()(double a, double b) const { return relative_change(a, b) > kHeld && !(std::abs(a - b) <= floor); }
+  bool operator()(const Number& a, const Number& b) const {
+    return relative_change(a.value, b.value) > kHeld &&
+           !(std::abs(a.value - b.value) <= std::max(floor, a.tolerance + b.tolerance));
+  }
 };
 
-Apart apart_in(std::span<const double> before, std::span<const double> after, double tolerance) {
+Apart apart_in(std::span<const double> before, std::span<const double> after) {
   double largest = 0.0;
   for (const auto& column : {before, after}) {
     for (const double number : column) {
       if (std::isfinite(number)) largest = std::max(largest, std::abs(number));
     }
   }
-  return {std::max(kSameRank * largest, tolerance)};
+  return {kSameRank * largest};
 }
 
 }  // namespace
@@ -57,17 +69,17 @@ std::span<const HoldingInfo> holding_infos() noexcept {
   return kHoldings;
 }
 
-ColumnVerdict judged_column(std::span<const double> before, std::span<const double> after, bool ranked,
-                            double tolerance) {
-  const Apart apart = apart_in(before, after, tolerance);
-  const std::size_t laws = before.size();
+ColumnVerdict judged_column(const RankedNumbers& before, const RankedNumbers& after, bool ranked) {
+  const Apart apart = apart_in(before.values, after.values);
+  const std::size_t laws = before.values.size();
   ColumnVerdict verdict;
   double furthest = -1.0;
   for (std::size_t a = 0; ranked && a < laws; ++a) {
     for (std::size_t b = a + 1; b < laws; ++b) {
-      const bool flips =
-          apart(before[a], before[b]) && apart(after[a], after[b]) && (before[a] < before[b]) != (after[a] < after[b]);
-      const double far = relative_change(before[a], before[b]) + relative_change(after[a], after[b]);
+      const bool flips = apart(at(before, a), at(before, b)) && apart(at(after, a), at(after, b)) &&
+                         (before.values[a] < before.values[b]) != (after.values[a] < after.values[b]);
+      const double far =
+          relative_change(before.values[a], before.values[b]) + relative_change(after.values[a], after.values[b]);
       if (!flips || far <= furthest) continue;
       verdict = {Holding::flips, a, b};
       furthest = far;
@@ -75,8 +87,8 @@ ColumnVerdict judged_column(std::span<const double> before, std::span<const doub
   }
   if (verdict.holding == Holding::flips) return verdict;
   for (std::size_t a = 0; a < laws; ++a) {
-    const bool moves = apart(before[a], after[a]), is_first = moves && verdict.holding == Holding::holds;
-    const double change = relative_change(before[a], after[a]);
+    const bool moves = apart(at(before, a), at(after, a)), is_first = moves && verdict.holding == Holding::holds;
+    const double change = relative_change(before.values[a], after.values[a]);
     if (!is_first && (change <= furthest || moves != (verdict.holding == Holding::drifts))) continue;
     verdict = {moves ? Holding::drifts : Holding::holds, a};
     furthest = change;
@@ -130,13 +142,11 @@ std::vector<std::optional<double>> numbers_of(const League& league, std::size_t 
   return numbers;
 }
 
-/// What two numbers of the column may be wrong by together.
-double twice_the_largest(const RankingColumn& column) {
-  double largest = 0.0;
-  for (const auto* tolerances : {&column.tolerance_before, &column.tolerance_after}) {
-    for (const auto& tolerance : *tolerances) largest = std::max(largest, tolerance.value_or(0.0));
-  }
-  return 2.0 * largest;
+/// The tolerances of a column; 0 where none is known.
+std::vector<double> known(const std::vector<std::optional<double>>& tolerances) {
+  std::vector<double> all;
+  for (const auto& tolerance : tolerances) all.push_back(tolerance.value_or(0.0));
+  return all;
 }
 
 /// The columns of a scenario that has the places `before` and `after` in the two leagues.
@@ -151,7 +161,8 @@ void add_columns(const League& coarse, std::size_t before, const League& fine, s
     column.after = numbers_of(fine, after, m, &Standing::mean);
     column.tolerance_before = numbers_of(coarse, before, m, &Standing::tolerance);
     column.tolerance_after = numbers_of(fine, after, m, &Standing::tolerance);
-    column.verdict = judged_column(keys, keys_after, ranked, twice_the_largest(column));
+    const std::vector<double> within = known(column.tolerance_before), within_after = known(column.tolerance_after);
+    column.verdict = judged_column({keys, within}, {keys_after, within_after}, ranked);
     column.best_before = best_of(keys, ranked);
     column.best_after = best_of(keys_after, ranked);
   }

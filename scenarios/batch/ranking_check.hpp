@@ -39,15 +39,20 @@ struct ColumnVerdict {
   std::optional<std::size_t> other = {};
 };
 
+/// A column of numbers, one of each law, and what each may be wrong by; nothing where there are no tolerances.
+struct RankedNumbers {
+  std::span<const double> values;
+  std::span<const double> tolerances = {};
+};
+
 /// Judges a column before and after. Two numbers are apart when they differ by more than kHeld of the larger, by more
-/// than kSameRank of the column's largest, and by more than `tolerance`, what two of them may be wrong by. The column
+/// than kSameRank of the column's largest, and by more than both may be wrong by together. The column
 /// - flips when `ranked` and two laws are apart before and after, in opposite order;
 /// - drifts when it does not flip and a number after is apart from that before;
 /// - holds otherwise.
 /// Infinity stands for a law that fails or has no number: worse than all others. Precondition: as many numbers after as
 /// before, at least one, none of them NaN.
-ColumnVerdict judged_column(std::span<const double> before, std::span<const double> after, bool ranked,
-                            double tolerance = 0.0);
+ColumnVerdict judged_column(const RankedNumbers& before, const RankedNumbers& after, bool ranked);
 
 /// A metric of all laws in a scenario before and after, or a scenario that cannot be sampled more finely.
 struct RankingColumn {

@@ -36,7 +36,7 @@ std::string fault_of(const std::vector<RankingColumn>& columns) {
     }
     if (std::ranges::find(kOwnColumns, column.metric) == std::end(kOwnColumns)) continue;
     const auto &before = column.before[0], &after = column.after[0];
-    if (!before || !after || judged_column({&*before, 1}, {&*after, 1}, false).holding != Holding::holds)
+    if (!before || !after || judged_column({{&*before, 1}}, {{&*after, 1}}, false).holding != Holding::holds)
       return fmt::format("{} of {} moves", column.metric, kLaws[0]);
   }
   return "";

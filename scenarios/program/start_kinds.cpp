@@ -39,7 +39,7 @@ const std::string kDrag = R"(
     "smoothing_m": @smoothing@
   },)";
 const std::string kTurn = R"(
-  "motion": {"orientation": {"tilt_rad": {"type": "sine", "mean": 0.3, "amplitude": 0.2, "period_s": 1}}},
+  "motion": {"orientation": {"tilt_rad": {"type": "sine", "mean": 0.2, "amplitude": 0.2, "period_s": 1}}},
   "hand": {"type": "force", "z_N": -1},)";
 const std::string kStroke = R"(
   "motion": {"position": {"type": "file", "file": @file@}},)";

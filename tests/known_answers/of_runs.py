@@ -26,7 +26,7 @@ TOUCHES = {
 
 
 class Touches:
-    """Every row of TOUCHES by METHOD's formulas: f = -K sum d u - B S v - (mu_s + mu_f |f_spring|) (v - S v)."""
+    """Every row of TOUCHES by the formulas of the rendering: f = -K sum d u - B S v - (mu_s + mu_f |f_spring|) (v - S v)."""
 
     def __init__(self, dt=0.0005, K=1000.0, B=2.0, mu_s=1.0, mu_f=1.0):
         self.dt, self.t = dt, np.arange(1200) * dt

@@ -37,8 +37,8 @@ class Findings(list):
         except (subprocess.TimeoutExpired, UnicodeDecodeError) as error:
             self.note(f"{error}")
             return None
-        said = "error:" in done.stderr if done.returncode in (0, 2) else "hapbench: " in done.stderr
-        if done.returncode not in statuses or (done.returncode != 0) != said:
+        said = done.returncode == 3 or (done.returncode != 0) == ("error:" in done.stderr)  # 3: perhaps in what it prints
+        if done.returncode not in statuses or not said:
             self.note(f"{' '.join(map(str, words))}: status {done.returncode}: {done.stderr.strip()[-300:]}")
             return None
         return done

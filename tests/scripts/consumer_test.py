@@ -22,6 +22,7 @@ def must(*words, cwd=None):
 
 
 class Consumer(unittest.TestCase):
+    maxDiff = None  # every broken link
     @classmethod
     def setUpClass(cls):
         cls.folder = scratch_folder(cls)

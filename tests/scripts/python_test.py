@@ -50,7 +50,7 @@ class Runs(Scratch):
 
     def test_are_those_of_the_program(self):
         run, read = self.compare(PEG, {**SHORT, **EVERYTHING})
-        self.assertEqual(set(run.tables), {"trajectory", "contacts", "stiffness_tensor", "energy", "ratios"})
+        self.assertEqual(set(run.tables), {"trajectory", "contacts", "contact_trace", "stiffness_tensor", "energy", "ratios"})
         self.assertGreater(run.contacts.rows, 1000)
         self.assertEqual(run.trajectory.units["fx_N"], "N")
         self.assertTrue(np.isnan(run.trajectory.ratio_min).any() or (run.trajectory.rendered > 0).all())

@@ -23,11 +23,11 @@ vibrates at its first contact, or a good setting is never tried. It moves nobody
 |---|---|---|---|---|
 | forces and stiffness of the algorithms | [known answers](../../tests/known_answers/README.md), [claims of the thesis](../thesis_claims/README.md) | `compare --check`, `run --sure` | the thesis's own figures; no other measurement | `sweep --sample`; [claims](../thesis_claims/README.md) sampled over choices that are ours |
 | motion of the tool in time | closed forms in [known answers](../../tests/known_answers/README.md) | [precision and converge](../studies/README.md) | no | `converge`, `sweep` |
-| limits of stability, linear | eigenvalues and polynomials, [linear_loops_test](../../tests/device_model/linear_loops_test.cpp) | bisection to a stated width | see below | [maps](../studies/README.md#stability) |
-| limits of an impedance device at a wall | exact maps, [impedance_device_test](../../tests/device_model/impedance_device_test.cpp) | the handle moves exactly between samples | **cases below** | intervals below: dry friction, delay, damping, press |
-| limits of an admittance device | [admittance_device_test](../../tests/device_model/admittance_device_test.cpp) | `limit` to a stated width | **no measured limit was found** | [maps](../studies/README.md#stability) |
+| limits of stability, linear | eigenvalues and polynomials, `tests/device_model/linear_loops_test.cpp` | bisection to a stated width | see below | [maps](../studies/README.md#stability) |
+| limits of an impedance device at a wall | exact maps, `tests/device_model/impedance_device_test.cpp` | the handle moves exactly between samples | **cases below** | intervals below: dry friction, delay, damping, press |
+| limits of an admittance device | `tests/device_model/admittance_device_test.cpp` | `limit` to a stated width | **no measured limit was found** | [maps](../studies/README.md#stability) |
 | dry friction between tool and surface | [known answers](../../tests/known_answers/README.md) | `converge` | no | `sweep` |
-| a device identified from its log | an independent simulator, [identify_test](../../tests/scripts/identify_test.py) | exact integration | no log of hardware was available | 95 % intervals with every number |
+| a device identified from its log | an independent simulator, `tests/scripts/identify_test.py` | exact integration | no log of hardware was available | 95 % intervals with every number |
 | what people feel | not claimed | - | - | - |
 
 ## Measured and predicted
@@ -99,7 +99,7 @@ def page(data, cases, recorded):
     text += (f"\n## Do it again\n\n    scripts/validation --program build/release/bin/hapbench\n    scripts/validation --page    # only this page, "
              f"from data/predictions.json\n    hapbench limit epfl_paddle.json --vary rendering.stiffness_N_per_m --between 200:400000    # "
              f"in this folder\n\nPredicted by {recorded['program']}. Cases and ranges: [data/cases.json](data/cases.json); rules: "
-             "[hapbench_validation](../../scripts/python/hapbench_validation).\n")
+             "`scripts/python/hapbench_validation`.\n")
     return text
 
 

@@ -17,7 +17,7 @@ using Numbers = std::vector<double>;
 constexpr double kNone = std::numeric_limits<double>::infinity();
 
 Holding judged(const Numbers& before, const Numbers& after, bool ranked = true) {
-  return judged_column(before, after, ranked).holding;
+  return judged_column({before}, {after}, ranked).holding;
 }
 
 TEST(JudgedColumn, FlipsWhenTwoThatAreApartBothTimesChangeTheirOrder) {
@@ -45,19 +45,23 @@ TEST(JudgedColumn, OverlooksWhatIsSmallBesideTheLargest) {
 }
 
 TEST(JudgedColumn, OverlooksWhatTheNumbersMayBeWrongBy) {
-  const Numbers before{1.0, 1.5}, after{1.5, 1.0};
-  EXPECT_EQ(judged_column(before, after, true, 0.4).holding, Holding::flips);
-  EXPECT_EQ(judged_column(before, after, true, 0.5).holding, Holding::holds);
+  const Numbers before{1.0, 1.5, 9.0}, after{1.5, 1.0, 9.0};
+  const auto with = [&](const Numbers& tolerances) {
+    return judged_column({before, tolerances}, {after, tolerances}, true).holding;
+  };
+  EXPECT_EQ(with({0.2, 0.2, 100.0}), Holding::flips) << "whatever the third may be wrong by";
+  EXPECT_EQ(with({0.2, 0.3, 0.0}), Holding::drifts) << "as the first number does";
+  EXPECT_EQ(with({0.25, 0.3, 0.0}), Holding::holds);
 }
 
 TEST(JudgedColumn, NamesTheLawsThatShowIt) {
-  const ColumnVerdict flips = judged_column(Numbers{1.0, 1.5, 9.0}, Numbers{8.0, 1.5, 0.1}, true);
+  const ColumnVerdict flips = judged_column({Numbers{1.0, 1.5, 9.0}}, {Numbers{8.0, 1.5, 0.1}}, true);
   EXPECT_EQ(flips.law, 0u);
   EXPECT_EQ(flips.other, 2u) << "further apart than the first and the second";
-  const ColumnVerdict drifts = judged_column(Numbers{1.0, 5.0, 0.0001}, Numbers{1.05, 7.0, 0.0002}, true);
+  const ColumnVerdict drifts = judged_column({Numbers{1.0, 5.0, 0.0001}}, {Numbers{1.05, 7.0, 0.0002}}, true);
   EXPECT_EQ(drifts.holding, Holding::drifts);
   EXPECT_EQ(drifts.law, 1u) << "the third moves by more, below a thousandth of the largest";
-  EXPECT_EQ(judged_column(Numbers{1.0, 5.0}, Numbers{1.05, 5.1}, true).law, 0u);
+  EXPECT_EQ(judged_column({Numbers{1.0, 5.0}}, {Numbers{1.05, 5.1}}, true).law, 0u);
 }
 
 /// A flat tip of radius 0.5 mm in a plane, `z` its way, whose points are 0.4 mm apart: 5 of them lie within, and 21 of

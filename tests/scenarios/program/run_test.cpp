@@ -65,8 +65,9 @@ TEST_F(RunCommand, WritesWhatTheScenarioRecords) {
       Json::parse(R"({"trajectory": false, "contacts": true, "ratio_iterations": [0, 3], "stiffness_tensor": true,
                       "timing": true})");
   EXPECT_EQ(hapbench({"run", write_scenario("a.json", json), "--out", out()}).status, 0);
-  EXPECT_EQ(test::names_below(out()), (Names{"columns.json", "contacts.csv", "ratios.csv", "scenario.effective.json",
-                                             "stiffness_tensor.csv", "summary.json", "timing.json"}));
+  EXPECT_EQ(test::names_below(out()),
+            (Names{"columns.json", "contact_trace.csv", "contacts.csv", "ratios.csv", "scenario.effective.json",
+                   "stiffness_tensor.csv", "summary.json", "timing.json"}));
   // Another run into the same directory leaves no file that is not its own.
   json["record"] = Json::object();
   EXPECT_EQ(hapbench({"run", write_scenario("a.json", json), "--out", out()}).status, 0);

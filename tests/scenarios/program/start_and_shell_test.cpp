@@ -407,7 +407,7 @@ class EffectiveScenarioWithFiles : public testing::Test {
  protected:
   EffectiveScenarioWithFiles() {
     fs::create_directories(directory_ / "my scenes");
-    for (const char* file : {"cube.obj", "shell.csv", "stroke.csv"}) {
+    for (const char* file : {"cube.obj", "shell.csv", "stroke.csv", "trace.csv"}) {
       fs::copy_file(test::data_directory() / file, directory_.path() / "my scenes" / file);
     }
   }

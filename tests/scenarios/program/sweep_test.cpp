@@ -81,6 +81,8 @@ TEST_F(SweepCommand, HasTheNumbersOfTheRunsAlone) {
   EXPECT_EQ(cells.back(), summary["state_hash"]);
   for (std::size_t i = 7; i + 1 < names.size(); ++i) {
     Json value = summary["metrics"].value(names[i], Json(nullptr));
+    if (names[i].starts_with("tolerances."))
+      value = summary["tolerances"].value(names[i].substr(names[i].find('.') + 1), Json(nullptr));
     if (names[i].starts_with("passivity.")) value = summary["passivity"][names[i].substr(names[i].find('.') + 1)];
     // The components of the one metric that is a vector have columns of their own.
     if (names[i].starts_with("final_position_m.")) {

@@ -311,7 +311,7 @@ TEST(DescribeCommand, ExplainsEveryColumnOfEveryFileOfARun) {
     EXPECT_EQ(hapbench_here({"describe", file, "--json"}).json()["columns"], columns[file]) << file;
     ++files;
   }
-  EXPECT_EQ(files, 6u);
+  EXPECT_EQ(files, 7u);
   const Json metrics = Json::parse(test::read_file(directory / "out/summary.json"))["metrics"];
   for (const auto& [name, value] : metrics.items()) {
     if (name == "final_position_m") continue;

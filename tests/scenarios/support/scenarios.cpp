@@ -88,7 +88,7 @@ std::vector<NamedScenario> rich_scenarios() {
       "rendering": {"algorithm": "shaped_stiffness", "iterations": 0, "stiffness_N_per_m": 0, "damping_ratio": 0,
         "mass_kg": 1, "friction": {"mu_s_N_s_per_m": 1, "mu_f_s_per_m": 1},
         "limits": {"max_damping_N_s_per_m": null, "max_force_N": null}},
-      "integrator": {"type": "implicit_midpoint"},
+      "integrator": {"type": "event", "tolerance_s": 1e-8},
       "bounds": {"position_m": 10, "speed_m_per_s": 20, "force_N": 30},
       "expect": {"outcome": "completes"}})")},
           {"tracked_block", Json::parse(R"({
