@@ -143,7 +143,7 @@ std::vector<std::optional<double>> numbers_of(const League& league, std::size_t 
 }
 
 /// The tolerances of a column; 0 where none is known.
-std::vector<double> known(const std::vector<std::optional<double>>& tolerances) {
+std::vector<double> or_zero(const std::vector<std::optional<double>>& tolerances) {
   std::vector<double> all;
   for (const auto& tolerance : tolerances) all.push_back(tolerance.value_or(0.0));
   return all;
@@ -161,7 +161,7 @@ void add_columns(const League& coarse, std::size_t before, const League& fine, s
     column.after = numbers_of(fine, after, m, &Standing::mean);
     column.tolerance_before = numbers_of(coarse, before, m, &Standing::tolerance);
     column.tolerance_after = numbers_of(fine, after, m, &Standing::tolerance);
-    const std::vector<double> within = known(column.tolerance_before), within_after = known(column.tolerance_after);
+    const std::vector<double> within = or_zero(column.tolerance_before), within_after = or_zero(column.tolerance_after);
     column.verdict = judged_column({keys, within}, {keys_after, within_after}, ranked);
     column.best_before = best_of(keys, ranked);
     column.best_after = best_of(keys_after, ranked);
