@@ -15,7 +15,7 @@ namespace hapbench {
 namespace {
 
 /// Of the scene's step.
-constexpr double kFactors[] = {4.0, 2.0, 1.0, 0.5, 0.25, 0.125};
+constexpr double kStepFactors[] = {4.0, 2.0, 1.0, 0.5, 0.25, 0.125};
 
 /// M v^2 / 2 and what the springs store, at the first and the last row [J], and how often contact began or ended.
 class MechanicalEnergy final : public Observer {
@@ -74,7 +74,7 @@ static PrecisionResult study_events(const Scenario& given, const PrecisionOption
     const SampledRun sampled = sampled_run(run, shell, 1, {&energy});
     return std::pair(sampled, energy);
   };
-  const auto [reference_run, reference] = measured(with(scenario, kEvent, kFactors[std::size(kFactors) - 1]));
+  const auto [reference_run, reference] = measured(with(scenario, kEvent, kStepFactors[std::size(kStepFactors) - 1]));
   if (!(reference.first() > 0.0))
     throw InputError(InputError::Kind::relation, "/initial/velocity_m_per_s",
                      "the tool is at rest; the study needs one that is thrown at the surface");
@@ -85,7 +85,7 @@ static PrecisionResult study_events(const Scenario& given, const PrecisionOption
   result.timed = "step";
   for (const IntegratorEntry* integrator : kIntegrators) {
     std::vector<double> steps, errors;
-    for (const double factor : kFactors) {
+    for (const double factor : kStepFactors) {
       const Scenario run = with(scenario, *integrator, factor);
       const auto [sampled, energy] = measured(run);
       const bool complete = sampled.result.outcome != Outcome::diverges;
@@ -96,7 +96,7 @@ static PrecisionResult study_events(const Scenario& given, const PrecisionOption
                   {run.time.step, if_complete(energy.created()), if_complete(by_sampling),
                    if_complete(energy.created() / reference.first()), static_cast<double>(energy.switches())},
                   seconds_per_step(run, shell, options.repetitions)},
-                 options, kIntegrators.size() * std::size(kFactors));
+                 options, kIntegrators.size() * std::size(kStepFactors));
       steps.push_back(run.time.step);
       errors.push_back(complete ? std::abs(by_sampling) : 0.0);
     }
