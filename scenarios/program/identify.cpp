@@ -33,13 +33,10 @@ int identify(const IdentifyOptions& options) {
   if (!answer) return kInternalFault;
   Table table({{kind.empty() ? "of the device" : "of the signal", false}, {""}, {"from"}, {"to, 95 %"}});
   for (const Json& row : (*answer)["table"]) table.add(row.get<std::vector<std::string>>());
-  Json& json = (*answer)["json"];
-  print_warnings(json["warnings"].get<std::vector<std::string>>());
   const std::string next = kind.empty() ? shell_line({"hapbench", "compare", "--devices", out.string()})
                                         : fmt::format("command these forces, log time_s,force_N,position_m, then {}",
                                                       shell_line({"hapbench", "identify", "LOG.csv"}));
-  json["next"] = next;
-  print(options.output, fmt::format("{}\n{}\nnext: {}\n", out.string(), table.text(), next), json);
+  options.print_made((*answer)["json"], out, table, next);
   return kSuccess;
 }
 

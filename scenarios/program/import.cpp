@@ -67,12 +67,10 @@ int import(const ImportOptions& options) {
           json);
     return kSuccess;
   }
-  print_warnings(json["warnings"].get<std::vector<std::string>>());
   const std::string scenario = out.stem().string() + ".json";
   const std::string next = shell_line({"hapbench", "new", "stroke", "--from", out.string(), "--out", scenario}) +
                            " && " + shell_line({"hapbench", "run", scenario});
-  json["next"] = next;
-  print(options.output, fmt::format("{}\n{}\nnext: {}\n", out.string(), table.text(), next), json);
+  options.print_made(json, out, table, next);
   return kSuccess;
 }
 

@@ -78,4 +78,11 @@ std::optional<Json> PythonOptions::reply(const char* package, const char* doing,
   return answer;
 }
 
+void PythonOptions::print_made(Json& json, const std::filesystem::path& out, const Table& table,
+                               const std::string& next) const {
+  print_warnings(json["warnings"].get<std::vector<std::string>>());
+  json["next"] = next;
+  print(output, fmt::format("{}\n{}\nnext: {}\n", out.string(), table.text(), next), json);
+}
+
 }  // namespace hapbench

@@ -29,6 +29,9 @@ struct PythonOptions {
   /// IoError with the file `out` among them.
   std::optional<Json> reply(const char* package, const char* doing, const std::filesystem::path& out,
                             const std::vector<std::string>& more) const;
+  /// Prints the warnings of the reply's JSON, the file that the package made, its table and the `next` command, which
+  /// the JSON gets, too.
+  void print_made(Json& json, const std::filesystem::path& out, const Table& table, const std::string& next) const;
 };
 
 }  // namespace hapbench

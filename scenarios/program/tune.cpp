@@ -65,8 +65,8 @@ Cell tune_metric(const TuneMetrics& metrics) {
 
 constexpr const char* kRatioColumn = "rendering.damping_ratio";
 
-using TrialField = Field<std::pair<const TunedLaw*, const TuneTrial*>>;
 using TrialRow = std::pair<const TunedLaw*, const TuneTrial*>;
+using TrialField = Field<TrialRow>;
 
 const TrialField kTrialFields[] = {
     {{"algorithm", "", "force algorithm"}, [](const TrialRow& r) -> Cell { return r.first->algorithm; }},

@@ -271,15 +271,14 @@ Encounter EncounterObservers::encounter(const Metrics& metrics, const ToolShape&
   }
   if (stuck_) encounter.stuck = stuck_->stuck();
   if (inside_) encounter.passage = inside_->passage();
+  if (metrics.inside) encounter.inside_max = metrics.inside->max.value_or(0.0);
   return encounter;
 }
 
-Outcome EncounterObservers::outcome(const Scenario& scenario, const Metrics& metrics, const ToolShape& tool,
-                                    Outcome outcome) {
+Outcome EncounterObservers::outcome(const Scenario& scenario, Metrics metrics, const ToolShape& tool, Outcome outcome) {
   if (!approach_ || outcome != Outcome::completes) return outcome;
-  Encounter seen = encounter(metrics, tool);
-  if (inside_) seen.inside_max = inside_->metrics().max.value_or(0.0);
-  return outcome_of(scenario, seen);
+  if (inside_) metrics.inside = inside_->metrics();
+  return outcome_of(scenario, encounter(metrics, tool));
 }
 
 void EncounterObservers::judge(const Scenario& scenario, Metrics& metrics, const ToolShape& tool, Outcome& outcome,
@@ -291,8 +290,7 @@ void EncounterObservers::judge(const Scenario& scenario, Metrics& metrics, const
                     length_text(metrics.inside->max.value_or(0.0)), length_text(*metrics.inside->at_most)));
   }
   if (!approach_) return;
-  Encounter seen = encounter(metrics, tool);
-  if (metrics.inside) seen.inside_max = metrics.inside->max.value_or(0.0);
+  const Encounter seen = encounter(metrics, tool);
   if (outcome == Outcome::completes) {
     outcome = outcome_of(scenario, seen);
     if (auto warning = warning_about(scenario, outcome, seen)) warnings.push_back(*warning);

@@ -171,7 +171,7 @@ class EncounterObservers {
   const InsideObserver* inside() const { return inside_ ? &*inside_ : nullptr; }
 
   /// The outcome of the run that ended with `outcome`, which stays unless it is `completes`.
-  Outcome outcome(const Scenario& scenario, const Metrics& metrics, const ToolShape& tool, Outcome outcome);
+  Outcome outcome(const Scenario& scenario, Metrics metrics, const ToolShape& tool, Outcome outcome);
   /// After the run: adds the depth to its metrics, finds its outcome and adds warnings about it.
   void judge(const Scenario& scenario, Metrics& metrics, const ToolShape& tool, Outcome& outcome,
              std::vector<std::string>& warnings);

@@ -146,7 +146,8 @@ def killed_commands(scratch):
 def kills(count, seed, found, scratch):
     """Commands killed at any time; afterwards no file is torn, and the next call makes the results that it makes undisturbed."""
     chance, killed, figures = random.Random(seed), 0, {}
-    for name, words in killed_commands(scratch).items():
+    commands = killed_commands(scratch)
+    for name, words in commands.items():
         out = scratch / f"{name}-killed"
         to = lambda folder: ["--out", folder / "stroke.csv" if name == "import" else folder]
         whole = scratch / f"{name}-whole"
@@ -155,7 +156,7 @@ def kills(count, seed, found, scratch):
         must(PROGRAM, *words, "--quiet", *to(whole), statuses=FINE)
         duration, expected = time.monotonic() - begin, files_below(whole)
         died = 0
-        for _ in range(count // len(killed_commands(scratch))):
+        for _ in range(count // len(commands)):
             if chance.random() < 0.5:
                 shutil.rmtree(out, ignore_errors=True)
             out.mkdir(exist_ok=True)

@@ -7,7 +7,7 @@
 
 #include "scenarios/studies/explanation/run_files.hpp"
 
-/// What is wrong with a run and what to try, each from a number and a stated threshold.
+/// Rules that say what is wrong with a run and what to try, each from a number and a stated threshold.
 namespace hapbench {
 
 /// A rule: something is wrong where its number is larger than the threshold.
@@ -32,7 +32,7 @@ struct Explanation {
   std::string says;
 };
 
-/// What the rules find; empty where nothing is wrong.
+/// The rules that apply to the run, in their order; empty where nothing is wrong.
 std::vector<Explanation> explained(const RunFiles& run);
 
 }  // namespace hapbench

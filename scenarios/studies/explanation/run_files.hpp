@@ -18,7 +18,7 @@ struct ReadRow {
   bool touches = false;
 };
 
-/// What a run left in its folder.
+/// The files of a run, as far as rules read them.
 struct RunFiles {
   LoadedScenario loaded;  ///< of scenario.effective.json
   std::string outcome;    ///< of summary.json

@@ -14,7 +14,7 @@
 namespace hapbench {
 namespace {
 
-/// Of the scene's step.
+/// Steps of the rows, in steps of the scene.
 constexpr double kStepFactors[] = {4.0, 2.0, 1.0, 0.5, 0.25, 0.125};
 
 /// M v^2 / 2 and what the springs store, at the first and the last row [J], and how often contact began or ended.
@@ -40,10 +40,7 @@ class MechanicalEnergy final : public Observer {
 };
 
 Scenario bouncing(Scenario scenario) {
-  if (!std::holds_alternative<FreePosition>(scenario.motion.position)) {
-    throw InputError(InputError::Kind::relation, "/motion/position/type",
-                     "got a prescribed position; allowed for this study: \"free\"");
-  }
+  require_free_position(scenario);
   scenario.hand = NoHandFields{};
   scenario.device = IdealDeviceFields{};
   RenderingConfig& r = scenario.rendering;
@@ -57,10 +54,8 @@ Scenario bouncing(Scenario scenario) {
 }
 
 Scenario with(const Scenario& scenario, const IntegratorEntry& integrator, double factor) {
-  Scenario run = scenario;
+  Scenario run = with_step(scenario, factor);
   run.integrator.type = &integrator;
-  run.time.step *= factor;
-  run.time.steps = std::llround(static_cast<double>(scenario.time.steps) / factor);
   return run;
 }
 

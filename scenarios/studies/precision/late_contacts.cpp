@@ -12,8 +12,8 @@
 #include "scenarios/studies/precision/measure.hpp"
 #include "scenarios/studies/stability/judged_run.hpp"
 
-/// What it costs every algorithm that contacts are found in some rows only: how far the tool goes another way, how much
-/// it vibrates, and how stiff it may be.
+/// The cost of finding contacts in some rows only, for every algorithm: how far the tool goes another way, how much it
+/// vibrates, and how stiff it may be.
 namespace hapbench {
 namespace {
 
@@ -26,10 +26,7 @@ constexpr double kMostVibrationOfLate = 0.01;
 constexpr double kStiffnessRange = 1024.0;  ///< K is looked for between the scene's own over this and times this
 
 Scenario free_scene(Scenario scenario) {
-  if (!std::holds_alternative<FreePosition>(scenario.motion.position)) {
-    throw InputError(InputError::Kind::relation, "/motion/position/type",
-                     "got a prescribed position; allowed for this study: \"free\"");
-  }
+  require_free_position(scenario);
   scenario.device = IdealDeviceFields{input_force_limit(scenario.device)};
   scenario.time.steps = std::min<std::int64_t>(scenario.time.steps, std::llround(kLongestRun / scenario.time.step));
   scenario.record = {};

@@ -19,6 +19,19 @@ constexpr double kPeriod = 6.0;  // [s], of the tilt of task 2
 
 }  // namespace
 
+Scenario with_step(const Scenario& scenario, double factor) {
+  Scenario run = scenario;
+  run.time.step = scenario.time.step * factor;
+  run.time.steps = std::llround(static_cast<double>(scenario.time.steps) / factor);
+  return run;
+}
+
+void require_free_position(const Scenario& scenario) {
+  if (std::holds_alternative<FreePosition>(scenario.motion.position)) return;
+  throw InputError(InputError::Kind::relation, "/motion/position/type",
+                   "got a prescribed position; allowed for this study: \"free\"");
+}
+
 SampledRun sampled_run(const Scenario& scenario, std::shared_ptr<const PointShell> shell, std::uint64_t stride,
                        std::vector<Observer*> observers) {
   const SimulationConfig config = simulation_config(scenario);

@@ -122,6 +122,12 @@ double slope(std::span<const double> x, std::span<const double> y);
 /// The order of convergence at the fine end; x falls. Ignores errors that are not positive and finite.
 Order observed_order(std::span<const double> x, std::span<const double> error);
 
+/// The scenario at `factor` times its step, as long a run.
+Scenario with_step(const Scenario& scenario, double factor);
+
+/// Throws InputError where the motion prescribes the position.
+void require_free_position(const Scenario& scenario);
+
 /// Seconds per step of a run without observers, the least of `repetitions`, or of as many as a second allows.
 double seconds_per_step(const Scenario& scenario, std::shared_ptr<const PointShell> shell, int repetitions);
 

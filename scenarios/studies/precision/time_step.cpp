@@ -18,13 +18,6 @@ constexpr double kFactors[] = {4.0, 2.0, 1.0, 0.5, 0.25, 0.125};
 /// is so underestimated by 1/16 at first order and by less at higher ones.
 constexpr int kReference = 128;
 
-Scenario with_step(const Scenario& scenario, double factor) {
-  Scenario run = scenario;
-  run.time.step = scenario.time.step * factor;
-  run.time.steps = std::llround(static_cast<double>(scenario.time.steps) / factor);
-  return run;
-}
-
 /// All runs are compared at the samples of the coarsest one.
 std::uint64_t stride(double factor) {
   return static_cast<std::uint64_t>(std::llround(kFactors[0] / factor));

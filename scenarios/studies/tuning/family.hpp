@@ -26,9 +26,8 @@ inline constexpr double kSeedShift = 1e-5;
 inline constexpr int kSeeds = 5;
 
 /// The other runs of the family; none where the scene has nothing to vary, as a hand whose force is a script.
-///   hands   that are springs: the ends of hand_family(), 100 and 1000 N/m, on an impedance device's handle with 0.1
-///   and
-///           0.5 kg each, and the damping of the scene's own
+///   hands   that are springs: the ends of hand_family(), 100 and 1000 N/m, with the damping of the scene's own; on an
+///           impedance device's handle with 0.1 and 0.5 kg each
 ///   seeds   further seeds, started 10 um away
 ///   speeds  the script of hand and tool at half and twice its speed
 std::vector<FamilyMember> family_of(const LoadedScenario& loaded, FamilyOver over);

@@ -24,6 +24,8 @@ namespace {
 
 constexpr double kResolution = 5e-3;  // of K
 constexpr double kFinest = 1.004;     // ratio of zeta, or of the mass, at which the search ends
+
+/// True for springs that push and pull: their loop does not depend on the run.
 bool stay_in_contact(const Scenario& scenario) {
   try {
     require_bilateral_springs(scenario);
