@@ -4,6 +4,7 @@
 #include <memory>
 #include "results/io/atomic_file.hpp"
 #include "results/io/json_text.hpp"
+#include "results/summary/outcome_names.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/input/json_file.hpp"
 #include "scenarios/program/command.hpp"
@@ -82,7 +83,8 @@ int run(const RunOptions& options) {
       summaries.back()["sure"] = study.json(0);
     }
     for (const std::string& unmet : report.unmet) {
-      print_error(fmt::format("{}: {} (field expect; --set expect={{}} drops it)", scenarios[i].file.string(), unmet));
+      print_error(fmt::format(R"({}: {} (field expect; --set expect={{"outcome":"{}"}} expects what came))",
+                              scenarios[i].file.string(), unmet, outcome_name(report.summary.result.outcome)));
       status = kUnexpectedOutcome;
     }
   }

@@ -210,7 +210,7 @@ constexpr ExplainRule kRules[] = {
      }},
     {"pop", "largest force step in settled contact over the mean force", "1", 0.5,
      "it pops: a step of the force is {} of the mean force",
-     "corners and thin parts make laws flip: shaped_stiffness or continuous_normal_projection; rendering.reduction null",
+     "rendering.reduction null; corners and thin parts make laws flip: \"hapbench compare --algorithms all\" shows which least",
      [](const RunFiles& r) {
        return completed(r) ? quotient(r.metric("settled_force_step_max_N"), r.metric("force_mean_in_contact_N"))
                            : std::nullopt;

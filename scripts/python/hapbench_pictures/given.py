@@ -107,15 +107,15 @@ def kind(run):
     """All that makes a run, but what its seed sets."""
     if not run.scenario:
         return run.directory.as_posix()
-    return [run.name, {path: value for path, value in leaves(run.scenario) if path not in by_seed(run)}]
+    return [run.name, {path: value for path, value in fields_of(run).items() if path not in by_seed(run)}]
 
 
 def field_entries(runs, scenes):
     """For each run the fields, with their values, in which it differs from others of its scene and algorithm."""
     paths = {}
     for scene in dict.fromkeys(scenes):
-        paths |= dict.fromkeys(differing([run.scenario for run, own in zip(runs, scenes) if own == scene and run.scenario]))
-    values = [{path: value for path, value in leaves(run.scenario) if path not in by_seed(run)} for run in runs]
+        paths |= dict.fromkeys(differing([fields_of(run) for run, own in zip(runs, scenes) if own == scene and run.scenario]))
+    values = [{path: value for path, value in fields_of(run).items() if path not in by_seed(run)} for run in runs]
     return [[entry(path, of[path], paths) for path in paths if path in of] for of in values]
 
 
@@ -131,9 +131,14 @@ def common_folder(words):
     return Path(os.path.commonpath([os.path.abspath(word) for word in words])) if len(words) > 1 else Path(words[0])
 
 
-def differing(scenarios):
-    """The paths at which they differ, with the value of each; names, descriptions and expectations aside."""
-    flat = [dict(leaves(scenario)) for scenario in scenarios]
+def fields_of(run):
+    """The scenario's fields by their paths. Files, which it names from its own folder, are named from here, where they are one."""
+    return {path: os.path.relpath(run.directory / value) if path.rpartition(".")[2] == "file" and isinstance(value, str) else value
+            for path, value in leaves(run.scenario)}
+
+
+def differing(flat):
+    """The paths at which these fields differ, with the value of each; names, descriptions and expectations aside."""
     values = {path: [fields.get(path) for fields in flat] for path in dict.fromkeys(p for fields in flat for p in fields)}
     return {path: of for path, of in values.items()
             if len({json.dumps(value, sort_keys=True) for value in of}) > 1 and not path.startswith(NO_INPUT)}

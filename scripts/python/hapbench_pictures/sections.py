@@ -8,7 +8,7 @@ from hapbench_report.json_input import at, number_or_none
 from hapbench_report.markup import cell, columns, command, deserved_digits, heading_cell, named, number, number_cell, table, text
 from hapbench_report.runs import plugin_text, provenance_of, provenance_section
 
-from .given import differing
+from .given import differing, fields_of
 
 MOST_FIRST = 12  # runs in the first table
 FIRST = ("force_mean_in_contact_N", "force_max_N", "force_step_p99_N", "force_rms_above_30Hz_N", "inside_max_m")
@@ -160,7 +160,7 @@ def scenario_section(runs, labels):
 
 def differences(known):
     """The fields in which the scenarios differ."""
-    found = differing([run.scenario for run, _ in known])
+    found = differing([fields_of(run) for run, _ in known])
     if not found:
         return ""
     rows = [[cell(f"<code>{text(path)}</code>"), *(cell(text(json.dumps(value))) for value in values)] for path, values in found.items()]
