@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <set>
+#include <string>
 #include <string_view>
 
 #include "algorithms/plugin/plugin_law.hpp"
@@ -118,7 +120,8 @@ void CommandLine::add_common_options(CLI::App& app) {
          "--memory", limit,
          "most memory that may be taken, such as 8G (default: three quarters of what is "
          "free)")
-      ->transform(CLI::AsSizeValue(false));
+      ->transform(CLI::AsSizeValue(false).description(""))
+      ->type_name("SIZE");
   const auto add = [this](const std::vector<std::string>& files) {
     plugins_.insert(plugins_.end(), files.begin(), files.end());
   };
@@ -152,8 +155,12 @@ OptionText text_of(const CLI::Option& option, const WordSource& words) {
     if (option.get_expected_max() == CLI::detail::expected_max_vector_size)
       text.value += text.takes_a_list ? ",..." : " ...";
   }
-  for (const CLI::Option* other : option.get_needs()) text.help += fmt::format("; with {}", other->get_name());
-  for (const CLI::Option* other : option.get_excludes()) text.help += fmt::format("; not with {}", other->get_name());
+  // CLI11 orders them by their addresses.
+  std::set<std::string> needed, excluded;
+  for (const CLI::Option* other : option.get_needs()) needed.insert(other->get_name());
+  for (const CLI::Option* other : option.get_excludes()) excluded.insert(other->get_name());
+  for (const std::string& name : needed) text.help += "; with " + name;
+  for (const std::string& name : excluded) text.help += "; not with " + name;
   return text;
 }
 
