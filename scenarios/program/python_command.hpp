@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "scenarios/program/command.hpp"
+#include "scenarios/program/table.hpp"
 
 namespace hapbench {
 
