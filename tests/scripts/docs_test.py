@@ -260,6 +260,7 @@ class Generated(unittest.TestCase):
         slower = old.replace("0.25", "10.5").replace("  ----", "  -----").replace("4.2 us (proxy)", "14 us (summation)")
         self.assertTrue(same_but_for_times(old, slower))
         self.assertFalse(same_but_for_times(old, slower.replace("1.25", "1.26")))
+        self.assertTrue(same_but_for_times("    99 % of the steps take at most 2.3 us", "    99 % of the steps take at most 11 us"))
         levels = "    step  order  run s\n    ----  -----  -----\n    0.1   1.02   0.21\n\n    below 1 %: 0.1, 0.21 s a\n    run, 2.1 times the first level's"
         self.assertTrue(same_but_for_times(levels, levels.replace("0.21", "0.34").replace("2.1 times", "3 times")))
         self.assertFalse(same_but_for_times(levels, levels.replace("1.02", "1.03")))
