@@ -15,9 +15,11 @@
 #include "scenarios/run/progress_bar.hpp"
 #include "scenarios/run/stop_signal.hpp"
 
-/// Commands that draw: they pass their options on to Python, which reads the result files.
+/// Commands that draw, and the suite: they pass their options on to Python, which reads the result files.
 namespace hapbench {
 namespace {
+
+constexpr const char* kPictures = "hapbench_pictures";
 
 struct PictureOptions {
   std::vector<std::string> runs;
@@ -34,10 +36,10 @@ struct PictureOptions {
 /// The command line of a Python tool.
 class ToolCommand {
  public:
-  ToolCommand(const std::string& tool, bool quiet)
-      : words_{(installed_folder("scripts/python") / "launch").string(), "hapbench_pictures", tool} {
+  ToolCommand(const char* package, const std::string& tool, bool quiet)
+      : words_{(installed_folder("scripts/python") / "launch").string(), package, tool} {
     if (quiet) words_.emplace_back("--quiet");
-    // The tools ask this very program for the points of a scene.
+    // The tools ask this very program, for the points of a scene or for all that a suite computes.
     setenv("HAPBENCH_PROGRAM", this_program().c_str(), 1);
   }
 
@@ -48,6 +50,11 @@ class ToolCommand {
   void add(std::string word) { words_.push_back(std::move(word)); }
 
   const char* launcher() const { return words_[0].c_str(); }
+  /// Becomes the tool; returns only by an exception.
+  int become() {
+    execv(launcher(), arguments().data());
+    fail(errno);
+  }
   /// The words as exec takes them, valid while this object lives unchanged.
   std::vector<char*> arguments() {
     std::vector<char*> pointers;
@@ -64,9 +71,8 @@ class ToolCommand {
   std::vector<std::string> words_;
 };
 
-/// Becomes the Python tool; returns only by an exception.
 int become(const std::string& tool, const PictureOptions& options) {
-  ToolCommand command(tool, options.quiet);
+  ToolCommand command(kPictures, tool, options.quiet);
   command.add("--y", options.quantities);
   command.add("--metric", options.metric);
   for (const std::string& condition : options.where) command.add("--where", condition);
@@ -76,8 +82,7 @@ int become(const std::string& tool, const PictureOptions& options) {
   if (options.no_sketch) command.add("--no-sketch");
   command.add("--");
   for (const std::string& run : options.runs) command.add(run);
-  execv(command.launcher(), command.arguments().data());
-  command.fail(errno);
+  return command.become();
 }
 
 int plot(const PictureOptions& options) {
@@ -116,14 +121,14 @@ void finish_tool(ToolCommand& command, const char* doing, const std::filesystem:
 }  // namespace
 
 void write_report(const std::filesystem::path& folder, bool quiet) {
-  ToolCommand command("report", quiet);
+  ToolCommand command(kPictures, "report", quiet);
   command.add("--");
   command.add(folder.string());
   finish_tool(command, "writing the report", folder, quiet);
 }
 
 void write_way(const std::filesystem::path& folder, const std::filesystem::path& file, bool quiet) {
-  ToolCommand command("plot", true);
+  ToolCommand command(kPictures, "plot", true);
   command.add("--y", "path");
   command.add("--out", file.string());
   command.add("--");
@@ -167,6 +172,72 @@ void add_report(CommandLine& line) {
       "that was not checked, all of it runs anew first (compare --check). The replay shows up to four runs side by side, with their "
       "depths if they were run with --set record.contacts=true.\n"
       "  hapbench report results/out/compare_drag");
+}
+
+namespace {
+
+struct SuiteOptions {
+  std::string what, algorithm, python, division, licence, shard, draw, out;
+  std::vector<std::string> names, overrides, sources;
+  unsigned jobs = 0;
+  bool quiet = false;
+};
+
+int suite(const SuiteOptions& options) {
+  ToolCommand command("hapbench_suite", options.what, options.quiet);
+  command.add("--algorithm", options.algorithm);
+  for (const std::string& word : plugin_words()) command.add(word);
+  command.add("--python", options.python);
+  command.add("--division", options.division);
+  for (const std::string& field : options.overrides) command.add("--set", field);
+  command.add("--licence", options.licence);
+  for (const std::string& file : options.sources) command.add("--source", file);
+  command.add("--shard", options.shard);
+  command.add("--draw", options.draw);
+  if (options.jobs > 0) command.add("--jobs", std::to_string(options.jobs));
+  command.add("--out", options.out);
+  for (const std::string& name : options.names) command.add("--name", name);
+  return command.become();
+}
+
+}  // namespace
+
+void add_suite(CommandLine& line) {
+  auto [command, options] = line.command(
+      "suite", "Judge a law of your own in frozen scenes, verify such a judgement, draw a page of all", suite);
+  command.add("what", options.what, "run, verify or page; freeze for a suite of your own")
+      .required()
+      .one_of({"run", "verify", "page", "freeze"});
+  command.add(
+      "names", options.names,
+      "run, freeze: a suite, 1 or a folder with suite.json; verify: the folder of a submission; page: such folders, "
+      "or a CSV file of this command");
+  command.add("--algorithm", options.algorithm, "the law, where the program, the plugin or the script has several");
+  command.add("--python", options.python,
+              "FILE.py, a script that defines a law and ends with hapbench.main(); --plugin takes one in C or C++");
+  command.add("--division", options.division, "closed: the law alone; open: fields of rendering, too (default: closed)")
+      .one_of({"closed", "open"});
+  command.add("--set", options.overrides, "open division: a field of rendering in all scenes, path=value").repeatable();
+  command.add("--licence", options.licence, "of the law, as an SPDX name");
+  command.add("--source", options.sources, "a file to keep with the submission, as the law's source").repeatable();
+  command.add("--shard", options.shard, "i/n: a part of the scenes, into the same --out; a call without it finishes");
+  add_jobs(command, options.jobs, "runs at once (default: one per processor)");
+  command.add("--draw", options.draw, "verify: repeat the verification with this number, which it printed");
+  command.add("--out", options.out,
+              "run: folder of the submission (default: results/out/suite_SUITE_LAW); page: FILE.html (default: "
+              "results/out/arena.html)");
+  command.flag("--quiet", options.quiet, "print nothing on standard output");
+  command.footer(
+      "run takes a law through all scenes and limits of a suite, with all seeds, and writes a folder: the law and its hash, "
+      "every run with its state hash, scores of each axis with their intervals over the seeds, times. What is there is not "
+      "computed again, so that an interrupted call goes on and shards share a folder.\n"
+      "verify runs a random third again and compares every hash and number, and judges the scores by seeds that nobody could "
+      "know: status 0, or 3 and a list of what differs.\n"
+      "page writes one HTML file of any number of submissions, sortable, with Pareto fronts, profiles and the command that "
+      "repeats each row; beside it a CSV file from which the page can be made again.\n"
+      "  hapbench suite run 1 --plugin law.so --source law.c --licence MIT\n"
+      "  hapbench suite verify results/out/suite_1_law\n"
+      "  hapbench suite page results/reference/arena.csv results/out/suite_1_law");
 }
 
 }  // namespace hapbench

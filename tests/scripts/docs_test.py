@@ -23,7 +23,7 @@ COMMANDS = [command for manual in MANUALS for command in manual.commands()]
 UNKNOWN = "--zzzz"
 WANTS_PACKAGE = re.compile("which is not built here; allowed: .* or install ")
 # Minutes long: parsed, not run.
-LONG = {"precision", "reproduce", "--map", "--stress", "--search"}
+LONG = {"precision", "reproduce", "suite", "--map", "--stress", "--search"}
 FEW_STEPS = ["--set", 'time={"step_s": 0.0005, "steps": 40}']
 SHORTER = {"run": FEW_STEPS, "compare": FEW_STEPS, "sweep": FEW_STEPS, "converge": [*FEW_STEPS, "--levels", "3"], "limit": [*FEW_STEPS, "--resolution", "0.5"],
            "tune": [*FEW_STEPS, "--damping-ratio", "0.3:0.7"]}
@@ -112,6 +112,8 @@ class Bench:
         given = list(command.words[1:])
         if given[0] == "sweep" and "--slurm" in given:
             given.append("--dry-run")
+        if "--from" in given:  # a span of time that a shortened run does not have
+            given = given[:given.index("--from")]
         runs = given[0] != "sweep" or "--vary" in given and "--row" not in given
         shorter = SHORTER.get(given[0], []) if runs else []
         found = []
