@@ -196,7 +196,7 @@ def scatter(suite, rows, ix, iy):
     marks, taken = [], [(x - 5, y - 5, x + 5, y + 5) for x, y in places]
     for row, (x, y) in sorted(zip(rows, places), key=lambda one: not one[0].front):
         one = row.look()
-        at, anchor = label_place(row.about["label"], x, y, width, taken)
+        at, anchor = label_place(row.about["label"], x, y, width, height - bottom, taken)
         marks.append(f'<g class=run-name style="--light:{one.colour};--dark:{one.dark}"><circle cx="{x:.1f}" cy="{y:.1f}" r="{5 if row.front else 3.5}" '
                      f'fill="{"currentColor" if row.front else "none"}" stroke="currentColor" stroke-width="1.5"><title>{text(row.about["label"])}: '
                      f'{value_text(row.scores[ix])}, {value_text(row.scores[iy])}</title></circle>'
@@ -211,16 +211,16 @@ def scatter(suite, rows, ix, iy):
             f'<text class=title transform="translate(12 {height / 2 - 14}) rotate(-90)" text-anchor="middle">{text(ay.title)} (better below)</text></svg></figure>')
 
 
-def label_place(label, x, y, width, taken):
+def label_place(label, x, y, width, lowest, taken):
     """Where a label stands without covering one of `taken`, to which it is added: beside its mark, or a line above or below."""
-    long = 5.3 * len(label)
+    long = 5.9 * len(label)
     for shift in (0, -11, 11, -22, 22, -33, 33, -44, 44, 55, 66):
         for anchor, from_x in (("start", x + 7), ("end", x - 7 - long)):
             box = (from_x, y + shift - 5, from_x + long, y + shift + 5)
-            if box[0] > 58 and box[2] < width and not any(box[0] < t[2] and t[0] < box[2] and box[1] < t[3] and t[1] < box[3] for t in taken):
+            if box[0] > 58 and box[2] < width and 8 < box[1] and box[3] < lowest and not any(box[0] < t[2] and t[0] < box[2] and box[1] < t[3] and t[1] < box[3] for t in taken):
                 taken.append(box)
                 return (x + 7 if anchor == "start" else x - 7, y + shift + 3.5), anchor
-    return (x + 7, y + 3.5), "start"
+    return (x + 7, y + 3.5) if x + 7 + long < width else (x - 7, y + 3.5), "start" if x + 7 + long < width else "end"
 
 
 def value_text(one):
