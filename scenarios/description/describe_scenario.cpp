@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "algorithms/registry.hpp"
+#include "algorithms/stages/force_stage.hpp"
 #include "results/summary/outcome_names.hpp"
 #include "scenarios/description/descriptions.hpp"
 #include "scenarios/description/load_scenario.hpp"
@@ -129,6 +130,21 @@ constexpr Rule kRules[] = {
      "not there",
      [](const Scenario& s) { return handle_moves_tool(s.device) && s.rendering.passivity_controller; }},
 };
+
+void check_force_stage(const Scenario& scenario) {
+  const auto& stage = scenario.rendering.force_stage;
+  if (!stage) return;
+  const auto* limited = std::get_if<ActuatorLimitedPassivityConfig>(&*stage);
+  const bool has_mass = is<FreePosition>(scenario.motion.position) && !handle_moves_tool(scenario.device);
+  if (limited != nullptr && !limited->max_damping && !has_mass)
+    fail("/rendering/force_stage/max_damping_N_s_per_m",
+         "got null; allowed with device \"impedance\" or a prescribed position: a number, because there is no virtual "
+         "mass to take it from");
+  const auto* added = std::get_if<AddedStageConfig>(&*stage);
+  if (added != nullptr && find_force_stage(added->name) == nullptr)
+    fail("/rendering/force_stage/name", fmt::format("got \"{}\"; allowed: stages that this process has added ({})",
+                                                    added->name, added_force_stages()));
+}
 
 /// A peer finds contacts between triangles and a cylinder; those of a trace belong to its motion. Neither are points of
 /// our shell.
@@ -302,6 +318,7 @@ void check_relations(const Scenario& scenario, double steps) {
     if (rule.is_broken(scenario)) fail(rule.at, rule.problem);
   }
   check_contact_source(scenario);
+  check_force_stage(scenario);
   check_drag_hand(scenario, steps);
   check_tracking_hand(scenario, steps);
   check_perception(scenario);
