@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "algorithms/registry.hpp"
+#include "algorithms/stages/dry_friction.hpp"
 #include "algorithms/stages/force_stage.hpp"
 #include "results/summary/outcome_names.hpp"
 #include "scenarios/description/descriptions.hpp"
@@ -276,14 +277,12 @@ void warn_of_stiff_bristle(const Scenario& scenario, std::vector<std::string>& w
   const RenderingConfig& r = scenario.rendering;
   const bool is_explicit = scenario.integrator.type->stability_limit != nullptr;
   if (!r.dry_friction || !is_explicit || handle_moves_tool(scenario.device)) return;
-  const double K = r.dry_friction->stiffness.value_or(r.stiffness), dt = scenario.time.step;
-  const double B = 2.0 * r.dry_friction->damping_ratio * std::sqrt(K * r.mass);
-  // Sticking, f = -K (e + dt v) - B v and e <- e + dt v, which leapfrog steps as it does a spring.
-  if (SpringDamper{.K = K, .B = B, .M = r.mass, .dt = dt}.is_stable()) return;
+  const SpringDamper bristle = bristle_of(*r.dry_friction, r, scenario.time.step);
+  if (bristle.is_stable()) return;
   warnings.push_back(fmt::format(
       "/rendering/friction: a tool that sticks will chatter: a bristle of {:.4g} N/m is too stiff for steps of {:.4g} s "
       "and a mass of {:.4g} kg",
-      K, dt, r.mass));
+      bristle.K, bristle.dt, r.mass));
 }
 
 /// The first script within `json`, found at `at`, that a run of so long [s] does not play. The reader has checked it.
