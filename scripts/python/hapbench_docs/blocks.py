@@ -285,7 +285,8 @@ def hunt_crossley(old, program, directory):
         for name, run in runs.items():
             metrics = [number(run["metrics"][key]) if run["metrics"].get(key) is not None else "-" for key in DAMPED]
             energy = [number(1e3 * run["passivity"]["net_created_J"]), number(-1e3 * run["energy"]["damping_J"])]
-            lines.append(f"| `{law}` | {name} | {run['outcome']} | {' | '.join([*metrics, *energy])} |")
+            cells = [*metrics, *energy] if run["outcome"] == "completes" else ["-"] * 5
+            lines.append(f"| `{law}` | {name} | {run['outcome']} | {' | '.join(cells)} |")
     return program.stamped("\n".join(lines), old)
 
 
