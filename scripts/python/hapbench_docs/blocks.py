@@ -248,11 +248,11 @@ def controllers(old, program, directory):
     for name, stage in CONTROLLERS:
         chosen = [] if stage is None else ["--set", f"rendering.force_stage={json.dumps(stage)}"]
         program.run(["stability", "--map", "z_width", "--algorithms", "summation", "--size", "3", "--out", "map", *chosen], directory)
-        edges = rows_of(Path(directory) / "map" / "stability_boundary_z_width.csv")
+        edges = csv_rows(Path(directory) / "map" / "stability_boundary_z_width.csv")
         run = json.loads(program.run(["run", "tap_wall", "--set", f"rendering.stiffness_N_per_m={TAPPED:g}", "--set", "record.trajectory=true",
                                       "--set", "expect={}", "--out", "tap", "--json", *chosen], directory))
         run = run[0] if isinstance(run, list) else run
-        touching = [row for row in rows_of(Path(directory) / "tap" / "trajectory.csv") if float(row["rendered"]) > 0]
+        touching = [row for row in csv_rows(Path(directory) / "tap" / "trajectory.csv") if float(row["rendered"]) > 0]
         column = lambda key: np.array([float(row[key]) for row in touching])
         felt, _, _, _ = np.linalg.lstsq(-np.column_stack([column("pz_m"), column("vz_m_per_s")]), column("fz_N"), rcond=None)
         of_stage = run.get("force_stage", {"taken_J": 0.0, "changed_share": 0.0})
@@ -290,7 +290,7 @@ def hunt_crossley(old, program, directory):
     return program.stamped("\n".join(lines), old)
 
 
-def rows_of(file):
+def csv_rows(file):
     with open(file, encoding="utf-8", newline="") as text:
         return list(csv.DictReader(text))
 
