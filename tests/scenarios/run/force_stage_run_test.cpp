@@ -152,16 +152,19 @@ TEST(ForceStage, IsWrittenAsItWasRead) {
   }
 }
 
-/// What a stage takes is what the ledger of the passivity observer has more of.
+/// Without damping and friction, all that the ledger of energies finds damped is what the stage took.
 TEST(ForceStage, ReportsWhatItTakes) {
   LoadedScenario loaded;
-  loaded.scenario = bundled("tap_wall", {R"(rendering.force_stage={"type":"energy_tank","capacity_J":1e-6})"});
+  loaded.scenario =
+      bundled("tap_wall", {R"(rendering.force_stage={"type":"energy_tank","capacity_J":1e-6})", "record.energy=true"});
   const auto taken = metric_of(run_scenario(loaded, std::nullopt, false).summary, "force_stage.taken_J");
   const auto share = metric_of(run_scenario(loaded, std::nullopt, false).summary, "force_stage.changed_share");
   ASSERT_TRUE(taken && share);
   EXPECT_GT(*taken, 0.0);
   EXPECT_GT(*share, 0.0);
   EXPECT_LT(*share, 1.0);
+  EXPECT_NEAR(*metric_of(run_scenario(loaded, std::nullopt, false).summary, "energy.damping_J"), -*taken,
+              1e-9 * *taken);
   loaded.scenario.rendering.force_stage.reset();
   EXPECT_FALSE(metric_of(run_scenario(loaded, std::nullopt, false).summary, "force_stage.taken_J"));
 }
