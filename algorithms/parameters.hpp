@@ -35,6 +35,10 @@ inline constexpr Parameter kMaxForce = {"rendering.limits.max_force_N", {0.0, 1e
 inline constexpr Parameter kVirtualCoupling = {"rendering.virtual_coupling_N_per_m", {0.0, 1e12, "N/m", true}};
 /// Below 1e-9, the rounding of sum d_i u_i (1e-16 n d) divided by eps would not be far below a depth.
 inline constexpr Parameter kRegularisation = {"rendering.regularisation", {1e-9, 1e6, "1"}};
+inline constexpr Parameter kTankCapacity = {"rendering.force_stage.capacity_J", {0.0, 1e6, "J"}};
+inline constexpr Parameter kTankInitial = {"rendering.force_stage.initial_J", {0.0, 1e6, "J"}};
+inline constexpr Parameter kActuatorForce = {"rendering.force_stage.max_force_N", {0.0, 1e12, "N"}};
+inline constexpr Parameter kActuatorDamping = {"rendering.force_stage.max_damping_N_s_per_m", {0.0, 1e12, "N s/m"}};
 inline constexpr Parameter kPassivityController = {"rendering.passivity_controller", kSwitch};
 
 }  // namespace parameter

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "algorithms/penalty_rendering.hpp"
+#include "algorithms/stages/force_stage.hpp"
 #include "algorithms/stages/passivity_controller.hpp"
 #include "algorithms/stages/point_stage.hpp"
 
@@ -43,8 +44,8 @@ Table& table() {
   return the_one;
 }
 
-constexpr const ModelInfo* kStages[] = {&kLocalAverageInfo, &kGradientReductionInfo, &kDampingAndLimitsInfo,
-                                        &kPassivityControllerInfo};
+constexpr const ModelInfo* kStages[] = {&kLocalAverageInfo, &kGradientReductionInfo,        &kDampingAndLimitsInfo,
+                                        &kEnergyTankInfo,   &kActuatorLimitedPassivityInfo, &kPassivityControllerInfo};
 
 AlgorithmEntry* find(std::string_view name) {
   std::deque<AlgorithmEntry>& entries = table().entries;
@@ -213,11 +214,13 @@ std::unique_ptr<ForceLaw> make_law(std::string_view name, const RenderingConfig&
   return entry.make_law(config);
 }
 
-std::unique_ptr<ForceAlgorithm> make_algorithm(const RenderingConfig& config) {
+std::unique_ptr<ForceAlgorithm> make_algorithm(const RenderingConfig& config, const HapbenchForceStage* stage) {
   const AlgorithmEntry& entry = algorithm_entry(config.algorithm);
   const RenderingConfig fixed = with_fixed_stages(config);
   std::unique_ptr<ForceAlgorithm> algorithm =
       entry.make_law ? std::make_unique<PenaltyRendering>(entry.make_law(fixed), fixed) : entry.make(fixed);
+  if (config.force_stage)
+    algorithm = std::make_unique<StagedRendering>(std::move(algorithm), make_force_stage(config, stage), config);
   if (!config.passivity_controller) return algorithm;
   return std::make_unique<PassivityController>(std::move(algorithm), config);
 }

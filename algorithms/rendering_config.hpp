@@ -7,6 +7,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <variant>
 
 #include "sim/contact/late_contacts.hpp"
 #include "sim/core/types.hpp"
@@ -38,6 +39,29 @@ struct DryFrictionConfig {
   double damping_ratio = 1.0;       ///< zeta_t of the bristle with the virtual mass
 };
 
+// Force stages, which see the force of the algorithm and answer the one to render; see stages/force_stage.hpp.
+
+struct EnergyTankConfig {
+  double capacity = 0.1;  ///< C [J]
+  double initial = 0.0;   ///< besides the energy of the springs in the first row [J]
+};
+struct ActuatorLimitedPassivityConfig {
+  std::optional<Vec3> max_force;      ///< F of the actuator along each axis [N]; none: no limit
+  std::optional<double> max_damping;  ///< b [N s/m]; none: M / dt of the virtual tool
+};
+/// A library by hapbench_force_stage.h.
+struct PluginStageConfig {
+  std::string file;           ///< relative to the scenario file
+  std::string config = "{}";  ///< a JSON object
+};
+/// A stage that this process has added under a name, as Python does.
+struct AddedStageConfig {
+  std::string name;
+  std::string config = "{}";  ///< a JSON object
+};
+using ForceStageConfig =
+    std::variant<EnergyTankConfig, ActuatorLimitedPassivityConfig, PluginStageConfig, AddedStageConfig>;
+
 /// Parameters of the rendering: how contacts become a force. Names are those of registry.hpp. Units: N, m, s, kg.
 struct RenderingConfig {
   std::string algorithm = "shaped_stiffness";
@@ -67,7 +91,8 @@ struct RenderingConfig {
   bool angular_damping = false;  ///< damping and friction act on the velocity of the tool at each contact
   std::optional<double> angular_velocity_cutoff = 20.0;  ///< low-pass of that angular velocity [Hz]
 
-  bool passivity_controller = false;  ///< around the algorithm
+  std::optional<ForceStageConfig> force_stage;  ///< behind the algorithm; none: its force is rendered
+  bool passivity_controller = false;            ///< around both
 
   /// Given values of parameters that belong to one algorithm alone (OwnParameter), by algorithm and name.
   std::map<std::string, std::map<std::string, double>> parameters;

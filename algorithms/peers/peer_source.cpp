@@ -1,6 +1,6 @@
 #include "algorithms/peers/peer_source.hpp"
 
-#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <stdexcept>
@@ -53,13 +53,8 @@ Peer::Peer(const HapbenchContactSource& library, const std::string& config, cons
   const PluginCall running(library.name, "create");
   source_ = library.create(config.c_str(), &view, &tool, text.data(), text.size());
   if (source_ != nullptr) return;
-  set_fault(text.data());
-  throw std::runtime_error(fault_.data());
-}
-
-void Peer::set_fault(const char* text) noexcept {
-  std::snprintf(fault_.data(), fault_.size(), "%s fails: %s", library_->name, text);
-  std::replace(fault_.begin(), fault_.end(), '\n', ' ');
+  fault_.set(library_->name, text.data());
+  throw std::runtime_error(fault());
 }
 
 std::size_t Peer::contacts_at(const HapbenchPose& pose, std::span<HapbenchContact> room) noexcept {
@@ -75,7 +70,7 @@ std::size_t Peer::contacts_at(const HapbenchPose& pose, std::span<HapbenchContac
                   room.size());
   else if (found >= 0)
     return check(room.first(static_cast<std::size_t>(found)));
-  set_fault(text.data());
+  fault_.set(library_->name, text.data());
   return 0;
 }
 
@@ -83,7 +78,7 @@ std::size_t Peer::check(std::span<const HapbenchContact> contacts) noexcept {
   for (const HapbenchContact& contact : contacts) {
     const char* problem = problem_of(contact);
     if (problem == nullptr) continue;
-    set_fault(problem);
+    fault_.set(library_->name, problem);
     return 0;
   }
   return contacts.size();

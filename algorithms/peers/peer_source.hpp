@@ -1,11 +1,11 @@
 #pragma once
 
-#include <array>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "algorithms/peers/hapbench_contacts.h"
+#include "algorithms/plugin/guards.hpp"
 #include "sim/contact/contact_source.hpp"
 
 namespace hapbench {
@@ -36,16 +36,15 @@ class Peer {
   /// used are, too, returns 0 until clear_fault.
   std::size_t contacts_at(const HapbenchPose& pose, std::span<HapbenchContact> room) noexcept;
   /// The fault of a query, in one line; null for none.
-  const char* fault() const noexcept { return fault_[0] == '\0' ? nullptr : fault_.data(); }
-  void clear_fault() noexcept { fault_[0] = '\0'; }
+  const char* fault() const noexcept { return fault_.text(); }
+  void clear_fault() noexcept { fault_.clear(); }
 
  private:
-  void set_fault(const char* text) noexcept;
   std::size_t check(std::span<const HapbenchContact> contacts) noexcept;
 
   const HapbenchContactSource* library_;
   void* source_ = nullptr;
-  std::array<char, 256> fault_{};
+  FaultText fault_;
 };
 
 /// The contacts of another collision library for our laws, one for each triangle that the tool meets. The library

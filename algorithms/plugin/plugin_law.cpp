@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cstdio>
-#include <cstring>
 #include <exception>
 #include <limits>
 #include <mutex>
@@ -12,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "algorithms/plugin/guards.hpp"
 #include "algorithms/plugin/plugin_call.hpp"
 
 namespace hapbench {
@@ -20,29 +19,12 @@ namespace {
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t kMostParameters = 1000;
 
-/// Numbers before and after what a plugin writes. No computation gives this signalling NaN.
-struct Canaries {
-  static constexpr std::size_t kCount = 8;
-  double values[kCount];
-
-  Canaries() { std::fill_n(values, kCount, std::bit_cast<double>(std::uint64_t{0x7ff4deadc0ffee00})); }
-  void write(double* to) const noexcept { std::memcpy(to, values, sizeof values); }
-  bool are_at(const double* from) const noexcept { return std::memcmp(from, values, sizeof values) == 0; }
-};
-const Canaries kCanaries;
-
 /// The force of a law that has failed.
 LawForce no_force() {
   return {Vec3::Constant(kNaN), Mat3::Zero()};
 }
 
-struct GuardedForce {
-  Canaries before;
-  HapbenchForce answer{{kNaN, kNaN, kNaN}, {kNaN, kNaN, kNaN, kNaN, kNaN, kNaN}};
-  Canaries after;
-
-  bool intact() const noexcept { return kCanaries.are_at(before.values) && kCanaries.are_at(after.values); }
-};
+constexpr HapbenchForce kUnwritten = {{kNaN, kNaN, kNaN}, {kNaN, kNaN, kNaN, kNaN, kNaN, kNaN}};
 
 HapbenchContacts view_of(const ContactBuffer& c) {
   return {.n = c.size(),
@@ -150,7 +132,7 @@ LawForce PluginLaw::evaluate(ContactBuffer& contacts) noexcept {
   kCanaries.write(weights + n);
   // Pre-fills with NaN to detect outputs that the plugin did not write.
   std::fill_n(weights, n, gives_weights_ ? kNaN : 1.0 / static_cast<double>(n));
-  GuardedForce guarded;
+  Guarded<HapbenchForce> guarded{{}, kUnwritten, {}};
   const HapbenchContacts view = view_of(contacts);
   int error = 0;
   if (!runs("evaluate", [&] { error = plugin_.evaluate(law_, &view, weights, &guarded.answer); })) return no_force();

@@ -104,11 +104,7 @@ Vec3 DampingAndLimits::rendered_force(const Vec3& spring, const Mat3& S, const C
   } else if (skips_ == Skips::off) {
     force -= tangential() + Vec3::Zero();  // 0 and never -0: f - (-0) would turn a -0 of the force into 0
   }
-  if (max_force_) {
-    const double length = force.norm();
-    if (length > *max_force_) force *= *max_force_ / length;
-  }
-  return force;
+  return cut_to(force, max_force_);
 }
 
 }  // namespace hapbench

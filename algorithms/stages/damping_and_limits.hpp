@@ -21,6 +21,12 @@ double normal_damping(const RenderingConfig& config) noexcept;
 /// One load ||f|| along the force f, as sum N_i u_i u_i^T [N]; zero for no force.
 Mat3 load_along(const Vec3& force) noexcept;
 
+/// The force, scaled down to the length `most` [N], if there is one.
+inline Vec3 cut_to(const Vec3& force, const std::optional<double>& most) noexcept {
+  const double length = most ? force.norm() : 0.0;
+  return most && length > *most ? Vec3(force * (*most / length)) : force;
+}
+
 /// Damping, friction and limits, the same for every law (thesis 2.5, 2.6, A.2.1, B.2, C.4.3):
 ///
 ///   f_dn = -B v_n, v_n = S v, B = 2 zeta sqrt(K M);  v_t = v - v_n, f_dt = -(mu_s + mu_f |f_spring|) v_t

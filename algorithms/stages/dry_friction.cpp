@@ -4,10 +4,13 @@
 
 namespace hapbench {
 
+SpringDamper bristle_of(const DryFrictionConfig& config, const RenderingConfig& rendering, double dt) noexcept {
+  const double K = config.stiffness.value_or(rendering.stiffness);
+  return {.K = K, .B = 2.0 * config.damping_ratio * std::sqrt(K * rendering.mass), .M = rendering.mass, .dt = dt};
+}
+
 DryFriction::DryFriction(const DryFrictionConfig& config, const RenderingConfig& rendering)
-    : mu_(config.mu),
-      K_t_(config.stiffness.value_or(rendering.stiffness)),
-      B_t_(2.0 * config.damping_ratio * std::sqrt(K_t_ * rendering.mass)) {}
+    : mu_(config.mu), K_t_(bristle_of(config, rendering, 0.0).K), B_t_(bristle_of(config, rendering, 0.0).B) {}
 
 void DryFriction::prepare(const Scene& scene) noexcept {
   dt_ = scene.dt;

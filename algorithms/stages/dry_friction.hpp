@@ -6,8 +6,13 @@
 #include "algorithms/rendering_config.hpp"
 #include "sim/core/types.hpp"
 #include "sim/loop/force_algorithm.hpp"
+#include "sim/loop/integrators/spring_damper.hpp"
 
 namespace hapbench {
+
+/// The bristle as a spring and a damper, K_t and B_t = 2 zeta_t sqrt(K_t M). While the tool sticks, leapfrog steps it
+/// as it does a spring: f = -K_t (e + dt v) - B_t v and e <- e + dt v.
+SpringDamper bristle_of(const DryFrictionConfig& config, const RenderingConfig& rendering, double dt) noexcept;
 
 /// Dry friction: one bristle e [m] for the whole tool, which sticks until its force reaches mu N and slides above, with
 /// N = sum N_i over the loads N_i = K c_i d_i > 0 of the contacts (Kikuuwe, Takesue, Sano, Mochiyama and Fujimoto 2006,

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "algorithms/parameters.hpp"
+#include "algorithms/stages/damping_and_limits.hpp"
 
 namespace hapbench {
 namespace {
@@ -42,6 +43,11 @@ double largest_share(double a, double b, double c) noexcept {
 
 }  // namespace
 
+/// True where there is something to control: springs, or the force of a force stage in free air.
+static bool acts(const ContactBuffer& contacts, const RenderedForce& force) noexcept {
+  return has_springs(contacts, force) || !force.rendered.isZero(0.0);
+}
+
 PassivityController::PassivityController(std::unique_ptr<ForceAlgorithm> algorithm, const RenderingConfig& config)
     : algorithm_(std::move(algorithm)), mass_(config.mass), max_force_(config.max_force) {}
 
@@ -66,7 +72,7 @@ void PassivityController::compute(const ToolState& tool, ContactBuffer& contacts
   algorithm_->compute(tool, contacts, out);
   if (row_ == nullptr || last_row_ == *row_) {
     // A state within the step is not observed and keeps the row's share and damping.
-    if (has_springs(contacts, out)) render(tool, out);
+    if (acts(contacts, out)) render(tool, out);
     return;
   }
 
@@ -75,7 +81,7 @@ void PassivityController::compute(const ToolState& tool, ContactBuffer& contacts
   note_turn();
   share_ = spring_share_ = 1.0;
   alpha_ = 0.0;
-  if (has_springs(contacts, out)) {
+  if (acts(contacts, out)) {
     springs_ = algorithm_->spring_state(tool, contacts);
     control(tool, out.rendered);
     springs_.energy *= spring_share_;
@@ -115,24 +121,18 @@ void PassivityController::control(const ToolState& tool, const Vec3& force) noex
   ++steps_controlled_;
   // A force that the limit cuts absorbs less energy, so less is left for the moment.
   const Vec3 whole = share_ * force - alpha_ * w;
-  if (const Vec3 rendered = limited(whole); rendered != whole && taken > 0.0) {
+  if (const Vec3 rendered = cut_to(whole, max_force_); rendered != whole && taken > 0.0) {
     const Vec3 after = w + rendered * (dt_ / mass_);
     const double left = energy + 0.5 * mass_ * (w.squaredNorm() - after.squaredNorm());
     spring_share_ = std::clamp(left / taken, 0.0, share_);
   }
 }
 
-/// The force, scaled down to the force limit.
-Vec3 PassivityController::limited(const Vec3& force) const noexcept {
-  const double length = max_force_ ? force.norm() : 0.0;
-  return max_force_ && length > *max_force_ ? Vec3(force * (*max_force_ / length)) : force;
-}
-
 void PassivityController::render(const ToolState& tool, RenderedForce& out) const noexcept {
   if (share_ == 1.0) return;
   out.spring *= share_;
   out.S *= share_;
-  out.rendered = limited(share_ * out.rendered - alpha_ * (tool.velocity + half_kick()));
+  out.rendered = cut_to(share_ * out.rendered - alpha_ * (tool.velocity + half_kick()), max_force_);
 }
 
 SpringState PassivityController::spring_state(const ToolState&, const ContactBuffer&) const noexcept {

@@ -52,7 +52,6 @@ class PassivityController final : public ForceAlgorithm {
  private:
   void note_turn() noexcept;
   void control(const ToolState& tool, const Vec3& force) noexcept;
-  Vec3 limited(const Vec3& force) const noexcept;
   void render(const ToolState& tool, RenderedForce& out) const noexcept;
   /// Velocity change over half a step by f_in [m/s].
   Vec3 half_kick() const noexcept { return *input_ * (0.5 * dt_ / mass_); }

@@ -104,6 +104,10 @@ std::optional<double> ForceFidelity::relative() const noexcept {
   return reference_rms > 0.0 ? std::optional(error_rms / reference_rms) : std::nullopt;
 }
 
+std::optional<double> ForceFidelity::reference_mu() const noexcept {
+  return reference_loads > 0.0 ? std::optional(reference_drag / reference_loads) : std::nullopt;
+}
+
 std::optional<double> ForceFidelity::artefact_share() const noexcept {
   return rendered_rms > 0.0 ? std::optional(across_rms / rendered_rms) : std::nullopt;
 }
@@ -159,6 +163,9 @@ void ForceFidelityObserver::on_step(const StepRecord& record) noexcept {
   sums_.error_rms += error.squaredNorm();
   sums_.normal_rms += along * along;
   sums_.tangential_rms += (error - along * normal).squaredNorm();
+  const double load = std::max(0.0, normal.dot(wanted));
+  sums_.reference_loads += load * load;
+  sums_.reference_drag += load * (wanted - load * normal).norm();
   const Vec3 line = norm > 0.0 ? Vec3(wanted / norm) : Vec3::Zero();
   sums_.across_rms += (rendered - line.dot(rendered) * line).squaredNorm();
   sums_.rendered_rms += rendered_norm * rendered_norm;
@@ -202,6 +209,10 @@ MetricList metric_list(const ForceFidelity& f) {
        if_any(any, f.normal_rms), Better::less},
       {"force_error_tangential_rms_N", "N", "root mean square of (I - n n^T) (f - f_m), with the same n",
        if_any(any, f.tangential_rms), Better::less},
+      {"reference_mu", "1",
+       "coefficient of dry friction that fits f_m best by least squares: its part across n over that along n, with the "
+       "same n; to be rendered with, the one with the least tangential error is found by a sweep",
+       f.reference_mu()},
       {"force_artefact_share", "1",
        "root mean square of the part of f across f_m, all of it where f_m is zero, over that of ||f||",
        f.artefact_share(), Better::less},

@@ -43,6 +43,7 @@ struct ForceFidelity {
   double reference_rms = 0.0, error_rms = 0.0, normal_rms = 0.0, tangential_rms = 0.0;  ///< [N]
   double across_rms = 0.0;    ///< rms of the part of f across f_m, of all of f where f_m is zero [N]
   double rendered_rms = 0.0;  ///< rms ||f|| [N]
+  double reference_loads = 0.0, reference_drag = 0.0;  ///< sums of N^2 and N |f_t| of f_m, N its normal part [N^2]
   std::uint64_t direction_rows = 0;
   double direction_error = 0.0;      ///< [rad]
   std::optional<double> lag;         ///< [s]
@@ -51,6 +52,8 @@ struct ForceFidelity {
 
   /// rms error in units of that of f_m; nothing where f_m is zero throughout.
   std::optional<double> relative() const noexcept;
+  /// The coefficient of dry friction mu that fits f_m best, |f_t| = mu N by least squares; nothing without a load.
+  std::optional<double> reference_mu() const noexcept;
   /// Share of the rendered force that an ideal one would not have: across_rms / rendered_rms; nothing without force.
   std::optional<double> artefact_share() const noexcept;
 };

@@ -159,6 +159,46 @@ static void describe_contact_source(Fields& f, RenderingConfig& rendering) {
       });
 }
 
+static void describe(Fields& f, EnergyTankConfig& tank) {
+  number(f, parameter::kTankCapacity, tank.capacity, "C, most energy that is kept for later");
+  number(f, parameter::kTankInitial, tank.initial, "energy at the start, besides that of the springs");
+}
+
+static void describe(Fields& f, ActuatorLimitedPassivityConfig& limited) {
+  f.field(key(parameter::kActuatorForce), "most force of the actuator along each axis of the world; null: no limit",
+          Presence::has_default, [&limited](Fields& force) {
+            force.nullable(limited.max_force,
+                           [](Fields& v, Vec3& most) { v.vector3(most, parameter::kActuatorForce.range); });
+          });
+  number(f, parameter::kActuatorDamping, limited.max_damping,
+         "most damping; null: M / dt, which stops the virtual tool in one step");
+}
+
+static void describe_config(Fields& f, std::string& config) {
+  f.field("config", "handed to the stage as JSON text", Presence::has_default,
+          [&config](Fields& fields) { fields.any_object(config); });
+}
+
+static void describe(Fields& f, PluginStageConfig& plugin) {
+  f.file(plugin.file, {FileContent::Kind::library}, "the library");
+  describe_config(f, plugin.config);
+}
+
+static void describe(Fields& f, AddedStageConfig& added) {
+  constexpr std::size_t kLongestName = 64;
+  f.text("name", added.name, kLongestName, "as it was added", Presence::required);
+  describe_config(f, added.config);
+}
+
+static void describe(Fields& f, ForceStageConfig& stage) {
+  static constexpr TypeName kTypes[] = {
+      {"energy_tank", "gives away no more energy than it holds"},
+      {"actuator_limited_passivity", "time-domain passivity within the limits of each actuator"},
+      {"plugin", "a shared library by hapbench_force_stage.h, whose code is run"},
+      {"added", "a stage of this process, as of hapbench.force_stage in Python"}};
+  f.variant(stage, "force stage", kTypes, [](Fields& fields, auto& held) { describe(fields, held); });
+}
+
 void describe(Fields& f, RenderingConfig& rendering) {
   static const std::vector<std::string> kDepthModels = depth_model_names();
   f.name("algorithm", rendering.algorithm, algorithm_names(), "algorithm", "force algorithm");
@@ -201,6 +241,12 @@ void describe(Fields& f, RenderingConfig& rendering) {
   });
   number(f, parameter::kVirtualCoupling, rendering.virtual_coupling, "K_vc of algorithm virtual_coupling; null: K");
   number(f, parameter::kRegularisation, rendering.regularisation, "eps of algorithm least_squares");
+  f.field("force_stage",
+          "a controller behind the algorithm: sees its force with damping, friction and limits, and answers the one to "
+          "render; null: off",
+          rendering.force_stage ? Presence::no_default : Presence::left_out, [&rendering](Fields& stage) {
+            stage.nullable(rendering.force_stage, [](Fields& held, ForceStageConfig& value) { describe(held, value); });
+          });
   f.boolean(key(parameter::kPassivityController), rendering.passivity_controller,
             "adaptive damping that lets the algorithm create no energy");
   own_parameters(f, rendering);

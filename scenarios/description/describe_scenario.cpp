@@ -8,6 +8,8 @@
 #include <optional>
 
 #include "algorithms/registry.hpp"
+#include "algorithms/stages/dry_friction.hpp"
+#include "algorithms/stages/force_stage.hpp"
 #include "results/summary/outcome_names.hpp"
 #include "scenarios/description/descriptions.hpp"
 #include "scenarios/description/load_scenario.hpp"
@@ -129,6 +131,21 @@ constexpr Rule kRules[] = {
      "not there",
      [](const Scenario& s) { return handle_moves_tool(s.device) && s.rendering.passivity_controller; }},
 };
+
+void check_force_stage(const Scenario& scenario) {
+  const auto& stage = scenario.rendering.force_stage;
+  if (!stage) return;
+  const auto* limited = std::get_if<ActuatorLimitedPassivityConfig>(&*stage);
+  const bool has_mass = is<FreePosition>(scenario.motion.position) && !handle_moves_tool(scenario.device);
+  if (limited != nullptr && !limited->max_damping && !has_mass)
+    fail("/rendering/force_stage/max_damping_N_s_per_m",
+         "got null; allowed with device \"impedance\" or a prescribed position: a number, because there is no virtual "
+         "mass to take it from");
+  const auto* added = std::get_if<AddedStageConfig>(&*stage);
+  if (added != nullptr && find_force_stage(added->name) == nullptr)
+    fail("/rendering/force_stage/name", fmt::format("got \"{}\"; allowed: stages that this process has added ({})",
+                                                    added->name, added_force_stages()));
+}
 
 /// A peer finds contacts between triangles and a cylinder; those of a trace belong to its motion. Neither are points of
 /// our shell.
@@ -260,14 +277,12 @@ void warn_of_stiff_bristle(const Scenario& scenario, std::vector<std::string>& w
   const RenderingConfig& r = scenario.rendering;
   const bool is_explicit = scenario.integrator.type->stability_limit != nullptr;
   if (!r.dry_friction || !is_explicit || handle_moves_tool(scenario.device)) return;
-  const double K = r.dry_friction->stiffness.value_or(r.stiffness), dt = scenario.time.step;
-  const double B = 2.0 * r.dry_friction->damping_ratio * std::sqrt(K * r.mass);
-  // Sticking, f = -K (e + dt v) - B v and e <- e + dt v, which leapfrog steps as it does a spring.
-  if (SpringDamper{.K = K, .B = B, .M = r.mass, .dt = dt}.is_stable()) return;
+  const SpringDamper bristle = bristle_of(*r.dry_friction, r, scenario.time.step);
+  if (bristle.is_stable()) return;
   warnings.push_back(fmt::format(
       "/rendering/friction: a tool that sticks will chatter: a bristle of {:.4g} N/m is too stiff for steps of {:.4g} s "
       "and a mass of {:.4g} kg",
-      K, dt, r.mass));
+      bristle.K, bristle.dt, r.mass));
 }
 
 /// The first script within `json`, found at `at`, that a run of so long [s] does not play. The reader has checked it.
@@ -302,6 +317,7 @@ void check_relations(const Scenario& scenario, double steps) {
     if (rule.is_broken(scenario)) fail(rule.at, rule.problem);
   }
   check_contact_source(scenario);
+  check_force_stage(scenario);
   check_drag_hand(scenario, steps);
   check_tracking_hand(scenario, steps);
   check_perception(scenario);

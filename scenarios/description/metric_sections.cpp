@@ -7,6 +7,7 @@
 #include "results/observe/contact_age.hpp"
 #include "results/observe/energy_ledger.hpp"
 #include "results/observe/force_fidelity.hpp"
+#include "results/observe/force_stage.hpp"
 #include "results/observe/friction.hpp"
 #include "results/observe/ideal_trajectory.hpp"
 #include "results/observe/lost_torque.hpp"
@@ -110,6 +111,11 @@ const SectionKind kSections[] = {
        return std::make_unique<FrictionObserver>(p.scenario.time.step);
      },
      summary_of_one<FrictionObserver>, list_without_values<FrictionObserver>},
+    {"force_stage", [](const Scenario& s, bool) { return std::size_t{s.rendering.force_stage.has_value()}; },
+     [](const TrialParts& p) -> std::unique_ptr<Observer> {
+       return std::make_unique<ForceStageObserver>(*p.simulation.algorithm);
+     },
+     summary_of_one<ForceStageObserver>, list_without_values<ForceStageObserver>},
     {"contacts", [](const Scenario& s, bool) { return std::size_t{s.rendering.late && s.rendering.late->any()}; },
      observe_contacts, summary_of_one<ContactAgeObserver>, list_without_values<ContactAgeObserver>},
     {"perception", [](const Scenario& s, bool) { return std::size_t{s.perception.has_value()}; }, observe_perception,

@@ -32,8 +32,9 @@ std::string_view case_name(StabilityCase which) {
 }
 
 const Field<StabilityLimit> kStabilityLimitFields[] = {
-    {{"case", "", "what grows until the run is unstable: stiffness, damping or time step"},
-     [](const StabilityLimit& l) -> Cell { return std::string(case_name(l.which)); }},
+    {{"case", "",
+      "what grows until the run is unstable: stiffness, damping or time step; stuck: the stiffness of a tool that dry friction holds"},
+     [](const StabilityLimit& l) -> Cell { return std::string(l.stuck ? "stuck" : case_name(l.which)); }},
     {{"unit", "", "unit of the limit"}, [](const StabilityLimit& l) -> Cell { return l.unit; }},
     {{"analytic", "unit", "the limit in closed form; empty where the integrator has none"},
      [](const StabilityLimit& l) { return cell_if(l.analytic); }},

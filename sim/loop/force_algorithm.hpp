@@ -12,6 +12,7 @@
 namespace hapbench {
 
 class LateContacts;
+struct HandleState;
 
 /// The scene as known to a force algorithm before the first step. Everything pointed to outlives the algorithm.
 struct Scene {
@@ -26,6 +27,10 @@ struct Scene {
   /// before the first `compute` of each row. Null if the algorithm is not stepped by a Simulation.
   const std::uint64_t* row = nullptr;
   const Vec3* input = nullptr;
+  /// The handle of the present row, for algorithms that read it; null as those.
+  const HandleState* handle = nullptr;
+  bool position_is_free = true;    ///< false: a script moves the tool
+  bool handle_moves_tool = false;  ///< the tool follows the measured handle; there is no virtual mass
 };
 
 /// What dry friction does in one step.
@@ -78,11 +83,16 @@ struct AlgorithmWork {
   SearchWork search = {};              ///< of the algorithm's own queries, at other poses
   std::uint64_t steps_controlled = 0;  ///< steps in which a passivity controller changed the force
 
+  std::uint64_t steps_staged = 0;  ///< steps in which a force stage changed the force
+  double energy_staged = 0.0;      ///< energy that the stage kept the force from giving to the tool [J]
+
   AlgorithmWork& operator+=(const AlgorithmWork& other) noexcept {
     iterations += other.iterations;
     points_dropped += other.points_dropped;
     search += other.search;
     steps_controlled += other.steps_controlled;
+    steps_staged += other.steps_staged;
+    energy_staged += other.energy_staged;
     return *this;
   }
 };

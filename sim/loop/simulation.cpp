@@ -80,7 +80,10 @@ Simulation::Simulation(SimulationConfig config, SimulationParts parts, std::vect
                              .dt = config_.dt,
                              .late = dynamic_cast<const LateContacts*>(parts_.source.get()),
                              .row = &record_.step,
-                             .input = &record_.hand.input});
+                             .input = &record_.hand.input,
+                             .handle = &record_.handle,
+                             .position_is_free = position_is_free_,
+                             .handle_moves_tool = handle_moves_tool_});
   reset();
 }
 

@@ -88,6 +88,7 @@ struct Stages {
   std::optional<ReductionConfig> reduction;
   bool controlled = false;
   std::optional<Lateness> late = {};
+  std::optional<ForceStageConfig> stage = {};
 };
 const Stages kStages[] = {
     {"plain", false, {}},
@@ -98,6 +99,8 @@ const Stages kStages[] = {
     {"controlled", false, ReductionConfig{}, true},
     {"held", false, {}, false, Lateness{.every = 3, .delay = 0, .dropout = 0.3}},
     {"late_and_linear", false, ReductionConfig{}, true, Lateness{.every = 3, .delay = 7, .linear = true}},
+    {"with_energy_tank", false, {}, true, {}, EnergyTankConfig{}},
+    {"actuator_limited", false, {}, false, {}, ActuatorLimitedPassivityConfig{}},
 };
 
 struct Instance {
@@ -188,6 +191,7 @@ TEST_P(NoAllocation, InAStepOrAReset) {
   config.reduction = GetParam().stages->reduction;
   config.passivity_controller = GetParam().stages->controlled;
   config.late = GetParam().stages->late;
+  config.force_stage = GetParam().stages->stage;
   config.mu_s = 5.0;
   config.mu_f = 10.0;
   config.angular_damping = true;

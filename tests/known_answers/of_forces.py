@@ -5,7 +5,7 @@ import numpy as np
 from scipy import signal
 
 from answers import EXACT, ROUNDING, Within, norms, profile, rms, scene
-from physics import FILTERED, STEPPED, high_pass
+from physics import FILTERED, PLAIN, SPRING, STEPPED, high_pass
 
 
 # Not periodic: one lag alone fits.
@@ -34,6 +34,7 @@ def late_force(bench):
     error, size = f - m, norms(m)
     unit = spring / np.maximum(1e-300, norms(spring))[:, None]
     along = np.sum(error * unit, axis=1)
+    load = np.maximum(0.0, np.sum(m * unit, axis=1))
     line = m / size[:, None]
     across = f - np.sum(f * line, axis=1)[:, None] * line
     both = (size > 0.1) & (norms(f) > 0.1)
@@ -58,6 +59,8 @@ def late_force(bench):
          rms(np.sum(error * f, axis=1) / norms(f))),
         ("fidelity.force_error_tangential_rms_N", rms(error - along[:, None] * unit), "across f_spring", STEPPED, "across f_m",
          rms(error - np.sum(error * line, axis=1)[:, None] * line)),
+        ("fidelity.reference_mu", float(np.sum(load * norms(m - load[:, None] * unit)) / np.sum(load**2)), "least squares across f_spring over along it",
+         STEPPED, "mean of the ratios", float(np.mean(norms(m - load[:, None] * unit) / np.maximum(load, 1e-9)))),
         ("fidelity.force_artefact_share", rms(across) / rms(f), "across f_m over f", STEPPED, "over f_m", rms(across) / rms(m)),
         ("fidelity.direction_rows", int(both.sum()), "rows of both above 0.1 N", EXACT, "all rows", n),
         ("fidelity.force_direction_error_rad", angles[both].mean(), "mean angle, by the cosine", Within("a cosine loses half the digits near 0",
@@ -203,3 +206,32 @@ def bristle(bench):
         ("friction.slips_per_s", began / (n * dt), law, EXACT, "rows that slide", slides.sum() / (n * dt))])
     rendered = run.table("trajectory.csv")
     bench.columns("trajectory.csv", rendered, [("fx_N", force, law, STEPPED, "Coulomb's alone", -mu * load * np.sign(v))])
+
+
+@scene
+def tank(bench):
+    """A mass on one spring whose energy tank holds a tenth of what the spring does: the stage's formula, row by row."""
+    K, B, M, dt, n, capacity = 2000.0, 2.0, 0.1, 0.0005, 400, 1e-4
+    run = bench.run(bench.scenario("tank", time={"step_s": dt, "steps": n}, environment=SPRING, initial={"position_m": [1e-3, 0, 0]}, rendering={
+        **PLAIN, "algorithm": "summation", "stiffness_N_per_m": K, "damping_N_s_per_m": B, "mass_kg": M,
+        "force_stage": {"type": "energy_tank", "capacity_J": capacity}}))
+    x, v, energy, changed, taken, rendered = 1e-3, 0.0, 0.5 * K * 1e-6, 0, 0.0, []
+    level = min(capacity, energy)
+    for k in range(n):
+        f = -K * x - B * v
+        excess = f * v * dt - max(level, 0.0)
+        out = f - excess / (v * dt) if f * v > 0 and excess > 0 else f
+        rendered.append(out)
+        changed += out != f
+        after = v + dt * out / M
+        way = 0.5 * dt * (v + after)
+        if k < n - 1:
+            taken += (f - out) * way
+        level = min(capacity, level - out * way)
+        v = after
+        x += dt * v
+    formula = "the tank's formula, row by row"
+    bench.metrics(run, [
+        ("force_stage.changed_share", changed / n, formula, EXACT, "rows in contact", 1.0),
+        ("force_stage.taken_J", taken, formula, STEPPED, "the spring's energy less the tank's", 0.5 * K * 1e-6 - capacity)])
+    bench.columns("trajectory.csv", run.table("trajectory.csv"), [("fx_N", np.array(rendered), formula, STEPPED, "without the tank", -K * np.array(rendered))])

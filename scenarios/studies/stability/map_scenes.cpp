@@ -248,10 +248,16 @@ namespace {
 constexpr std::string_view kAnyAlgorithm = "summation";  // no algorithm changes device or hand
 constexpr std::string_view kTimeStep = "time.step_s";
 constexpr std::string_view kWholeDevice = "device";
+constexpr std::string_view kForceStage = "rendering.force_stage";
 
 std::string_view section_of(std::string_view override) {
   const std::string_view path = overridden_path(override);
   return path.substr(0, path.find('.'));
+}
+
+/// An override that every map takes: no axis varies a force stage.
+bool is_of_force_stage(std::string_view override) {
+  return overridden_path(override).substr(0, kForceStage.size()) == kForceStage;
 }
 
 bool has_own_device(const StabilityMap& map) {
@@ -280,8 +286,8 @@ void require_field(const StabilityMap& map, std::string_view override) {
   const std::string_view path = overridden_path(override), section = section_of(override);
   if (section != "device" && section != "hand" && path != kTimeStep) {
     throw InputError(fmt::format(
-        "--set: got {} with --map; allowed: {} and fields of device and hand, such as device.handle_mass_kg", path,
-        kTimeStep));
+        "--set: got {} with --map; allowed: {}, {} and fields of device and hand, such as device.handle_mass_kg", path,
+        kTimeStep, kForceStage));
   }
   if (path == kWholeDevice) return;  // the axes set their fields afterwards
   if (path == "device.type" || path == "device.preset") {
@@ -320,11 +326,16 @@ std::vector<std::string> device_at(const StabilityMap& map, const Json& scene) {
 }  // namespace
 
 void require_overridable(const StabilityMap& map, const std::vector<std::string>& overrides) {
+  bool is_of_device = false;
+  for (const std::string& override : overrides) {
+    if (is_of_force_stage(override)) continue;
+    if (!is_of_device) require_map_of_device(map);
+    is_of_device = true;
+    require_field(map, override);
+  }
   if (overrides.empty()) return;
-  require_map_of_device(map);
-  for (const std::string& override : overrides) require_field(map, override);
   const Scenario scene = with_overrides(map, map.scene(map.x.low, map.y.low, kAnyAlgorithm), overrides);
-  if (!handle_moves_tool(scene.device))
+  if (is_of_device && !handle_moves_tool(scene.device))
     throw InputError("--set: got a device of another type with --map; allowed: \"impedance\"");
 }
 
@@ -343,6 +354,7 @@ Scenario with_overrides(const StabilityMap& map, Scenario scenario, const std::v
   const LoadedScenario loaded = load_scenario(text, all);
   scenario.time.step = loaded.scenario.time.step;
   scenario.device = loaded.scenario.device;
+  scenario.rendering.force_stage = loaded.scenario.rendering.force_stage;
   if (has_hand) scenario.hand = loaded.scenario.hand;
   return scenario;
 }

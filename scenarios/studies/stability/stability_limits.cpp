@@ -1,6 +1,7 @@
 #include "scenarios/studies/stability/stability_limits.hpp"
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -9,6 +10,7 @@
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/stop_signal.hpp"
 #include "sim/core/bisection.hpp"
+#include "sim/core/math.hpp"
 
 namespace hapbench {
 namespace {
@@ -25,6 +27,8 @@ constexpr double kBlownUp = 1e6;
 /// steps or fewer.
 constexpr std::int64_t kProbeSteps = 20'000;
 constexpr double kLateGrowth = 1.01;
+/// Energy in units of the first row's that rounding alone may leave, about a place that is not the origin.
+constexpr double kRoundingEnergy = 1e-12;
 constexpr int kLocusPoints = 400;
 /// If time steps up to this [s] are stable, all are taken to be: multiplied by a longer one, the rounding error of a
 /// velocity would pass for motion.
@@ -54,20 +58,25 @@ RaisedSpringDamper problem_of(StabilityCase which, const Scenario& scenario, dou
 /// position alone may still be on its first swing.
 class LateEnergy final : public Observer {
  public:
-  explicit LateEnergy(const SpringDamper& system) : stiffness_(system.lambda * system.K), mass_(system.M) {}
+  /// `rest`: the place about which the tool moves.
+  explicit LateEnergy(const SpringDamper& system, const Vec3& rest = Vec3::Zero())
+      : stiffness_(system.lambda * system.K), mass_(system.M), rest_(rest) {}
 
   void on_step(const StepRecord& record) noexcept override {
     const auto quarter = record.step * 4 / static_cast<std::uint64_t>(kProbeSteps);
-    if (quarter < 2) return;
     const ToolState& tool = record.tool;
-    const double energy = stiffness_ * tool.pose.position.squaredNorm() + mass_ * tool.velocity.squaredNorm();
+    const double energy = stiffness_ * (tool.pose.position - rest_).squaredNorm() + mass_ * tool.velocity.squaredNorm();
+    if (record.step == 0) rounding_ = kRoundingEnergy * energy;
+    if (quarter < 2) return;
     double& largest = quarter == 2 ? third_ : fourth_;
     largest = std::max(largest, energy);
   }
-  bool grows() const { return fourth_ > kLateGrowth * third_; }
+  bool grows() const { return fourth_ > kLateGrowth * third_ && fourth_ > rounding_; }
 
  private:
   double stiffness_, mass_;
+  Vec3 rest_;
+  double rounding_ = 0.0;
   double third_ = 0.0, fourth_ = 0.0;
 };
 
@@ -89,6 +98,75 @@ bool simulation_stays_bounded(Scenario scenario, const SpringDamper& system, con
   LateEnergy energy(system);
   Simulation simulation(simulation_config(scenario), assemble(scenario), {&energy});
   return run_to_end(simulation).outcome != Outcome::diverges && !energy.grows();
+}
+
+/// A tool that dry friction holds on springs that all press alike, along an axis of their S with the eigenvalue lambda:
+/// the bristle's spring acts on P P, whose eigenvalue is (1 - lambda / trace S)^2.
+SpringDamper stuck_mode(const Scenario& scenario, const Vec3& lambdas, double lambda) {
+  const RenderingConfig& r = scenario.rendering;
+  const SpringDamper bristle = bristle_of(*r.dry_friction, r, scenario.time.step);
+  const double share = math::square(1.0 - lambda / lambdas.sum());
+  SpringDamper mode = bristle;
+  mode.K = lambda * r.stiffness + share * bristle.K;
+  mode.B = lambda * normal_damping(r) + share * bristle.B;
+  mode.integrator = scenario.integrator.type;
+  return mode;
+}
+
+/// The tool where the scenario's springs push from one side and are all 1 m deep; none where there is no such place.
+std::optional<Vec3> pressed_alike(const SpringSet& springs) {
+  Eigen::MatrixX3d gradients(static_cast<Eigen::Index>(springs.gradients.size()), 3);
+  for (Eigen::Index i = 0; i < gradients.rows(); ++i) gradients.row(i) = springs.gradients[static_cast<std::size_t>(i)];
+  const Eigen::VectorXd depths = Eigen::VectorXd::Ones(gradients.rows());
+  const Vec3 place = gradients.completeOrthogonalDecomposition().solve(depths);
+  constexpr double kRounding = 1e-12;
+  return (gradients * place - depths).norm() <= kRounding ? std::optional(place) : std::nullopt;
+}
+
+/// Sees in a run whether a tool that is held where all springs press alike comes to rest when it is struck: by so
+/// little that their loads stay, and with a coefficient of friction that lets nothing slide.
+bool stuck_tool_stays_bounded(Scenario scenario, const Vec3& place, const Mat3& S) {
+  constexpr double kStrike = 1e-7;  // [m in a step]
+  const double K = scenario.rendering.stiffness, dt = scenario.time.step;
+  std::get<SpringsEnvironment>(scenario.environment).bilateral = false;
+  scenario.rendering.dry_friction->mu = 1e6;
+  ForceHandFields hand;
+  const Vec3 push = K * S * place;
+  for (int i = 0; i < 3; ++i) hand.force[static_cast<std::size_t>(i)] = push[i];
+  scenario.hand = hand;
+  scenario.time.steps = kProbeSteps;
+  scenario.time.stop_when.clear();
+  scenario.initial.position = place;
+  scenario.initial.velocity = kStrike / dt * Vec3(0.6, 0.64, 0.48);
+  scenario.bounds = {kNever, kBlownUp * kStrike / dt, kNever};
+  LateEnergy energy({.K = K, .B = 0.0, .M = scenario.rendering.mass}, place);
+  Simulation simulation(simulation_config(scenario), assemble(scenario), {&energy});
+  return run_to_end(simulation).outcome != Outcome::diverges && !energy.grows();
+}
+
+/// The largest K at which a tool that dry friction holds is stable, with the bristle as given.
+std::optional<StabilityLimit> stuck_limit(const Scenario& given, const Mat3& S) {
+  const auto place = pressed_alike(make_springs(given));
+  const Vec3 lambdas = Eigen::SelfAdjointEigenSolver<Mat3>(S, Eigen::EigenvaluesOnly).eigenvalues();
+  if (!place || !(lambdas.sum() > 0.0)) return std::nullopt;
+  const auto with = [&given](double K) {
+    Scenario scenario = given;
+    scenario.rendering.stiffness = K;
+    return scenario;
+  };
+  const auto modes_are_stable = [&](double K) {
+    const Scenario scenario = with(K);
+    return std::all_of(lambdas.begin(), lambdas.end(),
+                       [&](double lambda) { return stuck_mode(scenario, lambdas, lambda).is_stable(); });
+  };
+  StabilityLimit limit{StabilityCase::stiffness_damped, "largest K, stuck", "N/m"};
+  limit.stuck = true;
+  limit.lambda = lambdas[2];
+  limit.eigenvalue = largest_stable(1.0, kEigenvaluePrecision, modes_are_stable);
+  limit.simulation =
+      largest_stable(1.0, kLimitTolerance, [&](double K) { return stuck_tool_stays_bounded(with(K), *place, S); });
+  limit.damping_at_limit = normal_damping(with(limit.eigenvalue).rendering);
+  return limit;
 }
 
 /// Keeps the stiffness tensor of the last row.
@@ -127,6 +205,7 @@ void require_bilateral_springs(const Scenario& scenario) {
   if (scenario.rendering.max_force) fail("/rendering/limits/max_force_N", "allowed for stability: null");
   if (!std::holds_alternative<FreePosition>(scenario.motion.position))
     fail("/motion/position/type", "allowed for stability: \"free\"");
+  if (scenario.rendering.force_stage) fail("/rendering/force_stage", "allowed for stability: null");
   if (scenario.rendering.passivity_controller)
     fail("/rendering/passivity_controller", "got true; allowed for stability: false");
 }
@@ -149,7 +228,9 @@ double eigenvalue_limit(StabilityCase which, const Scenario& scenario, double la
   return largest_stable(start, kEigenvaluePrecision, stable, probes_of(which).largest);
 }
 
-std::vector<StabilityLimit> stability_limits(const Scenario& scenario) {
+std::vector<StabilityLimit> stability_limits(const Scenario& given) {
+  Scenario scenario = given;
+  scenario.rendering.dry_friction.reset();  // springs that pull have no load
   require_lasting_springs(scenario);
   const Eigen::SelfAdjointEigenSolver<Mat3> S(stiffness_tensor_of(scenario));
   const double lambda = S.eigenvalues()[2];
@@ -171,13 +252,16 @@ std::vector<StabilityLimit> stability_limits(const Scenario& scenario) {
     const auto run = [&](double value) { return simulation_stays_bounded(scenario, problem.at(value), stiffest); };
     limit.simulation = largest_stable(probes.start, kLimitTolerance, run, probes.largest);
   }
+  if (given.rendering.dry_friction) {
+    if (auto stuck = stuck_limit(given, stiffness_tensor_of(scenario))) limits.push_back(std::move(*stuck));
+  }
   return limits;
 }
 
 std::vector<RootLocusPoint> root_locus(const Scenario& scenario, const std::vector<StabilityLimit>& limits) {
   std::vector<RootLocusPoint> locus;
   for (const StabilityLimit& limit : limits) {
-    if (!std::isfinite(limit.limit())) continue;
+    if (limit.stuck || !std::isfinite(limit.limit())) continue;
     const RaisedSpringDamper problem = problem_of(limit.which, scenario, limit.lambda);
     for (int i = 0; i <= kLocusPoints; ++i) {
       const double value = 1.25 * limit.limit() * i / kLocusPoints;

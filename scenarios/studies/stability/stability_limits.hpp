@@ -31,6 +31,9 @@ struct StabilityLimit {
   double simulation = 0.0;              ///< bisection on runs of the real simulation
   double damping_at_limit = 0.0;        ///< B at the limit [N s/m]
   double lambda = 1.0;                  ///< lambda_max(S) of the springs under the scenario's algorithm
+  /// Of a tool that dry friction holds on springs that press from one side, all alike: K with its bristle along the
+  /// surface, on every axis lambda K + (1 - lambda / trace S)^2 K_t.
+  bool stuck = false;
 
   /// The analytic limit, or the limit of the eigenvalues if there is none.
   double limit() const { return analytic.value_or(eigenvalue); }
@@ -59,8 +62,9 @@ void require_lasting_springs(const Scenario& scenario);
 /// The stiffness tensor S of such a scenario under its algorithm, in units of K.
 Mat3 stiffness_tensor_of(Scenario scenario);
 
-/// All four limits. A limit that does not exist (no spring, no damping) is infinite. Throws InputError unless the
-/// scenario is bilateral springs without friction and limits: elsewhere contacts come and go and no such limit exists.
+/// All four limits, without dry friction; with it a fifth of the tool that it holds, unless the springs cannot all
+/// press alike. A limit that does not exist (no spring, no damping) is infinite. Throws InputError unless the scenario
+/// is bilateral springs without viscous friction and limits: elsewhere contacts come and go and no such limit exists.
 std::vector<StabilityLimit> stability_limits(const Scenario& scenario);
 
 /// The eigenvalues from zero to a quarter beyond each finite limit.

@@ -76,7 +76,7 @@ MapPoint map_point(const StabilityMap& map, const MapSubject& subject, double x,
     far.initial.position *= *map.far;
     point.verdict_from_far = probe(map, far).verdict;
   }
-  if (!is_alone(scenario) || !run.linear) return point;
+  if (!is_alone(scenario) || !run.linear || scenario.rendering.force_stage) return point;
   const double K = scenario.rendering.stiffness, M = scenario.rendering.mass;
   const double B = 2.0 * scenario.rendering.damping_ratio * std::sqrt(K * M);
   const SpringDamper stiffest{
@@ -150,7 +150,9 @@ BoundaryPoint boundary_point(const StabilityMap& map, const MapSubject& subject,
     return is_stable(verdict) || (is_of_bounded && verdict == RunVerdict::vibrating);
   });
   const Probe run = probe(map, start);
-  if (!run.linear) {
+  if (start.rendering.force_stage) {
+    point.no_theory = "a force stage changes the force";
+  } else if (!run.linear) {
     point.no_theory = "the force is not -K S p";
   } else if (is_alone(start)) {
     point.analytic = theory_of(start, run.lambdas);

@@ -64,13 +64,14 @@ std::span<const StabilityMap> stability_maps();
 const StabilityMap* find_stability_map(std::string_view name);
 
 /// Checks overrides `path=value` (as of `--set`) for a map of the user's own device and hand: of time.step_s and of the
-/// fields of `device` and `hand`, or of either as a whole. Where the whole device is given, the axes still set the
-/// fields that they vary. Throws InputError for a map without an impedance device or whose axes are in units of its own
-/// one, for another field or one that an axis varies, and for a value that the field does not take.
+/// fields of `device` and `hand`, or of either as a whole; every map takes a force stage. Where the whole device is
+/// given, the axes still set the fields that they vary. Throws InputError for a map without an impedance device or
+/// whose axes are in units of its own one, for another field or one that an axis varies, and for a value that the field
+/// does not take.
 void require_overridable(const StabilityMap& map, const std::vector<std::string>& overrides);
 
-/// A scene of the map with the overrides; only its time step, device and hand change. Precondition: require_overridable
-/// accepts them.
+/// A scene of the map with the overrides; only its time step, device, hand and force stage change. Precondition:
+/// require_overridable accepts them.
 Scenario with_overrides(const StabilityMap& map, Scenario scenario, const std::vector<std::string>& overrides);
 
 /// One run of a map.

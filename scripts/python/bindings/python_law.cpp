@@ -10,47 +10,13 @@
 
 #include "algorithms/registry.hpp"
 #include "bindings/bindings.hpp"
+#include "bindings/held.hpp"
 #include "sim/core/hash.hpp"
 
 namespace hapbench {
 namespace {
 
 namespace py = pybind11;
-
-/// Holds the interpreter. Each thread keeps its thread state, because making one takes longer than calling a law.
-class Held {
- public:
-  Held() {
-    thread_local const Kept kept;
-    state_ = PyGILState_Ensure();
-  }
-  ~Held() { PyGILState_Release(state_); }
-  Held(const Held&) = delete;
-  Held& operator=(const Held&) = delete;
-
- private:
-  struct Kept {
-    // A thread that was made by Python has a state already.
-    Kept() : made(PyGILState_GetThisThreadState() == nullptr) {
-      if (!made) return;
-      gil = PyGILState_Ensure();
-      state = PyEval_SaveThread();
-    }
-    ~Kept() {
-      if (!made || !Py_IsInitialized()) return;
-      PyEval_RestoreThread(state);
-      PyGILState_Release(gil);
-    }
-    Kept(const Kept&) = delete;
-    Kept& operator=(const Kept&) = delete;
-
-    bool made;
-    PyGILState_STATE gil = PyGILState_UNLOCKED;
-    PyThreadState* state = nullptr;
-  };
-
-  PyGILState_STATE state_;
-};
 
 /// The arguments of a law, by their names; `own` stands for the law's own parameters.
 enum class Argument { depths, gradients, points, normals, stiffness, own };
@@ -64,15 +30,7 @@ struct Definition {
   std::vector<std::pair<Argument, std::size_t>> arguments;
 };
 
-/// Any thread may release the last reference. The definition is destroyed only while there is an interpreter.
 using SharedDefinition = std::shared_ptr<const Definition>;
-SharedDefinition share(Definition definition) {
-  return {new Definition(std::move(definition)), [](const Definition* last) {
-            if (!Py_IsInitialized()) return;  // the interpreter has destroyed its objects
-            const Held held;
-            delete last;
-          }};
-}
 
 /// A numpy array with `width` numbers for each contact, of which laws get a view of the first rows.
 class ContactArray {
@@ -331,7 +289,7 @@ void add_force_law(const std::string& name, const py::object& callable, bool is_
   if (fixed != nullptr) entry.fixed_depth_model = fixed->info->name;
   entry.own_parameters = own;
   entry.origin = {file, hash_text(hash_of(source))};
-  entry.make_law = [shared = share(std::move(definition)), name](const RenderingConfig& config) {
+  entry.make_law = [shared = shared_by_threads(std::move(definition)), name](const RenderingConfig& config) {
     return std::make_unique<PythonLaw>(shared, own_values(config, *find_algorithm(name)), config.stiffness);
   };
   add_algorithm(std::move(entry));

@@ -35,6 +35,8 @@ def renewed(manual, scratch, program):
         makers["force_jumps"] = lambda old: blocks.force_jumps(old, program, scratch)
         makers["ideal_trajectory"] = lambda old: blocks.ideal_trajectory(old, program, scratch)
         makers["contact_sources"] = lambda old: blocks.contact_sources(old, program, scratch)
+        makers["controllers"] = lambda old: blocks.controllers(old, program, scratch)
+        makers["hunt_crossley"] = lambda old: blocks.hunt_crossley(old, program, scratch)
         makers["known_answers"] = lambda old: blocks.known_answers(old, program)
     text = blocks.renewed(manual.text, makers)
     text = blocks.renewed(text, {"which_law": lambda _: blocks.which_law(text)})  # by the tables made just now

@@ -1,13 +1,16 @@
 """Generated parts of a manual, which stand between `<!-- generated: NAME -->` and `<!-- /generated -->`: sessions, tables of the
 ledger (claims.json) and of its robustness as results/reference holds them, and tables of studies that are too wide for a manual as
 the program prints them."""
+import csv
 import json
 import re
 import shlex
 import subprocess
 import sys
 import textwrap
+from pathlib import Path
 
+import numpy as np
 from hapbench_bench.table import number
 from hapbench_suite.page import read_rows, scale_of
 
@@ -226,6 +229,72 @@ def contact_sources(old, program, directory):
                      for name, _, factor in SOURCE_COLUMNS]
             lines.append(f"| {task} | {SOURCES[row['setting']]} | {' | '.join(cells)} |")
     return program.stamped("\n".join(lines), old)
+
+
+TAPPED = 10_000.0  # K [N/m] of the wall that a hand taps on with a controller
+CONTROLLERS = (
+    ("none", None),
+    ("`energy_tank`, 0.1 J", {"type": "energy_tank"}),
+    ("`energy_tank`, 1 mJ", {"type": "energy_tank", "capacity_J": 1e-3}),
+    ("`actuator_limited_passivity`, 20 N s/m", {"type": "actuator_limited_passivity", "max_damping_N_s_per_m": 20}),
+    ("`actuator_limited_passivity`, 100 N s/m", {"type": "actuator_limited_passivity", "max_damping_N_s_per_m": 100}),
+    ("the same, 3 N", {"type": "actuator_limited_passivity", "max_damping_N_s_per_m": 100, "max_force_N": [3, 3, 3]}),
+)
+
+
+def controllers(old, program, directory):
+    """What force stages gain in a stability map and what they cost a hand that taps on a wall: stiffness and damping felt by
+    least squares of the rendered force over depth and velocity in contact."""
+    lines = ["| force stage | bounded up to [N/m], B = 0.1, 3.9, 150 N s/m | created [mJ] | taken [mJ] | rows changed [%] | "
+             "stiffness felt, of K | damping felt [N s/m] | largest force step [N] |", "|---" * 8 + "|"]
+    for name, stage in CONTROLLERS:
+        chosen = [] if stage is None else ["--set", f"rendering.force_stage={json.dumps(stage)}"]
+        program.run(["stability", "--map", "z_width", "--algorithms", "summation", "--size", "3", "--out", "map", *chosen], directory)
+        edges = csv_rows(Path(directory) / "map" / "stability_boundary_z_width.csv")
+        run = json.loads(program.run(["run", "tap_wall", "--set", f"rendering.stiffness_N_per_m={TAPPED:g}", "--set", "record.trajectory=true",
+                                      "--set", "expect={}", "--out", "tap", "--json", *chosen], directory))
+        run = run[0] if isinstance(run, list) else run
+        touching = [row for row in csv_rows(Path(directory) / "tap" / "trajectory.csv") if float(row["rendered"]) > 0]
+        column = lambda key: np.array([float(row[key]) for row in touching])
+        felt, _, _, _ = np.linalg.lstsq(-np.column_stack([column("pz_m"), column("vz_m_per_s")]), column("fz_N"), rcond=None)
+        of_stage = run.get("force_stage", {"taken_J": 0.0, "changed_share": 0.0})
+        cells = [", ".join(number(float(edge["simulation_stiffness_N_per_m"])) for edge in edges), number(1e3 * run["passivity"]["net_created_J"]),
+                 number(1e3 * of_stage["taken_J"]), number(100 * of_stage["changed_share"]), number(felt[0] / TAPPED), number(round(felt[1], 3)),
+                 number(run["metrics"]["force_step_max_N"])]
+        lines.append(f"| {name} | {' | '.join(cells)} |")
+    return program.stamped("\n".join(lines), old)
+
+
+DAMPINGS = (
+    ("0", ["rendering.damping_ratio=0"]),
+    ("zeta 0.7", ["rendering.damping_ratio=0.7"]),
+    ("chi 1", ['rendering.damping={"type":"hunt_crossley","chi_s_per_m":1}']),
+    ("chi 10", ['rendering.damping={"type":"hunt_crossley","chi_s_per_m":10}']),
+    ("chi 100", ['rendering.damping={"type":"hunt_crossley","chi_s_per_m":100}']),
+)
+DAMPED = ("landing_force_max_N", "force_rms_above_30Hz_N", "settled_force_step_max_N")
+
+
+def hunt_crossley(old, program, directory):
+    """Four laws on the molar under damping that is there at once and damping that grows with depth."""
+    found = {}
+    for name, overrides in DAMPINGS:
+        words = [word for override in (*overrides, "record.energy=true", "expect={}") for word in ("--set", override)]
+        for run in json.loads(program.run(["compare", "drag_molar", "--algorithms", "shaped_stiffness,mean,summation,proxy", *words, "--json"], directory)):
+            found.setdefault(run["algorithm"], {})[name] = run
+    lines = ["| | damping | outcome | landing [N] | above 30 Hz [N rms] | largest settled step [N] | created [mJ] | damped [mJ] |", "|---" * 8 + "|"]
+    for law, runs in found.items():
+        for name, run in runs.items():
+            metrics = [number(run["metrics"][key]) if run["metrics"].get(key) is not None else "-" for key in DAMPED]
+            energy = [number(1e3 * run["passivity"]["net_created_J"]), number(-1e3 * run["energy"]["damping_J"])]
+            cells = [*metrics, *energy] if run["outcome"] == "completes" else ["-"] * 5
+            lines.append(f"| `{law}` | {name} | {run['outcome']} | {' | '.join(cells)} |")
+    return program.stamped("\n".join(lines), old)
+
+
+def csv_rows(file):
+    with open(file, encoding="utf-8", newline="") as text:
+        return list(csv.DictReader(text))
 
 
 # The tables that need no program.

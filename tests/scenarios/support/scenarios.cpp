@@ -61,6 +61,7 @@ std::vector<NamedScenario> rich_scenarios() {
         "hole_depth_m": 0.002, "grid_m": 0.0002, "density": "binary", "vertices": "per_cell"},
       "initial": {"position_m": [0.0006, 0, -0.001]},
       "rendering": {"local_average": true, "damping": {"type": "hunt_crossley", "chi_s_per_m": 3},
+        "force_stage": {"type": "energy_tank", "capacity_J": 0.2, "initial_J": 0.1},
         "friction": {"type": "dry", "mu": 0.2, "stiffness_N_per_m": 500, "damping_ratio": 0.5}}})")},
           {"recorded_shell", Json::parse(R"({
       "time": {"step_s": 0.0005, "steps": 1e2, "stop_when": []},
@@ -75,7 +76,8 @@ std::vector<NamedScenario> rich_scenarios() {
       "motion": {"position": {"type": "prescribed", "x_m": 0, "y_m": 0,
         "z_m": {"type": "ramp", "start": 0, "rate_per_s": -0.01}}},
       "rendering": {"contact_source": {"type": "trace", "file": "trace.csv"},
-        "contacts": {"every": 2, "delay_samples": 1, "between": "linear", "dropout": 0.1}},
+        "contacts": {"every": 2, "delay_samples": 1, "between": "linear", "dropout": 0.1},
+        "force_stage": {"type": "actuator_limited_passivity", "max_force_N": [1, 2, 3], "max_damping_N_s_per_m": 4}},
       "record": {"contacts": true}})")},
           {"pushed_springs", Json::parse(R"({
       "time": {"step_s": 0.0005, "steps": 50},

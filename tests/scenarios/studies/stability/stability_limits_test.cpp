@@ -192,6 +192,36 @@ TEST(StabilityLimits, AreRefusedWhereNoneExist) {
   }
 }
 
+/// A tool that dry friction holds is a spring K in the normal and K_t along the surface: on one face the lesser of the
+/// two limits of A.3, which both have a closed form; on two walls at right angles K + K_t / 4 along either.
+TEST(StabilityLimits, OfAToolHeldByDryFrictionHaveItsBristle) {
+  const auto stuck = [](const std::vector<std::string>& overrides) {
+    std::optional<StabilityLimit> found;
+    for (const StabilityLimit& limit : stability_limits(single_spring(overrides)))
+      if (limit.stuck) found = limit;
+    return found;
+  };
+  const auto a3 = [](double zeta) { return 0.1 * std::pow(2.0 * (std::sqrt(1.0 + zeta * zeta) - zeta) / 0.0005, 2); };
+  const auto expect = [](const std::optional<StabilityLimit>& limit, double known) {
+    ASSERT_TRUE(limit);
+    EXPECT_NEAR(limit->eigenvalue, known, 1e-6 * known);
+    EXPECT_NEAR(limit->simulation, known, 1e-2 * known);
+  };
+  EXPECT_FALSE(stuck({}));
+  // K_t = K follows K.
+  expect(stuck({R"(rendering.friction={"type":"dry","mu":0.3})"}), a3(1.0));
+  expect(stuck({R"(rendering.friction={"type":"dry","mu":0.3,"damping_ratio":0.2})"}), a3(0.7));
+  expect(stuck({R"(rendering.friction={"type":"dry","mu":0.3,"stiffness_N_per_m":1000})"}), a3(0.7));
+  const std::string walls = R"(environment.groups=[{"direction":[1,0,0],"count":1},{"direction":[0,1,0],"count":1}])";
+  // Undamped: K (1 + 1/4) dt^2 / M = 4 along the walls' normals, K along the line.
+  expect(stuck({walls, "rendering.algorithm=summation", "rendering.damping_ratio=0",
+                R"(rendering.friction={"type":"dry","mu":0.3,"damping_ratio":0})"}),
+         1.6e6 / 1.25);
+  // Springs that face each other cannot both press.
+  EXPECT_FALSE(stuck({R"(environment.groups=[{"direction":[1,0,0],"count":1},{"direction":[-1,0,0],"count":1}])",
+                      R"(rendering.friction={"type":"dry","mu":0.3})"}));
+}
+
 TEST(RootLocus, LeavesTheUnitCircleAtTheLimit) {
   const Scenario scenario = single_spring();
   const auto limits = stability_limits(scenario);

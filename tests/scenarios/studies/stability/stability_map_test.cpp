@@ -207,6 +207,33 @@ TEST(StabilityMap, KnowsTheLimitsOfOtherIntegratorsInClosedForm) {
   EXPECT_EQ(undamped(&kImplicitMidpoint), std::numeric_limits<double>::infinity());
 }
 
+/// A handle with hardly any damping, at a wall that is stable to 1200 N/m, is held bounded far beyond by either stage.
+/// Within the explicit step of a virtual mass neither sees anything: its edge stays.
+TEST(StabilityMap, TakesAForceStageAndThenKnowsNoLimit) {
+  const StabilityMap &handle = *find_stability_map("z_width"), &tool = *find_stability_map("contacts");
+  const double bare = stability_map(handle, {"summation"}, 2, kTwoThreads).boundary[0].simulation;
+  const double limit = stability_map(tool, {"summation"}, 2, kTwoThreads).boundary[0].simulation;
+  for (const char* stage :
+       {R"({"type":"energy_tank"})", R"({"type":"actuator_limited_passivity","max_damping_N_s_per_m":100})"}) {
+    SCOPED_TRACE(stage);
+    const std::vector<std::string> with = {std::string("rendering.force_stage=") + stage};
+    for (const StabilityMap* map : {&handle, &tool}) {
+      require_overridable(*map, with);
+      const MapResult result = stability_map(*map, {"summation", &kLeapfrog, with}, 2, kTwoThreads);
+      for (const BoundaryPoint& point : result.boundary) {
+        EXPECT_FALSE(point.analytic);
+        EXPECT_EQ(point.no_theory, "a force stage changes the force");
+      }
+      for (const MapPoint& point : result.points) EXPECT_FALSE(point.margin);
+      if (map == &handle) {
+        EXPECT_GT(result.boundary[0].simulation, 20.0 * bare);
+      } else {
+        EXPECT_EQ(result.boundary[0].simulation, limit);
+      }
+    }
+  }
+}
+
 TEST(StabilityMap, DoesNotDependOnTheNumberOfThreads) {
   const StabilityMap& map = *find_stability_map("wedge");
   const MapResult one = stability_map(map, {"exact_shaping"}, 4, {1, ""}),

@@ -1,0 +1,282 @@
+#include "algorithms/stages/force_stage.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "algorithms/registry.hpp"
+#include "algorithms/stages/passivity_controller.hpp"
+#include "sim/core/random.hpp"
+#include "tests/support/fakes.hpp"
+#include "tests/support/scenes.hpp"
+
+namespace hapbench::force_stage_test {
+namespace {
+
+constexpr double kDt = 0.0005, kMass = 0.2;
+constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+
+/// A stage on rows whose motion is as foreseen: the tool goes v dt from row to row.
+class Foreseen {
+ public:
+  explicit Foreseen(ForceStage& stage) : stage_(stage) {
+    stage_.prepare({kDt, kMass, 20000.0});
+    stage_.reset();
+  }
+  Vec3 answer(const Vec3& force, const Vec3& velocity) {
+    HapbenchStageStep step = {};
+    step.row = row_++;
+    step.energy = energy;
+    Vec3::Map(step.force) = force;
+    Vec3::Map(step.velocity) = velocity;
+    const Vec3 given = stage_.force(step);
+    turnover += (force.norm() + given.norm()) * velocity.norm() * kDt;
+    energy -= given.dot(velocity) * kDt;
+    return given;
+  }
+  /// Of the roundings of so many rows.
+  double rounding() const { return 20 * kEpsilon * static_cast<double>(row_) * turnover; }
+
+  double energy = 0.0, turnover = 0.0;
+
+ private:
+  ForceStage& stage_;
+  std::uint64_t row_ = 0;
+};
+
+Vec3 random_force(Random& random) {
+  return std::pow(10.0, random.uniform(-2.0, 2.0)) * random.direction();
+}
+Vec3 random_velocity(Random& random) {
+  return std::pow(10.0, random.uniform(-4.0, 0.0)) * random.direction();
+}
+
+TEST(EnergyTank, NeverGivesMoreThanItHoldsAndTakesOnlyPush) {
+  for (std::uint64_t seed = 1; seed <= 50; ++seed) {
+    Random random(seed);
+    const EnergyTankConfig config{std::pow(10.0, random.uniform(-5.0, 0.0)), 1e-4};
+    EnergyTank tank(config);
+    Foreseen rows(tank);
+    double level = config.initial;  // what it holds, kept here
+    level = std::min(level, config.capacity);
+    for (int k = 0; k < 400; ++k) {
+      const Vec3 f = random_force(random), v = random_velocity(random);
+      const Vec3 given = rows.answer(f, v);
+      const double wanted = f.dot(v) * kDt, gave = given.dot(v) * kDt;
+      const double most = std::max(level, 0.0), rounding = rows.rounding();
+      ASSERT_NEAR(gave, std::min(wanted, std::max(most, std::min(wanted, 0.0))), rounding) << seed << " " << k;
+      // What is at right angles to the velocity stays, and so does a force that resists.
+      ASSERT_LE((given - f).cross(v).norm(), 1e-12 * f.norm() * v.norm());
+      if (wanted <= 0.0) {
+        ASSERT_EQ(given, f);
+      }
+      level = std::min(config.capacity, level - gave);
+      ASSERT_GE(level, -rounding);
+    }
+  }
+}
+
+TEST(ActuatorLimitedPassivity, WithoutLimitsOwesNothing) {
+  for (std::uint64_t seed = 1; seed <= 50; ++seed) {
+    Random random(seed);
+    ActuatorLimitedPassivityConfig config;
+    config.max_damping = 1e12;
+    ActuatorLimitedPassivity stage(config);
+    Foreseen rows(stage);
+    for (int k = 0; k < 400; ++k) {
+      const Vec3 f = random_force(random), v = random_velocity(random);
+      const double before = rows.energy;
+      const Vec3 given = rows.answer(f, v);
+      ASSERT_GE(rows.energy, -rows.rounding()) << seed << " " << k;
+      if (f.dot(v) * kDt <= before) {
+        ASSERT_EQ(given, f);  // a passive force stays
+      }
+      // The direction of the force is enough here, so nothing is damped across it.
+      ASSERT_LE(given.cross(f).norm(), 1e-9 * f.squaredNorm());
+    }
+  }
+}
+
+/// What the stage dissipates against the most that its limits allow, found by trying.
+TEST(ActuatorLimitedPassivity, DissipatesWhatActuatorsAllowAndOwesTheRest) {
+  bool owed_once = false, across_once = false;
+  for (std::uint64_t seed = 1; seed <= 50; ++seed) {
+    Random random(seed);
+    ActuatorLimitedPassivityConfig config;
+    config.max_force = Vec3(random.uniform(1.0, 20.0), random.uniform(1.0, 20.0), random.uniform(1.0, 20.0));
+    config.max_damping = std::pow(10.0, random.uniform(0.0, 3.0));
+    ActuatorLimitedPassivity stage(config);
+    Foreseen rows(stage);
+    const auto allowed = [&](const Vec3& f) { return (f.cwiseAbs() - *config.max_force).maxCoeff() <= 1e-12; };
+    for (int k = 0; k < 400; ++k) {
+      const Vec3 f = random.uniform(0.0, 1.0) * config.max_force->minCoeff() * random.direction();
+      const Vec3 v = random_velocity(random);
+      const double owed = f.dot(v) * kDt - rows.energy;
+      const Vec3 given = rows.answer(f, v);
+      ASSERT_TRUE(allowed(given)) << given.transpose();
+      const double taken = (f - given).dot(v) * kDt;
+      ASSERT_GE(taken, -rows.rounding());
+      ASSERT_LE(taken, std::max(owed, 0.0) + rows.rounding());
+      if (owed <= 0.0) continue;
+      // In the order of the priorities: a thousandth more of either damping would break a limit, or is not owed.
+      const Vec3 n = f.normalized(), along = v.dot(n) * n, across = v - along;
+      const double a1 = (f - given).dot(along) / along.squaredNorm();
+      const double a2 = (f - given).dot(across) / across.squaredNorm();
+      const Vec3 f1 = f - a1 * along;
+      const double left = owed - a1 * along.squaredNorm() * kDt;
+      const auto ends = [&](double a, const Vec3& g, const Vec3& part, double of) {
+        const double more = 1.001 * a + 1e-6;
+        return more > *config.max_damping || !allowed(g - more * part) || more * part.squaredNorm() * kDt >= of;
+      };
+      ASSERT_TRUE(ends(a1, f, along, owed)) << seed << " " << k;
+      ASSERT_TRUE(ends(a2, f1, across, left)) << seed << " " << k;
+      across_once |= a2 > 1e-3;
+      owed_once |= taken < 0.9 * owed;
+    }
+  }
+  EXPECT_TRUE(owed_once);
+  EXPECT_TRUE(across_once);
+}
+
+TEST(ActuatorLimitedPassivity, RendersNothingInFreeAirWhateverIsOwed) {
+  ActuatorLimitedPassivity stage({});
+  Foreseen rows(stage);
+  rows.energy = -1.0;
+  EXPECT_EQ(rows.answer(Vec3::Zero(), Vec3(0.1, 0, 0)), Vec3(Vec3::Zero()));
+  // In contact it damps, by no more than stops the tool in a step.
+  const Vec3 given = rows.answer(Vec3(1e-9, 0, 0), Vec3(-0.1, 0, 0));
+  EXPECT_NEAR(given.x(), kMass / kDt * 0.1, 1e-8);
+}
+
+/// A stage made of a function.
+class FakeStage final : public ForceStage {
+ public:
+  using Answer = std::function<Vec3(const HapbenchStageStep&)>;
+  explicit FakeStage(Answer answer) : answer_(std::move(answer)) {}
+  void prepare(const HapbenchStageRun& given) override { run = given; }
+  void reset() noexcept override {}
+  Vec3 force(const HapbenchStageStep& step) noexcept override { return answer_(step); }
+  HapbenchStageRun run{};
+
+ private:
+  Answer answer_;
+};
+
+SimulationParts staged(SimulationParts parts, FakeStage::Answer answer, const RenderingConfig& config = {}) {
+  parts.algorithm = std::make_unique<StagedRendering>(std::move(parts.algorithm),
+                                                      std::make_unique<FakeStage>(std::move(answer)), config);
+  return parts;
+}
+
+SimulationConfig thrown(std::uint64_t steps) {
+  SimulationConfig config;
+  config.steps = steps;
+  config.position = {0.001, 0.0005, 0};
+  config.velocity = {0.02, -0.01, 0.03};
+  return config;
+}
+
+Vec3 damped_spring(const ToolState& tool) {
+  return -3000.0 * tool.pose.position - 5.0 * tool.velocity;
+}
+
+TEST(StagedRendering, AnIdleStageMovesNoBitUnderAnyIntegrator) {
+  for (const IntegratorEntry* integrator : kIntegrators) {
+    SCOPED_TRACE(integrator->info.name);
+    SimulationConfig config = thrown(300);
+    config.integrator = integrator;
+    test::Recorder bare, with;
+    Simulation(config, test::fake_parts(damped_spring), {&bare}).run();
+    const auto same = [](const HapbenchStageStep& s) -> Vec3 { return Vec3::Map(s.force); };
+    Simulation staged_run(config, staged(test::fake_parts(damped_spring), same), {&with});
+    staged_run.run();
+    ASSERT_EQ(bare.rows.size(), with.rows.size());
+    for (std::size_t k = 0; k < bare.rows.size(); ++k)
+      ASSERT_EQ(bare.rows[k].tool.pose.position, with.rows[k].tool.pose.position);
+    EXPECT_EQ(staged_run.algorithm().work().steps_staged, 0u);
+    EXPECT_EQ(staged_run.algorithm().work().energy_staged, 0.0);
+  }
+}
+
+/// Along the way of the run, by the mean velocity of two rows, which is exact under leapfrog.
+TEST(StagedRendering, CountsWhatTheStageTakesAndWhatItAbsorbs) {
+  std::vector<double> energies;
+  const auto weaker = [&energies](const HapbenchStageStep& s) -> Vec3 {
+    energies.push_back(s.energy);
+    return s.row % 3 == 0 ? Vec3(Vec3::Map(s.force)) : Vec3(0.5 * Vec3::Map(s.force));
+  };
+  test::Recorder recorder;
+  Simulation run(thrown(300), staged(test::fake_parts(damped_spring), weaker), {&recorder});
+  run.run();
+  const auto& rows = recorder.rows;
+  double taken = 0.0, absorbed = 0.0;
+  for (std::size_t k = 0; k + 1 < rows.size(); ++k) {
+    ASSERT_NEAR(energies[k], absorbed, 1e-15) << k;  // of energies of 1e-3 J
+    const Vec3 way = 0.5 * kDt * (rows[k].tool.velocity + rows[k + 1].tool.velocity);
+    taken += (damped_spring(rows[k].tool) - rows[k].force.rendered).dot(way);
+    absorbed -= rows[k].force.rendered.dot(way);
+  }
+  EXPECT_NEAR(run.algorithm().work().energy_staged, taken, 1e-15);
+  EXPECT_NE(taken, 0.0);
+  EXPECT_EQ(run.algorithm().work().steps_staged, 200u);
+}
+
+TEST(StagedRendering, TellsTheRowAndCutsTheAnswerToTheForceLimit) {
+  RenderingConfig config;
+  config.max_force = 2.0;
+  config.mass = 0.3;
+  HapbenchStageStep last{};
+  const auto strong = [&last](const HapbenchStageStep& s) -> Vec3 {
+    last = s;
+    return {30.0, 0.0, 40.0};
+  };
+  test::Recorder recorder;
+  SimulationParts parts = staged(test::fake_parts(damped_spring), strong, config);
+  Simulation run(thrown(50), std::move(parts), {&recorder});
+  run.run();
+  const StepRecord& row = recorder.rows.back();
+  EXPECT_TRUE(row.force.rendered.isApprox(Vec3(1.2, 0.0, 1.6), 1e-15));
+  EXPECT_EQ(row.force.spring, damped_spring(row.tool));
+  EXPECT_EQ(last.row, 49u);
+  EXPECT_EQ(Vec3(Vec3::Map(last.spring)), damped_spring(row.tool));
+  EXPECT_EQ(Vec3(Vec3::Map(last.force)), damped_spring(row.tool));
+  EXPECT_EQ(Vec3(Vec3::Map(last.position)), row.tool.pose.position);
+  EXPECT_EQ(Vec3(Vec3::Map(last.velocity)), row.tool.velocity);
+  EXPECT_EQ(Vec3(Vec3::Map(last.device_position)), row.handle.position);
+  EXPECT_EQ(last.stiffness[0], 2.0);
+  EXPECT_EQ(last.stiffness[1], 0.0);
+  EXPECT_EQ(last.in_contact, 0u);
+}
+
+/// Behind a stage that pushes in free air, too, the passivity controller keeps its word.
+TEST(StagedRendering, IsHeldPassiveByTheControllerAroundIt) {
+  const auto pushes = [](const HapbenchStageStep& s) -> Vec3 { return 5.0 * Vec3::Map(s.velocity); };
+  RenderingConfig config;
+  SimulationParts parts = staged(test::fake_parts(test::weightless), pushes, config);
+  test::Recorder free, held;
+  Simulation(thrown(400), staged(test::fake_parts(test::weightless), pushes, config), {&free}).run();
+  EXPECT_GT(free.rows.back().tool.velocity.norm(), 1.5 * free.rows.front().tool.velocity.norm());
+  parts.algorithm = std::make_unique<PassivityController>(std::move(parts.algorithm), config);
+  Simulation(thrown(400), std::move(parts), {&held}).run();
+  // 400 roundings of the speed.
+  EXPECT_LE(held.rows.back().tool.velocity.norm(), held.rows.front().tool.velocity.norm() * (1.0 + 1000 * kEpsilon));
+}
+
+TEST(StagedRendering, AddedStagesAreFoundByName) {
+  add_force_stage("force_stage_test", [](const std::string& text) -> std::unique_ptr<ForceStage> {
+    EXPECT_EQ(text, "{\"a\":1}");
+    return std::make_unique<FakeStage>([](const HapbenchStageStep&) -> Vec3 { return Vec3::Zero(); });
+  });
+  RenderingConfig config;
+  config.force_stage = AddedStageConfig{"force_stage_test", "{\"a\":1}"};
+  EXPECT_NE(dynamic_cast<StagedRendering*>(make_algorithm(config).get()), nullptr);
+  config.force_stage = AddedStageConfig{"none", "{}"};
+  EXPECT_THROW(make_algorithm(config), std::invalid_argument);
+  config.force_stage = PluginStageConfig{"a.so", "{}"};
+  EXPECT_THROW(make_algorithm(config), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace hapbench::force_stage_test
