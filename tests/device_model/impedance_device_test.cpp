@@ -406,27 +406,30 @@ TEST(ImpedanceDevice, AHandThatIsFixedToItsHandleAddsItsMass) {
 
 TEST(ImpedanceDevice, AResetRepeatsEverythingBitForBit) {
   ImpedanceDeviceConfig config = config_of(*find_device_preset("touch"));
-  config.delay_samples = 2.3;
-  config.velocity_filter = AdaptiveWindowFilter{3e-5};
-  config.force_step = 0.01;
-  config.force_slew = 500.0;
-  SimulationParts parts = test::fake_parts(wall(500.0, 1.0));
-  parts.hand =
-      std::make_unique<ForceHand>(std::array<Profile, 3>{Profile::Shape(Profile::Sine{-1, 2, 0.1, 0}), 0.1, 0});
-  parts.device = std::make_unique<ImpedanceDevice>(config, kT);
-  SimulationConfig run;
-  run.dt = kT;
-  run.steps = 500;
-  run.position = {0.002, 0, 0};
-  test::Recorder recorder;
-  Simulation simulation(run, std::move(parts), {&recorder});
-  simulation.run();
-  simulation.reset();
-  simulation.run();
-  ASSERT_EQ(recorder.rows.size(), 1000u);
-  for (std::size_t k = 0; k < 500; ++k) {
-    EXPECT_EQ(recorder.rows[k].handle.position, recorder.rows[k + 500].handle.position);
-    EXPECT_EQ(recorder.rows[k].tool.velocity, recorder.rows[k + 500].tool.velocity);
+  for (const bool elastic : {false, true}) {
+    if (elastic) config.transmission = Transmission{0.4, 5000.0, 0.5};
+    config.delay_samples = 2.3;
+    config.velocity_filter = AdaptiveWindowFilter{3e-5};
+    config.force_step = 0.01;
+    config.force_slew = 500.0;
+    SimulationParts parts = test::fake_parts(wall(500.0, 1.0));
+    parts.hand =
+        std::make_unique<ForceHand>(std::array<Profile, 3>{Profile::Shape(Profile::Sine{-1, 2, 0.1, 0}), 0.1, 0});
+    parts.device = std::make_unique<ImpedanceDevice>(config, kT);
+    SimulationConfig run;
+    run.dt = kT;
+    run.steps = 500;
+    run.position = {0.002, 0, 0};
+    test::Recorder recorder;
+    Simulation simulation(run, std::move(parts), {&recorder});
+    simulation.run();
+    simulation.reset();
+    simulation.run();
+    ASSERT_EQ(recorder.rows.size(), 1000u);
+    for (std::size_t k = 0; k < 500; ++k) {
+      EXPECT_EQ(recorder.rows[k].handle.position, recorder.rows[k + 500].handle.position);
+      EXPECT_EQ(recorder.rows[k].tool.velocity, recorder.rows[k + 500].tool.velocity);
+    }
   }
 }
 
