@@ -16,6 +16,10 @@ namespace hapbench {
 struct TremorConfig {
   Vec3 rms = {30e-6, 30e-6, 30e-6};  ///< of each axis [m]
   double low = 8.0, high = 12.0;     ///< band [Hz]
+
+  static constexpr std::size_t kTones = 8;
+  /// Speed that the displacement of an axis never exceeds [m/s]: that of all its tones together.
+  double largest_speed() const { return std::sqrt(2.0 * kTones) * 2.0 * std::numbers::pi * high * rms.maxCoeff(); }
 };
 
 /// A displacement in that band: tones with random frequency and phase, one in each of equal parts of the band, so that
@@ -53,7 +57,7 @@ class Tremor {
   }
 
  private:
-  static constexpr std::size_t kTones = 8;
+  static constexpr std::size_t kTones = TremorConfig::kTones;
   struct Tone {
     double amplitude, rate, phase;  ///< [m], [rad/s], [rad]
   };
