@@ -234,6 +234,12 @@ TEST(DevicePresets, HaveNamesOfTheirOwnAndPossibleNumbers) {
     EXPECT_GT(preset.max_stiffness.value, 0.0);
     EXPECT_EQ(preset.max_stiffness.source, NumberSource::chai3d);
     EXPECT_GT(preset.max_damping.value, 0.0);
+    const ImpedanceDeviceConfig soft = config_of(preset, PresetEnd::soft), stiff = config_of(preset, PresetEnd::stiff);
+    EXPECT_EQ(soft.coulomb, 0.0) << "no friction of these devices is published";
+    EXPECT_EQ(stiff.coulomb, 2.0 * config.coulomb);
+    EXPECT_LE(soft.handle_mass, config.handle_mass);
+    EXPECT_EQ(soft.handle_mass < stiff.handle_mass, preset.handle_mass.source == NumberSource::ours);
+    EXPECT_EQ(soft.encoder_step > stiff.encoder_step, preset.encoder_step.source == NumberSource::ours);
   }
   EXPECT_EQ(find_device_preset("touch")->max_stiffness.value, 400.0);
   EXPECT_EQ(find_device_preset("Touch"), nullptr);
