@@ -113,6 +113,7 @@ void ElasticMotion::advance(const Vec3& motors, const Stretch& stretch) noexcept
     Axis axis{.z = {}, .motors = motors[i]};
     axis.z << motor_.position[i] - origin_[i], motor_.velocity[i], handle_.position[i] - origin_[i],
         handle_.velocity[i], motors[i], push_[i];
+    if (axis.z.isZero(0.0)) continue;  // rests, and nothing pushes
     if (coulomb_ == 0.0) {
       take(axis, stretch.moving[0]);
     } else {

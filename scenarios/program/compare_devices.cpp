@@ -536,7 +536,7 @@ std::pair<std::string, Json> intervals_over(const std::vector<OtherNumbers>& oth
     std::vector<std::string> cells = {question.devices[d].name};
     for (std::size_t c = 0; c < of.size(); ++c) {
       const auto& [least, largest] = of[c];
-      const auto shown = [](double K) { return K > 0.0 ? significant(K, 2) : std::string("none"); };
+      const auto shown = [](double K) { return K > 0.0 ? stiffness_text(K) : std::string("none"); };
       cells.push_back(shown(least) + "..." + shown(largest));
       json.push_back({{"device", question.devices[d].name},
                       {"scenario", answers.scene(c)},
