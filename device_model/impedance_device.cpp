@@ -54,10 +54,15 @@ ImpedanceDevice::ImpedanceDevice(const ImpedanceDeviceConfig& config, double dt,
       before_(free_motion(motion_.law(), path_.switch_part() * dt)),
       after_(free_motion(motion_.law(), (1.0 - path_.switch_part()) * dt)) {
   if (config.position_filter) position_filter_.emplace(*config.position_filter, dt);
+  if (config.transmission) {
+    const ElasticMotion motion(config, *config.transmission, hand);
+    elastic_.emplace(Elastic{motion, motion.stretch(before_.time), motion.stretch(after_.time)});
+  }
 }
 
 void ImpedanceDevice::reset(const ToolState& tool) noexcept {
   motion_.reset({tool.pose.position, tool.velocity});
+  if (elastic_) elastic_->motion.reset({tool.pose.position, tool.velocity});
   path_.reset();
   if (noise_ > 0.0) random_ = Random(seed_);
   sampled_ = {read_position(), Vec3::Zero()};
@@ -66,7 +71,7 @@ void ImpedanceDevice::reset(const ToolState& tool) noexcept {
 }
 
 Vec3 ImpedanceDevice::read_position() noexcept {
-  Vec3 position = motion_.handle().position;
+  Vec3 position = elastic_ ? elastic_->motion.motor().position : motion_.handle().position;
   if (noise_ > 0.0)
     for (double& axis : position) axis += noise_ * random_.normal();
   return rounded_to(position, encoder_step_);
@@ -74,9 +79,12 @@ Vec3 ImpedanceDevice::read_position() noexcept {
 
 void ImpedanceDevice::drive(const Vec3& rendered, const Vec3& hand_force) noexcept {
   const HeldForce motors = path_.hold(rendered);
-  motion_.take_hand(hand_force);
-  if (before_.time > 0.0) motion_.advance(motors.before, before_);
-  motion_.advance(motors.after, after_);
+  const auto advance = [&](auto& motion, const auto& before, const auto& after) {
+    motion.take_hand(hand_force);
+    if (before_.time > 0.0) motion.advance(motors.before, before);
+    motion.advance(motors.after, after);
+  };
+  elastic_ ? advance(elastic_->motion, elastic_->before, elastic_->after) : advance(motion_, before_, after_);
   sampled_.position = read_position();
   sampled_.velocity = filter_.read(sampled_.position);
   if (position_filter_) sampled_.position = position_filter_->filter(sampled_.position);

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "device_model/elastic_motion.hpp"
 #include "device_model/handle_motion.hpp"
 #include "device_model/velocity_filter.hpp"
 #include "sim/core/random.hpp"
@@ -26,6 +27,7 @@ struct ImpedanceDeviceConfig {
   std::optional<LowPassFilter> position_filter = {};  ///< of the encoder's positions, before they are rendered
   double position_noise = 0.0;                        ///< standard deviation of each axis, before the encoder [m]
   std::uint64_t seed = 0;                             ///< of the noise
+  std::optional<Transmission> transmission = {};      ///< elastic, between motors and handle; none: they are one body
 };
 
 /// Every component as the nearest multiple of `step`, halves away from zero; `v` itself for the step 0.
@@ -73,7 +75,8 @@ class ForcePath {
 /// There is no virtual mass: the tool is at the measured position of the handle. x_k is the nearest multiple of q,
 /// halves away from zero, in each axis, of the position with its noise; a position filter changes the x_k that is
 /// rendered, not that of the velocity. v_0 = 0. The motors give no force before the first one arrives, at t = d T; a
-/// fraction of d changes the force within the period. Between samples the handle moves exactly (HandleMotion).
+/// fraction of d changes the force within the period. Between samples the handle moves exactly (HandleMotion). With an
+/// elastic transmission motors and handle are two bodies (ElasticMotion), and x_k is measured at the motors.
 ///
 /// In the energy balance `actuator` is the work of the motors on the handle. f_in is zero because it drives nothing.
 /// Allocates in the constructor only; a step without Coulomb friction takes about 50 ns.
@@ -86,8 +89,10 @@ class ImpedanceDevice final : public Device {
   MeasuredForce measure(const Vec3& hand_force) noexcept override { return {hand_force, Vec3::Zero()}; }
   /// Does nothing, because the handle moves the tool.
   void advance(const ToolState&, const Vec3&, double) noexcept override {}
-  HandleState handle() const noexcept override { return motion_.handle(); }
-  std::optional<DeviceEnergy> energy() const noexcept override { return motion_.energy(); }
+  HandleState handle() const noexcept override { return elastic_ ? elastic_->motion.handle() : motion_.handle(); }
+  std::optional<DeviceEnergy> energy() const noexcept override {
+    return elastic_ ? elastic_->motion.energy() : motion_.energy();
+  }
 
   bool moves_tool() const noexcept override { return true; }
   void drive(const Vec3& rendered, const Vec3& hand_force) noexcept override;
@@ -106,6 +111,11 @@ class ImpedanceDevice final : public Device {
   ForcePath path_;
   HandleMotion motion_;
   FreeMotion before_, after_;  ///< the two parts of a period
+  struct Elastic {
+    ElasticMotion motion;
+    ElasticMotion::Stretch before, after;
+  };
+  std::optional<Elastic> elastic_;  ///< instead of motion_
   HandleState sampled_;
 };
 

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <utility>
 
+#include "device_model/hands/tremor.hpp"
 #include "sim/core/math.hpp"
 #include "sim/core/profile.hpp"
 #include "sim/loop/hand.hpp"
@@ -44,17 +46,22 @@ class PushHand final : public Hand {
 };
 
 /// A hand that holds the handle towards a scripted target like a spring and a damper:
-/// f = k (x_target - x_handle) + b (v_target - v_handle).
+/// f = k (x_target - x_handle) + b (v_target - v_handle). A tremor moves the target.
 class ImpedanceHand final : public Hand {
  public:
   /// Stiffness [N/m], damping [N s/m], and the target's x, y, z [m] over time.
-  ImpedanceHand(double stiffness, double damping, std::array<Profile, 3> target)
-      : stiffness_(stiffness), damping_(damping), target_(std::move(target)) {}
+  ImpedanceHand(double stiffness, double damping, std::array<Profile, 3> target, std::optional<Tremor> tremor = {})
+      : stiffness_(stiffness), damping_(damping), target_(std::move(target)), tremor_(std::move(tremor)) {}
 
   void reset() noexcept override {}
   Vec3 force(double t, const HandView& view) noexcept override {
-    const Vec3 position{target_[0](t), target_[1](t), target_[2](t)};
-    const Vec3 velocity{target_[0].rate(t), target_[1].rate(t), target_[2].rate(t)};
+    Vec3 position{target_[0](t), target_[1](t), target_[2](t)};
+    Vec3 velocity{target_[0].rate(t), target_[1].rate(t), target_[2].rate(t)};
+    if (tremor_) {
+      const Tremor::State moved = tremor_->at(t);
+      position += moved.position;
+      velocity += moved.velocity;
+    }
     return stiffness_ * (position - view.handle.position) + damping_ * (velocity - view.handle.velocity);
   }
 
@@ -62,6 +69,7 @@ class ImpedanceHand final : public Hand {
   double stiffness_;
   double damping_;
   std::array<Profile, 3> target_;
+  std::optional<Tremor> tremor_;
 };
 
 /// Unit vector at `angle` [rad] from -z, towards +x turned by `azimuth` [rad] about z. Exactly -z at angle 0.

@@ -36,6 +36,32 @@ Eigen::Matrix<double, 2, 3> motion_over(const SampledLoop& loop, double share) {
   return Eigen::Matrix3d((rate * share).exp()).topRows<2>();
 }
 
+/// The same of (x, T v) of the motors and then of the handle, on a transmission.
+Eigen::Matrix<double, 4, 5> elastic_motion_over(const SampledLoop& loop, const Transmission& transmission,
+                                                double share) {
+  const double T = loop.period, motor = transmission.motor_share * loop.device.handle_mass,
+               handle = loop.moving_mass() - motor, k = transmission.stiffness * T * T, d = transmission.damping * T;
+  Eigen::Matrix<double, 5, 5> rate = Eigen::Matrix<double, 5, 5>::Zero();
+  rate(0, 1) = rate(2, 3) = 1.0;
+  rate.row(1) << -k / motor, -(d + loop.device.viscous * T) / motor, k / motor, d / motor, loop.moving_mass() / motor;
+  rate.row(3) << k / handle, d / handle, -(k + loop.hand.stiffness * T * T) / handle,
+      -(d + loop.hand.damping * T) / handle, 0.0;
+  return Eigen::Matrix<double, 5, 5>((rate * share).exp()).topRows<4>();
+}
+
+/// Puts the motion over a period into the rows and columns `body` of the map A, under the force `before` for a share of
+/// it and `after` for the rest.
+template <int N, class Motion>
+void add_motion(Eigen::MatrixXd& A, const Eigen::Matrix<Eigen::Index, N, 1>& body, double part, const Motion& motion,
+                const Eigen::RowVectorXd& before, const Eigen::RowVectorXd& after) {
+  const Eigen::Matrix<double, N, N + 1> first = motion(part), second = motion(1.0 - part);
+  Eigen::MatrixXd moving = Eigen::MatrixXd::Zero(N, A.cols());
+  for (int i = 0; i < N; ++i) moving.col(body[i]) = first.col(i);
+  if (part > 0.0) moving += first.col(N) * before;
+  const Eigen::MatrixXd next = second.template leftCols<N>() * moving + second.col(N) * after;
+  for (int i = 0; i < N; ++i) A.row(body[i]) = next.row(i);
+}
+
 }  // namespace
 
 std::vector<LowPassMode> SampledLoop::velocity_modes() const {
@@ -66,7 +92,8 @@ Eigen::MatrixXd SampledLoop::step_map() const {
     return std::accumulate(modes.begin(), modes.end(), Eigen::Index{0},
                            [](Eigen::Index sum, const LowPassMode& mode) { return sum + (is_pair(mode) ? 2 : 1); });
   };
-  const Eigen::Index forces = kModes + states_of(velocity) + states_of(position), n = forces + kept;
+  const Eigen::Index forces = kModes + states_of(velocity) + states_of(position);
+  const Eigen::Index n = forces + kept + (device.transmission ? 2 : 0);
   const auto unit = [n](Eigen::Index i) -> Eigen::RowVectorXd { return Eigen::RowVectorXd::Unit(n + 1, i); };
   Eigen::MatrixXd A = Eigen::MatrixXd::Zero(n, n + 1);
 
@@ -97,11 +124,17 @@ Eigen::MatrixXd SampledLoop::step_map() const {
     return age == 0 ? force : unit(forces + age - 1);
   };
 
-  const auto before = motion_over(*this, part), after = motion_over(*this, 1.0 - part);
-  Eigen::MatrixXd moving = Eigen::MatrixXd::Zero(2, n + 1);
-  moving.leftCols<2>() = before.leftCols<2>();
-  if (part > 0.0) moving += before.col(2) * force_of(whole + 1);
-  A.topRows<2>() = after.leftCols<2>() * moving + after.col(2) * force_of(whole);
+  const Eigen::RowVectorXd before = part > 0.0 ? force_of(whole + 1) : Eigen::RowVectorXd();
+  if (device.transmission) {
+    add_motion<4>(
+        A, Eigen::Matrix<Eigen::Index, 4, 1>(kPosition, kVelocity, n - 2, n - 1), part,
+        [this](double share) { return elastic_motion_over(*this, *device.transmission, share); }, before,
+        force_of(whole));
+  } else {
+    add_motion<2>(
+        A, Eigen::Matrix<Eigen::Index, 2, 1>(kPosition, kVelocity), part,
+        [this](double share) { return motion_over(*this, share); }, before, force_of(whole));
+  }
   for (Eigen::Index age = 0; age < kept; ++age) A.row(forces + age) = force_of(age);
   return A;
 }
@@ -115,7 +148,8 @@ double speed_of_noise(const SampledLoop& loop) {
     P += A * P * A.transpose();
     A *= A;
   }
-  return std::sqrt(P(kVelocity, kVelocity)) / loop.period;
+  const Eigen::Index speed = loop.device.transmission ? n - 1 : Eigen::Index{kVelocity};
+  return std::sqrt(P(speed, speed)) / loop.period;
 }
 
 double eigenvalue_edge(SampledLoop loop) {

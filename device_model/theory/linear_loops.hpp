@@ -40,7 +40,8 @@ double first_edge(double least, double most, StepMatrix step_matrix) {
 ///
 /// which is held on the handle from t_k + d T for one period. y' is the position with the sensor's noise, y that
 /// through the position filter, F the low-pass of the velocity filter, all by their modes (LowPassMode). The springs of
-/// the wall act to both sides; a wall that only pushes would let go of the handle.
+/// the wall act to both sides; a wall that only pushes would let go of the handle. With an elastic transmission y, b
+/// and the force are the motors', and the hand is at the handle, a second mass.
 struct SampledLoop {
   ImpedanceDeviceConfig device;  ///< with m, b, d and the velocity filter
   AttachedHand hand;             ///< zeros: no hand
@@ -63,7 +64,8 @@ struct SampledLoop {
   /// The map of the state at sample k to that at k + 1,
   ///   (x_k, T v_k, y'_{k-1}, modes of T w_{k-1} and of y_{k-1}, T^2/m f_{k-1}, T^2/m f_{k-2}, …),
   /// with the true velocity v of the handle, the moving mass m and as many forces as are on their way; a pair of poles
-  /// has two components, a real pole or none has one. All components
+  /// has two components, a real pole or none has one. With a transmission x and v are the motors', and those of the
+  /// handle are the last two components. All components
   /// are in metres, so that the eigenvalues are exact to rounding. The motion between samples is exact (matrix
   /// exponential).
   Eigen::MatrixXd state_matrix() const { return step_map().leftCols(step_map().rows()); }

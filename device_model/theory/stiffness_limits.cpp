@@ -17,6 +17,12 @@ bool has_no_delay(const SampledLoop& loop) {
   return loop.device.delay_samples == 0.0;
 }
 
+/// Elastic between motors and handle. For the conditions of passivity it is part of the hand, which they leave open;
+/// others count on one mass.
+bool is_elastic(const SampledLoop& loop) {
+  return loop.device.transmission.has_value();
+}
+
 std::optional<double> colgate_schenkel(const SampledLoop& loop) {
   if (!has_no_delay(loop) || !loop.differentiates()) return std::nullopt;
   return std::max(0.0, 2.0 * (loop.device.viscous - std::abs(loop.wall_damping)) / loop.period);
@@ -80,7 +86,8 @@ std::optional<double> gil_hulin(const SampledLoop& loop) {
   constexpr double kLowDamping = 0.15;
   const double damping = loop.total_damping() + loop.wall_damping;
   const double late = loop.period * (1.0 + loop.device.delay_samples);
-  if (!loop.differentiates() || damping * late / loop.moving_mass() > kLowDamping) return std::nullopt;
+  if (is_elastic(loop) || !loop.differentiates() || damping * late / loop.moving_mass() > kLowDamping)
+    return std::nullopt;
   return std::max(0.0, damping / (loop.period * (0.5 + loop.device.delay_samples)));
 }
 
@@ -92,7 +99,7 @@ std::optional<double> abbott_okamura(const SampledLoop& loop) {
 
 std::optional<double> undamped_handle(const SampledLoop& loop) {
   const bool bare = loop.total_damping() == 0.0 && loop.hand.stiffness == 0.0;
-  if (!bare || !has_no_delay(loop) || !loop.differentiates()) return std::nullopt;
+  if (is_elastic(loop) || !bare || !has_no_delay(loop) || !loop.differentiates()) return std::nullopt;
   const double m = loop.moving_mass(), T = loop.period, beta = loop.wall_damping * T / m;
   return std::max(0.0, 2.0 * beta * (2.0 - beta) / (2.0 + beta) * m / (T * T));
 }

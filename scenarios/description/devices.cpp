@@ -96,6 +96,13 @@ static void describe_preset(Fields& f, ImpedanceDeviceConfig& device) {
   }
 }
 
+static void describe(Fields& f, Transmission& transmission) {
+  f.number("motor_share", transmission.motor_share, {0.01, 0.99, "1"},
+           "part of handle_mass_kg on the motors' side, where encoder and friction are (ours)");
+  f.number("stiffness_N_per_m", transmission.stiffness, {1.0, 1e9, "N/m"}, "between motors and handle (ours)");
+  f.number("damping_N_s_per_m", transmission.damping, {0.0, 1e6, "N s/m"}, "beside that spring (ours)");
+}
+
 static void describe(Fields& f, ImpedanceDeviceConfig& device) {
   describe_preset(f, device);
   f.number("handle_mass_kg", device.handle_mass, {1e-6, 1e6, "kg"},
@@ -116,6 +123,9 @@ static void describe(Fields& f, ImpedanceDeviceConfig& device) {
            "low-pass of the measured position before the scene sees it, not of that of the velocity; null: none");
   f.number("position_noise_m", device.position_noise, {0.0, 1.0, "m"},
            "standard deviation of the noise of each axis of the sensor, sample by sample and before encoder_step_m");
+  f.object_if_any(
+      "transmission", device.transmission,
+      "elastic, between the motors with the encoder and the handle in the hand; without it they are one body");
 }
 
 void describe(Fields& f, DeviceFields& device) {

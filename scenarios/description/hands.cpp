@@ -3,6 +3,7 @@
 #include "device_model/hands/tracking_hand.hpp"
 #include "scenarios/description/descriptions.hpp"
 #include "scenarios/description/parts.hpp"
+#include "scenarios/input/input_error.hpp"
 
 namespace hapbench {
 namespace {
@@ -28,6 +29,17 @@ static void describe(Fields& f, PushHandFields& hand) {
   f.number("azimuth_rad", hand.azimuth, kAngle, "of its lean, from +x about z");
 }
 
+static void describe(Fields& f, TremorConfig& tremor) {
+  f.vector3(
+      "rms_m", tremor.rms, {0.0, 0.1, "m"},
+      "standard deviation of each axis; 30e-6 of a resting finger, up to 5 times that with the arm held out (Growdon "
+      "et al. 2000)");
+  f.number("low_Hz", tremor.low, {0.0, 1000.0, "Hz"}, "lower end of its band (Novak and Newell 2017)");
+  f.number("high_Hz", tremor.high, {0.0, 1000.0, "Hz"}, "upper end of its band");
+  if (f.reads() && tremor.low > tremor.high)
+    throw InputError(InputError::Kind::relation, f.at() + "/high_Hz", "allowed: low_Hz or more");
+}
+
 static void describe_spring(Fields& f, ImpedanceHandFields& hand) {
   f.number("stiffness_N_per_m", hand.stiffness, {0.0, 1e9, "N/m"}, "of the spring from target to handle");
   f.number("damping_N_s_per_m", hand.damping, {0.0, 1e9, "N s/m"}, "of the damper beside it");
@@ -40,6 +52,8 @@ static void describe_spring(Fields& f, ImpedanceHandFields& hand) {
         }
       },
       Presence::required);
+  f.object_if_any("tremor", hand.tremor,
+                  "how the target trembles besides, by the scenario's seed; without it the hand rests ideally");
 }
 
 static void describe(Fields& f, ImpedanceHandFields& hand) {
@@ -191,7 +205,9 @@ void add_hand_and_motion(const Scenario& scenario, const NamedFiles& files, Tria
   } else if (const auto* push = std::get_if<PushHandFields>(&scenario.hand)) {
     parts.hand = std::make_unique<PushHand>(push->force, push_direction(push->angle, push->azimuth));
   } else if (const ImpedanceHandFields* spring = spring_of(scenario.hand)) {
-    parts.hand = std::make_unique<ImpedanceHand>(spring->stiffness, spring->damping, spring->target);
+    std::optional<Tremor> tremor;
+    if (spring->tremor) tremor.emplace(*spring->tremor, derived_seed(scenario, trial, RandomUse::tremor));
+    parts.hand = std::make_unique<ImpedanceHand>(spring->stiffness, spring->damping, spring->target, tremor);
   } else {
     parts.hand = std::make_unique<NoHand>();
   }

@@ -25,7 +25,8 @@ enum class RandomUse : std::uint64_t {
   motor_noise = 2,
   target_order = 3,
   position_noise = 4,
-  lost_queries = 5
+  lost_queries = 5,
+  tremor = 6
 };
 /// A seed of its own for each use in each trial: far apart in the 64 bits, whatever the scenario's seed.
 std::uint64_t derived_seed(const Scenario& scenario, Trial trial, RandomUse use);

@@ -14,6 +14,7 @@
 #include "device_model/admittance_device.hpp"
 #include "device_model/hands/drag_hand.hpp"
 #include "device_model/hands/tracking_hand.hpp"
+#include "device_model/hands/tremor.hpp"
 #include "device_model/impedance_device.hpp"
 #include "results/observe/contact_forces.hpp"
 #include "results/observe/perception.hpp"
@@ -142,9 +143,10 @@ struct PushHandFields {
   double azimuth = 0.0;  ///< of the lean, from +x about z [rad]
 };
 struct ImpedanceHandFields {
-  double stiffness = 300.0;       ///< [N/m]
-  double damping = 6.0;           ///< [N s/m]
-  std::array<Profile, 3> target;  ///< [m]
+  double stiffness = 300.0;            ///< [N/m]
+  double damping = 6.0;                ///< [N s/m]
+  std::array<Profile, 3> target;       ///< [m]
+  std::optional<TremorConfig> tremor;  ///< none: the hand follows the target alone
 };
 /// A passive hand, fixed to the handle of an impedance device.
 struct MassSpringDamperHandFields {

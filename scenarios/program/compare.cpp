@@ -493,8 +493,10 @@ void add_compare(CommandLine& line) {
   command.add("--resolution", common.resolution, "with --devices: relative width of a limit (default: 0.01)")
       .needs(devices);
   command
-      .add("--friction", common.friction,
-           "with --devices: K as an interval over each device's dry friction times 1 and these factors, such as 0,2")
+      .add(
+          "--friction", common.friction,
+          "with --devices: K as an interval over each device's dry friction times 1 and these factors, such as 0,2; none: "
+          "no interval (default: over what is not published of a preset)")
       .comma_separated()
       .needs(devices);
   command.add("--seeds", options.seeds, "run each K times, time k with the scenario's seed + k (default: 1)")

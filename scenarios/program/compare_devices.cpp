@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "device_model/device_presets.hpp"
 #include "results/io/csv_writer.hpp"
 #include "results/observe/contact_forces.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
@@ -29,6 +30,7 @@ bool is_file(const std::string& name) {
   return name.ends_with(".json");
 }
 
+constexpr const char* kNoInterval = "none";    ///< for --friction
 constexpr const char* kPresets = "impedance";  ///< stands for all presets, which have that type
 
 /// Finds devices by name or type, or reads their files. Each name may appear once: it alone tells rows apart.
@@ -84,6 +86,14 @@ std::vector<ScenarioText> chosen_scenes(const std::vector<std::string>& given) {
   return scenes;
 }
 
+bool asks_for_one_number(const CompareDevicesOptions& options) {
+  return options.friction == std::vector<std::string>{kNoInterval};
+}
+
+bool asks_over_friction(const CompareDevicesOptions& options) {
+  return !options.friction.empty() && !asks_for_one_number(options);
+}
+
 DeviceQuestion question_of(const CompareDevicesOptions& options) {
   require_fields_alone(options.overrides);
   DeviceQuestion question;
@@ -95,7 +105,7 @@ DeviceQuestion question_of(const CompareDevicesOptions& options) {
                             : chosen_names("--algorithms: got", options.algorithms, all_algorithms());
   question.overrides = options.overrides;
   for (const std::string& override : options.overrides) {
-    if (!options.friction.empty() && overridden_path(override) == "device.coulomb_N")
+    if (asks_over_friction(options) && overridden_path(override) == "device.coulomb_N")
       throw InputError("--friction: got it beside --set device.coulomb_N; allowed: either");
   }
   question.most_vibration = options.vibration.empty() ? kMostVibration : vibration_of(options.vibration);
@@ -225,6 +235,7 @@ class Answers {
   const std::string& algorithm(std::size_t column) const {
     return question_.algorithms[column % question_.algorithms.size()];
   }
+  std::string title(std::size_t column) const { return scene(column) + "\n" + algorithm(column); }
   /// The name of a scene is that of its file.
   std::string scene_name(std::size_t scene) const { return question_.scenes[scene].file.stem().string(); }
   const FieldLimit& at(std::size_t device, std::size_t column) const {
@@ -237,8 +248,9 @@ class Answers {
     return {stiffness, lambda > 0.0 ? std::optional(stiffness * limit.settled.lambda_max / lambda) : std::nullopt};
   }
 
-  std::string text() const {
-    std::string text = question_text(question_) + "\n" + stiffness_table().text();
+  /// `intervals`: text before the table of the devices' own numbers, or empty.
+  std::string text(const std::string& intervals) const {
+    std::string text = question_text(question_) + "\n" + intervals + stiffness_table().text();
     text += wrapped(rule_text(StabilityRule{.most_vibration = question_.most_vibration}, false), 0);
     text += ends_text();
     text += "published: largest stable stiffness of a wall; \"hapbench describe DEVICE\" names its source\n";
@@ -247,7 +259,7 @@ class Answers {
       text += "*: a preset with numbers of --set, of which nothing is published\n";
     text += delays_text(question_);
     if (std::ranges::any_of(question_.devices, [&](const auto& device) { return has_dry_friction(question_, device); }))
-      text += approach_text();
+      text += approach_text(intervals.empty());
     if (std::ranges::any_of(
             limits_, [&](const DeviceLimit& limit) { return limit.limit.is_beyond_linear(question_.resolution); })) {
       text += wrapped(
@@ -271,7 +283,7 @@ class Answers {
 
  private:
   /// The approach that a K with dry friction belongs to, over all devices.
-  std::string approach_text() const {
+  std::string approach_text(bool alone) const {
     std::pair touches(kNone, 0.0), presses(kNone, 0.0);
     for (const DeviceLimit& found : limits_) {
       if (!found.limit.value) continue;
@@ -285,14 +297,12 @@ class Answers {
     };
     return wrapped(
         fmt::format("dry friction, ours in every preset, holds a hand that presses slowly: K is that of this approach "
-                    "(first touch at {} m/s, pressed with {} N), not of a device; --friction 0,2 prints K as an "
-                    "interval over friction",
-                    between(touches), between(presses)),
+                    "(first touch at {} m/s, pressed with {} N), not of a device{}",
+                    between(touches), between(presses),
+                    alone ? "; --friction 0,2 prints K as an interval over friction" : ": quote the interval"),
         0);
   }
   static constexpr double kNone = std::numeric_limits<double>::infinity();
-
-  std::string title(std::size_t column) const { return scene(column) + "\n" + algorithm(column); }
 
   /// The first three names, and how many more there are.
   static std::string first_of(const std::vector<std::string>& names) {
@@ -476,48 +486,67 @@ double number_between(const char* option, const std::string& text, double least,
   throw InputError(fmt::format("{}: got \"{}\"; allowed: {} ... {}", option, text, least, greatest));
 }
 
-/// The least and the largest K over the dry friction of the devices times 1 and other factors; the text and the JSON.
-std::pair<std::string, Json> over_friction(const DeviceQuestion& question, const std::vector<DeviceLimit>& limits,
-                                           const std::vector<std::string>& factors, const JobOptions& jobs) {
-  DeviceQuestion scaled = question;
-  std::vector<std::size_t> of;  // the device of the question
-  scaled.devices.clear();
-  for (const std::string& factor : factors) {
-    const double times = number_between("--friction", factor, 0.0, 1e3);
-    for (std::size_t d = 0; d < question.devices.size(); ++d) {
-      const auto device = with_friction_times(question.devices[d], times);
-      if (!device) continue;
-      scaled.devices.push_back(*device);
-      of.push_back(d);
+/// A device in place of one of the question.
+struct OtherNumbers {
+  std::size_t device;
+  ComparedDevice with;
+};
+
+/// The devices with other numbers that nobody published: their dry friction times factors, or a preset's both ends.
+std::vector<OtherNumbers> others_of(const DeviceQuestion& question, const std::vector<std::string>& factors) {
+  std::vector<OtherNumbers> others;
+  for (std::size_t d = 0; d < question.devices.size(); ++d) {
+    for (const std::string& factor : factors) {
+      const double times = number_between("--friction", factor, 0.0, 1e3);
+      if (const auto device = with_friction_times(question.devices[d], times)) others.push_back({d, *device});
+    }
+    if (!factors.empty()) continue;
+    for (const ComparedDevice& device : with_unpublished_numbers(question.devices[d])) others.push_back({d, device});
+  }
+  return others;
+}
+
+/// The least and the largest K over the devices' own and other numbers; the text and the JSON.
+std::pair<std::string, Json> intervals_over(const std::vector<OtherNumbers>& others, const Answers& answers,
+                                            const JobOptions& jobs) {
+  const DeviceQuestion& question = answers.question();
+  DeviceQuestion asked = question;
+  asked.devices.clear();
+  for (const OtherNumbers& other : others) asked.devices.push_back(other.with);
+  std::map<std::size_t, std::vector<std::pair<double, double>>> ends;  // of each column, by device
+  for (const auto& [d, with] : others) {
+    if (ends.contains(d)) continue;
+    for (std::size_t c = 0; c < answers.columns(); ++c) {
+      const double K = answers.at(d, c).value.value_or(0.0);
+      ends[d].emplace_back(K, K);
     }
   }
-  std::map<std::size_t, std::pair<double, double>> ends;  // by place in `limits`
-  const std::size_t columns = question.scenes.size() * question.algorithms.size();
-  const auto add = [&ends](std::size_t place, const FieldLimit& limit) {
-    const double K = limit.value.value_or(0.0);
-    const auto [known, is_new] = ends.try_emplace(place, K, K);
-    if (!is_new) known->second = {std::min(known->second.first, K), std::max(known->second.second, K)};
-  };
-  const std::vector<DeviceLimit> others = device_limits(scaled, jobs);
-  for (std::size_t i = 0; i < others.size(); ++i) add(of[i / columns] * columns + i % columns, others[i].limit);
-  Table table({{"device", false}, {"scenario", false}, {"algorithm", false}, {"least K"}, {"largest K"}});
-  Json json = Json::array();
-  for (auto& [place, end] : ends) {
-    const DeviceLimit& own = limits[place];
-    add(place, own.limit);
-    const std::string& name = question.devices[own.device].name;
-    const std::string scene = question.scenes[own.scene].file.stem().string();
-    table.add({name, scene, own.limit.algorithm, end.first > 0.0 ? stiffness_text(end.first) : "none",
-               end.second > 0.0 ? stiffness_text(end.second) : "none"});
-    json.push_back({{"device", name},
-                    {"scenario", scene},
-                    {"algorithm", own.limit.algorithm},
-                    {"least_N_per_m", end.first},
-                    {"largest_N_per_m", end.second}});
+  const std::vector<DeviceLimit> limits = device_limits(asked, jobs);
+  for (std::size_t i = 0; i < limits.size(); ++i) {
+    auto& [least, largest] = ends[others[i / answers.columns()].device][i % answers.columns()];
+    const double K = limits[i].limit.value.value_or(0.0);
+    least = std::min(least, K);
+    largest = std::max(largest, K);
   }
-  return {
-      fmt::format("\nK over dry friction of 1, {} times the device's\n\n{}", fmt::join(factors, ", "), table.text()),
-      {{"factors", factors}, {"limits", std::move(json)}}};
+  std::vector<Table::Column> columns = {{"device", false}};
+  for (std::size_t c = 0; c < answers.columns(); ++c) columns.push_back({answers.title(c)});
+  Table table(columns, kDeviceGap);
+  Json json = Json::array();
+  for (const auto& [d, of] : ends) {
+    std::vector<std::string> cells = {question.devices[d].name};
+    for (std::size_t c = 0; c < of.size(); ++c) {
+      const auto& [least, largest] = of[c];
+      const auto shown = [](double K) { return K > 0.0 ? stiffness_text(K) : std::string("none"); };
+      cells.push_back(shown(least) + "..." + shown(largest));
+      json.push_back({{"device", question.devices[d].name},
+                      {"scenario", answers.scene(c)},
+                      {"algorithm", answers.algorithm(c)},
+                      {"least_N_per_m", least},
+                      {"largest_N_per_m", largest}});
+    }
+    table.add(std::move(cells));
+  }
+  return {table.text(), std::move(json)};
 }
 
 }  // namespace
@@ -577,14 +606,24 @@ int compare_devices(const CompareDevicesOptions& options) {
   require_writable_directory(out);
   const std::vector<DeviceLimit> limits = device_limits(question, job_options(options.jobs, options.output, "compare"));
   Json json = write(out, question, limits);
-  std::string text = Answers(question, limits).text();
-  if (!options.friction.empty()) {
-    auto [table, interval] =
-        over_friction(question, limits, options.friction, job_options(options.jobs, options.output, "friction"));
-    text += table;
-    json["friction"] = std::move(interval);
+  const Answers answers(question, limits);
+  const std::string over = options.friction.empty() ? std::string(kPresetRanges)
+                                                    : fmt::format("dry friction of 1, {} times the device's",
+                                                                  fmt::join(options.friction, ", "));
+  std::string intervals;
+  if (const auto others =
+          asks_for_one_number(options) ? std::vector<OtherNumbers>{} : others_of(question, options.friction);
+      !others.empty()) {
+    auto [table, rows] = intervals_over(others, answers, job_options(options.jobs, options.output, "interval"));
+    intervals =
+        wrapped("K over what is not published: " + over, 0) + "\n" + table + "\nK with the numbers of each device\n\n";
+    if (options.friction.empty()) {
+      json["interval"] = {{"over", over}, {"limits", std::move(rows)}};
+    } else {
+      json["friction"] = {{"factors", options.friction}, {"limits", std::move(rows)}};
+    }
   }
-  print(options.output, text + fmt::format("\nresults in {}\n", out.string()), json);
+  print(options.output, answers.text(intervals) + fmt::format("\nresults in {}\n", out.string()), json);
   return kSuccess;
 }
 

@@ -15,7 +15,7 @@ struct CompareDevicesOptions {
   std::vector<std::string> algorithms;  ///< empty: shaped_stiffness and summation
   std::vector<std::string> overrides;
   std::string vibration;              ///< largest allowed [m/s rms]; empty: kMostVibration
-  std::vector<std::string> friction;  ///< factors of the devices' dry friction, besides 1
+  std::vector<std::string> friction;  ///< factors of the devices' dry friction, besides 1; "none": no interval of K
   std::string resolution;             ///< relative width of a limit; empty: the default of DeviceQuestion
   unsigned jobs = 0;                  ///< 0: as many as the machine has threads
   std::string out;

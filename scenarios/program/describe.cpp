@@ -116,9 +116,11 @@ Description describe_preset(const DevicePreset& preset) {
       {"max_stiffness_N_per_m", preset.max_stiffness, "published largest stable stiffness; "},
       {"max_damping_N_s_per_m", preset.max_damping, "published largest stable damping; "}};
   for (const auto& [name, number, meaning] : numbers) {
-    d.text +=
-        entry(fmt::format("{} {:g}", name, number.value), std::string(meaning) + source_text(number.source), 2, 32);
-    d.json["numbers"][name] = {{"value", number.value}, {"source", source_text(number.source)}};
+    const std::string range =
+        number.low < number.high ? fmt::format(", may be {:.3g} to {:.3g}", number.low, number.high) : "";
+    d.text += entry(fmt::format("{} {:g}", name, number.value), meaning + (source_text(number.source) + range), 2, 32);
+    d.json["numbers"][name] = {
+        {"value", number.value}, {"source", source_text(number.source)}, {"low", number.low}, {"high", number.high}};
   }
   return d;
 }

@@ -304,7 +304,9 @@ int limit(const LimitOptions& options) {
   const std::vector<std::string> algorithms =
       options.algorithms.empty() ? std::vector<std::string>{loaded.scenario.rendering.algorithm}
                                  : chosen_names("--algorithms: got", options.algorithms, all_algorithms());
-  const LimitQuestion question = question_of(options, scenario);
+  LimitQuestion question = question_of(options, scenario);
+  // A field of the rendering changes nothing of hand and device.
+  if (question.path.starts_with("rendering.")) question.tremor = tremor_speeds(loaded);
   print_warnings(question.warnings);
   print_warnings(check_named_files(loaded));
   const fs::path out = results_directory(options.out, "limit_" + file.stem().string());

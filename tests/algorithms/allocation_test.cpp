@@ -250,11 +250,13 @@ TEST(NoAllocationInAStep, OfAnImpedanceDevice) {
                                .force_step = 0.01,
                                .force_slew = 1000.0,
                                .position_filter = LowPassFilter{200.0, 3},
-                               .position_noise = 1e-6};
+                               .position_noise = 1e-6,
+                               .transmission = {}};
   for (const VelocityFilterConfig& filter :
        {VelocityFilterConfig(DifferenceFilter{}), VelocityFilterConfig(LowPassFilter{100.0, 4}),
         VelocityFilterConfig(AdaptiveWindowFilter{})}) {
     device.velocity_filter = filter;
+    if (std::holds_alternative<AdaptiveWindowFilter>(filter)) device.transmission = Transmission{0.5, 1e4, 1.0};
     const test::Setting setting = setting_of(instance);
     SimulationConfig run = test::free_run_config(setting, config, 300);
     run.position = {0.0002, -0.004, 0.0};

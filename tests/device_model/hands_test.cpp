@@ -56,6 +56,40 @@ TEST(ImpedanceHand, DoesNotPushOnATargetItMovesWith) {
   EXPECT_EQ(hand.force(2.0, {{{2, 0, 0}, {1, 0, 0}}, {}, {}}), Vec3(0, 0, 0));
 }
 
+/// Over ten minutes the mean square of eight tones is that of their amplitudes to 1 %: what beats does so faster than
+/// once in ten seconds or stays below that share.
+TEST(Tremor, HasItsStandardDeviationInItsBandAlone) {
+  const Tremor tremor({{20e-6, 0.0, 5e-6}, 8.0, 12.0}, 3);
+  constexpr double kStep = 0.005;
+  double squares = 0.0, speeds = 0.0;
+  int turns = 0, count = 0;
+  for (double t = 0.0; t < 600.0; t += kStep, ++count) {
+    const auto [x, v] = tremor.at(t);
+    squares += x.x() * x.x();
+    speeds += v.x() * v.x();
+    turns += (x.x() > 0.0) != (tremor.at(t + kStep).position.x() > 0.0) ? 1 : 0;
+    EXPECT_EQ(x.y(), 0.0);
+  }
+  EXPECT_NEAR(std::sqrt(squares / count), 20e-6, 0.2e-6);
+  const double rate = std::sqrt(speeds / squares) / (2.0 * std::numbers::pi);  // its rms frequency
+  EXPECT_GT(rate, 8.0);
+  EXPECT_LT(rate, 12.0);
+  EXPECT_NEAR(turns / 600.0 / 2.0, rate, 0.5);
+}
+
+TEST(Tremor, MovesTheTargetOfAHandAsItsSeedSays) {
+  const TremorConfig config{{1e-4, 1e-4, 1e-4}, 8.0, 12.0};
+  const Tremor tremor(config, 1);
+  ImpedanceHand still(100.0, 10.0, {0.0, 0.0, 0.0}), shaky(100.0, 10.0, {0.0, 0.0, 0.0}, tremor);
+  const double t = 0.37, h = 1e-6;
+  const auto [x, v] = tremor.at(t);
+  EXPECT_LE((shaky.force(t, {}) - still.force(t, {}) - 100.0 * x - 10.0 * v).norm(), 1e-15);
+  // The difference errs by the third derivative, 43 m/s^3, times h^2 / 6, and by rounding over h.
+  EXPECT_LE(((tremor.at(t + h).position - tremor.at(t - h).position) / (2.0 * h) - v).norm(), 1e-10);
+  EXPECT_EQ(Tremor(config, 1).at(t).position, x);
+  EXPECT_NE(Tremor(config, 2).at(t).position, x);
+}
+
 constexpr double kSmoothing = 0.0005;
 
 /// A plane and paths over it.

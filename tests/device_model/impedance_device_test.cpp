@@ -234,6 +234,12 @@ TEST(DevicePresets, HaveNamesOfTheirOwnAndPossibleNumbers) {
     EXPECT_GT(preset.max_stiffness.value, 0.0);
     EXPECT_EQ(preset.max_stiffness.source, NumberSource::chai3d);
     EXPECT_GT(preset.max_damping.value, 0.0);
+    const ImpedanceDeviceConfig soft = config_of(preset, PresetEnd::soft), stiff = config_of(preset, PresetEnd::stiff);
+    EXPECT_EQ(soft.coulomb, 0.0) << "no friction of these devices is published";
+    EXPECT_EQ(stiff.coulomb, 2.0 * config.coulomb);
+    EXPECT_LE(soft.handle_mass, config.handle_mass);
+    EXPECT_EQ(soft.handle_mass < stiff.handle_mass, preset.handle_mass.source == NumberSource::ours);
+    EXPECT_EQ(soft.encoder_step > stiff.encoder_step, preset.encoder_step.source == NumberSource::ours);
   }
   EXPECT_EQ(find_device_preset("touch")->max_stiffness.value, 400.0);
   EXPECT_EQ(find_device_preset("Touch"), nullptr);
@@ -406,27 +412,30 @@ TEST(ImpedanceDevice, AHandThatIsFixedToItsHandleAddsItsMass) {
 
 TEST(ImpedanceDevice, AResetRepeatsEverythingBitForBit) {
   ImpedanceDeviceConfig config = config_of(*find_device_preset("touch"));
-  config.delay_samples = 2.3;
-  config.velocity_filter = AdaptiveWindowFilter{3e-5};
-  config.force_step = 0.01;
-  config.force_slew = 500.0;
-  SimulationParts parts = test::fake_parts(wall(500.0, 1.0));
-  parts.hand =
-      std::make_unique<ForceHand>(std::array<Profile, 3>{Profile::Shape(Profile::Sine{-1, 2, 0.1, 0}), 0.1, 0});
-  parts.device = std::make_unique<ImpedanceDevice>(config, kT);
-  SimulationConfig run;
-  run.dt = kT;
-  run.steps = 500;
-  run.position = {0.002, 0, 0};
-  test::Recorder recorder;
-  Simulation simulation(run, std::move(parts), {&recorder});
-  simulation.run();
-  simulation.reset();
-  simulation.run();
-  ASSERT_EQ(recorder.rows.size(), 1000u);
-  for (std::size_t k = 0; k < 500; ++k) {
-    EXPECT_EQ(recorder.rows[k].handle.position, recorder.rows[k + 500].handle.position);
-    EXPECT_EQ(recorder.rows[k].tool.velocity, recorder.rows[k + 500].tool.velocity);
+  for (const bool elastic : {false, true}) {
+    if (elastic) config.transmission = Transmission{0.4, 5000.0, 0.5};
+    config.delay_samples = 2.3;
+    config.velocity_filter = AdaptiveWindowFilter{3e-5};
+    config.force_step = 0.01;
+    config.force_slew = 500.0;
+    SimulationParts parts = test::fake_parts(wall(500.0, 1.0));
+    parts.hand =
+        std::make_unique<ForceHand>(std::array<Profile, 3>{Profile::Shape(Profile::Sine{-1, 2, 0.1, 0}), 0.1, 0});
+    parts.device = std::make_unique<ImpedanceDevice>(config, kT);
+    SimulationConfig run;
+    run.dt = kT;
+    run.steps = 500;
+    run.position = {0.002, 0, 0};
+    test::Recorder recorder;
+    Simulation simulation(run, std::move(parts), {&recorder});
+    simulation.run();
+    simulation.reset();
+    simulation.run();
+    ASSERT_EQ(recorder.rows.size(), 1000u);
+    for (std::size_t k = 0; k < 500; ++k) {
+      EXPECT_EQ(recorder.rows[k].handle.position, recorder.rows[k + 500].handle.position);
+      EXPECT_EQ(recorder.rows[k].tool.velocity, recorder.rows[k + 500].tool.velocity);
+    }
   }
 }
 

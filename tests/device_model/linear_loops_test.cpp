@@ -254,6 +254,52 @@ TEST(SampledLoop, IsTheMapOfTheDeviceWithFiltersOfAnyOrder) {
   }
 }
 
+/// The same with a transmission and a hand, from a state displaced by 1 mm.
+TEST(SampledLoop, IsTheMapOfTheDeviceWithATransmission) {
+  for (const double delay : {0.0, 1.0, 1.75}) {
+    for (const std::size_t order : {1u, 2u}) {
+      SampledLoop loop = light_loop();
+      loop.device.viscous = 0.5;
+      loop.device.delay_samples = delay;
+      loop.device.transmission = Transmission{0.3, 2000.0, 0.4};
+      loop.device.velocity_filter = LowPassFilter{60.0, order};
+      loop.hand = {0.02, 200.0, 0.8};
+      loop.stiffness = 150.0;
+      loop.wall_damping = 0.5;
+      const Eigen::MatrixXd A = loop.state_matrix();
+      ImpedanceDevice device(loop.device, loop.period, loop.hand);
+      device.reset({{{1e-3, 0, 0}}, {}});
+      Eigen::VectorXd state = Eigen::VectorXd::Zero(A.rows());
+      state[0] = state[2] = state[A.rows() - 2] = 1e-3;  // motors, their last sample, handle
+      for (int k = 0; k < 400; ++k) {
+        const HandleState held = device.handle();
+        ASSERT_NEAR(held.position.x(), state[A.rows() - 2], 1e-9 * 1e-3) << delay << " " << order << " " << k;
+        ASSERT_NEAR(held.velocity.x() * loop.period, state[A.rows() - 1], 1e-9 * 1e-3);
+        const HandleState tool = device.sampled();
+        device.drive(-loop.stiffness * tool.position - loop.wall_damping * tool.velocity,
+                     -loop.hand.stiffness * held.position - loop.hand.damping * held.velocity);
+        state = A * state;
+      }
+      EXPECT_GT(std::abs(state[0]), 0.0);
+    }
+  }
+}
+
+/// A stiff transmission is none; a soft one resonates and lowers the edge.
+TEST(SampledLoop, ATransmissionThatIsStiffIsNone) {
+  SampledLoop loop = light_loop();
+  loop.device.viscous = 2.0;
+  loop.wall_damping = 5.0;
+  const double rigid = eigenvalue_edge(loop);
+  loop.device.transmission = Transmission{0.5, 1e9, 1000.0};
+  // The edge is near 2e4 N/m, so what gives way is 2e-5 of it.
+  EXPECT_NEAR(eigenvalue_edge(loop), rigid, 1e-4 * rigid);
+  loop.device.transmission = Transmission{0.5, 1e5, 0.1};
+  EXPECT_LT(eigenvalue_edge(loop), 0.7 * rigid);
+  EXPECT_FALSE(find_stiffness_limit("stable_gil_hulin")->largest(loop)) << "counts on one mass";
+  EXPECT_TRUE(find_stiffness_limit("passive_with_delay")->largest(loop)) << "the transmission is the hand's";
+}
+
 TEST(SampledLoop, ItsNoiseMovesTheHandleAsMuchAsTheCovarianceSays) {
   SampledLoop loop = light_loop();
   loop.device.viscous = 2.0;

@@ -107,6 +107,22 @@ class Page(WithResults):
         self.assertEqual(heads, ["setting", "error rms|mm", "length|m", "time of a step|µs", "force max|N", "kept mean"])
         self.assertEqual([strip(cell_) for cell_ in re.findall(r"<td[^>]*>(.*?)</td>", section)], ["a", "0.2", "0.5", "1", "3", "2"])
 
+    def test_the_credibility_page_is_a_section_whose_lines_lead_to_what_is_behind_them(self):
+        section = self.part(self.full_page(), '<section id="credibility"', "</section>")
+        markdown = (SOURCE / "scenarios" / "validation" / "README.md").read_text(encoding="utf-8")
+        for words in re.findall(r"\*\*(agrees, weakly|agrees|fails|fit fails|fitted|not judged)\*\*", markdown):
+            self.assertIn(f"<b>{words}</b>", section)
+        claims = [line for line in markdown.split("## What the claims rest on")[1].split("\n## ")[0].split("\n") if line.startswith("| ")][1:]
+        rows = re.findall(r"<tr role=\"row\">(.*?)</tr>", section.split("What the claims rest on")[1].split("</table>")[0])[1:]
+        self.assertEqual(len(rows), len(claims))
+        for claim_, row in zip(claims, rows):
+            self.assertIn(strip(row.split("</td>")[0]).strip(), claim_)
+            self.assertTrue("not claimed" in row or "href=" in row or "<code>" in row, row)
+        for path in re.findall(r"<code class=file>([^<]+)</code>", section):
+            self.assertTrue((SOURCE / path).exists(), path)
+        self.assertIn('src="data:image/svg+xml;base64,', section)
+        self.assertNotRegex(strip(section), r"\*\*|\]\(|^\|")
+
     def test_performance_is_shown_where_it_was_measured(self):
         self.assertIn("No performance.json among these results", self.page())
         file = self.results / "performance.json"

@@ -86,6 +86,15 @@ std::optional<ComparedDevice> with_friction_times(ComparedDevice device, double 
   return device;
 }
 
+std::vector<ComparedDevice> with_unpublished_numbers(const ComparedDevice& device) {
+  const DevicePreset* preset = find_device_preset(Json::parse(device.json).value("preset", ""));
+  if (preset == nullptr) return {};
+  std::vector<ComparedDevice> ends(2, device);
+  ends[0].json = written(DeviceFields(config_of(*preset, PresetEnd::soft))).dump();
+  ends[1].json = written(DeviceFields(config_of(*preset, PresetEnd::stiff))).dump();
+  return ends;
+}
+
 std::vector<std::string> overrides_on(const ComparedDevice& device, const ScenarioText& scene,
                                       const std::vector<std::string>& overrides) {
   std::vector<std::string> all = {"device=" + device.json};

@@ -35,6 +35,9 @@ ComparedDevice with_marked_name(ComparedDevice device, const std::vector<std::st
 /// The same with its dry friction times a factor; nothing for a device that has none.
 std::optional<ComparedDevice> with_friction_times(ComparedDevice device, double factor);
 
+/// A preset with the numbers of both ends of what nobody published (PresetEnd); nothing for another device.
+std::vector<ComparedDevice> with_unpublished_numbers(const ComparedDevice& device);
+
 /// The devices, scenes and algorithms to compare. The overrides hold for all runs, also for fields of the devices.
 struct DeviceQuestion {
   std::vector<ComparedDevice> devices;

@@ -44,9 +44,11 @@ const MotionClassText& text_of(MotionClass motion) noexcept {
   return kTexts[static_cast<std::size_t>(motion)];
 }
 
-MotionClassifier MotionClassifier::of_moved_tool(std::uint64_t steps, double time_step, double still) {
+MotionClassifier MotionClassifier::of_moved_tool(std::uint64_t steps, double time_step, double still,
+                                                 const TremorSpeeds& tremor) {
   MotionClassifier classifier(steps);
   classifier.is_moved_ = true;
+  classifier.tremor_ = tremor;
   classifier.high_pass_ = vibration_filter(time_step);
   if (still <= 0.5 * static_cast<double>(steps)) classifier.still_ = static_cast<std::uint64_t>(std::ceil(still));
   return classifier;
@@ -87,8 +89,8 @@ MotionClass MotionClassifier::motion_class(Outcome outcome) const noexcept {
   if (outcome == Outcome::diverges) return MotionClass::diverged;
   if (at_rest()) return MotionClass::stable;
   // A hand that comes to rest may swing a little more for a while: below 30 Hz that is not called growth.
-  return std::max(all_.motion_class(is_moved_ ? kFelt : 0.0),
-                  std::min(held_.motion_class(kFelt), MotionClass::vibrating));
+  return std::max(all_.motion_class(is_moved_ ? kFelt + tremor_.handle : 0.0),
+                  std::min(held_.motion_class(kFelt + tremor_.target), MotionClass::vibrating));
 }
 
 MotionClass MotionClassifier::Stretch::motion_class(double felt) const noexcept {
@@ -209,10 +211,11 @@ class LastQuarter final : public Observer {
   Mat3 S_sum_ = Mat3::Zero();
 };
 
-MotionClassifier classifier_of(const Scenario& scenario) {
+MotionClassifier classifier_of(const Scenario& scenario, const TremorSpeeds& tremor) {
   const auto steps = static_cast<std::uint64_t>(scenario.time.steps);
   if (!is_moved(scenario)) return MotionClassifier(steps);
-  return MotionClassifier::of_moved_tool(steps, scenario.time.step, script_moves_until(scenario) / scenario.time.step);
+  return MotionClassifier::of_moved_tool(steps, scenario.time.step, script_moves_until(scenario) / scenario.time.step,
+                                         tremor);
 }
 
 RunVerdict verdict_of(MotionClass motion, const SettledState& settled, std::optional<double> most_vibration) {
@@ -271,6 +274,12 @@ std::string rule_text(const StabilityRule& rule, bool moved) {
   if (!rule.most_vibration && moved)
     text +=
         ", as far as it is above 30 Hz and 1 mm/s, because a script moves the tool; where that ends in the first half of a run, all beyond 1 mm/s from then on";
+  if (!rule.most_vibration && rule.tremor && rule.tremor->target > 0.0) {
+    text += fmt::format(
+        "; allowed besides is what the hand's tremor does without a wall, {:.2g} mm/s above 30 Hz, and the speed of its "
+        "target, {:.2g} mm/s, below",
+        1e3 * rule.tremor->handle, 1e3 * rule.tremor->target);
+  }
   for (const auto& [metric, bound] : rule.bounds) {
     if (bound.min) text += fmt::format(", {} >= {}", metric, *bound.min);
     if (bound.max) text += fmt::format(", {} <= {}", metric, *bound.max);
@@ -283,8 +292,34 @@ std::string rule_text(const StabilityRule& rule, bool moved) {
   return fmt::format("{}; not: {}", text, fmt::join(others, ", "));
 }
 
+static const TremorConfig* tremor_of(const Scenario& scenario) {
+  const ImpedanceHandFields* hand = spring_of(scenario.hand);
+  return hand != nullptr && hand->tremor ? &*hand->tremor : nullptr;
+}
+
 bool is_moved(const Scenario& scenario) {
-  return script_moves_until(scenario) > 0.0;
+  return script_moves_until(scenario) > 0.0 || tremor_of(scenario) != nullptr;
+}
+
+/// The class of the motion of hand and device without any environment.
+static MotionClass classify_alone(const Scenario& scenario, const NamedFiles& files, const MotionClassifier& classifier,
+                                  const std::vector<Observer*>& observers) {
+  constexpr double kCells = 1.0;  // [m], of the grid that local_average wants
+  const auto nothing = std::make_shared<const PointShell>(std::vector<SurfacePoint>{}, kCells);
+  Simulation simulation(simulation_config(scenario), assemble(scenario, files, nothing, {}), observers);
+  return classify(simulation, classifier);
+}
+
+TremorSpeeds tremor_speeds(const LoadedScenario& loaded) {
+  const TremorConfig* tremor = tremor_of(loaded.scenario);
+  if (tremor == nullptr) return {};
+  constexpr double kNothing = 1e-9;  // [N/m], of springs, which no shell takes away
+  Scenario scenario = loaded.scenario;
+  scenario.rendering.stiffness = kNothing;
+  scenario.rendering.damping = 0.0;
+  MotionClassifier classifier = classifier_of(scenario, {});
+  classify_alone(scenario, loaded.files, classifier, {&classifier});
+  return {tremor->largest_speed(), classifier.late_amplitude()};
 }
 
 namespace {
@@ -311,9 +346,9 @@ std::optional<RunVerdict> verdict_of(Outcome outcome) {
 }  // namespace
 
 static JudgedRun judged_once(const LoadedScenario& loaded, const std::shared_ptr<const PointShell>& shell,
-                             std::optional<double> most_vibration) {
+                             const StabilityRule& rule) {
   const Scenario& scenario = loaded.scenario;
-  MotionClassifier classifier = classifier_of(scenario);
+  MotionClassifier classifier = classifier_of(scenario, rule.tremor ? *rule.tremor : tremor_speeds(loaded));
   LastPlace last;
   LastQuarter quarter(scenario.time);
   SimulationParts parts = assemble(scenario, loaded.files, shell, {});
@@ -336,7 +371,7 @@ static JudgedRun judged_once(const LoadedScenario& loaded, const std::shared_ptr
     if (outcome == Outcome::leaves_hole || (shell && has_left(last, *shell, tool->reach())))
       return RunVerdict::thrown_out;
     if (const auto known = verdict_of(outcome)) return *known;
-    return verdict_of(motion, settled, most_vibration);
+    return verdict_of(motion, settled, rule.most_vibration);
   };
   JudgedRun run{verdict(), settled, last.way.value(), classifier.at_rest()};
   run.undecided = is_stable(run.verdict) && classifier.is_undecided();
@@ -346,12 +381,12 @@ static JudgedRun judged_once(const LoadedScenario& loaded, const std::shared_ptr
 JudgedRun judged_run(const LoadedScenario& loaded, std::shared_ptr<const PointShell> shell, const StabilityRule& rule) {
   constexpr int kLengthenings = 3;
   constexpr std::int64_t kTimes = 4, kMostLengthened = 1'000'000;  // steps
-  JudgedRun run = judged_once(loaded, shell, rule.most_vibration);
+  JudgedRun run = judged_once(loaded, shell, rule);
   LoadedScenario longer = loaded;
   for (int i = 0; run.undecided && i < kLengthenings && longer.scenario.time.steps * kTimes <= kMostLengthened; ++i) {
     longer.scenario.time.steps *= kTimes;
     const std::uint64_t way = run.way;
-    run = judged_once(longer, shell, rule.most_vibration);
+    run = judged_once(longer, shell, rule);
     run.way = way;  // of the scenario's own length, as that of other runs
   }
   if (is_stable(run.verdict) && !rule.bounds.empty() && !keeps(loaded, shell, rule.bounds))
@@ -366,13 +401,9 @@ bool unstable_without_contact(const LoadedScenario& loaded, std::optional<double
   // Dry friction only takes energy. What its sticking and slipping leave of vibration is no fault of the loop.
   Scenario scenario = loaded.scenario;
   if (auto* device = std::get_if<ImpedanceDeviceConfig>(&scenario.device)) device->coulomb = 0.0;
-  MotionClassifier classifier = classifier_of(scenario);
+  MotionClassifier classifier = classifier_of(scenario, tremor_speeds(loaded));
   LastQuarter quarter(scenario.time);
-  constexpr double kCells = 1.0;  // [m], of the grid that local_average wants
-  const auto nothing = std::make_shared<const PointShell>(std::vector<SurfacePoint>{}, kCells);
-  Simulation simulation(simulation_config(scenario), assemble(scenario, loaded.files, nothing, {}),
-                        {&classifier, &quarter});
-  const MotionClass motion = classify(simulation, classifier);
+  const MotionClass motion = classify_alone(scenario, loaded.files, classifier, {&classifier, &quarter});
   return !is_stable(verdict_of(motion, quarter.state(), most_vibration));
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <map>
@@ -57,6 +58,13 @@ inline bool comes_to_rest(MotionClass motion) noexcept {
   return motion == MotionClass::stable || motion == MotionClass::dying_out;
 }
 
+/// What the tremor of a hand does by itself; zeros without one.
+struct TremorSpeeds {
+  double target = 0.0;  ///< largest speed of the hand's target [m/s]
+  double handle =
+      0.0;  ///< largest speed of the handle above 30 Hz without any wall, as dry friction lets go of it [m/s]
+};
+
 /// Watches a run and classifies it. Constant memory.
 class MotionClassifier final : public Observer {
  public:
@@ -65,8 +73,10 @@ class MotionClassifier final : public Observer {
   /// For a tool that a script moves: only the part of its velocity above 30 Hz counts (all of it when steps are longer
   /// than a 60th of a second), and in the last quarter only amplitudes beyond 1 mm/s, about what a hand can feel there.
   /// Such a tool is never at rest. Where the script ends in the first half of the run, at the row `still`, all motion
-  /// from then on counts besides, by quarters of what is left, beyond 1 mm/s again.
-  static MotionClassifier of_moved_tool(std::uint64_t steps, double time_step, double still);
+  /// from then on counts besides, by quarters of what is left, beyond 1 mm/s again. What
+  /// a tremor of the hand does by itself is allowed besides.
+  static MotionClassifier of_moved_tool(std::uint64_t steps, double time_step, double still,
+                                        const TremorSpeeds& tremor = {});
 
   void on_step(const StepRecord& record) noexcept override;
 
@@ -76,6 +86,8 @@ class MotionClassifier final : public Observer {
   /// True for a complete run that neither came to rest nor lasted for an oscillation: it moves on in the last quarter,
   /// by 1 % of the first one's amplitude or more, and turns at most once there. A longer one can tell.
   bool is_undecided() const noexcept;
+  /// Largest speed in the second half of a complete run, as the class sees it [m/s].
+  double late_amplitude() const noexcept { return std::max(all_.quarters[2].amplitude, all_.quarters[3].amplitude); }
   /// Class of a complete run, or of one that was cut short because it came to rest.
   MotionClass motion_class(Outcome outcome) const noexcept;
 
@@ -97,6 +109,7 @@ class MotionClassifier final : public Observer {
 
   std::uint64_t steps_;
   bool is_moved_ = false;
+  TremorSpeeds tremor_;
   std::optional<HighPass> high_pass_;
   Stretch all_;
   std::optional<std::uint64_t> still_;  ///< row from which on the script does not move the tool
@@ -138,8 +151,10 @@ inline bool is_stable(RunVerdict verdict) noexcept {
 }
 
 /// True when a script moves the hand or turns the tool: then the tool never comes to rest, and only what is above 30 Hz
-/// and 1 mm/s counts as motion, and once the script has ended all beyond 1 mm/s.
+/// and 1 mm/s counts as motion, and once the script has ended all beyond 1 mm/s. A hand that trembles moves it, too.
 bool is_moved(const Scenario& scenario);
+/// By a run of hand and device alone, with the scenario's first trial. Throws Stopped.
+TremorSpeeds tremor_speeds(const LoadedScenario& loaded);
 
 /// The last quarter of a run, and how the tool came to touch.
 struct SettledState {
@@ -166,6 +181,8 @@ struct StabilityRule {
   std::optional<double> most_vibration = {};
   /// Bounds on metrics of summary.json; a metric without a value keeps none.
   std::map<std::string, MetricBound> bounds = {};
+  /// tremor_speeds of all runs, where they are the same; otherwise each judged run finds its own.
+  std::optional<TremorSpeeds> tremor = {};
 };
 
 /// The rule as one line; `moved`: a script moves the tool (is_moved).

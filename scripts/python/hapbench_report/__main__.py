@@ -5,6 +5,7 @@ from pathlib import Path
 
 from hapbench_command import BAD_INPUT, SUCCESS, Arguments, Notice, say_error, unwritable, write
 
+from .credibility import load_credibility
 from .figures import load_figures
 from .json_input import InputError
 from .ledger import load_choices, load_claims
@@ -53,7 +54,7 @@ def run(options):
         raise InputError(f"{options.results}: holds no summary.json; allowed: a directory that scripts/reproduce wrote")
     page = report(runs, load_studies(options.results), load_claims(options.claims) if options.claims else [],
                   load_choices(options.choices), load_figures(options.figures) if options.figures else [], scenes(options),
-                  load_performance(options.results))
+                  load_performance(options.results), load_credibility())
     out = options.out or options.results / "report.html"
     write(out, page)
     print(f"{out}: {len(page.encode()) / 1e6:.1f} MB, {len(runs)} runs")

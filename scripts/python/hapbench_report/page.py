@@ -1,4 +1,5 @@
 """The page: its sections in order, with style and scripts inlined."""
+from .credibility import credibility_section
 from .figures import figures_section
 from .ledger import choices_section, ledger_section, summary_section
 from .links import Links
@@ -14,7 +15,7 @@ SCRIPTS = ("theme.js", "tables.js", "page.js", "replay_data.js", "replay_camera.
            "replay_tracks.js", "replay_sound.js", "replay_export.js", "replay_player.js", "replay_controls.js")
 
 
-def report(runs, studies, claims, choices, figures, scenes, performance):
+def report(runs, studies, claims, choices, figures, scenes, performance, credibility):
     """The HTML of the report. Depends on nothing but its arguments."""
     tables, provenance = load_tables(), provenance_of(runs)
     links = Links(runs, figures, claims, studies)
@@ -22,6 +23,7 @@ def report(runs, studies, claims, choices, figures, scenes, performance):
     sections = (
         ("summary", "Summary", "Summary", summary_section(runs, claims, figures, provenance)),
         ("ledger", "Ledger", "Ledger", ledger_section(claims, links)),
+        ("credibility", "Credibility", "How far to believe a number", credibility_section(credibility)),
         ("choices", "Choices", "Choices on record", choices_section(choices)),
         ("replay", "Replay", "Replay", replay_section(scenes)),
         ("thesis", "Index", "Figures and tables of the thesis", index_section(figures, tables, links)),

@@ -407,7 +407,9 @@ TEST_F(CompareDevices, PrintsAnIntervalOverDryFriction) {
   const Words question = {"--algorithms", "mean", "--resolution", "0.5", "--friction", "0,2"};
   const std::string text = compare("touch,ideal", "out", question).out;
   EXPECT_NE(text.find("pressed with 0."), std::string::npos) << text;
-  EXPECT_NE(text.find("\nK over dry friction of 1, 0, 2 times the device's\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("\nK over what is not published: dry friction of 1, 0, 2 times the device's\n"),
+            std::string::npos)
+      << text;
   Words json = question;
   json.emplace_back("--json");
   const Json answer = compare("touch,ideal", "out", json).json();
@@ -425,6 +427,26 @@ TEST_F(CompareDevices, PrintsAnIntervalOverDryFriction) {
   EXPECT_EQ(row["least_N_per_m"], least);
   EXPECT_EQ(row["largest_N_per_m"], largest);
   EXPECT_EQ(compare("touch", "out", {"--friction", "2", "--set", "device.coulomb_N=0"}).status, 2);
+}
+
+/// What nobody published of a preset stands at both ends of what it may be, unless a file or --set gives it.
+TEST_F(CompareDevices, PrintsAnIntervalOverWhatIsNotPublished) {
+  const auto asked = [this](const char* devices, Words words) {
+    words.insert(words.end(), {"--algorithms", "mean", "--resolution", "0.5", "--json"});
+    return compare(devices, "out", words).json();
+  };
+  const Json own = asked("touch", {})["interval"];
+  const auto limit_with = [&](const char* coulomb, const char* viscous) {
+    const Json K = asked("touch", {"--set", std::string("device.coulomb_N=") + coulomb, "--set",
+                                   std::string("device.viscous_N_s_per_m=") + viscous, "--friction", "none"});
+    EXPECT_FALSE(K.contains("interval"));
+    return K["limits"][0]["limit_N_per_m"].get<double>();
+  };
+  ASSERT_EQ(own["limits"].size(), 1u);
+  // Mass and encoder step of a touch are of the data sheet; 0.2 N and 0.1 N s/m are ours.
+  EXPECT_EQ(own["limits"][0]["least_N_per_m"], std::min(limit_with("0", "0.1"), limit_with("0.2", "0.1")));
+  EXPECT_EQ(own["limits"][0]["largest_N_per_m"], std::max(limit_with("0.4", "1"), limit_with("0.2", "0.1")));
+  EXPECT_FALSE(asked("ideal", {}).contains("interval")) << "nothing is unpublished";
 }
 
 TEST_F(CompareDevices, SaysWhichDelaysDiffer) {

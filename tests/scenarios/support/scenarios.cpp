@@ -119,7 +119,8 @@ std::vector<NamedScenario> rich_scenarios() {
       "time": {"step_s": 0.0005, "steps": 100},
       "environment": {"type": "plane", "size_m": 0.004, "spacing_m": 0.0002},
       "hand": {"type": "impedance", "stiffness_N_per_m": 100, "damping_N_s_per_m": 1,
-        "target": {"x_m": {"type": "ramp", "start": 0, "rate_per_s": 0.01}, "y_m": 0, "z_m": -0.01}},
+        "target": {"x_m": {"type": "ramp", "start": 0, "rate_per_s": 0.01}, "y_m": 0, "z_m": -0.01},
+        "tremor": {"rms_m": [1e-5, 0, 2e-5], "low_Hz": 7, "high_Hz": 11}},
       "device": {"type": "admittance"}})")},
           {"impedance_plane", Json::parse(R"({
       "time": {"step_s": 0.001, "steps": 100},
@@ -129,7 +130,8 @@ std::vector<NamedScenario> rich_scenarios() {
       "device": {"type": "impedance", "handle_mass_kg": 0.1, "viscous_N_s_per_m": 0.2, "coulomb_N": 0.1,
         "encoder_step_m": 1e-5, "delay_samples": 1.5, "velocity_filter": {"type": "low_pass", "cutoff_Hz": 80, "order": 3},
         "force_max_N": 10, "force_step_N": 0.01, "force_slew_N_per_s": 2000,
-        "position_filter": {"cutoff_Hz": 200, "order": 2}, "position_noise_m": 1e-6},
+        "position_filter": {"cutoff_Hz": 200, "order": 2}, "position_noise_m": 1e-6,
+        "transmission": {"motor_share": 0.6, "stiffness_N_per_m": 2e4, "damping_N_s_per_m": 0.5}},
       "record": {"energy": true}})")},
           {"preset_plane", Json::parse(R"({
       "time": {"step_s": 0.001, "steps": 100},

@@ -304,7 +304,7 @@ TEST(DeviceLoop, OfAnImpedanceDeviceIsTheSimulationsLinearMap) {
         if (held) {
           MassSpringDamperHandFields hand;
           hand.mass = random.uniform();
-          hand.spring = {1000.0 * random.uniform(), 10.0 * random.uniform(), {}};
+          hand.spring = {1000.0 * random.uniform(), 10.0 * random.uniform(), {}, {}};
           scenario.hand = hand;
         }
         SCOPED_TRACE(testing::Message() << delay << " " << filtered << " " << held);
