@@ -43,8 +43,8 @@ typedef struct HapbenchStageStep {
   double device_position[3]; /* of the handle of an admittance or impedance device; of others that of the tool */
   double device_velocity[3];
   double device_force[3]; /* of the hand on the virtual tool, as the device measures and limits it; else 0 */
-  /* What the stage has absorbed and can still give back [J], by the passivity observer: the energy of the springs in the
-   * first row, less the work that its answers have done on the tool since. */
+  /* What the stage has absorbed and can still give back [J], by the passivity observer: the energy of the springs in
+   * the first row, less the work that its answers have done on the tool since. */
   double energy;
   uint32_t in_contact; /* 1 or 0 */
 } HapbenchStageStep;
@@ -53,12 +53,14 @@ typedef struct HapbenchForceStage {
   uint32_t version; /* HAPBENCH_FORCE_STAGE_VERSION */
   const char* name;
 
-  /* A stage for one run. `config` is the scenario's object of that name as JSON text, "{}" without one. NULL: a fault. */
+  /* A stage for one run. `config` is the scenario's object of that name as JSON text, "{}" without one. NULL: a fault.
+   */
   void* (*create)(const char* config, const HapbenchStageRun* run, char* fault, size_t fault_size);
   void (*destroy)(void* stage);
   void (*reset)(void* stage); /* back to t = 0, bit for bit; may be NULL: nothing is remembered */
 
-  /* Writes the force to render, once for each row. Returns 0; else, and with a force that is not finite, the run ends. */
+  /* Writes the force to render, once for each row. Returns 0; else, and with a force that is not finite, the run ends.
+   */
   int (*force)(void* stage, const HapbenchStageStep* step, double force[3], char* fault, size_t fault_size);
 } HapbenchForceStage;
 

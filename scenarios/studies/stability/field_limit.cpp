@@ -156,15 +156,10 @@ class Search {
   /// FieldLimit::linear
   std::optional<double> linear_edge(const std::string& algorithm, double lambda) const {
     const auto stable = [&](double part) {
-      Scenario scenario = at(algorithm, question_.value_at(part)).scenario;
-      if (!is_stable_step(device_loop(scenario, lambda).state_matrix())) return false;
-      RenderingConfig& r = scenario.rendering;
-      if (!r.dry_friction) return true;
-      // Along the surface, a tool that sticks has the bristle in place of the springs.
-      const SpringDamper bristle = bristle_of(*r.dry_friction, r, scenario.time.step);
-      r.stiffness = bristle.K;
-      r.damping = bristle.B;
-      return is_stable_step(device_loop(scenario, 1.0).state_matrix());
+      const Scenario scenario = at(algorithm, question_.value_at(part)).scenario;
+      return is_stable_step(device_loop(scenario, lambda).state_matrix()) &&
+             (!scenario.rendering.dry_friction ||
+              is_stable_step(device_loop(stuck_scene(scenario), 1.0).state_matrix()));
     };
     const Scenario first = at(algorithm, question_.value_at(0.0)).scenario;
     if (!has_device(first) || device_loop(first, lambda).state_matrix().size() == 0) return std::nullopt;

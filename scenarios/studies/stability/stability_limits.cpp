@@ -317,6 +317,14 @@ constexpr double kLongestDelay = 200.0;
 
 }  // namespace
 
+Scenario stuck_scene(Scenario scenario) {
+  RenderingConfig& r = scenario.rendering;
+  const SpringDamper bristle = bristle_of(*r.dry_friction, r, scenario.time.step);
+  r.stiffness = bristle.K;
+  r.damping = bristle.B;
+  return scenario;
+}
+
 double delay_of(const Scenario& scenario) {
   if (const auto* impedance = std::get_if<ImpedanceDeviceConfig>(&scenario.device)) return impedance->delay_samples;
   const auto* admittance = std::get_if<AdmittanceDeviceConfig>(&scenario.device);

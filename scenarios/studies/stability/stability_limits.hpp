@@ -70,6 +70,9 @@ std::vector<StabilityLimit> stability_limits(const Scenario& scenario);
 /// The eigenvalues from zero to a quarter beyond each finite limit.
 std::vector<RootLocusPoint> root_locus(const Scenario& scenario, const std::vector<StabilityLimit>& limits);
 
+/// The scenario along a surface on which dry friction holds its tool: with the bristle in place of the springs.
+Scenario stuck_scene(Scenario scenario);
+
 /// Device, hand and wall of a scenario as a linear loop, as it is while nothing saturates and the contact lasts.
 struct DeviceLoop {
   std::variant<SampledLoop, AdmittanceLoop> loop;

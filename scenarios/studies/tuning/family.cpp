@@ -88,6 +88,8 @@ std::vector<std::pair<std::string, Eigen::MatrixXd>> contact_loops(const Scenari
                                                                    bool over_hands) {
   std::vector<std::pair<std::string, Eigen::MatrixXd>> all = {{"", contact_step(scenario, lambda)}};
   if (all[0].second.size() == 0) return {};
+  if (scenario.rendering.dry_friction)
+    all.emplace_back("the tool held by friction", contact_step(stuck_scene(scenario), 1.0));
   const bool held = spring_of(scenario.hand) != nullptr || std::holds_alternative<DragHandFields>(scenario.hand);
   if (!over_hands || !held || !std::holds_alternative<ImpedanceDeviceConfig>(scenario.device)) return all;
   SampledLoop loop = std::get<SampledLoop>(device_loop(scenario, lambda).loop);

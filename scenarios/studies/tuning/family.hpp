@@ -34,7 +34,8 @@ std::vector<FamilyMember> family_of(const LoadedScenario& loaded, FamilyOver ove
 
 /// The maps of a step of the loop of device, hand and a wall of lambda K (contact_step), by the name of the hand, which
 /// is empty for the scene's own: with `over_hands`, on an impedance device that a hand holds, each of hand_family(),
-/// too. None where the loop is too large to solve.
+/// too. With dry friction also that of the tool which it holds (stuck_scene). None where the loop is too large to
+/// solve.
 std::vector<std::pair<std::string, Eigen::MatrixXd>> contact_loops(const Scenario& scenario, double lambda,
                                                                    bool over_hands);
 

@@ -20,31 +20,31 @@ struct StageDefinition {
   std::vector<std::string> arguments;  ///< of the callable, in their order
 };
 
-py::object vector_of(const double (&numbers)[3]) {
-  return py::array_t<double>(3, numbers);
-}
+constexpr std::pair<const char*, double (HapbenchStageStep::*)[3]> kStageVectors[] = {
+    {"force", &HapbenchStageStep::force},
+    {"spring", &HapbenchStageStep::spring},
+    {"position", &HapbenchStageStep::position},
+    {"velocity", &HapbenchStageStep::velocity},
+    {"device_position", &HapbenchStageStep::device_position},
+    {"device_velocity", &HapbenchStageStep::device_velocity},
+    {"device_force", &HapbenchStageStep::device_force}};
 
-/// What a stage may ask for, by the names of its arguments.
-const std::pair<const char*, py::object (*)(const HapbenchStageStep&, const HapbenchStageRun&)> kStageArguments[] = {
-    {"force", [](const auto& s, const auto&) { return vector_of(s.force); }},
-    {"spring", [](const auto& s, const auto&) { return vector_of(s.spring); }},
-    {"tensor",
-     [](const auto& s, const auto&) -> py::object {
-       const auto& [xx, xy, xz, yy, yz, zz] = s.stiffness;
-       const double all[] = {xx, xy, xz, xy, yy, yz, xz, yz, zz};
-       return py::array_t<double>({3, 3}, all);
-     }},
-    {"position", [](const auto& s, const auto&) { return vector_of(s.position); }},
-    {"velocity", [](const auto& s, const auto&) { return vector_of(s.velocity); }},
-    {"device_position", [](const auto& s, const auto&) { return vector_of(s.device_position); }},
-    {"device_velocity", [](const auto& s, const auto&) { return vector_of(s.device_velocity); }},
-    {"device_force", [](const auto& s, const auto&) { return vector_of(s.device_force); }},
-    {"energy", [](const auto& s, const auto&) -> py::object { return py::float_(s.energy); }},
-    {"in_contact", [](const auto& s, const auto&) -> py::object { return py::bool_(s.in_contact != 0); }},
-    {"row", [](const auto& s, const auto&) -> py::object { return py::int_(s.row); }},
-    {"time_step", [](const auto&, const auto& r) -> py::object { return py::float_(r.time_step); }},
-    {"mass", [](const auto&, const auto& r) -> py::object { return py::float_(r.mass); }},
-    {"stiffness", [](const auto&, const auto& r) -> py::object { return py::float_(r.stiffness); }}};
+/// What a stage asks for, by the name of its argument, one of those of hapbench.force_stage.
+py::object stage_argument(const std::string& name, const HapbenchStageStep& s, const HapbenchStageRun& run) {
+  for (const auto& [known, vector] : kStageVectors)
+    if (name == known) return py::array_t<double>(3, s.*vector);
+  if (name == "tensor") {
+    const auto& [xx, xy, xz, yy, yz, zz] = s.stiffness;
+    const double all[] = {xx, xy, xz, xy, yy, yz, xz, yz, zz};
+    return py::array_t<double>({3, 3}, all);
+  }
+  if (name == "in_contact") return py::bool_(s.in_contact != 0);
+  if (name == "row") return py::int_(s.row);
+  return py::float_(name == "energy"      ? s.energy
+                    : name == "time_step" ? run.time_step
+                    : name == "mass"      ? run.mass
+                                          : run.stiffness);
+}
 
 class PythonStage final : public ForceStage {
  public:
@@ -92,10 +92,8 @@ class PythonStage final : public ForceStage {
 
   Vec3 answered(const HapbenchStageStep& step) const {
     py::tuple arguments(definition_->arguments.size());
-    for (std::size_t i = 0; i < arguments.size(); ++i) {
-      const auto named = [&](const auto& known) { return definition_->arguments[i] == known.first; };
-      arguments[i] = std::find_if(std::begin(kStageArguments), std::end(kStageArguments), named)->second(step, run_);
-    }
+    for (std::size_t i = 0; i < arguments.size(); ++i)
+      arguments[i] = stage_argument(definition_->arguments[i], step, run_);
     const py::object answer = callable_(*arguments);
     const auto numbers = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(answer);
     if (!numbers || numbers.ndim() != 1 || numbers.size() != 3 || !Vec3::Map(numbers.data()).allFinite()) {
@@ -122,9 +120,6 @@ void add_python_stage(const std::string& name, const py::object& make, const std
 }  // namespace
 
 void bind_force_stages(py::module_& module) {
-  py::list names;
-  for (const auto& [name, argument] : kStageArguments) names.append(name);
-  module.attr("stage_arguments") = py::tuple(names);
   module.def("add_force_stage", add_python_stage, py::arg("name"), py::arg("make"), py::arg("arguments"),
              "Make a force stage of a callable; hapbench.force_stage checks and fills the arguments.");
 }

@@ -8,6 +8,8 @@ from typing import TypeVar
 from .engine import _hapbench
 
 Stage = TypeVar("Stage", bound=Callable)
+_ARGUMENTS = ("force", "spring", "tensor", "position", "velocity", "device_position", "device_velocity", "device_force", "energy",
+              "in_contact", "row", "time_step", "mass", "stiffness")
 
 
 def force_stage(name: str) -> Callable[[Stage], Stage]:
@@ -31,9 +33,9 @@ def force_stage(name: str) -> Callable[[Stage], Stage]:
     def add(stage):
         function = stage.__call__ if inspect.isclass(stage) else stage
         names = list(inspect.signature(function).parameters)[1 if inspect.isclass(stage) else 0:]
-        given = [word for word in names if word in _hapbench.stage_arguments]
+        given = [word for word in names if word in _ARGUMENTS]
         if names[:len(given)] != given or (inspect.isclass(stage) and names != given):
-            raise TypeError(f"force stage {name!r}: arguments {names}; allowed: first some of {', '.join(_hapbench.stage_arguments)}, "
+            raise TypeError(f"force stage {name!r}: arguments {names}; allowed: first some of {', '.join(_ARGUMENTS)}, "
                             "then, of a function, those that the config gives")
 
         def make(config):

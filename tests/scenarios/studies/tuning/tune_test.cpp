@@ -8,6 +8,7 @@
 #include "device_model/theory/linear_loops.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/run/run_scenario.hpp"
+#include "scenarios/studies/tuning/family.hpp"
 #include "sim/core/random.hpp"
 
 namespace hapbench::tune_test {
@@ -228,6 +229,20 @@ TEST(Tune, DoesNotDependOnThreads) {
   EXPECT_EQ(one.runs, three.runs);
   EXPECT_EQ(one.why, three.why);
   EXPECT_EQ(one.spread, three.spread);
+}
+
+/// Of a virtual mass M with an undamped bristle, stable up to K_t = 4 M / dt^2.
+TEST(Family, HasTheLoopOfAToolHeldByFriction) {
+  for (const double factor : {0.99, 1.01}) {
+    Scenario scenario = load_scenario(find_scenario("drag_molar_dry")).scenario;
+    const double edge = 4.0 * scenario.rendering.mass / (scenario.time.step * scenario.time.step);
+    scenario.rendering.dry_friction = DryFrictionConfig{0.3, factor * edge, 0.0};
+    const auto loops = contact_loops(scenario, 1.0, false);
+    ASSERT_EQ(loops.size(), 2u);
+    EXPECT_TRUE(is_stable_step(loops[0].second));
+    EXPECT_EQ(loops[1].first, "the tool held by friction");
+    EXPECT_EQ(is_stable_step(loops[1].second), factor < 1.0);
+  }
 }
 
 TEST(Family, HastensScripts) {
