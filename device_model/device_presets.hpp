@@ -38,8 +38,8 @@ std::span<const DevicePreset> device_presets() noexcept;
 /// Null if there is no preset of that name.
 const DevicePreset* find_device_preset(std::string_view name) noexcept;
 
-/// Which of the values that a preset's unpublished numbers may have: its own, or all those that let a wall vibrate sooner
-/// (little friction and mass, a coarse encoder), or later.
+/// Which of the values that a preset's unpublished numbers may have: its own, or all those that let a wall vibrate
+/// sooner (little friction and mass, a coarse encoder), or later.
 enum class PresetEnd { own, soft, stiff };
 inline constexpr const char* kPresetRanges =
     "dry friction 0 to twice ours, viscous friction once to ten times, mass less or more by 1.3, encoder finer or coarser "

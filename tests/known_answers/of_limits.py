@@ -258,7 +258,7 @@ def devices(bench):
     cell = {(row["device"], row["scenario"], row["algorithm"]): row for row in table.rows}
     number = lambda row, name: float(row[name]) if row[name] else math.nan
 
-    def vibration(K, lam):
+    def vibration(K, lam, m=m, b=b):
         matrix = HeldLoop(m, b, T, lam * K, lam * B).matrix
         v = motion_of(matrix, np.eye(len(matrix))[0] * 1e-3 + np.eye(len(matrix))[2] * 1e-3, n)
         return math.inf if v is None else math.sqrt(np.mean(high_pass(v, T)[3 * n // 4:] ** 2))
@@ -291,6 +291,14 @@ def devices(bench):
               ROUNDING, ("the resolution asked", [resolution * limit for limit in limits]))
     bench.add("compare --json: low_tolerance_N_per_m", [told[key]["low_tolerance_N_per_m"] for key in keys], [None, None], "the range begins stable", EXACT,
               ("the resolution", [resolution] * 2))
+    # What is ours of an omega.3 is its mass and viscous friction once dry friction, encoder and saturation are gone.
+    bare = [word for field in ("coulomb_N=0", "encoder_step_m=0", "force_max_N=null") for word in ("--set", f"device.{field}")]
+    interval = bench.json("compare", "both_ways.json", "--devices", "omega.3", *bare, "--algorithms", "mean", "--resolution", resolution, "--out", "i")["interval"]
+    ends = [bisected(lambda K: vibration(K, 1.0, of, viscous) <= most, 100.0, 1e6, 1e-7) for of, viscous in ((0.2, 0.5), (0.2 / 1.3, 0.5), (0.2 * 1.3, 5.0))]
+    for name, known, naive in (("least_N_per_m", min(ends), max(ends)), ("largest_N_per_m", max(ends), ends[0])):
+        bench.add(f"compare --json: {name}", [interval["limits"][0][name]], [known], how, fine, ("of the other end, of the preset's own numbers", [naive]))
+    bench.add("compare --json: over", [interval["over"]], ["dry friction 0 to twice ours, viscous friction once to ten times, mass less or more by 1.3, "
+              "encoder finer or coarser by 2"], "the ranges of device_presets.hpp", EXACT, ("of dry friction alone", ["dry friction 0 to twice ours"]))
     # The order of the laws turned round: of summation over mean, so that 1 / lambda_max is not 1.
     (bench.folder / "same.json").write_text((bench.folder / "mine.json").read_text(encoding="utf-8"), encoding="utf-8")
     text = bench.hapbench("compare", "both_ways.json", "--devices", "mine.json,same.json", "--algorithms", "mean,summation", "--resolution", resolution, "--out", "t")

@@ -2,6 +2,7 @@
 import math
 import re
 import sys
+import tempfile
 import unittest
 from pathlib import Path
 
@@ -14,7 +15,7 @@ import numpy as np  # noqa: E402
 from hapbench_validation.cases import FOLDER, drawn, read_cases  # noqa: E402
 from hapbench_validation.judge import points_of, verdict  # noqa: E402
 from hapbench_validation.page import judged, page  # noqa: E402
-from hapbench_validation.predict import Predictor  # noqa: E402
+from hapbench_validation.predict import Predictor, period  # noqa: E402
 
 DATA, CASES = read_cases()
 RECORDED = json.loads((FOLDER / "data" / "predictions.json").read_text(encoding="utf-8"))
@@ -40,25 +41,37 @@ class Validation(unittest.TestCase):
     def test_nothing_is_fitted_to_the_case_that_judges_it(self):
         for name, case in CASES.items():
             if case.role == "judged":
-                fitted = RECORDED["cases"][case.fit]["samples"]
+                fitted, used = RECORDED["cases"][case.fit]["samples"], RECORDED["cases"][name]["samples"]
                 self.assertEqual(CASES[case.fit].role, "fitted")
-                self.assertEqual([{k: s[k] for k in f} for s, f in zip(RECORDED["cases"][name]["samples"], fitted)], fitted)
+                for at, sample in enumerate(used):
+                    of = fitted[at % len(fitted)]
+                    self.assertEqual({k: sample[k] for k in of if k != "seed"}, {k: of[k] for k in of if k != "seed"})
+                if len(used) > len(fitted):
+                    self.assertFalse({s["seed"] for s in used} & {f["seed"] for f in fitted}, "the tremor of another session")
 
     def test_the_uncertainty_and_the_verdict_follow_the_rules(self):
         case = CASES["A"]
         exact = [case.K] * 5
         for factor, word in ((1.0, "fitted"), (10.0, "fitted")):
-            self.assertEqual(verdict(case, points_of(case, np.array(exact) * factor, 1.3, 0.02), True)[0], word)
+            self.assertEqual(verdict(case, points_of(case, np.array(exact) * factor, 0.02), True)[0], word)
         case = CASES["A'"]
         for factor, word in ((1.0, "agrees"), (1.5, "agrees"), (2.0, "fails"), (0.5, "fails")):
             edges = np.array([case.K] * 5) * factor
-            self.assertEqual(verdict(case, points_of(case, edges, 1.3, 0.02), True)[0], word, factor)
-        self.assertEqual(verdict(case, points_of(case, exact_of(case), 1.3, 0.02), False)[0], "not judged")
+            self.assertEqual(verdict(case, points_of(case, edges, 0.02), True)[0], word, factor)
+        self.assertEqual(verdict(case, points_of(case, exact_of(case), 0.02), False)[0], "not judged")
         wide = np.array([case.K]) * np.array([[0.2], [0.4], [1.0], [2.5], [5.0]])
-        self.assertEqual(verdict(case, points_of(case, wide, 1.3, 0.02), True)[0], "agrees, weakly")
-        point = points_of(case, exact_of(case), 1.3, 0.0)[0]
+        self.assertEqual(verdict(case, points_of(case, wide, 0.02), True)[0], "agrees, weakly")
+        point = points_of(case, exact_of(case), 0.0)[0]
         self.assertAlmostEqual(point.uncertainty, math.hypot(math.log(1.3), 0.1 / 1.8 / math.sqrt(12.0)))
         self.assertEqual(len(list(judged(DATA, CASES, RECORDED))), len(CASES))
+
+    def test_the_period_is_that_of_the_swinging_handle(self):
+        with tempfile.TemporaryDirectory() as folder:
+            file = Path(folder) / "trajectory.csv"
+            rows = [f"{0.00035 * k},{0.003 + 0.001 * math.sin(2 * math.pi * 0.00035 * k / 0.0231)}" for k in range(4000)]
+            file.write_text("\n".join(["time_s,hx_m", *rows]), encoding="utf-8")
+            # Lines between samples a 66th of a period apart leave a curve by (2 pi / 66)^3 / 60 of it.
+            self.assertAlmostEqual(period(file) / 0.0231, 1.0, delta=2e-5)
 
     def test_samples_fill_their_ranges(self):
         for device in DATA["devices"].values():
@@ -67,6 +80,7 @@ class Validation(unittest.TestCase):
                 values = sorted(sample[name] for sample in samples)
                 self.assertTrue(low <= values[0] and values[-1] <= high, name)
                 middle = math.sqrt(low * high) if kind == "log" else 0.5 * (low + high)
+                self.assertTrue(kind != "whole" or all(isinstance(value, int) for value in values), name)
                 self.assertEqual(sum(value < middle for value in values), 32, name)
 
 

@@ -4,7 +4,6 @@ import math
 from dataclasses import dataclass
 from pathlib import Path
 
-import numpy as np
 from scipy.stats import qmc
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -29,13 +28,16 @@ class Case:
     B: list
     K: list
     more: dict       # unpublished inputs of this case alone
+    quantity: str    # "stiffness", or "period" of what vibrates just beyond the edge; K is that then
+    scatter: float   # factor, one standard deviation of the logarithm of repeated sessions
 
 
 def read_cases():
     """(all of cases.json, the cases by name)."""
     data = json.loads((FOLDER / "data" / "cases.json").read_text(encoding="utf-8"))
-    cases = [Case(c["name"], c["device"], c["scene"], c["role"], c.get("fit", c["name"]), c["title"], c["source"], c["set"],
-                  c["unit_N_per_m"], c["unit"], c["reading"], c["B"], c["K"], c.get("unpublished", {})) for c in data["cases"]]
+    cases = [Case(c["name"], c["device"], c["scene"], c["role"], c.get("fit", c["name"]), c["title"], c["source"],
+                  data["devices"][c["device"]].get("set", {}) | c["set"], c["unit_N_per_m"], c["unit"], c["reading"], c["B"], c["K"],
+                  c.get("unpublished", {}), c.get("quantity", "stiffness"), c.get("scatter", data["scatter"])) for c in data["cases"]]
     return data, {case.name: case for case in cases}
 
 
@@ -57,6 +59,8 @@ def _between(given, u):
     low, high, kind = given[:3]
     if kind == "either":
         return low if u < 0.5 else high
+    if kind == "whole":
+        return low + math.floor(u * (high - low + 1))
     return low * (high / low)**u if kind == "log" else low + (high - low) * u
 
 
@@ -67,18 +71,14 @@ def overrides(case, sample, B, scene):
         if name.startswith("device.") or name.startswith("hand.") and "hand" in scene:
             fields[name] = value
     fields["device.coulomb_N"] = fields.get("device.coulomb_N", 0.0) * sample.get("friction_left", 1.0)
+    if "transmission_zeta" in sample:  # of the two masses on the spring
+        share, mass = fields["device.transmission.motor_share"], sample["device.handle_mass_kg"]
+        fields["device.transmission.damping_N_s_per_m"] = 2.0 * sample["transmission_zeta"] * math.sqrt(
+            sample["device.transmission.stiffness_N_per_m"] * share * (1.0 - share) * mass)
     if "hand" in scene:
-        fields["hand.target.x_m"] = json.dumps(target(sample, scene["time"]["duration_s"]))
+        deep = sample["press_N"] / sample["hand.stiffness_N_per_m"]  # where its spring presses with press_N
+        fields["hand.target.x_m"] = json.dumps(
+            {"type": "waypoints", "points": [[0, START], [REACHED, deep]], "interpolation": "cosine"})
+        fields["hand.tremor.rms_m"] = json.dumps([sample["tremor_m"], 0, 0])
+        fields["seed"] = sample["seed"]
     return [f"{name}={value}" for name, value in fields.items()]
-
-
-def target(sample, duration):
-    """Where the finger goes: from START to the depth at which its spring presses with press_N, with its tremor."""
-    deep = sample["press_N"] / sample["hand.stiffness_N_per_m"]
-    if "tremor_m" not in sample:
-        return {"type": "waypoints", "points": [[0, START], [REACHED, deep]], "interpolation": "cosine"}
-    times = np.linspace(0.0, duration, 1 + round(duration / 0.0025))
-    way = np.where(times < REACHED, 0.5 - 0.5 * np.cos(math.pi * times / REACHED), 1.0)
-    places = START + (deep - START) * way + sample["tremor_m"] * np.sin(2.0 * math.pi * sample["tremor_Hz"] * times)
-    return {"type": "waypoints", "points": [[round(t, 6), round(x, 10)] for t, x in zip(times.tolist(), places.tolist())],
-            "interpolation": "linear"}

@@ -25,7 +25,7 @@ class Point:
         return abs(self.error) <= COVERAGE * self.uncertainty
 
 
-def points_of(case, edges, scatter, resolution):
+def points_of(case, edges, resolution):
     """u_val^2 = u_D^2 + u_input^2 + u_num^2: scatter of sessions and rounding of readings, spread of the samples, bisection. No
     prediction counts as lower than half a reading, below which the measurement says 0."""
     points = []
@@ -33,7 +33,7 @@ def points_of(case, edges, scatter, resolution):
     for B, K, column in zip(case.B, case.K, edges.T):
         logs = np.log(column)
         by_input = float(logs.std(ddof=1))
-        parts = (math.log(scatter), case.reading / K / math.sqrt(12.0), by_input, math.log1p(resolution) / math.sqrt(12.0))
+        parts = (math.log(case.scatter), case.reading / K / math.sqrt(12.0), by_input, math.log1p(resolution) / math.sqrt(12.0))
         points.append(Point(B, K, float(np.exp(np.median(logs))), float(column.min()), float(column.max()),
                             float(np.median(logs) - math.log(K)), math.hypot(*parts), by_input))
     return points

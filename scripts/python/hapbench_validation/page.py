@@ -4,6 +4,7 @@ import math
 import numpy as np
 
 from .judge import COVERAGE, SHARE, WEAK, points_of, verdict
+from .predict import SEEDS
 
 HEAD = """# How far to believe a number
 
@@ -24,7 +25,7 @@ vibrates at its first contact, or a good setting is never tried. It moves nobody
 | forces and stiffness of the algorithms | [known answers](../../tests/known_answers/README.md), [claims of the thesis](../thesis_claims/README.md) | `compare --check`, `run --sure` | the thesis's own figures; no other measurement | `sweep --sample`; [claims](../thesis_claims/README.md) sampled over choices that are ours |
 | motion of the tool in time | [observed orders](../../tests/verification/README.md), closed forms in [known answers](../../tests/known_answers/README.md) | [precision and converge](../studies/README.md) | no | `converge`, `sweep` |
 | limits of stability, linear | eigenvalues and polynomials, `tests/device_model/linear_loops_test.cpp` | bisection to a stated width | see below | [maps](../studies/README.md#stability) |
-| limits of an impedance device at a wall | exact maps, `tests/device_model/impedance_device_test.cpp` | the handle moves exactly between samples | **cases below** | intervals below: dry friction, delay, damping, press |
+| limits of an impedance device at a wall | exact maps, elastic transmission included: `tests/device_model/linear_loops_test.cpp`, `tests/device_model/elastic_motion_test.cpp` | the handle moves exactly between samples | **cases below** | intervals below: dry friction, delay, damping, press, tremor; of presets `compare --devices` prints intervals |
 | limits of an admittance device | `tests/device_model/admittance_device_test.cpp` | `limit` to a stated width | **no measured limit was found** | [maps](../studies/README.md#stability) |
 | dry friction between tool and surface | [known answers](../../tests/known_answers/README.md) | `converge` | no | `sweep` |
 | a device identified from its log | an independent simulator, `tests/scripts/identify_test.py` | exact integration | no log of hardware was available | 95 % intervals with every number |
@@ -33,11 +34,13 @@ vibrates at its first contact, or a good setting is never tried. It moves nobody
 ## Measured and predicted
 
 Measured: the stiffness K of a wall at which the device vibrates, for each damping B of the wall. Predicted: `hapbench limit`
-for samples of every input that was not published (ranges below). Fitted cases keep the samples whose whole curve lies
-within the scatter of measuring, a factor of {scatter:g}; judged cases are predicted with those samples, and nothing is
-fitted to them. Error: ln(median predicted / measured). Its uncertainty combines the scatter, the rounding of readings, the
-spread of the samples and the bisection (ASME V&V 20); a point is within where the error is at most {coverage:g} of it. A curve
-agrees where {share:.0%} of its points are; "weakly" says that its uncertainty, expanded, is beyond a factor of {weak:g}.
+for samples of every input that was not published (ranges below); the period T_u of what vibrates is that just beyond the
+predicted limit. The finger trembles: each sample has a session (seed) of its own. Fitted cases keep the samples whose whole
+curve lies within the scatter of measuring, a factor of {scatter:g}; judged cases are predicted with those samples in
+{seeds} new sessions each, and nothing is fitted to them. Error: ln(median predicted / measured). Its uncertainty combines the
+scatter, the rounding of readings, the spread of the samples and the bisection (ASME V&V 20); a point is within where the
+error is at most {coverage:g} of it. A curve agrees where {share:.0%} of its points are; "weakly" says that its
+uncertainty, expanded, is beyond a factor of {weak:g}.
 
 ![Measured and predicted K over B](validation.svg)
 
@@ -53,9 +56,10 @@ NOT_FOR = """
 ## What it is not for
 
 - The K of a real device without its own numbers: dry friction and the hand's press alone move K by factors of ten
-  (`compare --devices --friction 0,2`). Measure them with `hapbench identify`, then read K as that of one approach.
-- Devices whose structure resonates within the band (an elastic transmission is not modelled for impedance devices), position
-  estimators other than low-passes, amplifiers with dynamics of their own, dry friction that depends on place or history.
+  (`compare --devices` prints the interval). Measure them with `hapbench identify`, then read K as that of one approach.
+- Devices with more than one resonance within the band (`device.transmission` is one spring between motors and handle, and no
+  preset has one, because none is published), position estimators other than low-passes, amplifiers with dynamics of their own,
+  dry friction that depends on place or history.
 - What people feel, learn or tolerate; safety of a person; certification of a device.
 """
 
@@ -64,13 +68,13 @@ def judged(data, cases, recorded):
     """(case, its record, points, word, sentence) of each case."""
     for name, case in cases.items():
         record = recorded["cases"][name]
-        points = points_of(case, record["edges"], data["scatter"], recorded["resolution"])
+        points = points_of(case, record["edges"], recorded["resolution"])
         reached = recorded["cases"][case.fit].get("reached", True)
         yield (case, record, points, *verdict(case, points, reached))
 
 
 def page(data, cases, recorded):
-    text = HEAD.format(scatter=data["scatter"], coverage=COVERAGE, share=SHARE, weak=WEAK)
+    text = HEAD.format(scatter=data["scatter"], seeds=SEEDS, coverage=COVERAGE, share=SHARE, weak=WEAK)
     text += "| case | what | role | predicted / measured, geometric mean (least ... largest) | verdict |\n|---|---|---|---|---|\n"
     results = list(judged(data, cases, recorded))
     for case, record, points, word, sentence in results:
@@ -84,7 +88,8 @@ def page(data, cases, recorded):
             text += f"\nFit of {case.name}: {len(record['samples'])} of {record['tried']} samples kept, rms error x{best:.2f} ... x{worst:.2f}.\n"
     text += f"\nScatter: {data['scatter_source']}. Citations: " + "; ".join(f"[{n}] {c}" for n, c in data["citations"].items()) + ".\n"
     for case, record, points, word, sentence in results:
-        text += f"\n### {case.name}: {case.title}\n\nMeasured: {case.source}. K in {case.unit_name}; B in the same per s.\n\n"
+        units = f"K in {case.unit_name}; B in the same per s" if case.quantity == "stiffness" else f"T_u in {case.unit_name}"
+        text += f"\n### {case.name}: {case.title}\n\nMeasured: {case.source}. {units}.\n\n"
         text += "| B | measured | predicted (samples) | not fitted | error / uncertainty |\n|---|---|---|---|---|\n"
         for point, never in zip(points, np.array(record["unfitted_edges"]).T):
             text += (f"| {point.B:g} | {point.measured:g} | {point.predicted:.2g} ({point.low:.2g} ... {point.high:.2g}) | "
@@ -106,7 +111,8 @@ def page(data, cases, recorded):
 def figure(data, cases, recorded):
     from hapbench_style import AMBER, PALE, PETROL, SAND, SETTINGS, panels, picture, plt
     plt.rcParams.update(SETTINGS)
-    figure, axes = panels(2, 3, 4.6)
+    figure, axes = panels(2, 4, 4.6)
+    axes[1][3].set_axis_off()
     for ax, (case, record, points, word, _) in zip(axes.flat, judged(data, cases, recorded)):
         B = [point.B for point in points]
         never = np.array(record["unfitted_edges"])
@@ -117,12 +123,15 @@ def figure(data, cases, recorded):
         else:
             ax.vlines(B, [p.low for p in points], [p.high for p in points], color=PALE, lw=8)
         ax.plot(B, [p.predicted for p in points], color=PETROL, label="predicted", **marks)
-        factor = data["scatter"]
+        factor = case.scatter
         ax.errorbar(B, case.K, yerr=[[k - k / factor for k in case.K], [k * factor - k for k in case.K]], fmt="o", color=AMBER, ms=3, lw=0.8,
                     label=f"measured, x{factor:g}")
         ax.set_yscale("log")
         ax.set_title(f"{case.name}: {word}")
-        ax.set_ylabel(f"K [{case.unit_name}]")
-        ax.set_xlabel("B [the same, per s]")
+        ax.set_ylabel(f"{'K' if case.quantity == 'stiffness' else 'T_u'} [{case.unit_name}]")
+        if len(B) == 1:
+            ax.set_xticks([])
+        else:
+            ax.set_xlabel("B [the same, per s]")
     axes[0][0].legend()
     return picture(figure, "svg")

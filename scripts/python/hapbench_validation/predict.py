@@ -1,10 +1,12 @@
-"""Runs the program: the largest stable K of a sample at each B."""
+"""Runs the program: the largest stable K of a sample at each B, and the period of what vibrates beyond it."""
+import csv
 import json
 import math
 import subprocess
 import tempfile
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict
+from pathlib import Path
 
 import numpy as np
 
@@ -15,25 +17,32 @@ FEWEST = 8  # samples that a fit must leave
 WAVES = 4   # of samples, each around the best of those before
 ROUGH = 4   # points by which a wave is judged
 WHOLE = 96  # samples that are predicted at all points
+SEEDS = 3   # sessions of a judged case for each sample that the fit kept: the tremor's phases are never those of the fit
 
 
 class Predictor:
     def __init__(self, program, jobs):
-        self.program, self.pool, self.runs = program, ThreadPoolExecutor(jobs), 0
+        self.program, self.pool = program, ThreadPoolExecutor(jobs)
+
+    def run(self, case, sample, B, out, *words):
+        sets = [f"--set={word}" for word in overrides(case, sample, B, scene_of(case))]
+        done = subprocess.run([self.program, words[0], FOLDER / f"{case.scene}.json", *sets, *words[1:], "--json", "--out", out], capture_output=True, text=True,
+                              stdin=subprocess.DEVNULL)
+        if done.returncode not in (0, 3):  # 3: it left its bounds, which what is beyond an edge may
+            raise RuntimeError(f"{case.name}: {done.stderr.strip()[-500:]}")
+        return done.stdout
 
     def edge(self, case, sample, B):
-        """The first edge of K from below, in the case's unit: LEAST where even that vibrates, MOST where nothing does."""
-        scene = FOLDER / f"{case.scene}.json"
-        words = [f"--set={word}" for word in overrides(case, sample, B, json.loads(scene.read_text(encoding="utf-8")))]
+        """The first edge of K from below, in the case's unit: LEAST where even that vibrates, MOST where nothing does. Of a period,
+        that of the run just beyond the edge [s]."""
         with tempfile.TemporaryDirectory(prefix="hapbench-validation-") as out:
-            done = subprocess.run(
-                [self.program, "limit", scene, "--vary", "rendering.stiffness_N_per_m", "--between", f"{LEAST * case.unit}:{MOST * case.unit}",
-                 "--resolution", str(RESOLUTION), "--json", "--out", out, *words], capture_output=True, text=True, stdin=subprocess.DEVNULL)
-        if done.returncode != 0:
-            raise RuntimeError(f"{case.name}: {done.stderr.strip()[-500:]}")
-        self.runs += 1
-        edge = json.loads(done.stdout)["limits"][0]["limit"]
-        return LEAST if edge is None else edge / case.unit
+            told = json.loads(self.run(case, sample, B, out, "limit", "--vary", "rendering.stiffness_N_per_m", "--between",
+                                       f"{LEAST * case.unit}:{MOST * case.unit}", "--resolution", str(RESOLUTION)))["limits"][0]
+            if case.quantity == "period":
+                beyond = LEAST * case.unit if told["limit"] is None else told["beyond"] or MOST * case.unit
+                self.run(case, sample, B, out, "run", f"--set=rendering.stiffness_N_per_m={beyond}")
+                return period(Path(out) / "trajectory.csv")
+        return LEAST if told["limit"] is None else told["limit"] / case.unit
 
     def curves(self, case, samples, points=None):
         """A row of edges for each sample, at the points of these indices or all."""
@@ -41,6 +50,21 @@ class Predictor:
         work = [(sample, b) for sample in samples for b in B]
         edges = list(self.pool.map(lambda one: self.edge(case, *one), work))
         return np.array(edges).reshape(len(samples), len(B))
+
+
+def scene_of(case):
+    return json.loads((FOLDER / f"{case.scene}.json").read_text(encoding="utf-8"))
+
+
+def period(trajectory):
+    """The mean time between upward passages of the handle through its mean in the second half of a run [s]."""
+    with trajectory.open(encoding="utf-8", newline="") as file:
+        rows = [(float(row["time_s"]), float(row["hx_m"])) for row in csv.DictReader(file)]
+    times, x = np.array(rows[len(rows) // 2:]).T
+    x = x - x.mean()
+    up = np.flatnonzero((x[:-1] < 0.0) & (x[1:] >= 0.0))
+    at = times[up] - x[up] * (times[up + 1] - times[up]) / (x[up + 1] - x[up])
+    return float(np.diff(at).mean()) if len(at) > 1 else float("nan")
 
 
 def rms_error(edges, measured):
@@ -87,8 +111,9 @@ def predictions(predictor, data, cases, samples, say):
             found[case.name] = fitted(predictor, case, space, samples, data["scatter"])
         else:
             say(f"{case.name}: predicting")
-            kept = found[case.fit]["samples"]
-            kept = [sample | more for sample, more in zip(kept, drawn(case.more, len(kept), 2) if case.more else [{}] * len(kept))]
+            kept = found[case.fit]["samples"] * (SEEDS if "hand" in scene_of(case) else 1)
+            fresh = {name: space[name] for name in ("seed",) if name in space} | case.more
+            kept = [sample | more for sample, more in zip(kept, drawn(fresh, len(kept), 2))]
             found[case.name] = {"samples": kept, "edges": predictor.curves(case, kept).tolist()}
         never = drawn(space | case.more, FEWEST, 3)
         found[case.name]["unfitted_edges"] = predictor.curves(case, never).tolist()
