@@ -137,5 +137,5 @@ def figure(data, cases, recorded):
             ax.set_xticks([])
         else:
             ax.set_xlabel("B [the same, per s]")
-    axes[0][0].legend()
+    axes[1][3].legend(*axes[0][0].get_legend_handles_labels(), loc="center")
     return picture(figure, "svg")
