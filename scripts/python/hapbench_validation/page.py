@@ -86,6 +86,10 @@ def page(data, cases, recorded):
         if case.role == "fitted":
             best, worst = min(record["rms_factors"]), max(record["rms_factors"])
             text += f"\nFit of {case.name}: {len(record['samples'])} of {record['tried']} samples kept, rms error x{best:.2f} ... x{worst:.2f}.\n"
+        elif not case.more and len(record["edges"]) == SEEDS * len(recorded["cases"][case.fit]["edges"]):
+            sessions = np.log(np.maximum(record["edges"], 0.5 * case.reading)).reshape(SEEDS, -1)  # a row for each session of all inputs
+            between = math.exp(math.sqrt(float(np.mean(sessions.var(axis=0, ddof=1)))))
+            text += f"\n{case.name}: predicted K scatters by x{between:.2f} between sessions of the same inputs, by the tremor's phases alone.\n"
     text += f"\nScatter: {data['scatter_source']}. Citations: " + "; ".join(f"[{n}] {c}" for n, c in data["citations"].items()) + ".\n"
     for case, record, points, word, sentence in results:
         units = f"K in {case.unit_name}; B in the same per s" if case.quantity == "stiffness" else f"T_u in {case.unit_name}"
@@ -133,5 +137,5 @@ def figure(data, cases, recorded):
             ax.set_xticks([])
         else:
             ax.set_xlabel("B [the same, per s]")
-    axes[0][0].legend()
+    axes[1][3].legend(*axes[0][0].get_legend_handles_labels(), loc="center")
     return picture(figure, "svg")
