@@ -112,7 +112,7 @@ class Bench:
         given = list(command.words[1:])
         if given[0] == "sweep" and "--slurm" in given:
             given.append("--dry-run")
-        if "--from" in given:  # a span of time that a shortened run does not have
+        if given[0] == "plot" and "--from" in given:  # a span of time that a shortened run does not have
             given = given[:given.index("--from")]
         runs = given[0] != "sweep" or "--vary" in given and "--row" not in given
         shorter = SHORTER.get(given[0], []) if runs else []

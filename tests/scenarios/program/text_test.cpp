@@ -154,12 +154,13 @@ Json::json_pointer pointer_to(std::string field) {
 }
 
 /// The message of the reader when the field holds an object.
-std::string refusal_of_an_object_in(const char* field) {
+std::string refusal_of_an_object_in(const char* field, const char* model) {
   Json json = test::minimal_scenario("plane");
   const std::string_view path = field;
   if (path.starts_with("rendering.damping.")) json["rendering"]["damping"]["type"] = "hunt_crossley";
   if (path.starts_with("rendering.friction.") && path.find("mu_") == path.npos)
     json["rendering"]["friction"]["type"] = "dry";
+  if (path.starts_with("rendering.force_stage.")) json["rendering"]["force_stage"]["type"] = model;
   json[pointer_to(field)] = Json::object();
   const auto error = test::input_error_of([&] { read_scenario(json, ""); });
   return error ? error->what() : "";
@@ -172,7 +173,7 @@ TEST(ParameterBlocks, NameFieldsOfScenariosWithTheirUnits) {
     for (const auto& [parameter, meaning] : model->parameters) {
       const std::string where = std::string(model->name) + ": " + parameter.field, unit = parameter.range.unit;
       ASSERT_NE(find_field(parameter.field), nullptr) << where;
-      const std::string refusal = refusal_of_an_object_in(parameter.field);
+      const std::string refusal = refusal_of_an_object_in(parameter.field, model->name);
       EXPECT_EQ(refusal.find(pointer_to(parameter.field).to_string() + ": got {}"), 0u) << refusal;
       const bool is_number = refusal.find("a number") != std::string::npos;
       EXPECT_TRUE(is_number ? refusal.find("[" + unit + "]") != std::string::npos : unit == "1") << where << refusal;

@@ -131,7 +131,7 @@ std::vector<NamedScenario> rich_scenarios() {
         "encoder_step_m": 1e-5, "delay_samples": 1.5, "velocity_filter": {"type": "low_pass", "cutoff_Hz": 80, "order": 3},
         "force_max_N": 10, "force_step_N": 0.01, "force_slew_N_per_s": 2000,
         "position_filter": {"cutoff_Hz": 200, "order": 2}, "position_noise_m": 1e-6,
-        "transmission": {"motor_share": 0.6, "stiffness_N_per_m": 2e4, "damping_N_s_per_m": 0.5}},
+        "transmission": {"motor_share": 0.6, "stiffness_N_per_m": 2e5, "damping_N_s_per_m": 0.5}},
       "record": {"energy": true}})")},
           {"preset_plane", Json::parse(R"({
       "time": {"step_s": 0.001, "steps": 100},
