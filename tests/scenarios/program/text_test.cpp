@@ -153,8 +153,8 @@ Json::json_pointer pointer_to(std::string field) {
   return Json::json_pointer("/" + field);
 }
 
-/// The message of the reader when the field holds an object.
-std::string refusal_of_an_object_in(const char* field, const char* model) {
+/// The message of the reader when the field, one of the model, holds an object.
+std::string refusal_of_an_object_in(const char* field, const char* model = "") {
   Json json = test::minimal_scenario("plane");
   const std::string_view path = field;
   if (path.starts_with("rendering.damping.")) json["rendering"]["damping"]["type"] = "hunt_crossley";
