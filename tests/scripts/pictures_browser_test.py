@@ -153,8 +153,9 @@ class OwnPage(Page):
         self.assertTrue(self.saved("*.webm").startswith(b"\x1a\x45\xdf\xa3"))
 
     def saved(self, pattern):
+        """The file's bytes, as soon as there are some: the browser makes it before it writes."""
         deadline = time.monotonic() + 1800
-        while not (found := list(self.root.glob(pattern))):
+        while not (found := [file for file in self.root.glob(pattern) if file.stat().st_size > 0]):
             self.assertLess(time.monotonic(), deadline, pattern)
             time.sleep(0.1)
         return found[0].read_bytes()
