@@ -9,8 +9,9 @@ constexpr SourcedNumber chai(double value) {
 constexpr SourcedNumber sheet(double value) {
   return {value, NumberSource::data_sheet};
 }
-// What nobody published, with what it may be as well (kPresetRanges). A paddle whose motor's data sheet says 0.04 N s/m
-// took 3 to 4 (scenarios/validation); no measured friction of these devices was found.
+// An estimate of an unpublished number, and the factors that bound it (kPresetRanges). They are wide: no measured
+// friction of these devices was found, and a paddle whose motor's data sheet says 0.04 N s/m took 3 to 4
+// (scenarios/validation).
 constexpr SourcedNumber ours(double value, double low, double high) {
   return {value, NumberSource::ours, low * value, high * value};
 }

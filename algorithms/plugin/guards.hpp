@@ -7,7 +7,7 @@
 #include <cstdio>
 #include <cstring>
 
-/// What guards the program against code behind a C interface.
+/// Guards against plugins behind a C interface: they find writes beyond an answer and keep the reason of a failure.
 namespace hapbench {
 
 /// Numbers before and after what a plugin writes. No computation gives this signalling NaN.

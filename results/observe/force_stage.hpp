@@ -1,11 +1,14 @@
 #pragma once
 
+#include <algorithm>
+#include <cstdint>
+
 #include "results/io/columns.hpp"
 #include "sim/loop/observer.hpp"
 
 namespace hapbench {
 
-/// What a force stage does to the force of its algorithm.
+/// How much a force stage changes the force of its algorithm.
 struct ForceStageMetrics {
   std::uint64_t rows = 0;
   double changed_share = 0.0;  ///< share of the rows in which it changes the force
@@ -26,17 +29,19 @@ class ForceStageObserver final : public Observer {
   explicit ForceStageObserver(const ForceAlgorithm& algorithm) : algorithm_(algorithm) {}
 
   void on_step(const StepRecord&) noexcept override {
-    const AlgorithmWork work = algorithm_.work();
-    ++metrics_.rows;
-    metrics_.changed_share = static_cast<double>(work.steps_staged) / static_cast<double>(metrics_.rows);
-    metrics_.taken = work.energy_staged;
+    ++rows_;
+    work_ = algorithm_.work();
   }
-  /// Of the rows seen so far.
-  ForceStageMetrics metrics() const noexcept { return metrics_; }
+  /// The metrics of all rows up to the present one.
+  ForceStageMetrics metrics() const noexcept {
+    return {rows_, static_cast<double>(work_.steps_staged) / static_cast<double>(std::max<std::uint64_t>(rows_, 1)),
+            work_.energy_staged};
+  }
 
  private:
   const ForceAlgorithm& algorithm_;
-  ForceStageMetrics metrics_;
+  std::uint64_t rows_ = 0;
+  AlgorithmWork work_;
 };
 
 }  // namespace hapbench

@@ -24,6 +24,7 @@
 #include "scenarios/run/encounter.hpp"
 #include "scenarios/run/recorders.hpp"
 #include "scenarios/run/stop_signal.hpp"
+#include "scenarios/studies/stability/judged_run.hpp"
 
 namespace hapbench {
 namespace {

@@ -16,10 +16,12 @@
 #include "results/observe/contact_forces.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/input/text_lines.hpp"
+#include "scenarios/program/limit.hpp"
 #include "scenarios/program/result_tables.hpp"
 #include "scenarios/program/table.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/studies/stability/device_limits.hpp"
+#include "scenarios/studies/stability/judged_run.hpp"
 
 namespace hapbench {
 namespace {
@@ -480,12 +482,6 @@ Json write(const fs::path& directory, const DeviceQuestion& question, const std:
           {"limits", std::move(json)}};
 }
 
-double number_between(const char* option, const std::string& text, double least, double greatest) {
-  const auto number = finite_number(text);
-  if (number && *number >= least && *number <= greatest) return *number;
-  throw InputError(fmt::format("{}: got \"{}\"; allowed: {} ... {}", option, text, least, greatest));
-}
-
 /// A device in place of one of the question.
 struct OtherNumbers {
   std::size_t device;
@@ -571,32 +567,6 @@ std::vector<Column> device_run_columns() {
 
 std::vector<Table::Column> device_headings() {
   return {{"device", false}, {"pub-\nlished", true, "published_N_per_m"}};
-}
-
-std::string beyond_text(const FieldLimit& limit) {
-  if (limit.beyond) return std::string(run_verdict_name(limit.beyond->verdict));
-  return limit.value ? "end of the range" : std::string(run_verdict_name(limit.runs.front().verdict));
-}
-
-std::string other_beyond_text(const FieldLimit& limit) {
-  if (limit.other_beyond) return std::string(run_verdict_name(limit.other_beyond->verdict));
-  return limit.value ? "end of the range" : "-";
-}
-
-std::string none_text(const FieldLimit& limit) {
-  std::map<RunVerdict, std::size_t> counts;
-  for (const JudgedValue& run : limit.runs) ++counts[run.verdict];
-  std::vector<std::string> texts;
-  for (const auto& [verdict, count] : counts) texts.push_back(fmt::format("{} {}", count, run_verdict_name(verdict)));
-  return fmt::format("none of {} values tried is stable: {}", limit.runs.size(), fmt::join(texts, ", "));
-}
-
-double vibration_of(const std::string& text) {
-  return number_between("--vibration", text, 1e-9, 1e3);
-}
-
-double resolution_of(const std::string& text) {
-  return number_between("--resolution", text, 1e-6, 0.5);
 }
 
 int compare_devices(const CompareDevicesOptions& options) {

@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "scenarios/program/command.hpp"
-#include "scenarios/studies/stability/field_limit.hpp"
 
 namespace hapbench {
 
@@ -27,19 +26,6 @@ std::vector<std::string> device_names();
 
 /// The bundled scenes of a hand that taps on a flat wall, in a corner and in a hole.
 std::vector<std::string> default_device_scenes();
-
-/// The number given to --vibration [m/s]. Throws InputError.
-double vibration_of(const std::string& text);
-/// The number given to --resolution. Throws InputError.
-double resolution_of(const std::string& text);
-
-/// Names what lies beyond a limit: a class of motion or "end of the range"; without a limit, the class at the range's
-/// low end.
-std::string beyond_text(const FieldLimit& limit);
-/// The same of the other end of the interval of stable values.
-std::string other_beyond_text(const FieldLimit& limit);
-/// "none of 17 values tried is stable: 12 went_through, 5 vibrating".
-std::string none_text(const FieldLimit& limit);
 
 /// A line for whoever finds different stiffnesses by `limit`, by the maps and by `compare --devices`.
 inline constexpr const char* kWhichStiffness =

@@ -49,6 +49,38 @@ std::optional<Range> range_of(const char* option, const std::string& text) {
   return Range{*from, *to};
 }
 
+double number_between(const char* option, const std::string& text, double least, double most) {
+  const auto number = finite_number(text);
+  if (number && *number >= least && *number <= most) return *number;
+  throw InputError(fmt::format("{}: got \"{}\"; allowed: {} ... {}", option, text, least, most));
+}
+
+std::string beyond_text(const FieldLimit& limit) {
+  if (limit.beyond) return std::string(run_verdict_name(limit.beyond->verdict));
+  return limit.value ? "end of the range" : std::string(run_verdict_name(limit.runs.front().verdict));
+}
+
+std::string other_beyond_text(const FieldLimit& limit) {
+  if (limit.other_beyond) return std::string(run_verdict_name(limit.other_beyond->verdict));
+  return limit.value ? "end of the range" : "-";
+}
+
+std::string none_text(const FieldLimit& limit) {
+  std::map<RunVerdict, std::size_t> counts;
+  for (const JudgedValue& run : limit.runs) ++counts[run.verdict];
+  std::vector<std::string> texts;
+  for (const auto& [verdict, count] : counts) texts.push_back(fmt::format("{} {}", count, run_verdict_name(verdict)));
+  return fmt::format("none of {} values tried is stable: {}", limit.runs.size(), fmt::join(texts, ", "));
+}
+
+double vibration_of(const std::string& text) {
+  return number_between("--vibration", text, 1e-9, 1e3);
+}
+
+double resolution_of(const std::string& text) {
+  return number_between("--resolution", text, 1e-6, 0.5);
+}
+
 void add_bound(const std::string& text, std::map<std::string, MetricBound>& bounds) {
   const Words parts = parts_of(text, '=');
   if (parts.size() == 2) {

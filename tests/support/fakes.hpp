@@ -98,6 +98,15 @@ inline SimulationParts fake_parts(FakeAlgorithm::Law law, Calls* calls = nullptr
   return parts;
 }
 
+/// A run of so many rows whose tool is thrown past the origin.
+inline SimulationConfig thrown(std::uint64_t steps) {
+  SimulationConfig config;
+  config.steps = steps;
+  config.position = {0.001, 0.0005, 0};
+  config.velocity = {0.02, -0.01, 0.03};
+  return config;
+}
+
 /// No force at all.
 inline Vec3 weightless(const ToolState&) {
   return Vec3::Zero();

@@ -58,11 +58,10 @@ inline bool comes_to_rest(MotionClass motion) noexcept {
   return motion == MotionClass::stable || motion == MotionClass::dying_out;
 }
 
-/// What the tremor of a hand does by itself; zeros without one.
+/// The largest speeds that the tremor of a hand causes without any wall; zeros without a tremor.
 struct TremorSpeeds {
-  double target = 0.0;  ///< largest speed of the hand's target [m/s]
-  double handle =
-      0.0;  ///< largest speed of the handle above 30 Hz without any wall, as dry friction lets go of it [m/s]
+  double target = 0.0;  ///< of the hand's target [m/s]
+  double handle = 0.0;  ///< of the handle above 30 Hz, as where dry friction lets go of it [m/s]
 };
 
 /// Watches a run and classifies it. Constant memory.

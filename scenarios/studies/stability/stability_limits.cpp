@@ -119,8 +119,8 @@ std::optional<Vec3> pressed_alike(const SpringSet& springs) {
   for (Eigen::Index i = 0; i < gradients.rows(); ++i) gradients.row(i) = springs.gradients[static_cast<std::size_t>(i)];
   const Eigen::VectorXd depths = Eigen::VectorXd::Ones(gradients.rows());
   const Vec3 place = gradients.completeOrthogonalDecomposition().solve(depths);
-  constexpr double kSameDirection = 1e-12;
-  return (gradients * place - depths).norm() <= kSameDirection ? std::optional(place) : std::nullopt;
+  constexpr double kSameDepth = 1e-12;
+  return (gradients * place - depths).norm() <= kSameDepth ? std::optional(place) : std::nullopt;
 }
 
 /// Sees in a run whether a tool that is held where all springs press alike comes to rest when it is struck: by so

@@ -2,7 +2,10 @@
 
 #include <pybind11/pybind11.h>
 
+#include <exception>
 #include <functional>
+
+#include "bindings/held.hpp"
 
 /// The parts of the compiled module.
 namespace hapbench {
@@ -17,6 +20,23 @@ void supervise(const pybind11::object& progress, const std::function<void()>& wo
 /// Keeps the Python error that is set, unless one is kept already, and stops all work. Precondition: the interpreter is
 /// held.
 void stop_by_python_error();
+
+/// Runs `call` with the interpreter held. After an exception, which becomes a Python error and stops all work, returns
+/// false.
+template <class Call>
+bool runs_in_python(const Call& call) noexcept {
+  const Held held;
+  try {
+    call();
+    return true;
+  } catch (pybind11::error_already_set& error) {
+    error.restore();
+  } catch (const std::exception& error) {
+    PyErr_SetString(PyExc_ValueError, error.what());
+  }
+  stop_by_python_error();
+  return false;
+}
 
 /// Raises the error that stop_by_python_error has kept, if any. Precondition: no supervised work is under way.
 void raise_python_error();

@@ -102,24 +102,15 @@ class PythonLaw final : public SingleSpringLaw {
 
   void reset() noexcept override {
     ForceLaw::reset();
-    const Held held;
     start();
   }
 
   LawForce evaluate(ContactBuffer& contacts) noexcept override {
     if (contacts.empty()) return {};
     if (failed_) return no_force(contacts);
-    const Held held;
-    try {
-      return force_of(call(contacts), contacts);
-    } catch (py::error_already_set& error) {
-      error.restore();
-    } catch (const std::exception& error) {
-      PyErr_SetString(PyExc_ValueError, error.what());
-    }
-    stop_by_python_error();
-    failed_ = true;
-    return no_force(contacts);
+    LawForce force;
+    failed_ = !runs_in_python([&] { force = force_of(call(contacts), contacts); });
+    return failed_ ? no_force(contacts) : force;
   }
 
  private:
@@ -137,14 +128,8 @@ class PythonLaw final : public SingleSpringLaw {
 
   /// Makes a new object of a law that is a class.
   void start() noexcept {
-    failed_ = false;
-    try {
-      state_->callable = definition_->is_class ? definition_->callable() : definition_->callable;
-    } catch (py::error_already_set& error) {
-      error.restore();
-      stop_by_python_error();
-      failed_ = true;
-    }
+    failed_ = !runs_in_python(
+        [this] { state_->callable = definition_->is_class ? definition_->callable() : definition_->callable; });
   }
 
   /// The answer after an error, which ends the run.

@@ -50,51 +50,25 @@ class PythonStage final : public ForceStage {
  public:
   PythonStage(std::shared_ptr<const StageDefinition> definition, std::string config)
       : definition_(std::move(definition)), config_(std::move(config)) {}
-  ~PythonStage() override {
-    if (!Py_IsInitialized()) {
-      callable_.release();
-      return;
-    }
-    const Held held;
-    callable_ = py::object();
-  }
-  PythonStage(const PythonStage&) = delete;
-  PythonStage& operator=(const PythonStage&) = delete;
 
   void prepare(const HapbenchStageRun& run) override { run_ = run; }
 
   void reset() noexcept override {
-    failed_ = false;
-    guarded([this] { callable_ = definition_->make(config_); });
+    failed_ = !runs_in_python([this] { callable_ = shared_by_threads(definition_->make(config_)); });
   }
 
   Vec3 force(const HapbenchStageStep& step) noexcept override {
     Vec3 answer = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
-    if (!failed_) guarded([&] { answer = answered(step); });
+    if (!failed_) failed_ = !runs_in_python([&] { answer = answered(step); });
     return answer;
   }
 
  private:
-  /// Runs `call` with the interpreter; an exception ends the work and is raised in Python.
-  template <class Call>
-  void guarded(const Call& call) noexcept {
-    const Held held;
-    try {
-      return call();
-    } catch (py::error_already_set& error) {
-      error.restore();
-    } catch (const std::exception& error) {
-      PyErr_SetString(PyExc_ValueError, error.what());
-    }
-    stop_by_python_error();
-    failed_ = true;
-  }
-
   Vec3 answered(const HapbenchStageStep& step) const {
     py::tuple arguments(definition_->arguments.size());
     for (std::size_t i = 0; i < arguments.size(); ++i)
       arguments[i] = stage_argument(definition_->arguments[i], step, run_);
-    const py::object answer = callable_(*arguments);
+    const py::object answer = (*callable_)(*arguments);
     const auto numbers = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(answer);
     if (!numbers || numbers.ndim() != 1 || numbers.size() != 3 || !Vec3::Map(numbers.data()).allFinite()) {
       PyErr_Clear();
@@ -107,7 +81,7 @@ class PythonStage final : public ForceStage {
   std::shared_ptr<const StageDefinition> definition_;
   std::string config_;
   HapbenchStageRun run_{};
-  py::object callable_;
+  std::shared_ptr<const py::object> callable_;
   bool failed_ = false;
 };
 

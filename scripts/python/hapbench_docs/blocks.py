@@ -1,7 +1,6 @@
 """Generated parts of a manual, which stand between `<!-- generated: NAME -->` and `<!-- /generated -->`: sessions, tables of the
 ledger (claims.json) and of its robustness as results/reference holds them, and tables of studies that are too wide for a manual as
 the program prints them."""
-import csv
 import json
 import re
 import shlex
@@ -11,8 +10,10 @@ import textwrap
 from pathlib import Path
 
 import numpy as np
+from hapbench.columns import read_records
 from hapbench_bench.table import number
 from hapbench_suite.page import read_rows, scale_of
+from hapbench_suite.scores import leads
 
 from .manuals import ROOT
 from .program import ProgramError
@@ -250,11 +251,11 @@ def controllers(old, program, directory):
     for name, stage in CONTROLLERS:
         chosen = [] if stage is None else ["--set", f"rendering.force_stage={json.dumps(stage)}"]
         program.run(["stability", "--map", "z_width", "--algorithms", "summation", "--size", "3", "--out", "map", *chosen], directory)
-        edges = csv_rows(Path(directory) / "map" / "stability_boundary_z_width.csv")
+        edges = read_records(Path(directory) / "map" / "stability_boundary_z_width.csv")
         run = json.loads(program.run(["run", "tap_wall", "--set", f"rendering.stiffness_N_per_m={TAPPED:g}", "--set", "record.trajectory=true",
                                       "--set", "expect={}", "--out", "tap", "--json", *chosen], directory))
         run = run[0] if isinstance(run, list) else run
-        touching = [row for row in csv_rows(Path(directory) / "tap" / "trajectory.csv") if float(row["rendered"]) > 0]
+        touching = [row for row in read_records(Path(directory) / "tap" / "trajectory.csv") if float(row["rendered"]) > 0]
         column = lambda key: np.array([float(row[key]) for row in touching])
         felt, _, _, _ = np.linalg.lstsq(-np.column_stack([column("pz_m"), column("vz_m_per_s")]), column("fz_N"), rcond=None)
         of_stage = run.get("force_stage", {"taken_J": 0.0, "changed_share": 0.0})
@@ -290,11 +291,6 @@ def hunt_crossley(old, program, directory):
             cells = [*metrics, *energy] if run["outcome"] == "completes" else ["-"] * 5
             lines.append(f"| `{law}` | {name} | {run['outcome']} | {' | '.join(cells)} |")
     return program.stamped("\n".join(lines), old)
-
-
-def csv_rows(file):
-    with open(file, encoding="utf-8", newline="") as text:
-        return list(csv.DictReader(text))
 
 
 # The tables that need no program.
@@ -339,7 +335,7 @@ def arena(_old=""):
         cells = []
         for i, one in enumerate(row.scores):
             if one.axis in shown:
-                best = not any(one.axis.better(other.scores[i].value, one.value) for other in rows)
+                best = leads([other.scores for other in rows], row.scores, i)
                 value = f"{one.value * scale_of(one.axis)[1]:.3g}"
                 cells.append(f"**{value}**" if best else value)
         lines.append(f"| `{row.about['label']}` | {' | '.join(cells)} | {len(row.failures)} | {'yes' if row.front else ''} |")

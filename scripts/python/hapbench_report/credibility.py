@@ -1,5 +1,6 @@
 """How far to believe a number: the page of scenarios/validation, which scripts/validation writes, as a section."""
 import base64
+import posixpath
 import re
 from pathlib import Path
 
@@ -56,7 +57,4 @@ def linked(found):
     section = next((section for end, section in INSIDE.items() if path.endswith(end)), None)
     if section:
         return f'<a href="#{section}">{shown}</a>'
-    name = (Path("scenarios/validation") / path).as_posix()
-    while "/../" in name:
-        name = re.sub(r"[^/]+/\.\./", "", name, count=1)
-    return f"{shown} (<code class=file>{name}</code>)"
+    return f"{shown} (<code class=file>{posixpath.normpath(f'scenarios/validation/{path}')}</code>)"

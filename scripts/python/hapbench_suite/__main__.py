@@ -25,7 +25,7 @@ def arguments(words):
     parser.add_argument("--licence", default="")
     parser.add_argument("--source", type=Path, action="append", default=[])
     parser.add_argument("--shard", default="0/1")
-    parser.add_argument("--jobs", type=int, default=0)
+    parser.add_argument("--jobs", type=int, default=os.cpu_count())
     parser.add_argument("--draw", type=int)
     parser.add_argument("--out", type=Path)
     parser.add_argument("--quiet", action="store_true")
@@ -73,7 +73,7 @@ def run(given):
     with Notice(f"suite {suite.name}") as notice:
         for i, place in enumerate(todo):
             notice.say(f"{place}, {i + 1} of {len(todo)}")
-            submission.compute(place, given.jobs or os.cpu_count())
+            submission.compute(place, given.jobs)
         if submission.missing():
             if not given.quiet:
                 print(f"{len(submission.missing())} parts are left to other shards; \"hapbench suite run {suite.name}\" with this --out finishes\n{folder}")
@@ -99,7 +99,7 @@ def table_of(law, scores, cost, folder):
 def check(given):
     folder = one_name(given, "the folder of a submission")
     with Notice("verifying") as notice:
-        draw, drawn, differs = verify(folder, given.jobs or os.cpu_count(), given.draw, notice.say)
+        draw, drawn, differs = verify(folder, given.jobs, given.draw, notice.say)
     if not given.quiet:
         print(f"computed again: {', '.join(drawn)}; and other seeds of every scene (--draw {draw} repeats it)")
         print("\n".join(differs) if differs else f"{folder}: verified, every hash and number the same")

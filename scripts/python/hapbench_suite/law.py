@@ -16,6 +16,11 @@ PROGRAM = Path(os.environ.get("HAPBENCH_PROGRAM", "hapbench"))
 FINE = (0, 3)  # done; a run ended otherwise than its scene expects
 
 
+def set_words(fields):
+    """The words that set fields, each as path=value."""
+    return [word for field_ in fields for word in ("--set", field_)]
+
+
 @dataclass
 class Law:
     """`kind`: built_in, plugin or python; `file`: of the latter two; `overrides`: of the open division, as in --set."""
@@ -60,10 +65,6 @@ class Law:
     def hash(self):
         return hashlib.sha256(self.file.read_bytes()).hexdigest() if self.file else None
 
-    def settings(self):
-        """The words that choose it."""
-        return [word for one in self.overrides for word in ("--set", one)]
-
     def label(self):
         """Its name with the fields that the open division sets, for pages and folders."""
         return " ".join([self.name, *(re.sub(r"^rendering\.|=true$", "", one) for one in self.overrides)])
@@ -73,7 +74,7 @@ class Law:
         with tempfile.TemporaryDirectory(prefix="hapbench-suite-") as scratch:
             given = ["--jitter", jitter_m] if jitter_m else []
             given += ["--set", f"seed={seed}"] if seed is not None else []
-            self.reply("compare", file, "--algorithms", self.name, *self.settings(), "--seeds", seeds, *given, "--jobs", jobs, "--out", scratch)
+            self.reply("compare", file, "--algorithms", self.name, *set_words(self.overrides), "--seeds", seeds, *given, "--jobs", jobs, "--out", scratch)
             folders = [Path(scratch) / self.name / f"seed_{k}" for k in range(seeds)] if seeds > 1 else [Path(scratch) / self.name]
             return [json.loads((folder / "summary.json").read_text(encoding="utf-8")) for folder in folders]
 
@@ -81,14 +82,12 @@ class Law:
         """The row of `hapbench limit`, and `felt_N_per_m`, what is rendered at half the limit, a gain margin of two: the mean force over how
         deep the tool is. A law that is softer than its K would else gain by it. None where nothing is stable there."""
         with tempfile.TemporaryDirectory(prefix="hapbench-suite-") as scratch:
-            more = [word for one in settings for word in ("--set", one)]
-            found = self.reply("limit", file, "--vary", vary, "--between", between, "--resolution", resolution, "--algorithms", self.name,
-                               *self.settings(), *more, "--out", scratch)
-            row = found["limits"][0]
+            settings = set_words([*self.overrides, *settings])
+            row = self.reply("limit", file, "--vary", vary, "--between", between, "--resolution", resolution, "--algorithms", self.name,
+                             *settings, "--out", scratch)["limits"][0]
             if row["limit"] is None:
                 return row | {"felt_N_per_m": None}
-            run = self.reply("run", file, "--set", f"{vary}={row['limit'] / 2!r}", "--set", f"rendering.algorithm={self.name}", *self.settings(), *more,
-                             "--out", scratch)[0]
+            run = self.reply("run", file, *set_words([f"{vary}={row['limit'] / 2!r}", f"rendering.algorithm={self.name}"]), *settings, "--out", scratch)[0]
             force, inside = run["metrics"]["force_mean_in_contact_N"], run["metrics"]["inside_settled_m"]
             return row | {"felt_N_per_m": force / inside if run["expected"] and force and inside else None}
 

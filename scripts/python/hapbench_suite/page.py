@@ -6,11 +6,12 @@ import math
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from hapbench.columns import read_records
 from hapbench_looks import look
 from hapbench_report.markup import cell, command, heading_cell, in_colour, named, number, table, text
 from hapbench_report.page import whole_page
 
-from .scores import Score, pareto, score
+from .scores import Score, leads, pareto, score
 from .submission import FILE, read_parts
 from .suite import Suite, SuiteError
 
@@ -83,9 +84,8 @@ def row_of_folder(folder):
 def rows_of_csv(file):
     """Of the tables that arena_csv writes."""
     by_law = {}
-    with open(file, encoding="utf-8", newline="") as lines:
-        for line in csv.DictReader(lines):
-            by_law.setdefault(tuple(line[name] for name in ABOUT), []).append(line)
+    for line in read_records(file):
+        by_law.setdefault(tuple(line[name] for name in ABOUT), []).append(line)
     for about, lines in by_law.items():
         suite = Suite(about[0])
         entries = {line["entry"]: line for line in lines}
@@ -139,8 +139,8 @@ def scale_of(axis):
 
 def summary(suite, rows):
     front = ", ".join(shown_name(row) for row in rows if row.front)
-    best = [(axis, min(rows, key=lambda r: (-1 if axis.more_is_better else 1) * r.scores[i].value)) for i, axis in enumerate(suite.axes)]
-    winners = "".join(f"<li>{text(axis.title)}: {shown_name(row)}</li>" for axis, row in best)
+    best = [next(row for row in rows if leads([other.scores for other in rows], row.scores, i)) for i in range(len(suite.axes))]
+    winners = "".join(f"<li>{text(axis.title)}: {shown_name(row)}</li>" for axis, row in zip(suite.axes, best))
     return (f"<h1>Arena of force laws, suite {text(suite.name)}</h1><p>{len(rows)} submissions, each judged in {len(suite.scenes_run())} frozen scenes "
             f"with {suite.seeds} seeds and by {len(suite.limits)} limits, on {len(suite.axes)} axes. There is no total: which axis matters is the "
             f"reader's choice. No other law is as good on all axes and better on one as these, the Pareto front: {front}.</p>"
@@ -157,7 +157,7 @@ def scores_table(suite, rows):
         cells = [cell(shown_name(row), classes="name"), cell("●" if row.front else "", 0 if row.front else 1), cell(text(row.about["division"]))]
         for i, one in enumerate(row.scores):
             factor = scale_of(one.axis)[1]
-            best = not any(one.axis.better(other.scores[i].value, one.value) for other in rows)
+            best = leads([other.scores for other in rows], row.scores, i)
             half = (one.high - one.low) / 2 * factor
             spread = f' <span class="unit">± {number(half, 1)}</span>' if half > 1e-4 * one.value * factor else ""
             cells.append(cell(("<b>" if best else "") + number(one.value * factor, 3) + ("</b>" if best else "") + spread, repr(one.value), "number"))
@@ -171,9 +171,10 @@ def scores_table(suite, rows):
 
 
 def log_axis(values):
+    """The ends of a logarithmic axis with some room beside the values."""
     low, high = min(values), max(values)
-    pad = 0.08 * math.log(high / low) if high > low else 0.5
-    return math.log(low) - pad, math.log(high) + pad
+    room = (high / low) ** 0.08 if high > low else math.sqrt(math.e)
+    return low / room, high * room
 
 
 def pareto_plots(suite, rows):
@@ -188,7 +189,7 @@ def scatter(suite, rows, ix, iy):
     spans = [log_axis([row.scores[i].value for row in rows]) for i in (ix, iy)]
 
     def place(axis, span, value, length):
-        share = (math.log(value) - span[0]) / (span[1] - span[0])
+        share = math.log(value / span[0]) / math.log(span[1] / span[0])
         return (1 - share if axis.more_is_better else share) * length
 
     places = [(left + place(ax, spans[0], row.scores[ix].value, width - left - 12),
@@ -199,11 +200,11 @@ def scatter(suite, rows, ix, iy):
         at, anchor = label_place(row.about["label"], x, y, width, height - bottom, taken)
         marks.append(f'<g class=run-name style="--light:{one.colour};--dark:{one.dark}"><circle cx="{x:.1f}" cy="{y:.1f}" r="{5 if row.front else 3.5}" '
                      f'fill="{"currentColor" if row.front else "none"}" stroke="currentColor" stroke-width="1.5"><title>{text(row.about["label"])}: '
-                     f'{value_text(row.scores[ix])}, {value_text(row.scores[iy])}</title></circle>'
+                     f'{said_of(row.scores[ix])}, {said_of(row.scores[iy])}</title></circle>'
                      f'<text x="{at[0]:.1f}" y="{at[1]:.1f}" text-anchor="{anchor}">{text(row.about["label"])}</text></g>')
-    ends = "".join(f'<text class=tick x="{x}" y="{height - bottom + 14}" text-anchor="{anchor}">{value_text_of(ax, end)}</text>' for x, anchor, end in (
+    ends = "".join(f'<text class=tick x="{x}" y="{height - bottom + 14}" text-anchor="{anchor}">{value_text(ax, end)}</text>' for x, anchor, end in (
         (left, "start", spans[0][ax.more_is_better]), (width - 12, "end", spans[0][not ax.more_is_better])))
-    ends += "".join(f'<text class=tick x="{left - 4}" y="{y}" text-anchor="end">{value_text_of(ay, end)}</text>' for y, end in (
+    ends += "".join(f'<text class=tick x="{left - 4}" y="{y}" text-anchor="end">{value_text(ay, end)}</text>' for y, end in (
         (height - bottom, spans[1][ay.more_is_better]), (20, spans[1][not ay.more_is_better])))
     said = f"{ax.title} against {ay.title}: {len(rows)} laws, the better the further down and left"
     return (f'<figure><svg viewBox="0 0 {width} {height}" role="img" aria-label="{text(said)}"><path class=frame d="M{left} 12V{height - bottom}H{width - 12}"/>'
@@ -223,13 +224,13 @@ def label_place(label, x, y, width, lowest, taken):
     return (x + 7, y + 3.5) if x + 7 + long < width else (x - 7, y + 3.5), "start" if x + 7 + long < width else "end"
 
 
-def value_text(one):
-    return f"{one.axis.title} {value_text_of(one.axis, math.log(one.value))}"
+def said_of(one):
+    return f"{one.axis.title} {value_text(one.axis, one.value)}"
 
 
-def value_text_of(axis, log):
+def value_text(axis, value):
     unit, factor = scale_of(axis)
-    return f"{number(math.exp(log) * factor, 2)} {unit}"
+    return f"{number(value * factor, 2)} {unit}"
 
 
 def radars(suite, rows):
@@ -291,5 +292,5 @@ def axes_table(suite):
             scenes.setdefault(metric or "limit", []).append(place)
         said = "; ".join(f"<code>{text(metric)}</code> in {', '.join(map(named, places))}" for metric, places in scenes.items())
         body.append([cell(text(axis.title)), cell("more" if axis.more_is_better else "less"), cell(str(len(axis.values)), classes="number"),
-                     cell(value_text_of(axis, math.log(axis.failed)), classes="number"), cell(said)])
+                     cell(value_text(axis, axis.failed), classes="number"), cell(said)])
     return table(headings, body)

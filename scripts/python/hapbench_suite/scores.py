@@ -76,6 +76,11 @@ def pareto(rows):
     return [not any(beats(other, own) for other in rows if other is not own) for own in rows]
 
 
+def leads(rows, own, i):
+    """Whether no row of scores is better on axis i than this one."""
+    return not any(other[i].axis.better(other[i].value, own[i].value) for other in rows)
+
+
 def agrees(submitted, held_back):
     """Whether scores of other seeds are what the submitted ones let expect, to one in a thousand: Student's t of the difference of
     two means of one spread."""

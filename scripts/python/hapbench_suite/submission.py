@@ -8,7 +8,7 @@ from pathlib import Path
 
 from hapbench_command import write
 
-from .law import Law
+from .law import Law, set_words
 from .scores import row_of, score
 from .suite import SuiteError
 
@@ -90,7 +90,7 @@ def timed(suite, law):
         best = {}
         for _ in range(REPEATS):  # taking turns, so that a machine that slows down slows both
             for name, one, more in (("law", law, ()), ("brute_force", brute, ("--no-skip",))):
-                words = ["run", suite.file(scene), "--set", f"rendering.algorithm={one.name}", *one.settings(), *more]
+                words = ["run", suite.file(scene), *set_words([f"rendering.algorithm={one.name}", *one.overrides]), *more]
                 best[name] = min(best.get(name, 1e300), _seconds(one, words))
         rows.append({"scene": scene, "over_brute_force": best["law"] / best["brute_force"], "us_per_step": 1e6 * best["law"]})
     return rows

@@ -170,14 +170,6 @@ SimulationParts staged(SimulationParts parts, FakeStage::Answer answer, const Re
   return parts;
 }
 
-SimulationConfig thrown(std::uint64_t steps) {
-  SimulationConfig config;
-  config.steps = steps;
-  config.position = {0.001, 0.0005, 0};
-  config.velocity = {0.02, -0.01, 0.03};
-  return config;
-}
-
 Vec3 damped_spring(const ToolState& tool) {
   return -3000.0 * tool.pose.position - 5.0 * tool.velocity;
 }
@@ -185,7 +177,7 @@ Vec3 damped_spring(const ToolState& tool) {
 TEST(StagedRendering, AnIdleStageMovesNoBitUnderAnyIntegrator) {
   for (const IntegratorEntry* integrator : kIntegrators) {
     SCOPED_TRACE(integrator->info.name);
-    SimulationConfig config = thrown(300);
+    SimulationConfig config = test::thrown(300);
     config.integrator = integrator;
     test::Recorder bare, with;
     Simulation(config, test::fake_parts(damped_spring), {&bare}).run();
@@ -208,7 +200,7 @@ TEST(StagedRendering, CountsWhatTheStageTakesAndWhatItAbsorbs) {
     return s.row % 3 == 0 ? Vec3(Vec3::Map(s.force)) : Vec3(0.5 * Vec3::Map(s.force));
   };
   test::Recorder recorder;
-  Simulation run(thrown(300), staged(test::fake_parts(damped_spring), weaker), {&recorder});
+  Simulation run(test::thrown(300), staged(test::fake_parts(damped_spring), weaker), {&recorder});
   run.run();
   const auto& rows = recorder.rows;
   double taken = 0.0, absorbed = 0.0;
@@ -234,7 +226,7 @@ TEST(StagedRendering, TellsTheRowAndCutsTheAnswerToTheForceLimit) {
   };
   test::Recorder recorder;
   SimulationParts parts = staged(test::fake_parts(damped_spring), strong, config);
-  Simulation run(thrown(50), std::move(parts), {&recorder});
+  Simulation run(test::thrown(50), std::move(parts), {&recorder});
   run.run();
   const StepRecord& row = recorder.rows.back();
   EXPECT_TRUE(row.force.rendered.isApprox(Vec3(1.2, 0.0, 1.6), 1e-15));
@@ -256,10 +248,10 @@ TEST(StagedRendering, IsHeldPassiveByTheControllerAroundIt) {
   RenderingConfig config;
   SimulationParts parts = staged(test::fake_parts(test::weightless), pushes, config);
   test::Recorder free, held;
-  Simulation(thrown(400), staged(test::fake_parts(test::weightless), pushes, config), {&free}).run();
+  Simulation(test::thrown(400), staged(test::fake_parts(test::weightless), pushes, config), {&free}).run();
   EXPECT_GT(free.rows.back().tool.velocity.norm(), 1.5 * free.rows.front().tool.velocity.norm());
   parts.algorithm = std::make_unique<PassivityController>(std::move(parts.algorithm), config);
-  Simulation(thrown(400), std::move(parts), {&held}).run();
+  Simulation(test::thrown(400), std::move(parts), {&held}).run();
   // 400 roundings of the speed.
   EXPECT_LE(held.rows.back().tool.velocity.norm(), held.rows.front().tool.velocity.norm() * (1.0 + 1000 * kEpsilon));
 }

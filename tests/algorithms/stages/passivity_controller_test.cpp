@@ -60,14 +60,6 @@ SimulationParts controlled(SimulationParts parts, const RenderingConfig& config 
   return parts;
 }
 
-SimulationConfig pushed_off(std::uint64_t steps) {
-  SimulationConfig config;
-  config.steps = steps;
-  config.position = {0.001, 0.0005, 0};
-  config.velocity = {0.02, -0.01, 0.03};
-  return config;
-}
-
 Vec3 negative_spring(const ToolState& tool) {
   return 500.0 * tool.pose.position;
 }
@@ -86,7 +78,7 @@ TEST(PassivityController, ActiveLawsAreActiveWithoutItAndPassiveWithIt) {
                                                                    {"late spring", late_spring(10)}};
   for (const auto& [name, law] : laws) {
     SCOPED_TRACE(name);
-    const SimulationConfig config = pushed_off(2000);
+    const SimulationConfig config = test::thrown(2000);
     const Ran free = run(config, test::fake_parts(law));
     const Ran held = run(config, controlled(test::fake_parts(law)));
     EXPECT_LT(free.watch.least, -1e-3);
@@ -108,7 +100,7 @@ TEST(PassivityController, KeepsAnyForceUnderAnyHandPassive) {
     RenderingConfig config;
     config.mass = std::pow(10.0, 2.0 * numbers->uniform() - 1.5);
     if (seed % 2 == 0) config.max_force = size * numbers->uniform();
-    SimulationConfig run_config = pushed_off(200);
+    SimulationConfig run_config = test::thrown(200);
     run_config.mass = config.mass;
     const double limit = config.max_force.value_or(std::numeric_limits<double>::infinity());
     SimulationParts parts = test::fake_parts([numbers, size, limit](const ToolState&) -> Vec3 {
@@ -179,7 +171,7 @@ TEST(PassivityController, KeepsAnyMomentOfATremblingHandPassive) {
       config.max_force = seed % 2 == 0 ? 0.5 : 5.0;
       parts.algorithm = std::make_unique<Lever>(seed, *config.max_force);
       parts.motion = std::make_unique<Trembling>(seed);
-      return run(pushed_off(400), controller ? controlled(std::move(parts), config) : std::move(parts));
+      return run(test::thrown(400), controller ? controlled(std::move(parts), config) : std::move(parts));
     };
     const Ran held = ran(true);
     EXPECT_GE(held.watch.least, -held.watch.rounding());
@@ -248,7 +240,7 @@ TEST(PassivityController, ChangesARunOnlyIfItWouldCreateEnergy) {
 
 /// alpha <= M / dt: the damping alone stops the tool and does not turn it round.
 TEST(PassivityController, WithNothingToGiveItStopsTheToolAtMost) {
-  SimulationConfig config = pushed_off(2);
+  SimulationConfig config = test::thrown(2);
   SimulationParts parts = controlled(test::fake_parts([](const ToolState& tool) { return Vec3(1e9 * tool.velocity); }));
   Simulation simulation(config, std::move(parts), {});
   const Vec3 before = simulation.tool().velocity;
@@ -260,7 +252,7 @@ TEST(PassivityController, WithNothingToGiveItStopsTheToolAtMost) {
 }
 
 TEST(PassivityController, ResetRepeatsTheRunBitForBit) {
-  const SimulationConfig config = pushed_off(300);
+  const SimulationConfig config = test::thrown(300);
   Simulation simulation(config, controlled(test::fake_parts(negative_spring)), {});
   simulation.run();
   const ToolState first = simulation.tool();

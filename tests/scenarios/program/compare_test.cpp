@@ -429,7 +429,7 @@ TEST_F(CompareDevices, PrintsAnIntervalOverDryFriction) {
   EXPECT_EQ(compare("touch", "out", {"--friction", "2", "--set", "device.coulomb_N=0"}).status, 2);
 }
 
-/// What nobody published of a preset stands at both ends of what it may be, unless a file or --set gives it.
+/// The unpublished numbers of a preset are taken at both ends of their ranges, unless a file or --set gives them.
 TEST_F(CompareDevices, PrintsAnIntervalOverWhatIsNotPublished) {
   const auto asked = [this](const char* devices, Words words) {
     words.insert(words.end(), {"--algorithms", "mean", "--resolution", "0.5", "--json"});
