@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <concepts>
 #include <cstdint>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
@@ -111,7 +112,7 @@ struct Metric {
 
  private:
   static Value value_from(const Value& given) { return given; }
-  static Value value_from(std::uint64_t count) { return count; }
+  static Value value_from(std::unsigned_integral auto count) { return std::uint64_t{count}; }
   static Value value_from(double number) { return std::isfinite(number) ? Value(number) : Value(); }
   template <class Given>
   static Value value_from(const std::optional<Given>& given) {

@@ -1,0 +1,53 @@
+// What a page has not, in place of the engine's own: an installation, plugins, signals, a limit of memory.
+#include <filesystem>
+
+#include "algorithms/plugin/plugin_call.hpp"
+#include "algorithms/stages/force_stage.hpp"
+#include "scenarios/description/bundled_scenarios.hpp"
+#include "scenarios/input/input_error.hpp"
+#include "scenarios/input/memory_limit.hpp"
+#include "scenarios/plugins/load_plugin.hpp"
+#include "scenarios/run/stop_signal.hpp"
+
+namespace hapbench {
+namespace {
+
+[[noreturn]] void refuse_library() {
+  throw InputError("a page loads no libraries; run this scenario with hapbench");
+}
+
+}  // namespace
+
+/// The page's own files, and beside them the bundled scenarios.
+std::filesystem::path find_scenario(const std::string& name, const std::filesystem::path& directory) {
+  for (const auto& file : {directory / name, std::filesystem::path("/scenarios") / (name + ".json")})
+    if (std::error_code error; std::filesystem::exists(file, error)) return file;
+  throw InputError(name + ": no such file and no bundled scenario");
+}
+
+const HapbenchContactSource* find_peer(const std::string&) {
+  refuse_library();
+}
+const HapbenchContactSource& contact_plugin(const std::filesystem::path&) {
+  refuse_library();
+}
+const HapbenchForceStage& force_stage_plugin(const std::filesystem::path&) {
+  refuse_library();
+}
+std::string peer_package(const std::string&) {
+  return {};
+}
+std::unique_ptr<ForceStage> make_plugin_stage(const HapbenchForceStage&, const std::string&) {
+  refuse_library();
+}
+PluginCall::PluginCall(const char*, const char*) noexcept {}
+PluginCall::~PluginCall() = default;
+
+void require_memory(double bytes, const std::string& what) {
+  constexpr double kMost = 1e9;  // WebAssembly addresses 4 GB, of which browsers do not give a page all
+  if (bytes > kMost) throw InputError(what + " would take more than 1 GB; run this scenario with hapbench");
+}
+
+void throw_if_stopped() {}
+
+}  // namespace hapbench

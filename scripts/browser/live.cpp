@@ -1,0 +1,261 @@
+// The engine for a page: a scenario whose hand and wrist follow a pointer, row by row. One WebAssembly instance is one run.
+// Exported functions take and return numbers and addresses in the instance's memory; texts end with a zero byte. An
+// exception ends the instance (runtime.cpp).
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+
+#include "device_model/hands/scripted_hands.hpp"
+#include "results/observe/metrics.hpp"
+#include "results/observe/passivity_observer.hpp"
+#include "results/summary/outcome_names.hpp"
+#include "scenarios/description/bundled_scenarios.hpp"
+#include "scenarios/run/assemble.hpp"
+#include "sim/core/hash.hpp"
+#include "sim/loop/simulation.hpp"
+
+#define EXPORTED(name) __attribute__((export_name(#name)))
+
+namespace hapbench {
+namespace {
+
+/// The last waypoints of what a pointer leads: place [m], tilt and azimuth [rad]. Profiles of these few have, where they
+/// lead, the values of profiles of all waypoints, bit for bit.
+class Pointer {
+ public:
+  static constexpr std::size_t kLed = 5;
+
+  void add(double t, const std::array<double, kLed>& values) {
+    for (std::size_t i = 0; i < kLed; ++i) {
+      auto& points = led_[i].points;
+      if (points.size() == kKept) points.erase(points.begin());
+      points.push_back({t, values[i]});
+    }
+  }
+  Profile profile(std::size_t i) const { return Profile::Shape(led_[i]); }
+  std::array<Profile, 3> place() const { return {profile(0), profile(1), profile(2)}; }
+  bool empty() const { return led_[0].points.empty(); }
+
+ private:
+  static constexpr std::size_t kKept = 4;
+  std::array<Profile::Waypoints, kLed> led_;
+};
+
+class PointerHand final : public Hand {
+ public:
+  explicit PointerHand(const ImpedanceHandFields& fields) : fields_(fields), hand_(0.0, 0.0, {}) {}
+
+  void follow(const Pointer& pointer) {
+    hand_ = ImpedanceHand(fields_.stiffness, fields_.damping, pointer.place());
+  }
+  void reset() noexcept override {}
+  Vec3 force(double t, const HandView& view) noexcept override { return hand_.force(t, view); }
+
+ private:
+  ImpedanceHandFields fields_;
+  ImpedanceHand hand_;
+};
+
+/// Turns the tool by the pointer's angles in place of the scenario's.
+class PointerMotion final : public Motion {
+ public:
+  explicit PointerMotion(const OrientationFields& fields)
+      : orientation_{fields.up.normalized(), fields.lean.normalized(), fields.tilt, fields.azimuth, fields.roll},
+        motion_(orientation_, std::nullopt) {}
+
+  void follow(const Pointer& pointer) {
+    orientation_.tilt = pointer.profile(3);
+    orientation_.azimuth = pointer.profile(4);
+    motion_ = ScriptedMotion(orientation_, std::nullopt);
+  }
+  Vec3 axis_at(double t) const noexcept override { return motion_.axis_at(t); }
+  double roll_at(double t) const noexcept override { return motion_.roll_at(t); }
+  bool scripts_roll() const noexcept override { return motion_.scripts_roll(); }
+  bool position_is_free() const noexcept override { return true; }
+  Vec3 position_at(double) const noexcept override { return Vec3::Zero(); }
+
+ private:
+  Orientation orientation_;
+  ScriptedMotion motion_;
+};
+
+/// What the page reads of a row; `kRow` names the numbers, three of a vector.
+constexpr const char* kRow[] = {"time", "position", "axis", "force", "spring", "hand", "handle", "depth", "contacts"};
+constexpr std::size_t kRowNumbers = 1 + 6 * 3 + 2;
+
+class Session final : public Observer {
+ public:
+  explicit Session(LoadedScenario loaded) : loaded_(std::move(loaded)) {
+    const Scenario& scenario = loaded_.scenario;
+    const auto* hand = std::get_if<ImpedanceHandFields>(&scenario.hand);
+    if (hand == nullptr) throw InputError("/hand/type: allowed: \"impedance\", whose target the pointer leads");
+    if (!scenario.motion.orientation || !std::holds_alternative<FreePosition>(scenario.motion.position))
+      throw InputError("/motion/position/type: allowed: \"free\", because the pointer leads the tool");
+    check_named_files(loaded_);
+    parts_ = assemble(scenario, loaded_.files, make_shell(scenario, loaded_.files), {});
+    shell_ = parts_.shell;
+    tool_ = parts_.tool;
+    auto led_hand = std::make_unique<PointerHand>(*hand);
+    hand_ = led_hand.get();
+    parts_.hand = std::move(led_hand);
+    auto led_motion = std::make_unique<PointerMotion>(*scenario.motion.orientation);
+    motion_ = led_motion.get();
+    parts_.motion = std::move(led_motion);
+    contacts_.emplace(parts_.source->capacity());
+    metrics_.emplace(scenario.time.step);
+    passivity_.emplace(scenario.time.step);
+  }
+
+  void on_step(const StepRecord& row) noexcept override {
+    last_ = row.force.S;
+    contacts_->assign(*row.rendered);
+    rows_.push_back(row.time);
+    for (const Vec3& v : {row.tool.pose.position, row.tool.pose.axis, row.force.rendered, row.force.spring, row.hand_force,
+                          row.handle.position})
+      rows_.insert(rows_.end(), {v.x(), v.y(), v.z()});
+    rows_.insert(rows_.end(), {row.force.depth_max, static_cast<double>(row.rendered->size())});
+  }
+
+  /// The pointer's waypoints from now on end with this one.
+  void aim(double t, const std::array<double, Pointer::kLed>& values) {
+    pointer_.add(t, values);
+    hand_->follow(pointer_);
+    motion_->follow(pointer_);
+    if (simulation_) return;
+    simulation_.emplace(simulation_config(loaded_.scenario), std::move(parts_),
+                        std::vector<Observer*>{&*metrics_, &*passivity_, this});
+  }
+
+  const double* advance(std::uint32_t rows) {
+    rows_.clear();
+    rows_.reserve(kRowNumbers * rows);
+    simulation_->advance(rows);
+    return rows_.data();
+  }
+  std::size_t advanced() const { return rows_.size() / kRowNumbers; }
+
+  const char* text(const nlohmann::json& json) {
+    text_ = json.dump();
+    return text_.c_str();
+  }
+
+  /// What does not change from row to row.
+  const char* scene() {
+    const Scenario& scenario = loaded_.scenario;
+    nlohmann::json outline = nlohmann::json::array();
+    if (tool_) {
+      for (const ProfilePoint& p : tool_->outline()) outline.push_back({p.s, p.rho});
+    }
+    const OrientationFields& turned = *scenario.motion.orientation;
+    const Box box = shell_ ? shell_->bounds() : Box{};
+    const auto list = [](const Vec3& v) { return nlohmann::json{v.x(), v.y(), v.z()}; };
+    return text({{"step_s", scenario.time.step},
+                 {"stiffness_N_per_m", scenario.rendering.stiffness},
+                 {"algorithm", scenario.rendering.algorithm},
+                 {"initial_m", list(scenario.initial.position)},
+                 {"tilt_rad", turned.tilt(0.0)},
+                 {"azimuth_rad", turned.azimuth(0.0)},
+                 {"up", list(turned.up.normalized())},
+                 {"half_width_m", tool_ ? tool_->half_width() : 0.0},
+                 {"outline_m", outline},
+                 {"box_m", {list(box.min), list(box.max)}},
+                 {"points", shell_ ? shell_->size() : 0},
+                 {"warnings", loaded_.warnings},
+                 {"row", kRow}});
+  }
+
+  /// What the page shows of the whole run so far and of its last row.
+  const char* state() {
+    const Metrics metrics = metrics_->metrics();
+    const auto passivity = passivity_->metrics();
+    nlohmann::json contacts = nlohmann::json::array();
+    for (std::size_t i = 0; i < contacts_->size(); ++i) {
+      const Vec3 p = contacts_->point(i), u = contacts_->gradient(i);
+      contacts.push_back({p.x(), p.y(), p.z(), u.x(), u.y(), u.z(), contacts_->depth[i], contacts_->weight[i]});
+    }
+    nlohmann::json tensor = nlohmann::json::array();
+    for (Eigen::Index i = 0; i < 3; ++i) tensor.push_back({last_(i, 0), last_(i, 1), last_(i, 2)});
+    const SimulationResult& result = simulation_->result();
+    const bool diverged = result.outcome == Outcome::diverges;
+    return text({{"rows", result.rows},
+                 {"state_hash", hash_text(metrics.state_hash)},
+                 {"outcome", outcome_name(result.outcome)},
+                 {"fault", diverged ? result.divergence.quantity : ""},
+                 {"energy_created_J", passivity ? passivity->net_created() : 0.0},
+                 {"depth_max_m", metrics.depth_max},
+                 {"tensor", tensor},
+                 {"contacts", contacts}});
+  }
+
+  const PointShell* shell() const { return shell_.get(); }
+
+ private:
+  LoadedScenario loaded_;
+  SimulationParts parts_;
+  std::shared_ptr<const PointShell> shell_;
+  std::shared_ptr<const ToolShape> tool_;
+  PointerHand* hand_ = nullptr;      ///< the simulation's
+  PointerMotion* motion_ = nullptr;  ///< the simulation's
+  Pointer pointer_;
+  std::optional<MetricsObserver> metrics_;
+  std::optional<PassivityObserver> passivity_;
+  std::optional<ContactBuffer> contacts_;
+  std::optional<Simulation> simulation_;
+  Mat3 last_ = Mat3::Zero();
+  std::vector<double> rows_;
+  std::string text_;
+};
+
+std::optional<Session> session;
+
+}  // namespace
+
+extern "C" {
+
+EXPORTED(allocate) void* page_allocate(std::uint32_t size) {
+  return std::malloc(size);
+}
+
+/// Makes the run of a file or bundled scenario; `overrides` are lines "path=value" as for --set.
+EXPORTED(load) void page_load(const char* name, const char* overrides) {
+  std::vector<std::string> given;
+  for (std::string_view rest = overrides; !rest.empty();) {
+    const std::size_t end = rest.find('\n');
+    given.emplace_back(rest.substr(0, end));
+    rest = end == std::string_view::npos ? std::string_view() : rest.substr(end + 1);
+  }
+  session.emplace(load_scenario(find_scenario(name), given));
+}
+
+EXPORTED(scene) const char* page_scene() {
+  return session->scene();
+}
+
+/// From its last waypoint on, the pointer moves to these values, which it reaches at time t [s, m, rad].
+EXPORTED(aim) void page_aim(double t, double x, double y, double z, double tilt, double azimuth) {
+  session->aim(t, {x, y, z, tilt, azimuth});
+}
+
+/// Computes so many rows, which must end two steps before the last waypoint, and returns their numbers, row after row.
+EXPORTED(advance) const double* page_advance(std::uint32_t rows) {
+  return session->advance(rows);
+}
+/// The number of rows of the last `advance`: fewer than asked for once the run has ended.
+EXPORTED(advanced) std::uint32_t page_advanced() {
+  return static_cast<std::uint32_t>(session->advanced());
+}
+
+EXPORTED(state) const char* page_state() {
+  return session->state();
+}
+
+/// A coordinate of the shell's points, or of their normals for 3 ... 5; null without a shell.
+EXPORTED(coordinates) const double* page_coordinates(std::uint32_t which) {
+  const PointShell* shell = session->shell();
+  if (shell == nullptr) return nullptr;
+  const double* columns[] = {shell->x(), shell->y(), shell->z(), shell->nx(), shell->ny(), shell->nz()};
+  return columns[which];
+}
+
+}  // extern "C"
+
+}  // namespace hapbench

@@ -1,0 +1,63 @@
+// What the standard library for WebAssembly has not: exceptions and files. An exception ends the engine with its message;
+// the page makes a new one.
+#include <sys/stat.h>
+#include <wasi/api.h>
+
+#include <cerrno>
+#include <cstdlib>
+#include <exception>
+#include <filesystem>
+#include <fstream>
+#include <typeinfo>
+
+/// Throws an error with this message in the page.
+extern "C" [[noreturn]] __attribute__((import_module("page"), import_name("fail"))) void page_fail(const char* message);
+
+extern "C" {
+
+void* __cxa_allocate_exception(std::size_t size) {
+  void* memory = std::malloc(size);
+  if (memory == nullptr) page_fail("out of memory");
+  return memory;
+}
+
+void __cxa_free_exception(void* memory) {
+  std::free(memory);
+}
+
+/// All that the engine throws on its way to here is a std::exception, without another base before it.
+[[noreturn]] void __cxa_throw(void* thrown, std::type_info*, void (*)(void*)) {
+  page_fail(static_cast<std::exception*>(thrown)->what());
+}
+
+}  // extern "C"
+
+// The library declares these members of its instances as defined elsewhere.
+template class std::basic_filebuf<char>;
+template class std::basic_ifstream<char>;
+
+_LIBCPP_BEGIN_NAMESPACE_FILESYSTEM
+
+file_status __status(const path& p, error_code* error) {
+  struct stat found = {};
+  if (::stat(p.c_str(), &found) != 0) {
+    const bool is_missing = errno == ENOENT || errno == ENOTDIR || errno == ENOTCAPABLE;
+    if (error) *error = is_missing ? error_code() : error_code(errno, generic_category());
+    return file_status(is_missing ? file_type::not_found : file_type::unknown);
+  }
+  if (error) error->clear();
+  return file_status(S_ISDIR(found.st_mode) ? file_type::directory : file_type::regular);
+}
+
+path __current_path(error_code* error) {
+  if (error) error->clear();
+  return "/";
+}
+
+/// There are no links.
+bool __equivalent(const path& a, const path& b, error_code* error) {
+  if (error) error->clear();
+  return a.lexically_normal() == b.lexically_normal();
+}
+
+_LIBCPP_END_NAMESPACE_FILESYSTEM

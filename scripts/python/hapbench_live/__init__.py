@@ -1,0 +1,1 @@
+"""The live page: the engine and its scenes as one file."""

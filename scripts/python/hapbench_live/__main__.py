@@ -1,0 +1,109 @@
+"""Puts the live page together. scripts/live calls it."""
+import argparse
+import base64
+import gzip
+import json
+import sys
+from pathlib import Path
+
+from hapbench_report.markup import ASSETS, fill
+
+ROOT = Path(__file__).resolve().parents[3]
+PAGE = ROOT / "scripts" / "browser" / "page"
+SCENARIOS = ROOT / "scenarios"
+REPLAY = ("replay_camera.js", "replay_scene.js", "replay_tool.js", "replay_field.js", "replay_tracks.js")
+GROUPS = ("thesis", "limits", "beyond", "quality", "examples")
+
+
+def scenario_files():
+    """Bundled scenarios by name."""
+    return {file.stem: file for group in GROUPS for file in sorted((SCENARIOS / group).glob("*.json"))}
+
+
+def named_files(value):
+    """What a scenario names in fields called "file"."""
+    if isinstance(value, dict):
+        for key, part in value.items():
+            yield from [part] if key == "file" and isinstance(part, str) else named_files(part)
+    elif isinstance(value, list):
+        for part in value:
+            yield from named_files(part)
+
+
+def packed_files(scenes):
+    """The bundled scenarios, and the files that those of the page name, by their paths in the page."""
+    bundled = scenario_files()
+    files = {f"/scenarios/{name}.json": file.read_text(encoding="utf-8") for name, file in bundled.items()}
+    for scene in scenes:
+        name = scene["scenario"]
+        while name:
+            scenario = json.loads(bundled[name].read_text(encoding="utf-8"))
+            for file in named_files(scenario):
+                files[f"/scenarios/{file}"] = (bundled[name].parent / file).read_text(encoding="utf-8")
+            name = Path(scenario["extends"]).stem if "extends" in scenario else None
+    return files
+
+
+def values_of(schema, name):
+    """Every value that the schema has for a property of this name."""
+    if isinstance(schema, dict):
+        if name in schema.get("properties", {}):
+            yield schema["properties"][name]
+        for part in schema.values():
+            yield from values_of(part, name)
+    elif isinstance(schema, list):
+        for part in schema:
+            yield from values_of(part, name)
+
+
+def first_value(schema, name, key):
+    return next(value for value in values_of(schema, name) if key in value)[key]
+
+
+def choices(schema):
+    """Laws, devices and stages, as the schema has them."""
+    kinds = [kind["const"] for kind in values_of(first_value(schema, "force_stage", "anyOf"), "type")]
+    builtin = [kind for kind in kinds if kind not in ("plugin", "added")]
+    return {
+        "laws": first_value(schema, "algorithm", "enum"),
+        "devices": [{"title": "as in the scene", "set": []}, {"title": "ideal", "set": ['device={"type":"ideal"}']},
+                    {"title": "the trainer's (admittance)", "set": ['device={"type":"admittance"}']},
+                    *({"title": f"{preset} (impedance)", "set": [f'device={{"type":"impedance","preset":"{preset}"}}']}
+                      for preset in first_value(schema, "preset", "enum"))],
+        "stages": [{"title": "none", "set": []}, {"title": "angular damping", "set": ["rendering.angular_damping=true"]},
+                   {"title": "passivity controller", "set": ["rendering.passivity_controller=true"]},
+                   *({"title": stage.replace("_", " "), "set": [f'rendering.force_stage={{"type":"{stage}"}}']} for stage in builtin)],
+    }
+
+
+def pressed(content):
+    """Text for the page; the same for the same content."""
+    return base64.b64encode(gzip.compress(content, mtime=0)).decode()
+
+
+def page(engine):
+    scenes = json.loads((PAGE / "scenes.json").read_text(encoding="utf-8"))
+    schema = json.loads((SCENARIOS / "scenario.schema.json").read_text(encoding="utf-8"))
+    read = lambda folder, *names: "\n".join((folder / name).read_text(encoding="utf-8") for name in names)
+    data = {"engine": pressed(engine), "files": pressed(json.dumps(packed_files(scenes)).encode()), "scenes": scenes, **choices(schema)}
+    return fill(PAGE / "live.html", {
+        "style": read(ASSETS, "style.css") + read(PAGE, "live.css"),
+        "sides": "\n".join(fill(PAGE / "side.html", {"which": str(i)}) for i in (1, 2)),
+        "data": json.dumps(data).replace("</", "<\\/"),
+        "worker": '"use strict";\n' + read(PAGE, "engine.js", "worker.js"),
+        "script": "\n".join((read(ASSETS, "theme.js", *REPLAY), read(PAGE, "engine.js", "live_sound.js", "live_view.js", "live.js"))),
+    })
+
+
+def main():
+    parser = argparse.ArgumentParser(prog="scripts/live", description="Puts the live page together.")
+    parser.add_argument("engine", type=Path, help="live.wasm")
+    parser.add_argument("--out", type=Path, required=True)
+    given = parser.parse_args()
+    text = page(given.engine.read_bytes())
+    given.out.parent.mkdir(parents=True, exist_ok=True)
+    given.out.write_text(text, encoding="utf-8")
+    print(f"{given.out} ({len(text) / 1e6:.1f} MB)")
+
+
+sys.exit(main())
