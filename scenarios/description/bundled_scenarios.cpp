@@ -12,13 +12,10 @@ namespace hapbench {
 
 namespace fs = std::filesystem;
 
-/// Folders of `scenarios`.
-constexpr const char* kGroups[] = {"thesis", "limits", "beyond", "quality", "examples"};
-
 std::vector<BundledScenario> bundled_scenarios() {
   std::vector<BundledScenario> found;
   const fs::path folder = installed_folder("scenarios");
-  for (const char* group : kGroups) {
+  for (const char* group : kScenarioGroups) {
     std::error_code error;
     const fs::directory_iterator entries(folder / group, error);
     if (error) throw InputError(fmt::format("{}: {}", (folder / group).string(), error.message()));
@@ -61,7 +58,7 @@ std::vector<fs::path> find_scenarios(const std::vector<std::string>& arguments) 
   for (const std::string& argument : arguments) {
     const auto is_group = [&argument](const char* group) { return argument == group; };
     std::error_code error;
-    if (std::none_of(std::begin(kGroups), std::end(kGroups), is_group) || fs::exists(argument, error)) {
+    if (std::none_of(std::begin(kScenarioGroups), std::end(kScenarioGroups), is_group) || fs::exists(argument, error)) {
       files.push_back(find_scenario(argument));
       continue;
     }

@@ -7,6 +7,9 @@
 /// The scenarios that come with the program, known by their names.
 namespace hapbench {
 
+/// Folders of `scenarios` that hold bundled ones.
+inline constexpr const char* kScenarioGroups[] = {"thesis", "limits", "beyond", "quality", "examples"};
+
 /// A bundled scenario.
 struct BundledScenario {
   std::string name;   ///< file name without extension

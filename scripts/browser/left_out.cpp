@@ -18,9 +18,12 @@ namespace {
 
 }  // namespace
 
-/// The page's own files, and beside them the bundled scenarios.
+/// A file of the page, or else a bundled scenario.
 std::filesystem::path find_scenario(const std::string& name, const std::filesystem::path& directory) {
-  for (const auto& file : {directory / name, std::filesystem::path("/scenarios") / (name + ".json")})
+  std::vector<std::filesystem::path> places = {directory / name};
+  for (const char* group : kScenarioGroups)
+    places.push_back(std::filesystem::path("/scenarios") / group / (name + ".json"));
+  for (const auto& file : places)
     if (std::error_code error; std::filesystem::exists(file, error)) return file;
   throw InputError(name + ": no such file and no bundled scenario");
 }

@@ -1,6 +1,6 @@
-// The engine for a page: a scenario whose hand and wrist follow a pointer, row by row. One WebAssembly instance is one run.
-// Exported functions take and return numbers and addresses in the instance's memory; texts end with a zero byte. An
-// exception ends the instance (runtime.cpp).
+// The engine for a page: a scenario whose hand and wrist follow a pointer, row by row. One WebAssembly instance is one
+// run. Exported functions take and return numbers and addresses in the instance's memory; texts end with a zero byte.
+// An exception ends the instance (runtime.cpp).
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
@@ -18,25 +18,24 @@
 namespace hapbench {
 namespace {
 
-/// The last waypoints of what a pointer leads: place [m], tilt and azimuth [rad]. Profiles of these few have, where they
-/// lead, the values of profiles of all waypoints, bit for bit.
+/// The last waypoints of what a pointer leads: place [m], tilt and azimuth [rad]. Profiles of these few have, where
+/// they lead, the values of profiles of all waypoints, bit for bit.
 class Pointer {
  public:
   static constexpr std::size_t kLed = 5;
 
-  void add(double t, const std::array<double, kLed>& values) {
+  /// `now`: time of the next row [s]; of the waypoints before it the last two stay.
+  void add(double t, const std::array<double, kLed>& values, double now) {
     for (std::size_t i = 0; i < kLed; ++i) {
       auto& points = led_[i].points;
-      if (points.size() == kKept) points.erase(points.begin());
+      while (points.size() > 2 && points[2].first <= now) points.erase(points.begin());
       points.push_back({t, values[i]});
     }
   }
   Profile profile(std::size_t i) const { return Profile::Shape(led_[i]); }
   std::array<Profile, 3> place() const { return {profile(0), profile(1), profile(2)}; }
-  bool empty() const { return led_[0].points.empty(); }
 
  private:
-  static constexpr std::size_t kKept = 4;
   std::array<Profile::Waypoints, kLed> led_;
 };
 
@@ -44,9 +43,7 @@ class PointerHand final : public Hand {
  public:
   explicit PointerHand(const ImpedanceHandFields& fields) : fields_(fields), hand_(0.0, 0.0, {}) {}
 
-  void follow(const Pointer& pointer) {
-    hand_ = ImpedanceHand(fields_.stiffness, fields_.damping, pointer.place());
-  }
+  void follow(const Pointer& pointer) { hand_ = ImpedanceHand(fields_.stiffness, fields_.damping, pointer.place()); }
   void reset() noexcept override {}
   Vec3 force(double t, const HandView& view) noexcept override { return hand_.force(t, view); }
 
@@ -84,45 +81,39 @@ constexpr std::size_t kRowNumbers = 1 + 6 * 3 + 2;
 
 class Session final : public Observer {
  public:
-  explicit Session(LoadedScenario loaded) : loaded_(std::move(loaded)) {
+  /// Of a run that is led, `aim` comes before the first row; another goes as the scenario says.
+  Session(LoadedScenario loaded, bool is_led) : loaded_(std::move(loaded)) {
     const Scenario& scenario = loaded_.scenario;
-    const auto* hand = std::get_if<ImpedanceHandFields>(&scenario.hand);
-    if (hand == nullptr) throw InputError("/hand/type: allowed: \"impedance\", whose target the pointer leads");
-    if (!scenario.motion.orientation || !std::holds_alternative<FreePosition>(scenario.motion.position))
-      throw InputError("/motion/position/type: allowed: \"free\", because the pointer leads the tool");
     check_named_files(loaded_);
     parts_ = assemble(scenario, loaded_.files, make_shell(scenario, loaded_.files), {});
     shell_ = parts_.shell;
     tool_ = parts_.tool;
-    auto led_hand = std::make_unique<PointerHand>(*hand);
-    hand_ = led_hand.get();
-    parts_.hand = std::move(led_hand);
-    auto led_motion = std::make_unique<PointerMotion>(*scenario.motion.orientation);
-    motion_ = led_motion.get();
-    parts_.motion = std::move(led_motion);
     contacts_.emplace(parts_.source->capacity());
     metrics_.emplace(scenario.time.step);
     passivity_.emplace(scenario.time.step);
+    if (is_led)
+      put_on_pointer();
+    else
+      begin();
   }
 
   void on_step(const StepRecord& row) noexcept override {
     last_ = row.force.S;
     contacts_->assign(*row.rendered);
     rows_.push_back(row.time);
-    for (const Vec3& v : {row.tool.pose.position, row.tool.pose.axis, row.force.rendered, row.force.spring, row.hand_force,
-                          row.handle.position})
+    for (const Vec3& v : {row.tool.pose.position, row.tool.pose.axis, row.force.rendered, row.force.spring,
+                          row.hand_force, row.handle.position})
       rows_.insert(rows_.end(), {v.x(), v.y(), v.z()});
     rows_.insert(rows_.end(), {row.force.depth_max, static_cast<double>(row.rendered->size())});
   }
 
   /// The pointer's waypoints from now on end with this one.
   void aim(double t, const std::array<double, Pointer::kLed>& values) {
-    pointer_.add(t, values);
+    const std::uint64_t row = simulation_ ? simulation_->next_row() : 0;
+    pointer_.add(t, values, static_cast<double>(row) * loaded_.scenario.time.step);
     hand_->follow(pointer_);
     motion_->follow(pointer_);
-    if (simulation_) return;
-    simulation_.emplace(simulation_config(loaded_.scenario), std::move(parts_),
-                        std::vector<Observer*>{&*metrics_, &*passivity_, this});
+    if (!simulation_) begin();
   }
 
   const double* advance(std::uint32_t rows) {
@@ -145,7 +136,7 @@ class Session final : public Observer {
     if (tool_) {
       for (const ProfilePoint& p : tool_->outline()) outline.push_back({p.s, p.rho});
     }
-    const OrientationFields& turned = *scenario.motion.orientation;
+    const OrientationFields turned = scenario.motion.orientation.value_or(OrientationFields());
     const Box box = shell_ ? shell_->bounds() : Box{};
     const auto list = [](const Vec3& v) { return nlohmann::json{v.x(), v.y(), v.z()}; };
     return text({{"step_s", scenario.time.step},
@@ -155,6 +146,7 @@ class Session final : public Observer {
                  {"tilt_rad", turned.tilt(0.0)},
                  {"azimuth_rad", turned.azimuth(0.0)},
                  {"up", list(turned.up.normalized())},
+                 {"lean", list(turned.lean.normalized())},
                  {"half_width_m", tool_ ? tool_->half_width() : 0.0},
                  {"outline_m", outline},
                  {"box_m", {list(box.min), list(box.max)}},
@@ -189,6 +181,25 @@ class Session final : public Observer {
   const PointShell* shell() const { return shell_.get(); }
 
  private:
+  void put_on_pointer() {
+    const Scenario& scenario = loaded_.scenario;
+    const auto* hand = std::get_if<ImpedanceHandFields>(&scenario.hand);
+    if (hand == nullptr) throw InputError("/hand/type: allowed: \"impedance\", whose target the pointer leads");
+    if (!scenario.motion.orientation || !std::holds_alternative<FreePosition>(scenario.motion.position))
+      throw InputError("/motion/position/type: allowed: \"free\", because the pointer leads the tool");
+    auto led_hand = std::make_unique<PointerHand>(*hand);
+    hand_ = led_hand.get();
+    parts_.hand = std::move(led_hand);
+    auto led_motion = std::make_unique<PointerMotion>(*scenario.motion.orientation);
+    motion_ = led_motion.get();
+    parts_.motion = std::move(led_motion);
+  }
+
+  void begin() {
+    simulation_.emplace(simulation_config(loaded_.scenario), std::move(parts_),
+                        std::vector<Observer*>{&*metrics_, &*passivity_, this});
+  }
+
   LoadedScenario loaded_;
   SimulationParts parts_;
   std::shared_ptr<const PointShell> shell_;
@@ -215,15 +226,16 @@ EXPORTED(allocate) void* page_allocate(std::uint32_t size) {
   return std::malloc(size);
 }
 
-/// Makes the run of a file or bundled scenario; `overrides` are lines "path=value" as for --set.
-EXPORTED(load) void page_load(const char* name, const char* overrides) {
+/// Makes the run of a file or bundled scenario, which the pointer leads or the scenario itself; `overrides` are lines
+/// "path=value" as for --set.
+EXPORTED(load) void page_load(const char* name, const char* overrides, std::uint32_t is_led) {
   std::vector<std::string> given;
   for (std::string_view rest = overrides; !rest.empty();) {
     const std::size_t end = rest.find('\n');
     given.emplace_back(rest.substr(0, end));
     rest = end == std::string_view::npos ? std::string_view() : rest.substr(end + 1);
   }
-  session.emplace(load_scenario(find_scenario(name), given));
+  session.emplace(load_scenario(find_scenario(name), given), is_led != 0);
 }
 
 EXPORTED(scene) const char* page_scene() {

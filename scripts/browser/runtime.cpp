@@ -1,5 +1,5 @@
-// What the standard library for WebAssembly has not: exceptions and files. An exception ends the engine with its message;
-// the page makes a new one.
+// What the standard library for WebAssembly has not: exceptions and files. An exception ends the engine with its
+// message; the page makes a new one.
 #include <sys/stat.h>
 #include <wasi/api.h>
 

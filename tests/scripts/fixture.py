@@ -8,7 +8,7 @@ from pathlib import Path
 
 SOURCE = Path(__file__).resolve().parents[2]
 PROGRAM = Path(sys.argv[1] if len(sys.argv) > 1 else "hapbench").resolve()
-ENVIRONMENT = {**os.environ, "HAPBENCH_PYTHON": sys.executable, "PYTHONDONTWRITEBYTECODE": "1", "COLUMNS": "80"}
+ENVIRONMENT = {**os.environ, "HAPBENCH_PYTHON": sys.executable, "PYTHONDONTWRITEBYTECODE": "1", "COLUMNS": "80", "HAPBENCH_LIVE": ""}
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(SOURCE / "scripts" / "python"))
 

@@ -10,7 +10,7 @@ import tempfile
 import time
 import unittest
 
-PATIENCE_S = 1800
+PATIENCE_S = 300
 UNNAMED = """[...document.querySelectorAll('button, select, input, canvas, img')].filter((e) =>
     !(e.getAttribute('aria-label') || e.getAttribute('alt') || e.textContent.trim() && e.tagName === 'BUTTON' ||
       [...(e.labels || [])].some((label) => label.textContent.trim()))).map((e) => e.outerHTML.slice(0, 80))"""

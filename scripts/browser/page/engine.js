@@ -116,14 +116,15 @@ class System {
 
 /** One run of a scenario. Throws Error with the engine's message; the run can then not go on. */
 class Engine {
-  /** `name`: of a file or a bundled scenario; `overrides`: "path=value" each, as for --set. */
-  constructor(module, files, name, overrides) {
+  /** `name`: of a file or a bundled scenario; `overrides`: "path=value" each, as for --set. `isLed`: by `aim`, which comes
+   *  first, and not by the scenario's own hand and motion. */
+  constructor(module, files, name, overrides, isLed = true) {
     this.system = new System(files);
     const {exports} = new WebAssembly.Instance(module, this.system.imports());
     this.calls = exports;
     this.system.memory = exports.memory;
     exports.__wasm_call_ctors();
-    exports.load(this.text(name), this.text(overrides.join("\n")));
+    exports.load(this.text(name), this.text(overrides.join("\n")), isLed ? 1 : 0);
     this.scene = this.json(exports.scene());
     this.rows = 0;
     this.ended = false;

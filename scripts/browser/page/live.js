@@ -141,8 +141,8 @@ class Live {
   }
 
   springsOf() {
-    const file = this.files.get(`/scenarios/${this.scene.scenario}.json`);
-    const groups = file ? (JSON.parse(new TextDecoder().decode(file)).environment || {}).groups || [] : [];
+    const name = [...this.files.keys()].find((file) => file.endsWith(`/${this.scene.scenario}.json`) || file === this.scene.scenario);
+    const groups = name ? (JSON.parse(new TextDecoder().decode(this.files.get(name))).environment || {}).groups || [] : [];
     return groups.map(({direction, count}) => [...direction, count]);
   }
 

@@ -112,8 +112,7 @@ class LiveSound {
   async start(rate) {
     if (!this.context) {
       this.context = new AudioContext();
-      const code = URL.createObjectURL(new Blob([PLAYER], {type: "text/javascript"}));
-      await this.context.audioWorklet.addModule(code);
+      await this.context.audioWorklet.addModule(`data:text/javascript,${encodeURIComponent(PLAYER)}`);
       const limiter = this.context.createWaveShaper();
       limiter.curve = Float32Array.from({length: 4097}, (_, i) => Math.tanh(4 * (i / 2048 - 1)) / 4);
       this.gain = this.context.createGain();
@@ -129,7 +128,8 @@ class LiveSound {
       this.player.connect(this.gain);
       this.rate = rate;
     }
-    await this.context.resume();
+    // Not awaited: without a device of sound some browsers never answer.
+    this.context.resume();
     this.on = true;
   }
 

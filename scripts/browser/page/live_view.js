@@ -70,10 +70,10 @@ function viewedScene(engineScene, shell, springs) {
   const shown = planar ? places : places.filter(isNear);
   const every = Math.max(1, Math.ceil(shown.length / MOST_POINTS));
   const points = shown.filter((_, n) => n % every === 0).map((i) => ({at: vectorAt(shell, i), normal: vectorAt(shell, i + 3)}));
-  const size = springs.length ? 1e-3 : 4 * half;
-  return {planar: planar || springs.length > 0 && up[1] === 1, points, springs, deepest: DEEPEST_M, up, lean: planar || up[1] === 1 ? [1, 0, 0] : [1, 0, 0],
+  const size = springs.length ? 1e-3 : 4 * half, whole = planar && shell.length > 0;
+  return {planar: planar || springs.length > 0, points, springs, deepest: DEEPEST_M, up, lean: engineScene.lean,
     tool: engineScene.outline_m.length && !springs.length ? new Tool(engineScene.outline_m) : null,
-    focus: [start.map((x) => x - size), start.map((x) => x + size)], depthIn: () => -1,
+    focus: whole ? [low, high] : [start.map((x) => x - size), start.map((x) => x + size)], depthIn: () => -1,
     recordings: [{tip: () => start, axis: () => up.map((x) => -x)}]};
 }
 
@@ -88,10 +88,18 @@ function drawLive(canvas, scene, camera, trail, engineScene, led) {
     context.strokeStyle = colours.tool;
     context.lineWidth = 1;
     context.setLineDash([2, 3]);
-    context.stroke(toolPath(scene.tool, project, proxy, trail.axis()));
+    tracePath(context, outlineOf(scene.tool, project, proxy, trail.axis()));
+    context.closePath();
+    context.stroke();
     context.setLineDash([]);
   }
   drawTarget(context, project(led.slice(0, 3)), project(tip), colours);
+}
+
+/** The outline of a tool as far as it is convex: a proxy has no others. */
+function outlineOf(tool, project, tip, axis) {
+  const [a, b] = across(axis), ring = [...Array(16).keys()].map((i) => [Math.cos(Math.PI * i / 8), Math.sin(Math.PI * i / 8)]);
+  return hull(tool.profile.flatMap(([s, r]) => ring.map(([c, d]) => project(add(add(add(tip, axis, s), a, r * c), b, r * d)))));
 }
 
 function drawSpringForce(context, project, tip, force, colours) {

@@ -12,12 +12,10 @@ ROOT = Path(__file__).resolve().parents[3]
 PAGE = ROOT / "scripts" / "browser" / "page"
 SCENARIOS = ROOT / "scenarios"
 REPLAY = ("replay_camera.js", "replay_scene.js", "replay_tool.js", "replay_field.js", "replay_tracks.js")
-GROUPS = ("thesis", "limits", "beyond", "quality", "examples")
-
 
 def scenario_files():
     """Bundled scenarios by name."""
-    return {file.stem: file for group in GROUPS for file in sorted((SCENARIOS / group).glob("*.json"))}
+    return {file.stem: file for file in sorted(SCENARIOS.glob("*/*.json"))}
 
 
 def named_files(value):
@@ -33,13 +31,15 @@ def named_files(value):
 def packed_files(scenes):
     """The bundled scenarios, and the files that those of the page name, by their paths in the page."""
     bundled = scenario_files()
-    files = {f"/scenarios/{name}.json": file.read_text(encoding="utf-8") for name, file in bundled.items()}
+    place = lambda file: f"/scenarios/{file.relative_to(SCENARIOS).as_posix()}"
+    files = {place(file): file.read_text(encoding="utf-8") for file in bundled.values()}
     for scene in scenes:
         name = scene["scenario"]
         while name:
             scenario = json.loads(bundled[name].read_text(encoding="utf-8"))
-            for file in named_files(scenario):
-                files[f"/scenarios/{file}"] = (bundled[name].parent / file).read_text(encoding="utf-8")
+            for named in named_files(scenario):
+                file = bundled[name].parent / named
+                files[place(file)] = file.read_text(encoding="utf-8")
             name = Path(scenario["extends"]).stem if "extends" in scenario else None
     return files
 

@@ -7,6 +7,7 @@ import numpy as np
 
 from hapbench_command import Arguments, write
 from hapbench_report.json_input import InputError
+from hapbench_report.live_link import place_live_page
 from hapbench_report.markup import in_colour, table, text
 from hapbench_report.page import whole_page
 from hapbench_report.replay import player
@@ -43,6 +44,7 @@ def report(words):
     if file.suffix not in (".html", ".htm"):
         raise InputError(f"--out {file}: got \"{file.suffix}\"; allowed: .html")
     write(file, page.encode(errors="replace"))  # a path need not be UTF-8
+    place_live_page(file.parent)
     if not options.quiet:
         print(f"page of {len(runs)} run{'s' if len(runs) > 1 else ''} in {file}, {file.stat().st_size / 1e6:.1f} MB")
 

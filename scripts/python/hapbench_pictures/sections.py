@@ -5,6 +5,7 @@ from pathlib import Path
 
 from hapbench.columns import read_records
 from hapbench_report.json_input import at, number_or_none
+from hapbench_report.live_link import live_link
 from hapbench_report.markup import cell, columns, command, deserved_digits, heading_cell, named, number, number_cell, table, text
 from hapbench_report.runs import plugin_text, provenance_of, provenance_section
 
@@ -155,6 +156,7 @@ def scenario_section(runs, labels):
         return ""
     return differences(known) + "".join(
         f"<details><summary>Scenario of {text(label)}</summary><pre>{text(json.dumps(run.scenario, indent=2, ensure_ascii=False))}</pre>"
+        f"{live_link(run.scenario)}"
         f"<p class=note>State hash {text(run.summary.get('state_hash', '–'))}{plugin_text(run)}.</p></details>" for run, label in known)
 
 

@@ -9,6 +9,7 @@ from .credibility import load_credibility
 from .figures import load_figures
 from .json_input import InputError
 from .ledger import load_choices, load_claims
+from .live_link import place_live_page
 from .page import report
 from .performance import load_performance
 from .replay import packed_replays, record_replays
@@ -57,6 +58,7 @@ def run(options):
                   load_performance(options.results), load_credibility())
     out = options.out or options.results / "report.html"
     write(out, page)
+    place_live_page(out.parent)
     print(f"{out}: {len(page.encode()) / 1e6:.1f} MB, {len(runs)} runs")
 
 

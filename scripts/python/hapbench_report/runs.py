@@ -7,6 +7,7 @@ from pathlib import Path
 from hapbench import results
 
 from .json_input import at, member, number_or_none
+from .live_link import live_link
 from .markup import (algorithm_name, cell, columns, command, counted, filters, folded, heading_cell, listed, named, number_cell, table,
                      text)
 
@@ -131,7 +132,7 @@ def run_details(run, links):
              if title not in ("name", "description", "source", "expect")]
     return (f'<details id="{run.anchor}"><summary>{text(run.path)}</summary>{about}'
             f"{listed('Claims', claims)}{listed('Figures', figures)}{command(rerun(run))}"
-            f"<pre>{text(compact(dict(parts)))}</pre>"
+            f"{live_link(run.scenario)}<pre>{text(compact(dict(parts)))}</pre>"
             f"<p class=note>State hash {text(run.summary.get('state_hash', '–'))}, scenario hash "
             f"{text(at(run.summary, '/provenance/scenario_hash') or '–')}{plugin_text(run)}.</p></details>")
 

@@ -1,0 +1,277 @@
+"""The live page in a real Chromium and a real Firefox: what a hand does there is what the program computes."""
+import json
+import os
+import re
+import time
+import unittest
+
+from fixture import PROGRAM, SOURCE, hapbench, main, must, ran, scratch_folder
+from headless_chromium import UNNAMED, Chromium
+from headless_firefox import Firefox
+
+SCENES = ("peg", "hole", "task2", "wedge", "molar", "friction")
+READY = "window.live && live.begun && live.shown ? true : false"
+# Texts whose contrast to what is behind them is less than WCAG's level AA asks for, 4.5 to 1.
+PALE = """(() => {
+  const rgb = (text) => (text.match(/[\\d.]+/g) || []).map(Number);
+  const light = ([r, g, b]) => [0.2126, 0.7152, 0.0722].reduce((sum, part, i) => {
+    const c = [r, g, b][i] / 255;
+    return sum + part * (c <= 0.03928 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4);
+  }, 0);
+  const behind = (e) => {
+    for (; e; e = e.parentElement) {
+      const colour = rgb(getComputedStyle(e).backgroundColor);
+      if (colour.length === 3 || colour[3] === 1) return colour;
+    }
+    return [255, 255, 255];
+  };
+  return [...document.querySelectorAll('body *')].filter((e) => e.checkVisibility() && !e.closest('.visually-hidden, .skip, script, option') &&
+      [...e.childNodes].some((n) => n.nodeType === 3 && n.textContent.trim())).filter((e) => {
+    const [a, b] = [light(rgb(getComputedStyle(e).color)), light(behind(e))];
+    return (Math.max(a, b) + 0.05) / (Math.min(a, b) + 0.05) < 4.5;
+  }).map((e) => e.outerHTML.slice(0, 100));
+})()"""
+# How loud the page is over so many milliseconds: the rms of what goes to the loudspeaker, before the limiter.
+LOUDNESS = """(async () => {
+  const ears = live.sound.context.createAnalyser(), samples = new Float32Array(ears.fftSize);
+  live.sound.gain.connect(ears);
+  let sum = 0, count = 0;
+  for (const end = performance.now() + %d; performance.now() < end; await new Promise((r) => setTimeout(r, 20))) {
+    ears.getFloatTimeDomainData(samples);
+    for (const x of samples) sum += x * x;
+    count += samples.length;
+  }
+  live.sound.gain.disconnect(ears);
+  return Math.sqrt(sum / count);
+})()"""
+# Moves the hand by the given ways [m, rad] over so many rows.
+MOVE = "(async () => {{ const p = live.pointer; live.aim(p.map((x, i) => x + {way}[i])); await live.stepRows({rows}); }})()"
+
+folder = page = None
+
+
+def setUpModule():
+    global folder, page
+    folder = scratch_folder(unittest)
+    page = folder / "live.html"
+    made = ran(SOURCE / "scripts" / "live", "--out", page)
+    if "could not" in made.stderr:
+        raise unittest.SkipTest(made.stderr.strip())  # packages that this machine cannot get
+    assert made.returncode == 0, made.stderr
+
+
+class OfBrowser:
+    """Tests that every browser passes."""
+
+    def open(self, hash_=""):
+        self.browser.open("about:blank")
+        self.browser.open(page.as_uri() + hash_)
+        self.browser.wait_for(READY)
+
+    def js(self, expression):
+        return self.browser.evaluate(expression)
+
+    def centre(self, selector):
+        return self.js(f"(() => {{ const e = document.querySelector('{selector}'); e.scrollIntoView({{block: 'center', behavior: 'instant'}});"
+                       "const b = e.getBoundingClientRect(); return [b.x + b.width / 2, b.y + b.height / 2]; })()")
+
+    def choose(self, selector, value):
+        self.js(f"(async () => {{ const menu = document.querySelector('{selector}'); menu.value = '{value}';"
+                "live.begun = null; menu.dispatchEvent(new Event('change')); })()")
+        self.browser.wait_for(READY)
+
+    def move(self, way, rows):
+        self.js(MOVE.format(way=json.dumps(list(way)), rows=rows))
+
+    def assert_program_agrees(self, view=0, **files):
+        """What is kept of the motion has the same state when the program runs it."""
+        kept = self.js(f"live.kept({view})")
+        file = folder / f"{kept['name']}.json"
+        file.write_text(json.dumps(kept["scenario"]), encoding="utf-8")
+        for name, content in files.items():
+            (folder / name.replace("__", ".")).write_text(content, encoding="utf-8")
+        # A tool that went through the surface is not what is expected by default.
+        [run] = json.loads(must(PROGRAM, "run", file, "--json", "--out", folder / "runs", statuses=(0, 3)))
+        self.assertEqual(run["state_hash"], kept["state_hash"], kept["name"])
+        return run["metrics"]
+
+    def test_every_scene_is_the_program_s(self):
+        for scene in SCENES:
+            self.open(f"#scene={scene}")
+            down = -1e-3
+            planar = self.js("live.viewed.planar")
+            self.move((9e-4, down if planar else 1e-4, 0 if planar else down, 0.2, 0.1), 700)
+            self.move((-5e-4, 0, 0, -0.3, 0), 300)
+            touched = [self.assert_program_agrees(view)["steps_in_contact"] for view in (0, 1)]
+            self.assertTrue(all(touched), scene)
+
+    def test_a_drag_pushes_the_peg(self):
+        self.open()
+        before = self.js("live.pointer")
+        x, y = self.centre(".view")
+        self.drag([(x, y), (x + 10, y + 30), (x + 10, y + 60)])
+        self.browser.wait_for("live.shown.rows > 1000")
+        self.assertTrue(self.js("live.running"))
+        self.assertLess(self.js("live.pointer")[1], before[1])
+        self.js("live.toggle(false)")
+        self.assertGreater(self.assert_program_agrees()["force_max_N"], 0.01)
+
+    def test_the_original_algorithm_is_ten_times_as_loud(self):
+        self.open()
+        x, y = self.centre("#sound")
+        self.drag([(x, y)])
+        self.browser.wait_for("live.sound.on")
+        sounds = self.js("new Promise((done) => setTimeout(() => done(live.sound.context.state === 'running'), 500))")
+        self.assertTrue(sounds or self.may_be_silent)
+        loudness = {}
+        for law in ("original_averaging", "shaped_stiffness"):
+            self.choose("#views", "1")
+            self.choose(".side select", law)
+            self.js("live.aim(live.pointer.map((x, i) => x + [2e-4, -1e-3, 0, 0.25, 0][i]))")
+            self.browser.wait_for("live.shown.time > 1.5")
+            loudness[law] = self.js(LOUDNESS % 1500) if sounds else 0.0
+            loudness[law, "force"] = self.js("live.trails[0].vibration.rms")
+        self.assertGreater(loudness["original_averaging", "force"], 10 * loudness["shaped_stiffness", "force"], loudness)
+        if not sounds:
+            return
+        self.assertGreater(loudness["original_averaging"], 10 * loudness["shaped_stiffness"], loudness)
+        # 1 N is 20 dB below full scale, of which the limiter reads a quarter.
+        self.assertAlmostEqual(loudness["original_averaging"] / (0.025 * loudness["original_averaging", "force"]), 1, delta=0.5)
+
+    def test_an_own_mesh_is_dropped(self):
+        cube = (SOURCE / "tests" / "data" / "cube.obj").read_text(encoding="utf-8")
+        self.open()
+        self.js("document.getElementById('scale').value = '1'")
+        self.js(f"(() => {{ live.begun = null; const given = new DataTransfer(); given.items.add(new File([{json.dumps(cube)}], 'own.obj'));"
+                "document.getElementById('live').dispatchEvent(new DragEvent('drop', {dataTransfer: given, bubbles: true, cancelable: true})); })()")
+        self.browser.wait_for("live.begun && live.scene.id === 'own_obj' ? true : false")
+        depth = self.js("2 * live.begun[0].half_width_m")
+        self.move((0, 0, -2 * depth, 0, 0), 800)
+        self.assertGreater(self.assert_program_agrees(own__obj=cube)["steps_in_contact"], 0)
+
+    def test_faults_are_told_and_left(self):
+        self.open()
+        self.js("live.takeScenario('wrong.json', '{\"extends\": \"tap_wall\", \"tool\": {\"diameter_m\": -1}}')")
+        self.browser.wait_for("document.getElementById('said').classList.contains('failed')")
+        self.assertIn("diameter_m", self.js("document.getElementById('said').textContent"))
+        self.choose("#scene", "0")
+        self.move((0, -1e-4, 0, 0, 0), 50)
+        self.assert_program_agrees()
+
+    def test_back_is_the_same_way(self):
+        self.open()
+        self.move((2e-4, -1e-3, 0, 0.25, 0), 400)
+        self.js("live.stepRows(1)")
+        before = self.js("live.kept().then((kept) => kept.state_hash)")
+        self.js("live.stepRows(199)")
+        self.js("live.back(200 * live.begun[0].step_s)")
+        self.assertEqual(self.js("live.kept().then((kept) => kept.state_hash)"), before)
+        self.assert_program_agrees()
+
+    def test_a_report_leads_to_its_scene(self):
+        run, own = folder / "press", folder / "own.html"
+        hapbench("run", "press_into_hole", "--set", "time.duration_s=0.1", "--out", run, "--quiet")
+        must(PROGRAM, "report", run, "--out", own, "--quiet", HAPBENCH_LIVE=str(page))
+        [href] = re.findall(r'<a href="(live.html#[^"]*)">', own.read_text(encoding="utf-8"))
+        self.open(href.removeprefix("live.html"))
+        self.assertEqual(self.js("live.begun[0].algorithm"), "shaped_stiffness")
+        self.move((0, 0, -1e-3, 0, 0), 400)
+        self.assertGreater(self.assert_program_agrees()["steps_in_contact"], 0)
+
+    def test_keys_move_the_hand(self):
+        self.open()
+        before = self.js("live.pointer")
+        for key in ("ArrowDown", "e"):
+            self.js(f"document.querySelector('.view').dispatchEvent(new KeyboardEvent('keydown', {{key: '{key}'}}))")
+        self.assertEqual(self.js("live.pointer"), [before[0], before[1] - 5e-5, before[2], before[3] + 0.02, before[4]])
+
+    def test_fits_a_telephone_and_names_its_controls(self):
+        self.open()
+        self.assertEqual(self.js(UNNAMED), [])
+        for theme in ("light", "dark"):
+            self.js(f"(() => {{ const menu = document.getElementById('theme'); menu.value = '{theme}'; menu.dispatchEvent(new Event('change')); }})()")
+            self.assertEqual(self.js(PALE), [], theme)
+
+
+class InChromium(OfBrowser, unittest.TestCase):
+    may_be_silent = False
+
+    @classmethod
+    def setUpClass(cls):
+        cls.browser = Chromium(os.environ["HAPBENCH_CHROMIUM"])
+        cls.addClassCleanup(cls.browser.__exit__)
+
+    def setUp(self):
+        self.browser.messages.clear()
+
+    def tearDown(self):
+        self.assertEqual([c for c in self.browser.complaints() if not str(c).startswith("blob:")], [])
+
+    def drag(self, places):
+        x, y = places[0]
+        self.browser.mouse("mousePressed", x, y, button="left", clickCount=1)
+        for x, y in places[1:]:
+            self.browser.mouse("mouseMoved", x, y, button="left", buttons=1)
+            time.sleep(0.05)
+        self.browser.mouse("mouseReleased", x, y, button="left", clickCount=1)
+
+    def test_every_law_and_stage_is_the_program_s(self):
+        self.open()
+        self.choose("#views", "1")
+        for menu, values in ((".side select", "PACKED.laws"), ("#stage", "PACKED.stages.map((_, i) => String(i))"),
+                             ("#device", "PACKED.devices.map((_, i) => String(i))")):
+            for value in self.js(values):
+                self.choose(menu, value)
+                self.move((2e-4, -6e-4, 0, 0.2, 0), 250)
+                self.assert_program_agrees()
+            self.choose(menu, "shaped_stiffness" if "select" in menu else "0")
+
+    def test_every_bundled_scene_is_the_program_s(self):
+        """A thousand rows of each, as the scenario says: WebAssembly is one of the machines that have the same bytes."""
+        self.open()
+        short = "time.steps=1000"
+        names = {}
+        scenarios = SOURCE / "scenarios"
+        for file in sorted(scenarios.glob("*/*.json")):
+            if {"environment", "extends"} & json.loads(file.read_text(encoding="utf-8")).keys():
+                names[f"/scenarios/{file.relative_to(scenarios)}"] = file
+        for data in [*scenarios.glob("*/data/*.csv"), *scenarios.glob("*/data/*.obj")]:
+            self.js(f"live.files.set('/scenarios/{data.relative_to(scenarios)}', new TextEncoder().encode({json.dumps(data.read_text(encoding='utf-8'))}))")
+        runs = json.loads(must(PROGRAM, "run", *names.values(), "--set", short, "--json", "--out", folder / "bundled", statuses=(0, 3)))
+        # Several trials are several runs.
+        single = {name: run["state_hash"] for name, run in zip(names, runs, strict=True) if run["steps"] <= 1000}
+        self.assertGreater(len(single), 100)
+        found = self.js(f"""{json.dumps(list(single))}.map((name) => {{
+          try {{
+            const engine = new Engine(live.module, live.files, name, ["{short}"], false);
+            engine.advance(1000);
+            return [name, engine.state.state_hash];
+          }} catch (error) {{
+            return [name, error.message];
+          }}
+        }})""")
+        self.assertEqual({name: value for name, value in found if single[name] != value}, {})
+
+    def test_fits_400_pixels(self):
+        self.open()
+        self.browser.size(400, 800, 2)
+        self.addCleanup(self.browser.size, 1280, 900)
+        self.assertLessEqual(self.js("document.documentElement.scrollWidth"), 400)
+
+
+class InFirefox(OfBrowser, unittest.TestCase):
+    may_be_silent = True  # where the machine has no device of sound
+
+    @classmethod
+    def setUpClass(cls):
+        if not os.environ.get("HAPBENCH_FIREFOX"):
+            raise unittest.SkipTest("no Firefox: scripts/setup --browser installs one")
+        cls.browser = Firefox(os.environ["HAPBENCH_FIREFOX"])
+        cls.addClassCleanup(cls.browser.__exit__)
+
+    def drag(self, places):
+        self.browser.drag(places)
+
+
+if __name__ == "__main__":
+    main()
