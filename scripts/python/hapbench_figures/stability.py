@@ -103,6 +103,7 @@ LIMITS = {
     "stable_gil_hulin": "stable (Gil, Hulin)",
     "passive_abbott_okamura": "passive (Abbott, Okamura)",
     "exact_undamped_handle": "exact, undamped handle",
+    "tangent": "limit, along the wall",
 }
 
 
