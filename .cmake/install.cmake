@@ -53,8 +53,12 @@ install(DIRECTORY ${PROJECT_SOURCE_DIR}/scripts/python DESTINATION ${share}/scri
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/results/reference DESTINATION ${share}/results
   PATTERN figures EXCLUDE PATTERN gallery EXCLUDE)
 
-# The loader looks in /usr by itself.
+# The loader looks in /usr by itself. Elsewhere each looks beside itself: what one has found is not asked for the next.
 if(HAPBENCH_SHARED AND NOT CMAKE_INSTALL_PREFIX STREQUAL "/usr")
+  set_target_properties(hapbench PROPERTIES INSTALL_RPATH "$ORIGIN")
+  foreach(level ${HAPBENCH_LEVELS})
+    set_target_properties(hapbench_${level} PROPERTIES INSTALL_RPATH "$ORIGIN/../..")
+  endforeach()
   if(TARGET hapbench_program)
     set_target_properties(hapbench_program PROPERTIES INSTALL_RPATH "$ORIGIN/../${CMAKE_INSTALL_LIBDIR}")
   endif()

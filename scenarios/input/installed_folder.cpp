@@ -54,8 +54,9 @@ fs::path installed_folder(const std::string& name) {
   const fs::path program = fs::read_symlink("/proc/self/exe", error);
   const fs::path wanted = fs::path("share") / "hapbench" / name;
   const fs::path beside = program.parent_path().parent_path() / wanted;
-  if (auto found = folder_at(beside)) return *found;
+  // A library knows its own: the interpreter that loads it may lie beside another version's.
   if (auto found = folder_above_shared_object(program, wanted)) return *found;
+  if (auto found = folder_at(beside)) return *found;
   const fs::path share = share_of_build();
   if (!share.empty()) {
     if (auto found = folder_at(share / name)) return *found;

@@ -137,6 +137,9 @@ std::span<const Column> stability_boundary_columns() {
     std::vector<Column> columns = all(kEdgeColumns);
     for (std::size_t i = 0; i < kTexts.size(); i += 2)
       columns.push_back({kTexts[i].c_str(), "by name", kTexts[i + 1].c_str()});
+    columns.push_back(
+        {"tangent_{y}", "by name",
+         "with dry friction: the edge along the wall, of the bristle's K_t and B_t; analytic is across it"});
     columns.push_back({"overrides", "", "of time step, device and hand, as --set gave them; empty without"});
     return columns;
   }();

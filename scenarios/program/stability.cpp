@@ -393,8 +393,9 @@ void add_stability(CommandLine& line) {
       stability, "maps and searches that were complete are kept");
   add_experiments(command, options);
   command.add("--out", options.out, "directory of the results (default: results/out/stability_NAME)");
-  add_overrides(command, options.overrides,
-                "override a field: path=value; with --map only time.step_s and fields of device and hand");
+  add_overrides(
+      command, options.overrides,
+      "override a field: path=value; with --map only time.step_s, rendering.friction and fields of device and hand");
   add_output_options(command, options.output);
 }
 

@@ -89,7 +89,7 @@ void write_boundary(const fs::path& directory, const StabilityMap& map, const st
     for (const BoundaryPoint& p : result.boundary) {
       csv.row(std::string_view(result.subject.algorithm), p.x, p.analytic, p.simulation, p.difference(),
               std::string_view(p.no_theory), std::string_view(result.subject.integrator->info.name), p.worst_hand,
-              std::span<const std::optional<double>>(p.limits), std::string_view(overrides));
+              std::span<const std::optional<double>>(p.limits), p.tangent, std::string_view(overrides));
     }
   }
   csv.finish();
@@ -128,7 +128,7 @@ std::string drawn_classes(const MapResult& result, bool from_far) {
   const auto cell = [&](std::size_t column, std::size_t row) {
     const MapPoint& point = result.points[column * n + row];
     const RunVerdict verdict = from_far ? point.verdict_from_far.value() : point.verdict;
-    const auto beyond = [&](std::size_t j) { return y.at(j, n) > result.boundary[column].analytic.value_or(1e300); };
+    const auto beyond = [&](std::size_t j) { return y.at(j, n) > result.boundary[column].theory().value_or(1e300); };
     const bool limit = verdict == RunVerdict::diverged && beyond(row) && (row == 0 || !beyond(row - 1));
     return limit ? '=' : kMarks[std::min(static_cast<std::size_t>(verdict), kMarks.size() - 1)];
   };
@@ -188,6 +188,7 @@ Json result_json(const MapResult& result) {
          {"relative_difference", or_null(p.difference())},
          {"no_theory", p.no_theory},
          {"worst_hand", or_null(p.worst_hand)},
+         {"tangent", or_null(p.tangent)},
          {"limits", std::move(limits)}});
   }
   Json json = {{"map", result.map->name},

@@ -6,6 +6,7 @@
 
 #include "results/io/columns.hpp"
 #include "results/observe/ideal_trajectory.hpp"
+#include "scenarios/description/parts.hpp"
 #include "scenarios/thesis_claims/claims.hpp"
 
 /// Claims of 3.6: the drill turned in the hole against the ideal trajectory.

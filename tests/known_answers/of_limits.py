@@ -203,6 +203,11 @@ def maps(bench):
         edges = [bisected(lambda K: loop(x, K).radius() < 1, 1.0, 1e6) for x in table[x_name]]
         bench.add("stability_boundary_NAME.csv:analytic_{y}", table["analytic_stiffness_N_per_m"], edges, "eigenvalues, delays of whole and broken samples",
                   close, ("without", [edge_of(lambda K: handle(5.0, K), 1.0, 1e6)] * 6))
+    friction = 'rendering.friction={"type":"dry","mu":0.3,"damping_ratio":0.2}'
+    bench.hapbench("stability", "--map", "z_width", "--algorithms", "summation", "--size", "3", "--set", friction, "--out", "held")
+    bristle = lambda zeta: [edge_of(lambda K: handle(2 * zeta * math.sqrt(K * M), K), 1.0, 1e9)] * 3
+    bench.add("stability_boundary_NAME.csv:tangent_{y}", Table(bench.folder / "held" / "stability_boundary_z_width.csv")["tangent_stiffness_N_per_m"],
+              bristle(0.2), "eigenvalues with the bristle's damper", close, ("the springs' damping ratio", bristle(0.7)))
     limits_of_walls(bench, Table(bench.folder / "maps" / "stability_boundary_z_width.csv"), Table(bench.folder / "bare" / "stability_boundary_z_width.csv"),
                     wall["x"], handle, edge_of)
     bench.hapbench("stability", "--map", "friction_quantisation,encoder_step", "--algorithms", "summation", "--size", "4", "--out", "dry")
@@ -356,7 +361,7 @@ def undamped_map(bench):
     number = lambda x: math.nan if x is None else x
     bench.add("stability --json: wall_damping_N_s_per_m", [row["wall_damping_N_s_per_m"] for row in walls], np.geomspace(0.1, 150, 3), "the axis", ROUNDING,
               ("linear", np.linspace(0.1, 150, 3)))
-    for name in ("worst_hand", *walls[0]["limits"]):
+    for name in ("worst_hand", "tangent", *walls[0]["limits"]):
         values = [number(row.get(name, row["limits"].get(name))) for row in walls]
         bench.add(f"stability --json: {name}", values, table[f"{name}_stiffness_N_per_m"], "as in the table, whose answers are known", EXACT,
                   ("one that applies nowhere, or everywhere", np.full(3, 1.0)))

@@ -243,6 +243,12 @@ class Plot(Given):
         hapbench("stability", "--map", "z_width", "--size", 2, "--algorithms", "mean", "--set", "device.handle_mass_kg=0.2", "--out", maps, "--quiet")
         hapbench("plot", maps / "stability_map_z_width.csv", "--out", maps / "own.svg", "--quiet")
         self.assertIn("with device.handle_mass_kg=0.2", (maps / "own.svg").read_text())
+        friction = 'rendering.friction={"type":"dry","mu":0.5,"damping_ratio":0.1}'
+        hapbench("stability", "--map", "z_width", "--size", 2, "--algorithms", "mean", "--set", friction, "--out", maps, "--quiet")
+        hapbench("plot", maps / "stability_map_z_width.csv", "--out", maps / "held.svg", "--quiet")
+        # Both edges are drawn, and the ratio to the lesser does not leave the axis, whose least range is +- 0.002.
+        for text in ("limit, along the wall", ">0.998<", ">1.002<"):
+            self.assertIn(text, (maps / "held.svg").read_text())
         hapbench("limit", "springs_limited_mean", "--vary", "rendering.stiffness_N_per_m", "--set", "time.steps=300", "--set", "expect={}",
                  "--resolution", 0.1, "--out", limit, "--quiet")
         hapbench("plot", limit, "--quiet")

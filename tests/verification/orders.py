@@ -78,6 +78,18 @@ def late(K, b, mass, tau):
     return lambda step: x[-1]
 
 
+MOTORS = {"motor_share": 0.4, "stiffness_N_per_m": 20000.0, "damping_N_s_per_m": 4.0}  # on M, an elastic transmission
+
+
+def geared(K, B, force=0.0, k=0.0, b=0.0, amplitude=0.0, omega=0.0):
+    """Motors at the spring, handle at the hand, whose force is force + amplitude sin(omega t) - k x - b v: the motors' motion."""
+    share, gear, loss = MOTORS.values()
+    m, h = share * M, (1 - share) * M
+    A = np.array([[0, 1, 0, 0, 0, 0], [-(K + gear) / m, -(B + loss) / m, gear / m, loss / m, 0, 0], [0, 0, 0, 1, 0, 0],
+                  [gear / h, loss / h, -(gear + k) / h, -(loss + b) / h, amplitude / h, 0], [0, 0, 0, 0, 0, omega], [0, 0, 0, 0, -omega, 0]])
+    return lambda step: linear(A, np.array([0, 0, 0, force / h, 0, 0]), (X0, V0, X0, V0, 0.0, 1.0))[:2]
+
+
 def scene(integrator="leapfrog", B=0.0, law="summation", **parts):
     return {"name": "verified", "environment": {"type": "springs", "groups": [{"direction": [0, 0, 1], "count": 1}]},
             "initial": {"position_m": [0, 0, X0], "velocity_m_per_s": [0, 0, V0]}, "integrator": {"type": integrator},
@@ -86,15 +98,15 @@ def scene(integrator="leapfrog", B=0.0, law="summation", **parts):
 
 
 def hands():
-    """Name, the hand, and the exact motion of the mass that it moves against the spring, with the damping B."""
+    """Name, the hand, the exact motion of the mass that it moves against the spring, with the damping B, and its force for geared()."""
     f, k, b, omega = 3.0, 500.0, 4.0, 2 * math.pi / 0.013
-    yield "none", {"type": "none"}, lambda B, mass: damped(K, B, mass)
-    yield "force, steady", {"type": "force", "z_N": f}, lambda B, mass: damped(K, B, mass, f)
+    yield "none", {"type": "none"}, lambda B, mass: damped(K, B, mass), {}
+    yield "force, steady", {"type": "force", "z_N": f}, lambda B, mass: damped(K, B, mass, f), {"force": f}
     yield "force, sine", {"type": "force", "z_N": {"type": "sine", "mean": 0, "amplitude": f, "period_s": 0.013}}, \
-        lambda B, mass: driven(K, B, mass, f, omega)
-    yield "push", {"type": "push", "force_N": f}, lambda B, mass: damped(K, B, mass, -f)
+        lambda B, mass: driven(K, B, mass, f, omega), {"amplitude": f, "omega": omega}
+    yield "push", {"type": "push", "force_N": f}, lambda B, mass: damped(K, B, mass, -f), {"force": -f}
     yield "impedance", {"type": "impedance", "stiffness_N_per_m": k, "damping_N_s_per_m": b, "target": {"x_m": 0, "y_m": 0, "z_m": 0.002}}, \
-        lambda B, mass: damped(K + k, B + b, mass, k * 0.002)
+        lambda B, mass: damped(K + k, B + b, mass, k * 0.002), {"force": k * 0.002, "k": k, "b": b}
 
 
 GAP, BOUNCES = 4e-4, 32  # [m]
@@ -131,7 +143,7 @@ def cases(laws):
     for law in sorted(set(laws) - NONLINEAR):
         share = share_of(law)
         yield Case("law", law, 4, scene("rk4", 20.0, law), damped(share * K, share * 20.0, M), f"renders {share:.4g} K of one spring" if abs(share - 1) > 1e-12 else "")
-    for name, hand, exact in hands():
+    for name, hand, exact, _ in hands():
         for integrator, orders in FORMAL.items():
             held = name in ("force, sine", "impedance")
             yield Case("hand", f"{name}; {integrator}", 1 if held else orders[1], scene(integrator, 20.0, hand=hand, **ideal), exact(20.0, M),
@@ -141,9 +153,11 @@ def cases(laws):
         steady = name == "none" or name == "force, steady" or name == "push"
         yield Case("device", f"admittance; {name}", 1, scene("leapfrog", 20.0, hand=hand, device={"type": "admittance", "force_limit_N": None}),
                    exact(20.0, M), "" if steady else "its force is sampled and held")
-    for name, hand, exact in hands():
+    for name, hand, exact, force in hands():
         device = {"type": "impedance", "handle_mass_kg": M, "viscous_N_s_per_m": 6.0}
         yield Case("device", f"impedance; {name}", 1, scene(B=0.0, hand=hand, device=device), exact(6.0, M), "the rendered force is held")
+        yield Case("device", f"impedance, elastic transmission; {name}", 1, scene(B=0.0, hand=hand, device=device | {"transmission": MOTORS}),
+                   geared(K, 6.0, **force), "the rendered force is held")
     for samples in (1.0, 0.5, 1.37):
         tau = 1e-3 * samples
         device = {"type": "impedance", "handle_mass_kg": M, "viscous_N_s_per_m": 40.0}

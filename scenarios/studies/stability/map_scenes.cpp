@@ -8,6 +8,7 @@
 #include "scenarios/description/load_scenario.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/text_lines.hpp"
+#include "scenarios/studies/stability/stability_limits.hpp"
 #include "scenarios/studies/stability/stability_map.hpp"
 #include "sim/core/math.hpp"
 
@@ -249,15 +250,34 @@ constexpr std::string_view kAnyAlgorithm = "summation";  // no algorithm changes
 constexpr std::string_view kTimeStep = "time.step_s";
 constexpr std::string_view kWholeDevice = "device";
 constexpr std::string_view kForceStage = "rendering.force_stage";
+constexpr std::string_view kFriction = "rendering.friction";
 
 std::string_view section_of(std::string_view override) {
   const std::string_view path = overridden_path(override);
   return path.substr(0, path.find('.'));
 }
 
-/// An override that every map takes: no axis varies a force stage.
-bool is_of_force_stage(std::string_view override) {
-  return overridden_path(override).substr(0, kForceStage.size()) == kForceStage;
+bool is_below(std::string_view field, std::string_view override) {
+  return overridden_path(override).substr(0, field.size()) == field;
+}
+/// Overrides of what no axis varies.
+bool is_of_rendering(std::string_view override) {
+  return is_below(kForceStage, override) || is_below(kFriction, override);
+}
+
+/// Throws InputError unless dry friction holds the tool of the scene on one wall, as a linear loop.
+void require_held(const StabilityMap& map, const Scenario& scenario) {
+  const auto fail = [&map](const char* allowed) {
+    throw InputError(fmt::format("--set: got {} for the map \"{}\"; allowed: {}", kFriction, map.name, allowed));
+  };
+  const auto* device = std::get_if<ImpedanceDeviceConfig>(&scenario.device);
+  if (!scenario.rendering.dry_friction) fail(R"({"type": "dry", ...}, which holds the tool)");
+  if (std::get<SpringsEnvironment>(scenario.environment).groups.size() != 1) fail("for maps of one wall");
+  if (!std::holds_alternative<NoHandFields>(scenario.hand) &&
+      !std::holds_alternative<MassSpringDamperHandFields>(scenario.hand))
+    fail("for maps without a hand that pushes");
+  if (device != nullptr && (device->force_max || !device_loop(scenario, 1.0).no_theory.empty()))
+    fail("for devices whose loop is linear");
 }
 
 bool has_own_device(const StabilityMap& map) {
@@ -286,8 +306,8 @@ void require_field(const StabilityMap& map, std::string_view override) {
   const std::string_view path = overridden_path(override), section = section_of(override);
   if (section != "device" && section != "hand" && path != kTimeStep) {
     throw InputError(fmt::format(
-        "--set: got {} with --map; allowed: {}, {} and fields of device and hand, such as device.handle_mass_kg", path,
-        kTimeStep, kForceStage));
+        "--set: got {} with --map; allowed: {}, {}, {} and fields of device and hand, such as device.handle_mass_kg",
+        path, kTimeStep, kForceStage, kFriction));
   }
   if (path == kWholeDevice) return;  // the axes set their fields afterwards
   if (path == "device.type" || path == "device.preset") {
@@ -328,13 +348,15 @@ std::vector<std::string> device_at(const StabilityMap& map, const Json& scene) {
 void require_overridable(const StabilityMap& map, const std::vector<std::string>& overrides) {
   bool is_of_device = false;
   for (const std::string& override : overrides) {
-    if (is_of_force_stage(override)) continue;
+    if (is_of_rendering(override)) continue;
     if (!is_of_device) require_map_of_device(map);
     is_of_device = true;
     require_field(map, override);
   }
   if (overrides.empty()) return;
   const Scenario scene = with_overrides(map, map.scene(map.x.low, map.y.low, kAnyAlgorithm), overrides);
+  if (std::any_of(overrides.begin(), overrides.end(), [](const auto& o) { return is_below(kFriction, o); }))
+    require_held(map, scene);
   if (is_of_device && !handle_moves_tool(scene.device))
     throw InputError("--set: got a device of another type with --map; allowed: \"impedance\"");
 }
@@ -355,6 +377,7 @@ Scenario with_overrides(const StabilityMap& map, Scenario scenario, const std::v
   scenario.time.step = loaded.scenario.time.step;
   scenario.device = loaded.scenario.device;
   scenario.rendering.force_stage = loaded.scenario.rendering.force_stage;
+  scenario.rendering.dry_friction = loaded.scenario.rendering.dry_friction;
   if (has_hand) scenario.hand = loaded.scenario.hand;
   return scenario;
 }

@@ -191,6 +191,11 @@ Mat3 stiffness_tensor_of(Scenario scenario) {
   return tensor.S;
 }
 
+SpringDamper tool_on_spring(const Scenario& scenario, double lambda) {
+  const RenderingConfig& r = scenario.rendering;
+  return {r.stiffness, normal_damping(r), r.mass, scenario.time.step, lambda, scenario.integrator.type};
+}
+
 void require_bilateral_springs(const Scenario& scenario) {
   const auto* springs = std::get_if<SpringsEnvironment>(&scenario.environment);
   if (springs == nullptr)
@@ -299,8 +304,7 @@ DeviceLoop impedance_loop(const Scenario& scenario, const ImpedanceDeviceConfig&
 DeviceLoop admittance_loop(const Scenario& scenario, const AdmittanceDeviceConfig& device, double lambda) {
   DeviceLoop result;
   AdmittanceLoop& loop = result.loop.emplace<AdmittanceLoop>();
-  const RenderingConfig& r = scenario.rendering;
-  loop.tool = {r.stiffness, normal_damping(r), r.mass, scenario.time.step, lambda, scenario.integrator.type};
+  loop.tool = tool_on_spring(scenario, lambda);
   loop.servo = device.servo;
   loop.mechanics = device.mechanics;
   if (const auto* hand = std::get_if<ImpedanceHandFields>(&scenario.hand)) {
@@ -322,6 +326,10 @@ Scenario stuck_scene(Scenario scenario) {
   const SpringDamper bristle = bristle_of(*r.dry_friction, r, scenario.time.step);
   r.stiffness = bristle.K;
   r.damping = bristle.B;
+  if (auto* device = std::get_if<ImpedanceDeviceConfig>(&scenario.device)) {
+    const auto* filter = std::get_if<LowPassFilter>(&device->velocity_filter);
+    device->position_filter = filter != nullptr ? std::optional(*filter) : std::nullopt;
+  }
   return scenario;
 }
 
@@ -344,9 +352,7 @@ DeviceLoop device_loop(const Scenario& scenario, double lambda) {
 Eigen::MatrixXd contact_step(const Scenario& scenario, double lambda) {
   if (delay_of(scenario) > kLongestDelay) return {};
   if (!std::holds_alternative<IdealDeviceFields>(scenario.device)) return device_loop(scenario, lambda).state_matrix();
-  const RenderingConfig& r = scenario.rendering;
-  return SpringDamper{r.stiffness, normal_damping(r), r.mass, scenario.time.step, lambda, scenario.integrator.type}
-      .step_matrix();
+  return tool_on_spring(scenario, lambda).step_matrix();
 }
 
 }  // namespace hapbench

@@ -70,7 +70,11 @@ std::vector<StabilityLimit> stability_limits(const Scenario& scenario);
 /// The eigenvalues from zero to a quarter beyond each finite limit.
 std::vector<RootLocusPoint> root_locus(const Scenario& scenario, const std::vector<StabilityLimit>& limits);
 
-/// The scenario along a surface on which dry friction holds its tool: with the bristle in place of the springs.
+/// The tool along a direction in which the stiffness of the scenario's springs is lambda K, without a device.
+SpringDamper tool_on_spring(const Scenario& scenario, double lambda);
+
+/// The scenario along a surface on which dry friction holds its tool: with the bristle in place of the springs. The
+/// bristle adds up the device's velocity, and so sees the position through the velocity's filter.
 Scenario stuck_scene(Scenario scenario);
 
 /// Device, hand and wall of a scenario as a linear loop, as it is while nothing saturates and the contact lasts.

@@ -42,12 +42,43 @@ struct Probe {
   bool linear;   ///< true when the force is -K S p
 };
 
-Probe probe(const StabilityMap& map, const Scenario& scenario) {
-  FirstRow first;
-  Simulation(simulation_config(scenario), assemble(scenario), {&first}).step();
+/// The tool held on its wall by friction that lets nothing slide, and struck along it: by so much more than the wall is
+/// deep that no motion across the wall, where a late force begins with a jerk, counts.
+Scenario struck_along_wall(Scenario scenario, const Mat3& S) {
+  constexpr double kDepth = 1e-8, kStrike = 1e-2;  // [m], [m/s]
+  const Vec3 u = make_springs(scenario).gradients.front();
+  const Vec3 place = kDepth * u, push = scenario.rendering.stiffness * S * place;
+  std::get<SpringsEnvironment>(scenario.environment).bilateral = false;
+  scenario.rendering.dry_friction->mu = 1e12;
+  if (auto* held = std::get_if<MassSpringDamperHandFields>(&scenario.hand)) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto j = static_cast<Eigen::Index>(i);
+      held->spring.target[i] = place[j] + push[j] / held->spring.stiffness;
+    }
+  } else {
+    auto& hand = scenario.hand.emplace<ForceHandFields>();
+    for (std::size_t i = 0; i < 3; ++i) hand.force[i] = push[static_cast<Eigen::Index>(i)];
+  }
+  scenario.initial.position = place;
+  scenario.initial.velocity = kStrike * u.unitOrthogonal();
+  return scenario;
+}
+
+JudgedRun judged(const Scenario& scenario) {
   LoadedScenario loaded;
   loaded.scenario = scenario;
-  JudgedRun run = judged_run(loaded, nullptr);
+  return judged_run(loaded, nullptr);
+}
+
+/// The worse of the runs across the wall and, with dry friction, along it.
+Probe probe(const StabilityMap& map, const Scenario& given) {
+  Scenario scenario = given;
+  scenario.rendering.dry_friction.reset();  // a wall that pulls has no load
+  FirstRow first;
+  Simulation(simulation_config(scenario), assemble(scenario), {&first}).step();
+  JudgedRun run = judged(scenario);
+  if (given.rendering.dry_friction)
+    run.verdict = std::max(run.verdict, judged(struck_along_wall(given, first.S)).verdict);
   if (map.friction_stops && is_stable(run.verdict) && !run.at_rest) run.verdict = RunVerdict::vibrating;
   const double K = scenario.rendering.stiffness;
   // Sums of up to a hundred springs; exact_shaping's weights are good to 1e-12.
@@ -77,11 +108,9 @@ MapPoint map_point(const StabilityMap& map, const MapSubject& subject, double x,
     point.verdict_from_far = probe(map, far).verdict;
   }
   if (!is_alone(scenario) || !run.linear || scenario.rendering.force_stage) return point;
-  const double K = scenario.rendering.stiffness, M = scenario.rendering.mass;
-  const double B = 2.0 * scenario.rendering.damping_ratio * std::sqrt(K * M);
-  const SpringDamper stiffest{
-      .K = K, .B = B, .M = M, .dt = scenario.time.step, .lambda = run.lambdas[2], .integrator = subject.integrator};
-  point.margin = stiffest.margin();
+  point.margin = tool_on_spring(scenario, run.lambdas[2]).margin();
+  if (scenario.rendering.dry_friction)
+    point.margin = std::min(point.margin, tool_on_spring(stuck_scene(scenario), 1.0).margin());
   return point;
 }
 
@@ -134,6 +163,15 @@ void add_loop_theory(const StabilityMap& map, const MapSubject& subject, double 
   }
 }
 
+/// The edge along a wall of the tool that dry friction holds on it.
+double tangent_of(const StabilityMap& map, const MapSubject& subject, double x) {
+  return first_edge_of(kBelowTheMap * map.y.low, kBeyondTheMap * map.y.high, [&](double y) {
+    const Scenario stuck = stuck_scene(scene(map, subject, x, y));
+    return is_alone(stuck) ? tool_on_spring(stuck, 1.0).is_stable()
+                           : is_stable_step(device_loop(stuck, 1.0).state_matrix());
+  });
+}
+
 /// True where motors saturate and so keep every run bounded, however unstable it is.
 bool saturates(const Scenario& scenario) {
   const auto* device = std::get_if<ImpedanceDeviceConfig>(&scenario.device);
@@ -159,14 +197,20 @@ BoundaryPoint boundary_point(const StabilityMap& map, const MapSubject& subject,
   } else {
     add_loop_theory(map, subject, run.lambdas[2], point);
   }
+  if (start.rendering.dry_friction && point.no_theory.empty()) point.tangent = tangent_of(map, subject, x);
   return point;
 }
 
 }  // namespace
 
+std::optional<double> BoundaryPoint::theory() const {
+  return tangent ? std::min(analytic, tangent) : analytic;
+}
+
 std::optional<double> BoundaryPoint::difference() const {
-  if (!analytic) return std::nullopt;
-  return *analytic == simulation ? 0.0 : simulation / *analytic - 1.0;
+  const std::optional<double> edge = theory();
+  if (!edge) return std::nullopt;
+  return *edge == simulation ? 0.0 : simulation / *edge - 1.0;
 }
 
 MapResult stability_map(const StabilityMap& map, const MapSubject& subject, std::size_t size,

@@ -64,14 +64,15 @@ std::span<const StabilityMap> stability_maps();
 const StabilityMap* find_stability_map(std::string_view name);
 
 /// Checks overrides `path=value` (as of `--set`) for a map of the user's own device and hand: of time.step_s and of the
-/// fields of `device` and `hand`, or of either as a whole; every map takes a force stage. Where the whole device is
-/// given, the axes still set the fields that they vary. Throws InputError for a map without an impedance device or
-/// whose axes are in units of its own one, for another field or one that an axis varies, and for a value that the field
-/// does not take.
+/// fields of `device` and `hand`, or of either as a whole; every map takes a force stage, and those of one wall whose
+/// loop is linear take dry friction, which then holds the tool in runs along the wall. Where the whole
+/// device is given, the axes still set the fields that they vary. Throws InputError for a map without an impedance
+/// device or whose axes are in units of its own one, for another field or one that an axis varies, and for a value that
+/// the field does not take.
 void require_overridable(const StabilityMap& map, const std::vector<std::string>& overrides);
 
-/// A scene of the map with the overrides; only its time step, device, hand and force stage change. Precondition:
-/// require_overridable accepts them.
+/// A scene of the map with the overrides; only its time step, device, hand, force stage and friction change.
+/// Precondition: require_overridable accepts them.
 Scenario with_overrides(const StabilityMap& map, Scenario scenario, const std::vector<std::string>& overrides);
 
 /// One run of a map.
@@ -94,6 +95,8 @@ struct BoundaryPoint {
   /// In closed form, or by the eigenvalues of a step, or of the loop when a device is in it. Infinite when no y is
   /// unstable, empty where the theory does not apply.
   std::optional<double> analytic;
+  /// With dry friction: the edge along the wall, of the bristle in place of the springs. `analytic` is across it.
+  std::optional<double> tangent;
   /// By bisection on runs to 0.1 %; 0, or infinite when there is no edge up to 1e4 times the map's range.
   double simulation = 0.0;
   std::string no_theory;  ///< why there is no analytic limit; empty when there is one
@@ -104,7 +107,9 @@ struct BoundaryPoint {
   /// does not apply.
   std::vector<std::optional<double>> limits = std::vector<std::optional<double>>(stiffness_limits().size());
 
-  /// simulation / analytic - 1; zero when both are infinite, empty without an analytic limit.
+  /// The lesser of the edges in theory.
+  std::optional<double> theory() const;
+  /// simulation / theory() - 1; zero when both are infinite, empty without theory.
   std::optional<double> difference() const;
 };
 

@@ -94,7 +94,7 @@ def class_of(row):
 
 
 # Known limits, in the order of their columns.
-LIMIT_LOOKS = tuple({"color": colour, "lw": 1.4, "ls": line} for line in ("-", (0, (5, 2))) for colour in
+LIMIT_LOOKS = tuple({"color": colour, "lw": 1.4, "ls": line} for line in ("-", (0, (5, 2)), (0, (1, 1))) for colour in
                     (style.PLUM, "#1F4E9E", "#2E6B34"))
 LIMITS = {
     "worst_hand": "limit, worst hand",
@@ -103,6 +103,7 @@ LIMITS = {
     "stable_gil_hulin": "stable (Gil, Hulin)",
     "passive_abbott_okamura": "passive (Abbott, Okamura)",
     "exact_undamped_handle": "exact, undamped handle",
+    "tangent": "limit, along the wall",
 }
 
 
@@ -269,7 +270,9 @@ def draw_limits(axes, found, algorithms):
         rows = [row for row in found.boundary if row["algorithm"] == algorithm]
         x, y = numbers(rows, found.x_name), numbers(rows, f"simulation_{found.y_name}")
         y = np.where(np.isfinite(y) & (y > 0), y, np.nan)
-        theory = numbers(rows, f"analytic_{found.y_name}")
+        theory, along = f"analytic_{found.y_name}", f"tangent_{found.y_name}"
+        # Across the wall or, with dry friction, along it.
+        theory = np.fmin(numbers(rows, theory), numbers(rows, along)) if along in rows[0] else numbers(rows, theory)
         look = style.look(algorithm)
         line = {"color": look.colour, "ls": look.line, "marker": look.marker, "lw": 0.9, "ms": 4.5,
                 "markevery": (i % max(len(x), 1), len(algorithms))}

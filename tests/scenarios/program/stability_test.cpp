@@ -132,7 +132,8 @@ TEST_F(StabilityExperiments, MapsAreWrittenPointByPointAndEdgeByEdge) {
             "algorithm,wedge_angle_rad,analytic_stiffness_N_per_m,simulation_stiffness_N_per_m,relative_difference,"
             "no_theory,integrator,worst_hand_stiffness_N_per_m,passive_colgate_schenkel_stiffness_N_per_m,"
             "passive_with_delay_stiffness_N_per_m,stable_gil_hulin_stiffness_N_per_m,"
-            "passive_abbott_okamura_stiffness_N_per_m,exact_undamped_handle_stiffness_N_per_m,overrides");
+            "passive_abbott_okamura_stiffness_N_per_m,exact_undamped_handle_stiffness_N_per_m,"
+            "tangent_stiffness_N_per_m,overrides");
   ASSERT_EQ(edges.size(), 1u + 2 * 3);
   for (std::size_t i = 1; i < edges.size(); ++i) {
     const auto cells = cells_of(edges[i]);

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "algorithms/registry.hpp"
+#include "scenarios/input/input_error.hpp"
 #include "scenarios/studies/stability/stability_limits.hpp"
 
 namespace hapbench::stability_map_test {
@@ -231,6 +232,70 @@ TEST(StabilityMap, TakesAForceStageAndThenKnowsNoLimit) {
         EXPECT_EQ(result.boundary[0].simulation, limit);
       }
     }
+  }
+}
+
+std::vector<std::string> dry_friction(const std::string& more) {
+  return {R"(rendering.friction={"type":"dry","mu":0.5)" + more + "}"};
+}
+
+/// K_t = K, and so the closed form of A.3 at the friction's own zeta, at every zeta of the springs; the tensor of
+/// parallel springs is not the bristle's.
+TEST(StabilityMap, WithDryFrictionHasTheEdgeAlongTheWallInClosedForm) {
+  const auto a3 = [](double zeta) { return 0.1 * std::pow(2.0 * (std::sqrt(1.0 + zeta * zeta) - zeta) / 0.0005, 2); };
+  for (const char* name : {"damping_ratio", "contacts"}) {
+    const StabilityMap& map = *find_stability_map(name);
+    const MapSubject bare{"summation"}, dry{"summation", &kLeapfrog, dry_friction("")};
+    const MapResult springs = stability_map(map, bare, 3, kTwoThreads), held = stability_map(map, dry, 3, kTwoThreads);
+    for (std::size_t i = 0; i < 3; ++i) {
+      SCOPED_TRACE(testing::Message() << name << " " << held.boundary[i].x);
+      const BoundaryPoint& point = held.boundary[i];
+      EXPECT_FALSE(springs.boundary[i].tangent);
+      EXPECT_EQ(point.analytic, springs.boundary[i].analytic);
+      EXPECT_NEAR(*point.tangent, a3(1.0), 1e-6 * a3(1.0));
+      EXPECT_NEAR(*point.theory(), std::min(*point.analytic, a3(1.0)), 1e-6 * *point.theory());
+      EXPECT_LE(std::abs(*point.difference()), 0.02);
+    }
+    for (const MapPoint& point : held.points) EXPECT_EQ(point.verdict == RunVerdict::diverged, *point.margin < 0.0);
+  }
+  // That of `stability`, under an integrator without a closed form of both.
+  Scenario scenario = find_stability_map("time_step")->scene(0.0005, 1e4, "mean");
+  scenario.integrator.type = &kRk4;
+  scenario.rendering.dry_friction = {.mu = 0.5, .stiffness = {}};
+  const MapSubject rk4{"mean", &kRk4, dry_friction("")};
+  const BoundaryPoint at_default = stability_map(*find_stability_map("mass"), rk4, 3, kTwoThreads).boundary[1];
+  scenario.rendering.mass = at_default.x;
+  EXPECT_NEAR(*at_default.theory(), stability_limits(scenario).back().eigenvalue, 1e-8 * *at_default.theory());
+}
+
+/// On a device, too, across and along the wall: whichever is the lesser is the edge of the runs.
+TEST(StabilityMap, WithDryFrictionOnTheImpedanceDeviceHasTheLesserEdgeWithinOnePercentOfTheLoops) {
+  int across = 0, along = 0;
+  for (const char* name : {"z_width", "delay", "velocity_filter", "hand"}) {
+    for (const char* more : {R"(,"damping_ratio":0.1)", ""}) {
+      const MapSubject subject{"shaped_stiffness", &kLeapfrog, dry_friction(more)};
+      require_overridable(*find_stability_map(name), subject.overrides);
+      for (const BoundaryPoint& point : stability_map(*find_stability_map(name), subject, 4, kTwoThreads).boundary) {
+        ASSERT_TRUE(point.tangent) << point.no_theory;
+        EXPECT_LE(std::abs(*point.difference()), 0.01) << name << more << ", x = " << point.x;
+        ++(*point.tangent < *point.analytic ? along : across);
+      }
+    }
+  }
+  EXPECT_GT(across, 3);
+  EXPECT_GT(along, 3);
+}
+
+TEST(StabilityMap, TakesDryFrictionOnlyWhereItHoldsALinearTool) {
+  for (const char* name : {"wedge", "device", "encoder_step"})
+    EXPECT_THROW(require_overridable(*find_stability_map(name), dry_friction("")), InputError) << name;
+  const StabilityMap& map = *find_stability_map("z_width");
+  require_overridable(map, dry_friction(""));
+  EXPECT_THROW(require_overridable(map, {"rendering.friction.mu_s_N_s_per_m=1"}), InputError);
+  for (const char* with : {"device.coulomb_N=0.1", "device.force_max_N=5", R"(hand={"type":"push","force_N":1})"}) {
+    std::vector<std::string> overrides = dry_friction("");
+    overrides.emplace_back(with);
+    EXPECT_THROW(require_overridable(map, overrides), InputError) << with;
   }
 }
 
