@@ -1,0 +1,160 @@
+"""Tutorials: Markdown with cells of code, executed as a notebook, whose output goes into the page; the notebook goes beside it."""
+import base64
+import json
+import os
+import re
+import sys
+import tempfile
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from pathlib import Path
+
+from hapbench_docs.manuals import ROOT
+
+from .pages import TUTORIALS, contents
+
+CELL = re.compile(r"^```\{code-cell\} (bash|python)\n((?::[^\n]*\n)*)(.*?)^```\n", re.M | re.S)
+# A number in a sentence; not a part of a name, such as C5 or 2-D.
+NUMBER = re.compile(r"(?<![\w.^-])\d+(?:\.\d+)?(?:e-?\d+)?(?![\w-]|\.\d)")
+SHELL = "%%script bash -e\n"
+SECONDS = 300  # the longest that a cell may take
+
+
+class TutorialError(Exception):
+    """A cell fails, or a sentence names a number that no cell printed."""
+
+
+@dataclass
+class Tutorial:
+    """One source. `parts`: (None, text) and (language, code, options) in turn."""
+
+    file: Path
+
+    @property
+    def name(self):
+        return self.file.stem
+
+    def parts(self, text):
+        end = 0
+        for found in CELL.finditer(text):
+            yield None, text[end:found.start()], ""
+            yield found[1], found[3], found[2]
+            end = found.end()
+        yield None, text[end:], ""
+
+
+def sources():
+    return [Tutorial(file) for file in sorted(TUTORIALS.glob("*.md")) if file.name != "README.md"]
+
+
+def notebook(tutorial, text):
+    """The notebook without output; cells with `:tags: [remove-cell]` check what the text says and are left out of the page."""
+    from nbformat import v4
+
+    cells = []
+    for language, code, options in tutorial.parts(text):
+        if language is None:
+            cells += [v4.new_markdown_cell(code.strip())] if code.strip() else []
+        else:
+            tags = re.findall(r"[\w-]+", options.partition("tags:")[2])
+            cells.append(v4.new_code_cell((SHELL if language == "bash" else "") + code.rstrip("\n"), metadata={"tags": tags}))
+    for number, cell in enumerate(cells):
+        cell["id"] = f"{tutorial.name}-{number}"
+    kernel = {"name": "python3", "display_name": "Python 3", "language": "python"}
+    return v4.new_notebook(cells=cells, metadata={"kernelspec": kernel})
+
+
+def environment(program, scratch):
+    """For the kernel: this Python, the program first in the path, its Python module, and no file in anybody's home."""
+    kernel = scratch / "jupyter" / "kernels" / "python3"
+    kernel.mkdir(parents=True)
+    (kernel / "kernel.json").write_text(json.dumps({"argv": [sys.executable, "-m", "ipykernel_launcher", "-f", "{connection_file}"],
+                                                    "display_name": "Python 3", "language": "python"}), encoding="utf-8")
+    built = program.file.parent
+    return {**os.environ, "PATH": f"{built}:{os.environ['PATH']}", "PYTHONPATH": str(built.parent / "lib/python3/dist-packages"),
+            "HAPBENCH_PYTHON": sys.executable, "PYTHONDONTWRITEBYTECODE": "1", "COLUMNS": "100", "LC_ALL": "C.UTF-8",
+            "JUPYTER_PATH": str(scratch / "jupyter"), "JUPYTER_RUNTIME_DIR": str(scratch / "runtime"), "IPYTHONDIR": str(scratch / "ipython")}
+
+
+def executed(tutorial, program, text=None):
+    """The notebook with output, made in a folder that looks like a clone."""
+    import nbclient
+
+    text = tutorial.file.read_text(encoding="utf-8") if text is None else text
+    book = notebook(tutorial, text)
+    with tempfile.TemporaryDirectory(prefix="hapbench-tutorial-") as scratch:
+        clone = Path(scratch) / "hapbench"
+        clone.mkdir()
+        for folder in ("algorithms", "device_model", "results", "scenarios", "scripts", "sim", "tests"):
+            (clone / folder).symlink_to(ROOT / folder)
+        client = nbclient.NotebookClient(book, timeout=SECONDS, kernel_name="python3", resources={"metadata": {"path": str(clone)}})
+        try:
+            client.execute(env=environment(program, Path(scratch)))
+        except nbclient.exceptions.CellExecutionError as error:
+            raise TutorialError(f"{tutorial.file.relative_to(ROOT)}: {error}") from error
+    for cell in book.cells:
+        cell.metadata.pop("execution", None)
+    return book
+
+
+def unproven_numbers(book):
+    """Numbers in sentences that no cell has, and none printed."""
+    cells = [cell for cell in book.cells if cell.cell_type == "code"]
+    known = set(NUMBER.findall("\n".join([*(cell.source for cell in cells), *(printed(cell) for cell in cells)])))
+    for cell in book.cells:
+        if cell.cell_type == "markdown":
+            prose = re.sub(r"\]\([^)]*\)|`[^`]*`", "", cell.source)
+            yield from (number for number in NUMBER.findall(prose) if number not in known)
+
+
+def printed(cell):
+    """What the cell wrote as text."""
+    texts = [one["text"] if one.output_type == "stream" else one.get("data", {}).get("text/plain", "") for one in cell.get("outputs", ())
+             if one.get("name") != "stderr" and "image/svg+xml" not in one.get("data", {}) and "image/png" not in one.get("data", {})]
+    return "".join(texts)
+
+
+def page(book, name, mirror):
+    """The page of an executed notebook; its pictures are written beside it."""
+    parts, pictures = [], 0
+    for cell in book.cells:
+        tags = cell.metadata.get("tags", ())
+        if cell.cell_type == "markdown":
+            parts.append(cell.source)
+            continue
+        if "remove-cell" in tags:
+            continue
+        shell = cell.source.startswith(SHELL)
+        if "remove-input" not in tags:
+            parts.append(f"````{'bash' if shell else 'python'}\n{cell.source.removeprefix(SHELL)}\n````")
+        if printed(cell).strip():
+            parts.append(f"````{{code-block}} text\n:class: output\n\n{printed(cell).rstrip()}\n````")
+        for output in cell.outputs:
+            for kind, suffix in (("image/svg+xml", "svg"), ("image/png", "png")):
+                if kind in output.get("data", {}):
+                    pictures += 1
+                    file = f"{name}_{pictures}.{suffix}"
+                    data = output["data"][kind]
+                    (mirror.folder / "scenarios/tutorials" / file).write_bytes(data.encode() if suffix == "svg" else base64.b64decode(data))
+                    parts.append(f"![What the commands above draw]({file})")
+    return "\n\n".join(parts) + f"\n\n{{download}}`This page as a notebook <{name}.ipynb>`\n"
+
+
+def add_all(mirror, program, chosen=None):
+    """Pages and notebooks of all tutorials; only those chosen are executed, by default all."""
+    import nbformat
+
+    (mirror.folder / "scenarios/tutorials").mkdir(parents=True, exist_ok=True)
+    texts = {one: mirror.linked(one.file.read_text(encoding="utf-8"), one.file) for one in sources()}
+    with ThreadPoolExecutor(2) as pool:
+        made = {one: pool.submit(executed, one, program, text) if chosen is None or one.name in chosen else None for one, text in texts.items()}
+    for one, text in texts.items():
+        book = made[one].result() if made[one] else notebook(one, text)
+        lost = list(unproven_numbers(book)) if made[one] else ()
+        if lost:
+            raise TutorialError(f"{one.file.relative_to(ROOT)}: no cell prints {', '.join(lost)}")
+        mirror.add(f"scenarios/tutorials/{one.name}", page(book, one.name, mirror))
+        nbformat.write(book, str(mirror.folder / f"scenarios/tutorials/{one.name}.ipynb"))
+    readme = TUTORIALS / "README.md"
+    text = mirror.linked(readme.read_text(encoding="utf-8"), readme) + "\n" + contents([f"scenarios/tutorials/{one.name}" for one in texts])
+    mirror.add("scenarios/tutorials/index", text)
