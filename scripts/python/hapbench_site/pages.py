@@ -46,18 +46,20 @@ class Mirror:
                 self.add(page, text if re.search(r"^# ", text, re.M) else f"# {TITLES.get(file.stem, file.stem)}\n\n{text}")
         self.add("index", (self.folder / "index.md").read_text(encoding="utf-8") + "\n" + self._contents())
 
-    def linked(self, text, file):
-        """The text of a manual with links that lead to pages; brings along what they lead to."""
-        return LINK.sub(lambda found: f"]({self._link(found[1], file)})", text)
+    def linked(self, text, file, page=None):
+        """The text of a manual with links that lead from its page to others; brings along what they lead to."""
+        here = PurePosixPath(page or self.pages[file]).parent
+        return LINK.sub(lambda found: f"]({self._link(found[1], file, here)})", text)
 
-    def _link(self, link, file):
+    def _link(self, link, file, here):
         path, _, anchor = link.partition("#")
         if re.match(r"^[a-z]+:", link) or not path:
             return link
         target = (file.parent / path).resolve()
         if target.is_dir():
             target /= "README.md"
-        here = PurePosixPath(self.pages[file]).parent
+        if not target.exists():
+            raise OSError(f"{file.relative_to(ROOT)}: its link {link} leads nowhere")
         if target in self.pages:
             page = f"{self.pages[target]}.md"
         elif target.suffix in PICTURES:

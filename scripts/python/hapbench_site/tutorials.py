@@ -6,10 +6,9 @@ import re
 import sys
 import tempfile
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
 from pathlib import Path
 
-from hapbench_docs.manuals import ROOT
+from hapbench_docs.manuals import LINK, ROOT
 
 from .pages import TUTORIALS, contents
 
@@ -24,42 +23,42 @@ class TutorialError(Exception):
     """A cell fails, or a sentence names a number that no cell printed."""
 
 
-@dataclass
-class Tutorial:
-    """One source. `parts`: (None, text) and (language, code, options) in turn."""
-
-    file: Path
-
-    @property
-    def name(self):
-        return self.file.stem
-
-    def parts(self, text):
-        end = 0
-        for found in CELL.finditer(text):
-            yield None, text[end:found.start()], ""
-            yield found[1], found[3], found[2]
-            end = found.end()
-        yield None, text[end:], ""
-
-
 def sources():
-    return [Tutorial(file) for file in sorted(TUTORIALS.glob("*.md")) if file.name != "README.md"]
+    return [file for file in sorted(TUTORIALS.glob("*.md")) if file.name != "README.md"]
 
 
-def notebook(tutorial, text):
+def parts_of(text):
+    """(None, text), (language, code, options) and so on in turn."""
+    end = 0
+    for found in CELL.finditer(text):
+        yield None, text[end:found.start()], ""
+        yield found[1], found[3], found[2]
+        end = found.end()
+    yield None, text[end:], ""
+
+
+def from_root(text):
+    """The text with links for a notebook in the root of a clone, where its commands run."""
+    def moved(found):
+        outside = re.match(r"^[a-z]+:|#", found[1])
+        return found[0] if outside else f"]({os.path.relpath(TUTORIALS / found[1], ROOT)})"
+
+    return LINK.sub(moved, text)
+
+
+def notebook(name, text):
     """The notebook without output; cells with `:tags: [remove-cell]` check what the text says and are left out of the page."""
     from nbformat import v4
 
     cells = []
-    for language, code, options in tutorial.parts(text):
+    for language, code, options in parts_of(text):
         if language is None:
-            cells += [v4.new_markdown_cell(code.strip())] if code.strip() else []
+            cells += [v4.new_markdown_cell(from_root(code.strip()))] if code.strip() else []
         else:
             tags = re.findall(r"[\w-]+", options.partition("tags:")[2])
             cells.append(v4.new_code_cell((SHELL if language == "bash" else "") + code.rstrip("\n"), metadata={"tags": tags}))
     for number, cell in enumerate(cells):
-        cell["id"] = f"{tutorial.name}-{number}"
+        cell["id"] = f"{name}-{number}"
     kernel = {"name": "python3", "display_name": "Python 3", "language": "python"}
     return v4.new_notebook(cells=cells, metadata={"kernelspec": kernel})
 
@@ -68,32 +67,37 @@ def environment(program, scratch):
     """For the kernel: this Python, the program first in the path, its Python module, and no file in anybody's home."""
     kernel = scratch / "jupyter" / "kernels" / "python3"
     kernel.mkdir(parents=True)
-    (kernel / "kernel.json").write_text(json.dumps({"argv": [sys.executable, "-m", "ipykernel_launcher", "-f", "{connection_file}"],
+    (kernel / "kernel.json").write_text(json.dumps({"argv": [sys.executable, "-Xfrozen_modules=off", "-m", "ipykernel_launcher", "-f", "{connection_file}"],
                                                     "display_name": "Python 3", "language": "python"}), encoding="utf-8")
     built = program.file.parent
     return {**os.environ, "PATH": f"{built}:{os.environ['PATH']}", "PYTHONPATH": str(built.parent / "lib/python3/dist-packages"),
-            "HAPBENCH_PYTHON": sys.executable, "PYTHONDONTWRITEBYTECODE": "1", "COLUMNS": "100", "LC_ALL": "C.UTF-8",
+            "HAPBENCH_PYTHON": sys.executable, "PYTHONDONTWRITEBYTECODE": "1", "PYDEVD_DISABLE_FILE_VALIDATION": "1", "COLUMNS": "100", "LC_ALL": "C.UTF-8",
             "JUPYTER_PATH": str(scratch / "jupyter"), "JUPYTER_RUNTIME_DIR": str(scratch / "runtime"), "IPYTHONDIR": str(scratch / "ipython")}
 
 
-def executed(tutorial, program, text=None):
-    """The notebook with output, made in a folder that looks like a clone."""
+def executed(name, text, program):
+    """The notebook with output, made in a folder that looks like a clone, in which every number of its sentences is."""
     import nbclient
 
-    text = tutorial.file.read_text(encoding="utf-8") if text is None else text
-    book = notebook(tutorial, text)
+    book = notebook(name, text)
     with tempfile.TemporaryDirectory(prefix="hapbench-tutorial-") as scratch:
         clone = Path(scratch) / "hapbench"
         clone.mkdir()
-        for folder in ("algorithms", "device_model", "results", "scenarios", "scripts", "sim", "tests"):
+        for folder in ("algorithms", "device_model", "scenarios", "scripts", "sim", "tests"):  # commands write to results/
             (clone / folder).symlink_to(ROOT / folder)
+        (clone / "results").mkdir()
+        (clone / "results" / "reference").symlink_to(ROOT / "results" / "reference")
         client = nbclient.NotebookClient(book, timeout=SECONDS, kernel_name="python3", resources={"metadata": {"path": str(clone)}})
         try:
             client.execute(env=environment(program, Path(scratch)))
         except nbclient.exceptions.CellExecutionError as error:
-            raise TutorialError(f"{tutorial.file.relative_to(ROOT)}: {error}") from error
+            said = "".join(one.text for cell in book.cells for one in cell.get("outputs", ()) if one.get("name") == "stderr")
+            raise TutorialError(re.sub(r"\x1b\[[\d;]*m", "", f"tutorial {name}: {error}\n{said}")) from error
     for cell in book.cells:
         cell.metadata.pop("execution", None)
+    lost = list(unproven_numbers(book))
+    if lost:
+        raise TutorialError(f"tutorial {name}: no cell has or prints {', '.join(lost)}")
     return book
 
 
@@ -120,7 +124,7 @@ def page(book, name, mirror):
     for cell in book.cells:
         tags = cell.metadata.get("tags", ())
         if cell.cell_type == "markdown":
-            parts.append(cell.source)
+            parts.append(mirror.linked(cell.source, ROOT / "README.md", f"scenarios/tutorials/{name}"))
             continue
         if "remove-cell" in tags:
             continue
@@ -145,16 +149,14 @@ def add_all(mirror, program, chosen=None):
     import nbformat
 
     (mirror.folder / "scenarios/tutorials").mkdir(parents=True, exist_ok=True)
-    texts = {one: mirror.linked(one.file.read_text(encoding="utf-8"), one.file) for one in sources()}
+    texts = {file.stem: file.read_text(encoding="utf-8") for file in sources()}
     with ThreadPoolExecutor(2) as pool:
-        made = {one: pool.submit(executed, one, program, text) if chosen is None or one.name in chosen else None for one, text in texts.items()}
-    for one, text in texts.items():
-        book = made[one].result() if made[one] else notebook(one, text)
-        lost = list(unproven_numbers(book)) if made[one] else ()
-        if lost:
-            raise TutorialError(f"{one.file.relative_to(ROOT)}: no cell prints {', '.join(lost)}")
-        mirror.add(f"scenarios/tutorials/{one.name}", page(book, one.name, mirror))
-        nbformat.write(book, str(mirror.folder / f"scenarios/tutorials/{one.name}.ipynb"))
+        made = {name: pool.submit(executed if chosen is None or name in chosen else lambda *given: notebook(*given[:2]), name, text, program)
+                for name, text in texts.items()}
+    for name in texts:
+        book = made[name].result()
+        mirror.add(f"scenarios/tutorials/{name}", page(book, name, mirror))
+        nbformat.write(book, str(mirror.folder / f"scenarios/tutorials/{name}.ipynb"))
     readme = TUTORIALS / "README.md"
-    text = mirror.linked(readme.read_text(encoding="utf-8"), readme) + "\n" + contents([f"scenarios/tutorials/{one.name}" for one in texts])
+    text = mirror.linked(readme.read_text(encoding="utf-8"), readme) + "\n" + contents([f"scenarios/tutorials/{name}" for name in texts])
     mirror.add("scenarios/tutorials/index", text)
