@@ -68,13 +68,14 @@ def declaration(member):
     if kind == "enum":
         values = "".join(f"  {words(v, 'name')}{' ' + words(v, 'initializer') if words(v, 'initializer') else ''},"
                          f"{'  // ' + one if (one := ''.join(v.find('briefdescription').itertext()).strip()) else ''}\n" for v in member.findall("enumvalue"))
-        return f"{head}enum class {name} {{\n{values}}};"
+        return f"{head}enum {'class ' if member.get('strong') == 'yes' else ''}{name} {{\n{values}}};"
     if kind == "typedef":
         return f"{head}using {name} = {words(member, 'type')};"
     static = "static " if member.get("static") == "yes" and kind == "function" else ""
+    given = re.sub(r"=(0|default|delete)$", r" = \1", words(member, "argsstring"))
     value = words(member, "initializer")
-    value = f" {value}" if len(value) < 80 else ""
-    return f"{head}{static}{words(member, 'type')} {name}{words(member, 'argsstring')}{value};".replace(static + static, static).replace("  ", " ").strip()
+    text = f"{head}{static}{words(member, 'type')} {words(member, 'name')}{given} {value if len(value) < 80 else ''}".strip()
+    return re.sub(r"(?<=<) | (?=>)", "", text.replace(static + static, static)) + ";"
 
 
 class Cpp:
@@ -101,7 +102,7 @@ class Cpp:
         folders, seen = defaultdict(list), set()
         for header in sorted(headers):
             folders[header.rpartition("/")[0]].append(self._of_header(header, headers[header], seen))
-        return {folder: f"# {folder}\n\n" + "\n".join(parts) for folder, parts in folders.items()}
+        return {folder: f"# C++: {folder}\n\n" + "\n".join(parts) for folder, parts in folders.items()}
 
     def _put(self, headers, node, item):
         place = node.find("location")
@@ -113,7 +114,7 @@ class Cpp:
         name = words(compound, "compoundname").removeprefix("hapbench::")
         members = []
         for member in compound.iter("memberdef"):
-            if member.get("prot") == "public" and member.get("kind") != "friend":
+            if member.get("prot") == "public" and member.get("kind") != "friend" and not words(member, "name").startswith("~"):
                 about = said(member)
                 text = declaration(member)
                 members.append(f"{literal(text, 'cpp')}\n{about}\n" if "\n" in text else f"- `{text.rstrip(';')}`" + (": " + re.sub(r"\s+", " ", about) if about else ""))
@@ -142,6 +143,9 @@ def add_cpp(mirror, scratch):
 
 def signature(node, name):
     if isinstance(node, ast.ClassDef):
+        fields = [ast.unparse(one) for one in node.body if isinstance(one, ast.AnnAssign)]  # of a data class
+        if fields:
+            return f"class {name}({', '.join(fields)})"
         made = next((one for one in node.body if isinstance(one, ast.FunctionDef) and one.name == "__init__"), None)
         return f"class {name}" + (re.sub(r"\(self(, )?", "(", signature(made, ""), count=1) if made else "")
     returns = f" -> {ast.unparse(node.returns)}" if node.returns else ""
@@ -159,7 +163,7 @@ def add_python(mirror):
         node = nodes[name]
         members = []
         if isinstance(node, ast.ClassDef):
-            members = [f"- `{signature(one, one.name).replace('(self, ', '(').replace('(self)', '()')}`: {plain(ast.get_docstring(one) or '')}"
+            members = [f"- `{signature(one, one.name).replace('(self, ', '(').replace('(self)', '()')}`: {in_line(ast.get_docstring(one) or '')}"
                        for one in node.body if isinstance(one, ast.FunctionDef) and not one.name.startswith("_") and ast.get_docstring(one)]
         parts += [f"## {name}\n", entry("python-name", f"hapbench.{name}", literal(signature(node, f"hapbench.{name}"), "python"),
                                        docstring(ast.get_docstring(node) or ""), "\n".join(re.sub(r"\s+", " ", one) for one in members))]
@@ -167,6 +171,10 @@ def add_python(mirror):
 
 
 def docstring(text):
-    """Indented parts are code."""
+    """Indented parts are code, and so is what stands in backticks."""
     parts = re.split(r"((?:^(?: {4}.*)?\n?)+)", text, flags=re.M)
-    return "".join(f"\n{literal(part.strip(chr(10)), 'python')}\n" if part.startswith("    ") else plain(part) for part in parts)
+    return "".join(f"\n{literal(part.strip(chr(10)), 'python')}\n" if part.startswith("    ") else in_line(part) for part in parts)
+
+
+def in_line(text):
+    return "".join(part if part.startswith("`") else plain(part) for part in re.split(r"(`[^`\n]+`)", text))

@@ -16,6 +16,8 @@ nitpicky = True
 smartquotes = False
 highlight_language = "none"
 html_theme = "furo"
+html_theme_options = {f"{theme}_css_variables": {"color-brand-primary": colour, "color-brand-content": colour}
+                      for theme, colour in (("light", "#0a5c8f"), ("dark", "#7cc0ee"))}
 html_static_path = [str(Path(__file__).parent / "static")]
 html_css_files = ["hapbench.css"]
 html_copy_source = html_show_sourcelink = html_show_sphinx = html_show_copyright = False
