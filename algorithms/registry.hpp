@@ -20,7 +20,7 @@
 namespace hapbench {
 
 /// A parameter that belongs to one algorithm alone and is no member of RenderingConfig: a number, the field
-/// rendering.parameters.ALGORITHM.NAME of a scenario.
+/// rendering.parameters.<algorithm>.<name> of a scenario.
 struct OwnParameter {
   const char* name;
   NumberRange range;

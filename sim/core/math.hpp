@@ -6,7 +6,7 @@
 /// run time rounds differently on another processor. These use the five operations and the square root that IEEE 754
 /// specifies to the last bit, in an order that -ffp-contract=off keeps. A test compares them with an 80-bit libm and
 /// holds the error bounds below, in units in the last place (ulp) of the result. Our sources use these instead of those
-/// of the header cmath.
+/// of <cmath>.
 ///
 /// They take as long as the C library's to twice as long, log10 and pow 30 to 50 ns.
 /// Arguments outside a function's domain and NaN give NaN; nothing sets errno.

@@ -4,7 +4,6 @@ import os
 import shutil
 import subprocess
 import sys
-import tempfile
 from pathlib import Path
 
 from hapbench_command import BAD_INPUT, FAILED, INTERRUPTED, SUCCESS, Arguments, say_error
@@ -64,8 +63,7 @@ def add_whole_pages(html, mirror, program):
 
 def lacking():
     """What is not installed of what the site is built with."""
-    lost = [name for name in ("sphinx", "myst_parser", "furo", "nbclient", "ipykernel") if importlib.util.find_spec(name) is None]
-    return lost + ([] if shutil.which("doxygen") else ["doxygen"])
+    return [name for name in ("sphinx", "myst_parser", "furo", "nbclient", "ipykernel") if importlib.util.find_spec(name) is None]
 
 
 def make(chosen):
@@ -80,10 +78,9 @@ def make(chosen):
     mirror.folder.mkdir(parents=True)
     mirror.add_manuals()
     Reference(program, mirror).add_all()
-    with tempfile.TemporaryDirectory(prefix="hapbench-site-") as scratch:
-        api.add_cpp(mirror, Path(scratch))
-        api.add_python(mirror)
-        tutorials.add_all(mirror, program, chosen.tutorials)
+    api.add_cpp(mirror)
+    api.add_python(mirror)
+    tutorials.add_all(mirror, program, chosen.tutorials)
     add_whole_pages(html, mirror, program)
     built(html, mirror, program)
     lost = [f"{page}: {link}" for page, link in links.broken(html)]
@@ -98,7 +95,7 @@ def main(words=None):
     except (ProgramError, OSError) as error:
         say_error(error)
         return BAD_INPUT
-    except (SiteError, api.ApiError, tutorials.TutorialError) as error:
+    except (SiteError, tutorials.TutorialError) as error:
         say_error(error)
         return FAILED
     except KeyboardInterrupt:

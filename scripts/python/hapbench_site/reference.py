@@ -11,7 +11,7 @@ BY_HAND = re.compile(r"([\\`*_\[\]<>|~$#!&{}])")
 def plain(text):
     """Text that Markdown leaves as it is."""
     text = BY_HAND.sub(r"\\\1", text)
-    return re.sub(r"^(\s*)(?=[-+=:])", r"\1\\", text, flags=re.M)
+    return re.sub(r"^(\s*)(?=[+=:]|-+$)", r"\1\\", text, flags=re.M)
 
 
 def entry(kind, name, *paragraphs):
