@@ -5,6 +5,9 @@ import re
 
 KINDS = {"algorithm": ("algorithms", "Algorithms"), "depth model": ("models", "Depth models"), "stage": ("models", "Stages"),
          "integrator": ("models", "Integrators")}
+# A field and what is said of it, by their indents, as "describe" prints it.
+FIELD = r"^ {%d}(\S+)\n((?: {%d}.*\n?)+)"
+A_PROFILE = "motion.orientation.tilt_rad"
 BY_HAND = re.compile(r"([\\`*_\[\]<>|~$#!&{}])")
 
 
@@ -56,38 +59,25 @@ class Reference:
         self._mirror.add("reference/commands", "\n".join(parts))
 
     def _fields(self):
-        whole_schema = json.loads(self._text("describe", "schema"))
-        definitions, schema = whole_schema["definitions"], whole_schema["else"]  # "then" is of a scenario that extends another
         parts = ["# Fields of a scenario\n\nAs `hapbench describe FIELD` has them; "
-                 "[the manual](../scenarios/index.md#write-a-scenario) says how a scenario is written. SI units throughout.\n"]
-        whole, rest = [], []
-        for name, field in schema["properties"].items():
-            inner = list(self._inner(name, field))
-            if inner:
-                rest += [f"## {name}\n", self._field(name, field), *inner]
-            else:
-                whole.append(self._field(name, field))
-        values = [f"## {name}\n\n{plain(one.get('description', 'In place of a number: a function of time.' if name == 'profile' else ''))}\n\n"
-                  + "\n".join(self._inner(name, one)) for name, one in definitions.items()]
-        self._mirror.add("reference/fields", "\n".join([*parts, "## Scenario\n", *whole, *rest, *values]))
+                 "[the manual](../scenarios/index.md#write-a-scenario) says how a scenario is written.\n"]
+        for name, about in re.findall(FIELD % (2, 6), self._text("describe", "scenario").split("\nscenario\n")[1], re.M):
+            parts += [*([] if "." in name else [f"## {name}\n"]), *self._field(name, about)]
+        parts += ["## Functions of time\n", *self._types(A_PROFILE, "profile")]
+        self._mirror.add("reference/fields", "\n".join(parts))
 
-    def _field(self, path, field):
-        default = f"; default `{json.dumps(field['default'])}`" if "default" in field else ""
-        return self._named("field", path, f"{allowed(field)}{default}", plain(field.get("description", "")))
+    def _field(self, name, about):
+        yield self._named("field", name, "\\\n".join(plain(line.strip()) for line in about.splitlines()))
+        words = " ".join(about.split())
+        if 'object whose "type" is one of' in words and '"ramp"' not in words:
+            yield from self._types(name, name)
 
-    def _inner(self, path, field):
-        """Entries of the fields of an object, of each type that it may have, and of the objects of a list."""
-        for name, one in ({} if path == "expect.metrics" else field.get("properties", {})).items():
-            if "const" not in one:
-                yield self._field(f"{path}.{name}", one)
-                yield from self._inner(f"{path}.{name}", one)
-        for one in (*field.get("oneOf", ()), *field.get("anyOf", ())):
-            kind = one.get("properties", {}).get("type", {}).get("const")
-            if kind is not None:
-                yield f"### {path}: {kind}\n\n{plain(one.get('description', ''))}\n"
-            yield from self._inner(path, one)
-        if isinstance(field.get("items"), dict):
-            yield from self._inner(f"{path}[]", field["items"])
+    def _types(self, field, name):
+        """Headings of the types that a field may have, each with its fields."""
+        for kind, summary, fields in re.findall(r'^  type "(\w+)": (.*)\n((?: {6}.*\n?)*)', self._text("describe", field), re.M):
+            yield f"### {name}: {kind}\n\n{plain(summary)}\n"
+            for inner, about in re.findall(FIELD % (6, 10), fields, re.M):
+                yield from self._field(f"{name}.{inner}", about)
 
     def _metrics(self):
         parts = ["# Metrics and columns\n\n[The manual of results](../results/index.md) says where they are written.\n\n## Metrics of summary.json\n"]
@@ -136,29 +126,3 @@ class Reference:
                     parts.append(f"## {group}\n")
                 parts.append(self._named("scenario", one["name"], plain(one["summary"]), plain(one.get("source", ""))))
         self._mirror.add("reference/scenarios", "\n".join(parts))
-
-
-def allowed(field):
-    """What a field may be, in a few words."""
-    choices = field.get("oneOf") or field.get("anyOf")
-    if "$ref" in field:  # a definition has a heading of its own
-        name = field["$ref"].rpartition("/")[2]
-        return f"a [{name}](#{name})"
-    if "enum" in field:
-        return "one of " + ", ".join(f"`{json.dumps(one)}`" for one in field["enum"])
-    if "const" in field:
-        return f"`{json.dumps(field['const'])}`"
-    if choices and not all(set(one) == {"required"} for one in choices):
-        types = [one["properties"]["type"]["const"] for one in choices if "const" in one.get("properties", {}).get("type", {})]
-        others = [allowed(one) for one in choices if "const" not in one.get("properties", {}).get("type", {}) and set(one) != {"required"}]
-        return " or ".join([*others, *(["an object with a `type`: " + ", ".join(f"`{one}`" for one in types)] if types else [])])
-    kind = field.get("type", "any JSON")
-    bounds = [f"{sign} {field[key]:g}" for key, sign in (("minimum", "≥"), ("exclusiveMinimum", "\\>"), ("maximum", "≤"), ("exclusiveMaximum", "\\<")) if key in field]
-    if kind == "array" and isinstance(field.get("items"), dict):
-        low, high = field.get("minItems", 0), field.get("maxItems")
-        count = f"{low}" if low == high else f"{low} to {high}" if high is not None else f"at least {low}"
-        return f"a list of {count}, each {allowed(field['items'])}"
-    return " ".join([{"number": "a number", "integer": "an integer", "boolean": "true or false", "string": "a text",
-                      "object": "an object", "array": "a list", "null": "null"}.get(kind, str(kind)), ", ".join(bounds)]).strip()
-
-
