@@ -7,9 +7,9 @@ import unittest.mock
 from fixture import PROGRAM, SOURCE, hapbench, main, must, scratch_folder
 
 from hapbench_docs.manuals import manuals
-from hapbench_site.__main__ import SiteError, lacking, make
+from hapbench_site.__main__ import lacking, make
 from hapbench_site.links import broken
-from hapbench_site.pages import page_of
+from hapbench_site.pages import SiteError, page_of
 
 LACKING = ", ".join(lacking())
 

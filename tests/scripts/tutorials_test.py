@@ -10,7 +10,7 @@ from fixture import PROGRAM, SOURCE, main, scratch_folder
 from hapbench_docs.program import Program
 from hapbench_site import tutorials
 from hapbench_site.__main__ import lacking
-from hapbench_site.pages import Mirror
+from hapbench_site.pages import Mirror, SiteError
 
 NAMES = {"my_mesh", "my_law", "my_device", "cluster", "thesis_claim", "contact_trace"}
 CELL = "# A title\n\nIt is {} m.\n\n```{{code-cell}} bash\necho 1.25\n{}\n```\n"
@@ -53,11 +53,11 @@ class Tutorials(unittest.TestCase):
 
     def test_a_number_that_nothing_prints_is_found(self):
         self.assertEqual(tutorials.printed(self.run_cell("1.25").cells[1]), "1.25\n")
-        with self.assertRaisesRegex(tutorials.TutorialError, "small: no cell has or prints 1.26"):
+        with self.assertRaisesRegex(SiteError, "small: no cell shows or prints 1.26"):
             self.run_cell("1.26")
 
     def test_a_cell_that_fails_is_found_with_what_it_said(self):
-        with self.assertRaisesRegex(tutorials.TutorialError, "nothing is called"):
+        with self.assertRaisesRegex(SiteError, "nothing is called"):
             self.run_cell("1.25", "hapbench describe nosuch\necho on")
 
 

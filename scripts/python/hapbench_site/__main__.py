@@ -11,7 +11,7 @@ from hapbench_docs.manuals import ROOT
 from hapbench_docs.program import Program, ProgramError
 
 from . import api, links, tutorials
-from .pages import Mirror
+from .pages import Mirror, SiteError
 from .reference import Reference
 
 DESCRIPTION = """Builds the documentation site, OUT/html/index.html, which needs no server: the manuals; commands, fields, metrics
@@ -19,10 +19,6 @@ and algorithms as the program describes them; the C++ and Python interface from 
 pages and notebooks; the arena, and the live page if it is built. Every link is checked. Needs the built program with its Python
 module; installs what is missing (scripts/setup --site). Exit status 1 if something of it does not hold."""
 LIVE = ROOT / "build" / "live" / "live.html"
-
-
-class SiteError(Exception):
-    """Sphinx warns, or a link is broken."""
 
 
 def arguments(words):
@@ -95,7 +91,7 @@ def main(words=None):
     except (ProgramError, OSError) as error:
         say_error(error)
         return BAD_INPUT
-    except (SiteError, tutorials.TutorialError) as error:
+    except SiteError as error:
         say_error(error)
         return FAILED
     except KeyboardInterrupt:

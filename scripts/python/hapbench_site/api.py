@@ -69,32 +69,29 @@ def add_cpp(mirror):
                "says how a project of its own uses them.\n\n" + contents((f"reference/cpp/{folder}" for folder in sorted(folders)), hidden=False))
 
 
-def signature(node, name):
-    if isinstance(node, ast.ClassDef):
-        fields = [ast.unparse(one) for one in node.body if isinstance(one, ast.AnnAssign)]  # of a data class
-        if fields:
-            return f"class {name}({', '.join(fields)})"
-        made = next((one for one in node.body if isinstance(one, ast.FunctionDef) and one.name == "__init__"), None)
-        return f"class {name}" + (re.sub(r"\(self(, )?", "(", signature(made, ""), count=1) if made else "")
-    returns = f" -> {ast.unparse(node.returns)}" if node.returns else ""
-    return f"{name}({ast.unparse(node.args)}){returns}"
+def stub(node):
+    """A definition without bodies, its own docstring and what is private."""
+    of_class = isinstance(node, ast.ClassDef)
+    kept = [stub_of_method(one) for one in node.body if isinstance(one, ast.AnnAssign) or isinstance(one, ast.FunctionDef) and
+            (one.name == "__init__" or one.name[0] != "_")] if of_class else []
+    node.body = kept or [ast.Expr(ast.Constant(...))]
+    return ast.unparse(node)
+
+
+def stub_of_method(node):
+    if isinstance(node, ast.FunctionDef):
+        node.body = node.body[:1] if ast.get_docstring(node) else [ast.Expr(ast.Constant(...))]
+    return node
 
 
 def add_python(mirror):
     """What `hapbench.__all__` names, as its module defines it; the package need not be built for that."""
-    package = ROOT / "scripts" / "python" / "hapbench"
-    trees = [ast.parse(file.read_text(encoding="utf-8")) for file in sorted(package.glob("*.py"))]
-    nodes = {node.name: node for tree in trees for node in tree.body if isinstance(node, (ast.FunctionDef, ast.ClassDef))}
-    assigned = next(node for node in ast.parse((package / "__init__.py").read_text(encoding="utf-8")).body if isinstance(node, ast.Assign))
+    trees = {file.stem: ast.parse(file.read_text(encoding="utf-8")) for file in (ROOT / "scripts" / "python" / "hapbench").glob("*.py")}
+    nodes = {node.name: node for tree in trees.values() for node in tree.body if isinstance(node, (ast.FunctionDef, ast.ClassDef))}
     parts = ["# Python\n\n`import hapbench`, by its docstrings. [The manual](../scripts/python/index.md) shows it at work.\n"]
-    for name in ast.literal_eval(assigned.value):
-        node = nodes[name]
-        members = []
-        if isinstance(node, ast.ClassDef):
-            members = [f"- `{signature(one, one.name).replace('(self, ', '(').replace('(self)', '()')}`: {in_line(ast.get_docstring(one) or '')}"
-                       for one in node.body if isinstance(one, ast.FunctionDef) and not one.name.startswith("_") and ast.get_docstring(one)]
-        parts += [f"## {name}\n", entry("python-name", f"hapbench.{name}", literal(signature(node, f"hapbench.{name}"), "python"),
-                                       docstring(ast.get_docstring(node) or ""), "\n".join(re.sub(r"\s+", " ", one) for one in members))]
+    for name in ast.literal_eval(next(node for node in trees["__init__"].body if isinstance(node, ast.Assign)).value):
+        about = docstring(ast.get_docstring(nodes[name]) or "")
+        parts += [f"## {name}\n", entry("python-name", f"hapbench.{name}", about, literal(stub(nodes[name]), "python"))]
     mirror.add("reference/python", "\n".join(parts))
 
 

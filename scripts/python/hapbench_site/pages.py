@@ -22,6 +22,10 @@ REFERENCE = ("reference/commands", "reference/fields", "reference/metrics", "ref
              "reference/scenarios", "reference/cpp", "reference/python")
 
 
+class SiteError(Exception):
+    """Something of the site does not hold: a link, a warning of Sphinx, a cell of a tutorial."""
+
+
 def page_of(file):
     """Name of the page of a manual: its path without suffix, a README's that of its folder's index."""
     where = file.relative_to(ROOT).with_suffix("")
@@ -59,7 +63,7 @@ class Mirror:
         if target.is_dir():
             target /= "README.md"
         if not target.exists():
-            raise OSError(f"{file.relative_to(ROOT)}: its link {link} leads nowhere")
+            raise SiteError(f"{file.relative_to(ROOT)}: its link {link} leads nowhere")
         if target in self.pages:
             page = f"{self.pages[target]}.md"
         elif target.suffix in PICTURES:

@@ -3,8 +3,8 @@ the bundled scenarios."""
 import json
 import re
 
-KINDS = {"algorithm": ("algorithms", "Algorithms"), "depth model": ("models", "Depth models"), "stage": ("models", "Stages"),
-         "integrator": ("models", "Integrators")}
+MODELS = {"algorithms": ("Algorithms", {"algorithm"}),
+          "models": ("Depth models, stages, integrators, presets", {"depth model", "stage", "integrator", "preset"})}
 # A field and what is said of it, by their indents, as "describe" prints it.
 FIELD = r"^ {%d}(\S+)\n((?: {%d}.*\n?)+)"
 A_PROFILE = "motion.orientation.tilt_rad"
@@ -32,7 +32,7 @@ class Reference:
 
     def __init__(self, program, mirror):
         self._program, self._mirror = program, mirror
-        self.names = {"command": set(), "field": set(), "metric": set(), "algorithm": set()}
+        self._names = set()
 
     def add_all(self):
         for page in (self._commands, self._fields, self._metrics, self._models, self._scenarios):
@@ -46,8 +46,8 @@ class Reference:
 
     def _named(self, kind, name, *paragraphs):
         """An entry; further ones of a name are told apart by no link of their own."""
-        first = name not in self.names.setdefault(kind, set())
-        self.names[kind].add(name)
+        first = (kind, name) not in self._names
+        self._names.add((kind, name))
         return entry(kind, name, *(() if first else (":noindex:",)), *paragraphs)
 
     def _commands(self):
@@ -86,35 +86,19 @@ class Reference:
         for file in self._json("describe", "columns"):
             if "columns" in file:
                 parts.append(f"## {file['name']}\n\n{plain(file['holds'])}\n")
-                parts += [f"- `{one['name']}` [{one['unit']}]: {plain(one['meaning'])}" if one["unit"] else f"- `{one['name']}`: {plain(one['meaning'])}"
-                          for one in file["columns"]]
-                parts.append("")
+                parts += [f"- `{one['name']}`{one['unit'] and ' [' + one['unit'] + ']'}: {plain(one['meaning'])}" for one in file["columns"]] + [""]
         self._mirror.add("reference/metrics", "\n".join(parts))
 
     def _models(self):
-        pages = {"algorithms": ["# Algorithms\n\nAs `hapbench describe NAME` has them; [the manual](../algorithms/index.md) compares them.\n"],
-                 "models": ["# Depth models, stages, integrators, presets\n\nAs `hapbench describe NAME` has them.\n"]}
         listed = self._json("list")
-        for kind, (page, title) in KINDS.items():
-            if page != "algorithms":
-                pages[page].append(f"## {title}\n")
-            pages[page] += [self._model(one) for one in listed if one["kind"] == kind]
-        pages["models"].append("## Presets of devices\n")
-        for one in listed:
-            if one["kind"] == "preset":
-                pages["models"] += [f"### {one['name']}\n", literal(self._text("describe", one["name"]))]
-        for page, parts in pages.items():
+        for page, (title, kinds) in MODELS.items():
+            parts = [f"# {title}\n\nAs `hapbench describe NAME` has them; [the manual of algorithms](../algorithms/index.md) compares them, that of "
+                     "[devices](../device_model/index.md) has the presets at work.\n"]
+            for one in listed:
+                if one["kind"] in kinds:
+                    parts += [f"## {one['name']}\n", self._named("algorithm" if page == "algorithms" else "model", one["name"]),
+                              literal(self._text("describe", one["name"]))]
             self._mirror.add(f"reference/{page}", "\n".join(parts))
-
-    def _model(self, listed):
-        found = self._json("describe", listed["name"])
-        one = found if isinstance(found, dict) else next(one for one in found if one.get("kind") == listed["kind"])
-        kind = "algorithm" if listed["kind"] == "algorithm" else "model"
-        facts = [f"{title}: {plain(one[key])}" if key != "formula" else literal(one[key])
-                 for title, key in (("", "formula"), ("Source", "source"), ("Known failure", "known_failure")) if one.get(key)]
-        given = [f"- `{p['name']}`: {plain(p['range'])}; default `{p['default']}`. {plain(p['meaning'])}" for p in one["parameters"]]
-        heading = "##" if kind == "algorithm" else "###"
-        return f"{heading} {one['name']}\n\n" + self._named(kind, one["name"], plain(one["summary"]), *facts, "\n".join(given))
 
     def _scenarios(self):
         parts = ["# Bundled scenarios\n\n`hapbench run NAME` runs one; [the gallery](../scenarios/GALLERY.md) shows some.\n"]

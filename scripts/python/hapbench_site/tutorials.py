@@ -10,7 +10,7 @@ from pathlib import Path
 
 from hapbench_docs.manuals import LINK, ROOT
 
-from .pages import TUTORIALS, contents
+from .pages import TUTORIALS, SiteError, contents
 
 CELL = re.compile(r"^```\{code-cell\} (bash|python)\n((?::[^\n]*\n)*)(.*?)^```\n", re.M | re.S)
 # A number in a sentence; not a part of a name, such as C5 or 2-D.
@@ -20,24 +20,10 @@ CLONE = "/home/me/hapbench"  # where pages say that it all happened
 SECONDS = 300  # the longest that a cell may take
 
 
-class TutorialError(Exception):
-    """A cell fails, or a sentence names a number that no cell printed."""
-
-
 def sources():
     """The tutorials in the order in which the page of all of them names them."""
     named = LINK.findall((TUTORIALS / "README.md").read_text(encoding="utf-8"))
     return sorted((file for file in TUTORIALS.glob("*.md") if file.name != "README.md"), key=lambda file: named.index(file.name))
-
-
-def parts_of(text):
-    """(None, text), (language, code, options) and so on in turn."""
-    end = 0
-    for found in CELL.finditer(text):
-        yield None, text[end:found.start()], ""
-        yield found[1], found[3], found[2]
-        end = found.end()
-    yield None, text[end:], ""
 
 
 def from_root(text):
@@ -53,11 +39,11 @@ def notebook(name, text):
     """The notebook without output; cells with `:tags: [remove-cell]` check what the text says and are left out of the page."""
     from nbformat import v4
 
-    cells = []
-    for language, code, options in parts_of(text):
-        if language is None:
-            cells += [v4.new_markdown_cell(from_root(code.strip()))] if code.strip() else []
-        else:
+    cells, pieces = [], iter(CELL.split(text))  # text, then language, options, code, text, and so on
+    for words in pieces:
+        cells += [v4.new_markdown_cell(from_root(words.strip()))] if words.strip() else []
+        language, options, code = (next(pieces, "") for _ in range(3))
+        if language:
             tags = re.findall(r"[\w-]+", options.partition("tags:")[2])
             cells.append(v4.new_code_cell((SHELL if language == "bash" else "") + code.rstrip("\n"), metadata={"tags": tags}))
     for number, cell in enumerate(cells):
@@ -74,7 +60,7 @@ def environment(program, scratch):
                                                     "display_name": "Python 3", "language": "python"}), encoding="utf-8")
     built = program.file.parent
     return {**os.environ, "PATH": f"{built}:{os.environ['PATH']}", "PYTHONPATH": str(built.parent / "lib/python3/dist-packages"),
-            "HAPBENCH_PYTHON": sys.executable, "PYTHONDONTWRITEBYTECODE": "1", "COLUMNS": "100", "LC_ALL": "C.UTF-8",
+            "HAPBENCH_PYTHON": sys.executable, "PYTHONDONTWRITEBYTECODE": "1", "HAPBENCH_PLUGIN_PATH": "", "COLUMNS": "100", "LC_ALL": "C.UTF-8",
             "JUPYTER_PATH": str(scratch / "jupyter"), "JUPYTER_RUNTIME_DIR": str(scratch / "runtime"), "IPYTHONDIR": str(scratch / "ipython")}
 
 
@@ -96,15 +82,15 @@ def executed(name, text, program):
             client.execute(env=environment(program, Path(scratch)))
         except nbclient.exceptions.CellExecutionError as error:
             said = "".join(one.text for cell in book.cells for one in cell.get("outputs", ()) if one.get("name") == "stderr")
-            raise TutorialError(re.sub(r"\x1b\[[\d;]*m", "", f"tutorial {name}: {error}\n{said}")) from error
+            raise SiteError(re.sub(r"\x1b\[[\d;]*m", "", f"tutorial {name}: {error}\n{said}")) from error
     for cell in book.cells:
         cell.metadata.pop("execution", None)
         for one in cell.get("outputs", ()):
-            if one.output_type == "stream":  # a path of this machine means nothing to a reader
+            if "text" in one:  # a path of this machine means nothing to a reader
                 one.text = one.text.replace(str(clone), CLONE).replace(str(ROOT), CLONE)
     lost = list(unproven_numbers(book))
     if lost:
-        raise TutorialError(f"tutorial {name}: no cell has or prints {', '.join(lost)}")
+        raise SiteError(f"tutorial {name}: no cell shows or prints {', '.join(lost)}")
     return book
 
 
