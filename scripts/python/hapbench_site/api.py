@@ -69,18 +69,14 @@ def add_cpp(mirror):
                "says how a project of its own uses them.\n\n" + contents((f"reference/cpp/{folder}" for folder in sorted(folders)), hidden=False))
 
 
-def stub(node):
-    """A definition without bodies, its own docstring and what is private."""
-    of_class = isinstance(node, ast.ClassDef)
-    kept = [stub_of_method(one) for one in node.body if isinstance(one, ast.AnnAssign) or isinstance(one, ast.FunctionDef) and
-            (one.name == "__init__" or one.name[0] != "_")] if of_class else []
-    node.body = kept or [ast.Expr(ast.Constant(...))]
-    return ast.unparse(node)
-
-
-def stub_of_method(node):
-    if isinstance(node, ast.FunctionDef):
-        node.body = node.body[:1] if ast.get_docstring(node) else [ast.Expr(ast.Constant(...))]
+def stub(node, inside=False):
+    """A definition without bodies and what is private; what is inside a class keeps its docstring."""
+    if isinstance(node, ast.AnnAssign):
+        return node
+    public = [one for one in node.body if isinstance(one, ast.AnnAssign) or isinstance(one, ast.FunctionDef) and (one.name == "__init__" or one.name[0] != "_")]
+    about = node.body[:1] if inside and ast.get_docstring(node) else []
+    inner = [stub(one, True) for one in public] if isinstance(node, ast.ClassDef) else []
+    node.body = [*about, *inner] or [ast.Expr(ast.Constant(...))]
     return node
 
 
@@ -91,7 +87,7 @@ def add_python(mirror):
     parts = ["# Python\n\n`import hapbench`, by its docstrings. [The manual](../scripts/python/index.md) shows it at work.\n"]
     for name in ast.literal_eval(next(node for node in trees["__init__"].body if isinstance(node, ast.Assign)).value):
         about = docstring(ast.get_docstring(nodes[name]) or "")
-        parts += [f"## {name}\n", entry("python-name", f"hapbench.{name}", about, literal(stub(nodes[name]), "python"))]
+        parts += [f"## {name}\n", entry("python-name", f"hapbench.{name}", about, literal(ast.unparse(stub(nodes[name])), "python"))]
     mirror.add("reference/python", "\n".join(parts))
 
 

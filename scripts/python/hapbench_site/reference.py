@@ -2,6 +2,7 @@
 the bundled scenarios."""
 import json
 import re
+from itertools import groupby
 
 MODELS = {"algorithms": ("Algorithms", {"algorithm"}),
           "models": ("Depth models, stages, integrators, presets", {"depth model", "stage", "integrator", "preset"})}
@@ -102,11 +103,7 @@ class Reference:
 
     def _scenarios(self):
         parts = ["# Bundled scenarios\n\n`hapbench run NAME` runs one; [the gallery](../scenarios/GALLERY.md) shows some.\n"]
-        group = None
-        for one in self._json("list"):
-            if one["kind"] == "scenario":
-                if one["group"] != group:
-                    group = one["group"]
-                    parts.append(f"## {group}\n")
-                parts.append(self._named("scenario", one["name"], plain(one["summary"]), plain(one.get("source", ""))))
+        bundled = (one for one in self._json("list") if one["kind"] == "scenario")
+        for group, scenarios in groupby(bundled, key=lambda one: one["group"]):
+            parts += [f"## {group}\n", *(self._named("scenario", one["name"], plain(one["summary"]), plain(one.get("source", ""))) for one in scenarios)]
         self._mirror.add("reference/scenarios", "\n".join(parts))
