@@ -88,7 +88,7 @@ file(GLOB_RECURSE manuals RELATIVE ${PROJECT_SOURCE_DIR} CONFIGURE_DEPENDS
   algorithms/plugin/examples/* algorithms/plugin/hapbench_plugin.h algorithms/plugin/law_plugin.hpp algorithms/plugin/hapbench_force_stage.h algorithms/plugin/stage_library.hpp algorithms/laws/equal_weights.cpp
   algorithms/peers/examples/* algorithms/peers/hapbench_contacts.h scenarios/validation/*.svg scenarios/validation/data/*.json
   scenarios/suites/*/suite.json results/reference/arena.csv
-  scripts/python/notebooks/*.ipynb tests/consumer/*.cpp tests/consumer/CMakeLists.txt
+  scenarios/tutorials/*.c tests/consumer/*.cpp tests/consumer/CMakeLists.txt
   sim/*.md algorithms/*.md device_model/*.md results/*.md scenarios/*.md scripts/*.md tests/*.md)
 foreach(manual README.md CHANGELOG.md CONTRIBUTING.md LICENSE CITATION.cff ${manuals})
   cmake_path(GET manual PARENT_PATH folder)

@@ -1,7 +1,6 @@
 """Runs, studies and results by the Python package. Arguments: those of python_fixture.py."""
 import ast
 import inspect
-import io
 import json
 import os
 import re
@@ -11,7 +10,6 @@ import sys
 import threading
 import time
 import unittest
-import unittest.mock
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
@@ -307,27 +305,6 @@ class Stubs(unittest.TestCase):
     def test_everything_public_is_documented(self):
         for name in hapbench.__all__:
             self.assertTrue(inspect.getdoc(getattr(hapbench, name)), name)
-
-
-class Notebook(Scratch):
-    def test_runs(self):
-        import matplotlib
-
-        matplotlib.use("agg")
-        here, path = os.getcwd(), list(sys.path)
-        self.addCleanup(os.chdir, here)
-        self.addCleanup(sys.path.__setitem__, slice(None), path)
-        for file in sorted((SOURCE / "scripts/python/notebooks").glob("*.ipynb")):
-            notebook = json.loads(file.read_text())
-            names = {"__name__": "__main__"}
-            os.chdir(self.root)
-            for cell in notebook["cells"]:
-                self.assertFalse(cell.get("outputs"), f"{file.name}: keep it without outputs")
-                if cell["cell_type"] == "code":
-                    with unittest.mock.patch("sys.stdout", io.StringIO()):
-                        exec(compile("".join(cell["source"]), file.name, "exec"), names)
-            self.assertGreater(len(matplotlib.pyplot.get_fignums()), 0)
-            self.assertIn("mine", names["hapbench"].algorithms())
 
 
 if __name__ == "__main__":

@@ -87,10 +87,10 @@ def run(given):
 
 def table_of(law, scores, cost, folder):
     lines = [f"{law.label()}, geometric means over scenes and seeds", "",
-             f"{'axis':<34} {'unit':<6} {'score':>10} {'95 % from':>10} {'to':>10} {'worst seed':>10} {'failed':>6}"]
+             f"{'axis':<38} {'unit':<6} {'score':>10} {'95 % from':>10} {'to':>10} {'worst seed':>10} {'failed':>6}"]
     for one in scores:
         better = "more" if one.axis.more_is_better else "less"
-        lines.append(f"{one.axis.title + ' (' + better + ')':<34} {one.axis.unit:<6} {one.value:>10.4g} {one.low:>10.4g} {one.high:>10.4g} "
+        lines.append(f"{one.axis.title + ' (' + better + ')':<38} {one.axis.unit:<6} {one.value:>10.4g} {one.low:>10.4g} {one.high:>10.4g} "
                      f"{one.worst:>10.4g} {one.failed:>6}")
     ratios = ", ".join(f"{row['over_brute_force']:.3g} in {row['scene']}" for row in cost)
     return "\n".join([*lines, "", f"time of a step over brute force: {ratios}", f"results in {folder}", f"next: hapbench suite verify {folder}"])
