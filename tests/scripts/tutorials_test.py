@@ -1,6 +1,5 @@
 """Every tutorial runs from its first cell to its last, in a folder that looks like a clone, and says no number that it does not
 print; its page has the pictures of that execution, its notebook the links of a clone."""
-import json
 import re
 import unittest
 from concurrent.futures import ThreadPoolExecutor
@@ -47,7 +46,6 @@ class Tutorials(unittest.TestCase):
             for cell in book.cells:
                 for link in tutorials.LINK.findall(cell.source) if cell.cell_type == "markdown" else ():
                     self.assertTrue((SOURCE / link.partition("#")[0]).exists(), f"{file.name}: {link}")
-            json.dumps(book)
 
     def run_cell(self, number, command="true"):
         return tutorials.executed("small", CELL.format(number, command), Program(PROGRAM))

@@ -80,7 +80,7 @@ def executed(name, text, program):
         client = nbclient.NotebookClient(book, timeout=SECONDS, kernel_name="python3", resources={"metadata": {"path": str(clone)}})
         try:
             client.execute(env=environment(program, Path(scratch)))
-        except nbclient.exceptions.CellExecutionError as error:
+        except (nbclient.exceptions.CellExecutionError, nbclient.exceptions.CellTimeoutError, nbclient.exceptions.DeadKernelError) as error:
             said = "".join(one.text for cell in book.cells for one in cell.get("outputs", ()) if one.get("name") == "stderr")
             raise SiteError(re.sub(r"\x1b\[[\d;]*m", "", f"tutorial {name}: {error}\n{said}")) from error
     for cell in book.cells:
