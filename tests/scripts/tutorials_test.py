@@ -55,6 +55,13 @@ class Tutorials(unittest.TestCase):
         with self.assertRaisesRegex(SiteError, "small: no cell shows or prints 1.26"):
             self.run_cell("1.26")
 
+    def test_without_the_python_module_it_says_what_to_do(self):
+        folder = scratch_folder(self)
+        (folder / "bin").mkdir()
+        (folder / "bin" / "hapbench").write_text("", encoding="utf-8")
+        with self.assertRaisesRegex(SiteError, "lacks the Python module; scripts/setup --python"):
+            tutorials.environment(Program(folder / "bin" / "hapbench"), folder)
+
     def test_a_cell_that_fails_is_found_with_what_it_said(self):
         with self.assertRaisesRegex(SiteError, "nothing is called"):
             self.run_cell("1.25", "hapbench describe nosuch\necho on")
