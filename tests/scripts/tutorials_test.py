@@ -1,6 +1,5 @@
 """Every tutorial runs from its first cell to its last, in a folder that looks like a clone, and says no number that it does not
 print; its page has the pictures of that execution, its notebook the links of a clone."""
-import json
 import re
 import unittest
 from concurrent.futures import ThreadPoolExecutor
@@ -47,7 +46,6 @@ class Tutorials(unittest.TestCase):
             for cell in book.cells:
                 for link in tutorials.LINK.findall(cell.source) if cell.cell_type == "markdown" else ():
                     self.assertTrue((SOURCE / link.partition("#")[0]).exists(), f"{file.name}: {link}")
-            json.dumps(book)
 
     def run_cell(self, number, command="true"):
         return tutorials.executed("small", CELL.format(number, command), Program(PROGRAM))
@@ -56,6 +54,13 @@ class Tutorials(unittest.TestCase):
         self.assertEqual(tutorials.printed(self.run_cell("1.25").cells[1]), "1.25\n")
         with self.assertRaisesRegex(SiteError, "small: no cell shows or prints 1.26"):
             self.run_cell("1.26")
+
+    def test_without_the_python_module_it_says_what_to_do(self):
+        folder = scratch_folder(self)
+        (folder / "bin").mkdir()
+        (folder / "bin" / "hapbench").write_text("", encoding="utf-8")
+        with self.assertRaisesRegex(SiteError, "lacks the Python module; scripts/setup --python"):
+            tutorials.environment(Program(folder / "bin" / "hapbench"), folder)
 
     def test_a_cell_that_fails_is_found_with_what_it_said(self):
         with self.assertRaisesRegex(SiteError, "nothing is called"):

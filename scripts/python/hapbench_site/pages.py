@@ -92,8 +92,9 @@ class Mirror:
     def _contents(self):
         tutorials = {page for file, page in self.pages.items() if file.is_relative_to(TUTORIALS)}
         named = {"index", *START, *MANUALS, *tutorials}
-        record = sorted(page for page in self.pages.values() if page not in named)
-        groups = {"Start": START, "Manuals": MANUALS, "Reference": REFERENCE, "Record": record}
+        rest = sorted(page for page in self.pages.values() if page not in named)
+        readmes = [page for page in rest if page.endswith("/index")]
+        groups = {"Start": START, "Manuals": (*MANUALS, *readmes), "Reference": REFERENCE, "Record": [page for page in rest if page not in readmes]}
         return "\n".join(contents(pages, caption) for caption, pages in groups.items())
 
 

@@ -17,6 +17,7 @@ CELL = re.compile(r"^```\{code-cell\} (bash|python)\n((?::[^\n]*\n)*)(.*?)^```\n
 NUMBER = re.compile(r"(?<![\w.^-])\d+(?:\.\d+)?(?:e-?\d+)?(?![\w-]|\.\d)")
 SHELL = "%%script bash -e\n"
 CLONE = "/home/me/hapbench"  # where pages say that it all happened
+PACKAGES = Path("lib/python3/dist-packages")  # below the folder of a build or an installation
 SECONDS = 300  # the longest that a cell may take
 
 
@@ -59,7 +60,9 @@ def environment(program, scratch):
     (kernel / "kernel.json").write_text(json.dumps({"argv": [sys.executable, "-Xfrozen_modules=off", "-m", "ipykernel_launcher", "-f", "{connection_file}"],
                                                     "display_name": "Python 3", "language": "python"}), encoding="utf-8")
     built = program.file.parent
-    return {**os.environ, "PATH": f"{built}:{os.environ['PATH']}", "PYTHONPATH": str(built.parent / "lib/python3/dist-packages"),
+    if not any((built.parent / PACKAGES / "hapbench").glob("_hapbench*.so")):
+        raise SiteError(f"{built.parent / PACKAGES} lacks the Python module; scripts/setup --python, then -DHAPBENCH_BUILD_PYTHON=ON, target _hapbench")
+    return {**os.environ, "PATH": f"{built}:{os.environ['PATH']}", "PYTHONPATH": str(built.parent / PACKAGES),
             "HAPBENCH_PYTHON": sys.executable, "PYTHONDONTWRITEBYTECODE": "1", "HAPBENCH_PLUGIN_PATH": "", "COLUMNS": "100", "LC_ALL": "C.UTF-8",
             "JUPYTER_PATH": str(scratch / "jupyter"), "JUPYTER_RUNTIME_DIR": str(scratch / "runtime"), "IPYTHONDIR": str(scratch / "ipython")}
 
@@ -80,7 +83,7 @@ def executed(name, text, program):
         client = nbclient.NotebookClient(book, timeout=SECONDS, kernel_name="python3", resources={"metadata": {"path": str(clone)}})
         try:
             client.execute(env=environment(program, Path(scratch)))
-        except nbclient.exceptions.CellExecutionError as error:
+        except (nbclient.exceptions.CellExecutionError, nbclient.exceptions.CellTimeoutError, nbclient.exceptions.DeadKernelError) as error:
             said = "".join(one.text for cell in book.cells for one in cell.get("outputs", ()) if one.get("name") == "stderr")
             raise SiteError(re.sub(r"\x1b\[[\d;]*m", "", f"tutorial {name}: {error}\n{said}")) from error
     for cell in book.cells:
