@@ -208,7 +208,8 @@ class Live {
     if (!this.begun || shown.runs.length !== trails.length) return;
     shown.runs.forEach((run, i) => trails[i].add(run.rows, run.state));
     this.shown = shown;
-    if (trails.some((trail) => trail.heard.length)) this.sound.play(trails.map((trail) => trail.heard));
+    // Slowed down it would sound in pieces.
+    if (this.find("#pace").value === "1") this.sound.play(trails.map((trail) => trail.heard));
     this.draw();
   }
 
