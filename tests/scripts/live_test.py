@@ -252,6 +252,37 @@ class InChromium(OfBrowser, unittest.TestCase):
         }})""")
         self.assertEqual({name: value for name, value in found if single[name] != value}, {})
 
+    def test_a_finger_leads_and_two_turn_the_view(self):
+        self.open("#scene=hole")
+        before, (x, y) = self.js("[live.pointer, live.camera.yaw]"), self.centre(".view")
+        touch = lambda kind, *places: self.browser.call("Input.dispatchTouchEvent", type=kind, touchPoints=[
+            {"x": place[0], "y": place[1], "id": i} for i, place in enumerate(places)])
+        touch("touchStart", (x, y))
+        touch("touchMove", (x, y + 40))
+        touch("touchEnd")
+        led = self.js("live.pointer")
+        self.assertLess(led[2], before[0][2])
+        self.assertEqual(self.js("live.camera.yaw"), before[1])
+        touch("touchStart", (x, y), (x + 60, y))
+        touch("touchMove", (x + 30, y), (x + 90, y))
+        touch("touchEnd")
+        self.assertNotEqual(self.js("live.camera.yaw"), before[1])
+
+    def test_the_kept_motion_is_a_file(self):
+        self.open()
+        downloads = folder / "downloads"
+        self.browser.call("Browser.setDownloadBehavior", behavior="allow", downloadPath=str(downloads))
+        self.move((2e-4, -1e-3, 0, 0.2, 0), 300)
+        self.js("document.getElementById('keep').click()")
+        self.browser.wait_for("document.getElementById('said').textContent.startsWith('Kept')")
+        file = downloads / "live_peg_original_averaging.json"
+        for _ in range(100):
+            if file.is_file() and file.read_bytes():
+                break
+            time.sleep(0.1)
+        [run] = json.loads(must(PROGRAM, "run", file, "--json", "--out", folder / "runs", statuses=(0, 3)))
+        self.assertIn(run["state_hash"], self.js("document.getElementById('said').textContent"))
+
     def test_fits_400_pixels(self):
         self.open()
         self.browser.size(400, 800, 2)
