@@ -91,7 +91,7 @@ def page(engine):
         "sides": "\n".join(fill(PAGE / "side.html", {"which": str(i)}) for i in (1, 2)),
         "data": json.dumps(data).replace("</", "<\\/"),
         "worker": '"use strict";\n' + read(PAGE, "engine.js", "worker.js"),
-        "script": "\n".join((read(ASSETS, "theme.js", *REPLAY), read(PAGE, "engine.js", "live_sound.js", "live_view.js", "live.js"))),
+        "script": "\n".join((read(ASSETS, "theme.js", *REPLAY), read(PAGE, "engine.js", "live_sound.js", "live_view.js", "live_hands.js", "live.js"))),
     })
 
 
