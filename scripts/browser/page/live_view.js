@@ -68,8 +68,9 @@ function viewedScene(engineScene, shell, springs) {
   for (let i = 0; i < shell.length; i += 6) places.push(i);
   const isNear = (i) => [0, 1, 2].every((k) => Math.abs(shell[i + k] - start[k]) < near);
   const shown = planar ? places : places.filter(isNear);
-  const every = Math.max(1, Math.ceil(shown.length / MOST_POINTS));
-  const points = shown.filter((_, n) => n % every === 0).map((i) => ({at: vectorAt(shell, i), normal: vectorAt(shell, i + 3)}));
+  // Drawn by lot, as every nth of a grid's points makes stripes.
+  const share = MOST_POINTS / shown.length, lot = (n) => (Math.imul(n + 1, 2654435761) >>> 0) / 2 ** 32;
+  const points = shown.filter((i) => lot(i / 6) < share).map((i) => ({at: vectorAt(shell, i), normal: vectorAt(shell, i + 3)}));
   const size = springs.length ? 1e-3 : 4 * half, whole = planar && shell.length > 0;
   return {planar: planar || springs.length > 0, points, springs, deepest: DEEPEST_M, up, lean: engineScene.lean,
     tool: engineScene.outline_m.length && !springs.length ? new Tool(engineScene.outline_m) : null,
