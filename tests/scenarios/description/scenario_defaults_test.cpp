@@ -380,18 +380,21 @@ TEST_F(EffectivePaths, WorkForAScenarioOfTheCurrentDirectory) {
 
 TEST(ScenarioHash, FollowsTheContentsOfFilesNotTheirPaths) {
   const test::TemporaryDirectory directory;
-  for (const auto& [environment, source, more] :
-       {std::tuple{"point_shell", "shell.csv", "0,0,0,0,0,1\n"}, {"mesh", "cube.obj", "# more\n"}}) {
-    const std::string end = fs::path(source).extension(), contents = test::read_file(test::data_directory() / source);
+  struct Case {
+    const char *environment, *source, *more;
+  };
+  for (const Case& of : {Case{"point_shell", "shell.csv", "0,0,0,0,0,1\n"}, Case{"mesh", "cube.obj", "# more\n"}}) {
+    const std::string end = fs::path(of.source).extension(),
+                      contents = test::read_file(test::data_directory() / of.source);
     const auto hash_with = [&](const std::string& file, const std::string& text) {
       test::write_plainly(directory / (file + end), text);
-      Json json = test::minimal_scenario(environment);
+      Json json = test::minimal_scenario(of.environment);
       json["environment"]["file"] = file + end;
       return content_hash(read_scenario(json, directory.path()).scenario);
     };
     const std::string hash = hash_with("a", contents);
     EXPECT_EQ(hash_with("b", contents), hash);
-    EXPECT_NE(hash_with("b", contents + more), hash);
+    EXPECT_NE(hash_with("b", contents + of.more), hash);
   }
 }
 
