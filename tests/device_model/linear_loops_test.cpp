@@ -268,7 +268,7 @@ TEST(SampledLoop, IsTheMapOfTheDeviceWithATransmission) {
       loop.wall_damping = 0.5;
       const Eigen::MatrixXd A = loop.state_matrix();
       ImpedanceDevice device(loop.device, loop.period, loop.hand);
-      device.reset({{{1e-3, 0, 0}}, {}});
+      device.reset({.pose = {.position = {1e-3, 0, 0}}});
       Eigen::VectorXd state = Eigen::VectorXd::Zero(A.rows());
       state[0] = state[2] = state[A.rows() - 2] = 1e-3;  // motors, their last sample, handle
       for (int k = 0; k < 400; ++k) {
