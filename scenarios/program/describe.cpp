@@ -84,7 +84,7 @@ Description describe_scenario(const std::filesystem::path& file) {
   const Scenario& scenario = loaded.scenario;
   std::string text = fmt::format("scenario {}\n", bold(stdout, scenario.name));
   if (!scenario.description.empty()) text += wrapped(scenario.description);
-  text += "\n" + entry("file", file.string(), 2, 10);
+  text += fmt::format("\n  file    {}\n", file.string());  // whole, to be copied
   if (!scenario.source.empty()) text += entry("source", scenario.source, 2, 10);
   text += "\n  set (\"hapbench describe scenario\" explains the fields, --json has all with their defaults)\n";
   add_assignments(text, "", given.json);
