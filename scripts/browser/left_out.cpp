@@ -1,4 +1,5 @@
-// What a page has not, in place of the engine's own: an installation, plugins, signals, a limit of memory.
+// Replaces the parts of the engine that need an operating system: the folder of an installation, plugins, signals and
+// the limit of memory.
 #include <filesystem>
 
 #include "algorithms/plugin/plugin_call.hpp"

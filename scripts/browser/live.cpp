@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "device_model/hands/scripted_hands.hpp"
+#include "results/observe/contact_forces.hpp"
 #include "results/observe/metrics.hpp"
 #include "results/observe/passivity_observer.hpp"
 #include "results/summary/outcome_names.hpp"
@@ -56,8 +57,7 @@ class PointerHand final : public Hand {
 class PointerMotion final : public Motion {
  public:
   explicit PointerMotion(const OrientationFields& fields)
-      : orientation_{fields.up.normalized(), fields.lean.normalized(), fields.tilt, fields.azimuth, fields.roll},
-        motion_(orientation_, std::nullopt) {}
+      : orientation_(make_orientation(fields)), motion_(orientation_, std::nullopt) {}
 
   void follow(const Pointer& pointer) {
     orientation_.tilt = pointer.profile(3);
@@ -75,13 +75,13 @@ class PointerMotion final : public Motion {
   ScriptedMotion motion_;
 };
 
-/// What the page reads of a row; `kRow` names the numbers, three of a vector.
-constexpr const char* kRow[] = {"time", "position", "axis", "force", "spring", "hand", "handle", "depth", "contacts"};
-constexpr std::size_t kRowNumbers = 1 + 6 * 3 + 2;
+/// Each row is sent to the page as so many numbers: time, five vectors, depth and number of contacts. ROW in
+/// page/engine.js has their places.
+constexpr std::size_t kRowNumbers = 1 + 5 * 3 + 2;
 
 class Session final : public Observer {
  public:
-  /// Of a run that is led, `aim` comes before the first row; another goes as the scenario says.
+  /// If the pointer leads the run, call `aim` before the first row; if not, the scenario's own hand and motion do.
   Session(LoadedScenario loaded, bool is_led) : loaded_(std::move(loaded)) {
     const Scenario& scenario = loaded_.scenario;
     check_named_files(loaded_);
@@ -91,6 +91,7 @@ class Session final : public Observer {
     contacts_.emplace(parts_.source->capacity());
     metrics_.emplace(scenario.time.step);
     passivity_.emplace(scenario.time.step);
+    high_pass_ = vibration_filter(scenario.time.step);
     if (is_led)
       put_on_pointer();
     else
@@ -102,7 +103,7 @@ class Session final : public Observer {
     contacts_->assign(*row.rendered);
     rows_.push_back(row.time);
     for (const Vec3& v : {row.tool.pose.position, row.tool.pose.axis, row.force.rendered, row.force.spring,
-                          row.hand_force, row.handle.position})
+                          vibration(row.force.rendered, row.step == 0)})
       rows_.insert(rows_.end(), {v.x(), v.y(), v.z()});
     rows_.insert(rows_.end(), {row.force.depth_max, static_cast<double>(row.rendered->size())});
   }
@@ -129,7 +130,7 @@ class Session final : public Observer {
     return text_.c_str();
   }
 
-  /// What does not change from row to row.
+  /// The data of the scene that stay the same during the run, as JSON.
   const char* scene() {
     const Scenario& scenario = loaded_.scenario;
     nlohmann::json outline = nlohmann::json::array();
@@ -150,12 +151,10 @@ class Session final : public Observer {
                  {"half_width_m", tool_ ? tool_->half_width() : 0.0},
                  {"outline_m", outline},
                  {"box_m", {list(box.min), list(box.max)}},
-                 {"points", shell_ ? shell_->size() : 0},
-                 {"warnings", loaded_.warnings},
-                 {"row", kRow}});
+                 {"points", shell_ ? shell_->size() : 0}});
   }
 
-  /// What the page shows of the whole run so far and of its last row.
+  /// The state hash and totals of the run so far, and contacts and stiffness tensor of its last row, as JSON.
   const char* state() {
     const Metrics metrics = metrics_->metrics();
     const auto passivity = passivity_->metrics();
@@ -173,7 +172,6 @@ class Session final : public Observer {
                  {"outcome", outcome_name(result.outcome)},
                  {"fault", diverged ? result.divergence.quantity : ""},
                  {"energy_created_J", passivity ? passivity->net_created() : 0.0},
-                 {"depth_max_m", metrics.depth_max},
                  {"tensor", tensor},
                  {"contacts", contacts}});
   }
@@ -181,6 +179,13 @@ class Session final : public Observer {
   const PointShell* shell() const { return shell_.get(); }
 
  private:
+  /// The force above the cutoff; zero where the sampling rate is too low for that.
+  Vec3 vibration(const Vec3& force, bool is_first) noexcept {
+    if (!high_pass_) return Vec3::Zero();
+    if (is_first) high_pass_->settle_at(force);
+    return high_pass_->filter(force);
+  }
+
   void put_on_pointer() {
     const Scenario& scenario = loaded_.scenario;
     const auto* hand = std::get_if<ImpedanceHandFields>(&scenario.hand);
@@ -209,6 +214,7 @@ class Session final : public Observer {
   Pointer pointer_;
   std::optional<MetricsObserver> metrics_;
   std::optional<PassivityObserver> passivity_;
+  std::optional<HighPass> high_pass_;
   std::optional<ContactBuffer> contacts_;
   std::optional<Simulation> simulation_;
   Mat3 last_ = Mat3::Zero();

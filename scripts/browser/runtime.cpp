@@ -1,5 +1,5 @@
-// What the standard library for WebAssembly has not: exceptions and files. An exception ends the engine with its
-// message; the page makes a new one.
+// Adds exceptions and files to the standard library for WebAssembly, which is built without them. An exception ends the
+// engine with its message; the page then makes a new engine.
 #include <sys/stat.h>
 #include <wasi/api.h>
 

@@ -16,7 +16,18 @@ UNNAMED = """[...document.querySelectorAll('button, select, input, canvas, img')
       [...(e.labels || [])].some((label) => label.textContent.trim()))).map((e) => e.outerHTML.slice(0, 80))"""
 
 
-class Chromium:
+class Browser:
+    """What browsers share that have an `evaluate`."""
+
+    def wait_for(self, expression):
+        deadline = time.monotonic() + PATIENCE_S
+        while not self.evaluate(expression):
+            if time.monotonic() > deadline:
+                raise TimeoutError(expression)
+            time.sleep(0.05)
+
+
+class Chromium(Browser):
     """One browser with one page, without network. Use it in a with statement."""
 
     def __init__(self, program, width=1280, height=900, dark=False):
@@ -86,13 +97,6 @@ class Chromium:
         if "exceptionDetails" in result:
             raise RuntimeError(result["exceptionDetails"])
         return result["result"].get("value")
-
-    def wait_for(self, expression):
-        deadline = time.monotonic() + PATIENCE_S
-        while not self.evaluate(expression):
-            if time.monotonic() > deadline:
-                raise TimeoutError(expression)
-            time.sleep(0.05)
 
     def complaints(self):
         """Errors and warnings of console and browser, uncaught exceptions, and requests for anything outside the file."""

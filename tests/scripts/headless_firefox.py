@@ -8,7 +8,7 @@ import tempfile
 import time
 from pathlib import Path
 
-PATIENCE_S = 300
+from headless_chromium import PATIENCE_S, Browser
 
 
 def free_port():
@@ -17,7 +17,7 @@ def free_port():
         return probe.getsockname()[1]
 
 
-class Firefox:
+class Firefox(Browser):
     """One browser with one page. Use it in a with statement."""
 
     def __init__(self, program, width=1280, height=900):
@@ -92,13 +92,6 @@ class Firefox:
         if error:
             raise RuntimeError(error[0])
         return value
-
-    def wait_for(self, expression):
-        deadline = time.monotonic() + PATIENCE_S
-        while not self.evaluate(expression):
-            if time.monotonic() > deadline:
-                raise TimeoutError(expression)
-            time.sleep(0.05)
 
     def drag(self, places):
         """The left button goes down at the first place of the window, moves by the others and up at the last."""

@@ -158,5 +158,5 @@ class Engine {
   }
 }
 
-/** Where the numbers of a row are; live.cpp has the same list. */
-const ROW = {time: 0, position: 1, axis: 4, force: 7, spring: 10, hand: 13, handle: 16, depth: 19, contacts: 20, size: 21};
+/** Places of a row's numbers, as live.cpp writes them; `vibration` is the rendered force above 30 Hz. */
+const ROW = {time: 0, position: 1, axis: 4, force: 7, spring: 10, vibration: 13, depth: 16, contacts: 17, size: 18};

@@ -6,11 +6,6 @@ function unpressed(base64) {
   const bytes = Uint8Array.from(atob(base64), (c) => c.charCodeAt(0));
   return new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"))).arrayBuffer();
 }
-const NOT_A_NUMBER = "–";
-const show = (value, digits = 3) => {
-  if (!Number.isFinite(value)) return NOT_A_NUMBER;
-  return (Math.abs(value) < 10 ** digits ? value.toPrecision(digits) : value.toFixed(0)).replace("-", "−");
-};
 /** Of a hand with a mass of about 0.1 kg, three quarters of the critical damping. */
 const dampingOf = (stiffness) => 1.5 * Math.sqrt(0.1 * stiffness);
 /** Rows for a run that lasts as long as somebody plays. */

@@ -1,49 +1,20 @@
 // The force above 30 Hz, heard as it is rendered: a newton is always as loud, so that laws compare by ear. Clicks where
 // contact begins and ends.
 
-const CUTOFF_HZ = 30;
 /** Amplitude of full scale for 1 N [dB] at a gain of 0 dB. */
 const NEWTON_DB = -20;
 const DELAY_S = 0.06, LONGEST_S = 0.3;
 
-/** Butterworth of fourth order, as in results/observe/butterworth.hpp, at rest at the first sample. */
-class HighPass {
-  constructor(rate) {
-    const k = Math.tan(Math.PI * CUTOFF_HZ / rate);
-    this.sections = [Math.PI / 8, 3 * Math.PI / 8].map((angle) => {
-      const damping = 2 * k * Math.cos(angle), n = 1 / (1 + damping + k * k);
-      return {n, a1: 2 * n * (k * k - 1), a2: n * (1 - damping + k * k), s1: 0, s2: 0};
-    });
-  }
-
-  next(x) {
-    if (!this.started) {
-      this.started = true;
-      const [first] = this.sections;
-      first.s1 = -first.n * x;
-      first.s2 = first.n * x;
-    }
-    for (const section of this.sections) {
-      const b = section.n * x, y = b + section.s1;
-      section.s1 = section.s2 - 2 * b - section.a1 * y;
-      section.s2 = b - section.a2 * y;
-      x = y;
-    }
-    return x;
-  }
-}
-
 /** The rendered force of one run above 30 Hz: along the direction in which it is strongest of late, and its rms. */
 class Vibration {
   constructor(rate) {
-    this.filters = [0, 1, 2].map(() => new HighPass(rate));
     this.direction = [0.6, 0.6, 0.53];
     this.power = 0;
     this.share = 1 - Math.exp(-1 / (0.5 * rate));
   }
 
-  next(force) {
-    const high = force.map((f, i) => this.filters[i].next(f));
+  /** The signed size of the next sample along that direction. */
+  next(high) {
     const along = high.reduce((sum, h, i) => sum + h * this.direction[i], 0);
     const size2 = high.reduce((sum, h) => sum + h * h, 0);
     this.power += this.share * (size2 - this.power);

@@ -25,7 +25,7 @@ class Trail {
     const clicks = [];
     for (let k = 0; k < count; ++k) {
       const at = k * ROW.size, number = Math.round(rows[at] * rate);
-      heard[k] = this.vibration.next([0, 1, 2].map((i) => rows[at + ROW.force + i]));
+      heard[k] = this.vibration.next(vectorAt(rows, at + ROW.vibration));
       const touches = rows[at + ROW.contacts] > 0;
       if (this.touches !== undefined && touches !== this.touches) clicks.push([k, touches]);
       this.touches = touches;

@@ -123,7 +123,6 @@ const ORDERS = {
   },
   run: ({rows}) => { loop.run(rows); },
   back: ({rows}) => { loop.back(rows); },
-  restart: () => { loop.begin(); },
   show: () => loop.show(),
   keep: () => ({waypoints: loop.waypoints, runs: loop.engines.map((engine) => engine.state)}),
 };

@@ -87,7 +87,7 @@ def page(engine):
     read = lambda folder, *names: "\n".join((folder / name).read_text(encoding="utf-8") for name in names)
     data = {"engine": pressed(engine), "files": pressed(json.dumps(packed_files(scenes)).encode()), "scenes": scenes, **choices(schema)}
     return fill(PAGE / "live.html", {
-        "style": read(ASSETS, "style.css") + read(PAGE, "live.css"),
+        "style": read(ASSETS, "style.css", "replay.css") + read(PAGE, "live.css"),
         "sides": "\n".join(fill(PAGE / "side.html", {"which": str(i)}) for i in (1, 2)),
         "data": json.dumps(data).replace("</", "<\\/"),
         "worker": '"use strict";\n' + read(PAGE, "engine.js", "worker.js"),

@@ -1,12 +1,5 @@
 // The replay: one clock, up to four views, and the controls.
 
-const NOT_A_NUMBER = "–";
-const show = (value, digits = 3) => {
-  if (!Number.isFinite(value)) return NOT_A_NUMBER;
-  // No exponents: a reader compares lengths.
-  return (Math.abs(value) < 10 ** digits ? value.toPrecision(digits) : value.toFixed(0)).replace("-", "−");
-};
-
 class Player {
   constructor(root, packedScenes) {
     this.root = root;

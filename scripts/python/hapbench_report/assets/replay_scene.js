@@ -7,6 +7,13 @@ const depthColour = (fraction) => {
   return `rgb(${mix})`;
 };
 
+const NOT_A_NUMBER = "–";
+const show = (value, digits = 3) => {
+  if (!Number.isFinite(value)) return NOT_A_NUMBER;
+  // No exponents: a reader compares lengths.
+  return (Math.abs(value) < 10 ** digits ? value.toPrecision(digits) : value.toFixed(0)).replace("-", "−");
+};
+
 const add = (p, v, length = 1) => p.map((x, i) => x + length * v[i]);
 const norm = (v) => Math.hypot(...v);
 
