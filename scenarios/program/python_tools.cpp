@@ -180,6 +180,7 @@ struct SuiteOptions {
   std::string what, algorithm, python, division, licence, shard, draw, out;
   std::vector<std::string> names, overrides, sources;
   unsigned jobs = 0;
+  SlurmOptions slurm;
   bool quiet = false;
 };
 
@@ -193,6 +194,13 @@ int suite(const SuiteOptions& options) {
   command.add("--licence", options.licence);
   for (const std::string& file : options.sources) command.add("--source", file);
   command.add("--shard", options.shard);
+  if (options.slurm.shards > 0) {
+    command.add("--slurm", std::to_string(options.slurm.shards));
+    command.add("--time", options.slurm.time);
+    command.add("--cpus", std::to_string(options.slurm.cpus));
+    command.add("--partition", options.slurm.partition);
+    if (options.slurm.dry_run) command.add("--dry-run");
+  }
   command.add("--draw", options.draw);
   if (options.jobs > 0) command.add("--jobs", std::to_string(options.jobs));
   command.add("--out", options.out);
@@ -220,7 +228,10 @@ void add_suite(CommandLine& line) {
   command.add("--set", options.overrides, "open division: a field of rendering in all scenes, path=value").repeatable();
   command.add("--licence", options.licence, "of the law, as an SPDX name");
   command.add("--source", options.sources, "a file to keep with the submission, as the law's source").repeatable();
-  command.add("--shard", options.shard, "i/n: a part of the scenes, into the same --out; a call without it finishes");
+  CommandOption shard = command.add("--shard", options.shard,
+                                    "i/n: a part of the scenes, into the same --out; a call without it finishes");
+  add_slurm_options(command, options.slurm, shard,
+                    "N: submit run to Slurm as a job array of N shards, and a job that finishes when all are done");
   add_jobs(command, options.jobs, "runs at once (default: one per processor)");
   command.add("--draw", options.draw, "verify: repeat the verification with this number, which it printed");
   command.add("--out", options.out,

@@ -138,8 +138,7 @@ std::vector<std::string> shard_command(const SweepCommand& command, const fs::pa
 }
 
 int submit(const SweepCommand& command, const SweepPlan& plan, const SweepOptions& options) {
-  SlurmOptions slurm = command.slurm;
-  slurm.keep_runs = options.keep_runs;
+  const SlurmOptions& slurm = command.slurm;
   for (const std::string& value : {slurm.time, slurm.partition}) {
     constexpr const char* kUsual = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-:.,";
     if (value.find_first_not_of(kUsual) == std::string::npos) continue;
@@ -149,7 +148,7 @@ int submit(const SweepCommand& command, const SweepPlan& plan, const SweepOption
     throw InputError(fmt::format("--slurm: got {} shards of {} runs; allowed: 1 ... {}", slurm.shards,
                                  plan.points.size(), plan.points.size()));
   }
-  const SlurmJobs jobs = submit_to_slurm(plan, slurm, options.directory, shard_command(command, plan.scenario.file));
+  const SlurmJobs jobs = submit_to_slurm(plan, slurm, options, shard_command(command, plan.scenario.file));
   print(command.output, jobs.text, Json{{"array", jobs.array}, {"merge", jobs.merge}, {"shards", jobs.shards}});
   return kSuccess;
 }
@@ -254,21 +253,13 @@ void add_run_options(Command& command, SweepCommand& options) {
 }
 
 void add_shard_options(Command& command, SweepCommand& options) {
-  const CommandOption shard =
+  CommandOption shard =
       command.add("--shard", options.shard,
                   "i/n with 0 <= i < n: do only the runs whose index leaves the remainder i on division by n");
-  CommandOption slurm = command.add(
-      "--slurm", options.slurm.shards,
+  add_slurm_options(
+      command, options.slurm, shard,
       "N: submit the sweep to Slurm as a job array of N shards, and a job that merges them when all are done. The same "
       "command given again submits only the shards that failed or are missing");
-  slurm.range(1, kMostRuns).excludes(shard);
-  command.add("--time", options.slurm.time, "time limit of a task, as sbatch takes it: 30, 2:00:00, 1-0").needs(slurm);
-  command.add("--cpus", options.slurm.cpus, "processors of a task, which does as many runs at once (default: 1)")
-      .range(1, 1024)
-      .needs(slurm);
-  command.add("--partition", options.slurm.partition, "partition of the cluster (default: the cluster's own default)")
-      .needs(slurm);
-  command.flag("--dry-run", options.slurm.dry_run, "write and print the scripts, submit nothing").needs(slurm);
   command.add("--status", options.status,
               "FOLDER: show which shards of the sweep in that folder are done, running, waiting, failed or missing");
 }

@@ -6,6 +6,7 @@
 
 #include "scenarios/batch/run_sweep.hpp"
 #include "scenarios/input/json_file.hpp"
+#include "scenarios/program/command.hpp"
 
 /// The parts of `hapbench sweep`: what it prints of a finished sweep, and sweeps on a cluster.
 namespace hapbench {
@@ -25,15 +26,6 @@ Json summary_json(const SweepPlan& plan, const SweepReport& report);
 /// those of another are.
 void check_journal(const SweepPlan& plan, const SweepOptions& options);
 
-struct SlurmOptions {
-  std::size_t shards = 0;
-  int cpus = 1;           ///< per task, which does as many runs at once
-  std::string time;       ///< limit of a task, as sbatch takes it; empty: the partition's
-  std::string partition;  ///< empty: the cluster's default
-  bool dry_run = false;   ///< only writes the scripts
-  bool keep_runs = false;
-};
-
 /// A submission to Slurm.
 struct SlurmJobs {
   std::string definition;  ///< of the sweep
@@ -45,11 +37,11 @@ struct SlurmJobs {
 
 /// Submits a sweep to Slurm as an array with a task for each shard that has no table yet, and a job that merges the
 /// shards when all are done. A task does many runs, since a scheduler starts only about one task a second. Writes the
-/// scripts sweep.sbatch and merge.sbatch into `directory`; a dry run ends there. `sweep` is the command without shard,
-/// jobs and output options. Throws InputError when jobs of an earlier submission are still in the queue, when the
-/// directory holds shards of another sweep, or when Slurm refuses; IoError.
-SlurmJobs submit_to_slurm(const SweepPlan& plan, const SlurmOptions& options, const std::filesystem::path& directory,
-                          const std::vector<std::string>& sweep);
+/// scripts sweep.sbatch and merge.sbatch into the sweep's directory; a dry run ends there. `command` is the sweep's
+/// without shard, jobs and output options. Throws InputError when jobs of an earlier submission are still in the queue,
+/// when the directory holds shards of another sweep, or when Slurm refuses; IoError.
+SlurmJobs submit_to_slurm(const SweepPlan& plan, const SlurmOptions& options, const SweepOptions& sweep,
+                          const std::vector<std::string>& command);
 
 /// The progress of the sweep in a directory.
 struct SweepStatus {

@@ -79,14 +79,15 @@ std::vector<std::pair<std::size_t, bool>> queued_tasks(const std::string& array)
 }
 
 /// The shards without a table. Refuses files of another sweep, which a merge would refuse too.
-std::vector<std::size_t> missing_shards(const SweepPlan& plan, const SlurmOptions& options, const fs::path& directory) {
+std::vector<std::size_t> missing_shards(const SweepPlan& plan, const SlurmOptions& options, bool keep_runs,
+                                        const fs::path& directory) {
   std::vector<std::size_t> missing;
   for (std::size_t i = 0; i < options.shards; ++i) {
     const Shard shard{i, options.shards};
     const fs::path table = table_of(directory, shard), journal = journal_of(directory, shard);
     const bool is_done = fs::exists(table), is_begun = fs::exists(journal);
     if ((is_done && ShardRows(table).title().definition != plan.definition) ||
-        (is_begun && !Journal::is_of(journal, journal_title(plan, shard, options.keep_runs)))) {
+        (is_begun && !Journal::is_of(journal, journal_title(plan, shard, keep_runs)))) {
       fail_in_file(
           is_done ? table : journal,
           "is of another sweep, or of this one under another program; allowed: a directory without it (--out)");
@@ -181,14 +182,14 @@ std::string dry_run_text(const fs::path& array_file, const std::string& array, c
 
 }  // namespace
 
-SlurmJobs submit_to_slurm(const SweepPlan& plan, const SlurmOptions& options, const fs::path& given,
-                          const std::vector<std::string>& sweep) {
-  const fs::path directory = fs::absolute(given).lexically_normal();
+SlurmJobs submit_to_slurm(const SweepPlan& plan, const SlurmOptions& options, const SweepOptions& sweep,
+                          const std::vector<std::string>& command) {
+  const fs::path directory = fs::absolute(sweep.directory).lexically_normal();
   // A line of a script ends with it, whatever quotes are around.
   const std::string& text = directory.native();
   if (std::any_of(text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < ' ' || c == 0x7f; }))
     throw InputError("--out: got a path with a control character; allowed with --slurm: paths without");
-  const std::vector<std::size_t> shards = missing_shards(plan, options, directory);
+  const std::vector<std::size_t> shards = missing_shards(plan, options, sweep.keep_runs, directory);
   const auto earlier = options.dry_run ? std::nullopt : read_jobs(directory);
   if (earlier && !queued_tasks(earlier->array).empty()) {
     throw InputError(
@@ -196,7 +197,7 @@ SlurmJobs submit_to_slurm(const SweepPlan& plan, const SlurmOptions& options, co
                     earlier->array, directory.string(), earlier->array));
   }
   const fs::path array_file = directory / "sweep.sbatch", merge_file = directory / "merge.sbatch";
-  const std::string array = sweep_script(options, directory, sweep, shards), merge = merge_script(options, directory);
+  const std::string array = sweep_script(options, directory, command, shards), merge = merge_script(options, directory);
   if (!shards.empty()) write_file_atomically(array_file, array);
   write_file_atomically(merge_file, merge);
   SlurmJobs jobs;

@@ -5,7 +5,8 @@ from pathlib import Path
 
 from hapbench_command import BAD_INPUT, FAILED, INTERRUPTED, SUCCESS, Arguments, Notice, say_error, unwritable, write
 
-from .law import Law
+from .law import PROGRAM, Law, set_words
+from .slurm import submit
 from .submission import Submission
 from .suite import Suite, SuiteError
 from .verify import verify
@@ -25,6 +26,11 @@ def arguments(words):
     parser.add_argument("--licence", default="")
     parser.add_argument("--source", type=Path, action="append", default=[])
     parser.add_argument("--shard", default="0/1")
+    parser.add_argument("--slurm", type=int)
+    parser.add_argument("--time", default="")
+    parser.add_argument("--cpus", type=int, default=1)
+    parser.add_argument("--partition", default="")
+    parser.add_argument("--dry-run", action="store_true")
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     parser.add_argument("--draw", type=int)
     parser.add_argument("--out", type=Path)
@@ -68,6 +74,11 @@ def run(given):
     folder = given.out or Path("results/out") / f"suite_{suite.name}_{'_'.join(law.label().split())}".replace('"', "").replace("/", "_")
     submission = Submission(suite, law, folder, given.licence, given.source)
     submission.begin()
+    if given.slurm:
+        said = submit(run_words(given, law, folder), folder, given.slurm, given)
+        if not given.quiet:
+            print(said)
+        return SUCCESS
     shard = shard_of(given.shard)
     todo = submission.missing(shard)
     with Notice(f"suite {suite.name}") as notice:
@@ -83,6 +94,15 @@ def run(given):
     if not given.quiet:
         print(table_of(law, scores, cost, folder))
     return SUCCESS
+
+
+def run_words(given, law, folder):
+    """The command that goes on with the submission, without shard and jobs."""
+    own = ["--plugin", law.file] if law.kind == "plugin" else []
+    words = [PROGRAM.resolve(), *own, "suite", "run", given.names[0], *(["--python", law.file] if law.kind == "python" else []), "--algorithm", law.name]
+    words += ["--division", given.division, *set_words(given.set), "--out", folder.resolve()]
+    words += ["--licence", given.licence] if given.licence else []
+    return [*words, *(word for file in given.source for word in ("--source", file.resolve()))]
 
 
 def table_of(law, scores, cost, folder):
