@@ -15,6 +15,27 @@ UNNAMED = """[...document.querySelectorAll('button, select, input, canvas, img')
     !(e.getAttribute('aria-label') || e.getAttribute('alt') || e.textContent.trim() && e.tagName === 'BUTTON' ||
       [...(e.labels || [])].some((label) => label.textContent.trim()))).map((e) => e.outerHTML.slice(0, 80))"""
 
+# Texts whose contrast to what is behind them is less than WCAG's level AA asks for, 4.5 to 1.
+PALE = """(() => {
+  const rgb = (text) => (text.match(/[\\d.]+/g) || []).map(Number);
+  const light = ([r, g, b]) => [0.2126, 0.7152, 0.0722].reduce((sum, part, i) => {
+    const c = [r, g, b][i] / 255;
+    return sum + part * (c <= 0.03928 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4);
+  }, 0);
+  const behind = (e) => {
+    for (; e; e = e.parentElement) {
+      const colour = rgb(getComputedStyle(e).backgroundColor);
+      if (colour.length === 3 || colour[3] === 1) return colour;
+    }
+    return [255, 255, 255];
+  };
+  return [...document.querySelectorAll('body *')].filter((e) => e.checkVisibility() && !e.closest('.visually-hidden, .skip, script, option') &&
+      [...e.childNodes].some((n) => n.nodeType === 3 && n.textContent.trim())).filter((e) => {
+    const style = getComputedStyle(e), [a, b] = [light(rgb(e.closest('svg') ? style.fill : style.color)), light(behind(e))];
+    return (Math.max(a, b) + 0.05) / (Math.min(a, b) + 0.05) < 4.5;
+  }).map((e) => e.outerHTML.slice(0, 100));
+})()"""
+
 
 class Browser:
     """What browsers share that have an `evaluate`."""
@@ -177,7 +198,10 @@ class Page(unittest.TestCase):
         return float(self.js("document.getElementById('replay-player').dataset.time"))
 
     def check_every_page(self):
-        """It fits a telephone, and every control has a name."""
+        """It fits a telephone, every control has a name, and every text can be read in both themes."""
         self.assertEqual(self.js(UNNAMED), [])
+        for dark in (True, False):
+            self.browser.dark(dark)
+            self.assertEqual(self.js(PALE), [], "dark" if dark else "light")
         self.browser.size(360, 740, 2)
         self.assertLessEqual(self.js("document.documentElement.scrollWidth"), 360)

@@ -6,31 +6,11 @@ import time
 import unittest
 
 from fixture import PROGRAM, SOURCE, hapbench, main, must, ran, scratch_folder
-from headless_chromium import UNNAMED, Chromium
+from headless_chromium import PALE, UNNAMED, Chromium
 from headless_firefox import Firefox
 
 SCENES = ("peg", "hole", "task2", "wedge", "molar", "friction")
 READY = "window.live && live.begun && live.shown ? true : false"
-# Texts whose contrast to what is behind them is less than WCAG's level AA asks for, 4.5 to 1.
-PALE = """(() => {
-  const rgb = (text) => (text.match(/[\\d.]+/g) || []).map(Number);
-  const light = ([r, g, b]) => [0.2126, 0.7152, 0.0722].reduce((sum, part, i) => {
-    const c = [r, g, b][i] / 255;
-    return sum + part * (c <= 0.03928 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4);
-  }, 0);
-  const behind = (e) => {
-    for (; e; e = e.parentElement) {
-      const colour = rgb(getComputedStyle(e).backgroundColor);
-      if (colour.length === 3 || colour[3] === 1) return colour;
-    }
-    return [255, 255, 255];
-  };
-  return [...document.querySelectorAll('body *')].filter((e) => e.checkVisibility() && !e.closest('.visually-hidden, .skip, script, option') &&
-      [...e.childNodes].some((n) => n.nodeType === 3 && n.textContent.trim())).filter((e) => {
-    const [a, b] = [light(rgb(getComputedStyle(e).color)), light(behind(e))];
-    return (Math.max(a, b) + 0.05) / (Math.min(a, b) + 0.05) < 4.5;
-  }).map((e) => e.outerHTML.slice(0, 100));
-})()"""
 # How loud the page is over so many milliseconds: the rms of what goes to the loudspeaker, before the limiter.
 LOUDNESS = """(async () => {
   const ears = live.sound.context.createAnalyser(), samples = new Float32Array(ears.fftSize);
