@@ -1,6 +1,8 @@
 """The law that is submitted: a name of the program's own, a plugin, or a script in Python."""
+import cmath
 import hashlib
 import json
+import math
 import os
 import re
 import shutil
@@ -10,10 +12,14 @@ import tempfile
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from hapbench.columns import read_columns
+
 from .suite import SuiteError
 
 PROGRAM = Path(os.environ.get("HAPBENCH_PROGRAM", "hapbench"))
 FINE = (0, 3)  # done; a run ended otherwise than its scene expects
+# Classes of `hapbench limit` below a stable range that is none: a tool too stiff for its loop comes to rest by chance.
+UNSTABLE = ("vibrating", "diverged", "thrown_out")
 
 
 def set_words(fields):
@@ -80,16 +86,32 @@ class Law:
 
     def limit(self, file, vary, between, resolution, settings):
         """The row of `hapbench limit`, and `felt_N_per_m`, what is rendered at half the limit, a gain margin of two: the mean force over how
-        deep the tool is. A law that is softer than its K would else gain by it. None where nothing is stable there."""
+        deep the tool is. A law that is softer than its K would else gain by it. None where nothing is stable there, or only a range above
+        values that are not, which is no largest stable value."""
         with tempfile.TemporaryDirectory(prefix="hapbench-suite-") as scratch:
             settings = set_words([*self.overrides, *settings])
             row = self.reply("limit", file, "--vary", vary, "--between", between, "--resolution", resolution, "--algorithms", self.name,
                              *settings, "--out", scratch)["limits"][0]
-            if row["limit"] is None:
+            if row["limit"] is None or row["class_below"] in UNSTABLE:
                 return row | {"felt_N_per_m": None}
             run = self.reply("run", file, *set_words([f"{vary}={row['limit'] / 2!r}", f"rendering.algorithm={self.name}"]), *settings, "--out", scratch)[0]
             force, inside = run["metrics"]["force_mean_in_contact_N"], run["metrics"]["inside_settled_m"]
             return row | {"felt_N_per_m": force / inside if run["expected"] and force and inside else None}
+
+    def tremor(self, file, vary, frequencies):
+        """The stiffness [N/m] that a tool feels which trembles at each frequency [Hz], by Fourier's sums of force and place over the last
+        half of the run; None where a run fails. `vary` is the field of the period."""
+        felt = {}
+        for frequency in frequencies:
+            with tempfile.TemporaryDirectory(prefix="hapbench-suite-") as scratch:
+                fields = [f"{vary}={1 / frequency!r}", f"rendering.algorithm={self.name}", *self.overrides]
+                run = self.reply("run", file, *set_words(fields), "--out", scratch)[0]
+                rows = read_columns(Path(scratch) / "trajectory.csv", ["time_s", "pz_m", "fz_N"])
+            half = rows["time_s"] >= rows["time_s"][-1] / 2
+            turned = [cmath.exp(-2j * math.pi * frequency * t) for t in rows["time_s"][half]]
+            force, place = (rows[name][half] @ turned for name in ("fz_N", "pz_m"))
+            felt[str(frequency)] = abs(force / place) if run["expected"] else None
+        return felt
 
     def keep(self, folder, sources):
         """Copies the law's file and sources into the submission; returns their hashes by name."""

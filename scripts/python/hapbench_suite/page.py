@@ -11,8 +11,8 @@ from hapbench_looks import look
 from hapbench_report.markup import cell, command, heading_cell, in_colour, named, number, table, text
 from hapbench_report.page import whole_page
 
-from .scores import Score, leads, pareto, score
-from .submission import FILE, read_parts
+from .scores import Score, leads, pareto, score, tremor_bands
+from .submission import FILE, TREMOR, read_parts
 from .suite import Suite, SuiteError
 
 STYLE = Path(__file__).parent / "page.css"
@@ -20,6 +20,10 @@ ABOUT = ("suite", "label", "law", "kind", "division", "overrides", "licence", "l
 COLUMNS = (*ABOUT, "entry", "value", "low", "high", "worst", "failed")
 PAIRS = (("force_error", "vibration"), ("way", "force_step"), ("inside", "felt_stiffness"), ("energy_created", "task"))
 COST = "over_brute_force"
+FRAME = 420, 320, 60, 40  # of a plot: width, height, and the room for the axes to the left and below
+# What a passive law that passes 10 dB less tremor above 30 Hz passes more of it between 7.5 and 30 Hz [dB]: by Bode's integral, whose weight is
+# 1 / omega^2, the ratio of 1/30 to 1/7.5 - 1/30.
+DEBT_DB = 10 * (1 / 30) / (1 / 7.5 - 1 / 30)
 
 
 @dataclass
@@ -30,6 +34,7 @@ class Row:
     scores: list  # of the suite's axes, in their order
     cost: dict  # scene: time of a step over brute force
     failures: list = field(default_factory=list)  # of (scene, seed, outcome)
+    tremor: dict = field(default_factory=dict)  # of tremor_bands
     front: bool = False
 
     def command(self):
@@ -78,7 +83,8 @@ def row_of_folder(folder):
     failures = [(place, row["seed"], row["outcome"]) for place, part in parts.items() for row in part.get("rows", ()) if row["failed"]]
     failures += [(place, "", "no stable value") for place, part in parts.items() if "limit" in part and part["limit"]["felt_N_per_m"] is None]
     shown = {"commit": about["hapbench"]["commit"], "overrides": " ".join(about["overrides"])}
-    return suite, Row({name: str({**about, **shown}[name] or "") for name in ABOUT}, [score(a, parts, suite.seeds) for a in suite.axes], cost, failures)
+    return suite, Row({name: str({**about, **shown}[name] or "") for name in ABOUT}, [score(a, parts, suite.seeds) for a in suite.axes], cost, failures,
+                      tremor_bands(suite, parts[TREMOR][TREMOR]) if suite.tremor else {})
 
 
 def rows_of_csv(file):
@@ -95,11 +101,12 @@ def rows_of_csv(file):
             scores.append(Score(axis, *(float(line[name]) for name in ("value", "low", "high", "worst")), int(line["failed"]), ()))
         kinds = {entry: entry.split(" ") for entry in entries}
         yield suite, Row(dict(zip(ABOUT, about)), scores, {words[1]: float(entries[entry]["value"]) for entry, words in kinds.items() if words[0] == COST},
-                         [(words[1], int(words[2]) if words[2] else "", entries[entry]["value"]) for entry, words in kinds.items() if words[0] == "failure"])
+                         [(words[1], int(words[2]) if words[2] else "", entries[entry]["value"]) for entry, words in kinds.items() if words[0] == "failure"],
+                         {words[1]: float(entries[entry]["value"]) for entry, words in kinds.items() if words[0] == TREMOR})
 
 
 def arena_csv(rows):
-    """A line for each law and axis, then its times over brute force and its failures."""
+    """A line for each law and axis, then its times over brute force, the stiffness that tremor feels [N/m] and its failures."""
     out = io.StringIO()
     lines = csv.writer(out, lineterminator="\n")
     lines.writerow(COLUMNS)
@@ -109,6 +116,8 @@ def arena_csv(rows):
             lines.writerow([*about, one.axis.name, *(f"{x:.6g}" for x in (one.value, one.low, one.high, one.worst)), one.failed])
         for scene, ratio in row.cost.items():
             lines.writerow([*about, f"{COST} {scene}", f"{ratio:.3g}", "", "", "", ""])
+        for band, felt in row.tremor.items():
+            lines.writerow([*about, f"{TREMOR} {band}", f"{felt:.6g}", "", "", "", ""])
         for scene, seed, outcome in row.failures:
             lines.writerow([*about, f"failure {scene} {seed}", outcome, "", "", "", ""])
     return out.getvalue()
@@ -119,6 +128,7 @@ def arena_page(suite, rows):
         ("summary", "Summary", "Summary", summary(suite, rows)),
         ("scores", "Scores", "Scores", scores_table(suite, rows)),
         ("pareto", "Pareto", "Two axes at a time", pareto_plots(suite, rows)),
+        ("tremor", "Tremor", "Quiet against stiff", tremor_plot(rows)),
         ("radars", "Profiles", "Profile of each law", radars(suite, rows)),
         ("failures", "Failures", "Failures", failures_table(suite, rows)),
         ("repeat", "Repeat", "Repeat a row", repeats(rows)),
@@ -184,7 +194,7 @@ def pareto_plots(suite, rows):
 
 def scatter(suite, rows, ix, iy):
     """Both axes logarithmic, the better end below and to the left."""
-    width, height, left, bottom = 420, 320, 60, 40
+    width, height, left, bottom = FRAME
     ax, ay = suite.axes[ix], suite.axes[iy]
     spans = [log_axis([row.scores[i].value for row in rows]) for i in (ix, iy)]
 
@@ -194,22 +204,28 @@ def scatter(suite, rows, ix, iy):
 
     places = [(left + place(ax, spans[0], row.scores[ix].value, width - left - 12),
                height - bottom - place(ay, spans[1], row.scores[iy].value, height - bottom - 12)) for row in rows]
-    marks, taken = [], [(x - 5, y - 5, x + 5, y + 5) for x, y in places]
-    for row, (x, y) in sorted(zip(rows, places), key=lambda one: not one[0].front):
-        one = row.look()
-        at, anchor = label_place(row.about["label"], x, y, width, height - bottom, taken)
-        marks.append(f'<g class=run-name style="--light:{one.colour};--dark:{one.dark}"><circle cx="{x:.1f}" cy="{y:.1f}" r="{5 if row.front else 3.5}" '
-                     f'fill="{"currentColor" if row.front else "none"}" stroke="currentColor" stroke-width="1.5"><title>{text(row.about["label"])}: '
-                     f'{said_of(row.scores[ix])}, {said_of(row.scores[iy])}</title></circle>'
-                     f'<text x="{at[0]:.1f}" y="{at[1]:.1f}" text-anchor="{anchor}">{text(row.about["label"])}</text></g>')
+    marks = marks_at(rows, places, [f"{said_of(row.scores[ix])}, {said_of(row.scores[iy])}" for row in rows])
     ends = "".join(f'<text class=tick x="{x}" y="{height - bottom + 14}" text-anchor="{anchor}">{value_text(ax, end)}</text>' for x, anchor, end in (
         (left, "start", spans[0][ax.more_is_better]), (width - 12, "end", spans[0][not ax.more_is_better])))
     ends += "".join(f'<text class=tick x="{left - 4}" y="{y}" text-anchor="end">{value_text(ay, end)}</text>' for y, end in (
         (height - bottom, spans[1][ay.more_is_better]), (20, spans[1][not ay.more_is_better])))
     said = f"{ax.title} against {ay.title}: {len(rows)} laws, the better the further down and left"
     return (f'<figure><svg viewBox="0 0 {width} {height}" role="img" aria-label="{text(said)}"><path class=frame d="M{left} 12V{height - bottom}H{width - 12}"/>'
-            f'{ends}{"".join(marks)}<text class=title x="{(left + width) / 2}" y="{height - 8}" text-anchor="middle">{text(ax.title)} (better to the left)</text>'
+            f'{ends}{marks}<text class=title x="{(left + width) / 2}" y="{height - 8}" text-anchor="middle">{text(ax.title)} (better to the left)</text>'
             f'<text class=title transform="translate(12 {height / 2 - 14}) rotate(-90)" text-anchor="middle">{text(ay.title)} (better below)</text></svg></figure>')
+
+
+def marks_at(rows, places, said):
+    """A dot and the name of each row at its place, filled for those on the front, which stand above the others."""
+    width, height, _, bottom = FRAME
+    marks, taken = [], [(x - 5, y - 5, x + 5, y + 5) for x, y in places]
+    for row, (x, y), words in sorted(zip(rows, places, said), key=lambda one: not one[0].front):
+        one, label = row.look(), text(row.about["label"])
+        at, anchor = label_place(row.about["label"], x, y, width, height - bottom, taken)
+        marks.append(f'<g class=run-name style="--light:{one.colour};--dark:{one.dark}"><circle cx="{x:.1f}" cy="{y:.1f}" r="{5 if row.front else 3.5}" '
+                     f'fill="{"currentColor" if row.front else "none"}" stroke="currentColor" stroke-width="1.5"><title>{label}: {words}</title></circle>'
+                     f'<text x="{at[0]:.1f}" y="{at[1]:.1f}" text-anchor="{anchor}">{label}</text></g>')
+    return "".join(marks)
 
 
 def label_place(label, x, y, width, lowest, taken):
@@ -231,6 +247,35 @@ def said_of(one):
 def value_text(axis, value):
     unit, factor = scale_of(axis)
     return f"{number(value * factor, 2)} {unit}"
+
+
+def tremor_plot(rows):
+    """Each law by the stiffness that a still hand feels and by that which a trembling one feels above 30 Hz, with the curve that joins them."""
+    shown = [row for row in rows if row.tremor]
+    if not shown:
+        return ""
+    width, height, left, bottom = FRAME
+    low, high = log_axis([row.tremor[band] for row in shown for band in ("rest", "high")])
+    share = lambda value: math.log(value / low) / math.log(high / low)
+    at = lambda rest, above: (left + share(rest) * (width - left - 12), height - bottom - share(above) * (height - bottom - 12))
+    line = lambda factor: "M{:.1f} {:.1f}L{:.1f} {:.1f}".format(*at(low * max(1, 1 / factor), low * max(1, factor)), *at(high * min(1, 1 / factor), high * min(1, factor)))
+    quieter = 10 ** -0.5  # by 10 dB
+    said = [", ".join(f"{number(row.tremor[band], 3)} N/m {words}" for band, words in (
+        ("rest", "at rest"), ("low", "trembling at 8 to 16 Hz"), ("high", "at 32 to 128 Hz"))) for row in shown]
+    end = at(high * quieter, high * quieter**2)
+    return ('<p>A hand that trembles feels a law\'s stiffness as vibration. What a law without a memory renders for a still hand it renders for a '
+            'trembling one: all such laws lie on the solid line. One with a memory may lie below it, but where it is passive, Bode\'s integral '
+            f'holds: each 10 dB below the line (the dashed one) cost {number(DEBT_DB, 2)} dB more between 7.5 and 30 Hz, more with damping. So how stiff a law is '
+            'and how quiet are not two choices but one, and a low-pass that is not passive is paid for in stability.</p>'
+            f'<div class="plots"><figure><svg viewBox="0 0 {width} {height}" role="img" aria-label="{len(shown)} laws by the stiffness felt at rest and by a trembling '
+            f'hand above 30 Hz, on the line that joins both"><path class=frame d="M{left} 12V{height - bottom}H{width - 12}"/>'
+            f'<path class=frame d="{line(1)}"/><path class=frame stroke-dasharray="5 4" d="{line(quieter)}"/>'
+            f'<text class=tick x="{end[0]:.1f}" y="{end[1] + 18:.1f}" text-anchor="end">10 dB quieter</text>'
+            + "".join(f'<text class=tick x="{x}" y="{height - bottom + 14}" text-anchor="{anchor}">{number(value, 2)} N/m</text>'
+                      for x, anchor, value in ((left, "start", low), (width - 12, "end", high)))
+            + marks_at(shown, [at(row.tremor["rest"], row.tremor["high"]) for row in shown], said)
+            + f'<text class=title x="{(left + width) / 2}" y="{height - 8}" text-anchor="middle">stiffness felt at rest</text>'
+            f'<text class=title transform="translate(12 {height / 2 - 14}) rotate(-90)" text-anchor="middle">felt by tremor above 30 Hz</text></svg></figure></div>')
 
 
 def radars(suite, rows):

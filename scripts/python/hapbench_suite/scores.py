@@ -67,6 +67,18 @@ def score(axis, parts, seeds):
     return Score(axis, math.exp(mean), math.exp(mean - half), math.exp(mean + half), math.exp(worst), failed, tuple(logs))
 
 
+def tremor_bands(suite, felt):
+    """The stiffness felt at rest and by a hand that trembles, below and above 30 Hz [N/m]; empty where a run failed. In a band the mean of
+    the logarithms by d omega / omega^2, as in Bode's integral: of frequencies an octave apart, by 1 / omega."""
+    if any(value is None for value in felt.values()):
+        return {}
+
+    def mean(frequencies):
+        return math.exp(sum(math.log(felt[str(f)]) / f for f in frequencies) / sum(1 / f for f in frequencies))
+
+    return {"rest": felt[str(suite.tremor["rest_Hz"])], "low": mean(suite.tremor["low_Hz"]), "high": mean(suite.tremor["high_Hz"])}
+
+
 def pareto(rows):
     """Of lists of scores, each of the same axes: True where no other is as good in all axes and better in one."""
     def beats(a, b):

@@ -13,12 +13,13 @@ from .scores import row_of, score
 from .suite import SuiteError
 
 FILE, PARTS, SCORES, RUNS = "submission.json", "parts", "scores.csv", "runs.csv"
+TREMOR = "tremor"
 REPEATS = 5  # of each timed run, of which the least counts
 
 
 def places(suite):
-    """Names of the parts: scenes that are run, then limits."""
-    return [*suite.scenes_run(), *suite.limits]
+    """Names of the parts: scenes that are run, limits, the tremor."""
+    return [*suite.scenes_run(), *suite.limits, *([TREMOR] if suite.tremor else [])]
 
 
 class Submission:
@@ -64,7 +65,10 @@ class Submission:
 
 
 def compute(suite, law, place, jobs):
-    """The part of a scene or limit."""
+    """The part of a scene or limit, or of the tremor."""
+    if place == TREMOR:
+        one = suite.tremor
+        return {TREMOR: law.tremor(suite.file(one["scene"]), one["vary"], [one["rest_Hz"], *one["low_Hz"], *one["high_Hz"]])}
     if place in suite.limits:
         limit = suite.limits[place]
         return {"limit": law.limit(suite.file(limit["scene"]), limit["vary"], limit["between"], limit["resolution"], limit.get("set", ()))}

@@ -50,6 +50,7 @@ class Suite:
         self.given = json.loads((self.folder / FILE).read_text(encoding="utf-8"))
         self.name, self.seeds, self.jitter_m = self.given["suite"], self.given["seeds"], self.given["jitter_m"]
         self.scenes, self.limits, self.cost = self.given["scenes"], self.given["limits"], self.given["cost"]
+        self.tremor = self.given.get("tremor")  # None: nothing trembles
         self.axes = [Axis(axis["axis"], axis["title"], axis["unit"], axis["best"], axis["failed"], tuple(self._values(axis)))
                      for axis in self.given["axes"]]
         self.hash = hashlib.sha256((self.folder / FILE).read_bytes()).hexdigest()
@@ -67,7 +68,7 @@ class Suite:
         return self.folder / f"{scene}.json"
 
     def scenes_run(self):
-        """Those that are not there for limits only."""
+        """Those that are not there for limits or the tremor only."""
         return [name for name, scene in self.scenes.items() if not scene.get("limit_only")]
 
     def seeds_of(self, scene):

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from .law import Law
 from .scores import agrees, row_of, score
-from .submission import FILE, SCORES, compute, places, read_parts, scores_csv
+from .submission import FILE, SCORES, TREMOR, compute, places, read_parts, scores_csv
 from .suite import Suite, SuiteError
 
 HELD_BACK = 3  # seeds
@@ -68,6 +68,10 @@ def verify(folder, jobs, draw, say):
 
 def differences(place, submitted, found):
     """Every run and number of a part that is not what it was."""
+    if TREMOR in submitted:
+        if submitted != found:
+            yield f"{place}: {found[TREMOR]}, submitted {submitted[TREMOR]}"
+        return
     if "limit" in submitted:
         if submitted["limit"] != found["limit"]:
             yield f"{place}: limit {found['limit']['limit']}, submitted {submitted['limit']['limit']}"
