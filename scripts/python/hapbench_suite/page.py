@@ -256,13 +256,14 @@ def tremor_plot(rows):
         return ""
     width, height, left, bottom = FRAME
     low, high = log_axis([row.tremor[band] for row in shown for band in ("rest", "high")])
+    low /= 4  # room for the names of the softest
     share = lambda value: math.log(value / low) / math.log(high / low)
     at = lambda rest, above: (left + share(rest) * (width - left - 12), height - bottom - share(above) * (height - bottom - 12))
     line = lambda factor: "M{:.1f} {:.1f}L{:.1f} {:.1f}".format(*at(low * max(1, 1 / factor), low * max(1, factor)), *at(high * min(1, 1 / factor), high * min(1, factor)))
     quieter = 10 ** -0.5  # by 10 dB
     said = [", ".join(f"{number(row.tremor[band], 3)} N/m {words}" for band, words in (
         ("rest", "at rest"), ("low", "trembling at 8 to 16 Hz"), ("high", "at 32 to 128 Hz"))) for row in shown]
-    end = at(high * quieter, high * quieter**2)
+    end = at(high, high * quieter)
     return ('<p>A hand that trembles feels a law\'s stiffness as vibration. What a law without a memory renders for a still hand it renders for a '
             'trembling one: all such laws lie on the solid line. One with a memory may lie below it, but where it is passive, Bode\'s integral '
             f'holds: each 10 dB below the line (the dashed one) cost {number(DEBT_DB, 2)} dB more between 7.5 and 30 Hz, more with damping. So how stiff a law is '
@@ -270,7 +271,7 @@ def tremor_plot(rows):
             f'<div class="plots"><figure><svg viewBox="0 0 {width} {height}" role="img" aria-label="{len(shown)} laws by the stiffness felt at rest and by a trembling '
             f'hand above 30 Hz, on the line that joins both"><path class=frame d="M{left} 12V{height - bottom}H{width - 12}"/>'
             f'<path class=frame d="{line(1)}"/><path class=frame stroke-dasharray="5 4" d="{line(quieter)}"/>'
-            f'<text class=tick x="{end[0]:.1f}" y="{end[1] + 18:.1f}" text-anchor="end">10 dB quieter</text>'
+            f'<text class=tick x="{end[0]:.1f}" y="{end[1] + 22:.1f}" text-anchor="end">10 dB quieter</text>'
             + "".join(f'<text class=tick x="{x}" y="{height - bottom + 14}" text-anchor="{anchor}">{number(value, 2)} N/m</text>'
                       for x, anchor, value in ((left, "start", low), (width - 12, "end", high)))
             + marks_at(shown, [at(row.tremor["rest"], row.tremor["high"]) for row in shown], said)
