@@ -21,9 +21,9 @@ from random_scenes import Scenes  # noqa: E402
 
 RECORD = ROOT / "tests" / "data" / "reliability.json"
 FINE = (0, 2, 3)  # done, refused with a reason, a run that did not end as expected
-# [s] for a command on a scene of some milliseconds. The longest is `stability` for hundreds of springs and an integrator without
-# an edge, whose runs all go to their end: a minute.
-PATIENCE = 300.0
+# [s] for a command on a scene of some milliseconds. The longest are `stability` for hundreds of springs and an integrator without
+# an edge, whose runs all go to their end, and `limit` for a tool so large that it holds every point of the shell: some minutes.
+PATIENCE = 1200.0
 
 
 class Findings(list):
