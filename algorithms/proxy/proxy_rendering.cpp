@@ -27,6 +27,12 @@ constexpr double kSame = 1e-3;
 /// unless the tool itself draws the proxy away.
 constexpr int kSlowed = 3;
 
+constexpr OwnParameter kDampingTime[] = {
+    {"damping_time_s",
+     {0.0, 10.0, "s"},
+     0.0,
+     "time constant with which damping and friction follow the directions of the contacts"}};
+
 /// Calls `use(i)` for each contact that holds the proxy back, in order. Tests eight at a time, because only about three
 /// of some hundred contacts near the proxy hold it. Precondition: padded.
 template <class Use>
@@ -41,11 +47,14 @@ void for_each_holding(const ContactBuffer& contacts, const Use& use) {
 
 ProxyRendering::ProxyRendering(const RenderingConfig& config)
     : K_(config.stiffness),
+      damping_time_(own_value(config, "proxy", kDampingTime[0])),
       angular_velocity_cutoff_(config.angular_velocity_read()),
       damping_and_limits_(config),
       skips_(config.skips) {}
 
 void ProxyRendering::prepare(const Scene& scene) {
+  dt_ = scene.dt;
+  row_ = scene.row;
   if (scene.springs != nullptr) {
     constraints_ = std::make_unique<SpringConstraints>(*scene.springs);
     recovery_ = std::numeric_limits<double>::infinity();
@@ -64,6 +73,8 @@ void ProxyRendering::reset() noexcept {
   damping_and_limits_.release();
   placed_ = false;
   found_.reset();
+  damped_row_.setZero();
+  last_row_.reset();
   work_ = {};
 }
 
@@ -78,13 +89,15 @@ void ProxyRendering::compute(const ToolState& tool, ContactBuffer& contacts, Ren
   out.spring = spring_;
   out.S = held_;
   // Without contact, S = 0 would make the whole velocity tangential, so friction must not be applied.
+  follow_directions();
   if (contacts.empty()) {
     out.rendered = spring_;
     damping_and_limits_.release();
     return;
   }
-  out.rendered = damping_and_limits_.rendered_force(
-      spring_, held_, velocity_at(tool), damping_and_limits_.needs_loads() ? load_along(spring_) : Mat3(Mat3::Zero()));
+  out.rendered =
+      damping_and_limits_.rendered_force(spring_, damped_, velocity_at(tool),
+                                         damping_and_limits_.needs_loads() ? load_along(spring_) : Mat3(Mat3::Zero()));
   out.friction = damping_and_limits_.friction_state();
 }
 
@@ -127,8 +140,22 @@ void ProxyRendering::move_planes(const ToolPose& from, const ToolPose& to) noexc
     planes.depth[i] = base_depth_[i] + planes.gradient(i).dot(turned * (planes.point(i) - base_));
 }
 
+/// Further states of an integrator within a row start from the row before, as the first did. A first contact counts at
+/// once.
+void ProxyRendering::follow_directions() noexcept {
+  damped_ = held_;
+  if (damping_time_ == 0.0) return;
+  const bool first_of_row = row_ == nullptr || last_row_ != *row_;
+  if (first_of_row) {
+    before_ = damped_row_;
+    if (row_ != nullptr) last_row_ = *row_;
+  }
+  if (!held_.isZero(0.0) && !before_.isZero(0.0)) damped_ = before_ + dt_ / (damping_time_ + dt_) * (held_ - before_);
+  if (first_of_row) damped_row_ = damped_;
+}
+
 ContactVelocity ProxyRendering::velocity_at(const ToolState& tool) const noexcept {
-  ContactVelocity velocity{tool.velocity, held_ * tool.velocity};
+  ContactVelocity velocity{tool.velocity, damped_ * tool.velocity};
   if (!angular_velocity_cutoff_ || !constraints_->act_at_points() || tool.angular_velocity == Vec3::Zero()) {
     return velocity;
   }
@@ -263,7 +290,7 @@ SpringState ProxyRendering::spring_state(const ToolState&, const ContactBuffer&)
 
 ForceJacobian ProxyRendering::jacobian() const noexcept {
   if (held_.isZero(0.0)) return {};
-  return {K_ * held_, damping_and_limits_.damping_matrix(spring_, held_)};
+  return {K_ * held_, damping_and_limits_.damping_matrix(spring_, damped_)};
 }
 
 AlgorithmWork ProxyRendering::work() const noexcept {
@@ -305,7 +332,8 @@ AlgorithmEntry proxy_entry() {
           .make = [](const RenderingConfig& config) { return std::make_unique<ProxyRendering>(config); },
           .theory = {.force_bound = proxy_bound, .wedge_stiffness = proxy_wedge},
           .may_reduce = false,
-          .reported_depth_model = "surface_normal"};
+          .reported_depth_model = "surface_normal",
+          .own_parameters = kDampingTime};
 }
 
 }  // namespace hapbench

@@ -43,8 +43,10 @@ inline constexpr double kRecoverySpeed = 40.0;
 ///
 /// f_spring = K (x - p). S is the projector onto the span of the gradients that hold the proxy back, so lambda_max(S)
 /// is 1 in contact. With angular damping v_n is S v plus the shortest velocity in that span whose components along the
-/// u_i are those of the turning tool, <omega x r_i, u_i>. The rendered contacts are those that hold the proxy, with
-/// depth lambda_i [m] and weight 1: f_spring = -K sum lambda_i u_i.
+/// u_i are those of the turning tool, <omega x r_i, u_i>. Normal damping and friction may follow S with a time constant
+/// (`damping_time_s`): S gains and loses directions at once as points come and go, and with it -B S v would step. A
+/// mean of projectors lies between 0 and I, so both stay passive. The rendered contacts are those that hold the proxy,
+/// with depth lambda_i [m] and weight 1: f_spring = -K sum lambda_i u_i.
 class ProxyRendering final : public ForceAlgorithm {
  public:
   explicit ProxyRendering(const RenderingConfig& config);
@@ -70,9 +72,11 @@ class ProxyRendering final : public ForceAlgorithm {
   void slow_down(double factor) noexcept;
   double multiplier(std::size_t i) const noexcept;
   void hand_over_holding(ContactBuffer& contacts) const noexcept;
+  void follow_directions() noexcept;
   ContactVelocity velocity_at(const ToolState& tool) const noexcept;
 
   double K_;
+  double damping_time_;                            ///< [s]
   std::optional<double> angular_velocity_cutoff_;  ///< none: no angular damping
   DampingAndLimits damping_and_limits_;
   Skips skips_;
@@ -87,6 +91,11 @@ class ProxyRendering final : public ForceAlgorithm {
   bool placed_ = false;  ///< false before the first step
   Vec3 proxy_ = Vec3::Zero();
   Mat3 held_ = Mat3::Zero();
+  Mat3 damped_ = Mat3::Zero();                              ///< S as normal damping and friction see it
+  Mat3 damped_row_ = Mat3::Zero(), before_ = Mat3::Zero();  ///< the same at the start of this row and of the row before
+  std::optional<std::uint64_t> last_row_;
+  const std::uint64_t* row_ = nullptr;  ///< null without a simulation; then each force is a row's
+  double dt_ = 0.0;
   bool feasible_ = true;
   bool clear_ = false;         ///< no points are inside the proxy after the last pass
   double recovery_ = 0.0;      ///< distance by which the deepest point may leave in a step [m]

@@ -73,7 +73,7 @@ class Law:
 
     def label(self):
         """Its name with the fields that the open division sets, for pages and folders."""
-        return " ".join([self.name, *(re.sub(r"^rendering\.|=true$", "", one) for one in self.overrides)])
+        return " ".join([self.name, *(re.sub(r"^rendering\.(parameters\.\w+\.)?|=true$", "", one) for one in self.overrides)])
 
     def compare(self, file, seeds, jitter_m, jobs, seed=None):
         """The summaries of the runs of a scene, by seed."""

@@ -320,6 +320,48 @@ TEST(ProxyRendering, DampsTheTurnOfTheEdgeThatTouches) {
   EXPECT_LE((rig.force.rendered - rig.force.spring - Vec3(0, 0, -B * along)).norm(), 1e-12);
 }
 
+/// Two planes, of which the tool touches the second one later. Its direction is damped by a share of what is missing in
+/// each row, however often an integrator asks within the row.
+TEST(ProxyRendering, DampsANewDirectionWithItsTimeConstant) {
+  const SpringSet planes{{Vec3::UnitX(), Vec3::UnitZ()}, false};
+  RenderingConfig config = proxy_config();
+  config.parameters["proxy"]["damping_time_s"] = 0.003;
+  config.mu_s = config.mu_f = 0.0;
+  ProxyRendering proxy(config);
+  std::uint64_t row = 0;
+  Scene scene;
+  scene.capacity = 4;
+  scene.springs = &planes;
+  scene.dt = 0.001;
+  scene.row = &row;
+  proxy.prepare(scene);
+  proxy.reset();
+  const Vec3 v(0.1, 0.2, 0.3);
+  const double B = 2.0 * config.damping_ratio * std::sqrt(kK * config.mass);
+  ContactBuffer contacts(4);
+  RenderedForce force;
+  const auto damped = [&](const Vec3& position) {
+    proxy.compute({{position, -Vec3::UnitZ()}, v}, contacts, force);
+    return Vec3((force.spring - force.rendered) / B);
+  };
+  const double share = 0.001 / 0.004;
+  EXPECT_LE((damped({1e-4, 0, -1e-4}) - Vec3(0.1, 0, 0)).norm(), 1e-15) << "a first contact at once";
+  row = 1;
+  for (int ask = 0; ask < 3; ++ask) {
+    EXPECT_LE((damped({1e-4, 0, 1e-4}) - Vec3(0.1, 0, share * 0.3)).norm(), 1e-15) << ask;
+    EXPECT_EQ(force.S, Mat3(Vec3(1, 0, 1).asDiagonal())) << "what is reported is stiffness";
+  }
+  row = 2;
+  const double second = share + share * (1.0 - share);
+  EXPECT_LE((damped({1e-4, 0, 1e-4}) - Vec3(0.1, 0, second * 0.3)).norm(), 1e-15);
+  EXPECT_LE((proxy.jacobian().damping - Mat3(Vec3(B, 0, B * second).asDiagonal())).norm(), 1e-12 * B);
+  row = 3;
+  EXPECT_EQ(damped({-1e-4, 0, -1e-4}), Vec3(Vec3::Zero())) << "gone with the last contact";
+  proxy.reset();
+  row = 0;
+  EXPECT_LE((damped({-1e-4, 0, 1e-4}) - Vec3(0, 0, 0.3)).norm(), 1e-15) << "nothing is left after a reset";
+}
+
 TEST(ProxyRendering, AnswersAPoseThatIsNotFiniteWithAForceThatIsNotUntilAReset) {
   Random random(6);
   const test::Setting setting = tilted_on_plane(0.5, 5e-5, random);
