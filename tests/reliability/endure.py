@@ -27,6 +27,8 @@ PATIENCE = 1200.0
 
 
 class Findings(list):
+    stopped = False  # by a signal: random scenes then end with what they have
+
     def note(self, what):
         self.append(what)
         print(f"finding: {what}", file=sys.stderr, flush=True)
@@ -89,7 +91,7 @@ def random_scenes(count, seed, others, found, scratch):
     scenes = Scenes(schema, bundled, {"file": [str(data / name) for name in ("cube.obj", "shell.csv", "stroke.csv")]}, seed)
     valid = drawn = ran_commands = 0
     outcomes = {}
-    while valid < count:
+    while valid < count and not found.stopped:
         batch = []
         while len(batch) < min(20, count - valid):
             file = scratch / f"scene_{valid + len(batch)}.json"
@@ -340,7 +342,8 @@ def main():
     parser.add_argument("--share", type=float, default=1.0, help="of the counts that the page of reliability asks for (default: 1)")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--against", action="append", default=[], metavar="PROGRAM", help="another build, which must have the same hashes")
-    parser.add_argument("--record", action="store_true", help="keep the figures in tests/data/reliability.json")
+    parser.add_argument("--record", action="store_true",
+                        help="keep the figures in tests/data/reliability.json; SIGUSR1 ends the random scenes, which keep what they have done")
     given = parser.parse_args()
     count = lambda full: max(10, round(given.share * full))
     parts = {
@@ -361,6 +364,7 @@ def main():
     failed = False
     for part in wanted:
         found, begin = Findings(), time.monotonic()
+        signal.signal(signal.SIGUSR1, lambda *_, found=found: setattr(found, "stopped", True))
         with tempfile.TemporaryDirectory(prefix="hapbench-endure-") as folder:
             figures = parts[part](found, Path(folder).resolve())
         figures.update(findings=len(found), seconds=round(time.monotonic() - begin))
