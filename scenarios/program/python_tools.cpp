@@ -181,7 +181,7 @@ struct SuiteOptions {
   std::vector<std::string> names, overrides, sources;
   unsigned jobs = 0;
   SlurmOptions slurm;
-  bool quiet = false;
+  bool replays = false, quiet = false;
 };
 
 int suite(const SuiteOptions& options) {
@@ -202,6 +202,7 @@ int suite(const SuiteOptions& options) {
     if (options.slurm.dry_run) command.add("--dry-run");
   }
   command.add("--draw", options.draw);
+  if (options.replays) command.add("--replays");
   if (options.jobs > 0) command.add("--jobs", std::to_string(options.jobs));
   command.add("--out", options.out);
   for (const std::string& name : options.names) command.add("--name", name);
@@ -234,6 +235,9 @@ void add_suite(CommandLine& line) {
                     "N: submit run to Slurm as a job array of N shards, and a job that finishes when all are done");
   add_jobs(command, options.jobs, "runs at once (default: one per processor)");
   command.add("--draw", options.draw, "verify: repeat the verification with this number, which it printed");
+  command.flag(
+      "--replays", options.replays,
+      "page: run the first failure of each law in each scene again, into pages that the table of failures links to");
   command.add("--out", options.out,
               "run: folder of the submission (default: results/out/suite_SUITE_LAW); page: FILE.html (default: "
               "results/out/arena.html)");

@@ -273,5 +273,17 @@ class Submissions(unittest.TestCase):
         self.assertIn("hapbench suite run", page)
 
 
+    def test_a_failure_is_linked_to_its_replay(self):
+        root = scratch_folder(self)
+        suite("run", self.suite, "--algorithm", "mean", "--division", "open", "--set", "rendering.stiffness_N_per_m=1e9", "--out", root / "stiff")
+        self.assertIn("wedge,0,diverges,", (root / "stiff" / "runs.csv").read_text(encoding="utf-8"))
+        suite("page", root / "stiff", "--replays", "--out", root / "arena.html")
+        links = re.findall(r'<a href="(arena_replays/[^"]*)">diverges</a>', (root / "arena.html").read_text(encoding="utf-8"))
+        self.assertEqual(len(links), 1)  # the first of its seeds
+        self.assertIn("replay", (root / links[0]).read_text(encoding="utf-8"))
+        suite("page", root / "stiff", "--out", root / "plain.html")
+        self.assertNotIn("_replays/", (root / "plain.html").read_text(encoding="utf-8"))
+
+
 if __name__ == "__main__":
     main()

@@ -33,6 +33,7 @@ def arguments(words):
     parser.add_argument("--dry-run", action="store_true")
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     parser.add_argument("--draw", type=int)
+    parser.add_argument("--replays", action="store_true")
     parser.add_argument("--out", type=Path)
     parser.add_argument("--quiet", action="store_true")
     return parser.parse_args(words)
@@ -127,11 +128,14 @@ def check(given):
 
 
 def page(given):
-    from .page import arena_csv, arena_page, read_rows
+    from .page import arena_csv, arena_page, read_rows, write_replays
     if not given.names:
         raise SuiteError("suite page: takes folders of submissions, or a CSV file of this command; got none")
     file = given.out or Path("results/out/arena.html")
     suite, rows = read_rows([Path(name) for name in given.names])
+    if given.replays:
+        with Notice("replays") as notice:
+            write_replays(suite, rows, file.resolve().parent / f"{file.stem}_replays", notice.say)
     write(file, arena_page(suite, rows))
     write(file.with_suffix(".csv"), arena_csv(rows))
     if not given.quiet:

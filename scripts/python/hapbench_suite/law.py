@@ -84,6 +84,15 @@ class Law:
             folders = [Path(scratch) / self.name / f"seed_{k}" for k in range(seeds)] if seeds > 1 else [Path(scratch) / self.name]
             return [json.loads((folder / "summary.json").read_text(encoding="utf-8")) for folder in folders]
 
+    def replay(self, file, seed, jitter_m, page):
+        """Writes the report of one run of a scene, which replays it. The seeds before it are run, too, as `compare` numbers them."""
+        with tempfile.TemporaryDirectory(prefix="hapbench-suite-") as scratch:
+            given = ["--jitter", jitter_m] if jitter_m else []
+            self.reply("compare", file, "--algorithms", self.name, *set_words([*self.overrides, "record.trajectory=true", "record.every=8"]),
+                       "--seeds", seed + 1, *given, "--out", scratch)
+            run = Path(scratch) / self.name / (f"seed_{seed}" if seed else "")
+            subprocess.run([PROGRAM, "report", run, "--out", page, "--quiet"], check=True, stdin=subprocess.DEVNULL)
+
     def limit(self, file, vary, between, resolution, settings):
         """The row of `hapbench limit`, and `felt_N_per_m`, what is rendered at half the limit, a gain margin of two: the mean force over how
         deep the tool is. A law that is softer than its K would else gain by it. None where nothing is stable there, or only a range above

@@ -3,6 +3,7 @@ import csv
 import io
 import json
 import math
+import re
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -11,9 +12,11 @@ from hapbench_looks import look
 from hapbench_report.markup import cell, command, heading_cell, in_colour, named, number, table, text
 from hapbench_report.page import whole_page
 
+from .law import Law
 from .scores import Score, leads, pareto, score, tremor_bands
 from .submission import FILE, TREMOR, read_parts
 from .suite import Suite, SuiteError
+from .verify import law_of
 
 STYLE = Path(__file__).parent / "page.css"
 ABOUT = ("suite", "label", "law", "kind", "division", "overrides", "licence", "law_sha256", "commit")
@@ -35,6 +38,8 @@ class Row:
     cost: dict  # scene: time of a step over brute force
     failures: list = field(default_factory=list)  # of (scene, seed, outcome)
     tremor: dict = field(default_factory=dict)  # of tremor_bands
+    law: object = None  # the Law, where it is at hand
+    replays: dict = field(default_factory=dict)  # (scene, seed): page that replays it, relative to the arena's
     front: bool = False
 
     def command(self):
@@ -84,7 +89,7 @@ def row_of_folder(folder):
     failures += [(place, "", "no stable value") for place, part in parts.items() if "limit" in part and part["limit"]["felt_N_per_m"] is None]
     shown = {"commit": about["hapbench"]["commit"], "overrides": " ".join(about["overrides"])}
     return suite, Row({name: str({**about, **shown}[name] or "") for name in ABOUT}, [score(a, parts, suite.seeds) for a in suite.axes], cost, failures,
-                      tremor_bands(suite, parts[TREMOR][TREMOR]) if suite.tremor else {})
+                      tremor_bands(suite, parts[TREMOR][TREMOR]) if suite.tremor else {}, law_of(folder, about))
 
 
 def rows_of_csv(file):
@@ -102,7 +107,20 @@ def rows_of_csv(file):
         kinds = {entry: entry.split(" ") for entry in entries}
         yield suite, Row(dict(zip(ABOUT, about)), scores, {words[1]: float(entries[entry]["value"]) for entry, words in kinds.items() if words[0] == COST},
                          [(words[1], int(words[2]) if words[2] else "", entries[entry]["value"]) for entry, words in kinds.items() if words[0] == "failure"],
-                         {words[1]: float(entries[entry]["value"]) for entry, words in kinds.items() if words[0] == TREMOR})
+                         {words[1]: float(entries[entry]["value"]) for entry, words in kinds.items() if words[0] == TREMOR},
+                         Law("built_in", about[2], None, [one for one in about[5].split(" ") if one]) if about[3] == "built_in" else None)
+
+
+def write_replays(suite, rows, folder, say):
+    """A page for the first failed run of each law in each scene, for the links of the table of failures."""
+    for row in rows:
+        for scene, seed, _ in row.failures:
+            if row.law is None or scene not in suite.scenes_run() or any(scene == known for known, _ in row.replays):
+                continue
+            say(f"{row.about['label']} in {scene}")
+            page = folder / f"{re.sub(r'[^A-Za-z0-9.]+', '_', row.about['label'])}_{scene}.html"
+            row.law.replay(suite.file(scene), seed, suite.jitter_of(scene), page)
+            row.replays[scene, seed] = f"{folder.name}/{page.name}"
 
 
 def arena_csv(rows):
@@ -309,7 +327,11 @@ def radar(suite, row, spans):
 
 
 def failures_table(suite, rows):
-    body = [[cell(shown_name(row), classes="name"), cell(named(scene)), cell(str(seed), seed, "number"), cell(text(outcome.replace("_", " "))),
+    def replay(row, scene, seed, outcome):
+        page = row.replays.get((scene, seed))
+        return f'<a href="{text(page)}">{text(outcome)}</a>' if page else text(outcome)
+
+    body = [[cell(shown_name(row), classes="name"), cell(named(scene)), cell(str(seed), seed, "number"), cell(replay(row, scene, seed, outcome.replace("_", " "))),
              cell(f"<code>{text(row.replay(suite, scene, seed))}</code>" if scene in suite.scenes else "")]
             for row in rows for scene, seed, outcome in row.failures]
     if not body:
