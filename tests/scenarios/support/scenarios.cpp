@@ -46,7 +46,7 @@ std::vector<NamedScenario> rich_scenarios() {
       "rendering": {"algorithm": "virtual_coupling", "depth_model": "shortest_distance", "contact_source": "own", "local_average": true,
         "reduction": {"threshold": 0.9, "max_points": 7, "shuffle_seed": 5}, "virtual_coupling_N_per_m": 1000, "regularisation": 0.5,
         "passivity_controller": true, "damping_N_s_per_m": 3, "angular_damping": true,
-        "parameters": {"mcneely": {"points": 5}, "static_coupling": {"saturation_N": 12}},
+        "parameters": {"mcneely": {"points": 5}, "static_coupling": {"saturation_N": 12}, "proxy": {"damping_time_s": 0.02}},
         "angular_velocity_cutoff_Hz": 30,
         "limits": {"max_damping_N_s_per_m": 0, "max_force_N": 2.5}},
       "record": {"trajectory": true, "every": 2, "ratio_iterations": [0, 3], "contacts": true,
