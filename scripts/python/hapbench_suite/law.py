@@ -4,7 +4,6 @@ import hashlib
 import json
 import math
 import os
-import re
 import shutil
 import subprocess
 import sys
@@ -25,6 +24,15 @@ UNSTABLE = ("vibrating", "diverged", "thrown_out")
 def set_words(fields):
     """The words that set fields, each as path=value."""
     return [word for field_ in fields for word in ("--set", field_)]
+
+
+def _short(override):
+    """A field of rendering that is set, in a word: its name, the type of an object, the value of what is not a switch."""
+    path, _, value = override.partition("=")
+    name = path.rpartition(".")[2]
+    if value.startswith("{"):
+        return json.loads(value).get("type", name)
+    return name if value == "true" else f"{name}={value}"
 
 
 @dataclass
@@ -73,7 +81,7 @@ class Law:
 
     def label(self):
         """Its name with the fields that the open division sets, for pages and folders."""
-        return " ".join([self.name, *(re.sub(r"^rendering\.(parameters\.\w+\.)?|=true$", "", one) for one in self.overrides)])
+        return " ".join([self.name, *map(_short, self.overrides)])
 
     def compare(self, file, seeds, jitter_m, jobs, seed=None):
         """The summaries of the runs of a scene, by seed."""

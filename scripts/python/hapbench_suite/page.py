@@ -238,18 +238,19 @@ def marks_at(rows, places, said):
     width, height, _, bottom = FRAME
     marks, taken = [], [(x - 5, y - 5, x + 5, y + 5) for x, y in places]
     for row, (x, y), words in sorted(zip(rows, places, said), key=lambda one: not one[0].front):
-        one, label = row.look(), text(row.about["label"])
-        at, anchor = label_place(row.about["label"], x, y, width, height - bottom, taken)
+        label = row.about["label"]
+        one, short = row.look(), label if len(label) <= 30 else label[:29] + "…"
+        at, anchor = label_place(short, x, y, width, height - bottom, taken)
         marks.append(f'<g class=run-name style="--light:{one.colour};--dark:{one.dark}"><circle cx="{x:.1f}" cy="{y:.1f}" r="{5 if row.front else 3.5}" '
-                     f'fill="{"currentColor" if row.front else "none"}" stroke="currentColor" stroke-width="1.5"><title>{label}: {words}</title></circle>'
-                     f'<text x="{at[0]:.1f}" y="{at[1]:.1f}" text-anchor="{anchor}">{label}</text></g>')
+                     f'fill="{"currentColor" if row.front else "none"}" stroke="currentColor" stroke-width="1.5"><title>{text(label)}: {words}</title></circle>'
+                     f'<text x="{at[0]:.1f}" y="{at[1]:.1f}" text-anchor="{anchor}">{text(short)}</text></g>')
     return "".join(marks)
 
 
 def label_place(label, x, y, width, lowest, taken):
     """Where a label stands without covering one of `taken`, to which it is added: beside its mark, or a line above or below."""
     long = 5.9 * len(label)
-    for shift in (0, -11, 11, -22, 22, -33, 33, -44, 44, 55, 66):
+    for shift in sorted(range(-99, 100, 11), key=abs):
         for anchor, from_x in (("start", x + 7), ("end", x - 7 - long)):
             box = (from_x, y + shift - 5, from_x + long, y + shift + 5)
             if box[0] > 58 and box[2] < width and 8 < box[1] and box[3] < lowest and not any(box[0] < t[2] and t[0] < box[2] and box[1] < t[3] and t[1] < box[3] for t in taken):
