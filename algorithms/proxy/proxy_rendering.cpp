@@ -88,8 +88,8 @@ void ProxyRendering::compute(const ToolState& tool, ContactBuffer& contacts, Ren
   hand_over_holding(contacts);
   out.spring = spring_;
   out.S = held_;
-  // Without contact, S = 0 would make the whole velocity tangential, so friction must not be applied.
   follow_directions();
+  // Without contact, S = 0 would make the whole velocity tangential, so friction must not be applied.
   if (contacts.empty()) {
     out.rendered = spring_;
     damping_and_limits_.release();

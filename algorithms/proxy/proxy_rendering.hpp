@@ -92,7 +92,7 @@ class ProxyRendering final : public ForceAlgorithm {
   Vec3 proxy_ = Vec3::Zero();
   Mat3 held_ = Mat3::Zero();
   Mat3 damped_ = Mat3::Zero();                              ///< S as normal damping and friction see it
-  Mat3 damped_row_ = Mat3::Zero(), before_ = Mat3::Zero();  ///< the same at the start of this row and of the row before
+  Mat3 damped_row_ = Mat3::Zero(), before_ = Mat3::Zero();  ///< the same, of this row and of the row before
   std::optional<std::uint64_t> last_row_;
   const std::uint64_t* row_ = nullptr;  ///< null without a simulation; then each force is a row's
   double dt_ = 0.0;

@@ -42,7 +42,7 @@ void add_overrides(Command& command, std::vector<std::string>& overrides,
 /// Adds --jobs, at least 1. Zero means not given.
 void add_jobs(Command& command, unsigned& jobs, const std::string& help);
 
-/// What both commands have that submit themselves to Slurm.
+/// Options of a command that submits itself to Slurm as a job array.
 struct SlurmOptions {
   std::size_t shards = 0;
   int cpus = 1;           ///< per task, which does as many runs at once

@@ -31,7 +31,10 @@ def _short(override):
     path, _, value = override.partition("=")
     name = path.rpartition(".")[2]
     if value.startswith("{"):
-        return json.loads(value).get("type", name)
+        try:
+            return json.loads(value).get("type", name)
+        except ValueError:
+            return name  # which the program will refuse
     return name if value == "true" else f"{name}={value}"
 
 

@@ -38,7 +38,7 @@ class Row:
     cost: dict  # scene: time of a step over brute force
     failures: list = field(default_factory=list)  # of (scene, seed, outcome)
     tremor: dict = field(default_factory=dict)  # of tremor_bands
-    law: object = None  # the Law, where it is at hand
+    folder: Path | None = None  # of the submission; None: read from a CSV file
     replays: dict = field(default_factory=dict)  # (scene, seed): page that replays it, relative to the arena's
     front: bool = False
 
@@ -52,12 +52,21 @@ class Row:
         return " ".join(["hapbench compare", f"scenarios/suites/{suite.name}/{file.name}", *of, "--algorithms", self.about["law"], self._sets(), *given,
                          "--set record.trajectory=true --html"]).replace("  ", " ")
 
+    def submitted_law(self):
+        """The Law itself, or None where it is not at hand."""
+        if self.folder:
+            return law_of(self.folder, json.loads((self.folder / FILE).read_text(encoding="utf-8")))
+        return Law("built_in", self.about["law"], None, self._overrides()) if self.about["kind"] == "built_in" else None
+
+    def _overrides(self):
+        return [one for one in self.about["overrides"].split(" ") if one]
+
     def _law(self):
         kind = self.about["kind"]
         return [f"--{'algorithm ' + self.about['law'] if kind == 'built_in' else kind + ' FILE'}"]
 
     def _sets(self):
-        return " ".join(f"--set '{one}'" for one in filter(None, self.about["overrides"].split(" ")))
+        return " ".join(f"--set '{one}'" for one in self._overrides())
 
     def look(self):
         return look(self.about["law"] if not self.about["overrides"] else self.about["label"])
@@ -89,7 +98,7 @@ def row_of_folder(folder):
     failures += [(place, "", "no stable value") for place, part in parts.items() if "limit" in part and part["limit"]["felt_N_per_m"] is None]
     shown = {"commit": about["hapbench"]["commit"], "overrides": " ".join(about["overrides"])}
     return suite, Row({name: str({**about, **shown}[name] or "") for name in ABOUT}, [score(a, parts, suite.seeds) for a in suite.axes], cost, failures,
-                      tremor_bands(suite, parts[TREMOR][TREMOR]) if suite.tremor else {}, law_of(folder, about))
+                      tremor_bands(suite, parts[TREMOR][TREMOR]) if suite.tremor else {}, folder)
 
 
 def rows_of_csv(file):
@@ -107,19 +116,22 @@ def rows_of_csv(file):
         kinds = {entry: entry.split(" ") for entry in entries}
         yield suite, Row(dict(zip(ABOUT, about)), scores, {words[1]: float(entries[entry]["value"]) for entry, words in kinds.items() if words[0] == COST},
                          [(words[1], int(words[2]) if words[2] else "", entries[entry]["value"]) for entry, words in kinds.items() if words[0] == "failure"],
-                         {words[1]: float(entries[entry]["value"]) for entry, words in kinds.items() if words[0] == TREMOR},
-                         Law("built_in", about[2], None, [one for one in about[5].split(" ") if one]) if about[3] == "built_in" else None)
+                         {words[1]: float(entries[entry]["value"]) for entry, words in kinds.items() if words[0] == TREMOR})
 
 
 def write_replays(suite, rows, folder, say):
-    """A page for the first failed run of each law in each scene, for the links of the table of failures."""
+    """A page for the first failed run of each law in each scene, for the links of the table of failures. Of plugins and scripts only where
+    the folder of the submission is given, which holds them."""
     for row in rows:
+        first = {}
         for scene, seed, _ in row.failures:
-            if row.law is None or scene not in suite.scenes_run() or any(scene == known for known, _ in row.replays):
-                continue
+            if scene in suite.scenes_run():
+                first.setdefault(scene, seed)
+        law = row.submitted_law() if first else None
+        for scene, seed in first.items() if law else ():
             say(f"{row.about['label']} in {scene}")
             page = folder / f"{re.sub(r'[^A-Za-z0-9.]+', '_', row.about['label'])}_{scene}.html"
-            row.law.replay(suite.file(scene), seed, suite.jitter_of(scene), page)
+            law.replay(suite.file(scene), seed, suite.jitter_of(scene), page)
             row.replays[scene, seed] = f"{folder.name}/{page.name}"
 
 
@@ -286,7 +298,7 @@ def tremor_plot(rows):
     return ('<p>A hand that trembles feels a law\'s stiffness as vibration. What a law without a memory renders for a still hand it renders for a '
             'trembling one: all such laws lie on the solid line. One with a memory may lie below it, but where it is passive, Bode\'s integral '
             f'holds: each 10 dB below the line (the dashed one) cost {number(DEBT_DB, 2)} dB more between 7.5 and 30 Hz, more with damping. So how stiff a law is '
-            'and how quiet are not two choices but one, and a low-pass that is not passive is paid for in stability.</p>'
+            'and how quiet are not two choices but one.</p>'
             f'<div class="plots"><figure><svg viewBox="0 0 {width} {height}" role="img" aria-label="{len(shown)} laws by the stiffness felt at rest and by a trembling '
             f'hand above 30 Hz, on the line that joins both"><path class=frame d="M{left} 12V{height - bottom}H{width - 12}"/>'
             f'<path class=frame d="{line(1)}"/><path class=frame stroke-dasharray="5 4" d="{line(quieter)}"/>'
