@@ -38,6 +38,17 @@ std::string_view row_in(std::string_view line) {
   return line.substr(0, kSumLength) == hash_text(hash_of(row)) ? row : std::string_view();
 }
 
+/// Reports the rows of a file from the current line, which begins at `place`, to the first torn or damaged one. Returns
+/// the place of the end of the last.
+Journal::Place read_intact(std::istream& in, Journal::Place place, const Journal::Found& found) {
+  for (std::string line; std::getline(in, line) && !in.eof(); place += line.size() + 1) {
+    const std::string_view row = row_in(line);
+    if (row.empty()) break;
+    if (found) found(place, row);
+  }
+  return place;
+}
+
 }  // namespace
 
 Journal::Journal(std::filesystem::path file, const std::string& sweep, bool resume, const Found& found)
@@ -51,7 +62,7 @@ Journal::Journal(std::filesystem::path file, const std::string& sweep, bool resu
     if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
       fail_in_file(file_, "another sweep is writing to this directory; allowed: one at a time");
     const std::string first_line = title_line(sweep);
-    if (resume) read(first_line, found);
+    if (resume) this->resume(first_line, found);
     if (::ftruncate(descriptor_, static_cast<off_t>(end_)) != 0) throw IoError("write", file_, last_error());
     if (end_ == 0) {
       unwritten_ = first_line;
@@ -94,7 +105,7 @@ std::size_t Journal::count_rows(const std::filesystem::path& file) {
 }
 
 /// Finds the end of the last intact row, and reports all rows before it.
-void Journal::read(const std::string& first_line, const Found& found) {
+void Journal::resume(const std::string& first_line, const Found& found) {
   std::ifstream in(file_, std::ios::binary);
   std::string line;
   // A line without its end is torn.
@@ -105,12 +116,15 @@ void Journal::read(const std::string& first_line, const Found& found) {
         "is not the journal of this sweep; --resume needs the same scenario, --set, --vary, --shard, --keep-runs, "
         "named files, plugins and program; without --resume the sweep begins anew");
   }
-  end_ = first_line.size();
-  for (; std::getline(in, line) && !in.eof(); end_ += line.size() + 1) {
-    const std::string_view row = row_in(line);
-    if (row.empty()) return;
-    if (found) found(end_, row);
-  }
+  end_ = read_intact(in, first_line.size(), found);
+}
+
+void Journal::read_rows(const Found& found) const {
+  std::ifstream in(file_, std::ios::binary);
+  std::string title;
+  std::getline(in, title);
+  if (read_intact(in, title.size() + 1, found) != end_)
+    throw IoError("read", file_, std::make_error_code(std::errc::io_error));
 }
 
 Journal::Place Journal::add(std::string_view row) {

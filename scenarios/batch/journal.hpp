@@ -45,13 +45,15 @@ class Journal {
   Place add(std::string_view row);
   /// Writes the rows added since the last flush. Throws IoError.
   void flush();
+  /// Calls `found` for every row that has been flushed, in the order in which they were added.
+  void read_rows(const Found& found) const;
   /// Reads a row from the file. Precondition: it has been flushed. Throws IoError.
   std::string row_at(Place place);
   /// Removes the file: the sweep is complete.
   void remove() noexcept;
 
  private:
-  void read(const std::string& first_line, const Found& found);
+  void resume(const std::string& first_line, const Found& found);
 
   std::filesystem::path file_;
   int descriptor_ = -1;

@@ -7,12 +7,14 @@
 #include <ctime>
 #include <exception>
 #include <nlohmann/json.hpp>
+#include <numeric>
 
 #include "results/io/atomic_file.hpp"
 #include "results/io/json_text.hpp"
 #include "scenarios/batch/journal.hpp"
 #include "scenarios/batch/parallel_for.hpp"
 #include "scenarios/batch/sweep_table.hpp"
+#include "scenarios/input/text_lines.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/progress_bar.hpp"
 #include "scenarios/run/run_scenario.hpp"
@@ -27,45 +29,69 @@ bool is_of_environment(const Axis& axis) {
   return axis.path == "environment" || axis.path.starts_with("environment.");
 }
 
-/// Journal offset of each finished row of the shard.
+/// Which runs of the shard have a row: two bits a run.
 class Rows {
  public:
   Rows(const SweepPlan& plan, const Shard& shard)
-      : plan_(plan), shard_(shard), places_(shard.size(plan.points.size()), kNone) {}
+      : shard_(shard), has_(shard.size(plan.points.size())), failed_(has_.size()) {}
 
   std::size_t count() const { return count_; }
-  std::size_t size() const { return places_.size(); }
-  bool has(std::size_t run) const { return places_[run / shard_.count] != kNone; }
-  void set(std::size_t run, Journal::Place place) {
+  std::size_t size() const { return has_.size(); }
+  bool has(std::size_t run) const { return has_[run / shard_.count]; }
+  bool has_failed(std::size_t run) const { return failed_[run / shard_.count]; }
+  void set(std::size_t run, bool has_failed) {
     if (!has(run)) ++count_;
-    places_[run / shard_.count] = place;
-  }
-  void set_failed(std::size_t run) { set(run, kFailed); }
-  /// Precondition: the run has a row, and the journal is flushed.
-  std::string row(std::size_t run, Journal& journal) const {
-    const Journal::Place place = places_[run / shard_.count];
-    return place == kFailed ? row_text(plan_, error_row(plan_, run)) : journal.row_at(place);
+    has_[run / shard_.count] = true;
+    failed_[run / shard_.count] = has_failed;
   }
 
  private:
-  static constexpr Journal::Place kNone = 0;
-  static constexpr Journal::Place kFailed = ~Journal::Place{0};
-
-  const SweepPlan& plan_;
   Shard shard_;
-  std::vector<Journal::Place> places_;
+  std::vector<bool> has_, failed_;
   std::size_t count_ = 0;
 };
 
 /// Records a row that was found in the journal. Refuses rows that are not of this sweep, since somebody may have edited
 /// the file.
-void note(Rows& rows, const SweepPlan& plan, const Shard& shard, const fs::path& file, Journal::Place place,
-          std::string_view row) {
+void note(Rows& rows, const SweepPlan& plan, const Shard& shard, const fs::path& file, std::string_view row) {
   const auto known = parse_row(plan, row);
   if (!known || !shard.has(known->run))
     fail_in_file(file, fmt::format("got the row \"{}\"; allowed: rows of this sweep", row.substr(0, 60)));
-  rows.set(known->run, place);
+  rows.set(known->run, false);
 }
+
+/// Finds the rows of runs in the journal. Knows the places of some rows at a time and reads the journal anew for the
+/// next ones, so that its memory does not grow with the sweep.
+class RowFinder {
+ public:
+  /// Precondition: the journal is flushed and gets no further rows.
+  RowFinder(Journal& journal, const Shard& shard, std::size_t most_places)
+      : journal_(journal), shard_(shard), places_(most_places) {}
+
+  /// Precondition: the run has a row in the journal.
+  std::string row(std::size_t run) {
+    const std::size_t number = run / shard_.count;
+    if (!is_filled_ || number - first_ >= places_.size()) find_from(number);
+    return journal_.row_at(places_[number - first_]);
+  }
+
+ private:
+  void find_from(std::size_t first) {
+    first_ = first;
+    is_filled_ = true;
+    journal_.read_rows([this](Journal::Place place, std::string_view row) {
+      const std::size_t run = whole_number(row.substr(0, row.find(','))).value();
+      const std::size_t number = run / shard_.count - first_;  // of an earlier row it wraps around
+      if (number < places_.size()) places_[number] = place;
+    });
+  }
+
+  Journal& journal_;
+  Shard shard_;
+  std::vector<Journal::Place> places_;
+  std::size_t first_ = 0;
+  bool is_filled_ = false;
+};
 
 /// A finished run that is not yet in the journal.
 struct FinishedRun {
@@ -104,11 +130,12 @@ void compute_rows(const SweepPlan& plan, const SweepOptions& options, Journal& j
   // The journal is flushed after this much work, because flushing after each run would take 1 % of a short one.
   constexpr std::chrono::milliseconds kMostUnwritten(10);
   std::chrono::steady_clock::duration unwritten{};
-  const std::vector<std::size_t> runs = runs_to_do(plan.points, options.part());
+  RunOrder order(plan.points, options.part());
   ProgressBar bar("sweep", rows.size(), options.progress);
   bar.start_at(rows.count());
   const auto deliver = [&](std::size_t run, const FinishedRun& finished) {
-    rows.set(run, journal.add(finished.row));
+    journal.add(finished.row);
+    rows.set(run, false);
     unwritten += finished.time;
     if (options.timed) options.timed(run, finished.seconds);
     if (unwritten >= kMostUnwritten) {
@@ -118,13 +145,15 @@ void compute_rows(const SweepPlan& plan, const SweepOptions& options, Journal& j
     bar.show(rows.count(), true);
   };
   const auto deliver_failure = [&](std::size_t run, const std::string& problem) {
-    rows.set_failed(run);
+    rows.set(run, true);
     if (!report.failed || run < report.failed->run) report.failed = FailedRun{run, problem};
   };
   std::exception_ptr cannot_write;  ///< further runs could not be kept either; --resume goes on
-  const auto next = [&, run = runs.begin()]() mutable -> std::optional<std::size_t> {
-    while (run != runs.end() && rows.has(*run)) ++run;
-    return run == runs.end() || cannot_write || StopSignal::received() != 0 ? std::nullopt : std::optional(*run++);
+  const auto next = [&]() -> std::optional<std::size_t> {
+    if (cannot_write || StopSignal::received() != 0) return std::nullopt;
+    auto run = order.next();
+    while (run && rows.has(*run)) run = order.next();
+    return run;
   };
   const auto work = [&](std::size_t run) -> Delivery {
     try {
@@ -146,21 +175,32 @@ void compute_rows(const SweepPlan& plan, const SweepOptions& options, Journal& j
 
 }  // namespace
 
-std::vector<std::size_t> runs_to_do(const SweepPoints& points, const Shard& shard) {
-  std::vector<std::size_t> runs;
-  for (std::size_t run = shard.index; run < points.size(); run += shard.count) runs.push_back(run);
-  // A number for each combination of listed values. Each point of a sampled range has a value of its own.
-  const auto environment = [&points](std::size_t run) {
-    std::size_t number = 0;
-    for (std::size_t a = 0; a < points.axes().size(); ++a) {
-      const Axis& axis = points.axes()[a];
-      if (is_of_environment(axis) && axis.size() > 0) number = number * axis.size() + points.place(run, a);
-    }
-    return number;
+RunOrder::RunOrder(const SweepPoints& points, const Shard& shard) : points_(points), shard_(shard) {
+  const std::vector<Axis>& axes = points.axes();
+  for (const bool of_environment : {true, false})
+    for (std::size_t a = 0; a < axes.size(); ++a)
+      if (is_of_environment(axes[a]) == of_environment) axes_.push_back(a);
+  if (!points.sampling()) return;
+  // Each point of a sampled range has a value of its own, which no other run shares.
+  const auto places = [&](std::size_t run) {
+    std::vector<std::size_t> numbers;
+    for (const std::size_t a : axes_)
+      if (is_of_environment(axes[a]) && axes[a].size() > 0) numbers.push_back(points.place(run, a));
+    return numbers;
   };
-  std::stable_sort(runs.begin(), runs.end(),
-                   [&](std::size_t a, std::size_t b) { return environment(a) < environment(b); });
-  return runs;
+  if (places(0).empty()) return;
+  sorted_.resize(points.size());
+  std::iota(sorted_.begin(), sorted_.end(), std::size_t{0});
+  std::stable_sort(sorted_.begin(), sorted_.end(), [&](std::size_t a, std::size_t b) { return places(a) < places(b); });
+}
+
+std::optional<std::size_t> RunOrder::next() {
+  while (count_ < points_.size()) {
+    const std::size_t number = count_++;
+    const std::size_t run = points_.sampling() ? sorted_.empty() ? number : sorted_[number] : points_.run(number, axes_);
+    if (shard_.has(run)) return run;
+  }
+  return std::nullopt;
 }
 
 std::string stem_of(const std::optional<Shard>& shard) {
@@ -178,7 +218,7 @@ SweepReport run_sweep(const SweepPlan& plan, const SweepOptions& options) {
   Rows rows(plan, options.part());
   Journal journal(
       file, journal_title(plan, options.part(), options.keep_runs), options.resume,
-      [&](Journal::Place place, std::string_view row) { note(rows, plan, options.part(), file, place, row); });
+      [&](Journal::Place, std::string_view row) { note(rows, plan, options.part(), file, row); });
   SweepReport report;
   report.resumed = rows.count();
   compute_rows(plan, options, journal, rows, report);
@@ -186,8 +226,9 @@ SweepReport run_sweep(const SweepPlan& plan, const SweepOptions& options) {
   report.table = options.directory / (stem + ".csv");
   FileSet files;
   files.write(options.directory / (stem + ".json"), json_text(sweep_description(plan, options.part())));
+  RowFinder finder(journal, options.part(), std::min(rows.size(), options.most_places));
   const auto row_of = [&](std::size_t run) {
-    std::string text = rows.row(run, journal);
+    std::string text = rows.has_failed(run) ? row_text(plan, error_row(plan, run)) : finder.row(run);
     SweepRow row = parse_row(plan, text).value();
     report.counts.add(row);
     if (rows.size() <= SweepReport::kMostRows) report.rows.push_back(std::move(row));

@@ -13,8 +13,22 @@
 namespace hapbench {
 
 /// The runs of a shard in the order in which they are done: runs in one environment follow each other, so that few
-/// shells are needed at a time; apart from that they are in order.
-std::vector<std::size_t> runs_to_do(const SweepPoints& points, const Shard& shard);
+/// shells are needed at a time; apart from that they are in order. Computed as they are asked for, but for a sample
+/// with listed fields of the environment, which is sorted (8 bytes a run).
+class RunOrder {
+ public:
+  /// Keeps a reference to the points.
+  RunOrder(const SweepPoints& points, const Shard& shard);
+  /// The next run; none after the last.
+  std::optional<std::size_t> next();
+
+ private:
+  const SweepPoints& points_;
+  Shard shard_;
+  std::vector<std::size_t> axes_;    ///< those of the environment first
+  std::vector<std::size_t> sorted_;  ///< all runs of such a sample
+  std::size_t count_ = 0;
+};
 
 struct SweepOptions {
   std::filesystem::path directory;  ///< for all files; must exist
@@ -23,6 +37,9 @@ struct SweepOptions {
   bool resume = false;              ///< take the rows of an interrupted sweep from its journal
   bool keep_runs = false;           ///< write the files of each run into runs/NUMBER
   bool progress = false;            ///< allow a progress bar
+  /// Places of rows in the journal that are known at a time when the table is written, at least 1. The journal is read
+  /// once for each so many runs: eight times for a million, some seconds.
+  std::size_t most_places = std::size_t{1} << 17;
   /// Is told the processor time of each run that is computed, without the making of its shell [s]: of runs under some
   /// milliseconds, which noise would drown, the least of five. Null: nobody asks.
   std::function<void(std::size_t run, double seconds)> timed = {};
@@ -61,9 +78,9 @@ std::string journal_title(const SweepPlan& plan, const Shard& shard, bool keep_r
 ///
 /// Until the table is written, the rows are in a journal in the same directory, so that a killed sweep loses the runs
 /// in flight and at most 10 ms of finished work. Rows of failed runs are not in the journal, so that `resume` tries
-/// them again. SIGINT and SIGTERM end the sweep after the runs in flight and leave the journal. Memory: 8 bytes a run,
-/// and as many again where fields of the environment vary. Throws InputError when the journal is not of this sweep or
-/// in use, and IoError when something cannot be written.
+/// them again. SIGINT and SIGTERM end the sweep after the runs in flight and leave the journal. Memory: a
+/// quarter of a byte a run beside the plan, and 1 MB. Throws InputError when the journal is not of this sweep or in
+/// use, and IoError when something cannot be written.
 SweepReport run_sweep(const SweepPlan& plan, const SweepOptions& options);
 
 }  // namespace hapbench

@@ -180,6 +180,13 @@ std::size_t SweepPoints::place(std::size_t run, std::size_t axis) const {
   return sample_ ? place_at(axes_[axis], sample_->at(run, axis)) : run / strides_[axis] % axes_[axis].size();
 }
 
+std::size_t SweepPoints::run(std::size_t number, const std::vector<std::size_t>& order) const {
+  std::size_t run = 0;
+  for (std::size_t i = order.size(); i-- > 0; number /= axes_[order[i]].size())
+    run += number % axes_[order[i]].size() * strides_[order[i]];
+  return run;
+}
+
 std::string SweepPoints::value(std::size_t run, std::size_t axis) const {
   return sample_ ? value_at(axes_[axis], sample_->at(run, axis)) : axes_[axis].value(place(run, axis));
 }

@@ -79,6 +79,9 @@ class SweepPoints {
   const std::optional<Sampling>& sampling() const { return sampling_; }
   /// Index of the value of an axis in a run. Precondition: Axis::size() > 0.
   std::size_t place(std::size_t run, std::size_t axis) const;
+  /// The run of a grid that has a number when the axes are counted in another order, the last one fastest.
+  /// Precondition: it is a grid, and `order` holds each axis once.
+  std::size_t run(std::size_t number, const std::vector<std::size_t>& order) const;
   /// The value itself, computed anew at each call. Precondition, here and below: run < size().
   std::string value(std::size_t run, std::size_t axis) const;
   /// One value for each axis.

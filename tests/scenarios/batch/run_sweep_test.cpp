@@ -211,6 +211,12 @@ TEST(SweepPlan, RefusesBadNamedFilesOfAnyRun) {
 
 // ---- Runs
 
+Numbers runs_to_do(const SweepPoints& points, const Shard& shard) {
+  Numbers runs;
+  for (RunOrder order(points, shard); const auto run = order.next();) runs.push_back(*run);
+  return runs;
+}
+
 TEST(RunsToDo, AreInOrderWhereTheEnvironmentStaysTheSame) {
   const SweepPoints points({parse_axis("a=1,2"), parse_axis("b=1,2")});
   EXPECT_EQ(runs_to_do(points, {}), (Numbers{0, 1, 2, 3}));
@@ -240,12 +246,14 @@ TEST(RunsToDo, OfASampleFollowEachOtherByTheListedFields) {
 
 class RunSweep : public testing::Test {
  protected:
-  SweepReport run(const SweepPlan& plan, const fs::path& directory, bool resume = false) const {
+  SweepReport run(const SweepPlan& plan, const fs::path& directory, bool resume = false,
+                  std::size_t most_places = 1000) const {
     fs::create_directories(directory);
     SweepOptions options;
     options.directory = directory;
     options.jobs = 3;
     options.resume = resume;
+    options.most_places = most_places;
     return run_sweep(plan, options);
   }
   test::TemporaryDirectory directory_;
@@ -272,6 +280,11 @@ TEST_F(RunSweep, HasOneTableWhateverTheOrderOfTheRuns) {
   const SweepReport report = run(plan, directory_.path());
   ASSERT_EQ(report.rows.size(), 80u);
   for (std::size_t i = 0; i < 80; ++i) EXPECT_EQ(report.rows[i].run, i);
+  const std::string table = read_file(report.table);
+  for (const std::size_t places : {1u, 7u, 79u}) {
+    run(plan, directory_.path(), false, places);
+    EXPECT_EQ(read_file(report.table), table) << places;
+  }
 }
 
 TEST_F(RunSweep, OfManyRunsKeepsNoRows) {
