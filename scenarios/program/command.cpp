@@ -68,18 +68,6 @@ void add_jobs(Command& command, unsigned& jobs, const std::string& help) {
   command.add("--jobs", jobs, help).range(1, 1024);
 }
 
-void add_slurm_options(Command& command, SlurmOptions& options, CommandOption& shard, const std::string& help) {
-  CommandOption slurm = command.add("--slurm", options.shards, help);
-  slurm.range(1, kMostRuns).excludes(shard);
-  command.add("--time", options.time, "time limit of a task, as sbatch takes it: 30, 2:00:00, 1-0").needs(slurm);
-  command.add("--cpus", options.cpus, "processors of a task, which does as many runs at once (default: 1)")
-      .range(1, 1024)
-      .needs(slurm);
-  command.add("--partition", options.partition, "partition of the cluster (default: the cluster's own default)")
-      .needs(slurm);
-  command.flag("--dry-run", options.dry_run, "write and print the scripts, submit nothing").needs(slurm);
-}
-
 void print(const OutputOptions& options, const std::string& text, const Json& json) {
   if (options.quiet) return;
   const std::string output = options.json ? json_text(json) : fitted(text);

@@ -42,18 +42,6 @@ void add_overrides(Command& command, std::vector<std::string>& overrides,
 /// Adds --jobs, at least 1. Zero means not given.
 void add_jobs(Command& command, unsigned& jobs, const std::string& help);
 
-/// Options of a command that submits itself to Slurm as a job array.
-struct SlurmOptions {
-  std::size_t shards = 0;
-  int cpus = 1;           ///< per task, which does as many runs at once
-  std::string time;       ///< limit of a task, as sbatch takes it; empty: the partition's
-  std::string partition;  ///< empty: the cluster's default
-  bool dry_run = false;   ///< only writes the scripts
-};
-
-/// Adds --slurm, --time, --cpus, --partition and --dry-run; --slurm excludes --shard.
-void add_slurm_options(Command& command, SlurmOptions& options, CommandOption& shard, const std::string& help);
-
 /// Prints `text`, as wide as the output is, or `json` under --json, or nothing under --quiet.
 void print(const OutputOptions& options, const std::string& text, const Json& json);
 /// Prints warnings, one line each, on standard error.

@@ -11,7 +11,7 @@
 
 #include "results/io/atomic_file.hpp"
 #include "scenarios/input/installed_folder.hpp"
-#include "scenarios/program/command.hpp"
+#include "scenarios/program/slurm.hpp"
 #include "scenarios/run/progress_bar.hpp"
 #include "scenarios/run/stop_signal.hpp"
 
@@ -49,6 +49,7 @@ class ToolCommand {
   }
   void add(std::string word) { words_.push_back(std::move(word)); }
 
+  const std::vector<std::string>& words() const { return words_; }
   const char* launcher() const { return words_[0].c_str(); }
   /// Becomes the tool; returns only by an exception.
   int become() {
@@ -184,29 +185,69 @@ struct SuiteOptions {
   bool replays = false, quiet = false;
 };
 
+/// Of the options those that say which submission it is, as words of a command line.
+std::vector<std::string> words_of(const SuiteOptions& options) {
+  std::vector<std::string> words = plugin_words();
+  const auto add = [&words](const char* name, const std::string& value) {
+    if (!value.empty()) words.push_back(fmt::format("{}={}", name, value));
+  };
+  add("--algorithm", options.algorithm);
+  add("--python", options.python);
+  add("--division", options.division);
+  for (const std::string& field : options.overrides) add("--set", field);
+  add("--licence", options.licence);
+  for (const std::string& file : options.sources) add("--source", file);
+  return words;
+}
+
+/// Begins the submission, which finds what is wrong with the law, and leaves its parts to Slurm.
+int submit(const SuiteOptions& options, ToolCommand& tool) {
+  tool.add("--begin");
+  const ProgramOutput begun = output_of(tool.words());
+  if (begun.status != 0) {
+    std::fputs(begun.text.c_str(), stderr);
+    return begun.status;
+  }
+  // The last line; warnings may stand before it.
+  const std::string said = begun.text.substr(0, begun.text.find_last_not_of('\n') + 1);
+  const std::filesystem::path folder = said.substr(said.rfind('\n') + 1);
+  std::vector<std::string> words = {this_program().string(), "suite", "run"};
+  for (const auto& more : {options.names, words_of(options), {"--out", folder.string(), "--quiet"}})
+    words.insert(words.end(), more.begin(), more.end());
+  const SlurmOptions& slurm = options.slurm;
+  const std::string cpus = fmt::format("cpus-per-task={}", slurm.cpus);
+  const std::string line =
+      fmt::format("cd {} && exec {} --jobs {}", shell_line({std::filesystem::current_path().string()}),
+                  shell_line(words), slurm.cpus);
+  // What is there is not computed again, so a task that was preempted or killed goes on where it was.
+  const std::vector<SlurmScript> scripts = {
+      slurm_script(slurm, folder, "suite", "slurm_%a.log",
+                   {fmt::format("array=0-{}", slurm.shards - 1), cpus, "requeue"},
+                   fmt::format("{} --shard \"$SLURM_ARRAY_TASK_ID/{}\"\n", line, slurm.shards)),
+      slurm_script(slurm, folder, "finish", "slurm_finish.log", {cpus, "kill-on-invalid-dep=yes"}, line + "\n")};
+  for (const SlurmScript& script : scripts) write_file_atomically(script.file, script.text);
+  std::string text;
+  if (slurm.dry_run) {
+    text = dry_run_text(scripts);
+  } else {
+    const std::string array = submit_script(scripts[0]), last = submit_script(scripts[1], array);
+    text = fmt::format("{} shards submitted as job {}, their end as job {}\n{}\n", slurm.shards, array, last,
+                       folder.string());
+  }
+  if (!options.quiet) fmt::print("{}", text);
+  return kSuccess;
+}
+
 int suite(const SuiteOptions& options) {
   ToolCommand command("hapbench_suite", options.what, options.quiet);
-  command.add("--algorithm", options.algorithm);
-  for (const std::string& word : plugin_words()) command.add(word);
-  command.add("--python", options.python);
-  command.add("--division", options.division);
-  for (const std::string& field : options.overrides) command.add("--set", field);
-  command.add("--licence", options.licence);
-  for (const std::string& file : options.sources) command.add("--source", file);
+  for (const std::string& word : words_of(options)) command.add(word);
   command.add("--shard", options.shard);
-  if (options.slurm.shards > 0) {
-    command.add("--slurm", std::to_string(options.slurm.shards));
-    command.add("--time", options.slurm.time);
-    command.add("--cpus", std::to_string(options.slurm.cpus));
-    command.add("--partition", options.slurm.partition);
-    if (options.slurm.dry_run) command.add("--dry-run");
-  }
   command.add("--draw", options.draw);
   if (options.replays) command.add("--replays");
   if (options.jobs > 0) command.add("--jobs", std::to_string(options.jobs));
   command.add("--out", options.out);
   for (const std::string& name : options.names) command.add("--name", name);
-  return command.become();
+  return options.slurm.shards > 0 ? submit(options, command) : command.become();
 }
 
 }  // namespace

@@ -139,11 +139,6 @@ std::vector<std::string> shard_command(const SweepCommand& command, const fs::pa
 
 int submit(const SweepCommand& command, const SweepPlan& plan, const SweepOptions& options) {
   const SlurmOptions& slurm = command.slurm;
-  for (const std::string& value : {slurm.time, slurm.partition}) {
-    constexpr const char* kUsual = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-:.,";
-    if (value.find_first_not_of(kUsual) == std::string::npos) continue;
-    throw InputError(fmt::format("--time, --partition: got \"{}\"; allowed: letters, digits and _-:.,", value));
-  }
   if (slurm.shards > plan.points.size()) {
     throw InputError(fmt::format("--slurm: got {} shards of {} runs; allowed: 1 ... {}", slurm.shards,
                                  plan.points.size(), plan.points.size()));

@@ -6,7 +6,7 @@
 
 #include "scenarios/batch/run_sweep.hpp"
 #include "scenarios/input/json_file.hpp"
-#include "scenarios/program/command.hpp"
+#include "scenarios/program/slurm.hpp"
 
 /// The parts of `hapbench sweep`: what it prints of a finished sweep, and sweeps on a cluster.
 namespace hapbench {

@@ -1,7 +1,5 @@
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
-#include <algorithm>
 #include <array>
 #include <nlohmann/json.hpp>
 #include <regex>
@@ -17,6 +15,7 @@
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/command.hpp"
 #include "scenarios/program/result_tables.hpp"
+#include "scenarios/program/slurm.hpp"
 #include "scenarios/program/sweep.hpp"
 
 namespace hapbench {
@@ -97,87 +96,29 @@ std::vector<std::size_t> missing_shards(const SweepPlan& plan, const SlurmOption
   return missing;
 }
 
-/// Numbers in order as Slurm takes them: "0-3,7".
-std::string array_text(const std::vector<std::size_t>& numbers) {
-  std::vector<std::string> ranges;
-  for (std::size_t i = 0, last = 0; i < numbers.size(); i = last + 1) {
-    last = i;
-    while (last + 1 < numbers.size() && numbers[last + 1] == numbers[last] + 1) ++last;
-    ranges.push_back(last == i ? std::to_string(numbers[i]) : fmt::format("{}-{}", numbers[i], numbers[last]));
-  }
-  return fmt::format("{}", fmt::join(ranges, ","));
-}
-
-/// The lines that both scripts begin with.
-std::string script_head(const SlurmOptions& options, const char* name, const fs::path& log) {
-  std::string head = fmt::format(
-      "#!/bin/bash\n"
-      "# Written by \"hapbench sweep --slurm\".\n"
-      "#SBATCH --job-name={}\n"
-      "#SBATCH --output=\"{}\"\n"
-      "#SBATCH --open-mode=append\n",
-      name, log.string());
-  if (!options.partition.empty()) head += fmt::format("#SBATCH --partition={}\n", options.partition);
-  if (!options.time.empty()) head += fmt::format("#SBATCH --time={}\n", options.time);
-  return head;
-}
-
 /// Runs one shard per task. It resumes, so that a task that was preempted, requeued or killed goes on where it was.
-std::string sweep_script(const SlurmOptions& options, const fs::path& directory, const std::vector<std::string>& sweep,
+SlurmScript sweep_script(const SlurmOptions& options, const fs::path& directory, const std::vector<std::string>& sweep,
                          const std::vector<std::size_t>& shards) {
-  return script_head(options, "hapbench-sweep", directory / "slurm_shard_%a.log") +
-         fmt::format(
-             "#SBATCH --array={0}\n"
-             "#SBATCH --cpus-per-task={1}\n"
-             "#SBATCH --requeue\n"
-             "shard=$SLURM_ARRAY_TASK_ID\n"
-             "{2} --out {3} --quiet --resume --jobs {1} --shard \"$shard/{4}\"\n"
-             "status=$?\n"
-             "# The table notes runs that ended otherwise than expected (3) or could not be computed (1).\n"
-             "case $status in\n"
-             "  1 | 3) [ -e {3}/sweep_shard_\"$shard\"_of_{4}.csv ] || exit $status ;;\n"
-             "  *) exit $status ;;\n"
-             "esac\n",
-             array_text(shards), options.cpus, shell_line(sweep), shell_line({directory.string()}), options.shards);
+  return slurm_script(
+      options, directory, "sweep", "slurm_shard_%a.log",
+      {"array=" + array_text(shards), fmt::format("cpus-per-task={}", options.cpus), "requeue"},
+      fmt::format("shard=$SLURM_ARRAY_TASK_ID\n"
+                  "{0} --out {1} --quiet --resume --jobs {2} --shard \"$shard/{3}\"\n"
+                  "status=$?\n"
+                  "# The table notes runs that ended otherwise than expected (3) or could not be computed (1).\n"
+                  "case $status in\n"
+                  "  1 | 3) [ -e {1}/sweep_shard_\"$shard\"_of_{3}.csv ] || exit $status ;;\n"
+                  "  *) exit $status ;;\n"
+                  "esac\n",
+                  shell_line(sweep), shell_line({directory.string()}), options.cpus, options.shards));
 }
 
-std::string merge_script(const SlurmOptions& options, const fs::path& directory) {
-  return script_head(options, "hapbench-merge", directory / "slurm_merge.log") +
-         fmt::format(
-             "# Removes this job when a shard fails for good, instead of waiting for ever.\n"
-             "#SBATCH --kill-on-invalid-dep=yes\n"
-             "exec {0} merge {1}/sweep_shard_*_of_{2}.csv --out {1}/sweep.csv\n",
-             shell_line({this_program().string()}), shell_line({directory.string()}), options.shards);
-}
-
-/// Runs sbatch and returns the number of the new job.
-std::string submitted(std::vector<std::string> words) {
-  words.insert(words.begin(), {"sbatch", "--parsable"});
-  const ProgramOutput output = output_of(words);
-  std::vector<std::string_view> lines;
-  for (LineReader reader(output.text); const auto line = reader.next();) lines.push_back(*line);
-  // Warnings stand before the number; the cluster's name may follow it.
-  const std::string_view last = lines.empty() ? "" : lines.back(), number = last.substr(0, last.find(';'));
-  if (output.status == 0 && whole_number(number)) return std::string(number);
-  if (output.status == 127) throw InputError("--slurm: got no sbatch here; allowed: where Slurm is, or with --dry-run");
-  throw InputError(
-      fmt::format("--slurm: \"{}\" says: {}; allowed: what it accepts (of --slurm less than MaxArraySize in "
-                  "\"scontrol show config\")",
-                  shell_line(words), fmt::join(lines, "; ")));
-}
-
-/// The scripts, and how to submit them; without an array when all shards are done.
-std::string dry_run_text(const fs::path& array_file, const std::string& array, const fs::path& merge_file,
-                         const std::string& merge, bool has_array) {
-  const auto script = [](const fs::path& file, const std::string& text) {
-    return fmt::format("# {}\n{}\n", file.string(), text);
-  };
-  const std::string array_line = shell_line({array_file.string()}), merge_line = shell_line({merge_file.string()});
-  return (has_array ? script(array_file, array) : "") + script(merge_file, merge) +
-         "# nothing is submitted (--dry-run); to do so:\n" +
-         (has_array
-              ? fmt::format("id=$(sbatch --parsable {})\nsbatch --dependency=afterok:$id {}\n", array_line, merge_line)
-              : fmt::format("sbatch {}\n", merge_line));
+SlurmScript merge_script(const SlurmOptions& options, const fs::path& directory) {
+  // Slurm removes this job when a shard fails for good; without the field it would wait for ever.
+  return slurm_script(
+      options, directory, "merge", "slurm_merge.log", {"kill-on-invalid-dep=yes"},
+      fmt::format("exec {0} merge {1}/sweep_shard_*_of_{2}.csv --out {1}/sweep.csv\n",
+                  shell_line({this_program().string()}), shell_line({directory.string()}), options.shards));
 }
 
 }  // namespace
@@ -185,10 +126,6 @@ std::string dry_run_text(const fs::path& array_file, const std::string& array, c
 SlurmJobs submit_to_slurm(const SweepPlan& plan, const SlurmOptions& options, const SweepOptions& sweep,
                           const std::vector<std::string>& command) {
   const fs::path directory = fs::absolute(sweep.directory).lexically_normal();
-  // A line of a script ends with it, whatever quotes are around.
-  const std::string& text = directory.native();
-  if (std::any_of(text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < ' ' || c == 0x7f; }))
-    throw InputError("--out: got a path with a control character; allowed with --slurm: paths without");
   const std::vector<std::size_t> shards = missing_shards(plan, options, sweep.keep_runs, directory);
   const auto earlier = options.dry_run ? std::nullopt : read_jobs(directory);
   if (earlier && !queued_tasks(earlier->array).empty()) {
@@ -196,25 +133,20 @@ SlurmJobs submit_to_slurm(const SweepPlan& plan, const SlurmOptions& options, co
         fmt::format("--slurm: job {} of {} is still in the queue; allowed: when it has ended (\"scancel {}\")",
                     earlier->array, directory.string(), earlier->array));
   }
-  const fs::path array_file = directory / "sweep.sbatch", merge_file = directory / "merge.sbatch";
-  const std::string array = sweep_script(options, directory, command, shards), merge = merge_script(options, directory);
-  if (!shards.empty()) write_file_atomically(array_file, array);
-  write_file_atomically(merge_file, merge);
+  std::vector<SlurmScript> scripts = {merge_script(options, directory)};
+  if (!shards.empty()) scripts.insert(scripts.begin(), sweep_script(options, directory, command, shards));
+  for (const SlurmScript& script : scripts) write_file_atomically(script.file, script.text);
   SlurmJobs jobs;
   jobs.definition = plan.definition;
   jobs.runs = plan.points.size();
   jobs.shards = options.shards;
   if (options.dry_run) {
-    jobs.text = dry_run_text(array_file, array, merge_file, merge, !shards.empty());
+    jobs.text = dry_run_text(scripts);
     return jobs;
   }
-  std::vector<std::string> merge_words = {merge_file.string()};
-  if (!shards.empty()) {
-    jobs.array = submitted({array_file.string()});
-    merge_words.insert(merge_words.begin(), "--dependency=afterok:" + jobs.array);
-  }
+  if (!shards.empty()) jobs.array = submit_script(scripts.front());
   write_jobs(directory, jobs);  // keeps the array's number in case the merge is refused
-  jobs.merge = submitted(merge_words);
+  jobs.merge = submit_script(scripts.back(), jobs.array);
   write_jobs(directory, jobs);
   jobs.text = fmt::format(
       "{} of {} shards submitted{}, the merge as job {}\n\"hapbench sweep --status {}\" shows their progress\n",

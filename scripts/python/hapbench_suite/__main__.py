@@ -5,8 +5,7 @@ from pathlib import Path
 
 from hapbench_command import BAD_INPUT, FAILED, INTERRUPTED, SUCCESS, Arguments, Notice, say_error, unwritable, write
 
-from .law import PROGRAM, Law, set_words
-from .slurm import submit
+from .law import Law
 from .submission import Submission
 from .suite import Suite, SuiteError
 from .verify import verify
@@ -26,11 +25,7 @@ def arguments(words):
     parser.add_argument("--licence", default="")
     parser.add_argument("--source", type=Path, action="append", default=[])
     parser.add_argument("--shard", default="0/1")
-    parser.add_argument("--slurm", type=int)
-    parser.add_argument("--time", default="")
-    parser.add_argument("--cpus", type=int, default=1)
-    parser.add_argument("--partition", default="")
-    parser.add_argument("--dry-run", action="store_true")
+    parser.add_argument("--begin", action="store_true")  # makes the folder and says where it is
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     parser.add_argument("--draw", type=int)
     parser.add_argument("--replays", action="store_true")
@@ -75,10 +70,8 @@ def run(given):
     folder = given.out or Path("results/out") / f"suite_{suite.name}_{'_'.join(law.label().split())}".replace('"', "").replace("/", "_")
     submission = Submission(suite, law, folder, given.licence, given.source)
     submission.begin()
-    if given.slurm:
-        said = submit(run_words(given, law, folder), folder, given.slurm, given)
-        if not given.quiet:
-            print(said)
+    if given.begin:
+        print(folder.resolve())
         return SUCCESS
     shard = shard_of(given.shard)
     todo = submission.missing(shard)
@@ -95,15 +88,6 @@ def run(given):
     if not given.quiet:
         print(table_of(law, scores, cost, folder))
     return SUCCESS
-
-
-def run_words(given, law, folder):
-    """The command that goes on with the submission, without shard and jobs."""
-    own = ["--plugin", law.file] if law.kind == "plugin" else []
-    words = [PROGRAM.resolve(), *own, "suite", "run", given.names[0], *(["--python", law.file] if law.kind == "python" else []), "--algorithm", law.name]
-    words += ["--division", given.division, *set_words(given.set), "--out", folder.resolve()]
-    words += ["--licence", given.licence] if given.licence else []
-    return [*words, *(word for file in given.source for word in ("--source", file.resolve()))]
 
 
 def table_of(law, scores, cost, folder):
