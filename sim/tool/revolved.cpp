@@ -19,8 +19,11 @@ Pack slack(const HalfPlane& plane, const Pack& s, const Pack& rho) {
 }
 
 /// Tests which points of `all`, with axial coordinate s and squared distance from the axis rho2, lie in the section
-/// with s <= 0. Compares squares of heights, because a root costs as much as four lines.
-Mask in_section(const Meridian& meridian, const Mask& all, const Pack& s, const Pack& rho2) {
+/// with s <= 0. Compares squares of heights, because a root costs as much as four lines. This and the tests below are
+/// inlined whatever the compiler thinks of their size: calls, whose packs go through memory, cost a step of a bur a
+/// tenth.
+[[gnu::always_inline]] inline Mask in_section(const Meridian& meridian, const Mask& all, const Pack& s,
+                                              const Pack& rho2) {
   const auto height = [&](std::size_t k) {
     return Pack(meridian.heights[k].at_tip) + Pack(meridian.heights[k].slope) * s;
   };
@@ -37,6 +40,27 @@ Mask in_section(const Meridian& meridian, const Mask& all, const Pack& s, const 
   }
   return in;
 }
+
+/// Tests which points of a pack lie in the section.
+struct InProfile {
+  const Meridian& meridian;
+  Pack low, high, widest2;
+
+  [[gnu::always_inline]] Mask operator()(const AxialPack& q) const {
+    const Mask around = q.s >= low && q.s <= high && q.rho2 <= widest2;
+    return simd::any(around) ? in_section(meridian, around, q.s, q.rho2) : around;
+  }
+};
+
+/// The same for a body with a round tip.
+struct InProfileOrBall {
+  InProfile in_profile;
+  Pack ball2;
+
+  [[gnu::always_inline]] Mask operator()(const AxialPack& q) const {
+    return in_profile(q) || (q.s > Pack(0.0) && q.distance2() <= ball2);
+  }
+};
 
 /// Depth of points in a convex body's section, without the ball of a round tip: the distance to the nearest line. For a
 /// point outside, minus the distance to the half plane that it misses by most.
@@ -214,13 +238,9 @@ Revolved::Revolved(Meridian meridian)
 /// Calls `use` with a function that tests which points of a pack lie in the body.
 template <class Use>
 void Revolved::with_test(const Use& use) const {
-  const Pack low(meridian_.low), high(meridian_.high), widest2(widest2_), ball2(ball2_), zero(0.0);
-  const auto in_profile = [=, this](const AxialPack& q) {
-    const Mask around = q.s >= low && q.s <= high && q.rho2 <= widest2;
-    return simd::any(around) ? in_section(meridian_, around, q.s, q.rho2) : around;
-  };
+  const InProfile in_profile{meridian_, Pack(meridian_.low), Pack(meridian_.high), Pack(widest2_)};
   if (meridian_.tip == Tip::flat) return use(in_profile);
-  use([=](const AxialPack& q) { return in_profile(q) || (q.s > zero && q.distance2() <= ball2); });
+  use(InProfileOrBall{in_profile, Pack(ball2_)});
 }
 
 void Revolved::mark_inside(const ToolPose& pose, const PointArrays& points, std::span<const PackRange> ranges,
