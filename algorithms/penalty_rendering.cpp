@@ -54,13 +54,14 @@ void PenaltyRendering::render(const ToolState& tool, ContactBuffer& contacts, Re
   // Required by the model and no skip: S is zero without contacts, so the whole velocity would count as tangential.
   if (contacts.empty()) return;
   in_contact_ = true;
-  out.rendered = damping_and_limits_.rendered_force(law.spring, law.S, velocity_at(contacts, tool), loads_of(contacts));
+  Mat3 loads;  // not set where nothing reads it
+  if (damping_and_limits_.needs_loads()) loads = loads_of(contacts);
+  out.rendered = damping_and_limits_.rendered_force(law.spring, law.S, velocity_at(contacts, tool), loads);
   out.friction = damping_and_limits_.friction_state();
 }
 
-/// The loads of weighted springs; else the spring force as one load along itself. Zero where nothing reads them.
+/// The loads of weighted springs; else the spring force as one load along itself.
 Mat3 PenaltyRendering::loads_of(const ContactBuffer& contacts) const noexcept {
-  if (!damping_and_limits_.needs_loads()) return Mat3::Zero();
   return law_->gives_weights() ? Mat3(K_ * load_tensor(contacts)) : load_along(law_force_.spring);
 }
 

@@ -95,9 +95,9 @@ void ProxyRendering::compute(const ToolState& tool, ContactBuffer& contacts, Ren
     damping_and_limits_.release();
     return;
   }
-  out.rendered =
-      damping_and_limits_.rendered_force(spring_, damped_, velocity_at(tool),
-                                         damping_and_limits_.needs_loads() ? load_along(spring_) : Mat3(Mat3::Zero()));
+  Mat3 loads;  // not set where nothing reads it
+  if (damping_and_limits_.needs_loads()) loads = load_along(spring_);
+  out.rendered = damping_and_limits_.rendered_force(spring_, damped_, velocity_at(tool), loads);
   out.friction = damping_and_limits_.friction_state();
 }
 
