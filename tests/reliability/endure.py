@@ -335,6 +335,16 @@ def fuzz(share, found, scratch):
     return {"executions": executions}
 
 
+ADDED = {"scenes", "kills", "imports", "fuzz"}  # of the others, one call is the measurement
+
+
+def added(old, new):
+    """The counts of two calls of a part together; of what is no count, the later. How many other builds there were is none."""
+    if isinstance(old, dict) and isinstance(new, dict):
+        return old | {name: value if name == "others" else added(old.get(name), value) for name, value in new.items()}
+    return old + new if isinstance(old, int) and isinstance(new, int) else new
+
+
 def main():
     parser = argparse.ArgumentParser(prog="scripts/endure", description=__doc__)
     parser.add_argument("program", help=argparse.SUPPRESS)
@@ -344,6 +354,8 @@ def main():
     parser.add_argument("--against", action="append", default=[], metavar="PROGRAM", help="another build, which must have the same hashes")
     parser.add_argument("--record", action="store_true",
                         help="keep the figures in tests/data/reliability.json; SIGUSR1 ends the random scenes, which keep what they have done")
+    parser.add_argument("--add", action="store_true",
+                        help="with --record: add scenes, kills, imports and executions to those on record; give them a --seed of their own")
     given = parser.parse_args()
     count = lambda full: max(10, round(given.share * full))
     parts = {
@@ -360,7 +372,6 @@ def main():
     for part in wanted:
         if part not in parts:
             parser.error(f'unknown part "{part}"; allowed: {", ".join(parts)}')
-    record = json.loads(RECORD.read_text(encoding="utf-8")) if RECORD.exists() else {}
     failed = False
     for part in wanted:
         found, begin = Findings(), time.monotonic()
@@ -370,8 +381,9 @@ def main():
         figures.update(findings=len(found), seconds=round(time.monotonic() - begin))
         print(json.dumps({part: figures}), flush=True)
         failed |= bool(found)
-        record[part] = figures
         if given.record:
+            record = json.loads(RECORD.read_text(encoding="utf-8"))  # now: other calls may run beside this one
+            record[part] = added(record[part], figures) if given.add and part in ADDED and part in record else figures
             RECORD.write_text(json.dumps(record, indent=2) + "\n", encoding="utf-8")
     sys.exit(1 if failed else 0)
 
