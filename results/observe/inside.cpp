@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "results/observe/metrics.hpp"
-#include "sim/contact/inside_bound.hpp"
+#include "sim/contact/inside.hpp"
 
 namespace hapbench {
 namespace {

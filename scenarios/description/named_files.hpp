@@ -15,7 +15,7 @@
 #include "scenarios/description/fields.hpp"
 #include "scenarios/description/scenario.hpp"
 #include "scenarios/input/motion_file.hpp"
-#include "sim/contact/contact_trace.hpp"
+#include "sim/contact/contact_source.hpp"
 #include "sim/geometry/point_shell.hpp"
 
 namespace hapbench {

@@ -9,7 +9,6 @@
 #include "scenarios/input/mesh_formats.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "sim/mesh/half_edge_mesh.hpp"
-#include "sim/mesh/mesh_from_triangles.hpp"
 
 namespace hapbench {
 

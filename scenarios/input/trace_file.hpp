@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <string_view>
 
-#include "sim/contact/contact_trace.hpp"
+#include "sim/contact/contact_source.hpp"
 
 namespace hapbench {
 

@@ -15,7 +15,7 @@
 #include "scenarios/input/memory_limit.hpp"
 #include "scenarios/plugins/load_plugin.hpp"
 #include "scenarios/run/scene_facts.hpp"
-#include "sim/contact/contact_trace.hpp"
+#include "sim/contact/contact_source.hpp"
 #include "sim/contact/late_contacts.hpp"
 #include "sim/core/random.hpp"
 #include "sim/loop/simulation.hpp"

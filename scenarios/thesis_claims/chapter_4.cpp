@@ -10,7 +10,7 @@
 #include "scenarios/studies/precision/measure.hpp"
 #include "scenarios/thesis_claims/claims.hpp"
 #include "scenarios/thesis_claims/measurements.hpp"
-#include "sim/contact/contact_query.hpp"
+#include "sim/contact/contact_source.hpp"
 
 /// Claims of 4.2: the depths and gradients of the thesis's two depth models, and what they cost.
 /// Claims of chapter 4: what the thesis discusses as limits.

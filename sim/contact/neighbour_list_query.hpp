@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "sim/contact/contact_query.hpp"
+#include "sim/contact/contact_source.hpp"
 #include "sim/contact/grid_index.hpp"
 
 namespace hapbench {

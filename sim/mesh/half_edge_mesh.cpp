@@ -1,12 +1,15 @@
 #include "sim/mesh/half_edge_mesh.hpp"
 
+#include <Eigen/Geometry>
 #include <OpenMesh/Tools/Subdivider/Uniform/LongestEdgeT.hh>
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <map>
-
-#include "sim/mesh/triangle_soup.hpp"
+#include <numeric>
+#include <optional>
+#include <sstream>
 
 namespace hapbench {
 namespace {
@@ -125,6 +128,324 @@ std::vector<SurfacePoint> thinned(const std::vector<SurfacePoint>& points, doubl
   thin.reserve(kept.size());
   for (const std::size_t index : kept) thin.push_back(points[index]);
   return thin;
+}
+
+namespace {
+
+using Triangle = TriangleSoup::Triangle;
+
+/// Two triangles with a common edge.
+struct Hinge {
+  std::array<std::uint32_t, 2> triangles;
+  std::array<std::uint32_t, 2> corners;  ///< where the edge starts in each
+  bool opposed;                          ///< they run along the edge in opposite directions, as neighbours should
+};
+
+constexpr std::uint32_t kNone = 0xffffffffu;
+/// Maximum number of parts in which each part is searched for; without it a million crumbs would take minutes.
+constexpr std::size_t kMostHolders = 1000;
+
+/// Indices of the hinges of each triangle, by corner.
+std::vector<std::array<std::uint32_t, 3>> hinges_at_triangles(std::size_t triangles, const std::vector<Hinge>& hinges) {
+  std::vector<std::array<std::uint32_t, 3>> at(triangles, {kNone, kNone, kNone});
+  for (std::uint32_t h = 0; h < hinges.size(); ++h) {
+    for (std::size_t side = 0; side < 2; ++side) at[hinges[h].triangles[side]][hinges[h].corners[side]] = h;
+  }
+  return at;
+}
+
+/// The properties of a part that decide whether to turn it.
+struct Shape {
+  Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity());  ///< bounding box
+  Vec3 high = -low;
+  double volume = 0.0;  ///< enclosed; negative if normals point inwards
+
+  double size() const { return (high - low).norm(); }
+  bool holds(const Shape& other) const {
+    return (other.low.array() >= low.array()).all() && (other.high.array() <= high.array()).all();
+  }
+  /// The threshold exceeds rounding, because two sheets back to back enclose nothing.
+  bool is_inside_out() const { return volume < -1e-12 * size() * size() * size(); }
+};
+
+/// The connected parts of a surface, and the triangles to turn so that each part is wound consistently.
+class MeshParts {
+ public:
+  /// Turns triangles until neighbours agree, but not the first triangle of each part. O(triangles).
+  MeshParts(std::size_t triangles, const std::vector<Hinge>& hinges)
+      : hinges_(hinges), part_(triangles, kNone), turned_(triangles, false) {
+    const auto at = hinges_at_triangles(triangles, hinges);
+    std::vector<std::uint32_t> open;
+    for (std::uint32_t first = 0; first < triangles; ++first) {
+      if (part_[first] != kNone) continue;
+      const auto part = static_cast<std::uint32_t>(count());
+      closed_.push_back(true);
+      part_[first] = part;
+      open.push_back(first);
+      while (!open.empty()) {
+        const std::uint32_t t = open.back();
+        open.pop_back();
+        for (const std::uint32_t h : at[t]) {
+          if (h == kNone) {
+            closed_[part] = false;
+            continue;
+          }
+          const Hinge& hinge = hinges[h];
+          const std::uint32_t neighbour = hinge.triangles[hinge.triangles[0] == t ? 1 : 0];
+          if (part_[neighbour] != kNone) continue;
+          part_[neighbour] = part;
+          turned_[neighbour] = hinge.opposed ? turned_[t] : !turned_[t];
+          open.push_back(neighbour);
+        }
+      }
+    }
+  }
+
+  /// Returns a hinge whose triangles cannot agree, in a surface with one side only.
+  std::optional<Hinge> contradiction() const {
+    for (const Hinge& hinge : hinges_) {
+      const bool alike = turned_[hinge.triangles[0]] == turned_[hinge.triangles[1]];
+      if (alike != hinge.opposed) return hinge;
+    }
+    return std::nullopt;
+  }
+
+  /// Turns the parts in which most triangles were turned, so that most keep their winding. Returns how many do not.
+  std::size_t follow_majority() {
+    std::vector<std::int64_t> balance(count(), 0);  // turned minus kept
+    for (std::size_t t = 0; t < part_.size(); ++t) balance[part_[t]] += turned_[t] ? 1 : -1;
+    std::vector<bool> mostly_turned;
+    mostly_turned.reserve(count());
+    for (const std::int64_t b : balance) mostly_turned.push_back(b > 0);
+    turn(mostly_turned);
+    return static_cast<std::size_t>(std::count(turned_.begin(), turned_.end(), true));
+  }
+
+  /// Turns closed parts that enclose a negative volume, along with the parts in their bounding boxes (for the thousand
+  /// largest). Returns the number of turned parts.
+  std::size_t turn_outwards(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles) {
+    std::vector<Shape> shapes(count());
+    for (std::size_t t = 0; t < part_.size(); ++t) {
+      Shape& shape = shapes[part_[t]];
+      for (const std::uint32_t corner : triangles[t]) {
+        shape.low = shape.low.cwiseMin(vertices[corner]);
+        shape.high = shape.high.cwiseMax(vertices[corner]);
+      }
+    }
+    for (std::size_t t = 0; t < part_.size(); ++t) {
+      Shape& shape = shapes[part_[t]];
+      // The tetrahedra have their tip at the part, because cancellation would spoil a sum about a distant origin.
+      const auto& [i, j, k] = triangles[t];
+      const Vec3 a = vertices[i] - shape.low, b = vertices[j] - shape.low, c = vertices[k] - shape.low;
+      shape.volume += (turned_[t] ? -1.0 : 1.0) * a.dot(b.cross(c)) / 6.0;
+    }
+
+    std::vector<std::uint32_t> largest_first(count()), outermost;
+    std::iota(largest_first.begin(), largest_first.end(), 0u);
+    std::stable_sort(largest_first.begin(), largest_first.end(),
+                     [&](std::uint32_t p, std::uint32_t q) { return shapes[p].size() > shapes[q].size(); });
+    std::vector<bool> inside_out(count(), false);
+    for (const std::uint32_t p : largest_first) {
+      if (!closed_[p]) continue;
+      const auto outer =
+          std::find_if(outermost.begin(), outermost.end(), [&](std::uint32_t q) { return shapes[q].holds(shapes[p]); });
+      inside_out[p] = outer == outermost.end() ? shapes[p].is_inside_out() : inside_out[*outer];
+      if (outer == outermost.end() && outermost.size() < kMostHolders) outermost.push_back(p);
+    }
+    turn(inside_out);
+    return static_cast<std::size_t>(std::count(inside_out.begin(), inside_out.end(), true));
+  }
+
+  /// True for each triangle whose winding must be reversed.
+  const std::vector<bool>& turned() const { return turned_; }
+
+ private:
+  std::size_t count() const { return closed_.size(); }
+  void turn(const std::vector<bool>& parts) {
+    for (std::size_t t = 0; t < part_.size(); ++t) {
+      if (parts[part_[t]]) turned_[t] = !turned_[t];
+    }
+  }
+
+  const std::vector<Hinge>& hinges_;
+  std::vector<std::uint32_t> part_;  ///< of each triangle
+  std::vector<bool> turned_;
+  std::vector<bool> closed_;  ///< whether every edge of each part has two triangles
+};
+
+/// More than in any sensible mesh; the time to find an edge is proportional to it.
+constexpr std::size_t kMostTrianglesAtVertex = 10'000;
+
+std::string text(const Vec3& p) {
+  std::ostringstream stream;
+  stream << "(" << p.x() << ", " << p.y() << ", " << p.z() << ") m";
+  return stream.str();
+}
+
+void require_finite(const TriangleSoup& soup) {
+  for (std::size_t i = 0; i < soup.vertices.size(); ++i) {
+    if (!soup.vertices[i].allFinite()) throw MeshError("vertex " + std::to_string(i) + " is not finite");
+  }
+}
+
+/// Returns for each vertex the first one at its position.
+std::vector<std::uint32_t> first_at_position(const std::vector<Vec3>& vertices) {
+  std::vector<std::uint32_t> order(vertices.size()), first(vertices.size());
+  std::iota(order.begin(), order.end(), 0u);
+  const auto before = [](const Vec3& a, const Vec3& b) {
+    return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
+  };
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::uint32_t a, std::uint32_t b) { return before(vertices[a], vertices[b]); });
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    const bool same = i > 0 && vertices[order[i]] == vertices[order[i - 1]];
+    first[order[i]] = same ? first[order[i - 1]] : order[i];
+  }
+  return first;
+}
+
+/// The triangles with vertices at equal positions merged, without those that have two equal corners.
+std::vector<Triangle> welded_triangles(const TriangleSoup& soup) {
+  const std::vector<std::uint32_t> first = first_at_position(soup.vertices);
+  std::vector<Triangle> welded;
+  welded.reserve(soup.triangles.size());
+  for (const Triangle& t : soup.triangles) {
+    const Triangle w{first[t[0]], first[t[1]], first[t[2]]};
+    if (w[0] != w[1] && w[1] != w[2] && w[2] != w[0]) welded.push_back(w);
+  }
+  return welded;
+}
+
+/// A side of a triangle, from corner i to the next one.
+struct Side {
+  std::uint32_t low, high;  ///< vertices, low < high
+  std::uint32_t triangle;
+  std::uint32_t corner;  ///< where it starts
+  bool forward;          ///< from low to high
+};
+
+/// All sides, sorted by edge.
+std::vector<Side> sides_by_edge(const std::vector<Triangle>& triangles) {
+  std::vector<Side> sides;
+  sides.reserve(3 * triangles.size());
+  for (std::uint32_t t = 0; t < triangles.size(); ++t) {
+    for (std::uint32_t i = 0; i < 3; ++i) {
+      const std::uint32_t from = triangles[t][i], to = triangles[t][(i + 1) % 3];
+      sides.push_back({std::min(from, to), std::max(from, to), t, i, from < to});
+    }
+  }
+  std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
+    return std::tie(a.low, a.high, a.triangle) < std::tie(b.low, b.high, b.triangle);
+  });
+  return sides;
+}
+
+/// The pairs of triangles at edges with two; adds the other edges to the findings.
+std::vector<Hinge> hinges_of(const std::vector<Side>& sides, const std::vector<Vec3>& vertices, MeshFindings& found) {
+  std::vector<Hinge> hinges;
+  for (std::size_t i = 0, end = 0; i < sides.size(); i = end) {
+    const auto same_edge = [&](std::size_t j) {
+      return sides[j].low == sides[i].low && sides[j].high == sides[i].high;
+    };
+    for (end = i + 1; end < sides.size() && same_edge(end);) ++end;
+    const Vec3 middle = 0.5 * (vertices[sides[i].low] + vertices[sides[i].high]);
+    if (end - i == 1) found.open_edges.push_back(middle);
+    if (end - i > 2) found.crowded_edges.push_back(middle);
+    if (end - i == 2) {
+      const Side &a = sides[i], &b = sides[i + 1];
+      hinges.push_back({{a.triangle, b.triangle}, {a.corner, b.corner}, a.forward != b.forward});
+    }
+  }
+  return hinges;
+}
+
+/// Partition of the triangles' corners into vertices of the surface: corner 3 t + i is corner i of triangle t. Corners
+/// are joined across hinges, so that every vertex is one fan. A half-edge mesh can represent any such surface, because
+/// at most two sides have the same vertices, the ends of an open fan, and they run in opposite directions.
+class Fans {
+ public:
+  explicit Fans(std::size_t triangles) : parent_(3 * triangles) { std::iota(parent_.begin(), parent_.end(), 0u); }
+
+  std::uint32_t root(std::uint32_t corner) {
+    while (parent_[corner] != corner) corner = parent_[corner] = parent_[parent_[corner]];
+    return corner;
+  }
+
+  void join(const Hinge& hinge) {
+    const auto [t, u] = hinge.triangles;
+    const auto [i, j] = hinge.corners;
+    const std::uint32_t t_from = 3 * t + i, t_to = 3 * t + (i + 1) % 3;
+    const std::uint32_t u_from = 3 * u + j, u_to = 3 * u + (j + 1) % 3;
+    join(t_from, hinge.opposed ? u_to : u_from);
+    join(t_to, hinge.opposed ? u_from : u_to);
+  }
+
+ private:
+  void join(std::uint32_t a, std::uint32_t b) {
+    const auto [low, high] = std::minmax({root(a), root(b)});
+    parent_[high] = low;
+  }
+
+  std::vector<std::uint32_t> parent_;
+};
+
+/// Adds the vertices, in the order of the soup, and returns the vertex of each corner.
+std::vector<OpenMesh::VertexHandle> add_vertices(HalfEdgeMesh& mesh, const std::vector<Vec3>& vertices,
+                                                 const std::vector<Triangle>& triangles, Fans& fans) {
+  std::vector<std::uint32_t> order(3 * triangles.size());
+  std::iota(order.begin(), order.end(), 0u);
+  const auto vertex = [&](std::uint32_t corner) { return triangles[corner / 3][corner % 3]; };
+  std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return vertex(a) < vertex(b); });
+  std::vector<OpenMesh::VertexHandle> handles(order.size());
+  std::vector<std::size_t> count(order.size(), 0);
+  for (const std::uint32_t corner : order) {
+    const std::uint32_t root = fans.root(corner);
+    const Vec3& p = vertices[vertex(corner)];
+    if (!handles[root].is_valid()) handles[root] = mesh.add_vertex({p.x(), p.y(), p.z()});
+    if (++count[root] > kMostTrianglesAtVertex) {
+      throw MeshError("more than " + std::to_string(kMostTrianglesAtVertex) + " faces meet in the vertex at " +
+                      text(p));
+    }
+    handles[corner] = handles[root];
+  }
+  return handles;
+}
+
+HalfEdgeMesh connected(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles, Fans& fans,
+                       const std::vector<bool>& turned) {
+  HalfEdgeMesh mesh;
+  const auto handles = add_vertices(mesh, vertices, triangles, fans);
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    const auto &a = handles[3 * t], &b = handles[3 * t + 1], &c = handles[3 * t + 2];
+    const auto face = turned[t] ? mesh.add_face(a, c, b) : mesh.add_face(a, b, c);
+    if (!face.is_valid()) throw MeshError("the faces do not fit together at " + text(vertices[triangles[t][0]]));
+  }
+  return mesh;
+}
+
+}  // namespace
+
+CheckedMesh mesh_from_triangles(const TriangleSoup& soup) {
+  require_finite(soup);
+  CheckedMesh result;
+  const std::vector<Triangle> triangles = welded_triangles(soup);
+  if (triangles.empty()) throw MeshError("has no faces; allowed: at least one, with three different corners");
+  result.findings.degenerate_triangles = soup.triangles.size() - triangles.size();
+
+  const std::vector<Hinge> hinges = hinges_of(sides_by_edge(triangles), soup.vertices, result.findings);
+  MeshParts parts(triangles.size(), hinges);
+  if (const auto hinge = parts.contradiction()) {
+    const Triangle& t = triangles[hinge->triangles[0]];
+    throw MeshError("is not orientable: no winding fits all faces around " + text(soup.vertices[t[hinge->corners[0]]]) +
+                    "; allowed: a surface with two sides");
+  }
+  result.findings.rewound_triangles = parts.follow_majority();
+  result.findings.inside_out_parts = parts.turn_outwards(soup.vertices, triangles);
+
+  Fans fans(triangles.size());
+  for (const Hinge& hinge : hinges) fans.join(hinge);
+  result.mesh = connected(soup.vertices, triangles, fans, parts.turned());
+  return result;
 }
 
 }  // namespace hapbench

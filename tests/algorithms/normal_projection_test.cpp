@@ -5,7 +5,7 @@
 #include <map>
 
 #include "algorithms/depth/depth_model.hpp"
-#include "sim/contact/contact_query.hpp"
+#include "sim/contact/contact_source.hpp"
 #include "sim/geometry/analytic_shells.hpp"
 #include "sim/tool/tool_state.hpp"
 #include "tests/support/scale.hpp"

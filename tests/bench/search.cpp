@@ -8,7 +8,7 @@
 #include <memory>
 #include <string>
 
-#include "sim/contact/contact_query.hpp"
+#include "sim/contact/contact_source.hpp"
 #include "sim/contact/neighbour_list_query.hpp"
 #include "tests/bench/bench.hpp"
 #include "tests/bench/task_scene.hpp"

@@ -11,7 +11,7 @@
 #include "results/observe/metrics.hpp"
 #include "results/observe/passivity_observer.hpp"
 #include "results/observe/step_times.hpp"
-#include "sim/contact/contact_query.hpp"
+#include "sim/contact/contact_source.hpp"
 #include "sim/contact/neighbour_list_query.hpp"
 #include "sim/loop/simulation.hpp"
 #include "sim/tool/cylinder.hpp"

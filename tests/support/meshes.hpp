@@ -5,8 +5,8 @@
 #include <memory>
 #include <utility>
 
+#include "sim/mesh/half_edge_mesh.hpp"
 #include "sim/mesh/marching_cubes.hpp"
-#include "sim/mesh/mesh_from_triangles.hpp"
 #include "sim/mesh/triangle_soup.hpp"
 #include "sim/tool/mesh_tool.hpp"
 

@@ -8,7 +8,7 @@
 
 #include "algorithms/depth/depth_model.hpp"
 #include "algorithms/registry.hpp"
-#include "sim/contact/contact_query.hpp"
+#include "sim/contact/contact_source.hpp"
 #include "sim/contact/stiffness_tensor.hpp"
 #include "sim/core/math.hpp"
 

@@ -10,7 +10,7 @@
 #include "algorithms/laws/exact_shaping.hpp"
 #include "algorithms/laws/shaped_stiffness.hpp"
 #include "device_model/hands/scripted_hands.hpp"
-#include "sim/contact/contact_query.hpp"
+#include "sim/contact/contact_source.hpp"
 #include "sim/contact/neighbour_list_query.hpp"
 #include "sim/geometry/analytic_shells.hpp"
 #include "tests/support/bits.hpp"

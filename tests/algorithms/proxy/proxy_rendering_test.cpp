@@ -7,7 +7,7 @@
 #include "algorithms/proxy/nearest_allowed.hpp"
 #include "algorithms/proxy/proxy_constraints.hpp"
 #include "algorithms/proxy/proxy_rendering.hpp"
-#include "sim/contact/contact_query.hpp"
+#include "sim/contact/contact_source.hpp"
 #include "sim/contact/stiffness_tensor.hpp"
 #include "sim/geometry/analytic_shells.hpp"
 #include "sim/tool/cylinder.hpp"

@@ -7,7 +7,7 @@
 #include <stdexcept>
 
 #include "algorithms/stages/point_stage.hpp"
-#include "sim/contact/contact_query.hpp"
+#include "sim/contact/contact_source.hpp"
 #include "tests/support/bits.hpp"
 #include "tests/support/contact_sets.hpp"
 #include "tests/support/fakes.hpp"

@@ -8,7 +8,7 @@
 #include <cstdint>
 
 #include "scenarios/input/text_lines.hpp"
-#include "sim/mesh/mesh_from_triangles.hpp"
+#include "sim/mesh/half_edge_mesh.hpp"
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/errors.hpp"
 #include "tests/scenarios/support/mesh_texts.hpp"

@@ -4,7 +4,7 @@
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/run_scenario.hpp"
-#include "sim/contact/contact_query.hpp"
+#include "sim/contact/contact_source.hpp"
 
 /// The guarantees of the proxy, over whole runs.
 namespace hapbench::proxy_in_hole_test {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/mesh/mesh_from_triangles.hpp"
+#include "sim/mesh/half_edge_mesh.hpp"
 
 /// Mesh files, written apart from the readers.
 namespace hapbench::test {

@@ -4,7 +4,6 @@
 
 #include <cmath>
 
-#include "sim/contact/inside_bound.hpp"
 #include "sim/tool/bur.hpp"
 #include "tests/support/meshes.hpp"
 #include "tests/support/tool_kinds.hpp"

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <set>
 
-#include "sim/contact/contact_trace.hpp"
+#include "sim/contact/contact_source.hpp"
 #include "sim/loop/simulation.hpp"
 
 /// Contacts that come late, against their definition written down anew: from all poses of a run, without rings and

@@ -12,7 +12,7 @@
 
 #include "sim/contact/grid_index.hpp"
 #include "sim/core/random.hpp"
-#include "sim/mesh/cube_cases.hpp"
+#include "sim/mesh/surface_slab.hpp"
 #include "tests/support/meshes.hpp"
 #include "tests/support/scale.hpp"
 

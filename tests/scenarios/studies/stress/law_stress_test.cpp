@@ -7,7 +7,7 @@
 #include <set>
 
 #include "algorithms/registry.hpp"
-#include "sim/contact/contact_query.hpp"
+#include "sim/contact/contact_source.hpp"
 #include "tests/support/scale.hpp"
 
 namespace hapbench::law_stress_test {

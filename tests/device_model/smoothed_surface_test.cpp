@@ -1,4 +1,4 @@
-#include "sim/contact/smoothed_surface.hpp"
+#include "device_model/hands/drag_hand.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "sim/mesh/mesh_from_triangles.hpp"
+#include "sim/mesh/half_edge_mesh.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,12 +9,11 @@
 #include <numbers>
 
 #include "sim/core/random.hpp"
-#include "sim/mesh/half_edge_mesh.hpp"
 #include "sim/mesh/marching_cubes.hpp"
 #include "tests/support/meshes.hpp"
 #include "tests/support/scale.hpp"
 
-namespace hapbench::mesh_from_triangles_test {
+namespace hapbench::half_edge_mesh_test {
 namespace {
 
 using test::cases;
@@ -414,4 +413,4 @@ TEST(Thinned, KeepsBothSidesOfAThinWallTheOrderAndTheFirstOfEquals) {
 }
 
 }  // namespace
-}  // namespace hapbench::mesh_from_triangles_test
+}  // namespace hapbench::half_edge_mesh_test
