@@ -32,7 +32,7 @@ inline constexpr std::array kPeers = {"fcl", "bullet"};
 inline constexpr const char* kTrace = "trace";
 inline constexpr const char* kContactPlugin = "plugin";
 
-/// Dry friction in place of the thesis's viscous one; see stages/dry_friction.hpp.
+/// Dry friction in place of the thesis's viscous one; see stages/damping_and_limits.hpp.
 struct DryFrictionConfig {
   double mu = 0.3;                  ///< friction coefficient [1]
   std::optional<double> stiffness;  ///< K_t of the bristle [N/m]; none: K

@@ -1,5 +1,6 @@
 #include "device_model/handle_motion.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -142,6 +143,206 @@ void HandleMotion::move(Eigen::Index axis, double motors, double friction, const
 DeviceEnergy HandleMotion::energy() const noexcept {
   DeviceEnergy energy = work_;
   energy.stored = 0.5 * handle_mass_ * handle_.velocity.squaredNorm() - stored_at_reset_;
+  return energy;
+}
+
+namespace {
+
+using PieceMatrix = ElasticMotion::Matrix;
+
+constexpr double kLargestPiece = 0.25;  ///< of the fastest motion [rad]; the terms of its series then reach rounding
+constexpr int kPieceTerms = 20;
+constexpr std::size_t kFinest = 40;  ///< halvings of such a piece, which locate a change
+constexpr std::size_t kGrain = 12;   ///< halvings of the least that passes after a change before the next
+constexpr std::size_t kMostHalvings = 52;
+
+/// Integral of u^T form u over the time, u the state that moves with `rates`, by the power series in time.
+PieceMatrix integral(const PieceMatrix& rates, const PieceMatrix& form, double time) {
+  PieceMatrix term = form * time, sum = term;
+  for (int n = 2; n <= kPieceTerms; ++n) {
+    const PieceMatrix next = (rates.transpose() * term + term * rates) * (time / n);
+    term = next;
+    sum += term;
+  }
+  return sum;
+}
+
+PieceMatrix exponential(const PieceMatrix& rates, double time) {
+  PieceMatrix term = PieceMatrix::Identity(), sum = term;
+  for (int n = 1; n <= kPieceTerms; ++n) {
+    const PieceMatrix next = term * rates * (time / n);
+    term = next;
+    sum += term;
+  }
+  return sum;
+}
+
+ElasticMotion::Piece doubled(const ElasticMotion::Piece& p) {
+  return {p.map * p.map, p.dissipated + p.map.transpose() * p.dissipated * p.map,
+          p.hand + p.map.transpose() * p.hand * p.map};
+}
+
+}  // namespace
+
+ElasticMotion::ElasticMotion(const ImpedanceDeviceConfig& device, const Transmission& transmission,
+                             const AttachedHand& hand)
+    : viscous_(device.viscous),
+      coulomb_(device.coulomb),
+      transmission_(transmission),
+      hand_(hand),
+      motor_mass_(transmission.motor_share * device.handle_mass),
+      handle_mass_((1.0 - transmission.motor_share) * device.handle_mass) {}
+
+ElasticMotion::Matrix ElasticMotion::rates(bool sticking) const {
+  const double k = transmission_.stiffness, d = transmission_.damping, m = motor_mass_,
+               mass = handle_mass_ + hand_.mass;
+  Matrix law = Matrix::Zero();
+  law(kHandle, kHandleSpeed) = 1.0;
+  law.row(kHandleSpeed) << k / mass, d / mass, -(k + hand_.stiffness) / mass, -(d + hand_.damping) / mass, 0.0,
+      1.0 / mass;
+  if (sticking) return law;
+  law(kMotor, kMotorSpeed) = 1.0;
+  law.row(kMotorSpeed) << -k / m, -(viscous_ + d) / m, k / m, d / m, 1.0 / m, 0.0;
+  return law;
+}
+
+ElasticMotion::Stretch ElasticMotion::stretch(double time) const {
+  Matrix dissipated = Matrix::Zero(), hand = Matrix::Zero();
+  const double d = transmission_.damping;
+  dissipated(kMotorSpeed, kMotorSpeed) = viscous_ + d;
+  dissipated(kHandleSpeed, kHandleSpeed) = d;
+  dissipated(kMotorSpeed, kHandleSpeed) = dissipated(kHandleSpeed, kMotorSpeed) = -d;
+  hand(kHandleSpeed, kHandleSpeed) = hand_.damping;
+
+  Stretch stretch;
+  const Matrix moving = rates(false);
+  double size = (-moving(kMotorSpeed, kMotorSpeed) - moving(kHandleSpeed, kHandleSpeed) +
+                 std::sqrt(-moving(kMotorSpeed, kMotor) - moving(kHandleSpeed, kHandle))) *
+                time;
+  for (; size > kLargestPiece && stretch.first < kMostHalvings; size *= 0.5) ++stretch.first;
+  const auto halved = [&](const Matrix& law) {
+    const std::size_t halvings = coulomb_ == 0.0 ? 0 : std::min(kFinest, kMostHalvings - stretch.first);
+    std::vector<Piece> pieces(stretch.first + halvings + 1);
+    for (std::size_t i = pieces.size(); i-- > 0;) {
+      const double part = std::ldexp(time, -static_cast<int>(i));
+      pieces[i] = i < stretch.first
+                      ? doubled(pieces[i + 1])
+                      : Piece{exponential(law, part), integral(law, dissipated, part), integral(law, hand, part)};
+    }
+    return pieces;
+  };
+  stretch.moving = halved(moving);
+  if (coulomb_ > 0.0) stretch.sticking = halved(rates(true));
+  return stretch;
+}
+
+void ElasticMotion::reset(const HandleState& handle) noexcept {
+  motor_ = handle_ = handle;
+  work_ = {};
+  stored_at_reset_ = stored();
+  take_hand(Vec3::Zero());
+}
+
+void ElasticMotion::take_hand(const Vec3& force) noexcept {
+  origin_ = handle_.position;
+  push_ = force + hand_.damping * handle_.velocity;
+}
+
+void ElasticMotion::advance(const Vec3& motors, const Stretch& stretch) noexcept {
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    Axis axis{.z = {}, .motors = motors[i]};
+    axis.z << motor_.position[i] - origin_[i], motor_.velocity[i], handle_.position[i] - origin_[i],
+        handle_.velocity[i], motors[i], push_[i];
+    if (axis.z.isZero(0.0)) continue;  // rests, and nothing pushes
+    if (coulomb_ == 0.0) {
+      take(axis, stretch.moving[0]);
+    } else {
+      start(axis);
+      double left = advance_to_change(axis, stretch, 1.0, 0);
+      while (left > 0.0) left = advance_to_change(axis, stretch, left, kGrain);
+    }
+    motor_.position[i] = origin_[i] + axis.z[kMotor];
+    motor_.velocity[i] = axis.z[kMotorSpeed];
+    handle_.position[i] = origin_[i] + axis.z[kHandle];
+    handle_.velocity[i] = axis.z[kHandleSpeed];
+  }
+}
+
+/// Force on the motors at `z`, if they were at rest, without their friction [N].
+double ElasticMotion::on_resting_motors(const Axis& axis, const State& z) const noexcept {
+  return axis.motors - transmission_.stiffness * (z[kMotor] - z[kHandle]) + transmission_.damping * z[kHandleSpeed];
+}
+
+/// Chooses whether the motors stick, and which way their friction points.
+void ElasticMotion::start(Axis& axis) const noexcept {
+  const double v = axis.z[kMotorSpeed], force = on_resting_motors(axis, axis.z);
+  axis.sticks = v == 0.0 && std::abs(force) <= coulomb_;
+  axis.friction = axis.sticks ? 0.0 : std::copysign(coulomb_, v == 0.0 ? -force : -v);
+  axis.z[kForce] = axis.motors + axis.friction;
+}
+
+/// True where the motors have turned round or broken loose by `next`.
+bool ElasticMotion::changes(const Axis& axis, const State& next) const noexcept {
+  if (axis.sticks) return std::abs(on_resting_motors(axis, next)) > coulomb_;
+  return next[kMotorSpeed] * axis.friction > 0.0;
+}
+
+void ElasticMotion::take(Axis& axis, const Piece& piece) noexcept {
+  const State z = axis.z, next = piece.map * z;
+  const double k = hand_.stiffness, way = next[kMotor] - z[kMotor];
+  work_.actuator += axis.motors * way;
+  work_.dissipated += axis.friction * way - z.dot(piece.dissipated * z);
+  work_.hand += z[kPush] * (next[kHandle] - z[kHandle]) -
+                0.5 * k * (next[kHandle] * next[kHandle] - z[kHandle] * z[kHandle]) - z.dot(piece.hand * z) -
+                0.5 * hand_.mass * (next[kHandleSpeed] * next[kHandleSpeed] - z[kHandleSpeed] * z[kHandleSpeed]);
+  axis.z = next;
+}
+
+/// Advances by at most a share `left` of the stretch, until the motors stop or break loose, and returns the share that
+/// is left then. `skip`: halvings of the first piece, within which they are not looked at, that is taken first.
+double ElasticMotion::advance_to_change(Axis& axis, const Stretch& stretch, double left, std::size_t skip) noexcept {
+  const std::vector<Piece>& pieces = axis.sticks ? stretch.sticking : stretch.moving;
+  const auto share = [](std::size_t level) { return std::ldexp(1.0, -static_cast<int>(level)); };
+  const std::size_t last = pieces.size() - 1;
+  if (skip > 0) {
+    std::size_t level = std::min(stretch.first + skip, last);
+    while (level < last && share(level) > left) ++level;
+    take(axis, pieces[level]);
+    left = std::max(0.0, left - share(level));
+  }
+  for (std::size_t level = stretch.first; left > 0.0;) {
+    while (level < last && share(level) > left) ++level;
+    if (!changes(axis, pieces[level].map * axis.z)) {
+      take(axis, pieces[level]);
+      left = std::max(0.0, left - share(level));
+      continue;
+    }
+    while (++level <= last) {
+      if (changes(axis, pieces[level].map * axis.z)) continue;
+      take(axis, pieces[level]);
+      left -= share(level);
+    }
+    if (!axis.sticks) axis.z[kMotorSpeed] = 0.0;
+    const bool broke_loose = axis.sticks;
+    start(axis);
+    if (broke_loose && axis.sticks) {  // the force is c, to rounding
+      axis.sticks = false;
+      axis.friction = -std::copysign(coulomb_, on_resting_motors(axis, axis.z));
+      axis.z[kForce] = axis.motors + axis.friction;
+    }
+    return left;
+  }
+  return 0.0;
+}
+
+double ElasticMotion::stored() const noexcept {
+  return 0.5 * motor_mass_ * motor_.velocity.squaredNorm() + 0.5 * handle_mass_ * handle_.velocity.squaredNorm() +
+         0.5 * transmission_.stiffness * (motor_.position - handle_.position).squaredNorm();
+}
+
+DeviceEnergy ElasticMotion::energy() const noexcept {
+  DeviceEnergy energy = work_;
+  energy.stored = stored() - stored_at_reset_;
   return energy;
 }
 

@@ -1,5 +1,9 @@
 #pragma once
 
+#include <Eigen/Core>
+#include <cstddef>
+#include <vector>
+
 #include "sim/loop/device.hpp"
 
 namespace hapbench {
@@ -79,6 +83,86 @@ class HandleMotion {
   double mass_;  ///< handle and hand [kg]
   MotionLaw law_;
   HandleState handle_;
+  Vec3 origin_ = Vec3::Zero();  ///< position of the handle at the sample [m]
+  Vec3 push_ = Vec3::Zero();    ///< force of the hand on a handle at rest there [N]
+  DeviceEnergy work_;           ///< `stored` is not used
+  double stored_at_reset_ = 0.0;
+};
+
+/// An elastic transmission of an impedance device: a spring and a damper between its motors and its handle.
+struct Transmission {
+  double motor_share = 0.5;   ///< of the device's mass on the motors' side, between 0 and 1
+  double stiffness = 10'000;  ///< k [N/m]
+  double damping = 1.0;       ///< d [N s/m]
+};
+
+/// Motors and handle as two masses on an elastic transmission under held forces, in each axis separately and without
+/// discretisation error:
+///
+///   m_m x_m'' = f - b x_m' - c sign(x_m') - k (x_m - x_h) - d (x_m' - x_h')
+///   m_h x_h'' = f_hand                    + k (x_m - x_h) + d (x_m' - x_h')
+///
+/// with m_m = motor_share handle_mass and m_h the rest of it. Friction acts on the motors' side, f_hand on the handle,
+/// as in HandleMotion. With Coulomb friction the motors stop, stick while the other forces sum up to at most c, and
+/// leave. No closed form gives these instants; they are located to rounding between points a quarter radian of the
+/// fastest motion apart, so that two of them within such a piece may be overlooked.
+class ElasticMotion {
+ public:
+  /// (x_m, v_m, x_h, v_h, forces on motors and handle), positions relative to the handle's at the sample.
+  using State = Eigen::Matrix<double, 6, 1>;
+  using Matrix = Eigen::Matrix<double, 6, 6>;
+
+  /// The exact solution after a time: the map of the state, and as forms of it the energies [J] that viscous friction
+  /// and the damper take, and that the hand's damper does.
+  struct Piece {
+    Matrix map, dissipated, hand;
+  };
+  /// A time, halved again and again, with moving and with sticking motors. Takes about a millisecond to make.
+  struct Stretch {
+    std::vector<Piece> moving, sticking;
+    std::size_t first = 0;  ///< the longest piece within which motors are not looked at
+  };
+
+  ElasticMotion(const ImpedanceDeviceConfig& device, const Transmission& transmission, const AttachedHand& hand);
+
+  Stretch stretch(double time) const;
+
+  void reset(const HandleState& handle) noexcept;
+  /// Takes the force of the hand at a sample [N], which holds until the next call.
+  void take_hand(const Vec3& force) noexcept;
+  /// Advances by the stretch's time under a constant force of the motors [N]. Allocates nothing.
+  void advance(const Vec3& motors, const Stretch& stretch) noexcept;
+
+  const HandleState& handle() const noexcept { return handle_; }
+  /// The motors' side, which the encoder measures.
+  const HandleState& motor() const noexcept { return motor_; }
+  /// As HandleMotion::energy; `stored` counts both masses and the spring.
+  DeviceEnergy energy() const noexcept;
+
+ private:
+  enum : Eigen::Index { kMotor, kMotorSpeed, kHandle, kHandleSpeed, kForce, kPush };  ///< of the state
+
+  /// One axis under the force of the motors [N].
+  struct Axis {
+    State z;
+    double motors;
+    double friction = 0.0;  ///< on the motors [N]; 0 while they stick
+    bool sticks = false;
+  };
+
+  Matrix rates(bool sticking) const;
+  void start(Axis& axis) const noexcept;
+  bool changes(const Axis& axis, const State& next) const noexcept;
+  double on_resting_motors(const Axis& axis, const State& z) const noexcept;
+  void take(Axis& axis, const Piece& piece) noexcept;
+  double advance_to_change(Axis& axis, const Stretch& stretch, double left, std::size_t skip) noexcept;
+  double stored() const noexcept;
+
+  double viscous_, coulomb_;
+  Transmission transmission_;
+  AttachedHand hand_;
+  double motor_mass_, handle_mass_;  ///< without the hand's [kg]
+  HandleState motor_, handle_;
   Vec3 origin_ = Vec3::Zero();  ///< position of the handle at the sample [m]
   Vec3 push_ = Vec3::Zero();    ///< force of the hand on a handle at rest there [N]
   DeviceEnergy work_;           ///< `stored` is not used

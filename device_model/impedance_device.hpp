@@ -5,7 +5,6 @@
 #include <optional>
 #include <vector>
 
-#include "device_model/elastic_motion.hpp"
 #include "device_model/handle_motion.hpp"
 #include "device_model/velocity_filter.hpp"
 #include "sim/core/random.hpp"

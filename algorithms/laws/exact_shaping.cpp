@@ -1,4 +1,4 @@
-#include "algorithms/laws/exact_shaping.hpp"
+#include "algorithms/laws/shaped_stiffness.hpp"
 
 #include <Eigen/Cholesky>
 #include <algorithm>
@@ -8,7 +8,6 @@
 #include <numbers>
 #include <vector>
 
-#include "algorithms/laws/shaped_stiffness.hpp"
 #include "algorithms/registry.hpp"
 #include "sim/core/simd.hpp"
 

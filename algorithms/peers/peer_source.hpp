@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "algorithms/peers/hapbench_contacts.h"
-#include "algorithms/plugin/guards.hpp"
+#include "algorithms/plugin/plugin_call.hpp"
 #include "sim/contact/contact_source.hpp"
 
 namespace hapbench {

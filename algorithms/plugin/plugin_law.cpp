@@ -10,7 +10,6 @@
 #include <utility>
 #include <vector>
 
-#include "algorithms/plugin/guards.hpp"
 #include "algorithms/plugin/plugin_call.hpp"
 
 namespace hapbench {

@@ -3,7 +3,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include "algorithms/plugin/guards.hpp"
 #include "algorithms/plugin/plugin_call.hpp"
 #include "algorithms/stages/force_stage.hpp"
 

@@ -1,16 +1,241 @@
 #include "algorithms/proxy/proxy_constraints.hpp"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 #include <vector>
 
-#include "sim/contact/contact_source.hpp"
+#include "algorithms/laws/force_law.hpp"
 #include "sim/contact/push_hits.hpp"
 #include "sim/core/simd.hpp"
 
 namespace hapbench {
+namespace {
+
+using simd::load, simd::Pack;
+
+/// Squared sine of the angle between a gradient and the span of others below which it counts as part of the span.
+/// Gradients on one flat face of the tool, or along one line of its side, differ by rounding, 1e-15; other neighbours
+/// by far more than this angle of 3e-8.
+constexpr double kInSpan = 1e-15;
+constexpr int kMostIterations = 100;
+
+constexpr double kNever = std::numeric_limits<double>::infinity();
+
+struct Violation {
+  std::size_t contact = 0;
+  double amount = 0.0;  ///< d + <u, x> [m]
+};
+
+/// Returns the first of the largest violations, or amount 0 if all are within the tolerance.
+Violation largest_violation(const ContactBuffer& c, const Vec3& x, double tolerance) noexcept {
+  const Pack x0(x.x()), x1(x.y()), x2(x.z());
+  Pack largest(-kNever);
+  const auto amount = [&](std::size_t i) {
+    return load(&c.depth[i]) + (load(&c.ux[i]) * x0 + load(&c.uy[i]) * x1 + load(&c.uz[i]) * x2);
+  };
+  for (std::size_t i = 0; i < c.padded_size(); i += simd::lanes) largest = simd::max(largest, amount(i));
+  const double most = simd::max_lane(largest);
+  if (!(most > tolerance)) return {};
+  for (std::size_t i = 0; i < c.padded_size(); i += simd::lanes) {
+    const simd::Mask here = amount(i) >= Pack(most);
+    if (simd::any(here)) return {i + simd::first(here), most};
+  }
+  return {};
+}
+
+double largest_length(const ContactBuffer& c, const Vec3& wanted) noexcept {
+  Pack largest(wanted.cwiseAbs().maxCoeff());
+  for (std::size_t i = 0; i < c.padded_size(); i += simd::lanes) {
+    largest = simd::max(largest, simd::abs(load(&c.depth[i])));
+  }
+  return simd::max_lane(largest);
+}
+
+/// A gradient, split into the nearest combination of the active gradients and the remainder.
+struct Split {
+  Vec3 inside = Vec3::Zero();  ///< its components along the orthonormal basis of their span
+  Vec3 remainder;              ///< perpendicular to all of them
+  Vec3 along = Vec3::Zero();   ///< its coefficients of the active gradients
+};
+
+/// The contacts that hold the tool back, at most three, with independent gradients. Keeps their factorisation
+/// gradients = Q R by Gram and Schmidt, which takes a handful of operations for three rows.
+class ActiveSet {
+ public:
+  int size() const { return size_; }
+  std::size_t contact(int k) const { return contact_[static_cast<std::size_t>(k)]; }
+  double& lambda(int k) { return lambda_[static_cast<std::size_t>(k)]; }
+
+  bool contains(std::size_t contact) const {
+    return std::find(contact_.begin(), contact_.begin() + size_, contact) != contact_.begin() + size_;
+  }
+  Split split(const Vec3& u) const {
+    Split parts{.remainder = u};
+    // The second round removes the rounding of the first, which matters if the remainder is short.
+    for (int round = 0; round < 2; ++round) {
+      for (int k = 0; k < size_; ++k) {
+        const double part = Q_.col(k).dot(parts.remainder);
+        parts.inside[k] += part;
+        parts.remainder -= part * Q_.col(k);
+      }
+    }
+    for (int k = size_; k-- > 0;) {
+      double rest = parts.inside[k];
+      for (int j = k + 1; j < size_; ++j) rest -= R_(k, j) * parts.along[j];
+      parts.along[k] = rest / R_(k, k);
+    }
+    return parts;
+  }
+  /// `parts` is the split of the gradient, with a remainder that is not 0.
+  void add(std::size_t contact, const Vec3& gradient, const Split& parts, double lambda) {
+    const auto k = static_cast<std::size_t>(size_);
+    contact_[k] = contact;
+    lambda_[k] = lambda;
+    gradients_[k] = gradient;
+    const double length = parts.remainder.norm();
+    R_.col(size_) = parts.inside;
+    R_(size_, size_) = length;
+    Q_.col(size_++) = parts.remainder / length;
+  }
+  void drop(int leaves) {
+    const ActiveSet before = *this;
+    size_ = 0;
+    for (std::size_t k = 0; k < static_cast<std::size_t>(before.size_); ++k) {
+      if (static_cast<int>(k) == leaves) continue;
+      const Vec3& u = before.gradients_[k];
+      add(before.contact_[k], u, split(u), before.lambda_[k]);
+    }
+  }
+  /// The orthogonal projector onto the span of the gradients.
+  Mat3 projector() const {
+    Mat3 P = Mat3::Zero();
+    for (int k = 0; k < size_; ++k) P += Q_.col(k) * Q_.col(k).transpose();
+    return P;
+  }
+
+ private:
+  int size_ = 0;
+  std::array<std::size_t, 3> contact_{};
+  std::array<double, 3> lambda_{};
+  std::array<Vec3, 3> gradients_;
+  Mat3 Q_, R_;  ///< the first size() columns
+};
+
+/// Satisfies contact `p` and drops active contacts that no longer hold. Returns false if that is impossible.
+bool satisfy(std::size_t p, double violation, const Vec3& u, Vec3& x, ActiveSet& active) noexcept {
+  double lambda = 0.0;
+  for (;;) {
+    const Split parts = active.split(u);
+    const Vec3 &r = parts.along, &free = parts.remainder;
+    const double free2 = active.size() == 3 ? 0.0 : free.squaredNorm();
+    const double whole_step = free2 > kInSpan ? violation / free2 : kNever;
+    double step = whole_step;
+    int leaves = -1;
+    for (int k = 0; k < active.size(); ++k) {
+      if (r[k] > 0.0 && active.lambda(k) / r[k] < step) {
+        step = active.lambda(k) / r[k];
+        leaves = k;
+      }
+    }
+    if (step == kNever) return false;
+    for (int k = 0; k < active.size(); ++k) active.lambda(k) -= step * r[k];
+    lambda += step;
+    if (whole_step != kNever) {
+      x -= step * free;
+      violation -= step * free2;
+    }
+    if (leaves < 0) {
+      active.add(p, u, parts, lambda);
+      return true;
+    }
+    active.drop(leaves);
+  }
+}
+
+/// The method of Goldfarb and Idnani. Returns false and leaves the weights unchanged if the contacts contradict each
+/// other.
+bool solve_exactly(const Vec3& wanted, double tolerance, ContactBuffer& contacts, AllowedMove& out) noexcept {
+  ActiveSet active;
+  out.move = wanted;
+  for (;;) {
+    const Violation worst = largest_violation(contacts, out.move, tolerance);
+    // An active contact is violated by rounding only.
+    if (!(worst.amount > tolerance) || active.contains(worst.contact)) break;
+    if (++out.iterations > kMostIterations) return false;
+    if (!satisfy(worst.contact, worst.amount, contacts.gradient(worst.contact), out.move, active)) return false;
+  }
+  // A contact that is only just reached holds nothing, and rounding would decide whether it counts.
+  for (int k = active.size() - 1; k >= 0; --k) {
+    if (active.lambda(k) <= tolerance) active.drop(k);
+  }
+  for (int k = 0; k < active.size(); ++k) contacts.weight[active.contact(k)] = active.lambda(k);
+  out.held = active.projector();
+  return true;
+}
+
+/// The least-squares problem at one x: its value, gradient and Hessian.
+struct Compromise {
+  double value;
+  Vec3 gradient;
+  Mat3 hessian;
+
+  Compromise(const ContactBuffer& c, const Vec3& wanted, const Vec3& x) noexcept {
+    const Vec3 off = x - wanted;
+    value = 0.5 * kCompromiseEpsilon * off.squaredNorm();
+    gradient = kCompromiseEpsilon * off;
+    hessian = kCompromiseEpsilon * Mat3::Identity();
+    for (std::size_t i = 0; i < c.size(); ++i) {
+      const Vec3 u = c.gradient(i);
+      const double violation = c.depth[i] + u.dot(x);
+      if (!(violation > 0.0)) continue;
+      value += 0.5 * violation * violation;
+      gradient += violation * u;
+      hessian += u * u.transpose();
+    }
+  }
+};
+
+/// Newton with a line search: the problem is convex and piecewise quadratic, so it ends at the minimum.
+void solve_least_squares(const Vec3& wanted, double tolerance, ContactBuffer& contacts, AllowedMove& out) noexcept {
+  out.move = wanted;
+  Compromise here(contacts, wanted, out.move);
+  for (int i = 0; i < kMostIterations && here.gradient.norm() > kCompromiseEpsilon * tolerance; ++i, ++out.iterations) {
+    const Vec3 direction = -Eigen::LLT<Mat3>(here.hessian).solve(here.gradient);
+    double step = 1.0;
+    Compromise next(contacts, wanted, out.move + direction);
+    while (!(next.value <= here.value + 1e-4 * step * here.gradient.dot(direction)) && step > 1e-6) {
+      step *= 0.5;
+      next = Compromise(contacts, wanted, out.move + step * direction);
+    }
+    if (!(next.value < here.value)) break;  // rounding is all that is left
+    out.move += step * direction;
+    here = next;
+  }
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    contacts.weight[i] = std::max(0.0, contacts.depth[i] + contacts.gradient(i).dot(out.move));
+  }
+  const Eigen::LLT<Mat3> H(here.hessian);
+  out.share = H.solve(wanted - out.move);
+  out.held = Mat3::Identity() - kCompromiseEpsilon * Mat3(H.solve(Mat3::Identity()));
+  out.held = 0.5 * (out.held + out.held.transpose()).eval();
+}
+
+}  // namespace
+
+AllowedMove nearest_allowed(const Vec3& wanted, ContactBuffer& contacts) noexcept {
+  set_weights(contacts, 0.0);
+  AllowedMove out;
+  const double tolerance = kViolationTolerance * largest_length(contacts, wanted);
+  if (!solve_exactly(wanted, tolerance, contacts, out)) {
+    out.feasible = false;
+    solve_least_squares(wanted, tolerance, contacts, out);
+  }
+  return out;
+}
+
 namespace {
 
 /// The search looks a little further than the proxy moves, to allow for the rounding of both.

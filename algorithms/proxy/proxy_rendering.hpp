@@ -3,7 +3,6 @@
 #include <memory>
 #include <optional>
 
-#include "algorithms/proxy/nearest_allowed.hpp"
 #include "algorithms/proxy/proxy_constraints.hpp"
 #include "algorithms/stages/damping_and_limits.hpp"
 #include "sim/loop/force_algorithm.hpp"

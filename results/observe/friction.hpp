@@ -16,7 +16,7 @@ struct FrictionMetrics {
 
 MetricList metric_list(const FrictionMetrics& friction);
 
-/// Counts what dry friction (algorithms/stages/dry_friction.hpp) does. Constant memory.
+/// Counts what dry friction (algorithms/stages/damping_and_limits.hpp) does. Constant memory.
 class FrictionObserver final : public Observer {
  public:
   explicit FrictionObserver(double dt) : dt_(dt) {}

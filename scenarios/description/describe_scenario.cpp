@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "algorithms/registry.hpp"
-#include "algorithms/stages/dry_friction.hpp"
+#include "algorithms/stages/damping_and_limits.hpp"
 #include "algorithms/stages/force_stage.hpp"
 #include "results/summary/outcome_names.hpp"
 #include "scenarios/description/descriptions.hpp"

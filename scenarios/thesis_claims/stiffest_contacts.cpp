@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "algorithms/laws/exact_shaping.hpp"
+#include "algorithms/laws/shaped_stiffness.hpp"
 #include "sim/contact/contact_buffer.hpp"
 #include "sim/contact/stiffness_tensor.hpp"
 #include "sim/core/math.hpp"

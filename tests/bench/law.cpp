@@ -5,9 +5,7 @@
 #include <vector>
 
 #include "algorithms/depth/depth_model.hpp"
-#include "algorithms/laws/exact_shaping.hpp"
 #include "algorithms/laws/shaped_stiffness.hpp"
-#include "algorithms/proxy/nearest_allowed.hpp"
 #include "algorithms/proxy/proxy_constraints.hpp"
 #include "algorithms/registry.hpp"
 #include "algorithms/stages/point_stage.hpp"

@@ -1,4 +1,4 @@
-#include "device_model/elastic_motion.hpp"
+#include "device_model/handle_motion.hpp"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "algorithms/laws/exact_shaping.hpp"
+#include "algorithms/laws/shaped_stiffness.hpp"
 #include "sim/geometry/analytic_shells.hpp"
 
 namespace hapbench::test {

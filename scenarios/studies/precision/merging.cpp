@@ -4,7 +4,6 @@
 #include <cmath>
 #include <numeric>
 
-#include "algorithms/laws/exact_shaping.hpp"
 #include "algorithms/laws/shaped_stiffness.hpp"
 #include "algorithms/registry.hpp"
 #include "algorithms/stages/point_stage.hpp"

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "algorithms/laws/exact_shaping.hpp"
 #include "algorithms/laws/shaped_stiffness.hpp"
 #include "algorithms/stages/point_stage.hpp"
 #include "scenarios/input/input_error.hpp"

@@ -7,7 +7,6 @@
 #include <iostream>
 #include <string>
 
-#include "algorithms/laws/exact_shaping.hpp"
 #include "algorithms/laws/shaped_stiffness.hpp"
 #include "device_model/hands/scripted_hands.hpp"
 #include "sim/contact/contact_source.hpp"

@@ -5,7 +5,7 @@
 #include <initializer_list>
 #include <string>
 
-#include "algorithms/laws/exact_shaping.hpp"
+#include "algorithms/laws/shaped_stiffness.hpp"
 #include "tests/support/contact_sets.hpp"
 #include "tests/support/dense_laws.hpp"
 #include "tests/support/scale.hpp"

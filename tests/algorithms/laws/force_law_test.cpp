@@ -3,7 +3,6 @@
 #include <Eigen/Geometry>
 #include <limits>
 
-#include "algorithms/laws/exact_shaping.hpp"
 #include "algorithms/laws/shaped_stiffness.hpp"
 #include "algorithms/registry.hpp"
 #include "tests/support/contact_sets.hpp"

@@ -5,7 +5,6 @@
 #include <limits>
 #include <numbers>
 
-#include "algorithms/laws/exact_shaping.hpp"
 #include "algorithms/laws/shaped_stiffness.hpp"
 #include "algorithms/registry.hpp"
 #include "tests/support/bits.hpp"

@@ -4,7 +4,6 @@
 #include <limits>
 
 #include "algorithms/depth/depth_model.hpp"
-#include "algorithms/proxy/nearest_allowed.hpp"
 #include "algorithms/proxy/proxy_constraints.hpp"
 #include "algorithms/proxy/proxy_rendering.hpp"
 #include "sim/contact/contact_source.hpp"

@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "sim/contact/stiffness_tensor.hpp"
+#include "sim/core/random.hpp"
 #include "tests/support/contact_sets.hpp"
 
 namespace hapbench::damping_and_limits_test {
@@ -144,5 +147,200 @@ TEST(DampingAndLimits, AToolAtRestFeelsTheSpringsAlone) {
   EXPECT_EQ(rendered(config, kSpring, kS, Vec3::Zero()), kSpring);
 }
 
+constexpr double kDt = 0.0005;
+
+RenderingConfig rendering(double mu, std::optional<double> stiffness = {}, double damping_ratio = 1.0) {
+  RenderingConfig config;
+  config.mass = 0.1;
+  config.dry_friction = DryFrictionConfig{mu, stiffness, damping_ratio};
+  return config;
+}
+
+DryFriction friction_of(const RenderingConfig& config) {
+  return {*config.dry_friction, config};
+}
+
+Mat3 load(const Vec3& u, double newtons) {
+  return newtons * u * u.transpose();
+}
+
+/// The work that the tool does against friction is at least what the bristle stores more, in every step, for any
+/// motion, loads and normals. The tolerance is rounding: some 50 operations on energies of the size of K_t e^2.
+TEST(DryFriction, IsPassiveForAnyMotionLoadsAndNormals) {
+  Random random(1);
+  for (int run = 0; run < 400; ++run) {
+    const double K_t = std::pow(10.0, random.uniform(2.0, 5.5));
+    DryFriction friction = friction_of(rendering(random.uniform(0.0, 1.5), K_t, random.uniform(0.0, 2.0)));
+    Vec3 u = random.direction();
+    for (int step = 0; step < 200; ++step) {
+      Mat3 loads = Mat3::Zero();
+      if (random.below(10) == 0) u = random.direction();
+      for (std::uint64_t n = random.below(4); n > 0; --n) {
+        loads += load((u + 0.8 * random.direction()).normalized(), random.uniform(0.0, 5.0));
+      }
+      const Vec3 way = random.uniform(0.0, 2e-4) * random.direction();
+      const double before = friction.energy();
+      const Vec3 force = friction.force(loads, way / kDt);
+      const double scale = before + friction.energy() + force.norm() * way.norm();
+      ASSERT_GE(-force.dot(way), friction.energy() - before - 50 * 2.3e-16 * scale) << run << " " << step;
+    }
+  }
+}
+
+struct Pushed {
+  double way;    ///< in a second [m]
+  double speed;  ///< gained in the last half of it [m/s]
+};
+
+/// A mass on a face, pushed along it by a force that grows to `push` in the first half second, by leapfrog: v += dt f /
+/// M, p += dt v. mu N is 0.8 N.
+Pushed pushed(double K_t, double push) {
+  const double M = 0.1;
+  DryFriction friction = friction_of(rendering(0.4, K_t));
+  double x = 0.0, v = 0.0, half_way = 0.0;
+  for (int step = 0; step < 2000; ++step) {
+    if (step == 1000) half_way = v;
+    const double growing = push * std::min(1.0, step / 1000.0);
+    v += kDt / M * (growing + friction.force(load(Vec3::UnitZ(), 2.0), {v, 0.0, 0.0}).x());
+    x += kDt * v;
+  }
+  return {x, v - half_way};
+}
+
+TEST(DryFriction, HoldsBelowItsLimitAndSlidesExactlyAtItAbove) {
+  for (const double K_t : {1e3, 1e4, 2e5}) {
+    // The bristle gives by F / K_t; half a second after the push has stopped growing it has settled to rounding.
+    EXPECT_NEAR(pushed(K_t, 0.76).way, 0.76 / K_t, 1e-6 / K_t) << K_t;
+    // 0.08 N on 0.1 kg for half a second.
+    EXPECT_NEAR(pushed(K_t, 0.88).speed, 0.4, 1e-9) << K_t;
+  }
+}
+
+TEST(DryFriction, SlidingIsCoulombsForceOnAFaceASlotAndTheLineOfAWedge) {
+  const Vec3 along = Vec3::UnitX();
+  const Vec3 left = Vec3(0.0, 0.8, 0.6), right = Vec3(0.0, -0.8, 0.6);
+  for (const Mat3& loads : {load(Vec3::UnitZ(), 3.0), Mat3(load(Vec3::UnitZ(), 1.0) + load(-Vec3::UnitZ(), 2.0)),
+                            Mat3(load(left, 1.0) + load(right, 2.0))}) {
+    DryFriction friction = friction_of(rendering(0.3));
+    Vec3 force;
+    for (int step = 0; step < 400; ++step) force = friction.force(loads, 0.1 * along);
+    EXPECT_LE((force + 0.9 * along).norm(), 1e-14);
+    EXPECT_EQ(friction.state(), Friction::slides);
+  }
+}
+
+TEST(DryFriction, ACornerIsNeverRougherThanAFace) {
+  Random random(2);
+  for (int i = 0; i < 1000; ++i) {
+    Mat3 loads = Mat3::Zero();
+    for (int n = 0; n < 3; ++n) loads += load(random.direction(), random.uniform());
+    DryFriction friction = friction_of(rendering(0.5));
+    Vec3 force;
+    const Vec3 v = random.direction();
+    for (int step = 0; step < 50; ++step) force = friction.force(loads, v);
+    EXPECT_LE(force.norm(), 0.5 * loads.trace() * (1.0 + 1e-14));
+  }
+}
+
+TEST(DryFriction, ForgetsItsBristleWithoutLoad) {
+  DryFriction friction = friction_of(rendering(0.5));
+  friction.force(load(Vec3::UnitZ(), 1.0), {0.01, 0.0, 0.0});
+  EXPECT_GT(friction.energy(), 0.0);
+  EXPECT_EQ(friction.force(Mat3::Zero(), {0.01, 0.0, 0.0}), Vec3(Vec3::Zero()));
+  EXPECT_EQ(friction.energy(), 0.0);
+  EXPECT_EQ(friction.state(), Friction::none);
+}
+
+/// Integrators that try several states in a row must not move the bristle more than once.
+TEST(DryFriction, TheBristleMovesOnceARow) {
+  std::uint64_t row = 0;
+  Scene scene;
+  scene.row = &row;
+  DryFriction once = friction_of(rendering(0.5)), often = friction_of(rendering(0.5));
+  once.prepare(scene);
+  often.prepare(scene);
+  for (; row < 100; ++row) {
+    const Vec3 v(0.01 * std::sin(0.1 * static_cast<double>(row)), 0.0, 0.0);
+    EXPECT_EQ(once.force(load(Vec3::UnitZ(), 1.0), v), often.force(load(Vec3::UnitZ(), 1.0), v));
+    often.force(load(Vec3::UnitZ(), 1.0), -v);
+    EXPECT_EQ(once.energy(), often.energy());
+  }
+}
+
+/// A mass drawn by a spring k whose other end moves at V. With one coefficient for sticking and sliding the mass, once
+/// loose, oscillates about V without friction's help: its speed is V (1 - cos(w t)), so that it rests every
+/// 2 pi sqrt(M / k). The bristle gives by mu N / K_t, 0.5 % of the spring's stretch.
+TEST(DryFriction, AMassDrawnByASlowSpringRestsOnceEveryPeriodOfIt) {
+  const double M = 0.1, k = 200.0, V = 0.01, mu = 0.4, N = 1.0, dt = 1e-5;
+  DryFriction friction = friction_of(rendering(mu, 2e5));
+  Scene scene;
+  scene.dt = dt;
+  friction.prepare(scene);
+  double x = 0.0, v = 0.0, before = 0.0, last_rest = 0.0, period = 0.0;
+  bool slower = false;
+  for (int step = 0; step < 60'000; ++step) {
+    const double t = dt * step, pull = k * (V * t - x);
+    v += dt / M * (pull + friction.force(load(Vec3::UnitZ(), N), {v, 0.0, 0.0}).x());
+    x += dt * v;
+    if (slower && v > before && before < 0.05 * V && t > 0.25) {
+      period = t - last_rest;
+      last_rest = t;
+    }
+    slower = v < before;
+    before = v;
+  }
+  const double expected = 2.0 * std::numbers::pi * std::sqrt(M / k);
+  EXPECT_NEAR(period, expected, 0.01 * expected);
+}
+
+/// f_dn = -chi K d <v, u> u on one spring. Its restitution solves chi u0 - ln(1 + chi u0) = -chi u1 - ln(1 - chi u1).
+TEST(HuntCrossley, BouncesAsItsClosedFormSays) {
+  for (const double chi : {0.5, 5.0, 50.0}) {
+    RenderingConfig config;
+    config.stiffness = 1000.0;
+    config.mass = 0.1;
+    config.hunt_crossley = chi;
+    DampingAndLimits stage(config);
+    const double u0 = 0.2;
+    const auto acceleration = [&](double d, double v) {
+      if (d <= 0.0) return 0.0;
+      const Vec3 spring(0.0, 0.0, -config.stiffness * d), velocity(0.0, 0.0, v);
+      const Mat3 S = load(Vec3::UnitZ(), 1.0);
+      return stage.rendered_force(spring, S, {velocity, S * velocity}, config.stiffness * d * S).z() / config.mass;
+    };
+    double d = 0.0, v = u0;
+    const double dt = 1e-5;
+    while (d >= 0.0) {  // classical Runge-Kutta
+      const double a1 = acceleration(d, v), v2 = v + 0.5 * dt * a1, a2 = acceleration(d + 0.5 * dt * v, v2);
+      const double v3 = v + 0.5 * dt * a2, a3 = acceleration(d + 0.5 * dt * v2, v3);
+      const double v4 = v + dt * a3, a4 = acceleration(d + dt * v3, v4);
+      d += dt / 6.0 * (v + 2.0 * v2 + 2.0 * v3 + v4);
+      v += dt / 6.0 * (a1 + 2.0 * a2 + 2.0 * a3 + a4);
+    }
+    const double u1 = -v, left = chi * u0 - std::log1p(chi * u0), right = -chi * u1 - std::log1p(-chi * u1);
+    // The last step ends outside by less than dt u1, where the force, K dt u1, has hardly begun: 1e-6 of u1.
+    EXPECT_NEAR(left, right, 1e-5 * left) << chi;
+    EXPECT_LT(u1, u0);
+  }
+}
+
+TEST(HuntCrossley, NeverPullsWhileTheToolIsSlowerThanOneOverChiAndKeepsTheLimit) {
+  RenderingConfig config;
+  config.stiffness = 1000.0;
+  config.hunt_crossley = 10.0;
+  const Mat3 S = load(Vec3::UnitZ(), 1.0);
+  for (const double depth : {1e-6, 1e-3}) {
+    const Vec3 spring(0.0, 0.0, -1000.0 * depth), out(0.0, 0.0, -0.099);
+    DampingAndLimits stage(config);
+    EXPECT_LT(stage.rendered_force(spring, S, {out, S * out}, 1000.0 * depth * S).z(), 0.0);
+    EXPECT_NEAR(stage.damping_matrix(spring, S)(2, 2), 10.0 * 1000.0 * depth, 1e-12);
+  }
+  config.max_damping = 2.0;
+  DampingAndLimits limited(config);
+  const Vec3 v(0.0, 0.0, 0.1);
+  EXPECT_NEAR(limited.rendered_force(Vec3::Zero(), S, {v, S * v}, 1.0 * S).z(), -2.0 * 0.1, 1e-15);
+}
+
 }  // namespace
+
 }  // namespace hapbench::damping_and_limits_test

@@ -185,7 +185,7 @@ TEST(PegInHole, StaysInItsPlane) {
 }
 
 TEST(PegInHole, KeepsItsRatiosWithinTheProvenBoundUnderExactShaping) {
-  // The bounds of exact_shaping.hpp: lambda_max(S) <= (1 + sqrt 2) / 2 in the plane, with it every ratio; a ratio is at
+  // The bounds of exact shaping: lambda_max(S) <= (1 + sqrt 2) / 2 in the plane, with it every ratio; a ratio is at
   // least 1 - 1e-6 c_i, and c_i <= sum c = tr S <= sqrt 2 ||S||_F <= sqrt 2 ||I||_F = 2; half as much again for
   // rounding.
   const Metrics metrics = report_of("peg_in_hole_2d_exact_shaping").summary.metrics;

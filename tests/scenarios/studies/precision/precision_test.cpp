@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "algorithms/laws/exact_shaping.hpp"
+#include "algorithms/laws/shaped_stiffness.hpp"
 #include "algorithms/registry.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/plugins/load_plugin.hpp"

@@ -1,11 +1,11 @@
-#include "algorithms/proxy/nearest_allowed.hpp"
+#include "algorithms/proxy/proxy_constraints.hpp"
 
 #include <gtest/gtest.h>
 
 #include "sim/contact/stiffness_tensor.hpp"
 #include "tests/support/contact_sets.hpp"
 
-namespace hapbench::nearest_allowed_test {
+namespace hapbench::proxy_constraints_test {
 namespace {
 
 /// Sum lambda_i u_i, and what rounding may make of it.
@@ -219,4 +219,4 @@ TEST(NearestAllowed, EndsWithinItsIterationsOnNumbersThatAreNotFinite) {
 }
 
 }  // namespace
-}  // namespace hapbench::nearest_allowed_test
+}  // namespace hapbench::proxy_constraints_test
