@@ -49,7 +49,7 @@ Cell cell_if(const std::optional<Value>& value) {
 }
 
 /// A column of a table whose rows are of type `Row`, with its cell in such a row. A constant array of fields describes
-/// a table once, for CSV (write_csv in csv_writer.hpp), for JSON (add_row) and for documentation (columns_of).
+/// a table once, for CSV (write_csv in table_writer.hpp), for JSON (add_row) and for documentation (columns_of).
 template <class Row>
 struct Field {
   enum class In { both, csv, json };

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -10,6 +11,7 @@
 #include "results/io/columns.hpp"
 #include "results/observe/metrics.hpp"
 #include "results/observe/passivity_observer.hpp"
+#include "results/observe/step_times.hpp"
 #include "results/summary/provenance.hpp"
 #include "sim/loop/simulation.hpp"
 #include "sim/tool/profile_point.hpp"
@@ -82,5 +84,27 @@ std::optional<double> metric_of(const RunSummary& run, std::string_view name);
 
 /// summary.json as text.
 std::string summary_text(const RunSummary& run);
+
+/// Wall times of a run.
+struct RunTiming {
+  double shell = 0.0;                  ///< to make or fetch the environment's points [s]
+  double loop = 0.0;                   ///< of the step loop, observers included [s]
+  std::uint64_t steps = 0;             ///< rows computed in that time
+  std::optional<StepLatency> latency;  ///< of single steps, observers included; nothing when they were not timed
+  /// Median and 99th percentile of the time of a step by itself, without observers and recorders [s] (StepSampler);
+  /// nothing without steps, and no 99th percentile of fewer than a hundred.
+  std::optional<double> step_p50 = {}, step_p99 = {};
+  std::uint64_t preemptions = 0;  ///< involuntary context switches during the step loop
+};
+
+/// A distribution for timing.json, in seconds; percentiles and maximum are null without steps.
+nlohmann::ordered_json step_latency_json(const StepLatency& latency);
+
+/// timing.json, separate from summary.json because no two runs take the same time. It names the build's instruction set
+/// and the CPU: times are comparable only for equal ones. The mean is null without steps, the latency when steps were
+/// not timed.
+nlohmann::ordered_json timing_json(const RunTiming& timing, const InstructionSet& instructions,
+                                   const Provenance& provenance);
+std::string timing_text(const RunTiming& timing, const InstructionSet& instructions, const Provenance& provenance);
 
 }  // namespace hapbench

@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "results/io/csv_writer.hpp"
+#include "results/io/table_writer.hpp"
 
 namespace hapbench {
 namespace {

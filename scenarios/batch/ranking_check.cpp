@@ -7,7 +7,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "results/io/csv_writer.hpp"
+#include "results/io/table_writer.hpp"
 #include "scenarios/batch/finer_scene.hpp"
 #include "scenarios/description/load_scenario.hpp"
 #include "scenarios/run/assemble.hpp"

@@ -4,13 +4,11 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "results/observe/contact_age.hpp"
+#include "results/observe/contact_metrics.hpp"
 #include "results/observe/energy_ledger.hpp"
 #include "results/observe/force_fidelity.hpp"
-#include "results/observe/force_stage.hpp"
-#include "results/observe/friction.hpp"
+#include "results/observe/force_stages.hpp"
 #include "results/observe/ideal_trajectory.hpp"
-#include "results/observe/lost_torque.hpp"
 #include "results/observe/perception.hpp"
 #include "results/observe/target_metrics.hpp"
 

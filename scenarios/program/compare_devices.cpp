@@ -12,7 +12,7 @@
 #include <set>
 
 #include "device_model/device_presets.hpp"
-#include "results/io/csv_writer.hpp"
+#include "results/io/table_writer.hpp"
 #include "results/observe/contact_forces.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/input/text_lines.hpp"

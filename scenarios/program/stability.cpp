@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "results/io/atomic_file.hpp"
-#include "results/io/csv_writer.hpp"
 #include "results/io/json_text.hpp"
+#include "results/io/table_writer.hpp"
 #include "results/summary/outcome_names.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/description/load_scenario.hpp"

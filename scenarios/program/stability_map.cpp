@@ -8,7 +8,7 @@
 #include <array>
 #include <cmath>
 
-#include "results/io/csv_writer.hpp"
+#include "results/io/table_writer.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/program/compare_devices.hpp"
 #include "scenarios/program/result_tables.hpp"

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -10,7 +11,6 @@
 
 #include "algorithms/rendering_config.hpp"
 #include "device_model/hands/drag_hand.hpp"
-#include "results/observe/approach.hpp"
 #include "results/observe/inside.hpp"
 #include "results/observe/metrics.hpp"
 #include "results/summary/summary.hpp"
@@ -23,6 +23,32 @@
 
 /// Outcomes of runs, whether they were expected, and warnings about runs whose numbers may mislead.
 namespace hapbench {
+
+/// Distance of the tool's tip centre to the box around an environment; 0 within the box.
+struct Approach {
+  double closest = std::numeric_limits<double>::infinity();  ///< [m]
+  double closest_time = 0.0;                                 ///< of the first row that close [s]
+  double last = std::numeric_limits<double>::infinity();     ///< of the last row [m]
+};
+
+/// Measures the approach during a run; a few nanoseconds a row.
+class ApproachObserver final : public Observer {
+ public:
+  explicit ApproachObserver(const Box& environment) : environment_(environment) {}
+
+  void on_step(const StepRecord& record) noexcept override {
+    approach_.last = distance_to(environment_, record.tool.pose.position);
+    if (approach_.last >= approach_.closest) return;
+    approach_.closest = approach_.last;
+    approach_.closest_time = record.time;
+  }
+  const Approach& approach() const { return approach_; }
+  const Box& environment() const { return environment_; }
+
+ private:
+  Box environment_;
+  Approach approach_;
+};
 
 /// The length of the way on which a scenario has the tool dragged in `duration` [s]: along a direction as far as the
 /// time allows, along points at most to the last one [m].

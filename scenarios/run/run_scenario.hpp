@@ -9,7 +9,6 @@
 #include "results/io/table_writer.hpp"
 #include "results/observe/target_metrics.hpp"
 #include "results/summary/summary.hpp"
-#include "results/summary/timing.hpp"
 #include "scenarios/description/load_scenario.hpp"
 #include "scenarios/run/recorders.hpp"
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "results/allocations/allocations.hpp"
-#include "results/summary/timing.hpp"
+#include "results/summary/summary.hpp"
 #include "tests/results/rows.hpp"
 
 namespace hapbench::step_times_test {

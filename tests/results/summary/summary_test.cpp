@@ -10,10 +10,10 @@
 #include <sstream>
 
 #include "results/io/columns.hpp"
+#include "results/observe/contact_metrics.hpp"
 #include "results/observe/energy_ledger.hpp"
 #include "results/observe/force_fidelity.hpp"
 #include "results/observe/ideal_trajectory.hpp"
-#include "results/observe/lost_torque.hpp"
 #include "results/observe/perception.hpp"
 #include "results/observe/target_metrics.hpp"
 #include "results/record/recorder.hpp"

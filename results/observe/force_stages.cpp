@@ -1,4 +1,4 @@
-#include "results/observe/friction.hpp"
+#include "results/observe/force_stages.hpp"
 
 namespace hapbench {
 

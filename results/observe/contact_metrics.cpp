@@ -1,4 +1,4 @@
-#include "results/observe/contact_age.hpp"
+#include "results/observe/contact_metrics.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -46,6 +46,27 @@ MetricList metric_list(const ContactAge& a) {
           {"age_max_s", "s", "largest time from the query of contacts to a row that uses them", if_any(any, a.max)},
           {"asked", "1", "times that contacts were asked for, lost ones included", a.queries},
           {"lost_share", "1", "share of these that were lost", if_any(a.queries > 0, a.lost_share)}};
+}
+
+void LostTorqueObserver::on_step(const StepRecord& record) noexcept {
+  const double squared = record.springs.moment.squaredNorm();
+  max_squared_ = std::max(max_squared_, squared);
+  if (record.colliding == 0) return;
+  ++rows_in_contact_;
+  sum_ += std::sqrt(squared);
+}
+
+LostTorqueMetrics LostTorqueObserver::metrics() const noexcept {
+  const double mean = rows_in_contact_ > 0 ? sum_ / static_cast<double>(rows_in_contact_) : 0.0;
+  return {rows_in_contact_, mean, std::sqrt(max_squared_)};
+}
+
+MetricList metric_list(const LostTorqueMetrics& m) {
+  return {{"lost_mean_Nm", "Nm",
+           "mean ||tau|| of the rows in contact; tau = sum r_i x f_i about the tip's centre is the torque that "
+           "the rendered contacts would exert by their shares f_i of f_spring, and that is lost",
+           if_any(m.rows_in_contact > 0, m.mean)},
+          {"lost_max_Nm", "Nm", "largest ||tau|| of a row", if_any(m.rows_in_contact > 0, m.max)}};
 }
 
 }  // namespace hapbench

@@ -1,4 +1,4 @@
-#include "results/io/csv_writer.hpp"
+#include "results/io/table_writer.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,12 +9,11 @@
 #include <random>
 
 #include "results/allocations/allocations.hpp"
-#include "results/io/table_writer.hpp"
 #include "results/record/recorder.hpp"
 #include "tests/results/files.hpp"
 #include "tests/results/rows.hpp"
 
-namespace hapbench::csv_writer_test {
+namespace hapbench::table_writer_test {
 namespace {
 
 using test::lines_of;
@@ -160,4 +159,4 @@ TEST(MemoryTable, IsFilledByARecorderWithoutTheHeap) {
 }
 
 }  // namespace
-}  // namespace hapbench::csv_writer_test
+}  // namespace hapbench::table_writer_test

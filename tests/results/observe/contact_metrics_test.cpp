@@ -1,0 +1,37 @@
+#include "results/observe/contact_metrics.hpp"
+
+#include <gtest/gtest.h>
+
+#include "results/io/columns.hpp"
+#include "tests/results/rows.hpp"
+
+namespace hapbench::contact_metrics_test {
+namespace {
+
+TEST(LostTorque, IsAveragedOverTheRowsInContact) {
+  const ContactBuffer contacts = test::contacts_along({Vec3::UnitX()}), none(1);
+  LostTorqueObserver observer;
+  EXPECT_TRUE(observer.wants_springs());
+  StepRecord row = test::row(0, 0.0, contacts);
+  row.springs.moment = {3, 0, -4};
+  observer.on_step(row);
+  observer.on_step(test::row(1, 0.0, none));
+  row.springs.moment = {0, 1, 0};
+  observer.on_step(row);
+  const LostTorqueMetrics metrics = observer.metrics();
+  EXPECT_EQ(metrics.rows_in_contact, 2u);
+  EXPECT_EQ(metrics.mean, 3.0);
+  EXPECT_EQ(metrics.max, 5.0);
+}
+
+TEST(LostTorque, HasNoValueWithoutContact) {
+  const ContactBuffer none(1);
+  LostTorqueObserver observer;
+  observer.on_step(test::row(0, 0.0, none));
+  for (const Metric& metric : metric_list(observer.metrics())) {
+    EXPECT_TRUE(std::holds_alternative<std::monostate>(metric.value)) << metric.name;
+  }
+}
+
+}  // namespace
+}  // namespace hapbench::contact_metrics_test
