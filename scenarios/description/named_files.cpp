@@ -12,9 +12,8 @@
 #include "scenarios/description/descriptions.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/mesh_file.hpp"
-#include "scenarios/input/motion_file.hpp"
+#include "scenarios/input/recordings.hpp"
 #include "scenarios/input/text_lines.hpp"
-#include "scenarios/input/trace_file.hpp"
 #include "sim/core/hash.hpp"
 
 namespace hapbench {

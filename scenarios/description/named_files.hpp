@@ -14,7 +14,7 @@
 #include "results/observe/force_fidelity.hpp"
 #include "scenarios/description/fields.hpp"
 #include "scenarios/description/scenario.hpp"
-#include "scenarios/input/motion_file.hpp"
+#include "scenarios/input/recordings.hpp"
 #include "sim/contact/contact_source.hpp"
 #include "sim/geometry/point_shell.hpp"
 

@@ -7,7 +7,7 @@
 
 #include "scenarios/program/command.hpp"
 #include "scenarios/program/table.hpp"
-#include "scenarios/studies/convergence/level_sweep.hpp"
+#include "scenarios/studies/convergence/convergence.hpp"
 
 /// How sure the numbers of a run are: their digits, and the short convergence studies of `run --sure` and `compare
 /// --sure`.

@@ -20,8 +20,7 @@
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/json_file.hpp"
 #include "scenarios/input/mesh_file.hpp"
-#include "scenarios/input/motion_file.hpp"
-#include "scenarios/input/trace_file.hpp"
+#include "scenarios/input/recordings.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/studies/stability/device_limits.hpp"
 

@@ -2,8 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
+#include "device_model/theory/linear_loops.hpp"
+#include "scenarios/batch/run_batch.hpp"
+#include "scenarios/input/json_file.hpp"
 #include "scenarios/studies/stability/field_limit.hpp"
+#include "scenarios/studies/stability/stability_limits.hpp"
 #include "scenarios/studies/tuning/tune.hpp"
 #include "sim/core/math.hpp"
 
@@ -83,6 +88,97 @@ std::vector<TuneSetting> settings_of(const TuneQuestion& question, const TuneRan
     for (const auto& mass : masses)
       for (const auto& ratio : ratios) settings.push_back({ratio, mass, filter});
   return settings;
+}
+
+namespace {
+
+std::vector<FamilyMember> hands_of(const Scenario& scenario) {
+  const bool has_mass = std::holds_alternative<MassSpringDamperHandFields>(scenario.hand);
+  if (!has_mass && spring_of(scenario.hand) == nullptr && !std::holds_alternative<DragHandFields>(scenario.hand))
+    return {};
+  const auto family = hand_family().subspan(1);  // the first is no hand
+  const auto [soft, stiff] = std::ranges::minmax(family, {}, &AttachedHand::stiffness);
+  const auto [light, heavy] = std::ranges::minmax(family, {}, &AttachedHand::mass);
+  std::vector<FamilyMember> hands;
+  for (const double k : {soft.stiffness, stiff.stiffness}) {
+    const std::string spring = fmt::format("hand.stiffness_N_per_m={}", k);
+    if (!has_mass) hands.push_back({fmt::format("a hand of {} N/m", k), {spring}});
+    for (const double m : {light.mass, heavy.mass}) {
+      if (has_mass)
+        hands.push_back({fmt::format("a hand of {} kg and {} N/m", m, k), {spring, fmt::format("hand.mass_kg={}", m)}});
+    }
+  }
+  return hands;
+}
+
+std::vector<FamilyMember> seeds_of(const LoadedScenario& loaded) {
+  std::vector<FamilyMember> seeds;
+  for (int k = 1; k < kSeeds; ++k) {
+    Scenario scenario = loaded.scenario;
+    scenario.seed += k;
+    const Vec3 start = scenario.initial.position + start_shift(scenario, kSeedShift);
+    seeds.push_back({fmt::format("seed {}", scenario.seed),
+                     {fmt::format("seed={}", scenario.seed),
+                      fmt::format("initial.position_m=[{},{},{}]", start.x(), start.y(), start.z())}});
+  }
+  return seeds;
+}
+
+/// Makes everything in the JSON of a hand or a motion so many times as fast.
+void hasten(Json& json, double times) {
+  if (!json.is_structured()) return;
+  for (auto& [key, value] : json.items()) {
+    if (value.is_number() && (key == "speed_m_per_s" || key == "rate_per_s")) value = value.get<double>() * times;
+    if (value.is_number() && key == "period_s") value = value.get<double>() / times;
+    if (key == "points" && value.is_array()) {
+      for (Json& point : value) point[0] = point[0].get<double>() / times;
+    } else {
+      hasten(value, times);
+    }
+  }
+}
+
+std::vector<FamilyMember> speeds_of(const LoadedScenario& loaded) {
+  std::vector<FamilyMember> speeds;
+  const Json own = effective_scenario(loaded.scenario, loaded.scenario.directory);
+  for (const double times : {0.5, 2.0}) {
+    FamilyMember member{times < 1.0 ? "half the speed" : "twice the speed"};
+    for (const char* section : {"hand", "motion"}) {
+      Json json = own.value(section, Json());
+      hasten(json, times);
+      if (json != own.value(section, Json())) member.overrides.push_back(fmt::format("{}={}", section, json.dump()));
+    }
+    if (member.overrides.empty()) return {};
+    member.overrides.push_back(
+        fmt::format("time.steps={:.0f}", static_cast<double>(loaded.scenario.time.steps) / times));
+    speeds.push_back(std::move(member));
+  }
+  return speeds;
+}
+
+}  // namespace
+
+std::vector<FamilyMember> family_of(const LoadedScenario& loaded, FamilyOver over) {
+  if (over == FamilyOver::hands) return hands_of(loaded.scenario);
+  return over == FamilyOver::seeds ? seeds_of(loaded) : speeds_of(loaded);
+}
+
+std::vector<std::pair<std::string, Eigen::MatrixXd>> contact_loops(const Scenario& scenario, double lambda,
+                                                                   bool over_hands) {
+  std::vector<std::pair<std::string, Eigen::MatrixXd>> all = {{"", contact_step(scenario, lambda)}};
+  if (all[0].second.size() == 0) return {};
+  if (scenario.rendering.dry_friction)
+    all.emplace_back("the tool held by friction", contact_step(stuck_scene(scenario), 1.0));
+  const bool held = spring_of(scenario.hand) != nullptr || std::holds_alternative<DragHandFields>(scenario.hand);
+  if (!over_hands || !held || !std::holds_alternative<ImpedanceDeviceConfig>(scenario.device)) return all;
+  SampledLoop loop = std::get<SampledLoop>(device_loop(scenario, lambda).loop);
+  for (const AttachedHand& hand : hand_family()) {
+    loop.hand = hand;
+    all.emplace_back(
+        hand.mass == 0.0 ? "no hand" : fmt::format("a hand of {} kg and {} N/m", hand.mass, hand.stiffness),
+        loop.state_matrix());
+  }
+  return all;
 }
 
 }  // namespace hapbench

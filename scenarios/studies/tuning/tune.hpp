@@ -1,19 +1,49 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "scenarios/description/load_scenario.hpp"
 #include "scenarios/studies/stability/edge_search.hpp"
-#include "scenarios/studies/tuning/family.hpp"
 
 /// Which stiffness and damping to use: for a force law in a scene the largest K, over damping ratio and, on request or
 /// on an admittance device, velocity filter and virtual mass, at which the worst run of a family is settled with a gain
 /// margin and keeps limits on its metrics.
 namespace hapbench {
+
+/// What the runs differ in that a setting has to hold in, beside the scene's own.
+enum class FamilyOver { hands, seeds, speeds };
+inline constexpr const char* kFamilyNames[] = {"hands", "seeds", "speeds"};
+
+/// The scene's own run has no overrides.
+struct FamilyMember {
+  std::string name;  ///< for people, as in "a hand of 0.5 kg and 1000 N/m"
+  std::vector<std::string> overrides = {};
+};
+
+/// How far apart seeds start [m]: less than a hand repeats a place.
+inline constexpr double kSeedShift = 1e-5;
+/// Starts of `seeds`, the scene's own among them.
+inline constexpr int kSeeds = 5;
+
+/// The other runs of the family; none where the scene has nothing to vary, as a hand whose force is a script.
+///   hands   that are springs: the ends of hand_family(), 100 and 1000 N/m, with the damping of the scene's own; on an
+///           impedance device's handle with 0.1 and 0.5 kg each
+///   seeds   further seeds, started 10 um away
+///   speeds  the script of hand and tool at half and twice its speed
+std::vector<FamilyMember> family_of(const LoadedScenario& loaded, FamilyOver over);
+
+/// The maps of a step of the loop of device, hand and a wall of lambda K (contact_step), by the name of the hand, which
+/// is empty for the scene's own: with `over_hands`, on an impedance device that a hand holds, each of hand_family(),
+/// too. With dry friction also that of the tool which it holds (stuck_scene). None where the loop is too large to
+/// solve.
+std::vector<std::pair<std::string, Eigen::MatrixXd>> contact_loops(const Scenario& scenario, double lambda,
+                                                                   bool over_hands);
 
 /// The metrics of a choice, in the order of tables; the first three are what --max-inside, --max-vibration and
 /// --max-step bound.

@@ -4,8 +4,6 @@
 
 #include <cmath>
 
-#include "scenarios/thesis_claims/stiffest_contacts.hpp"
-
 namespace hapbench::measurements_test {
 namespace {
 

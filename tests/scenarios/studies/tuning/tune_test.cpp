@@ -8,7 +8,6 @@
 #include "device_model/theory/linear_loops.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/run/run_scenario.hpp"
-#include "scenarios/studies/tuning/family.hpp"
 #include "sim/core/random.hpp"
 
 namespace hapbench::tune_test {
