@@ -10,7 +10,6 @@
 
 #include "algorithms/registry.hpp"
 #include "bindings/bindings.hpp"
-#include "bindings/held.hpp"
 #include "sim/core/hash.hpp"
 
 namespace hapbench {

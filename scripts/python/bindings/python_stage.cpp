@@ -6,7 +6,6 @@
 
 #include "algorithms/stages/force_stage.hpp"
 #include "bindings/bindings.hpp"
-#include "bindings/held.hpp"
 
 namespace hapbench {
 namespace {
