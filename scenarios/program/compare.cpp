@@ -17,7 +17,6 @@
 #include "scenarios/input/json_file.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/compare_devices.hpp"
-#include "scenarios/program/ranking_text.hpp"
 #include "scenarios/program/result_tables.hpp"
 #include "scenarios/program/run_table.hpp"
 #include "scenarios/program/sure.hpp"

@@ -8,10 +8,12 @@
 
 #include "results/io/columns.hpp"
 #include "results/observe/step_times.hpp"
+#include "scenarios/batch/ranking_check.hpp"
 #include "scenarios/program/table.hpp"
 #include "scenarios/run/run_scenario.hpp"
 
-/// Tables with a row for each run, as `run` and `compare` print and write them.
+/// Tables with a row for each run, as `run` and `compare` print and write them, and of `compare --check`: whether the
+/// ranking holds when the scenes are sampled twice as finely.
 namespace hapbench {
 
 /// A heading of the printed tables of runs.
@@ -86,5 +88,11 @@ std::vector<Column> comparison_columns();
 /// Writes comparison.csv: a line for each run of one scene, without times, so that equal comparisons give equal bytes.
 /// Several seeds, which follow each other within an algorithm, get a column in front. Throws IoError.
 void write_comparison(const std::filesystem::path& file, std::span<const RunReport> reports, std::size_t seeds = 1);
+
+/// The metrics of the printed table of runs, each a number.
+std::vector<std::string> compared_metrics();
+
+/// A table with a line for each metric and halved quantity, and the rule of the verdicts.
+std::string ranking_text(const RankingCheck& check);
 
 }  // namespace hapbench

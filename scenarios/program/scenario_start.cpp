@@ -13,9 +13,7 @@
 
 #include "scenarios/description/load_scenario.hpp"
 #include "scenarios/description/parts.hpp"
-#include "scenarios/program/drag_start.hpp"
-#include "scenarios/program/guessed_spacing.hpp"
-#include "scenarios/program/mesh_tip.hpp"
+#include "scenarios/program/mesh_guesses.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/encounter.hpp"
 #include "scenarios/run/scene_facts.hpp"

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "scenarios/input/json_file.hpp"
+#include "sim/core/types.hpp"
+#include "sim/geometry/point_shell.hpp"
+#include "sim/mesh/triangle_soup.hpp"
+
+/// What a new scenario takes from a mesh: the tip of a tool, the distance of a surface's points, and where a tool that
+/// comes along -z starts over it.
+namespace hapbench {
+
+/// The guessed tip of a tool's mesh.
+struct TipOfMesh {
+  Vec3 place;      ///< the end of its longest direction where it is thinner [m]
+  Vec3 direction;  ///< out of the tip, a unit vector
+};
+
+/// Guesses a tool's tip. A mesh without a longest direction has it at its lowest place, along -z. Precondition: it has
+/// triangles.
+TipOfMesh guess_tip(const TriangleSoup& mesh);
+
+/// What is known of a mesh's scene before the test.
+struct SpacingTest {
+  double diameter = 0.001;  ///< of the tool [m]
+  double spacing = 0.0001;  ///< at which it has `points` [m]
+  std::size_t points = 0;
+};
+
+/// The chosen distance of a mesh's points, and why.
+struct GuessedSpacing {
+  double spacing = 0.0;  ///< [m]
+  std::string note;
+};
+
+/// Chooses environment.spacing_m of a scene as the widest of a fifth, a tenth, a twentieth and a fortieth of the tool's
+/// diameter at half of which the columns that `compare` prints of shaped_stiffness, mean, proxy and summation do not
+/// flip (judged_column) and mean force and depth of the scene's own law do not move by more than kHeld. Where none
+/// passes whose half takes up to 250 000 points it is that of `test`. Runs the scene with the four laws up to five
+/// times. `directory`: what its relative paths start from. Throws InputError and Stopped.
+GuessedSpacing guessed_spacing(const Json& scene, const std::filesystem::path& directory, const SpacingTest& test);
+
+/// The point nearest to the middle of those within `tolerance` of the top.
+Vec3 middle_of_the_top(const std::vector<SurfacePoint>& points, double top, double tolerance);
+
+/// The highest of the points above or below the box's middle, to within `aside`; where there are none, as in a ring,
+/// the middle.
+Vec3 top_of_the_middle(const std::vector<SurfacePoint>& points, const Box& box, double aside);
+
+/// A way over a surface for a hand that drags.
+struct DragStart {
+  Vec3 position = Vec3::Zero();    ///< initial.position_m [m]
+  Vec3 direction = Vec3::UnitX();  ///< hand.direction
+  double smoothing = 0.0;          ///< hand.smoothing_m [m]
+  double room = 0.0;               ///< length of the way to where the surface ends or turns back [m]
+};
+
+/// Tries along x and y, forwards and back, from each of `positions`, then with twice and four times `smoothing`, until
+/// a way is at least `enough` long; else takes the longest. A later direction or place has to lead a tenth further, so
+/// that the choice does not depend on rounding. Makes a walk of some 10 ms for each combination. Preconditions: a point
+/// in the shell, a position.
+DragStart choose_drag(const PointShell& shell, std::span<const Vec3> positions, double smoothing, double enough);
+
+}  // namespace hapbench
