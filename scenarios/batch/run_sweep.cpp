@@ -197,7 +197,8 @@ RunOrder::RunOrder(const SweepPoints& points, const Shard& shard) : points_(poin
 std::optional<std::size_t> RunOrder::next() {
   while (count_ < points_.size()) {
     const std::size_t number = count_++;
-    const std::size_t run = points_.sampling() ? sorted_.empty() ? number : sorted_[number] : points_.run(number, axes_);
+    const std::size_t run =
+        points_.sampling() ? sorted_.empty() ? number : sorted_[number] : points_.run(number, axes_);
     if (shard_.has(run)) return run;
   }
   return std::nullopt;
@@ -216,9 +217,8 @@ SweepReport run_sweep(const SweepPlan& plan, const SweepOptions& options) {
   const std::string stem = stem_of(options.shard);
   const fs::path file = options.directory / (stem + ".journal");
   Rows rows(plan, options.part());
-  Journal journal(
-      file, journal_title(plan, options.part(), options.keep_runs), options.resume,
-      [&](Journal::Place, std::string_view row) { note(rows, plan, options.part(), file, row); });
+  Journal journal(file, journal_title(plan, options.part(), options.keep_runs), options.resume,
+                  [&](Journal::Place, std::string_view row) { note(rows, plan, options.part(), file, row); });
   SweepReport report;
   report.resumed = rows.count();
   compute_rows(plan, options, journal, rows, report);
