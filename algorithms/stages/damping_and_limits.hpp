@@ -112,7 +112,8 @@ class DampingAndLimits {
   /// True when `rendered_force` reads loads.
   bool needs_loads() const noexcept { return dry_friction_ || chi_; }
   /// f_render [N] from f_spring [N], S, the velocity of the tool and sum N_i u_i u_i^T [N], which is read
-  /// only if needs_loads(). Eigenvalues are computed only if damping is limited. Zero friction is computed only with Skips::off.
+  /// only if needs_loads(). Eigenvalues are computed only if damping is limited. Zero friction is computed only with
+  /// Skips::off.
   Vec3 rendered_force(const Vec3& spring, const Mat3& S, const ContactVelocity& velocity,
                       const Mat3& loads = Mat3::Zero()) noexcept;
 
