@@ -15,7 +15,7 @@ RECORD, PAGE, FIGURE = FOLDER / "data" / "predictions.json", FOLDER / "README.md
 def main():
     parser = Arguments(prog="scripts/validation", description=__doc__)
     parser.add_argument("--program", type=Path, default=ROOT / "build" / "release" / "bin" / "hapbench", help="the built program")
-    parser.add_argument("--samples", type=int, default=320, help="of the unpublished inputs, for each fit (default 320)")
+    parser.add_argument("--samples", type=int, default=1600, help="of the unpublished inputs, for each fit (default 1600)")
     parser.add_argument("--jobs", type=int, default=2, help="runs at a time (default 2)")
     parser.add_argument("--page", action="store_true", help="only write the page and the figure anew, from the recorded predictions")
     given = parser.parse_args()

@@ -76,6 +76,7 @@ def overrides(case, sample, B, scene):
         fields["device.transmission.damping_N_s_per_m"] = 2.0 * sample["transmission_zeta"] * math.sqrt(
             sample["device.transmission.stiffness_N_per_m"] * share * (1.0 - share) * mass)
     if "hand" in scene:
+        fields["hand.damping_N_s_per_m"] = 2.0 * sample["hand_zeta"] * math.sqrt(sample["hand.stiffness_N_per_m"] * sample["hand.mass_kg"])
         deep = sample["press_N"] / sample["hand.stiffness_N_per_m"]  # where its spring presses with press_N
         fields["hand.target.x_m"] = json.dumps(
             {"type": "waypoints", "points": [[0, START], [REACHED, deep]], "interpolation": "cosine"})

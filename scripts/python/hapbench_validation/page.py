@@ -3,8 +3,8 @@ import math
 
 import numpy as np
 
-from .judge import COVERAGE, SHARE, WEAK, points_of, verdict
-from .predict import SEEDS
+from .judge import COVERAGE, SHARE, points_of, verdict
+from .predict import SEEDS, largest_error
 
 HEAD = """# How far to believe a number
 
@@ -35,12 +35,13 @@ vibrates at its first contact, or a good setting is never tried. It moves nobody
 
 Measured: the stiffness K of a wall at which the device vibrates, for each damping B of the wall. Predicted: `hapbench limit`
 for samples of every input that was not published (ranges below); the period T_u of what vibrates is that just beyond the
-predicted limit. The finger trembles: each sample has a session (seed) of its own. Fitted cases keep the samples whose whole
-curve lies within the scatter of measuring, a factor of {scatter:g}; judged cases are predicted with those samples in
-{seeds} new sessions each, and nothing is fitted to them. Error: ln(median predicted / measured). Its uncertainty combines the
+predicted limit. The finger trembles: each sample has a session (seed) of its own. A session of measuring
+scatters by a factor of {scatter:g}, and a prediction is a session too, so two of one setting differ by {apart:.2f}, in the logarithm
+the square root of two more. Fitted cases keep the samples whose whole curve is as close as that (rms); judged cases are
+predicted with those samples in {seeds} new sessions each, and nothing is fitted to them. Error: ln(median predicted / measured). Its uncertainty combines the
 scatter, the rounding of readings, the spread of the samples and the bisection (ASME V&V 20); a point is within where the
-error is at most {coverage:g} of it. A curve agrees where {share:.0%} of its points are; "weakly" says that its
-uncertainty, expanded, is beyond a factor of {weak:g}.
+error is at most {coverage:g} of it. A curve agrees where {share:.0%} of its points are; "weakly" says that what
+was not published leaves more open than measuring does, so that the case tests less than its measurement could.
 
 ![Measured and predicted K over B](validation.svg)
 
@@ -74,7 +75,7 @@ def judged(data, cases, recorded):
 
 
 def page(data, cases, recorded):
-    text = HEAD.format(scatter=data["scatter"], seeds=SEEDS, coverage=COVERAGE, share=SHARE, weak=WEAK)
+    text = HEAD.format(scatter=data["scatter"], apart=math.exp(largest_error(data["scatter"])), seeds=SEEDS, coverage=COVERAGE, share=SHARE)
     text += "| case | what | role | predicted / measured, geometric mean (least ... largest) | verdict |\n|---|---|---|---|---|\n"
     results = list(judged(data, cases, recorded))
     for case, record, points, word, sentence in results:
@@ -115,8 +116,10 @@ def page(data, cases, recorded):
 def figure(data, cases, recorded):
     from hapbench_style import AMBER, PALE, PETROL, SAND, SETTINGS, panels, picture, plt
     plt.rcParams.update(SETTINGS)
-    figure, axes = panels(2, 4, 4.6)
-    axes[1][3].set_axis_off()
+    rows = len(cases) // 4 + 1  # the legend has a place of its own, too
+    figure, axes = panels(rows, 4, 2.3 * rows)
+    for ax in axes.flat[len(cases):]:
+        ax.set_axis_off()
     for ax, (case, record, points, word, _) in zip(axes.flat, judged(data, cases, recorded)):
         B = [point.B for point in points]
         never = np.array(record["unfitted_edges"])
@@ -137,5 +140,5 @@ def figure(data, cases, recorded):
             ax.set_xticks([])
         else:
             ax.set_xlabel("B [the same, per s]")
-    axes[1][3].legend(*axes[0][0].get_legend_handles_labels(), loc="center")
+    axes.flat[-1].legend(*axes[0][0].get_legend_handles_labels(), loc="center")
     return picture(figure, "svg")

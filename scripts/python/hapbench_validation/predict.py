@@ -14,7 +14,7 @@ from .cases import FOLDER, LEAST, MOST, drawn, overrides, samples_of, units_of
 
 RESOLUTION = 0.02
 FEWEST = 8  # samples that a fit must leave
-WAVES = 4   # of samples, each around the best of those before
+WAVES = 10  # of samples, each around the best of those before
 ROUGH = 4   # points by which a wave is judged
 WHOLE = 96  # samples that are predicted at all points
 SEEDS = 3   # sessions of a judged case for each sample that the fit kept: the tremor's phases are never those of the fit
@@ -71,6 +71,12 @@ def rms_error(edges, measured):
     return np.sqrt(np.mean(np.log(edges / measured)**2, axis=1))
 
 
+def largest_error(scatter):
+    """By how much the logarithms of two sessions of one setting differ, when each has this scatter (a factor) for itself: a
+    prediction is a session too, with a tremor and a bisection of its own."""
+    return math.sqrt(2.0) * math.log(scatter)
+
+
 def fitted(predictor, case, space, samples, scatter):
     """Of many samples those whose whole curve is as close to the measured one as one session is to another. They are looked for
     in waves: the first over the whole ranges, each later one around the best of those before, judged by a few points. The
@@ -94,7 +100,7 @@ def fitted(predictor, case, space, samples, scatter):
     whole = predictor.curves(case, near_samples)
     errors = rms_error(whole, measured)
     order = np.argsort(errors)
-    within = [i for i in order if errors[i] <= math.log(scatter)]
+    within = [i for i in order if errors[i] <= largest_error(scatter)]
     reached = len(within) >= FEWEST
     kept = within[:4 * FEWEST] if reached else list(order[:FEWEST])
     return {"samples": [near_samples[i] for i in kept], "edges": whole[kept].tolist(), "tried": len(units), "reached": bool(reached),
