@@ -58,8 +58,9 @@ class FullDisk(unittest.TestCase):
         out, counted = self.folder / "out", self.folder / "counted"
         shutil.rmtree(out, ignore_errors=True)
         shutil.copytree(old_folder, out)
-        done = ran(PROGRAM, *self.words(command, 1, out), LD_PRELOAD=str(FAILING_WRITES), FAIL_BELOW=str(out), FAIL_AT=str(at),
-                   FAIL_WITH=str(error), FAIL_ON=how, FAIL_COUNT=str(counted))
+        # LD_PRELOAD is a list between spaces, LD_LIBRARY_PATH is not.
+        done = ran(PROGRAM, *self.words(command, 1, out), LD_PRELOAD=FAILING_WRITES.name, LD_LIBRARY_PATH=str(FAILING_WRITES.parent),
+                   FAIL_BELOW=str(out), FAIL_AT=str(at), FAIL_WITH=str(error), FAIL_ON=how, FAIL_COUNT=str(counted))
         return done, int(counted.read_text(encoding="utf-8"))
 
     def check(self, command, error, how):
