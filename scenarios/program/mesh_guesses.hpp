@@ -11,7 +11,7 @@
 #include "sim/geometry/point_shell.hpp"
 #include "sim/mesh/triangle_soup.hpp"
 
-/// What a new scenario takes from a mesh: the tip of a tool, the distance of a surface's points, and where a tool that
+/// Guesses for a new scenario from a mesh: the tip of a tool, the distance of a surface's points, and where a tool that
 /// comes along -z starts over it.
 namespace hapbench {
 
@@ -25,7 +25,7 @@ struct TipOfMesh {
 /// triangles.
 TipOfMesh guess_tip(const TriangleSoup& mesh);
 
-/// What is known of a mesh's scene before the test.
+/// A mesh's scene as guessed_spacing starts from it.
 struct SpacingTest {
   double diameter = 0.001;  ///< of the tool [m]
   double spacing = 0.0001;  ///< at which it has `points` [m]

@@ -185,7 +185,7 @@ struct SuiteOptions {
   bool replays = false, quiet = false;
 };
 
-/// Of the options those that say which submission it is, as words of a command line.
+/// The options that identify a submission (its law, division and licence), as words of a command line.
 std::vector<std::string> words_of(const SuiteOptions& options) {
   std::vector<std::string> words = plugin_words();
   const auto add = [&words](const char* name, const std::string& value) {
@@ -219,7 +219,7 @@ int submit(const SuiteOptions& options, ToolCommand& tool) {
   const std::string line =
       fmt::format("cd {} && exec {} --jobs {}", shell_line({std::filesystem::current_path().string()}),
                   shell_line(words), slurm.cpus);
-  // What is there is not computed again, so a task that was preempted or killed goes on where it was.
+  // A call computes only the parts that are missing, so that a preempted or killed task continues.
   const std::vector<SlurmScript> scripts = {
       slurm_script(slurm, folder, "suite", "slurm_%a.log",
                    {fmt::format("array=0-{}", slurm.shards - 1), cpus, "requeue"},

@@ -40,7 +40,7 @@ std::string array_text(const std::vector<std::size_t>& numbers);
 /// empty: it does not wait. Throws InputError with what sbatch says when it refuses.
 std::string submit_script(const SlurmScript& script, const std::string& after = "");
 
-/// What a dry run prints: the scripts, of which each waits for the one before, and how to submit them.
+/// The output of a dry run: the scripts, and the commands that submit them so that each waits for the one before.
 std::string dry_run_text(const std::vector<SlurmScript>& scripts);
 
 }  // namespace hapbench
