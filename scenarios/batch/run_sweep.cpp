@@ -66,19 +66,20 @@ class RowFinder {
  public:
   /// Precondition: the journal is flushed and gets no further rows.
   RowFinder(Journal& journal, const Shard& shard, std::size_t most_places)
-      : journal_(journal), shard_(shard), places_(most_places) {}
+      : journal_(journal), shard_(shard), places_(most_places) {
+    find_from(0);
+  }
 
   /// Precondition: the run has a row in the journal.
   std::string row(std::size_t run) {
     const std::size_t number = run / shard_.count;
-    if (!is_filled_ || number - first_ >= places_.size()) find_from(number);
+    if (number - first_ >= places_.size()) find_from(number);
     return journal_.row_at(places_[number - first_]);
   }
 
  private:
   void find_from(std::size_t first) {
     first_ = first;
-    is_filled_ = true;
     journal_.read_rows([this](Journal::Place place, std::string_view row) {
       const std::size_t run = whole_number(row.substr(0, row.find(','))).value();
       const std::size_t number = run / shard_.count - first_;  // of an earlier row it wraps around
@@ -90,7 +91,6 @@ class RowFinder {
   Shard shard_;
   std::vector<Journal::Place> places_;
   std::size_t first_ = 0;
-  bool is_filled_ = false;
 };
 
 /// A finished run that is not yet in the journal.
