@@ -12,25 +12,27 @@ namespace hapbench {
 namespace {
 
 /// Number of letters to replace, remove, insert or swap with a neighbour to turn `a` into `b`. If that is less, one
-/// more than the number for a part of `b` that ends before an underscore. Names are short, so quadratic cost is
-/// acceptable.
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::vector<std::size_t>> rows(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
-  std::iota(rows[0].begin(), rows[0].end(), std::size_t{0});
+/// more than the number for a part of `b` that ends before an underscore. `limit` if it is not less than that.
+std::size_t edit_distance(std::string_view a, std::string_view b, std::size_t limit) {
+  std::vector<std::size_t> row(b.size() + 1), before(row), before_that(row);  // for the first letters of `a`
+  std::iota(row.begin(), row.end(), std::size_t{0});
   for (std::size_t i = 1; i <= a.size(); ++i) {
-    rows[i][0] = i;
+    before_that.swap(before);
+    before.swap(row);
+    row[0] = i;
     for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t replaced = rows[i - 1][j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1);
-      rows[i][j] = std::min({replaced, rows[i - 1][j] + 1, rows[i][j - 1] + 1});
+      const std::size_t replaced = before[j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1);
+      row[j] = std::min({replaced, before[j] + 1, row[j - 1] + 1});
       if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
-        rows[i][j] = std::min(rows[i][j], rows[i - 2][j - 2] + 1);
+        row[j] = std::min(row[j], before_that[j - 2] + 1);
     }
+    // Later rows come from these two and hold nothing less.
+    if (std::min(std::ranges::min(row), std::ranges::min(before)) >= limit) return limit;
   }
-  const std::vector<std::size_t>& distances = rows.back();
-  std::size_t least = distances.back();
+  std::size_t least = row.back();
   for (std::size_t j = 1; j < b.size(); ++j)
-    if (b[j] == '_') least = std::min(least, distances[j] + 1);
-  return least;
+    if (b[j] == '_') least = std::min(least, row[j] + 1);
+  return std::min(least, limit);
 }
 
 }  // namespace
@@ -69,14 +71,15 @@ void fail_in_line(const std::filesystem::path& file, std::size_t line, const std
 }
 
 std::string nearest_name(std::string_view given, std::span<const std::string> valid) {
-  // A hostile name may be megabytes long; no valid name is that long.
-  if (given.size() > 200) return "";
+  const std::string lower = lower_case(given);
   std::string best;
   // A third of the letters may be wrong, but only one in a short name, which would otherwise match anything.
   std::size_t best_distance = std::max<std::size_t>(given.size() > 4 ? 2 : 1, given.size() / 3) + 1;
   for (const std::string& name : valid) {
+    // Letters to remove alone are too many. A hostile name may be megabytes long.
+    if (given.size() >= name.size() + best_distance) continue;
     const bool contains = given.size() >= 3 && name.find(given) != std::string::npos;
-    const std::size_t distance = contains ? 1 : edit_distance(lower_case(given), lower_case(name));
+    const std::size_t distance = contains ? 1 : edit_distance(lower, lower_case(name), best_distance);
     if (distance < best_distance) {
       best_distance = distance;
       best = name;
