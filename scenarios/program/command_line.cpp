@@ -14,6 +14,7 @@
 #include "scenarios/description/writer.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/memory_limit.hpp"
+#include "scenarios/input/text_lines.hpp"
 #include "scenarios/plugins/load_plugin.hpp"
 #include "scenarios/program/command.hpp"
 
@@ -116,11 +117,20 @@ CommandLine::~CommandLine() = default;
 /// The program and each command have these options, so that they may stand before or behind the command.
 void CommandLine::add_common_options(CLI::App& app) {
   const auto limit = [](const std::uint64_t& bytes) { limit_memory(static_cast<double>(bytes)); };
+  const auto refuse_negative = [](const std::string& size) {
+    return size.starts_with("-") ? fmt::format("got {}; allowed: a size such as 8G", size) : std::string();
+  };
+  const auto refuse_small = [](const std::string& bytes) {
+    constexpr double kLeast = 32e6;  // the program takes nearly half of it for itself
+    return finite_number(bytes) < kLeast ? fmt::format("got {} B; allowed: 32M or more", bytes) : std::string();
+  };
   app.add_option_function<std::uint64_t>(
          "--memory", limit,
          "most memory that may be taken, such as 8G (default: three quarters of what is "
          "free)")
       ->transform(CLI::AsSizeValue(false).description(""))
+      ->transform(CLI::Validator(refuse_negative, ""))  // before the one above
+      ->check(refuse_small)
       ->type_name("SIZE");
   const auto add = [this](const std::vector<std::string>& files) {
     plugins_.insert(plugins_.end(), files.begin(), files.end());
@@ -189,7 +199,8 @@ std::vector<std::string> command_names(const CLI::App& app) {
 
 /// Tells a user who wrote a field of scenarios as an option how fields are given.
 std::string field_hint(const std::string& option, const std::vector<std::string>& known) {
-  if (nearest_name(option.substr(option.find_first_not_of('-')), scenario_field_paths()).empty()) return "";
+  const std::string field = option.substr(std::min(option.find_first_not_of('-'), option.size()));
+  if (nearest_name(field, scenario_field_paths()).empty()) return "";
   const auto has = [&known](const char* name) { return std::find(known.begin(), known.end(), name) != known.end(); };
   if (has("--vary")) return "; fields are varied by --vary FIELD=VALUES";
   return has("--set") ? "; fields are set by --set FIELD=VALUE" : "";
@@ -197,7 +208,7 @@ std::string field_hint(const std::string& option, const std::vector<std::string>
 
 /// Explains a word that no option or argument takes.
 std::string problem_of(const std::string& word, const CLI::App& program, const CLI::App* command) {
-  if (word.starts_with("-")) {
+  if (word.starts_with("-") && word != "-") {
     const std::string name = word.substr(0, word.find('='));
     const std::vector<std::string> known = option_names(command ? *command : program);
     const std::string hint = nearest_name_hint(name, known);
