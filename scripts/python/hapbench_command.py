@@ -14,8 +14,9 @@ SILENCE = 2.0  # before a notice [s]
 
 
 def say_error(text):
-    """One line on standard error, as the program writes it."""
-    print(f"hapbench: error: {text}", file=sys.stderr)
+    """One line on standard error, as the program writes it: control characters of names from outside are replaced."""
+    line = "".join("?" if c < " " or c == "\x7f" else c for c in str(text))
+    print(f"hapbench: error: {line}", file=sys.stderr)
 
 
 class Arguments(argparse.ArgumentParser):
