@@ -1,0 +1,33 @@
+"""Writes what a target of libFuzzer starts from: seeds.py TARGET FOLDER. The bundled files and those of tests/data."""
+import json
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+LARGEST = 20_000  # bytes; scripts/fuzz makes none that is larger
+PATTERNS = {"scenario": "*.json", "run": "*.json", "device": "*.json", "journal": "*.journal", "plugin": "plugin"}
+
+
+def files(pattern):
+    return sorted(file for folder in ("scenarios", "tests/data") for file in (ROOT / folder).rglob(pattern) if file.is_file())
+
+
+def without_prose(target, text):
+    """A scene, or its device, in the fewest bytes: what is changed in a blank or a description finds nothing. None for other files."""
+    scene = json.loads(text)
+    if not isinstance(scene, dict) or not {"environment", "extends"} & scene.keys() or "arguments" in scene:
+        return None
+    scene = scene.get("device") if target == "device" else {key: value for key, value in scene.items() if key not in ("description", "source")}
+    return json.dumps(scene, separators=(",", ":")).encode() if isinstance(scene, dict) else None
+
+
+def main(target, folder):
+    pattern = PATTERNS.get(target, f"*.{target.rsplit('_', 1)[1]}" if "_" in target else "*.csv")
+    seeds = {file.read_bytes() for file in files(pattern)}
+    if pattern == "*.json":
+        seeds = {without_prose(target, text) for text in seeds} - {None}
+    for number, seed in enumerate(sorted(s for s in seeds if len(s) <= LARGEST)):
+        (Path(folder) / f"{number:03}").write_bytes(seed)
+
+
+main(*sys.argv[1:])
