@@ -5,6 +5,7 @@ import errno
 import json
 import os
 import random
+import re
 import resource
 import shutil
 import signal
@@ -251,6 +252,45 @@ def in_process(count, found, scratch):
     return {"runs": count, "peak_MB": round(after / 1e6, 1), "peak_MB_of_a_tenth": round(before / 1e6, 1)}
 
 
+# ---- Command lines
+
+# Values of every kind, those that an option takes and those that none takes.
+VALUES = ("", "0", "-1", "1", "16", "1e6", "1e309", "1e-320", "nan", "0x10", "9" * 20, "-", "--", ",", ":", "=", "a=b", "1:2", "1:2:3", "1:0:5:log",
+          "0/2", "3/1", "0/0", "1G", "64M", "x" * 300, "ü", "\x1b[31m", "\udcff", "%s%n", "{}", "[1", '{"a":1}', "out", "out/a.csv", "out/x.svg", ".",
+          "/dev/null", "tap_wall", "poke_plane", "single_spring", "drag_molar", "mean", "proxy,mean", "force_max_N", "time_step", "A1",
+          "rendering.stiffness_N_per_m", "rendering.stiffness_N_per_m=1e3:1e4:3", "seed=1:3:3", "environment.type=mesh", "tool=null", "hand={}")
+
+
+def lines(count, seed, found, scratch):
+    """Command lines of random words: carried out, or refused with a reason that is printable; a signal ends those that last."""
+    chance, ended = random.Random(seed), {"done": 0, "refused": 0, "stopped": 0}
+    commands = re.findall(r"^  ([a-z]+) ", must(PROGRAM, "--help").split("Commands:")[1], re.MULTILINE)
+    options = {command: re.findall(r"--[a-z-]+", must(PROGRAM, command, "--help")) for command in commands}
+    for _ in range(count):
+        command = chance.choice(commands)
+        words = [command, *chance.choices(VALUES, k=chance.randint(0, 2)), *(["--set", "time.steps=60"] if "--set" in options[command] else [])]
+        for option in chance.choices(options[command], k=chance.randint(0, 4)):
+            words += [option, *chance.choices(VALUES, k=chance.random() < 0.75)]
+        process = subprocess.Popen([PROGRAM, *words], cwd=scratch, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        stopped = False
+        try:
+            _, said = process.communicate(timeout=5.0)
+        except subprocess.TimeoutExpired:
+            process.terminate()
+            stopped = True
+            try:
+                _, said = process.communicate(timeout=20.0)  # 2 s are promised; the machine may be busy
+            except subprocess.TimeoutExpired:
+                process.kill()
+                _, said = process.communicate()
+        ended["stopped" if stopped else "done" if process.returncode != 2 else "refused"] += 1
+        said = said.decode(errors="replace")
+        fine = (*FINE, 128 + signal.SIGTERM, -signal.SIGTERM) if stopped else FINE
+        if process.returncode not in fine or "Traceback" in said or any(c < " " and c != "\n" for c in said):
+            found.note(f"{words}: status {process.returncode}: {said[-300:]!r}")
+    return {"lines": count, **ended}
+
+
 # ---- Recordings
 
 def mutated(data, chance):
@@ -318,24 +358,23 @@ def faults(found, scratch):
     return {"calls": sum(map(int, lines)), "errors": [errno.errorcode[errno.ENOSPC], errno.errorcode[errno.EIO]]}
 
 
-TEXTS = ("scenario", "run", "shell_csv", "stroke", "journal", "shard", "trace", "device", "plugin")
+RUNNING = ("run", "mesh_")  # targets that build meshes or run a scene
 
 
 def fuzz(share, found, scratch):
-    """Executions of libFuzzer on every reader (scripts/fuzz): ten million for those of text, a million for those of meshes."""
+    """Executions of libFuzzer on every reader (scripts/fuzz): ten million for those of text, a million for those that build meshes."""
     executions = {}
     listed = ran(ROOT / "scripts" / "fuzz", "--list").stdout.split()
-    for target in listed:
-        runs = int((1e7 if target in TEXTS else 1e6) * share)
-        done = ran(ROOT / "scripts" / "fuzz", "600", "--target", target, "--runs", runs)
-        words = done.stdout.split()
-        executions[target] = int(words[words.index("executions") - 1]) if "executions" in words else 0
-        if done.returncode:
-            found.note(f"{target}: {done.stdout[-500:]}{done.stderr[-500:]}")
+    for full, targets in ((1e6, [t for t in listed if t.startswith(RUNNING)]), (1e7, [t for t in listed if not t.startswith(RUNNING)])):
+        done = ran(ROOT / "scripts" / "fuzz", "600", "--runs", int(full * share), *(word for target in targets for word in ("--target", target)))
+        for target, times in re.findall(r"^(\w+) +(\d+) executions", done.stdout, re.MULTILINE):
+            executions[target] = int(times)
+        if done.returncode or not executions.keys() >= set(targets):
+            found.note(f"{done.stdout[-2000:]}{done.stderr[-500:]}")
     return {"executions": executions}
 
 
-ADDED = {"scenes", "kills", "imports", "fuzz"}  # of the others, one call is the measurement
+ADDED = {"scenes", "kills", "lines", "imports", "fuzz"}  # of the others, one call is the measurement
 
 
 def added(old, new):
@@ -348,7 +387,7 @@ def added(old, new):
 def main():
     parser = argparse.ArgumentParser(prog="scripts/endure", description=__doc__)
     parser.add_argument("program", help=argparse.SUPPRESS)
-    parser.add_argument("part", nargs="*", help="scenes, kills, faults, sweep, shards, imports, python, fuzz; default: all but fuzz")
+    parser.add_argument("part", nargs="*", help="scenes, kills, faults, sweep, shards, lines, imports, python, fuzz; default: all but fuzz")
     parser.add_argument("--share", type=float, default=1.0, help="of the counts that the page of reliability asks for (default: 1)")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--against", action="append", default=[], metavar="PROGRAM", help="another build, which must have the same hashes")
@@ -364,6 +403,7 @@ def main():
         "faults": faults,
         "sweep": lambda f, s: long_sweep(count(1_000_000), f, s),
         "shards": lambda f, s: shards(count(1000), given.seed, f, s),
+        "lines": lambda f, s: lines(count(10_000), given.seed, f, s),
         "imports": lambda f, s: imports(count(1_000_000), given.seed, f, s),
         "python": lambda f, s: in_process(count(100_000), f, s),
         "fuzz": lambda f, s: fuzz(given.share, f, s),

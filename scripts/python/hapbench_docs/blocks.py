@@ -314,6 +314,7 @@ def reliability(_):
         "faults": lambda f: (f"{count(f['calls'])} calls that write, each failing once ({' and '.join(f['errors'])})", "the old results or the new ones, and status 1"),
         "sweep": lambda f: (f"a sweep of {count(f['runs'])} runs", f"{f['peak_MB']} MB ({f['peak_MB_of_a_tenth']} MB for a tenth), {f['over_simulation']} times the simulation"),
         "shards": lambda f: (f"{count(f['shards'])} shards, {f['killed']} killed and {f['stopped']} stopped on their way", "merged, the table of the sweep in one"),
+        "lines": lambda f: (f"{count(f['lines'])} command lines of random words", f"{count(f['done'])} done, {count(f['refused'])} refused with a reason, {count(f['stopped'])} stopped by a signal after 5 s"),
         "imports": lambda f: (f"{count(f['mutants'])} recordings and presets with bytes changed", f"{count(f['accepted'])} became strokes, the others were refused"),
         "python": lambda f: (f"{count(f['runs'])} runs in one Python process", f"{f['peak_MB']} MB ({f['peak_MB_of_a_tenth']} MB after a tenth)"),
     }
