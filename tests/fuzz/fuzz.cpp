@@ -180,6 +180,12 @@ const Target& target() {
 }  // namespace
 }  // namespace hapbench::fuzz
 
+/// Without a target it ends here, before libFuzzer takes the end for a crash.
+extern "C" int LLVMFuzzerInitialize(int*, char***) {
+  hapbench::fuzz::target();
+  return 0;
+}
+
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace hapbench;
   static const fuzz::Target& target = fuzz::target();
