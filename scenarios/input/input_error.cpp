@@ -16,18 +16,21 @@ namespace {
 std::size_t edit_distance(std::string_view a, std::string_view b, std::size_t limit) {
   std::vector<std::size_t> row(b.size() + 1), before(row), before_that(row);  // for the first letters of `a`
   std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 1; i <= a.size(); ++i) {
+  for (std::size_t i = 1, least_before = 0; i <= a.size(); ++i) {
     before_that.swap(before);
     before.swap(row);
-    row[0] = i;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
+    std::ranges::fill(row, limit);  // nothing less lies `limit` or further from the diagonal
+    std::size_t least = row[0] = i;
+    for (std::size_t j = i < limit ? 1 : i - limit + 1; j <= std::min(b.size(), i + limit - 1); ++j) {
       const std::size_t replaced = before[j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1);
       row[j] = std::min({replaced, before[j] + 1, row[j - 1] + 1});
       if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
         row[j] = std::min(row[j], before_that[j - 2] + 1);
+      least = std::min(least, row[j]);
     }
     // Later rows come from these two and hold nothing less.
-    if (std::min(std::ranges::min(row), std::ranges::min(before)) >= limit) return limit;
+    if (std::min(least, least_before) >= limit) return limit;
+    least_before = least;
   }
   std::size_t least = row.back();
   for (std::size_t j = 1; j < b.size(); ++j)
