@@ -180,7 +180,7 @@ std::string last_name(const std::string& path, char separator) {
 /// The hint for a field whose name resembles no field of its object: fields elsewhere with the nearest name.
 std::string hint_elsewhere(const std::string& place) {
   const std::string field = last_name(place, '/');
-  const std::vector<std::string> paths = scenario_field_paths();
+  const std::vector<std::string>& paths = scenario_field_paths();
   std::vector<std::string> names, found;
   for (const std::string& path : paths) names.push_back(last_name(path, '.'));
   const std::string nearest = nearest_name(field, names);

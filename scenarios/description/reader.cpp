@@ -11,6 +11,13 @@
 namespace hapbench {
 namespace {
 
+/// What a value may be, in words.
+std::string allowed_for(Fields::Body value) {
+  SchemaWriter description(nullptr, SchemaWriter::Extent::words);
+  value(description);
+  return description.allowed();
+}
+
 /// Code points of a UTF-8 text, which is what a schema counts.
 std::size_t characters(const std::string& text) {
   const auto continues = [](char c) { return (static_cast<unsigned char>(c) & 0xc0) == 0x80; };
@@ -36,11 +43,9 @@ static std::string text_of_file_hint(const Json& given) {
 }
 
 void Reader::refuse(Body what, const std::string& hint) const {
-  SchemaWriter description;
-  what(description);
-  throw InputError(InputError::Kind::shape, at(),
-                   fmt::format("got {}; allowed: {}{}{}", shown(json_), null_allowed_ ? "null or " : "",
-                               description.allowed(), hint));
+  throw InputError(
+      InputError::Kind::shape, at(),
+      fmt::format("got {}; allowed: {}{}{}", shown(json_), null_allowed_ ? "null or " : "", allowed_for(what), hint));
 }
 
 void Reader::collect(FunctionRef<> read) {
@@ -203,10 +208,8 @@ void Reader::field(std::string_view name, const char*, Presence presence, Body v
   }
   // A misspelt name of this field has been reported already.
   if (presence != Presence::required || contains(meant_, name)) return;
-  SchemaWriter description;
-  value(description);
   keep(InputError(InputError::Kind::shape, at(),
-                  fmt::format("missing field \"{}\"; allowed: {}", name, description.allowed())));
+                  fmt::format("missing field \"{}\"; allowed: {}", name, allowed_for(value))));
 }
 
 void Reader::ignored(std::string_view name, const char*) {

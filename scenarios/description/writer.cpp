@@ -110,7 +110,7 @@ Json FieldGuide::schema() const {
 }
 
 ValueGuide SchemaWriter::guide_of(Body value) const {
-  SchemaWriter writer(definitions_);
+  SchemaWriter writer(definitions_, extent_);
   value(writer);
   return std::move(writer.guide_);
 }
@@ -189,6 +189,8 @@ void SchemaWriter::one_or_list(bool, Body one, Body list) {
 
 void SchemaWriter::alternatives(const char*, std::span<const TypeName> types, Untyped untyped, std::size_t,
                                 FunctionRef<Fields&, std::size_t> fields) {
+  guide_.allowed = fmt::format("an object whose \"{}\" is one of {}", kTypeField, quoted_list(names_of(types)));
+  if (extent_ == Extent::words) return;
   Json schemas = Json::array();
   for (std::size_t i = 0; i < types.size(); ++i) {
     SchemaWriter choice(definitions_);
@@ -200,7 +202,6 @@ void SchemaWriter::alternatives(const char*, std::span<const TypeName> types, Un
     guide_.choices.push_back(std::move(choice.guide_));
   }
   guide_.schema = {{"oneOf", std::move(schemas)}};
-  guide_.allowed = fmt::format("an object whose \"{}\" is one of {}", kTypeField, quoted_list(names_of(types)));
 }
 
 void SchemaWriter::fields(Body body) {
@@ -225,6 +226,7 @@ void SchemaWriter::shared(const char* name, Body value) {
 }
 
 void SchemaWriter::field(std::string_view name, const char* doc, Presence presence, Body value) {
+  if (extent_ == Extent::words) return ignored(name, doc);
   FieldGuide field{
       .name = std::string(name), .meaning = doc, .presence = presence, .initial = {}, .value = guide_of(value)};
   if (presence == Presence::has_default) {
@@ -304,20 +306,31 @@ void add_paths(std::vector<std::string>& paths, const std::string& prefix, const
   }
 }
 
+/// What is known of the fields of a scenario while so many plugins have added some.
+struct KnownFields {
+  explicit KnownFields(std::size_t count) : additions(count) { add_paths(paths, "", guide); }
+
+  std::size_t additions;
+  ValueGuide guide = full_scenario(nullptr);
+  std::vector<std::string> paths;
+};
+
+const KnownFields& known_fields() {
+  static std::mutex mutex;
+  static std::deque<KnownFields> built;
+  const std::lock_guard lock(mutex);
+  if (built.empty() || built.back().additions != additions()) built.emplace_back(additions());
+  return built.back();
+}
+
 }  // namespace
 
 const ValueGuide& scenario_guide() {
-  static std::mutex mutex;
-  static std::deque<std::pair<std::size_t, ValueGuide>> built;  // with the number of additions before
-  const std::lock_guard lock(mutex);
-  if (built.empty() || built.back().first != additions()) built.emplace_back(additions(), full_scenario(nullptr));
-  return built.back().second;
+  return known_fields().guide;
 }
 
-std::vector<std::string> scenario_field_paths() {
-  std::vector<std::string> paths;
-  add_paths(paths, "", scenario_guide());
-  return paths;
+const std::vector<std::string>& scenario_field_paths() {
+  return known_fields().paths;
 }
 
 Json scenario_schema() {

@@ -93,9 +93,13 @@ struct FieldGuide {
 /// default-constructed one.
 class SchemaWriter final : public Fields {
  public:
+  /// `words`: of the value itself, what allowed() says, and nothing of the fields of an object; for a message.
+  enum class Extent { whole, words };
+
   /// With `definitions`, values that are described alike in many places are put there once, by their names, and the
   /// schema refers to "#/definitions/NAME".
-  explicit SchemaWriter(Json* definitions = nullptr) : definitions_(definitions) {}
+  explicit SchemaWriter(Json* definitions = nullptr, Extent extent = Extent::whole)
+      : definitions_(definitions), extent_(extent) {}
 
   const ValueGuide& guide() const { return guide_; }
   const Json& schema() const { return guide_.schema; }
@@ -129,6 +133,7 @@ class SchemaWriter final : public Fields {
   void any_of(ValueGuide first, ValueGuide second);
 
   Json* definitions_;
+  Extent extent_;
   ValueGuide guide_;
 };
 
@@ -140,6 +145,6 @@ Json scenario_schema();
 const ValueGuide& scenario_guide();
 
 /// The dotted paths of all fields of objects, as "rendering.limits.max_force_N"; those of list entries aside.
-std::vector<std::string> scenario_field_paths();
+const std::vector<std::string>& scenario_field_paths();
 
 }  // namespace hapbench
