@@ -361,11 +361,13 @@ def faults(found, scratch):
 RUNNING = ("run", "mesh_")  # targets that build meshes or run a scene
 
 
-def fuzz(share, found, scratch):
+def fuzz(share, only, found, scratch):
     """Executions of libFuzzer on every reader (scripts/fuzz): ten million for those of text, a million for those that build meshes."""
     executions = {}
-    listed = ran(ROOT / "scripts" / "fuzz", "--list").stdout.split()
+    listed = [target for target in ran(ROOT / "scripts" / "fuzz", "--list").stdout.split() if not only or target in only]
     for full, targets in ((1e6, [t for t in listed if t.startswith(RUNNING)]), (1e7, [t for t in listed if not t.startswith(RUNNING)])):
+        if not targets:
+            continue
         done = ran(ROOT / "scripts" / "fuzz", "600", "--runs", int(full * share), *(word for target in targets for word in ("--target", target)))
         for target, times in re.findall(r"^(\w+) +(\d+) executions", done.stdout, re.MULTILINE):
             executions[target] = int(times)
@@ -391,6 +393,7 @@ def main():
     parser.add_argument("--share", type=float, default=1.0, help="of the counts that the page of reliability asks for (default: 1)")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--against", action="append", default=[], metavar="PROGRAM", help="another build, which must have the same hashes")
+    parser.add_argument("--target", action="append", help="of fuzz: this one alone; scripts/fuzz --list names them")
     parser.add_argument("--record", action="store_true",
                         help="keep the figures in tests/data/reliability.json; SIGUSR1 ends the random scenes, which keep what they have done")
     parser.add_argument("--add", action="store_true",
@@ -406,7 +409,7 @@ def main():
         "lines": lambda f, s: lines(count(10_000), given.seed, f, s),
         "imports": lambda f, s: imports(count(1_000_000), given.seed, f, s),
         "python": lambda f, s: in_process(count(100_000), f, s),
-        "fuzz": lambda f, s: fuzz(given.share, f, s),
+        "fuzz": lambda f, s: fuzz(given.share, given.target, f, s),
     }
     wanted = given.part or [part for part in parts if part != "fuzz"]
     for part in wanted:
