@@ -84,6 +84,7 @@ void name_plugins_that_end_the_process(int exit_status) {
   handles_crashes = true;
   status_of_exit = exit_status;
   std::atexit(on_exit);
+  std::at_quick_exit(on_exit);
   struct sigaction action {};
   action.sa_sigaction = on_crash;
   action.sa_flags = SA_SIGINFO | SA_ONSTACK;

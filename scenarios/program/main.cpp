@@ -1,15 +1,44 @@
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <atomic>
 #include <csignal>
+#include <cstdlib>
+#include <exception>
+#include <string>
 
 #include "algorithms/plugin/plugin_call.hpp"
+#include "scenarios/input/input_error.hpp"
 #include "scenarios/input/memory_limit.hpp"
 #include "scenarios/program/command.hpp"
 #include "scenarios/program/program.hpp"
 #include "scenarios/run/stop_signal.hpp"
 
+namespace {
+
+/// Says which exception nobody caught. oneTBB throws in threads of its own when it can start no further ones.
+[[noreturn]] void end_with_a_reason() {
+  static std::atomic_flag said;
+  while (said.test_and_set()) ::pause();  // another thread ends the process
+  std::string what = "an exception of no known type";
+  try {
+    if (const auto uncaught = std::current_exception()) std::rethrow_exception(uncaught);
+  } catch (const std::exception& error) {
+    what = error.what();
+  } catch (...) {
+  }
+  hapbench::print_error(hapbench::one_line(
+      fmt::format("internal fault: {}; if threads or memory ran short: fewer --jobs, or a larger --memory", what)));
+  std::quick_exit(hapbench::kInternalFault);
+}
+
+}  // namespace
+
 int main(int argc, char** argv) {
   // Exceeding the file size limit should be an ordinary write error and not terminate the process.
   std::signal(SIGXFSZ, SIG_IGN);
   hapbench::name_plugins_that_end_the_process(hapbench::kInternalFault);
+  std::set_terminate(end_with_a_reason);
   hapbench::limit_memory({});
   const hapbench::StopSignal signals;
   return hapbench::run_program_to_exit(argc, argv);

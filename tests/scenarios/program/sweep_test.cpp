@@ -421,5 +421,18 @@ TEST_F(SweepShards, AreNotSubmittedBesideAnotherSweep) {
   EXPECT_NE(run.err.find("sweep_shard_1_of_4.csv: is of another sweep"), std::string::npos) << run.err;
 }
 
+TEST(SweepThreads, ThatCannotAllBeStartedEndItWithAReason) {
+  const test::TemporaryDirectory directory;
+  // Each has a stack of some megabytes.
+  const ProgramRun run = hapbench({"sweep", "tap_wall", "--vary", "seed=1:400:400", "--jobs", "200", "--memory", "64M",
+                                   "--out", directory / "out"});
+  EXPECT_EQ(run.signal, 0);
+#ifndef HAPBENCH_SANITIZED  // the kernel keeps no limit under sanitizers
+  EXPECT_EQ(run.status, 1);
+  EXPECT_NE(run.err.find("if threads or memory ran short: fewer --jobs, or a larger --memory"), std::string::npos)
+      << run.err;
+#endif
+}
+
 }  // namespace
 }  // namespace hapbench::sweep_test
