@@ -321,9 +321,11 @@ def reliability(_):
     lines = ["| `scripts/endure` | done | held | findings |", "|---|---|---|---|"]
     lines += [f"| `{part}` | {' | '.join(said[part](record[part]))} | {record[part]['findings'] or 'none'} |" for part in said if part in record]
     if "fuzz" in record:
-        executions = record["fuzz"]["executions"]
-        lines += ["", "Executions of `scripts/fuzz`: " + ", ".join(f"{name} {count(n)}" for name, n in executions.items()) +
-                  f"; findings: {record['fuzz']['findings'] or 'none'}."]
+        targets = {}
+        for target, times in record["fuzz"]["executions"].items():
+            targets.setdefault(times, []).append(f"`{target}`")
+        lines += ["", "Executions of `scripts/fuzz`: " + "; ".join(f"{count(n)} of {', '.join(names)}" for n, names in sorted(targets.items())) +
+                  f". Findings: {record['fuzz']['findings'] or 'none'}."]
     return "\n".join(lines)
 
 
