@@ -181,7 +181,7 @@ const Target& target() {
 }  // namespace hapbench::fuzz
 
 /// Without a target it ends here, before libFuzzer takes the end for a crash.
-extern "C" int LLVMFuzzerInitialize(int*, char***) {
+extern "C" int LLVMFuzzerInitialize(int*, char***) {  // NOLINT: the name is libFuzzer's
   hapbench::fuzz::target();
   return 0;
 }
