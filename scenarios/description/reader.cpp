@@ -11,7 +11,7 @@
 namespace hapbench {
 namespace {
 
-/// What a value may be, in words.
+/// The values that are allowed where `value` describes them, as words for an error message.
 std::string allowed_for(Fields::Body value) {
   SchemaWriter description(nullptr, SchemaWriter::Extent::words);
   value(description);

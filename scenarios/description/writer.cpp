@@ -306,7 +306,7 @@ void add_paths(std::vector<std::string>& paths, const std::string& prefix, const
   }
 }
 
-/// What is known of the fields of a scenario while so many plugins have added some.
+/// The guide to a scenario and the paths of its fields, valid as long as additions() has this value.
 struct KnownFields {
   explicit KnownFields(std::size_t count) : additions(count) { add_paths(paths, "", guide); }
 

@@ -15,7 +15,7 @@ def files(pattern):
 def without_prose(target, text):
     """A scene, or its device, in the fewest bytes: what is changed in a blank or a description finds nothing. None for other files."""
     scene = json.loads(text)
-    if not isinstance(scene, dict) or not {"environment", "extends"} & scene.keys() or "arguments" in scene:
+    if not isinstance(scene, dict) or not {"environment", "extends"} & scene.keys():
         return None
     scene = scene.get("device") if target == "device" else {key: value for key, value in scene.items() if key not in ("description", "source")}
     return json.dumps(scene, separators=(",", ":")).encode() if isinstance(scene, dict) else None
