@@ -321,7 +321,7 @@ def imports(count, seed, found, scratch):
     shutil.copytree(ROOT / "scenarios" / "import" / "presets", presets)
     kinds = {file.stem: file.read_bytes() for file in presets.glob("*.json")}
     recordings = [file for file in (ROOT / "scenarios" / "examples" / "data").iterdir() if file.suffix in (".csv", ".txt")]
-    logs = [b"".join(file.read_bytes().splitlines(True)[:40]) for file in sorted(recordings)]
+    logs = [b"".join(file.read_bytes().splitlines(True)[:12]) for file in sorted(recordings)]
     log, preset = scratch / "log.csv", scratch / "presets" / "mutant.json"
     for i in range(count):
         with_preset = i % 2 == 0

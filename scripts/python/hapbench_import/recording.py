@@ -1,6 +1,5 @@
 """Recordings in the formats that are read: their columns as arrays, and where in the file each row is."""
 import math
-import re
 
 import numpy as np
 from hapbench_command import nearest
@@ -12,7 +11,7 @@ LARGEST_FILE = 4 << 30  # bytes
 # The fields of a HAPI log and how many columns each takes.
 HAPI_FIELDS = {"TIME": 1, "TIMESTAMP": 1, "POSITION": 3, "ORIENTATION": 4, "VELOCITY": 3, "FORCE": 3, "TORQUE": 3, "BUTTONS": 1,
                "RAW_POSITION": 3, "RAW_ORIENTATION": 4, "RAW_VELOCITY": 3, "RAW_FORCE": 3, "RAW_TORQUE": 3}
-_UNUSUAL = re.compile(rb"[^0-9eE.+\-\n]|(?<![eE])\+")  # cells with these are read one by one
+_NUMERIC = b"0123456789eE.+-\n"
 _BLANK = b" \t\r"
 
 
@@ -39,7 +38,9 @@ class Recording:
             values = self.rows[self.names[column]].astype(float)
         else:
             cells = [row[column] if len(row) > column else b"" for row in self.rows]
-            usual = not _UNUSUAL.search(b"\n".join(cells))
+            text = b"\n".join(cells)
+            # Otherwise float() may accept what is no number here, and cells are read one by one.
+            usual = not text.translate(None, _NUMERIC) and text.count(b"+") == text.count(b"e+") + text.count(b"E+")
             try:
                 values = np.array([float(cell) for cell in cells] if usual else [finite_number(cell) for cell in cells])
             except ValueError:
