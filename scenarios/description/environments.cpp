@@ -235,7 +235,7 @@ struct Build {
 
 }  // namespace
 
-double expected_memory(const Scenario& scenario, const NamedFiles& files) {
+double environment_memory(const Scenario& scenario, const NamedFiles& files) {
   return std::visit(ExpectedMemory{files}, scenario.environment);
 }
 

@@ -7,6 +7,7 @@
 #include "scenarios/description/parts.hpp"
 #include "scenarios/description/writer.hpp"
 #include "scenarios/input/input_error.hpp"
+#include "scenarios/input/memory_limit.hpp"
 #include "sim/tool/mesh_tool.hpp"
 #include "sim/tool/revolved.hpp"
 
@@ -124,14 +125,24 @@ TriangleSoup tool_surface(const MeshToolFields& fields, const NamedFiles& files)
   return surface;
 }
 
-Grid make_grid(const MeshToolFields& fields, const NamedFiles& files) {
+/// What `of` makes of the surface and the spacing of its grid; what the grid does not take, the file is refused for.
+template <class Of>
+auto with_grid(const MeshToolFields& fields, const NamedFiles& files, const Of& of) {
   const TriangleSoup surface = tool_surface(fields, files);
-  const double spacing = fields.grid.value_or(SignedDistanceGrid::suggested_spacing(surface.vertices));
   try {
-    return std::make_shared<const SignedDistanceGrid>(surface.vertices, surface.triangles, spacing);
+    return of(surface, fields.grid.value_or(SignedDistanceGrid::suggested_spacing(surface.vertices)));
   } catch (const std::invalid_argument& error) {
     throw InputError(fmt::format("{}: {}", files.at(kToolFile).path().string(), error.what()));
   }
+}
+
+double grid_memory(const TriangleSoup& surface, double spacing) {
+  return SignedDistanceGrid::expected_bytes(surface.vertices, spacing);
+}
+
+Grid make_grid(const TriangleSoup& surface, double spacing) {
+  require_memory(grid_memory(surface, spacing), "the grid of the tool's distances");
+  return std::make_shared<const SignedDistanceGrid>(surface.vertices, surface.triangles, spacing);
 }
 
 struct Make {
@@ -152,11 +163,16 @@ struct Make {
                                             f.grid.value_or(0.0), fmt::join(f.tip, " "), fmt::join(f.tip_axis, " "));
     const auto bytes = [](const SignedDistanceGrid& grid) { return sizeof(double) * grid.nodes().size(); };
     return std::make_shared<MeshTool>(shared_cache().get<SignedDistanceGrid>(
-        content, [&] { return make_grid(f, files); }, bytes));
+        content, [&] { return with_grid(f, files, make_grid); }, bytes));
   }
 };
 
 }  // namespace
+
+double tool_memory(const Scenario& scenario, const NamedFiles& files) {
+  const auto* mesh = std::get_if<MeshToolFields>(&scenario.tool);
+  return mesh != nullptr ? with_grid(*mesh, files, grid_memory) : 0.0;
+}
 
 std::shared_ptr<const ToolShape> make_tool(const Scenario& scenario, const NamedFiles& files) {
   return std::visit(Make{files}, scenario.tool);

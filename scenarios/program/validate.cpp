@@ -21,7 +21,7 @@
 namespace hapbench {
 namespace {
 
-constexpr double kProgramMemory = 15e6;  ///< of a run with next to no environment [B]
+constexpr double kProgramMemory = 15e6;  ///< of a run with next to no environment and no grid of a tool [B]
 
 struct ValidateOptions {
   std::vector<std::string> files;

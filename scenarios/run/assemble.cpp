@@ -159,7 +159,7 @@ std::vector<std::string> check_named_files(const LoadedScenario& loaded, bool lo
         InputError::Kind::relation, file_of(loaded, "/record/force_reference").string() + ": /record/force_reference",
         fmt::format("got true; allowed: false, because {} has no columns mfx_N,mfy_N,mfz_N", file->path().string()));
   }
-  with_file(loaded, [&] { require_memory(expected_memory(scenario, loaded.files), "/environment: its points"); });
+  with_file(loaded, [&] { require_memory(environment_memory(scenario, loaded.files), "/environment: its points"); });
   std::vector<std::string> warnings = named_file_warnings(loaded);
   for (std::string& warning : warnings) {
     const std::string pointer = warning.substr(0, warning.find(": "));

@@ -147,22 +147,25 @@ std::ostream& operator<<(std::ostream& out, const GridNodes& nodes) {
   return out << nodes.count[0] << " x " << nodes.count[1] << " x " << nodes.count[2];
 }
 
+/// The edges of the bounding box [m].
+Vec3 extent_of(std::span<const Vec3> vertices) {
+  Vec3 low = vertices.front(), high = low;
+  for (const Vec3& v : vertices) {
+    low = low.cwiseMin(v);
+    high = high.cwiseMax(v);
+  }
+  return high - low;
+}
+
+/// Along each axis; as doubles, because a spacing that is wrong by a factor of 1000 asks for more nodes than integers
+/// can count.
+Vec3 node_counts(const Vec3& extent, double spacing) {
+  return (extent / spacing).array().ceil() + 2.0 * kBorder + 1.0;
+}
+
 GridNodes nodes_around(const ClosedSurface& surface, double spacing) {
-  std::ostringstream message;
-  if (!(spacing > 0.0 && std::isfinite(spacing))) {
-    message << "the spacing of a grid must be > 0, not " << spacing << " m";
-    refuse(message);
-  }
-  const Vec3 extent = surface.high() - surface.low();
-  // As doubles, because a spacing that is wrong by a factor of 1000 asks for more nodes than integers can count.
-  const Vec3 wanted = (extent / spacing).array().ceil() + 2.0 * kBorder + 1.0;
-  if (const double bytes = kBytesPerNode * wanted.prod(); !(bytes <= kMostBytes)) {
-    message << "a grid of " << wanted.x() << " x " << wanted.y() << " x " << wanted.z() << " nodes, " << spacing
-            << " m apart, would take " << bytes / kMostBytes << " GiB, more than 1; the mesh is " << extent.x() << " x "
-            << extent.y() << " x " << extent.z() << " m large: is that its scale? If so, set the nodes "
-            << SignedDistanceGrid::suggested_spacing(surface.vertices()) << " m apart";
-    refuse(message);
-  }
+  SignedDistanceGrid::expected_bytes(surface.vertices(), spacing);  // or it is refused
+  const Vec3 wanted = node_counts(surface.high() - surface.low(), spacing);
   GridNodes nodes{surface.low() - Vec3::Constant(kBorder * spacing), spacing, {}};
   for (int k = 0; k < 3; ++k) nodes.count[static_cast<std::size_t>(k)] = static_cast<std::size_t>(wanted[k]);
   // Centred, so that the nodes of a symmetric mesh are symmetric.
@@ -271,15 +274,29 @@ SignedDistanceGrid::SignedDistanceGrid(const ClosedSurface& surface, double spac
   find_faces(surface);
 }
 
-double SignedDistanceGrid::suggested_spacing(std::span<const Vec3> vertices) {
-  Vec3 low = vertices.front(), high = low;
-  for (const Vec3& v : vertices) {
-    low = low.cwiseMin(v);
-    high = high.cwiseMax(v);
+double SignedDistanceGrid::expected_bytes(std::span<const Vec3> vertices, double spacing) {
+  std::ostringstream message;
+  if (!(spacing > 0.0 && std::isfinite(spacing))) {
+    message << "the spacing of a grid must be > 0, not " << spacing << " m";
+    refuse(message);
   }
+  const Vec3 extent = extent_of(vertices), wanted = node_counts(extent, spacing);
+  const double bytes = kBytesPerNode * wanted.prod();
+  if (!(bytes <= kMostBytes)) {
+    message << "a grid of " << wanted.x() << " x " << wanted.y() << " x " << wanted.z() << " nodes, " << spacing
+            << " m apart, would take " << bytes / kMostBytes << " GiB, more than 1; the mesh is " << extent.x() << " x "
+            << extent.y() << " x " << extent.z() << " m large: is that its scale? If so, set the nodes "
+            << suggested_spacing(vertices) << " m apart";
+    refuse(message);
+  }
+  return bytes;
+}
+
+double SignedDistanceGrid::suggested_spacing(std::span<const Vec3> vertices) {
   // Of the 128 nodes along an edge of a cube, 7 lie beyond it. The minimum extent limits the number of nodes of a flat
   // box, most of which lie beyond it.
-  const Vec3 extent = (high - low).cwiseMax(0.01 * (high - low).maxCoeff());
+  Vec3 extent = extent_of(vertices);
+  extent = extent.cwiseMax(0.01 * extent.maxCoeff());
   return math::pow(extent.prod(), 1.0 / 3.0) / 121.0;
 }
 

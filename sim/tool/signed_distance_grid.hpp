@@ -63,6 +63,10 @@ class SignedDistanceGrid {
   /// tenth of its surface is less than two spacings thick, or the nodes would take more than 1 GiB.
   SignedDistanceGrid(std::span<const Vec3> vertices, std::span<const TriangleCorners> triangles, double spacing);
 
+  /// How much memory the grid of a mesh takes, while it is made, too [B]. Throws std::invalid_argument if the spacing
+  /// is not > 0, or it is more than 1 GiB.
+  static double expected_bytes(std::span<const Vec3> vertices, double spacing);
+
   /// The spacing that gives the bounding box of a mesh about 128^3 nodes with margins: 20 MB, some seconds at most.
   static double suggested_spacing(std::span<const Vec3> vertices);
 

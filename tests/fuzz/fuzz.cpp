@@ -68,7 +68,8 @@ void run_scenario_text(std::string_view text) {
   // Larger ones are only slower.
   constexpr double kMostMemory = 3e7;
   constexpr std::int64_t kMostSteps = 20;
-  if (expected_memory(loaded.scenario, loaded.files) > kMostMemory) return;
+  if (environment_memory(loaded.scenario, loaded.files) + tool_memory(loaded.scenario, loaded.files) > kMostMemory)
+    return;
   loaded.scenario.time.steps = std::min(loaded.scenario.time.steps, kMostSteps);
   run_scenario(loaded, std::nullopt, false);
 }
