@@ -125,7 +125,8 @@ TriangleSoup tool_surface(const MeshToolFields& fields, const NamedFiles& files)
   return surface;
 }
 
-/// What `of` makes of the surface and the spacing of its grid; what the grid does not take, the file is refused for.
+/// Calls `of` with the surface of the tool and the spacing of its grid. Turns std::invalid_argument, which the grid
+/// throws, into an InputError that names the file.
 template <class Of>
 auto with_grid(const MeshToolFields& fields, const NamedFiles& files, const Of& of) {
   const TriangleSoup surface = tool_surface(fields, files);

@@ -70,7 +70,7 @@ TEST(ScenarioTool, HasTheSizeItsFieldsSay) {
   EXPECT_FALSE(tool_of(kHourglass)->convex());
 }
 
-/// What a run is expected to take holds the grid, which is larger than most environments.
+/// The expected memory of a run includes the grid of its tool.
 TEST(ScenarioTool, OfAMeshTakesTheMemoryOfItsGrid) {
   for (const std::string& spacing : {std::string("0.00005"), std::string("null")}) {
     Json fields = Json::parse(kCube);
