@@ -157,14 +157,32 @@ Vec3 extent_of(std::span<const Vec3> vertices) {
   return high - low;
 }
 
-/// Along each axis; as doubles, because a spacing that is wrong by a factor of 1000 asks for more nodes than integers
-/// can count.
+double suggested_for(const Vec3& extent) {
+  // Of the 128 nodes along an edge of a cube, 7 lie beyond it. The minimum extent limits the number of nodes of a flat
+  // box, most of which lie beyond it.
+  return math::pow(extent.cwiseMax(0.01 * extent.maxCoeff()).prod(), 1.0 / 3.0) / 121.0;
+}
+
+/// The number of nodes along each axis; as doubles, because a spacing that is wrong by a factor of 1000 asks for more
+/// nodes than integers can count. Throws std::invalid_argument if they are too many.
 Vec3 node_counts(const Vec3& extent, double spacing) {
-  return (extent / spacing).array().ceil() + 2.0 * kBorder + 1.0;
+  std::ostringstream message;
+  if (!(spacing > 0.0 && std::isfinite(spacing))) {
+    message << "the spacing of a grid must be > 0, not " << spacing << " m";
+    refuse(message);
+  }
+  const Vec3 wanted = (extent / spacing).array().ceil() + 2.0 * kBorder + 1.0;
+  if (const double bytes = kBytesPerNode * wanted.prod(); !(bytes <= kMostBytes)) {
+    message << "a grid of " << wanted.x() << " x " << wanted.y() << " x " << wanted.z() << " nodes, " << spacing
+            << " m apart, would take " << bytes / kMostBytes << " GiB, more than 1; the mesh is " << extent.x() << " x "
+            << extent.y() << " x " << extent.z() << " m large: is that its scale? If so, set the nodes "
+            << suggested_for(extent) << " m apart";
+    refuse(message);
+  }
+  return wanted;
 }
 
 GridNodes nodes_around(const ClosedSurface& surface, double spacing) {
-  SignedDistanceGrid::expected_bytes(surface.vertices(), spacing);  // or it is refused
   const Vec3 wanted = node_counts(surface.high() - surface.low(), spacing);
   GridNodes nodes{surface.low() - Vec3::Constant(kBorder * spacing), spacing, {}};
   for (int k = 0; k < 3; ++k) nodes.count[static_cast<std::size_t>(k)] = static_cast<std::size_t>(wanted[k]);
@@ -275,29 +293,11 @@ SignedDistanceGrid::SignedDistanceGrid(const ClosedSurface& surface, double spac
 }
 
 double SignedDistanceGrid::expected_bytes(std::span<const Vec3> vertices, double spacing) {
-  std::ostringstream message;
-  if (!(spacing > 0.0 && std::isfinite(spacing))) {
-    message << "the spacing of a grid must be > 0, not " << spacing << " m";
-    refuse(message);
-  }
-  const Vec3 extent = extent_of(vertices), wanted = node_counts(extent, spacing);
-  const double bytes = kBytesPerNode * wanted.prod();
-  if (!(bytes <= kMostBytes)) {
-    message << "a grid of " << wanted.x() << " x " << wanted.y() << " x " << wanted.z() << " nodes, " << spacing
-            << " m apart, would take " << bytes / kMostBytes << " GiB, more than 1; the mesh is " << extent.x() << " x "
-            << extent.y() << " x " << extent.z() << " m large: is that its scale? If so, set the nodes "
-            << suggested_spacing(vertices) << " m apart";
-    refuse(message);
-  }
-  return bytes;
+  return kBytesPerNode * node_counts(extent_of(vertices), spacing).prod();
 }
 
 double SignedDistanceGrid::suggested_spacing(std::span<const Vec3> vertices) {
-  // Of the 128 nodes along an edge of a cube, 7 lie beyond it. The minimum extent limits the number of nodes of a flat
-  // box, most of which lie beyond it.
-  Vec3 extent = extent_of(vertices);
-  extent = extent.cwiseMax(0.01 * extent.maxCoeff());
-  return math::pow(extent.prod(), 1.0 / 3.0) / 121.0;
+  return suggested_for(extent_of(vertices));
 }
 
 double SignedDistanceGrid::error_bound() const noexcept {
