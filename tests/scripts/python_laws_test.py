@@ -168,6 +168,45 @@ class Laws(Scratch):
                          hapbench.run(PEG, {**SHORT, "rendering.algorithm": "summation"}).state_hash)
 
 
+LAW_OF_A_SCRIPT = """import hapbench, numpy, sys, threading, time, types
+
+begun = threading.Event()
+
+@hapbench.force_law("even")
+def even(depths):
+    begun.set()
+    return numpy.full(len(depths), 1 / len(depths))
+"""
+
+
+class TheEndOfTheInterpreter(Scratch):
+    """A thread that waits for an interpreter that ends would end the process by an abort."""
+
+    def script(self, text):
+        done = python("-c", LAW_OF_A_SCRIPT + text)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+
+    def test_finds_threads_that_have_just_ended(self):
+        # The main thread holds the interpreter from the comparison to its end, so that many of 16 threads still wait for
+        # it when they may no longer: three scripts in four were aborted.
+        words = ["compare", str(SOURCE / "scenarios/suites/1/wedge.json"), "--algorithms", "even", "--jobs", "16", "--seeds", "64",
+                 "--jitter", "2e-5", *words_of(SHORT)]
+        for _ in range(5):
+            self.script(f"hapbench.main({[*words, '--out', str(self.root / 'out'), '--quiet']!r})\n"
+                        "sys.setswitchinterval(1000)\n"
+                        "end = time.monotonic() + 0.02\n"
+                        "while time.monotonic() < end: pass\n"
+                        "class Late:\n    def __del__(self, sleep=time.sleep): sleep(0.1)\n"
+                        "sys.modules['late'] = types.ModuleType('late')\n"
+                        "sys.modules['late'].late = Late()\n")
+
+    def test_ends_the_work_of_daemons(self):
+        endless = {"time.steps": 10_000_000, "time.stop_when": "[]", "expect": "{}", "rendering.algorithm": "even", "record.trajectory": False}
+        for work in (f"hapbench.run({PEG!r}, {endless}, progress=False)", f"hapbench.Simulation({PEG!r}, {endless}).advance(10_000_000)"):
+            self.script(f"threading.Thread(target=lambda: {work}, daemon=True).start()\n"
+                        "assert begun.wait(60)\n")
+
+
 PLUGIN = SOURCE / "algorithms/plugin/examples/depth_weighted.c"
 
 

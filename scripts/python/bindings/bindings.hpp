@@ -10,6 +10,10 @@
 /// The parts of the compiled module.
 namespace hapbench {
 
+/// Gives back what a thread that ends has kept of the interpreter. Once the interpreter is about to end, that is left
+/// to it: a thread that waited for it would end the process. Precondition: the thread does not hold the interpreter.
+void give_back(PyThreadState* state, PyGILState_STATE before) noexcept;
+
 /// Holds the interpreter. Each thread keeps its thread state, because making one takes longer than calling a law.
 class Held {
  public:
@@ -30,9 +34,7 @@ class Held {
       state = PyEval_SaveThread();
     }
     ~Kept() {
-      if (!made || !Py_IsInitialized()) return;
-      PyEval_RestoreThread(state);
-      PyGILState_Release(gil);
+      if (made) give_back(state, gil);
     }
     Kept(const Kept&) = delete;
     Kept& operator=(const Kept&) = delete;
@@ -55,6 +57,16 @@ std::shared_ptr<const Value> shared_by_threads(Value value) {
             delete last;
           }};
 }
+
+/// Counts a call that computes. An error of Python in one of them ends all of them; the end of the last one lets work
+/// begin again. Precondition of both ends: the interpreter is held.
+class UnderWay {
+ public:
+  UnderWay();
+  ~UnderWay();
+  UnderWay(const UnderWay&) = delete;
+  UnderWay& operator=(const UnderWay&) = delete;
+};
 
 /// Calls `work` on a thread of its own, with the interpreter released, and waits for it. Several threads of Python may
 /// call it at once. While it waits, it handles signals and progress several times a second. `progress`: None for bars
@@ -84,11 +96,16 @@ bool runs_in_python(const Call& call) noexcept {
   return false;
 }
 
-/// Raises the error that stop_by_python_error has kept, if any. Precondition: no supervised work is under way.
+/// Raises the error that stop_by_python_error has kept, if any. Precondition: the interpreter is held by a call that is
+/// under way.
 void raise_python_error();
 
-/// True while supervised work is under way. Precondition: the interpreter is held.
+/// True while a call is under way. Precondition: the interpreter is held.
 bool is_work_under_way();
+
+/// Ends the calls of daemon threads by SystemExit before the interpreter ends, or waits two seconds for it: each would
+/// ask for the interpreter then.
+void end_work_before_interpreter();
 
 /// Makes loading of plugins and computing by another thread exclude each other.
 void guard_plugins();

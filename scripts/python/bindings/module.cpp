@@ -120,6 +120,7 @@ PYBIND11_MODULE(_hapbench, module) {
   module.doc() = "The compiled part of hapbench: use the package around it.";
   translate_errors();
   guard_plugins();
+  end_work_before_interpreter();
   module.def(
       "set_program", [](const std::string& program) { set_this_program(program); }, py::arg("program"),
       "Say which file is the program, for commands that name it.");

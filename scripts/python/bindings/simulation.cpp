@@ -54,6 +54,7 @@ class PythonSimulation {
  public:
   PythonSimulation(const std::string& scenario, const std::vector<std::string>& overrides)
       : loaded_(load_scenario(find_scenario(scenario), overrides)) {
+    const UnderWay counted;
     SimulationParts parts = with_file(loaded_, [&] { return assemble(loaded_.scenario); });
     last_.emplace(parts.source->capacity());
     simulation_.emplace(simulation_config(loaded_.scenario), std::move(parts), std::vector<Observer*>{&*last_});
@@ -61,6 +62,7 @@ class PythonSimulation {
   }
 
   bool step() {
+    const UnderWay counted;
     const bool more = simulation_->step();
     raise_python_error();
     return more;
@@ -68,6 +70,7 @@ class PythonSimulation {
 
   /// Computes in pieces, between which signals are handled.
   std::uint64_t advance(std::uint64_t steps) {
+    const UnderWay counted;
     const std::uint64_t first = simulation_->result().rows;
     for (bool more = true; more && steps > 0;) {
       const std::uint64_t piece = std::min(steps, kAskEvery);
@@ -83,6 +86,7 @@ class PythonSimulation {
   }
 
   void reset() {
+    const UnderWay counted;
     simulation_->reset();
     last_->reset();
     raise_python_error();

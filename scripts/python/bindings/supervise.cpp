@@ -10,7 +10,6 @@
 #include <string>
 #include <string_view>
 #include <thread>
-#include <utility>
 
 #include "bindings/bindings.hpp"
 #include "scenarios/input/input_error.hpp"
@@ -27,20 +26,17 @@ using namespace std::chrono_literals;
 /// Interval of handling signals and progress.
 constexpr auto kLookEvery = 50ms;
 
-/// The number of supervised calls, and the error that ends them. Both are guarded by the lock of the interpreter.
+/// Time that work has to end before the interpreter does: a plugin may loop.
+constexpr auto kPatience = 2s;
+
+/// The number of calls under way, and the error that ends them. Both are guarded by the lock of the interpreter.
 int under_way = 0;
 /// Null if there is none. A bare pointer, because at the end of the process there is no interpreter.
 PyObject* python_error = nullptr;
 
-void forget_python_error() {
-  Py_CLEAR(python_error);
-}
-
-/// Raises an error and takes ownership of it.
-[[noreturn]] void raise_taken(PyObject* error) {
-  PyErr_Restore(Py_NewRef(reinterpret_cast<PyObject*>(Py_TYPE(error))), error, PyException_GetTraceback(error));
-  throw py::error_already_set();
-}
+std::mutex ending_mutex;
+/// True once the interpreter is about to end. Guarded by ending_mutex.
+bool interpreter_ends = false;
 
 /// The last progress that the work reported.
 class ProgressBoard final : public ProgressListener {
@@ -136,18 +132,40 @@ void look_after(const py::object& progress, ProgressBoard& board) {
   }
 }
 
-/// Counts a call. The end of the last one lets work begin again.
-class UnderWay {
- public:
-  UnderWay() { ++under_way; }
-  ~UnderWay() {
-    if (--under_way > 0) return;
-    forget_python_error();
-    stop_work(0);
+void end_work() {
+  {
+    const py::gil_scoped_release released;  // for the thread that gives back its state
+    const std::lock_guard lock(ending_mutex);
+    interpreter_ends = true;
   }
-};
+  if (under_way == 0) return;
+  PyErr_SetNone(PyExc_SystemExit);
+  stop_by_python_error();
+  const auto latest = std::chrono::steady_clock::now() + kPatience;
+  while (under_way > 0 && std::chrono::steady_clock::now() < latest) {
+    const py::gil_scoped_release released;
+    std::this_thread::sleep_for(10ms);
+  }
+}
 
 }  // namespace
+
+void give_back(PyThreadState* state, PyGILState_STATE before) noexcept {
+  const std::lock_guard lock(ending_mutex);
+  if (interpreter_ends) return;
+  PyEval_RestoreThread(state);
+  PyGILState_Release(before);
+}
+
+UnderWay::UnderWay() {
+  ++under_way;
+}
+
+UnderWay::~UnderWay() {
+  if (--under_way > 0) return;
+  Py_CLEAR(python_error);
+  stop_work(0);
+}
 
 void supervise(const py::object& progress, const std::function<void()>& work) {
   const UnderWay counted;
@@ -163,7 +181,7 @@ void supervise(const py::object& progress, const std::function<void()>& work) {
     worker.join();
     failure = worker.failure();
   }
-  if (python_error != nullptr) raise_taken(Py_NewRef(python_error));
+  raise_python_error();
   if (failure) {
     try {
       std::rethrow_exception(failure);
@@ -193,12 +211,17 @@ void stop_by_python_error() {
 
 void raise_python_error() {
   if (python_error == nullptr) return;
-  stop_work(0);
-  raise_taken(std::exchange(python_error, nullptr));
+  PyErr_Restore(Py_NewRef(reinterpret_cast<PyObject*>(Py_TYPE(python_error))), Py_NewRef(python_error),
+                PyException_GetTraceback(python_error));
+  throw py::error_already_set();
 }
 
 bool is_work_under_way() {
   return under_way > 0;
+}
+
+void end_work_before_interpreter() {
+  py::module_::import("atexit").attr("register")(py::cpp_function(end_work));
 }
 
 void guard_plugins() {
