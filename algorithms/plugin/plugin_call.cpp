@@ -7,12 +7,15 @@
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
+#include <utility>
 
 namespace hapbench {
 namespace {
 
-/// The call in which a thread is. States are never freed, because handlers of signals on any thread read them.
+/// The call in which a thread is. States are never freed, because handlers of signals on any thread read them; a thread
+/// that ends leaves its state to another one.
 struct ThreadState {
+  std::atomic<bool> taken = true;
   std::atomic<const char*> plugin = nullptr;  ///< null outside of plugins
   std::atomic<const char*> function = nullptr;
   ThreadState* next = nullptr;
@@ -25,19 +28,44 @@ thread_local ThreadState* this_thread = nullptr;
 std::atomic<bool> handles_crashes{false};
 int status_of_exit = 0;
 
-ThreadState& state() {
-  if (this_thread == nullptr) {
-    this_thread = new ThreadState;
-    if (handles_crashes) {  // else the host may have a stack of its own for its handlers
-      stack_t stack = {};
-      stack.ss_sp = this_thread->handler_stack.data();
-      stack.ss_size = this_thread->handler_stack.size();
-      ::sigaltstack(&stack, nullptr);
-    }
-    this_thread->next = threads;
-    while (!threads.compare_exchange_weak(this_thread->next, this_thread)) {
-    }
+/// A state that an ended thread has left, or a new one.
+ThreadState* take_state() {
+  for (ThreadState* left = threads; left != nullptr; left = left->next) {
+    if (!left->taken.exchange(true)) return left;
   }
+  ThreadState* made = new ThreadState;
+  made->next = threads;
+  while (!threads.compare_exchange_weak(made->next, made)) {
+  }
+  return made;
+}
+
+/// The state of this thread, which it leaves at its end.
+class OwnState {
+ public:
+  OwnState() {
+    this_thread = take_state();
+    if (!handles_crashes) return;  // the host may have a stack of its own for its handlers
+    stack_t stack = {};
+    stack.ss_sp = this_thread->handler_stack.data();
+    stack.ss_size = this_thread->handler_stack.size();
+    ::sigaltstack(&stack, nullptr);
+  }
+  ~OwnState() {
+    if (this_thread->plugin != nullptr) return;  // the plugin has called exit, and on_exit will name it
+    if (handles_crashes) {
+      stack_t none = {};
+      none.ss_flags = SS_DISABLE;
+      ::sigaltstack(&none, nullptr);
+    }
+    std::exchange(this_thread, nullptr)->taken = false;
+  }
+  OwnState(const OwnState&) = delete;
+  OwnState& operator=(const OwnState&) = delete;
+};
+
+ThreadState& state() {
+  if (this_thread == nullptr) thread_local const OwnState own;
   return *this_thread;
 }
 

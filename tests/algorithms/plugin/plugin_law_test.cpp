@@ -3,8 +3,10 @@
 #include <bit>
 #include <csignal>
 #include <cstdlib>
+#include <functional>
 #include <limits>
 #include <stdexcept>
+#include <thread>
 
 #include "algorithms/penalty_rendering.hpp"
 #include "algorithms/plugin/law_plugin.hpp"
@@ -274,6 +276,22 @@ TEST_F(APluginLaw, DoesNotWriteBeyondWhatItIsGiven) {
     place = beyond;
     EXPECT_EQ(fault_of(plugin), "from_outside writes beyond its answer");
   }
+}
+
+TEST(PluginCall, OfANewThreadTakesWhatAnEndedOneHasLeft) {
+  const auto allocations_of_a_call = [](const std::function<void()>& meanwhile) {
+    std::uint64_t allocations = 0;
+    std::thread([&] {
+      const AllocationCount count;
+      const PluginCall call("from_outside", "evaluate");
+      allocations = count.value();
+      meanwhile();
+    }).join();
+    return allocations;
+  };
+  std::uint64_t beside = 0;
+  allocations_of_a_call([&] { beside = allocations_of_a_call([] {}); });
+  EXPECT_LT(allocations_of_a_call([] {}), beside);
 }
 
 using APluginLawDeathTest = APluginLaw;
