@@ -119,10 +119,12 @@ void name_plugins_that_end_the_process(int exit_status) {
   for (std::size_t i = 0; i < std::size(kCrashes); ++i) ::sigaction(kCrashes[i], &action, &before[i]);
 }
 
-void write_running_plugins() noexcept {
+bool write_running_plugins() noexcept {
+  bool any = false;
   for (const ThreadState* thread = threads; thread != nullptr; thread = thread->next) {
-    write_line(thread, " does not return from ");
+    any |= write_line(thread, " does not return from ");
   }
+  return any;
 }
 
 }  // namespace hapbench

@@ -26,8 +26,9 @@ class PluginCall {
 /// programs, not for hosts with handlers of their own.
 void name_plugins_that_end_the_process(int exit_status);
 
-/// Writes one line to standard error for each thread that is inside a plugin. May be called in a signal handler.
-void write_running_plugins() noexcept;
+/// Writes one line to standard error for each thread that is inside a plugin; false if there is none. May be called in
+/// a signal handler.
+bool write_running_plugins() noexcept;
 
 /// Numbers before and after what a plugin writes. No computation gives this signalling NaN.
 struct Canaries {

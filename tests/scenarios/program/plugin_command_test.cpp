@@ -122,6 +122,14 @@ TEST_F(PluginCommand, EndsARunAndNoMoreWhenALawFails) {
   EXPECT_NE(expected.err.find("the law of a plugin failed once"), std::string::npos) << expected.err;
 }
 
+TEST_F(PluginCommand, IsStoppedInALawThatDoesNotReturn) {
+  const EnvironmentVariable how("HOSTILE", "loops");
+  const ProgramRun run = test::hapbench_stopped(SIGINT, {"run", "single_spring", "--plugin", plugin("hostile"), "--set",
+                                                         "rendering.algorithm=hostile", "--out", out("run")});
+  EXPECT_EQ(run.status, 130);
+  EXPECT_EQ(run.err, "hapbench: error: the plugin hostile does not return from evaluate\n");
+}
+
 TEST_F(PluginCommand, FindsWhatIsNoForceBehindEveryStage) {
   for (const char* fault : {"nan", "forgets", "not created"}) {
     const EnvironmentVariable how("HOSTILE", fault);

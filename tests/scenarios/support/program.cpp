@@ -129,6 +129,13 @@ ProgramRun hapbench(const std::vector<std::string>& arguments, const ProgramOpti
   return run_program(hapbench_program(), arguments, options);
 }
 
+ProgramRun hapbench_stopped(int signal, const std::vector<std::string>& arguments) {
+  std::vector<std::string> words = {
+      "--preserve-status", "--signal", std::to_string(signal), "--kill-after", "5", "1", hapbench_program().string()};
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  return run_program("/usr/bin/timeout", words);
+}
+
 ProgramRun hapbench_here(const std::vector<std::string>& arguments) {
   set_this_program(hapbench_program());
   std::vector<std::string> words = {hapbench_program().string()};

@@ -43,6 +43,10 @@ std::filesystem::path hapbench_scalar_program();
 /// `hapbench ARGUMENTS…`
 ProgramRun hapbench(const std::vector<std::string>& arguments, const ProgramOptions& options = {});
 
+/// The same, sent a signal after a second, within which it comes to where it stays, and killed five seconds after that
+/// if it has not ended. The status is that of a shell, 128 and the signal's number.
+ProgramRun hapbench_stopped(int signal, const std::vector<std::string>& arguments);
+
 /// The same in this process, for commands that only read and print; a hundredth of the time of a process each.
 ProgramRun hapbench_here(const std::vector<std::string>& arguments);
 
