@@ -237,13 +237,19 @@ def shards(count, seed, found, scratch):
 
 
 def in_process(count, found, scratch):
-    """So many runs in one Python process: memory stays what it was."""
+    """So many runs in one Python process, with a law of ours, of a plugin and of Python by turns: memory stays what it was."""
     sys.path[:] = [folder for folder in sys.path if folder != str(ROOT / "scripts" / "python")]  # whose package has no module
     import hapbench
 
+    plugin = ROOT / "algorithms" / "plugin"
+    must("cc", "-shared", "-fPIC", f"-I{plugin}", "-o", scratch / "law.so", plugin / "examples" / "depth_weighted.c", "-lm")
+    hapbench.load_plugin(scratch / "law.so")
+    hapbench.force_law("of_python")(lambda depths: 1.0 / len(depths))
+    laws = ("mean", "depth_weighted", "of_python")
+
     def runs(n):
         for i in range(n):
-            hapbench.run("single_spring", {"time.steps": 20, "seed": i + 1})
+            hapbench.run("single_spring", {"time.steps": 20, "seed": i + 1, "rendering.algorithm": laws[i % len(laws)]})
         return 1024 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
 
     before, after = runs(count // 10), runs(count - count // 10)

@@ -316,7 +316,7 @@ def reliability(_):
         "shards": lambda f: (f"{count(f['shards'])} shards, {f['killed']} killed and {f['stopped']} stopped on their way", "merged, the table of the sweep in one"),
         "lines": lambda f: (f"{count(f['lines'])} command lines of random words", f"{count(f['done'])} done, {count(f['refused'])} refused with a reason, {count(f['stopped'])} stopped by a signal after 5 s"),
         "imports": lambda f: (f"{count(f['mutants'])} recordings and presets with bytes changed", f"{count(f['accepted'])} became strokes, the others were refused"),
-        "python": lambda f: (f"{count(f['runs'])} runs in one Python process", f"{f['peak_MB']} MB ({f['peak_MB_of_a_tenth']} MB after a tenth)"),
+        "python": lambda f: (f"{count(f['runs'])} runs in one Python process, by laws of ours, of a plugin and of Python", f"{f['peak_MB']} MB ({f['peak_MB_of_a_tenth']} MB after a tenth)"),
     }
     lines = ["| `scripts/endure` | done | held | findings |", "|---|---|---|---|"]
     lines += [f"| `{part}` | {' | '.join(said[part](record[part]))} | {record[part]['findings'] or 'none'} |" for part in said if part in record]
