@@ -287,7 +287,8 @@ bool ShardRows::read_piece() {
   given_ = 0;
   std::error_code error;
   std::ifstream in(title_.file, std::ios::binary);
-  if (!in || !fs::is_regular_file(title_.file, error)) fail_in_file(title_.file, "cannot be read");
+  if (!in || !fs::is_regular_file(title_.file, error))
+    fail_in_file(title_.file, "is no file that can be read; allowed: sweep_shard_I_of_N.csv of a sweep");
   in.seekg(static_cast<std::streamoff>(offset_));
   const std::size_t before = text_.size();
   text_.resize(before + piece_);

@@ -2,6 +2,7 @@
 import functools
 import html
 import json
+import os
 import re
 import shlex
 
@@ -115,6 +116,10 @@ class Page(Given):
         (run / "summary.json").write_text(json.dumps(summary))
         page = self.page(run)
         self.assertFalse("<script>alert" in page or '<img src="https' in page)
+
+    def test_of_a_folder_whose_name_is_no_text(self):
+        page = self.page(self.copy("mesh").rename(self.root / os.fsdecode(b"na\xffme")))
+        self.assertIn("<title>", page)
 
     def test_bad_input(self):
         for words, said in (((self.root / "sweep",), "is a sweep"), ((self.root / "mesh", "--out", "x.pdf"), "allowed: .html"),

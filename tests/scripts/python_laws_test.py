@@ -5,7 +5,7 @@ import threading
 import traceback
 
 import numpy as np
-from python_fixture import PEG, SHORT, SOURCE, Scratch, main, python, words_of
+from python_fixture import PEG, SHORT, SOURCE, WEDGE, Scratch, main, python, words_of
 
 import hapbench
 
@@ -189,7 +189,7 @@ class TheEndOfTheInterpreter(Scratch):
     def test_finds_threads_that_have_just_ended(self):
         # The main thread holds the interpreter from the comparison to its end, so that many of 16 threads still wait for
         # it when they may no longer: three scripts in four were aborted.
-        words = ["compare", str(SOURCE / "scenarios/suites/1/wedge.json"), "--algorithms", "even", "--jobs", "16", "--seeds", "64",
+        words = ["compare", WEDGE, "--algorithms", "even", "--jobs", "16", "--seeds", "64",
                  "--jitter", "2e-5", *words_of(SHORT)]
         for _ in range(5):
             self.script(f"hapbench.main({[*words, '--out', str(self.root / 'out'), '--quiet']!r})\n"

@@ -14,7 +14,8 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
-from python_fixture import ENVIRONMENT, EVERYTHING, PEG, SHORT, SOURCE, Scratch, main, program, python, words_of
+from fixture import must
+from python_fixture import ENVIRONMENT, EVERYTHING, PEG, SHORT, SOURCE, WEDGE, Scratch, main, program, python, words_of
 
 import hapbench
 from hapbench import _hapbench
@@ -257,6 +258,19 @@ class Program(Scratch):
             without_times = [re.sub(r"[0-9.]+ (µs|us|s|ms)\b", "", text) for text in (own.stdout + own.stderr, built.stdout + built.stderr)]
             if words[0] != "run" or expected == 2:
                 self.assertEqual(*without_times)
+
+    def test_reads_and_writes_numbers_of_no_language(self):
+        must("localedef", "-i", "de_DE", "-f", "UTF-8", self.root / "de_DE.UTF-8")
+        code = ("import hapbench, locale, sys\n"
+                "locale.setlocale(locale.LC_ALL, sys.argv[1])\n"
+                "assert locale.str(0.5) == sys.argv[2]\n"
+                f"report = hapbench.compare({WEDGE!r}, ['mean', 'proxy'], {SHORT}, seeds=2, jitter=1.5e-4)\n"
+                "print(*[report.league[name].tolist() for name in report.league])\n"
+                "hapbench.main(['new', 'bur', '--out', sys.argv[3], '--quiet'])\n"
+                "print(open(sys.argv[3], encoding='utf-8').read())\n")
+        comma, point = (must(sys.executable, "-c", code, *words, env=ENVIRONMENT, LOCPATH=str(self.root))
+                        for words in (("de_DE.UTF-8", "0,5", self.root / "a.json"), ("C", "0.5", self.root / "b.json")))
+        self.assertEqual(comma, point)
 
     def test_stops_cleanly(self):
         for number, code in ((signal.SIGINT, 130), (signal.SIGTERM, 143)):

@@ -363,6 +363,20 @@ TEST_F(SweepShards, AreMergedOnlyWhenTheyBelongTogether) {
   }
 }
 
+TEST_F(SweepShards, AreNotOverwrittenByTheirTable) {
+  Words words = {"merge"};
+  for (const char* shard : {"0", "1", "2", "3"}) {
+    ASSERT_EQ(sweep("out", {"--shard", std::string(shard) + "/4"}).status, 0);
+    words.push_back((directory_ / ("out/sweep_shard_" + std::string(shard) + "_of_4.csv")).string());
+  }
+  const auto before = test::files_below(directory_ / "out");
+  words.insert(words.end(), {"--out", words.back()});
+  const ProgramRun run = hapbench(words);
+  EXPECT_EQ(run.status, 2);
+  EXPECT_NE(run.err.find("one of the tables to join"), std::string::npos) << run.err;
+  EXPECT_EQ(test::files_below(directory_ / "out"), before);
+}
+
 TEST_F(SweepShards, ShowHowFarTheyAre) {
   const auto status = [&] { return hapbench({"sweep", "--status", (directory_ / "out").string(), "--json"}); };
   EXPECT_EQ(status().status, 2) << "there is no such directory";
@@ -412,6 +426,14 @@ TEST_F(SweepShards, HaveScriptsForSlurmThatADryRunDoesNotSubmit) {
   for (const char* file : {"sweep.csv", "sweep.json"}) {
     EXPECT_EQ(read_file(directory_ / "it's" / file), read_file(directory_ / "whole" / file)) << file;
   }
+}
+
+/// A line break in the path would begin a line of the script.
+TEST_F(SweepShards, HaveNoScriptsWhosePathEndsALine) {
+  const ProgramRun run = sweep("x\"\ntouch here\n#", {"--slurm", "2", "--dry-run"});
+  EXPECT_EQ(run.status, 2);
+  EXPECT_EQ(run.out, "");
+  EXPECT_NE(run.err.find("a path with a control character"), std::string::npos) << run.err;
 }
 
 TEST_F(SweepShards, AreNotSubmittedBesideAnotherSweep) {
