@@ -158,8 +158,8 @@ Vec3 extent_of(std::span<const Vec3> vertices) {
 }
 
 double suggested_for(const Vec3& extent) {
-  // Of the 128 nodes along an edge of a cube, 7 lie beyond it. The minimum extent limits the number of nodes of a flat
-  // box, most of which lie beyond it.
+  // Gives a cube 128 nodes along each edge: 121 over its extent and 7 in the margin around it. Each extent counts as at
+  // least 1 % of the largest, or the grid of a flat box, which is mostly margin, would have too many nodes.
   return math::pow(extent.cwiseMax(0.01 * extent.maxCoeff()).prod(), 1.0 / 3.0) / 121.0;
 }
 
