@@ -60,6 +60,13 @@ def files_below(folder, but=("timing.json", "sweep.journal")):
 
 # ---- Random scenes
 
+def build_of(program):
+    """The compiler of a program and the instructions it uses, such as "Clang 19.1.7 avx2"."""
+    version = json.loads(must(program, "--version", "--json"))
+    instructions = version["instruction_set"]
+    return f"{version['compiler']} {instructions['widest'] if instructions['simd'] else 'scalar'}"
+
+
 def commands_on(scene, folder):
     """Every command that takes one scene, of which few compute for longer than a run."""
     out = lambda name: ("--out", folder / name)
@@ -131,7 +138,7 @@ def random_scenes(count, seed, others, found, scratch):
             for file in batch:
                 file.unlink()
         print(f"{valid} scenes, {len(found)} findings", file=sys.stderr, flush=True)
-    return {"scenes": valid, "drawn": drawn, "commands": ran_commands, "others": len(others), "outcomes": outcomes}
+    return {"scenes": valid, "drawn": drawn, "commands": ran_commands, "by_other_build": {build_of(other): valid for other in others}, "outcomes": outcomes}
 
 
 # ---- Kills
@@ -386,9 +393,9 @@ ADDED = {"scenes", "kills", "lines", "imports", "fuzz"}  # of the others, one ca
 
 
 def added(old, new):
-    """The counts of two calls of a part together; of what is no count, the later. How many other builds there were is none."""
+    """The counts of two calls of a part together; of what is no count, the later."""
     if isinstance(old, dict) and isinstance(new, dict):
-        return old | {name: value if name == "others" else added(old.get(name), value) for name, value in new.items()}
+        return old | {name: added(old.get(name), value) for name, value in new.items()}
     return old + new if isinstance(old, int) and isinstance(new, int) else new
 
 

@@ -309,7 +309,7 @@ def reliability(_):
     count = lambda n: f"{n:,}".replace(",", " ")
     said = {
         "scenes": lambda f: (f"{count(f['scenes'])} random scenes ({count(f['drawn'])} drawn), {count(f['commands'])} commands on them",
-                             f"the same hashes by brute force, with one job and two, and from {f['others']} other build{'s' * (f['others'] != 1)}"),
+                             "the same hashes by brute force, with one job and two" + "".join(f", from {build} ({count(n)})" for build, n in f["by_other_build"].items())),
         "kills": lambda f: (f"{count(f['kills'])} kills at any time of " + ", ".join(f["by_command"]), "no torn file; the next call makes what it makes undisturbed"),
         "faults": lambda f: (f"{count(f['calls'])} calls that write, each failing once ({' and '.join(f['errors'])})", "the old results or the new ones, and status 1"),
         "sweep": lambda f: (f"a sweep of {count(f['runs'])} runs", f"{f['peak_MB']} MB ({f['peak_MB_of_a_tenth']} MB for a tenth), {f['over_simulation']} times the simulation"),
