@@ -9,9 +9,9 @@
 namespace hapbench {
 
 /// While an object of this class exists, the first SIGINT or SIGTERM is only recorded, so that work can end cleanly;
-/// the second one terminates the process as usual, and so does the first after two seconds in which the work did not
-/// end. Signals that were ignored stay ignored. The program has one; at most
-/// one object may exist at a time. Without one no signal is received but by stop_work.
+/// one that comes later than 0.2 s after it terminates the process as usual, and so does the first after two seconds in
+/// which the work did not end. Signals that were ignored stay ignored. The program has one object of this class; at
+/// most one may exist at a time. Without one no signal is received but by stop_work.
 class StopSignal {
  public:
   StopSignal();

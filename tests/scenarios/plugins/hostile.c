@@ -1,6 +1,7 @@
 /* Plugins as they should not be. HOSTILE in the environment says which. */
 #include <hapbench_plugin.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -19,6 +20,7 @@ static void* create(const double* parameters, double stiffness, size_t capacity)
 static int evaluate(void* law, const HapbenchContacts* contacts, double* weights, HapbenchForce* answer) {
   (void)law, (void)answer;
   if (is("forgets")) return 0;
+  if (is("loops")) fputs("looping\n", stderr);
   while (is("loops")) {
   }
   for (size_t i = 0; i < contacts->n; ++i) weights[i] = is("nan") ? NAN : 1.0 / (double)contacts->n;

@@ -124,10 +124,11 @@ TEST_F(PluginCommand, EndsARunAndNoMoreWhenALawFails) {
 
 TEST_F(PluginCommand, IsStoppedInALawThatDoesNotReturn) {
   const EnvironmentVariable how("HOSTILE", "loops");
-  const ProgramRun run = test::hapbench_stopped(SIGINT, {"run", "single_spring", "--plugin", plugin("hostile"), "--set",
-                                                         "rendering.algorithm=hostile", "--out", out("run")});
-  EXPECT_EQ(run.status, 130);
-  EXPECT_EQ(run.err, "hapbench: error: the plugin hostile does not return from evaluate\n");
+  test::RunningProgram run(test::hapbench_program(), {"run", "single_spring", "--plugin", plugin("hostile"), "--set",
+                                                      "rendering.algorithm=hostile", "--out", out("run")});
+  ASSERT_TRUE(run.runs_until([&] { return run.err() == "looping\n"; })) << run.err();
+  EXPECT_EQ(run.end_by(SIGINT), -1);
+  EXPECT_EQ(run.err(), "looping\nhapbench: error: the plugin hostile does not return from evaluate\n");
 }
 
 TEST_F(PluginCommand, FindsWhatIsNoForceBehindEveryStage) {

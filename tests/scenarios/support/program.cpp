@@ -129,13 +129,6 @@ ProgramRun hapbench(const std::vector<std::string>& arguments, const ProgramOpti
   return run_program(hapbench_program(), arguments, options);
 }
 
-ProgramRun hapbench_stopped(int signal, const std::vector<std::string>& arguments) {
-  std::vector<std::string> words = {
-      "--preserve-status", "--signal", std::to_string(signal), "--kill-after", "5", "1", hapbench_program().string()};
-  words.insert(words.end(), arguments.begin(), arguments.end());
-  return run_program("/usr/bin/timeout", words);
-}
-
 ProgramRun hapbench_here(const std::vector<std::string>& arguments) {
   set_this_program(hapbench_program());
   std::vector<std::string> words = {hapbench_program().string()};
@@ -153,9 +146,12 @@ ProgramRun hapbench_here(const std::vector<std::string>& arguments) {
   return run;
 }
 
-RunningProgram::RunningProgram(const std::filesystem::path& program, const std::vector<std::string>& arguments) {
+RunningProgram::RunningProgram(const std::filesystem::path& program, const std::vector<std::string>& arguments)
+    : err_(nameless_file()) {
+  const int err = ::fileno(err_.get());
+  ::fcntl(err, F_SETFL, O_APPEND);  // reading moves the place that it shares with the process
   const int null = ::open("/dev/null", O_WRONLY);
-  process_ = start(program, arguments, {}, null, null);
+  process_ = start(program, arguments, {}, null, err);
   ::close(null);
 }
 
@@ -176,10 +172,22 @@ bool RunningProgram::runs_until(const std::function<bool()>& condition) {
   return true;
 }
 
-int RunningProgram::end_by(int signal) {
+void RunningProgram::send(int signal) {
   if (reaped_) throw std::logic_error("the process has ended");
-  int status = 0;
   ::kill(process_, signal);
+}
+
+std::string RunningProgram::err() {
+  return contents(err_.get());
+}
+
+int RunningProgram::end_by(int signal) {
+  send(signal);
+  return wait();
+}
+
+int RunningProgram::wait() {
+  int status = 0;
   ::waitpid(process_, &status, 0);
   reaped_ = true;
   return WIFEXITED(status) ? WEXITSTATUS(status) : -1;

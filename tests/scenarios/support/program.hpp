@@ -1,7 +1,9 @@
 #pragma once
 
+#include <cstdio>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -43,10 +45,6 @@ std::filesystem::path hapbench_scalar_program();
 /// `hapbench ARGUMENTS…`
 ProgramRun hapbench(const std::vector<std::string>& arguments, const ProgramOptions& options = {});
 
-/// The same, sent a signal after a second, within which it comes to where it stays, and killed five seconds after that
-/// if it has not ended. The status is that of a shell, 128 and the signal's number.
-ProgramRun hapbench_stopped(int signal, const std::vector<std::string>& arguments);
-
 /// The same in this process, for commands that only read and print; a hundredth of the time of a process each.
 ProgramRun hapbench_here(const std::vector<std::string>& arguments);
 
@@ -63,11 +61,16 @@ class RunningProgram {
   bool runs_until(const std::function<bool()>& condition);
   /// SIGKILL, and waits for the end. Returns true when that ended it, false when it had ended before.
   bool kill();
-  /// Sends a signal that the process may handle, waits for the end and returns the exit status; -1 when the signal
-  /// ended it.
+  void send(int signal);
+  /// Waits for the end and returns the exit status; -1 when a signal ended it.
+  int wait();
+  /// What it has written to standard error.
+  std::string err();
+  /// send and wait.
   int end_by(int signal);
 
  private:
+  std::unique_ptr<std::FILE, int (*)(std::FILE*)> err_;
   int process_;
   bool reaped_ = false;
 };
