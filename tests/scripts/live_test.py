@@ -256,7 +256,7 @@ class InChromium(OfBrowser, unittest.TestCase):
         self.js("document.getElementById('keep').click()")
         self.browser.wait_for("document.getElementById('said').textContent.startsWith('Kept')")
         file = downloads / "live_peg_original_averaging.json"
-        for _ in range(100):
+        for _ in range(3000):
             if file.is_file() and file.read_bytes():
                 break
             time.sleep(0.1)
