@@ -3,7 +3,7 @@
 #include <unistd.h>
 
 #include <atomic>
-#include <ctime>
+#include <chrono>
 #include <string_view>
 
 #include "algorithms/plugin/plugin_call.hpp"
@@ -14,14 +14,19 @@ namespace {
 
 constexpr int kSignals[] = {SIGINT, SIGTERM};
 
+using Clock = std::chrono::steady_clock;
+
 std::atomic<int> received_signal{0};
-static_assert(std::atomic<int>::is_always_lock_free, "a signal handler may not lock");
+std::atomic<Clock::time_point> received_at;
+static_assert(std::atomic<int>::is_always_lock_free && std::atomic<Clock::time_point>::is_always_lock_free,
+              "a signal handler may not lock");
 
 /// Time after which a signal that nobody has asked for ends the process: a plugin may loop, a pipe may never deliver.
 constexpr unsigned kPatience = 2;  // [s]
 
-/// Time within which a further signal is the same one: timeout(1) and process groups deliver each twice.
-constexpr double kSameSignal = 0.2;  // [s]
+/// A signal that follows the first one within this time is taken for the same: timeout(1) sends each one twice, to its
+/// child and to the process group.
+constexpr auto kSameSignal = std::chrono::milliseconds(200);
 
 void end_process(int signal) {
   ::signal(signal, SIG_DFL);
@@ -36,20 +41,13 @@ void end_without_notice(int) {
   end_process(received_signal);
 }
 
-/// Seconds of a clock that only goes forward.
-double now() {
-  timespec time;
-  ::clock_gettime(CLOCK_MONOTONIC, &time);
-  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-}
-
 void note(int signal) {
-  static std::atomic<double> first{0.0};
+  const Clock::time_point now = Clock::now();
   if (received_signal != 0) {
-    if (now() - first > kSameSignal) end_process(signal);
+    if (now - received_at.load() > kSameSignal) end_process(signal);
     return;
   }
-  first = now();
+  received_at = now;
   received_signal = signal;
   ::signal(SIGALRM, end_without_notice);
   ::alarm(kPatience);
@@ -62,7 +60,7 @@ StopSignal::StopSignal() {
   struct sigaction action {};
   action.sa_handler = note;
   action.sa_flags = SA_RESTART;
-  for (const int signal : kSignals) sigaddset(&action.sa_mask, signal);  // one at a time
+  sigfillset(&action.sa_mask);  // no handler interrupts another
   for (int i = 0; i < 2; ++i) {
     ::sigaction(kSignals[i], nullptr, &before_[i]);
     if (before_[i].sa_handler != SIG_IGN) ::sigaction(kSignals[i], &action, nullptr);

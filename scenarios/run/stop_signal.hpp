@@ -9,9 +9,9 @@
 namespace hapbench {
 
 /// While an object of this class exists, the first SIGINT or SIGTERM is only recorded, so that work can end cleanly;
-/// one that comes later than 0.2 s after it terminates the process as usual, and so does the first after two seconds in
-/// which the work did not end. Signals that were ignored stay ignored. The program has one object of this class; at
-/// most one may exist at a time. Without one no signal is received but by stop_work.
+/// another one more than 0.2 s later terminates the process as usual, and so does the first one if the work has not
+/// ended after two seconds. Signals that were ignored stay ignored. At most one object of this class may exist at a
+/// time; the program has one. Without it no signal is received but by stop_work.
 class StopSignal {
  public:
   StopSignal();

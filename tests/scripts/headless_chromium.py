@@ -11,6 +11,7 @@ import time
 import unittest
 
 PATIENCE_S = 300
+DOWNLOAD_S = 1800  # a video is recorded as it plays
 UNNAMED = """[...document.querySelectorAll('button, select, input, canvas, img')].filter((e) =>
     !(e.getAttribute('aria-label') || e.getAttribute('alt') || e.textContent.trim() && e.tagName === 'BUTTON' ||
       [...(e.labels || [])].some((label) => label.textContent.trim()))).map((e) => e.outerHTML.slice(0, 80))"""
@@ -35,6 +36,16 @@ PALE = """(() => {
     return (Math.max(a, b) + 0.05) / (Math.min(a, b) + 0.05) < 4.5;
   }).map((e) => e.outerHTML.slice(0, 100));
 })()"""
+
+
+def downloaded(folder, name):
+    """Returns the file that a page saves there, once it has content. `name` may be a pattern."""
+    deadline = time.monotonic() + DOWNLOAD_S
+    while not (found := [file for file in folder.glob(name) if file.stat().st_size > 0]):
+        if time.monotonic() > deadline:
+            raise TimeoutError(f"{folder / name} is not saved")
+        time.sleep(0.1)
+    return found[0]
 
 
 class Browser:

@@ -6,7 +6,7 @@ import time
 import unittest
 
 from fixture import PROGRAM, SOURCE, hapbench, main, must, ran, scratch_folder
-from headless_chromium import PALE, UNNAMED, Chromium
+from headless_chromium import PALE, UNNAMED, Chromium, downloaded
 from headless_firefox import Firefox
 
 SCENES = ("peg", "hole", "task2", "wedge", "molar", "friction")
@@ -255,11 +255,7 @@ class InChromium(OfBrowser, unittest.TestCase):
         self.move((2e-4, -1e-3, 0, 0.2, 0), 300)
         self.js("document.getElementById('keep').click()")
         self.browser.wait_for("document.getElementById('said').textContent.startsWith('Kept')")
-        file = downloads / "live_peg_original_averaging.json"
-        for _ in range(3000):
-            if file.is_file() and file.read_bytes():
-                break
-            time.sleep(0.1)
+        file = downloaded(downloads, "live_peg_original_averaging.json")
         [run] = json.loads(must(PROGRAM, "run", file, "--json", "--out", folder / "runs", statuses=(0, 3)))
         self.assertIn(run["state_hash"], self.js("document.getElementById('said').textContent"))
 

@@ -3,7 +3,7 @@ import time
 import unittest
 
 from fixture import hapbench, main, scratch_folder
-from headless_chromium import Page
+from headless_chromium import Page, downloaded
 
 # Text against the ground it stands on; inherited grounds are looked up. Returns what falls below 4.5 to 1.
 POOR_CONTRAST = """(() => {
@@ -144,21 +144,13 @@ class OwnPage(Page):
 
     def test_saves_a_picture(self):
         self.click("#replay-picture")
-        self.assertTrue(self.saved("*.png").startswith(b"\x89PNG"))
+        self.assertTrue(downloaded(self.root, "*.png").read_bytes().startswith(b"\x89PNG"))
 
     def test_saves_a_clip(self):
         self.choose("#replay-speed", "2")
         self.click("#replay-clip")
         # The start of an EBML file, which WebM is.
-        self.assertTrue(self.saved("*.webm").startswith(b"\x1a\x45\xdf\xa3"))
-
-    def saved(self, pattern):
-        """The file's bytes, as soon as there are some: the browser makes it before it writes."""
-        deadline = time.monotonic() + 1800
-        while not (found := [file for file in self.root.glob(pattern) if file.stat().st_size > 0]):
-            self.assertLess(time.monotonic(), deadline, pattern)
-            time.sleep(0.1)
-        return found[0].read_bytes()
+        self.assertTrue(downloaded(self.root, "*.webm").read_bytes().startswith(b"\x1a\x45\xdf\xa3"))
 
     def test_springs_have_a_replay_too(self):
         self.js("player.openScene(1)")

@@ -149,7 +149,7 @@ ProgramRun hapbench_here(const std::vector<std::string>& arguments) {
 RunningProgram::RunningProgram(const std::filesystem::path& program, const std::vector<std::string>& arguments)
     : err_(nameless_file()) {
   const int err = ::fileno(err_.get());
-  ::fcntl(err, F_SETFL, O_APPEND);  // reading moves the place that it shares with the process
+  ::fcntl(err, F_SETFL, O_APPEND);  // the process shares the offset of the file, which err() moves
   const int null = ::open("/dev/null", O_WRONLY);
   process_ = start(program, arguments, {}, null, err);
   ::close(null);
@@ -177,8 +177,11 @@ void RunningProgram::send(int signal) {
   ::kill(process_, signal);
 }
 
-std::string RunningProgram::err() {
-  return contents(err_.get());
+int RunningProgram::wait() {
+  int status = 0;
+  ::waitpid(process_, &status, 0);
+  reaped_ = true;
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
 }
 
 int RunningProgram::end_by(int signal) {
@@ -186,20 +189,14 @@ int RunningProgram::end_by(int signal) {
   return wait();
 }
 
-int RunningProgram::wait() {
-  int status = 0;
-  ::waitpid(process_, &status, 0);
-  reaped_ = true;
-  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-}
-
 bool RunningProgram::kill() {
   if (reaped_) return false;
-  int status = 0;
   ::kill(process_, SIGKILL);
-  ::waitpid(process_, &status, 0);
-  reaped_ = true;
-  return WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL;
+  return wait() == -SIGKILL;
+}
+
+std::string RunningProgram::err() {
+  return contents(err_.get());
 }
 
 }  // namespace hapbench::test

@@ -62,12 +62,12 @@ class RunningProgram {
   /// SIGKILL, and waits for the end. Returns true when that ended it, false when it had ended before.
   bool kill();
   void send(int signal);
-  /// Waits for the end and returns the exit status; -1 when a signal ended it.
+  /// Waits for the end. Returns the exit status, or the negative number of the signal that ended the process.
   int wait();
-  /// What it has written to standard error.
-  std::string err();
-  /// send and wait.
+  /// Sends a signal that the process may handle; waits and returns as wait() does.
   int end_by(int signal);
+  /// Returns the text on standard error so far.
+  std::string err();
 
  private:
   std::unique_ptr<std::FILE, int (*)(std::FILE*)> err_;
