@@ -6,6 +6,7 @@
 #include <string>
 
 #include "algorithms/laws/shaped_stiffness.hpp"
+#include "sim/contact/stiffness_tensor.hpp"
 #include "tests/support/contact_sets.hpp"
 #include "tests/support/dense_laws.hpp"
 #include "tests/support/scale.hpp"

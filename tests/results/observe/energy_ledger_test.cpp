@@ -12,6 +12,7 @@
 #include "device_model/ideal_device.hpp"
 #include "device_model/impedance_device.hpp"
 #include "results/observe/passivity_observer.hpp"
+#include "tests/results/rows.hpp"
 #include "tests/support/scenes.hpp"
 #include "tests/support/setting.hpp"
 
