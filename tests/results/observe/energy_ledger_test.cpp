@@ -294,13 +294,13 @@ TEST(EnergyLedger, TurningTheToolPutsEnergyIntoTheSprings) {
   ContactBuffer contacts(1);
   StepRecord record;
   record.rendered = &contacts;
-  constexpr double kMoment = -2.0;
+  constexpr double kTorsion = 4.0;  // [N m] of a spring whose moment grows with the angle
   for (int k = 0; k <= 10; ++k) {
     const double angle = 0.1 * k;
     record.step = static_cast<std::uint64_t>(k);
     record.tool.pose.axis = {std::sin(angle), 0, -std::cos(angle)};  // turns about -y
-    record.springs.moment = {0, -kMoment, 0};
-    record.springs.energy = -kMoment * angle;
+    record.springs.moment = {0, kTorsion * angle, 0};
+    record.springs.energy = 0.5 * kTorsion * angle * angle;
     ledger.on_step(record);
   }
   EXPECT_NEAR(ledger.balance().rotation, 2.0, 1e-14);

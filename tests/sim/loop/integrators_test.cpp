@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 #include <unsupported/Eigen/MatrixFunctions>
+#include <utility>
 #include <vector>
 
 #include "sim/core/random.hpp"
@@ -322,15 +323,21 @@ std::vector<ToolState> seen_of_a_turn(const IntegratorEntry* integrator, std::ui
 }
 
 TEST(IntegratorInTheLoop, SeesTheAxisAndTheTurnOfItsTime) {
-  const auto seen = seen_of_a_turn(&kRk4, 3, std::numeric_limits<double>::infinity());
-  ASSERT_EQ(seen.size(), 12u);
-  const double kParts[] = {0.0, 0.5, 0.5, 1.0};
-  for (std::size_t i = 0; i < seen.size(); ++i) {
-    const double t = (static_cast<double>(i / 4) + kParts[i % 4]) * SimulationConfig{}.dt;
-    EXPECT_LE((seen[i].pose.axis - tool_axis(kTurn, 0.1 + 3.0 * t, 0.0)).norm(), 4 * kEps);
-    // Turns of 1e-3 rad are known to eps / 1e-3.
-    const double rate = i == 0 ? 0.0 : 3.0;
-    EXPECT_NEAR(seen[i].angular_velocity.norm(), rate, 1e-11) << i;
+  // Where in a step each asks for the force, first in the row.
+  const std::pair<const IntegratorEntry*, std::vector<double>> integrators[] = {
+      {&kVelocityVerlet, {0.0, 1.0}}, {&kRk4, {0.0, 0.5, 0.5, 1.0}}, {&kEvent, {0.0, 0.5, 0.5, 1.0, 1.0}}};
+  for (const auto& [integrator, parts] : integrators) {
+    SCOPED_TRACE(integrator->info.name);
+    const auto seen = seen_of_a_turn(integrator, 3, std::numeric_limits<double>::infinity());
+    const std::size_t forces = parts.size();
+    ASSERT_EQ(seen.size(), 3 * forces);
+    for (std::size_t i = 0; i < seen.size(); ++i) {
+      const double t = (static_cast<double>(i / forces) + parts[i % forces]) * SimulationConfig{}.dt;
+      EXPECT_LE((seen[i].pose.axis - tool_axis(kTurn, 0.1 + 3.0 * t, 0.0)).norm(), 4 * kEps);
+      // Turns of 1e-3 rad are known to eps / 1e-3.
+      const double rate = i == 0 ? 0.0 : 3.0;
+      EXPECT_NEAR(seen[i].angular_velocity.norm(), rate, 1e-11) << i;
+    }
   }
 }
 
