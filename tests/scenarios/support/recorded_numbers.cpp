@@ -25,11 +25,18 @@ fs::path record_file() {
 
 NumbersByName read_record() {
   NumbersByName record;
+  std::map<std::string, std::vector<std::string>> columns;
   for (const std::string& text : lines_of(read_file(record_file()))) {
     std::istringstream words(text);
-    std::string name;
-    words >> name;
-    words >> record[name].state >> record[name].tables;
+    std::string name, file, word;
+    words >> name >> file;
+    if (name == "columns") columns[file].clear();
+    for (std::size_t i = 0; words >> word; ++i) {
+      if (name == "columns")
+        columns[file].push_back(word);
+      else
+        record[name][file][columns[file].at(i)] = word;
+    }
   }
   return record;
 }
@@ -43,17 +50,33 @@ void renew(bool of_commands, const NumbersByName& found) {
   std::erase_if(record, [&](const auto& line) { return is_command(line.first) == of_commands; });
   record.insert(found.begin(), found.end());
   std::string text;
-  for (const auto& [name, numbers] : record) text += name + " " + numbers.state + " " + numbers.tables + "\n";
+  std::map<std::string, std::string> headings;
+  for (const auto& [name, files] : record) {
+    for (const auto& [file, columns] : files) {
+      std::string heading = "columns " + file, hashes = name + " " + file;
+      for (const auto& [column, hash] : columns) {
+        heading += " " + column;
+        hashes += " " + hash;
+      }
+      if (heading != headings[file]) text += heading + "\n";
+      headings[file] = heading;
+      text += hashes + "\n";
+    }
+  }
   write_plainly(record_file(), text);
 }
 
-void add_table(Hash64& hash, const std::string& text) {
+using Hashes = std::map<std::string, std::map<std::string, Hash64>>;
+
+void add_table(std::map<std::string, Hash64>& hashes, const std::string& text) {
   const std::vector<std::string> lines = lines_of(text);
+  const std::vector<std::string> columns = lines.empty() ? std::vector<std::string>() : cells_of(lines[0]);
   for (std::size_t i = 1; i < lines.size(); ++i) {
-    for (const std::string& cell : cells_of(lines[i])) {
+    const std::vector<std::string> cells = cells_of(lines[i]);
+    for (std::size_t j = 0; j < cells.size(); ++j) {
       double number = 0.0;
-      const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), number);
-      if (error == std::errc() && end == cell.data() + cell.size()) hash.real(number);
+      const auto [end, error] = std::from_chars(cells[j].data(), cells[j].data() + cells[j].size(), number);
+      if (error == std::errc() && end == cells[j].data() + cells[j].size()) hashes[columns.at(j)].real(number);
     }
   }
 }
@@ -64,21 +87,30 @@ void add_numbers(Hash64& hash, const Json& json) {
   for (const Json& value : json) add_numbers(hash, value);
 }
 
-/// The lines of what differs.
-std::string differences(const NumbersByName& found, const NumbersByName& expected) {
+/// "file column" with the hash, for all of a name.
+std::map<std::string, std::string> flat(const NumbersByName& numbers, const std::string& name) {
+  std::map<std::string, std::string> all;
+  const auto found = numbers.find(name);
+  if (found == numbers.end()) return all;
+  for (const auto& [file, columns] : found->second)
+    for (const auto& [column, hash] : columns) all[file + " " + column] = hash;
+  return all;
+}
+
+/// What differs, a line each.
+std::string differences(const NumbersByName& found, const NumbersByName& record) {
   std::string text;
-  const auto part = [](bool same) { return same ? "same" : "OTHER"; };
-  for (const auto& [name, numbers] : found) {
-    const auto line = expected.find(name);
-    if (line == expected.end()) {
-      text += "  " + name + ": is not on record\n";
-    } else if (line->second != numbers) {
-      text += "  " + name + ": state " + part(line->second.state == numbers.state) + ", tables " +
-              part(line->second.tables == numbers.tables) + "\n";
+  NumbersByName names = found;
+  names.insert(record.begin(), record.end());
+  for (const auto& [name, unused] : names) {
+    const auto now = flat(found, name), before = flat(record, name);
+    for (const auto& [place, hash] : now) {
+      const auto known = before.find(place);
+      if (known == before.end() || known->second != hash)
+        text += "  " + name + ": " + place + (known == before.end() ? " is not on record\n" : " has OTHER numbers\n");
     }
-  }
-  for (const auto& [name, numbers] : expected) {
-    if (!found.contains(name)) text += "  " + name + ": is on record only\n";
+    for (const auto& [place, hash] : before)
+      if (!now.contains(place)) text += "  " + name + ": " + place + " is on record only\n";
   }
   return text;
 }
@@ -86,21 +118,23 @@ std::string differences(const NumbersByName& found, const NumbersByName& expecte
 }  // namespace
 
 RecordedNumbers numbers_below(const fs::path& directory) {
-  RecordedNumbers numbers{"-", ""};
-  Hash64 hash;
+  RecordedNumbers numbers;
+  Hashes hashes;
   for (const auto& [name, contents] : files_below(directory)) {
     const std::string file = fs::path(name).filename().string();
     if (file.ends_with(".csv")) {
-      add_table(hash, contents);
+      add_table(hashes[file], contents);
     } else if (file == "summary.json") {
       const Json summary = Json::parse(contents);
-      add_numbers(hash, summary.at("metrics"));
-      if (name == file) numbers.state = summary.at("state_hash");
+      for (const auto& [group, metrics] : summary.at("metrics").items()) add_numbers(hashes[file][group], metrics);
+      if (name == file) numbers[file]["state_hash"] = summary.at("state_hash");
     } else if (file.starts_with("worst_") && file.ends_with(".json")) {
-      add_numbers(hash, Json::parse(contents));
+      add_numbers(hashes[file]["numbers"], Json::parse(contents));
     }
   }
-  numbers.tables = hash_text(hash.value());
+  // Half of each hash: a change that it does not see has a chance of 2^-32.
+  for (const auto& [file, columns] : hashes)
+    for (const auto& [column, hash] : columns) numbers[file][column] = hash_text(hash.value()).substr(0, 8);
   return numbers;
 }
 
