@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <nlohmann/json.hpp>
+#include <set>
 #include <stdexcept>
 
 #include "tests/results/files.hpp"
@@ -16,6 +18,7 @@
 ///     # a comment
 ///     + NAME TEXT             writes a file; "\n" in the text ends a line
 ///     $ hapbench WORDS…       runs the program, with words as a shell takes them
+///     $ keys hapbench WORDS…  the same, but of JSON on standard output only the paths of its keys, sorted
 ///     $ ls                    lists the files of the session
 ///
 /// and what the program answers: standard output behind two blanks, standard error behind "! ", an exit status other
@@ -55,6 +58,27 @@ std::string marked(const std::string& text, const std::string& mark) {
   return result;
 }
 
+/// Adds the paths of all values, as "rows[].value", which programs that read the JSON rely on.
+void add_keys(const Json& json, const std::string& path, std::set<std::string>& keys) {
+  if (json.empty() || !json.is_structured()) keys.insert(path);
+  for (const auto& [key, value] : json.items())
+    if (json.is_array()) {
+      add_keys(value, path + "[]", keys);
+    } else if (json.is_object()) {
+      add_keys(value, path.empty() ? key : path + "." + key, keys);
+    }
+}
+
+std::string keys_of(const std::string& text) {
+  const Json json = Json::parse(text, nullptr, false);
+  if (json.is_discarded()) return text;
+  std::set<std::string> keys;
+  add_keys(json, "", keys);
+  std::string lines;
+  for (const std::string& key : keys) lines += key + "\n";
+  return lines;
+}
+
 /// A session with the answers of the program that was built.
 class Session {
  public:
@@ -91,8 +115,9 @@ class Session {
     }
     test::ProgramOptions options;
     options.directory = directory_.path();
-    const test::ProgramRun run = test::hapbench({words.begin() + 1, words.end()}, options);
-    return marked(without_places(run.out), "  ") + marked(without_places(run.err), "! ") +
+    const bool keys = words.at(0) == "keys";
+    const test::ProgramRun run = test::hapbench({words.begin() + (keys ? 2 : 1), words.end()}, options);
+    return marked(without_places(keys ? keys_of(run.out) : run.out), "  ") + marked(without_places(run.err), "! ") +
            (run.status == 0 ? "" : "= " + std::to_string(run.status) + "\n");
   }
 
