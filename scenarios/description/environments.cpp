@@ -253,6 +253,7 @@ Shell make_shell(const Scenario& scenario) {
 
 namespace {
 
+/// The inside of each type of environment. One that has none says so here; one that says nothing does not compile.
 struct BuildSolid {
   const NamedFiles& files;
 
@@ -268,12 +269,7 @@ struct BuildSolid {
   }
   template <class Analytic>
   std::shared_ptr<const Solid> operator()(const Analytic& shape) const {
-    // Without a signed distance of its kind, nothing is known of an environment's inside.
-    if constexpr (requires { make_solid(shape); }) {
-      return make_solid(shape);
-    } else {
-      return nullptr;
-    }
+    return make_solid(shape);
   }
 };
 

@@ -94,6 +94,13 @@ AlgorithmEntry halved_entry() {
     }
 
 
+# What an environment says of its inside; without it the tree does not compile.
+INSIDE = """
+static std::unique_ptr<const Solid> make_solid(const RidgeEnvironment& ridge) { return make_solid(surface_points(ridge)); }
+
+"""
+
+
 def add_environment(tree):
     return {
         tree.edit("using Environment = std::variant<", """struct RidgeEnvironment {
@@ -111,13 +118,12 @@ def add_environment(tree):
   f.number("spacing_m", ridge.spacing, kLength, "distance of neighbours");
 }
 
-""", before=True),
-        tree.edit("  Shell operator()(const SpringsEnvironment&) const { return nullptr; }\n", """  Shell operator()(const RidgeEnvironment& ridge) const {
-    std::vector<SurfacePoint> points;
-    for (int i = -5; i <= 5; ++i) points.push_back({{ridge.spacing * i, 0.0, ridge.height}, Vec3::UnitZ()});
-    return of(points, ridge.spacing);
-  }
-"""),
+static std::vector<SurfacePoint> surface_points(const RidgeEnvironment& ridge) {
+  std::vector<SurfacePoint> points;
+  for (int i = -5; i <= 5; ++i) points.push_back({{ridge.spacing * i, 0.0, ridge.height}, Vec3::UnitZ()});
+  return points;
+}
+""" + INSIDE, before=True),
     }
 
 
@@ -333,6 +339,17 @@ class Adding(unittest.TestCase):
                            ("environment.type", "a row of points")):
             self.assertIn(text, self.hapbench("describe", name))
         self.assertIn("device.play_m=", self.hapbench("complete", "run", "scene.json", "--set", "device.pl"))
+
+    def test_an_environment_says_what_its_inside_is(self):
+        self.write()
+        self.hapbench("run", "scene.json", "--out", "out", "--quiet")
+        summary = json.loads((self.folder / "out/summary.json").read_text())
+        self.assertAlmostEqual(summary["metrics"]["inside_max_m"], 1e-5, delta=1e-6)
+        silent = (self.scratch / "tree/scenarios/description/environments.cpp").read_text().replace(INSIDE, "")
+        done = subprocess.run(["c++", "-std=c++20", "-fsyntax-only", "-DEIGEN_DONT_VECTORIZE", "-I", self.scratch / "tree", "-isystem",
+                               "/usr/include/eigen3", "-x", "c++", "-"], input=silent, capture_output=True, text=True)
+        self.assertNotEqual(done.returncode, 0)
+        self.assertIn("make_solid(const hapbench::RidgeEnvironment&)", done.stderr)
 
     def test_a_named_file_is_read_checked_hashed_and_moved(self):
         self.write(hand={"type": "push", "force_N": 1, "file": "stroke.csv"})
