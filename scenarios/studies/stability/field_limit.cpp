@@ -161,8 +161,10 @@ class Search {
              (!scenario.rendering.dry_friction ||
               is_stable_step(device_loop(stuck_scene(scenario), 1.0).state_matrix()));
     };
-    const Scenario first = at(algorithm, question_.value_at(0.0)).scenario;
-    if (!has_device(first) || device_loop(first, lambda).state_matrix().size() == 0) return std::nullopt;
+    for (const double end : {0.0, 1.0}) {
+      const Scenario scenario = at(algorithm, question_.value_at(end)).scenario;
+      if (!has_device(scenario) || !unknown_to_theory(scenario).empty()) return std::nullopt;
+    }
     std::map<double, bool> tried;
     for (int i = 0; i <= 2 * kEdgeIntervals; ++i) {
       const double part = 0.5 * i / kEdgeIntervals;

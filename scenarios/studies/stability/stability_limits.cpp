@@ -4,8 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <nlohmann/json.hpp>
 
 #include "algorithms/stages/damping_and_limits.hpp"
+#include "scenarios/description/descriptions.hpp"
+#include "scenarios/description/writer.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/stop_signal.hpp"
@@ -316,6 +319,17 @@ DeviceLoop admittance_loop(const Scenario& scenario, const AdmittanceDeviceConfi
   return result;
 }
 
+/// The fields of devices that their loops have, that SampledLoop::nonlinearity names, or that do nothing while nothing
+/// saturates, with a blank before and after each. Any other that is not at its default leaves no theory.
+constexpr std::string_view kKnownToTheory =
+    " /handle_mass_kg /viscous_N_s_per_m /coulomb_N /encoder_step_m /delay_samples /force_max_N /force_step_N "
+    "/force_slew_N_per_s /position_noise_m /velocity_filter/noise_m /velocity_filter/cutoff_Hz /velocity_filter/order "
+    "/position_filter/cutoff_Hz /position_filter/order /transmission/motor_share /transmission/stiffness_N_per_m "
+    "/transmission/damping_N_s_per_m /force_limit_N /sensor/weight_offset_N /sensor/weight_compensated /sensor/noise_N "
+    "/servo/stiffness_N_per_m /servo/damping_N_s_per_m /servo/max_force_N /servo/delay_samples "
+    "/mechanics/carriage_mass_kg /mechanics/handle_mass_kg /mechanics/friction_N_s_per_m "
+    "/mechanics/structure_stiffness_N_per_m /mechanics/structure_damping_N_s_per_m ";
+
 /// Eigenvalues of larger matrices take seconds.
 constexpr double kLongestDelay = 200.0;
 
@@ -339,6 +353,27 @@ double delay_of(const Scenario& scenario) {
   return admittance != nullptr ? static_cast<double>(admittance->servo.delay) : 0.0;
 }
 
+std::string unknown_to_theory(const Scenario& scenario) {
+  // With the parts of the device, so that only fields of theirs can differ.
+  DeviceFields plain = AdmittanceDeviceConfig{};
+  if (const auto* device = std::get_if<ImpedanceDeviceConfig>(&scenario.device)) {
+    auto& parts = plain.emplace<ImpedanceDeviceConfig>();
+    if (std::holds_alternative<LowPassFilter>(device->velocity_filter)) parts.velocity_filter = LowPassFilter{};
+    if (std::holds_alternative<AdaptiveWindowFilter>(device->velocity_filter))
+      parts.velocity_filter = AdaptiveWindowFilter{};
+    if (device->position_filter) parts.position_filter.emplace();
+    if (device->transmission) parts.transmission.emplace();
+  }
+  std::string unknown;
+  for (const Json& change : Json::diff(written(plain), written(scenario.device))) {
+    const std::string path = change["path"].get<std::string>();
+    if (kKnownToTheory.find(" " + path + " ") == std::string_view::npos)
+      unknown += (unknown.empty() ? "device" : ", device") + path;
+  }
+  std::replace(unknown.begin(), unknown.end(), '/', '.');
+  return unknown;
+}
+
 DeviceLoop device_loop(const Scenario& scenario, double lambda) {
   const auto* impedance = std::get_if<ImpedanceDeviceConfig>(&scenario.device);
   const auto* admittance = std::get_if<AdmittanceDeviceConfig>(&scenario.device);
@@ -346,13 +381,15 @@ DeviceLoop device_loop(const Scenario& scenario, double lambda) {
                                            : admittance_loop(scenario, *admittance, lambda);
   if (delay_of(scenario) > kLongestDelay)
     result.no_theory = "a delay beyond 200 samples makes the loop too large to solve";
+  if (const std::string unknown = unknown_to_theory(scenario); !unknown.empty())
+    result.no_theory = unknown + ": not in the theory of the loop";
   return result;
 }
 
 Eigen::MatrixXd contact_step(const Scenario& scenario, double lambda) {
-  if (delay_of(scenario) > kLongestDelay) return {};
-  if (!std::holds_alternative<IdealDeviceFields>(scenario.device)) return device_loop(scenario, lambda).state_matrix();
-  return tool_on_spring(scenario, lambda).step_matrix();
+  if (std::holds_alternative<IdealDeviceFields>(scenario.device)) return tool_on_spring(scenario, lambda).step_matrix();
+  if (delay_of(scenario) > kLongestDelay || !unknown_to_theory(scenario).empty()) return {};
+  return device_loop(scenario, lambda).state_matrix();
 }
 
 }  // namespace hapbench

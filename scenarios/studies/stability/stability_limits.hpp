@@ -91,11 +91,16 @@ struct DeviceLoop {
 /// Precondition: the device is not ideal; that has no loop of its own.
 DeviceLoop device_loop(const Scenario& scenario, double lambda);
 
+/// The fields of the device that are not at their defaults and that no theory knows, as "device.viscous_N_s_per_m";
+/// empty when there are none. Precondition: it is not ideal.
+std::string unknown_to_theory(const Scenario& scenario);
+
 /// The delay of the device's force, or of its servo [samples].
 double delay_of(const Scenario& scenario);
 
 /// The map of a step of the tool at a wall of lambda K and lambda B: by the device's loop, of an ideal device by the
-/// integrator alone. Empty for a delay beyond 200 samples, which makes the loop too large to solve.
+/// integrator alone. Empty for a delay beyond 200 samples, which makes the loop too large to solve, and for a device
+/// with fields that are unknown_to_theory.
 Eigen::MatrixXd contact_step(const Scenario& scenario, double lambda);
 
 }  // namespace hapbench

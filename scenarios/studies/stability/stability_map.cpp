@@ -145,7 +145,7 @@ void add_loop_theory(const StabilityMap& map, const MapSubject& subject, double 
                                 [&](double y) { return loop_at(y).state_matrix(); });
   }
   const auto* sampled = std::get_if<SampledLoop>(&start.loop);
-  if (sampled == nullptr) return;
+  if (sampled == nullptr || !unknown_to_theory(scene(map, subject, point.x, map.y.low)).empty()) return;
   if (start.no_theory.empty() && map.has_stiffness_as_y()) point.worst_hand = worst_hand_edge(*sampled) / lambda;
   for (std::size_t i = 0; i < point.limits.size(); ++i) {
     const auto largest = stiffness_limits()[i].largest;

@@ -353,6 +353,20 @@ TEST(DeviceLoop, SaysWhatIsNotLinear) {
   EXPECT_NE(device_loop(scene_of("encoder_step", 1e-5, 1000.0), 1.0).no_theory, "");
 }
 
+TEST(DeviceLoop, KnowsEveryFieldOfTheDevices) {
+  Scenario scenario;
+  const LowPassFilter filter{50.0, 3};
+  for (const VelocityFilterConfig& velocity :
+       {VelocityFilterConfig(filter), VelocityFilterConfig(AdaptiveWindowFilter{2e-5})}) {
+    scenario.device = ImpedanceDeviceConfig{
+        0.1, 0.2, 0.3, 1e-5, 1.5, velocity, 5.0, 0.01, 100.0, filter, 1e-6, 9, Transmission{0.3, 2000.0, 2.0}};
+    EXPECT_EQ(unknown_to_theory(scenario), "");
+  }
+  scenario.device = AdmittanceDeviceConfig{
+      {1.0, Vec3::UnitX(), false, 0.1, 7}, 3.0, {1e4, 100.0, 20.0, 3}, {1.0, 2.0, 3.0, 4.0, 5.0}};
+  EXPECT_EQ(unknown_to_theory(scenario), "");
+}
+
 TEST(DeviceLoop, HasTheWallOfTheSpringsInIt) {
   const SampledLoop loop = std::get<SampledLoop>(device_loop(scene_of("z_width", 5.0, 1000.0), 0.5).loop);
   EXPECT_EQ(loop.stiffness, 500.0);
