@@ -1,11 +1,14 @@
 #include "results/record/recorder.hpp"
 
-#include <Eigen/Geometry>
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cassert>
 #include <memory>
 #include <optional>
+#include <string>
+#include <tuple>
 #include <utility>
 
 #include "sim/contact/stiffness_tensor.hpp"
@@ -13,72 +16,92 @@
 namespace hapbench {
 namespace {
 
-/// All columns; those of pose and torque are optional.
-constexpr Column kTrajectoryColumns[] = {
-    kStepColumn,
-    kTimeColumn,
-    {"px_m", "m", "x of the tip's centre"},
-    {"py_m", "m", "y of the tip's centre"},
-    {"pz_m", "m", "z of the tip's centre"},
-    {"vx_m_per_s", "m/s", "x of its velocity"},
-    {"vy_m_per_s", "m/s", "y of its velocity"},
-    {"vz_m_per_s", "m/s", "z of its velocity"},
-    {"axis_x", "1", "x of the tool's axis, the unit vector out of the tip"},
-    {"axis_y", "1", "y of the tool's axis"},
-    {"axis_z", "1", "z of the tool's axis"},
-    {"fx_N", "N", "x of f = f_render, the rendered force on the tool"},
-    {"fy_N", "N", "y of f"},
-    {"fz_N", "N", "z of f"},
-    {"fspring_x_N", "N", "x of f_spring, the part of f before damping, friction and limits"},
-    {"fspring_y_N", "N", "y of f_spring"},
-    {"fspring_z_N", "N", "z of f_spring"},
-    {"fmeas_x_N", "N", "x of f_meas, what the force sensor read of the hand"},
-    {"fmeas_y_N", "N", "y of f_meas"},
-    {"fmeas_z_N", "N", "z of f_meas"},
-    {"fin_x_N", "N", "x of f_in, what the input-force limiter made of f_meas: it moves the tool with f"},
-    {"fin_y_N", "N", "y of f_in"},
-    {"fin_z_N", "N", "z of f_in"},
-    {"hx_m", "m", "x of the handle"},
-    {"hy_m", "m", "y of the handle"},
-    {"hz_m", "m", "z of the handle"},
-    {"colliding", "1", "points in the tool or on its surface, before local average and reduction"},
-    {"rendered", "1", "points that the force law saw"},
-    {"depth_max_m", "m", "largest penetration depth of a colliding point; 0 without contact"},
-    {"ratio_min", "1", "smallest stiffness ratio u^T S u of a rendered contact; empty without contact"},
-    {"ratio_max", "1", "largest stiffness ratio u^T S u of a rendered contact; empty without contact"},
+/// Columns of trajectory.csv and what fills them in a row: a number, or a vector of as many.
+template <std::size_t n, class Cells>
+struct TrajectoryColumns {
+  std::array<Column, n> columns;
+  Cells cells;
+};
+template <std::size_t n, class Cells>
+constexpr TrajectoryColumns<n, Cells> filled(const Column (&columns)[n], Cells cells) {
+  return {std::to_array(columns), cells};
+}
 
-    {"qw", "1", "w of the unit quaternion that turns the tool's frame, its axis along -z, into the world's; >= 0"},
-    {"qx", "1", "x of this quaternion"},
-    {"qy", "1", "y of this quaternion"},
-    {"qz", "1", "z of this quaternion"},
+/// The columns that every trajectory.csv has.
+constexpr auto kUsual = std::tuple{
+    filled({kStepColumn}, [](const StepRecord& r) { return r.step; }),
+    filled({kTimeColumn}, [](const StepRecord& r) { return r.time; }),
+    filled({{"px_m", "m", "x of the tip's centre"},
+            {"py_m", "m", "y of the tip's centre"},
+            {"pz_m", "m", "z of the tip's centre"}},
+           [](const StepRecord& r) -> const Vec3& { return r.tool.pose.position; }),
+    filled({{"vx_m_per_s", "m/s", "x of its velocity"},
+            {"vy_m_per_s", "m/s", "y of its velocity"},
+            {"vz_m_per_s", "m/s", "z of its velocity"}},
+           [](const StepRecord& r) -> const Vec3& { return r.tool.velocity; }),
+    filled({{"axis_x", "1", "x of the tool's axis, the unit vector out of the tip"},
+            {"axis_y", "1", "y of the tool's axis"},
+            {"axis_z", "1", "z of the tool's axis"}},
+           [](const StepRecord& r) -> const Vec3& { return r.tool.pose.axis; }),
+    filled({{"fx_N", "N", "x of f = f_render, the rendered force on the tool"},
+            {"fy_N", "N", "y of f"},
+            {"fz_N", "N", "z of f"}},
+           [](const StepRecord& r) -> const Vec3& { return r.force.rendered; }),
+    filled({{"fspring_x_N", "N", "x of f_spring, the part of f before damping, friction and limits"},
+            {"fspring_y_N", "N", "y of f_spring"},
+            {"fspring_z_N", "N", "z of f_spring"}},
+           [](const StepRecord& r) -> const Vec3& { return r.force.spring; }),
+    filled({{"fmeas_x_N", "N", "x of f_meas, what the force sensor read of the hand"},
+            {"fmeas_y_N", "N", "y of f_meas"},
+            {"fmeas_z_N", "N", "z of f_meas"}},
+           [](const StepRecord& r) -> const Vec3& { return r.hand.measured; }),
+    filled({{"fin_x_N", "N", "x of f_in, what the input-force limiter made of f_meas: it moves the tool with f"},
+            {"fin_y_N", "N", "y of f_in"},
+            {"fin_z_N", "N", "z of f_in"}},
+           [](const StepRecord& r) -> const Vec3& { return r.hand.input; }),
+    filled({{"hx_m", "m", "x of the handle"}, {"hy_m", "m", "y of the handle"}, {"hz_m", "m", "z of the handle"}},
+           [](const StepRecord& r) -> const Vec3& { return r.handle.position; }),
+    filled({{"colliding", "1", "points in the tool or on its surface, before local average and reduction"}},
+           [](const StepRecord& r) { return r.colliding; }),
+    filled({{"rendered", "1", "points that the force law saw"}},
+           [](const StepRecord& r) { return r.rendered->size(); }),
+    filled({{"depth_max_m", "m", "largest penetration depth of a colliding point; 0 without contact"}},
+           [](const StepRecord& r) { return r.force.depth_max; }),
+    filled({{"ratio_min", "1", "smallest stiffness ratio u^T S u of a rendered contact; empty without contact"}},
+           [](const StepRecord& r) { return if_any(!r.rendered->empty(), r.ratio.min); }),
+    filled({{"ratio_max", "1", "largest stiffness ratio u^T S u of a rendered contact; empty without contact"}},
+           [](const StepRecord& r) { return if_any(!r.rendered->empty(), r.ratio.max); })};
 
-    {"tx_Nm", "Nm",
-     "x of the lost torque: what the rendered contacts would exert on the tool about its tip's centre and the device "
-     "cannot render, sum r_i x f_i, f_i contact i's share of f_spring"},
-    {"ty_Nm", "Nm", "y of the lost torque"},
-    {"tz_Nm", "Nm", "z of the lost torque"},
-
-    {"inside_m", "m",
-     "largest distance below the environment's surface of any point of the tool (inside_max_m); empty of springs and "
-     "beyond the border of an open surface"}};
-constexpr std::size_t kPoseColumns = 4, kTorqueColumns = 3, kInsideColumns = 1;
-constexpr std::size_t kExtraColumns = kPoseColumns + kTorqueColumns + kInsideColumns;
-
-/// The columns with some of the extras, a list for each choice of them.
-std::span<const Column> trajectory_columns(const TrajectoryExtras& extras) {
+/// The columns with some of trajectory_groups(), of which each has a bit.
+std::span<const Column> trajectory_columns(std::size_t groups) {
   static const auto kLists = [] {
-    std::array<std::vector<Column>, 8> lists;
+    const std::span<const TrajectoryGroup> all = trajectory_groups();
+    std::vector<std::vector<Column>> lists(std::size_t{1} << all.size());
     for (std::size_t choice = 0; choice < lists.size(); ++choice) {
-      const auto* next = std::end(kTrajectoryColumns) - kExtraColumns;
-      lists[choice].assign(std::begin(kTrajectoryColumns), next);
-      for (std::size_t i = 0; const std::size_t count : {kPoseColumns, kTorqueColumns, kInsideColumns}) {
-        if (((choice >> i++) & 1u) != 0) lists[choice].insert(lists[choice].end(), next, next + count);
-        next += count;
-      }
+      const auto add = [&list = lists[choice]](const auto& columns) {
+        list.insert(list.end(), columns.begin(), columns.end());
+      };
+      std::apply([&](const auto&... part) { (add(part.columns), ...); }, kUsual);
+      for (std::size_t i = 0; i < all.size(); ++i)
+        if (((choice >> i) & 1u) != 0) add(all[i].columns);
     }
     return lists;
   }();
-  return kLists[(extras.pose ? 1u : 0u) + (extras.torque ? 2u : 0u) + (extras.inside ? 4u : 0u)];
+  return kLists[groups];
+}
+
+/// trajectory.csv with all its columns, and which of them it has with which field.
+ResultTable whole_trajectory() {
+  static const std::string kHolds = [] {
+    std::string text = "one line per recorded row, before the tool moves on";
+    for (const TrajectoryGroup& group : trajectory_groups()) {
+      const std::string first = group.columns.front().name, last = group.columns.back().name;
+      text += fmt::format("{} {}{} with record.{}", &group == trajectory_groups().data() ? ";" : ",", first,
+                          first == last ? "" : " to " + last, group.field);
+    }
+    return text;
+  }();
+  return {"trajectory.csv", kHolds.c_str(), trajectory_columns((std::size_t{1} << trajectory_groups().size()) - 1)};
 }
 
 constexpr Column kContactColumns[] = {
@@ -178,20 +201,9 @@ constexpr Column kTargetColumns[] = {
     {"model_force_N", "N", "mean ||f|| of these rows; empty without any"},
     {"speed_m_per_s", "m/s", "mean speed of the handle in these rows; empty without any"}};
 
-/// w, x, y, z; of the two quaternions of one rotation the one with w >= 0.
-std::array<double, 4> quaternion(const Mat3& rotation) noexcept {
-  const Eigen::Quaterniond q(rotation);
-  const double sign = q.w() < 0.0 ? -1.0 : 1.0;
-  return {sign * q.w(), sign * q.x(), sign * q.y(), sign * q.z()};
-}
-
 }  // namespace
 
-constinit const ResultTable kTrajectoryTable = {
-    "trajectory.csv",
-    "one line per recorded row, before the tool moves on; qw to qz with record.pose, tx_Nm to tz_Nm with record.torque, "
-    "inside_m with record.inside",
-    kTrajectoryColumns};
+const ResultTable kTrajectoryTable = whole_trajectory();
 constinit const ResultTable kContactTable = {
     "contacts.csv", "with record.contacts: one line per rendered contact of each recorded row", kContactColumns};
 constinit const ResultTable kContactTraceTable = {
@@ -225,27 +237,29 @@ void Recorder::on_step(const StepRecord& record) noexcept {
   if (record.step % every_ == 0) source_.write(record, writer_);
 }
 
-RowSource trajectory_rows(const TrajectoryExtras& extras) {
-  const auto write = [extras](const StepRecord& r, TableWriter& table) {
-    const auto ratio = r.rendered->empty() ? std::nullopt : std::optional(r.ratio);
-    std::array<std::optional<double>, kExtraColumns> more;
-    std::size_t count = 0;
-    const auto add = [&](const auto& values) {
-      for (const double value : values) more[count++] = value;
-    };
-    if (extras.pose) add(quaternion(ToolPose{r.tool.pose.position, r.tool.pose.axis, r.roll}.rotation()));
-    if (extras.torque) add(r.springs.moment);
-    if (extras.inside) more[count++] = extras.depths != nullptr ? extras.depths->depth() : std::nullopt;
-    table.row(r.step, r.time, r.tool.pose.position, r.tool.velocity, r.tool.pose.axis, r.force.rendered, r.force.spring,
-              r.hand.measured, r.hand.input, r.handle.position, r.colliding, r.rendered->size(), r.force.depth_max,
-              ratio ? std::optional(ratio->min) : std::nullopt, ratio ? std::optional(ratio->max) : std::nullopt,
-              std::span<const std::optional<double>>(more.data(), count));
+RowSource trajectory_rows(const TrajectoryExtras& extras, const InsideObserver* inside) {
+  RowSource source = {.columns = {}, .write = {}, .wants_ratio = true};
+  std::vector<const TrajectoryGroup*> groups;
+  std::size_t choice = 0, count = 0;
+  for (const TrajectoryGroup& group : trajectory_groups()) {
+    if (!(extras.*group.is_wanted)) continue;
+    groups.push_back(&group);
+    choice |= std::size_t{1} << (&group - trajectory_groups().data());
+    count += group.columns.size();
+    source.wants_roll |= group.wants_roll;
+    source.wants_springs |= group.wants_springs;
+  }
+  source.columns = trajectory_columns(choice);
+  source.write = [groups = std::move(groups), inside, more = std::vector<std::optional<double>>(count)](
+                     const StepRecord& record, TableWriter& table) mutable {
+    std::optional<double>* cells = more.data();
+    for (const TrajectoryGroup* group : groups) {
+      group->fill(record, inside, cells);
+      cells += group->columns.size();
+    }
+    std::apply([&](const auto&... part) { table.row(part.cells(record)..., more); }, kUsual);
   };
-  return {.columns = trajectory_columns(extras),
-          .write = write,
-          .wants_ratio = true,
-          .wants_roll = extras.pose,
-          .wants_springs = extras.torque};
+  return source;
 }
 
 RowSource contact_rows() {

@@ -11,6 +11,7 @@
 #include "results/observe/ideal_trajectory.hpp"
 #include "results/observe/inside.hpp"
 #include "results/observe/target_metrics.hpp"
+#include "results/record/trajectory_extras.hpp"
 #include "sim/contact/contact_buffer.hpp"
 #include "sim/loop/observer.hpp"
 
@@ -49,16 +50,8 @@ class Recorder final : public Observer {
   std::uint64_t every_;
 };
 
-/// Optional columns of trajectory.csv.
-struct TrajectoryExtras {
-  bool pose = false;                       ///< record.pose
-  bool torque = false;                     ///< record.torque: SpringState::moment
-  bool inside = false;                     ///< record.inside: InsideObserver::depth
-  const InsideObserver* depths = nullptr;  ///< observes before the recorder; null where there is no inside
-};
-
-/// trajectory.csv: one line per row.
-RowSource trajectory_rows(const TrajectoryExtras& extras = {});
+/// trajectory.csv: one line per row. `inside` as in TrajectoryGroup.
+RowSource trajectory_rows(const TrajectoryExtras& extras = {}, const InsideObserver* inside = nullptr);
 /// contacts.csv: one line per rendered contact, in the order in which the force law saw them.
 RowSource contact_rows();
 /// contact_trace.csv: one line per colliding point, in the order in which the search found them.

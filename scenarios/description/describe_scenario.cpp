@@ -456,13 +456,8 @@ static void describe(Fields& f, RecordFields& record) {
             "block_with_hole only: compare the recorded rows with the ideal trajectory and write ideal_trajectory.csv");
   f.boolean("force_reference", record.force_reference,
             "with reference_force, or a stroke with a measured force: write it and the error into force_reference.csv");
-  f.boolean("pose", record.pose, "add the tool's orientation to trajectory.csv, as a quaternion qw,qx,qy,qz");
-  f.boolean("torque", record.torque,
-            "add the torque that is lost to trajectory.csv, tx_Nm,ty_Nm,tz_Nm, and its metrics: what the rendered "
-            "contacts would exert about the tip centre and the device cannot render");
-  f.boolean("inside", record.inside,
-            "add how deep the tool is in the environment to trajectory.csv, inside_m, and take its metrics from every "
-            "recorded row");
+  for (const TrajectoryGroup& group : trajectory_groups())
+    f.boolean(group.field, record.*group.is_wanted, group.effect);
 }
 
 static void describe(Fields& f, SettlingRule& metrics) {

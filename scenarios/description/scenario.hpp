@@ -18,6 +18,7 @@
 #include "device_model/impedance_device.hpp"
 #include "results/observe/contact_forces.hpp"
 #include "results/observe/perception.hpp"
+#include "results/record/trajectory_extras.hpp"
 #include "sim/core/profile.hpp"
 #include "sim/core/types.hpp"
 #include "sim/geometry/analytic_shells.hpp"
@@ -188,7 +189,7 @@ struct IntegratorFields {
   IntegratorOptions options;                 ///< of `event`
 };
 
-struct RecordFields {
+struct RecordFields : TrajectoryExtras {
   bool trajectory = true;
   std::int64_t every = 1;
   std::vector<std::int64_t> ratio_iterations;
@@ -198,9 +199,6 @@ struct RecordFields {
   bool energy = false;
   bool ideal_trajectory = false;
   bool force_reference = false;
-  bool pose = false;
-  bool torque = false;
-  bool inside = false;
 };
 
 /// True when a run writes rows of its steps.

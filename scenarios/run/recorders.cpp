@@ -12,10 +12,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-TrajectoryExtras extras(const RecordFields& fields, const InsideObserver* inside = nullptr) {
-  return {.pose = fields.pose, .torque = fields.torque, .inside = fields.inside, .depths = inside};
-}
-
 Mat3 start_shaping(ContactBuffer& contacts) noexcept {
   return shape_weights(contacts, 0);
 }
@@ -36,7 +32,7 @@ struct RecorderEntry {
 // reference that is not measured.
 const RecorderEntry kRecorders[] = {
     {kTrajectoryTable, [](const RecordFields& f) { return f.trajectory; },
-     [](const RecordedTrial& t) { return trajectory_rows(extras(t.fields, t.inside)); }},
+     [](const RecordedTrial& t) { return trajectory_rows(t.fields, t.inside); }},
     {kContactTable, [](const RecordFields& f) { return f.contacts; },
      [](const RecordedTrial&) { return contact_rows(); }},
     {kContactTraceTable, [](const RecordFields& f) { return f.contacts; },
@@ -52,7 +48,7 @@ const RecorderEntry kRecorders[] = {
      [](const RecordedTrial& t) { return force_reference_rows(*t.sections.find<ForceFidelityObserver>()); }}};
 
 std::span<const Column> columns_of(const RecorderEntry& entry, const RecordFields& fields) {
-  return &entry.table == &kTrajectoryTable ? trajectory_rows(extras(fields)).columns : entry.table.columns;
+  return &entry.table == &kTrajectoryTable ? trajectory_rows(fields).columns : entry.table.columns;
 }
 
 }  // namespace

@@ -119,7 +119,6 @@ void record_only(const std::set<std::string>& parts, RecordFields& record) {
   record.energy = record.energy && read({"energy.csv", "energy", "summary.json"});
   record.ideal_trajectory =
       record.ideal_trajectory && read({"ideal_trajectory.csv", "ideal_trajectory", "summary.json"});
-  record.pose = record.pose && read({"trajectory.csv"});
   record.torque = record.torque && read({"trajectory.csv", "torque", "summary.json"});
   record.timing = false;
 }

@@ -3,8 +3,8 @@
 adding_test.py [--keep] [unittest options]
 
 Copies the tree to a scratch folder, adds a law, a tool, an environment, a named file, a device field, a metric, a section of
-metrics and a command there, builds the program (minutes) and shows that reader, schema, describe, list, results, sweep, help and
-completion know each of them. `--keep` leaves the folder behind.
+metrics, a column of trajectory.csv and a command there, builds the program (minutes) and shows that reader, schema, describe, list,
+results, sweep, help and completion know each of them. `--keep` leaves the folder behind.
 """
 import argparse
 import csv
@@ -178,6 +178,18 @@ def add_metric(tree):
     }
 
 
+def add_trajectory_column(tree):
+    return {
+        tree.edit("struct TrajectoryExtras {\n", "  bool speed = false;\n"),
+        tree.edit("constexpr TrajectoryGroup kGroups[] = {\n", """constexpr Column kSpeedColumns[] = {{"speed_m_per_s", "m/s", "norm of its velocity"}};
+
+""", before=True),
+        tree.edit("constexpr TrajectoryGroup kGroups[] = {\n", """    {&TrajectoryExtras::speed, "speed", "add the tip's speed to trajectory.csv, speed_m_per_s", kSpeedColumns,
+     [](const StepRecord& r, const InsideObserver*, std::optional<double>* cells) { *cells = r.tool.velocity.norm(); }},
+"""),
+    }
+
+
 def add_command(tree):
     return {
         tree.write("scenarios/program/twice.cpp", """#include "scenarios/program/command.hpp"
@@ -251,7 +263,7 @@ class StillnessObserver final : public Observer {
 # Each addition with the most files that it may touch.
 ADDITIONS = {"law": (add_law, 3), "tool": (add_tool, 3), "environment": (add_environment, 3), "named file": (add_named_file, 2),
              "device field": (add_device_field, 2), "metric": (add_metric, 2), "metric section": (add_metric_section, 2),
-             "command": (add_command, 3)}
+             "trajectory column": (add_trajectory_column, 2), "command": (add_command, 3)}
 
 
 def scenario(**parts):
@@ -408,6 +420,17 @@ class Adding(unittest.TestCase):
         self.assertIn("lost_sum_Nm", summary["torque"])
         self.assertIn("torque.lost_sum_Nm", json.dumps(columns))
         self.assertIn("sum of ||tau||", self.hapbench("describe", "torque.lost_sum_Nm"))
+
+    def test_a_column_of_the_trajectory_has_a_field_that_adds_it(self):
+        self.assertIn("add the tip's speed", self.hapbench("describe", "record.speed"))
+        self.assertIn("norm of its velocity", self.hapbench("describe", "speed_m_per_s"))
+        for speed, found in (("true", True), ("false", False)):
+            self.write()
+            self.hapbench("run", "scene.json", "--set", f"record.speed={speed}", "--set", "record.pose=true", "--out", "out", "--quiet")
+            header, row = (line.split(",") for line in (self.folder / "out/trajectory.csv").read_text().splitlines()[:2])
+            self.assertEqual(header[-5:] == ["speed_m_per_s", "qw", "qx", "qy", "qz"], found)
+            self.assertEqual(len(row), len(header))
+            self.assertEqual("speed_m_per_s" in (self.folder / "out/columns.json").read_text(), found)
 
     def test_a_section_of_metrics_is_in_all_results(self):
         self.write(record={"pose": True}, expect={"outcome": ["completes", "no_contact", "lost_contact"],

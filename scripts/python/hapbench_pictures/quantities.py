@@ -1,6 +1,9 @@
 """Quantities to draw over time: short names, and every column of a run's tables by its own name; with the range of an axis:
 that of settled contact, where the peak of a landing or a crash would squeeze it."""
+import json
+import re
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 
@@ -14,9 +17,7 @@ TRAJECTORY = "trajectory.csv"
 REFERENCE = "force_reference.csv"
 # Tables of a row per recorded step, in which a column is looked for.
 TABLES = (TRAJECTORY, "energy.csv", "ideal_trajectory.csv", "stiffness_tensor.csv", REFERENCE)
-# The field that makes a run write a table, or a column that not every table has.
-SWITCH = {"energy.csv": "record.energy", "ideal_trajectory.csv": "record.ideal_trajectory", TRAJECTORY: "record.trajectory",
-          "stiffness_tensor.csv": "record.stiffness_tensor", REFERENCE: "record.force_reference", "tx_Nm": "record.torque"}
+SCHEMA = Path(__file__).resolve().parents[3] / "scenarios" / "scenario.schema.json"
 # Unit by the end of a column's name -> shown unit, factor.
 UNITS = (("_Nm", "mN m", 1e3), ("_m_per_s", "m/s", 1.0), ("_J", "mJ", 1e3), ("_N", "N", 1.0), ("_m", "mm", 1e3), ("_s", "s", 1.0))
 # A peak of more than so many times the settled values is cut off.
@@ -104,9 +105,15 @@ def quantity(name, runs):
         raise InputError(f"--y: got \"{name}\"; allowed: {', '.join([*SHORT, PATH])}, or a column of "
                          f"{' or '.join(sorted(set(known.values())) or [TRAJECTORY])}{meant(name, known)}")
     if not any(has(run, found) for run in runs):
-        lacks = found.columns[0] if found.columns[0] in SWITCH else found.file
-        raise InputError(f"--y {name}: {runs[0].directory}: has no {lacks}; run it with --set {SWITCH[lacks]}=true")
+        lacks = found.columns[0] if found.file in tables_of(runs[0]) else found.file
+        raise InputError(f"--y {name}: {runs[0].directory}: has no {lacks}; run it with --set {switch_of(lacks)}=true")
     return found
+
+
+def switch_of(lacks):
+    """The field that makes a run write a table or a column: the first one whose description names it."""
+    record = json.loads(SCHEMA.read_text(encoding="utf-8"))["else"]["properties"]["record"]["properties"]
+    return next(f"record.{field}" for field, about in record.items() if re.search(rf"\b{re.escape(lacks)}\b", about["description"]))
 
 
 def meant(name, columns):
@@ -136,7 +143,7 @@ class Samples:
             wanted.setdefault(q.file, {"time_s"}).update(q.columns)
         present = tables_of(run)
         if TRAJECTORY not in present:
-            raise InputError(f"{run.directory}: has no {TRAJECTORY}; run it with --set {SWITCH[TRAJECTORY]}=true")
+            raise InputError(f"{run.directory}: has no {TRAJECTORY}; run it with --set {switch_of(TRAJECTORY)}=true")
         tables = {file: read_columns(run.directory / file, sorted(columns)) for file, columns in wanted.items() if file in present}
         time = tables[TRAJECTORY]["time_s"]
         touching = time[tables[TRAJECTORY]["colliding"] > 0]
