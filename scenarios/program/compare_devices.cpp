@@ -202,20 +202,20 @@ bool has_dry_friction(const DeviceQuestion& question, const ComparedDevice& devi
   return impedance != nullptr && impedance->coulomb > 0.0;
 }
 
-/// The delay of the force of each impedance device, as "0 of touch, omega.3; 1 of mine"; empty when all are equal.
+/// The delay of each impedance device in the first scene, as "0 of touch; 1 (0.5 ms in steps of 0.5 ms) of mine"; empty
+/// when none has one.
 std::string delays_text(const DeviceQuestion& question) {
-  std::map<double, std::vector<std::string>> names;
+  std::map<std::string, std::vector<std::string>> names;
   for (const ComparedDevice& device : question.devices) {
     const LoadedScenario loaded =
         load_scenario(question.scenes.front(), overrides_on(device, question.scenes.front(), question.overrides));
-    if (const auto* impedance = std::get_if<ImpedanceDeviceConfig>(&loaded.scenario.device))
-      names[impedance->delay_samples].push_back(device.name);
+    if (handle_moves_tool(loaded.scenario.device)) names[delay_text(loaded.scenario)].push_back(device.name);
   }
-  if (names.size() < 2) return "";
   std::vector<std::string> parts;
-  for (const auto& [delay, having] : names)
-    parts.push_back(fmt::format("{} of {}", significant(delay), fmt::join(having, ", ")));
-  return wrapped(fmt::format("delay_samples: {}; none of a preset is published", fmt::join(parts, "; ")), 0);
+  for (const auto& [delay, having] : names) parts.push_back(fmt::format("{} of {}", delay, fmt::join(having, ", ")));
+  if (names.empty() || names.rbegin()->first == "0") return "";
+  return wrapped(
+      fmt::format("delay_samples: {}; {}; none of a preset is published", fmt::join(parts, "; "), kWhoseSamples), 0);
 }
 
 /// A limit over its device's reference; none where either has no value.

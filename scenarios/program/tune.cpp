@@ -16,6 +16,7 @@
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/progress_bar.hpp"
 #include "scenarios/studies/stability/device_limits.hpp"
+#include "scenarios/studies/stability/stability_limits.hpp"
 #include "scenarios/studies/tuning/tune.hpp"
 
 namespace hapbench {
@@ -403,6 +404,8 @@ int tune(const TuneOptions& options) {
   const fs::path tuned = write_tuning(tuning, options.scenario, out);
   std::string end = tuned.empty() ? "" : fmt::format("\"hapbench run {}\" gives these metrics\n", tuned.string());
   end += fmt::format("results in {0}\n\"hapbench plot {0}\" draws them\n", out.string());
+  if (handle_moves_tool(loaded.scenario.device) && delay_of(loaded.scenario) > 0.0)
+    end = wrapped(fmt::format("delay_samples: {}; {}", delay_text(loaded.scenario), kWhoseSamples), 0) + end;
   print(options.output, tuning_text(tuning) + end, tuning_json(tuning, tuned));
   return kSuccess;
 }

@@ -79,7 +79,8 @@ class Identify(unittest.TestCase):
 
     def test_a_log_in_steps_of_the_encoder_tells_the_device(self):
         q = TRUE["encoder_step_m"]
-        told, _ = self.told(self.log(np.round(self.places / q) * q))
+        told, warned = self.told(self.log(np.round(self.places / q) * q))
+        self.assertRegex(warned, r"samples of this log, of 1 ms: 1\.3\d ms\. .* 2\.[67]\d+ at 1/2048 s")
         # What the small steps of this simulator leave is 3e-7 m, a tenth of the encoder's noise.
         self.assert_holds(told)
         for name, share in (("handle_mass_kg", 0.01), ("viscous_N_s_per_m", 0.05), ("coulomb_N", 0.05), ("delay_samples", 0.05)):

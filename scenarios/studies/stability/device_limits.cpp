@@ -9,6 +9,7 @@
 #include "scenarios/description/descriptions.hpp"
 #include "scenarios/description/reader.hpp"
 #include "scenarios/description/writer.hpp"
+#include "scenarios/studies/stability/stability_limits.hpp"
 
 namespace hapbench {
 namespace {
@@ -48,6 +49,11 @@ DeviceLimit question_for(const DeviceQuestion& asked, std::size_t device, std::s
 }
 
 }  // namespace
+
+std::string delay_text(const Scenario& scenario) {
+  const double delay = delay_of(scenario), step = 1e3 * scenario.time.step;
+  return delay > 0.0 ? fmt::format("{:.4g} ({:.3g} ms in steps of {:.3g} ms)", delay, delay * step, step) : "0";
+}
 
 std::vector<ComparedDevice> compared_devices() {
   std::vector<ComparedDevice> devices = {{"ideal", R"({"type":"ideal"})"}, {"admittance", R"({"type":"admittance"})"}};

@@ -13,6 +13,11 @@
 /// stable and its handle still (judged_run.hpp), found as field_limit.hpp finds it.
 namespace hapbench {
 
+/// The delay of the scene's device, as "1.5 (0.75 ms in steps of 0.5 ms)", and what to say beside it.
+std::string delay_text(const Scenario& scenario);
+inline constexpr const char* kWhoseSamples =
+    "samples are time steps of the scene, not of the log that a device was identified from";
+
 /// A device that a scene is tried on.
 struct ComparedDevice {
   std::string name;                                ///< "ideal", "admittance", a preset's or its file's

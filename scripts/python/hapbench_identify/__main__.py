@@ -67,6 +67,9 @@ def shown_end(end):
 def warnings_of(told, found, log):
     warnings = [f"{name}: the log cannot tell it from 0; 95 % interval {' ... '.join(map(shown_end, one['interval']))}"
                 for name, one in told.items() if one["value"] is None and name not in ("offset_N", "position_noise_m")]
+    if delay := told["delay_samples"]["value"]:
+        warnings.append(f"delay_samples counts samples of this log, of {1e3 * log.step:.4g} ms: {1e3 * delay * log.step:.3g} ms. A scene takes it "
+                        f"for time steps of its own: give it {delay * log.step:.4g} / time.step_s there, {2048 * delay * log.step:.4g} at 1/2048 s")
     if told["offset_N"]["value"] is not None:
         warnings.append(f"a constant force of {told['offset_N']['value']:.3g} N acts besides the commands (weight, a cable): no device file has it")
     if found.memory > 10.0 and found.rms > 2.0 * max(log.encoder_step, 1e-12) / math.sqrt(12.0):

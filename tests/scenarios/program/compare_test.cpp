@@ -454,8 +454,10 @@ TEST_F(CompareDevices, SaysWhichDelaysDiffer) {
                       R"({"type": "impedance", "handle_mass_kg": 0.1, "delay_samples": 1.5})");
   const Words question = {"--algorithms", "mean", "--resolution", "0.5"};
   const auto out = [&](const std::string& devices) { return compare(devices, "out", question).out; };
-  EXPECT_NE(out("touch,ideal," + file("mine.json")).find("\ndelay_samples: 0 of touch; 1.5 of mine; "),
+  EXPECT_NE(out("touch,ideal," + file("mine.json"))
+                .find("\ndelay_samples: 0 of touch; 1.5 (1.5 ms in steps of 1 ms) of mine"),
             std::string::npos);
+  EXPECT_NE(out(file("mine.json")).find("\ndelay_samples: 1.5 (1.5 ms in steps of 1 ms) of mine"), std::string::npos);
   EXPECT_EQ(out("touch,falcon,ideal").find("delay_samples"), std::string::npos);
 }
 
