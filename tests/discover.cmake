@@ -1,6 +1,7 @@
 # Lists the tests of a GoogleTest executable for ctest, after it is built. One test of ctest is one suite, with all its cases and
 # parameters in one process: a process for each of 2 500 cases takes longer than the cases themselves.
-#   cmake -D EXECUTABLE=… -D OUTPUT=… -D PREFIX=… -D PROPERTIES=… -P discover.cmake
+#   cmake -D EXECUTABLE=… -D OUTPUT=… -D PREFIX=… -D LABEL=… -D ALL=… -D TIMEOUT=… -P discover.cmake
+cmake_minimum_required(VERSION 3.25)
 execute_process(COMMAND ${EXECUTABLE} --gtest_list_tests OUTPUT_VARIABLE listing COMMAND_ERROR_IS_FATAL ANY)
 string(REPLACE ";" "," listing "${listing}")
 string(REPLACE "\n" ";" lines "${listing}")
@@ -19,7 +20,11 @@ list(REMOVE_DUPLICATES suites)
 set(script "")
 foreach(suite ${suites})
   list(JOIN filter_${suite} ":" filter)
+  set(label ${LABEL})
+  if(suite IN_LIST ALL)
+    set(label all)
+  endif()
   string(APPEND script "add_test(\"${PREFIX}${suite}\" \"${EXECUTABLE}\" \"--gtest_filter=${filter}\")\n"
-    "set_tests_properties(\"${PREFIX}${suite}\" PROPERTIES ${PROPERTIES})\n")
+    "set_tests_properties(\"${PREFIX}${suite}\" PROPERTIES LABELS ${label} TIMEOUT ${TIMEOUT})\n")
 endforeach()
 file(WRITE ${OUTPUT} "${script}")
