@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdlib>
 
 // 1 under AddressSanitizer, as g++ and clang++ tell it.
 #if defined(__SANITIZE_ADDRESS__)
@@ -16,10 +17,13 @@
 
 namespace hapbench::test {
 
-/// How often a loop over random cases runs. Sanitized code is about thirty times slower and looks for errors of memory
-/// and arithmetic, which a fraction of the cases shows as well; the numbers that count are those of the Release build.
-constexpr std::size_t cases(std::size_t n) {
-  return HAPBENCH_TEST_SANITIZED != 0 ? (n + 29) / 30 : n;
+/// How often a loop over random cases runs: all of n where HAPBENCH_SOAK is set, as scripts/test --all does, and a
+/// tenth otherwise. Sanitized code is about thirty times slower and looks for errors of memory and arithmetic, which a
+/// thirtieth shows as well.
+inline std::size_t cases(std::size_t n) {
+  static const bool soak = std::getenv("HAPBENCH_SOAK") != nullptr;
+  const std::size_t part = HAPBENCH_TEST_SANITIZED != 0 ? 30 : soak ? 1 : 10;
+  return (n + part - 1) / part;
 }
 
 }  // namespace hapbench::test

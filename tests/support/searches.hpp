@@ -60,10 +60,10 @@ struct WalkTotals {
   std::uint64_t poses = 0, contacts = 0, lists_rebuilt = 0;
 };
 
-/// Walks tools, make_tool(random, size of the shell), over random shells, a million poses in all, and expects a search
-/// to find at each what brute force finds.
+/// Walks tools, make_tool(random, size of the shell), over random shells, cases(1'000'000) poses in all, and expects a
+/// search to find at each what brute force finds.
 template <class Query, class MakeTool>
-void expect_agreement_at_a_million_poses(Random random, const MakeTool& make_tool, WalkTotals& totals) {
+void expect_agreement_with_brute_force(Random random, const MakeTool& make_tool, WalkTotals& totals) {
   const std::size_t shells = cases(2000);
   for (std::size_t s = 0; s < shells; ++s) {
     const double size = std::pow(10.0, random.uniform(-4.0, 0.0));

@@ -263,7 +263,7 @@ template <class Check>
 void for_random_contacts(Check check) {
   Random random(1);
   for (const test::GradientFamily& family : test::gradient_families()) {
-    for (int i = 0; i < 200; ++i) {
+    for (std::size_t i = 0; i < test::cases(200); ++i) {
       const std::vector<Vec3> gradients = family.draw(random, test::random_size(random, 300));
       check(gradients, test::random_depths(random, gradients.size()), family.name);
     }

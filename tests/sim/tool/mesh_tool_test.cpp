@@ -251,7 +251,7 @@ TEST_P(MeshToolOf, IsWithinItsBoundOfTheExactDistance) {
   EXPECT_GT(worst, grid_.error_bound() / 6.0);
 }
 
-TEST_P(MeshToolOf, FindsInEverySearchTheContactsOfBruteForceAtAMillionPosesAndGivesThemDepths) {
+TEST_P(MeshToolOf, FindsInEverySearchTheContactsOfBruteForceAndGivesThemDepths) {
   Random random(2);
   std::uint64_t contacts = 0, rebuilt = 0, poses = 0;
   const std::size_t shells = cases(400);

@@ -32,7 +32,7 @@ TEST(LawStress, NoForceIsInfiniteOrOutOfBound) {
 TEST(LawStress, ReachesTheBoundsThatCanBeReached) {
   // Parallel springs of one depth: all of the sum, of the mean, of a shaped direction; coupled ones, s / (1 + s^2) at s
   // = 1.
-  for (const StressCounts& c : stress_laws(test::cases(20'000), 2, {2, ""})) {
+  for (const StressCounts& c : stress_laws(20'000, 2, {2, ""})) {
     if (!c.largest_share) continue;
     if (c.algorithm == "tandpasta" || c.algorithm == "original_averaging") continue;  // worst cases of rounding
     if (c.algorithm == "proxy") continue;  // its bound is how far it can move in a step, which nothing makes it do
@@ -64,8 +64,8 @@ class ContactSets : public testing::Test {
 };
 
 TEST_F(ContactSets, HoldTheDegenerateCasesOfTheirNames) {
-  std::map<std::string, int> seen;
-  for (std::uint64_t i = 0; i < 20'000; ++i) {
+  std::map<std::string, std::size_t> seen;
+  for (std::uint64_t i = 0; i < test::cases(20'000); ++i) {
     const ContactSet set = stress_set(3, i);
     ASSERT_FALSE(set.points.empty());
     ASSERT_LE(set.points.size(), kMostContacts);
@@ -90,10 +90,10 @@ TEST_F(ContactSets, HoldTheDegenerateCasesOfTheirNames) {
       if (contacts.normal(k) == -contacts.normal(k - 1) && contacts.normal(k) != Vec3::Zero()) ++seen["opposite"];
     }
   }
-  for (const char* family : contact_set_families()) EXPECT_GT(seen[family], 1000) << family;
+  for (const char* family : contact_set_families()) EXPECT_GT(seen[family], test::cases(1000)) << family;
   for (const char* what : {"one point", "tiny", "huge", "overflow", "zero normal", "tip centre", "on the axis",
                            "coincident", "opposite"}) {
-    EXPECT_GT(seen[what], 100) << what;
+    EXPECT_GT(seen[what], test::cases(100)) << what;
   }
 }
 
@@ -101,8 +101,8 @@ TEST_F(ContactSets, OfDepthZeroAreAmongThem) {
   RenderingConfig config;
   config.algorithm = "summation";
   config.depth_model = "shortest_distance";
-  int without_depth = 0;
-  for (std::uint64_t i = 0; i < 5'000; ++i) {
+  std::size_t without_depth = 0;
+  for (std::uint64_t i = 0; i < test::cases(5'000); ++i) {
     const ContactSet set = stress_set(4, i);
     const PointShell shell(set.points, 0.0);
     ShellQuery query(shell, set.tool);
@@ -112,7 +112,7 @@ TEST_F(ContactSets, OfDepthZeroAreAmongThem) {
     find_depth_model("shortest_distance")->make()->evaluate(set.tool, set.pose, contacts);
     for (std::size_t k = 0; k < contacts.size(); ++k) without_depth += contacts.depth[k] == 0.0;
   }
-  EXPECT_GT(without_depth, 100);
+  EXPECT_GT(without_depth, test::cases(100));
 }
 
 }  // namespace
