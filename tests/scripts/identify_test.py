@@ -110,15 +110,15 @@ class Identify(unittest.TestCase):
     def test_the_intervals_hold_as_often_as_they_say(self):
         m, b, c, d, q = TRUE.values()
         held = {name: 0 for name in NAMES[:4]}
-        logs = 24
+        logs = 6
         for seed in range(logs):
             random = np.random.default_rng(seed)
             noisy = self.places[:1000] + 1e-5 * random.standard_normal(1000)
             found = fit(log_of(self.time[:1000], self.force[:1000], np.round(noisy / q) * q))
             for name, true, (low, high) in zip(held, (m, b, c, 1e-3 * d), found.intervals):
                 held[name] += low <= true <= high
-        # Of 24 intervals of 95 %, fewer than 19 hold once in 700 times.
-        self.assertTrue(all(count >= 19 for count in held.values()), held)
+        # Of 6 intervals of 95 %, fewer than 4 hold once in 400 times.
+        self.assertTrue(all(count >= 4 for count in held.values()), held)
 
     def test_what_the_log_cannot_tell_has_no_value(self):
         m, _, _, _, q = TRUE.values()
@@ -134,7 +134,7 @@ class Identify(unittest.TestCase):
     def test_it_says_when_something_else_is_on_the_handle(self):
         m, b, c, d, q = TRUE.values()
         for spring, why in ((2.0, "The device has something that this model has not"), (20.0, "Is a hand or a spring on the handle")):
-            places = played(self.time, self.force, m, b, c, 1e-3 * d, 100, spring)
+            places = played(self.time, self.force, m, b, c, 1e-3 * d, 50, spring)
             done = run("identify", self.log(np.round(places / q) * q), "--out", self.root / "device.json")
             self.assertIn(why, done.stderr)
 
