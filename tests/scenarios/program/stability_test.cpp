@@ -66,19 +66,6 @@ TEST_F(StabilityCommand, WritesRootLociThatLeaveTheUnitCircle) {
   EXPECT_GT(beyond, rows.size() / 10);  // a fifth of the values lies beyond the limit
 }
 
-TEST_F(StabilityCommand, DividesByLambdaForSeveralSprings) {
-  const ProgramRun run =
-      hapbench({"stability", "single_spring", "--set", "environment.groups.0.count=8", "--json", "--out", out_});
-  const Json limits = run.json()[0]["limits"];
-  EXPECT_EQ(limits[0]["lambda_max"], 8.0);
-  EXPECT_NEAR(limits[0]["analytic"].get<double>(), 2e5, 1e-3);
-  EXPECT_NEAR(limits[0]["simulation"].get<double>(), 2e5, 2e3);
-  EXPECT_NEAR(limits[1]["analytic"].get<double>(), 50.0, 1e-9);
-  EXPECT_NEAR(limits[1]["simulation"].get<double>(), 50.0, 0.5);
-  EXPECT_NEAR(limits[2]["simulation"].get<double>(), limits[2]["analytic"].get<double>(),
-              0.01 * limits[2]["analytic"].get<double>());
-}
-
 TEST_F(StabilityCommand, TellsTheLimitsOfTheScenariosIntegrator) {
   const auto limits_of = [this](const std::string& integrator) {
     const ProgramRun run =

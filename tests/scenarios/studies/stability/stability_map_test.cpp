@@ -299,20 +299,6 @@ TEST(StabilityMap, TakesDryFrictionOnlyWhereItHoldsALinearTool) {
   }
 }
 
-TEST(StabilityMap, DoesNotDependOnTheNumberOfThreads) {
-  const StabilityMap& map = *find_stability_map("wedge");
-  const MapResult one = stability_map(map, {"exact_shaping"}, 4, {1, ""}),
-                  four = stability_map(map, {"exact_shaping"}, 4, {4, ""});
-  for (std::size_t i = 0; i < one.points.size(); ++i) {
-    EXPECT_EQ(one.points[i].verdict, four.points[i].verdict);
-    EXPECT_EQ(one.points[i].lambda, four.points[i].lambda);
-    EXPECT_EQ(one.points[i].margin, four.points[i].margin);
-  }
-  for (std::size_t i = 0; i < one.boundary.size(); ++i) {
-    EXPECT_EQ(one.boundary[i].simulation, four.boundary[i].simulation);
-  }
-}
-
 TEST(MapAxis, CoversItsRange) {
   for (const StabilityMap& map : stability_maps()) {
     for (const MapAxis& axis : {map.x, map.y}) {

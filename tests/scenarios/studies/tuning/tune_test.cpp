@@ -211,18 +211,6 @@ TEST(Tune, SaysWhichLimitToRelaxAndByHowMuch) {
   EXPECT_TRUE(tuned_law(asked, "shaped_stiffness").choice);
 }
 
-TEST(Tune, DoesNotDependOnThreads) {
-  TuneQuestion asked = question("impedance_at_wall", {});
-  const TunedLaw one = tuned_law(asked, "shaped_stiffness");
-  asked.threads = 3;
-  const TunedLaw three = tuned_law(asked, "shaped_stiffness");
-  ASSERT_TRUE(one.choice && three.choice) << one.why;
-  EXPECT_EQ(one.choice->stiffness, three.choice->stiffness);
-  EXPECT_EQ(one.runs, three.runs);
-  EXPECT_EQ(one.why, three.why);
-  EXPECT_EQ(one.spread, three.spread);
-}
-
 /// Of a virtual mass M with an undamped bristle, stable up to K_t = 4 M / dt^2.
 TEST(Family, HasTheLoopOfAToolHeldByFriction) {
   for (const double factor : {0.99, 1.01}) {
