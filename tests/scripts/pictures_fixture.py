@@ -2,9 +2,24 @@
 import shutil
 import tempfile
 import unittest
+from contextlib import redirect_stderr, redirect_stdout
+from io import StringIO
 from pathlib import Path
+from unittest import mock
 
 from fixture import hapbench, scratch_folder
+
+from hapbench_pictures.__main__ import main as pictures
+from hapbench_pictures.sketch import Terminal
+
+
+def plotted(*words, expected=0):
+    """What `hapbench plot` prints, from this process, which has matplotlib loaded; of an error, if another status is expected."""
+    said, error = StringIO(), StringIO()
+    with redirect_stdout(said), redirect_stderr(error), mock.patch("hapbench_pictures.plot.this_terminal", lambda: Terminal(80, False, False)):
+        status = pictures(["plot", *map(str, words)])
+    assert status == expected, (words, status, error.getvalue())
+    return error.getvalue() if expected else said.getvalue()
 
 
 def make_runs():

@@ -2,20 +2,18 @@
 import json
 import shutil
 import tempfile
-from contextlib import redirect_stdout
-from io import StringIO
 from pathlib import Path
 
 import numpy as np
 
 from fixture import PROGRAM, SOURCE, hapbench, main, must, ran, scratch_folder
-from pictures_fixture import Given, make_runs
+from pictures_fixture import Given, make_runs, plotted
 
 from hapbench.columns import header, read_columns
 from hapbench_figures.stability import CLASSES
 from hapbench_pictures.given import given_runs, labels, named
 from hapbench_pictures.panels import looks
-from hapbench_pictures.plot import legend_columns, legend_of, plot
+from hapbench_pictures.plot import legend_columns, legend_of
 from hapbench_pictures.sensitivity import adjusted_share, sensitivity
 from hapbench_pictures.sweep_plot import Sweep
 
@@ -43,12 +41,12 @@ class Plot(Given):
     def test_the_sketch_names_the_peak(self):
         columns = read_columns(self.root / "mesh" / "trajectory.csv", ["time_s", "fx_N", "fy_N", "fz_N"])
         size = np.sqrt(columns["fx_N"] ** 2 + columns["fy_N"] ** 2 + columns["fz_N"] ** 2)
-        said = hapbench("plot", self.root / "mesh", "--y", "force", "--out", self.root / "m.svg")
+        said = plotted(self.root / "mesh", "--y", "force", "--out", self.root / "m.svg")
         self.assertIn(f"|rendered force| [N], most {size.max():.4g} at {columns['time_s'][size.argmax()]:.4g} s", said)
 
     def test_kinds_of_files(self):
         for name, start in (("a.svg", b"<?xml"), ("a.png", b"\x89PNG"), ("a.pdf", b"%PDF")):
-            self.assertEqual(hapbench("plot", self.root / "springs", "--no-sketch", "--out", self.root / name),
+            self.assertEqual(plotted(self.root / "springs", "--no-sketch", "--out", self.root / name),
                              f"picture in {self.root / name}\n")
             self.assertTrue((self.root / name).read_bytes().startswith(start))
 
@@ -61,10 +59,8 @@ class Plot(Given):
         self.assertIn(b"outlines: tool on its way, first run", pictures[0])
 
     def test_the_path_alone_has_no_sketch(self):
-        folder, said = self.root / "peg" / "mean", StringIO()
-        with redirect_stdout(said):
-            plot([str(folder), "--y", "path", "--out", str(self.root / "path.svg")])
-        self.assertEqual(said.getvalue(), f"path: is in the picture only\npicture in {self.root / 'path.svg'}\n")
+        said = plotted(self.root / "peg" / "mean", "--y", "path", "--out", self.root / "path.svg")
+        self.assertEqual(said, f"path: is in the picture only\npicture in {self.root / 'path.svg'}\n")
 
     def test_a_span_of_time_and_a_peak_that_is_cut_off(self):
         run = self.copy("mesh")
@@ -74,21 +70,21 @@ class Plot(Given):
         touching = next(i for i, row in enumerate(cells) if int(row[names.index("colliding")]) > 0)
         cells[touching][names.index("fz_N")] = "1234.5"
         table.write_text("\n".join([first, *(",".join(row) for row in cells)]) + "\n")
-        said = hapbench("plot", run, "--y", "force")
+        said = plotted(run, "--y", "force")
         self.assertRegex(said, r"\|rendered force\| \[N\], most 123\d.* \(cut off\)")
         self.assertIn("peak 1.23e+03 N", (run / "plot.svg").read_text())
         after = float(cells[touching + 1][names.index("time_s")])
-        said = hapbench("plot", run, "--y", "force", "--from", after, "--to", 0.24)
+        said = plotted(run, "--y", "force", "--from", after, "--to", 0.24)
         self.assertNotIn("cut off", said)
         self.assertNotIn("first touch", said)
 
     def test_columns_by_their_names(self):
-        said = hapbench("plot", self.root / "mesh", "--y", "fz_N,hx_m,speed", "--out", self.root / "m.svg")
+        said = plotted(self.root / "mesh", "--y", "fz_N,hx_m,speed", "--out", self.root / "m.svg")
         for text in ("fz [N]", "hx [mm]", "|velocity of the tip| [m/s]"):
             self.assertIn(text, said)
 
     def test_a_comparison_is_overlaid(self):
-        said = hapbench("plot", self.root / "peg", "--y", "force")
+        said = plotted(self.root / "peg", "--y", "force")
         self.assertIn("a mean   b proxy   c summation   + several", said)
         # One of 13 800 N beside one of 3 N.
         self.assertIn("logarithmic", said)
@@ -137,7 +133,7 @@ class Plot(Given):
         self.assertEqual([legend_columns(["x" * n], 7.0) for n in (5, 30, 90)], [4, 2, 1])
 
     def test_a_sweep_over_two_fields_is_a_map(self):
-        said = hapbench("plot", self.root / "sweep", "--metric", "speed_max_m_per_s")
+        said = plotted(self.root / "sweep", "--metric", "speed_max_m_per_s")
         self.assertIn("mass [kg]; upwards stiffness K [N/m]", said)
         picture = (self.root / "sweep" / "plot.svg").read_text()
         for text in ("mass [kg]", "stiffness K [N/m]", "speed max [m/s]"):
@@ -152,7 +148,7 @@ class Plot(Given):
         empty[names.index("speed_max_m_per_s")] = ""
         through[names.index("outcome")], through[names.index("expected")] = "went_through", "false"
         (folder / "sweep.csv").write_text("\n".join([table[0], *map(",".join, (failed, empty, through)), *table[4:]]) + "\n")
-        said = hapbench("plot", folder, "--metric", "speed_max_m_per_s")
+        said = plotted(folder, "--metric", "speed_max_m_per_s")
         self.assertIn("W went through   D diverges   ? no value", said)
         self.assertIn(" |DD??WW", said)
         self.assertNotIn("e+09", said)
@@ -169,7 +165,7 @@ class Plot(Given):
             "expect": {"outcome": "no_contact"}}))
         hapbench("sweep", scene, "--vary", "motion.position.x_m.start=0:0.01", "--vary", "motion.position.x_m.rate_per_s=0.1:0.3",
                  "--vary", "rendering.stiffness_N_per_m=1e3:1e5:log", "--sample", "lhs:200", "--out", folder, "--quiet")
-        said = hapbench("plot", folder, "--metric", "final_position_m.x")
+        said = plotted(folder, "--metric", "final_position_m.x")
         found = {line.split()[0]: [float(word) for word in line.split()[1:]] for line in said.splitlines()
                  if line.startswith(("motion.", "rendering.")) and len(line.split()) == 4}
         # Of numbers equally spread over a range of width w the variance is w^2 / 12.
@@ -189,7 +185,7 @@ class Plot(Given):
         picture = (folder / "plot.svg").read_text()
         for text in ("start", "stiffness K [N/m]", "S\u2081"):
             self.assertIn(text, picture)
-        some = hapbench("plot", folder, "--metric", "final_position_m.x", "--where", "motion.position.x_m.start<0.005")
+        some = plotted(folder, "--metric", "final_position_m.x", "--where", "motion.position.x_m.start<0.005")
         self.assertIn(" over 100 runs", " ".join(some.split()))
 
     def test_first_order_indices_of_a_function_that_is_known(self):
@@ -228,7 +224,7 @@ class Plot(Given):
         hapbench("sweep", "springs_limited_mean", "--vary", "rendering.stiffness_N_per_m=1e3:1e5", "--sample", "random:9", "--set",
                  "time.steps=20", "--set", "expect={}", "--out", folder, "--quiet")
         self.assertFalse(Sweep(folder, None).is_logarithmic(0))
-        numbers = [float(line.split()[0]) for line in hapbench("plot", folder).splitlines()[1:10]]
+        numbers = [float(line.split()[0]) for line in plotted(folder).splitlines()[1:10]]
         self.assertEqual(numbers, sorted(numbers))
         self.assertTrue(all(len(f"{number:.6g}") <= 8 for number in numbers), numbers)
 
@@ -236,57 +232,57 @@ class Plot(Given):
         maps, limit = self.root / "maps", self.root / "limit"
         hapbench("stability", "--map", "time_step", "--size", 3, "--algorithms", "mean,proxy", "--integrators", "leapfrog,rk4", "--out", maps,
                  "--quiet")
-        self.assertEqual(hapbench("plot", maps), "".join(f"picture in {maps}/plot_time_step_{name}.svg\n" for name in ("leapfrog", "rk4")))
+        self.assertEqual(plotted(maps), "".join(f"picture in {maps}/plot_time_step_{name}.svg\n" for name in ("leapfrog", "rk4")))
         picture = (maps / "plot_time_step_leapfrog.svg").read_text()
         for text in ("limit, theory", "limit, bisection", "time step [s]", "stiffness [N/m]", "diverged"):
             self.assertIn(text, picture)
         hapbench("stability", "--map", "z_width", "--size", 2, "--algorithms", "mean", "--set", "device.handle_mass_kg=0.2", "--out", maps, "--quiet")
-        hapbench("plot", maps / "stability_map_z_width.csv", "--out", maps / "own.svg", "--quiet")
+        plotted(maps / "stability_map_z_width.csv", "--out", maps / "own.svg", "--quiet")
         self.assertIn("with device.handle_mass_kg=0.2", (maps / "own.svg").read_text())
         friction = 'rendering.friction={"type":"dry","mu":0.5,"damping_ratio":0.1}'
         hapbench("stability", "--map", "z_width", "--size", 2, "--algorithms", "mean", "--set", friction, "--out", maps, "--quiet")
-        hapbench("plot", maps / "stability_map_z_width.csv", "--out", maps / "held.svg", "--quiet")
+        plotted(maps / "stability_map_z_width.csv", "--out", maps / "held.svg", "--quiet")
         # Both edges are drawn, and the ratio to the lesser does not leave the axis, whose least range is +- 0.002.
         for text in ("limit, along the wall", ">0.998<", ">1.002<"):
             self.assertIn(text, (maps / "held.svg").read_text())
         hapbench("limit", "springs_limited_mean", "--vary", "rendering.stiffness_N_per_m", "--set", "time.steps=300", "--set", "expect={}",
                  "--resolution", 0.1, "--out", limit, "--quiet")
-        hapbench("plot", limit, "--quiet")
+        plotted(limit, "--quiet")
         for text in ("limit, bisection", "stiffness K [N/m]", "mean"):
             self.assertIn(text, (limit / "plot.svg").read_text())
         for words, said in (((maps, limit), "one such folder alone"), ((limit, "--y", "force"), "allowed for it: --out")):
-            self.assertIn(said, hapbench("plot", *words, expected=2))
+            self.assertIn(said, plotted(*words, expected=2))
         (limit / "limit_runs.csv").write_text("algorithm,class\nmean,stable\n")
-        self.assertIn("is not a table that hapbench wrote", hapbench("plot", limit, expected=2))
+        self.assertIn("is not a table that hapbench wrote", plotted(limit, expected=2))
 
     def test_convergence(self):
         folder = self.root / "converge"
         hapbench("converge", "springs_oscillation", "--metric", "force_max_N,inside_max_m,final_position_m.x", "--levels", 4, "--out", folder, "--quiet")
-        self.assertEqual(hapbench("plot", folder), f"picture in {folder}/plot.svg\n")
+        self.assertEqual(plotted(folder), f"picture in {folder}/plot.svg\n")
         picture = (folder / "plot.svg").read_text()
         for text in ("force max, order 1.0", "inside max, no order", "final position m.x, order 1.", "formal order 1", "time step [s]",
                      "relative error", "processor time of the run [s]"):
             self.assertIn(text, picture)
         hapbench("converge", "springs_oscillation", "--metric", "inside_max_m", "--out", folder, "--quiet")
-        self.assertIn("nothing to draw: no level has an error above 0", hapbench("plot", folder, expected=2))
+        self.assertIn("nothing to draw: no level has an error above 0", plotted(folder, expected=2))
 
     def test_tuning(self):
         folder = self.root / "tune"
         hapbench("tune", "impedance_at_wall", "--algorithms", "mean,shaped_stiffness", "--damping-ratio", "0.2:0.3", "--out", folder, "--quiet")
-        self.assertEqual(hapbench("plot", folder), f"picture in {folder}/plot.svg\n")
+        self.assertEqual(plotted(folder), f"picture in {folder}/plot.svg\n")
         picture = (folder / "plot.svg").read_text()
         for text in ("stiffness [N/m]", "deepest inside [mm]", "force above 30 Hz [N rms]", "the choice", "not feasible", "mean"):
             self.assertIn(text, picture)
         table = folder / "tune_trials.csv"
         table.write_text(table.read_text().splitlines()[0] + "\nmean,1,1,,,false,settled,vibrating,,,\n")
-        self.assertIn("nothing to draw: no trial is settled", hapbench("plot", folder, expected=2))
+        self.assertIn("nothing to draw: no trial is settled", plotted(folder, expected=2))
 
     def test_devices(self):
         folder = self.root / "devices"
         own = self.root / "my$own$.json"
         own.write_text('{"type": "impedance", "handle_mass_kg": 0.1}')
         hapbench("compare", "tap_wall", "--devices", f"touch,{own}", "--set", "time.steps=200", "--resolution", 0.5, "--out", folder, "--quiet")
-        self.assertEqual(hapbench("plot", folder), f"picture in {folder}/plot.svg\n")
+        self.assertEqual(plotted(folder), f"picture in {folder}/plot.svg\n")
         picture = (folder / "plot.svg").read_text()
         for text in ("tap wall", "touch", "my$own$", "summation", "published, of a wall", "largest stable stiffness K [N/m]"):
             self.assertIn(text, picture)
@@ -304,7 +300,7 @@ class Plot(Given):
                 ((sweep, "--metric", "speed_max"), 'nearest valid name: "speed_max_m_per_s"'), ((sweep, "--y", "force"), "allowed for it: --metric"),
                 ((mesh, "--from", "5"), "no row of trajectory.csv between 5 and inf s; allowed: a span with rows between 0 and"), ((mesh, "--to", "x"), "a time in seconds"),
                 ((mesh, "--from", "0.2", "--to", "0.1"), "--from before --to"), ((sweep, "--from", "1"), "--from: "), ((sweep, mesh), "one sweep alone"), ((mesh, "--metric", "x"), "is for a sweep"), ((bare,), "record.trajectory=true")):
-            error = hapbench("plot", *words, expected=2)
+            error = plotted(*words, expected=2)
             self.assertTrue(error.startswith("hapbench: error: ") and said in error and error.count("\n") == 1, error)
 
     def test_new_draws_a_preview(self):
