@@ -17,12 +17,16 @@
 
 namespace hapbench::test {
 
-/// How often a loop over random cases runs: all of n where HAPBENCH_SOAK is set, as scripts/test --all does, and a
-/// tenth otherwise. Sanitized code is about thirty times slower and looks for errors of memory and arithmetic, which a
-/// thirtieth shows as well.
-inline std::size_t cases(std::size_t n) {
+/// Whether tests take as many cases as they can, as under scripts/test --all.
+inline bool soaks() {
   static const bool soak = std::getenv("HAPBENCH_SOAK") != nullptr;
-  const std::size_t part = HAPBENCH_TEST_SANITIZED != 0 ? 30 : soak ? 1 : 10;
+  return soak;
+}
+
+/// How often a loop over random cases runs: all of n in a soak, and a tenth otherwise. Sanitized code is about thirty
+/// times slower and looks for errors of memory and arithmetic, which a thirtieth shows as well.
+inline std::size_t cases(std::size_t n) {
+  const std::size_t part = HAPBENCH_TEST_SANITIZED != 0 ? 30 : soaks() ? 1 : 10;
   return (n + part - 1) / part;
 }
 
