@@ -275,7 +275,7 @@ class Program(Scratch):
     def test_stops_cleanly(self):
         for number, code in ((signal.SIGINT, 130), (signal.SIGTERM, 143)):
             out = self.root / f"stopped_{code}"
-            words = ["run", PEG, *words_of({"time.steps": 50_000_000, "time.stop_when": "[]", "record.every": 1000, "expect": "{}"}), "--out", str(out)]
+            words = ["run", PEG, *words_of({"time.steps": 1_000_000_000, "time.stop_when": "[]", "record.every": 20_000, "expect": "{}"}), "--out", str(out)]
             running = subprocess.Popen([sys.executable, "-m", "hapbench", *words], env=ENVIRONMENT, stderr=subprocess.PIPE, text=True)
             while not any(out.glob(".*.tmp")) and running.poll() is None:
                 time.sleep(0.02)
@@ -287,7 +287,7 @@ class Program(Scratch):
     def test_ctrl_c_in_a_script(self):
         code = ("import hapbench, os, signal, threading\n"
                 "try:\n    threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT)).start()\n"
-                f"    hapbench.run({PEG!r}, {{'time.steps': 50_000_000, 'time.stop_when': '[]', 'record.every': 1000}})\n"
+                f"    hapbench.run({PEG!r}, {{'time.steps': 1_000_000_000, 'time.stop_when': '[]', 'record.every': 20_000}})\n"
                 "except KeyboardInterrupt:\n    print('stopped')\n"
                 f"print(hapbench.run({PEG!r}, {{'time.steps': 10}}).trajectory.rows)")
         done = python("-c", code)
