@@ -7,7 +7,7 @@ import re
 import shlex
 
 from fixture import PROGRAM, hapbench, main, ran
-from pictures_fixture import Given, make_runs
+from pictures_fixture import Given, drawn, make_runs
 
 setUpModule = make_runs
 
@@ -124,7 +124,7 @@ class Page(Given):
     def test_bad_input(self):
         for words, said in (((self.root / "sweep",), "is a sweep"), ((self.root / "mesh", "--out", "x.pdf"), "allowed: .html"),
                             ((self.root / "none",), "no such folder")):
-            error = hapbench("report", *words, expected=2)
+            error = drawn("report", *words, expected=2)
             self.assertTrue(said in error and error.count("\n") == 1, error)
 
 

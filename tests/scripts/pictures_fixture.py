@@ -1,25 +1,32 @@
 """Short runs, a comparison and a sweep for the tests of `hapbench plot` and `hapbench report`."""
+import os
 import shutil
 import tempfile
 import unittest
 from contextlib import redirect_stderr, redirect_stdout
+from functools import partial
 from io import StringIO
 from pathlib import Path
 from unittest import mock
 
-from fixture import hapbench, scratch_folder
+from fixture import PROGRAM, hapbench, scratch_folder
 
 from hapbench_pictures.__main__ import main as pictures
 from hapbench_pictures.sketch import Terminal
 
 
-def plotted(*words, expected=0):
-    """What `hapbench plot` prints, from this process, which has matplotlib loaded; of an error, if another status is expected."""
+def drawn(command, *words, expected=0):
+    """What `hapbench plot` or `report` prints, from this process, which has matplotlib loaded; of an error, if another status is
+    expected."""
     said, error = StringIO(), StringIO()
-    with redirect_stdout(said), redirect_stderr(error), mock.patch("hapbench_pictures.plot.this_terminal", lambda: Terminal(80, False, False)):
-        status = pictures(["plot", *map(str, words)])
+    with (redirect_stdout(said), redirect_stderr(error), mock.patch.dict(os.environ, HAPBENCH_PROGRAM=str(PROGRAM)),
+          mock.patch("hapbench_pictures.plot.this_terminal", lambda: Terminal(80, False, False))):
+        status = pictures([command, *map(str, words)])
     assert status == expected, (words, status, error.getvalue())
     return error.getvalue() if expected else said.getvalue()
+
+
+plotted = partial(drawn, "plot")
 
 
 def make_runs():
