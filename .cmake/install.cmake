@@ -43,7 +43,7 @@ endforeach()
 
 # The files that come with program and libraries. bin and share stay side by side, which is how the program finds them.
 set(share share/hapbench)
-foreach(group thesis limits beyond quality examples suites)
+foreach(group thesis limits beyond quality examples)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/scenarios/${group} DESTINATION ${share}/scenarios)
 endforeach()
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/scenarios/import/presets DESTINATION ${share}/scenarios/import)
@@ -87,7 +87,6 @@ install(FILES ${PROJECT_SOURCE_DIR}/algorithms/plugin/hapbench_plugin.h ${PROJEC
 file(GLOB_RECURSE manuals RELATIVE ${PROJECT_SOURCE_DIR} CONFIGURE_DEPENDS
   algorithms/plugin/examples/* algorithms/plugin/hapbench_plugin.h algorithms/plugin/law_plugin.hpp algorithms/plugin/hapbench_force_stage.h algorithms/plugin/stage_library.hpp algorithms/laws/equal_weights.cpp
   algorithms/peers/examples/* algorithms/peers/hapbench_contacts.h scenarios/validation/*.svg scenarios/validation/data/*.json
-  scenarios/suites/*/suite.json results/reference/arena.csv
   scenarios/tutorials/*.c tests/consumer/*.cpp tests/consumer/CMakeLists.txt
   sim/*.md algorithms/*.md device_model/*.md results/*.md scenarios/*.md scripts/*.md tests/*.md)
 foreach(manual README.md CHANGELOG.md CONTRIBUTING.md LICENSE CITATION.cff ${manuals})

@@ -12,8 +12,6 @@ from pathlib import Path
 import numpy as np
 from hapbench.columns import read_records
 from hapbench_bench.table import number
-from hapbench_suite.page import read_rows, scale_of
-from hapbench_suite.scores import leads
 
 from .manuals import ROOT
 from .program import ProgramError
@@ -37,7 +35,6 @@ JUMP_COLUMNS = (
     ("force_jump_max_N", "jump [N]", 1.0),
     ("stiffness_over_step", "over 1 µm, in K", 1.0),
 )
-ARENA_AXES = ("force_error", "way", "inside", "vibration", "force_step", "energy_created", "felt_stiffness", "z_width", "task")
 SOURCES = {"own": "ours", "fcl": "FCL", "bullet": "Bullet"}
 SCENES = (("T1", "poke_on_flat"), ("T2", "rotate_in_hole"), ("T3", "round_the_wall"))
 # The ideal trajectory of the hole means something in T2 only.
@@ -329,21 +326,5 @@ def reliability(_):
     return "\n".join(lines)
 
 
-def arena(_old=""):
-    """The laws of the arena with what each axis gives them, the best in bold."""
-    suite, rows = read_rows([REFERENCE / "arena.csv"])
-    shown = [axis for axis in suite.axes if axis.name in ARENA_AXES]
-    lines = [f"| law | {' | '.join(f'{axis.title} [{scale_of(axis)[0]}]' for axis in shown)} | failed | front |", "|---" * (len(shown) + 3) + "|"]
-    for row in rows:
-        cells = []
-        for i, one in enumerate(row.scores):
-            if one.axis in shown:
-                best = leads([other.scores for other in rows], row.scores, i)
-                value = f"{one.value * scale_of(one.axis)[1]:.3g}"
-                cells.append(f"**{value}**" if best else value)
-        lines.append(f"| `{row.about['label']}` | {' | '.join(cells)} | {len(row.failures)} | {'yes' if row.front else ''} |")
-    return "\n".join(lines)
-
-
 MAKERS = {"headline": headline, "survivors": survivors, "verdicts": verdicts, "experiments": experiments,
-          "subjects": subjects, "robustness": robustness, "reliability": reliability, "arena": arena}
+          "subjects": subjects, "robustness": robustness, "reliability": reliability}

@@ -16,7 +16,7 @@ from .reference import Reference
 
 DESCRIPTION = """Builds the documentation site, OUT/html/index.html, which needs no server: the manuals; commands, fields, metrics
 and algorithms as the program describes them; the C++ and Python interface from their comments; the tutorials, executed here, as
-pages and notebooks; the arena, and the live page if it is built. Every link is checked. Needs the built program with its Python
+pages and notebooks; the live page if it is built. Every link is checked. Needs the built program with its Python
 module; installs what is missing (scripts/setup --site). Exit status 1 if something of it does not hold."""
 LIVE = ROOT / "build" / "live" / "live.html"
 
@@ -41,12 +41,8 @@ def built(html, mirror, program):
         raise SiteError("sphinx:\n" + "\n".join(dict.fromkeys(done.stderr.strip().splitlines())))
 
 
-def add_whole_pages(html, mirror, program):
-    """Pages that are whole as they are: the arena, and the live page if there is one."""
-    arena = html / "whole" / "arena.html"
-    program.run(["suite", "page", ROOT / "results" / "reference" / "arena.csv", "--out", arena, "--quiet"], mirror.folder)
-    mirror.add("arena", '# Arena: all entries\n\n<p><a href="whole/arena.html">The arena</a>: force laws beside each other on the axes of suite 1, with every entry '
-                        "on record.</p>\n\n[Its manual](scenarios/suites/index.md) says how a law enters it and how an entry is verified.\n")
+def add_whole_pages(html, mirror):
+    """Pages that are whole as they are: the live page if there is one."""
     text = "Scenes that run in the browser, with the program's own step: move the tool and feel the numbers change.\n\n"
     if LIVE.is_file():
         (html / "whole").mkdir(parents=True, exist_ok=True)
@@ -77,7 +73,7 @@ def make(chosen):
     api.add_cpp(mirror)
     api.add_python(mirror)
     tutorials.add_all(mirror, program, chosen.tutorials)
-    add_whole_pages(html, mirror, program)
+    add_whole_pages(html, mirror)
     built(html, mirror, program)
     lost = [f"{page}: {link}" for page, link in links.broken(html)]
     if lost:

@@ -14,9 +14,9 @@ LANGUAGES = {".c": "c", ".h": "c", ".cpp": "cpp", ".hpp": "cpp", ".json": "json"
 # Of records that the program writes without a heading.
 TITLES = {"claims": "Claims: the ledger", "choices": "Choices on record", "robustness": "Robustness of the verdicts"}
 # Caption of the side bar: the pages below it, by name; the rest of the manuals follows by itself.
-START = ("scenarios/tutorials/index", "scenarios/TUNING", "scenarios/GALLERY", "live", "arena", "scenarios/GLOSSARY")
+START = ("scenarios/tutorials/index", "scenarios/TUNING", "scenarios/GALLERY", "live", "scenarios/GLOSSARY")
 MANUALS = ("scenarios/index", "algorithms/index", "device_model/index", "results/index", "sim/index", "scenarios/batch/index",
-           "scenarios/studies/index", "scenarios/suites/index", "scenarios/thesis_claims/index", "scenarios/validation/index",
+           "scenarios/studies/index", "scenarios/thesis_claims/index", "scenarios/validation/index",
            "scripts/python/index", "tests/index")
 REFERENCE = ("reference/commands", "reference/fields", "reference/metrics", "reference/algorithms", "reference/models",
              "reference/scenarios", "reference/cpp", "reference/python")

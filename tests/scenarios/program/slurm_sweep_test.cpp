@@ -273,32 +273,6 @@ TEST_F(SlurmSweep, WithAShardKilledAndOnePreemptedEndsWithTheBytesOfOneMachine) 
   }
 }
 
-/// A suite of one scene and one number, and half a law's submission by each of two shards.
-TEST_F(SlurmSweep, OfASuiteEndsWithTheScoresOfOneMachine) {
-  const fs::path suite = directory_ / "suite", whole = HAPBENCH_SCENARIOS "/suites/1";
-  fs::create_directories(suite);
-  Json given = Json::parse(test::read_file(whole / "suite.json"));
-  for (const char* scene : {"exact_flat", "tremor"}) fs::copy(whole / (std::string(scene) + ".json"), suite);
-  given["suite"] = suite.string();
-  given["scenes"] = {{"exact_flat", given["scenes"]["exact_flat"]}, {"tremor", given["scenes"]["tremor"]}};
-  given["limits"] = Json::object();
-  given["cost"] = {"exact_flat"};
-  given["axes"] = {given["axes"][0]};
-  given["axes"][0]["scenes"] = {"exact_flat"};
-  std::ofstream(suite / "suite.json") << given;
-  const auto run = [&](const char* out, std::vector<std::string> more) {
-    more.insert(more.begin(), {"suite", "run", suite.string(), "--algorithm", "mean", "--out", directory_ / out});
-    return hapbench(more);
-  };
-  const ProgramRun submitted = run("out", {"--slurm", "2"});
-  ASSERT_EQ(submitted.status, 0) << submitted.err;
-  EXPECT_NE(submitted.out.find("2 shards submitted as job "), std::string::npos) << submitted.out;
-  wait_for_the_queue_to_empty();
-  ASSERT_EQ(run("whole", {}).status, 0);
-  for (const char* file : {"scores.csv", "runs.csv", "parts/tremor.json"})
-    EXPECT_EQ(test::read_file(directory_ / "out" / file), test::read_file(directory_ / "whole" / file)) << file;
-}
-
 TEST_F(SlurmSweep, ThatSlurmRefusesSaysWhy) {
   const ProgramRun run = hapbench(words("out", {"--slurm", "3", "--partition", "none_such"}));
   EXPECT_EQ(run.status, 2);
