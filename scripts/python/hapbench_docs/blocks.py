@@ -300,31 +300,5 @@ def known_answers(_old, program):
     return BLOCK.search(done.stdout)[3]
 
 
-def reliability(_):
-    """What scripts/endure last did and found, of its record."""
-    record = json.loads((ROOT / "tests" / "data" / "reliability.json").read_text(encoding="utf-8"))
-    count = lambda n: f"{n:,}".replace(",", " ")
-    said = {
-        "scenes": lambda f: (f"{count(f['scenes'])} random scenes ({count(f['drawn'])} drawn), {count(f['commands'])} commands on them",
-                             "the same hashes by brute force, with one job and two" + "".join(f", from {build} ({count(n)})" for build, n in f["by_other_build"].items())),
-        "kills": lambda f: (f"{count(f['kills'])} kills at any time of " + ", ".join(f["by_command"]), "no torn file; the next call makes what it makes undisturbed"),
-        "faults": lambda f: (f"{count(f['calls'])} calls that write, each failing once ({' and '.join(f['errors'])})", "the old results or the new ones, and status 1"),
-        "sweep": lambda f: (f"a sweep of {count(f['runs'])} runs", f"{f['peak_MB']} MB ({f['peak_MB_of_a_tenth']} MB for a tenth), {f['over_simulation']} times the simulation"),
-        "shards": lambda f: (f"{count(f['shards'])} shards, {f['killed']} killed and {f['stopped']} stopped on their way", "merged, the table of the sweep in one"),
-        "lines": lambda f: (f"{count(f['lines'])} command lines of random words", f"{count(f['done'])} done, {count(f['refused'])} refused with a reason, {count(f['stopped'])} stopped by a signal after 5 s"),
-        "imports": lambda f: (f"{count(f['mutants'])} recordings and presets with bytes changed", f"{count(f['accepted'])} became strokes, the others were refused"),
-        "python": lambda f: (f"{count(f['runs'])} runs in one Python process, by laws of ours, of a plugin and of Python", f"{f['peak_MB']} MB ({f['peak_MB_of_a_tenth']} MB after a tenth)"),
-    }
-    lines = ["| `scripts/endure` | done | held | findings |", "|---|---|---|---|"]
-    lines += [f"| `{part}` | {' | '.join(said[part](record[part]))} | {record[part]['findings'] or 'none'} |" for part in said if part in record]
-    if "fuzz" in record:
-        targets = {}
-        for target, times in record["fuzz"]["executions"].items():
-            targets.setdefault(times, []).append(f"`{target}`")
-        lines += ["", "Executions of `scripts/fuzz`: " + "; ".join(f"{count(n)} of {', '.join(names)}" for n, names in sorted(targets.items())) +
-                  f". Findings: {record['fuzz']['findings'] or 'none'}."]
-    return "\n".join(lines)
-
-
 MAKERS = {"headline": headline, "survivors": survivors, "verdicts": verdicts, "experiments": experiments,
-          "subjects": subjects, "robustness": robustness, "reliability": reliability}
+          "subjects": subjects, "robustness": robustness}
