@@ -4,7 +4,6 @@ import sys
 import tempfile
 from pathlib import Path
 
-from hapbench_bench import peers, table
 from hapbench_command import BAD_INPUT, FAILED, INTERRUPTED, SUCCESS, Arguments, say_error, write
 from hapbench_report.json_input import InputError
 
@@ -12,8 +11,8 @@ from . import blocks, gallery
 from .manuals import ROOT, Manual, manuals
 from .program import Program, ProgramError
 
-DESCRIPTION = """Renews what is generated in the manuals: sessions (commands with their output), the tables of the ledger,
-of its robustness and of speed, from results/reference, and, with --gallery, the pictures of scenes. Needs the built program.
+DESCRIPTION = """Renews what is generated in the manuals: sessions (commands with their output), the tables of the ledger
+and of its robustness, from results/reference, and, with --gallery, the pictures of scenes. Needs the built program.
 Measured times are left as they are. Exit status 1 if --check finds something to renew."""
 
 
@@ -39,11 +38,7 @@ def renewed(manual, scratch, program):
         makers["hunt_crossley"] = lambda old: blocks.hunt_crossley(old, program, scratch)
         makers["known_answers"] = lambda old: blocks.known_answers(old, program)
     text = blocks.renewed(manual.text, makers)
-    text = blocks.renewed(text, {"which_law": lambda _: blocks.which_law(text)})  # by the tables made just now
-    if manual.file != table.MANUAL:
-        return text
-    text = table.spliced(text, table.markdown(table.record()))
-    return table.spliced(text, peers.markdown(peers.record()), peers.BEGIN, peers.END)
+    return blocks.renewed(text, {"which_law": lambda _: blocks.which_law(text)})  # by the tables made just now
 
 
 def differences(manual, text):

@@ -11,7 +11,6 @@ from pathlib import Path
 
 import numpy as np
 from hapbench.columns import read_records
-from hapbench_bench.table import number
 
 from .manuals import ROOT
 from .program import ProgramError
@@ -62,6 +61,13 @@ def renewed(text, makers):
         return f"{head}\n{makers[name](old).strip(chr(10))}\n\n{tail}" if name in makers else found[0]
 
     return BLOCK.sub(replaced, text)
+
+
+def number(value):
+    """Three digits, with an exponent only where the zeros would have to be counted."""
+    if value and abs(value) < 1e-3:
+        return f"{value:.3g}".replace("e-0", "e-")
+    return f"{value:.0f}" if abs(value) >= 1e3 else f"{value:.3g}"
 
 
 def session(old, program, directory):

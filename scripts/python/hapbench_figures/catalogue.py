@@ -97,7 +97,6 @@ FIGURES = (
     Figure("query-time", None, "Query time over penetration depth", performance.query_time),
     Figure("late-contacts", None, "How stiff with late contacts", performance.late_contacts),
     Figure("latency", None, "Latency of a step", performance.latency),
-    Figure("growth", None, "How cost grows", performance.growth),
     *(Figure(f"stability-{name}", None, f"Stability over {name.replace('_', ' ')}", stability.stability_map(name))
       for name in STABILITY_MAPS),
     Figure("devices", None, "What each device renders with each algorithm", stability.of_all_devices),
