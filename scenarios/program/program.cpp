@@ -29,9 +29,9 @@ AddCommand add_compare, add_completion, add_converge, add_describe, add_diff, ad
 namespace {
 
 constexpr AddCommand* kCommands[] = {
-    add_run,     add_compare, add_stability, add_tune, add_limit,    add_converge, add_precision,  add_reproduce,
-    add_diff,    add_sweep,   add_merge,     add_new,  add_import,   add_identify, add_plot,       add_report,
-    add_explain, add_shell,     add_list, add_describe, add_validate, add_completion, add_man};
+    add_run,     add_compare, add_stability, add_tune,     add_limit,    add_converge,   add_precision, add_reproduce,
+    add_diff,    add_sweep,   add_merge,     add_new,      add_import,   add_identify,   add_plot,      add_report,
+    add_explain, add_shell,   add_list,      add_describe, add_validate, add_completion, add_man};
 
 /// The promise of a version.
 constexpr const char* kPromise =

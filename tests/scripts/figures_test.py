@@ -2,7 +2,6 @@
 import glob
 import json
 import re
-import shutil
 import unittest
 import xml.etree.ElementTree as xml
 from pathlib import Path
@@ -79,7 +78,6 @@ def make_results(directory):
             hapbench(*("sweep", f"{task}_peg_in_hole_{algorithm}", "--vary=hand.task.threshold.cutoff_Hz=null,30"),
                      *("--vary=hand.task.threshold.grace_s=0,0.01", "--set=hand.trials=1", "--set=hand.task.time_limit_s=1"),
                      *("--set=hand.task.targets_per_place=1", "--out", directory / "threshold" / f"{task}_{algorithm}"))
-    shutil.copytree(RECORD.parent, directory / "subjects", ignore=lambda _, names: [n for n in names if "subjects" not in n])
     timing = {
         "step_latency": {
             "steps": 10,

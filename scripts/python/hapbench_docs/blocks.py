@@ -178,23 +178,6 @@ def which_law(text):
     return "\n".join(textwrap.fill(line, 110, subsequent_indent="  ") for line in lines)
 
 
-def subjects(_old=""):
-    """What `reproduce --subjects` found: posterior, verdicts, and what stays out of reach."""
-    record = read("subjects.json")
-    lines = [f"{record['samples']} samples, {record['given_up']} of them given up early; the posterior is the nearest {record['posterior']}, "
-             f"at a distance of {record['subjects'][0]['distance']:.3g} to {record['largest_distance']:.3g}.", "",
-             "| field | range | posterior: 5 %, median, 95 % | source of the range |", "|---|---|---|---|"]
-    for u in record["unknowns"]:
-        lines.append(f"| `{u['field']}` | {u['range'][0]:g} … {u['range'][1]:g} | {u['q05']:.3g}, {u['q50']:.3g}, {u['q95']:.3g} | {u['source']} |")
-    lines += ["", "| claim | table | verdict on the nearest six | why |", "|---|---|---|---|"]
-    for v in record["verdicts"]:
-        lines.append(f"| {v['id']} | {'fitted' if v['fitted'] else 'predicted'} | {v['verdict']} | {v['why']} |")
-    out = [b["id"] for b in record["beside"] if not b["within_reach"]]
-    lines += ["", f"Out of reach, by two standard errors of the difference, are {len(out)} of {len(record['beside'])} published means: "
-              f"{', '.join(out) or 'none'}."]
-    return wrapped(lines)
-
-
 def wrapped(lines, width=110):
     """Sentences in lines of that width; tables stay."""
     return "\n".join(line if line.startswith("|") else "\n".join(textwrap.wrap(line, width)) for line in lines)
@@ -307,4 +290,4 @@ def known_answers(_old, program):
 
 
 MAKERS = {"headline": headline, "survivors": survivors, "verdicts": verdicts, "experiments": experiments,
-          "subjects": subjects, "robustness": robustness}
+          "robustness": robustness}
