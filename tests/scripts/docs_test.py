@@ -16,7 +16,7 @@ from hapbench_docs import blocks
 from hapbench_docs.manuals import Manual, anchor, broken_links, manuals
 from hapbench_docs.program import Program, ProgramError, same_but_for_times
 
-GALLERY, RECORD = SOURCE / "scenarios" / "GALLERY.md", SOURCE / "results" / "reference"
+RECORD = SOURCE / "results" / "reference"
 TUTORIALS = SOURCE / "scenarios" / "tutorials"
 MANUALS = [Manual(file) for file in manuals()]
 COMMANDS = [command for manual in MANUALS for command in manual.commands()]
@@ -151,8 +151,8 @@ class Commands(unittest.TestCase):
             prepared.mkdir()
             Bench(prepared).prepare()
             for number, manual in enumerate(MANUALS):
-                if manual.file == GALLERY or manual.file.is_relative_to(RECORD) or manual.file.is_relative_to(TUTORIALS):
-                    continue  # one command for each scene; records of work of minutes; tutorials_test.py runs those in full
+                if manual.file.is_relative_to(RECORD) or manual.file.is_relative_to(TUTORIALS):
+                    continue  # records of work of minutes; tutorials_test.py runs those in full
                 bench = Bench(Path(shutil.copytree(prepared, Path(scratch) / str(number))))
                 for command in manual.commands():
                     if of_program(command) and not is_long(command):

@@ -12,7 +12,7 @@ from .manuals import ROOT, Manual, manuals
 from .program import Program, ProgramError
 
 DESCRIPTION = """Renews what is generated in the manuals: sessions (commands with their output), the tables of the ledger
-and of its robustness, from results/reference, and, with --gallery, the pictures of scenes. Needs the built program.
+and of its robustness, from results/reference, and, with --gallery, the pictures of commands. Needs the built program.
 Measured times are left as they are. Exit status 1 if --check finds something to renew."""
 
 
@@ -21,7 +21,7 @@ def arguments(words):
     parser.add_argument("--program", type=Path, default=ROOT / "build" / "release" / "bin" / "hapbench", metavar="FILE",
                         help="default: build/release/bin/hapbench")
     parser.add_argument("--tables", action="store_true", help="the tables from results/reference only, which need no program")
-    parser.add_argument("--gallery", action="store_true", help="the gallery of scenes, too: results/reference/gallery")
+    parser.add_argument("--gallery", action="store_true", help="the pictures of results/reference/gallery, too")
     parser.add_argument("--check", action="store_true", help="write nothing; show what is not current")
     return parser.parse_args(words)
 
@@ -36,7 +36,6 @@ def renewed(manual, scratch, program):
         makers["contact_sources"] = lambda old: blocks.contact_sources(old, program, scratch)
         makers["controllers"] = lambda old: blocks.controllers(old, program, scratch)
         makers["hunt_crossley"] = lambda old: blocks.hunt_crossley(old, program, scratch)
-        makers["known_answers"] = lambda old: blocks.known_answers(old, program)
     text = blocks.renewed(manual.text, makers)
     return blocks.renewed(text, {"which_law": lambda _: blocks.which_law(text)})  # by the tables made just now
 

@@ -4,8 +4,6 @@ the program prints them."""
 import json
 import re
 import shlex
-import subprocess
-import sys
 import textwrap
 from pathlib import Path
 
@@ -280,14 +278,5 @@ def hunt_crossley(old, program, directory):
 
 
 # The tables that need no program.
-def known_answers(_old, program):
-    """The page of tests/known_answers, whose test makes all of it."""
-    test = ROOT / "tests" / "known_answers" / "known_answers_test.py"
-    done = subprocess.run([sys.executable, test, program.file, "--print"], capture_output=True, text=True, encoding="utf-8", check=False)
-    if done.returncode != 0:
-        raise ProgramError(f"{test.name}: {done.stderr.strip()}")
-    return BLOCK.search(done.stdout)[3]
-
-
 MAKERS = {"headline": headline, "survivors": survivors, "verdicts": verdicts, "experiments": experiments,
           "robustness": robustness}

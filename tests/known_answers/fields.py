@@ -1,27 +1,12 @@
-"""The fields that hapbench prints, by its own word, and the page that lists the answers to each."""
+"""The fields that hapbench prints, by its own word, and those without an answer."""
 import json
 import re
 from pathlib import Path
 
-from answers import PROGRAM, SCENES, ran
+from answers import PROGRAM, ran
 
 HERE = Path(__file__).resolve().parent
-PAGE, OPEN = HERE / "README.md", HERE / "open_fields.txt"
-HEAD = """# Known answers
-
-What each printed field is compared with: a closed form, or a computation that shares no code with hapbench (numpy, scipy), within a
-tolerance that a sentence derives; and what a naive reading of the field would give, which the same comparison must refuse. A scene is
-a function in `of_*.py`: a few runs, and rows of field, known answer and tolerance. The list of fields is the program's own: metrics,
-columns and words of `hapbench describe`, and the keys that commands print with `--json`. A new field without a row fails
-`known_answers_test.py`, unless it stands in `open_fields.txt`, which is to shrink. `scripts/docs` makes this page, and
-
-    python3 tests/known_answers/known_answers_test.py build/release/bin/hapbench --write
-
-it and `open_fields.txt`.
-
-<!-- generated: known_answers by scripts/docs -->
-"""
-TAIL = "\n<!-- /generated -->\n"
+OPEN = HERE / "open_fields.txt"
 # Members of JSON that say where and how, not what.
 NO_TABLES = {"run", "import"}  # commands whose JSON does not repeat a table
 NO_WORDS = {"file of the results"}
@@ -73,20 +58,3 @@ def open_fields(fields, answers):
     """Those without an answer that refuses a naive one."""
     answered = {answer.field for answer in answers if answer.naive}
     return [field for field in fields if field not in answered]
-
-
-def text_of(answers):
-    """The page. Rows that say the same of several fields are one line."""
-    lines = {}
-    for answer in answers:
-        key = (answer.scene, answer.known_by, answer.within.why, answer.naive[0] if answer.naive else "")
-        lines.setdefault(key, []).append(answer.field)
-    text, last = HEAD, None
-    for (scene, known_by, why, naive), fields in lines.items():
-        if scene != last:
-            text += f"\n## {scene}\n\n{SCENES[scene].__doc__}\n\n| fields | known by | within | naive answer, refused |\n|---|---|---|---|\n"
-            last = scene
-        names = ", ".join(f"`{name}`" for name in dict.fromkeys(fields))
-        text += "| " + " | ".join(cell.replace("|", "\\|") for cell in (names, known_by, why, naive)) + " |\n"
-    without = [f"`{field}`" for field in OPEN.read_text(encoding="utf-8").split("\n")[:-1]]
-    return text + "\n## Fields without a known answer\n\n" + (", ".join(without) + ".\n" if without else "None.\n") + TAIL
