@@ -1,4 +1,4 @@
-// The engine in a page: a WebAssembly instance (scripts/browser/live.cpp) and the few files that it reads, in memory.
+// The engine in a page: a WebAssembly instance (scripts/live/live.cpp) and the few files that it reads, in memory.
 
 const SUCCESS = 0, BAD_DESCRIPTOR = 8, NO_ENTRY = 44, NOT_SUPPORTED = 58;
 const ROOT = 3;  // the first descriptor after the standard streams

@@ -1,5 +1,4 @@
-"""Puts the live page together. scripts/live calls it."""
-import argparse
+"""Puts the live page together: page.py ENGINE.wasm OUT.html. scripts/live/make calls it."""
 import base64
 import gzip
 import json
@@ -8,8 +7,8 @@ from pathlib import Path
 
 from hapbench_report.markup import ASSETS, fill
 
-ROOT = Path(__file__).resolve().parents[3]
-PAGE = ROOT / "scripts" / "browser" / "page"
+ROOT = Path(__file__).resolve().parents[2]
+PAGE = ROOT / "scripts" / "live" / "page"
 SCENARIOS = ROOT / "scenarios"
 REPLAY = ("replay_camera.js", "replay_scene.js", "replay_tool.js", "replay_field.js", "replay_tracks.js")
 
@@ -95,15 +94,8 @@ def page(engine):
     })
 
 
-def main():
-    parser = argparse.ArgumentParser(prog="scripts/live", description="Puts the live page together.")
-    parser.add_argument("engine", type=Path, help="live.wasm")
-    parser.add_argument("--out", type=Path, required=True)
-    given = parser.parse_args()
-    text = page(given.engine.read_bytes())
-    given.out.parent.mkdir(parents=True, exist_ok=True)
-    given.out.write_text(text, encoding="utf-8")
-    print(f"{given.out} ({len(text) / 1e6:.1f} MB)")
-
-
-sys.exit(main())
+engine, out = map(Path, sys.argv[1:])
+text = page(engine.read_bytes())
+out.parent.mkdir(parents=True, exist_ok=True)
+out.write_text(text, encoding="utf-8")
+print(f"{out} ({len(text) / 1e6:.1f} MB)")
