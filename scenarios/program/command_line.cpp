@@ -17,6 +17,7 @@
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/plugins/load_plugin.hpp"
 #include "scenarios/program/command.hpp"
+#include "scenarios/program/old_words.hpp"
 
 namespace hapbench {
 
@@ -220,6 +221,20 @@ std::string problem_of(const std::string& word, const CLI::App& program, const C
   return fmt::format("unknown command \"{}\"{}", word, nearest_name_hint(word, names));
 }
 
+/// Says what to write instead of a word that only earlier versions took; empty when there is none.
+std::string old_word_problem(const CLI::App& program, const CLI::App* command) {
+  for (const CLI::App* app : {&program, command}) {
+    const std::string of = app == command && command ? command->get_name() : "";
+    for (const std::string& word : app ? app->remaining() : std::vector<std::string>()) {
+      const std::string name = word.substr(0, word.find('='));
+      const std::string_view instead = instead_of(of, name);
+      if (!instead.empty())
+        return fmt::format("{}\"{}\" is no longer known; instead: {}", of.empty() ? of : of + ": ", name, instead);
+    }
+  }
+  return "";
+}
+
 /// Explains in one line why the command line was refused.
 std::string problem_of(const CLI::ParseError& error, const CLI::App& program) {
   const std::vector<CLI::App*> chosen = program.get_subcommands();
@@ -228,6 +243,7 @@ std::string problem_of(const CLI::ParseError& error, const CLI::App& program) {
   const std::string help = fmt::format("; \"{} {}--help\" explains", kProgramName, words);
   std::vector<std::string> extra = program.remaining(true);
   std::erase(extra, "--");
+  if (std::string old = old_word_problem(program, command); !old.empty()) return old;
   // An unknown option leaves its value behind as an extra word; the option is the mistake to report.
   std::stable_partition(extra.begin(), extra.end(), [](const std::string& word) { return word.starts_with("-"); });
   if (!extra.empty()) return name + problem_of(extra.front(), program, command) + help;
@@ -294,6 +310,7 @@ int CommandLine::run(int argc, char** argv) {
     app_->parse(argc, argv);
   } catch (const CLI::CallForHelp&) {
     const std::vector<CLI::App*> chosen = app_->get_subcommands();
+    if (const std::string old = old_word_problem(*app_, nullptr); !old.empty()) throw InputError(old);
     fmt::print("{}", help_text(texts(), chosen.empty() ? kProgramName : chosen.front()->get_name()));
     return kSuccess;
   } catch (const CLI::CallForVersion& version) {

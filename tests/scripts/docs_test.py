@@ -24,7 +24,7 @@ COMMANDS = [command for manual in MANUALS for command in manual.commands()]
 UNKNOWN = "--zzzz"
 WANTS_PACKAGE = re.compile("which is not built here; allowed: .* or install ")
 # Minutes long: parsed, not run.
-LONG = {"precision", "reproduce", "--map", "--stress", "--search"}
+LONG = {"precision", "reproduce", "--map", "--stress"}
 FEW_STEPS = ["--set", 'time={"step_s": 0.0005, "steps": 40}']
 SHORTER = {"run": FEW_STEPS, "compare": FEW_STEPS, "sweep": FEW_STEPS, "converge": [*FEW_STEPS, "--levels", "3"], "limit": [*FEW_STEPS, "--resolution", "0.5"],
            "tune": [*FEW_STEPS, "--damping-ratio", "0.3:0.7"]}

@@ -174,7 +174,6 @@ const Words kCommands[] = {
     {"compare", "single_spring", "--algorithms", "mean,proxy", "--set", "time.steps=20000000"},
     {"stability", "--map", "all", "--size", "101", "--quiet"},
     {"stability", "--stress", "--count", "1000000000", "--quiet"},
-    {"stability", "drill_in_hole", "--search", "--evaluations", "1000000", "--quiet"},
     {"limit", "single_spring", "--vary", "rendering.stiffness_N_per_m", "--set", "time.steps=500000000", "--set",
      "record.trajectory=false", "--set", "rendering.damping_ratio=0", "--quiet"},
     {"precision", "time_step", "--scenario", "single_spring", "--set", "time.steps=10000000", "--quiet"},

@@ -96,8 +96,6 @@ RecordedNumbers numbers_below(const fs::path& directory) {
       const Json summary = Json::parse(contents);
       add_numbers(hash, summary.at("metrics"));
       if (name == file) numbers.state = summary.at("state_hash");
-    } else if (file.starts_with("worst_") && file.ends_with(".json")) {
-      add_numbers(hash, Json::parse(contents));
     }
   }
   numbers.tables = hash_text(hash.value());

@@ -1,0 +1,34 @@
+#include "scenarios/program/old_words.hpp"
+
+namespace hapbench {
+namespace {
+
+struct OldWord {
+  std::string_view command;  ///< of an option; empty for a command, "*" for an option of every command
+  std::string_view word;
+  std::string_view instead;
+};
+
+constexpr std::string_view kSampleOfHands =
+    "hapbench sweep SCENE --sample lhs:400 --vary hand.x_N=-5:5, with a hand of type \"force\"";
+
+/// By command, so that what one command lost stands together.
+constexpr OldWord kOldWords[] = {
+    {"", "suite", "hapbench compare GROUP --algorithms all --seeds 5"},
+    {"reproduce", "--subjects",
+     "their record, in the manual of the thesis's claims (scenarios/thesis_claims/README.md)"},
+    {"stability", "--evaluations", kSampleOfHands},
+    {"stability", "--objective", kSampleOfHands},
+    {"stability", "--search", kSampleOfHands},
+};
+
+}  // namespace
+
+std::string_view instead_of(std::string_view command, std::string_view word) {
+  for (const OldWord& old : kOldWords) {
+    if (old.word == word && (old.command == command || old.command == "*")) return old.instead;
+  }
+  return {};
+}
+
+}  // namespace hapbench
