@@ -53,12 +53,12 @@ if(HAPBENCH_BUILD_PROGRAM)
   ]])
 endif()
 
-# The interfaces of force laws, force stages and sources of contacts in C.
-install(FILES ${PROJECT_SOURCE_DIR}/algorithms/plugin/hapbench_plugin.h ${PROJECT_SOURCE_DIR}/algorithms/plugin/hapbench_force_stage.h ${PROJECT_SOURCE_DIR}/algorithms/peers/hapbench_contacts.h DESTINATION include)
+# The interfaces of force laws and sources of contacts in C.
+install(FILES ${PROJECT_SOURCE_DIR}/algorithms/plugin/hapbench_plugin.h ${PROJECT_SOURCE_DIR}/algorithms/peers/hapbench_contacts.h DESTINATION include)
 
 # The manuals, and the examples that they link, in the folders in which they do.
 file(GLOB_RECURSE manuals RELATIVE ${PROJECT_SOURCE_DIR} CONFIGURE_DEPENDS
-  algorithms/plugin/examples/* algorithms/plugin/hapbench_plugin.h algorithms/plugin/law_plugin.hpp algorithms/plugin/hapbench_force_stage.h algorithms/plugin/stage_library.hpp algorithms/laws/equal_weights.cpp
+  algorithms/plugin/examples/* algorithms/plugin/hapbench_plugin.h algorithms/plugin/law_plugin.hpp algorithms/laws/equal_weights.cpp
   algorithms/peers/examples/* algorithms/peers/hapbench_contacts.h scenarios/validation/*.svg scenarios/validation/data/*.json
   scenarios/tutorials/*.c tests/consumer/*.cpp tests/consumer/CMakeLists.txt
   sim/*.md algorithms/*.md device_model/*.md results/*.md scenarios/*.md scripts/*.md tests/*.md)

@@ -49,18 +49,7 @@ struct ActuatorLimitedPassivityConfig {
   std::optional<Vec3> max_force;      ///< F of the actuator along each axis [N]; none: no limit
   std::optional<double> max_damping;  ///< b [N s/m]; none: M / dt of the virtual tool
 };
-/// A library by hapbench_force_stage.h.
-struct PluginStageConfig {
-  std::string file;           ///< relative to the scenario file
-  std::string config = "{}";  ///< a JSON object
-};
-/// A stage that this process has added under a name, as Python does.
-struct AddedStageConfig {
-  std::string name;
-  std::string config = "{}";  ///< a JSON object
-};
-using ForceStageConfig =
-    std::variant<EnergyTankConfig, ActuatorLimitedPassivityConfig, PluginStageConfig, AddedStageConfig>;
+using ForceStageConfig = std::variant<EnergyTankConfig, ActuatorLimitedPassivityConfig>;
 
 /// Parameters of the rendering: how contacts become a force. Names are those of registry.hpp. Units: N, m, s, kg.
 struct RenderingConfig {

@@ -174,28 +174,10 @@ static void describe(Fields& f, ActuatorLimitedPassivityConfig& limited) {
          "most damping; null: M / dt, which stops the virtual tool in one step");
 }
 
-static void describe_config(Fields& f, std::string& config) {
-  f.field("config", "handed to the stage as JSON text", Presence::has_default,
-          [&config](Fields& fields) { fields.any_object(config); });
-}
-
-static void describe(Fields& f, PluginStageConfig& plugin) {
-  f.file(plugin.file, {FileContent::Kind::library}, "the library");
-  describe_config(f, plugin.config);
-}
-
-static void describe(Fields& f, AddedStageConfig& added) {
-  constexpr std::size_t kLongestName = 64;
-  f.text("name", added.name, kLongestName, "as it was added", Presence::required);
-  describe_config(f, added.config);
-}
-
 static void describe(Fields& f, ForceStageConfig& stage) {
   static constexpr TypeName kTypes[] = {
       {"energy_tank", "gives away no more energy than it holds"},
-      {"actuator_limited_passivity", "time-domain passivity within the limits of each actuator"},
-      {"plugin", "a shared library by hapbench_force_stage.h, whose code is run"},
-      {"added", "a stage of this process, as of hapbench.force_stage in Python"}};
+      {"actuator_limited_passivity", "time-domain passivity within the limits of each actuator"}};
   f.variant(stage, "force stage", kTypes, [](Fields& fields, auto& held) { describe(fields, held); });
 }
 

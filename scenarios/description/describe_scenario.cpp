@@ -9,7 +9,6 @@
 
 #include "algorithms/registry.hpp"
 #include "algorithms/stages/damping_and_limits.hpp"
-#include "algorithms/stages/force_stage.hpp"
 #include "results/summary/outcome_names.hpp"
 #include "scenarios/description/descriptions.hpp"
 #include "scenarios/description/load_scenario.hpp"
@@ -141,10 +140,6 @@ void check_force_stage(const Scenario& scenario) {
     fail("/rendering/force_stage/max_damping_N_s_per_m",
          "got null; allowed with device \"impedance\" or a prescribed position: a number, because there is no virtual "
          "mass to take it from");
-  const auto* added = std::get_if<AddedStageConfig>(&*stage);
-  if (added != nullptr && find_force_stage(added->name) == nullptr)
-    fail("/rendering/force_stage/name", fmt::format("got \"{}\"; allowed: stages that this process has added ({})",
-                                                    added->name, added_force_stages()));
 }
 
 /// A peer finds contacts between triangles and a cylinder; those of a trace belong to its motion. Neither are points of

@@ -40,11 +40,6 @@ constexpr Interface kContactSources = {.kind = "source of contacts",
                                        .entry_point = "hapbench_contacts",
                                        .header = "hapbench_contacts.h",
                                        .version = HAPBENCH_CONTACTS_VERSION};
-constexpr Interface kForceStages = {.kind = "force stage",
-                                    .entry_point = "hapbench_force_stage",
-                                    .header = "hapbench_force_stage.h",
-                                    .version = HAPBENCH_FORCE_STAGE_VERSION};
-
 /// Symbols of the library and its dependencies take precedence over ours. Sanitizers replace functions of all
 /// libraries, so they exclude that.
 #ifdef HAPBENCH_SANITIZED
@@ -150,28 +145,6 @@ const HapbenchContactSource* open_peer(const std::string& name) {
   return fs::exists(file, error) ? &opened<HapbenchContactSource>(file, kApart, kContactSources) : nullptr;
 }
 
-/// The table of a library of the user's own, which is loaded at the first call and stays. `is_whole` says whether the
-/// table has its name and its functions. Thread safe. Throws InputError.
-template <class Table, class IsWhole>
-const Table& own_library(const fs::path& given, const Interface& wanted, const IsWhole& is_whole) {
-  static std::mutex mutex;
-  static std::map<fs::path, const Table*> loaded;
-  std::error_code error;
-  const fs::path file = fs::canonical(given, error);
-  if (error) fail_in_file(given, fmt::format("cannot be loaded as a {}: {}", wanted.kind, error.message()));
-  const std::lock_guard lock(mutex);
-  const auto found = loaded.find(file);
-  if (found != loaded.end()) return *found->second;
-  hash_of_file(file);
-  const PluginCall loading(file.c_str(), "loading");
-  const auto& table = opened<Table>(file, kApart, wanted);
-  if (!is_whole(table))
-    fail_in_file(file,
-                 fmt::format("is no {} that can be used: its name or one of its functions is missing", wanted.kind));
-  loaded.emplace(file, &table);
-  return table;
-}
-
 }  // namespace
 
 void load_plugin(const fs::path& given) {
@@ -231,16 +204,22 @@ const HapbenchContactSource* find_peer(const std::string& name) {
   return found != opened.end() ? found->second : opened.emplace(name, open_peer(name)).first->second;
 }
 
-const HapbenchContactSource& contact_plugin(const fs::path& file) {
-  return own_library<HapbenchContactSource>(file, kContactSources, [](const auto& t) {
-    return t.name != nullptr && t.create != nullptr && t.destroy != nullptr && t.contacts_at != nullptr;
-  });
-}
-
-const HapbenchForceStage& force_stage_plugin(const fs::path& file) {
-  return own_library<HapbenchForceStage>(file, kForceStages, [](const auto& t) {
-    return t.name != nullptr && t.create != nullptr && t.destroy != nullptr && t.force != nullptr;
-  });
+const HapbenchContactSource& contact_plugin(const fs::path& given) {
+  static std::mutex mutex;
+  static std::map<fs::path, const HapbenchContactSource*> loaded;
+  std::error_code error;
+  const fs::path file = fs::canonical(given, error);
+  if (error) fail_in_file(given, "cannot be loaded as a source of contacts: " + error.message());
+  const std::lock_guard lock(mutex);
+  const auto found = loaded.find(file);
+  if (found != loaded.end()) return *found->second;
+  hash_of_file(file);
+  const PluginCall loading(file.c_str(), "loading");
+  const auto& t = opened<HapbenchContactSource>(file, kApart, kContactSources);
+  if (t.name == nullptr || t.create == nullptr || t.destroy == nullptr || t.contacts_at == nullptr)
+    fail_in_file(file, "is no source of contacts that can be used: its name or one of its functions is missing");
+  loaded.emplace(file, &t);
+  return t;
 }
 
 std::string peer_package(const std::string& name) {

@@ -7,9 +7,8 @@
 #include <vector>
 
 #include "algorithms/peers/hapbench_contacts.h"
-#include "algorithms/plugin/hapbench_force_stage.h"
 
-/// Shared libraries behind the C interfaces of laws, sources of contacts and force stages.
+/// Shared libraries behind the C interfaces of laws and sources of contacts.
 namespace hapbench {
 
 /// A loaded shared library with a law (algorithms/plugin/hapbench_plugin.h).
@@ -42,9 +41,6 @@ const HapbenchContactSource* find_peer(const std::string& name);
 /// The contact source of a library of the user's own, which is loaded at the first call and stays. Thread safe. Throws
 /// InputError.
 const HapbenchContactSource& contact_plugin(const std::filesystem::path& file);
-
-/// The same for a force stage.
-const HapbenchForceStage& force_stage_plugin(const std::filesystem::path& file);
 
 /// The Debian package that a peer needs, for messages. Precondition: the name is in kPeers.
 std::string peer_package(const std::string& name);

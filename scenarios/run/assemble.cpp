@@ -5,7 +5,6 @@
 
 #include "algorithms/depth/depth_model.hpp"
 #include "algorithms/registry.hpp"
-#include "algorithms/stages/force_stage.hpp"
 #include "device_model/admittance_device.hpp"
 #include "device_model/hands/drag_hand.hpp"
 #include "device_model/hands/scripted_hands.hpp"
@@ -68,26 +67,6 @@ void require_contact_source(const Scenario& scenario) {
   if (source != kOwnContacts && source != kTrace) peer_of(scenario);
 }
 
-const HapbenchForceStage* force_stage_library(const Scenario& scenario) {
-  const auto& stage = scenario.rendering.force_stage;
-  const auto* plugin = stage ? std::get_if<PluginStageConfig>(&*stage) : nullptr;
-  return plugin == nullptr ? nullptr : &force_stage_plugin(resolve_path(scenario, plugin->file));
-}
-
-void require_force_stage(const Scenario& scenario) {
-  const HapbenchForceStage* library = force_stage_library(scenario);
-  if (library == nullptr) return;
-  const RenderingConfig& rendering = scenario.rendering;
-  const bool has_mass =
-      std::holds_alternative<FreePosition>(scenario.motion.position) && !handle_moves_tool(scenario.device);
-  try {
-    make_force_stage(rendering, library)
-        ->prepare({scenario.time.step, has_mass ? rendering.mass : 0.0, rendering.stiffness});
-  } catch (const std::runtime_error& fault) {
-    throw InputError(InputError::Kind::relation, "/rendering/force_stage/config", fault.what());
-  }
-}
-
 std::unique_ptr<ContactSource> make_peer_source(const Scenario& scenario, const NamedFiles& files) {
   const auto* drill = std::get_if<CylinderFields>(&scenario.tool);
   const bool is_flat = drill != nullptr && drill->tip == Tip::flat;
@@ -140,10 +119,7 @@ std::vector<std::string> named_file_warnings(const LoadedScenario& loaded) {
 
 std::vector<std::string> check_named_files(const LoadedScenario& loaded, bool looks_at_scan) {
   const Scenario& scenario = loaded.scenario;
-  with_file(loaded, [&] {
-    require_contact_source(scenario);
-    require_force_stage(scenario);
-  });
+  with_file(loaded, [&] { require_contact_source(scenario); });
   for (const auto& file : loaded.files.all()) {
     try {
       file->check();
@@ -208,7 +184,7 @@ SimulationParts assemble(const Scenario& scenario, const NamedFiles& files, std:
                                                   parts.springs && parts.springs->bilateral,
                                                   derived_seed(scenario, trial, RandomUse::lost_queries));
   }
-  parts.algorithm = make_algorithm(rendering, force_stage_library(scenario));
+  parts.algorithm = make_algorithm(rendering);
   add_hand_and_motion(scenario, files, trial, parts);
   parts.device = make_device(scenario, trial);
   return parts;

@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "algorithms/peers/peer_source.hpp"
-#include "algorithms/plugin/hapbench_force_stage.h"
 #include "scenarios/description/load_scenario.hpp"
 #include "scenarios/description/parts.hpp"
 
@@ -38,11 +37,6 @@ PeerSurface peer_surface(const Scenario& scenario, const NamedFiles& files);
 /// Loads the module or library of rendering.contact_source. Throws InputError, which says how to have it, when it is
 /// not there.
 void require_contact_source(const Scenario& scenario);
-
-/// The library of rendering.force_stage, loaded; null where the stage has none. Throws InputError.
-const HapbenchForceStage* force_stage_library(const Scenario& scenario);
-/// Makes the stage of that library once, to see whether it takes its config. Throws InputError.
-void require_force_stage(const Scenario& scenario);
 
 /// The contacts of rendering.contact_source. Building the library's tree over the triangles takes seconds for millions.
 /// Precondition: it is a peer or kContactPlugin. Throws InputError.

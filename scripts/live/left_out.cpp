@@ -3,7 +3,6 @@
 #include <filesystem>
 
 #include "algorithms/plugin/plugin_call.hpp"
-#include "algorithms/stages/force_stage.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/memory_limit.hpp"
@@ -35,14 +34,8 @@ const HapbenchContactSource* find_peer(const std::string&) {
 const HapbenchContactSource& contact_plugin(const std::filesystem::path&) {
   refuse_library();
 }
-const HapbenchForceStage& force_stage_plugin(const std::filesystem::path&) {
-  refuse_library();
-}
 std::string peer_package(const std::string&) {
   return {};
-}
-std::unique_ptr<ForceStage> make_plugin_stage(const HapbenchForceStage&, const std::string&) {
-  refuse_library();
 }
 PluginCall::PluginCall(const char*, const char*) noexcept {}
 PluginCall::~PluginCall() = default;

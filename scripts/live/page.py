@@ -61,8 +61,7 @@ def first_value(schema, name, key):
 
 def choices(schema):
     """Laws, devices and stages, as the schema has them."""
-    kinds = [kind["const"] for kind in values_of(first_value(schema, "force_stage", "anyOf"), "type")]
-    builtin = [kind for kind in kinds if kind not in ("plugin", "added")]
+    stages = [kind["const"] for kind in values_of(first_value(schema, "force_stage", "anyOf"), "type")]
     return {
         "laws": first_value(schema, "algorithm", "enum"),
         "devices": [{"title": "as in the scene", "set": []}, {"title": "ideal", "set": ['device={"type":"ideal"}']},
@@ -71,7 +70,7 @@ def choices(schema):
                       for preset in first_value(schema, "preset", "enum"))],
         "stages": [{"title": "none", "set": []}, {"title": "angular damping", "set": ["rendering.angular_damping=true"]},
                    {"title": "passivity controller", "set": ["rendering.passivity_controller=true"]},
-                   *({"title": stage.replace("_", " "), "set": [f'rendering.force_stage={{"type":"{stage}"}}']} for stage in builtin)],
+                   *({"title": stage.replace("_", " "), "set": [f'rendering.force_stage={{"type":"{stage}"}}']} for stage in stages)],
     }
 
 
