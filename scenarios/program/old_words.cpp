@@ -12,6 +12,8 @@ struct OldWord {
 constexpr std::string_view kSampleOfHands =
     "hapbench sweep SCENE --sample lhs:400 --vary hand.x_N=-5:5, with a hand of type \"force\"";
 
+constexpr std::string_view kSlurm = "sbatch --array=0-99 scripts/sweep.sbatch SCENE --vary ... --out FOLDER";
+
 /// By command, so that what one command lost stands together.
 constexpr OldWord kOldWords[] = {
     {"", "suite", "hapbench compare GROUP --algorithms all --seeds 5"},
@@ -20,6 +22,12 @@ constexpr OldWord kOldWords[] = {
     {"stability", "--evaluations", kSampleOfHands},
     {"stability", "--objective", kSampleOfHands},
     {"stability", "--search", kSampleOfHands},
+    {"sweep", "--cpus", kSlurm},
+    {"sweep", "--dry-run", kSlurm},
+    {"sweep", "--partition", kSlurm},
+    {"sweep", "--slurm", kSlurm},
+    {"sweep", "--status", "squeue, and the tables sweep_shard_I_of_N.csv that are in the folder"},
+    {"sweep", "--time", kSlurm},
 };
 
 }  // namespace

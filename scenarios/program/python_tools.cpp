@@ -11,6 +11,7 @@
 
 #include "results/io/atomic_file.hpp"
 #include "scenarios/input/installed_folder.hpp"
+#include "scenarios/program/command.hpp"
 #include "scenarios/run/progress_bar.hpp"
 #include "scenarios/run/stop_signal.hpp"
 

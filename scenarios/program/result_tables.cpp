@@ -155,8 +155,8 @@ std::vector<Table::Column> joined_headings(const std::vector<std::vector<Table::
 std::vector<Table::Column> printed_headings() {
   return joined_headings({run_headings(), league_headings(), limit_headings(false), limit_headings(true),
                           converge_headings(), device_headings(), stability_headings(), precision_headings("step"),
-                          precision_headings("call"), diff_headings(), sweep_headings(), shard_headings(),
-                          tune_headings(), claim_headings()});
+                          precision_headings("call"), diff_headings(), sweep_headings(), tune_headings(),
+                          claim_headings()});
 }
 
 std::vector<DescribedTable> result_tables() {

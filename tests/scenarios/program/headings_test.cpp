@@ -81,7 +81,6 @@ TEST(Headings, OfEveryTableAreKnownToDescribe) {
        "expect={}"},
       {"sweep", "springs_limited_mean", "--vary", "rendering.mass_kg=0.1:0.2", "--vary", "seed=1,2", "--vary",
        "rendering.stiffness_N_per_m=1e4:2e4:log", "--sample", "lhs:4", "--set", "expect={}", "--out", "s"},
-      {"sweep", "--status", "s"},
       {"converge", "springs_oscillation", "--metric", "force_max_N,final_position_m.x", "--levels", "3"},
       {"run", "springs_oscillation", "--sure", "--out", "f"},
       {"compare", "springs_oscillation", "--sure", "--algorithms", "mean,summation", "--out", "g"},

@@ -163,8 +163,6 @@ TEST_F(PluginCommand, SweepsCarryThePluginAlong) {
   };
   const ProgramRun print = with({"--row", "2", "--print"});
   EXPECT_NE(print.out.find("--plugin " + mine.string()), std::string::npos) << print.out;
-  ASSERT_EQ(with({"--slurm", "2", "--dry-run"}).status, 0);
-  EXPECT_NE(read_file(directory_ / "s/sweep.sbatch").find("--plugin " + mine.string()), std::string::npos);
   ASSERT_EQ(with({"--shard", "0/2"}).status, 0);
   const Json description = Json::parse(read_file(directory_ / "s/sweep_shard_0_of_2.json"));
   EXPECT_EQ(description["plugins"].size(), 1u);
