@@ -41,15 +41,12 @@ install(DIRECTORY ${PROJECT_SOURCE_DIR}/results/reference DESTINATION ${share}/r
 
 if(HAPBENCH_BUILD_PROGRAM)
   install(TARGETS hapbench_program RUNTIME DESTINATION bin)
-  # The page and the completions are what the program itself prints, so that they fit it.
-  install(CODE "set(program \"$<TARGET_FILE:hapbench_program>\")")
+  install(CODE "set(completion \"${PROJECT_SOURCE_DIR}/scripts/completion\" \"$<TARGET_FILE:hapbench_program>\")")
   install(CODE [[
-    set(share "$ENV{DESTDIR}${CMAKE_INSTALL_PREFIX}/share")
-    file(MAKE_DIRECTORY ${share}/man/man1 ${share}/bash-completion/completions)
-    execute_process(COMMAND ${program} man OUTPUT_FILE ${share}/man/man1/hapbench.1 COMMAND_ERROR_IS_FATAL ANY)
-    execute_process(COMMAND ${program} completion bash
-      OUTPUT_FILE ${share}/bash-completion/completions/hapbench COMMAND_ERROR_IS_FATAL ANY)
-    message(STATUS "Installing: ${share}/man/man1/hapbench.1 and completions for bash")
+    set(folder "$ENV{DESTDIR}${CMAKE_INSTALL_PREFIX}/share/bash-completion/completions")
+    file(MAKE_DIRECTORY ${folder})
+    execute_process(COMMAND ${completion} OUTPUT_FILE ${folder}/hapbench COMMAND_ERROR_IS_FATAL ANY)
+    message(STATUS "Installing: ${folder}/hapbench")
   ]])
 endif()
 

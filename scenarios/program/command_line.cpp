@@ -47,18 +47,13 @@ CommandOption& CommandOption::range(std::int64_t least, std::int64_t greatest) {
   return *this;
 }
 
-CommandOption& CommandOption::words(WordSource source) {
-  state_->words[option_] = std::move(source);
-  return *this;
-}
-
 CommandOption& CommandOption::one_of(const std::vector<std::string>& words) {
   const auto problem = [words](const std::string& word) -> std::string {
     if (std::find(words.begin(), words.end(), word) != words.end()) return "";
     return fmt::format("got \"{}\"; allowed: {}{}", word, quoted_list(words), nearest_name_hint(word, words));
   };
   option_->check(CLI::Validator(problem, ""));
-  return this->words([words] { return words; });
+  return *this;
 }
 
 CommandOption& CommandOption::value_if_none(const std::string& value) {
@@ -77,15 +72,15 @@ CommandOption& CommandOption::excludes(const CommandOption& other) {
 }
 
 CommandOption Command::add_variable(const std::string& name, Variable variable, const std::string& help) {
-  return {std::visit([&](auto* value) { return app_->add_option(name, *value, help); }, variable), state_};
+  return CommandOption(std::visit([&](auto* value) { return app_->add_option(name, *value, help); }, variable));
 }
 
 CommandOption Command::flag(const std::string& name, bool& value, const std::string& help) {
-  return {app_->add_flag(name, value, help), state_};
+  return CommandOption(app_->add_flag(name, value, help));
 }
 
 CommandOption Command::flag(const std::string& name, std::function<void()> when_given, const std::string& help) {
-  return {app_->add_flag_callback(name, std::move(when_given), help), state_};
+  return CommandOption(app_->add_flag_callback(name, std::move(when_given), help));
 }
 
 void Command::footer(const std::string& text) {
@@ -94,7 +89,7 @@ void Command::footer(const std::string& text) {
 
 void Command::runs(Action action, std::string when_stopped) {
   ChosenCommand command{std::move(action), std::move(when_stopped)};
-  app_->callback([&state = state_, command = std::move(command)] { state.chosen = command; });
+  app_->callback([&chosen = chosen_, command = std::move(command)] { chosen = command; });
 }
 
 CommandLine::CommandLine(const std::string& version, std::function<std::string()> version_json)
@@ -147,24 +142,22 @@ Command CommandLine::command(const std::string& name, const std::string& summary
   CLI::App* app = app_->add_subcommand(name, summary);
   app->get_option("--help")->description("print this help");
   add_common_options(*app);
-  return Command(app, state_);
+  return Command(app, chosen_);
 }
 
 namespace {
 
-OptionText text_of(const CLI::Option& option, const WordSource& words) {
+OptionText text_of(const CLI::Option& option) {
   OptionText text{.name = option.get_name(option.get_positional(), true),
                   .value = "",
                   .help = option.get_description(),
                   .is_argument = option.get_positional(),
-                  .is_required = option.get_required(),
-                  .takes_a_list = option.get_delimiter() == ',',
-                  .words = words};
+                  .is_required = option.get_required()};
   if (option.get_type_size() != 0 && !option.get_type_name().empty()) {
     text.value = option.get_type_name();
     if (option.get_expected_min() == 0) text.value = "[" + text.value + "]";
     if (option.get_expected_max() == CLI::detail::expected_max_vector_size)
-      text.value += text.takes_a_list ? ",..." : " ...";
+      text.value += option.get_delimiter() == ',' ? ",..." : " ...";
   }
   // CLI11 orders them by their addresses.
   std::set<std::string> needed, excluded;
@@ -175,12 +168,9 @@ OptionText text_of(const CLI::Option& option, const WordSource& words) {
   return text;
 }
 
-CommandText text_of(const CLI::App& app, const CommandLineState& state) {
+CommandText text_of(const CLI::App& app) {
   CommandText text{app.get_name(), app.get_description(), app.get_footer(), {}};
-  for (const CLI::Option* option : app.get_options()) {
-    const auto words = state.words.find(option);
-    text.options.push_back(text_of(*option, words == state.words.end() ? WordSource() : words->second));
-  }
+  for (const CLI::Option* option : app.get_options()) text.options.push_back(text_of(*option));
   return text;
 }
 
@@ -254,8 +244,8 @@ std::string problem_of(const CLI::ParseError& error, const CLI::App& program) {
 }  // namespace
 
 std::vector<CommandText> CommandLine::texts() const {
-  std::vector<CommandText> texts = {text_of(*app_, state_)};
-  for (const CLI::App* command : app_->get_subcommands({})) texts.push_back(text_of(*command, state_));
+  std::vector<CommandText> texts = {text_of(*app_)};
+  for (const CLI::App* command : app_->get_subcommands({})) texts.push_back(text_of(*command));
   return texts;
 }
 
@@ -264,32 +254,6 @@ namespace {
 void load_plugins(const std::vector<std::string>& files) {
   for (const std::string& file : files) load_plugin(file);
   if (const char* folders = std::getenv("HAPBENCH_PLUGIN_PATH")) load_plugins_in("HAPBENCH_PLUGIN_PATH", folders);
-}
-
-/// Removes "--plugin FILE" from an unfinished command line, whose last word is still being typed, and returns the
-/// files.
-std::vector<std::string> take_plugins(std::vector<std::string>& words) {
-  std::vector<std::string> plugins;
-  for (std::size_t i = 0; i + 2 < words.size();) {
-    if (words[i] != "--plugin") {
-      ++i;
-      continue;
-    }
-    plugins.push_back(words[i + 1]);
-    words.erase(words.begin() + static_cast<std::ptrdiff_t>(i), words.begin() + static_cast<std::ptrdiff_t>(i + 2));
-  }
-  return plugins;
-}
-
-/// "hapbench complete WORDS": a shell runs this at each press of the tab key.
-int complete(const std::vector<CommandText>& texts, std::vector<std::string> words) {
-  try {
-    load_plugins(take_plugins(words));
-  } catch (const InputError&) {
-    // The command itself will report it.
-  }
-  for (const std::string& word : completions(texts, words)) fmt::print("{}\n", word);
-  return kSuccess;
 }
 
 /// Makes a success fail when a plugin's law failed: its runs count as diverged, which by itself need not be a failure.
@@ -305,7 +269,6 @@ int status_with_faults(int status) {
 }  // namespace
 
 int CommandLine::run(int argc, char** argv) {
-  if (argc > 2 && argv[1] == std::string_view("complete")) return complete(texts(), {argv + 2, argv + argc});
   try {
     app_->parse(argc, argv);
   } catch (const CLI::CallForHelp&) {
@@ -321,7 +284,7 @@ int CommandLine::run(int argc, char** argv) {
   }
   load_plugins(plugins_);
   take_plugin_faults();  // forgets those of an earlier command of this process
-  return status_with_faults(state_.chosen.action());
+  return status_with_faults(chosen_.action());
 }
 
 }  // namespace hapbench

@@ -16,7 +16,11 @@ constexpr std::string_view kSlurm = "sbatch --array=0-99 scripts/sweep.sbatch SC
 
 /// By command, so that what one command lost stands together.
 constexpr OldWord kOldWords[] = {
+    {"", "complete", "scripts/completion, which prints a completion for bash"},
+    {"", "completion", "scripts/completion, which prints a completion for bash"},
+    {"", "man", "hapbench --help, and --help of each command"},
     {"", "suite", "hapbench compare GROUP --algorithms all --seeds 5"},
+    {"plot", "--no-sketch", "the same without it: plot draws no sketches"},
     {"reproduce", "--subjects",
      "their record, in the manual of the thesis's claims (scenarios/thesis_claims/README.md)"},
     {"stability", "--evaluations", kSampleOfHands},

@@ -29,7 +29,6 @@ struct PictureOptions {
   std::string from;
   std::string to;
   std::string out;
-  bool no_sketch = false;
   bool quiet = false;
 };
 
@@ -79,7 +78,6 @@ int become(const std::string& tool, const PictureOptions& options) {
   command.add("--from", options.from);
   command.add("--to", options.to);
   command.add("--out", options.out);
-  if (options.no_sketch) command.add("--no-sketch");
   command.add("--");
   for (const std::string& run : options.runs) command.add(run);
   return command.become();
@@ -137,8 +135,7 @@ void write_way(const std::filesystem::path& folder, const std::filesystem::path&
 }
 
 void add_plot(CommandLine& line) {
-  auto [command, options] = line.command(
-      "plot", "Draw runs over time and in space, a sweep, a stability map: a sketch here and a picture", plot);
+  auto [command, options] = line.command("plot", "Draw runs over time and in space, a sweep, a stability map", plot);
   add_common(command, options, "folders that run, compare (also --devices), sweep, stability --map or limit wrote",
              "FILE.svg, .png or .pdf (default: plot.svg in the folder of the runs)");
   command.add("--y", options.quantities, "the quantities to draw, separated by commas (below)");
@@ -147,7 +144,6 @@ void add_plot(CommandLine& line) {
       .repeatable();
   command.add("--from", options.from, "time from which to draw [s]");
   command.add("--to", options.to, "time up to which to draw [s]");
-  command.flag("--no-sketch", options.no_sketch, "print no sketch, only write the picture");
   command.footer(
       "--y takes force, spring, measured, input, reference, force_error, torque (needs record.torque), depth, ratio, "
       "contacts, rendered, speed, x, y, z, path, energy, input_energy, or any column of the runs' tables; by default "

@@ -280,7 +280,6 @@ void add_reproduce(CommandLine& line) {
           "--only", options.only,
           "ids of claims, separated by commas; \"hapbench list claims\" shows them, and scripts/reproduce --only draws their "
           "figures, too")
-      .words(claim_ids)
       .comma_separated();
   command.add("--out", options.out, "directory of the results (default: results/out/reproduce)");
   command.add("--ledger", options.ledger,

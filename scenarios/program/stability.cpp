@@ -212,8 +212,7 @@ void add_experiments(Command& command, StabilityOptions& options) {
   CommandOption map = command.add("--map", options.maps,
                                   "draw maps of stable, dying, vibrating and diverged runs: names separated by commas, "
                                   "or all (see \"hapbench describe stability\")");
-  scenarios.words(all_scenarios);
-  map.words([] { return with_all(names_of(stability_maps(), &StabilityMap::name)); }).comma_separated();
+  map.comma_separated();
   CommandOption stress = command.flag("--stress", options.stress, "pass random contact sets through every algorithm");
   map.excludes(stress).excludes(scenarios);
   stress.excludes(scenarios);
@@ -223,7 +222,6 @@ void add_experiments(Command& command, StabilityOptions& options) {
   command
       .add("--integrators", options.integrators,
            "integrators of the maps: names separated by commas, or all (default: leapfrog)")
-      .words([] { return with_all(all_integrators()); })
       .comma_separated()
       .needs(map);
   command.add("--count", options.count, "contact sets of --stress (default: 100000)")
@@ -232,7 +230,6 @@ void add_experiments(Command& command, StabilityOptions& options) {
   command.add("--seed", options.seed, "seed of --stress (default: 1)").range(0, std::int64_t{1} << 53).excludes(map);
   add_jobs(command, options.jobs, "threads (default: as many as the machine has)");
   command.add("--algorithms", options.algorithms, "algorithms of --map: names separated by commas (default: all)")
-      .words(all_algorithms)
       .comma_separated();
 }
 

@@ -221,28 +221,24 @@ void add_run_options(Command& command, SweepCommand& options) {
 void add_sweep(CommandLine& line) {
   auto [command, options] =
       line.command("sweep", "Run one scenario over a grid or a sample of values of any fields, in parallel", sweep);
-  command
-      .add("scenario", options.scenario,
-           "scenario file, or name of a bundled scenario; or the folder of a finished sweep, which is printed again")
-      .words(all_scenarios);
+  command.add(
+      "scenario", options.scenario,
+      "scenario file, or name of a bundled scenario; or the folder of a finished sweep, which is printed again");
   command
       .add(
           "--vary", options.vary,
           "a field and its values: path=a:b:n (n numbers from a to b), path=a:b:n:log (in equal ratios) or path=v,w,... "
           "(numbers or texts; rendering.algorithm=all). Several give all combinations; the last one varies fastest. "
           "With --sample: path=a:b, path=a:b:log or path=v,w,...")
-      .words(field_assignments)
       .repeatable();
   const CommandOption sample =
       command.add("--sample", options.sample,
                   "run a sample of points instead of all combinations: lhs:N (Latin hypercube), sobol:N (shifted Sobol "
                   "sequence, best for powers of two) or random:N; listed values take equal shares");
   command.add("--seed", options.seed, "seed of the sample (default: 1)").needs(sample);
-  command
-      .add("--metric", options.metric,
-           "the column of sweep.csv that is shown, by which runs are ordered (default: " +
-               std::string(kDefaultMetrics[0]) + ")")
-      .words([] { return metric_names(); });
+  command.add("--metric", options.metric,
+              "the column of sweep.csv that is shown, by which runs are ordered (default: " +
+                  std::string(kDefaultMetrics[0]) + ")");
   command
       .add("--where", options.where,
            "print only the runs with this: a column of sweep.csv, one of < <= > >= = !=, and a number or a text, as "

@@ -16,5 +16,5 @@ def draw_all(program, scratch):
         *runs, plot = (shlex.split(line, comments=True)[1:] for line in commands.splitlines())
         for words in runs:
             program.run([*words, "--quiet"], scratch)
-        program.run([*plot, "--no-sketch", "--quiet", "--out", FOLDER / picture], scratch)
+        program.run([*plot, "--quiet", "--out", FOLDER / picture], scratch)
     print(f"drew {len(pictures)} pictures into {FOLDER.relative_to(ROOT)}")
