@@ -13,7 +13,6 @@
 #include "algorithms/plugin/plugin_law.hpp"
 #include "scenarios/description/writer.hpp"
 #include "scenarios/input/input_error.hpp"
-#include "scenarios/input/memory_limit.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/plugins/load_plugin.hpp"
 #include "scenarios/program/command.hpp"
@@ -112,22 +111,6 @@ CommandLine::~CommandLine() = default;
 
 /// The program and each command have these options, so that they may stand before or behind the command.
 void CommandLine::add_common_options(CLI::App& app) {
-  const auto limit = [](const std::uint64_t& bytes) { limit_memory(static_cast<double>(bytes)); };
-  const auto refuse_negative = [](const std::string& size) {
-    return size.starts_with("-") ? fmt::format("got {}; allowed: a size such as 8G", size) : std::string();
-  };
-  const auto refuse_small = [](const std::string& bytes) {
-    constexpr double kLeast = 32e6;  // the program takes nearly half of it for itself
-    return finite_number(bytes) < kLeast ? fmt::format("got {} B; allowed: 32M or more", bytes) : std::string();
-  };
-  app.add_option_function<std::uint64_t>(
-         "--memory", limit,
-         "most memory that may be taken, such as 8G (default: three quarters of what is "
-         "free)")
-      ->transform(CLI::AsSizeValue(false).description(""))
-      ->transform(CLI::Validator(refuse_negative, ""))  // before the one above
-      ->check(refuse_small)
-      ->type_name("SIZE");
   const auto add = [this](const std::vector<std::string>& files) {
     plugins_.insert(plugins_.end(), files.begin(), files.end());
   };

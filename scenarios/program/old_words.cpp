@@ -16,6 +16,7 @@ constexpr std::string_view kSlurm = "sbatch --array=0-99 scripts/sweep.sbatch SC
 
 /// By command, so that what one command lost stands together.
 constexpr OldWord kOldWords[] = {
+    {"*", "--memory", "ulimit -d KILOBYTES before the command; without it three quarters of what is free"},
     {"", "complete", "scripts/completion, which prints a completion for bash"},
     {"", "completion", "scripts/completion, which prints a completion for bash"},
     {"", "man", "hapbench --help, and --help of each command"},

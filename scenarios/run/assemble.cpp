@@ -11,7 +11,6 @@
 #include "device_model/hands/tracking_hand.hpp"
 #include "device_model/ideal_device.hpp"
 #include "device_model/impedance_device.hpp"
-#include "scenarios/input/memory_limit.hpp"
 #include "scenarios/plugins/load_plugin.hpp"
 #include "scenarios/run/scene_facts.hpp"
 #include "sim/contact/contact_source.hpp"
@@ -135,7 +134,6 @@ std::vector<std::string> check_named_files(const LoadedScenario& loaded, bool lo
         InputError::Kind::relation, file_of(loaded, "/record/force_reference").string() + ": /record/force_reference",
         fmt::format("got true; allowed: false, because {} has no columns mfx_N,mfy_N,mfz_N", file->path().string()));
   }
-  with_file(loaded, [&] { require_memory(environment_memory(scenario, loaded.files), "/environment: its points"); });
   std::vector<std::string> warnings = named_file_warnings(loaded);
   for (std::string& warning : warnings) {
     const std::string pointer = warning.substr(0, warning.find(": "));

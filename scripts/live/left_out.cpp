@@ -1,11 +1,9 @@
-// Replaces the parts of the engine that need an operating system: the folder of an installation, plugins, signals and
-// the limit of memory.
+// Replaces the parts of the engine that need an operating system: the folder of an installation, plugins and signals.
 #include <filesystem>
 
 #include "algorithms/plugin/plugin_call.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/input/input_error.hpp"
-#include "scenarios/input/memory_limit.hpp"
 #include "scenarios/plugins/load_plugin.hpp"
 #include "scenarios/run/stop_signal.hpp"
 
@@ -39,11 +37,6 @@ std::string peer_package(const std::string&) {
 }
 PluginCall::PluginCall(const char*, const char*) noexcept {}
 PluginCall::~PluginCall() = default;
-
-void require_memory(double bytes, const std::string& what) {
-  constexpr double kMost = 1e9;  // WebAssembly addresses 4 GB, of which browsers do not give a page all
-  if (bytes > kMost) throw InputError(what + " would take more than 1 GB; run this scenario with hapbench");
-}
 
 void throw_if_stopped() {}
 

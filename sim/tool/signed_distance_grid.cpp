@@ -290,20 +290,12 @@ SignedDistanceGrid::SignedDistanceGrid(const ClosedSurface& surface, double spac
   find_faces(surface);
 }
 
-double SignedDistanceGrid::expected_bytes(std::span<const Vec3> vertices, double spacing) {
-  return kBytesPerNode * node_counts(extent_of(vertices), spacing).prod();
-}
-
 double SignedDistanceGrid::suggested_spacing(std::span<const Vec3> vertices) {
   return suggested_for(extent_of(vertices));
 }
 
 double SignedDistanceGrid::error_bound() const noexcept {
   return 0.5 * std::numbers::sqrt3 * nodes_.spacing;
-}
-
-std::size_t SignedDistanceGrid::bytes() const noexcept {
-  return values_.size() * sizeof(double) + kinds_.size();
 }
 
 void SignedDistanceGrid::fill(const ClosedSurface& surface, const TriangleTree& tree) {

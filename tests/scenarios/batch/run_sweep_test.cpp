@@ -107,7 +107,6 @@ TEST(SweepPlan, HasExactlyTheMetricsOfItsRuns) {
   Json prescribed = minimal_scenario("plane");
   prescribed["motion"]["position"] = {{"type", "prescribed"}, {"x_m", 0}, {"y_m", 0}, {"z_m", 0}};
   prescribed["reference_force"] = {{"z_N", 1.0}};
-  prescribed["perception"] = Json::object();
   scenarios.push_back({"with_reference_force", prescribed});
   Json block = minimal_scenario("block_with_hole");
   block["record"] = {{"ideal_trajectory", true}};
