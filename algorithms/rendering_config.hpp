@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -25,9 +24,6 @@ struct ReductionConfig {
 
 /// The value of RenderingConfig::contact_source for the contacts of our search and depth models.
 inline constexpr const char* kOwnContacts = "own";
-/// Collision libraries whose contacts a run can use instead, each in a module of its own (algorithms/peers).
-inline constexpr std::array kPeers = {"fcl", "bullet"};
-
 /// Contacts that a file gives: the recorded contacts of a prescribed motion, or a library of the user's own.
 inline constexpr const char* kTrace = "trace";
 inline constexpr const char* kContactPlugin = "plugin";
@@ -56,7 +52,7 @@ struct RenderingConfig {
   std::string algorithm = "shaped_stiffness";
   int iterations = 3;  ///< m of the shaping iteration, for the laws that iterate
   std::string depth_model = "surface_normal";
-  std::string contact_source = kOwnContacts;  ///< or a peer's name (kPeers), kTrace, kContactPlugin
+  std::string contact_source = kOwnContacts;  ///< or kTrace, kContactPlugin
   std::string contact_file;                   ///< of the latter two, relative to the scenario file
   std::string contact_config = "{}";          ///< of kContactPlugin: a JSON object
   std::optional<Lateness> late;               ///< none: contacts of every row

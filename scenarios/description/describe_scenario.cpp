@@ -142,20 +142,13 @@ void check_force_stage(const Scenario& scenario) {
          "mass to take it from");
 }
 
-/// A peer finds contacts between triangles and a cylinder; those of a trace belong to its motion. Neither are points of
-/// our shell.
+/// The contacts of a trace belong to its motion, and neither they nor those of a library are points of our shell.
 void check_contact_source(const Scenario& scenario) {
   const RenderingConfig& rendering = scenario.rendering;
   if (rendering.contact_source == kOwnContacts) return;
-  const auto* drill = std::get_if<CylinderFields>(&scenario.tool);
-  const bool is_solid = std::holds_alternative<BlockEnvironment>(scenario.environment) ||
-                        std::holds_alternative<MeshEnvironment>(scenario.environment);
   const bool is_trace = rendering.contact_source == kTrace;
-  const bool is_peer = !is_trace && rendering.contact_source != kContactPlugin;
   const char* problem =
-      is_peer && !is_solid ? "unless the environment is a block_with_hole or a mesh"
-      : is_peer && (drill == nullptr || drill->tip != Tip::flat) ? "unless the tool is a cylinder with a flat tip"
-      : std::holds_alternative<SpringsEnvironment>(scenario.environment) ? "with springs, which have no surface"
+      std::holds_alternative<SpringsEnvironment>(scenario.environment) ? "with springs, which have no surface"
       : is_trace &&
               (std::holds_alternative<FreePosition>(scenario.motion.position) || handle_moves_tool(scenario.device))
           ? "unless motion.position is prescribed, as it was when the contacts were recorded"

@@ -14,7 +14,6 @@
 #include "algorithms/plugin/plugin_call.hpp"
 #include "algorithms/plugin/plugin_law.hpp"
 #include "scenarios/input/input_error.hpp"
-#include "scenarios/input/installed_folder.hpp"
 #include "scenarios/input/json_file.hpp"
 #include "sim/core/hash.hpp"
 
@@ -137,14 +136,6 @@ const Table& opened(const fs::path& file, int flags, const Interface& wanted) {
   return *table;
 }
 
-const HapbenchContactSource* open_peer(const std::string& name) {
-  // lib/hapbench lies beside share/hapbench.
-  const fs::path prefix = installed_folder(".").parent_path().parent_path();
-  const fs::path file = prefix / "lib" / "hapbench" / ("contacts_" + name + ".so");
-  std::error_code error;
-  return fs::exists(file, error) ? &opened<HapbenchContactSource>(file, kApart, kContactSources) : nullptr;
-}
-
 }  // namespace
 
 void load_plugin(const fs::path& given) {
@@ -196,14 +187,6 @@ const std::vector<LoadedPlugin>& loaded_plugins() {
   return plugins();
 }
 
-const HapbenchContactSource* find_peer(const std::string& name) {
-  static std::mutex mutex;
-  static std::map<std::string, const HapbenchContactSource*> opened;
-  const std::lock_guard lock(mutex);
-  const auto found = opened.find(name);
-  return found != opened.end() ? found->second : opened.emplace(name, open_peer(name)).first->second;
-}
-
 const HapbenchContactSource& contact_plugin(const fs::path& given) {
   static std::mutex mutex;
   static std::map<fs::path, const HapbenchContactSource*> loaded;
@@ -220,10 +203,6 @@ const HapbenchContactSource& contact_plugin(const fs::path& given) {
     fail_in_file(file, "is no source of contacts that can be used: its name or one of its functions is missing");
   loaded.emplace(file, &t);
   return t;
-}
-
-std::string peer_package(const std::string& name) {
-  return "lib" + name + "-dev";
 }
 
 }  // namespace hapbench

@@ -26,15 +26,8 @@ void add(std::vector<double>& numbers, const Vec3& p) {
   numbers.insert(numbers.end(), {p.x(), p.y(), p.z()});
 }
 
-const HapbenchContactSource& peer_of(const Scenario& scenario) {
-  const std::string& name = scenario.rendering.contact_source;
-  if (name == kContactPlugin) return contact_plugin(resolve_path(scenario, scenario.rendering.contact_file));
-  if (const HapbenchContactSource* library = find_peer(name)) return *library;
-  throw InputError(
-      InputError::Kind::relation, "/rendering/contact_source",
-      fmt::format("got \"{}\", which is not built here; allowed: \"{}\", or install {} and build the target "
-                  "contact_sources",
-                  name, kOwnContacts, peer_package(name)));
+const HapbenchContactSource& contact_library_of(const Scenario& scenario) {
+  return contact_plugin(resolve_path(scenario, scenario.rendering.contact_file));
 }
 
 }  // namespace
@@ -62,8 +55,7 @@ PeerSurface peer_surface(const Scenario& scenario, const NamedFiles& files) {
 }
 
 void require_contact_source(const Scenario& scenario) {
-  const std::string& source = scenario.rendering.contact_source;
-  if (source != kOwnContacts && source != kTrace) peer_of(scenario);
+  if (scenario.rendering.contact_source == kContactPlugin) contact_library_of(scenario);
 }
 
 std::unique_ptr<ContactSource> make_peer_source(const Scenario& scenario, const NamedFiles& files) {
@@ -72,10 +64,8 @@ std::unique_ptr<ContactSource> make_peer_source(const Scenario& scenario, const 
   const HapbenchTool tool = {.radius = make_tool(scenario, files)->half_width(),
                              .length = is_flat ? drill->length : 0.0};
   const PeerSurface surface = peer_surface(scenario, files);
-  const RenderingConfig& rendering = scenario.rendering;
-  const bool is_plugin = rendering.contact_source == kContactPlugin;
-  return std::make_unique<PeerSource>(peer_of(scenario), rendering.contact_config, surface, tool,
-                                      is_plugin ? kMostPluginContacts : surface.triangles.size() / 3);
+  return std::make_unique<PeerSource>(contact_library_of(scenario), scenario.rendering.contact_config, surface, tool,
+                                      kMostPluginContacts);
 }
 
 namespace {

@@ -34,12 +34,10 @@ SimulationParts assemble(const Scenario& scenario);
 /// triangles, the points of other environments. Throws InputError when the file cannot be used.
 PeerSurface peer_surface(const Scenario& scenario, const NamedFiles& files);
 
-/// Loads the module or library of rendering.contact_source. Throws InputError, which says how to have it, when it is
-/// not there.
+/// Loads the library of rendering.contact_source, if that is one. Throws InputError when it cannot.
 void require_contact_source(const Scenario& scenario);
 
-/// The contacts of rendering.contact_source. Building the library's tree over the triangles takes seconds for millions.
-/// Precondition: it is a peer or kContactPlugin. Throws InputError.
+/// The contacts of the library of rendering.contact_source. Precondition: it is kContactPlugin. Throws InputError.
 std::unique_ptr<ContactSource> make_peer_source(const Scenario& scenario, const NamedFiles& files);
 
 }  // namespace hapbench

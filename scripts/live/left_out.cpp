@@ -26,14 +26,8 @@ std::filesystem::path find_scenario(const std::string& name, const std::filesyst
   throw InputError(name + ": no such file and no bundled scenario");
 }
 
-const HapbenchContactSource* find_peer(const std::string&) {
-  refuse_library();
-}
 const HapbenchContactSource& contact_plugin(const std::filesystem::path&) {
   refuse_library();
-}
-std::string peer_package(const std::string&) {
-  return {};
 }
 PluginCall::PluginCall(const char*, const char*) noexcept {}
 PluginCall::~PluginCall() = default;

@@ -2,10 +2,9 @@
 import math
 
 import numpy as np
-from scipy import signal
 
 from answers import EXACT, ROUNDING, Within, norms, profile, rms, scene
-from physics import FILTERED, PLAIN, SPRING, STEPPED, high_pass
+from physics import PLAIN, SPRING, STEPPED
 
 
 # Not periodic: one lag alone fits.

@@ -5,8 +5,8 @@
 #include <limits>
 #include <stdexcept>
 
-#include "algorithms/peers/contact_library.hpp"
 #include "algorithms/registry.hpp"
+#include "tests/bench/peers/contact_library.hpp"
 #include "tests/support/fakes.hpp"
 #include "tests/support/setting.hpp"
 

@@ -1,10 +1,12 @@
 #pragma once
 
-#include "algorithms/peers/contact_library.hpp"
+#include "tests/bench/peers/contact_library.hpp"
 
-/// Contact sources that are linked with the benchmark and no run uses.
+/// Collision libraries that the benchmark asks the questions of our search.
 namespace hapbench::bench {
 
+const HapbenchContactSource& bullet();
+const HapbenchContactSource& fcl();
 const HapbenchContactSource& kd_tree();  ///< CGAL, over the vertices of the surface
 const HapbenchContactSource& ode();
 

@@ -3,12 +3,12 @@
 #include <memory>
 #include <vector>
 
-#include "algorithms/peers/contact_library.hpp"
+#include "tests/bench/peers/linked_peers.hpp"
 
 /// Bullet in double precision: its cylinder against a quantised tree of boxes over static triangles, in millimetres
 /// because its margins and thresholds are made for lengths of about 1. Each triangle that the cylinder meets is a
 /// contact. Depth and direction are those that its GJK and EPA find for the pair.
-namespace hapbench {
+namespace hapbench::bench {
 namespace {
 
 constexpr double kMillimetres = 1e3;
@@ -80,9 +80,10 @@ class Bullet {
 };
 
 }  // namespace
-}  // namespace hapbench
 
-const HapbenchContactSource* hapbench_contacts(uint32_t version) {
-  static const HapbenchContactSource library = hapbench::contact_library<hapbench::Bullet>("bullet");
-  return version == library.version ? &library : nullptr;
+const HapbenchContactSource& bullet() {
+  static const HapbenchContactSource library = contact_library<Bullet>("bullet");
+  return library;
 }
+
+}  // namespace hapbench::bench

@@ -2,12 +2,12 @@
 #include <fcl/geometry/shape/cylinder.h>
 #include <fcl/narrowphase/collision.h>
 
-#include "algorithms/peers/contact_library.hpp"
+#include "tests/bench/peers/linked_peers.hpp"
 
 /// FCL: its cylinder against triangles in a tree of oriented boxes with rectangle swept spheres, its default for
 /// meshes. Each triangle that the cylinder meets is a contact. Depth and direction are those of the shortest
 /// translation that separates the two, as libccd approximates it (EPA).
-namespace hapbench {
+namespace hapbench::bench {
 namespace {
 
 using Surface = fcl::BVHModel<fcl::OBBRSSd>;
@@ -54,9 +54,10 @@ class Fcl {
 };
 
 }  // namespace
-}  // namespace hapbench
 
-const HapbenchContactSource* hapbench_contacts(uint32_t version) {
-  static const HapbenchContactSource library = hapbench::contact_library<hapbench::Fcl>("fcl");
-  return version == library.version ? &library : nullptr;
+const HapbenchContactSource& fcl() {
+  static const HapbenchContactSource library = contact_library<Fcl>("fcl");
+  return library;
 }
+
+}  // namespace hapbench::bench
