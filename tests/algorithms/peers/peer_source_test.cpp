@@ -59,15 +59,6 @@ TEST(PeerSource, TakesPointDepthAndDirectionAsTheyAre) {
   EXPECT_EQ(source->fault(), nullptr);
 }
 
-TEST(PeerSource, LeavesOutWhatHasNoDirectionOrDepth) {
-  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-  const auto source = source_of(
-      {{{0, {}, {0, 0, 0}, 0.5}, {0, {}, {kNaN, 0, 1}, 0.5}, {0, {}, {0, 0, 1}, -0.5}, {0, {}, {0, 0, 1}, kNaN}}});
-  ContactBuffer contacts(source->capacity());
-  source->contacts_at({}, contacts);
-  EXPECT_TRUE(contacts.empty());
-}
-
 TEST(PeerSource, AsksAboutTheMiddleOfTheDrillWithItsShankAlongZ) {
   const auto source = source_of({});
   ContactBuffer contacts(source->capacity());

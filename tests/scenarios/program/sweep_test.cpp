@@ -312,32 +312,6 @@ TEST_F(SweepShards, GiveTheSameBytesHoweverManyWithAnyJobs) {
   }
 }
 
-TEST_F(SweepShards, OfASampleGiveTheSameBytes) {
-  const auto sample = [&](const std::string& out, const Words& more) {
-    Words words = {"sweep",    "peg_in_hole_2d_shaped_stiffness",
-                   "--out",    (directory_ / out).string(),
-                   "--set",    "expect.metrics={}",
-                   "--vary",   "rendering.stiffness_N_per_m=5000:20000:log",
-                   "--vary",   "rendering.algorithm=mean,exact_shaping",
-                   "--sample", "lhs:12"};
-    words.insert(words.end(), more.begin(), more.end());
-    return hapbench(words);
-  };
-  const ProgramRun run = sample("whole", {"--jobs", "1"});
-  ASSERT_EQ(run.status, 0) << run.err;
-  EXPECT_EQ(lines_of(table("whole")).size(), 13u);
-  EXPECT_EQ(Json::parse(read_file(directory_ / "whole/sweep.json"))["sample"],
-            (Json{{"method", "lhs"}, {"runs", 12}, {"seed", 1}}));
-  sample("two", {"--jobs", "2"});
-  test::expect_same_files(directory_ / "whole", directory_ / "two");
-  for (const char* shard : {"0/2", "1/2"}) EXPECT_EQ(sample("shards", {"--shard", shard}).status, 0);
-  hapbench({"merge", (directory_ / "shards/sweep_shard_0_of_2.csv").string(),
-            (directory_ / "shards/sweep_shard_1_of_2.csv").string(), "--out", (directory_ / "merged.csv").string()});
-  EXPECT_EQ(read_file(directory_ / "merged.csv"), table("whole"));
-  sample("other", {"--seed", "2"});
-  EXPECT_NE(table("other"), table("whole"));
-}
-
 TEST_F(SweepShards, MayBeMoreThanRuns) {
   Words merge = {"merge", "--out", (directory_ / "merged.csv").string()};
   const auto seeds = [&](const Words& more) {
@@ -352,24 +326,6 @@ TEST_F(SweepShards, MayBeMoreThanRuns) {
   EXPECT_EQ(hapbench(merge).status, 0);
   seeds({});
   EXPECT_EQ(read_file(directory_ / "merged.csv"), read_file(directory_ / "sweep.csv"));
-}
-
-TEST_F(SweepShards, AreMergedOnlyWhenTheyBelongTogether) {
-  const auto seeds = [&](const std::string& out, const std::string& vary, const std::string& shard) {
-    hapbench({"sweep", "single_spring", "--vary", vary, "--out", (directory_ / out).string(), "--shard", shard});
-    return (directory_ / out / ("sweep_shard_" + shard.substr(0, 1) + "_of_2.csv")).string();
-  };
-  const std::string first = seeds("a", "seed=1,2", "0/2"), other = seeds("b", "seed=1,3", "1/2");
-  for (const Words& files : {Words{first}, Words{first, first}, Words{first, other},
-                             Words{first, (directory_ / "missing.csv").string()}, Words{directory_.path().string()}}) {
-    Words words = {"merge", "--out", (directory_ / "out/merged.csv").string()};
-    words.insert(words.end(), files.begin(), files.end());
-    const ProgramRun run = hapbench(words);
-    EXPECT_EQ(run.status, 2);
-    EXPECT_EQ(run.out, "");
-    EXPECT_EQ(lines_of(run.err).size(), 1u) << run.err;
-    EXPECT_FALSE(fs::exists(directory_ / "out"));
-  }
 }
 
 TEST_F(SweepShards, AreNotOverwrittenByTheirTable) {
