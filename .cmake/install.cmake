@@ -57,7 +57,7 @@ install(FILES ${PROJECT_SOURCE_DIR}/algorithms/plugin/hapbench_plugin.h ${PROJEC
 file(GLOB_RECURSE manuals RELATIVE ${PROJECT_SOURCE_DIR} CONFIGURE_DEPENDS
   algorithms/plugin/examples/* algorithms/plugin/hapbench_plugin.h algorithms/plugin/law_plugin.hpp algorithms/laws/equal_weights.cpp
   algorithms/peers/examples/* algorithms/peers/hapbench_contacts.h scenarios/validation/*.svg scenarios/validation/data/*.json
-  scenarios/tutorials/*.c tests/consumer/*.cpp tests/consumer/CMakeLists.txt
+  scripts/sweep.sbatch scenarios/tutorials/*.c tests/consumer/*.cpp tests/consumer/CMakeLists.txt
   sim/*.md algorithms/*.md device_model/*.md results/*.md scenarios/*.md scripts/*.md tests/*.md)
 foreach(manual README.md CHANGELOG.md CONTRIBUTING.md LICENSE CITATION.cff ${manuals})
   cmake_path(GET manual PARENT_PATH folder)

@@ -16,7 +16,6 @@
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/plugins/load_plugin.hpp"
 #include "scenarios/program/command.hpp"
-#include "scenarios/program/old_words.hpp"
 
 namespace hapbench {
 

@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -44,6 +45,10 @@ struct CommandText {
   std::string footer;
   std::vector<OptionText> options;
 };
+
+/// What to write instead of a word that earlier versions took, such as the command "suite" or the option "--search" of
+/// the command "stability"; empty when they did not. `command` is that of an option; empty for a command.
+std::string_view instead_of(std::string_view command, std::string_view word);
 
 /// The help of a command, as wide as prose is; that of the program, which is the first of `texts`, lists the others.
 std::string help_text(const std::vector<CommandText>& texts, const std::string& command);

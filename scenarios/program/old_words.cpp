@@ -1,4 +1,6 @@
-#include "scenarios/program/old_words.hpp"
+#include <string_view>
+
+#include "scenarios/program/command_line.hpp"
 
 namespace hapbench {
 namespace {

@@ -3,7 +3,7 @@
 #include <memory>
 #include <vector>
 
-#include "tests/bench/peers/linked_peers.hpp"
+#include "tests/bench/peers/contact_library.hpp"
 
 /// Bullet in double precision: its cylinder against a quantised tree of boxes over static triangles, in millimetres
 /// because its margins and thresholds are made for lengths of about 1. Each triangle that the cylinder meets is a

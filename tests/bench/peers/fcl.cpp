@@ -2,7 +2,7 @@
 #include <fcl/geometry/shape/cylinder.h>
 #include <fcl/narrowphase/collision.h>
 
-#include "tests/bench/peers/linked_peers.hpp"
+#include "tests/bench/peers/contact_library.hpp"
 
 /// FCL: its cylinder against triangles in a tree of oriented boxes with rectangle swept spheres, its default for
 /// meshes. Each triangle that the cylinder meets is a contact. Depth and direction are those of the shortest

@@ -10,7 +10,7 @@
 #include "results/summary/provenance.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "sim/contact/neighbour_list_query.hpp"
-#include "tests/bench/peers/linked_peers.hpp"
+#include "tests/bench/peers/contact_library.hpp"
 #include "tests/bench/task_scene.hpp"
 
 /// Our search and other libraries at the same poses of the same scenes, as peers/<library>/<task>. Libraries that are
