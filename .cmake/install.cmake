@@ -8,28 +8,14 @@ get_property(libraries GLOBAL PROPERTY HAPBENCH_LIBRARIES)
 list(REMOVE_ITEM libraries hapbench_scenarios_program hapbench_scenarios_program_headers)
 get_property(folders GLOBAL PROPERTY HAPBENCH_FOLDERS)
 list(REMOVE_ITEM folders scenarios/program)
-if(HAPBENCH_SHARED)
-  list(APPEND libraries hapbench)
-  foreach(level ${HAPBENCH_LEVELS})
-    install(TARGETS hapbench_${level} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/glibc-hwcaps/${level} NAMELINK_SKIP)
-  endforeach()
-endif()
 install(TARGETS ${libraries} EXPORT hapbench-targets
-  LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+  ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(EXPORT hapbench-targets NAMESPACE hapbench:: DESTINATION ${config_folder})
 
-# Packages that the headers need; of static libraries, also those that their code needs.
-set(HAPBENCH_DEPENDENCIES "find_dependency(Eigen3 3.4)\nfind_dependency(nlohmann_json 3.11)")
-set(HAPBENCH_SHARE_RULE "")
-if(NOT HAPBENCH_SHARED)
-  string(APPEND HAPBENCH_DEPENDENCIES
-    "\nfind_dependency(fmt 9)\nfind_dependency(OpenMesh)\nfind_dependency(TBB 2021)")
-  set(HAPBENCH_SHARE_RULE [[
-# Static libraries do not know where they lie.
-target_sources(hapbench::scenarios_input INTERFACE ${CMAKE_CURRENT_LIST_DIR}/share_folder.cpp)
-target_compile_definitions(hapbench::scenarios_input INTERFACE HAPBENCH_SHARE="${hapbench_SHARE}")]])
-  install(FILES ${CMAKE_CURRENT_LIST_DIR}/share_folder.cpp DESTINATION ${config_folder})
-endif()
+# Packages that the headers and the code of static libraries need.
+set(HAPBENCH_DEPENDENCIES "find_dependency(Eigen3 3.4)\nfind_dependency(nlohmann_json 3.11)\nfind_dependency(fmt 9)
+find_dependency(OpenMesh)\nfind_dependency(TBB 2021)")
+install(FILES ${CMAKE_CURRENT_LIST_DIR}/share_folder.cpp DESTINATION ${config_folder})
 configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/hapbench-config.cmake.in ${PROJECT_BINARY_DIR}/hapbench-config.cmake
   INSTALL_DESTINATION ${config_folder})
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/hapbench-config-version.cmake COMPATIBILITY SameMinorVersion)
@@ -43,7 +29,7 @@ endforeach()
 
 # The files that come with program and libraries. bin and share stay side by side, which is how the program finds them.
 set(share share/hapbench)
-foreach(group thesis limits beyond quality examples suites)
+foreach(group thesis limits beyond quality examples)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/scenarios/${group} DESTINATION ${share}/scenarios)
 endforeach()
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/scenarios/import/presets DESTINATION ${share}/scenarios/import)
@@ -53,42 +39,25 @@ install(DIRECTORY ${PROJECT_SOURCE_DIR}/scripts/python DESTINATION ${share}/scri
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/results/reference DESTINATION ${share}/results
   PATTERN figures EXCLUDE PATTERN gallery EXCLUDE)
 
-# The loader looks in /usr by itself. Elsewhere each looks beside itself: what one has found is not asked for the next.
-if(HAPBENCH_SHARED AND NOT CMAKE_INSTALL_PREFIX STREQUAL "/usr")
-  set_target_properties(hapbench PROPERTIES INSTALL_RPATH "$ORIGIN")
-  foreach(level ${HAPBENCH_LEVELS})
-    set_target_properties(hapbench_${level} PROPERTIES INSTALL_RPATH "$ORIGIN/../..")
-  endforeach()
-  if(TARGET hapbench_program)
-    set_target_properties(hapbench_program PROPERTIES INSTALL_RPATH "$ORIGIN/../${CMAKE_INSTALL_LIBDIR}")
-  endif()
-  if(TARGET _hapbench)  # in lib/python3/dist-packages/hapbench
-    set_target_properties(_hapbench PROPERTIES INSTALL_RPATH "$ORIGIN/../../../../${CMAKE_INSTALL_LIBDIR}")
-  endif()
-endif()
 if(HAPBENCH_BUILD_PROGRAM)
   install(TARGETS hapbench_program RUNTIME DESTINATION bin)
-  # The page and the completions are what the program itself prints, so that they fit it.
-  install(CODE "set(program \"$<TARGET_FILE:hapbench_program>\")")
+  install(CODE "set(completion \"${PROJECT_SOURCE_DIR}/scripts/completion\" \"$<TARGET_FILE:hapbench_program>\")")
   install(CODE [[
-    set(share "$ENV{DESTDIR}${CMAKE_INSTALL_PREFIX}/share")
-    file(MAKE_DIRECTORY ${share}/man/man1 ${share}/bash-completion/completions)
-    execute_process(COMMAND ${program} man OUTPUT_FILE ${share}/man/man1/hapbench.1 COMMAND_ERROR_IS_FATAL ANY)
-    execute_process(COMMAND ${program} completion bash
-      OUTPUT_FILE ${share}/bash-completion/completions/hapbench COMMAND_ERROR_IS_FATAL ANY)
-    message(STATUS "Installing: ${share}/man/man1/hapbench.1 and completions for bash")
+    set(folder "$ENV{DESTDIR}${CMAKE_INSTALL_PREFIX}/share/bash-completion/completions")
+    file(MAKE_DIRECTORY ${folder})
+    execute_process(COMMAND ${completion} OUTPUT_FILE ${folder}/hapbench COMMAND_ERROR_IS_FATAL ANY)
+    message(STATUS "Installing: ${folder}/hapbench")
   ]])
 endif()
 
-# The interfaces of force laws, force stages and sources of contacts in C.
-install(FILES ${PROJECT_SOURCE_DIR}/algorithms/plugin/hapbench_plugin.h ${PROJECT_SOURCE_DIR}/algorithms/plugin/hapbench_force_stage.h ${PROJECT_SOURCE_DIR}/algorithms/peers/hapbench_contacts.h DESTINATION include)
+# The interfaces of force laws and sources of contacts in C.
+install(FILES ${PROJECT_SOURCE_DIR}/algorithms/plugin/hapbench_plugin.h ${PROJECT_SOURCE_DIR}/algorithms/peers/hapbench_contacts.h DESTINATION include)
 
 # The manuals, and the examples that they link, in the folders in which they do.
 file(GLOB_RECURSE manuals RELATIVE ${PROJECT_SOURCE_DIR} CONFIGURE_DEPENDS
-  algorithms/plugin/examples/* algorithms/plugin/hapbench_plugin.h algorithms/plugin/law_plugin.hpp algorithms/plugin/hapbench_force_stage.h algorithms/plugin/stage_library.hpp algorithms/laws/equal_weights.cpp
+  algorithms/plugin/examples/* algorithms/plugin/hapbench_plugin.h algorithms/plugin/law_plugin.hpp algorithms/laws/equal_weights.cpp
   algorithms/peers/examples/* algorithms/peers/hapbench_contacts.h scenarios/validation/*.svg scenarios/validation/data/*.json
-  scenarios/suites/*/suite.json results/reference/arena.csv
-  scenarios/tutorials/*.c tests/consumer/*.cpp tests/consumer/CMakeLists.txt
+  scripts/sweep.sbatch scenarios/tutorials/*.c tests/consumer/*.cpp tests/consumer/CMakeLists.txt
   sim/*.md algorithms/*.md device_model/*.md results/*.md scenarios/*.md scripts/*.md tests/*.md)
 foreach(manual README.md CHANGELOG.md CONTRIBUTING.md LICENSE CITATION.cff ${manuals})
   cmake_path(GET manual PARENT_PATH folder)
@@ -98,6 +67,6 @@ foreach(pictures figures gallery)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/results/reference/${pictures} DESTINATION ${CMAKE_INSTALL_DOCDIR}/results/reference)
 endforeach()
 
-if(PROJECT_IS_TOP_LEVEL AND HAPBENCH_SHARED)
+if(PROJECT_IS_TOP_LEVEL)
   include(${CMAKE_CURRENT_LIST_DIR}/package.cmake)
 endif()

@@ -214,13 +214,13 @@ std::unique_ptr<ForceLaw> make_law(std::string_view name, const RenderingConfig&
   return entry.make_law(config);
 }
 
-std::unique_ptr<ForceAlgorithm> make_algorithm(const RenderingConfig& config, const HapbenchForceStage* stage) {
+std::unique_ptr<ForceAlgorithm> make_algorithm(const RenderingConfig& config) {
   const AlgorithmEntry& entry = algorithm_entry(config.algorithm);
   const RenderingConfig fixed = with_fixed_stages(config);
   std::unique_ptr<ForceAlgorithm> algorithm =
       entry.make_law ? std::make_unique<PenaltyRendering>(entry.make_law(fixed), fixed) : entry.make(fixed);
   if (config.force_stage)
-    algorithm = std::make_unique<StagedRendering>(std::move(algorithm), make_force_stage(config, stage), config);
+    algorithm = std::make_unique<StagedRendering>(std::move(algorithm), make_force_stage(*config.force_stage), config);
   if (!config.passivity_controller) return algorithm;
   return std::make_unique<PassivityController>(std::move(algorithm), config);
 }

@@ -10,7 +10,6 @@
 
 #include "algorithms/depth/depth_model.hpp"
 #include "algorithms/laws/force_law.hpp"
-#include "algorithms/plugin/hapbench_force_stage.h"
 #include "algorithms/rendering_config.hpp"
 #include "sim/core/math.hpp"
 #include "sim/core/model_info.hpp"
@@ -121,9 +120,7 @@ std::unique_ptr<DepthModel> make_depth_model(const RenderingConfig& config);
 std::unique_ptr<ForceLaw> make_law(std::string_view name, const RenderingConfig& config);
 
 /// The algorithm of `config` with its fixed stages, with its force stage and in a passivity controller if the
-/// configuration asks for them. `stage` is the library of a force stage that is a plugin. Throws std::invalid_argument
-/// for unknown names.
-std::unique_ptr<ForceAlgorithm> make_algorithm(const RenderingConfig& config,
-                                               const HapbenchForceStage* stage = nullptr);
+/// configuration asks for them. Throws std::invalid_argument for unknown names.
+std::unique_ptr<ForceAlgorithm> make_algorithm(const RenderingConfig& config);
 
 }  // namespace hapbench

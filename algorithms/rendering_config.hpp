@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -25,9 +24,6 @@ struct ReductionConfig {
 
 /// The value of RenderingConfig::contact_source for the contacts of our search and depth models.
 inline constexpr const char* kOwnContacts = "own";
-/// Collision libraries whose contacts a run can use instead, each in a module of its own (algorithms/peers).
-inline constexpr std::array kPeers = {"fcl", "bullet"};
-
 /// Contacts that a file gives: the recorded contacts of a prescribed motion, or a library of the user's own.
 inline constexpr const char* kTrace = "trace";
 inline constexpr const char* kContactPlugin = "plugin";
@@ -49,25 +45,14 @@ struct ActuatorLimitedPassivityConfig {
   std::optional<Vec3> max_force;      ///< F of the actuator along each axis [N]; none: no limit
   std::optional<double> max_damping;  ///< b [N s/m]; none: M / dt of the virtual tool
 };
-/// A library by hapbench_force_stage.h.
-struct PluginStageConfig {
-  std::string file;           ///< relative to the scenario file
-  std::string config = "{}";  ///< a JSON object
-};
-/// A stage that this process has added under a name, as Python does.
-struct AddedStageConfig {
-  std::string name;
-  std::string config = "{}";  ///< a JSON object
-};
-using ForceStageConfig =
-    std::variant<EnergyTankConfig, ActuatorLimitedPassivityConfig, PluginStageConfig, AddedStageConfig>;
+using ForceStageConfig = std::variant<EnergyTankConfig, ActuatorLimitedPassivityConfig>;
 
 /// Parameters of the rendering: how contacts become a force. Names are those of registry.hpp. Units: N, m, s, kg.
 struct RenderingConfig {
   std::string algorithm = "shaped_stiffness";
   int iterations = 3;  ///< m of the shaping iteration, for the laws that iterate
   std::string depth_model = "surface_normal";
-  std::string contact_source = kOwnContacts;  ///< or a peer's name (kPeers), kTrace, kContactPlugin
+  std::string contact_source = kOwnContacts;  ///< or kTrace, kContactPlugin
   std::string contact_file;                   ///< of the latter two, relative to the scenario file
   std::string contact_config = "{}";          ///< of kContactPlugin: a JSON object
   std::optional<Lateness> late;               ///< none: contacts of every row

@@ -10,7 +10,7 @@
 
 namespace hapbench {
 
-/// Room for the contacts of a library of the user's own, which need not come from triangles.
+/// Room for the contacts of a library, which need not come from triangles.
 inline constexpr std::size_t kMostPluginContacts = 10'000;
 
 /// An environment as triangles, as HapbenchSurface.
@@ -47,13 +47,8 @@ class Peer {
   FaultText fault_;
 };
 
-/// The contacts of another collision library for our laws, one for each triangle that the tool meets. The library
-/// decides which contacts there are, where, how deep and in which direction; no depth model takes part.
-///
-/// Our contact is a point of the shell in the tool, with the way along its gradient out of the tool. A peer's is a
-/// triangle that the surface or the inside of the tool meets, with the shortest translation that separates the two,
-/// which may point to either side of a thin triangle deep in the tool. `index` is the triangle; the normal is the
-/// reversed gradient.
+/// The contacts of another library for our laws. The library decides which contacts there are, where, how deep and in
+/// which direction; no depth model takes part. `index` is the library's; the normal is the reversed gradient.
 ///
 /// Unlike other sources, it allocates in a step if the library does.
 class PeerSource final : public ContactSource {

@@ -1,11 +1,8 @@
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <optional>
-#include <string>
 
-#include "algorithms/plugin/hapbench_force_stage.h"
 #include "algorithms/rendering_config.hpp"
 #include "sim/core/model_info.hpp"
 #include "sim/loop/observed_energy.hpp"
@@ -15,19 +12,27 @@ namespace hapbench {
 extern const ModelInfo kEnergyTankInfo;
 extern const ModelInfo kActuatorLimitedPassivityInfo;
 
-/// A controller behind an algorithm: answers the force to render in place of the one that the algorithm renders. One
-/// object is the state of one run. The row it sees and what it is for are those of the C interface.
+/// What a force stage sees of a row.
+struct StageStep {
+  Vec3 force;     ///< that would be rendered without the stage [N]
+  Vec3 velocity;  ///< of the tool [m/s]
+  /// What the stage has absorbed and can still give back [J], by the passivity observer: the energy of the springs in
+  /// the first row, less the work that its answers have done on the tool since.
+  double energy = 0.0;
+};
+
+/// A controller behind an algorithm: in every row, in free air, too, it sees the force that a law with its damping,
+/// friction and limits would render, and answers the force to render in its place. One object is the state of one run.
 class ForceStage {
  public:
   virtual ~ForceStage() = default;
-  /// Called once before the first row; may allocate and throw.
-  virtual void prepare(const HapbenchStageRun& run) = 0;
+  /// Called once before the first row; may allocate. `time_step` of a row [s]; `mass` of the virtual tool [kg], 0 where
+  /// a device's handle or a script moves the tool.
+  virtual void prepare(double time_step, double mass) = 0;
   /// Returns to t = 0, bit for bit.
   virtual void reset() noexcept = 0;
   /// The force to render [N]; called once for each row.
-  virtual Vec3 force(const HapbenchStageStep& step) noexcept = 0;
-  /// Description of a failure in external code since the last reset; null if there was none.
-  virtual const char* fault() const noexcept { return nullptr; }
+  virtual Vec3 force(const StageStep& step) noexcept = 0;
 };
 
 /// An energy tank (after Franken et al. 2011 and Ferraguti et al. 2015): its level is the energy that the rendering has
@@ -42,9 +47,9 @@ class EnergyTank final : public ForceStage {
  public:
   explicit EnergyTank(const EnergyTankConfig& config) : config_(config) {}
 
-  void prepare(const HapbenchStageRun& run) override { dt_ = run.time_step; }
+  void prepare(double time_step, double /*mass*/) override { dt_ = time_step; }
   void reset() noexcept override { level_ = energy_ = 0.0, begun_ = false; }
-  Vec3 force(const HapbenchStageStep& step) noexcept override;
+  Vec3 force(const StageStep& step) noexcept override;
 
  private:
   EnergyTankConfig config_;
@@ -68,9 +73,9 @@ class ActuatorLimitedPassivity final : public ForceStage {
  public:
   explicit ActuatorLimitedPassivity(const ActuatorLimitedPassivityConfig& config) : config_(config) {}
 
-  void prepare(const HapbenchStageRun& run) override;
+  void prepare(double time_step, double mass) override;
   void reset() noexcept override {}
-  Vec3 force(const HapbenchStageStep& step) noexcept override;
+  Vec3 force(const StageStep& step) noexcept override;
 
  private:
   ActuatorLimitedPassivityConfig config_;
@@ -85,7 +90,6 @@ class StagedRendering final : public ForceAlgorithm {
   StagedRendering(std::unique_ptr<ForceAlgorithm> algorithm, std::unique_ptr<ForceStage> stage,
                   const RenderingConfig& config);
 
-  /// Throws what the stage throws.
   void prepare(const Scene& scene) override;
   void reset() noexcept override;
   void compute(const ToolState& tool, ContactBuffer& contacts, RenderedForce& out) noexcept override;
@@ -97,11 +101,9 @@ class StagedRendering final : public ForceAlgorithm {
     return algorithm_->angular_velocity_cutoff();
   }
   AlgorithmWork work() const noexcept override;
-  const char* fault() const noexcept override;
+  const char* fault() const noexcept override { return algorithm_->fault(); }
 
  private:
-  HapbenchStageStep step_at(const ToolState& tool, const ContactBuffer& contacts, const RenderedForce& out) noexcept;
-
   std::unique_ptr<ForceAlgorithm> algorithm_;
   std::unique_ptr<ForceStage> stage_;
   RenderingConfig config_;
@@ -112,22 +114,7 @@ class StagedRendering final : public ForceAlgorithm {
   std::uint64_t steps_staged_ = 0;
 };
 
-/// A stage that is made from the config of a scenario as JSON text. May throw.
-using ForceStageMaker = std::function<std::unique_ptr<ForceStage>(const std::string& config)>;
-
-/// Adds a stage of this process, or replaces the one of that name. Must not be called while another thread reads them.
-void add_force_stage(const std::string& name, ForceStageMaker make);
-/// Null if no stage of that name was added.
-const ForceStageMaker* find_force_stage(const std::string& name);
-/// The names of added stages, for messages.
-std::string added_force_stages();
-
-/// The stage of a library, which must outlive it (algorithms/plugin/plugin_stage.cpp). Its `prepare` throws
-/// std::runtime_error with the library's fault.
-std::unique_ptr<ForceStage> make_plugin_stage(const HapbenchForceStage& library, const std::string& config);
-
-/// The stage of the configuration. `library` is that of PluginStageConfig, and null else. Throws std::invalid_argument
-/// for a name that was not added and for a plugin without a library. Precondition: the configuration has a stage.
-std::unique_ptr<ForceStage> make_force_stage(const RenderingConfig& config, const HapbenchForceStage* library);
+/// The stage of the configuration.
+std::unique_ptr<ForceStage> make_force_stage(const ForceStageConfig& config);
 
 }  // namespace hapbench

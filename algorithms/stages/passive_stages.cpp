@@ -48,22 +48,22 @@ const ModelInfo kActuatorLimitedPassivityInfo = {
     .parameters = kActuatorParameters,
 };
 
-Vec3 EnergyTank::force(const HapbenchStageStep& step) noexcept {
+Vec3 EnergyTank::force(const StageStep& step) noexcept {
   level_ = std::min(config_.capacity, begun_ ? level_ + (step.energy - energy_) : config_.initial + step.energy);
   energy_ = step.energy;
   begun_ = true;
-  const Vec3 f = Vec3::Map(step.force), v = Vec3::Map(step.velocity);
+  const Vec3 &f = step.force, &v = step.velocity;
   const double excess = f.dot(v) * dt_ - std::max(level_, 0.0);
   return f.dot(v) > 0.0 && excess > 0.0 ? Vec3(f - excess / (v.squaredNorm() * dt_) * v) : f;
 }
 
-void ActuatorLimitedPassivity::prepare(const HapbenchStageRun& run) {
-  dt_ = run.time_step;
-  most_damping_ = config_.max_damping.value_or(run.mass / dt_);
+void ActuatorLimitedPassivity::prepare(double time_step, double mass) {
+  dt_ = time_step;
+  most_damping_ = config_.max_damping.value_or(mass / dt_);
 }
 
-Vec3 ActuatorLimitedPassivity::force(const HapbenchStageStep& step) noexcept {
-  const Vec3 f = Vec3::Map(step.force), v = Vec3::Map(step.velocity);
+Vec3 ActuatorLimitedPassivity::force(const StageStep& step) noexcept {
+  const Vec3 &f = step.force, &v = step.velocity;
   const double size = f.norm();
   double owed = f.dot(v) - step.energy / dt_;  // [W]
   if (size == 0.0 || !(owed > 0.0)) return f;

@@ -13,15 +13,6 @@ std::vector<std::string> depth_model_names() {
   return names;
 }
 
-const std::vector<std::string>& contact_sources() {
-  static const std::vector<std::string> all = [] {
-    std::vector<std::string> names = {kOwnContacts};
-    names.insert(names.end(), kPeers.begin(), kPeers.end());
-    return names;
-  }();
-  return all;
-}
-
 /// The field's name without the objects it lies in.
 std::string_view key(const Parameter& parameter) {
   const std::string_view path = parameter.field;
@@ -140,10 +131,10 @@ static void describe_contact_source(Fields& f, RenderingConfig& rendering) {
   f.plain_or_object(
       is_plugin || source == kTrace,
       [&](Fields& plain) {
-        auto index = static_cast<std::size_t>(std::find(contact_sources().begin(), contact_sources().end(), source) -
-                                              contact_sources().begin());
-        plain.name(index, contact_sources(), "source of contacts");
-        if (plain.reads()) source = contact_sources()[index];
+        static const std::vector<std::string> kNames = {kOwnContacts};
+        std::size_t index = 0;
+        plain.name(index, kNames, "source of contacts");
+        if (plain.reads()) source = kOwnContacts;
       },
       [&](Fields& object) {
         object.alternatives(
@@ -174,28 +165,10 @@ static void describe(Fields& f, ActuatorLimitedPassivityConfig& limited) {
          "most damping; null: M / dt, which stops the virtual tool in one step");
 }
 
-static void describe_config(Fields& f, std::string& config) {
-  f.field("config", "handed to the stage as JSON text", Presence::has_default,
-          [&config](Fields& fields) { fields.any_object(config); });
-}
-
-static void describe(Fields& f, PluginStageConfig& plugin) {
-  f.file(plugin.file, {FileContent::Kind::library}, "the library");
-  describe_config(f, plugin.config);
-}
-
-static void describe(Fields& f, AddedStageConfig& added) {
-  constexpr std::size_t kLongestName = 64;
-  f.text("name", added.name, kLongestName, "as it was added", Presence::required);
-  describe_config(f, added.config);
-}
-
 static void describe(Fields& f, ForceStageConfig& stage) {
   static constexpr TypeName kTypes[] = {
       {"energy_tank", "gives away no more energy than it holds"},
-      {"actuator_limited_passivity", "time-domain passivity within the limits of each actuator"},
-      {"plugin", "a shared library by hapbench_force_stage.h, whose code is run"},
-      {"added", "a stage of this process, as of hapbench.force_stage in Python"}};
+      {"actuator_limited_passivity", "time-domain passivity within the limits of each actuator"}};
   f.variant(stage, "force stage", kTypes, [](Fields& fields, auto& held) { describe(fields, held); });
 }
 
@@ -210,9 +183,7 @@ void describe(Fields& f, RenderingConfig& rendering) {
          "default surface_normal, or what the algorithm's definition fixes", Presence::no_default);
   f.field(
       "contact_source",
-      "own: our search, with the depth model; else whose contacts, depths and directions are taken instead: of fcl "
-      "and bullet, where the environment is a block_with_hole or a mesh and the tool a cylinder with a flat tip, or "
-      "of a file",
+      "own: our search, with the depth model; else whose contacts, depths and directions are taken instead: of a file",
       Presence::has_default, [&rendering](Fields& source) { describe_contact_source(source, rendering); });
   f.field("contacts", "contacts that a slower loop finds (multi-rate rendering); null: every row has its own",
           rendering.late ? Presence::no_default : Presence::left_out, [&rendering](Fields& contacts) {

@@ -9,7 +9,6 @@
 
 #include "algorithms/registry.hpp"
 #include "algorithms/stages/damping_and_limits.hpp"
-#include "algorithms/stages/force_stage.hpp"
 #include "results/summary/outcome_names.hpp"
 #include "scenarios/description/descriptions.hpp"
 #include "scenarios/description/load_scenario.hpp"
@@ -141,26 +140,15 @@ void check_force_stage(const Scenario& scenario) {
     fail("/rendering/force_stage/max_damping_N_s_per_m",
          "got null; allowed with device \"impedance\" or a prescribed position: a number, because there is no virtual "
          "mass to take it from");
-  const auto* added = std::get_if<AddedStageConfig>(&*stage);
-  if (added != nullptr && find_force_stage(added->name) == nullptr)
-    fail("/rendering/force_stage/name", fmt::format("got \"{}\"; allowed: stages that this process has added ({})",
-                                                    added->name, added_force_stages()));
 }
 
-/// A peer finds contacts between triangles and a cylinder; those of a trace belong to its motion. Neither are points of
-/// our shell.
+/// The contacts of a trace belong to its motion, and neither they nor those of a library are points of our shell.
 void check_contact_source(const Scenario& scenario) {
   const RenderingConfig& rendering = scenario.rendering;
   if (rendering.contact_source == kOwnContacts) return;
-  const auto* drill = std::get_if<CylinderFields>(&scenario.tool);
-  const bool is_solid = std::holds_alternative<BlockEnvironment>(scenario.environment) ||
-                        std::holds_alternative<MeshEnvironment>(scenario.environment);
   const bool is_trace = rendering.contact_source == kTrace;
-  const bool is_peer = !is_trace && rendering.contact_source != kContactPlugin;
   const char* problem =
-      is_peer && !is_solid ? "unless the environment is a block_with_hole or a mesh"
-      : is_peer && (drill == nullptr || drill->tip != Tip::flat) ? "unless the tool is a cylinder with a flat tip"
-      : std::holds_alternative<SpringsEnvironment>(scenario.environment) ? "with springs, which have no surface"
+      std::holds_alternative<SpringsEnvironment>(scenario.environment) ? "with springs, which have no surface"
       : is_trace &&
               (std::holds_alternative<FreePosition>(scenario.motion.position) || handle_moves_tool(scenario.device))
           ? "unless motion.position is prescribed, as it was when the contacts were recorded"
@@ -202,13 +190,6 @@ void check_tracking_hand(const Scenario& scenario, double steps) {
   const double all_steps = trial_count(scenario.hand) * steps;
   if (all_steps <= kMostSteps) return;
   fail("/hand/trials", fmt::format("got {:.3g} steps in all trials; allowed: at most {:.0g}", all_steps, kMostSteps));
-}
-
-void check_perception(const Scenario& scenario) {
-  if (!scenario.perception) return;
-  const double from = scenario.perception->band_from, to = scenario.perception->band_to;
-  if (from < to) return;
-  fail("/perception/band_Hz", fmt::format("got from {:g} to {:g}; allowed: from below to", from, to));
 }
 
 /// A warning about an admittance device whose servo or mechanics differ from the usual ones under a hand that does not
@@ -320,7 +301,6 @@ void check_relations(const Scenario& scenario, double steps) {
   check_force_stage(scenario);
   check_drag_hand(scenario, steps);
   check_tracking_hand(scenario, steps);
-  check_perception(scenario);
 }
 
 std::vector<std::string> relation_warnings(const Scenario& scenario, const Json& json) {
@@ -328,12 +308,6 @@ std::vector<std::string> relation_warnings(const Scenario& scenario, const Json&
   warn_of_idle_device(scenario, warnings);
   warn_of_unread_rendering(scenario, json, warnings);
   warn_of_stiff_bristle(scenario, warnings);
-  if (scenario.perception && !scenario.perception->band_is_sampled(scenario.time.step)) {
-    warnings.push_back(fmt::format(
-        "/perception/band_Hz: ends at {} Hz, but {:.4g} samples a second show less than {:.4g} Hz: the metrics of this "
-        "band have no value",
-        scenario.perception->band_to, 1.0 / scenario.time.step, 0.5 / scenario.time.step));
-  }
   const double duration = scenario.time.step * static_cast<double>(scenario.time.steps);
   for (const char* part : {"hand", "motion"}) {
     if (!json.contains(part)) continue;
@@ -468,19 +442,6 @@ static void describe(Fields& f, SettlingRule& metrics) {
            "how long a landing lasts, and how long the tool must be away for the next touch to be a first one");
 }
 
-static void describe(Fields& f, PerceptionThresholds& thresholds) {
-  f.number("force_jnd", thresholds.force_jnd, {0.0, 10.0, "1"},
-           "smallest change of a force that is noticed, of the force (Jones 1989; Pang, Tan and Durlach 1991)");
-  f.number("least_force_N", thresholds.least_force, {0.0, 1e6, "N"},
-           "below this force, the smallest noticeable change is that at this force");
-  f.group("band_Hz", "the band in which touch is most sensitive (Bolanowski et al. 1988)", [&](Fields& band) {
-    band.number("from", thresholds.band_from, {0.0, 1e6, "Hz", true}, "its low end");
-    band.number("to", thresholds.band_to, {0.0, 1e6, "Hz", true}, "its high end");
-  });
-  f.number("amplitude_at_250Hz_m", thresholds.amplitude_at_250Hz, {0.0, 1.0, "m", true},
-           "of a vibration that is just felt (the same)");
-}
-
 static void describe(Fields& f, MetricBound& bound) {
   const auto number = [](Fields& b, double& value) { b.number(value, {-1e15, 1e15}); };
   f.if_any("min", bound.min, "smallest value allowed", number);
@@ -549,8 +510,6 @@ void describe(Fields& f, Scenario& scenario) {
       "the force an ideal rendering would give on a prescribed way; the metrics of fidelity are taken against it");
   f.object("record", scenario.record, "what is written beside the summary");
   f.object("metrics", scenario.metrics, "where metrics of settled contact begin");
-  f.object_if_any("perception", scenario.perception,
-                  "thresholds above which people feel something; adds the metrics of perception");
   f.object("expect", scenario.expect, "what the run must show; each scenario is its own regression test");
   if (!f.reads()) return;
   check_relations(scenario, steps);

@@ -178,31 +178,6 @@ void describe(Fields& f, Environment& environment) {
 
 namespace {
 
-/// Most memory that a run's shell and its search take at a time [B], measured for shells of a million points; the
-/// differences are what making them takes.
-struct ExpectedMemory {
-  const NamedFiles& files;
-
-  double operator()(const SpringsEnvironment& springs) const {
-    double count = static_cast<double>(springs.random.count);
-    for (const SpringGroup& group : springs.groups) count += static_cast<double>(group.count);
-    return 300.0 * count;
-  }
-  double operator()(const PointShellEnvironment&) const {
-    return 300.0 * static_cast<double>(files.at(kEnvironmentFile).points().size());
-  }
-  double operator()(const MeshEnvironment&) const { return 120.0 * files.at(kEnvironmentFile).mesh().refined_faces(); }
-  double operator()(const BlockEnvironment& block) const { return 150.0 * expected_points(block); }
-  template <class Analytic>
-  double operator()(const Analytic& shape) const {
-    if constexpr (requires { point_count(shape); }) {
-      return 310.0 * point_count(shape);
-    } else {
-      return 0.0;  // not known in advance; the limit of the process holds all the same
-    }
-  }
-};
-
 /// Builds the shell of each type of environment.
 struct Build {
   const NamedFiles& files;
@@ -234,10 +209,6 @@ struct Build {
 };
 
 }  // namespace
-
-double environment_memory(const Scenario& scenario, const NamedFiles& files) {
-  return std::visit(ExpectedMemory{files}, scenario.environment);
-}
 
 Shell make_shell(const Scenario& scenario, const NamedFiles& files) {
   if (std::holds_alternative<SpringsEnvironment>(scenario.environment)) return nullptr;

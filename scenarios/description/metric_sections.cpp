@@ -9,7 +9,6 @@
 #include "results/observe/force_fidelity.hpp"
 #include "results/observe/force_stages.hpp"
 #include "results/observe/ideal_trajectory.hpp"
-#include "results/observe/perception.hpp"
 #include "results/observe/target_metrics.hpp"
 
 namespace hapbench {
@@ -58,10 +57,6 @@ std::unique_ptr<Observer> observe_ideal_trajectory(const TrialParts& p) {
 std::unique_ptr<Observer> observe_fidelity(const TrialParts& p) {
   return std::make_unique<ForceFidelityObserver>(*p.reference, p.scenario.time.step,
                                                  static_cast<std::uint64_t>(p.scenario.time.steps));
-}
-
-std::unique_ptr<Observer> observe_perception(const TrialParts& p) {
-  return std::make_unique<PerceptionObserver>(*p.scenario.perception, p.reference.get(), p.scenario.time.step);
 }
 
 std::unique_ptr<Observer> observe_contacts(const TrialParts& p) {
@@ -116,8 +111,6 @@ const SectionKind kSections[] = {
      summary_of_one<ForceStageObserver>, list_without_values<ForceStageObserver>},
     {"contacts", [](const Scenario& s, bool) { return std::size_t{s.rendering.late && s.rendering.late->any()}; },
      observe_contacts, summary_of_one<ContactAgeObserver>, list_without_values<ContactAgeObserver>},
-    {"perception", [](const Scenario& s, bool) { return std::size_t{s.perception.has_value()}; }, observe_perception,
-     summary_of_one<PerceptionObserver>, list_without_values<PerceptionObserver>},
     {"targets", target_places, observe_targets, summary_of_targets, targets_without_values, true}};
 
 /// The metrics of every run, without values.

@@ -2,19 +2,20 @@
 
 #include <fmt/format.h>
 #include <sys/stat.h>
-#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <ctime>
 #include <map>
 #include <mutex>
 #include <thread>
+
 #include "scenarios/description/descriptions.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/mesh_file.hpp"
 #include "scenarios/input/recordings.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "sim/core/hash.hpp"
+#include "sim/core/parallel.hpp"
 
 namespace hapbench {
 
@@ -23,7 +24,7 @@ std::shared_ptr<const void> SharedCache::get_untyped(const std::string& key, con
   const std::lock_guard lock(entry->mutex);
   if (entry->made.value) return entry->made.value;
   // Isolated, or this thread might take up another run while it waits, and wait for itself at the lock.
-  Made made = tbb::this_task_arena::isolate(make);
+  Made made = isolate(make);
   const std::lock_guard list_lock(mutex_);
   entry->made = std::move(made);
   ++made_;

@@ -31,11 +31,6 @@ enum class RandomUse : std::uint64_t {
 /// A seed of its own for each use in each trial: far apart in the 64 bits, whatever the scenario's seed.
 std::uint64_t derived_seed(const Scenario& scenario, Trial trial, RandomUse use);
 
-/// About how much memory the environment of a run takes at a time [B]: right to some tens of percent for large ones.
-double environment_memory(const Scenario& scenario, const NamedFiles& files);
-/// The same of its tool: the grid of a mesh's signed distances. Throws InputError if there can be no such grid.
-double tool_memory(const Scenario& scenario, const NamedFiles& files);
-
 /// The point shell of the scenario's environment, in the order in which `hapbench shell` writes it; null for springs.
 /// Equal environments share one (SharedCache).
 std::shared_ptr<const PointShell> make_shell(const Scenario& scenario, const NamedFiles& files);

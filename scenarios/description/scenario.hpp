@@ -17,7 +17,6 @@
 #include "device_model/hands/tracking_hand.hpp"
 #include "device_model/impedance_device.hpp"
 #include "results/observe/contact_forces.hpp"
-#include "results/observe/perception.hpp"
 #include "results/record/trajectory_extras.hpp"
 #include "sim/core/profile.hpp"
 #include "sim/core/types.hpp"
@@ -237,7 +236,6 @@ struct Scenario {
   std::optional<ReferenceForceFields> reference_force;
   RecordFields record;
   SettlingRule metrics;
-  std::optional<PerceptionThresholds> perception;
   ExpectFields expect;
 
   std::filesystem::path directory;  ///< of the scenario file: what relative paths start from

@@ -7,7 +7,6 @@
 #include "scenarios/description/parts.hpp"
 #include "scenarios/description/writer.hpp"
 #include "scenarios/input/input_error.hpp"
-#include "scenarios/input/memory_limit.hpp"
 #include "sim/tool/mesh_tool.hpp"
 #include "sim/tool/revolved.hpp"
 
@@ -137,12 +136,7 @@ auto with_grid(const MeshToolFields& fields, const NamedFiles& files, const Of& 
   }
 }
 
-double grid_memory(const TriangleSoup& surface, double spacing) {
-  return SignedDistanceGrid::expected_bytes(surface.vertices, spacing);
-}
-
 Grid make_grid(const TriangleSoup& surface, double spacing) {
-  require_memory(grid_memory(surface, spacing), "the grid of the tool's distances");
   return std::make_shared<const SignedDistanceGrid>(surface.vertices, surface.triangles, spacing);
 }
 
@@ -169,11 +163,6 @@ struct Make {
 };
 
 }  // namespace
-
-double tool_memory(const Scenario& scenario, const NamedFiles& files) {
-  const auto* mesh = std::get_if<MeshToolFields>(&scenario.tool);
-  return mesh != nullptr ? with_grid(*mesh, files, grid_memory) : 0.0;
-}
 
 std::shared_ptr<const ToolShape> make_tool(const Scenario& scenario, const NamedFiles& files) {
   return std::visit(Make{files}, scenario.tool);

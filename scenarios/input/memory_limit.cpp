@@ -3,12 +3,9 @@
 #include <fmt/format.h>
 #include <sys/resource.h>
 
-#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <limits>
-
-#include "scenarios/input/input_error.hpp"
 
 namespace hapbench {
 namespace {
@@ -16,7 +13,7 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// Memory that can be had without swapping [B], as the kernel estimates it; infinite where it does not say.
-double free_memory() {
+[[maybe_unused]] double free_memory() {
   std::ifstream file("/proc/meminfo");
   std::string name;
   double kilobytes = 0.0;
@@ -26,50 +23,24 @@ double free_memory() {
   return kInfinity;
 }
 
-#ifdef HAPBENCH_SANITIZED
-// The sanitizers' own maps of memory, terabytes of addresses, would count as the program's data.
-rlimit sanitized_limit = {RLIM_INFINITY, RLIM_INFINITY};
-
-int get_limit(rlimit& limit) {
-  limit = sanitized_limit;
-  return 0;
-}
-
-void set_limit(const rlimit& limit) {
-  sanitized_limit = limit;
-}
-#else
-int get_limit(rlimit& limit) {
-  return ::getrlimit(RLIMIT_DATA, &limit);
-}
-
-void set_limit(const rlimit& limit) {
-  ::setrlimit(RLIMIT_DATA, &limit);
-}
-#endif
-
 }  // namespace
 
-void limit_memory(std::optional<double> bytes) {
+void limit_memory() {
+#ifndef HAPBENCH_SANITIZED  // the sanitizers' own maps of memory, terabytes of addresses, would count
   rlimit limit = {};
-  if (get_limit(limit) != 0) return;
-  const double wanted = std::min(bytes.value_or(0.75 * free_memory()), static_cast<double>(limit.rlim_max));
-  limit.rlim_cur = wanted < 0x1p62 ? static_cast<rlim_t>(wanted) : limit.rlim_max;
-  set_limit(limit);
-}
-
-double memory_limit() {
-  rlimit limit = {};
-  return get_limit(limit) == 0 && limit.rlim_cur != RLIM_INFINITY ? static_cast<double>(limit.rlim_cur) : kInfinity;
+  if (::getrlimit(RLIMIT_DATA, &limit) != 0) return;
+  const double wanted = 0.75 * free_memory();
+  if (!(wanted < static_cast<double>(limit.rlim_cur))) return;
+  limit.rlim_cur = static_cast<rlim_t>(wanted);
+  ::setrlimit(RLIMIT_DATA, &limit);
+#endif
 }
 
 std::string memory_limit_text() {
-  return fmt::format("{}, three quarters of what was free or what --memory sets", bytes_text(memory_limit()));
-}
-
-void require_memory(double bytes, const std::string& what) {
-  if (bytes <= memory_limit()) return;
-  throw InputError(fmt::format("{} would take about {}; allowed: {}", what, bytes_text(bytes), memory_limit_text()));
+  rlimit limit = {};
+  const bool is_known = ::getrlimit(RLIMIT_DATA, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY;
+  return fmt::format("{}, three quarters of what was free or what \"ulimit -d\" sets",
+                     is_known ? bytes_text(static_cast<double>(limit.rlim_cur)) : "what the system gives");
 }
 
 std::string bytes_text(double bytes) {

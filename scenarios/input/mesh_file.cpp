@@ -203,11 +203,6 @@ bool MeshFile::is_closed() const {
   return surface_->findings.open_edges.empty() && surface_->findings.crowded_edges.empty();
 }
 
-double MeshFile::refined_faces() const {
-  return sampling_.spacing ? refined_face_count(surface_->mesh, *sampling_.spacing, kMostFaces)
-                           : static_cast<double>(surface_->mesh.n_faces());
-}
-
 TriangleSoup MeshFile::triangles() const {
   const HalfEdgeMesh& mesh = surface_->mesh;
   TriangleSoup soup;

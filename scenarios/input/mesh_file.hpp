@@ -46,9 +46,6 @@ class MeshFile {
   /// Its triangles, all wound alike and outwards where the surface is closed [m].
   TriangleSoup triangles() const;
 
-  /// Faces from which the points are made, about two a point; without refining them.
-  double refined_faces() const;
-
   /// Points with normals: the vertices of the mesh. With a spacing, the mesh is first refined until no edge is longer
   /// than it, and then at most one point is kept in each cube of that size.
   std::vector<SurfacePoint> points() const;

@@ -14,7 +14,6 @@
 #include "algorithms/plugin/plugin_call.hpp"
 #include "algorithms/plugin/plugin_law.hpp"
 #include "scenarios/input/input_error.hpp"
-#include "scenarios/input/installed_folder.hpp"
 #include "scenarios/input/json_file.hpp"
 #include "sim/core/hash.hpp"
 
@@ -40,11 +39,6 @@ constexpr Interface kContactSources = {.kind = "source of contacts",
                                        .entry_point = "hapbench_contacts",
                                        .header = "hapbench_contacts.h",
                                        .version = HAPBENCH_CONTACTS_VERSION};
-constexpr Interface kForceStages = {.kind = "force stage",
-                                    .entry_point = "hapbench_force_stage",
-                                    .header = "hapbench_force_stage.h",
-                                    .version = HAPBENCH_FORCE_STAGE_VERSION};
-
 /// Symbols of the library and its dependencies take precedence over ours. Sanitizers replace functions of all
 /// libraries, so they exclude that.
 #ifdef HAPBENCH_SANITIZED
@@ -142,36 +136,6 @@ const Table& opened(const fs::path& file, int flags, const Interface& wanted) {
   return *table;
 }
 
-const HapbenchContactSource* open_peer(const std::string& name) {
-  // lib/hapbench lies beside share/hapbench.
-  const fs::path prefix = installed_folder(".").parent_path().parent_path();
-  const fs::path file = prefix / "lib" / "hapbench" / ("contacts_" + name + ".so");
-  std::error_code error;
-  return fs::exists(file, error) ? &opened<HapbenchContactSource>(file, kApart, kContactSources) : nullptr;
-}
-
-/// The table of a library of the user's own, which is loaded at the first call and stays. `is_whole` says whether the
-/// table has its name and its functions. Thread safe. Throws InputError.
-template <class Table, class IsWhole>
-const Table& own_library(const fs::path& given, const Interface& wanted, const IsWhole& is_whole) {
-  static std::mutex mutex;
-  static std::map<fs::path, const Table*> loaded;
-  std::error_code error;
-  const fs::path file = fs::canonical(given, error);
-  if (error) fail_in_file(given, fmt::format("cannot be loaded as a {}: {}", wanted.kind, error.message()));
-  const std::lock_guard lock(mutex);
-  const auto found = loaded.find(file);
-  if (found != loaded.end()) return *found->second;
-  hash_of_file(file);
-  const PluginCall loading(file.c_str(), "loading");
-  const auto& table = opened<Table>(file, kApart, wanted);
-  if (!is_whole(table))
-    fail_in_file(file,
-                 fmt::format("is no {} that can be used: its name or one of its functions is missing", wanted.kind));
-  loaded.emplace(file, &table);
-  return table;
-}
-
 }  // namespace
 
 void load_plugin(const fs::path& given) {
@@ -223,28 +187,22 @@ const std::vector<LoadedPlugin>& loaded_plugins() {
   return plugins();
 }
 
-const HapbenchContactSource* find_peer(const std::string& name) {
+const HapbenchContactSource& contact_plugin(const fs::path& given) {
   static std::mutex mutex;
-  static std::map<std::string, const HapbenchContactSource*> opened;
+  static std::map<fs::path, const HapbenchContactSource*> loaded;
+  std::error_code error;
+  const fs::path file = fs::canonical(given, error);
+  if (error) fail_in_file(given, "cannot be loaded as a source of contacts: " + error.message());
   const std::lock_guard lock(mutex);
-  const auto found = opened.find(name);
-  return found != opened.end() ? found->second : opened.emplace(name, open_peer(name)).first->second;
-}
-
-const HapbenchContactSource& contact_plugin(const fs::path& file) {
-  return own_library<HapbenchContactSource>(file, kContactSources, [](const auto& t) {
-    return t.name != nullptr && t.create != nullptr && t.destroy != nullptr && t.contacts_at != nullptr;
-  });
-}
-
-const HapbenchForceStage& force_stage_plugin(const fs::path& file) {
-  return own_library<HapbenchForceStage>(file, kForceStages, [](const auto& t) {
-    return t.name != nullptr && t.create != nullptr && t.destroy != nullptr && t.force != nullptr;
-  });
-}
-
-std::string peer_package(const std::string& name) {
-  return "lib" + name + "-dev";
+  const auto found = loaded.find(file);
+  if (found != loaded.end()) return *found->second;
+  hash_of_file(file);
+  const PluginCall loading(file.c_str(), "loading");
+  const auto& t = opened<HapbenchContactSource>(file, kApart, kContactSources);
+  if (t.name == nullptr || t.create == nullptr || t.destroy == nullptr || t.contacts_at == nullptr)
+    fail_in_file(file, "is no source of contacts that can be used: its name or one of its functions is missing");
+  loaded.emplace(file, &t);
+  return t;
 }
 
 }  // namespace hapbench

@@ -7,9 +7,8 @@
 #include <vector>
 
 #include "algorithms/peers/hapbench_contacts.h"
-#include "algorithms/plugin/hapbench_force_stage.h"
 
-/// Shared libraries behind the C interfaces of laws, sources of contacts and force stages.
+/// Shared libraries behind the C interfaces of laws and sources of contacts.
 namespace hapbench {
 
 /// A loaded shared library with a law (algorithms/plugin/hapbench_plugin.h).
@@ -35,18 +34,8 @@ void guard_loading(std::function<std::shared_ptr<void>()> guard);
 /// The loaded plugins, in the order of loading.
 const std::vector<LoadedPlugin>& loaded_plugins();
 
-/// The contact source of a collision library (kPeers), whose module is loaded at the first call and stays; null if it
-/// has not been built. Thread safe. Throws InputError if a module cannot be loaded.
-const HapbenchContactSource* find_peer(const std::string& name);
-
 /// The contact source of a library of the user's own, which is loaded at the first call and stays. Thread safe. Throws
 /// InputError.
 const HapbenchContactSource& contact_plugin(const std::filesystem::path& file);
-
-/// The same for a force stage.
-const HapbenchForceStage& force_stage_plugin(const std::filesystem::path& file);
-
-/// The Debian package that a peer needs, for messages. Precondition: the name is in kPeers.
-std::string peer_package(const std::string& name);
 
 }  // namespace hapbench

@@ -61,7 +61,7 @@ void add_skip_option(Command& command, Skips& skips) {
 }
 
 void add_overrides(Command& command, std::vector<std::string>& overrides, const std::string& help) {
-  command.add("--set", overrides, help).words(field_assignments).repeatable();
+  command.add("--set", overrides, help).repeatable();
 }
 
 void add_jobs(Command& command, unsigned& jobs, const std::string& help) {
@@ -123,29 +123,6 @@ std::vector<std::string> all_algorithms() {
 
 std::vector<std::string> all_integrators() {
   return names_of(kIntegrators, [](const IntegratorEntry* entry) { return entry->info.name; });
-}
-
-std::vector<std::string> all_scenarios() {
-  return names_of(bundled_scenarios(), &BundledScenario::name);
-}
-
-std::vector<std::string> field_assignments() {
-  std::vector<std::string> words;
-  for (const std::string& path : scenario_field_paths()) {
-    words.push_back(path + "=");
-    const FieldGuide* field = find_field(path);
-    if (field == nullptr || !field->value.schema.is_object()) continue;
-    const Json& schema = field->value.schema;
-    if (schema.value("type", "") == "boolean") words.insert(words.end(), {path + "=true", path + "=false"});
-    for (const Json& value : schema.value("enum", Json::array()))
-      words.push_back(path + "=" + value.get<std::string>());
-  }
-  return words;
-}
-
-std::vector<std::string> with_all(std::vector<std::string> words) {
-  words.emplace_back("all");
-  return words;
 }
 
 void require_names(std::string_view got, const std::vector<std::string>& names, const std::vector<std::string>& valid) {

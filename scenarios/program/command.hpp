@@ -93,13 +93,6 @@ Json or_null(const std::optional<Value>& value) {
 std::vector<std::string> all_algorithms();
 /// The names of all integrators.
 std::vector<std::string> all_integrators();
-/// The names of all bundled scenarios. Throws InputError.
-std::vector<std::string> all_scenarios();
-/// "path=" for each field of scenarios, and "path=value" for each value that has a name. For completion.
-std::vector<std::string> field_assignments();
-/// Adds "all" to the words.
-std::vector<std::string> with_all(std::vector<std::string> words);
-
 /// Throws InputError unless each name is among the valid ones and given once; `got` stands before the name in its
 /// message, as in "--only: got".
 void require_names(std::string_view got, const std::vector<std::string>& names, const std::vector<std::string>& valid);

@@ -13,7 +13,6 @@
 #include "algorithms/plugin/plugin_law.hpp"
 #include "scenarios/description/writer.hpp"
 #include "scenarios/input/input_error.hpp"
-#include "scenarios/input/memory_limit.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/plugins/load_plugin.hpp"
 #include "scenarios/program/command.hpp"
@@ -46,18 +45,13 @@ CommandOption& CommandOption::range(std::int64_t least, std::int64_t greatest) {
   return *this;
 }
 
-CommandOption& CommandOption::words(WordSource source) {
-  state_->words[option_] = std::move(source);
-  return *this;
-}
-
 CommandOption& CommandOption::one_of(const std::vector<std::string>& words) {
   const auto problem = [words](const std::string& word) -> std::string {
     if (std::find(words.begin(), words.end(), word) != words.end()) return "";
     return fmt::format("got \"{}\"; allowed: {}{}", word, quoted_list(words), nearest_name_hint(word, words));
   };
   option_->check(CLI::Validator(problem, ""));
-  return this->words([words] { return words; });
+  return *this;
 }
 
 CommandOption& CommandOption::value_if_none(const std::string& value) {
@@ -76,15 +70,15 @@ CommandOption& CommandOption::excludes(const CommandOption& other) {
 }
 
 CommandOption Command::add_variable(const std::string& name, Variable variable, const std::string& help) {
-  return {std::visit([&](auto* value) { return app_->add_option(name, *value, help); }, variable), state_};
+  return CommandOption(std::visit([&](auto* value) { return app_->add_option(name, *value, help); }, variable));
 }
 
 CommandOption Command::flag(const std::string& name, bool& value, const std::string& help) {
-  return {app_->add_flag(name, value, help), state_};
+  return CommandOption(app_->add_flag(name, value, help));
 }
 
 CommandOption Command::flag(const std::string& name, std::function<void()> when_given, const std::string& help) {
-  return {app_->add_flag_callback(name, std::move(when_given), help), state_};
+  return CommandOption(app_->add_flag_callback(name, std::move(when_given), help));
 }
 
 void Command::footer(const std::string& text) {
@@ -93,7 +87,7 @@ void Command::footer(const std::string& text) {
 
 void Command::runs(Action action, std::string when_stopped) {
   ChosenCommand command{std::move(action), std::move(when_stopped)};
-  app_->callback([&state = state_, command = std::move(command)] { state.chosen = command; });
+  app_->callback([&chosen = chosen_, command = std::move(command)] { chosen = command; });
 }
 
 CommandLine::CommandLine(const std::string& version, std::function<std::string()> version_json)
@@ -116,22 +110,6 @@ CommandLine::~CommandLine() = default;
 
 /// The program and each command have these options, so that they may stand before or behind the command.
 void CommandLine::add_common_options(CLI::App& app) {
-  const auto limit = [](const std::uint64_t& bytes) { limit_memory(static_cast<double>(bytes)); };
-  const auto refuse_negative = [](const std::string& size) {
-    return size.starts_with("-") ? fmt::format("got {}; allowed: a size such as 8G", size) : std::string();
-  };
-  const auto refuse_small = [](const std::string& bytes) {
-    constexpr double kLeast = 32e6;  // the program takes nearly half of it for itself
-    return finite_number(bytes) < kLeast ? fmt::format("got {} B; allowed: 32M or more", bytes) : std::string();
-  };
-  app.add_option_function<std::uint64_t>(
-         "--memory", limit,
-         "most memory that may be taken, such as 8G (default: three quarters of what is "
-         "free)")
-      ->transform(CLI::AsSizeValue(false).description(""))
-      ->transform(CLI::Validator(refuse_negative, ""))  // before the one above
-      ->check(refuse_small)
-      ->type_name("SIZE");
   const auto add = [this](const std::vector<std::string>& files) {
     plugins_.insert(plugins_.end(), files.begin(), files.end());
   };
@@ -146,24 +124,22 @@ Command CommandLine::command(const std::string& name, const std::string& summary
   CLI::App* app = app_->add_subcommand(name, summary);
   app->get_option("--help")->description("print this help");
   add_common_options(*app);
-  return Command(app, state_);
+  return Command(app, chosen_);
 }
 
 namespace {
 
-OptionText text_of(const CLI::Option& option, const WordSource& words) {
+OptionText text_of(const CLI::Option& option) {
   OptionText text{.name = option.get_name(option.get_positional(), true),
                   .value = "",
                   .help = option.get_description(),
                   .is_argument = option.get_positional(),
-                  .is_required = option.get_required(),
-                  .takes_a_list = option.get_delimiter() == ',',
-                  .words = words};
+                  .is_required = option.get_required()};
   if (option.get_type_size() != 0 && !option.get_type_name().empty()) {
     text.value = option.get_type_name();
     if (option.get_expected_min() == 0) text.value = "[" + text.value + "]";
     if (option.get_expected_max() == CLI::detail::expected_max_vector_size)
-      text.value += text.takes_a_list ? ",..." : " ...";
+      text.value += option.get_delimiter() == ',' ? ",..." : " ...";
   }
   // CLI11 orders them by their addresses.
   std::set<std::string> needed, excluded;
@@ -174,12 +150,9 @@ OptionText text_of(const CLI::Option& option, const WordSource& words) {
   return text;
 }
 
-CommandText text_of(const CLI::App& app, const CommandLineState& state) {
+CommandText text_of(const CLI::App& app) {
   CommandText text{app.get_name(), app.get_description(), app.get_footer(), {}};
-  for (const CLI::Option* option : app.get_options()) {
-    const auto words = state.words.find(option);
-    text.options.push_back(text_of(*option, words == state.words.end() ? WordSource() : words->second));
-  }
+  for (const CLI::Option* option : app.get_options()) text.options.push_back(text_of(*option));
   return text;
 }
 
@@ -220,6 +193,20 @@ std::string problem_of(const std::string& word, const CLI::App& program, const C
   return fmt::format("unknown command \"{}\"{}", word, nearest_name_hint(word, names));
 }
 
+/// Says what to write instead of a word that only earlier versions took; empty when there is none.
+std::string old_word_problem(const CLI::App& program, const CLI::App* command) {
+  for (const CLI::App* app : {&program, command}) {
+    const std::string of = app == command && command ? command->get_name() : "";
+    for (const std::string& word : app ? app->remaining() : std::vector<std::string>()) {
+      const std::string name = word.substr(0, word.find('='));
+      const std::string_view instead = instead_of(of, name);
+      if (!instead.empty())
+        return fmt::format("{}\"{}\" is no longer known; instead: {}", of.empty() ? of : of + ": ", name, instead);
+    }
+  }
+  return "";
+}
+
 /// Explains in one line why the command line was refused.
 std::string problem_of(const CLI::ParseError& error, const CLI::App& program) {
   const std::vector<CLI::App*> chosen = program.get_subcommands();
@@ -228,6 +215,7 @@ std::string problem_of(const CLI::ParseError& error, const CLI::App& program) {
   const std::string help = fmt::format("; \"{} {}--help\" explains", kProgramName, words);
   std::vector<std::string> extra = program.remaining(true);
   std::erase(extra, "--");
+  if (std::string old = old_word_problem(program, command); !old.empty()) return old;
   // An unknown option leaves its value behind as an extra word; the option is the mistake to report.
   std::stable_partition(extra.begin(), extra.end(), [](const std::string& word) { return word.starts_with("-"); });
   if (!extra.empty()) return name + problem_of(extra.front(), program, command) + help;
@@ -238,8 +226,8 @@ std::string problem_of(const CLI::ParseError& error, const CLI::App& program) {
 }  // namespace
 
 std::vector<CommandText> CommandLine::texts() const {
-  std::vector<CommandText> texts = {text_of(*app_, state_)};
-  for (const CLI::App* command : app_->get_subcommands({})) texts.push_back(text_of(*command, state_));
+  std::vector<CommandText> texts = {text_of(*app_)};
+  for (const CLI::App* command : app_->get_subcommands({})) texts.push_back(text_of(*command));
   return texts;
 }
 
@@ -248,32 +236,6 @@ namespace {
 void load_plugins(const std::vector<std::string>& files) {
   for (const std::string& file : files) load_plugin(file);
   if (const char* folders = std::getenv("HAPBENCH_PLUGIN_PATH")) load_plugins_in("HAPBENCH_PLUGIN_PATH", folders);
-}
-
-/// Removes "--plugin FILE" from an unfinished command line, whose last word is still being typed, and returns the
-/// files.
-std::vector<std::string> take_plugins(std::vector<std::string>& words) {
-  std::vector<std::string> plugins;
-  for (std::size_t i = 0; i + 2 < words.size();) {
-    if (words[i] != "--plugin") {
-      ++i;
-      continue;
-    }
-    plugins.push_back(words[i + 1]);
-    words.erase(words.begin() + static_cast<std::ptrdiff_t>(i), words.begin() + static_cast<std::ptrdiff_t>(i + 2));
-  }
-  return plugins;
-}
-
-/// "hapbench complete WORDS": a shell runs this at each press of the tab key.
-int complete(const std::vector<CommandText>& texts, std::vector<std::string> words) {
-  try {
-    load_plugins(take_plugins(words));
-  } catch (const InputError&) {
-    // The command itself will report it.
-  }
-  for (const std::string& word : completions(texts, words)) fmt::print("{}\n", word);
-  return kSuccess;
 }
 
 /// Makes a success fail when a plugin's law failed: its runs count as diverged, which by itself need not be a failure.
@@ -289,11 +251,11 @@ int status_with_faults(int status) {
 }  // namespace
 
 int CommandLine::run(int argc, char** argv) {
-  if (argc > 2 && argv[1] == std::string_view("complete")) return complete(texts(), {argv + 2, argv + argc});
   try {
     app_->parse(argc, argv);
   } catch (const CLI::CallForHelp&) {
     const std::vector<CLI::App*> chosen = app_->get_subcommands();
+    if (const std::string old = old_word_problem(*app_, nullptr); !old.empty()) throw InputError(old);
     fmt::print("{}", help_text(texts(), chosen.empty() ? kProgramName : chosen.front()->get_name()));
     return kSuccess;
   } catch (const CLI::CallForVersion& version) {
@@ -304,7 +266,7 @@ int CommandLine::run(int argc, char** argv) {
   }
   load_plugins(plugins_);
   take_plugin_faults();  // forgets those of an earlier command of this process
-  return status_with_faults(state_.chosen.action());
+  return status_with_faults(chosen_.action());
 }
 
 }  // namespace hapbench

@@ -2,9 +2,9 @@
 
 #include <cstdint>
 #include <functional>
-#include <map>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -14,17 +14,14 @@ class App;
 class Option;
 }  // namespace CLI
 
-/// The command line: a thin front of CLI11, so that command_line.cpp alone compiles that header, and the texts made of
-/// what commands declare: help, manual page, completions.
+/// The command line: a thin front of CLI11, so that command_line.cpp alone compiles that header, and the help made of
+/// what commands declare.
 namespace hapbench {
 
 inline constexpr const char* kProgramName = "hapbench";
 
 /// Does the work of the chosen command; returns the exit status.
 using Action = std::function<int()>;
-
-/// Lists the words that an option or argument may take. Called only when a shell completes that option.
-using WordSource = std::function<std::vector<std::string>()>;
 
 /// The command that the user chose.
 struct ChosenCommand {
@@ -39,8 +36,6 @@ struct OptionText {
   std::string help;   ///< including what it needs and excludes
   bool is_argument;   ///< has no dashes
   bool is_required;
-  bool takes_a_list;  ///< several values in a word, separated by commas
-  WordSource words;   ///< null when the value may be anything, such as a file
 };
 
 /// A command; the program itself is the one that is called "hapbench".
@@ -51,27 +46,17 @@ struct CommandText {
   std::vector<OptionText> options;
 };
 
+/// What to write instead of a word that earlier versions took, such as the command "suite" or the option "--search" of
+/// the command "stability"; empty when they did not. `command` is that of an option; empty for a command.
+std::string_view instead_of(std::string_view command, std::string_view word);
+
 /// The help of a command, as wide as prose is; that of the program, which is the first of `texts`, lists the others.
 std::string help_text(const std::vector<CommandText>& texts, const std::string& command);
-
-/// The manual page of the program with all its commands, in the language of man(7). `version` stands below it.
-std::string manual_page(const std::vector<CommandText>& texts, const std::string& version);
-
-/// Completes the last of `words`, the words of a command line behind the program's name up to the cursor; the last one
-/// may be empty. Words that a shell broke at "=" and ":", as bash does, count as one, and the answer is the part behind
-/// the break. Empty where a file name is wanted or nothing is known.
-std::vector<std::string> completions(const std::vector<CommandText>& texts, const std::vector<std::string>& words);
-
-/// State that all commands of a command line share.
-struct CommandLineState {
-  ChosenCommand chosen;
-  std::map<const CLI::Option*, WordSource> words;  ///< of options that name theirs
-};
 
 /// An option or an argument of a command. All functions return the option itself, for chaining.
 class CommandOption {
  public:
-  CommandOption(CLI::Option* option, CommandLineState& state) : option_(option), state_(&state) {}
+  explicit CommandOption(CLI::Option* option) : option_(option) {}
 
   CommandOption& required();
   /// May be given several times, each time with one value.
@@ -80,9 +65,7 @@ class CommandOption {
   CommandOption& comma_separated();
   /// Refuses numbers outside [least, greatest].
   CommandOption& range(std::int64_t least, std::int64_t greatest);
-  /// Names the words for completion. The command itself checks what it is given.
-  CommandOption& words(WordSource source);
-  /// Refuses other words, and completes these.
+  /// Refuses other words.
   CommandOption& one_of(const std::vector<std::string>& words);
   /// May be given without a value, which then is this.
   CommandOption& value_if_none(const std::string& value);
@@ -91,7 +74,6 @@ class CommandOption {
 
  private:
   CLI::Option* option_;
-  CommandLineState* state_;
 };
 
 /// A subcommand that takes its options. The variables bound here are written while the command line is parsed and must
@@ -102,7 +84,7 @@ class Command {
   using Variable =
       std::variant<std::string*, std::vector<std::string>*, int*, unsigned*, std::int64_t*, std::uint64_t*, double*>;
 
-  Command(CLI::App* app, CommandLineState& state) : app_(app), state_(state) {}
+  Command(CLI::App* app, ChosenCommand& chosen) : app_(app), chosen_(chosen) {}
 
   /// A name that begins with "--" is an option, another one an argument known by its place.
   template <class Value>
@@ -121,7 +103,7 @@ class Command {
   CommandOption add_variable(const std::string& name, Variable variable, const std::string& help);
 
   CLI::App* app_;
-  CommandLineState& state_;
+  ChosenCommand& chosen_;
 };
 
 /// The program's command line: every command adds itself, then `run` parses and runs the one that was chosen.
@@ -148,15 +130,15 @@ class CommandLine {
   /// InputError for a wrong usage and for plugins.
   int run(int argc, char** argv);
   /// The chosen command's note on its results for when it is stopped.
-  const std::string& when_stopped() const { return state_.chosen.when_stopped; }
-  /// The program's own options and notes, then every command with its own, in the order in which they were added.
-  std::vector<CommandText> texts() const;
+  const std::string& when_stopped() const { return chosen_.when_stopped; }
 
  private:
+  /// The program's own options and notes, then every command with its own, in the order in which they were added.
+  std::vector<CommandText> texts() const;
   void add_common_options(CLI::App& app);
 
   std::unique_ptr<CLI::App> app_;
-  CommandLineState state_;
+  ChosenCommand chosen_;
   std::vector<std::string> plugins_;
 };
 

@@ -466,15 +466,13 @@ void add_compare(CommandLine& line) {
       line.command("compare", "Run scenarios through several algorithms side by side; several scenarios give a league",
                    compare, "the folders of finished runs are kept, but no table is written");
   CompareDevicesOptions& common = options.common;
-  command
-      .add("scenarios", common.scenarios,
-           fmt::format("scenario files, names of bundled scenarios, or of groups of them (with --devices default: {})",
-                       fmt::join(default_device_scenes(), " ")))
-      .words(all_scenarios);
+  command.add(
+      "scenarios", common.scenarios,
+      fmt::format("scenario files, names of bundled scenarios, or of groups of them (with --devices default: {})",
+                  fmt::join(default_device_scenes(), " ")));
   command
       .add("--algorithms", common.algorithms,
            "names, separated by commas, or all (default: all; with --devices shaped_stiffness,summation)")
-      .words([] { return with_all(all_algorithms()); })
       .comma_separated();
   const CommandOption devices =
       command
@@ -483,7 +481,6 @@ void add_compare(CommandLine& line) {
               "instead of algorithms compare devices by the largest stiffness that each renders stably and quietly: "
               "ideal, admittance, presets of \"hapbench list presets\", impedance for all presets, or all; NAME.json is "
               "a file with a device of your own")
-          .words(device_names)
           .comma_separated();
   command
       .add("--vibration", common.vibration,
@@ -511,7 +508,6 @@ void add_compare(CommandLine& line) {
       .add("--by", options.metrics,
            "metrics of the league, less is better: names of summary.json, separated by commas (default: " +
                default_metrics_text() + "; fidelity where every scene has a reference force)")
-      .words([] { return metric_names(); })
       .comma_separated()
       .excludes(devices);
   add_jobs(command, common.jobs, "runs at once (default: one per thread; 1 where the table shows times)");

@@ -301,19 +301,15 @@ void add_converge(CommandLine& line) {
   auto [command, options] =
       line.command("converge", "Say how far metrics of a scene are from converged, in the step or any field", converge,
                    "the same command with --resume continues");
-  command.add("scenario", options.scenario, "scenario file, or name of a bundled scenario")
-      .words(all_scenarios)
-      .required();
+  command.add("scenario", options.scenario, "scenario file, or name of a bundled scenario").required();
   command
       .add("--metric", options.metrics,
            fmt::format("names of summary.json, separated by commas (default: {})", kDefaultMetrics[0]))
-      .words([] { return metric_names(); })
       .comma_separated();
-  command
-      .add("--vary", options.field,
-           "the field to refine: time.step_s (default), environment.grid_m, environment.spacing_m, tool.grid_m or any "
-           "other number above 0 that gets better as it falls")
-      .words(scenario_field_paths);
+  command.add(
+      "--vary", options.field,
+      "the field to refine: time.step_s (default), environment.grid_m, environment.spacing_m, tool.grid_m or any "
+      "other number above 0 that gets better as it falls");
   command.add("--levels", options.levels, "number of levels, the scenario's own value the coarsest (default: 5)")
       .range(kFewestLevels, kMostLevels);
   command.add("--ratio", options.ratio, "of each level to the next; whole for the step (default: 2)");

@@ -316,7 +316,6 @@ void add_describe(CommandLine& line) {
            "\"choices_schema\", \"stability\"; a metric or a column, \"metrics\" or \"columns\" for all of them, a "
            "heading such as \">30Hz rms N\", or a file such as trajectory.csv; a claim such as C5, a choice such as "
            "planar.first_tilt or a place such as \"Fig. A.2\"")
-      .words(described_names)
       .required();
   add_output_options(command, options.output);
 }

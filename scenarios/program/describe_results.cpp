@@ -161,9 +161,6 @@ constexpr Word kWords[] = {
     {"robustness.json", kResultFile,
      "how many samples have the verdict on record, and which choices decide it, for each claim"},
     {"robustness.md", kResultFile, "robustness.json for people"},
-    {"subjects.csv", kResultFile,
-     "of reproduce --subjects: what was drawn for each sample, and how far it is from the tables"},
-    {"subjects.json", kResultFile, "the subjects of appendix D as they were inferred"},
     {"1 / lambda_max(S)", kStiffness,
      "how many contacts along one direction would be as stiff as one of K, for the mean S at the limit: 1 means that the "
      "hand meets K itself at most, 0.1 that ten springs add up along some direction"},

@@ -389,17 +389,12 @@ void add_limit(CommandLine& line) {
   auto [command, options] =
       line.command("limit", "Find the largest stable value of any field, by bisection on runs of any scene", limit,
                    "no limit is written");
-  command.add("scenario", options.scenario, "scenario file, or name of a bundled scenario")
-      .words(all_scenarios)
-      .required();
-  command.add("--vary", options.field, "the field, as in rendering.stiffness_N_per_m")
-      .words(scenario_field_paths)
-      .required();
+  command.add("scenario", options.scenario, "scenario file, or name of a bundled scenario").required();
+  command.add("--vary", options.field, "the field, as in rendering.stiffness_N_per_m").required();
   command.add("--between", options.between,
               "a:b, the range to search (default: a thousandth to a thousandfold of the scenario's value)");
   command.flag("--smallest", options.smallest, "find the smallest stable value instead, as of a mass");
   command.add("--algorithms", options.algorithms, "names separated by commas, or all (default: the scenario's own)")
-      .words([] { return with_all(all_algorithms()); })
       .comma_separated();
   command.add("--resolution", options.resolution,
               "relative width of the answer (default: 0.001); of the range when the range reaches 0 or below");

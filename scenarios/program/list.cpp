@@ -75,17 +75,6 @@ std::vector<std::string> sections_of(const std::vector<Listed>& all) {
   return names;
 }
 
-/// The sections as users write them: "depth_models", "thesis".
-std::vector<std::string> words_for_sections() {
-  const std::vector<Listed> all = everything();
-  std::vector<std::string> words = sections_of(all);
-  for (std::string& word : words) {
-    if (std::any_of(all.begin(), all.end(), [&word](const Listed& thing) { return thing.kind == word; })) word += 's';
-    std::replace(word.begin(), word.end(), ' ', '_');
-  }
-  return words;
-}
-
 constexpr std::size_t kColumn = 34;  // of the summaries
 
 /// The first sentence of a summary, up to a semicolon or a colon that is not near its beginning, cut to what the line
@@ -189,12 +178,10 @@ void add_list(CommandLine& line) {
   auto [command, options] = line.command(
       "list",
       "List algorithms, models, integrators, environments, tools, hands, devices, scenarios, metrics and claims", list);
-  command
-      .add(
-          "what", options.what,
-          "one kind alone, such as algorithms, depth_models, hands, metrics or claims, or one group of scenarios, such "
-          "as thesis")
-      .words(words_for_sections);
+  command.add(
+      "what", options.what,
+      "one kind alone, such as algorithms, depth_models, hands, metrics or claims, or one group of scenarios, such "
+      "as thesis");
   command.add("--grep", options.grep, "only things with this text in their name, description or source");
   add_output_options(command, options.output);
 }

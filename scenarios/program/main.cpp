@@ -27,8 +27,8 @@ namespace {
     what = error.what();
   } catch (...) {
   }
-  hapbench::print_error(hapbench::one_line(
-      fmt::format("internal fault: {}; if threads or memory ran short: fewer --jobs, or a larger --memory", what)));
+  hapbench::print_error(
+      hapbench::one_line(fmt::format("internal fault: {}; if threads or memory ran short: fewer --jobs", what)));
   std::quick_exit(hapbench::kInternalFault);
 }
 
@@ -39,7 +39,7 @@ int main(int argc, char** argv) {
   std::signal(SIGXFSZ, SIG_IGN);
   hapbench::name_plugins_that_end_the_process(hapbench::kInternalFault);
   std::set_terminate(end_with_a_reason);
-  hapbench::limit_memory({});
+  hapbench::limit_memory();
   const hapbench::StopSignal signals;
   return hapbench::run_program_to_exit(argc, argv);
 }

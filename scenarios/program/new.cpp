@@ -160,7 +160,7 @@ int write_new(const NewOptions& options) {
 
 void add_new(CommandLine& line) {
   auto [command, options] = line.command("new", "Write a scenario to start from and explain its fields", write_new);
-  command.add("kind", options.kind, "the kind of scenario; without it, the kinds are listed").words(kind_names);
+  command.add("kind", options.kind, "the kind of scenario; without it, the kinds are listed");
   command.add("--from", options.from, "the file of the mesh, shell or stroke to start from");
   command.add("--on", options.on, "of a stroke: the mesh that it is played back over, in place of a plane");
   command.add("--scale", options.scale, "length of the mesh's unit [m], 0.001 for millimetres (default: guessed)");

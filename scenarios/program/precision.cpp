@@ -172,14 +172,10 @@ void add_precision(CommandLine& line) {
   std::string studies = "The studies:";
   for (const PrecisionStudy* study : kPrecisionStudies)
     studies += fmt::format("\n  {}: {}", study->name, study->summary);
-  command.add("studies", options.studies, "names of studies (below), or all")
-      .words([] { return with_all(study_names()); })
-      .required();
+  command.add("studies", options.studies, "names of studies (below), or all").required();
   command.footer(studies);
-  command
-      .add("--scenario", options.scenario,
-           "scenario to start from instead of the study's own: any scenario for time_step")
-      .words(all_scenarios);
+  command.add("--scenario", options.scenario,
+              "scenario to start from instead of the study's own: any scenario for time_step");
   command.add("--out", options.out,
               "directory of the results (default: results/out/precision, with --scenario results/out/precision_NAME)");
   add_overrides(command, options.overrides);

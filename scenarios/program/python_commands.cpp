@@ -155,15 +155,6 @@ fs::path presets_folder() {
   return installed_folder("scenarios/import/presets");
 }
 
-std::vector<std::string> preset_names() {
-  std::vector<std::string> names;
-  for (const auto& entry : fs::directory_iterator(presets_folder())) {
-    if (entry.path().extension() == ".json") names.push_back(entry.path().stem().string());
-  }
-  std::sort(names.begin(), names.end());
-  return names;
-}
-
 /// The stroke's file, after it was checked.
 fs::path stroke_file(const ImportOptions& options) {
   if (options.file.empty()) throw InputError("FILE is missing: the recording; \"hapbench import --help\" explains");
@@ -240,8 +231,7 @@ void add_import(CommandLine& line) {
   auto options = std::make_shared<ImportOptions>();
   Command command = line.command("import", "Make a stroke to play back from a recording: poses and measured forces");
   command.add("file", options->file, "the recording");
-  command.add("--preset", options->words["preset"], "a layout by name or from FILE.json; options below override it")
-      .words(preset_names);
+  command.add("--preset", options->words["preset"], "a layout by name or from FILE.json; options below override it");
   command.flag("--list", options->lists_presets, "list the presets");
   options->word(command, "format", "csv (default), traj (blanks between numbers), hapi, hapi-binary")
       .one_of({"csv", "traj", "hapi", "hapi-binary"});

@@ -21,7 +21,6 @@
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/thesis_claims/ledger.hpp"
 #include "scenarios/thesis_claims/robustness.hpp"
-#include "scenarios/thesis_claims/subjects.hpp"
 
 namespace hapbench {
 namespace {
@@ -33,8 +32,7 @@ struct ReproduceOptions {
   std::string out = (fs::path("results") / "out" / "reproduce").string();
   std::string ledger;
   bool anew = false;
-  std::int64_t samples = 0;   ///< of the choices; 0 for none
-  std::int64_t subjects = 0;  ///< samples of what is unknown of the subjects; 0 for none
+  std::int64_t samples = 0;  ///< of the choices; 0 for none
   std::size_t jobs = available_threads();
   OutputOptions output;
 };
@@ -216,29 +214,8 @@ std::string claims_text(const std::vector<JudgedClaim>& judged) {
   return text;
 }
 
-/// Infers the subjects of appendix D instead of judging the claims.
-int infer_subjects(const ReproduceOptions& options, PublishedNumbers published) {
-  const fs::path out = options.out;
-  require_writable_directory(out);
-  const SubjectsPlan plan = plan_subjects(std::move(published), static_cast<std::size_t>(options.subjects));
-  const SubjectsReport report = run_subjects(plan, out, options.jobs, options.anew, !options.output.quiet);
-  if (report.signal != 0) {
-    fmt::print(stderr, "hapbench: stopped after {} of {} samples; the same command continues from there\n", report.done,
-               plan.samples());
-    return kStopped + report.signal;
-  }
-  const Json json = subjects_json(plan, report.samples, options.jobs);
-  FileSet files;
-  files.write(out / "subjects.csv", subjects_table(plan, report.samples));
-  files.write(out / "subjects.json", json_text(json));
-  files.commit();
-  print(options.output, subjects_text(json) + fmt::format("\nsamples and posterior in {}\n", out.string()), json);
-  return kSuccess;
-}
-
 int reproduce(const ReproduceOptions& options) {
   const fs::path reference = installed_folder("results/reference");
-  if (options.subjects > 0) return infer_subjects(options, PublishedNumbers(reference / "published"));
   const std::vector<Claim> claims = chosen_claims(options.only);
   const Choices choices(reference / "choices.json");
   const PublishedNumbers published =
@@ -303,7 +280,6 @@ void add_reproduce(CommandLine& line) {
           "--only", options.only,
           "ids of claims, separated by commas; \"hapbench list claims\" shows them, and scripts/reproduce --only draws their "
           "figures, too")
-      .words(claim_ids)
       .comma_separated();
   command.add("--out", options.out, "directory of the results (default: results/out/reproduce)");
   command.add("--ledger", options.ledger,
@@ -319,17 +295,10 @@ void add_reproduce(CommandLine& line) {
           "what they have of other claims")
       .value_if_none("256")
       .range(4, 100'000);
-  command
-      .add(
-          "--subjects", options.subjects,
-          "instead of judging claims: infer what the thesis does not say of the subjects of appendix D from Tables A.1 "
-          "and A.3, with this many samples, and judge the rest of it with the nearest; writes subjects.csv and .json "
-          "into --out")
-      .range(6, 100'000);
   add_output_options(command, options.output);
   command.footer(
       "choices.md beside the ledger lists what the thesis leaves open (results/reference/choices.json). Ctrl-C stops "
-      "--robustness and --subjects after the samples under way; the same command continues from there.\n"
+      "--robustness after the samples under way; the same command continues from there.\n"
       "Exit status: 0 success, 2 bad input or usage, 3 a run did not end as its scenario expects, 130 stopped by Ctrl-C.");
 }
 

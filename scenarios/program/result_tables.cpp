@@ -46,8 +46,6 @@ constexpr Column kPrecisionColumns[] = {
     {"kept_mean", "1", "mean number of contacts behind reduction or merging"},
     {"pushed_m", "m", "way of the tool from the start of the stroke"},
     {"depth_max_mean_m", "m", "mean of the largest penetration depth, over the poses"},
-    {"spring_force_error_rms_N", "N", "root mean square ||f_spring - that of our contacts||, at the places of our run"},
-    {"way_apart_rms_m", "m", "root mean square distance from the way of our run"},
     {"rate_Hz", "Hz", "rate at which contacts are found"},
     {"force_rms_above_30Hz_N", "N", "as the metric of that name"},
     {"stiffness_max_N_per_m", "N/m",
@@ -155,8 +153,8 @@ std::vector<Table::Column> joined_headings(const std::vector<std::vector<Table::
 std::vector<Table::Column> printed_headings() {
   return joined_headings({run_headings(), league_headings(), limit_headings(false), limit_headings(true),
                           converge_headings(), device_headings(), stability_headings(), precision_headings("step"),
-                          precision_headings("call"), diff_headings(), sweep_headings(), shard_headings(),
-                          tune_headings(), claim_headings()});
+                          precision_headings("call"), diff_headings(), sweep_headings(), tune_headings(),
+                          claim_headings()});
 }
 
 std::vector<DescribedTable> result_tables() {

@@ -57,7 +57,6 @@ std::vector<Table::Column> map_headings();
 std::vector<Table::Column> precision_headings(const std::string& timed);
 std::vector<Table::Column> run_headings();
 std::vector<Table::Column> latency_headings();
-std::vector<Table::Column> shard_headings();
 std::vector<Table::Column> stability_headings();
 std::vector<Table::Column> sweep_headings();
 std::vector<Table::Column> tune_headings();

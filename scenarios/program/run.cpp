@@ -103,7 +103,6 @@ void add_run(CommandLine& line) {
   auto [command, options] = line.command("run", "Run scenarios and write their results", run,
                                          "nothing of the unfinished run is written; finished runs are kept");
   command.add("scenarios", options.scenarios, "scenario files, names of bundled scenarios, or of groups of them")
-      .words(all_scenarios)
       .required();
   command.add("--out", options.out,
               "directory of the results; several scenarios get a subdirectory each (default: results/out/NAME)");

@@ -18,7 +18,6 @@
 #include "scenarios/studies/stability/stability_limits.hpp"
 #include "scenarios/studies/stability/stability_map.hpp"
 #include "scenarios/studies/stress/law_stress.hpp"
-#include "scenarios/studies/worst_motion/adversary.hpp"
 
 namespace hapbench {
 namespace {
@@ -107,7 +106,7 @@ std::string limits_text(const LoadedScenario& loaded, const std::vector<Stabilit
 
 int limits(const StabilityOptions& options) {
   if (options.scenarios.empty()) {
-    throw InputError("stability: got no scenario; allowed: springs scenarios, --map, --stress, --search");
+    throw InputError("stability: got no scenario; allowed: springs scenarios, --map, --stress");
   }
   std::vector<LoadedScenario> scenarios;
   for (const std::string& argument : options.scenarios) {
@@ -195,167 +194,42 @@ int stress(const StabilityOptions& options) {
   return status;
 }
 
-std::vector<LoadedScenario> scenes_of(const StabilityOptions& options) {
-  if (options.scenarios.size() != 1) {
-    throw InputError(
-        fmt::format("--search: got {} scenarios; allowed: one, whose scene is searched", options.scenarios.size()));
-  }
-  if (overrides_device(options.overrides)) {
-    throw InputError(
-        "--set: got a field of device; allowed with --search: other fields, because it searches with an ideal device");
-  }
-  const fs::path file = find_scenario(options.scenarios.front());
-  std::vector<LoadedScenario> scenes;
-  if (options.algorithms.empty()) scenes.push_back(load_scenario(file, options.overrides));
-  for (const std::string& algorithm : options.algorithms) {
-    std::vector<std::string> overrides = options.overrides;
-    overrides.push_back("rendering.algorithm=" + algorithm);
-    scenes.push_back(load_scenario(file, overrides));
-  }
-  for (const LoadedScenario& scene : scenes) with_file(scene, [&] { check_search_scene(scene.scenario); });
-  return scenes;
-}
-
-SearchOptions search_options(const StabilityOptions& options, const std::string& label) {
-  SearchOptions search;
-  search.badness = options.objective == "created" ? Badness::created : Badness::vibration;
-  search.seed = options.seed;
-  search.evaluations = options.evaluations;
-  search.jobs = options.job_options(label);
-  return search;
-}
-
-/// Gives the found scenario a name, a source and a description.
-void name_found(const StabilityOptions& options, const std::string& name, const SearchResult& found,
-                Scenario& scenario) {
-  const std::string scene = scenario.name;
-  scenario.name = name;
-  scenario.source = "hapbench stability --search";
-  scenario.description = fmt::format(
-      "The worst motion of the hand found for {} in {}: objective {} {}, against {} of the tool at rest (seed {}, {} "
-      "evaluations, then minimised).",
-      scenario.rendering.algorithm, scene, options.objective, significant(found.badness), significant(found.at_rest),
-      options.seed, options.evaluations);
-}
-
-/// How the runs of a search ended: "812 completes, 3 went_through".
-std::string outcomes_text(const SearchResult& found) {
-  std::vector<std::string> texts;
-  for (const auto& [outcome, count] : found.outcomes)
-    texts.push_back(fmt::format("{} {}", count, outcome_name(outcome)));
-  return fmt::format("{}", fmt::join(texts, ", "));
-}
-
-Json found_json(const std::string& algorithm, const StabilityOptions& options, const SearchResult& found,
-                const fs::path& file) {
-  Json outcomes = Json::object();
-  for (const auto& [outcome, count] : found.outcomes) outcomes[std::string(outcome_name(outcome))] = count;
-  return {{"algorithm", algorithm},
-          {"objective", options.objective},
-          {"at_rest", found.at_rest},
-          {"found", found.found},
-          {"minimised", found.badness},
-          {"waypoints", found.trajectory.size()},
-          {"duration_s", found.trajectory.back().time},
-          {"outcome", outcome_name(found.run.result.outcome)},
-          {"evaluations", found.evaluations},
-          {"outcomes", std::move(outcomes)},
-          {"scenario", file.string()}};
-}
-
-const std::vector<Table::Column> kSearchHeadings = {
-    {"algorithm", false},
-    {"at rest", true, "of stability --search: the objective of a hand that does not move"},
-    {"found", true, "the objective of the worst motion that was found"},
-    {"minimised", true, "the objective of that motion after waypoints were left out that add little to it"},
-    {"waypoints", true, "of the minimised motion"},
-    {"duration s", true, "of the minimised motion [s]"},
-    {"outcome", false},
-    {"runs"},
-    {"scenario", false, "of stability --search: the file of the found scene, which \"hapbench run\" repeats"}};
-
-int search(const StabilityOptions& options) {
-  const std::vector<LoadedScenario> scenes = scenes_of(options);
-  const fs::path out = results_directory(options.out, "stability_search");
-  require_writable_directory(out);
-
-  Table table(kSearchHeadings);
-  std::string ends;
-  Json json = Json::array();
-  for (const LoadedScenario& scene : scenes) {
-    const std::string& algorithm = scene.scenario.rendering.algorithm;
-    SearchResult found =
-        with_file(scene, [&] { return search_adversary(scene.scenario, search_options(options, algorithm)); });
-    const std::string name = fmt::format("worst_{}_{}", options.objective, algorithm);
-    const fs::path file = out / (name + ".json");
-    name_found(options, name, found, found.scenario);
-    write_file_atomically(file, json_text(effective_scenario(found.scenario, out)));
-    table.add({algorithm, significant(found.at_rest), significant(found.found), significant(found.badness),
-               std::to_string(found.trajectory.size()), significant(found.trajectory.back().time),
-               std::string(outcome_name(found.run.result.outcome)), std::to_string(found.evaluations), file.string()});
-    ends += wrapped(
-        fmt::format("{}: of {} runs before minimising {}", algorithm, options.evaluations, outcomes_text(found)), 0);
-    json.push_back(found_json(algorithm, options, found, file));
-  }
-  print(options.output, table.text() + "\n" + ends, json);
-  return kSuccess;
-}
-
 int stability(const StabilityOptions& options) {
   require_names("--algorithms: got", options.algorithms, all_algorithms());
-  const bool has_algorithms = !options.maps.empty() || options.search;
-  if (!options.algorithms.empty() && !has_algorithms) {
-    throw InputError("--algorithms: got names; allowed: with --map and --search only");
-  }
+  if (!options.algorithms.empty() && options.maps.empty())
+    throw InputError("--algorithms: got names; allowed: with --map only");
   if (!options.overrides.empty() && options.stress)
     throw InputError("--set: got an override; allowed: with scenarios and --map only");
   if (!options.maps.empty()) return stability_maps_command(options);
   if (options.stress) return stress(options);
-  if (options.search) return search(options);
   return limits(options);
 }
 
-/// The four experiments exclude each other, and each has options of its own.
+/// The three experiments exclude each other, and each has options of its own.
 void add_experiments(Command& command, StabilityOptions& options) {
-  CommandOption scenarios = command.add(
-      "scenarios", options.scenarios,
-      "springs scenarios whose limits are wanted, or with --search the scene to search: files, or names of bundled ones");
+  CommandOption scenarios = command.add("scenarios", options.scenarios,
+                                        "springs scenarios whose limits are wanted: files, or names of bundled ones");
   CommandOption map = command.add("--map", options.maps,
                                   "draw maps of stable, dying, vibrating and diverged runs: names separated by commas, "
                                   "or all (see \"hapbench describe stability\")");
-  scenarios.words(all_scenarios);
-  map.words([] { return with_all(names_of(stability_maps(), &StabilityMap::name)); }).comma_separated();
+  map.comma_separated();
   CommandOption stress = command.flag("--stress", options.stress, "pass random contact sets through every algorithm");
-  CommandOption search = command.flag("--search", options.search,
-                                      "search for the motion of the hand that an algorithm renders worst in a scene");
-  map.excludes(stress).excludes(search).excludes(scenarios);
-  stress.excludes(search).excludes(scenarios);
+  map.excludes(stress).excludes(scenarios);
+  stress.excludes(scenarios);
 
   constexpr std::int64_t kMostCount = 1'000'000'000;
   command.add("--size", options.size, "points of a map along each side (default: 17)").range(2, 101).needs(map);
   command
       .add("--integrators", options.integrators,
            "integrators of the maps: names separated by commas, or all (default: leapfrog)")
-      .words([] { return with_all(all_integrators()); })
       .comma_separated()
       .needs(map);
   command.add("--count", options.count, "contact sets of --stress (default: 100000)")
       .range(1, kMostCount)
       .needs(stress);
-  command.add("--objective", options.objective, "what --search makes large: created (energy, the default) or vibration")
-      .one_of({"created", "vibration"})
-      .needs(search);
-  command.add("--evaluations", options.evaluations, "runs of --search before minimising (default: 400)")
-      .range(1, kMostCount)
-      .needs(search);
-  command.add("--seed", options.seed, "seed of --stress and --search (default: 1)")
-      .range(0, std::int64_t{1} << 53)
-      .excludes(map);
+  command.add("--seed", options.seed, "seed of --stress (default: 1)").range(0, std::int64_t{1} << 53).excludes(map);
   add_jobs(command, options.jobs, "threads (default: as many as the machine has)");
-  command
-      .add("--algorithms", options.algorithms,
-           "algorithms of --map and --search: names separated by commas (default: all; of --search the scene's own)")
-      .words(all_algorithms)
+  command.add("--algorithms", options.algorithms, "algorithms of --map: names separated by commas (default: all)")
       .comma_separated();
 }
 
@@ -370,7 +244,7 @@ JobOptions StabilityOptions::job_options(const std::string& label) const {
 }
 
 std::vector<Table::Column> stability_headings() {
-  return joined_headings({kLimitHeadings, kStressHeadings, kSearchHeadings, map_headings()});
+  return joined_headings({kLimitHeadings, kStressHeadings, map_headings()});
 }
 
 std::vector<Column> stability_limit_columns() {
@@ -386,11 +260,9 @@ std::vector<Column> stress_columns() {
 }
 
 void add_stability(CommandLine& line) {
-  auto [command, options] = line.command(
-      "stability",
-      "Find stability limits of springs (thesis A.3), draw stability maps, stress algorithms, search for the worst "
-      "motion",
-      stability, "maps and searches that were complete are kept");
+  auto [command, options] =
+      line.command("stability", "Find stability limits of springs (thesis A.3), draw stability maps, stress algorithms",
+                   stability, "maps that were complete are kept");
   add_experiments(command, options);
   command.add("--out", options.out, "directory of the results (default: results/out/stability_NAME)");
   add_overrides(

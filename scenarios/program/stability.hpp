@@ -7,7 +7,7 @@
 #include "scenarios/batch/parallel_for.hpp"
 #include "scenarios/program/command.hpp"
 
-/// The experiments of `hapbench stability`: limits of A.3, stress test and search in stability.cpp, maps in
+/// The experiments of `hapbench stability`: limits of A.3 and stress test in stability.cpp, maps in
 /// stability_map.cpp.
 namespace hapbench {
 
@@ -15,13 +15,10 @@ struct StabilityOptions {
   std::vector<std::string> scenarios;
   std::vector<std::string> maps;
   bool stress = false;
-  bool search = false;
   std::vector<std::string> algorithms;   ///< empty: all
   std::vector<std::string> integrators;  ///< empty: leapfrog
   std::size_t size = 17;
   std::uint64_t count = 100'000;
-  std::string objective = "created";
-  std::uint64_t evaluations = 400;
   std::uint64_t seed = 1;
   unsigned jobs = 0;  ///< 0: as many as the machine has
   std::string out;

@@ -36,8 +36,6 @@ struct SweepCommand {
   bool keep_runs = false;
   std::uint64_t row = 0;
   bool print = false;
-  std::string status;  ///< directory whose progress is asked for; empty: run a sweep
-  SlurmOptions slurm;
   OutputOptions output;
 };
 
@@ -126,28 +124,6 @@ int print_row(const SweepCommand& command, const fs::path& file) {
   return kSuccess;
 }
 
-/// The command for the shards of a sweep, without shard, jobs and output.
-std::vector<std::string> shard_command(const SweepCommand& command, const fs::path& file) {
-  std::vector<std::string> words = command_words("sweep", file);
-  for (const std::string& vary : command.vary) append(words, {"--vary", vary});
-  for (const std::string& override : command.overrides) append(words, {"--set", override});
-  if (!command.sample.empty()) append(words, {"--sample", command.sample, "--seed", std::to_string(command.seed)});
-  if (command.keep_runs) words.emplace_back("--keep-runs");
-  append(words, plugin_words());
-  return words;
-}
-
-int submit(const SweepCommand& command, const SweepPlan& plan, const SweepOptions& options) {
-  const SlurmOptions& slurm = command.slurm;
-  if (slurm.shards > plan.points.size()) {
-    throw InputError(fmt::format("--slurm: got {} shards of {} runs; allowed: 1 ... {}", slurm.shards,
-                                 plan.points.size(), plan.points.size()));
-  }
-  const SlurmJobs jobs = submit_to_slurm(plan, slurm, options, shard_command(command, plan.scenario.file));
-  print(command.output, jobs.text, Json{{"array", jobs.array}, {"merge", jobs.merge}, {"shards", jobs.shards}});
-  return kSuccess;
-}
-
 /// Prints the rows that a finished sweep has, as far as they keep the conditions of --where.
 void print_sweep(const SweepCommand& command, const SweepPlan& plan, const SweepReport& report) {
   const std::string metric = chosen_metric(plan, command.metric);
@@ -170,7 +146,7 @@ void print_sweep(const SweepCommand& command, const SweepPlan& plan, const Sweep
 int reprint(const SweepCommand& command) {
   const bool runs = !command.vary.empty() || !command.overrides.empty() || !command.sample.empty() ||
                     !command.out.empty() || !command.shard.empty() || command.resume || command.keep_runs ||
-                    command.print || command.slurm.shards > 0;
+                    command.print;
   if (runs) {
     throw InputError(fmt::format(
         "{}: holds a finished sweep, which is printed again; allowed beside it: --where, --metric, --json, --quiet",
@@ -200,18 +176,12 @@ void check_journal(const SweepPlan& plan, const SweepOptions& options) {
 namespace {
 
 int sweep(const SweepCommand& command) {
-  if (!command.status.empty()) {
-    const SweepStatus status = sweep_status(command.status);
-    print(command.output, status.text, status.json);
-    return kSuccess;
-  }
   std::error_code ignored;
   if (fs::is_regular_file(fs::path(command.scenario) / "sweep.csv", ignored)) return reprint(command);
   if (command.scenario.empty() || command.vary.empty()) {
-    throw InputError(
-        "sweep: got no scenario or no --vary; allowed: both, the folder of a finished sweep, or --status FOLDER alone");
+    throw InputError("sweep: got no scenario or no --vary; allowed: both, or the folder of a finished sweep");
   }
-  if (!command.where.empty() && (!command.shard.empty() || command.slurm.shards > 0))
+  if (!command.where.empty() && !command.shard.empty())
     throw InputError(
         "--where: got it for a shard; allowed: for a whole sweep, or \"hapbench sweep FOLDER\" of the merged one");
   // All input is checked before anything runs or is written.
@@ -223,7 +193,6 @@ int sweep(const SweepCommand& command) {
   chosen_metric(plan, command.metric);  // throws if there is none of that name
   print_some_warnings(plan.warnings);
   require_writable_directory(options.directory);
-  if (command.slurm.shards > 0) return submit(command, plan, options);
   check_journal(plan, options);
 
   const SweepReport report = run_sweep(plan, options);
@@ -247,45 +216,29 @@ void add_run_options(Command& command, SweepCommand& options) {
   print.needs(row);
 }
 
-void add_shard_options(Command& command, SweepCommand& options) {
-  CommandOption shard =
-      command.add("--shard", options.shard,
-                  "i/n with 0 <= i < n: do only the runs whose index leaves the remainder i on division by n");
-  add_slurm_options(
-      command, options.slurm, shard,
-      "N: submit the sweep to Slurm as a job array of N shards, and a job that merges them when all are done. The same "
-      "command given again submits only the shards that failed or are missing");
-  command.add("--status", options.status,
-              "FOLDER: show which shards of the sweep in that folder are done, running, waiting, failed or missing");
-}
-
 }  // namespace
 
 void add_sweep(CommandLine& line) {
   auto [command, options] =
       line.command("sweep", "Run one scenario over a grid or a sample of values of any fields, in parallel", sweep);
-  command
-      .add("scenario", options.scenario,
-           "scenario file, or name of a bundled scenario; or the folder of a finished sweep, which is printed again")
-      .words(all_scenarios);
+  command.add(
+      "scenario", options.scenario,
+      "scenario file, or name of a bundled scenario; or the folder of a finished sweep, which is printed again");
   command
       .add(
           "--vary", options.vary,
           "a field and its values: path=a:b:n (n numbers from a to b), path=a:b:n:log (in equal ratios) or path=v,w,... "
           "(numbers or texts; rendering.algorithm=all). Several give all combinations; the last one varies fastest. "
           "With --sample: path=a:b, path=a:b:log or path=v,w,...")
-      .words(field_assignments)
       .repeatable();
   const CommandOption sample =
       command.add("--sample", options.sample,
                   "run a sample of points instead of all combinations: lhs:N (Latin hypercube), sobol:N (shifted Sobol "
                   "sequence, best for powers of two) or random:N; listed values take equal shares");
   command.add("--seed", options.seed, "seed of the sample (default: 1)").needs(sample);
-  command
-      .add("--metric", options.metric,
-           "the column of sweep.csv that is shown, by which runs are ordered (default: " +
-               std::string(kDefaultMetrics[0]) + ")")
-      .words([] { return metric_names(); });
+  command.add("--metric", options.metric,
+              "the column of sweep.csv that is shown, by which runs are ordered (default: " +
+                  std::string(kDefaultMetrics[0]) + ")");
   command
       .add("--where", options.where,
            "print only the runs with this: a column of sweep.csv, one of < <= > >= = !=, and a number or a text, as "
@@ -294,7 +247,8 @@ void add_sweep(CommandLine& line) {
   command.add("--out", options.out, "directory of sweep.csv (default: results/out/sweep_NAME)");
   add_overrides(command, options.overrides, "override a field of all runs: path=value");
   add_run_options(command, options);
-  add_shard_options(command, options);
+  command.add("--shard", options.shard,
+              "i/n with 0 <= i < n: do only the runs whose index leaves the remainder i on division by n");
   add_output_options(command, options.output);
   command.footer(
       "sweep.csv has a row for each run: index, the varied fields, outcome (\"error\" when it could not be computed), "

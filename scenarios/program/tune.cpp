@@ -435,13 +435,9 @@ std::vector<Table::Column> tune_headings() {
 void add_tune(CommandLine& line) {
   auto [command, options] =
       line.command("tune", "Say which stiffness and damping to use, in a scene on a device", tune);
-  command.add("scenario", options.scenario, "scenario file, or name of a bundled scenario")
-      .words(all_scenarios)
-      .required();
-  command.add("--device", options.device, "a preset, ideal, admittance, or a file NAME.json (default: the scene's)")
-      .words([] { return names_of(compared_devices(), &ComparedDevice::name); });
+  command.add("scenario", options.scenario, "scenario file, or name of a bundled scenario").required();
+  command.add("--device", options.device, "a preset, ideal, admittance, or a file NAME.json (default: the scene's)");
   command.add("--algorithms", options.algorithms, "names separated by commas, or all (default: the scene's own)")
-      .words([] { return with_all(all_algorithms()); })
       .comma_separated();
   command.add("--margin", options.margin, "settled up to so many times K (default: 2)");
   command.add("--max-inside", options.inside, "most that any point of the tool is inside [mm]: inside_max_m");
@@ -450,9 +446,6 @@ void add_tune(CommandLine& line) {
   command.add("--bound", options.bounds, "a limit on any other metric: metric=most or metric=least:most; repeatable");
   command
       .add("--over", options.over, "families of runs that have to hold: hands, seeds, speeds, or all (default: hands)")
-      .words([] {
-        return with_all({std::begin(kFamilyNames), std::end(kFamilyNames)});
-      })
       .comma_separated();
   command.add("--damping-ratio", options.damping_ratio,
               "a:b, range of zeta; on an impedance device by the mass of its handle (default: 0.01:10)");

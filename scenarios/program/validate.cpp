@@ -21,8 +21,6 @@
 namespace hapbench {
 namespace {
 
-constexpr double kProgramMemory = 15e6;  ///< of a run with next to no environment and no grid of a tool [B]
-
 struct ValidateOptions {
   std::vector<std::string> files;
   std::vector<std::string> overrides;
@@ -58,8 +56,7 @@ std::string facts_text(const Scenario& scenario, const SceneFacts& facts) {
   text += fmt::format("  run          {} steps of {:.4g} ms = {:.4g} s", scenario.time.steps, 1e3 * scenario.time.step,
                       duration);
   if (facts.trials > 1) text += fmt::format(", {} trials", facts.trials);
-  return text + fmt::format("\n  writes       about {}; takes about {} of memory\n",
-                            bytes_text(expected_output_bytes(scenario)), bytes_text(kProgramMemory + facts.memory));
+  return text + fmt::format("\n  writes       about {}\n", bytes_text(expected_output_bytes(scenario)));
 }
 
 Json box_json(const Box& box) {
@@ -70,8 +67,7 @@ Json facts_json(const Scenario& scenario, const SceneFacts& facts) {
   Json json = {{"steps", scenario.time.steps},
                {"duration_s", scenario.time.step * static_cast<double>(scenario.time.steps)},
                {"trials", facts.trials},
-               {"expected_output_bytes", expected_output_bytes(scenario)},
-               {"expected_memory_bytes", kProgramMemory + facts.memory}};
+               {"expected_output_bytes", expected_output_bytes(scenario)}};
   json["tool"] = {{"type", facts.tool.type},
                   {"half_width_m", facts.tool.half_width},
                   {"reach_m", facts.tool.reach},
@@ -143,7 +139,7 @@ void add_validate(CommandLine& line) {
   auto [command, options] = line.command(
       "validate", "Check scenario files and the files they name, without running them, and say what is in them",
       validate);
-  command.add("files", options.files, "scenario files, or names of bundled scenarios").words(all_scenarios).required();
+  command.add("files", options.files, "scenario files, or names of bundled scenarios").required();
   add_overrides(command, options.overrides, "override a field of all: path=value");
   add_output_options(command, options.output);
 }
@@ -182,9 +178,7 @@ int shell(const ShellOptions& options) {
 
 void add_shell(CommandLine& line) {
   auto [command, options] = line.command("shell", "Write the environment's point shell: positions and normals", shell);
-  command.add("scenario", options.scenario, "scenario file, or name of a bundled scenario")
-      .words(all_scenarios)
-      .required();
+  command.add("scenario", options.scenario, "scenario file, or name of a bundled scenario").required();
   command.add("--out", options.out, "FILE.csv (exact) or FILE.ply (single precision, for viewers)").required();
   add_overrides(command, options.overrides);
   add_output_options(command, options.output);

@@ -5,14 +5,12 @@
 
 #include "algorithms/depth/depth_model.hpp"
 #include "algorithms/registry.hpp"
-#include "algorithms/stages/force_stage.hpp"
 #include "device_model/admittance_device.hpp"
 #include "device_model/hands/drag_hand.hpp"
 #include "device_model/hands/scripted_hands.hpp"
 #include "device_model/hands/tracking_hand.hpp"
 #include "device_model/ideal_device.hpp"
 #include "device_model/impedance_device.hpp"
-#include "scenarios/input/memory_limit.hpp"
 #include "scenarios/plugins/load_plugin.hpp"
 #include "scenarios/run/scene_facts.hpp"
 #include "sim/contact/contact_source.hpp"
@@ -28,15 +26,8 @@ void add(std::vector<double>& numbers, const Vec3& p) {
   numbers.insert(numbers.end(), {p.x(), p.y(), p.z()});
 }
 
-const HapbenchContactSource& peer_of(const Scenario& scenario) {
-  const std::string& name = scenario.rendering.contact_source;
-  if (name == kContactPlugin) return contact_plugin(resolve_path(scenario, scenario.rendering.contact_file));
-  if (const HapbenchContactSource* library = find_peer(name)) return *library;
-  throw InputError(
-      InputError::Kind::relation, "/rendering/contact_source",
-      fmt::format("got \"{}\", which is not built here; allowed: \"{}\", or install {} and build the target "
-                  "contact_sources",
-                  name, kOwnContacts, peer_package(name)));
+const HapbenchContactSource& contact_library_of(const Scenario& scenario) {
+  return contact_plugin(resolve_path(scenario, scenario.rendering.contact_file));
 }
 
 }  // namespace
@@ -64,28 +55,7 @@ PeerSurface peer_surface(const Scenario& scenario, const NamedFiles& files) {
 }
 
 void require_contact_source(const Scenario& scenario) {
-  const std::string& source = scenario.rendering.contact_source;
-  if (source != kOwnContacts && source != kTrace) peer_of(scenario);
-}
-
-const HapbenchForceStage* force_stage_library(const Scenario& scenario) {
-  const auto& stage = scenario.rendering.force_stage;
-  const auto* plugin = stage ? std::get_if<PluginStageConfig>(&*stage) : nullptr;
-  return plugin == nullptr ? nullptr : &force_stage_plugin(resolve_path(scenario, plugin->file));
-}
-
-void require_force_stage(const Scenario& scenario) {
-  const HapbenchForceStage* library = force_stage_library(scenario);
-  if (library == nullptr) return;
-  const RenderingConfig& rendering = scenario.rendering;
-  const bool has_mass =
-      std::holds_alternative<FreePosition>(scenario.motion.position) && !handle_moves_tool(scenario.device);
-  try {
-    make_force_stage(rendering, library)
-        ->prepare({scenario.time.step, has_mass ? rendering.mass : 0.0, rendering.stiffness});
-  } catch (const std::runtime_error& fault) {
-    throw InputError(InputError::Kind::relation, "/rendering/force_stage/config", fault.what());
-  }
+  if (scenario.rendering.contact_source == kContactPlugin) contact_library_of(scenario);
 }
 
 std::unique_ptr<ContactSource> make_peer_source(const Scenario& scenario, const NamedFiles& files) {
@@ -94,10 +64,8 @@ std::unique_ptr<ContactSource> make_peer_source(const Scenario& scenario, const 
   const HapbenchTool tool = {.radius = make_tool(scenario, files)->half_width(),
                              .length = is_flat ? drill->length : 0.0};
   const PeerSurface surface = peer_surface(scenario, files);
-  const RenderingConfig& rendering = scenario.rendering;
-  const bool is_plugin = rendering.contact_source == kContactPlugin;
-  return std::make_unique<PeerSource>(peer_of(scenario), rendering.contact_config, surface, tool,
-                                      is_plugin ? kMostPluginContacts : surface.triangles.size() / 3);
+  return std::make_unique<PeerSource>(contact_library_of(scenario), scenario.rendering.contact_config, surface, tool,
+                                      kMostPluginContacts);
 }
 
 namespace {
@@ -140,10 +108,7 @@ std::vector<std::string> named_file_warnings(const LoadedScenario& loaded) {
 
 std::vector<std::string> check_named_files(const LoadedScenario& loaded, bool looks_at_scan) {
   const Scenario& scenario = loaded.scenario;
-  with_file(loaded, [&] {
-    require_contact_source(scenario);
-    require_force_stage(scenario);
-  });
+  with_file(loaded, [&] { require_contact_source(scenario); });
   for (const auto& file : loaded.files.all()) {
     try {
       file->check();
@@ -159,7 +124,6 @@ std::vector<std::string> check_named_files(const LoadedScenario& loaded, bool lo
         InputError::Kind::relation, file_of(loaded, "/record/force_reference").string() + ": /record/force_reference",
         fmt::format("got true; allowed: false, because {} has no columns mfx_N,mfy_N,mfz_N", file->path().string()));
   }
-  with_file(loaded, [&] { require_memory(environment_memory(scenario, loaded.files), "/environment: its points"); });
   std::vector<std::string> warnings = named_file_warnings(loaded);
   for (std::string& warning : warnings) {
     const std::string pointer = warning.substr(0, warning.find(": "));
@@ -208,7 +172,7 @@ SimulationParts assemble(const Scenario& scenario, const NamedFiles& files, std:
                                                   parts.springs && parts.springs->bilateral,
                                                   derived_seed(scenario, trial, RandomUse::lost_queries));
   }
-  parts.algorithm = make_algorithm(rendering, force_stage_library(scenario));
+  parts.algorithm = make_algorithm(rendering);
   add_hand_and_motion(scenario, files, trial, parts);
   parts.device = make_device(scenario, trial);
   return parts;

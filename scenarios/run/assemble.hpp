@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "algorithms/peers/peer_source.hpp"
-#include "algorithms/plugin/hapbench_force_stage.h"
 #include "scenarios/description/load_scenario.hpp"
 #include "scenarios/description/parts.hpp"
 
@@ -35,17 +34,10 @@ SimulationParts assemble(const Scenario& scenario);
 /// triangles, the points of other environments. Throws InputError when the file cannot be used.
 PeerSurface peer_surface(const Scenario& scenario, const NamedFiles& files);
 
-/// Loads the module or library of rendering.contact_source. Throws InputError, which says how to have it, when it is
-/// not there.
+/// Loads the library of rendering.contact_source, if that is one. Throws InputError when it cannot.
 void require_contact_source(const Scenario& scenario);
 
-/// The library of rendering.force_stage, loaded; null where the stage has none. Throws InputError.
-const HapbenchForceStage* force_stage_library(const Scenario& scenario);
-/// Makes the stage of that library once, to see whether it takes its config. Throws InputError.
-void require_force_stage(const Scenario& scenario);
-
-/// The contacts of rendering.contact_source. Building the library's tree over the triangles takes seconds for millions.
-/// Precondition: it is a peer or kContactPlugin. Throws InputError.
+/// The contacts of the library of rendering.contact_source. Precondition: it is kContactPlugin. Throws InputError.
 std::unique_ptr<ContactSource> make_peer_source(const Scenario& scenario, const NamedFiles& files);
 
 }  // namespace hapbench

@@ -164,7 +164,6 @@ SceneFacts scene_facts(const LoadedScenario& loaded) {
   const auto tool = make_tool(scenario, loaded.files);
   facts.tool = tool_facts(scenario, loaded.files, *tool);
   for (std::string& warning : tool_warnings(scenario.rendering, *tool)) facts.warnings.push_back(std::move(warning));
-  facts.memory = environment_memory(scenario, loaded.files) + tool_memory(scenario, loaded.files);
   const auto shell = make_shell(scenario, loaded.files);
   throw_if_stopped();  // that may have taken seconds
   if (!shell || shell->size() == 0) return facts;

@@ -41,7 +41,6 @@ struct SceneFacts {
   ToolFacts tool;
   std::optional<bool> is_closed;  ///< of a mesh
   std::size_t trials = 1;
-  double memory = 0.0;                ///< environment_memory and tool_memory [B]
   std::vector<std::string> warnings;  ///< about the tool, and the way of its drag, in this scene
 };
 

@@ -26,8 +26,6 @@ struct Scene {
   /// before the first `compute` of each row. Null if the algorithm is not stepped by a Simulation.
   const std::uint64_t* row = nullptr;
   const Vec3* input = nullptr;
-  /// The handle of the present row, for algorithms that read it; null as those.
-  const HandleState* handle = nullptr;
   bool position_is_free = true;    ///< false: a script moves the tool
   bool handle_moves_tool = false;  ///< the tool follows the measured handle; there is no virtual mass
 };

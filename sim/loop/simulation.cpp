@@ -81,7 +81,6 @@ Simulation::Simulation(SimulationConfig config, SimulationParts parts, std::vect
                              .late = dynamic_cast<const LateContacts*>(parts_.source.get()),
                              .row = &record_.step,
                              .input = &record_.hand.input,
-                             .handle = &record_.handle,
                              .position_is_free = position_is_free_,
                              .handle_moves_tool = handle_moves_tool_});
   reset();

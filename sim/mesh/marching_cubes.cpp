@@ -1,8 +1,5 @@
 #include "sim/mesh/marching_cubes.hpp"
 
-#include <oneapi/tbb/enumerable_thread_specific.h>
-#include <oneapi/tbb/parallel_for.h>
-
 #include <algorithm>
 #include <iterator>
 #include <limits>
@@ -11,6 +8,7 @@
 #include <utility>
 
 #include "sim/contact/grid_index.hpp"
+#include "sim/core/parallel.hpp"
 #include "sim/mesh/surface_slab.hpp"
 
 namespace hapbench {
@@ -90,7 +88,7 @@ class ShellBuilder {
  private:
   template <class Work>
   void for_each_layer(Work work) const {
-    tbb::parallel_for(std::size_t{0}, layers_.size(), work);
+    parallel_for(std::size_t{0}, layers_.size(), work);
   }
 
   Box box_of(const SurfaceLayer& layer) const {
@@ -133,8 +131,8 @@ class ShellBuilder {
       });
     };
     for_each_vertex([&](std::uint32_t cell, std::uint32_t& sorted) { sorted = cell; });
-    tbb::enumerable_thread_specific<Numbers> counts;
-    tbb::parallel_for(std::size_t{0}, slices, [&](std::size_t slice) {
+    PerThread<Numbers> counts;
+    parallel_for(std::size_t{0}, slices, [&](std::size_t slice) {
       Numbers& next = counts.local();
       next.assign(cells_in_slice, 0);
       std::uint32_t* const begin = &by_slice[slice_first[slice]];

@@ -1,7 +1,5 @@
 #include "sim/mesh/surface_slab.hpp"
 
-#include <oneapi/tbb/enumerable_thread_specific.h>
-#include <oneapi/tbb/parallel_for.h>
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -9,6 +7,7 @@
 #include <numbers>
 #include <utility>
 
+#include "sim/core/parallel.hpp"
 #include "sim/mesh/triangle_soup.hpp"
 
 namespace hapbench {
@@ -424,7 +423,7 @@ void finish(std::vector<SurfaceSlab>& slabs, const std::vector<std::size_t>& in_
     last.vertices.resize(own);
     last.normals.resize(own);
   }
-  tbb::parallel_for(std::size_t{0}, slabs.size(), [&](std::size_t s) {
+  parallel_for(std::size_t{0}, slabs.size(), [&](std::size_t s) {
     for (SurfaceLayer& layer : slabs[s].layers) std::ranges::for_each(layer.normals, normalise);
   });
 }
@@ -435,8 +434,8 @@ std::vector<SurfaceSlab> surface_slabs(const DensityField& field, const NodeGrid
   const std::size_t layers = grid.count(2) - 1, thickness = (layers + kMostSlabs - 1) / kMostSlabs;
   std::vector<SurfaceSlab> slabs((layers + thickness - 1) / thickness);
   std::vector<std::size_t> in_last(slabs.size());
-  tbb::enumerable_thread_specific<LayerPair> layer_pairs([&] { return LayerPair(field, grid); });
-  tbb::parallel_for(std::size_t{0}, slabs.size(), [&](std::size_t s) {
+  PerThread<LayerPair> layer_pairs([&] { return LayerPair(field, grid); });
+  parallel_for(std::size_t{0}, slabs.size(), [&](std::size_t s) {
     SlabBuilder builder(grid, kept, layer_pairs.local(), slabs[s]);
     in_last[s] = builder.build(s * thickness, std::min((s + 1) * thickness, layers));
   });

@@ -1,7 +1,5 @@
 #include "sim/tool/closed_surface.hpp"
 
-#include <tbb/parallel_for.h>
-
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -9,6 +7,8 @@
 #include <optional>
 #include <sstream>
 #include <stdexcept>
+
+#include "sim/core/parallel.hpp"
 
 namespace hapbench {
 namespace {
@@ -134,7 +134,7 @@ std::vector<std::int8_t> winding_numbers(const ClosedSurface& surface, const Gri
     for (std::size_t i = first; i < last; ++i) layers[i].push_back(t);
   }
   std::vector<std::int8_t> numbers(nodes.size());
-  tbb::parallel_for(std::size_t{0}, nodes.count[0], [&](std::size_t i) {
+  parallel_for(std::size_t{0}, nodes.count[0], [&](std::size_t i) {
     std::vector<std::vector<Crossing>> columns(nodes.count[1]);
     const double x = nodes.coordinate(0, i);
     for (const std::uint32_t t : layers[i]) {

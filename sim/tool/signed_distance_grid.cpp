@@ -1,7 +1,5 @@
 #include "sim/tool/signed_distance_grid.hpp"
 
-#include <tbb/parallel_for.h>
-
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -14,6 +12,7 @@
 
 #include "sim/core/aligned.hpp"
 #include "sim/core/math.hpp"
+#include "sim/core/parallel.hpp"
 #include "sim/geometry/triangle_tree.hpp"
 
 namespace hapbench {
@@ -78,8 +77,7 @@ SupportTable::SupportTable(std::vector<Vec3> points) : points_(std::move(points)
   }
   tie_ = kTie * (high - low).norm();
   std::vector<std::vector<std::uint32_t>> cells(kCells);
-  tbb::parallel_for(std::size_t{0}, kCells,
-                    [&](std::size_t i) { cells[i] = foremost_in_cell(points_, i, 2.0 * tie_); });
+  parallel_for(std::size_t{0}, kCells, [&](std::size_t i) { cells[i] = foremost_in_cell(points_, i, 2.0 * tie_); });
   for (const auto& cell : cells) {
     listed_.insert(listed_.end(), cell.begin(), cell.end());
     starts_.push_back(static_cast<std::uint32_t>(listed_.size()));
@@ -242,7 +240,7 @@ void check_winding(const std::vector<std::int8_t>& numbers, const GridNodes& nod
 double thin_share(const ClosedSurface& surface, const TriangleTree& tree, double thickness) {
   std::vector<double> thin(surface.triangles().size(), -1.0);
   std::vector<double> areas(thin.size());
-  tbb::parallel_for(std::size_t{0}, thin.size(), [&](std::size_t i) {
+  parallel_for(std::size_t{0}, thin.size(), [&](std::size_t i) {
     const auto [a, b, c] = surface.corners(surface.triangles()[i]);
     const Vec3 area = area_vector(surface, surface.triangles()[i]);
     areas[i] = area.norm();
@@ -292,10 +290,6 @@ SignedDistanceGrid::SignedDistanceGrid(const ClosedSurface& surface, double spac
   find_faces(surface);
 }
 
-double SignedDistanceGrid::expected_bytes(std::span<const Vec3> vertices, double spacing) {
-  return kBytesPerNode * node_counts(extent_of(vertices), spacing).prod();
-}
-
 double SignedDistanceGrid::suggested_spacing(std::span<const Vec3> vertices) {
   return suggested_for(extent_of(vertices));
 }
@@ -304,16 +298,12 @@ double SignedDistanceGrid::error_bound() const noexcept {
   return 0.5 * std::numbers::sqrt3 * nodes_.spacing;
 }
 
-std::size_t SignedDistanceGrid::bytes() const noexcept {
-  return values_.size() * sizeof(double) + kinds_.size();
-}
-
 void SignedDistanceGrid::fill(const ClosedSurface& surface, const TriangleTree& tree) {
   const std::vector<std::int8_t> numbers = winding_numbers(surface, nodes_);
   check_winding(numbers, nodes_);
   // One more, because kernels read rows of three nodes as four.
   values_.assign(nodes_.size() + 1, 0.0);
-  tbb::parallel_for(std::size_t{0}, nodes_.count[0] * nodes_.count[1], [&](std::size_t column) {
+  parallel_for(std::size_t{0}, nodes_.count[0] * nodes_.count[1], [&](std::size_t column) {
     alignas(64) std::array<double, simd::lanes> x, y, z, distances2;
     x.fill(nodes_.coordinate(0, column / nodes_.count[1]));
     y.fill(nodes_.coordinate(1, column % nodes_.count[1]));
@@ -344,7 +334,7 @@ void SignedDistanceGrid::fill(const ClosedSurface& surface, const TriangleTree& 
 
 void SignedDistanceGrid::classify() {
   kinds_.assign(nodes_.size(), outside);
-  tbb::parallel_for(std::size_t{1}, nodes_.count[0] - 1, [&](std::size_t i) {
+  parallel_for(std::size_t{1}, nodes_.count[0] - 1, [&](std::size_t i) {
     for (std::size_t j = 1; j + 1 < nodes_.count[1]; ++j) {
       for (std::size_t k = 1; k + 1 < nodes_.count[2]; ++k) {
         bool any_inside = false, any_outside = false;

@@ -63,10 +63,6 @@ class SignedDistanceGrid {
   /// tenth of its surface is less than two spacings thick, or the nodes would take more than 1 GiB.
   SignedDistanceGrid(std::span<const Vec3> vertices, std::span<const TriangleCorners> triangles, double spacing);
 
-  /// How much memory the grid of a mesh takes, while it is made, too [B]. Throws std::invalid_argument if the spacing
-  /// is not > 0, or it is more than 1 GiB.
-  static double expected_bytes(std::span<const Vec3> vertices, double spacing);
-
   /// The spacing that gives the bounding box of a mesh about 128^3 nodes with margins: 20 MB, some seconds at most.
   static double suggested_spacing(std::span<const Vec3> vertices);
 
@@ -82,7 +78,6 @@ class SignedDistanceGrid {
   double volume() const noexcept { return volume_; }  ///< of the mesh [m^3]
   /// Fraction of the mesh's area where the body is less than two spacings thick.
   double thin_share() const noexcept { return thin_share_; }
-  std::size_t bytes() const noexcept;
 
   /// True if no vertex of the mesh lies in front of the plane of a triangle by more than 1 % of the spacing.
   bool convex() const noexcept { return convex_; }

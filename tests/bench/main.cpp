@@ -65,7 +65,7 @@ bool proved(benchmark::State& state, const std::string& benchmark, const std::fu
 
 }  // namespace hapbench::bench
 
-/// `hapbench_bench [--full] [--benchmark_…]` runs the benchmarks; scripts/bench makes a table of them.
+/// `hapbench_bench [--full] [--benchmark_…]` runs the benchmarks.
 int main(int argc, char** argv) {
   try {
     return hapbench::bench::run_benchmarks(argc, argv);

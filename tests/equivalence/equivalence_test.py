@@ -1,7 +1,7 @@
-"""What an earlier program answered is still answered: the questions of questions.py against answers/, which it printed.
+"""What an earlier program answered is still answered: the questions of questions.py against answers.txt, which it printed.
 
     equivalence_test.py PROGRAM              asks every question by its command of today
-    equivalence_test.py PROGRAM --renew      writes answers/ with what this program prints to the old commands
+    equivalence_test.py PROGRAM --renew      writes answers.txt with what this program prints to the old commands
     … NAME…                                  only the questions of these names
 """
 import csv
@@ -11,6 +11,7 @@ import shlex
 import sys
 import tempfile
 import unittest
+from io import StringIO
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
@@ -18,13 +19,15 @@ sys.path.insert(0, str(HERE.parent / "scripts"))
 from fixture import PROGRAM, ran  # noqa: E402  (the path comes first)
 from questions import GIVEN, QUESTIONS  # noqa: E402
 
-ANSWERS = HERE / "answers"
+ANSWERS = HERE / "answers.txt"  # a table behind each line "# question table"
 NAMED = [word for word in sys.argv[2:] if not word.startswith("-")]
 ASKED = [question for question in QUESTIONS if not NAMED or question.name in NAMED]
 
 
-def file_of(question, table):
-    return ANSWERS / f"{question.name}.{table.removesuffix('.csv')}.csv"
+def on_record():
+    """The rows of each table by the name of its question and its own."""
+    parts = [part.partition("\n") for part in ANSWERS.read_text(encoding="utf-8").split("# ")[1:]]
+    return {title: list(csv.DictReader(StringIO(text))) for title, _, text in parts}
 
 
 def text_of(value):
@@ -72,8 +75,7 @@ def same(value, known, relative):
 
 def differences(question, table, rows):
     """What is not as on record, a line each."""
-    with open(file_of(question, table), encoding="utf-8", newline="") as file:
-        known = list(csv.DictReader(file))
+    known = KNOWN[f"{question.name} {table}"]
     if len(rows) != len(known):
         yield f"{table}: {len(known)} rows on record, now {len(rows)}"
     for i, (row, before) in enumerate(zip(rows, known)):
@@ -85,13 +87,15 @@ def differences(question, table, rows):
 
 
 def renew():
+    tables = on_record() if ANSWERS.exists() else {}
     for question in ASKED:
-        for table, rows in answer_to(question, question.old).items():
-            columns = list(dict.fromkeys(name for row in rows for name in row))
-            with open(file_of(question, table), "w", encoding="utf-8", newline="") as file:
-                writer = csv.DictWriter(file, columns, lineterminator="\n", restval="")
-                writer.writeheader()
-                writer.writerows(rows)
+        tables |= {f"{question.name} {table}": rows for table, rows in answer_to(question, question.old).items()}
+    with open(ANSWERS, "w", encoding="utf-8", newline="") as file:
+        for title, rows in tables.items():
+            file.write(f"# {title}\n")
+            writer = csv.DictWriter(file, list(dict.fromkeys(name for row in rows for name in row)), lineterminator="\n", restval="")
+            writer.writeheader()
+            writer.writerows(rows)
 
 
 class Equivalence(unittest.TestCase):
@@ -103,8 +107,7 @@ class Equivalence(unittest.TestCase):
                 self.assertEqual(found[:20], [], f"{len(found)} differences")
 
     def test_every_answer_on_record_has_its_question(self):
-        self.assertEqual(sorted(file.name for file in ANSWERS.iterdir()),
-                         sorted(file_of(question, table).name for question in QUESTIONS for table in question.tables))
+        self.assertEqual(sorted(KNOWN), sorted(f"{question.name} {table}" for question in QUESTIONS for table in question.tables))
 
     def test_tolerances_have_reasons(self):
         for question in QUESTIONS:
@@ -113,8 +116,7 @@ class Equivalence(unittest.TestCase):
 
     def test_another_number_is_found(self):
         question, table = QUESTIONS[0], next(iter(QUESTIONS[0].tables))
-        with open(file_of(question, table), encoding="utf-8", newline="") as file:
-            rows = list(csv.DictReader(file))
+        rows = KNOWN[f"{question.name} {table}"]
         self.assertEqual(list(differences(question, table, rows)), [])
         for column, cell in rows[0].items():
             wrong = repr(math.nextafter(float(cell), math.inf)) if cell[:1].isdigit() else cell + "x"
@@ -126,4 +128,5 @@ if __name__ == "__main__":
     if "--renew" in sys.argv:
         renew()
     else:
+        KNOWN = on_record()
         unittest.main(argv=sys.argv[:1])

@@ -1,5 +1,5 @@
 """The questions, one a row: what the program of commit 661d2580 was asked, and what is asked today for the same answer. A question
-whose answer has left the program leaves with its files, in a commit that says why."""
+whose answer has left the program leaves with its tables, in a commit that says why."""
 from dataclasses import dataclass, field
 
 

@@ -1,11 +1,10 @@
-"""Scenes behind the comparison with a reference force, and what a person would notice of it."""
+"""Scenes behind the comparison with a reference force."""
 import math
 
 import numpy as np
-from scipy import signal
 
 from answers import EXACT, ROUNDING, Within, norms, profile, rms, scene
-from physics import FILTERED, PLAIN, SPRING, STEPPED, high_pass
+from physics import PLAIN, SPRING, STEPPED
 
 
 # Not periodic: one lag alone fits.
@@ -14,7 +13,7 @@ STEPS = [[0, 0], [0.1, -1e-3], [0.18, -0.4e-3], [0.3, -1.6e-3], [0.36, -1.1e-3],
 
 @scene
 def late_force(bench):
-    """A force that follows the reference by 30 ms, with a part across it; perception's thresholds of the same run."""
+    """A force that follows the reference by 30 ms, with a part across it."""
     K, dt, n, late = 1000.0, 0.0005, 2000, 0.03
     reference = {"z_N": {"type": "waypoints", "points": [[max(0, s - late), -K * z] for s, z in STEPS[1:]]}, "x_N": 0.05}
     path = {"x_m": {"type": "sine", "mean": 0, "amplitude": 4e-5, "period_s": 0.01, "phase_rad": 0.4}, "y_m": 0,
@@ -22,7 +21,7 @@ def late_force(bench):
     run = bench.run(bench.scenario(
         "late_force", time={"step_s": dt, "steps": n}, motion={"position": {"type": "prescribed", **path}}, reference_force=reference,
         environment={"type": "springs", "groups": [{"direction": [0, 0, -1], "count": 1}, {"direction": [1, 0, 0], "count": 1}]},
-        record={"force_reference": True}, perception={},
+        record={"force_reference": True},
         rendering={"algorithm": "summation", "stiffness_N_per_m": K, "damping_ratio": 0.5, "mass_kg": 0.01,
                    "friction": {"mu_s_N_s_per_m": 0, "mu_f_s_per_m": 0}}))
     t, B = np.arange(n) * dt, math.sqrt(K * 0.01)
@@ -73,30 +72,6 @@ def late_force(bench):
         ("step", np.arange(n), "0, 1, ...", EXACT, "from 1", np.arange(n) + 1), ("time_s", t, "k dt", EXACT, "after the step", t + dt)] + [
         (f"mf{x}_N", m[:, i], "the profile", ROUNDING, "f", f[:, i] + (x == "y")) for i, x in enumerate("xyz")] + [
         (f"force_error_{x}_N", error[:, i], formula, STEPPED, "f_m - f", -error[:, i] + (x == "y")) for i, x in enumerate("xyz")])
-    perceived(bench, run, f, m, v, dt)
-
-
-def perceived(bench, run, f, m, v, dt):
-    """Thresholds by their sources: 10 % of a force or of 0.5 N; 0.15 um at 250 Hz."""
-    jnd = lambda force: 0.1 * np.maximum(force, 0.5)
-    noticed = norms(f - m) > jnd(norms(m))
-    fast = high_pass(f, dt, start=np.zeros(3))
-    square = signal.lfilter([-math.expm1(-30 * dt)], [1, -math.exp(-30 * dt)], np.sum(fast ** 2, axis=1))
-    felt = np.sqrt(2 * square) > jnd(norms(f - fast))
-    at_once = norms(fast) > jnd(norms(f - fast))
-    acceleration = np.r_[np.zeros((1, 3)), np.diff(v, axis=0) / dt]
-    band = lambda kind, cut, x: signal.sosfilt(signal.butter(4, cut, kind, fs=1 / dt, output="sos"), x, axis=0)
-    low, high = 40.0, 400.0
-    tactile = rms(band("low", high, band("high", low, acceleration)))
-    threshold = 0.15e-6 * (2 * math.pi * 250) ** 2 / math.sqrt(2)
-    bench.metrics(run, [
-        ("perception.error_noticed_share", noticed.mean(), "10 % of f_m or of 0.5 N", ROUNDING, "10 % of f_m alone",
-         np.mean(norms(f - m) > 0.1 * norms(m))),
-        ("perception.vibration_noticed_share", felt.mean(), "amplitude by the mean square over 1/30 s", ROUNDING, "instants beyond it",
-         at_once.mean()),
-        ("perception.tactile_acceleration_rms_m_per_s2", tactile, "scipy's band of 40 to 400 Hz", FILTERED, "unfiltered", rms(acceleration)),
-        ("perception.tactile_acceleration_over_threshold", tactile / threshold, "over 0.15 um (2 pi 250 Hz)^2 / sqrt 2", FILTERED,
-         "over the amplitude, not its rms", tactile / threshold / math.sqrt(2))])
 
 
 @scene

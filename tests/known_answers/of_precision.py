@@ -258,9 +258,7 @@ def shaping(bench):
     tests = "tests/scenarios/studies/precision/precision_test.cpp"
     for name, test, said, refused in (
             ("order_spread_relative", "PrecisionMerging.DependsOnTheOrderOfTheContactsOnlyWhereTheyAreReduced", "order_spread_relative", "EXPECT_"),
-            ("contacts_mean", "PrecisionMerging.DependsOnTheOrderOfTheContactsOnlyWhereTheyAreReduced", "contacts_mean", "EXPECT_"),
-            ("spring_force_error_rms_N", "PrecisionContactSources.MeasureEachThatIsBuiltAgainstOurs", "spring_force_error_rms_N", "EXPECT_"),
-            ("way_apart_rms_m", "PrecisionContactSources.MeasureEachThatIsBuiltAgainstOurs", "way_apart_rms_m", "EXPECT_")):
+            ("contacts_mean", "PrecisionMerging.DependsOnTheOrderOfTheContactsOnlyWhereTheyAreReduced", "contacts_mean", "EXPECT_")):
         bench.proven(f"precision_STUDY.csv:{name}", tests, test, said, refused)
     drill_table(bench)
 

@@ -251,7 +251,7 @@ class StillnessObserver final : public Observer {
 
 }  // namespace hapbench
 """),
-        tree.edit('#include "results/observe/perception.hpp"\n#include "results/observe/target_metrics.hpp"\n',
+        tree.edit('#include "results/observe/target_metrics.hpp"\n',
                   '#include "results/observe/stillness.hpp"\n', before=True),
         tree.edit("const SectionKind kSections[] = {\n", """    {"stillness", [](const Scenario& s, bool) { return std::size_t{s.record.pose}; },
      [](const TrialParts&) -> std::unique_ptr<Observer> { return std::make_unique<StillnessObserver>(); },
@@ -339,7 +339,7 @@ class Adding(unittest.TestCase):
         ):
             self.assertIn(problem, self.hapbench("run", "scene.json", "--set", f"{field}={value}", status=2))
 
-    def test_schema_describe_list_and_completion_know_them(self):
+    def test_schema_describe_and_list_know_them(self):
         schema = json.loads(self.hapbench("describe", "schema"))["else"]["properties"]
         ridge = schema["environment"]["oneOf"][1]["properties"]
         self.assertEqual((ridge["type"]["const"], ridge["height_m"]["default"]), ("ridge", 0.001))
@@ -351,7 +351,6 @@ class Adding(unittest.TestCase):
                            ("device.play_m", "a number >= 0 and <= 1 [m]"),
                            ("environment.type", "a row of points")):
             self.assertIn(text, self.hapbench("describe", name))
-        self.assertIn("device.play_m=", self.hapbench("complete", "run", "scene.json", "--set", "device.pl"))
 
     def test_an_environment_says_what_its_inside_is(self):
         self.write()
@@ -406,11 +405,9 @@ class Adding(unittest.TestCase):
         self.assertIn('"halved"', self.hapbench("describe", "schema"))
         self.assertIn("halved", self.hapbench("compare", "scene.json", "--algorithms", "all", "--out", "all"))
 
-    def test_a_command_is_in_help_and_completion(self):
+    def test_a_command_is_in_the_help(self):
         self.assertEqual(self.hapbench("twice", "this"), "this this\n")
-        for words in (["--help"], ["man"]):
-            self.assertIn("Print a word two times", self.hapbench(*words))
-        self.assertEqual(self.hapbench("complete", "tw"), "twice\n")
+        self.assertIn("Print a word two times", self.hapbench("--help"))
 
     def test_a_metric_is_in_all_results(self):
         self.write(record={"torque": True}, expect={"outcome": scenario()["expect"]["outcome"],

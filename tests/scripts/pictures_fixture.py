@@ -12,15 +12,13 @@ from unittest import mock
 from fixture import PROGRAM, hapbench, scratch_folder
 
 from hapbench_pictures.__main__ import main as pictures
-from hapbench_pictures.sketch import Terminal
 
 
 def drawn(command, *words, expected=0):
     """What `hapbench plot` or `report` prints, from this process, which has matplotlib loaded; of an error, if another status is
     expected."""
     said, error = StringIO(), StringIO()
-    with (redirect_stdout(said), redirect_stderr(error), mock.patch.dict(os.environ, HAPBENCH_PROGRAM=str(PROGRAM)),
-          mock.patch("hapbench_pictures.plot.this_terminal", lambda: Terminal(80, False, False))):
+    with redirect_stdout(said), redirect_stderr(error), mock.patch.dict(os.environ, HAPBENCH_PROGRAM=str(PROGRAM)):
         status = pictures([command, *map(str, words)])
     assert status == expected, (words, status, error.getvalue())
     return error.getvalue() if expected else said.getvalue()

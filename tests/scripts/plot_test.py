@@ -9,7 +9,7 @@ import numpy as np
 from fixture import PROGRAM, SOURCE, hapbench, main, must, ran, scratch_folder
 from pictures_fixture import Given, make_runs, plotted
 
-from hapbench.columns import header, read_columns
+from hapbench.columns import header
 from hapbench_figures.stability import CLASSES
 from hapbench_pictures.given import given_runs, labels, named
 from hapbench_pictures.panels import looks
@@ -21,32 +21,15 @@ setUpModule = make_runs
 
 
 class Plot(Given):
-    def test_a_sketch_and_a_picture(self):
-        said = hapbench("plot", self.root / "mesh")
-        for text in ("|rendered force| [N]", "largest depth [mm]", "stiffness ratio [K]", "colliding points", "first touch at"):
-            self.assertIn(text, said)
-        self.assertIn(f"picture in {self.root / 'mesh' / 'plot.svg'}", said)
+    def test_a_picture(self):
+        self.assertEqual(hapbench("plot", self.root / "mesh"), f"picture in {self.root / 'mesh' / 'plot.svg'}\n")
         picture = (self.root / "mesh" / "plot.svg").read_text()
-        for text in ("|rendered force| [N]", "tip x [mm]", "tip z [mm]", "dots: section of the surface through", "time [s]"):
+        for text in ("|rendered force| [N]", "largest depth [mm]", "stiffness ratio [K]", "colliding points", "tip x [mm]", "tip z [mm]", "dots: section of the surface through", "time [s]"):
             self.assertIn(text, picture)
-
-    def test_the_sketch_fits_the_terminal_and_its_characters(self):
-        for locale, known in (("C", str.isascii), ("C.UTF-8", lambda line: all(ord(c) < 128 or 0x2800 <= ord(c) < 0x2900 for c in line))):
-            lines = hapbench("plot", self.root / "mesh", "--out", self.root / "m.svg", locale=locale).splitlines()
-            for line in lines[:-1]:
-                self.assertLessEqual(len(line), 80)
-                self.assertTrue(known(line), line)
-            self.assertEqual(any(not line.isascii() for line in lines), locale != "C")
-
-    def test_the_sketch_names_the_peak(self):
-        columns = read_columns(self.root / "mesh" / "trajectory.csv", ["time_s", "fx_N", "fy_N", "fz_N"])
-        size = np.sqrt(columns["fx_N"] ** 2 + columns["fy_N"] ** 2 + columns["fz_N"] ** 2)
-        said = plotted(self.root / "mesh", "--y", "force", "--out", self.root / "m.svg")
-        self.assertIn(f"|rendered force| [N], most {size.max():.4g} at {columns['time_s'][size.argmax()]:.4g} s", said)
 
     def test_kinds_of_files(self):
         for name, start in (("a.svg", b"<?xml"), ("a.png", b"\x89PNG"), ("a.pdf", b"%PDF")):
-            self.assertEqual(plotted(self.root / "springs", "--no-sketch", "--out", self.root / name),
+            self.assertEqual(plotted(self.root / "springs", "--out", self.root / name),
                              f"picture in {self.root / name}\n")
             self.assertTrue((self.root / name).read_bytes().startswith(start))
 
@@ -58,10 +41,6 @@ class Plot(Given):
         self.assertEqual(*pictures)
         self.assertIn(b"outlines: tool on its way, first run", pictures[0])
 
-    def test_the_path_alone_has_no_sketch(self):
-        said = plotted(self.root / "peg" / "mean", "--y", "path", "--out", self.root / "path.svg")
-        self.assertEqual(said, f"path: is in the picture only\npicture in {self.root / 'path.svg'}\n")
-
     def test_a_span_of_time_and_a_peak_that_is_cut_off(self):
         run = self.copy("mesh")
         table = run / "trajectory.csv"
@@ -70,24 +49,21 @@ class Plot(Given):
         touching = next(i for i, row in enumerate(cells) if int(row[names.index("colliding")]) > 0)
         cells[touching][names.index("fz_N")] = "1234.5"
         table.write_text("\n".join([first, *(",".join(row) for row in cells)]) + "\n")
-        said = plotted(run, "--y", "force")
-        self.assertRegex(said, r"\|rendered force\| \[N\], most 123\d.* \(cut off\)")
+        plotted(run, "--y", "force")
         self.assertIn("peak 1.23e+03 N", (run / "plot.svg").read_text())
         after = float(cells[touching + 1][names.index("time_s")])
-        said = plotted(run, "--y", "force", "--from", after, "--to", 0.24)
-        self.assertNotIn("cut off", said)
-        self.assertNotIn("first touch", said)
+        plotted(run, "--y", "force", "--from", after, "--to", 0.24)
+        self.assertNotIn("peak", (run / "plot.svg").read_text())
 
     def test_columns_by_their_names(self):
-        said = plotted(self.root / "mesh", "--y", "fz_N,hx_m,speed", "--out", self.root / "m.svg")
+        plotted(self.root / "mesh", "--y", "fz_N,hx_m,speed", "--out", self.root / "m.svg")
         for text in ("fz [N]", "hx [mm]", "|velocity of the tip| [m/s]"):
-            self.assertIn(text, said)
+            self.assertIn(text, (self.root / "m.svg").read_text())
 
     def test_a_comparison_is_overlaid(self):
-        said = plotted(self.root / "peg", "--y", "force")
-        self.assertIn("a mean   b proxy   c summation   + several", said)
-        # One of 13 800 N beside one of 3 N.
-        self.assertIn("logarithmic", said)
+        plotted(self.root / "peg", "--y", "force")
+        for text in ("mean", "proxy", "summation"):
+            self.assertIn(text, (self.root / "peg" / "plot.svg").read_text())
 
     def test_what_an_earlier_comparison_left_is_not_drawn(self):
         folder = self.copy("peg")
@@ -133,8 +109,7 @@ class Plot(Given):
         self.assertEqual([legend_columns(["x" * n], 7.0) for n in (5, 30, 90)], [4, 2, 1])
 
     def test_a_sweep_over_two_fields_is_a_map(self):
-        said = plotted(self.root / "sweep", "--metric", "speed_max_m_per_s")
-        self.assertIn("mass [kg]; upwards stiffness K [N/m]", said)
+        plotted(self.root / "sweep", "--metric", "speed_max_m_per_s")
         picture = (self.root / "sweep" / "plot.svg").read_text()
         for text in ("mass [kg]", "stiffness K [N/m]", "speed max [m/s]"):
             self.assertIn(text, picture)
@@ -148,10 +123,7 @@ class Plot(Given):
         empty[names.index("speed_max_m_per_s")] = ""
         through[names.index("outcome")], through[names.index("expected")] = "went_through", "false"
         (folder / "sweep.csv").write_text("\n".join([table[0], *map(",".join, (failed, empty, through)), *table[4:]]) + "\n")
-        said = plotted(folder, "--metric", "speed_max_m_per_s")
-        self.assertIn("W went through   D diverges   ? no value", said)
-        self.assertIn(" |DD??WW", said)
-        self.assertNotIn("e+09", said)
+        plotted(folder, "--metric", "speed_max_m_per_s")
         picture = (folder / "plot.svg").read_text()
         for text in ("diverges", "went through", "no value", CLASSES["went_through"][1].lower(), CLASSES["diverges"][1].lower()):
             self.assertIn(text, picture)
@@ -180,8 +152,6 @@ class Plot(Given):
         rank, share, error = found["rendering.stiffness_N_per_m"]
         self.assertLess(abs(share), 2 * error + 0.005)
         self.assertLess(abs(rank), 3 / np.sqrt(200))
-        self.assertIn("\nx over stiffness K [N/m]\n", said)
-        self.assertRegex(said, r" 10\d\d \.\.\. \(logarithmic\) 9\.\d+e\+04")
         picture = (folder / "plot.svg").read_text()
         for text in ("start", "stiffness K [N/m]", "S\u2081"):
             self.assertIn(text, picture)
@@ -224,9 +194,6 @@ class Plot(Given):
         hapbench("sweep", "springs_limited_mean", "--vary", "rendering.stiffness_N_per_m=1e3:1e5", "--sample", "random:9", "--set",
                  "time.steps=20", "--set", "expect={}", "--out", folder, "--quiet")
         self.assertFalse(Sweep(folder, None).is_logarithmic(0))
-        numbers = [float(line.split()[0]) for line in plotted(folder).splitlines()[1:10]]
-        self.assertEqual(numbers, sorted(numbers))
-        self.assertTrue(all(len(f"{number:.6g}") <= 8 for number in numbers), numbers)
 
     def test_maps_and_limits(self):
         maps, limit = self.root / "maps", self.root / "limit"

@@ -15,7 +15,7 @@ sys.path.insert(0, str(PACKAGES))
 import hapbench  # noqa: E402  (the path comes first)
 
 PEG = "peg_in_hole_2d_shaped_stiffness"
-WEDGE = str(SOURCE / "scenarios" / "suites" / "1" / "wedge.json")  # in which a hand is free, so that --jitter may shift it
+WEDGE = "wedge_stiffness"  # in which a hand is free, so that --jitter may shift it
 # Short, and with contact from the first step on.
 SHORT = {"time.steps": 300, "expect": "{}"}
 EVERYTHING = {"record.contacts": True, "record.stiffness_tensor": True, "record.energy": True, "record.torque": True,

@@ -18,7 +18,6 @@ from hapbench_report.markup import column, number, strip, typeset
 from hapbench_report.recording import CONTACT_COLUMNS, MEASURED_COLUMNS, Recording
 from hapbench_report.thesis import figure_labels
 
-PEERS = json.loads((SOURCE / "results" / "reference" / "peers.json").read_text(encoding="utf-8"))
 
 
 def setUpModule():
@@ -128,24 +127,6 @@ class Page(WithResults):
             self.assertTrue((SOURCE / path).exists(), path)
         self.assertIn('src="data:image/svg+xml;base64,', section)
         self.assertNotRegex(strip(section), r"\*\*|\]\(|^\|")
-
-    def test_performance_is_shown_where_it_was_measured(self):
-        self.assertIn("No performance.json among these results", self.page())
-        file = self.results / "performance.json"
-        shutil.copy(SOURCE / "results" / "reference" / "performance.json", file)
-        self.addCleanup(file.unlink)
-        value = json.loads(file.read_text(encoding="utf-8"))
-        section = self.part(self.page(), '<section id="performance"', "</section>")
-        self.assertEqual(section.count("<tr>"), 3 + len(value["ratios"]) + len(value["limits"]) + len(PEERS["rows"]))
-        self.assertIn("<code>step/T1</code>", section)
-        self.assertEqual(section.count("✗ no"), sum(row["at_most"] is not None and row["at_most"] < row.get("ratio", row.get("value"))
-                                                     for row in value["ratios"] + value["limits"]))
-        for place, damaged in (("/commit", {**value, "commit": 3}), ("/ratios/0/ratio", {**value, "ratios": [{"what": "a", "over": "b"}]}),
-                               ("/limits", {**value, "limits": 3}), ("/machine/cpu", {**value, "machine": {}})):
-            file.write_text(json.dumps(damaged), encoding="utf-8")
-            done = report(self.results, "--out", self.root / "page.html")
-            self.assertEqual(done.returncode, 2, place)
-            self.assertIn(f"{file}: {place}: got", done.stderr)
 
     def test_cells_of_cards_carry_their_headings(self):
         rows = self.part(self.full_page(), 'id="ledger-table"', "</table>").split("<tr")[2:]

@@ -15,8 +15,6 @@ class Reproduce(unittest.TestCase):
     def setUp(self):
         self.root = scratch_folder(self)
         (self.root / "results" / "reference").mkdir(parents=True)
-        for name in ("performance.json", "subjects.json"):
-            (self.root / "results" / "reference" / name).write_text("{}")
         self.put("scripts/reproduce", (SOURCE / "scripts" / "reproduce").read_text(encoding="utf-8"))
         for name in ("scripts/setup", "scripts/figures", "scripts/report", "bin/cmake"):
             self.put(name, NOTHING)

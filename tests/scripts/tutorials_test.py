@@ -1,70 +1,74 @@
-"""Every tutorial runs from its first cell to its last, in a folder that looks like a clone, and says no number that it does not
-print; its page has the pictures of that execution, its notebook the links of a clone."""
+"""Every tutorial runs from its first block of code to its last, in a folder that looks like a clone, and says no number that it does
+not show or print. Arguments: the program, the folder of the built Python package."""
+import json
 import re
+import sys
 import unittest
 from concurrent.futures import ThreadPoolExecutor
 
-from fixture import PROGRAM, SOURCE, main, scratch_folder
+from fixture import ENVIRONMENT, PROGRAM, SOURCE, main, ran, scratch_folder
 
-from hapbench_docs.program import Program
-from hapbench_site import tutorials
-from hapbench_site.__main__ import lacking
-from hapbench_site.pages import Mirror, SiteError
+TUTORIALS = [file for file in sorted((SOURCE / "scenarios" / "tutorials").glob("*.md")) if file.name != "README.md"]
+CODE = re.compile(r"^```(bash|python)\n(.*?)^```\n", re.M | re.S)
+CHECKS = re.compile(r"^<!-- checked by .*?^-->\n", re.M | re.S)
+# A number in a sentence; not a part of a name, such as C5 or 2-D.
+NUMBER = re.compile(r"(?<![\w.^-])\d+(?:\.\d+)?(?:e-?\d+)?(?![\w-]|\.\d)")
+# One interpreter has the blocks in Python of a tutorial; those for the shell are shells of their own, in the same order.
+PLAYER = """
+import json, subprocess, sys
+names = {"__name__": "__main__"}
+for number, (language, code) in enumerate(json.load(sys.stdin), 1):
+    sys.stdout.flush()
+    if language == "bash":
+        subprocess.run(["bash", "-e", "-o", "pipefail", "-c", code], check=True, stdin=subprocess.DEVNULL)
+    else:
+        exec(compile(code, f"block {number}", "exec"), names)
+"""
 
-NAMES = {"my_mesh", "my_law", "my_device", "cluster", "thesis_claim", "contact_trace"}
-CELL = "# A title\n\nIt is {} m.\n\n```{{code-cell}} bash\necho 1.25\n{}\n```\n"
+
+def played(text, folder):
+    """What the blocks of the text print. A block that fails ends it with what it said."""
+    clone = folder / "hapbench"
+    clone.mkdir()
+    for name in ("algorithms", "device_model", "scenarios", "scripts", "sim", "tests"):  # commands write to results/
+        (clone / name).symlink_to(SOURCE / name)
+    player = folder / "player.py"
+    player.write_text(PLAYER, encoding="utf-8")
+    blocks = folder / "blocks.json"
+    blocks.write_text(json.dumps(CODE.findall(text)), encoding="utf-8")
+    environment = {**ENVIRONMENT, "PATH": f"{PROGRAM.parent}:{ENVIRONMENT['PATH']}", "PYTHONPATH": sys.argv[-1], "MPLBACKEND": "Agg",
+                   "HAPBENCH_PLUGIN_PATH": "", "COLUMNS": "100", "LC_ALL": "C.UTF-8"}
+    done = ran("bash", "-c", 'exec "$0" "$1" <"$2"', sys.executable, player, blocks, cwd=clone, env=environment)
+    assert done.returncode == 0, done.stdout[-2000:] + done.stderr
+    return done.stdout
 
 
-def setUpModule():
-    if lost := lacking():
-        print(f"no {', '.join(lost)}: the tutorials are not tested (scripts/setup --site installs what runs them)")
-        raise unittest.SkipTest("packages are missing")
+def unproven_numbers(text, printed):
+    """Numbers in sentences that no block shows or prints."""
+    shown = CHECKS.sub("", text)
+    known = set(NUMBER.findall(printed)) | {number for _, code in CODE.findall(shown) for number in NUMBER.findall(code)}
+    prose = re.sub(r"\]\([^)]*\)|`[^`]*`", "", CODE.sub("", shown))
+    return [number for number in NUMBER.findall(prose) if number not in known]
 
 
 class Tutorials(unittest.TestCase):
     def test_each_runs_and_says_what_it_prints(self):
-        texts = {file.stem: file.read_text(encoding="utf-8") for file in tutorials.sources()}
-        self.assertEqual(set(texts), NAMES)
+        self.assertEqual(len(TUTORIALS), 6)
+        texts = {file.stem: file.read_text(encoding="utf-8") for file in TUTORIALS}
         with ThreadPoolExecutor(2) as pool:
-            books = {name: pool.submit(tutorials.executed, name, text, Program(PROGRAM)) for name, text in texts.items()}
-        mirror = Mirror(scratch_folder(self))
-        (mirror.folder / "scenarios/tutorials").mkdir(parents=True)
-        for name, book in books.items():
+            printed = {name: pool.submit(played, text, scratch_folder(self)) for name, text in texts.items()}
+        for name, text in texts.items():
             with self.subTest(name):
-                page = tutorials.page(book.result(), name, mirror)
-                pictures = re.findall(r"!\[[^]]*\]\((\S+)\)", page)
-                self.assertGreater(len(pictures), 0)
-                for picture in pictures:
-                    self.assertIn("<svg" if picture.endswith("svg") else "PNG",
-                                  (mirror.folder / "scenarios/tutorials" / picture).read_bytes().decode("latin-1"))
-                self.assertIn("What next", page)
-                self.assertNotIn("assert metrics", page)
-
-    def test_its_notebook_leads_from_the_root_of_a_clone(self):
-        for file in tutorials.sources():
-            book = tutorials.notebook(file.stem, file.read_text(encoding="utf-8"))
-            for cell in book.cells:
-                for link in tutorials.LINK.findall(cell.source) if cell.cell_type == "markdown" else ():
-                    self.assertTrue((SOURCE / link.partition("#")[0]).exists(), f"{file.name}: {link}")
-
-    def run_cell(self, number, command="true"):
-        return tutorials.executed("small", CELL.format(number, command), Program(PROGRAM))
+                self.assertEqual(unproven_numbers(text, printed[name].result()), [])
 
     def test_a_number_that_nothing_prints_is_found(self):
-        self.assertEqual(tutorials.printed(self.run_cell("1.25").cells[1]), "1.25\n")
-        with self.assertRaisesRegex(SiteError, "small: no cell shows or prints 1.26"):
-            self.run_cell("1.26")
+        text = "It is {} m.\n\n```bash\necho 1.25\n```\n"
+        self.assertEqual(unproven_numbers(text.format("1.25"), played(text, scratch_folder(self))), [])
+        self.assertEqual(unproven_numbers(text.format("1.26"), "1.25\n"), ["1.26"])
 
-    def test_without_the_python_module_it_says_what_to_do(self):
-        folder = scratch_folder(self)
-        (folder / "bin").mkdir()
-        (folder / "bin" / "hapbench").write_text("", encoding="utf-8")
-        with self.assertRaisesRegex(SiteError, "lacks the Python module; scripts/setup --python"):
-            tutorials.environment(Program(folder / "bin" / "hapbench"), folder)
-
-    def test_a_cell_that_fails_is_found_with_what_it_said(self):
-        with self.assertRaisesRegex(SiteError, "nothing is called"):
-            self.run_cell("1.25", "hapbench describe nosuch\necho on")
+    def test_a_block_that_fails_is_found_with_what_it_said(self):
+        with self.assertRaisesRegex(AssertionError, "nothing is called"):
+            played("```bash\nhapbench describe nosuch\necho on\n```\n", scratch_folder(self))
 
 
 if __name__ == "__main__":

@@ -77,14 +77,12 @@ extern const PrecisionStudy kAlgorithmsStudy;
 extern const PrecisionStudy kStiffnessStudy;
 extern const PrecisionStudy kForceJumpsStudy;
 extern const PrecisionStudy kQueryTimeStudy;
-extern const PrecisionStudy kContactSourcesStudy;
 extern const PrecisionStudy kLateContactsStudy;
 extern const PrecisionStudy kEventsStudy;
 
 inline constexpr std::array kPrecisionStudies = {
-    &kIntegratorsStudy,    &kTimeStepStudy,     &kShapingStudy,   &kSpacingStudy,    &kReductionStudy,
-    &kMergingStudy,        &kAlgorithmsStudy,   &kStiffnessStudy, &kForceJumpsStudy, &kQueryTimeStudy,
-    &kContactSourcesStudy, &kLateContactsStudy, &kEventsStudy};
+    &kIntegratorsStudy, &kTimeStepStudy,  &kShapingStudy,    &kSpacingStudy,   &kReductionStudy,    &kMergingStudy,
+    &kAlgorithmsStudy,  &kStiffnessStudy, &kForceJumpsStudy, &kQueryTimeStudy, &kLateContactsStudy, &kEventsStudy};
 
 /// Calls `work` with every row of a run.
 template <class Work>

@@ -154,8 +154,8 @@ class Tuner {
   /// The hand with which the loop is unstable somewhere from K to `gain` K; none where there is none.
   std::optional<std::string> unstable_loop(Scenario scenario, double lambda, double stiffness, double gain) const {
     if (!(lambda > 0.0)) return std::nullopt;
-    constexpr double kFiner = 1.1;
-    for (double K = gain * stiffness; K * kFiner > stiffness; K /= kFiner) {
+    constexpr double kStride = 1.1;
+    for (double K = gain * stiffness; K * kStride > stiffness; K /= kStride) {
       scenario.rendering.stiffness = K;
       for (const auto& [hand, step] : contact_loops(scenario, lambda, over_hands_)) {
         if (!is_stable_step(step)) return hand;

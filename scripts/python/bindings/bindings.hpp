@@ -113,9 +113,6 @@ void guard_plugins();
 /// Adds the function that makes an algorithm of a Python function.
 void bind_force_laws(pybind11::module_& module);
 
-/// Adds the function that makes a force stage of a Python function.
-void bind_force_stages(pybind11::module_& module);
-
 /// Adds the class Simulation.
 void bind_simulation(pybind11::module_& module);
 

@@ -132,6 +132,5 @@ PYBIND11_MODULE(_hapbench, module) {
   module.def(
       "algorithms", [] { return algorithm_names(); }, "The names of all algorithms there are.");
   bind_force_laws(module);
-  bind_force_stages(module);
   bind_simulation(module);
 }

@@ -10,9 +10,9 @@ from .results import Folder, Run, Trial, load
 from .table import Table
 
 __all__ = ["Folder", "InputError", "Parameter", "ResultError", "Run", "ScenarioError", "ScenarioWarning", "Simulation", "Table",
-           "Trial", "algorithms", "command", "compare", "force_law", "force_stage", "load", "load_plugin", "main", "run", "stability", "sweep"]
+           "Trial", "algorithms", "command", "compare", "force_law", "load", "load_plugin", "main", "run", "stability", "sweep"]
 
-_COMPILED = {"Parameter": "laws", "force_law": "laws", "force_stage": "stages"}
+_COMPILED = {"Parameter": "laws", "force_law": "laws"}
 
 
 def __getattr__(name):

@@ -80,17 +80,15 @@ def sweep(scenario: Scenario, vary: Mapping[str, object], overrides: Overrides =
     return _report(words, scenario, overrides, out, progress, sample=sample, seed=seed, keep_runs=keep_runs, resume=resume, jobs=jobs)
 
 
-def stability(scenarios: Scenario | Sequence[Scenario] = (), overrides: Overrides = None, *, map: Names = None, search: bool = False,
-              stress: bool = False, algorithms: Names = None, integrators: Names = None, size: int | None = None,
-              count: int | None = None, objective: str | None = None, evaluations: int | None = None, seed: int | None = None,
-              jobs: int | None = None, out: Place = None, progress: Progress = None) -> "Report":
-    """Limits of springs scenarios; with `map` ("all", or names) maps of stable and diverged runs; with `search` the motion
-    that an algorithm renders worst in a scenario; with `stress` random contact sets. As `hapbench stability` does.
+def stability(scenarios: Scenario | Sequence[Scenario] = (), overrides: Overrides = None, *, map: Names = None, stress: bool = False,
+              algorithms: Names = None, integrators: Names = None, size: int | None = None, count: int | None = None,
+              seed: int | None = None, jobs: int | None = None, out: Place = None, progress: Progress = None) -> "Report":
+    """Limits of springs scenarios; with `map` ("all", or names) maps of stable and diverged runs; with `stress` random
+    contact sets. As `hapbench stability` does.
 
     Returns a Report: the tables are those of the command, such as `limits` or `stability_map_stiffness_mass`."""
-    return _report(["stability"], scenarios, overrides, out, progress, map=map, search=search, stress=stress, algorithms=algorithms,
-                   integrators=integrators, size=size, count=count, objective=objective, evaluations=evaluations, seed=seed,
-                   jobs=jobs)
+    return _report(["stability"], scenarios, overrides, out, progress, map=map, stress=stress, algorithms=algorithms,
+                   integrators=integrators, size=size, count=count, seed=seed, jobs=jobs)
 
 
 def command(*words: object, progress: Progress = None) -> Any:

@@ -4,7 +4,6 @@ import sys
 import tempfile
 from pathlib import Path
 
-from hapbench_bench import peers, table
 from hapbench_command import BAD_INPUT, FAILED, INTERRUPTED, SUCCESS, Arguments, say_error, write
 from hapbench_report.json_input import InputError
 
@@ -12,8 +11,8 @@ from . import blocks, gallery
 from .manuals import ROOT, Manual, manuals
 from .program import Program, ProgramError
 
-DESCRIPTION = """Renews what is generated in the manuals: sessions (commands with their output), the tables of the ledger,
-of its robustness and of speed, from results/reference, and, with --gallery, the pictures of scenes. Needs the built program.
+DESCRIPTION = """Renews what is generated in the manuals: sessions (commands with their output), the tables of the ledger
+and of its robustness, from results/reference, and, with --gallery, the pictures of commands. Needs the built program.
 Measured times are left as they are. Exit status 1 if --check finds something to renew."""
 
 
@@ -22,7 +21,7 @@ def arguments(words):
     parser.add_argument("--program", type=Path, default=ROOT / "build" / "release" / "bin" / "hapbench", metavar="FILE",
                         help="default: build/release/bin/hapbench")
     parser.add_argument("--tables", action="store_true", help="the tables from results/reference only, which need no program")
-    parser.add_argument("--gallery", action="store_true", help="the gallery of scenes, too: results/reference/gallery")
+    parser.add_argument("--gallery", action="store_true", help="the pictures of results/reference/gallery, too")
     parser.add_argument("--check", action="store_true", help="write nothing; show what is not current")
     return parser.parse_args(words)
 
@@ -34,16 +33,10 @@ def renewed(manual, scratch, program):
         makers["session"] = lambda old: blocks.session(old, program, scratch)
         makers["force_jumps"] = lambda old: blocks.force_jumps(old, program, scratch)
         makers["ideal_trajectory"] = lambda old: blocks.ideal_trajectory(old, program, scratch)
-        makers["contact_sources"] = lambda old: blocks.contact_sources(old, program, scratch)
         makers["controllers"] = lambda old: blocks.controllers(old, program, scratch)
         makers["hunt_crossley"] = lambda old: blocks.hunt_crossley(old, program, scratch)
-        makers["known_answers"] = lambda old: blocks.known_answers(old, program)
     text = blocks.renewed(manual.text, makers)
-    text = blocks.renewed(text, {"which_law": lambda _: blocks.which_law(text)})  # by the tables made just now
-    if manual.file != table.MANUAL:
-        return text
-    text = table.spliced(text, table.markdown(table.record()))
-    return table.spliced(text, peers.markdown(peers.record()), peers.BEGIN, peers.END)
+    return blocks.renewed(text, {"which_law": lambda _: blocks.which_law(text)})  # by the tables made just now
 
 
 def differences(manual, text):

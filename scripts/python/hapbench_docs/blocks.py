@@ -4,16 +4,11 @@ the program prints them."""
 import json
 import re
 import shlex
-import subprocess
-import sys
 import textwrap
 from pathlib import Path
 
 import numpy as np
 from hapbench.columns import read_records
-from hapbench_bench.table import number
-from hapbench_suite.page import read_rows, scale_of
-from hapbench_suite.scores import leads
 
 from .manuals import ROOT
 from .program import ProgramError
@@ -37,18 +32,6 @@ JUMP_COLUMNS = (
     ("force_jump_max_N", "jump [N]", 1.0),
     ("stiffness_over_step", "over 1 µm, in K", 1.0),
 )
-ARENA_AXES = ("force_error", "way", "inside", "vibration", "force_step", "energy_created", "felt_stiffness", "z_width", "task")
-SOURCES = {"own": "ours", "fcl": "FCL", "bullet": "Bullet"}
-SCENES = (("T1", "poke_on_flat"), ("T2", "rotate_in_hole"), ("T3", "round_the_wall"))
-# The ideal trajectory of the hole means something in T2 only.
-SOURCE_COLUMNS = (
-    ("contacts_mean", "contacts", 1.0),
-    ("depth_max_mean_m", "deepest [µm]", 1e6),
-    ("spring_force_error_rms_N", "force apart [N rms]", 1.0),
-    ("way_apart_rms_m", "way apart [µm rms]", 1e6),
-    ("ideal_height_error_rms_m", "height error [mm rms]", 1e3),
-    ("force_step_max_N", "largest force step [N]", 1.0),
-)
 
 
 class BlockError(Exception):
@@ -65,6 +48,13 @@ def renewed(text, makers):
         return f"{head}\n{makers[name](old).strip(chr(10))}\n\n{tail}" if name in makers else found[0]
 
     return BLOCK.sub(replaced, text)
+
+
+def number(value):
+    """Three digits, with an exponent only where the zeros would have to be counted."""
+    if value and abs(value) < 1e-3:
+        return f"{value:.3g}".replace("e-0", "e-")
+    return f"{value:.0f}" if abs(value) >= 1e3 else f"{value:.3g}"
 
 
 def session(old, program, directory):
@@ -175,23 +165,6 @@ def which_law(text):
     return "\n".join(textwrap.fill(line, 110, subsequent_indent="  ") for line in lines)
 
 
-def subjects(_old=""):
-    """What `reproduce --subjects` found: posterior, verdicts, and what stays out of reach."""
-    record = read("subjects.json")
-    lines = [f"{record['samples']} samples, {record['given_up']} of them given up early; the posterior is the nearest {record['posterior']}, "
-             f"at a distance of {record['subjects'][0]['distance']:.3g} to {record['largest_distance']:.3g}.", "",
-             "| field | range | posterior: 5 %, median, 95 % | source of the range |", "|---|---|---|---|"]
-    for u in record["unknowns"]:
-        lines.append(f"| `{u['field']}` | {u['range'][0]:g} … {u['range'][1]:g} | {u['q05']:.3g}, {u['q50']:.3g}, {u['q95']:.3g} | {u['source']} |")
-    lines += ["", "| claim | table | verdict on the nearest six | why |", "|---|---|---|---|"]
-    for v in record["verdicts"]:
-        lines.append(f"| {v['id']} | {'fitted' if v['fitted'] else 'predicted'} | {v['verdict']} | {v['why']} |")
-    out = [b["id"] for b in record["beside"] if not b["within_reach"]]
-    lines += ["", f"Out of reach, by two standard errors of the difference, are {len(out)} of {len(record['beside'])} published means: "
-              f"{', '.join(out) or 'none'}."]
-    return wrapped(lines)
-
-
 def wrapped(lines, width=110):
     """Sentences in lines of that width; tables stay."""
     return "\n".join(line if line.startswith("|") else "\n".join(textwrap.wrap(line, width)) for line in lines)
@@ -213,22 +186,6 @@ def study_table(old, program, directory, study, columns):
     for row in found:
         cells = (f"{factor * row[name]:.3g}" if row.get(name) is not None else "" for name, _, factor in columns)
         lines.append(f"| `{row['setting'].replace(' + ', '` + `')}` | {' | '.join(cells)} |")
-    return program.stamped("\n".join(lines), old)
-
-
-def contact_sources(old, program, directory):
-    """The default law with the contacts of other libraries, in the tasks; the old table if they are not built."""
-    lines = [f"| task | contacts of | {' | '.join(heading for _, heading, _ in SOURCE_COLUMNS)} |",
-             "|---" * (len(SOURCE_COLUMNS) + 2) + "|"]
-    for task, scene in SCENES:
-        words = ["precision", "contact_sources", "--scenario", scene, "--repetitions", "1", "--json"]
-        found = json.loads(program.run(words, directory))[0]["rows"]
-        if any(row["outcome"] == "not built" for row in found):
-            return old
-        for row in found:
-            cells = [f"{number(factor * row[name])}" if task == "T2" or not name.startswith("ideal_") else ""
-                     for name, _, factor in SOURCE_COLUMNS]
-            lines.append(f"| {task} | {SOURCES[row['setting']]} | {' | '.join(cells)} |")
     return program.stamped("\n".join(lines), old)
 
 
@@ -294,56 +251,5 @@ def hunt_crossley(old, program, directory):
 
 
 # The tables that need no program.
-def known_answers(_old, program):
-    """The page of tests/known_answers, whose test makes all of it."""
-    test = ROOT / "tests" / "known_answers" / "known_answers_test.py"
-    done = subprocess.run([sys.executable, test, program.file, "--print"], capture_output=True, text=True, encoding="utf-8", check=False)
-    if done.returncode != 0:
-        raise ProgramError(f"{test.name}: {done.stderr.strip()}")
-    return BLOCK.search(done.stdout)[3]
-
-
-def reliability(_):
-    """What scripts/endure last did and found, of its record."""
-    record = json.loads((ROOT / "tests" / "data" / "reliability.json").read_text(encoding="utf-8"))
-    count = lambda n: f"{n:,}".replace(",", " ")
-    said = {
-        "scenes": lambda f: (f"{count(f['scenes'])} random scenes ({count(f['drawn'])} drawn), {count(f['commands'])} commands on them",
-                             "the same hashes by brute force, with one job and two" + "".join(f", from {build} ({count(n)})" for build, n in f["by_other_build"].items())),
-        "kills": lambda f: (f"{count(f['kills'])} kills at any time of " + ", ".join(f["by_command"]), "no torn file; the next call makes what it makes undisturbed"),
-        "faults": lambda f: (f"{count(f['calls'])} calls that write, each failing once ({' and '.join(f['errors'])})", "the old results or the new ones, and status 1"),
-        "sweep": lambda f: (f"a sweep of {count(f['runs'])} runs", f"{f['peak_MB']} MB ({f['peak_MB_of_a_tenth']} MB for a tenth), {f['over_simulation']} times the simulation"),
-        "shards": lambda f: (f"{count(f['shards'])} shards, {f['killed']} killed and {f['stopped']} stopped on their way", "merged, the table of the sweep in one"),
-        "lines": lambda f: (f"{count(f['lines'])} command lines of random words", f"{count(f['done'])} done, {count(f['refused'])} refused with a reason, {count(f['stopped'])} stopped by a signal after 5 s"),
-        "imports": lambda f: (f"{count(f['mutants'])} recordings and presets with bytes changed", f"{count(f['accepted'])} became strokes, the others were refused"),
-        "python": lambda f: (f"{count(f['runs'])} runs in one Python process, by laws of ours, of a plugin and of Python", f"{f['peak_MB']} MB ({f['peak_MB_of_a_tenth']} MB after a tenth)"),
-    }
-    lines = ["| `scripts/endure` | done | held | findings |", "|---|---|---|---|"]
-    lines += [f"| `{part}` | {' | '.join(said[part](record[part]))} | {record[part]['findings'] or 'none'} |" for part in said if part in record]
-    if "fuzz" in record:
-        targets = {}
-        for target, times in record["fuzz"]["executions"].items():
-            targets.setdefault(times, []).append(f"`{target}`")
-        lines += ["", "Executions of `scripts/fuzz`: " + "; ".join(f"{count(n)} of {', '.join(names)}" for n, names in sorted(targets.items())) +
-                  f". Findings: {record['fuzz']['findings'] or 'none'}."]
-    return "\n".join(lines)
-
-
-def arena(_old=""):
-    """The laws of the arena with what each axis gives them, the best in bold."""
-    suite, rows = read_rows([REFERENCE / "arena.csv"])
-    shown = [axis for axis in suite.axes if axis.name in ARENA_AXES]
-    lines = [f"| law | {' | '.join(f'{axis.title} [{scale_of(axis)[0]}]' for axis in shown)} | failed | front |", "|---" * (len(shown) + 3) + "|"]
-    for row in rows:
-        cells = []
-        for i, one in enumerate(row.scores):
-            if one.axis in shown:
-                best = leads([other.scores for other in rows], row.scores, i)
-                value = f"{one.value * scale_of(one.axis)[1]:.3g}"
-                cells.append(f"**{value}**" if best else value)
-        lines.append(f"| `{row.about['label']}` | {' | '.join(cells)} | {len(row.failures)} | {'yes' if row.front else ''} |")
-    return "\n".join(lines)
-
-
 MAKERS = {"headline": headline, "survivors": survivors, "verdicts": verdicts, "experiments": experiments,
-          "subjects": subjects, "robustness": robustness, "reliability": reliability, "arena": arena}
+          "robustness": robustness}

@@ -69,8 +69,8 @@ FIGURES = (
     Figure("D.6", "D.6", "Effort the subjects felt", experiments.questionnaires,
            "The published numbers alone: nothing simulated fills in forms."),
     Figure("D.7", "D.7", "Vertical peg-in-hole task", experiments.vertical,
-           "Simulated subjects beside the published means; what their threshold does is in the figure \"threshold\", which "
-           "subjects fit the tables in \"subjects\"."),
+           "Simulated subjects beside the published means; what their threshold does is in the figure "
+           "\"threshold\"."),
     Figure("D.8", "D.8", "Rotational peg-in-hole task", experiments.rotational,
            "As figure D.7."),
     Figure("E.1", "E.1", "Position of the tip over time", tasks.positions,
@@ -87,7 +87,6 @@ FIGURES = (
     Figure("F.5", "F.5", "Tandpasta's redistribution", peg_in_hole.redistribution,
            "Forces to scale at one pose of ours."),
     Figure("threshold", None, "Success against what the task checks", subjects.threshold, page=True),
-    Figure("subjects", None, "The subjects of appendix D, inferred", subjects.inferred, page=True),
     Figure("algorithms", None, "Every algorithm on the planar peg-in-hole", comparison.algorithms),
     Figure("discussion", None, "Cases of the thesis's discussion", comparison.discussion),
     Figure("stiffness", None, "Stiffness in every direction, all algorithms", stiffness_fields.of_all_algorithms),
@@ -97,7 +96,6 @@ FIGURES = (
     Figure("query-time", None, "Query time over penetration depth", performance.query_time),
     Figure("late-contacts", None, "How stiff with late contacts", performance.late_contacts),
     Figure("latency", None, "Latency of a step", performance.latency),
-    Figure("growth", None, "How cost grows", performance.growth),
     *(Figure(f"stability-{name}", None, f"Stability over {name.replace('_', ' ')}", stability.stability_map(name))
       for name in STABILITY_MAPS),
     Figure("devices", None, "What each device renders with each algorithm", stability.of_all_devices),

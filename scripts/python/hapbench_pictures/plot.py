@@ -1,5 +1,5 @@
-"""`hapbench plot`: a sketch in the terminal and a file, with quantities over time under each other and the tip's way beside
-them; or the picture of a sweep or a study."""
+"""`hapbench plot`: a file with quantities over time under each other and the tip's way beside them; or the picture of a sweep
+or a study."""
 import math
 from collections import Counter
 from pathlib import Path
@@ -14,8 +14,7 @@ from .map_plot import given_study, study_figures
 from .panels import AXIS_COLUMNS, PATH_COLUMNS, draw_over_time, draw_path, draw_tool, looks, projections
 from .quantities import Samples, chosen
 from .replay import surface_of
-from .sketch import sketch, this_terminal
-from .sweep_plot import Sweep, draw_sweep, sketch_sweep
+from .sweep_plot import Sweep, draw_sweep, sensitivity_table
 
 KINDS = (".svg", ".png", ".pdf")
 PANEL_HEIGHT, WIDTH, PATH_WIDTH = 1.35, 7.0, 2.6  # [inch]
@@ -35,7 +34,6 @@ def arguments(words):
     parser.add_argument("--from", dest="start", metavar="T")
     parser.add_argument("--to", dest="end", metavar="T")
     parser.add_argument("--out", type=Path)
-    parser.add_argument("--no-sketch", action="store_true")
     parser.add_argument("--quiet", action="store_true")
     return parser.parse_args(words)
 
@@ -54,13 +52,11 @@ def plot(words):
         write_all(study_figures(study), file, options.quiet)
         return
     if sweep:
-        figure, lines = of_sweep(sweep, options)
+        figure = of_sweep(sweep, options)
     elif options.metric or options.where:
         raise InputError(f"{'--metric' if options.metric else '--where'}: is for a sweep's folder; allowed for runs: --y")
     else:
-        figure, lines = of_runs(options)
-    for line in lines:
-        print(line)
+        figure = of_runs(options)
     write_all([("", figure)], file, options.quiet)
 
 
@@ -105,18 +101,15 @@ def of_runs(options):
     runs = given_runs(options.runs)
     quantities, with_path = chosen(options.y, runs)
     samples, shown = samples_of(runs, quantities, with_path, window_of(options)), looks(runs, *named(runs))
-    figure = draw(runs, shown, quantities, with_path, samples, surface_of(runs) if with_path else None)
-    if options.no_sketch or options.quiet:
-        return figure, []
-    if not quantities:
-        return figure, ["path: is in the picture only"]
-    return figure, sketch(quantities, samples, shown, this_terminal())
+    return draw(runs, shown, quantities, with_path, samples, surface_of(runs) if with_path else None)
 
 
 def of_sweep(folder, options):
     refuse(options, ("--y", "--from", "--to"), f"{folder} is a sweep; allowed for it: --metric, --where")
     sweep = Sweep(folder, options.metric, options.where)
-    return draw_sweep(sweep), [] if options.no_sketch or options.quiet else sketch_sweep(sweep, this_terminal())
+    if not options.quiet:
+        print("".join(f"{line}\n" for line in sensitivity_table(sweep)), end="")
+    return draw_sweep(sweep)
 
 
 def samples_of(runs, quantities, with_path, window):

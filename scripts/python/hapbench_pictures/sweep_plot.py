@@ -3,7 +3,6 @@ fields, points over each of them, with how much each matters."""
 import operator
 import re
 import textwrap
-from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
@@ -19,14 +18,13 @@ from hapbench_style import PETROL, SETTINGS, plt
 
 from .given import axis
 from .sensitivity import LEAST_ROWS, MOST_COSINES, sensitivity
-from .sketch import HEIGHT, MARGIN, Canvas
 
 USUAL = ("force_rms_above_30Hz_N", "force_max_N")
 FAILURES = ("diverges", "error")
 # The look of places without a number.
 NO_VALUE = {"facecolor": "#F4F4F4", "edgecolor": "#C8C8C8", "lw": 0.5}
 MOST_TICKS = 12
-SHADES = {True: " ░▒▓█", False: " .:+#"}
+WIDTH = 100  # of text
 
 
 SIGNS = {"<": operator.lt, "<=": operator.le, ">": operator.gt, ">=": operator.ge, "=": operator.eq, "!=": operator.ne}
@@ -84,14 +82,6 @@ class Sweep:
     def how_failed(self):
         """How many of them there are of each."""
         return ", ".join(f"{mine.sum()} {name.replace('_', ' ')}" for name, mine in self.classes.items())
-
-    @cached_property
-    def letters(self):
-        """Of each class, for sketches: its first letter that none before it has."""
-        found = {}
-        for name in self.classes:
-            found[name] = next((c for c in name.upper() if c.isalpha() and c not in found.values()), "#")
-        return found
 
     @property
     def metric_values(self):
@@ -299,60 +289,11 @@ def on_grid(columns, values):
     return rows, cells, grid
 
 
-def sketch_sweep(sweep, terminal):
-    """The lines to print: a bar for each value, or shades over two fields; of a cloud points over each."""
-    if sweep.is_cloud:
-        return sketch_cloud(sweep, terminal)
-    columns, values = [sweep.column(field) for field in sweep.fields], sweep.metric_values
-    if len(columns) == 2 and not any(isinstance(column, list) for column in columns):
-        grid = on_grid(columns, values)
-        if grid is not None:
-            letters = np.full(grid[2].shape, "")
-            for name, mine in sweep.classes.items():
-                letters[on_grid(columns, mine.astype(float))[2] == 1] = sweep.letters[name]
-            return shaded(sweep, grid, letters, terminal)
-    order = np.lexsort([places_of(column)[0] for column in reversed(columns)])
-    rows, values = [sweep.rows[i] for i in order], values[order]
-    labels = [", ".join(f"{float(row[field]):.6g}" if is_number(row[field]) else row[field] for field in sweep.fields) for row in rows]
-    wide = min(40, max(map(len, labels)))
-    most = np.nanmax(np.abs(values), initial=0.0) or 1.0
-    full, room = "█" if terminal.unicode else "#", terminal.width - wide - 14
-    lines = [f"{', '.join(map(sweep.axis, range(len(sweep.fields))))}: {axis(sweep.metric)}"]
-    for label, value, row in zip(labels, values, rows):
-        bar = full * int(round(max(0.0, abs(value) / most) * room)) if np.isfinite(value) else row["outcome"]
-        number = f"{value:.3g}" if np.isfinite(value) else "?"
-        lines.append(f"{label[:wide]:<{wide}} {number:>11} {bar}")
-    return lines
-
-
-def sketch_cloud(sweep, terminal):
-    values, lines = sweep.metric_values, []
-    bend = np.log if spread_logarithmically(values) else np.asarray
-    ok = np.isfinite(values)
-    low, high = (values[ok].min(), values[ok].max()) if ok.any() else (0.0, 0.0)
-    span = float(bend(high) - bend(low)) or 1.0
-    found = sweep.sensitivities() if sweep.sampled else [None] * len(sweep.fields)
-    for i, field in enumerate(sweep.fields):
-        x, names = places_of(sweep.column(field))
-        canvas = Canvas(terminal.width - MARGIN, HEIGHT, replace(terminal, colour=False), False)
-        bent = np.log(x) if not names and sweep.is_logarithmic(i) else x
-        across = (bent - bent.min()) / (np.ptp(bent) or 1.0) * (canvas.columns - 1)
-        for column, value in zip(across[ok], values[ok]):
-            dot = int(round(float(bend(value) - bend(low)) / span * (canvas.rows - 1)))
-            canvas.column(int(round(column)), dot, dot, 0)
-        ends = {0: f"{high:.3g}", canvas.height - 1: f"{low:.3g}"}
-        lines += [f"{axis(sweep.metric)}{' (logarithmic)' if bend is np.log else ''} over {sweep.axis(i)}"]
-        lines += [f"{ends.get(y, ''):>{MARGIN - 2}} |{canvas.line(y, [None])}" for y in range(canvas.height)]
-        first, last = (names[0], names[-1]) if names else (f"{x.min():.4g}", f"{x.max():.4g}")
-        between = " ... " if names or not sweep.is_logarithmic(i) else " ... (logarithmic) "
-        lines += [" " * MARGIN + (", ".join(names) if names else first + between + last), ""]
-    return lines + sensitivity_table(sweep, found, ok.sum(), terminal)
-
-
-def sensitivity_table(sweep, found, runs, terminal):
-    """How much each field matters, the most first, and how that was told."""
-    if not sweep.sampled:
+def sensitivity_table(sweep):
+    """The lines that say how much each field of a sample matters, the most first, and how that was told."""
+    if not (sweep.sampled and sweep.is_cloud):
         return []
+    found, runs = sweep.sensitivities(), np.isfinite(sweep.metric_values).sum()
     without = f"; {sweep.how_failed}" if sweep.classes else ""
     if not any(found):
         return [f"how much each field matters cannot be told from {runs} runs with this metric{without}; needed: {LEAST_ROWS}, of several values"]
@@ -366,24 +307,4 @@ def sensitivity_table(sweep, found, runs, terminal):
         f"rank correlation: Spearman's; first order: Sobol's index, the share of the variance of {sweep.metric} that the field explains "
         f"alone; together {together}, the rest is fields that act together, and what depends on none. By regression on at most "
         f"{MOST_COSINES} cosines of the field's place in its range, or on the values of a list, over {runs} runs{without}; +-: standard "
-        "error, by jackknife", terminal.width)]
-
-
-def shaded(sweep, grid, letters, terminal):
-    rows, cells, values = grid
-    shades = SHADES[terminal.unicode]
-    finite = values[np.isfinite(values)]
-    bend = np.log if spread_logarithmically(finite) else (lambda x: x)
-    low, high = (float(finite.min()), float(finite.max())) if finite.size else (0.0, 0.0)
-    span = (bend(high) - bend(low)) or 1.0
-    key = [f"{axis(sweep.metric)}: {shades[0]!r} {low:.3g} ... {shades[-1]!r} {high:.3g}"]
-    key += [f"{letter} {name.replace('_', ' ')}" for name, letter in sweep.letters.items()]
-    key += ["? no value"] if (~np.isfinite(values) & (letters == "")).any() else []
-    lines = ["   ".join(key)]
-    for i in reversed(range(len(rows))):
-        def shade(value, letter):
-            if not np.isfinite(value):
-                return 2 * (letter or "?")
-            return 2 * shades[int((bend(value) - bend(low)) / span * (len(shades) - 1) + 0.5)]
-        lines.append(f"{rows[i]:>12.4g} |" + "".join(map(shade, values[i], letters[i]))[:terminal.width - 15])
-    return [*lines, f"{'':>12} {cells[0]:.4g} ... {cells[-1]:.4g}  {sweep.axis(1)}; upwards {sweep.axis(0)}"]
+        "error, by jackknife", WIDTH)]

@@ -11,7 +11,6 @@ from .json_input import InputError
 from .ledger import load_choices, load_claims
 from .live_link import place_live_page
 from .page import report
-from .performance import load_performance
 from .replay import packed_replays, record_replays
 from .runs import REPLAY_DIRECTORY, load_runs
 from .studies import load_studies
@@ -55,7 +54,7 @@ def run(options):
         raise InputError(f"{options.results}: holds no summary.json; allowed: a directory that scripts/reproduce wrote")
     page = report(runs, load_studies(options.results), load_claims(options.claims) if options.claims else [],
                   load_choices(options.choices), load_figures(options.figures) if options.figures else [], scenes(options),
-                  load_performance(options.results), load_credibility())
+                  load_credibility())
     out = options.out or options.results / "report.html"
     write(out, page)
     place_live_page(out.parent)

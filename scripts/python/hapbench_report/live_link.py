@@ -7,7 +7,7 @@ from urllib.parse import quote
 
 from .json_input import at
 
-# Where scripts/live puts it; a copy goes beside every page that links to it.
+# Where scripts/live/make puts it; a copy goes beside every page that links to it.
 BUILT = Path(__file__).resolve().parents[3] / "build" / "live" / "live.html"
 NAME = "live.html"
 

@@ -4,7 +4,6 @@ from .figures import figures_section
 from .ledger import choices_section, ledger_section, summary_section
 from .links import Links
 from .markup import ASSETS, command, fill, text
-from .performance import FIGURE, performance_section
 from .replay import replay_section
 from .runs import parameters_section, provenance_of, provenance_section, runs_section
 from .studies import studies_section, timing_section
@@ -15,11 +14,10 @@ SCRIPTS = ("theme.js", "tables.js", "page.js", "replay_data.js", "replay_camera.
            "replay_tracks.js", "replay_sound.js", "replay_export.js", "replay_player.js", "replay_controls.js")
 
 
-def report(runs, studies, claims, choices, figures, scenes, performance, credibility):
+def report(runs, studies, claims, choices, figures, scenes, credibility):
     """The HTML of the report. Depends on nothing but its arguments."""
     tables, provenance = load_tables(), provenance_of(runs)
     links = Links(runs, figures, claims, studies)
-    growth, others = ([f for f in figures if (f.id == FIGURE) == own] for own in (True, False))
     sections = (
         ("summary", "Summary", "Summary", summary_section(runs, claims, figures, provenance)),
         ("ledger", "Ledger", "Ledger", ledger_section(claims, links)),
@@ -27,12 +25,11 @@ def report(runs, studies, claims, choices, figures, scenes, performance, credibi
         ("choices", "Choices", "Choices on record", choices_section(choices)),
         ("replay", "Replay", "Replay", replay_section(scenes)),
         ("thesis", "Index", "Figures and tables of the thesis", index_section(figures, tables, links)),
-        ("figures", "Figures", "Figures", figures_section(others, links)),
+        ("figures", "Figures", "Figures", figures_section(figures, links)),
         ("subjects", "Subjects", "Simulated subjects", target_tables(runs, tables)),
         ("tables", "Tables", "Parameters and limits of the thesis", parameter_tables(runs, tables) + limits_table(studies, tables)),
         ("runs", "Runs", "Runs", runs_section(runs)),
         ("studies", "Studies", "Precision and other studies", studies_section(studies)),
-        ("performance", "Performance", "Performance", performance_section(performance, growth, links)),
         ("timing", "Timing", "Timing", timing_section(runs, studies)),
         ("rerun", "Rerun", "Run it again", rerun_section()),
         ("parameters", "Scenarios", "Scenario of every run", parameters_section(runs, links)),

@@ -1,5 +1,4 @@
-"""scripts/validation: predicts the measured limits of scenarios/validation and writes its page, its figure and its numbers."""
-import json
+"""scripts/validation: predicts the measured limits of scenarios/validation and writes its page and its figure."""
 import sys
 from pathlib import Path
 
@@ -9,7 +8,7 @@ from .cases import FOLDER, ROOT, read_cases
 from .page import figure, page
 from .predict import Predictor, predictions, record
 
-RECORD, PAGE, FIGURE = FOLDER / "data" / "predictions.json", FOLDER / "README.md", FOLDER / "validation.svg"
+PAGE, FIGURE = FOLDER / "README.md", FOLDER / "validation.svg"
 
 
 def main():
@@ -17,16 +16,12 @@ def main():
     parser.add_argument("--program", type=Path, default=ROOT / "build" / "release" / "bin" / "hapbench", help="the built program")
     parser.add_argument("--samples", type=int, default=1600, help="of the unpublished inputs, for each fit (default 1600)")
     parser.add_argument("--jobs", type=int, default=2, help="runs at a time (default 2)")
-    parser.add_argument("--page", action="store_true", help="only write the page and the figure anew, from the recorded predictions")
     given = parser.parse_args()
     data, cases = read_cases()
-    if not given.page:
-        predictor = Predictor(given.program.resolve(), given.jobs)
-        with Notice("predicting") as notice:
-            found = predictions(predictor, data, cases, given.samples, notice.say)
-        text = json.dumps(record(given.program.resolve(), data, cases, found), indent=1, ensure_ascii=False)
-        write(RECORD, text + "\n")
-    recorded = json.loads(RECORD.read_text(encoding="utf-8"))
+    predictor = Predictor(given.program.resolve(), given.jobs)
+    with Notice("predicting") as notice:
+        found = predictions(predictor, data, cases, given.samples, notice.say)
+    recorded = record(given.program.resolve(), data, cases, found)
     write(FIGURE, figure(data, cases, recorded))
     write(PAGE, page(data, cases, recorded))
     return SUCCESS

@@ -1,4 +1,4 @@
-"""The page and the figure, from the recorded predictions."""
+"""The page and the figure, from predictions."""
 import math
 
 import numpy as np
@@ -106,8 +106,8 @@ def page(data, cases, recorded):
         for field, (low, high, kind, why) in (device["unpublished"] | own).items():
             text += f"| `{field}` | {low:g} {'or' if kind == 'either' else '...'} {high:g}{' (log)' if kind == 'log' else ''} | {why} |\n"
     text += NOT_FOR
-    text += (f"\n## Do it again\n\n    scripts/validation --program build/release/bin/hapbench\n    scripts/validation --page    # only this page, "
-             f"from data/predictions.json\n    hapbench limit epfl_paddle.json --vary rendering.stiffness_N_per_m --between 200:400000    # "
+    text += (f"\n## Do it again\n\n    scripts/validation --program build/release/bin/hapbench\n"
+             f"    hapbench limit epfl_paddle.json --vary rendering.stiffness_N_per_m --between 200:400000    # "
              f"in this folder\n\nPredicted by {recorded['program']}. Cases and ranges: [data/cases.json](data/cases.json); rules: "
              "`scripts/python/hapbench_validation`.\n")
     return text

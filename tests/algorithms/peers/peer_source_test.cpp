@@ -5,8 +5,8 @@
 #include <limits>
 #include <stdexcept>
 
-#include "algorithms/peers/contact_library.hpp"
 #include "algorithms/registry.hpp"
+#include "tests/bench/peers/contact_library.hpp"
 #include "tests/support/fakes.hpp"
 #include "tests/support/setting.hpp"
 
@@ -57,15 +57,6 @@ TEST(PeerSource, TakesPointDepthAndDirectionAsTheyAre) {
   EXPECT_EQ(contacts.largest_depth(), 0.5);
   EXPECT_EQ(source->work().queries, 1u);
   EXPECT_EQ(source->fault(), nullptr);
-}
-
-TEST(PeerSource, LeavesOutWhatHasNoDirectionOrDepth) {
-  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-  const auto source = source_of(
-      {{{0, {}, {0, 0, 0}, 0.5}, {0, {}, {kNaN, 0, 1}, 0.5}, {0, {}, {0, 0, 1}, -0.5}, {0, {}, {0, 0, 1}, kNaN}}});
-  ContactBuffer contacts(source->capacity());
-  source->contacts_at({}, contacts);
-  EXPECT_TRUE(contacts.empty());
 }
 
 TEST(PeerSource, AsksAboutTheMiddleOfTheDrillWithItsShankAlongZ) {

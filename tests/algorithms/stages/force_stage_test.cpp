@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 
-#include "algorithms/registry.hpp"
 #include "algorithms/stages/passivity_controller.hpp"
 #include "sim/core/random.hpp"
 #include "tests/support/fakes.hpp"
@@ -22,28 +22,24 @@ constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 class Foreseen {
  public:
   explicit Foreseen(ForceStage& stage) : stage_(stage) {
-    stage_.prepare({kDt, kMass, 20000.0});
+    stage_.prepare(kDt, kMass);
     stage_.reset();
   }
   Vec3 answer(const Vec3& force, const Vec3& velocity) {
-    HapbenchStageStep step = {};
-    step.row = row_++;
-    step.energy = energy;
-    Vec3::Map(step.force) = force;
-    Vec3::Map(step.velocity) = velocity;
-    const Vec3 given = stage_.force(step);
+    ++rows_;
+    const Vec3 given = stage_.force({force, velocity, energy});
     turnover += (force.norm() + given.norm()) * velocity.norm() * kDt;
     energy -= given.dot(velocity) * kDt;
     return given;
   }
   /// Of the roundings of so many rows.
-  double rounding() const { return 20 * kEpsilon * static_cast<double>(row_) * turnover; }
+  double rounding() const { return 20 * kEpsilon * static_cast<double>(rows_) * turnover; }
 
   double energy = 0.0, turnover = 0.0;
 
  private:
   ForceStage& stage_;
-  std::uint64_t row_ = 0;
+  std::uint64_t rows_ = 0;
 };
 
 Vec3 random_force(Random& random) {
@@ -153,12 +149,11 @@ TEST(ActuatorLimitedPassivity, RendersNothingInFreeAirWhateverIsOwed) {
 /// A stage made of a function.
 class FakeStage final : public ForceStage {
  public:
-  using Answer = std::function<Vec3(const HapbenchStageStep&)>;
+  using Answer = std::function<Vec3(const StageStep&)>;
   explicit FakeStage(Answer answer) : answer_(std::move(answer)) {}
-  void prepare(const HapbenchStageRun& given) override { run = given; }
+  void prepare(double, double) override {}
   void reset() noexcept override {}
-  Vec3 force(const HapbenchStageStep& step) noexcept override { return answer_(step); }
-  HapbenchStageRun run{};
+  Vec3 force(const StageStep& step) noexcept override { return answer_(step); }
 
  private:
   Answer answer_;
@@ -181,7 +176,7 @@ TEST(StagedRendering, AnIdleStageMovesNoBitUnderAnyIntegrator) {
     config.integrator = integrator;
     test::Recorder bare, with;
     Simulation(config, test::fake_parts(damped_spring), {&bare}).run();
-    const auto same = [](const HapbenchStageStep& s) -> Vec3 { return Vec3::Map(s.force); };
+    const auto same = [](const StageStep& s) -> Vec3 { return s.force; };
     Simulation staged_run(config, staged(test::fake_parts(damped_spring), same), {&with});
     staged_run.run();
     ASSERT_EQ(bare.rows.size(), with.rows.size());
@@ -195,9 +190,9 @@ TEST(StagedRendering, AnIdleStageMovesNoBitUnderAnyIntegrator) {
 /// Along the way of the run, by the mean velocity of two rows, which is exact under leapfrog.
 TEST(StagedRendering, CountsWhatTheStageTakesAndWhatItAbsorbs) {
   std::vector<double> energies;
-  const auto weaker = [&energies](const HapbenchStageStep& s) -> Vec3 {
+  const auto weaker = [&energies](const StageStep& s) -> Vec3 {
     energies.push_back(s.energy);
-    return s.row % 3 == 0 ? Vec3(Vec3::Map(s.force)) : Vec3(0.5 * Vec3::Map(s.force));
+    return energies.size() % 3 == 1 ? s.force : Vec3(0.5 * s.force);
   };
   test::Recorder recorder;
   Simulation run(test::thrown(300), staged(test::fake_parts(damped_spring), weaker), {&recorder});
@@ -219,8 +214,8 @@ TEST(StagedRendering, TellsTheRowAndCutsTheAnswerToTheForceLimit) {
   RenderingConfig config;
   config.max_force = 2.0;
   config.mass = 0.3;
-  HapbenchStageStep last{};
-  const auto strong = [&last](const HapbenchStageStep& s) -> Vec3 {
+  StageStep last{};
+  const auto strong = [&last](const StageStep& s) -> Vec3 {
     last = s;
     return {30.0, 0.0, 40.0};
   };
@@ -231,20 +226,13 @@ TEST(StagedRendering, TellsTheRowAndCutsTheAnswerToTheForceLimit) {
   const StepRecord& row = recorder.rows.back();
   EXPECT_TRUE(row.force.rendered.isApprox(Vec3(1.2, 0.0, 1.6), 1e-15));
   EXPECT_EQ(row.force.spring, damped_spring(row.tool));
-  EXPECT_EQ(last.row, 49u);
-  EXPECT_EQ(Vec3(Vec3::Map(last.spring)), damped_spring(row.tool));
-  EXPECT_EQ(Vec3(Vec3::Map(last.force)), damped_spring(row.tool));
-  EXPECT_EQ(Vec3(Vec3::Map(last.position)), row.tool.pose.position);
-  EXPECT_EQ(Vec3(Vec3::Map(last.velocity)), row.tool.velocity);
-  EXPECT_EQ(Vec3(Vec3::Map(last.device_position)), row.handle.position);
-  EXPECT_EQ(last.stiffness[0], 2.0);
-  EXPECT_EQ(last.stiffness[1], 0.0);
-  EXPECT_EQ(last.in_contact, 0u);
+  EXPECT_EQ(last.force, damped_spring(row.tool));
+  EXPECT_EQ(last.velocity, row.tool.velocity);
 }
 
 /// Behind a stage that pushes in free air, too, the passivity controller keeps its word.
 TEST(StagedRendering, IsHeldPassiveByTheControllerAroundIt) {
-  const auto pushes = [](const HapbenchStageStep& s) -> Vec3 { return 5.0 * Vec3::Map(s.velocity); };
+  const auto pushes = [](const StageStep& s) -> Vec3 { return 5.0 * s.velocity; };
   RenderingConfig config;
   SimulationParts parts = staged(test::fake_parts(test::weightless), pushes, config);
   test::Recorder free, held;
@@ -254,20 +242,6 @@ TEST(StagedRendering, IsHeldPassiveByTheControllerAroundIt) {
   Simulation(test::thrown(400), std::move(parts), {&held}).run();
   // 400 roundings of the speed.
   EXPECT_LE(held.rows.back().tool.velocity.norm(), held.rows.front().tool.velocity.norm() * (1.0 + 1000 * kEpsilon));
-}
-
-TEST(StagedRendering, AddedStagesAreFoundByName) {
-  add_force_stage("force_stage_test", [](const std::string& text) -> std::unique_ptr<ForceStage> {
-    EXPECT_EQ(text, "{\"a\":1}");
-    return std::make_unique<FakeStage>([](const HapbenchStageStep&) -> Vec3 { return Vec3::Zero(); });
-  });
-  RenderingConfig config;
-  config.force_stage = AddedStageConfig{"force_stage_test", "{\"a\":1}"};
-  EXPECT_NE(dynamic_cast<StagedRendering*>(make_algorithm(config).get()), nullptr);
-  config.force_stage = AddedStageConfig{"none", "{}"};
-  EXPECT_THROW(make_algorithm(config), std::invalid_argument);
-  config.force_stage = PluginStageConfig{"a.so", "{}"};
-  EXPECT_THROW(make_algorithm(config), std::invalid_argument);
 }
 
 }  // namespace

@@ -10,7 +10,7 @@
 #include <iterator>
 #include <utility>
 
-#include "tests/bench/peers/linked_peers.hpp"
+#include "tests/bench/peers/contact_library.hpp"
 
 /// CGAL: a k-d tree over the points of the shell. A query takes the points in the box around the drill and compares
 /// each with the drill, which answers exactly our question.

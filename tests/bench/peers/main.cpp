@@ -8,10 +8,9 @@
 
 #include "algorithms/peers/peer_source.hpp"
 #include "results/summary/provenance.hpp"
-#include "scenarios/plugins/load_plugin.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "sim/contact/neighbour_list_query.hpp"
-#include "tests/bench/peers/linked_peers.hpp"
+#include "tests/bench/peers/contact_library.hpp"
 #include "tests/bench/task_scene.hpp"
 
 /// Our search and other libraries at the same poses of the same scenes, as peers/<library>/<task>. Libraries that are
@@ -36,8 +35,12 @@ std::vector<Library> libraries() {
 #ifdef HAPBENCH_PEER_KD_TREE
   here.push_back({"cgal_kd_tree", &kd_tree(), true});
 #endif
-  for (const char* name : kPeers)
-    if (const HapbenchContactSource* source = find_peer(name)) here.push_back({name, source, false});
+#ifdef HAPBENCH_PEER_FCL
+  here.push_back({"fcl", &fcl(), false});
+#endif
+#ifdef HAPBENCH_PEER_BULLET
+  here.push_back({"bullet", &bullet(), false});
+#endif
 #ifdef HAPBENCH_PEER_ODE
   here.push_back({"ode", &ode(), false});
 #endif

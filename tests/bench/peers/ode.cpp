@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "tests/bench/peers/linked_peers.hpp"
+#include "tests/bench/peers/contact_library.hpp"
 
 /// ODE: its triangle mesh (OPCODE) against its cylinder, in millimetres. It returns as many contacts as there is room
 /// for.

@@ -14,7 +14,6 @@
 #include "results/observe/energy_ledger.hpp"
 #include "results/observe/force_fidelity.hpp"
 #include "results/observe/ideal_trajectory.hpp"
-#include "results/observe/perception.hpp"
 #include "results/observe/target_metrics.hpp"
 #include "results/record/recorder.hpp"
 #include "results/summary/outcome_names.hpp"
@@ -344,7 +343,6 @@ TEST(Metrics, AreDocumentedWithTheUnitTheyAreNamedAfter) {
   expect_documented(metric_list(IdealTrajectoryMetrics{}), "ideal trajectory");
   expect_documented(metric_list(ForceFidelity{}), "fidelity");
   expect_documented(metric_list(LostTorqueMetrics{}), "torque");
-  expect_documented(metric_list(PerceptionMetrics{}), "perception");
   expect_documented(metric_list(std::vector<PlaceMetrics>(1)), "targets");
 }
 

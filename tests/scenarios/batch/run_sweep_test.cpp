@@ -107,7 +107,6 @@ TEST(SweepPlan, HasExactlyTheMetricsOfItsRuns) {
   Json prescribed = minimal_scenario("plane");
   prescribed["motion"]["position"] = {{"type", "prescribed"}, {"x_m", 0}, {"y_m", 0}, {"z_m", 0}};
   prescribed["reference_force"] = {{"z_N", 1.0}};
-  prescribed["perception"] = Json::object();
   scenarios.push_back({"with_reference_force", prescribed});
   Json block = minimal_scenario("block_with_hole");
   block["record"] = {{"ideal_trajectory", true}};
@@ -258,21 +257,6 @@ class RunSweep : public testing::Test {
   }
   test::TemporaryDirectory directory_;
 };
-
-TEST_F(RunSweep, HasForEachRunWhatTheRunAloneHas) {
-  Json scenario = minimal_scenario("hole_2d");
-  scenario["initial"] = {{"position_m", {0.0004, -0.001, 0.0}}};
-  const SweepPlan plan =
-      plan_of(scenario, {"environment.spacing_m=0.0001,0.00012", "rendering.algorithm=mean,tandpasta"});
-  const SweepReport report = run(plan, directory_.path());
-  ASSERT_EQ(report.rows.size(), 4u);
-  EXPECT_EQ(report.counts.runs, 4u);
-  for (std::size_t i = 0; i < 4; ++i) {
-    const RunReport alone = run_scenario(scenario_of(plan, i), std::nullopt, false);
-    EXPECT_EQ(row_text(plan, report.rows[i]), row_text(plan, sweep_row(plan, i, alone.summary)));
-    EXPECT_GT(alone.summary.metrics.force_max, 0.0);
-  }
-}
 
 TEST_F(RunSweep, HasOneTableWhateverTheOrderOfTheRuns) {
   // The environment varies fastest, so its runs are not done in the order of the table.

@@ -56,9 +56,9 @@ const HapbenchPlugin* hapbench_plugin(uint32_t version) {
       .error_text = error_text,
   };
   plugin = good;
-  parameters[1].name = is("twice") ? "gain" : "bias";
-  parameters[1].initial = is("default") ? 3.0 : 0.0;
-  parameters[1].min = is("range") ? 1.0 : -1.0;
+  parameters[1].name = "bias";
+  parameters[1].initial = 0.0;
+  parameters[1].min = -1.0;
   if (is("version")) plugin.version = version + 1;
   if (is("built in")) plugin.name = "mean";
   if (is("no name")) plugin.name = NULL;

@@ -234,17 +234,5 @@ TEST(BadScenario, AmongGoodOnesStopsThemAll) {
   EXPECT_FALSE(fs::exists(directory / "out"));
 }
 
-TEST(BadScenario, WhoseToolTakesMoreThanItMayIsRefusedBeforeItIsBuilt) {
-  const test::TemporaryDirectory directory;
-  const test::ProgramRun run = test::hapbench({"run", "explorer_on_bumps", "--set", "tool.grid_m=4e-6", "--memory",
-                                               "200M", "--out", (directory / "out").string()});
-  EXPECT_EQ(run.status, 2);
-  EXPECT_NE(run.err.find("the grid of the tool's distances would take about 1.07 GB; allowed: 210 MB"),
-            std::string::npos)
-      << run.err;
-  EXPECT_LT(run.cpu_seconds, kMostSeconds);
-  EXPECT_FALSE(fs::exists(directory / "out"));
-}
-
 }  // namespace
 }  // namespace hapbench::bad_input_test

@@ -178,7 +178,6 @@ TEST(Commands, HaveTheNumbersOnRecord) {
       {"stability:integrators",
        {"stability", "--map", "time_step", "--algorithms", "shaped_stiffness", "--integrators", "all", "--size", "3"}},
       {"stability:stress", {"stability", "--stress", "--count", "3000"}},
-      {"stability:search", {"stability", "peg_in_hole_2d_shaped_stiffness", "--search", "--evaluations", "8"}},
   };
   const test::TemporaryDirectory directory;
   test::NumbersByName numbers;

@@ -174,7 +174,6 @@ const Words kCommands[] = {
     {"compare", "single_spring", "--algorithms", "mean,proxy", "--set", "time.steps=20000000"},
     {"stability", "--map", "all", "--size", "101", "--quiet"},
     {"stability", "--stress", "--count", "1000000000", "--quiet"},
-    {"stability", "drill_in_hole", "--search", "--evaluations", "1000000", "--quiet"},
     {"limit", "single_spring", "--vary", "rendering.stiffness_N_per_m", "--set", "time.steps=500000000", "--set",
      "record.trajectory=false", "--set", "rendering.damping_ratio=0", "--quiet"},
     {"precision", "time_step", "--scenario", "single_spring", "--set", "time.steps=10000000", "--quiet"},
@@ -322,21 +321,6 @@ TEST_F(InterruptedSweep, BeginsAnewWithoutItsJournal) {
   expect_same_as_uninterrupted("out");
 }
 
-TEST_F(InterruptedSweep, IsResumedByNoOther) {
-  leave_killed_sweep(20);
-  const auto left = test::files_below(directory_ / "out");
-  for (const Words& more : {Words{"--vary", "seed=1,2"}, Words{"--set", "seed=7"}, Words{"--keep-runs"}}) {
-    Words other = words("out", {"--resume"});
-    other.insert(other.end(), more.begin(), more.end());
-    const ProgramRun run = hapbench(other);
-    EXPECT_EQ(run.status, 2);
-    EXPECT_NE(run.err.find("sweep.journal: is not the journal of this sweep; --resume needs"), std::string::npos)
-        << run.err;
-    EXPECT_EQ(test::lines_of(run.err).size(), 1u);
-  }
-  EXPECT_EQ(test::files_below(directory_ / "out"), left);
-}
-
 TEST_F(InterruptedSweep, StopsCleanlyAtASignalAndGoesOn) {
   until_in_time([&] {
     for (const int signal : {SIGINT, SIGTERM}) {
@@ -353,16 +337,6 @@ TEST_F(InterruptedSweep, StopsCleanlyAtASignalAndGoesOn) {
   });
   EXPECT_EQ(hapbench(words("out", {"--resume"})).status, 0);
   expect_same_as_uninterrupted("out");
-}
-
-TEST_F(InterruptedSweep, LeavesItsDirectoryToItselfWhileItRuns) {
-  runs_ = 300'000;  // of minutes
-  RunningProgram sweep(test::hapbench_program(), words("out"));
-  ASSERT_TRUE(wait_for_rows(sweep, "out", 1));
-  const ProgramRun second = hapbench(words("out"));
-  EXPECT_EQ(second.status, 2);
-  EXPECT_NE(second.err.find("another sweep is writing to this directory"), std::string::npos) << second.err;
-  EXPECT_TRUE(sweep.is_running());
 }
 
 TEST_F(InterruptedSweep, OfASampleGoesOn) {

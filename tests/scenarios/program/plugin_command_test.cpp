@@ -48,14 +48,10 @@ TEST_F(PluginCommand, KnowsTheLawAndItsParametersEverywhere) {
   EXPECT_NE(list.out.find("capped_summation"), std::string::npos) << list.err;
   EXPECT_NE(list.out.find("depth_weighted"), std::string::npos);
   EXPECT_EQ(hapbench({"list", "algorithms"}).out.find("depth_weighted"), std::string::npos);
-  const ProgramRun words =
-      hapbench({"complete", "--plugin", plugin("depth_weighted"), "compare", "--algorithms", "dep"});
-  EXPECT_EQ(words.out, "depth_weighted\n");
   const EnvironmentVariable folders("HAPBENCH_PLUGIN_PATH", out("plugins"));
   fs::create_directory(out("plugins"));
   fs::copy_file(plugin("depth_weighted"), out("plugins/my.so"));
-  EXPECT_EQ(hapbench({"complete", "run", "x", "--set", "rendering.parameters.depth_weighted.p"}).out,
-            "rendering.parameters.depth_weighted.power=\n");
+  EXPECT_NE(hapbench({"list", "algorithms"}).out.find("depth_weighted"), std::string::npos);
 }
 
 TEST_F(PluginCommand, ComparesTheLawsWithOurs) {
@@ -163,8 +159,6 @@ TEST_F(PluginCommand, SweepsCarryThePluginAlong) {
   };
   const ProgramRun print = with({"--row", "2", "--print"});
   EXPECT_NE(print.out.find("--plugin " + mine.string()), std::string::npos) << print.out;
-  ASSERT_EQ(with({"--slurm", "2", "--dry-run"}).status, 0);
-  EXPECT_NE(read_file(directory_ / "s/sweep.sbatch").find("--plugin " + mine.string()), std::string::npos);
   ASSERT_EQ(with({"--shard", "0/2"}).status, 0);
   const Json description = Json::parse(read_file(directory_ / "s/sweep_shard_0_of_2.json"));
   EXPECT_EQ(description["plugins"].size(), 1u);

@@ -8,7 +8,7 @@
 #include "tests/scenarios/support/file_tree.hpp"
 #include "tests/scenarios/support/program.hpp"
 
-/// hapbench stability: limits, maps, stress and search.
+/// hapbench stability: limits, maps and stress.
 namespace hapbench::stability_test {
 namespace {
 
@@ -96,7 +96,7 @@ TEST_F(StabilityCommand, GivesEachOfSeveralScenariosADirectory) {
   EXPECT_TRUE(std::filesystem::exists(directory_ / "out/single_spring_damped/limits.csv"));
 }
 
-/// `hapbench stability --map`, `--stress` and `--search` through the program.
+/// `hapbench stability --map` and `--stress` through the program.
 class StabilityExperiments : public testing::Test {
  protected:
   test::TemporaryDirectory directory_;
@@ -233,21 +233,6 @@ TEST_F(StabilityExperiments, StressCountsForcesOfEveryAlgorithm) {
   };
   EXPECT_EQ(text("5"), text("5"));
   EXPECT_NE(text("5"), text("6"));
-}
-
-TEST_F(StabilityExperiments, SearchWritesAScenarioThatRunsAsItExpects) {
-  const ProgramRun run = hapbench({"stability", "peg_in_hole_2d_shaped_stiffness", "--search", "--algorithms",
-                                   "original_averaging,mean", "--evaluations", "40", "--out", out_});
-  EXPECT_EQ(run.status, 0) << run.err;
-  EXPECT_EQ(test::names_below(out_), (Names{"worst_created_mean.json", "worst_created_original_averaging.json"}));
-  for (const std::string& name : test::names_below(out_)) {
-    const ProgramRun again = hapbench({"run", out_ + "/" + name, "--out", (directory_ / "again").string()});
-    EXPECT_EQ(again.status, 0) << name << ": " << again.err;
-  }
-  EXPECT_EQ(hapbench({"stability", "peg_in_hole_2d_mean", "--search", "--objective", "vibration", "--evaluations", "20",
-                      "--json", "--out", out_})
-                .json()[0]["objective"],
-            "vibration");
 }
 
 }  // namespace

@@ -305,6 +305,7 @@ TEST_F(ValidateOfUnits, KnowsADeviceFile) {
 TEST_F(ValidateOfUnits, FindsNoUnitsWrongInBundledScenes) {
   for (const test::NamedScenario& scenario : test::bundled_scenario_files()) {
     const ProgramRun run = test::hapbench_here({"validate", scenario.name});
+    EXPECT_EQ(run.status, 0) << scenario.name << run.err;
     for (const char* words : {"in metres?", "in seconds?", "behind the surface", "time.step_s right?", "right?"})
       EXPECT_EQ(run.err.find(words), std::string::npos) << scenario.name << run.err;
   }

@@ -25,17 +25,26 @@ using test::read_file;
 class PegSweep : public testing::Test {
  protected:
   /// 24 runs in four environments, some of which end early.
-  ProgramRun sweep(const std::string& out, const std::vector<std::string>& more = {}) const {
-    std::vector<std::string> words = {
-        "sweep",  "peg_in_hole_2d_shaped_stiffness",
-        "--out",  (directory_ / out).string(),
-        "--set",  "expect.outcome=[\"completes\",\"leaves_hole\",\"lost_contact\",\"diverges\"]",
-        "--set",  "expect.metrics={}",
-        "--vary", "rendering.stiffness_N_per_m=5000:20000:2",
-        "--vary", "environment.spacing_m=2e-5:5e-5:4:log",
-        "--vary", "rendering.algorithm=mean,summation,exact_shaping"};
-    words.insert(words.end(), more.begin(), more.end());
-    return hapbench(words);
+  Words words(const std::string& out) const {
+    return {"peg_in_hole_2d_shaped_stiffness",
+            "--out",
+            (directory_ / out).string(),
+            "--set",
+            "expect.outcome=[\"completes\",\"leaves_hole\",\"lost_contact\",\"diverges\"]",
+            "--set",
+            "expect.metrics={}",
+            "--vary",
+            "rendering.stiffness_N_per_m=5000:20000:2",
+            "--vary",
+            "environment.spacing_m=2e-5:5e-5:4:log",
+            "--vary",
+            "rendering.algorithm=mean,summation,exact_shaping"};
+  }
+  ProgramRun sweep(const std::string& out, const Words& more = {}) const {
+    Words all = words(out);
+    all.insert(all.begin(), "sweep");
+    all.insert(all.end(), more.begin(), more.end());
+    return hapbench(all);
   }
   std::string table(const std::string& out) const { return read_file(directory_ / out / "sweep.csv"); }
   test::TemporaryDirectory directory_;
@@ -280,7 +289,7 @@ TEST_F(SweepCommand, PrintsTheCommandThatRepeatsARun) {
   EXPECT_EQ(sweep("a", {"--print"}).status, 2);
 }
 
-/// A sweep in parts: shards, their merge, their state and their scripts for Slurm.
+/// A sweep in parts: shards, their merge, and the script that makes them tasks of Slurm.
 class SweepShards : public PegSweep {};
 
 TEST_F(SweepShards, GiveTheSameBytesHoweverManyWithAnyJobs) {
@@ -303,32 +312,6 @@ TEST_F(SweepShards, GiveTheSameBytesHoweverManyWithAnyJobs) {
   }
 }
 
-TEST_F(SweepShards, OfASampleGiveTheSameBytes) {
-  const auto sample = [&](const std::string& out, const Words& more) {
-    Words words = {"sweep",    "peg_in_hole_2d_shaped_stiffness",
-                   "--out",    (directory_ / out).string(),
-                   "--set",    "expect.metrics={}",
-                   "--vary",   "rendering.stiffness_N_per_m=5000:20000:log",
-                   "--vary",   "rendering.algorithm=mean,exact_shaping",
-                   "--sample", "lhs:12"};
-    words.insert(words.end(), more.begin(), more.end());
-    return hapbench(words);
-  };
-  const ProgramRun run = sample("whole", {"--jobs", "1"});
-  ASSERT_EQ(run.status, 0) << run.err;
-  EXPECT_EQ(lines_of(table("whole")).size(), 13u);
-  EXPECT_EQ(Json::parse(read_file(directory_ / "whole/sweep.json"))["sample"],
-            (Json{{"method", "lhs"}, {"runs", 12}, {"seed", 1}}));
-  sample("two", {"--jobs", "2"});
-  test::expect_same_files(directory_ / "whole", directory_ / "two");
-  for (const char* shard : {"0/2", "1/2"}) EXPECT_EQ(sample("shards", {"--shard", shard}).status, 0);
-  hapbench({"merge", (directory_ / "shards/sweep_shard_0_of_2.csv").string(),
-            (directory_ / "shards/sweep_shard_1_of_2.csv").string(), "--out", (directory_ / "merged.csv").string()});
-  EXPECT_EQ(read_file(directory_ / "merged.csv"), table("whole"));
-  sample("other", {"--seed", "2"});
-  EXPECT_NE(table("other"), table("whole"));
-}
-
 TEST_F(SweepShards, MayBeMoreThanRuns) {
   Words merge = {"merge", "--out", (directory_ / "merged.csv").string()};
   const auto seeds = [&](const Words& more) {
@@ -345,24 +328,6 @@ TEST_F(SweepShards, MayBeMoreThanRuns) {
   EXPECT_EQ(read_file(directory_ / "merged.csv"), read_file(directory_ / "sweep.csv"));
 }
 
-TEST_F(SweepShards, AreMergedOnlyWhenTheyBelongTogether) {
-  const auto seeds = [&](const std::string& out, const std::string& vary, const std::string& shard) {
-    hapbench({"sweep", "single_spring", "--vary", vary, "--out", (directory_ / out).string(), "--shard", shard});
-    return (directory_ / out / ("sweep_shard_" + shard.substr(0, 1) + "_of_2.csv")).string();
-  };
-  const std::string first = seeds("a", "seed=1,2", "0/2"), other = seeds("b", "seed=1,3", "1/2");
-  for (const Words& files : {Words{first}, Words{first, first}, Words{first, other},
-                             Words{first, (directory_ / "missing.csv").string()}, Words{directory_.path().string()}}) {
-    Words words = {"merge", "--out", (directory_ / "out/merged.csv").string()};
-    words.insert(words.end(), files.begin(), files.end());
-    const ProgramRun run = hapbench(words);
-    EXPECT_EQ(run.status, 2);
-    EXPECT_EQ(run.out, "");
-    EXPECT_EQ(lines_of(run.err).size(), 1u) << run.err;
-    EXPECT_FALSE(fs::exists(directory_ / "out"));
-  }
-}
-
 TEST_F(SweepShards, AreNotOverwrittenByTheirTable) {
   Words words = {"merge"};
   for (const char* shard : {"0", "1", "2", "3"}) {
@@ -377,83 +342,49 @@ TEST_F(SweepShards, AreNotOverwrittenByTheirTable) {
   EXPECT_EQ(test::files_below(directory_ / "out"), before);
 }
 
-TEST_F(SweepShards, ShowHowFarTheyAre) {
-  const auto status = [&] { return hapbench({"sweep", "--status", (directory_ / "out").string(), "--json"}); };
-  EXPECT_EQ(status().status, 2) << "there is no such directory";
-  ASSERT_EQ(sweep("out", {"--shard", "1/4"}).status, 0);
-  {
-    // A killed process leaves a journal like this.
-    test::write_plainly(directory_ / "out/sweep_shard_2_of_4.journal", "title\nrow\nrow\n");
+/// As Slurm would run them: a task for each shard, of which one is given again, and the last joins the tables.
+TEST_F(SweepShards, AreTasksOfTheScriptForSlurm) {
+  const auto task = [&](const std::string& number, Words more) {
+    more.insert(more.begin(), {"HAPBENCH=" + test::hapbench_program().string(), "SLURM_ARRAY_TASK_COUNT=3",
+                               "SLURM_ARRAY_TASK_ID=" + number, HAPBENCH_SCENARIOS "/../scripts/sweep.sbatch"});
+    return test::run_program("/usr/bin/env", more);
+  };
+  for (const char* number : {"1", "1", "0", "2"}) {
+    EXPECT_FALSE(fs::exists(directory_ / "it's/sweep.csv"));
+    const ProgramRun run = task(number, words("it's"));
+    EXPECT_EQ(run.status, 0) << run.err;
   }
-  const Json json = status().json();
-  EXPECT_EQ(json["runs"], 24);
-  EXPECT_EQ(json["runs_done"], 8);
-  EXPECT_EQ(json["merged"], false);
-  Words states;
-  for (const Json& shard : json["shards"]) states.push_back(shard["state"]);
-  EXPECT_EQ(states, (Words{"missing", "done", "failed", "missing"}));
-  const ProgramRun shown = hapbench({"sweep", "--status", (directory_ / "out").string()});
-  EXPECT_NE(shown.out.find("4 shards: 1 done, 0 running, 0 waiting, 1 failed, 2 missing; 8 of 24 runs; not merged\n"),
-            std::string::npos)
-      << shown.out;
-  sweep("out", {"--shard", "0/3"});
-  const ProgramRun mixed = hapbench({"sweep", "--status", (directory_ / "out").string()});
-  EXPECT_EQ(mixed.status, 2);
-  EXPECT_NE(mixed.err.find("holds shards of several sweeps (of 3 and of 4)"), std::string::npos) << mixed.err;
-}
-
-TEST_F(SweepShards, HaveScriptsForSlurmThatADryRunDoesNotSubmit) {
-  const Words slurm = {"--slurm", "4", "--dry-run", "--time", "2:00:00", "--cpus", "2", "--partition", "short"};
-  ASSERT_EQ(sweep("it's", {"--shard", "1/4"}).status, 0);
-  const ProgramRun run = sweep("it's", slurm);
-  ASSERT_EQ(run.status, 0) << run.err;
-  const std::string script = read_file(directory_ / "it's/sweep.sbatch"),
-                    merge = read_file(directory_ / "it's/merge.sbatch");
-  EXPECT_NE(run.out.find(script), std::string::npos) << run.out;
-  EXPECT_NE(run.out.find(merge), std::string::npos) << run.out;
-  for (const char* line : {"\n#SBATCH --array=0,2-3\n", "\n#SBATCH --time=2:00:00\n", "\n#SBATCH --cpus-per-task=2\n",
-                           "\n#SBATCH --partition=short\n", "\n#SBATCH --requeue\n"}) {
-    EXPECT_NE(script.find(line), std::string::npos) << line;
-  }
-  EXPECT_FALSE(fs::exists(directory_ / "it's/sweep_slurm.json"));
-  // They do what Slurm would have them do: each task its shard, then the merge.
-  for (const char* task : {"0", "2", "3"}) {
-    const std::string text = "SLURM_ARRAY_TASK_ID=" + std::string(task) + "\n" + script;
-    EXPECT_EQ(test::run_program("/bin/bash", {"-c", text}).status, 0);
-  }
-  EXPECT_EQ(test::run_program("/bin/bash", {"-c", merge}).status, 0);
   sweep("whole");
-  for (const char* file : {"sweep.csv", "sweep.json"}) {
+  for (const char* file : {"sweep.csv", "sweep.json"})
     EXPECT_EQ(read_file(directory_ / "it's" / file), read_file(directory_ / "whole" / file)) << file;
-  }
-}
-
-/// A line break in the path would begin a line of the script.
-TEST_F(SweepShards, HaveNoScriptsWhosePathEndsALine) {
-  const ProgramRun run = sweep("x\"\ntouch here\n#", {"--slurm", "2", "--dry-run"});
-  EXPECT_EQ(run.status, 2);
-  EXPECT_EQ(run.out, "");
-  EXPECT_NE(run.err.find("a path with a control character"), std::string::npos) << run.err;
-}
-
-TEST_F(SweepShards, AreNotSubmittedBesideAnotherSweep) {
-  ASSERT_EQ(sweep("out", {"--shard", "1/4"}).status, 0);
-  const ProgramRun run = sweep("out", {"--slurm", "4", "--dry-run", "--set", "seed=9"});
-  EXPECT_EQ(run.status, 2);
-  EXPECT_NE(run.err.find("sweep_shard_1_of_4.csv: is of another sweep"), std::string::npos) << run.err;
+  const ProgramRun homeless = task("0", {"single_spring"});
+  EXPECT_EQ(homeless.status, 2);
+  EXPECT_NE(homeless.err.find("--out FOLDER is missing"), std::string::npos) << homeless.err;
 }
 
 TEST(SweepThreads, ThatCannotAllBeStartedEndItWithAReason) {
   const test::TemporaryDirectory directory;
   // Each has a stack of some megabytes.
-  const ProgramRun run = hapbench({"sweep", "tap_wall", "--vary", "seed=1:400:400", "--jobs", "200", "--memory", "64M",
-                                   "--out", directory / "out"});
+  const ProgramRun run =
+      hapbench({"sweep", "tap_wall", "--vary", "seed=1:400:400", "--jobs", "200", "--out", directory / "out"},
+               {.memory_limit = std::size_t{1} << 30});
   EXPECT_EQ(run.signal, 0);
-#ifndef HAPBENCH_SANITIZED  // the kernel keeps no limit under sanitizers
+#ifndef HAPBENCH_SANITIZED  // which reserve more addresses
   EXPECT_EQ(run.status, 1);
-  EXPECT_NE(run.err.find("if threads or memory ran short: fewer --jobs, or a larger --memory"), std::string::npos)
-      << run.err;
+  EXPECT_NE(run.err.find("if threads or memory ran short: fewer --jobs"), std::string::npos) << run.err;
 #endif
+}
+
+/// 16 million points, which are allowed, in less memory than they take.
+TEST(Memory, ThatIsNotThereEndsACommandWithAReason) {
+#ifdef HAPBENCH_SANITIZED
+  GTEST_SKIP() << "sanitizers reserve more addresses";
+#endif
+  const ProgramRun run =
+      hapbench({"run", "poke_plane", "--set", "environment.spacing_m=1e-6"}, {.memory_limit = 500'000'000});
+  EXPECT_EQ(run.signal, 0);
+  EXPECT_EQ(run.status, 1);
+  EXPECT_NE(run.err.find("out of memory; allowed: "), std::string::npos) << run.err;
 }
 
 }  // namespace

@@ -24,8 +24,8 @@
 #include "tests/scenarios/support/program.hpp"
 #include "tests/scenarios/support/scenarios.hpp"
 
-/// The program at a terminal: widths, lists, descriptions, manual page, completions; where results may go, and
-/// where the program finds its files.
+/// The program at a terminal: widths, lists, descriptions, completion; where results may go, and where the program
+/// finds its files.
 namespace hapbench::terminal_test {
 namespace {
 
@@ -35,10 +35,13 @@ using test::hapbench_here;
 using test::lines_of;
 using test::ProgramRun;
 
-/// The words that the shell offers at the end of a command line; `words` as bash has broken them.
-std::vector<std::string> offered(std::vector<std::string> words) {
-  words.insert(words.begin(), "complete");
-  return lines_of(hapbench(words).out);
+/// The names of the commands, as the help has them.
+std::vector<std::string> command_names() {
+  const std::string help = hapbench({"--help"}).out;
+  std::vector<std::string> names;
+  for (const std::string& line : lines_of(help.substr(help.find("\nCommands:\n") + 1)))
+    if (line.starts_with("  ") && line[2] != ' ') names.push_back(line.substr(2, line.find(' ', 2) - 2));
+  return names;
 }
 
 std::size_t widest(const std::string& text) {
@@ -54,7 +57,7 @@ ProgramRun in_terminal(const std::vector<std::string>& arguments, std::size_t co
 }
 
 TEST(Terminal, HasEveryHelpInItsWidth) {
-  std::vector<std::string> commands = offered({""});
+  const std::vector<std::string> commands = command_names();
   ASSERT_GE(commands.size(), 17u);
   for (const std::string& command : commands) {
     const ProgramRun help = in_terminal({command, "--help"}, 80);
@@ -113,39 +116,23 @@ TEST(List, SaysWhatEverythingIs) {
   for (const Json& entry : hapbench({"list", "--json"}).json()) EXPECT_NE(entry["summary"], "") << entry;
 }
 
-/// As bash itself asks for it: by the name that is found in PATH, and by a path with the backslashes it is typed with.
-TEST(Completion, WorksInBash) {
-  const test::TemporaryDirectory directory;
-  const fs::path folder = directory / "a b'\xc3\xa4";
-  fs::create_directory(folder);
-  fs::create_symlink(test::hapbench_program(), folder / "hapbench");
-  const std::string script = R"(PATH=$0:$PATH; source <(hapbench completion bash); complete -p hapbench
-for name in hapbench "$1"; do
-  COMP_WORDS=("$name" run peg_in_hole_2d_summ); COMP_CWORD=2; _hapbench "$name"
-  printf '%s\n' "${COMPREPLY[@]}"
-done)";
-  const std::string typed = (directory / "a\\ b\\'\xc3\xa4/hapbench").string();
-  const ProgramRun run = test::run_program("/bin/bash", {"--norc", "-c", script, folder.string(), typed});
-  EXPECT_EQ(run.status, 0) << run.err;
-  EXPECT_EQ(lines_of(run.out), (std::vector<std::string>{"complete -o default -F _hapbench hapbench",
-                                                         "peg_in_hole_2d_summation", "peg_in_hole_2d_summation"}));
-  EXPECT_EQ(run.err, "");
-  EXPECT_TRUE(hapbench({"completion", "zsh"}).out.ends_with(hapbench({"completion", "bash"}).out));
-  EXPECT_EQ(hapbench({"completion", "tcsh"}).status, 2);
+std::string completion_script() {
+  return test::run_program(HAPBENCH_SCENARIOS "/../scripts/completion", {test::hapbench_program().string()}).out;
 }
 
-TEST(ManualPage, HasEveryCommandAndIsTakenByManWithoutAWarning) {
-  const std::string page = hapbench({"man"}).out;
-  for (const std::string& command : offered({""}))
-    EXPECT_NE(page.find("\n.SS " + command + "\n"), std::string::npos) << command;
-  EXPECT_NE(page.find("\\fB\\-\\-algorithms\\fR"), std::string::npos);
-  if (!fs::exists("/usr/bin/man")) GTEST_SKIP() << "no man here";
-  const test::TemporaryDirectory directory;
-  test::write_plainly(directory / "hapbench.1", page);
-  const ProgramRun run = test::run_program("/usr/bin/man", {"--warnings", "-l", (directory / "hapbench.1").string()});
-  EXPECT_EQ(run.status, 0);
+/// As bash itself asks for it.
+TEST(Completion, KnowsEveryCommandAndItsOptionsInBash) {
+  const std::string script = completion_script() + R"(
+complete -p hapbench
+COMP_WORDS=(hapbench); COMP_CWORD=1; _hapbench; printf '%s\n' "${COMPREPLY[@]}"
+COMP_WORDS=(hapbench run --lat); COMP_CWORD=2; _hapbench; printf '%s\n' "${COMPREPLY[@]}")";
+  const ProgramRun run = test::run_program("/bin/bash", {"--norc", "-c", script});
   EXPECT_EQ(run.err, "");
-  EXPECT_NE(run.out.find("EXIT STATUS"), std::string::npos);
+  const std::vector<std::string> offered = lines_of(run.out);
+  EXPECT_EQ(offered.front(), "complete -o default -F _hapbench hapbench");
+  EXPECT_EQ(offered.back(), "--latency");
+  for (const std::string& command : command_names())
+    EXPECT_NE(std::find(offered.begin(), offered.end(), command), offered.end()) << command;
 }
 
 TEST(Version, HasAsJsonWhatMadeTheProgramAndWhatItPromises) {
@@ -169,9 +156,7 @@ TEST(Installation, HasItsScenariosBesideTheProgramAndMissesThemAloud) {
     EXPECT_EQ(run.status, 0) << run.err;
   }
   EXPECT_EQ(test::run_program(program, {"list"}).out, hapbench({"list"}).out);
-  EXPECT_EQ(test::read_file(directory / "share/man/man1/hapbench.1"), hapbench({"man"}).out);
-  EXPECT_EQ(test::read_file(directory / "share/bash-completion/completions/hapbench"),
-            hapbench({"completion", "bash"}).out);
+  EXPECT_EQ(test::read_file(directory / "share/bash-completion/completions/hapbench"), completion_script());
   const ProgramRun claim = test::run_program(program, {"reproduce", "--only", "A2", "--out", out});
   EXPECT_EQ(claim.status, 0) << claim.err;
 
@@ -319,32 +304,12 @@ TEST(DescribeCommand, ExplainsEveryColumnOfEveryFileOfARun) {
   }
 }
 
-class ValidateCommand : public testing::Test {
- protected:
-  std::string write(const std::string& name, const std::string& text) const {
-    test::write_plainly(directory_ / name, text);
-    return (directory_ / name).string();
-  }
-  test::TemporaryDirectory directory_;
-};
-
-TEST_F(ValidateCommand, AcceptsEveryBundledScenario) {
-  std::vector<std::string> arguments = {"validate"};
-  for (const BundledScenario& bundled : bundled_scenarios()) arguments.push_back(bundled.file.string());
-  const ProgramRun run = hapbench(arguments);
-  EXPECT_EQ(run.status, 0) << run.err;
-  EXPECT_EQ(run.err, "");
-  const auto lines = lines_of(run.out);
-  EXPECT_EQ(
-      std::count_if(lines.begin(), lines.end(), [](const std::string& line) { return line.ends_with(": valid"); }),
-      static_cast<std::ptrdiff_t>(arguments.size() - 1));
-}
-
-TEST_F(ValidateCommand, WritesNothing) {
+TEST(ValidateCommand, WritesNothing) {
+  const test::TemporaryDirectory directory;
   test::ProgramOptions options;
-  options.directory = directory_.path();
-  hapbench({"validate", "single_spring"}, options);
-  EXPECT_EQ(directory_.entries(), std::vector<std::string>{});
+  options.directory = directory.path();
+  EXPECT_EQ(hapbench({"validate", "single_spring"}, options).status, 0);
+  EXPECT_EQ(directory.entries(), std::vector<std::string>{});
 }
 
 /// The command line itself, and where results may go.

@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "device_model/theory/linear_loops.hpp"
-#include "results/summary/summary.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/run/stop_signal.hpp"
@@ -167,35 +166,6 @@ TEST(HeldContacts, HoldTheSpringForceOfEveryAlgorithm) {
     EXPECT_GT(held, 200u);
     EXPECT_GT(changes, 50u);
   }
-}
-
-TEST(LateContacts, ReportTheirAge) {
-  auto overrides = late(4, 3, "hold");
-  overrides.emplace_back("time.steps=103");
-  LoadedScenario loaded;
-  loaded.scenario = bundled("single_spring", overrides);
-  const auto metrics_of = [&] {
-    std::map<std::string, double> values;
-    for (const Metric& metric : metric_list(run_scenario(loaded, std::nullopt, false).summary))
-      if (const auto* number = std::get_if<double>(&metric.value)) values[metric.name] = *number;
-    return values;
-  };
-  // Rows 3 to 102 use contacts that are 3, 4, 5, 6, 3, … rows old.
-  auto metrics = metrics_of();
-  EXPECT_DOUBLE_EQ(metrics.at("contacts.age_p50_s"), 4 * 0.0005);
-  EXPECT_DOUBLE_EQ(metrics.at("contacts.age_p95_s"), 6 * 0.0005);
-  EXPECT_DOUBLE_EQ(metrics.at("contacts.age_max_s"), 6 * 0.0005);
-  EXPECT_EQ(metrics.at("contacts.lost_share"), 0.0);
-  loaded.scenario.rendering.late->dropout = 0.5;
-  metrics = metrics_of();
-  const double lost = metrics.at("contacts.lost_share");
-  EXPECT_NEAR(lost, 0.5, 0.3);  // three standard deviations of 25 draws
-  EXPECT_GT(metrics.at("contacts.age_max_s"), 6 * 0.0005);
-  EXPECT_EQ(metrics_of(), metrics);
-  std::set<double> ages;
-  for (loaded.scenario.seed = 2; loaded.scenario.seed < 6; ++loaded.scenario.seed)
-    ages.insert(metrics_of().at("contacts.lost_share"));
-  EXPECT_GT(ages.size(), 1u);
 }
 
 // A trace.

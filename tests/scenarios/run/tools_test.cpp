@@ -70,21 +70,6 @@ TEST(ScenarioTool, HasTheSizeItsFieldsSay) {
   EXPECT_FALSE(tool_of(kHourglass)->convex());
 }
 
-/// The expected memory of a run includes the grid of its tool.
-TEST(ScenarioTool, OfAMeshTakesTheMemoryOfItsGrid) {
-  for (const std::string& spacing : {std::string("0.00005"), std::string("null")}) {
-    Json fields = Json::parse(kCube);
-    fields["grid_m"] = Json::parse(spacing);
-    const LoadedScenario scenario = loaded(scene(fields.dump()));
-    const auto tool = make_tool(scenario.scenario, scenario.files);
-    const auto& grid = dynamic_cast<const MeshTool&>(*tool).grid();
-    // Kernels read one number beyond the last node.
-    EXPECT_EQ(tool_memory(scenario.scenario, scenario.files), static_cast<double>(grid.bytes() - sizeof(double)));
-  }
-  const LoadedScenario cylinder = loaded(scene(R"({"diameter_m": 0.002})"));
-  EXPECT_EQ(tool_memory(cylinder.scenario, cylinder.files), 0.0);
-}
-
 /// The tool's frame at its tip, on whichever face of the cube that is; with it the box lies behind the tip centre.
 TEST(ScenarioTool, OfAMeshHasItsTipWhereItsFieldsSay) {
   for (const auto& [place, axis] : {std::pair{"[0.0005, 0, 0]", "[2, 0, 0]"},

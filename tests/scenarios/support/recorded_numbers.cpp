@@ -128,8 +128,6 @@ RecordedNumbers numbers_below(const fs::path& directory) {
       const Json summary = Json::parse(contents);
       for (const auto& [group, metrics] : summary.at("metrics").items()) add_numbers(hashes[file][group], metrics);
       if (name == file) numbers[file]["state_hash"] = summary.at("state_hash");
-    } else if (file.starts_with("worst_") && file.ends_with(".json")) {
-      add_numbers(hashes[file]["numbers"], Json::parse(contents));
     }
   }
   // Half of each hash: a change that it does not see has a chance of 2^-32.

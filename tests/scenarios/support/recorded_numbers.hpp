@@ -19,8 +19,7 @@ namespace hapbench::test {
 using RecordedNumbers = std::map<std::string, std::map<std::string, std::string>>;
 using NumbersByName = std::map<std::string, RecordedNumbers>;
 
-/// The numbers of a directory of results: of all CSV files, of the metrics in files summary.json, and of the scenarios
-/// worst_*.json, which a search for the worst motion writes.
+/// The numbers of a directory of results: of all CSV files, and of the metrics in files summary.json.
 RecordedNumbers numbers_below(const std::filesystem::path& directory);
 
 /// Compares numbers by name with those on record; fails where any differs, is missing or, among names that do or do not

@@ -52,7 +52,6 @@ std::vector<NamedScenario> rich_scenarios() {
       "record": {"trajectory": true, "every": 2, "ratio_iterations": [0, 3], "contacts": true,
         "stiffness_tensor": true, "timing": true, "pose": true, "torque": true, "inside": true},
       "metrics": {"from_s": 0.5, "settling_s": 0},
-      "perception": {"force_jnd": 0.07, "least_force_N": 0.3, "band_Hz": {"from": 50, "to": 300}, "amplitude_at_250Hz_m": 2e-7},
       "expect": {"outcome": ["completes", "diverges"], "metrics": {"force_max_N": {"min": 0, "max": 1e6},
         "ratio_max": {}}}})")},
           {"drilled_block", Json::parse(R"({

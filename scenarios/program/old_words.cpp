@@ -1,0 +1,49 @@
+#include <string_view>
+
+#include "scenarios/program/command_line.hpp"
+
+namespace hapbench {
+namespace {
+
+struct OldWord {
+  std::string_view command;  ///< of an option; empty for a command, "*" for an option of every command
+  std::string_view word;
+  std::string_view instead;
+};
+
+constexpr std::string_view kSampleOfHands =
+    "hapbench sweep SCENE --sample lhs:400 --vary hand.x_N=-5:5, with a hand of type \"force\"";
+
+constexpr std::string_view kSlurm = "sbatch --array=0-99 scripts/sweep.sbatch SCENE --vary ... --out FOLDER";
+
+/// By command, so that what one command lost stands together.
+constexpr OldWord kOldWords[] = {
+    {"*", "--memory", "ulimit -d KILOBYTES before the command; without it three quarters of what is free"},
+    {"", "complete", "scripts/completion, which prints a completion for bash"},
+    {"", "completion", "scripts/completion, which prints a completion for bash"},
+    {"", "man", "hapbench --help, and --help of each command"},
+    {"", "suite", "hapbench compare GROUP --algorithms all --seeds 5"},
+    {"plot", "--no-sketch", "the same without it: plot draws no sketches"},
+    {"reproduce", "--subjects",
+     "their record, in the manual of the thesis's claims (scenarios/thesis_claims/README.md)"},
+    {"stability", "--evaluations", kSampleOfHands},
+    {"stability", "--objective", kSampleOfHands},
+    {"stability", "--search", kSampleOfHands},
+    {"sweep", "--cpus", kSlurm},
+    {"sweep", "--dry-run", kSlurm},
+    {"sweep", "--partition", kSlurm},
+    {"sweep", "--slurm", kSlurm},
+    {"sweep", "--status", "squeue, and the tables sweep_shard_I_of_N.csv that are in the folder"},
+    {"sweep", "--time", kSlurm},
+};
+
+}  // namespace
+
+std::string_view instead_of(std::string_view command, std::string_view word) {
+  for (const OldWord& old : kOldWords) {
+    if (old.word == word && (old.command == command || old.command == "*")) return old.instead;
+  }
+  return {};
+}
+
+}  // namespace hapbench

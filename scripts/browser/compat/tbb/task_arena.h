@@ -1,1 +1,0 @@
-#include "tbb/serial.hpp"

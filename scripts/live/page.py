@@ -1,0 +1,100 @@
+"""Puts the live page together: page.py ENGINE.wasm OUT.html. scripts/live/make calls it."""
+import base64
+import gzip
+import json
+import sys
+from pathlib import Path
+
+from hapbench_report.markup import ASSETS, fill
+
+ROOT = Path(__file__).resolve().parents[2]
+PAGE = ROOT / "scripts" / "live" / "page"
+SCENARIOS = ROOT / "scenarios"
+REPLAY = ("replay_camera.js", "replay_scene.js", "replay_tool.js", "replay_field.js", "replay_tracks.js")
+
+def scenario_files():
+    """Bundled scenarios by name."""
+    return {file.stem: file for file in sorted(SCENARIOS.glob("*/*.json"))}
+
+
+def named_files(value):
+    """What a scenario names in fields called "file"."""
+    if isinstance(value, dict):
+        for key, part in value.items():
+            yield from [part] if key == "file" and isinstance(part, str) else named_files(part)
+    elif isinstance(value, list):
+        for part in value:
+            yield from named_files(part)
+
+
+def packed_files(scenes):
+    """The bundled scenarios, and the files that those of the page name, by their paths in the page."""
+    bundled = scenario_files()
+    place = lambda file: f"/scenarios/{file.relative_to(SCENARIOS).as_posix()}"
+    files = {place(file): file.read_text(encoding="utf-8") for file in bundled.values()}
+    for scene in scenes:
+        name = scene["scenario"]
+        while name:
+            scenario = json.loads(bundled[name].read_text(encoding="utf-8"))
+            for named in named_files(scenario):
+                file = bundled[name].parent / named
+                files[place(file)] = file.read_text(encoding="utf-8")
+            name = Path(scenario["extends"]).stem if "extends" in scenario else None
+    return files
+
+
+def values_of(schema, name):
+    """Every value that the schema has for a property of this name."""
+    if isinstance(schema, dict):
+        if name in schema.get("properties", {}):
+            yield schema["properties"][name]
+        for part in schema.values():
+            yield from values_of(part, name)
+    elif isinstance(schema, list):
+        for part in schema:
+            yield from values_of(part, name)
+
+
+def first_value(schema, name, key):
+    return next(value for value in values_of(schema, name) if key in value)[key]
+
+
+def choices(schema):
+    """Laws, devices and stages, as the schema has them."""
+    stages = [kind["const"] for kind in values_of(first_value(schema, "force_stage", "anyOf"), "type")]
+    return {
+        "laws": first_value(schema, "algorithm", "enum"),
+        "devices": [{"title": "as in the scene", "set": []}, {"title": "ideal", "set": ['device={"type":"ideal"}']},
+                    {"title": "the trainer's (admittance)", "set": ['device={"type":"admittance"}']},
+                    *({"title": f"{preset} (impedance)", "set": [f'device={{"type":"impedance","preset":"{preset}"}}']}
+                      for preset in first_value(schema, "preset", "enum"))],
+        "stages": [{"title": "none", "set": []}, {"title": "angular damping", "set": ["rendering.angular_damping=true"]},
+                   {"title": "passivity controller", "set": ["rendering.passivity_controller=true"]},
+                   *({"title": stage.replace("_", " "), "set": [f'rendering.force_stage={{"type":"{stage}"}}']} for stage in stages)],
+    }
+
+
+def pressed(content):
+    """Text for the page; the same for the same content."""
+    return base64.b64encode(gzip.compress(content, mtime=0)).decode()
+
+
+def page(engine):
+    scenes = json.loads((PAGE / "scenes.json").read_text(encoding="utf-8"))
+    schema = json.loads((SCENARIOS / "scenario.schema.json").read_text(encoding="utf-8"))
+    read = lambda folder, *names: "\n".join((folder / name).read_text(encoding="utf-8") for name in names)
+    data = {"engine": pressed(engine), "files": pressed(json.dumps(packed_files(scenes)).encode()), "scenes": scenes, **choices(schema)}
+    return fill(PAGE / "live.html", {
+        "style": read(ASSETS, "style.css", "replay.css") + read(PAGE, "live.css"),
+        "sides": "\n".join(fill(PAGE / "side.html", {"which": str(i)}) for i in (1, 2)),
+        "data": json.dumps(data).replace("</", "<\\/"),
+        "worker": '"use strict";\n' + read(PAGE, "engine.js", "worker.js"),
+        "script": "\n".join((read(ASSETS, "theme.js", *REPLAY), read(PAGE, "engine.js", "live_sound.js", "live_view.js", "live_hands.js", "live.js"))),
+    })
+
+
+engine, out = map(Path, sys.argv[1:])
+text = page(engine.read_bytes())
+out.parent.mkdir(parents=True, exist_ok=True)
+out.write_text(text, encoding="utf-8")
+print(f"{out} ({len(text) / 1e6:.1f} MB)")

@@ -1,1 +1,0 @@
-"""scripts/bench: measures ratios, tells what is met, and compares two commits."""

@@ -1,1 +1,0 @@
-"""Generated parts of the manuals, and the commands and links in them."""

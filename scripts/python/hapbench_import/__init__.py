@@ -1,1 +1,0 @@
-"""Makes strokes to play back from recordings: the work behind `hapbench import`."""

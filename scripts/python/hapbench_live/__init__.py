@@ -1,1 +1,0 @@
-"""The live page: the engine and its scenes as one file."""

@@ -1,1 +1,0 @@
-"""Pictures of a user's own runs: `hapbench plot` and `hapbench report`."""

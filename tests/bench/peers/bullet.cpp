@@ -1,0 +1,89 @@
+#include <btBulletCollisionCommon.h>
+
+#include <memory>
+#include <vector>
+
+#include "tests/bench/peers/contact_library.hpp"
+
+/// Bullet in double precision: its cylinder against a quantised tree of boxes over static triangles, in millimetres
+/// because its margins and thresholds are made for lengths of about 1. Each triangle that the cylinder meets is a
+/// contact. Depth and direction are those that its GJK and EPA find for the pair.
+namespace hapbench::bench {
+namespace {
+
+constexpr double kMillimetres = 1e3;
+
+/// Collects the contacts of one pair.
+class Taker final : public btCollisionWorld::ContactResultCallback {
+ public:
+  Taker(std::span<HapbenchContact> room, const btCollisionObject& tool) : room_(room), tool_(&tool) {}
+
+  btScalar addSingleResult(btManifoldPoint& point, const btCollisionObjectWrapper* a, int, int index_a,
+                           const btCollisionObjectWrapper*, int, int index_b) override {
+    if (point.getDistance() > 0.0 || found == room_.size()) return 0.0;
+    // The normal points from the second object to the first.
+    const bool tool_is_first = a->getCollisionObject() == tool_;
+    const btVector3 u = tool_is_first ? -point.m_normalWorldOnB : point.m_normalWorldOnB;
+    const btVector3 at = (tool_is_first ? point.m_positionWorldOnB : point.m_positionWorldOnA) / kMillimetres;
+    room_[found++] = {.index = static_cast<std::uint32_t>(tool_is_first ? index_b : index_a),
+                      .point = {at.x(), at.y(), at.z()},
+                      .gradient = {u.x(), u.y(), u.z()},
+                      .depth = -point.getDistance() / kMillimetres};
+    return 0.0;
+  }
+
+  std::size_t found = 0;
+
+ private:
+  std::span<HapbenchContact> room_;
+  const btCollisionObject* tool_;
+};
+
+class Bullet {
+ public:
+  Bullet(const HapbenchSurface& surface, const HapbenchTool& drill)
+      : vertices_(surface.vertices, surface.vertices + 3 * surface.vertex_count),
+        triangles_(surface.triangles, surface.triangles + 3 * surface.triangle_count),
+        drill_(btVector3(drill.radius, drill.radius, drill.length / 2.0) * kMillimetres) {
+    for (double& x : vertices_) x *= kMillimetres;
+    indices_ = std::make_unique<btTriangleIndexVertexArray>(
+        static_cast<int>(triangles_.size() / 3), triangles_.data(), static_cast<int>(3 * sizeof(int)),
+        static_cast<int>(vertices_.size() / 3), vertices_.data(), static_cast<int>(3 * sizeof(double)));
+    mesh_ = std::make_unique<btBvhTriangleMeshShape>(indices_.get(), true);
+    mesh_->setMargin(0.0);
+    drill_.setMargin(1e-3);
+    surface_.setCollisionShape(mesh_.get());
+    tool_.setCollisionShape(&drill_);
+  }
+
+  std::size_t contacts_at(const HapbenchPose& pose, std::span<HapbenchContact> room) {
+    const auto& r = pose.rotation;
+    const btMatrix3x3 rotation(r[0], r[1], r[2], r[3], r[4], r[5], r[6], r[7], r[8]);
+    const btVector3 centre(pose.centre[0], pose.centre[1], pose.centre[2]);
+    tool_.setWorldTransform(btTransform(rotation, centre * kMillimetres));
+    Taker taker(room, tool_);
+    world_.contactPairTest(&surface_, &tool_, taker);
+    return taker.found;
+  }
+
+ private:
+  std::vector<double> vertices_;
+  std::vector<int> triangles_;
+  btCylinderShapeZ drill_;
+  std::unique_ptr<btTriangleIndexVertexArray> indices_;
+  std::unique_ptr<btBvhTriangleMeshShape> mesh_;
+  btDefaultCollisionConfiguration configuration_;
+  btCollisionDispatcher dispatcher_{&configuration_};
+  btDbvtBroadphase broadphase_;
+  btCollisionWorld world_{&dispatcher_, &broadphase_, &configuration_};
+  btCollisionObject surface_, tool_;
+};
+
+}  // namespace
+
+const HapbenchContactSource& bullet() {
+  static const HapbenchContactSource library = contact_library<Bullet>("bullet");
+  return library;
+}
+
+}  // namespace hapbench::bench

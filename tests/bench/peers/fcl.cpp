@@ -1,0 +1,63 @@
+#include <fcl/geometry/bvh/BVH_model.h>
+#include <fcl/geometry/shape/cylinder.h>
+#include <fcl/narrowphase/collision.h>
+
+#include "tests/bench/peers/contact_library.hpp"
+
+/// FCL: its cylinder against triangles in a tree of oriented boxes with rectangle swept spheres, its default for
+/// meshes. Each triangle that the cylinder meets is a contact. Depth and direction are those of the shortest
+/// translation that separates the two, as libccd approximates it (EPA).
+namespace hapbench::bench {
+namespace {
+
+using Surface = fcl::BVHModel<fcl::OBBRSSd>;
+
+class Fcl {
+ public:
+  Fcl(const HapbenchSurface& surface, const HapbenchTool& drill) {
+    std::vector<fcl::Vector3d> vertices;
+    for (std::size_t i = 0; i < 3 * surface.vertex_count; i += 3)
+      vertices.emplace_back(surface.vertices[i], surface.vertices[i + 1], surface.vertices[i + 2]);
+    std::vector<fcl::Triangle> triangles;
+    for (std::size_t i = 0; i < 3 * surface.triangle_count; i += 3)
+      triangles.emplace_back(surface.triangles[i], surface.triangles[i + 1], surface.triangles[i + 2]);
+    auto model = std::make_shared<Surface>();
+    model->beginModel();
+    model->addSubModel(vertices, triangles);
+    model->endModel();
+    surface_ = std::make_unique<fcl::CollisionObjectd>(model);
+    tool_ = std::make_unique<fcl::CollisionObjectd>(std::make_shared<fcl::Cylinderd>(drill.radius, drill.length));
+  }
+
+  std::size_t contacts_at(const HapbenchPose& pose, std::span<HapbenchContact> room) {
+    const auto& r = pose.rotation;
+    fcl::Matrix3d rotation;
+    rotation << r[0], r[1], r[2], r[3], r[4], r[5], r[6], r[7], r[8];
+    tool_->setTransform(rotation, fcl::Vector3d(pose.centre[0], pose.centre[1], pose.centre[2]));
+    const fcl::CollisionRequestd request(room.size(), true);
+    fcl::CollisionResultd result;
+    fcl::collide(surface_.get(), tool_.get(), request, result);
+    const std::size_t found = std::min(result.numContacts(), room.size());
+    for (std::size_t i = 0; i < found; ++i) {
+      const fcl::Contactd& c = result.getContact(i);
+      // The normal points from the first object, the surface, to the second.
+      room[i] = {.index = static_cast<std::uint32_t>(c.b1),
+                 .point = {c.pos.x(), c.pos.y(), c.pos.z()},
+                 .gradient = {-c.normal.x(), -c.normal.y(), -c.normal.z()},
+                 .depth = c.penetration_depth};
+    }
+    return found;
+  }
+
+ private:
+  std::unique_ptr<fcl::CollisionObjectd> surface_, tool_;
+};
+
+}  // namespace
+
+const HapbenchContactSource& fcl() {
+  static const HapbenchContactSource library = contact_library<Fcl>("fcl");
+  return library;
+}
+
+}  // namespace hapbench::bench

@@ -1,0 +1,99 @@
+#!/usr/bin/env bash
+# scripts/sweep.sbatch on a real Slurm: slurm_test.sh PROGRAM. A cluster of one node with four processors, this machine, with daemons,
+# ports, key and folder of its own. Status 77: there is no Slurm to test with.
+set -euo pipefail
+here=$(cd -- "$(dirname -- "${BASH_SOURCE[0]}")/../.." && pwd)
+export HAPBENCH=$1
+
+for tool in munged slurmctld slurmd sbatch setpriv; do
+  command -v "$tool" >/dev/null || { echo "no Slurm to test with, for want of $tool (scripts/setup --tests installs it)"; exit 77; }
+done
+((EUID == 0)) || { echo 'no Slurm to test with, for want of the rights of root, which its daemons need to start jobs'; exit 77; }
+
+folder=$(mktemp -d)
+host=$(hostname -s)
+export SLURM_CONF=$folder/slurm.conf
+end() {
+  scancel --full --signal=KILL --user=root 2>/dev/null || true
+  kill $(jobs -p) 2>/dev/null || true
+  wait
+  rm -rf "$folder"
+}
+trap end EXIT
+fail() { printf 'slurm_test: %s\n' "$1" >&2; tail -n 20 "$folder"/*.log >&2; exit 1; }
+free_port() { python3 -c 'import socket; s = socket.socket(); s.bind(("127.0.0.1", 0)); print(s.getsockname()[1])'; }
+# Each daemon is killed when this script ends, however it ends.
+start() { setpriv --pdeathsig=KILL "$@" & }
+
+mkdir "$folder"/{munge,state,spool}
+(umask 077; head -c 128 /dev/urandom >"$folder/munge/key")  # jobs run as root: nobody else is to submit any
+chown -R munge "$folder/munge"
+chmod 755 "$folder" "$folder/munge"
+echo 'CgroupPlugin=cgroup/v1' >"$folder/cgroup.conf"
+cat >"$SLURM_CONF" <<END
+ClusterName=hapbench
+SlurmctldHost=$host(127.0.0.1)
+SlurmctldPort=$(free_port)
+SlurmdPort=$(free_port)
+SlurmUser=root
+SlurmdUser=root
+AuthType=auth/munge
+AuthInfo=socket=$folder/munge/socket
+StateSaveLocation=$folder/state
+SlurmdSpoolDir=$folder/spool
+SlurmctldPidFile=$folder/slurmctld.pid
+SlurmdPidFile=$folder/slurmd.pid
+ProctrackType=proctrack/linuxproc
+TaskPlugin=task/none
+JobAcctGatherType=jobacct_gather/none
+MpiDefault=none
+SwitchType=switch/none
+SelectType=select/cons_tres
+SelectTypeParameters=CR_Core
+ReturnToService=2
+SchedulerParameters=batch_sched_delay=0,sched_min_interval=0
+SlurmdParameters=config_overrides
+NodeName=$host NodeAddr=127.0.0.1 CPUs=4 RealMemory=100 State=UNKNOWN
+PartitionName=main Nodes=$host Default=YES MaxTime=INFINITE State=UP
+END
+start --reuid=munge --regid=munge --clear-groups munged --foreground --socket="$folder/munge/socket" --key-file="$folder/munge/key" \
+  --pid-file="$folder/munge/pid" --seed-file="$folder/munge/seed" --log-file="$folder/munge/log"
+start slurmctld -D -i -L "$folder/slurmctld.log"
+start slurmd -D -L "$folder/slurmd.log"
+for ((attempt = 0; attempt < 1000; ++attempt)); do
+  [[ $(sinfo --noheader --format=%T 2>/dev/null) == idle ]] && break
+  sleep 0.2
+done
+[[ $(sinfo --noheader --format=%T) == idle ]] || fail 'the daemons of Slurm do not answer'
+
+# Runs of some 20 ms.
+sweep() { printf '%s\n' single_spring --set record.trajectory=false --set time.steps=100000 --vary "rendering.stiffness_N_per_m=1e3:1e4:$runs:log" --out "$folder/$1"; }
+submit() { mapfile -t words < <(sweep out) && sbatch --parsable --array=0-2 --output="$folder/task_%a.log" "$here/scripts/sweep.sbatch" "${words[@]}"; }
+wait_for_the_queue() { while [[ -n $(squeue --noheader) ]]; do sleep 0.2; done; }
+shard=$folder/out/sweep_shard_
+is_begun() { [[ -e $shard$1_of_3.csv ]] || (($(cat "$shard$1_of_3.journal" 2>/dev/null | wc -l) > 2)); }
+
+# Task 1 is killed, and task 0 stopped and requeued, as preemption does, once both have begun. With more runs, a busy machine leaves time
+# for that.
+for ((runs = 120; ; runs *= 4)); do
+  rm -rf "$folder/out"
+  array=$(submit)
+  until is_begun 0 && is_begun 1; do sleep 0.05; done
+  if scancel --full --signal=KILL "${array}_1" && scontrol requeue "${array}_0"; then
+    # It would wait for two minutes. In the second in which it was stopped, Slurm would refuse to start it again.
+    scontrol update JobId="${array}_0" StartTime=now+2seconds
+    wait_for_the_queue
+    [[ -e ${shard}1_of_3.csv ]] || break
+  fi
+  wait_for_the_queue
+done
+[[ -e ${shard}0_of_3.csv && -e ${shard}2_of_3.csv ]] || fail 'a task that was requeued, or left alone, has no table'
+[[ ! -e $folder/out/sweep.csv ]] || fail 'the tables are joined without that of the task that was killed'
+
+submit >/dev/null
+wait_for_the_queue
+mapfile -t words < <(sweep whole)
+"$HAPBENCH" sweep "${words[@]}" --quiet
+for file in sweep.csv sweep.json; do
+  cmp "$folder/out/$file" "$folder/whole/$file" || fail "$file is not that of one machine"
+done
