@@ -10,8 +10,12 @@
 
 namespace hapbench {
 
+Eigen::VectorXcd eigenvalues(const Eigen::MatrixXd& A) {
+  return Eigen::EigenSolver<Eigen::MatrixXd>(A, false).eigenvalues();
+}
+
 double spectral_radius(const Eigen::MatrixXd& A) {
-  return std::sqrt(Eigen::EigenSolver<Eigen::MatrixXd>(A, false).eigenvalues().cwiseAbs2().maxCoeff());
+  return std::sqrt(eigenvalues(A).cwiseAbs2().maxCoeff());
 }
 
 namespace {

@@ -12,6 +12,9 @@
 /// The loops of device, hand and wall, whose step is a linear map of their state, and where they become unstable.
 namespace hapbench {
 
+/// The eigenvalues of a square matrix, in no particular order.
+Eigen::VectorXcd eigenvalues(const Eigen::MatrixXd& A);
+
 /// Largest |eigenvalue| of a square matrix. Exact to rounding if its entries are of comparable size.
 double spectral_radius(const Eigen::MatrixXd& A);
 

@@ -1,11 +1,9 @@
 """The fields that hapbench prints, by its own word, and those without an answer."""
 import json
 import re
-from pathlib import Path
 
 from answers import PROGRAM, ran
 
-HERE = Path(__file__).resolve().parent
 # Members of JSON that say where and how, not what.
 NO_TABLES = {"run", "import"}  # commands whose JSON does not repeat a table
 NO_WORDS = {"file of the results"}

@@ -366,8 +366,7 @@ class Tuner {
     const double lambda = springs_lambda_.value_or(choice.lambda_max);
     if (!(lambda > 0.0)) return margins;
     for (const auto& [hand, step] : contact_loops(scenario, lambda, over_hands_)) {
-      const Eigen::VectorXcd modes = Eigen::EigenSolver<Eigen::MatrixXd>(step, false).eigenvalues();
-      for (const std::complex<double>& z : modes) {
+      for (const std::complex<double>& z : eigenvalues(step)) {
         const double size = math::hypot(z.real(), z.imag());
         if (size < 1e-9) continue;  // a delay line
         const double decay = -math::log(size), ratio = decay / math::hypot(decay, math::atan2(z.imag(), z.real()));
