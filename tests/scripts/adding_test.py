@@ -357,6 +357,7 @@ class Adding(unittest.TestCase):
         self.hapbench("run", "scene.json", "--out", "out", "--quiet")
         summary = json.loads((self.folder / "out/summary.json").read_text())
         self.assertAlmostEqual(summary["metrics"]["inside_max_m"], 1e-5, delta=1e-6)
+        self.assertIn("went_through", self.hapbench("run", "scene.json", "--set", "environment.height_m=0.003", "--out", "deep", status=3))
         silent = (self.scratch / "tree/scenarios/description/environments.cpp").read_text().replace(INSIDE, "")
         done = subprocess.run(["c++", "-std=c++20", "-fsyntax-only", "-DEIGEN_DONT_VECTORIZE", "-I", self.scratch / "tree", "-isystem",
                                "/usr/include/eigen3", "-x", "c++", "-"], input=silent, capture_output=True, text=True)
@@ -448,7 +449,7 @@ class Adding(unittest.TestCase):
         self.write(hand={"type": "push", "force_N": 1, "file": "stroke.csv"})
         stroke = "time_s,px_m,py_m,pz_m,axis_x,axis_y,axis_z\n0,0,0,0,0,0,-1\n"
         (self.folder / "stroke.csv").write_text(stroke)
-        vary = ["--vary", "environment.height_m=0.001,0.002", "--vary", "tool.width_m=0.002,0.003"]
+        vary = ["--vary", "environment.height_m=0.001,0.0011", "--vary", "tool.width_m=0.002,0.003"]
         self.hapbench("sweep", "scene.json", *vary, "--shard", "0/2", "--out", "sweep", "--quiet")
         of_sweep, header, *rows = (self.folder / "sweep/sweep_shard_0_of_2.csv").read_text().splitlines()
         self.assertIn("shard 0/2 of 4 runs", of_sweep)
