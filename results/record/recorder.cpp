@@ -18,12 +18,7 @@ namespace {
 
 /// Columns of trajectory.csv and what fills them in a row: a number, or a vector of as many.
 template <std::size_t n, class Cells>
-struct TrajectoryColumns {
-  std::array<Column, n> columns;
-  Cells cells;
-};
-template <std::size_t n, class Cells>
-constexpr TrajectoryColumns<n, Cells> filled(const Column (&columns)[n], Cells cells) {
+constexpr std::pair<std::array<Column, n>, Cells> filled(const Column (&columns)[n], Cells cells) {
   return {std::to_array(columns), cells};
 }
 
@@ -81,7 +76,7 @@ std::span<const Column> trajectory_columns(std::size_t groups) {
       const auto add = [&list = lists[choice]](const auto& columns) {
         list.insert(list.end(), columns.begin(), columns.end());
       };
-      std::apply([&](const auto&... part) { (add(part.columns), ...); }, kUsual);
+      std::apply([&](const auto&... part) { (add(part.first), ...); }, kUsual);
       for (std::size_t i = 0; i < all.size(); ++i)
         if (((choice >> i) & 1u) != 0) add(all[i].columns);
     }
@@ -257,7 +252,7 @@ RowSource trajectory_rows(const TrajectoryExtras& extras, const InsideObserver* 
       group->fill(record, inside, cells);
       cells += group->columns.size();
     }
-    std::apply([&](const auto&... part) { table.row(part.cells(record)..., more); }, kUsual);
+    std::apply([&](const auto&... part) { table.row(part.second(record)..., more); }, kUsual);
   };
   return source;
 }
