@@ -251,7 +251,7 @@ class StillnessObserver final : public Observer {
 
 }  // namespace hapbench
 """),
-        tree.edit('#include "results/observe/target_metrics.hpp"\n',
+        tree.edit('#include "results/observe/ideal_trajectory.hpp"\n#include "results/observe/target_metrics.hpp"\n',
                   '#include "results/observe/stillness.hpp"\n', before=True),
         tree.edit("const SectionKind kSections[] = {\n", """    {"stillness", [](const Scenario& s, bool) { return std::size_t{s.record.pose}; },
      [](const TrialParts&) -> std::unique_ptr<Observer> { return std::make_unique<StillnessObserver>(); },
