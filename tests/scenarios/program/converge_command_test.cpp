@@ -158,24 +158,5 @@ TEST_F(ConvergeCommand, SureSaysWhatItDoesNotKnow) {
   EXPECT_NE(unknown.find("2.103 +- ?"), std::string::npos) << "force_mean_in_contact_N\n" << unknown;
 }
 
-TEST_F(ConvergeCommand, RefusesWhatItCannotRefine) {
-  const auto refused = [&](const Words& more, const std::string& said) {
-    const ProgramRun run = hapbench(words(more));
-    EXPECT_EQ(run.status, 2) << said;
-    EXPECT_NE(run.err.find(said), std::string::npos) << run.err;
-  };
-  refused({"--vary", "tyme.step_s"}, "nearest valid name: \"time\"");
-  refused({"--vary", "time.steps"}, "a number > 0 and no integer");
-  refused({"--vary", "time.step_s=1e-4"}, "");
-  refused({"--ratio", "1.5"}, "whole numbers");
-  refused({"--ratio", "1"}, "more than 1, at most 10");
-  refused({"--levels", "2"}, "--levels");
-  refused({"--to", "5"}, "a relative error, as 1% or 0.01");
-  refused({"--metric", "force"}, "--metric: got \"force\"");
-  const Words seeds = {"compare", "springs_oscillation", "--sure", "--seeds", "2", "--out", file("out")};
-  EXPECT_EQ(hapbench(seeds).err.find("hapbench: error: --sure: got it beside --seeds"), 0u);
-  EXPECT_FALSE(fs::exists(directory_ / "out"));
-}
-
 }  // namespace
 }  // namespace hapbench::converge_command_test

@@ -75,21 +75,6 @@ TEST_F(TuneCommand, SaysWhatToRelaxAndWritesNoScenario) {
   EXPECT_FALSE(fs::exists(file("out/tap_wall_tuned.json")));
 }
 
-TEST_F(TuneCommand, RefusesWhatItCannotTune) {
-  const auto refused = [&](const Words& more, const std::string& said) {
-    const test::ProgramRun run = hapbench(words(more));
-    EXPECT_EQ(run.status, 2) << said;
-    EXPECT_NE(run.err.find(said), std::string::npos) << run.err;
-  };
-  refused({"--margin", "1"}, "more than 1, at most 16");
-  refused({"--max-inside", "deep"}, "--max-inside: got \"deep\"");
-  refused({"--device", "toch"}, "nearest valid name: \"touch\"");
-  refused({"--over", "hand"}, "nearest valid name: \"hands\"");
-  refused({"--damping-ratio", "0:1"}, "reaches 0");
-  EXPECT_EQ(hapbench({"tune", "recorded_wipe", "--out", file("out")}).status, 2) << "its motion is prescribed";
-  EXPECT_FALSE(fs::exists(directory_ / "out"));
-}
-
 TEST_F(TuneCommand, ExplainTellsOfRuns) {
   hapbench({"run", "drag_molar", "--out", file("calm"), "--quiet"});
   hapbench({"run", "drag_molar", "--set", "rendering.stiffness_N_per_m=2e6", "--out", file("stiff"), "--quiet"});
