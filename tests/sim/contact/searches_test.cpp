@@ -261,7 +261,7 @@ double worst_part_of_bound(const ToolShape& tool, double size, Random& random) {
 TEST(MostPoints, BoundWhatAnyToolHasNearItAnywhere) {
   Random random(5);
   double tightest = 0.0;
-  for (std::size_t i = 0; i < cases(2000); ++i) {
+  for (std::size_t i = 0; i < cases(20000); ++i) {
     const double size = std::pow(10.0, random.uniform(-4.0, 0.0));
     const Tip tip = random.below(2) == 0 ? Tip::flat : Tip::round;
     const Cylinder drill{size * random.uniform(0.01, 0.2), size * random.uniform(0.02, 3.0), tip};
