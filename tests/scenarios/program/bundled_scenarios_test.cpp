@@ -98,7 +98,7 @@ std::string summary_without_work(Json summary) {
 }
 
 // Another process, the scenario that the run wrote, the scalar build and brute force in place of skips: none of them
-// changes a byte. Scenarios of many steps are shortened; but for a soak it is every fourth, since brute force takes its
+// changes a byte. Scenarios of many steps are shortened; but for a soak it is every eighth, since brute force takes its
 // time.
 TEST_F(BundledScenarios, GiveTheSameBytesInTheScalarBuildWithoutSkipsFromTheirEffectiveScenarios) {
   const fs::path first = *directory_ / "first", again = *directory_ / "again",
@@ -113,7 +113,7 @@ TEST_F(BundledScenarios, GiveTheSameBytesInTheScalarBuildWithoutSkipsFromTheirEf
     const auto warns_of_it = [start = "hapbench: warning: " + bundled.name + ": "](const std::string& warning) {
       return warning.starts_with(start);
     };
-    if (turn++ % 4 != 0 && !test::soaks()) {
+    if (turn++ % 8 != 0 && !test::soaks()) {
       std::erase_if(warnings, warns_of_it);
       continue;
     }
