@@ -51,8 +51,8 @@ inline constexpr double kVibrationCutoff = 30.0;
 /// or less.
 std::optional<HighPass> vibration_filter(double dt);
 
-/// Root mean square of the handle's speed behind that high-pass in the last quarter of a run: what `limit` and
-/// `compare --devices` judge a run by.
+/// Root mean square of the handle's speed behind that high-pass in the last quarter of a run: what
+/// `limit --stable still` judges a run by.
 class LastQuarterVibration {
  public:
   /// The run has `steps` rows, `dt` seconds apart.

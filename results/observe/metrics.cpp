@@ -245,8 +245,8 @@ MetricList inside_list(const Metrics& m) {
        "share of the rows with the tip centre below the surface; a flat tip's is when it is pressed in",
        if_any(inside.rows > 0, static_cast<double>(inside.centre_inside) / rows), Better::less},
       {"vibration_last_quarter_m_per_s", "m/s",
-       "root mean square of the handle's speed above 30 Hz in the last quarter of the run, by which limit and compare "
-       "--devices judge it; none at sampling rates of 60 Hz or less",
+       "root mean square of the handle's speed above 30 Hz in the last quarter of the run, by which limit "
+       "--stable still judges it; none at sampling rates of 60 Hz or less",
        m.last_quarter_vibration, Better::less}};
 }
 

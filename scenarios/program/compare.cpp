@@ -16,7 +16,7 @@
 #include "scenarios/description/metric_sections.hpp"
 #include "scenarios/input/json_file.hpp"
 #include "scenarios/input/text_lines.hpp"
-#include "scenarios/program/compare_devices.hpp"
+#include "scenarios/program/command.hpp"
 #include "scenarios/program/result_tables.hpp"
 #include "scenarios/program/run_table.hpp"
 #include "scenarios/program/sure.hpp"
@@ -40,7 +40,12 @@ struct CompareOptions {
   bool check = false;
   bool sure = false;
   Skips skips = Skips::on;
-  CompareDevicesOptions common;  ///< all others, most of which a comparison of algorithms has, too
+  std::vector<std::string> scenarios;
+  std::vector<std::string> algorithms;  ///< empty: all
+  std::vector<std::string> overrides;
+  unsigned jobs = 0;
+  std::string out;
+  OutputOptions output;
 };
 
 /// True when there are several scenarios or seeds to rank over, or metrics to rank by.
@@ -55,11 +60,11 @@ BatchPlan plan_of(const CompareOptions& options) {
     throw InputError(fmt::format("--jitter: got {}; allowed: 0 ... {} m", options.jitter, kMostJitter));
   }
   BatchDefinition definition;
-  const std::vector<std::string>& algorithms = options.common.algorithms;
+  const std::vector<std::string>& algorithms = options.algorithms;
   definition.algorithms =
       algorithms.empty() ? all_algorithms() : chosen_names("--algorithms: got", algorithms, all_algorithms());
-  definition.scenarios = find_scenarios(options.common.scenarios);
-  definition.overrides = options.common.overrides;
+  definition.scenarios = find_scenarios(options.scenarios);
+  definition.overrides = options.overrides;
   definition.seeds = options.seeds;
   definition.jitter = options.jitter;
   definition.skips = options.skips;
@@ -67,7 +72,7 @@ BatchPlan plan_of(const CompareOptions& options) {
 }
 
 fs::path directory_of(const CompareOptions& options, const BatchPlan& plan) {
-  return results_directory(options.common.out, plan.names.size() > 1 ? "compare" : "compare_" + plan.names[0]);
+  return results_directory(options.out, plan.names.size() > 1 ? "compare" : "compare_" + plan.names[0]);
 }
 
 /// A page always says whether the ranking holds.
@@ -105,8 +110,8 @@ BatchOptions batch_options(const CompareOptions& options, const BatchPlan& plan,
   BatchOptions batch;
   batch.directory = out;
   // The table of a single comparison shows times, which concurrent runs would lengthen.
-  batch.jobs = options.common.jobs > 0 ? options.common.jobs : wants_league(options, plan) ? available_threads() : 1;
-  batch.progress = !options.common.output.quiet;
+  batch.jobs = options.jobs > 0 ? options.jobs : wants_league(options, plan) ? available_threads() : 1;
+  batch.progress = !options.output.quiet;
   return batch;
 }
 
@@ -349,8 +354,8 @@ std::string add_sure(const CompareOptions& options, const BatchPlan& plan, const
   std::string text;
   const std::vector<std::string>& algorithms = plan.definition.algorithms;
   for (std::size_t s = 0; s < plan.scenarios.size(); ++s) {
-    const SureStudy study(plan.scenarios[s], options.common.overrides, algorithms, out / scenario_directory(plan, s),
-                          options.common.jobs, options.common.output);
+    const SureStudy study(plan.scenarios[s], options.overrides, algorithms, out / scenario_directory(plan, s),
+                          options.jobs, options.output);
     if (plan.scenarios.size() > 1) text += "\n" + plan.names[s] + "\n";
     text += study.text("algorithm", algorithms);
     for (std::size_t a = 0; a < algorithms.size(); ++a) summaries[s * algorithms.size() + a]["sure"] = study.json(a);
@@ -383,13 +388,9 @@ int verdict(const BatchPlan& plan, const BatchReport& report, bool league) {
 }
 
 int compare(const CompareOptions& options) {
-  if (!options.common.devices.empty()) {
-    if (options.skips == Skips::off) throw InputError("--no-skip: got it beside --devices; allowed: without");
-    return compare_devices(options.common);
-  }
   if (options.sure && (options.seeds > 1 || options.jitter != 0.0))
     throw InputError("--sure: got it beside --seeds or --jitter; allowed: for the scenarios as they are");
-  if (options.common.scenarios.empty())
+  if (options.scenarios.empty())
     throw InputError("compare: scenarios is required; \"hapbench compare --help\" explains");
   // All input is checked before anything runs or is written.
   const BatchPlan plan = plan_of(options);
@@ -403,7 +404,7 @@ int compare(const CompareOptions& options) {
     try {
       BatchReport runs = run_batch(plan, batch_options(options, plan, out));
       BatchOptions batch = batch_options(options, plan, out);
-      if (options.common.jobs == 0) batch.jobs = available_threads();
+      if (options.jobs == 0) batch.jobs = available_threads();
       if (checks_ranking(options))
         ranking = ranking_of(plan, runs, wants_league(options, plan), options.metrics, batch);
       return runs;
@@ -429,12 +430,12 @@ int compare(const CompareOptions& options) {
     Json batch = {{"runs", std::move(json)}};
     batch.update(league_json(league));
     if (ranking) batch["ranking"] = ranking_json(*ranking);
-    print(options.common.output, league_text(league) + last, batch);
+    print(options.output, league_text(league) + last, batch);
   } else {
     if (options.check) json = {{"runs", std::move(json)}, {"ranking", ranking_json(*ranking)}};
-    print(options.common.output, comparison_text(report.runs) + own_depth_models_text(plan) + last, json);
+    print(options.output, comparison_text(report.runs) + own_depth_models_text(plan) + last, json);
   }
-  if (options.html) write_report(out, options.common.output.quiet || options.common.output.json);
+  if (options.html) write_report(out, options.output.quiet || options.output.json);
   return verdict(plan, report, wants_league(options, plan));
 }
 
@@ -465,71 +466,35 @@ void add_compare(CommandLine& line) {
   auto [command, options] =
       line.command("compare", "Run scenarios through several algorithms side by side; several scenarios give a league",
                    compare, "the folders of finished runs are kept, but no table is written");
-  CompareDevicesOptions& common = options.common;
-  command.add(
-      "scenarios", common.scenarios,
-      fmt::format("scenario files, names of bundled scenarios, or of groups of them (with --devices default: {})",
-                  fmt::join(default_device_scenes(), " ")));
-  command
-      .add("--algorithms", common.algorithms,
-           "names, separated by commas, or all (default: all; with --devices shaped_stiffness,summation)")
+  command.add("scenarios", options.scenarios, "scenario files, names of bundled scenarios, or of groups of them");
+  command.add("--algorithms", options.algorithms, "names, separated by commas, or all (default: all)")
       .comma_separated();
-  const CommandOption devices =
-      command
-          .add(
-              "--devices", common.devices,
-              "instead of algorithms compare devices by the largest stiffness that each renders stably and quietly: "
-              "ideal, admittance, presets of \"hapbench list presets\", impedance for all presets, or all; NAME.json is "
-              "a file with a device of your own")
-          .comma_separated();
-  command
-      .add("--vibration", common.vibration,
-           fmt::format("with --devices: most vibration of the handle above 30 Hz [m/s rms] (default: {})",
-                       kMostVibration))
-      .needs(devices);
-  command.add("--resolution", common.resolution, "with --devices: relative width of a limit (default: 0.01)")
-      .needs(devices);
-  command
-      .add(
-          "--friction", common.friction,
-          "with --devices: K as an interval over each device's dry friction times 1 and these factors, such as 0,2; none: "
-          "no interval (default: over what is not published of a preset)")
-      .comma_separated()
-      .needs(devices);
   command.add("--seeds", options.seeds, "run each K times, time k with the scenario's seed + k (default: 1)")
-      .range(1, 10'000)
-      .excludes(devices);
-  command
-      .add("--jitter", options.jitter,
-           "shift the start by a vector of this length [m] whose direction depends on the seed and is the same for all "
-           "algorithms: gives a spread where nothing else is random")
-      .excludes(devices);
+      .range(1, 10'000);
+  command.add(
+      "--jitter", options.jitter,
+      "shift the start by a vector of this length [m] whose direction depends on the seed and is the same for all "
+      "algorithms: gives a spread where nothing else is random");
   command
       .add("--by", options.metrics,
            "metrics of the league, less is better: names of summary.json, separated by commas (default: " +
                default_metrics_text() + "; fidelity where every scene has a reference force)")
-      .comma_separated()
-      .excludes(devices);
-  add_jobs(command, common.jobs, "runs at once (default: one per thread; 1 where the table shows times)");
-  command.add("--out", common.out,
-              "directory of the results (default: results/out/compare_NAME, for several scenarios results/out/compare, "
-              "for devices results/out/compare_devices)");
-  add_overrides(command, common.overrides);
-  command.flag("--html", options.html, "also write OUT/report.html: curves, replay, metrics, commands")
-      .excludes(devices);
-  command
-      .flag("--check", options.check,
-            "also repeat it at half the distance of the shell's points and at half the step, and say of each metric "
-            "whether the ranking holds, drifts or flips (\"hapbench describe flips\"); --html does")
-      .excludes(devices);
-  command
-      .flag(
-          "--sure", options.sure,
-          "also run each at a half and a quarter of the step, and of the distance of the shell's points, and print how "
-          "far that moves each number")
-      .excludes(devices);
+      .comma_separated();
+  add_jobs(command, options.jobs, "runs at once (default: one per thread; 1 where the table shows times)");
+  command.add(
+      "--out", options.out,
+      "directory of the results (default: results/out/compare_NAME, for several scenarios results/out/compare)");
+  add_overrides(command, options.overrides);
+  command.flag("--html", options.html, "also write OUT/report.html: curves, replay, metrics, commands");
+  command.flag("--check", options.check,
+               "also repeat it at half the distance of the shell's points and at half the step, and say of each metric "
+               "whether the ranking holds, drifts or flips (\"hapbench describe flips\"); --html does");
+  command.flag(
+      "--sure", options.sure,
+      "also run each at a half and a quarter of the step, and of the distance of the shell's points, and print how "
+      "far that moves each number");
   add_skip_option(command, options.skips);
-  add_output_options(command, common.output);
+  add_output_options(command, options.output);
   command.footer(
       "Files go to OUT/[SCENARIO/]ALGORITHM[/seed_K], the parts in brackets where there are several, and "
       "comparison.csv of each scenario beside them. Several scenarios or seeds, or --by, give a league: rank, ratio to "
@@ -537,13 +502,7 @@ void add_compare(CommandLine& line) {
       "and fails; league.csv has all of it; ranking.csv has the numbers of --check, which are measured at the same times with both steps. A run fails when it diverges, has no contact or loses it, goes through the "
       "surface, is not dragged or stuck, or "
       "ends otherwise than its scenario allows; it ranks behind all others. The results of an earlier comparison in OUT "
-      "are removed, other files are not.\n"
-      "With --devices the stiffness K is bisected as \"hapbench limit\" does it, for each device, scene and algorithm; the "
-      "published stiffness stands beside it. A second table shows each K over that of the first scene with the first "
-      "algorithm, beside 1 / lambda_max(S) and the contacts of the run at that K. Other fields stay those of the scene, "
-      "also the rule by which B follows K; --set changes them for all devices. A hand with a mass loses it on ideal and "
-      "admittance, where the virtual mass stands for it. Files: device_limits.csv and device_runs.csv; \"hapbench plot "
-      "OUT\" draws them.");
+      "are removed, other files are not.");
 }
 
 }  // namespace hapbench

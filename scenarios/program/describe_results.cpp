@@ -44,13 +44,20 @@ Description describe_metric(const Metric& metric) {
           {{"kind", "metric"}, {"name", metric.name}, {"unit", metric.unit}, {"meaning", metric.meaning}}};
 }
 
+Json columns_json(const DescribedTable& table) {
+  Json columns = Json::array();
+  for (const DescribedTable::Entry& column : table.columns)
+    columns.push_back({{"name", column.name}, {"unit", column.unit}, {"meaning", column.meaning}});
+  return columns;
+}
+
 Description describe_table(const DescribedTable& table) {
   return {fmt::format("file {}\n{}\n{}", table.file, wrapped(table.holds), entries_text(table.columns)),
-          {{"kind", "file"}, {"name", table.file}, {"holds", table.holds}, {"columns", columns_json(table.columns)}}};
+          {{"kind", "file"}, {"name", table.file}, {"holds", table.holds}, {"columns", columns_json(table)}}};
 }
 
 /// Explains a column that one or several files have.
-Description describe_column(const Column& column, const std::vector<std::string>& files) {
+Description describe_column(const DescribedTable::Entry& column, const std::vector<std::string>& files) {
   return {fmt::format("column {} of {}\n{}", titled(column.name, column.unit), fmt::join(files, ", "),
                       wrapped(column.meaning)),
           {{"kind", "column"},
@@ -62,13 +69,12 @@ Description describe_column(const Column& column, const std::vector<std::string>
 
 /// The columns of that name, each meaning once.
 std::vector<Description> describe_columns(const std::string& name) {
-  std::vector<std::pair<Column, std::vector<std::string>>> found;
+  std::vector<std::pair<DescribedTable::Entry, std::vector<std::string>>> found;
   for (const DescribedTable& table : result_tables()) {
-    for (const Column& column : table.columns) {
+    for (const DescribedTable::Entry& column : table.columns) {
       if (column.name != name) continue;
-      const auto same = std::find_if(found.begin(), found.end(), [&column](const auto& other) {
-        return std::string_view(other.first.meaning) == column.meaning;
-      });
+      const auto same = std::find_if(found.begin(), found.end(),
+                                     [&column](const auto& other) { return other.first.meaning == column.meaning; });
       if (same != found.end()) {
         same->second.push_back(table.file);
       } else {
@@ -112,7 +118,7 @@ std::vector<std::string> result_names() {
   for (const Metric& metric : metrics_without_values()) names.push_back(metric.name);
   for (const DescribedTable& table : result_tables()) {
     names.push_back(table.file);
-    for (const Column& column : table.columns) names.emplace_back(column.name);
+    for (const DescribedTable::Entry& column : table.columns) names.push_back(column.name);
   }
   return names;
 }
@@ -131,7 +137,7 @@ constexpr const char* kTime = "number of timing.json";
 constexpr const char* kHolds = "verdict of compare --check on a metric";
 constexpr const char* kVerdict = "verdict on a claim";
 constexpr const char* kResultFile = "file of the results";
-constexpr const char* kStiffness = "stiffness, of compare --devices";
+constexpr const char* kStiffness = "stiffness, of limit";
 
 /// Words that no enumeration has.
 constexpr Word kWords[] = {

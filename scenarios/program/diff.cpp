@@ -175,14 +175,14 @@ std::vector<std::string> run_cells(const fs::path& path, const RunDifference& ru
 }
 
 /// Collects the results while the pairs are compared one by one.
-struct Report {
+struct Differences {
   bool beyond = false;
   std::string text;
   Json runs = Json::object();
   Json sweeps = Json::object();
 };
 
-void compare_all_runs(const DiffOptions& options, const ResultPairs& pairs, Report& report) {
+void compare_all_runs(const DiffOptions& options, const ResultPairs& pairs, Differences& report) {
   Table table(kRunDifferenceHeadings);
   for (const fs::path& path : pairs.runs) {
     const RunDifference run = compare_runs(fs::path(options.a) / path, fs::path(options.b) / path);
@@ -194,7 +194,7 @@ void compare_all_runs(const DiffOptions& options, const ResultPairs& pairs, Repo
   if (pairs.runs.size() > 1) report.text += table.text();
 }
 
-void compare_all_sweeps(const DiffOptions& options, const ResultPairs& pairs, Report& report) {
+void compare_all_sweeps(const DiffOptions& options, const ResultPairs& pairs, Differences& report) {
   for (const fs::path& path : pairs.sweeps) {
     const TableDifference table = compare_tables(fs::path(options.a) / path, fs::path(options.b) / path);
     report.beyond |= table.is_beyond(options.tolerance);
@@ -215,7 +215,7 @@ int diff(const DiffOptions& options) {
   }
   const ResultPairs pairs = pair_results(options.a, options.b);
   const std::vector<std::string> only_a = texts_of(pairs.only_in_a), only_b = texts_of(pairs.only_in_b);
-  Report report;
+  Differences report;
   report.beyond = !only_a.empty() || !only_b.empty();
   report.text = fmt::format("A {}\nB {}\n\n", options.a, options.b);
   compare_all_runs(options, pairs, report);

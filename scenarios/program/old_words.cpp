@@ -14,6 +14,8 @@ struct OldWord {
 constexpr std::string_view kSampleOfHands =
     "hapbench sweep SCENE --sample lhs:400 --vary hand.x_N=-5:5, with a hand of type \"force\"";
 
+constexpr std::string_view kDevices = "hapbench limit tap_wall tap_corner tap_hole --device all";
+
 constexpr std::string_view kSlurm = "sbatch --array=0-99 scripts/sweep.sbatch SCENE --vary ... --out FOLDER";
 
 /// By command, so that what one command lost stands together.
@@ -23,6 +25,10 @@ constexpr OldWord kOldWords[] = {
     {"", "completion", "scripts/completion, which prints a completion for bash"},
     {"", "man", "hapbench --help, and --help of each command"},
     {"", "suite", "hapbench compare GROUP --algorithms all --seeds 5"},
+    {"compare", "--devices", kDevices},
+    {"compare", "--friction", kDevices},
+    {"compare", "--resolution", kDevices},
+    {"compare", "--vibration", kDevices},
     {"plot", "--no-sketch", "the same without it: plot draws no sketches"},
     {"reproduce", "--subjects",
      "their record, in the manual of the thesis's claims (scenarios/thesis_claims/README.md)"},

@@ -139,7 +139,7 @@ int identify(const IdentifyOptions& options) {
   if (!answer) return kInternalFault;
   Table table({{kind.empty() ? "of the device" : "of the signal", false}, {""}, {"from"}, {"to, 95 %"}});
   for (const Json& row : (*answer)["table"]) table.add(row.get<std::vector<std::string>>());
-  const std::string next = kind.empty() ? shell_line({"hapbench", "compare", "--devices", out.string()})
+  const std::string next = kind.empty() ? shell_line({"hapbench", "limit", "tap_wall", "--device", out.string()})
                                         : fmt::format("command these forces, log time_s,force_N,position_m, then {}",
                                                       shell_line({"hapbench", "identify", "LOG.csv"}));
   options.print_made((*answer)["json"], out, table, next);
@@ -223,7 +223,7 @@ void add_identify(CommandLine& line) {
       "time of the row, positive in the direction of the position.\n"
       "  hapbench identify --design chirp --force 2 --travel 0.08 --mass 0.1 --out chirp.csv\n"
       "  hapbench identify log.csv --columns time=t,force=3,position=enc --scale time=1e-6,position=5.5e-5\n"
-      "  hapbench compare --devices log_device.json");
+      "  hapbench limit tap_wall --device log_device.json");
   command.runs([options] { return identify(*options); });
 }
 

@@ -9,6 +9,7 @@
 #include "scenarios/batch/sweep_table.hpp"
 #include "scenarios/description/metric_sections.hpp"
 #include "scenarios/description/scenario.hpp"
+#include "scenarios/program/limit_answers.hpp"
 #include "scenarios/program/run_table.hpp"
 #include "scenarios/run/recorders.hpp"
 
@@ -151,44 +152,44 @@ std::vector<Table::Column> joined_headings(const std::vector<std::vector<Table::
 }
 
 std::vector<Table::Column> printed_headings() {
-  return joined_headings({run_headings(), league_headings(), limit_headings(false), limit_headings(true),
-                          converge_headings(), device_headings(), stability_headings(), precision_headings("step"),
-                          precision_headings("call"), diff_headings(), sweep_headings(), tune_headings(),
-                          claim_headings()});
+  std::vector<std::vector<Table::Column>> all = {
+      run_headings(),       league_headings(),          converge_headings(),
+      stability_headings(), precision_headings("step"), precision_headings("call"),
+      diff_headings(),      sweep_headings(),           tune_headings(),
+      claim_headings()};
+  for (const DescribedTable& table : result_tables()) all.push_back(table.headings);
+  return joined_headings(all);
 }
 
 std::vector<DescribedTable> result_tables() {
   std::vector<DescribedTable> tables;
-  for (const ResultTable& table : record_tables()) tables.push_back({table.file, table.holds, all(table.columns)});
-  tables.push_back({kTargetTable.file, kTargetTable.holds, all(kTargetTable.columns)});
-  tables.push_back({"comparison.csv", "of compare: one line per algorithm", comparison_columns()});
-  tables.push_back({"league.csv",
-                    "of compare with several scenarios or seeds: one line per scenario, algorithm and metric",
-                    league_columns()});
-  tables.push_back({"ranking.csv",
-                    "of compare --check or --html: one line per scenario, halved spacing or step, metric and algorithm",
-                    ranking_columns()});
-  tables.push_back(
-      {"device_limits.csv", "of compare --devices: one line per device, scene and algorithm", device_limit_columns()});
-  tables.push_back({"device_runs.csv", "of compare --devices: one line per run", device_run_columns()});
-  tables.push_back({"limit.csv", "of limit: one line per algorithm", limit_columns()});
-  tables.push_back({"limit_runs.csv", "of limit: one line per run", all(limit_run_columns())});
-  tables.push_back({"converge.csv", "of converge: one line per metric", converge_columns()});
-  tables.push_back({"converge_levels.csv", "of converge: one line per metric and level", converge_level_columns()});
-  tables.push_back({"tune.csv", "of tune: one line per algorithm", tune_columns()});
-  tables.push_back(
-      {"tune_trials.csv", "of tune: one line per algorithm, setting and K that was tried", tune_trial_columns()});
-  tables.push_back({"sweep.csv", "of sweep: one line per run", sweep_columns()});
-  tables.push_back({"limits.csv", "of stability SCENARIO: one line per limit", stability_limit_columns()});
-  tables.push_back({"root_locus.csv", "of stability SCENARIO: eigenvalues of a step as the case's number grows",
-                    root_locus_columns()});
-  tables.push_back({"stability_map_NAME.csv", "of stability --map: one line per run", all(kStabilityMapColumns)});
-  tables.push_back({"stability_boundary_NAME.csv", "of stability --map: one line per x of the map",
-                    all(stability_boundary_columns())});
-  tables.push_back({"stability_stress.csv", "of stability --stress: one line per algorithm", stress_columns()});
-  tables.push_back({"precision_STUDY.csv", "of precision: one line per setting, with the columns of its study",
-                    all(kPrecisionColumns)});
-  tables.push_back({"shell.csv", "of shell: one line per point of the environment", all(kShellColumns)});
+  const auto add = [&tables](const char* file, const char* holds, std::span<const Column> columns) {
+    tables.push_back({file, holds, {columns.begin(), columns.end()}, {}});
+  };
+  for (const ResultTable& table : record_tables()) add(table.file, table.holds, all(table.columns));
+  add(kTargetTable.file, kTargetTable.holds, all(kTargetTable.columns));
+  add("comparison.csv", "of compare: one line per algorithm", comparison_columns());
+  add("league.csv", "of compare with several scenarios or seeds: one line per scenario, algorithm and metric",
+      league_columns());
+  add("ranking.csv",
+      "of compare --check or --html: one line per scenario, halved spacing or step, metric and algorithm",
+      ranking_columns());
+  for (const DescribedTable& table : limit_tables()) tables.push_back(table);
+  add("converge.csv", "of converge: one line per metric", converge_columns());
+  add("converge_levels.csv", "of converge: one line per metric and level", converge_level_columns());
+  add("tune.csv", "of tune: one line per algorithm", tune_columns());
+  add("tune_trials.csv", "of tune: one line per algorithm, setting and K that was tried", tune_trial_columns());
+  add("sweep.csv", "of sweep: one line per run", sweep_columns());
+  add("limits.csv", "of stability SCENARIO: one line per limit", stability_limit_columns());
+  add("root_locus.csv", "of stability SCENARIO: eigenvalues of a step as the case's number grows",
+      root_locus_columns());
+  add("stability_map_NAME.csv", "of stability --map: one line per run", all(kStabilityMapColumns));
+  add("stability_boundary_NAME.csv", "of stability --map: one line per x of the map",
+      all(stability_boundary_columns()));
+  add("stability_stress.csv", "of stability --stress: one line per algorithm", stress_columns());
+  add("precision_STUDY.csv", "of precision: one line per setting, with the columns of its study",
+      all(kPrecisionColumns));
+  add("shell.csv", "of shell: one line per point of the environment", all(kShellColumns));
   return tables;
 }
 

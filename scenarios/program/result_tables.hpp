@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "results/io/columns.hpp"
-#include "scenarios/program/table.hpp"
+#include "scenarios/program/report.hpp"
 
 /// The columns of the tables that commands write beside the files of single runs. Those who write them take their
 /// headers from here.
@@ -27,18 +27,9 @@ inline constexpr Column kStabilityMapColumns[] = {
 /// With one for each limit of the stiffness that is known (stiffness_limits.hpp).
 std::span<const Column> stability_boundary_columns();
 
-/// A column of the tables of `limit` and `compare --devices`, and its name before, which programs may still read.
-inline constexpr Column kInconsistentColumn = {
-    "inconsistent_runs", "1", "runs that are unstable on the stable side of the limit, or stable beyond it"};
-inline constexpr Column kAstrayColumn = {"astray", "1", "the same as inconsistent_runs, by its former name"};
-
 // The columns of tables that are defined as fields in the sources of their commands.
 std::vector<Column> converge_columns();
 std::vector<Column> converge_level_columns();
-std::vector<Column> limit_columns();
-std::span<const Column> limit_run_columns();
-std::vector<Column> device_limit_columns();
-std::vector<Column> device_run_columns();
 std::vector<Column> stability_limit_columns();
 std::vector<Column> root_locus_columns();
 std::vector<Column> stress_columns();
@@ -49,10 +40,8 @@ std::vector<Column> tune_trial_columns();
 // scenes or algorithms.
 std::vector<Table::Column> claim_headings();
 std::vector<Table::Column> converge_headings();
-std::vector<Table::Column> device_headings();
 std::vector<Table::Column> diff_headings();
 std::vector<Table::Column> league_headings();
-std::vector<Table::Column> limit_headings(bool smallest);
 std::vector<Table::Column> map_headings();
 std::vector<Table::Column> precision_headings(const std::string& timed);
 std::vector<Table::Column> run_headings();
@@ -67,12 +56,6 @@ std::vector<Table::Column> printed_headings();
 
 /// The header of a stability map's table.
 std::string map_header(std::span<const Column> columns, const std::string& x, const std::string& y);
-
-/// A table that `describe` knows.
-struct DescribedTable {
-  std::string file, holds;
-  std::vector<Column> columns;
-};
 
 /// Every table among the results of this program.
 std::vector<DescribedTable> result_tables();

@@ -10,7 +10,6 @@
 
 #include "results/io/table_writer.hpp"
 #include "scenarios/input/input_error.hpp"
-#include "scenarios/program/compare_devices.hpp"
 #include "scenarios/program/result_tables.hpp"
 #include "scenarios/program/stability.hpp"
 #include "scenarios/program/table.hpp"
@@ -268,7 +267,7 @@ int stability_maps_command(const StabilityOptions& options) {
   for (const std::string& remark : without_theory) remarks += wrapped(remark, 0);
   if (std::any_of(maps.begin(), maps.end(),
                   [](const StabilityMap* map) { return map->name == std::string_view("z_width"); }))
-    remarks += kWhichStiffness;
+    remarks += "which K to quote: device_model/README.md, \"Which K to quote?\"\n";
   print(options.output, drawings + table.text() + remarks + fmt::format("\nmaps in {}\n", out.string()), json);
   return kSuccess;
 }

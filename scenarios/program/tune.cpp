@@ -10,12 +10,10 @@
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/description/metric_sections.hpp"
 #include "scenarios/input/text_lines.hpp"
-#include "scenarios/program/compare_devices.hpp"
-#include "scenarios/program/limit.hpp"
+#include "scenarios/program/limit_cases.hpp"
 #include "scenarios/program/result_tables.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/progress_bar.hpp"
-#include "scenarios/studies/stability/device_limits.hpp"
 #include "scenarios/studies/stability/stability_limits.hpp"
 #include "scenarios/studies/tuning/tune.hpp"
 
@@ -341,14 +339,10 @@ void add_limit_option(const char* option, const std::string& text, double unit, 
 
 std::string device_text(const std::string& name, TuneQuestion& question) {
   if (name.empty()) return "";
-  ComparedDevice device;
-  if (name.ends_with(".json")) {
-    device = device_of_file(name);
-  } else {
-    const std::vector<ComparedDevice> all = compared_devices();
-    require_names("--device: got", {name}, names_of(all, &ComparedDevice::name));
-    device = *std::ranges::find(all, name, &ComparedDevice::name);
-  }
+  const std::vector<ComparedDevice> devices = chosen_devices({name});
+  if (devices.size() != 1)
+    throw InputError(fmt::format("--device: got \"{}\"; allowed: one device, a preset or a file NAME.json", name));
+  const ComparedDevice& device = devices.front();
   question.overrides = overrides_on(device, question.scenario, question.overrides);
   return " on " + device.name;
 }

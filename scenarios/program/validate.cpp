@@ -16,7 +16,7 @@
 #include "scenarios/run/recorders.hpp"
 #include "scenarios/run/scene_facts.hpp"
 #include "scenarios/run/stop_signal.hpp"
-#include "scenarios/studies/stability/device_limits.hpp"
+#include "scenarios/studies/stability/scene_devices.hpp"
 
 namespace hapbench {
 namespace {
@@ -92,7 +92,7 @@ Json messages(const InputError& error) {
   return texts;
 }
 
-/// True for a file with the fields of a scenario's device alone, which `compare --devices` takes.
+/// True for a file with the fields of a scenario's device alone, which `limit --device` takes.
 bool is_device_file(const std::filesystem::path& file) {
   const ScenarioText text = read_scenario_text(file);
   return text.json.is_object() && !text.json.contains("environment") && !text.json.contains("time") &&
@@ -110,7 +110,7 @@ int validate(const ValidateOptions& options) {
       if (is_device_file(file)) {
         device_of_file(file);  // throws what is wrong with it
         text += fmt::format("{}: a valid device, not a scenario: {}\n", argument,
-                            shell_line({"hapbench", "compare", "--devices", argument}));
+                            shell_line({"hapbench", "limit", "tap_wall", "--device", argument}));
         verdicts.push_back({{"file", argument}, {"valid", true}, {"kind", "device"}});
         continue;
       }

@@ -7,9 +7,10 @@ from dataclasses import dataclass, field
 class Question:
     name: str
     old: str  # the words of 661d2580, without --json and --out
-    tables: dict  # on record: where today's answer has them, a CSV file in --out or "json" and the place of a list in what is printed
+    tables: dict  # on record: where today's answer has them, a CSV file in --out, "json" and the place of a list in what is printed, or a
+    # function of the JSON that is printed
     new: str = ""  # today's words, where they are others
-    columns: dict = field(default_factory=dict)  # on record: today's name, where it is another
+    columns: dict = field(default_factory=dict)  # on record: today's name, where it is another; None: not told any more
     tolerance: dict = field(default_factory=dict)  # of a column on record: (relative, the reason); without, the same text or number
     status: int = 0
 
@@ -26,8 +27,22 @@ def converge(name, words):
     return Question(name, f"converge {words}", {"orders": "converge.csv", "levels": "converge_levels.csv"})
 
 
-def devices(name, words, ends="interval"):
-    return Question(name, f"compare {words}", {"limits": "json.limits", "ends": f"json.{ends}.limits"})
+def ends_of_devices(printed):
+    """The least and the largest K of each device that has other numbers, too, over these and its own."""
+    found = {}
+    for row in printed["limits"]:
+        found.setdefault((row["device"].partition("[")[0], row["scenario"], row["algorithm"]), []).append(row["limit"] or 0.0)
+    return [{"device": device, "scenario": scenario, "algorithm": algorithm, "least_N_per_m": min(limits), "largest_N_per_m": max(limits)}
+            for (device, scenario, algorithm), limits in found.items() if len(limits) > 1]
+
+
+def devices(name, scenes, words):
+    """Asked for algorithms that compare --devices took by itself. Where nothing below is unstable, `below` is empty, and so is now its class."""
+    now = {f"{column}_N_per_m": column for column in ("limit", "beyond", "low", "below", "limit_tolerance", "low_tolerance", "linear")}
+    algorithms = "" if "--algorithms" in words else " --algorithms shaped_stiffness,summation"
+    return Question(name, f"compare {scenes} --devices {words}",
+                    {"limits": lambda printed: [row for row in printed["limits"] if "[" not in row["device"]], "ends": ends_of_devices},
+                    f"limit {scenes} --device {words}{algorithms}", {**now, "class_below": None})
 
 
 def stability_map(name):
@@ -75,9 +90,9 @@ QUESTIONS = [
     converge("converge_shell", "drag_molar --vary environment.spacing_m --metric force_rms_above_30Hz_N,inside_max_m --levels 3 --set time.duration_s=1"),
     converge("converge_other_field", "explorer_on_bumps --vary tool.grid_m --metric force_max_N,force_mean_in_contact_N --levels 3 --to 1%"),
     converge("converge_on_device", "loop.json --metric force_max_N,inside_settled_m --levels 5 --ratio 3"),
-    devices("devices_over_what_is_not_published", "tap_wall --devices all --algorithms mean --resolution 0.02"),
-    devices("devices_in_scenes", "tap_corner tap_hole --devices touch,mine.json,omega.3 --resolution 0.05"),
-    devices("devices_over_friction", "loop.json --devices touch,ideal,admittance --friction 0,2 --algorithms mean,summation --resolution 0.05", "friction"),
+    devices("devices_over_what_is_not_published", "tap_wall", "all --algorithms mean --resolution 0.02"),
+    devices("devices_in_scenes", "tap_corner tap_hole", "touch,mine.json,omega.3 --resolution 0.05"),
+    devices("devices_over_friction", "loop.json", "touch,ideal,admittance --friction 0,2 --algorithms mean,summation --resolution 0.05"),
     *map(stability_map, ("time_step", "mass", "damping_ratio", "contacts", "wedge", "device", "z_width", "delay", "velocity_filter", "hand",
                          "encoder_step", "friction_quantisation")),
     *map(accuracy, ("integrators", "shaping", "spacing", "reduction", "merging", "algorithms", "events")),

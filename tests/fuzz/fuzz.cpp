@@ -25,7 +25,7 @@
 #include "scenarios/input/mesh_file.hpp"
 #include "scenarios/input/recordings.hpp"
 #include "scenarios/run/run_scenario.hpp"
-#include "scenarios/studies/stability/device_limits.hpp"
+#include "scenarios/studies/stability/scene_devices.hpp"
 #include "sim/geometry/analytic_shells.hpp"
 
 /// libFuzzer's targets: each reader of files from outside, fed with bytes of libFuzzer's choice (scripts/fuzz). It
@@ -135,7 +135,7 @@ void read_shard(std::string_view text) {
   }
 }
 
-/// The file of a device, which `compare --devices` takes.
+/// The file of a device, which `limit --device` takes.
 void read_device(std::string_view text) {
   device_of_file(file_with(text));
 }

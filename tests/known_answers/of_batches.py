@@ -138,6 +138,7 @@ def swept(bench):
     # 4e6 N/m is ten times 4 M / dt^2.
     for key, known, naive in (("unexpected", 1, 0), ("completes", 3, 4), ("diverges", 1, 0), ("file", "sweep/sweep.csv", "sweep.csv")):
         bench.add(f"sweep --json: {key}", told.get(key, told["outcomes"].get(key)), known, "one of four is unstable", EXACT, ("those that complete, or all", naive))
+    bench.add(f"sweep --json: {field}", [row[field] for row in told["rows"]], values, "as asked", EXACT, ("of the scenario", [1000.0] * 4))
     bench.add("sweep --json: definition", told["definition"] != bench.json("sweep", base, "--vary", f"{field}=500,1001", "--out", "other")["definition"], True,
               "another sweep has another", EXACT, ("of the scenario alone", False))
     shared = [name for name in table.names if name in runs[0].summary["metrics"]]

@@ -1,4 +1,4 @@
-"""Scenes behind the tables of limit, stability and compare --devices: the eigenvalues and the motion of linear recurrences."""
+"""Scenes behind the tables of limit and stability: the eigenvalues and the motion of linear recurrences."""
 import math
 
 import numpy as np
@@ -257,9 +257,9 @@ def devices(bench):
     bench.scenario("both_ways", environment={"type": "springs", "groups": [{"direction": [1, 0, 0], "count": 2}]}, **common)
     hand = {"type": "mass_spring_damper", "mass_kg": 0.2, "stiffness_N_per_m": 300, "damping_N_s_per_m": 2, "target": {"x_m": 0.01, "y_m": 0, "z_m": 0}}
     bench.scenario("pushes", environment={"type": "springs", "bilateral": False, "groups": [{"direction": [1, 0, 0], "count": 1}]}, hand=hand, **common)
-    printed = bench.json("compare", "both_ways.json", "pushes.json", "--devices", "mine.json,omega.3", "--algorithms", "summation,mean", "--resolution",
-                         resolution, "--out", "d")
-    table, runs = Table(bench.folder / "d" / "device_limits.csv"), Table(bench.folder / "d" / "device_runs.csv")
+    printed = bench.json("limit", "both_ways.json", "pushes.json", "--device", "mine.json,omega.3", "--friction", "none", "--algorithms", "summation,mean",
+                         "--resolution", resolution, "--out", "d")
+    table, runs = Table(bench.folder / "d" / "limit.csv"), Table(bench.folder / "d" / "limit_runs.csv")
     cell = {(row["device"], row["scenario"], row["algorithm"]): row for row in table.rows}
     number = lambda row, name: float(row[name]) if row[name] else math.nan
 
@@ -272,15 +272,15 @@ def devices(bench):
     edges = [bisected(lambda K: vibration(K, lam) <= most, 100.0, 1e5, 1e-7) for _, lam in laws]
     theory = [bisected(lambda K: HeldLoop(m, b, T, lam * K, lam * B).radius() < 1, 100.0, 1e5) for _, lam in laws]
     fine = Within("bisection ends at a relative width of 1e-3", relative=1e-3)
-    limits = [number(cell[key], "limit_N_per_m") for key in keys]
+    limits = [number(cell[key], "limit") for key in keys]
     tried = [[float(row["rendering.stiffness_N_per_m"]) for row in runs.rows if (row["device"], row["scenario"], row["algorithm"]) == key] for key in keys]
     judged = [["stable" if vibration(K, lam) <= most else "diverged" if grows(HeldLoop(m, b, T, lam * K, lam * B).matrix, n) else "vibrating"
                for K in values] for (_, lam), values in zip(laws, tried)]
     says = [[row["class"] for row in runs.rows if (row["device"], row["scenario"], row["algorithm"]) == key] for key in keys]
     beyond = [min(K for K in values if K > limit) for values, limit in zip(tried, limits)]
     how = "handle's speed above 30 Hz by the held loop and scipy"
-    exact = [("limit_N_per_m", edges, fine, "edge of the eigenvalues", theory), ("beyond_N_per_m", beyond, EXACT, "the limit", limits),
-             ("low_N_per_m", [min(v) for v in tried], EXACT, "the limit", limits), ("below_N_per_m", [math.nan] * 2, EXACT, "0", [0.0] * 2),
+    exact = [("limit", edges, fine, "edge of the eigenvalues", theory), ("beyond", beyond, EXACT, "the limit", limits),
+             ("low", [min(v) for v in tried], EXACT, "the limit", limits), ("below", [math.nan] * 2, EXACT, "0", [0.0] * 2),
              ("vibration_m_per_s", [vibration(K, lam) for K, (_, lam) in zip(limits, laws)], Within("filter and recurrence in another order, over 2000 "
               "rows near the edge", relative=1e-6), "that is allowed", [most] * 2), ("contacts", [2.0, 2.0], EXACT, "by stiffness", [2.0, 1.0]),
              ("lambda_max", [2.0, 1.0], ROUNDING, "of each spring", [1.0, 1.0]),
@@ -289,56 +289,46 @@ def devices(bench):
              ("runs", [len(v) for v in tried], EXACT, "of the scan", [17.0, 17.0]), ("inconsistent_runs", [0.0] * 2, EXACT, "beyond", [1.0] * 2),
              ("astray", [0.0] * 2, EXACT, "beyond", [1.0] * 2)]
     for name, known, within, naive, value in exact:
-        bench.add(f"device_limits.csv:{name}", [number(cell[key], name) for key in keys], known, how, within, (naive, value))
+        bench.add(f"limit.csv:{name}", [number(cell[key], name) for key in keys], known, how, within, (naive, value))
     told = {(row["device"], row["scenario"], row["algorithm"]): row for row in printed["limits"]}
     widths = [x - limit for x, limit in zip(beyond, limits)]
-    bench.add("compare --json: limit_tolerance_N_per_m", [told[key]["limit_tolerance_N_per_m"] for key in keys], widths, "from the limit to the next tried",
+    bench.add("limit --json: limit_tolerance", [told[key]["limit_tolerance"] for key in keys], widths, "from the limit to the next tried",
               ROUNDING, ("the resolution asked", [resolution * limit for limit in limits]))
-    bench.add("compare --json: low_tolerance_N_per_m", [told[key]["low_tolerance_N_per_m"] for key in keys], [None, None], "the range begins stable", EXACT,
-              ("the resolution", [resolution] * 2))
     # What is ours of an omega.3 is its mass and viscous friction once dry friction, encoder and saturation are gone.
     bare = [word for field in ("coulomb_N=0", "encoder_step_m=0", "force_max_N=null") for word in ("--set", f"device.{field}")]
-    interval = bench.json("compare", "both_ways.json", "--devices", "omega.3", *bare, "--algorithms", "mean", "--resolution", resolution, "--out", "i")["interval"]
+    others = bench.json("limit", "both_ways.json", "--device", "omega.3", *bare, "--algorithms", "mean", "--resolution", resolution, "--out", "i")["limits"]
     ends = [bisected(lambda K: vibration(K, 1.0, of, viscous) <= most, 100.0, 1e6, 1e-7) for of, viscous in ((0.2, 0.5), (0.2 / 1.3, 0.5), (0.2 * 1.3, 5.0))]
-    for name, known, naive in (("least_N_per_m", min(ends), max(ends)), ("largest_N_per_m", max(ends), ends[0])):
-        bench.add(f"compare --json: {name}", [interval["limits"][0][name]], [known], how, fine, ("of the other end, of the preset's own numbers", [naive]))
-    bench.add("compare --json: over", [interval["over"]], ["dry friction 0 to twice ours, viscous friction once to ten times, mass less or more by 1.3, "
-              "encoder finer or coarser by 2"], "the ranges of device_presets.hpp", EXACT, ("of dry friction alone", ["dry friction 0 to twice ours"]))
+    bench.add("limit.csv:device", [row["device"] for row in others], ["omega.3*", "omega.3*[soft]", "omega.3*[stiff]"], "both ends by default", EXACT,
+              ("the preset alone", ["omega.3*"]))
+    bench.add("limit.csv:limit", [row["limit"] for row in others], ends, how, fine, ("of the preset's own numbers", [ends[0]] * 3))
     # The order of the laws turned round: of summation over mean, so that 1 / lambda_max is not 1.
     (bench.folder / "same.json").write_text((bench.folder / "mine.json").read_text(encoding="utf-8"), encoding="utf-8")
-    text = bench.hapbench("compare", "both_ways.json", "--devices", "mine.json,same.json", "--algorithms", "mean,summation", "--resolution", resolution, "--out", "t")
+    text = bench.hapbench("limit", "both_ways.json", "--device", "mine.json,same.json", "--algorithms", "mean,summation", "--resolution", resolution, "--out", "t")
     ratio = limits[0] / limits[1]
     for heading, shown, wrong in (("1 / lambda_max(S)", f"{ratio:.2g} ({1 / 2:.2g}, 2)", f"{ratio:.2g} (2, 2)"),
                                   ("K lambda_max", f"K lambda_max: {2 * ratio:.2g} ... {2 * ratio:.2g}", f"K lambda_max: {ratio:.2g} ...")):
-        bench.add(f"{heading} (stiffness, of compare --devices)", [shown in text, wrong in text], [True, False], "limits and S of two springs", EXACT,
+        bench.add(f"{heading} (stiffness, of limit)", [shown in text, wrong in text], [True, False], "limits and S of two springs", EXACT,
                   ("lambda_max, or of K alone", [False, True]))
     classes = [j[v.index(x)] for j, v, x in zip(judged, tried, beyond)]
-    bench.add("device_limits.csv:class_beyond", [cell[key]["class_beyond"] for key in keys], classes, how, EXACT, ("diverged", ["diverged"] * 2))
-    bench.add("device_limits.csv:class_below", [cell[key]["class_below"] for key in keys], ["end of the range"] * 2, "stable at the low end", EXACT,
-              ("no value", [""] * 2))
-    bench.add("device_runs.csv:class", says[0] + says[1], judged[0] + judged[1], how, EXACT, ("by the eigenvalues", [
+    bench.add("limit.csv:class_beyond", [cell[key]["class_beyond"] for key in keys], classes, how, EXACT, ("diverged", ["diverged"] * 2))
+    bench.add("limit_runs.csv:class", says[0] + says[1], judged[0] + judged[1], how, EXACT, ("by the eigenvalues", [
         "stable" if K < edge else "diverged" for values, edge in zip(tried, theory) for K in values]))
-    bench.add("device_runs.csv:rendering.stiffness_N_per_m", [len(set(v)) for v in tried], [len(v) for v in tried], "each once", EXACT, ("of the scan", [17, 17]))
+    bench.add("limit_runs.csv:{field}", [len(set(v)) for v in tried], [len(v) for v in tried], "each once", EXACT, ("of the scan", [17, 17]))
     order = [(d, s, a) for d in ("mine", "omega.3") for s in ("both_ways", "pushes") for a in ("summation", "mean")]
     for i, name in enumerate(("device", "scenario", "algorithm")):
-        bench.add(f"device_limits.csv:{name}", table[name], [key[i] for key in order], "devices, scenes, algorithms", EXACT, ("reversed", [key[i] for key in order[::-1]]))
-        bench.add(f"device_runs.csv:{name}", list(dict.fromkeys(runs[name])), list(dict.fromkeys(key[i] for key in order)), "devices, scenes, algorithms",
+        bench.add(f"limit.csv:{name}", table[name], [key[i] for key in order], "devices, scenes, algorithms", EXACT, ("reversed", [key[i] for key in order[::-1]]))
+        bench.add(f"limit_runs.csv:{name}", list(dict.fromkeys(runs[name])), list(dict.fromkeys(key[i] for key in order)), "devices, scenes, algorithms",
                   EXACT, ("reversed", list(dict.fromkeys(key[i] for key in order[::-1]))))
     of_maker = [number(row, "published_N_per_m") for row in table.rows]
-    bench.add("device_limits.csv:published_N_per_m", of_maker, [math.nan] * 4 + [5000.0] * 4, "CHAI3D's largest stiffness for an omega.3", EXACT,
+    bench.add("limit.csv:published_N_per_m", of_maker, [math.nan] * 4 + [5000.0] * 4, "CHAI3D's largest stiffness for an omega.3", EXACT,
               ("its maker's closed loop", [math.nan] * 4 + [14500.0] * 4))
     pushed = ("mine", "pushes", "summation")
     linear = bisected(lambda K: HeldLoop(m + 0.2, b + 2, T, K, B, spring=300).radius() < 1, 100.0, 1e6)
     close = Within("an edge by eigenvalues, bisected to 1e-9 or better", relative=1e-8)
-    bench.add("device_limits.csv:linear_N_per_m", number(cell[pushed], "linear_N_per_m"), linear, "eigenvalues of the held loop with the hand", close,
+    bench.add("limit.csv:linear", number(cell[pushed], "linear"), linear, "eigenvalues of the held loop with the hand", close,
               ("without the hand", 2 * theory[0]))
-    row = bench.json("limit", "pushes.json", "--vary", "rendering.stiffness_N_per_m", "--set", 'device={"type":"impedance","handle_mass_kg":0.1,"viscous_N_s_per_m":0.5}',
-                     "--resolution", "0.1", "--out", "l")["limits"][0]
-    bench.add("limit.csv:linear", row["linear"], linear, "eigenvalues of the held loop with the hand", close, ("without the hand", 2 * theory[0]))
-    bench.add("compare --json: most_vibration_m_per_s", printed["most_vibration_m_per_s"], most, "default", EXACT, ("of the tip", 1e-2))
     alone = {(r["device"], r["scenario"]): r["unstable_without_contact"] for r in printed["limits"]}
-    bench.add("compare --json: unstable_without_contact", alone["mine", "pushes"], False, "handle and hand are passive", EXACT, ("with the wall", True))
-    bench.add("compare --json: resolution", printed["resolution"], resolution, "as asked", EXACT, ("default", 0.01))
+    bench.add("limit --json: unstable_without_contact", alone["mine", "pushes"], False, "handle and hand are passive", EXACT, ("with the wall", True))
 
 
 @scene

@@ -112,8 +112,6 @@ class Bench:
         given = list(command.words[1:])
         if given[0] == "plot" and "--from" in given:  # a span of time that a shortened run does not have
             given = given[:given.index("--from")]
-        if given[0] == "compare" and given[1] == "--devices":  # on every bundled wall
-            given.insert(1, "tap_wall")
         runs = given[0] != "sweep" or "--vary" in given and "--row" not in given
         shorter = SHORTER.get(given[0], []) if runs else []
         found = []

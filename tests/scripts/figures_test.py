@@ -86,7 +86,7 @@ def make_results(directory):
              *("--out", directory / "stability_maps"))
     hapbench(*("stability", "--map", "time_step,damping_ratio,device", "--algorithms", "shaped_stiffness", "--size", "3"),
              *("--integrators", "all", "--out", directory / "stability_integrators"))
-    hapbench("compare", "tap_wall", "--devices", "touch,omega.3", "--resolution", "0.5", "--out", directory / "devices")
+    hapbench("limit", "tap_wall", "--device", "touch,omega.3", "--friction", "none", "--resolution", "0.5", "--out", directory / "devices")
     hapbench(*("sweep", "task2_rotate_signed_distance", "--vary=hand.force_N=0.2,3.5", "--set=time.duration_s=2", "--keep-runs"),
              *('--set=record={"ideal_trajectory":true,"every":8}', "--out", directory / "hands"))
     for task in ("vertical", "rotational"):

@@ -36,26 +36,24 @@ std::string override_text(const std::string& path, double value, bool whole) {
   return whole ? fmt::format("{}={:.0f}", path, value) : fmt::format("{}={}", path, value);
 }
 
-/// Finds the limits of one scenario's algorithms.
+/// Finds the limit of one case.
 class Search {
  public:
-  Search(const ScenarioText& scenario, const std::vector<std::string>& overrides, const LimitQuestion& question)
-      : scenario_(scenario), overrides_(overrides), question_(question) {}
+  explicit Search(const LimitCase& asked) : asked_(asked), question_(asked.question) {}
 
-  FieldLimit limit(const std::string& algorithm) {
+  FieldLimit limit() {
     FieldLimit limit;
-    limit.algorithm = algorithm;
+    limit.algorithm = asked_.algorithm;
     std::map<double, JudgedRun> runs;  // by value
     const auto judge = [&](double part) {
       const double value = question_.value_at(part);
       const auto known = runs.find(value);
-      return is_stable(
-          (known == runs.end() ? runs.emplace(value, judged(algorithm, value)).first : known)->second.verdict);
+      return question_.holds((known == runs.end() ? runs.emplace(value, judged(value)).first : known)->second.verdict);
     };
     const auto at_part = [&](double part) {
       return JudgedValue{question_.value_at(part), runs.at(question_.value_at(part)).verdict};
     };
-    const Theory theory(*this, algorithm);
+    const Theory theory(*this);
     std::map<double, bool> tried;
     for (int i = 0; i <= kEdgeIntervals; ++i) tried[static_cast<double>(i) / kEdgeIntervals] = {};
     for (const double part : theory.islands()) tried[part] = {};
@@ -71,20 +69,20 @@ class Search {
     if (question_.own_part()) limit.own = at_part(*question_.own_part());
     for (const auto& [value, run] : runs) {
       limit.runs.push_back({value, run.verdict});
-      if (limit.value && is_stable(run.verdict) != in_interval(value, limit))
+      if (limit.value && question_.holds(run.verdict) != in_interval(value, limit))
         limit.inconsistent.push_back(limit.runs.back());
     }
     limit.has_effect = std::any_of(runs.begin(), runs.end(),
                                    [&runs](const auto& run) { return run.second.way != runs.begin()->second.way; });
     const JudgedValue suspect = limit.beyond ? *limit.beyond : limit.runs.front();
     limit.unstable_alone =
-        !is_stable(suspect.verdict) && unstable_without_contact(at(algorithm, suspect.value), question_.most_vibration);
+        !question_.holds(suspect.verdict) && unstable_without_contact(at(suspect.value), question_.most_vibration);
     limit.theory = theory.edge();
     limit.theory_has_none = theory.has_none();
     limit.undecided = static_cast<std::size_t>(
         std::count_if(runs.begin(), runs.end(), [](const auto& run) { return run.second.undecided; }));
     if (!limit.theory && limit.settled.lambda_max > 0.0 && !question_.smallest)
-      limit.linear = linear_edge(algorithm, limit.settled.lambda_max);
+      limit.linear = linear_edge(limit.settled.lambda_max);
     return limit;
   }
 
@@ -95,24 +93,24 @@ class Search {
            (!limit.other_beyond || is_before(limit.other_beyond->value, value));
   }
 
-  JudgedRun judged(const std::string& algorithm, double value) {
-    const LoadedScenario loaded = at(algorithm, value);
+  JudgedRun judged(double value) const {
+    const LoadedScenario loaded = at(value);
     return with_file(loaded, [&] { return judged_run(loaded, make_shell(loaded.scenario, loaded.files), question_); });
   }
 
-  LoadedScenario at(const std::string& algorithm, double value) const {
-    std::vector<std::string> overrides = overrides_;
-    overrides.push_back("rendering.algorithm=" + algorithm);
+  LoadedScenario at(double value) const {
+    std::vector<std::string> overrides = asked_.overrides;
+    overrides.push_back("rendering.algorithm=" + asked_.algorithm);
     overrides.push_back(override_text(question_.path, value, question_.whole));
-    return load_scenario(scenario_, overrides);
+    return load_scenario(*asked_.scene, overrides);
   }
 
   /// The edges by the eigenvalues of a step, along the whole way.
   class Theory {
    public:
-    Theory(const Search& search, const std::string& algorithm) : search_(search), algorithm_(algorithm) {
+    explicit Theory(const Search& search) : search_(search) {
       for (const double end : {0.0, 1.0}) {
-        if (!has_theory(search.at(algorithm, search.question_.value_at(end)).scenario)) return;
+        if (!has_theory(search.at(search.question_.value_at(end)).scenario)) return;
       }
       for (int i = 0; i <= kTheoryIntervals; ++i) {
         const double part = static_cast<double>(i) / kTheoryIntervals;
@@ -144,25 +142,22 @@ class Search {
     }
 
    private:
-    bool holds(double part) const {
-      return step_is_stable(search_.at(algorithm_, search_.question_.value_at(part)).scenario);
-    }
+    bool holds(double part) const { return step_is_stable(search_.at(search_.question_.value_at(part)).scenario); }
 
     const Search& search_;
-    const std::string& algorithm_;
     std::map<double, bool> tried_;
   };
 
   /// FieldLimit::linear
-  std::optional<double> linear_edge(const std::string& algorithm, double lambda) const {
+  std::optional<double> linear_edge(double lambda) const {
     const auto stable = [&](double part) {
-      const Scenario scenario = at(algorithm, question_.value_at(part)).scenario;
+      const Scenario scenario = at(question_.value_at(part)).scenario;
       return is_stable_step(device_loop(scenario, lambda).state_matrix()) &&
              (!scenario.rendering.dry_friction ||
               is_stable_step(device_loop(stuck_scene(scenario), 1.0).state_matrix()));
     };
     for (const double end : {0.0, 1.0}) {
-      const Scenario scenario = at(algorithm, question_.value_at(end)).scenario;
+      const Scenario scenario = at(question_.value_at(end)).scenario;
       if (!has_device(scenario) || !unknown_to_theory(scenario).empty()) return std::nullopt;
     }
     std::map<double, bool> tried;
@@ -210,8 +205,7 @@ class Search {
     });
   }
 
-  const ScenarioText& scenario_;
-  const std::vector<std::string>& overrides_;
+  const LimitCase& asked_;
   const LimitQuestion& question_;
 };
 
@@ -325,13 +319,14 @@ LimitQuestion limit_question(const ScenarioText& scenario, const std::vector<std
   return question;
 }
 
-std::vector<FieldLimit> field_limits(const ScenarioText& scenario, const std::vector<std::string>& overrides,
-                                     const std::vector<std::string>& algorithms, const LimitQuestion& question,
-                                     const JobOptions& jobs) {
-  if (question.most_vibration) check_sampling(load_scenario(scenario, overrides));
-  Search search(scenario, overrides, question);
-  std::vector<FieldLimit> limits(algorithms.size());
-  for_each_job(algorithms.size(), jobs, [&](std::size_t i) { limits[i] = search.limit(algorithms[i]); });
+FieldLimit field_limit(const LimitCase& asked) {
+  if (asked.question.most_vibration) check_sampling(load_scenario(*asked.scene, asked.overrides));
+  return Search(asked).limit();
+}
+
+std::vector<FieldLimit> field_limits(std::span<const LimitCase> cases, const JobOptions& jobs) {
+  std::vector<FieldLimit> limits(cases.size());
+  for_each_job(cases.size(), jobs, [&](std::size_t i) { limits[i] = field_limit(cases[i]); });
   return limits;
 }
 

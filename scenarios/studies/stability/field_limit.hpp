@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -74,14 +75,23 @@ Json own_value(const Scenario& scenario, const std::string& path);
 LimitQuestion limit_question(const ScenarioText& scenario, const std::vector<std::string>& overrides,
                              const std::string& path, std::optional<Range> range);
 
-/// Answers the question for each algorithm. The range is tried at 17 values and the scenario's own. From the own value
+/// One case of a question: a scene with overrides and an algorithm.
+struct LimitCase {
+  const ScenarioText* scene = nullptr;
+  std::vector<std::string> overrides;
+  std::string algorithm;
+  LimitQuestion question;
+};
+
+/// Answers the question. The range is tried at 17 values and the scenario's own. From the own value
 /// on, or if that is not stable from the first stable one of the low end (smallest: the high end) on, the first edge is
 /// narrowed down by bisection, as is then the other end of the interval; three values on either side of it are tried
-/// besides; if they show an earlier edge, that is narrowed down instead, up to five times. Some 35 to 120 runs for each
-/// algorithm; the same whatever the number of threads. Throws InputError, with the file, for a scene without a free
-/// position or with fewer than 4 steps, and where vibration is asked for at a sampling rate of 60 Hz or less.
-std::vector<FieldLimit> field_limits(const ScenarioText& scenario, const std::vector<std::string>& overrides,
-                                     const std::vector<std::string>& algorithms, const LimitQuestion& question,
-                                     const JobOptions& jobs);
+/// besides; if they show an earlier edge, that is narrowed down instead, up to five times. Some 35 to 120 runs. Throws
+/// InputError, with the file, for a scene without a free position or with fewer than 4 steps, and where vibration is
+/// asked for at a sampling rate of 60 Hz or less.
+FieldLimit field_limit(const LimitCase& asked);
+
+/// Answers for each case, the same whatever the number of threads.
+std::vector<FieldLimit> field_limits(std::span<const LimitCase> cases, const JobOptions& jobs);
 
 }  // namespace hapbench

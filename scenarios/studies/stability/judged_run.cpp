@@ -265,12 +265,13 @@ const char* run_verdict_meaning(RunVerdict verdict) noexcept {
 }
 
 std::string rule_text(const StabilityRule& rule, bool moved) {
-  std::string text = rule.most_vibration
-                         ? fmt::format(
-                               "stable: at most {} m/s rms above {:.0f} Hz at the handle in the last quarter of "
-                               "a run",
-                               *rule.most_vibration, kVibrationCutoff)
-                         : std::string("stable: comes to rest or dies out");
+  std::string text =
+      rule.most_vibration
+          ? fmt::format(
+                "stable: at most {} m/s rms above {:.0f} Hz at the handle in the last quarter of "
+                "a run",
+                *rule.most_vibration, kVibrationCutoff)
+          : fmt::format("stable: comes to rest or dies out{}", rule.bounded ? ", or vibrates without growing" : "");
   if (!rule.most_vibration && moved)
     text +=
         ", as far as it is above 30 Hz and 1 mm/s, because a script moves the tool; where that ends in the first half of a run, all beyond 1 mm/s from then on";
@@ -287,7 +288,7 @@ std::string rule_text(const StabilityRule& rule, bool moved) {
   std::vector<std::string_view> others;
   for (const RunVerdict verdict : kRunVerdicts) {
     const bool of_bounds = verdict == RunVerdict::beyond_bound;
-    if (!is_stable(verdict) && (!of_bounds || !rule.bounds.empty())) others.push_back(run_verdict_name(verdict));
+    if (!rule.holds(verdict) && (!of_bounds || !rule.bounds.empty())) others.push_back(run_verdict_name(verdict));
   }
   return fmt::format("{}; not: {}", text, fmt::join(others, ", "));
 }

@@ -182,6 +182,11 @@ struct StabilityRule {
   std::map<std::string, MetricBound> bounds = {};
   /// tremor_speeds of all runs, where they are the same; otherwise each judged run finds its own.
   std::optional<TremorSpeeds> tremor = {};
+  bool bounded = false;  ///< a run that vibrates without growing is stable, too
+
+  bool holds(RunVerdict verdict) const noexcept {
+    return is_stable(verdict) || (bounded && verdict == RunVerdict::vibrating);
+  }
 };
 
 /// The rule as one line; `moved`: a script moves the tool (is_moved).

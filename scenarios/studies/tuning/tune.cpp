@@ -116,7 +116,7 @@ class Tuner {
     runs_ += count;
     for_each_job(count, {question_.threads, ""}, job);
   }
-  /// Where a script moves the tool, it is never at rest: then what is felt decides, as in `compare --devices`.
+  /// Where a script moves the tool, it is never at rest: then what is felt decides, as in `limit --stable still`.
   JudgedRun judged(const LoadedScenario& loaded) const {
     StabilityRule rule;
     if (is_moved(loaded.scenario)) rule.most_vibration = kMostVibration;

@@ -1,5 +1,5 @@
 """Stability: the root locus of A.3, our maps of stable, vibrating and diverged runs, and the largest stable stiffness of each
-device (`compare --devices`)."""
+device (`limit --device`)."""
 from itertools import cycle
 from textwrap import wrap
 
@@ -16,7 +16,7 @@ from . import published
 from .results import MissingResult, numbers
 
 # Of the picture of devices.
-DEVICES = "device_limits.csv"
+DEVICES = "limit.csv"
 PANEL = 2.6  # [inch]
 LEGEND = 0.3  # [inch]
 STEP = 0.16  # of a row, between algorithms
@@ -379,7 +379,7 @@ def draw_devices(results, table=DEVICES):
         for i, algorithm in enumerate(algorithms):
             mine = [row for row in rows if (row["scenario"], row["algorithm"]) == (scene, algorithm)]
             at = np.array([devices.index(row["device"]) for row in mine]) + STEP * (i - (len(algorithms) - 1) / 2)
-            ax.plot(numbers(mine, "limit_N_per_m"), at, ls="", marker=style.look(algorithm).marker, ms=5, color=style.look(algorithm).colour,
+            ax.plot(numbers(mine, "limit"), at, ls="", marker=style.look(algorithm).marker, ms=5, color=style.look(algorithm).colour,
                     label=style.look(algorithm).label)
         published = {devices.index(row["device"]): float(row["published_N_per_m"]) for row in rows if row["published_N_per_m"]}
         if published:

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from hapbench_figures.results import MissingResult, Results, numbers
-from hapbench_figures.stability import CLASSES, DEVICES, MapFile, draw_devices, draw_stability_map, is_geometric, look_of_class
+from hapbench_figures.stability import CLASSES, MapFile, draw_devices, draw_stability_map, is_geometric, look_of_class
 from hapbench_looks import look
 from hapbench_report.json_input import InputError
 from hapbench_style import BLACK, PETROL, SETTINGS, plt
@@ -19,7 +19,7 @@ MAP, LIMIT, LIMIT_RUNS = "stability_map_", "limit.csv", "limit_runs.csv"
 
 
 def given_study(words):
-    """The table that a folder of maps, of a limit or of devices, or one map's file, stands for; None where none was given."""
+    """The table that a folder of maps or of limits, or one map's file, stands for; None where none was given."""
     studies = [Path(word) for word in words if is_study(Path(word))]
     if studies and len(words) > 1:
         raise InputError(f"{studies[0]}: holds stability maps or limits; allowed: one such folder alone, or any number of runs")
@@ -28,7 +28,7 @@ def given_study(words):
 
 def is_study(path):
     return path.name.startswith(MAP) and path.is_file() or any(path.glob(f"{MAP}*.csv")) or \
-        any((path / name).is_file() for name in (LIMIT_RUNS, DEVICES, LEVELS, TRIALS))
+        any((path / name).is_file() for name in (LIMIT_RUNS, LEVELS, TRIALS))
 
 
 def study_figures(path):
@@ -36,13 +36,12 @@ def study_figures(path):
     try:
         with plt.rc_context(SETTINGS):
             if (path / LIMIT_RUNS).is_file():
-                return [("", draw_limit(Results(path)))]
+                results = Results(path)
+                return [("", draw_devices(results) if "device" in results.records(LIMIT)[0] else draw_limit(results))]
             if (path / TRIALS).is_file():
                 return [("", draw_tune(Results(path)))]
             if (path / LEVELS).is_file():
                 return [("", draw_converge(Results(path)))]
-            if (path / DEVICES).is_file():
-                return [("", draw_devices(Results(path)))]
             results = Results(path.parent if path.is_file() else path)
             files = [path.name] if path.is_file() else results.glob(f"{MAP}*.csv")
             return [(name, draw_stability_map(found)) for file in files for name, found in single_maps(results, file)]

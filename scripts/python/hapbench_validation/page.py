@@ -25,7 +25,7 @@ vibrates at its first contact, or a good setting is never tried. It moves nobody
 | forces and stiffness of the algorithms | [known answers](../../tests/known_answers/README.md), [claims of the thesis](../thesis_claims/README.md) | `compare --check`, `run --sure` | the thesis's own figures; no other measurement | `sweep --sample`; [claims](../thesis_claims/README.md) sampled over choices that are ours |
 | motion of the tool in time | [observed orders](../../tests/verification/README.md), closed forms in [known answers](../../tests/known_answers/README.md) | [precision and converge](../studies/README.md) | no | `converge`, `sweep` |
 | limits of stability, linear | eigenvalues and polynomials, `tests/device_model/linear_loops_test.cpp` | bisection to a stated width | see below | [maps](../studies/README.md#stability) |
-| limits of an impedance device at a wall | exact maps, elastic transmission included: `tests/device_model/linear_loops_test.cpp`, `tests/device_model/elastic_motion_test.cpp` | the handle moves exactly between samples | **cases below** | intervals below: dry friction, delay, damping, press, tremor; of presets `compare --devices` prints intervals |
+| limits of an impedance device at a wall | exact maps, elastic transmission included: `tests/device_model/linear_loops_test.cpp`, `tests/device_model/elastic_motion_test.cpp` | the handle moves exactly between samples | **cases below** | intervals below: dry friction, delay, damping, press, tremor; of presets `limit --device` prints intervals |
 | limits of an admittance device | `tests/device_model/admittance_device_test.cpp` | `limit` to a stated width | **no measured limit was found** | [maps](../studies/README.md#stability) |
 | dry friction between tool and surface | [known answers](../../tests/known_answers/README.md) | `converge` | no | `sweep` |
 | a device identified from its log | an independent simulator, `tests/scripts/identify_test.py` | exact integration | no log of hardware was available | 95 % intervals with every number |
@@ -57,7 +57,7 @@ NOT_FOR = """
 ## What it is not for
 
 - The K of a real device without its own numbers: dry friction and the hand's press alone move K by factors of ten
-  (`compare --devices` prints the interval). Measure them with `hapbench identify`, then read K as that of one approach.
+  (`limit --device` has both ends). Measure them with `hapbench identify`, then read K as that of one approach.
 - Devices with more than one resonance within the band (`device.transmission` is one spring between motors and handle, and no
   preset has one, because none is published), position estimators other than low-passes, amplifiers with dynamics of their own,
   dry friction that depends on place or history.

@@ -73,7 +73,7 @@ TEST(Headings, OfEveryTableAreKnownToDescribe) {
       {"compare", "recorded_wipe", "--algorithms", "mean,summation"},
       {"compare", "springs_limited_mean", "--algorithms", "mean,summation", "--seeds", "2"},
       {"compare", "springs_limited_mean", "springs_limited_summation", "--algorithms", "mean,summation"},
-      {"compare", "tap_wall", "--devices", "touch,ideal", "--set", "time.steps=200", "--resolution", "0.5"},
+      {"limit", "tap_wall", "--device", "touch,ideal", "--set", "time.steps=200", "--resolution", "0.5"},
       {"limit", "single_spring", "--vary", "rendering.stiffness_N_per_m", "--resolution", "0.5"},
       {"limit", "single_spring", "--vary", "rendering.mass_kg", "--smallest", "--resolution", "0.5"},
       {"sweep", "springs_limited_mean", "--vary", "rendering.mass_kg=0.1,0.2", "--set", "expect={}"},

@@ -284,7 +284,8 @@ TEST_F(ValidateOfUnits, KnowsADeviceFile) {
   test::write_plainly(directory_ / "mine.json", R"({"type": "impedance", "preset": "touch", "delay_samples": 2})");
   const ProgramRun run = hapbench({"validate", path("mine.json")});
   EXPECT_EQ(run.status, 0) << run.err;
-  EXPECT_NE(run.out.find("a valid device, not a scenario: hapbench compare --devices "), std::string::npos) << run.out;
+  EXPECT_NE(run.out.find("a valid device, not a scenario: hapbench limit tap_wall --device "), std::string::npos)
+      << run.out;
   test::write_plainly(directory_ / "mine.json", R"({"type": "impedance", "preset": "tuch"})");
   const ProgramRun wrong = hapbench({"validate", path("mine.json")});
   EXPECT_EQ(wrong.status, 2);

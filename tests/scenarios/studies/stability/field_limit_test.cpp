@@ -27,7 +27,9 @@ std::vector<FieldLimit> ask(const Asked& asked, const Words& algorithms = {"summ
   const ScenarioText scenario = read_scenario_text(find_scenario(asked.scenario));
   LimitQuestion question = limit_question(scenario, asked.overrides, asked.field, asked.range);
   question.smallest = asked.smallest;
-  return field_limits(scenario, asked.overrides, algorithms, question, {threads, ""});
+  std::vector<LimitCase> cases;
+  for (const std::string& algorithm : algorithms) cases.push_back({&scenario, asked.overrides, algorithm, question});
+  return field_limits(cases, {threads, ""});
 }
 
 /// 2000 steps, within which a decay of a tenth in a quarter tells stable from vibrating 0.1 % below the limit.
@@ -73,7 +75,7 @@ TEST(FieldLimit, HasATheoryToRoundingWhateverTheResolution) {
   LimitQuestion question = limit_question(scenario, undamped, "rendering.stiffness_N_per_m", Range{1e4, 1e8, false});
   for (const double resolution : {1e-3, 0.2}) {
     question.resolution = resolution;
-    const FieldLimit limit = field_limits(scenario, undamped, {"summation"}, question, {1, ""}).front();
+    const FieldLimit limit = field_limit({&scenario, undamped, "summation", question});
     // is_stable() allows the rounding of an eigenvalue on the unit circle: its square root in the frequency.
     EXPECT_NEAR(*limit.theory, 1.6e6, 1e-7 * 1.6e6) << resolution;
   }
@@ -123,7 +125,7 @@ TEST(FieldLimit, OfADeviceAtAWallIsComparedWithItsLinearLoop) {
   const ScenarioText scenario = read_scenario_text(find_scenario("tap_wall"));
   LimitQuestion question = limit_question(scenario, device, "rendering.stiffness_N_per_m", {});
   question.most_vibration = 1e-3;
-  const FieldLimit limit = field_limits(scenario, device, {"summation"}, question, {1, ""}).front();
+  const FieldLimit limit = field_limit({&scenario, device, "summation", question});
   ASSERT_TRUE(limit.value && limit.linear);
   EXPECT_NEAR(*limit.linear, 1773.8, 0.1);
   EXPECT_TRUE(limit.is_beyond_linear(0.01));
@@ -135,7 +137,7 @@ TEST(FieldLimit, OfRunsThatComeToRestEarlyIsNoMatterOfTheirStart) {
   const ScenarioText scenario = read_scenario_text(find_scenario("single_spring"));
   LimitQuestion question = limit_question(scenario, longer, "rendering.stiffness_N_per_m", {});
   question.most_vibration = 0.01;
-  const FieldLimit limit = field_limits(scenario, longer, {"summation"}, question, {1, ""}).front();
+  const FieldLimit limit = field_limit({&scenario, longer, "summation", question});
   ASSERT_TRUE(limit.value && limit.theory);
   EXPECT_NEAR(*limit.value, *limit.theory, 0.01 * *limit.theory);
 }
@@ -171,7 +173,7 @@ TEST(FieldLimit, IsDecidedByTheVibrationThatIsAllowed) {
   LimitQuestion question = limit_question(scenario, undamped, "rendering.stiffness_N_per_m", Range{1e5, 1e7, false});
   const auto limit = [&](double most) {
     question.most_vibration = most;
-    return field_limits(scenario, undamped, {"summation"}, question, {}).front();
+    return field_limit({&scenario, undamped, "summation", question});
   };
   const FieldLimit any = limit(1e9);
   ASSERT_TRUE(any.value && any.settled.vibration);
@@ -233,7 +235,7 @@ TEST(FieldLimit, HasTwoEnds) {
   const Words pressed = {R"(hand={"type":"force","z_N":-1})", "time.duration_s=0.5", "rendering.reduction=null"};
   const ScenarioText scenario = read_scenario_text(find_scenario("poke_plane"));
   LimitQuestion question = limit_question(scenario, pressed, "rendering.stiffness_N_per_m", {});
-  const FieldLimit limit = field_limits(scenario, pressed, {"mean"}, question, {}).front();
+  const FieldLimit limit = field_limit({&scenario, pressed, "mean", question});
   ASSERT_TRUE(limit.value && limit.other_value && limit.other_beyond);
   EXPECT_EQ(limit.other_beyond->verdict, RunVerdict::went_through);
   // A force of 1 N presses the flat tip 1 / K deep, and its half width is 0.5 mm: the landing goes deeper.
@@ -245,7 +247,7 @@ TEST(FieldLimit, HasTwoEnds) {
 
   // A bound on the settled depth moves the low end to where a run has that depth.
   question.bounds["inside_settled_m"].max = 1e-4;
-  const FieldLimit bounded = field_limits(scenario, pressed, {"mean"}, question, {}).front();
+  const FieldLimit bounded = field_limit({&scenario, pressed, "mean", question});
   ASSERT_TRUE(bounded.other_value && bounded.other_beyond);
   EXPECT_EQ(bounded.other_beyond->verdict, RunVerdict::beyond_bound);
   const auto settled_at = [&](double stiffness) {

@@ -1,4 +1,4 @@
-#include "scenarios/studies/stability/device_limits.hpp"
+#include "scenarios/studies/stability/scene_devices.hpp"
 
 #include <fmt/format.h>
 
@@ -13,8 +13,6 @@
 
 namespace hapbench {
 namespace {
-
-constexpr const char* kStiffness = "rendering.stiffness_N_per_m";
 
 /// The device of a file that is one, or of a scenario, of which nothing else is looked at.
 DeviceFields read_device(const Json& file) {
@@ -37,15 +35,6 @@ Json massless_hand(const ScenarioText& scene) {
   massless["type"] = "impedance";
   massless.erase("mass_kg");
   return massless;
-}
-
-/// In the order of the answers.
-DeviceLimit question_for(const DeviceQuestion& asked, std::size_t device, std::size_t scene) {
-  const std::vector<std::string> overrides = overrides_on(asked.devices[device], asked.scenes[scene], asked.overrides);
-  DeviceLimit limit{device, scene, limit_question(asked.scenes[scene], overrides, kStiffness, {}), {}};
-  limit.question.most_vibration = asked.most_vibration;
-  limit.question.resolution = asked.resolution;
-  return limit;
 }
 
 }  // namespace
@@ -89,6 +78,7 @@ std::optional<ComparedDevice> with_friction_times(ComparedDevice device, double 
   if (impedance == nullptr || impedance->coulomb == 0.0) return std::nullopt;
   impedance->coulomb *= factor;
   device.json = written(fields).dump();
+  device.name += fmt::format("[friction*{:g}]", factor);
   return device;
 }
 
@@ -97,7 +87,9 @@ std::vector<ComparedDevice> with_unpublished_numbers(const ComparedDevice& devic
   if (preset == nullptr) return {};
   std::vector<ComparedDevice> ends(2, device);
   ends[0].json = written(DeviceFields(config_of(*preset, PresetEnd::soft))).dump();
+  ends[0].name += "[soft]";
   ends[1].json = written(DeviceFields(config_of(*preset, PresetEnd::stiff))).dump();
+  ends[1].name += "[stiff]";
   return ends;
 }
 
@@ -110,23 +102,6 @@ std::vector<std::string> overrides_on(const ComparedDevice& device, const Scenar
     if (hand.is_null() || overridden_path(override) != "hand.mass_kg") all.push_back(override);
   }
   return all;
-}
-
-std::vector<DeviceLimit> device_limits(const DeviceQuestion& asked, const JobOptions& jobs) {
-  std::vector<DeviceLimit> limits;
-  for (std::size_t device = 0; device < asked.devices.size(); ++device) {
-    for (std::size_t scene = 0; scene < asked.scenes.size(); ++scene) {
-      limits.insert(limits.end(), asked.algorithms.size(), question_for(asked, device, scene));
-    }
-  }
-  for_each_job(limits.size(), jobs, [&](std::size_t i) {
-    DeviceLimit& limit = limits[i];
-    const ScenarioText& scene = asked.scenes[limit.scene];
-    const auto overrides = overrides_on(asked.devices[limit.device], scene, asked.overrides);
-    limit.limit =
-        field_limits(scene, overrides, {asked.algorithms[i % asked.algorithms.size()]}, limit.question, {}).front();
-  });
-  return limits;
 }
 
 }  // namespace hapbench

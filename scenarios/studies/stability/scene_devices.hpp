@@ -5,12 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/batch/parallel_for.hpp"
 #include "scenarios/description/load_scenario.hpp"
-#include "scenarios/studies/stability/field_limit.hpp"
 
-/// The largest stiffness that devices can render: for each device, scene and algorithm, at which a run is
-/// stable and its handle still (judged_run.hpp), found as field_limit.hpp finds it.
+/// Devices that a scene is put on in place of its own: those of the program, and files.
 namespace hapbench {
 
 /// The delay of the scene's device, as "1.5 (0.75 ms in steps of 0.5 ms)", and what to say beside it.
@@ -37,36 +34,16 @@ ComparedDevice device_of_file(const std::filesystem::path& file);
 /// nothing is published of it. Other devices stay as they are.
 ComparedDevice with_marked_name(ComparedDevice device, const std::vector<std::string>& overrides);
 
-/// The same with its dry friction times a factor; nothing for a device that has none.
+/// The same with its dry friction times a factor, named touch[friction*2]; nothing for a device that has none.
 std::optional<ComparedDevice> with_friction_times(ComparedDevice device, double factor);
 
-/// A preset with the numbers of both ends of what nobody published (PresetEnd); nothing for another device.
+/// A preset with the numbers of both ends of what nobody published (PresetEnd), named touch[soft] and touch[stiff];
+/// nothing for another device.
 std::vector<ComparedDevice> with_unpublished_numbers(const ComparedDevice& device);
-
-/// The devices, scenes and algorithms to compare. The overrides hold for all runs, also for fields of the devices.
-struct DeviceQuestion {
-  std::vector<ComparedDevice> devices;
-  std::vector<ScenarioText> scenes;
-  std::vector<std::string> algorithms;
-  std::vector<std::string> overrides;
-  double most_vibration = 0.0;  ///< [m/s rms]
-  double resolution = 1e-2;     ///< relative width of a limit
-};
-
-/// Answers for one device in one scene.
-struct DeviceLimit {
-  std::size_t device = 0, scene = 0;  ///< of the question
-  LimitQuestion question;             ///< with the range of K
-  FieldLimit limit;                   ///< of one algorithm
-};
 
 /// The overrides that put the scene on the device, before the given ones. A hand with a mass loses it where the device
 /// has no place for one; the virtual mass is there instead.
 std::vector<std::string> overrides_on(const ComparedDevice& device, const ScenarioText& scene,
                                       const std::vector<std::string>& overrides);
-
-/// By device, then scene, then algorithm. K is looked for between a thousandth and a thousandfold of the scene's own.
-/// Some 40 runs each; the same whatever the number of threads. Throws InputError.
-std::vector<DeviceLimit> device_limits(const DeviceQuestion& question, const JobOptions& jobs);
 
 }  // namespace hapbench

@@ -1,0 +1,290 @@
+#include "scenarios/program/limit_answers.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace hapbench {
+namespace {
+
+constexpr const char *kInconsistent = "inconsistent_runs", *kAstray = "astray";
+
+Cell verdict_cell(const std::optional<JudgedValue>& run) {
+  return run ? Cell(std::string(run_verdict_name(run->verdict))) : Cell();
+}
+Cell value_cell(const std::optional<JudgedValue>& run) {
+  return run ? Cell(run->value) : Cell();
+}
+
+/// What lies beyond a limit: a class of motion or "end of the range"; without a limit, the class at the range's low
+/// end.
+std::string beyond_text(const FieldLimit& limit) {
+  if (limit.beyond) return std::string(run_verdict_name(limit.beyond->verdict));
+  return limit.value ? "end of the range" : std::string(run_verdict_name(limit.runs.front().verdict));
+}
+/// The same of the other end of the interval of stable values.
+std::string other_beyond_text(const FieldLimit& limit) {
+  if (limit.other_beyond) return std::string(run_verdict_name(limit.other_beyond->verdict));
+  return limit.value ? "end of the range" : "-";
+}
+
+/// The low and the high end of the interval of stable values.
+struct Ends {
+  const std::optional<double>&low, &high;
+  const std::optional<JudgedValue>&below, &above;
+  std::optional<double> low_tolerance, high_tolerance;
+};
+Ends ends_of(const LimitRow& r) {
+  const FieldLimit& l = r.found();
+  if (r.asked().question.smallest)
+    return {l.value, l.other_value, l.beyond, l.other_beyond, l.tolerance(), l.other_tolerance()};
+  return {l.other_value, l.value, l.other_beyond, l.beyond, l.other_tolerance(), l.tolerance()};
+}
+
+Shown only_json() {
+  return {false, true};
+}
+Shown only_csv() {
+  return {true, false};
+}
+
+/// What tells the cases apart, before their algorithm.
+Columns<LimitRow> place_columns(const LimitCases* asked) {
+  Columns<LimitRow> columns;
+  if (asked == nullptr || asked->has_devices()) {
+    columns.add(
+        {"device", "",
+         "ideal, admittance, the preset of an impedance device (* with numbers of --set, [soft] and [stiff] at the "
+         "ends of what is not published), or a file's",
+         [](const LimitRow& r) -> Cell { return r.answers.asked().device(r.row).name; }});
+  }
+  if (asked == nullptr || asked->has_devices() || asked->scenes().size() > 1) {
+    columns.add({"scenario",
+                 "",
+                 "name of the scene's file",
+                 [](const LimitRow& r) -> Cell { return r.answers.asked().scene_name(r.column); },
+                 {.heading = asked == nullptr ? "" : "scenario"}});
+  }
+  const std::vector<std::string> over = asked == nullptr ? std::vector<std::string>{} : asked->over();
+  for (std::size_t i = 0; i < over.size(); ++i) {
+    columns.add({over[i], "by name", "value of the field that varies besides",
+                 [i](const LimitRow& r) -> Cell { return r.answers.asked().values(r.row)[i]; }});
+  }
+  columns.add({"algorithm",
+               "",
+               "force algorithm",
+               [](const LimitRow& r) -> Cell { return r.found().algorithm; },
+               {.heading = "algorithm"}});
+  return columns;
+}
+
+/// What is only printed, before the numbers of the files.
+Columns<LimitRow> edge_columns(bool smallest) {
+  const auto limit_text = [](const std::optional<double>& value, const std::optional<double>& tolerance) {
+    return value ? deserved(*value, tolerance, 6) : std::string("none");
+  };
+  return {
+      {"", "by field", smallest ? "high" : "low",
+       [limit_text](const LimitRow& r) -> Cell {
+         return limit_text(r.found().other_value, r.found().other_tolerance());
+       },
+       printed_as(smallest ? "high end" : "low end")},
+      {"", "",
+       smallest ? "what becomes of the run at the first value above the high end; \"end of the range\": none was tried"
+                : "what becomes of the run at the first value below the low end; \"end of the range\": none was tried",
+       [](const LimitRow& r) -> Cell { return other_beyond_text(r.found()); },
+       printed_as(smallest ? "above it" : "below it")},
+      {"", "by field", "limit",
+       [limit_text](const LimitRow& r) -> Cell { return limit_text(r.found().value, r.found().tolerance()); },
+       printed_as("first edge")},
+      {"", "",
+       "what becomes of the run at the first unstable value beyond the first edge, a class of motion; \"end of the "
+       "range\": no value up to there is unstable",
+       [](const LimitRow& r) -> Cell { return beyond_text(r.found()); }, printed_as("beyond it")}};
+}
+
+Columns<LimitRow> end_columns() {
+  return {
+      {"field", "", "path of the field", [](const LimitRow& r) -> Cell { return r.asked().question.path; }, only_csv()},
+      {"side", "", "largest or smallest: the stable value that was asked for",
+       [](const LimitRow& r) -> Cell { return r.asked().question.smallest ? "smallest" : "largest"; }, only_csv()},
+      {"limit", "by field",
+       "the last stable value before the first edge, by bisection on runs; empty when there is none",
+       [](const LimitRow& r) { return cell_if(r.found().value); }},
+      {"beyond", "by field", "the first unstable value beyond it; empty when the range ends stable",
+       [](const LimitRow& r) { return value_cell(r.found().beyond); }},
+      {"class_beyond", "", "what became of the run there (describe stability)",
+       [](const LimitRow& r) -> Cell { return beyond_text(r.found()); }},
+      {"low", "by field",
+       "the low end of the interval of stable values that the limit ends: its smallest stable value, to the resolution",
+       [](const LimitRow& r) { return cell_if(ends_of(r).low); }},
+      {"below", "by field", "the first value below that is not stable; empty when the range begins stable",
+       [](const LimitRow& r) { return value_cell(ends_of(r).below); }},
+      {"class_below", "", "what became of the run there",
+       [](const LimitRow& r) { return verdict_cell(ends_of(r).below); }},
+      {"high", "by field", "the high end of this interval", [](const LimitRow& r) { return cell_if(ends_of(r).high); }},
+      {"above", "by field", "the first value above that is not stable; empty when the range ends stable",
+       [](const LimitRow& r) { return value_cell(ends_of(r).above); }},
+      {"class_above", "", "what became of the run there",
+       [](const LimitRow& r) { return verdict_cell(ends_of(r).above); }}};
+}
+
+Columns<LimitRow> theory_columns() {
+  return {{"theory", "by field", "the limit in theory; empty where there is none",
+           [](const LimitRow& r) { return cell_if(r.found().theory); }},
+          {"linear", "by field",
+           "of a device at what only pushes: the largest value at which the loop of device, hand and surface is stable "
+           "while they touch, without dry friction and encoder, by its eigenvalues; a limit beyond it is held up by "
+           "bounces, dry friction or the end of the run; empty where there is a theory or no device",
+           [](const LimitRow& r) { return cell_if(r.found().linear); }},
+          {"", "by field", "theory",
+           [](const LimitRow& r) -> Cell {
+             const auto& value = r.found().theory;
+             return !value ? "-" : std::isinf(*value) || *value == 0.0 ? "none" : significant(*value, 6);
+           },
+           printed_as("theory")},
+          {"", "%", "first edge / theory - 1, in percent; of stability --map the largest along the edge",
+           [](const LimitRow& r) -> Cell {
+             const FieldLimit& l = r.found();
+             const auto difference = l.difference(), tolerance = l.tolerance();
+             const auto width = tolerance ? std::optional(100.0 * *tolerance / std::abs(*l.value)) : std::nullopt;
+             return difference ? deserved_difference(100.0 * *difference, width) : "-";
+           },
+           printed_as("off theory %")}};
+}
+
+Columns<LimitRow> search_columns() {
+  return {{"limit_tolerance", "by field", "how far beyond the limit the edge may lie: beyond - limit",
+           [](const LimitRow& r) { return cell_if(r.found().tolerance()); }, only_json()},
+          {"low_tolerance", "by field", "the same of the low end",
+           [](const LimitRow& r) { return cell_if(ends_of(r).low_tolerance); }, only_json()},
+          {"high_tolerance", "by field", "the same of the high end",
+           [](const LimitRow& r) { return cell_if(ends_of(r).high_tolerance); }, only_json()},
+          {"undecided", "1", "runs that were too short to tell slow motion from rest, though lengthened",
+           [](const LimitRow& r) -> Cell { return std::uint64_t{r.found().undecided}; }},
+          {"unstable_without_contact", "", "true when hand and device alone are unstable beyond the edge",
+           [](const LimitRow& r) -> Cell { return r.found().unstable_alone; }, only_json()},
+          {"has_effect", "", "false when the field changes no run",
+           [](const LimitRow& r) -> Cell { return r.found().has_effect; }, only_json()}};
+}
+
+/// Numbers of the run at the limit, for cases to be compared by.
+Columns<LimitRow> settled_columns() {
+  const auto settled = [](const LimitRow& r, double value) { return r.found().value ? Cell(value) : Cell(); };
+  return {
+      {"vibration_m_per_s", "m/s", "at the limit: rms of the handle's speed above 30 Hz in the last quarter of the run",
+       [](const LimitRow& r) { return r.found().value ? cell_if(r.found().settled.vibration) : Cell(); }},
+      {"contacts", "1", "at the limit: mean number of rendered contacts there",
+       [settled](const LimitRow& r) { return settled(r, r.found().settled.contacts); }},
+      {"lambda_max", "1", "at the limit: largest eigenvalue of the mean S there",
+       [settled](const LimitRow& r) { return settled(r, r.found().settled.lambda_max); }},
+      {"stiffness_ratio", "1", "limit over that of the first scene with the first algorithm, all else equal",
+       [](const LimitRow& r) { return cell_if(r.answers.ratio(r.row, r.column).value); }},
+      {"rendered_ratio", "1", "the same of K lambda_max",
+       [](const LimitRow& r) { return cell_if(r.answers.ratio(r.row, r.column).rendered); }}};
+}
+
+/// A line of limit_runs.csv.
+struct LimitRunRow {
+  LimitRow limit;
+  JudgedValue run;
+};
+
+Columns<LimitRunRow> run_columns(const LimitCases* asked) {
+  Columns<LimitRunRow> columns;
+  if (asked == nullptr || asked->has_devices())
+    columns.add({"device", "", "as in limit.csv",
+                 [](const LimitRunRow& r) -> Cell { return r.limit.answers.asked().device(r.limit.row).name; }});
+  if (asked == nullptr || asked->has_devices() || asked->scenes().size() > 1)
+    columns.add({"scenario", "", "name of the scene's file",
+                 [](const LimitRunRow& r) -> Cell { return r.limit.answers.asked().scene_name(r.limit.column); }});
+  const std::vector<std::string> over = asked == nullptr ? std::vector<std::string>{} : asked->over();
+  for (std::size_t i = 0; i < over.size(); ++i)
+    columns.add({over[i], "by name", "value of the field that varies besides",
+                 [i](const LimitRunRow& r) -> Cell { return r.limit.answers.asked().values(r.limit.row)[i]; }});
+  columns.add(
+      {"algorithm", "", "force algorithm", [](const LimitRunRow& r) -> Cell { return r.limit.found().algorithm; }});
+  columns.add({asked == nullptr ? "{field}" : asked->at(0, 0).question.path, "by name", "value of the field",
+               [](const LimitRunRow& r) -> Cell { return r.run.value; }});
+  columns.add({"class", "", "what became of the run (describe stability)",
+               [](const LimitRunRow& r) -> Cell { return std::string(run_verdict_name(r.run.verdict)); }});
+  return columns;
+}
+
+Json row_json(const Columns<LimitRow>& columns, const LimitRow& row) {
+  Json json = columns.json(row);
+  Json inconsistent = Json::array();
+  for (const JudgedValue& run : row.found().inconsistent)
+    inconsistent.push_back({{"value", run.value}, {"class", run_verdict_name(run.verdict)}});
+  json[kInconsistent] = json[kAstray] = inconsistent;
+  return json;
+}
+
+}  // namespace
+
+std::vector<LimitRow> rows_of(const LimitAnswers& answers) {
+  std::vector<LimitRow> rows;
+  for (std::size_t row = 0; row < answers.asked().rows(); ++row)
+    for (std::size_t column = 0; column < answers.asked().columns(); ++column) rows.push_back({answers, row, column});
+  return rows;
+}
+
+Columns<LimitRow> limit_columns(const LimitCases* asked) {
+  Columns<LimitRow> columns = place_columns(asked);
+  columns.add(edge_columns(asked != nullptr && asked->at(0, 0).question.smallest));
+  columns.add(end_columns());
+  columns.add(theory_columns());
+  columns.add(search_columns());
+  if (asked == nullptr || asked->has_devices()) {
+    columns.add({"published_N_per_m", "N/m", "published largest stable stiffness of a wall on the device",
+                 [](const LimitRow& r) { return cell_if(r.answers.asked().device(r.row).published_stiffness); }});
+  }
+  if (asked == nullptr || asked->is_grid()) columns.add(settled_columns());
+  columns.add({"runs",
+               "1",
+               "runs of the search",
+               [](const LimitRow& r) -> Cell { return std::uint64_t{r.found().runs.size()}; },
+               {.heading = "runs"}});
+  const auto inconsistent = [](const LimitRow& r) -> Cell { return std::uint64_t{r.found().inconsistent.size()}; };
+  columns.add({kInconsistent,
+               "1",
+               "runs that are unstable on the stable side of the limit, or stable beyond it",
+               inconsistent,
+               {.heading = "inconsistent"}});
+  columns.add({kAstray, "1", "the same as inconsistent_runs, by its former name", inconsistent});
+  return columns;
+}
+
+std::vector<DescribedTable> limit_tables() {
+  DescribedTable limits = limit_columns(nullptr).described(
+      "limit.csv", "of limit: one line per device, values of --over, scene and algorithm");
+  for (const Table::Column& heading : edge_columns(true).headings()) limits.headings.push_back(heading);
+  limits.headings.push_back({"pub-\nlished", true, "published_N_per_m"});
+  return {limits, run_columns(nullptr).described("limit_runs.csv", "of limit: one line per run")};
+}
+
+void tell_limits(const LimitAnswers& answers, Report& report) {
+  const LimitCases& asked = answers.asked();
+  const LimitQuestion& question = asked.at(0, 0).question;
+  const Columns<LimitRow> columns = limit_columns(&asked);
+  const std::vector<LimitRow> rows = rows_of(answers);
+  std::vector<LimitRunRow> runs;
+  Json limits = Json::array();
+  for (const LimitRow& row : rows) {
+    limits.push_back(row_json(columns, row));
+    for (const JudgedValue& run : row.found().runs) runs.push_back({row, run});
+  }
+  report.write("limit.csv", columns, rows);
+  report.write("limit_runs.csv", run_columns(&asked), runs);
+  report.say(answers.text());
+  report.json() = {{"field", question.path},
+                   {"side", question.smallest ? "smallest" : "largest"},
+                   {"from", question.range.from},
+                   {"to", question.range.to},
+                   {"resolution", question.resolution},
+                   {"rule", rule_text(question, is_moved(asked.load(0, 0).scenario))},
+                   {"limits", std::move(limits)}};
+}
+
+}  // namespace hapbench

@@ -1,0 +1,264 @@
+#include "scenarios/program/limit_cases.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <set>
+
+#include "scenarios/description/bundled_scenarios.hpp"
+#include "scenarios/description/metric_sections.hpp"
+#include "scenarios/input/input_error.hpp"
+#include "scenarios/input/text_lines.hpp"
+#include "scenarios/run/assemble.hpp"
+
+namespace hapbench {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kNoOthers = "none";      ///< for --friction
+constexpr const char* kPresets = "impedance";  ///< stands for all presets, which have that type
+
+bool is_file(const std::string& name) {
+  return name.ends_with(".json");
+}
+
+/// The devices of a name or a type that are none of files; none of an unknown name.
+std::vector<ComparedDevice> devices_named(const std::string& name) {
+  std::vector<ComparedDevice> found;
+  for (const ComparedDevice& device : compared_devices()) {
+    if (name == "all" || name == device.name || (name == kPresets && device.published_stiffness))
+      found.push_back(device);
+    for (const ComparedDevice& end : with_unpublished_numbers(device))
+      if (name == end.name) found.push_back(end);
+  }
+  return found;
+}
+
+/// The devices, those with what --set changes marked, each with what else nobody published of it: both ends, or its dry
+/// friction times the factors.
+std::vector<ComparedDevice> asked_devices(const LimitOptions& options) {
+  for (const std::string& override : options.overrides) {
+    const std::string_view path = overridden_path(override);
+    if (path == "device" || path == "device.type" || path == "device.preset") {
+      throw InputError(fmt::format(
+          "--set: got {} with --device; allowed: fields of the devices, such as device.delay_samples; a device "
+          "of your own goes into --device, as a file NAME.json",
+          path));
+    }
+    if (path == "device.coulomb_N" && !options.friction.empty() && options.friction.front() != kNoOthers)
+      throw InputError("--friction: got it beside --set device.coulomb_N; allowed: either");
+  }
+  std::vector<ComparedDevice> devices;
+  for (const ComparedDevice& chosen : chosen_devices(options.devices)) {
+    const ComparedDevice device = with_marked_name(chosen, options.overrides);
+    devices.push_back(device);
+    if (options.friction == std::vector<std::string>{kNoOthers}) continue;
+    for (const std::string& factor : options.friction) {
+      if (const auto other = with_friction_times(device, number_between("--friction", factor, 0.0, 1e3)))
+        devices.push_back(*other);
+    }
+    if (!options.friction.empty() || chosen.name.ends_with(']')) continue;
+    for (const ComparedDevice& end : with_unpublished_numbers(device)) devices.push_back(end);
+  }
+  return devices;
+}
+
+std::vector<ScenarioText> asked_scenes(const std::vector<std::string>& given) {
+  std::vector<ScenarioText> scenes;
+  std::set<fs::path> names;
+  for (const fs::path& file : find_scenarios(given)) {
+    if (!names.insert(file.stem()).second) {
+      throw InputError(fmt::format("{}: a second scenario named \"{}\"; allowed: each name once", file.string(),
+                                   file.stem().string()));
+    }
+    scenes.push_back(read_scenario_text(file));
+  }
+  return scenes;
+}
+
+/// Errors name the device, since the overrides hold for all devices.
+template <class Work>
+auto with_device(const ComparedDevice* device, Work work) {
+  try {
+    return work();
+  } catch (const InputError& error) {
+    if (device == nullptr) throw;
+    std::vector<InputError> faults;
+    for (const InputError& fault : error.faults()) {
+      if (fault.place().empty()) throw;  // of an option
+      const bool is_of_type = fault.place().find("/device/") != std::string::npos && !device->has_place_for_mass;
+      faults.emplace_back(fault.kind(), fmt::format("--device {}: {}", device->name, fault.place()),
+                          fault.problem() + (is_of_type ? "; \"--device impedance\" leaves this one out" : ""));
+    }
+    throw InputError::all(faults);
+  }
+}
+
+/// The rule by which a run is stable.
+void set_rule(const LimitOptions& options, LimitQuestion& question) {
+  question.bounded = options.stable == "bounded";
+  if (!options.vibration.empty()) {
+    if (!options.stable.empty() && options.stable != "still")
+      throw InputError(fmt::format("--vibration: got it beside --stable {}; allowed: with still", options.stable));
+    question.most_vibration = number_between("--vibration", options.vibration, 1e-9, 1e3);
+  } else if (options.stable == "still" || (options.stable.empty() && !options.devices.empty())) {
+    question.most_vibration = kMostVibration;
+  }
+  for (const std::string& bound : options.bounds) add_bound(bound, question.bounds);
+}
+
+LimitQuestion question_of(const LimitOptions& options, const ScenarioText& scene,
+                          const std::vector<std::string>& overrides) {
+  if (options.field.find('=') != std::string::npos) {
+    throw InputError(
+        fmt::format("--vary: got \"{}\"; allowed: a field alone, and its range as --between a:b", options.field));
+  }
+  LimitQuestion question = limit_question(scene, overrides, options.field, range_of("--between", options.between));
+  question.smallest = options.smallest;
+  if (!options.resolution.empty()) question.resolution = number_between("--resolution", options.resolution, 1e-6, 0.5);
+  set_rule(options, question);
+  return question;
+}
+
+}  // namespace
+
+std::optional<Range> range_of(const char* option, const std::string& text) {
+  if (text.empty()) return std::nullopt;
+  const Words ends = parts_of(text, ':');
+  const auto from = finite_number(ends.front()), to = finite_number(ends.back());
+  if (ends.size() != 2 || !from || !to || !(*from < *to)) {
+    throw InputError(fmt::format("{}: got \"{}\"; allowed: a:b with numbers a < b", option, text));
+  }
+  return Range{*from, *to};
+}
+
+double number_between(const char* option, const std::string& text, double least, double most) {
+  const auto number = finite_number(text);
+  if (number && *number >= least && *number <= most) return *number;
+  throw InputError(fmt::format("{}: got \"{}\"; allowed: {} ... {}", option, text, least, most));
+}
+
+void add_bound(const std::string& text, std::map<std::string, MetricBound>& bounds) {
+  const Words parts = parts_of(text, '=');
+  if (parts.size() == 2) {
+    require_names("--bound: got", {std::string(parts[0])}, metric_names());
+    const Words ends = parts_of(parts[1], ':');
+    const auto least = finite_number(ends.front()), most = finite_number(ends.back());
+    if (ends.size() <= 2 && least && most && *least <= *most) {
+      MetricBound& bound = bounds[std::string(parts[0])];
+      bound.max = *most;
+      if (ends.size() == 2) bound.min = *least;
+      return;
+    }
+  }
+  throw InputError(
+      fmt::format("--bound: got \"{}\"; allowed: metric=most or metric=least:most, as inside_settled_m=3e-4", text));
+}
+
+std::vector<std::string> device_names() {
+  std::vector<std::string> names = {"all", kPresets};
+  for (const ComparedDevice& device : compared_devices()) names.push_back(device.name);
+  return names;
+}
+
+std::vector<ComparedDevice> chosen_devices(const std::vector<std::string>& given) {
+  std::vector<std::string> unknown;
+  std::copy_if(given.begin(), given.end(), std::back_inserter(unknown),
+               [](const std::string& name) { return !is_file(name) && !name.ends_with(']'); });
+  if (!unknown.empty()) {
+    const std::vector<std::string> names = device_names();
+    chosen_names("--device: got", unknown, {names.begin() + 1, names.end()});
+  }
+  std::vector<ComparedDevice> chosen;
+  for (const std::string& name : given) {
+    const std::vector<ComparedDevice> found =
+        is_file(name) ? std::vector<ComparedDevice>{device_of_file(name)} : devices_named(name);
+    if (found.empty())
+      throw InputError(fmt::format("--device: got \"{}\"; allowed: a preset with [soft] or [stiff] behind it", name));
+    chosen.insert(chosen.end(), found.begin(), found.end());
+  }
+  std::set<std::string> names;
+  for (const ComparedDevice& device : chosen) {
+    if (names.insert(device.name).second) continue;
+    throw InputError(
+        fmt::format("--device: got a second device named \"{}\"; allowed: each name once, and a file is "
+                    "named by what stands before .json",
+                    device.name));
+  }
+  return chosen;
+}
+
+LimitCases::LimitCases(const LimitOptions& options)
+    : scenes_(asked_scenes(options.scenarios)), overrides_(options.overrides) {
+  if (options.devices.empty() && !options.friction.empty())
+    throw InputError("--friction: got factors; allowed: with --device");
+  if (!options.devices.empty()) devices_ = asked_devices(options);
+  if (!options.algorithms.empty())
+    algorithms_ = chosen_names("--algorithms: got", options.algorithms, all_algorithms());
+  if (!options.over.empty()) {
+    std::vector<Axis> axes;
+    for (const std::string& text : options.over) axes.push_back(parse_axis(text));
+    over_.emplace(std::move(axes));
+  }
+  for (std::size_t row = 0; row < std::max<std::size_t>(1, devices_.size()) * points(); ++row) {
+    for (std::size_t scene = 0; scene < scenes_.size(); ++scene) add_case(options, row, scene);
+  }
+  std::vector<std::string> warnings;
+  for (const LimitCase& asked : cases_) {
+    for (const std::string& warning : asked.question.warnings) {
+      if (std::find(warnings.begin(), warnings.end(), warning) == warnings.end()) warnings.push_back(warning);
+    }
+  }
+  print_warnings(warnings);
+}
+
+void LimitCases::add_case(const LimitOptions& options, std::size_t row, std::size_t scene) {
+  with_device(has_devices() ? &device(row) : nullptr, [&] {
+    const std::vector<std::string> overrides = this->overrides(row, scene);
+    LimitCase asked{&scenes_[scene], overrides, {}, question_of(options, scenes_[scene], overrides)};
+    const LoadedScenario loaded = load_scenario(scenes_[scene], overrides);
+    for (const std::string& warning : check_named_files(loaded)) asked.question.warnings.push_back(warning);
+    // A field of the rendering changes nothing of hand and device.
+    if (asked.question.path.starts_with("rendering.")) asked.question.tremor = tremor_speeds(loaded);
+    if (algorithms_.empty()) {
+      asked.algorithm = loaded.scenario.rendering.algorithm;
+      cases_.push_back(asked);
+    }
+    for (const std::string& algorithm : algorithms_) {
+      asked.algorithm = algorithm;
+      cases_.push_back(asked);
+    }
+  });
+}
+
+std::vector<std::string> LimitCases::overrides(std::size_t row, std::size_t scene) const {
+  std::vector<std::string> all = overrides_;
+  if (over_) {
+    const std::vector<std::string> varied = over_->overrides(row % points());
+    all.insert(all.end(), varied.begin(), varied.end());
+  }
+  return has_devices() ? overrides_on(device(row), scenes_[scene], all) : all;
+}
+
+std::string LimitCases::scene_name(std::size_t column) const {
+  return scenes_[column / algorithms_of_a_scene()].file.stem().string();
+}
+
+std::vector<std::string> LimitCases::over() const {
+  std::vector<std::string> paths;
+  if (over_)
+    for (const Axis& axis : over_->axes()) paths.push_back(axis.path);
+  return paths;
+}
+
+std::vector<std::string> LimitCases::values(std::size_t row) const {
+  return over_ ? over_->values(row % points()) : std::vector<std::string>{};
+}
+
+LoadedScenario LimitCases::load(std::size_t row, std::size_t column) const {
+  return load_scenario(*at(row, column).scene, at(row, column).overrides);
+}
+
+}  // namespace hapbench

@@ -1,0 +1,153 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "results/io/table_writer.hpp"
+#include "scenarios/program/command.hpp"
+#include "scenarios/program/table.hpp"
+
+/// What a command answers: prose and tables. One list of columns a table gives its CSV file, the JSON, the printed
+/// table and what `describe` says of it.
+namespace hapbench {
+
+/// Where a column of a table is.
+struct Shown {
+  bool csv = true, json = true;
+  /// Above the printed column, in two lines at most; empty: it is not printed.
+  std::string heading = {};
+  double factor = 1.0;  ///< from the column's unit to the heading's
+  int digits = 4;       ///< significant ones of a number without a tolerance
+};
+
+/// Only printed.
+inline Shown printed_as(std::string heading) {
+  return {false, false, std::move(heading)};
+}
+
+/// The cell of a number as it is printed: the digits that its tolerance leaves; "-" for nothing.
+std::string printed(const Cell& cell, const Shown& shown, const std::optional<double>& tolerance);
+
+/// A table that `describe` knows.
+struct DescribedTable {
+  struct Entry {
+    Entry(std::string name_of, std::string unit_of, std::string meaning_of)
+        : name(std::move(name_of)), unit(std::move(unit_of)), meaning(std::move(meaning_of)) {}
+    Entry(const Column& column) : Entry(column.name, column.unit, column.meaning) {}  // NOLINT: it is one
+    std::string name, unit, meaning;
+  };
+  std::string file, holds;
+  std::vector<Entry> columns;           ///< of the CSV file
+  std::vector<Table::Column> headings;  ///< of the printed table
+};
+
+/// The columns of a table with rows of type `Row`: those known when the program is written, and those that depend on
+/// the question, such as the fields that vary.
+template <class Row>
+class Columns {
+ public:
+  struct Entry {
+    std::string name, unit, meaning;
+    std::function<Cell(const Row&)> cell;
+    Shown shown = {};
+    std::function<std::optional<double>(const Row&)> tolerance = {};  ///< by how much the number may be wrong
+  };
+
+  Columns() = default;
+  Columns(std::initializer_list<Entry> entries) : entries_(entries) {}
+
+  void add(Entry entry) { entries_.push_back(std::move(entry)); }
+  void add(const Columns& more) { entries_.insert(entries_.end(), more.entries_.begin(), more.entries_.end()); }
+
+  void write(const std::filesystem::path& file, const std::vector<Row>& rows, FileSet& files) const {
+    std::string header;
+    for (const Entry& entry : entries_)
+      if (entry.shown.csv) header += (header.empty() ? "" : ",") + entry.name;
+    CsvWriter csv(file, header);
+    std::vector<Cell> cells;
+    for (const Row& row : rows) {
+      cells.clear();
+      for (const Entry& entry : entries_)
+        if (entry.shown.csv) cells.push_back(entry.cell(row));
+      csv.cells(cells);
+    }
+    csv.finish(&files);
+  }
+
+  Json json(const Row& row) const {
+    Json object = Json::object();
+    for (const Entry& entry : entries_) {
+      if (entry.shown.json)
+        add_cell(object, {entry.name.c_str(), entry.unit.c_str(), entry.meaning.c_str()}, entry.cell(row));
+    }
+    return object;
+  }
+
+  /// `gap`: blanks between columns.
+  Table table(const std::vector<Row>& rows, std::size_t gap = 2) const {
+    Table table(headings(), gap);
+    for (const Row& row : rows) {
+      std::vector<std::string> cells;
+      for (const Entry& entry : entries_) {
+        if (entry.shown.heading.empty()) continue;
+        cells.push_back(printed(entry.cell(row), entry.shown, entry.tolerance ? entry.tolerance(row) : std::nullopt));
+      }
+      table.add(std::move(cells));
+    }
+    return table;
+  }
+
+  std::vector<Table::Column> headings() const {
+    std::vector<Table::Column> headings;
+    for (const Entry& entry : entries_) {
+      const bool in_file = entry.shown.csv || entry.shown.json;
+      if (!entry.shown.heading.empty())
+        headings.push_back({entry.shown.heading, !entry.unit.empty(), in_file ? entry.name : entry.meaning});
+    }
+    return headings;
+  }
+
+  DescribedTable described(std::string file, std::string holds) const {
+    DescribedTable table{std::move(file), std::move(holds), {}, headings()};
+    for (const Entry& entry : entries_)
+      if (entry.shown.csv) table.columns.push_back({entry.name, entry.unit, entry.meaning});
+    return table;
+  }
+
+ private:
+  std::vector<Entry> entries_;
+};
+
+/// Collects an answer, and gives it at once: its files all together, then what is printed, or its JSON.
+class Report {
+ public:
+  Report(const OutputOptions& output, std::filesystem::path folder) : output_(output), folder_(std::move(folder)) {}
+
+  void say(std::string_view text) { text_ += text; }
+  template <class Row>
+  void write(const char* file, const Columns<Row>& columns, const std::vector<Row>& rows) {
+    columns.write(folder_ / file, rows, files_);
+  }
+  FileSet& files() { return files_; }
+  Json& json() { return json_; }
+  /// A row that failed, or whose answer is bad: the text is printed as an error, and becomes the exit status.
+  void fault(const std::string& text, int status);
+  /// The exit status. Throws IoError.
+  int finish();
+
+ private:
+  const OutputOptions& output_;
+  std::filesystem::path folder_;
+  FileSet files_;
+  std::string text_;
+  Json json_;
+  std::vector<std::string> faults_;
+  int status_ = kSuccess;
+};
+
+}  // namespace hapbench
