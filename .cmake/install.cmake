@@ -29,7 +29,7 @@ endforeach()
 
 # The files that come with program and libraries. bin and share stay side by side, which is how the program finds them.
 set(share share/hapbench)
-foreach(group thesis limits beyond quality examples)
+foreach(group thesis limits beyond quality examples library)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/scenarios/${group} DESTINATION ${share}/scenarios)
 endforeach()
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/scenarios/import/presets DESTINATION ${share}/scenarios/import)

@@ -16,6 +16,7 @@
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/plugins/load_plugin.hpp"
 #include "scenarios/program/command.hpp"
+#include "scenarios/program/study.hpp"
 
 namespace hapbench {
 
@@ -251,8 +252,20 @@ int status_with_faults(int status) {
 }  // namespace
 
 int CommandLine::run(int argc, char** argv) {
+  std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
+  const std::optional<StudyWords> study = StudyWords::in(words);
+  if (!study) return run(std::move(words));
   try {
-    app_->parse(argc, argv);
+    return run(study->words());
+  } catch (const InputError& error) {
+    throw study->located(error);
+  }
+}
+
+int CommandLine::run(std::vector<std::string> words) {
+  try {
+    std::reverse(words.begin(), words.end());  // as CLI11 takes them
+    app_->parse(std::move(words));
   } catch (const CLI::CallForHelp&) {
     const std::vector<CLI::App*> chosen = app_->get_subcommands();
     if (const std::string old = old_word_problem(*app_, nullptr); !old.empty()) throw InputError(old);

@@ -125,9 +125,9 @@ class CommandLine {
     command.runs([options, action] { return action(*options); }, when_stopped);
     return {command, *options};
   }
-  /// Loads the plugins that the words and HAPBENCH_PLUGIN_PATH name, then runs the command. Returns its exit status;
-  /// for a success during which the law of a plugin failed, kUnexpectedOutcome. Throws what the command throws, and
-  /// InputError for a wrong usage and for plugins.
+  /// Replaces a study by its words (study.hpp), loads the plugins that the words and HAPBENCH_PLUGIN_PATH name, then
+  /// runs the command. Returns its exit status; for a success during which the law of a plugin failed,
+  /// kUnexpectedOutcome. Throws what the command throws, and InputError for a wrong usage and for plugins.
   int run(int argc, char** argv);
   /// The chosen command's note on its results for when it is stopped.
   const std::string& when_stopped() const { return chosen_.when_stopped; }
@@ -136,6 +136,7 @@ class CommandLine {
   /// The program's own options and notes, then every command with its own, in the order in which they were added.
   std::vector<CommandText> texts() const;
   void add_common_options(CLI::App& app);
+  int run(std::vector<std::string> words);
 
   std::unique_ptr<CLI::App> app_;
   ChosenCommand chosen_;

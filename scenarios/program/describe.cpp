@@ -9,9 +9,9 @@
 #include "scenarios/program/command.hpp"
 #include "scenarios/program/describe.hpp"
 #include "scenarios/program/fields_text.hpp"
+#include "scenarios/program/study.hpp"
 #include "scenarios/program/table.hpp"
 #include "scenarios/studies/stability/judged_run.hpp"
-#include "scenarios/studies/stability/stability_map.hpp"
 #include "scenarios/thesis_claims/choices.hpp"
 #include "scenarios/thesis_claims/claims.hpp"
 #include "sim/loop/integrators/table.hpp"
@@ -125,15 +125,18 @@ Description describe_preset(const DevicePreset& preset) {
   return d;
 }
 
-/// Explains the maps of "hapbench stability --map" and how their runs are judged.
+/// The command that a study stands for, and its file as it is.
+Description describe_study(const BundledStudy& study) {
+  const std::string text = read_text_file(study.file, kLargestJsonFile);
+  return {fmt::format("study {}\n{}\n{}\n{}\n  asked by: hapbench {} {}\n", bold(stdout, study.name),
+                      wrapped(study.summary), study.file.string(), text, study.ask, study.name),
+          {{"kind", "study"}, {"name", study.name}, {"file", study.file.string()}, {"study", parse_json(text)}}};
+}
+
+/// Explains how runs are judged to be stable, and what is known in theory.
 Description describe_stability() {
-  std::string maps;
   Description d;
-  d.json = {{"kind", "stability"}, {"maps", Json::array()}};
-  for (const StabilityMap& map : stability_maps()) {
-    maps += fmt::format("  {}: {} over {}\n{}", map.name, map.y.name, map.x.name, wrapped(map.summary, 6));
-    d.json["maps"].push_back({{"name", map.name}, {"x", map.x.name}, {"y", map.y.name}, {"summary", map.summary}});
-  }
+  d.json = {{"kind", "stability"}};
   std::string limits;
   for (const StiffnessLimit& limit : stiffness_limits()) {
     limits += fmt::format("  {}\n{}", limit.name, entry("formula", limit.formula, 4, 10));
@@ -141,12 +144,11 @@ Description describe_stability() {
     d.json["limits"].push_back(
         {{"name", limit.name}, {"formula", limit.formula}, {"applies", limit.applies}, {"source", limit.source}});
   }
-  d.text =
-      fmt::format("stability maps\n{}\n",
-                  wrapped(fmt::format(
-                      "A run of {} steps at a surface is judged by its motion, quarter by quarter; the amplitude is "
-                      "the largest speed. One that is too short to tell is made up to 64 times as long.",
-                      kMapSteps)));
+  d.text = "stability\n" +
+           wrapped(
+               "A run is judged by its motion, quarter by quarter; the amplitude is the largest speed. One that is too "
+               "short to tell is made up to 64 times as long.") +
+           "\n";
   for (auto motion = kMotionClasses.rbegin(); motion != kMotionClasses.rend(); ++motion)  // "all else" last
     d.text += entry(motion_class_name(*motion), text_of(*motion).rule, 2, 13);
   for (
@@ -158,11 +160,10 @@ Description describe_stability() {
        "given where the tool is alone with springs that stay in contact and the force is -K S p. Under "
        "velocity_verlet and rk4 it is that of the eigenvalues of a step; the implicit integrators have none. With a "
        "device in the loop it is where the first eigenvalue of the loop of hand, handle and wall leaves the unit "
-       "circle, as long as nothing saturates and the contact lasts. The edge by bisection is that of \"diverged\". "
-       "Only in the maps of the admittance device and of Coulomb friction, which stops a handle for good, it is that "
-       "of runs that come to rest: there whatever still moves in the end, however little, counts as vibrating."})
+       "circle, as long as nothing saturates and the contact lasts. With --stable bounded the edge by bisection is that of "
+       "\"diverged\"."})
     d.text += "\n" + wrapped(paragraph);
-  d.text += "\n" + maps + "\nlimits of the stiffness K of a wall on an impedance device\n";
+  d.text += "\nlimits of the stiffness K of a wall on an impedance device\n";
   d.text += wrapped(
       "b is the handle's damping, c its Coulomb friction, q the encoder's step, m the moving mass, T the period, t_d = d T "
       "the delay. Each is written beside the edge where it applies.");
@@ -203,6 +204,7 @@ std::vector<std::string> described_names() {
   }
   for (const DevicePreset& preset : device_presets()) names.emplace_back(preset.name);
   for (const BundledScenario& bundled : bundled_scenarios()) names.push_back(bundled.name);
+  for (const BundledStudy& study : bundled_studies()) names.push_back(study.name);
   for (const std::string& name : result_names()) names.push_back(name);
   for (const std::string& name : described_words()) names.push_back(name);
   for (const Claim& claim : all_claims()) names.emplace_back(claim.id);
@@ -280,6 +282,9 @@ Description describe_name(const std::string& name) {
   if (!meanings.empty()) return joined(meanings);
   for (const BundledScenario& bundled : bundled_scenarios()) {
     if (bundled.name == name) return describe_scenario(bundled.file);
+  }
+  for (const BundledStudy& study : bundled_studies()) {
+    if (study.name == name) return describe_study(study);
   }
   std::error_code ignored;
   if (std::filesystem::exists(name, ignored)) return describe_scenario(find_scenario(name));

@@ -137,7 +137,6 @@ constexpr const char* kTime = "number of timing.json";
 constexpr const char* kHolds = "verdict of compare --check on a metric";
 constexpr const char* kVerdict = "verdict on a claim";
 constexpr const char* kResultFile = "file of the results";
-constexpr const char* kStiffness = "stiffness, of limit";
 
 /// Words that no enumeration has.
 constexpr Word kWords[] = {
@@ -167,11 +166,6 @@ constexpr Word kWords[] = {
     {"robustness.json", kResultFile,
      "how many samples have the verdict on record, and which choices decide it, for each claim"},
     {"robustness.md", kResultFile, "robustness.json for people"},
-    {"1 / lambda_max(S)", kStiffness,
-     "how many contacts along one direction would be as stiff as one of K, for the mean S at the limit: 1 means that the "
-     "hand meets K itself at most, 0.1 that ten springs add up along some direction"},
-    {"K lambda_max", kStiffness,
-     "the stiffness that the hand meets along the stiffest direction: K times the largest eigenvalue of the mean S"},
     {"quantum", "number of import",
      "the step in which the recorded places come along an axis, seen in their differences (its row resolution, quantum_m of "
      "--json); K times it is the step of force that the recording alone makes"}};

@@ -5,6 +5,9 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "device_model/theory/stiffness_limits.hpp"
+#include "scenarios/input/text_lines.hpp"
+
 namespace hapbench {
 namespace {
 
@@ -42,173 +45,189 @@ Ends ends_of(const LimitRow& r) {
   return {l.other_value, l.value, l.other_beyond, l.beyond, l.other_tolerance(), l.tolerance()};
 }
 
-Shown only_json() {
-  return {false, true};
-}
-Shown only_csv() {
-  return {true, false};
-}
-
-/// What tells the cases apart, before their algorithm.
-Columns<LimitRow> place_columns(const LimitCases* asked) {
-  Columns<LimitRow> columns;
-  if (asked == nullptr || asked->has_devices()) {
-    columns.add(
-        {"device", "",
-         "ideal, admittance, the preset of an impedance device (* with numbers of --set, [soft] and [stiff] at the "
-         "ends of what is not published), or a file's",
-         [](const LimitRow& r) -> Cell { return r.answers.asked().device(r.row).name; }});
-  }
-  if (asked == nullptr || asked->has_devices() || asked->scenes().size() > 1) {
-    columns.add({"scenario",
-                 "",
-                 "name of the scene's file",
-                 [](const LimitRow& r) -> Cell { return r.answers.asked().scene_name(r.column); },
-                 {.heading = asked == nullptr ? "" : "scenario"}});
-  }
-  const std::vector<std::string> over = asked == nullptr ? std::vector<std::string>{} : asked->over();
-  for (std::size_t i = 0; i < over.size(); ++i) {
-    columns.add({over[i], "by name", "value of the field that varies besides",
-                 [i](const LimitRow& r) -> Cell { return r.answers.asked().values(r.row)[i]; }});
-  }
-  columns.add({"algorithm",
-               "",
-               "force algorithm",
-               [](const LimitRow& r) -> Cell { return r.found().algorithm; },
-               {.heading = "algorithm"}});
-  return columns;
-}
-
-/// What is only printed, before the numbers of the files.
-Columns<LimitRow> edge_columns(bool smallest) {
-  const auto limit_text = [](const std::optional<double>& value, const std::optional<double>& tolerance) {
-    return value ? deserved(*value, tolerance, 6) : std::string("none");
-  };
-  return {
-      {"", "by field", smallest ? "high" : "low",
-       [limit_text](const LimitRow& r) -> Cell {
-         return limit_text(r.found().other_value, r.found().other_tolerance());
-       },
-       printed_as(smallest ? "high end" : "low end")},
-      {"", "",
-       smallest ? "what becomes of the run at the first value above the high end; \"end of the range\": none was tried"
-                : "what becomes of the run at the first value below the low end; \"end of the range\": none was tried",
-       [](const LimitRow& r) -> Cell { return other_beyond_text(r.found()); },
-       printed_as(smallest ? "above it" : "below it")},
-      {"", "by field", "limit",
-       [limit_text](const LimitRow& r) -> Cell { return limit_text(r.found().value, r.found().tolerance()); },
-       printed_as("first edge")},
-      {"", "",
-       "what becomes of the run at the first unstable value beyond the first edge, a class of motion; \"end of the "
-       "range\": no value up to there is unstable",
-       [](const LimitRow& r) -> Cell { return beyond_text(r.found()); }, printed_as("beyond it")}};
-}
-
-Columns<LimitRow> end_columns() {
-  return {
-      {"field", "", "path of the field", [](const LimitRow& r) -> Cell { return r.asked().question.path; }, only_csv()},
-      {"side", "", "largest or smallest: the stable value that was asked for",
-       [](const LimitRow& r) -> Cell { return r.asked().question.smallest ? "smallest" : "largest"; }, only_csv()},
-      {"limit", "by field",
-       "the last stable value before the first edge, by bisection on runs; empty when there is none",
-       [](const LimitRow& r) { return cell_if(r.found().value); }},
-      {"beyond", "by field", "the first unstable value beyond it; empty when the range ends stable",
-       [](const LimitRow& r) { return value_cell(r.found().beyond); }},
-      {"class_beyond", "", "what became of the run there (describe stability)",
-       [](const LimitRow& r) -> Cell { return beyond_text(r.found()); }},
-      {"low", "by field",
-       "the low end of the interval of stable values that the limit ends: its smallest stable value, to the resolution",
-       [](const LimitRow& r) { return cell_if(ends_of(r).low); }},
-      {"below", "by field", "the first value below that is not stable; empty when the range begins stable",
-       [](const LimitRow& r) { return value_cell(ends_of(r).below); }},
-      {"class_below", "", "what became of the run there",
-       [](const LimitRow& r) { return verdict_cell(ends_of(r).below); }},
-      {"high", "by field", "the high end of this interval", [](const LimitRow& r) { return cell_if(ends_of(r).high); }},
-      {"above", "by field", "the first value above that is not stable; empty when the range ends stable",
-       [](const LimitRow& r) { return value_cell(ends_of(r).above); }},
-      {"class_above", "", "what became of the run there",
-       [](const LimitRow& r) { return verdict_cell(ends_of(r).above); }}};
-}
-
-Columns<LimitRow> theory_columns() {
-  return {{"theory", "by field", "the limit in theory; empty where there is none",
-           [](const LimitRow& r) { return cell_if(r.found().theory); }},
-          {"linear", "by field",
-           "of a device at what only pushes: the largest value at which the loop of device, hand and surface is stable "
-           "while they touch, without dry friction and encoder, by its eigenvalues; a limit beyond it is held up by "
-           "bounces, dry friction or the end of the run; empty where there is a theory or no device",
-           [](const LimitRow& r) { return cell_if(r.found().linear); }},
-          {"", "by field", "theory",
-           [](const LimitRow& r) -> Cell {
-             const auto& value = r.found().theory;
-             return !value ? "-" : std::isinf(*value) || *value == 0.0 ? "none" : significant(*value, 6);
-           },
-           printed_as("theory")},
-          {"", "%", "first edge / theory - 1, in percent; of stability --map the largest along the edge",
-           [](const LimitRow& r) -> Cell {
-             const FieldLimit& l = r.found();
-             const auto difference = l.difference(), tolerance = l.tolerance();
-             const auto width = tolerance ? std::optional(100.0 * *tolerance / std::abs(*l.value)) : std::nullopt;
-             return difference ? deserved_difference(100.0 * *difference, width) : "-";
-           },
-           printed_as("off theory %")}};
-}
-
-Columns<LimitRow> search_columns() {
-  return {{"limit_tolerance", "by field", "how far beyond the limit the edge may lie: beyond - limit",
-           [](const LimitRow& r) { return cell_if(r.found().tolerance()); }, only_json()},
-          {"low_tolerance", "by field", "the same of the low end",
-           [](const LimitRow& r) { return cell_if(ends_of(r).low_tolerance); }, only_json()},
-          {"high_tolerance", "by field", "the same of the high end",
-           [](const LimitRow& r) { return cell_if(ends_of(r).high_tolerance); }, only_json()},
-          {"undecided", "1", "runs that were too short to tell slow motion from rest, though lengthened",
-           [](const LimitRow& r) -> Cell { return std::uint64_t{r.found().undecided}; }},
-          {"unstable_without_contact", "", "true when hand and device alone are unstable beyond the edge",
-           [](const LimitRow& r) -> Cell { return r.found().unstable_alone; }, only_json()},
-          {"has_effect", "", "false when the field changes no run",
-           [](const LimitRow& r) -> Cell { return r.found().has_effect; }, only_json()}};
-}
-
-/// Numbers of the run at the limit, for cases to be compared by.
-Columns<LimitRow> settled_columns() {
-  const auto settled = [](const LimitRow& r, double value) { return r.found().value ? Cell(value) : Cell(); };
-  return {
-      {"vibration_m_per_s", "m/s", "at the limit: rms of the handle's speed above 30 Hz in the last quarter of the run",
-       [](const LimitRow& r) { return r.found().value ? cell_if(r.found().settled.vibration) : Cell(); }},
-      {"contacts", "1", "at the limit: mean number of rendered contacts there",
-       [settled](const LimitRow& r) { return settled(r, r.found().settled.contacts); }},
-      {"lambda_max", "1", "at the limit: largest eigenvalue of the mean S there",
-       [settled](const LimitRow& r) { return settled(r, r.found().settled.lambda_max); }},
-      {"stiffness_ratio", "1", "limit over that of the first scene with the first algorithm, all else equal",
-       [](const LimitRow& r) { return cell_if(r.answers.ratio(r.row, r.column).value); }},
-      {"rendered_ratio", "1", "the same of K lambda_max",
-       [](const LimitRow& r) { return cell_if(r.answers.ratio(r.row, r.column).rendered); }}};
-}
-
 /// A line of limit_runs.csv.
 struct LimitRunRow {
   LimitRow limit;
   JudgedValue run;
 };
+const LimitRow& place_of(const LimitRow& row) {
+  return row;
+}
+const LimitRow& place_of(const LimitRunRow& row) {
+  return row.limit;
+}
+
+/// What tells the cases apart.
+template <class Row>
+Columns<Row> place_columns(const LimitCases* asked) {
+  Columns<Row> columns;
+  const auto cases = [](const Row& r) -> const LimitCases& { return place_of(r).answers.asked(); };
+  if (asked == nullptr || asked->has_devices()) {
+    columns.add(
+        "device", "",
+        "ideal, admittance, the preset of an impedance device (* with numbers of --set, [soft] and [stiff] at the "
+        "ends of what is not published), or a file's",
+        [cases](const Row& r) -> Cell { return cases(r).device(place_of(r).row).name; });
+  }
+  if (asked == nullptr || asked->has_devices() || asked->scenes().size() > 1) {
+    columns.add("scenario", "", "name of the scene's file",
+                [cases](const Row& r) -> Cell { return cases(r).scene_name(place_of(r).column); },
+                {.heading = asked == nullptr ? "" : "scenario"});
+  }
+  const std::vector<std::string> over = asked == nullptr ? std::vector<std::string>{} : asked->over();
+  for (std::size_t i = 0; i < over.size(); ++i) {
+    columns.add(over[i], "by name", "value of the field that varies besides", [cases, i](const Row& r) -> Cell {
+      const std::string value = cases(r).values(place_of(r).row)[i];
+      const auto number = finite_number(value);
+      return number ? Cell(*number) : Cell(value);
+    });
+  }
+  columns.add("algorithm", "", "force algorithm", [](const Row& r) -> Cell { return place_of(r).found().algorithm; },
+              {.heading = "algorithm"});
+  return columns;
+}
+
+/// What is only printed, before the numbers of the files.
+void add_edges(Columns<LimitRow>& columns, bool smallest) {
+  const auto edge_text = [](const std::optional<double>& value, const std::optional<double>& tolerance) -> Cell {
+    return value ? deserved(*value, tolerance, 6) : std::string("none");
+  };
+  columns.add(
+      "", "by field", smallest ? "high" : "low",
+      [=](const LimitRow& r) { return edge_text(r.found().other_value, r.found().other_tolerance()); },
+      only_printed(smallest ? "high end" : "low end"));
+  columns.add(
+      "", "",
+      fmt::format("what becomes of the run at the first value {} end; \"end of the range\": none was tried",
+                  smallest ? "above the high" : "below the low"),
+      [](const LimitRow& r) -> Cell { return other_beyond_text(r.found()); },
+      only_printed(smallest ? "above it" : "below it"));
+  columns.add(
+      "", "by field", "limit", [=](const LimitRow& r) { return edge_text(r.found().value, r.found().tolerance()); },
+      only_printed("first edge"));
+  columns.add(
+      "", "",
+      "what becomes of the run at the first unstable value beyond the first edge, a class of motion; \"end of the "
+      "range\": no value up to there is unstable",
+      [](const LimitRow& r) -> Cell { return beyond_text(r.found()); }, only_printed("beyond it"));
+}
+
+void add_ends(Columns<LimitRow>& columns) {
+  columns.add(
+      "field", "", "path of the field", [](const LimitRow& r) -> Cell { return r.asked().question.path; }, only_csv());
+  columns.add(
+      "side", "", "largest or smallest: the stable value that was asked for",
+      [](const LimitRow& r) -> Cell { return r.asked().question.smallest ? "smallest" : "largest"; }, only_csv());
+  columns.add("limit", "by field",
+              "the last stable value before the first edge, by bisection on runs; empty when there is none",
+              [](const LimitRow& r) { return cell_if(r.found().value); });
+  columns.add("beyond", "by field", "the first unstable value beyond it; empty when the range ends stable",
+              [](const LimitRow& r) { return value_cell(r.found().beyond); });
+  columns.add("class_beyond", "", "what became of the run there (describe stability)",
+              [](const LimitRow& r) -> Cell { return beyond_text(r.found()); });
+  columns.add(
+      "low", "by field",
+      "the low end of the interval of stable values that the limit ends: its smallest stable value, to the resolution",
+      [](const LimitRow& r) { return cell_if(ends_of(r).low); });
+  columns.add("below", "by field", "the first value below that is not stable; empty when the range begins stable",
+              [](const LimitRow& r) { return value_cell(ends_of(r).below); });
+  columns.add("class_below", "", "what became of the run there",
+              [](const LimitRow& r) { return verdict_cell(ends_of(r).below); });
+  columns.add("high", "by field", "the high end of this interval",
+              [](const LimitRow& r) { return cell_if(ends_of(r).high); });
+  columns.add("above", "by field", "the first value above that is not stable; empty when the range ends stable",
+              [](const LimitRow& r) { return value_cell(ends_of(r).above); });
+  columns.add("class_above", "", "what became of the run there",
+              [](const LimitRow& r) { return verdict_cell(ends_of(r).above); });
+}
+
+void add_theory(Columns<LimitRow>& columns) {
+  columns.add("theory", "by field", "the limit in theory; empty where there is none",
+              [](const LimitRow& r) { return cell_if(r.found().theory); });
+  columns.add(
+      "linear", "by field",
+      "of a device at what only pushes: the largest value at which the loop of device, hand and surface is stable "
+      "while they touch, without dry friction and encoder, by its eigenvalues; a limit beyond it is held up by "
+      "bounces, dry friction or the end of the run; empty where there is a theory or no device",
+      [](const LimitRow& r) { return cell_if(r.found().linear); });
+  columns.add(
+      "", "by field", "theory",
+      [](const LimitRow& r) -> Cell {
+        const auto& value = r.found().theory;
+        return !value ? "-" : std::isinf(*value) || *value == 0.0 ? "none" : significant(*value, 6);
+      },
+      only_printed("theory"));
+  columns.add(
+      "", "%", "first edge / theory - 1, in percent",
+      [](const LimitRow& r) -> Cell {
+        const auto difference = r.found().difference(), tolerance = r.found().tolerance();
+        if (!difference) return "-";
+        return deserved_difference(
+            100.0 * *difference,
+            tolerance ? std::optional(100.0 * *tolerance / std::abs(*r.found().value)) : std::nullopt);
+      },
+      only_printed("off theory %"));
+}
+
+/// What the literature says of a wall on an impedance device.
+void add_closed_forms(Columns<LimitRow>& columns) {
+  for (std::size_t i = 0; i < stiffness_limits().size(); ++i) {
+    const StiffnessLimit& known = stiffness_limits()[i];
+    columns.add(known.name, "N/m",
+                fmt::format("the K at which {}; for {} ({})", known.formula, known.applies, known.source),
+                [i](const LimitRow& r) {
+                  return r.found().closed_forms.empty() ? Cell() : cell_if(r.found().closed_forms[i]);
+                });
+  }
+  columns.add("no_theory", "", "why the eigenvalues of the loop tell nothing; empty where they do",
+              [](const LimitRow& r) -> Cell { return r.found().no_theory; });
+  columns.add("worst_hand", "N/m",
+              "least edge over passive hands of 100 to 1000 N/m and 0.1 to 0.5 kg, and none, by eigenvalues",
+              [](const LimitRow& r) { return cell_if(r.found().worst_hand); });
+}
+
+void add_search(Columns<LimitRow>& columns) {
+  columns.add(
+      "limit_tolerance", "by field", "how far beyond the limit the edge may lie: beyond - limit",
+      [](const LimitRow& r) { return cell_if(r.found().tolerance()); }, only_json());
+  columns.add(
+      "low_tolerance", "by field", "the same of the low end",
+      [](const LimitRow& r) { return cell_if(ends_of(r).low_tolerance); }, only_json());
+  columns.add(
+      "high_tolerance", "by field", "the same of the high end",
+      [](const LimitRow& r) { return cell_if(ends_of(r).high_tolerance); }, only_json());
+  columns.add("undecided", "1", "runs that were too short to tell slow motion from rest, though lengthened",
+              [](const LimitRow& r) -> Cell { return std::uint64_t{r.found().undecided}; });
+  columns.add(
+      "unstable_without_contact", "", "true when hand and device alone are unstable beyond the edge",
+      [](const LimitRow& r) -> Cell { return r.found().unstable_alone; }, only_json());
+  columns.add(
+      "has_effect", "", "false when the field changes no run",
+      [](const LimitRow& r) -> Cell { return r.found().has_effect; }, only_json());
+}
+
+/// Numbers of the run at the limit, for cases to be compared by.
+void add_settled(Columns<LimitRow>& columns) {
+  const auto settled = [](const LimitRow& r, double value) { return r.found().value ? Cell(value) : Cell(); };
+  columns.add("vibration_m_per_s", "m/s",
+              "at the limit: rms of the handle's speed above 30 Hz in the last quarter of the run",
+              [](const LimitRow& r) { return r.found().value ? cell_if(r.found().settled.vibration) : Cell(); });
+  columns.add("contacts", "1", "at the limit: mean number of rendered contacts there",
+              [=](const LimitRow& r) { return settled(r, r.found().settled.contacts); });
+  columns.add("lambda_max", "1", "at the limit: largest eigenvalue of the mean S there",
+              [=](const LimitRow& r) { return settled(r, r.found().settled.lambda_max); });
+  columns.add("stiffness_ratio", "1", "limit over that of the first scene with the first algorithm, all else equal",
+              [](const LimitRow& r) { return cell_if(r.answers.ratio(r.row, r.column).value); });
+  columns.add("rendered_ratio", "1", "the same of K lambda_max",
+              [](const LimitRow& r) { return cell_if(r.answers.ratio(r.row, r.column).rendered); });
+}
 
 Columns<LimitRunRow> run_columns(const LimitCases* asked) {
-  Columns<LimitRunRow> columns;
-  if (asked == nullptr || asked->has_devices())
-    columns.add({"device", "", "as in limit.csv",
-                 [](const LimitRunRow& r) -> Cell { return r.limit.answers.asked().device(r.limit.row).name; }});
-  if (asked == nullptr || asked->has_devices() || asked->scenes().size() > 1)
-    columns.add({"scenario", "", "name of the scene's file",
-                 [](const LimitRunRow& r) -> Cell { return r.limit.answers.asked().scene_name(r.limit.column); }});
-  const std::vector<std::string> over = asked == nullptr ? std::vector<std::string>{} : asked->over();
-  for (std::size_t i = 0; i < over.size(); ++i)
-    columns.add({over[i], "by name", "value of the field that varies besides",
-                 [i](const LimitRunRow& r) -> Cell { return r.limit.answers.asked().values(r.limit.row)[i]; }});
-  columns.add(
-      {"algorithm", "", "force algorithm", [](const LimitRunRow& r) -> Cell { return r.limit.found().algorithm; }});
-  columns.add({asked == nullptr ? "{field}" : asked->at(0, 0).question.path, "by name", "value of the field",
-               [](const LimitRunRow& r) -> Cell { return r.run.value; }});
-  columns.add({"class", "", "what became of the run (describe stability)",
-               [](const LimitRunRow& r) -> Cell { return std::string(run_verdict_name(r.run.verdict)); }});
+  Columns<LimitRunRow> columns = place_columns<LimitRunRow>(asked);
+  columns.add(asked == nullptr ? "{field}" : asked->at(0, 0).question.path, "by name", "value of the field",
+              [](const LimitRunRow& r) -> Cell { return r.run.value; });
+  columns.add("class", "", "what became of the run (describe stability)",
+              [](const LimitRunRow& r) -> Cell { return std::string(run_verdict_name(r.run.verdict)); });
   return columns;
 }
 
@@ -230,36 +249,34 @@ std::vector<LimitRow> rows_of(const LimitAnswers& answers) {
   return rows;
 }
 
-Columns<LimitRow> limit_columns(const LimitCases* asked) {
-  Columns<LimitRow> columns = place_columns(asked);
-  columns.add(edge_columns(asked != nullptr && asked->at(0, 0).question.smallest));
-  columns.add(end_columns());
-  columns.add(theory_columns());
-  columns.add(search_columns());
+Columns<LimitRow> limit_columns(const LimitAnswers* answers) {
+  const LimitCases* asked = answers == nullptr ? nullptr : &answers->asked();
+  Columns<LimitRow> columns = place_columns<LimitRow>(asked);
+  add_edges(columns, asked != nullptr && asked->at(0, 0).question.smallest);
+  add_ends(columns);
+  add_theory(columns);
+  add_search(columns);
   if (asked == nullptr || asked->has_devices()) {
-    columns.add({"published_N_per_m", "N/m", "published largest stable stiffness of a wall on the device",
-                 [](const LimitRow& r) { return cell_if(r.answers.asked().device(r.row).published_stiffness); }});
+    columns.add("published_N_per_m", "N/m", "published largest stable stiffness of a wall on the device",
+                [](const LimitRow& r) { return cell_if(r.answers.asked().device(r.row).published_stiffness); });
   }
-  if (asked == nullptr || asked->is_grid()) columns.add(settled_columns());
-  columns.add({"runs",
-               "1",
-               "runs of the search",
-               [](const LimitRow& r) -> Cell { return std::uint64_t{r.found().runs.size()}; },
-               {.heading = "runs"}});
+  if (asked == nullptr || asked->is_grid()) add_settled(columns);
+  if (answers == nullptr || answers->have_closed_forms()) add_closed_forms(columns);
+  columns.add("runs", "1", "runs of the search",
+              [](const LimitRow& r) -> Cell { return std::uint64_t{r.found().runs.size()}; }, {.heading = "runs"});
   const auto inconsistent = [](const LimitRow& r) -> Cell { return std::uint64_t{r.found().inconsistent.size()}; };
-  columns.add({kInconsistent,
-               "1",
-               "runs that are unstable on the stable side of the limit, or stable beyond it",
-               inconsistent,
-               {.heading = "inconsistent"}});
-  columns.add({kAstray, "1", "the same as inconsistent_runs, by its former name", inconsistent});
+  columns.add(kInconsistent, "1", "runs that are unstable on the stable side of the limit, or stable beyond it",
+              inconsistent, {.heading = "inconsistent"});
+  columns.add(kAstray, "1", "the same as inconsistent_runs, by its former name", inconsistent);
   return columns;
 }
 
 std::vector<DescribedTable> limit_tables() {
   DescribedTable limits = limit_columns(nullptr).described(
       "limit.csv", "of limit: one line per device, values of --over, scene and algorithm");
-  for (const Table::Column& heading : edge_columns(true).headings()) limits.headings.push_back(heading);
+  Columns<LimitRow> of_smallest;
+  add_edges(of_smallest, true);
+  for (const Table::Column& heading : of_smallest.headings()) limits.headings.push_back(heading);
   limits.headings.push_back({"pub-\nlished", true, "published_N_per_m"});
   return {limits, run_columns(nullptr).described("limit_runs.csv", "of limit: one line per run")};
 }
@@ -267,7 +284,7 @@ std::vector<DescribedTable> limit_tables() {
 void tell_limits(const LimitAnswers& answers, Report& report) {
   const LimitCases& asked = answers.asked();
   const LimitQuestion& question = asked.at(0, 0).question;
-  const Columns<LimitRow> columns = limit_columns(&asked);
+  const Columns<LimitRow> columns = limit_columns(&answers);
   const std::vector<LimitRow> rows = rows_of(answers);
   std::vector<LimitRunRow> runs;
   Json limits = Json::array();

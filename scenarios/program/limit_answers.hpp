@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,9 @@ class LimitAnswers {
   const LimitCases& asked() const { return asked_; }
   const FieldLimit& at(std::size_t row, std::size_t column) const { return limits_[row * asked_.columns() + column]; }
   LimitRatio ratio(std::size_t row, std::size_t column) const;
+  bool have_closed_forms() const {
+    return std::ranges::any_of(limits_, [](const FieldLimit& limit) { return !limit.closed_forms.empty(); });
+  }
 
   std::string text() const;
 
@@ -30,8 +34,6 @@ class LimitAnswers {
   std::string detailed_text() const;
   std::string grid_text() const;
   Table grid() const;
-  Table ratios() const;
-  std::string spread_text(std::size_t column) const;
   std::string ends_text() const;
   std::string notes_text() const;
   std::vector<Table::Column> row_headings() const;
@@ -53,8 +55,8 @@ struct LimitRow {
 };
 std::vector<LimitRow> rows_of(const LimitAnswers& answers);
 
-/// The columns of limit.csv for these cases; without cases all that there may be, for `describe`.
-Columns<LimitRow> limit_columns(const LimitCases* asked);
+/// The columns of limit.csv for these answers; without any all that there may be, for `describe`.
+Columns<LimitRow> limit_columns(const LimitAnswers* answers);
 
 /// The tables of the command.
 std::vector<DescribedTable> limit_tables();

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "device_model/device_presets.hpp"
+#include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/limit_answers.hpp"
 #include "scenarios/studies/stability/judged_run.hpp"
 
@@ -86,19 +87,6 @@ const ImpedanceDeviceConfig* with_dry_friction(const Scenario& scenario) {
   return device != nullptr && device->coulomb > 0.0 ? device : nullptr;
 }
 
-/// With dry friction: the approach that a limit belongs to.
-std::string approach_text(const FieldLimit& limit, const ImpedanceDeviceConfig& device) {
-  if (!limit.value) return "";
-  return wrapped(
-      fmt::format(
-          "{}: dry friction of {} N helps to hold the tool, so that this is the limit of an approach, not of the "
-          "device: of a handle that first touches at {} m/s and of a hand that presses with {} N; --set "
-          "device.coulomb_N=0 shows what is left without",
-          limit.algorithm, significant(device.coulomb, 3), significant(limit.settled.touch_speed, 2),
-          significant(limit.settled.press, 2)),
-      0);
-}
-
 std::string damping_text(const RenderingConfig& rendering) {
   if (rendering.damping) return fmt::format("B = {} N s/m", significant(*rendering.damping));
   if (rendering.damping_ratio == 0.0) return "no damping is rendered (damping_ratio 0): B = 0 at every K";
@@ -118,16 +106,6 @@ std::string limit_text(const FieldLimit& limit, double resolution) {
                      limit.other_beyond ? value_text(*limit.other_value, limit.other_tolerance()) + "-" : "",
                      limit.beyond ? "" : "> ", value_text(*limit.value, limit.tolerance()),
                      limit.is_beyond_linear(resolution) ? "!" : "", limit.inconsistent.empty() ? "" : " ~");
-}
-
-/// "0.8 ... 1.2, median 1"
-std::string range_text(std::vector<double> values) {
-  if (values.empty()) return "none";
-  std::sort(values.begin(), values.end());
-  const std::size_t half = values.size() / 2;
-  const double median = values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
-  return fmt::format("{} ... {}, median {}", significant(values.front(), 2), significant(values.back(), 2),
-                     significant(median, 2));
 }
 
 /// The first three names, and how many more there are.
@@ -174,9 +152,11 @@ std::string approaches_text(const std::vector<FieldLimit>& limits) {
     return low == high ? low : low + " to " + high;
   };
   return wrapped(
-      fmt::format("dry friction, ours in every preset, holds a hand that presses slowly: K is that of this approach "
-                  "(first touch at {} m/s, pressed with {} N), not of a device: quote both ends",
-                  between(touches), between(presses)),
+      fmt::format(
+          "dry friction holds a hand that presses slowly, and is ours in every preset: the limit is that of this "
+          "approach (first touch at {} m/s, pressed with {} N), not of a device; --set device.coulomb_N=0 shows what is "
+          "left without",
+          between(touches), between(presses)),
       0);
 }
 
@@ -195,19 +175,21 @@ std::string LimitAnswers::text() const {
 
 /// A line for each case, with the numbers of its search.
 std::string LimitAnswers::detailed_text() const {
-  std::string text, remarks, approaches;
+  std::string text, remarks;
+  bool has_friction = false;
   for (std::size_t column = 0; column < asked_.columns(); ++column) {
     const LimitQuestion& question = asked_.at(0, column).question;
     const Scenario scenario = asked_.load(0, column).scenario;
     const bool is_first = column == 0 || asked_.scene_name(column) != asked_.scene_name(column - 1);
     if (is_first) text += question_text(question, scenario);
     remarks += remarks_text(at(0, column), question);
-    if (const auto* device = with_dry_friction(scenario)) approaches += approach_text(at(0, column), *device);
+    has_friction = has_friction || with_dry_friction(scenario) != nullptr;
   }
   const LimitCase& first = asked_.at(0, 0);
   const Scenario scenario = asked_.load(0, 0).scenario;
-  text += limit_columns(&asked_).table(rows_of(*this)).text() + "\n" +
-          wrapped(rule_text(first.question, is_moved(scenario)), 0) + remarks + approaches;
+  text += limit_columns(this).table(rows_of(*this)).text() + "\n" +
+          wrapped(rule_text(first.question, is_moved(scenario)), 0) + remarks +
+          (has_friction ? approaches_text(limits_) : "");
   const bool on_device = std::holds_alternative<ImpedanceDeviceConfig>(scenario.device);
   return text + (on_device && first.question.path == "rendering.stiffness_N_per_m" ? kWhichStiffness : "");
 }
@@ -226,16 +208,8 @@ std::string LimitAnswers::grid_text() const {
     add_once(rules, fmt::format("{} steps of {} s; {}\n", scenario.time.steps, significant(scenario.time.step),
                                 damping_text(scenario.rendering)));
   }
-  text += fmt::format("{}", fmt::join(rules, "")) + "\n" + grid().text() +
-          wrapped(rule_text(question, is_moved(asked_.load(0, 0).scenario)), 0) + ends_text() + notes_text();
-  if (asked_.columns() == 1) return text;
-  text += fmt::format("\nover the limit of {} in {} (in brackets 1 / lambda_max(S), and contacts, at the limit)\n\n",
-                      asked_.algorithm(0), asked_.scene_name(0));
-  text += ratios().text();
-  if (asked_.rows() == 1) return text;
-  text += fmt::format("\nleast ... largest of the rows, over {} in {}:\n", asked_.algorithm(0), asked_.scene_name(0));
-  for (std::size_t column = 1; column < asked_.columns(); ++column) text += spread_text(column);
-  return text;
+  return text + fmt::format("{}", fmt::join(rules, "")) + "\n" + grid().text() +
+         wrapped(rule_text(question, is_moved(asked_.load(0, 0).scenario)), 0) + ends_text() + notes_text();
 }
 
 std::vector<Table::Column> LimitAnswers::row_headings() const {
@@ -248,7 +222,10 @@ std::vector<Table::Column> LimitAnswers::row_headings() const {
 std::vector<std::string> LimitAnswers::row_cells(std::size_t row) const {
   std::vector<std::string> cells;
   if (asked_.has_devices()) cells.push_back(asked_.device(row).name);
-  for (const std::string& value : asked_.values(row)) cells.push_back(value);
+  for (const std::string& value : asked_.values(row)) {
+    const auto number = finite_number(value);
+    cells.push_back(number ? significant(*number) : value);
+  }
   return cells;
 }
 
@@ -276,38 +253,6 @@ Table LimitAnswers::grid() const {
     table.add(std::move(cells));
   }
   return table;
-}
-
-/// The ratios of all columns but the reference.
-Table LimitAnswers::ratios() const {
-  std::vector<Table::Column> columns = row_headings();
-  for (std::size_t c = 1; c < asked_.columns(); ++c) columns.push_back({title(c)});
-  Table table(columns);
-  for (std::size_t row = 0; row < asked_.rows(); ++row) {
-    std::vector<std::string> cells = row_cells(row);
-    for (std::size_t c = 1; c < asked_.columns(); ++c) {
-      const auto value = ratio(row, c).value;
-      const double lambda_max = at(row, c).settled.lambda_max, contacts = at(row, c).settled.contacts;
-      cells.push_back(value ? fmt::format("{} ({}, {:.0f})", significant(*value, 2),
-                                          lambda_max > 0.0 ? significant(1.0 / lambda_max, 2) : "-", contacts)
-                            : "-");
-    }
-    table.add(std::move(cells));
-  }
-  return table;
-}
-
-/// How the ratios of a column spread over the rows, of the limit and of the rendered stiffness.
-std::string LimitAnswers::spread_text(std::size_t column) const {
-  std::vector<double> values, rendered;
-  for (std::size_t row = 0; row < asked_.rows(); ++row) {
-    const LimitRatio ratio = this->ratio(row, column);
-    if (ratio.value) values.push_back(*ratio.value);
-    if (ratio.rendered) rendered.push_back(*ratio.rendered);
-  }
-  const std::size_t none = asked_.rows() - values.size();
-  return fmt::format("{} in {}: {}; K lambda_max: {}{}\n", asked_.algorithm(column), asked_.scene_name(column),
-                     range_text(values), range_text(rendered), none > 0 ? fmt::format("; none in {} rows", none) : "");
 }
 
 /// Lines that tell where runs below the low end fail, and how, and where no value at all is stable.

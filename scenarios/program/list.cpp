@@ -14,6 +14,7 @@
 #include "scenarios/program/command.hpp"
 #include "scenarios/program/describe.hpp"
 #include "scenarios/program/fields_text.hpp"
+#include "scenarios/program/study.hpp"
 #include "scenarios/program/table.hpp"
 #include "scenarios/thesis_claims/ledger.hpp"
 #include "sim/loop/integrators/table.hpp"
@@ -52,6 +53,7 @@ std::vector<Listed> everything() {
   }
   for (const DevicePreset& preset : device_presets()) all.push_back({"preset", preset.name, preset.device});
   for (const BundledScenario& bundled : bundled_scenarios()) all.push_back(listed_scenario(bundled));
+  for (const BundledStudy& study : bundled_studies()) all.push_back({"study", study.name, study.summary});
   for (const Metric& metric : metrics_without_values()) all.push_back({"metric", metric.name, metric.meaning});
   for (const Json& claim : claims_on_record()) {
     all.push_back({.kind = "claim",
@@ -62,6 +64,10 @@ std::vector<Listed> everything() {
                    .claim = claim});
   }
   return all;
+}
+
+std::string plural(const std::string& kind) {
+  return kind == "study" ? "studies" : kind + "s";
 }
 
 /// The kinds, and the groups of scenarios.
@@ -122,7 +128,7 @@ std::string entry_of(const std::vector<Listed>& all, const Listed& first) {
 std::string list_text(const std::vector<Listed>& all) {
   std::string text, title;
   for (const Listed& thing : all) {
-    const std::string of = thing.group.empty() ? thing.kind + "s" : "scenarios: " + thing.group;
+    const std::string of = thing.group.empty() ? plural(thing.kind) : "scenarios: " + thing.group;
     if (of != title) text += (title.empty() ? "" : "\n") + bold(stdout, of) + "\n";
     title = of;
     text += entry_of(all, thing);
@@ -144,7 +150,7 @@ int list(const ListOptions& options) {
     std::replace(what.begin(), what.end(), '_', ' ');
     const std::vector<std::string> sections = sections_of(all);
     for (const std::string& section : sections) {
-      if (what == section + "s") what = section;
+      if (what == plural(section)) what = section;
     }
     require_valid_name("got", what, sections);
     std::erase_if(all, [&what](const Listed& thing) { return thing.kind != what && thing.group != what; });
@@ -177,7 +183,8 @@ int list(const ListOptions& options) {
 void add_list(CommandLine& line) {
   auto [command, options] = line.command(
       "list",
-      "List algorithms, models, integrators, environments, tools, hands, devices, scenarios, metrics and claims", list);
+      "List algorithms, models, integrators, environments, tools, hands, devices, scenarios, studies, metrics and claims",
+      list);
   command.add(
       "what", options.what,
       "one kind alone, such as algorithms, depth_models, hands, metrics or claims, or one group of scenarios, such "

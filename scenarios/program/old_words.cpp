@@ -16,6 +16,8 @@ constexpr std::string_view kSampleOfHands =
 
 constexpr std::string_view kDevices = "hapbench limit tap_wall tap_corner tap_hole --device all";
 
+constexpr std::string_view kMaps = "hapbench limit stability_z_width, and other studies (hapbench list studies)";
+
 constexpr std::string_view kSlurm = "sbatch --array=0-99 scripts/sweep.sbatch SCENE --vary ... --out FOLDER";
 
 /// By command, so that what one command lost stands together.
@@ -32,9 +34,15 @@ constexpr OldWord kOldWords[] = {
     {"plot", "--no-sketch", "the same without it: plot draws no sketches"},
     {"reproduce", "--subjects",
      "their record, in the manual of the thesis's claims (scenarios/thesis_claims/README.md)"},
+    {"stability", "--algorithms", kMaps},
+    {"stability", "--count", "hapbench stress --count N"},
     {"stability", "--evaluations", kSampleOfHands},
+    {"stability", "--integrators", kMaps},
+    {"stability", "--map", kMaps},
     {"stability", "--objective", kSampleOfHands},
     {"stability", "--search", kSampleOfHands},
+    {"stability", "--size", kMaps},
+    {"stability", "--stress", "hapbench stress"},
     {"sweep", "--cpus", kSlurm},
     {"sweep", "--dry-run", kSlurm},
     {"sweep", "--partition", kSlurm},

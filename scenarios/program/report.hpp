@@ -25,9 +25,15 @@ struct Shown {
   int digits = 4;       ///< significant ones of a number without a tolerance
 };
 
-/// Only printed.
-inline Shown printed_as(std::string heading) {
+/// Columns that are not everywhere.
+inline Shown only_printed(std::string heading) {
   return {false, false, std::move(heading)};
+}
+inline Shown only_json() {
+  return {false, true};
+}
+inline Shown only_csv() {
+  return {true, false};
 }
 
 /// The cell of a number as it is printed: the digits that its tolerance leaves; "-" for nothing.
@@ -58,10 +64,10 @@ class Columns {
     std::function<std::optional<double>(const Row&)> tolerance = {};  ///< by how much the number may be wrong
   };
 
-  Columns() = default;
-  Columns(std::initializer_list<Entry> entries) : entries_(entries) {}
-
-  void add(Entry entry) { entries_.push_back(std::move(entry)); }
+  void add(std::string name, std::string unit, std::string meaning, std::function<Cell(const Row&)> cell,
+           Shown shown = {}) {
+    entries_.push_back({std::move(name), std::move(unit), std::move(meaning), std::move(cell), std::move(shown)});
+  }
   void add(const Columns& more) { entries_.insert(entries_.end(), more.entries_.begin(), more.entries_.end()); }
 
   void write(const std::filesystem::path& file, const std::vector<Row>& rows, FileSet& files) const {

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include "device_model/theory/stiffness_limits.hpp"
 #include "results/record/recorder.hpp"
 #include "scenarios/batch/league.hpp"
 #include "scenarios/batch/ranking_check.hpp"
@@ -72,20 +71,6 @@ constexpr Column kPrecisionColumns[] = {
     {"force_jump_max_N", "N", "the jump J by which both are J + slope * step"},
     {"stiffness_over_step", "1", "force_jump_max_N_per_um in units of K"}};
 
-/// The columns that every map fills.
-constexpr Column kEdgeColumns[] = {
-    {"algorithm", "", "force algorithm"},
-    {"{x}", "by name", "x of the map"},
-    {"analytic_{y}", "by name",
-     "the edge in y in closed form, or by the eigenvalues of a step or of the loop; empty without theory"},
-    {"simulation_{y}", "by name", "the edge in y by bisection on runs, to 0.1 %"},
-    {"relative_difference", "1", "simulation / analytic - 1"},
-    {"no_theory", "", "why there is no analytic limit"},
-    {"integrator", "", "integrator"},
-    {"worst_hand_{y}", "by name",
-     "least edge over passive hands of 100 to 1000 N/m and 0.1 to 0.5 kg, and none, by eigenvalues; of maps of K with an "
-     "impedance device"}};
-
 constexpr Column kShellColumns[] = {
     {"x_m", "m", "x of a point of the shell"},         {"y_m", "m", "y of a point of the shell"},
     {"z_m", "m", "z of a point of the shell"},         {"nx", "1", "x of the outward unit normal there"},
@@ -118,32 +103,6 @@ std::vector<Column> all(std::span<const Column> columns) {
 }
 
 }  // namespace
-
-std::string map_header(std::span<const Column> columns, const std::string& x, const std::string& y) {
-  return fmt::format(fmt::runtime(header_of(columns)), fmt::arg("x", x), fmt::arg("y", y));
-}
-
-std::span<const Column> stability_boundary_columns() {
-  static const std::vector<std::string> kTexts = [] {
-    std::vector<std::string> texts;
-    for (const StiffnessLimit& limit : stiffness_limits()) {
-      texts.push_back(fmt::format("{}_{{y}}", limit.name));
-      texts.push_back(fmt::format("the y at which {}; for {} ({})", limit.formula, limit.applies, limit.source));
-    }
-    return texts;
-  }();
-  static const std::vector<Column> kColumns = [] {
-    std::vector<Column> columns = all(kEdgeColumns);
-    for (std::size_t i = 0; i < kTexts.size(); i += 2)
-      columns.push_back({kTexts[i].c_str(), "by name", kTexts[i + 1].c_str()});
-    columns.push_back(
-        {"tangent_{y}", "by name",
-         "with dry friction: the edge along the wall, of the bristle's K_t and B_t; analytic is across it"});
-    columns.push_back({"overrides", "", "of time step, device and hand, as --set gave them; empty without"});
-    return columns;
-  }();
-  return kColumns;
-}
 
 std::vector<Table::Column> joined_headings(const std::vector<std::vector<Table::Column>>& tables) {
   std::vector<Table::Column> all;
@@ -183,10 +142,7 @@ std::vector<DescribedTable> result_tables() {
   add("limits.csv", "of stability SCENARIO: one line per limit", stability_limit_columns());
   add("root_locus.csv", "of stability SCENARIO: eigenvalues of a step as the case's number grows",
       root_locus_columns());
-  add("stability_map_NAME.csv", "of stability --map: one line per run", all(kStabilityMapColumns));
-  add("stability_boundary_NAME.csv", "of stability --map: one line per x of the map",
-      all(stability_boundary_columns()));
-  add("stability_stress.csv", "of stability --stress: one line per algorithm", stress_columns());
+  tables.push_back(stress_table());
   add("precision_STUDY.csv", "of precision: one line per setting, with the columns of its study",
       all(kPrecisionColumns));
   add("shell.csv", "of shell: one line per point of the environment", all(kShellColumns));

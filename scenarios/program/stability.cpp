@@ -11,18 +11,23 @@
 #include "results/summary/outcome_names.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/description/load_scenario.hpp"
+#include "scenarios/program/command.hpp"
 #include "scenarios/program/result_tables.hpp"
-#include "scenarios/program/stability.hpp"
 #include "scenarios/program/table.hpp"
 #include "scenarios/run/progress_bar.hpp"
 #include "scenarios/studies/stability/stability_limits.hpp"
-#include "scenarios/studies/stability/stability_map.hpp"
-#include "scenarios/studies/stress/law_stress.hpp"
 
 namespace hapbench {
 namespace {
 
 namespace fs = std::filesystem;
+
+struct StabilityOptions {
+  std::vector<std::string> scenarios;
+  std::string out;
+  std::vector<std::string> overrides;
+  OutputOptions output;
+};
 
 std::string_view case_name(StabilityCase which) {
   constexpr std::array<std::string_view, 4> kNames = {"stiffness_undamped", "damping_alone", "stiffness_damped",
@@ -104,10 +109,7 @@ std::string limits_text(const LoadedScenario& loaded, const std::vector<Stabilit
          disagreement_text(limits);
 }
 
-int limits(const StabilityOptions& options) {
-  if (options.scenarios.empty()) {
-    throw InputError("stability: got no scenario; allowed: springs scenarios, --map, --stress");
-  }
+int stability(const StabilityOptions& options) {
   std::vector<LoadedScenario> scenarios;
   for (const std::string& argument : options.scenarios) {
     scenarios.push_back(load_scenario(find_scenario(argument), options.overrides));
@@ -140,111 +142,10 @@ int limits(const StabilityOptions& options) {
   return kSuccess;
 }
 
-bool is_bad(const StressCounts& counts) {
-  return counts.non_finite + counts.out_of_bound > 0;
-}
-
-const Field<StressCounts> kStressFields[] = {
-    {{"algorithm", "", "force algorithm"}, [](const StressCounts& c) -> Cell { return c.algorithm; }},
-    {{"sets", "1", "random contact sets drawn"}, [](const StressCounts& c) -> Cell { return c.sets; }},
-    {{"in_contact", "1", "sets whose tool touches a point"},
-     [](const StressCounts& c) -> Cell { return c.in_contact; }},
-    {{"non_finite", "1", "answers that are not finite"}, [](const StressCounts& c) -> Cell { return c.non_finite; }},
-    {{"out_of_bound", "1", "finite answers beyond what the law allows"},
-     [](const StressCounts& c) -> Cell { return c.out_of_bound; }},
-    {{"points_dropped", "1", "contacts that a full reduction refused"},
-     [](const StressCounts& c) -> Cell { return c.points_dropped; }},
-    {{"largest_force_per_K_d", "1", "largest ||f_spring|| in units of K times the set's deepest penetration"},
-     [](const StressCounts& c) -> Cell { return c.largest_force; }},
-    {{"largest_share_of_bound", "1", "largest ||f_spring|| in units of the law's bound; empty for laws without one"},
-     [](const StressCounts& c) { return cell_if(c.largest_share); }},
-    {{"first_bad_set", "1", "number of the first set with a bad answer"},
-     [](const StressCounts& c) { return is_bad(c) ? Cell(c.first_bad) : Cell(); },
-     Field<StressCounts>::In::json}};
-
-const std::vector<Table::Column> kStressHeadings = {{"algorithm", false},
-                                                    {"sets"},
-                                                    {"in contact", true, "in_contact"},
-                                                    {"non-finite", true, "non_finite"},
-                                                    {"out of bound", true, "out_of_bound"},
-                                                    {"points dropped", true, "points_dropped"},
-                                                    {"largest |f|/(K d)", true, "largest_force_per_K_d"},
-                                                    {"of its bound", true, "largest_share_of_bound"}};
-
-int stress(const StabilityOptions& options) {
-  const fs::path out = results_directory(options.out, "stability_stress");
-  require_writable_directory(out);
-  const std::vector<StressCounts> all = stress_laws(options.count, options.seed, options.job_options("stress"));
-  write_csv(out / "stability_stress.csv", kStressFields, all);
-
-  Table table(kStressHeadings);
-  Json json = Json::array();
-  int status = kSuccess;
-  for (const StressCounts& c : all) {
-    table.add({c.algorithm, std::to_string(c.sets), std::to_string(c.in_contact), std::to_string(c.non_finite),
-               std::to_string(c.out_of_bound), std::to_string(c.points_dropped), significant(c.largest_force),
-               c.largest_share ? significant(*c.largest_share, 3) : "none"});
-    add_row(json.emplace_back(Json::object()), kStressFields, c);
-    if (!is_bad(c)) continue;
-    print_error(fmt::format("{}: {} of {} forces are not finite, {} out of bound; the first in set {} of seed {}",
-                            c.algorithm, c.non_finite, c.sets, c.out_of_bound, c.first_bad, options.seed));
-    status = kUnexpectedOutcome;
-  }
-  print(options.output, table.text(), json);
-  return status;
-}
-
-int stability(const StabilityOptions& options) {
-  require_names("--algorithms: got", options.algorithms, all_algorithms());
-  if (!options.algorithms.empty() && options.maps.empty())
-    throw InputError("--algorithms: got names; allowed: with --map only");
-  if (!options.overrides.empty() && options.stress)
-    throw InputError("--set: got an override; allowed: with scenarios and --map only");
-  if (!options.maps.empty()) return stability_maps_command(options);
-  if (options.stress) return stress(options);
-  return limits(options);
-}
-
-/// The three experiments exclude each other, and each has options of its own.
-void add_experiments(Command& command, StabilityOptions& options) {
-  CommandOption scenarios = command.add("scenarios", options.scenarios,
-                                        "springs scenarios whose limits are wanted: files, or names of bundled ones");
-  CommandOption map = command.add("--map", options.maps,
-                                  "draw maps of stable, dying, vibrating and diverged runs: names separated by commas, "
-                                  "or all (see \"hapbench describe stability\")");
-  map.comma_separated();
-  CommandOption stress = command.flag("--stress", options.stress, "pass random contact sets through every algorithm");
-  map.excludes(stress).excludes(scenarios);
-  stress.excludes(scenarios);
-
-  constexpr std::int64_t kMostCount = 1'000'000'000;
-  command.add("--size", options.size, "points of a map along each side (default: 17)").range(2, 101).needs(map);
-  command
-      .add("--integrators", options.integrators,
-           "integrators of the maps: names separated by commas, or all (default: leapfrog)")
-      .comma_separated()
-      .needs(map);
-  command.add("--count", options.count, "contact sets of --stress (default: 100000)")
-      .range(1, kMostCount)
-      .needs(stress);
-  command.add("--seed", options.seed, "seed of --stress (default: 1)").range(0, std::int64_t{1} << 53).excludes(map);
-  add_jobs(command, options.jobs, "threads (default: as many as the machine has)");
-  command.add("--algorithms", options.algorithms, "algorithms of --map: names separated by commas (default: all)")
-      .comma_separated();
-}
-
 }  // namespace
 
-std::vector<std::string> StabilityOptions::chosen_algorithms() const {
-  return algorithms.empty() ? all_algorithms() : algorithms;
-}
-
-JobOptions StabilityOptions::job_options(const std::string& label) const {
-  return hapbench::job_options(jobs, output, label);
-}
-
 std::vector<Table::Column> stability_headings() {
-  return joined_headings({kLimitHeadings, kStressHeadings, map_headings()});
+  return kLimitHeadings;
 }
 
 std::vector<Column> stability_limit_columns() {
@@ -255,19 +156,11 @@ std::vector<Column> root_locus_columns() {
   return columns_of(kRootLocusFields);
 }
 
-std::vector<Column> stress_columns() {
-  return columns_of(kStressFields);
-}
-
 void add_stability(CommandLine& line) {
-  auto [command, options] =
-      line.command("stability", "Find stability limits of springs (thesis A.3), draw stability maps, stress algorithms",
-                   stability, "maps that were complete are kept");
-  add_experiments(command, options);
+  auto [command, options] = line.command("stability", "Find the stability limits of springs (thesis A.3)", stability);
+  command.add("scenarios", options.scenarios, "springs scenarios: files, or names of bundled ones").required();
   command.add("--out", options.out, "directory of the results (default: results/out/stability_NAME)");
-  add_overrides(
-      command, options.overrides,
-      "override a field: path=value; with --map only time.step_s, rendering.friction and fields of device and hand");
+  add_overrides(command, options.overrides);
   add_output_options(command, options.output);
 }
 

@@ -44,6 +44,8 @@ def cells_of(row, path=""):
 
 def table_in(name, folder, printed):
     """Rows of a CSV file in the folder, or of the JSON that was printed: its list at a place such as interval.limits."""
+    if isinstance(name, tuple):
+        return name[1](table_in(name[0], folder, printed))
     if callable(name):
         return [cells_of(row) for row in name(json.loads(printed))]
     if name.endswith(".csv"):

@@ -1,5 +1,6 @@
 """The questions, one a row: what the program of commit 661d2580 was asked, and what is asked today for the same answer. A question
 whose answer has left the program leaves with its tables, in a commit that says why."""
+import math
 from dataclasses import dataclass, field
 
 
@@ -7,12 +8,15 @@ from dataclasses import dataclass, field
 class Question:
     name: str
     old: str  # the words of 661d2580, without --json and --out
-    tables: dict  # on record: where today's answer has them, a CSV file in --out, "json" and the place of a list in what is printed, or a
-    # function of the JSON that is printed
+    tables: dict  # on record: where today's answer has them, a CSV file in --out, "json" and the place of a list in what is printed, a
+    # function of the JSON that is printed, or a file and a function of its rows
     new: str = ""  # today's words, where they are others
     columns: dict = field(default_factory=dict)  # on record: today's name, where it is another; None: not told any more
     tolerance: dict = field(default_factory=dict)  # of a column on record: (relative, the reason); without, the same text or number
     status: int = 0
+
+
+K = "rendering.stiffness_N_per_m"
 
 
 def limit(name, words, status=0):
@@ -45,9 +49,27 @@ def devices(name, scenes, words):
                     f"limit {scenes} --device {words}{algorithms}", {**now, "class_below": None})
 
 
-def stability_map(name):
+def of_grid(low, high):
+    """The runs of limit_runs.csv at five stiffnesses in equal ratios from low to high: every second or fourth that its search tries at once."""
+    grid = [low * (high / low) ** (i / 4) for i in range(5)]
+    return lambda rows: [row for row in rows if any(math.isclose(float(row[K]), value, rel_tol=1e-9) for value in grid)]
+
+
+def stability_map(name, x, words, y="stiffness_N_per_m", wall=False):
+    """K over another field: what a map was, `limit --over` answers, and its runs have the classes. Margins, the integrator and what the map
+    did not ask for are not told, and no_theory is an empty theory."""
+    path, low, high, between = words.split()[2].partition("=")[0], *((1e2, 1e5, "0.1:1e11") if wall else (1e3, 1e7, "10:1e9"))
+    untold = ("lambda_max", "stability_margin", "integrator", "class_from_far", "overrides", "relative_difference", "no_theory", f"tangent_{y}")
+    known = ("worst_hand", "passive_colgate_schenkel", "passive_with_delay", "stable_gil_hulin", "passive_abbott_okamura", "exact_undamped_handle")
+    bisected = (1e-9, "an edge by eigenvalues, bisected from another range to rounding")
+    grid = (1e-12, "the same value of a range, whose ends are others")
     return Question(f"map_{name}", f"stability --map {name} --size 5 --algorithms shaped_stiffness",
-                    {"classes": f"stability_map_{name}.csv", "edge": f"stability_boundary_{name}.csv"})
+                    {"classes": ("limit_runs.csv", of_grid(low, high)), "edge": "limit.csv"},
+                    f"limit {words} --between {between} --stable bounded --algorithms shaped_stiffness",
+                    {x: path, y: K, f"analytic_{y}": "theory", f"simulation_{y}": "limit", **{f"{limit}_{y}": limit for limit in known},
+                     **dict.fromkeys(untold)},
+                    {x: grid, y: grid, f"stable_gil_hulin_{y}": grid, f"analytic_{y}": bisected, f"worst_hand_{y}": bisected,
+                     f"simulation_{y}": (2e-3, "bisection on runs ends at a width of 0.1 %, wherever it begins")})
 
 
 def accuracy(name, words=""):
@@ -65,7 +87,6 @@ GIVEN = {
     "mine.json": '{"type": "impedance", "handle_mass_kg": 0.1, "viscous_N_s_per_m": 0.5, "coulomb_N": 0.1, "delay_samples": 1.5}',
 }
 
-K = "rendering.stiffness_N_per_m"
 QUESTIONS = [
     limit("limit_of_springs", f"single_spring --vary {K} --algorithms mean,summation,tandpasta"),
     limit("limit_smallest_mass", "single_spring --vary rendering.mass_kg --smallest"),
@@ -93,8 +114,16 @@ QUESTIONS = [
     devices("devices_over_what_is_not_published", "tap_wall", "all --algorithms mean --resolution 0.02"),
     devices("devices_in_scenes", "tap_corner tap_hole", "touch,mine.json,omega.3 --resolution 0.05"),
     devices("devices_over_friction", "loop.json", "touch,ideal,admittance --friction 0,2 --algorithms mean,summation --resolution 0.05"),
-    *map(stability_map, ("time_step", "mass", "damping_ratio", "contacts", "wedge", "device", "z_width", "delay", "velocity_filter", "hand",
-                         "encoder_step", "friction_quantisation")),
+    # The maps over mass, contacts, wedge, servo delay of the admittance device, encoder step and friction are a page of text: they are asked no more.
+    stability_map("time_step", "time_step_s", "single_spring --over time.step_s=5e-5:5e-3:5:log --set time.steps=8000"),
+    stability_map("damping_ratio", "damping_ratio", "single_spring --over rendering.damping_ratio=0:3:5 --set time.steps=8000"),
+    stability_map("z_width", "wall_damping_N_s_per_m", "wall_on_handle --over rendering.damping_N_s_per_m=0.1:150:5:log", wall=True),
+    stability_map("delay", "delay_samples", "wall_on_handle --over device.delay_samples=0:8:5", wall=True),
+    stability_map("velocity_filter", "cutoff_Hz", """wall_on_handle --over device.velocity_filter.cutoff_Hz=20:500:5:log
+                  --set 'device.velocity_filter={"type": "low_pass", "cutoff_Hz": 100}'""", wall=True),
+    stability_map("hand", "hand_stiffness_N_per_m", """wall_on_handle --over hand.stiffness_N_per_m=10:1e4:5:log
+                  --set 'hand={"type": "mass_spring_damper", "mass_kg": 0.2, "stiffness_N_per_m": 100, "damping_N_s_per_m": 2,
+                  "target": {"x_m": 0, "y_m": 0, "z_m": 0}}'""", wall=True),
     *map(accuracy, ("integrators", "shaping", "spacing", "reduction", "merging", "algorithms", "events")),
     accuracy("late_contacts", "--set time.duration_s=0.2"),
     Question("stability_of_springs", "stability single_spring", {"limits": "limits.csv"}),

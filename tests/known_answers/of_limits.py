@@ -33,7 +33,9 @@ def limits_of_springs(bench):
     base = bench.scenario("limits_of_springs", time={"step_s": dt, "steps": 400}, initial={"position_m": [1e-3, 0, 0]},
                           environment={"type": "springs", "groups": [{"direction": [1, 0, 0], "count": 2}]},
                           rendering={**PLAIN, "algorithm": "summation", "damping_ratio": zeta, "stiffness_N_per_m": 20000})
-    printed = bench.json("stability", base, "--out", "limits")[0]["limits"]
+    found = bench.json("stability", base, "--out", "limits")[0]
+    printed = found["limits"]
+    bench.add("stability --json: integrator", found["integrator"], "leapfrog", "the default", EXACT, ("another", "rk4"))
     bench.add("stability --json: simulation_tolerance", [row["simulation_tolerance"] for row in printed], [1e-4 * row["simulation"] for row in printed],
               "bisection on runs ends at 1e-4", ROUNDING, ("of maps", [1e-3 * row["simulation"] for row in printed]))
     table, locus = Table(bench.folder / "limits" / "limits.csv"), Table(bench.folder / "limits" / "root_locus.csv")
@@ -152,76 +154,47 @@ HANDS = [(0, 0), *((m, k) for m in (0.1, 0.2, 0.5) for k in (100, 300, 1000))]
 
 
 @scene
-def maps(bench):
-    """Maps of parallel springs under leapfrog and of a handle at a wall: each class by the linear recurrence, each edge by its eigenvalues."""
-    size = 5
-    bench.json("stability", "--map", "contacts,z_width", "--algorithms", "summation", "--size", size, "--out", "maps")
-    bench.hapbench("stability", "--map", "z_width", "--algorithms", "summation", "--size", "3", "--set", "device.viscous_N_s_per_m=0", "--out", "bare")
-    M, dt, zeta = 0.1, 0.0005, 0.7
-    steps = lambda n, K: step_matrix(n * K, n * 2 * zeta * math.sqrt(K * M), M, dt)
+def over_another_field(bench):
+    """K over B, delay and hand of a handle at a wall on both sides: each class by the linear recurrence, each edge by its eigenvalues."""
+    ask = ("limit", "wall_on_handle", "--algorithms", "summation", "--between", "1:1e9", "--stable", "bounded", "--resolution", 1e-3)
+    damping, K = "rendering.damping_N_s_per_m", "rendering.stiffness_N_per_m"
+    given = lambda told, path: [row[path] for row in told["limits"]]
+    told = bench.json(*ask, "--over", f"{damping}=0.1:150:5:log", "--out", "walls")
+    bench.add(f"limit --json: {damping}", given(told, damping), np.geomspace(0.1, 150, 5), "as asked", ROUNDING, ("linear", np.linspace(0.1, 150, 5)))
+    bench.json(*ask, "--over", f"{damping}=0.1:150:3:log", "--set", "device.viscous_N_s_per_m=0", "--out", "bare")
     handle = lambda B, K, b=0.5, more=0.0, spring=0.0: HeldLoop(0.1 + more, b, 0.001, K, B, spring=spring).matrix
-    wall, start = {"x": np.geomspace(0.1, 150, size), "y": np.geomspace(1e2, 1e5, size)}, 0.6e-3
-    counts = np.round(np.geomspace(1, 100, size))
     radius = lambda matrix: np.abs(np.linalg.eigvals(matrix)).max()
-    at_rest = lambda matrix: np.eye(len(matrix))[0] * start + (np.eye(len(matrix))[2] * start if len(matrix) > 2 else 0)
+    at_rest = lambda matrix: np.eye(len(matrix))[0] * 0.6e-3 + np.eye(len(matrix))[2] * 0.6e-3
     edge_of = lambda at, low, high: bisected(lambda K: radius(at(K)) < 1, low, high)
-    swings = lambda at, low, high: bisected(lambda K: class_of(at(K), at_rest(at(K))) != "diverged", low, high, 1e-5)
-    for name, xs, ys, matrix, x_name in (("contacts", counts, np.geomspace(1e3, 1e7, size), steps, "contacts"),
-                                         ("z_width", wall["x"], wall["y"], handle, "wall_damping_N_s_per_m")):
-        points, edges = (Table(bench.folder / "maps" / f"stability_{kind}_{name}.csv") for kind in ("map", "boundary"))
-        grid = [(x, y) for x in xs for y in ys]
-        classes = [class_of(matrix(*at), at_rest(matrix(*at))) for at in grid]
-        spectral = ["stable" if radius(matrix(*at)) < 1 else "diverged" for at in grid]
-        lam = [at[0] if name == "contacts" else 1.0 for at in grid]
-        margin = [4 - 2 * n * 2 * zeta * math.sqrt(K * M) * dt / M - n * K * dt ** 2 / M for n, K in grid] if name == "contacts" else [math.nan] * 25
-        how = "recurrence and its eigenvalues"
-        for column, known, naive in (("{x}", [x for x, _ in grid], [y for _, y in grid]), ("{y}", [y for _, y in grid], [x for x, _ in grid]),
-                                     ("lambda_max", lam, np.full(25, 2.0)), ("stability_margin", margin, [4 - K * dt ** 2 / M for _, K in grid])):
-            given = {"{x}": x_name, "{y}": "stiffness_N_per_m"}.get(column, column)
-            bench.add(f"stability_map_NAME.csv:{column}", points[given], known, how, ROUNDING, ("of the other axis, or undamped", naive))
-        bench.add("stability_map_NAME.csv:class", points["class"], classes, "the rule on the recurrence", EXACT,
-                  ("by the eigenvalues", spectral) if classes != spectral else None)
-        theory = [edge_of(lambda K: matrix(x, K), 1.0, 1e9) if radius(matrix(x, 1.0)) < 1 else 0.0 for x in xs]
-        runs = [swings(lambda K: matrix(x, K), t / 2, 2 * t) for x, t in zip(xs, theory)]
-        close = Within("an edge by eigenvalues, bisected to 1e-9 or better", relative=1e-8)
-        fine = Within("bisection on runs ends at 0.1 %", relative=1e-3)
-        kinds = [("{x}", xs, EXACT, ys), ("analytic_{y}", theory, close, [4 * M / dt ** 2] * 5), ("simulation_{y}", runs, fine, [4 * M / dt ** 2] * 5)]
-        for column, known, within, naive in kinds:
-            bench.add(f"stability_boundary_NAME.csv:{column}", edges[column.format(x=x_name, y="stiffness_N_per_m")], known, how,
-                      ROUNDING if within is EXACT else within, ("of an undamped spring", naive))
-        both = edges["simulation_stiffness_N_per_m"] / edges["analytic_stiffness_N_per_m"] - 1
-        bench.add("stability_boundary_NAME.csv:relative_difference", edges["relative_difference"], both, "simulation over analytic, less 1",
-                  Within("rounding of numbers near 1", absolute=1e-15), ("over the simulation", 1 - 1 / (1 + both) + 1e-9))
-        for kind, table in (("map", points), ("boundary", edges)):
-            for column, known, naive in (("algorithm", "summation", "mean"), ("integrator", "leapfrog", "rk4"), ("overrides", "", "none")):
-                bench.add(f"stability_{kind}_NAME.csv:{column}", sorted(set(table.rows[i][column] for i in range(len(table.rows)))), [known],
-                          "as asked", EXACT, ("another", [naive]))
-    bench.hapbench("stability", "--map", "delay,hand", "--algorithms", "summation", "--size", "6", "--out", "more")
-    for name, x_name, loop in (("delay", "delay_samples", lambda x, K: HeldLoop(0.1, 0.5, 0.001, K, 5.0, delay=x)),
-                               ("hand", "hand_stiffness_N_per_m", lambda x, K: HeldLoop(0.3, 2.5, 0.001, K, 5.0, spring=x))):
-        table = Table(bench.folder / "more" / f"stability_boundary_{name}.csv")
-        edges = [bisected(lambda K: loop(x, K).radius() < 1, 1.0, 1e6) for x in table[x_name]]
-        bench.add("stability_boundary_NAME.csv:analytic_{y}", table["analytic_stiffness_N_per_m"], edges, "eigenvalues, delays of whole and broken samples",
-                  close, ("without", [edge_of(lambda K: handle(5.0, K), 1.0, 1e6)] * 6))
-    friction = 'rendering.friction={"type":"dry","mu":0.3,"damping_ratio":0.2}'
-    bench.hapbench("stability", "--map", "z_width", "--algorithms", "summation", "--size", "3", "--set", friction, "--out", "held")
-    bristle = lambda zeta: [edge_of(lambda K: handle(2 * zeta * math.sqrt(K * M), K), 1.0, 1e9)] * 3
-    bench.add("stability_boundary_NAME.csv:tangent_{y}", Table(bench.folder / "held" / "stability_boundary_z_width.csv")["tangent_stiffness_N_per_m"],
-              bristle(0.2), "eigenvalues with the bristle's damper", close, ("the springs' damping ratio", bristle(0.7)))
-    limits_of_walls(bench, Table(bench.folder / "maps" / "stability_boundary_z_width.csv"), Table(bench.folder / "bare" / "stability_boundary_z_width.csv"),
-                    wall["x"], handle, edge_of)
-    bench.hapbench("stability", "--map", "friction_quantisation,encoder_step", "--algorithms", "summation", "--size", "4", "--out", "dry")
-    dry = Table(bench.folder / "dry" / "stability_map_friction_quantisation.csv")
-    # Abbott, Okamura; Diolaiti et al.: below 2 b / (K T) = 1 the samples make more energy than b takes from large motion, below
-    # 2 c / (K q) = 1 the steps of the encoder more than dry friction takes from small motion.
-    far = ["diverged" if x < 1 else "vibrating" if y < 1 else "stable" for x, y in zip(dry["2b_over_KT"], dry["2c_over_Kq"])]
-    bench.add("stability_map_NAME.csv:class_from_far", dry["class_from_far"], far, "2 b > K T and 2 c > K q", EXACT, ("from near", dry["class"]))
-    table, q = Table(bench.folder / "dry" / "stability_boundary_encoder_step.csv"), np.geomspace(1e-6, 1e-3, 4)
-    passive = np.minimum(2 * 0.5 / 0.001, 2 * 0.02 / q)
-    bench.add("stability_boundary_NAME.csv:passive_abbott_okamura_{y}", table["passive_abbott_okamura_stiffness_N_per_m"], passive,
+    xs, edges, runs = np.geomspace(0.1, 150, 5), Table(bench.folder / "walls" / "limit.csv"), Table(bench.folder / "walls" / "limit_runs.csv")
+    tried, how = list(zip(runs[damping], runs[K])), "recurrence and its eigenvalues"
+    bench.add("limit_runs.csv:class", runs["class"], [class_of(handle(*at), at_rest(handle(*at))) for at in tried], "the rule on the recurrence", EXACT,
+              ("by the eigenvalues", ["stable" if radius(handle(*at)) < 1 else "diverged" for at in tried]))
+    theory = [edge_of(lambda K: handle(x, K), 1.0, 1e9) for x in xs]
+    swings = [bisected(lambda K: class_of(handle(x, K), at_rest(handle(x, K))) != "diverged", t / 2, 2 * t, 1e-5) for x, t in zip(xs, theory)]
+    close = Within("an edge by eigenvalues, bisected to 1e-9 or better", relative=1e-8)
+    bench.add("limit.csv:theory", edges["theory"], theory, how, close, ("passive, 2 b / T", [1000.0] * 5))
+    bench.add("limit.csv:limit", edges["limit"], swings, how, Within("bisection on runs ends at 0.1 %", relative=1e-3), ("passive, 2 b / T", [1000.0] * 5))
+    bench.add("limit.csv:no_theory", sorted({row["no_theory"] for row in edges.rows}), [""], "the loop is linear", EXACT, ("friction", ["dry friction"]))
+    hand = '{"type":"mass_spring_damper","mass_kg":0.2,"stiffness_N_per_m":100,"damping_N_s_per_m":2,"target":{"x_m":0,"y_m":0,"z_m":0}}'
+    for name, path, values, loop, more in (
+            ("delay", "device.delay_samples", np.linspace(0, 8, 6), lambda x, K: HeldLoop(0.1, 0.5, 0.001, K, 5.0, delay=x), ()),
+            ("hand", "hand.stiffness_N_per_m", np.geomspace(10, 1e4, 6), lambda x, K: HeldLoop(0.3, 2.5, 0.001, K, 5.0, spring=x), ("--set", f"hand={hand}"))):
+        told = bench.json(*ask, *more, "--over", f"{path}={values[0]}:{values[-1]}:6{'' if name == 'delay' else ':log'}", "--out", name)
+        bench.add(f"limit --json: {path}", given(told, path), values, "as asked", ROUNDING, ("the other way round", values[::-1]))
+        table = Table(bench.folder / name / "limit.csv")
+        bench.add("limit.csv:theory", table["theory"], [bisected(lambda K: loop(x, K).radius() < 1, 1.0, 1e6) for x in values],
+                  "eigenvalues, delays of whole and broken samples", close, ("without", [edge_of(lambda K: handle(5.0, K), 1.0, 1e6)] * 6))
+    limits_of_walls(bench, edges, Table(bench.folder / "bare" / "limit.csv"), xs, handle, edge_of)
+    q = np.geomspace(1e-6, 1e-3, 4)
+    told = bench.json(*ask, "--over", "device.encoder_step_m=1e-6:1e-3:4:log", "--set", "device.coulomb_N=0.02", "--set", f"{damping}=0", "--out", "encoder")
+    bench.add("limit --json: device.encoder_step_m", given(told, "device.encoder_step_m"), q, "as asked", ROUNDING, ("in mm", 1e3 * q))
+    table = Table(bench.folder / "encoder" / "limit.csv")
+    bench.add("limit.csv:passive_abbott_okamura", table["passive_abbott_okamura"], np.minimum(2 * 0.5 / 0.001, 2 * 0.02 / q),
               "min(2 b / T, 2 c / q)", ROUNDING, ("2 b / T alone", np.full(4, 1000.0)))
-    bench.add("stability_boundary_NAME.csv:no_theory", [bool(text) for text in table["no_theory"]], [True] * 4, "dry friction is not linear", EXACT,
+    bench.add("limit.csv:no_theory", [bool(text) for text in table["no_theory"]], [True] * 4, "dry friction is not linear", EXACT,
               ("linear", [False] * 4))
+    stressed(bench)
 
 
 def limits_of_walls(bench, table, bare, xs, handle, edge_of):
@@ -237,13 +210,12 @@ def limits_of_walls(bench, table, bare, xs, handle, edge_of):
             ("passive_colgate_schenkel", [max(0.0, 2 * (b - B) / T) for B in xs], ROUNDING, [2 * (b + B) / T for B in xs]),
             ("passive_with_delay", delayed, scanned, [2 * b / T] * 5), ("stable_gil_hulin", gil, ROUNDING, [(b + B) * 2 / T for B in xs]),
             ("worst_hand", worst, Within("an edge by eigenvalues, bisected to 1e-9 or better", relative=1e-8), [1.0] * 5)):
-        bench.add(f"stability_boundary_NAME.csv:{column}_{{y}}", table[f"{column}_stiffness_N_per_m"], known, how, within,
+        bench.add(f"limit.csv:{column}", table[column], known, how, within,
                   ("without its range, sign or hand", naive))
     beta = np.geomspace(0.1, 150, 3) * T / m
-    bench.add("stability_boundary_NAME.csv:exact_undamped_handle_{y}", bare["exact_undamped_handle_stiffness_N_per_m"],
+    bench.add("limit.csv:exact_undamped_handle", bare["exact_undamped_handle"],
               np.maximum(0, 2 * beta * (2 - beta) / (2 + beta) * m / T ** 2), "K T^2/m < 2 beta (2 - beta) / (2 + beta)", ROUNDING,
               ("4 beta", 4 * beta * m / T ** 2))
-    bench.add("stability_boundary_NAME.csv:overrides", bare["overrides"], ["device.viscous_N_s_per_m=0"] * 3, "as --set gave it", EXACT, ("none", [""] * 3))
 
 
 @scene
@@ -301,14 +273,6 @@ def devices(bench):
     bench.add("limit.csv:device", [row["device"] for row in others], ["omega.3*", "omega.3*[soft]", "omega.3*[stiff]"], "both ends by default", EXACT,
               ("the preset alone", ["omega.3*"]))
     bench.add("limit.csv:limit", [row["limit"] for row in others], ends, how, fine, ("of the preset's own numbers", [ends[0]] * 3))
-    # The order of the laws turned round: of summation over mean, so that 1 / lambda_max is not 1.
-    (bench.folder / "same.json").write_text((bench.folder / "mine.json").read_text(encoding="utf-8"), encoding="utf-8")
-    text = bench.hapbench("limit", "both_ways.json", "--device", "mine.json,same.json", "--algorithms", "mean,summation", "--resolution", resolution, "--out", "t")
-    ratio = limits[0] / limits[1]
-    for heading, shown, wrong in (("1 / lambda_max(S)", f"{ratio:.2g} ({1 / 2:.2g}, 2)", f"{ratio:.2g} (2, 2)"),
-                                  ("K lambda_max", f"K lambda_max: {2 * ratio:.2g} ... {2 * ratio:.2g}", f"K lambda_max: {ratio:.2g} ...")):
-        bench.add(f"{heading} (stiffness, of limit)", [shown in text, wrong in text], [True, False], "limits and S of two springs", EXACT,
-                  ("lambda_max, or of K alone", [False, True]))
     classes = [j[v.index(x)] for j, v, x in zip(judged, tried, beyond)]
     bench.add("limit.csv:class_beyond", [cell[key]["class_beyond"] for key in keys], classes, how, EXACT, ("diverged", ["diverged"] * 2))
     bench.add("limit_runs.csv:class", says[0] + says[1], judged[0] + judged[1], how, EXACT, ("by the eigenvalues", [
@@ -331,44 +295,17 @@ def devices(bench):
     bench.add("limit --json: unstable_without_contact", alone["mine", "pushes"], False, "handle and hand are passive", EXACT, ("with the wall", True))
 
 
-@scene
-def undamped_map(bench):
-    """Without damping a spring swings for ever up to its limit: bounded, and not stable."""
-    printed = bench.json("stability", "--map", "damping_ratio", "--algorithms", "summation", "--size", "4", "--out", "m")[0]
-    table = Table(bench.folder / "m" / "stability_map_damping_ratio.csv")
-    at = [step_matrix(K, 2 * zeta * math.sqrt(K * 0.1), 0.1, 0.0005) for zeta in (0, 1, 2, 3) for K in np.geomspace(1e3, 1e7, 4)]
-    classes = [class_of(matrix, np.array([0.6e-3, 0])) for matrix in at]
-    bounded = ["stable" if np.abs(np.linalg.eigvals(matrix)).max() < 1 + 1e-9 else "diverged" for matrix in at]
-    bench.add("stability_map_NAME.csv:class", table["class"], classes, "the rule on the recurrence", EXACT, ("bounded is stable", bounded))
-    for name in ("stable", "dying_out", "vibrating", "diverged"):
-        bench.add(f"stability --json: {name}", printed[name], classes.count(name), "cells of that class", EXACT, ("edges, too", classes.count(name) + 4))
-    bench.add("stability --json: map", printed["map"], "damping_ratio", "as asked", EXACT, ("all", "all"))
-    walls = bench.json("stability", "--map", "z_width", "--algorithms", "summation", "--size", "3", "--out", "w")[0]["boundary"]
-    encoder = bench.json("stability", "--map", "encoder_step", "--algorithms", "summation", "--size", "2", "--out", "e")[0]["boundary"]
-    for axis, told, known in (("damping_ratio", printed["boundary"], [0.0, 1, 2, 3]), ("encoder_step_m", encoder, [1e-6, 1e-3])):
-        bench.add(f"stability --json: {axis}", [row[axis] for row in told], known, "the axis", ROUNDING, ("in the middle of cells", np.add(known, 0.5)))
-    table = Table(bench.folder / "w" / "stability_boundary_z_width.csv")
-    number = lambda x: math.nan if x is None else x
-    bench.add("stability --json: wall_damping_N_s_per_m", [row["wall_damping_N_s_per_m"] for row in walls], np.geomspace(0.1, 150, 3), "the axis", ROUNDING,
-              ("linear", np.linspace(0.1, 150, 3)))
-    for name in ("worst_hand", "tangent", *walls[0]["limits"]):
-        values = [number(row.get(name, row["limits"].get(name))) for row in walls]
-        bench.add(f"stability --json: {name}", values, table[f"{name}_stiffness_N_per_m"], "as in the table, whose answers are known", EXACT,
-                  ("one that applies nowhere, or everywhere", np.full(3, 1.0)))
-    stressed(bench)
-
-
 def stressed(bench):
-    bench.hapbench("stability", "--stress", "--count", "2000", "--out", "s")
-    table = Table(bench.folder / "s" / "stability_stress.csv")
+    bench.hapbench("stress", "--count", "2000", "--out", "s")
+    table = Table(bench.folder / "s" / "stress.csv")
     rows = [table["algorithm"].index(law) for law in ("mean", "highest_depth", "mcneely")]
-    bench.add("stability_stress.csv:algorithm", len(set(table["algorithm"])), len(table.rows), "each once", EXACT, ("some twice", len(table.rows) - 1))
+    bench.add("stress.csv:algorithm", len(set(table["algorithm"])), len(table.rows), "each once", EXACT, ("some twice", len(table.rows) - 1))
     reached = Within("sums of up to 137 equal springs, rounded", relative=1e-13)
     # Parallel springs of one depth are among the sets: as stiff as one, and under the rule of 10 / N as ten.
-    bench.add("stability_stress.csv:largest_force_per_K_d", table["largest_force_per_K_d"][rows], [1.0, 1.0, 10.0], "parallel springs of one depth", reached,
+    bench.add("stress.csv:largest_force_per_K_d", table["largest_force_per_K_d"][rows], [1.0, 1.0, 10.0], "parallel springs of one depth", reached,
               ("the bound of shaping", [1.366] * 3))
-    bench.add("stability_stress.csv:largest_share_of_bound", table["largest_share_of_bound"][rows], [1.0] * 3, "which reach the bounds", reached,
+    bench.add("stress.csv:largest_share_of_bound", table["largest_share_of_bound"][rows], [1.0] * 3, "which reach the bounds", reached,
               ("of mcneely's in K d", [1.0, 1.0, 10.0]))
     tests = "tests/scenarios/studies/stress/law_stress_test.cpp"
     for name in ("sets", "in_contact", "non_finite", "out_of_bound", "points_dropped"):
-        bench.proven(f"stability_stress.csv:{name}", tests, "LawStress.NoForceIsInfiniteOrOutOfBound", f"c.{name}", "first_bad")
+        bench.proven(f"stress.csv:{name}", tests, "LawStress.NoForceIsInfiniteOrOutOfBound", f"c.{name}", "first_bad")

@@ -24,7 +24,7 @@ COMMANDS = [command for manual in MANUALS for command in manual.commands()]
 # No option of the program is like it, so that no other is named as the one that may have been meant.
 UNKNOWN = "--zzzz"
 # Minutes long: parsed, not run.
-LONG = {"precision", "reproduce", "--map", "--stress"}
+LONG = {"precision", "reproduce", "stress"}
 FEW_STEPS = ["--set", 'time={"step_s": 0.0005, "steps": 40}']
 SHORTER = {"run": FEW_STEPS, "compare": FEW_STEPS, "sweep": FEW_STEPS, "converge": [*FEW_STEPS, "--levels", "3"], "limit": [*FEW_STEPS, "--resolution", "0.5"],
            "tune": [*FEW_STEPS, "--damping-ratio", "0.3:0.7"]}
@@ -114,6 +114,8 @@ class Bench:
             given = given[:given.index("--from")]
         runs = given[0] != "sweep" or "--vary" in given and "--row" not in given
         shorter = SHORTER.get(given[0], []) if runs else []
+        if "--resolution" in given:
+            shorter = [word for word in shorter if word not in ("--resolution", "0.5")]
         found = []
         for word in given:
             found += sorted(map(str, self.matches(word))) if "*" in word and "=" not in word else [word]

@@ -121,10 +121,10 @@ class Laws(Scratch):
         self.assertEqual(report.runs["summation"].state_hash, report.runs["test_summation"].state_hash)
         table = hapbench.sweep(PEG, {"rendering.algorithm": "test_summation,summation", "seed": [1, 2, 3]}, SHORT, jobs=2).sweep
         self.assertEqual(list(table["state_hash"][:3]), list(table["state_hash"][3:]))
-        table = hapbench.stability(map="contacts", algorithms=["test_summation", "summation"], size=2, jobs=2).stability_map_contacts
+        table = hapbench.limit("single_spring", algorithms=["test_summation", "summation"], resolution=0.5, jobs=2).limit_runs
         own, built_in = table.where(algorithm="test_summation"), table.where(algorithm="summation")
         self.assertEqual(list(own["class"]), list(built_in["class"]))
-        self.assertEqual(own.rows, 4)
+        self.assertGreater(own.rows, 16)
 
     def test_exceptions_end_the_run(self):
         calls = []

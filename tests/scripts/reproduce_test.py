@@ -16,6 +16,7 @@ class Reproduce(unittest.TestCase):
         self.root = scratch_folder(self)
         (self.root / "results" / "reference").mkdir(parents=True)
         self.put("scripts/reproduce", (SOURCE / "scripts" / "reproduce").read_text(encoding="utf-8"))
+        self.put("scenarios/library/studies/stability_z_width.json", '{\n  "ask": "limit"\n}\n')
         for name in ("scripts/setup", "scripts/figures", "scripts/report", "bin/cmake"):
             self.put(name, NOTHING)
 
@@ -52,18 +53,17 @@ class Reproduce(unittest.TestCase):
         self.assertEqual(self.run_with(program, "--only", "T1", HAPBENCH_PLUGIN_PATH="/plugins")[0], 0)
 
     def test_a_figure_after_what_it_needs(self):
-        """Figures that miss a scene of the thesis, what a part makes, and a map; the program writes what it is asked for."""
+        """Figures that miss a scene of the thesis, what a part makes, and a study; the program writes what it is asked for."""
         out = "results/out/reproduce"
         needs = {"2": "thesis/wedge/trajectory.csv", "A.4-root-locus": "stability/limits.csv",
-                 "stability-z_width": "stability_devices/stability_map_z_width.csv", "proxy": "proxy/proxy/summary.json"}
+                 "stability-z_width": "stability_z_width/limit.csv", "proxy": "proxy/proxy/summary.json"}
         self.put("scripts/figures", "#!/bin/sh\necho \"$@\" >> asked\n" + "".join(
-            f'[ -e {out}/{file} ] || echo "figures: skipped {name} (no {file.replace("_devices/", "_maps/")})" >&2\n'
+            f'[ -e {out}/{file} ] || echo "figures: skipped {name} (no {file})" >&2\n'
             for name, file in needs.items()) + "exit 0\n")
         makes = "".join(f"*\" --out {out}/{folder}\"*) mkdir -p {out}/{file.rpartition('/')[0]}; touch {out}/{file};;\n"
-                        for folder, file in (("thesis/wedge", needs["2"]), ("stability", needs["A.4-root-locus"]), ("proxy", needs["proxy"]))
-                        ).replace('stability"*', 'stability "*')
-        maps = f"*z_width*) mkdir -p {out}/stability_devices; touch {out}/{needs['stability-z_width']};;\n"
-        program = f'#!/bin/sh\necho "$@" >> ran\ncase "$* " in\n{maps}{makes}esac\n'
+                        for folder, file in (("thesis/wedge", needs["2"]), ("stability ", needs["A.4-root-locus"]), ("proxy", needs["proxy"]),
+                                             ("stability_z_width", needs["stability-z_width"])))
+        program = f'#!/bin/sh\necho "$@" >> ran\ncase "$* " in\n{makes}esac\n'
         status, said, err = self.run_with(program, "--figure", ",".join(needs))
         self.assertEqual(status, 0, err)
         ran = (self.root / "ran").read_text().splitlines()

@@ -13,6 +13,7 @@
 
 #include "algorithms/stages/damping_and_limits.hpp"
 #include "device_model/theory/linear_loops.hpp"
+#include "device_model/theory/stiffness_limits.hpp"
 #include "results/observe/contact_forces.hpp"
 #include "scenarios/description/load_scenario.hpp"
 #include "scenarios/input/input_error.hpp"
@@ -81,6 +82,7 @@ class Search {
     limit.theory_has_none = theory.has_none();
     limit.undecided = static_cast<std::size_t>(
         std::count_if(runs.begin(), runs.end(), [](const auto& run) { return run.second.undecided; }));
+    add_closed_forms(limit);
     if (!limit.theory && limit.settled.lambda_max > 0.0 && !question_.smallest)
       limit.linear = linear_edge(limit.settled.lambda_max);
     return limit;
@@ -148,6 +150,26 @@ class Search {
     std::map<double, bool> tried_;
   };
 
+  /// FieldLimit::closed_forms and worst_hand
+  void add_closed_forms(FieldLimit& limit) const {
+    const Scenario scenario = at(question_.value_at(0.0)).scenario;
+    if (question_.path != "rendering.stiffness_N_per_m" || question_.smallest || !springs_stay(scenario) ||
+        !std::holds_alternative<ImpedanceDeviceConfig>(scenario.device))
+      return;
+    if (!scenario.rendering.damping && scenario.rendering.damping_ratio != 0.0) return;  // B is not that of any K
+    const Eigen::SelfAdjointEigenSolver<Mat3> S(stiffness_tensor_of(scenario), Eigen::EigenvaluesOnly);
+    const double lambda = S.eigenvalues()[2];
+    const DeviceLoop start = device_loop(scenario, lambda);
+    const auto& sampled = std::get<SampledLoop>(start.loop);
+    limit.no_theory = start.no_theory;
+    if (start.no_theory.empty()) limit.worst_hand = worst_hand_edge(sampled) / lambda;
+    const bool is_known = unknown_to_theory(scenario).empty();
+    for (const StiffnessLimit& known : stiffness_limits()) {
+      const std::optional<double> K = is_known ? known.largest(sampled) : std::nullopt;
+      limit.closed_forms.push_back(K ? std::optional(*K / lambda) : std::nullopt);
+    }
+  }
+
   /// FieldLimit::linear
   std::optional<double> linear_edge(double lambda) const {
     const auto stable = [&](double part) {
@@ -172,12 +194,16 @@ class Search {
 
   /// True for springs that stay in contact, and devices whose loop is linear.
   static bool has_theory(const Scenario& scenario) {
+    return springs_stay(scenario) && (!has_device(scenario) || device_loop(scenario, 1.0).no_theory.empty());
+  }
+
+  static bool springs_stay(const Scenario& scenario) {
     try {
       has_device(scenario) ? require_bilateral_springs(scenario) : require_lasting_springs(scenario);
+      return true;
     } catch (const InputError&) {
       return false;
     }
-    return !has_device(scenario) || device_loop(scenario, 1.0).no_theory.empty();
   }
 
   /// True for a device that is part of the loop.

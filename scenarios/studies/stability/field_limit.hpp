@@ -44,6 +44,11 @@ struct FieldLimit {
   /// rendered at the limit while it lasts, without dry friction and encoder; infinite when the whole range is stable. A
   /// limit beyond it is held up by what that loop leaves out: a tool that bounces, dry friction, a run that ends.
   std::optional<double> linear;
+  /// Of K on a wall that holds the handle of an impedance device from both sides: what stiffness_limits() say, in their
+  /// order, and the least edge over hand_family() in place of the scene's hand; empty elsewhere.
+  std::vector<std::optional<double>> closed_forms;
+  std::optional<double> worst_hand;
+  std::string no_theory;           ///< of the same: why the eigenvalues of its loop tell nothing; empty where they do
   SettledState settled;            ///< the run at `value`
   std::optional<JudgedValue> own;  ///< the run at the scenario's value, if that was in the range
   /// Hand and device are unstable even where there is nothing to touch, at the value beyond, or without a limit at the

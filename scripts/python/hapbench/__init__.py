@@ -1,4 +1,4 @@
-"""hapbench from Python: run scenes, compare, sweep, map their stability, with force laws of your own, and read results.
+"""hapbench from Python: run scenes, compare, sweep, find their limits, with force laws of your own, and read results.
 
     import hapbench
     r = hapbench.run("peg_in_hole_2d", {"rendering.stiffness_N_per_m": 4e4})
@@ -10,7 +10,7 @@ from .results import Folder, Run, Trial, load
 from .table import Table
 
 __all__ = ["Folder", "InputError", "Parameter", "ResultError", "Run", "ScenarioError", "ScenarioWarning", "Simulation", "Table",
-           "Trial", "algorithms", "command", "compare", "force_law", "load", "load_plugin", "main", "run", "stability", "sweep"]
+           "Trial", "algorithms", "command", "compare", "force_law", "limit", "load", "load_plugin", "main", "run", "stability", "sweep"]
 
 _COMPILED = {"Parameter": "laws", "force_law": "laws"}
 

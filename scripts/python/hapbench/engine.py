@@ -80,15 +80,19 @@ def sweep(scenario: Scenario, vary: Mapping[str, object], overrides: Overrides =
     return _report(words, scenario, overrides, out, progress, sample=sample, seed=seed, keep_runs=keep_runs, resume=resume, jobs=jobs)
 
 
-def stability(scenarios: Scenario | Sequence[Scenario] = (), overrides: Overrides = None, *, map: Names = None, stress: bool = False,
-              algorithms: Names = None, integrators: Names = None, size: int | None = None, count: int | None = None,
-              seed: int | None = None, jobs: int | None = None, out: Place = None, progress: Progress = None) -> "Report":
-    """Limits of springs scenarios; with `map` ("all", or names) maps of stable and diverged runs; with `stress` random
-    contact sets. As `hapbench stability` does.
+def stability(scenarios: Scenario | Sequence[Scenario], overrides: Overrides = None, *, out: Place = None, progress: Progress = None) -> "Report":
+    """Limits of springs scenarios, as `hapbench stability` finds them: a Report with the tables `limits` and `root_locus`."""
+    return _report(["stability"], scenarios, overrides, out, progress)
 
-    Returns a Report: the tables are those of the command, such as `limits` or `stability_map_stiffness_mass`."""
-    return _report(["stability"], scenarios, overrides, out, progress, map=map, stress=stress, algorithms=algorithms,
-                   integrators=integrators, size=size, count=count, seed=seed, jobs=jobs)
+
+def limit(scenarios: Scenario | Sequence[Scenario], overrides: Overrides = None, *, vary: str | None = None, between: str | None = None,
+          over: Mapping[str, str] | None = None, algorithms: Names = None, device: Names = None, stable: str | None = None,
+          resolution: float | None = None, jobs: int | None = None, out: Place = None, progress: Progress = None) -> "Report":
+    """How far a field may go, as `hapbench limit` finds it, for each value of other fields (`over`, as --over takes them): a Report with
+    the tables `limit` and `limit_runs`."""
+    words = ["limit", *(word for path, values in (over or {}).items() for word in ("--over", f"{path}={values}"))]
+    return _report(words, scenarios, overrides, out, progress, vary=vary, between=between, algorithms=algorithms, device=device, stable=stable,
+                   resolution=resolution, jobs=jobs)
 
 
 def command(*words: object, progress: Progress = None) -> Any:

@@ -201,14 +201,15 @@ CONTROLLERS = (
 
 
 def controllers(old, program, directory):
-    """What force stages gain in a stability map and what they cost a hand that taps on a wall: stiffness and damping felt by
+    """What force stages gain at a wall on a handle and what they cost a hand that taps on a wall: stiffness and damping felt by
     least squares of the rendered force over depth and velocity in contact."""
     lines = ["| force stage | bounded up to [N/m], B = 0.1, 3.9, 150 N s/m | created [mJ] | taken [mJ] | rows changed [%] | "
              "stiffness felt, of K | damping felt [N s/m] | largest force step [N] |", "|---" * 8 + "|"]
     for name, stage in CONTROLLERS:
         chosen = [] if stage is None else ["--set", f"rendering.force_stage={json.dumps(stage)}"]
-        program.run(["stability", "--map", "z_width", "--algorithms", "summation", "--size", "3", "--out", "map", *chosen], directory)
-        edges = read_records(Path(directory) / "map" / "stability_boundary_z_width.csv")
+        program.run(["limit", "wall_on_handle", "--over", "rendering.damping_N_s_per_m=0.1:150:3:log", "--between", "1:1e9", "--stable", "bounded",
+                     "--algorithms", "summation", "--out", "over", *chosen], directory)
+        edges = read_records(Path(directory) / "over" / "limit.csv")
         run = json.loads(program.run(["run", "tap_wall", "--set", f"rendering.stiffness_N_per_m={TAPPED:g}", "--set", "record.trajectory=true",
                                       "--set", "expect={}", "--out", "tap", "--json", *chosen], directory))
         run = run[0] if isinstance(run, list) else run
@@ -216,7 +217,7 @@ def controllers(old, program, directory):
         column = lambda key: np.array([float(row[key]) for row in touching])
         felt, _, _, _ = np.linalg.lstsq(-np.column_stack([column("pz_m"), column("vz_m_per_s")]), column("fz_N"), rcond=None)
         of_stage = run.get("force_stage", {"taken_J": 0.0, "changed_share": 0.0})
-        cells = [", ".join(number(float(edge["simulation_stiffness_N_per_m"])) for edge in edges), number(1e3 * run["passivity"]["net_created_J"]),
+        cells = [", ".join(number(float(edge["limit"])) for edge in edges), number(1e3 * run["passivity"]["net_created_J"]),
                  number(1e3 * of_stage["taken_J"]), number(100 * of_stage["changed_share"]), number(felt[0] / TAPPED), number(round(felt[1], 3)),
                  number(run["metrics"]["force_step_max_N"])]
         lines.append(f"| {name} | {' | '.join(cells)} |")

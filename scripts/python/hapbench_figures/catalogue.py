@@ -22,8 +22,6 @@ class Figure:
         return "figure_" + self.id.replace("-", "_").replace("/", "_")
 
 
-STABILITY_MAPS = ("time_step", "mass", "damping_ratio", "contacts", "wedge", "device", "z_width", "delay", "velocity_filter",
-                  "hand", "encoder_step", "friction_quantisation")
 
 FIGURES = (
     Figure("2", "2", "Excessive stiffness and ways to merge contacts", stiffness_fields.excessive_stiffness,
@@ -96,8 +94,8 @@ FIGURES = (
     Figure("query-time", None, "Query time over penetration depth", performance.query_time),
     Figure("late-contacts", None, "How stiff with late contacts", performance.late_contacts),
     Figure("latency", None, "Latency of a step", performance.latency),
-    *(Figure(f"stability-{name}", None, f"Stability over {name.replace('_', ' ')}", stability.stability_map(name))
-      for name in STABILITY_MAPS),
+    *(Figure(f"stability-{name}", None, f"Stability over {name.replace('_', ' ')}", stability.stability_over(f"stability_{name}"))
+      for name in ("time_step", "damping_ratio", "z_width", "delay", "velocity_filter", "hand")),
     Figure("devices", None, "What each device renders with each algorithm", stability.of_all_devices),
     Figure("stability-integrators", None, "Stability under each integrator", stability.integrators),
 )

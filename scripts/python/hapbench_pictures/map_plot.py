@@ -1,12 +1,11 @@
-"""The pictures of `stability --map`, `limit`, `tune` and `converge`: classes of runs as coloured cells or marks, with the limits found; and
-which study a folder holds."""
-import copy
+"""The pictures of `limit`, `tune` and `converge`: classes of runs as coloured marks, with the limits found; and which study a folder
+holds."""
 from pathlib import Path
 
 import numpy as np
 
 from hapbench_figures.results import MissingResult, Results, numbers
-from hapbench_figures.stability import CLASSES, MapFile, draw_devices, draw_stability_map, is_geometric, look_of_class
+from hapbench_figures.stability import CLASSES, LIMIT, LIMIT_RUNS, OverFields, draw_devices, draw_over, is_geometric, look_of_class
 from hapbench_looks import look
 from hapbench_report.json_input import InputError
 from hapbench_style import BLACK, PETROL, SETTINGS, plt
@@ -15,50 +14,39 @@ from .converge_plot import LEVELS, draw_converge
 from .given import axis
 from .tune_plot import TRIALS, draw_tune
 
-MAP, LIMIT, LIMIT_RUNS = "stability_map_", "limit.csv", "limit_runs.csv"
-
 
 def given_study(words):
-    """The table that a folder of maps or of limits, or one map's file, stands for; None where none was given."""
+    """The folder of limits, a tuning or a convergence among the words; None where none was given."""
     studies = [Path(word) for word in words if is_study(Path(word))]
     if studies and len(words) > 1:
-        raise InputError(f"{studies[0]}: holds stability maps or limits; allowed: one such folder alone, or any number of runs")
+        raise InputError(f"{studies[0]}: holds limits; allowed: one such folder alone, or any number of runs")
     return studies[0] if studies else None
 
 
 def is_study(path):
-    return path.name.startswith(MAP) and path.is_file() or any(path.glob(f"{MAP}*.csv")) or \
-        any((path / name).is_file() for name in (LIMIT_RUNS, LEVELS, TRIALS))
+    return any((path / name).is_file() for name in (LIMIT_RUNS, LEVELS, TRIALS))
 
 
 def study_figures(path):
     """Pairs of a name, to tell the files apart, and a figure."""
     try:
         with plt.rc_context(SETTINGS):
-            if (path / LIMIT_RUNS).is_file():
-                results = Results(path)
-                return [("", draw_devices(results) if "device" in results.records(LIMIT)[0] else draw_limit(results))]
             if (path / TRIALS).is_file():
                 return [("", draw_tune(Results(path)))]
             if (path / LEVELS).is_file():
                 return [("", draw_converge(Results(path)))]
-            results = Results(path.parent if path.is_file() else path)
-            files = [path.name] if path.is_file() else results.glob(f"{MAP}*.csv")
-            return [(name, draw_stability_map(found)) for file in files for name, found in single_maps(results, file)]
+            results = Results(path)
+            given = list(results.records(LIMIT)[0])
+            draw = draw_devices if "device" in given else draw_over_fields if given[0] not in ("algorithm", "scenario") else draw_limit
+            return [("", draw(results))]
     except MissingResult as error:
         raise InputError(str(error)) from error
     except (KeyError, ValueError, IndexError) as error:
         raise InputError(f"{path}: is not a table that hapbench wrote: {error}") from error
 
 
-def single_maps(results, file):
-    """The map, or one for each of its integrators."""
-    found, name = MapFile(results, file), file.removeprefix(MAP).removesuffix(".csv")
-    several = len(found.integrators) > 1
-    for integrator in found.integrators:
-        one = copy.copy(found)
-        one.rows, one.boundary = ([row for row in rows if row["integrator"] == integrator] for rows in (found.rows, found.boundary))
-        yield f"{name}_{integrator}" if several else name, one
+def draw_over_fields(results):
+    return draw_over(OverFields(results))
 
 
 def draw_limit(results):

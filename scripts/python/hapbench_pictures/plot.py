@@ -43,7 +43,7 @@ def plot(words):
     sweep = given_sweep(options.runs)
     study = given_study(options.runs)
     if study:
-        refuse(options, ("--y", "--metric", "--where", "--from", "--to"), f"{study} holds stability maps or limits; allowed for it: --out")
+        refuse(options, ("--y", "--metric", "--where", "--from", "--to"), f"{study} holds limits; allowed for it: --out")
     folder = study.parent if study and study.is_file() else common_folder(options.runs)
     file = options.out or folder / "plot.svg"
     if file.suffix not in KINDS:

@@ -41,7 +41,7 @@ def load_studies(results: Path):
 
 
 def is_table(path: Path):
-    return path.parts[0] != "replay" and not path.name.startswith("stability_")
+    return path.parts[0] != "replay" and not path.name.startswith("limit")
 
 
 def studies_section(studies):

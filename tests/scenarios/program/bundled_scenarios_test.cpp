@@ -173,11 +173,11 @@ TEST(Commands, HaveTheNumbersOnRecord) {
        {"sweep", "peg_in_hole_2d_shaped_stiffness", "--vary", "rendering.stiffness_N_per_m=1e3:1e5:4:log", "--vary",
         "rendering.algorithm=mean,proxy", "--vary", "integrator.type=leapfrog,rk4,implicit_midpoint"}},
       {"stability:limits", {"stability", "single_spring"}},
-      {"stability:maps",
-       {"stability", "--map", "all", "--algorithms", "shaped_stiffness,normal_projection", "--size", "3"}},
-      {"stability:integrators",
-       {"stability", "--map", "time_step", "--algorithms", "shaped_stiffness", "--integrators", "all", "--size", "3"}},
-      {"stability:stress", {"stability", "--stress", "--count", "3000"}},
+      {"limit:over",
+       {"limit", "single_spring", "--over", "integrator.type=leapfrog,rk4,implicit_euler", "--over",
+        "rendering.damping_ratio=0,1", "--stable", "bounded"}},
+      {"limit:wall", {"limit", "wall_on_handle", "--over", "rendering.damping_N_s_per_m=0.1:150:3:log"}},
+      {"stress", {"stress", "--count", "3000"}},
   };
   const test::TemporaryDirectory directory;
   test::NumbersByName numbers;

@@ -158,8 +158,7 @@ TEST_F(LimitCommand, IsAskedForEachValueOfAnotherField) {
   const Json rows = run.json()["limits"];
   ASSERT_EQ(rows.size(), 4u);
   for (const Json& row : rows) {
-    const double zeta = std::stod(row["rendering.damping_ratio"].get<std::string>()),
-                 mass = std::stod(row["rendering.mass_kg"].get<std::string>());
+    const double zeta = row["rendering.damping_ratio"].get<double>(), mass = row["rendering.mass_kg"].get<double>();
     // 4 = 2 B dt / M + K dt^2 / M with B = 2 zeta sqrt(K M): a quadratic equation in sqrt(K / M) dt.
     const double root = 2.0 * (std::sqrt(1.0 + zeta * zeta) - zeta), edge = mass * root * root / (0.0005 * 0.0005);
     EXPECT_NEAR(row["theory"].get<double>(), edge, 1e-6 * edge);

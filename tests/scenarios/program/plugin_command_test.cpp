@@ -82,7 +82,7 @@ TEST_F(PluginCommand, StressesLimitsAndMapsTheLaw) {
     words.insert(words.end(), law.begin(), law.end());
     return hapbench(words);
   };
-  const ProgramRun stress = with_law({"stability", "--stress", "--count", "500", "--out", out("stress"), "--json"});
+  const ProgramRun stress = with_law({"stress", "--count", "500", "--out", out("stress"), "--json"});
   ASSERT_EQ(stress.status, 0) << stress.err;
   const Json counts = stress.json();
   EXPECT_EQ(counts.back()["algorithm"], "capped_summation");

@@ -1,0 +1,83 @@
+#include <fmt/format.h>
+
+#include "scenarios/program/command_line.hpp"
+#include "scenarios/program/report.hpp"
+#include "scenarios/program/result_tables.hpp"
+#include "scenarios/studies/stress/law_stress.hpp"
+
+namespace hapbench {
+namespace {
+
+struct StressOptions {
+  std::uint64_t count = 100'000;
+  std::uint64_t seed = 1;
+  unsigned jobs = 0;  ///< 0: as many as the machine has
+  std::string out;
+  OutputOptions output;
+};
+
+bool is_bad(const StressCounts& counts) {
+  return counts.non_finite + counts.out_of_bound > 0;
+}
+
+Columns<StressCounts> stress_columns() {
+  Columns<StressCounts> columns;
+  const auto count = [&columns](const char* name, const char* meaning, std::uint64_t StressCounts::*of,
+                                const char* heading) {
+    columns.add(name, "1", meaning, [of](const StressCounts& c) -> Cell { return c.*of; }, {.heading = heading});
+  };
+  columns.add("algorithm", "", "force algorithm", [](const StressCounts& c) -> Cell { return c.algorithm; },
+              {.heading = "algorithm"});
+  count("sets", "random contact sets drawn", &StressCounts::sets, "sets");
+  count("in_contact", "sets whose tool touches a point", &StressCounts::in_contact, "in contact");
+  count("non_finite", "answers that are not finite", &StressCounts::non_finite, "non-finite");
+  count("out_of_bound", "finite answers beyond what the law allows", &StressCounts::out_of_bound, "out of bound");
+  count("points_dropped", "contacts that a full reduction refused", &StressCounts::points_dropped, "points dropped");
+  columns.add("largest_force_per_K_d", "1", "largest ||f_spring|| in units of K times the set's deepest penetration",
+              [](const StressCounts& c) -> Cell { return c.largest_force; }, {.heading = "largest |f|/(K d)"});
+  columns.add("largest_share_of_bound", "1",
+              "largest ||f_spring|| in units of the law's bound; empty for laws without one",
+              [](const StressCounts& c) { return cell_if(c.largest_share); }, {.heading = "of its bound", .digits = 3});
+  columns.add(
+      "first_bad_set", "1", "number of the first set with a bad answer",
+      [](const StressCounts& c) { return is_bad(c) ? Cell(c.first_bad) : Cell(); }, only_json());
+  return columns;
+}
+
+int stress(const StressOptions& options) {
+  const std::filesystem::path out = results_directory(options.out, "stress");
+  require_writable_directory(out);
+  const std::vector<StressCounts> all =
+      stress_laws(options.count, options.seed, job_options(options.jobs, options.output, "stress"));
+  const Columns<StressCounts> columns = stress_columns();
+  Report report(options.output, out);
+  report.write("stress.csv", columns, all);
+  report.say(columns.table(all).text());
+  report.json() = Json::array();
+  for (const StressCounts& c : all) {
+    report.json().push_back(columns.json(c));
+    if (!is_bad(c)) continue;
+    report.fault(fmt::format("{}: {} of {} forces are not finite, {} out of bound; the first in set {} of seed {}",
+                             c.algorithm, c.non_finite, c.sets, c.out_of_bound, c.first_bad, options.seed),
+                 kUnexpectedOutcome);
+  }
+  return report.finish();
+}
+
+}  // namespace
+
+DescribedTable stress_table() {
+  return stress_columns().described("stress.csv", "of stress: one line per algorithm");
+}
+
+void add_stress(CommandLine& line) {
+  auto [command, options] = line.command(
+      "stress", "Pass random degenerate contact sets through every algorithm, and count what no law may give", stress);
+  command.add("--count", options.count, "contact sets (default: 100000)").range(1, 1'000'000'000);
+  command.add("--seed", options.seed, "of the random numbers (default: 1)").range(0, std::int64_t{1} << 53);
+  add_jobs(command, options.jobs, "threads (default: as many as the machine has)");
+  command.add("--out", options.out, "directory of the results (default: results/out/stress)");
+  add_output_options(command, options.output);
+}
+
+}  // namespace hapbench

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "scenarios/input/input_error.hpp"
+
+/// Studies: questions as files. A study names a command, scenarios, and the command's options, and a command takes it
+/// in place of scenarios.
+///
+///   {"ask": "limit", "scenarios": ["wall_on_handle"], "summary": "K over B of a wall on an impedance device",
+///    "between": [1e2, 1e5], "stable": "bounded",
+///    "over": {"rendering.damping_N_s_per_m": {"from": 0.1, "to": 150, "count": 17, "log": true}}}
+///
+/// Numbers, texts and true stand for themselves; two numbers of "between" for a range; a list for values separated by
+/// commas ("bound": for one option each); objects of "set", "over" and "vary" for fields by their paths, with a value,
+/// a list or a range with "from", "to", "count" and "log".
+namespace hapbench {
+
+/// A study that comes with the program.
+struct BundledStudy {
+  std::string name, ask, summary;
+  std::filesystem::path file;
+};
+std::vector<BundledStudy> bundled_studies();
+
+/// The words of a command line in which a study stood, and where in its file they come from.
+class StudyWords {
+ public:
+  /// Replaces the first study behind the command by its scenarios and options; options that are given besides go before
+  /// those of the study. `words`: without the program's name. Throws InputError for a study of another command.
+  static std::optional<StudyWords> in(const std::vector<std::string>& words);
+
+  const std::vector<std::string>& words() const { return words_; }
+  /// The error, about the line of the study that has the option which it names, if it names one.
+  InputError located(const InputError& error) const;
+
+ private:
+  StudyWords() = default;
+
+  std::filesystem::path file_;
+  std::vector<std::string> words_;
+  std::map<std::string, std::size_t> lines_;  ///< of options, as "--over"
+};
+
+}  // namespace hapbench
