@@ -6,6 +6,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "scenarios/batch/table_file.hpp"
 #include "scenarios/input/json_file.hpp"
 #include "scenarios/input/text_lines.hpp"
 
@@ -45,7 +46,7 @@ class Condition {
     column_ = static_cast<std::size_t>(std::find(columns.begin(), columns.end(), name) - columns.begin());
   }
 
-  bool holds(const Words& cells) const {
+  bool holds(const std::vector<std::string>& cells) const {
     if (!number_) return (cells[column_] == value_) == (sign_->text == "=");
     const auto number = finite_number(cells[column_]);
     return number && sign_->holds(*number, *number_);
@@ -63,35 +64,39 @@ Axis axis_of(const Json& json) {
   Axis axis{.path = json.at("path")};
   if (json.contains("values")) {
     axis.values = json.at("values").get<std::vector<std::string>>();
-  } else {
+  } else if (json.contains("range")) {
     axis.range = Range{json.at("range").at(0), json.at("range").at(1), json.at("scale") == "log"};
     axis.steps = json.value("count", std::size_t{0});
   }
   return axis;
 }
 
-SweepPoints points_of(const Json& json) {
+/// The cases without their scenes, which only those that run need.
+Cases cases_of(const Json& json) {
   std::vector<Axis> axes;
   for (const Json& axis : json.at("vary")) axes.push_back(axis_of(axis));
-  if (!json.contains("sample")) return SweepPoints(std::move(axes));
+  if (!json.contains("sample")) return {{}, json.at("set"), std::move(axes)};
   const Json& sample = json.at("sample");
-  const std::string text =
-      fmt::format("{}:{}", sample.at("method").get<std::string>(), sample.at("runs").get<std::size_t>());
-  return SweepPoints(std::move(axes), parse_sampling(text, sample.at("seed")));
+  const std::size_t count = std::min(sample.at("runs").get<std::size_t>(), kMostRuns);
+  if (sample.at("method") == sampling_name(SamplingMethod::points)) {
+    const std::size_t fields = axes.size();
+    return {{}, json.at("set"), PointTable{std::move(axes), std::vector(fields, std::vector<std::uint32_t>(count))}};
+  }
+  return {{},
+          json.at("set"),
+          std::move(axes),
+          parse_sampling(fmt::format("{}:{}", sample.at("method").get<std::string>(), count), sample.at("seed"))};
 }
 
 SweepPlan plan_of(const fs::path& file) {
   try {
     const Json json = parse_json(read_text_file(file, kLargestJsonFile));
-    SweepPlan plan{.scenario = {},
-                   .overrides = json.at("set").get<std::vector<std::string>>(),
-                   .points = points_of(json),
-                   .warnings = {},
-                   .metrics = {},
-                   .bounded = {},
-                   .content = {},
-                   .definition = json.at("definition")};
-    return plan;
+    return {.cases = cases_of(json),
+            .warnings = {},
+            .metrics = {},
+            .bounded = {},
+            .content = {},
+            .definition = json.at("definition")};
   } catch (const Json::exception&) {
     fail_in_file(file, "is not the description of a sweep");
   } catch (const InputError& error) {
@@ -107,10 +112,9 @@ SweepOnRecord read_sweep(const fs::path& folder, const std::vector<std::string>&
   std::ifstream in(file);
   std::string line;
   std::getline(in, line);
-  std::vector<std::string> columns;
-  for (const std::string_view name : parts_of(line, ',')) columns.emplace_back(name);
+  const std::vector<std::string> columns = csv_cells(line);
   const std::size_t first_metric =
-      found.plan.points.axes().size() + 4;  // behind index, fields, outcome, expected, steps
+      found.plan.cases.axes().size() + 4;  // behind index, fields, outcome, expected, steps
   if (columns.size() <= first_metric) fail_in_file(file, "is not the table of a sweep");
   for (std::size_t c = first_metric; c + 1 < columns.size(); ++c) {
     if (columns[c].starts_with(kToleranceOf))
@@ -123,14 +127,14 @@ SweepOnRecord read_sweep(const fs::path& folder, const std::vector<std::string>&
   std::vector<Condition> all;
   for (const std::string& text : conditions) all.emplace_back(text, columns);
   while (std::getline(in, line)) {
-    const Words cells = parts_of(line, ',');
+    const std::vector<std::string> cells = csv_cells(line);
     std::optional<SweepRow> row = parse_row(found.plan, line);
     if (!row) fail_in_file(file, fmt::format("got the row \"{}\"; allowed: rows of this sweep", line.substr(0, 60)));
     if (!std::all_of(all.begin(), all.end(), [&](const Condition& c) { return c.holds(cells); })) continue;
     found.report.counts.add(*row);
     if (found.report.rows.size() < SweepReport::kMostRows) found.report.rows.push_back(std::move(*row));
   }
-  found.report.done = found.plan.points.size();
+  found.report.done = found.plan.cases.size();
   return found;
 }
 

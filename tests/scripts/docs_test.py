@@ -96,7 +96,7 @@ class Bench:
         for name in "abc":
             shutil.copy(folder / "my.json", folder / f"{name}.json")
         for shard in range(2):
-            self.sweep("--shard", f"{shard}/2", "--out", ".")
+            self.sweep("--shard", f"{shard}/2", "--out", "shards")
         for out in ("results/good/peg", "results/out/peg"):
             self.must("run", "peg_in_hole_2d_shaped_stiffness", *FEW_STEPS, "--out", out)
 

@@ -8,7 +8,7 @@
 
 #include "scenarios/batch/run_sweep.hpp"
 #include "scenarios/batch/sweep_plan.hpp"
-#include "scenarios/batch/sweep_table.hpp"
+#include "scenarios/batch/table_file.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/run/stop_signal.hpp"
@@ -26,18 +26,7 @@ using test::read_file;
 SweepPlan plan_of(const Json& scenario, const std::vector<std::string>& vary, const fs::path& file) {
   std::vector<Axis> axes;
   for (const std::string& text : vary) axes.push_back(parse_axis(text));
-  return plan_sweep({file, scenario}, {}, SweepPoints(axes), 2, false);
-}
-
-/// The file that holds the rows of a sweep, or a part of it, that is under way.
-fs::path growing_file(const fs::path& directory, const std::optional<Shard>& shard) {
-  return directory / (stem_of(shard) + ".journal");
-}
-
-void join(const fs::path& directory, std::size_t shards) {
-  std::vector<fs::path> tables;
-  for (std::size_t i = 0; i < shards; ++i) tables.push_back(directory / (stem_of(Shard{i, shards}) + ".csv"));
-  merge_shard_tables(directory / "sweep.csv", tables);
+  return plan_sweep(Cases({{file, scenario}}, {}, std::move(axes)), 2, false);
 }
 
 SweepOptions options_in(const fs::path& directory) {
@@ -54,7 +43,7 @@ class SweepPromises : public testing::Test {
   /// Runs a sweep that is interrupted after some rows: killed, stopped by a signal, or killed amid a line.
   void interrupt(const SweepPlan& plan, SweepOptions options) {
     const std::uint64_t way = random_.below(3);
-    std::uint64_t rows = random_.below(plan.points.size());
+    std::uint64_t rows = random_.below(plan.cases.size());
     options.timed = [&rows, way](std::size_t, double) {
       if (rows-- != 0) return;
       if (way == 0) throw Killed();
@@ -65,7 +54,7 @@ class SweepPromises : public testing::Test {
     } catch (const Killed&) {
     }
     stop_work(0);
-    const fs::path file = growing_file(options.directory, options.shard);
+    const fs::path file = table_of(options).string() + ".part";
     if (way != 2 || !fs::exists(file)) return;
     std::string text = read_file(file);
     test::write_plainly(file, text.substr(0, text.size() - std::min<std::size_t>(random_.below(9), text.size())));
@@ -101,7 +90,7 @@ TEST_F(SweepPromises, TheSameBytesWhateverTheJobsTheShardsAndTheKills) {
     const std::size_t shards = random_.below(5);
     for (std::size_t i = 0; i < shards; ++i) run_part(plan, out, Shard{i, shards});
     if (shards == 0) run_part(plan, out, std::nullopt);
-    if (shards > 0) join(out, shards);
+    EXPECT_EQ(join_shards(out, "sweep"), shards > 0);
     for (const char* file : {"sweep.csv", "sweep.json"})
       ASSERT_EQ(read_file(out / file), read_file(whole / file)) << "attempt " << attempt << ", " << shards << " shards";
     fs::remove_all(out);
@@ -163,8 +152,8 @@ TEST_F(SlowSweepPromises, LittleMoreTimeThanTheSimulationsInWhicheverOrderTheAxe
     run_sweep(plan, options_in(directory_.path()));
     const double sweep = processor_seconds() - begun;
     double simulations = 0.0;
-    for (std::size_t run = 0; run < plan.points.size(); ++run) {
-      const LoadedScenario loaded = scenario_of(plan, run);
+    for (std::size_t run = 0; run < plan.cases.size(); ++run) {
+      const LoadedScenario loaded = plan.cases.load(run);
       const auto shell = make_shell(loaded.scenario, loaded.files);
       const double before = processor_seconds();
       run_with_shell(loaded, shell, std::nullopt, false);

@@ -11,6 +11,7 @@
 #include <optional>
 #include <thread>
 
+#include "scenarios/batch/table_file.hpp"
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/file_tree.hpp"
 #include "tests/scenarios/support/program.hpp"
@@ -225,18 +226,13 @@ class InterruptedSweep : public testing::Test {
     words.insert(words.end(), more.begin(), more.end());
     return words;
   }
-  std::string journal_text(const std::string& out) const {
-    const fs::path file = directory_ / out / "sweep.journal";
-    return fs::exists(file) ? test::read_file(file) : "";
+  /// Rows of the table that is under way.
+  std::size_t rows_of(const std::string& out) const {
+    return TableFile::rows_under_way(directory_ / out / "sweep.csv");
   }
-  std::size_t journal_rows(const std::string& out) const {
-    const std::string text = journal_text(out);
-    const auto lines = std::count(text.begin(), text.end(), '\n');
-    return lines == 0 ? 0 : static_cast<std::size_t>(lines) - 1;
-  }
-  /// Waits until so many rows are in the journal. False when the program ended before.
+  /// Waits until so many rows are in the table. False when the program ended before.
   bool wait_for_rows(RunningProgram& sweep, const std::string& out, std::size_t rows) const {
-    return sweep.runs_until([&] { return journal_rows(out) >= rows; });
+    return sweep.runs_until([&] { return rows_of(out) >= rows; });
   }
   /// Repeats from the beginning, each time with more runs, until the attempt has interrupted sweeps before their ends:
   /// a busy machine may let the test wait for longer than a sweep takes.
@@ -247,7 +243,7 @@ class InterruptedSweep : public testing::Test {
       fs::remove_all(directory_ / "out");
     }
   }
-  /// A sweep that is killed when `rows` rows are in its journal.
+  /// A sweep that is killed when `rows` rows are in its table.
   void leave_killed_sweep(std::size_t rows) {
     until_in_time([&] {
       RunningProgram sweep(test::hapbench_program(), words("out"));
@@ -274,8 +270,8 @@ TEST_F(KilledSweep, AgainAndAgainEndsWithTheSameBytes) {
       RunningProgram sweep(test::hapbench_program(), words("out", {"--resume"}));
       if (!wait_for_rows(sweep, "out", sixth * runs_ / 6) || !sweep.kill()) return false;
       EXPECT_FALSE(fs::exists(directory_ / "out/sweep.csv"));
-      EXPECT_GE(journal_rows("out"), before);  // nothing is lost
-      before = journal_rows("out");
+      EXPECT_GE(rows_of("out"), before);  // nothing is lost
+      before = rows_of("out");
     }
     return true;
   });
@@ -286,23 +282,12 @@ TEST_F(KilledSweep, AgainAndAgainEndsWithTheSameBytes) {
   expect_same_as_uninterrupted("out");
 }
 
-TEST_F(InterruptedSweep, GoesOnAfterATornLineWhateverTheJobs) {
-  leave_killed_sweep(20);
-  const std::string text = journal_text("out");
-  const std::size_t rows = journal_rows("out");
-  test::write_plainly(directory_ / "out/sweep.journal", text.substr(0, text.size() - 7));
-  const ProgramRun end = hapbench(words("out", {"--resume"}, "5"));
-  EXPECT_NE(end.out.find("\n" + std::to_string(rows - 1) + " of the runs were done before\n"), std::string::npos)
-      << end.out;
-  expect_same_as_uninterrupted("out");
-}
-
 TEST_F(InterruptedSweep, WithoutResumeTellsOfTheRunsThatItWouldDiscard) {
   leave_killed_sweep(20);
   const auto left = test::files_below(directory_ / "out");
   const ProgramRun refused = hapbench(words("out"));
   EXPECT_EQ(refused.status, 2);
-  EXPECT_NE(refused.err.find(fmt::format("sweep.journal: holds {} finished runs of this sweep", journal_rows("out"))),
+  EXPECT_NE(refused.err.find(fmt::format("sweep.csv.part: holds {} finished runs of this sweep", rows_of("out"))),
             std::string::npos)
       << refused.err;
   EXPECT_EQ(test::files_below(directory_ / "out"), left);
@@ -313,14 +298,6 @@ TEST_F(InterruptedSweep, WithoutResumeTellsOfTheRunsThatItWouldDiscard) {
       << other.err;
 }
 
-TEST_F(InterruptedSweep, BeginsAnewWithoutItsJournal) {
-  leave_killed_sweep(20);
-  fs::remove(directory_ / "out/sweep.journal");
-  const ProgramRun end = hapbench(words("out"));
-  EXPECT_EQ(end.out.find("done before"), std::string::npos);
-  expect_same_as_uninterrupted("out");
-}
-
 TEST_F(InterruptedSweep, StopsCleanlyAtASignalAndGoesOn) {
   until_in_time([&] {
     for (const int signal : {SIGINT, SIGTERM}) {
@@ -329,52 +306,13 @@ TEST_F(InterruptedSweep, StopsCleanlyAtASignalAndGoesOn) {
       const int status = sweep.end_by(signal);
       if (status == 0) return false;
       EXPECT_EQ(status, 128 + signal);
-      EXPECT_LT(journal_rows("out"), runs_);
-      EXPECT_EQ(journal_text("out").back(), '\n');
+      EXPECT_LT(rows_of("out"), runs_);
       EXPECT_FALSE(fs::exists(directory_ / "out/sweep.csv"));
     }
     return true;
   });
   EXPECT_EQ(hapbench(words("out", {"--resume"})).status, 0);
   expect_same_as_uninterrupted("out");
-}
-
-TEST_F(InterruptedSweep, OfASampleGoesOn) {
-  const auto sample = [&](const std::string& out, const Words& more = {}) {
-    Words words = {"sweep",    "single_spring",
-                   "--set",    "record.trajectory=false",
-                   "--set",    "time.steps=20000",
-                   "--vary",   "rendering.stiffness_N_per_m=1e3:1e4:log",
-                   "--sample", "sobol:" + std::to_string(runs_),
-                   "--out",    (directory_ / out).string()};
-    words.insert(words.end(), more.begin(), more.end());
-    return words;
-  };
-  until_in_time([&] {
-    RunningProgram sweep(test::hapbench_program(), sample("out"));
-    return wait_for_rows(sweep, "out", 20) && sweep.kill();
-  });
-  const ProgramRun other = hapbench(sample("out", {"--resume", "--seed", "2"}));
-  EXPECT_EQ(other.status, 2) << "another sample is another sweep";
-  EXPECT_EQ(hapbench(sample("out", {"--resume"})).status, 0);
-  ASSERT_EQ(hapbench(sample("whole")).status, 0);
-  test::expect_same_files(directory_ / "whole", directory_ / "out");
-}
-
-TEST_F(InterruptedSweep, ShardsGoOnInOneDirectory) {
-  for (const char* shard : {"0/2", "1/2"}) {
-    RunningProgram sweep(test::hapbench_program(), words("out", {"--shard", shard}));
-    std::this_thread::sleep_for(std::chrono::milliseconds(60));
-    sweep.kill();
-    EXPECT_EQ(hapbench(words("out", {"--shard", shard, "--resume"})).status, 0);
-  }
-  EXPECT_EQ(
-      hapbench({"merge", (directory_ / "out/sweep_shard_0_of_2.csv").string(),
-                (directory_ / "out/sweep_shard_1_of_2.csv").string(), "--out", (directory_ / "merged.csv").string()})
-          .status,
-      0);
-  ASSERT_EQ(hapbench(words("whole")).status, 0);
-  EXPECT_EQ(test::read_file(directory_ / "merged.csv"), test::read_file(directory_ / "whole/sweep.csv"));
 }
 
 }  // namespace

@@ -9,7 +9,7 @@
 #include "tests/scenarios/support/file_tree.hpp"
 #include "tests/scenarios/support/program.hpp"
 
-/// hapbench sweep and merge: what a sweep computes, writes and shows, whole and in shards.
+/// hapbench sweep: what a sweep computes, writes and shows, whole and in shards.
 namespace hapbench::sweep_test {
 namespace {
 
@@ -108,7 +108,7 @@ TEST_F(SweepCommand, HasTheNumbersOfTheRunsAlone) {
 TEST_F(SweepCommand, IsPrintedAgainFromItsFolder) {
   const std::string out = (directory_ / "a").string();
   for (const Words& sample :
-       {Words{}, Words{"--sample", "sobol:16", "--seed", "3", "--vary", "rendering.mass_kg=0.1:0.2"}}) {
+       {Words{}, Words{"--sample", "lhs:16", "--seed", "3", "--vary", "rendering.mass_kg=0.1:0.2"}}) {
     Words words = {"sweep", "springs_limited_mean", "--set", "expect={}", "--out", out};
     if (sample.empty()) {
       words.insert(words.end(), {"--vary", "rendering.mass_kg=0.1:0.2:4", "--vary", "seed=1,2"});
@@ -289,57 +289,47 @@ TEST_F(SweepCommand, PrintsTheCommandThatRepeatsARun) {
   EXPECT_EQ(sweep("a", {"--print"}).status, 2);
 }
 
-/// A sweep in parts: shards, their merge, and the script that makes them tasks of Slurm.
+/// A sweep in parts, and the script that makes them tasks of Slurm.
 class SweepShards : public PegSweep {};
 
-TEST_F(SweepShards, GiveTheSameBytesHoweverManyWithAnyJobs) {
-  sweep("whole");
-  const std::string whole = table("whole");
-  for (const char* jobs : {"1", "2", "7"}) {
-    EXPECT_EQ(sweep(std::string("jobs_") + jobs, {"--jobs", jobs}).status, 0);
-    test::expect_same_files(directory_ / "whole", directory_ / (std::string("jobs_") + jobs));
-  }
-  for (int count = 1; count <= 5; ++count) {
-    const std::string n = std::to_string(count), out = "shards_" + n;
-    Words merge = {"merge", "--out", (directory_ / out / "all/merged.csv").string()};
-    for (int i = count - 1; i >= 0; --i) {
-      EXPECT_EQ(sweep(out, {"--shard", std::to_string(i) + "/" + n, "--jobs", std::to_string(1 + i)}).status, 0);
-      merge.push_back((directory_ / out / ("sweep_shard_" + std::to_string(i) + "_of_" + n + ".csv")).string());
-    }
-    const ProgramRun merged = hapbench(merge);
-    EXPECT_EQ(merged.status, 0) << merged.err;
-    EXPECT_EQ(read_file(directory_ / out / "all/merged.csv"), whole) << count;
-  }
+TEST_F(SweepShards, AreJoinedInTheirFolder) {
+  const ProgramRun whole = sweep("whole");
+  for (const char* i : {"0", "1"}) EXPECT_EQ(sweep("out", {"--shard", std::string(i) + "/3"}).status, 0);
+  const ProgramRun early = hapbench({"sweep", (directory_ / "out").string()});
+  EXPECT_EQ(early.status, 2);
+  EXPECT_NE(early.err.find("1 of 3 shards missing: 2/3"), std::string::npos) << early.err;
+  sweep("out", {"--shard", "2/3"});
+  const ProgramRun joined = hapbench({"sweep", (directory_ / "out").string()});
+  EXPECT_EQ(joined.status, 0) << joined.err;
+  EXPECT_EQ(joined.out.substr(0, 500), whole.out.substr(0, 500));
+  for (const char* file : {"sweep.csv", "sweep.json"})
+    EXPECT_EQ(read_file(directory_ / "out" / file), read_file(directory_ / "whole" / file)) << file;
 }
 
 TEST_F(SweepShards, MayBeMoreThanRuns) {
-  Words merge = {"merge", "--out", (directory_ / "merged.csv").string()};
-  const auto seeds = [&](const Words& more) {
-    Words words = {"sweep", "single_spring", "--vary", "seed=1,2", "--out", directory_.path().string()};
+  const auto seeds = [&](const char* out, const Words& more) {
+    Words words = {"sweep", "single_spring", "--vary", "seed=1,2", "--out", (directory_ / out).string()};
     words.insert(words.end(), more.begin(), more.end());
     return hapbench(words);
   };
-  for (const char* i : {"0", "1", "2"}) {
-    EXPECT_EQ(seeds({"--shard", std::string(i) + "/3"}).status, 0);
-    merge.push_back((directory_ / ("sweep_shard_" + std::string(i) + "_of_3.csv")).string());
-  }
-  EXPECT_EQ(hapbench(merge).status, 0);
-  seeds({});
-  EXPECT_EQ(read_file(directory_ / "merged.csv"), read_file(directory_ / "sweep.csv"));
+  for (const char* i : {"0", "1", "2"}) EXPECT_EQ(seeds("out", {"--shard", std::string(i) + "/3"}).status, 0);
+  EXPECT_EQ(hapbench({"sweep", (directory_ / "out").string()}).status, 0);
+  seeds("whole", {});
+  EXPECT_EQ(table("out"), table("whole"));
 }
 
-TEST_F(SweepShards, AreNotOverwrittenByTheirTable) {
-  Words words = {"merge"};
-  for (const char* shard : {"0", "1", "2", "3"}) {
-    ASSERT_EQ(sweep("out", {"--shard", std::string(shard) + "/4"}).status, 0);
-    words.push_back((directory_ / ("out/sweep_shard_" + std::string(shard) + "_of_4.csv")).string());
-  }
-  const auto before = test::files_below(directory_ / "out");
-  words.insert(words.end(), {"--out", words.back()});
-  const ProgramRun run = hapbench(words);
-  EXPECT_EQ(run.status, 2);
-  EXPECT_NE(run.err.find("one of the tables to join"), std::string::npos) << run.err;
-  EXPECT_EQ(test::files_below(directory_ / "out"), before);
+TEST_F(SweepCommand, VariesScenesAndWholeObjects) {
+  const std::string devices = R"(device={"type":"ideal"},{"type":"impedance","preset":"touch"})";
+  const ProgramRun run =
+      hapbench({"sweep", "--vary", "scenario=single_spring,poke_plane", "--vary", devices, "--set", "expect={}",
+                "--set", "time.steps=50", "--out", (directory_ / "a").string(), "--json"});
+  const Json rows = run.json()["rows"];
+  ASSERT_EQ(rows.size(), 4u) << run.err;
+  EXPECT_EQ(rows[1]["scenario"], "single_spring");
+  EXPECT_EQ(rows[3]["scenario"], "poke_plane");
+  EXPECT_EQ(rows[3]["device"]["preset"], "touch");
+  EXPECT_NE(rows[0]["state_hash"], rows[2]["state_hash"]);
+  EXPECT_EQ(hapbench({"sweep", (directory_ / "a").string(), "--json"}).out, run.out);
 }
 
 /// As Slurm would run them: a task for each shard, of which one is given again, and the last joins the tables.

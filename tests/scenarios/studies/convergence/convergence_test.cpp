@@ -208,7 +208,7 @@ struct Study {
 Study studied(const ScenarioText& scenario, const std::string& path = kStepPath, std::size_t count = 5) {
   const test::TemporaryDirectory directory;
   LevelSweep levels = level_sweep(load_scenario(scenario, {}), path, count, 2.0);
-  SweepPlan plan = plan_sweep(scenario, {}, SweepPoints({levels.axis}), 1, false);
+  SweepPlan plan = plan_sweep(Cases({scenario}, {}, {levels.axis}), 1, false);
   SweepOptions options;
   options.directory = directory.path();
   SweepReport report = run_sweep(plan, options);

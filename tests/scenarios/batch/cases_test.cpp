@@ -1,4 +1,4 @@
-#include "scenarios/batch/sweep_points.hpp"
+#include "scenarios/batch/cases.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,13 +6,11 @@
 #include <cmath>
 #include <set>
 
-#include "scenarios/batch/sampling.hpp"
-#include "scenarios/batch/sweep_table.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/errors.hpp"
 
-namespace hapbench::sweep_points_test {
+namespace hapbench::cases_test {
 namespace {
 
 using Values = std::vector<std::string>;
@@ -81,13 +79,30 @@ TEST(Axis, OfAListHasItsValuesInOrderAndNumbersInOneSpelling) {
   EXPECT_EQ(values_of("rendering.algorithm=mean,summation"), (Values{"mean", "summation"}));
   EXPECT_EQ(values_of("a=4e4,1.50,-0,true,null,7"), (Values{"40000", "1.5", "-0", "true", "null", "7"}));
   EXPECT_EQ(values_of("a=5"), Values{"5"});
+  EXPECT_EQ(values_of(R"(device={"type": "impedance", "preset": "omega.3"},[1, 2e0],"a,b")"),
+            (Values{R"({"type":"impedance","preset":"omega.3"})", "[1,2.0]", R"("a,b")"}));
+}
+
+TEST(Axis, OfAFieldOfIntegersHasIntegers) {
+  EXPECT_EQ(values_of("time.steps=1:10:4"), (Values{"1", "4", "7", "10"}));
+  EXPECT_EQ(values_of("time.steps=1:1000:4:log"), (Values{"1", "10", "100", "1000"}));
+  EXPECT_EQ(values_of("seed=1:2:3"), (Values{"1", "2", "2"}));
+  EXPECT_EQ(values_of("time.step_s=0.25:0.75:3"), (Values{"0.25", "0.5", "0.75"}));
+  EXPECT_EQ(parse_axis("seed=0:3", true).value_at(0.5), "2");
+}
+
+TEST(Axis, OfAllNamesOfAField) {
+  EXPECT_EQ(values_of("integrator.type=all"),
+            (Values{"leapfrog", "velocity_verlet", "rk4", "implicit_euler", "implicit_midpoint", "event"}));
+  EXPECT_EQ(parse_axis("rendering.algorithm=all").values.front(), "original_averaging");
+  EXPECT_EQ(values_of("name=all"), Values{"all"});
 }
 
 TEST(Axis, RefusesWhatItCannotRead) {
   const std::string_view bad =
       "|=|a|a=|=1,2|a b=1,2|a,b=1,2|a=1,,2|a=,|a=1:2|a=1:2:3:4:5|a=1:2:1|a=1:2:0|a=1:2:-3|a=1:2:2.5|a=1:2:1000001|"
       "a=1:2:99999999999999999999|a=x:2:3|a=1::3|a=nan:1:3|a=1:inf:3|a=1e301:2:3|a=0:1:5:log|a=-1:1:5:log|"
-      "a=1:2:5:lin|a=1:2:5:|a=\"x\",y|a=x\ny,z|a=x\r,z|a=\x7f";
+      "a=1:2:5:lin|a=1:2:5:|a=\"x,y|a={x|a=[1,2]]|a=x\ny,z|a=x\r,z|a=\x7f";
   for (const std::string_view word : parts_of(bad, '|')) {
     const std::string text(word);
     const auto error = test::input_error_of([&] { parse_axis(text); });
@@ -107,172 +122,157 @@ TEST(Axis, RefusesTooManyValuesInAFewWords) {
 
 // ---- Samples
 
-constexpr SamplingMethod kMethods[] = {SamplingMethod::latin_hypercube, SamplingMethod::sobol, SamplingMethod::random};
-
-std::vector<UnitPoint> points_of(const Sampling& sampling, std::size_t axes) {
-  const UnitSample sample(sampling, axes);
-  std::vector<UnitPoint> points;
-  for (std::size_t i = 0; i < sampling.count; ++i) points.push_back(sample.point(i));
-  return points;
-}
-
 std::size_t stratum(double coordinate, std::size_t strata) {
   return static_cast<std::size_t>(coordinate * static_cast<double>(strata));
 }
 
 TEST(Sampling, HasItsPointsInTheUnitCubeAndMeansWhatItsSeedSays) {
-  for (const SamplingMethod method : kMethods) {
-    const auto points = points_of({method, 100, 1}, 5);
-    ASSERT_EQ(points.size(), 100u);
-    for (const UnitPoint& point : points) {
-      ASSERT_EQ(point.size(), 5u);
-      for (const double x : point) EXPECT_TRUE(x >= 0.0 && x < 1.0);
-    }
-    EXPECT_EQ(points_of({method, 100, 1}, 5), points);
-    EXPECT_NE(points_of({method, 100, 2}, 5), points) << sampling_name(method);
-    // An axis more leaves the others as they are, and no two are alike.
-    for (std::size_t i = 0; i < 100; ++i) EXPECT_EQ(points_of({method, 100, 1}, 2)[i][1], points[i][1]);
-    for (std::size_t a = 0; a < 5; ++a) {
-      for (std::size_t b = 0; b < a; ++b) {
-        EXPECT_TRUE(std::any_of(points.begin(), points.end(), [&](const UnitPoint& p) { return p[a] != p[b]; }));
+  for (const SamplingMethod method : {SamplingMethod::latin_hypercube, SamplingMethod::random}) {
+    std::set<std::vector<double>> different;
+    for (const std::uint64_t seed : {1u, 2u}) {
+      for (std::size_t axis = 0; axis < 5; ++axis) {
+        const std::vector<double> points = unit_sample({method, 100, seed}, axis);
+        ASSERT_EQ(points.size(), 100u);
+        for (const double x : points) EXPECT_TRUE(x >= 0.0 && x < 1.0);
+        EXPECT_EQ(unit_sample({method, 100, seed}, axis), points);
+        different.insert(points);
       }
     }
+    EXPECT_EQ(different.size(), 10u);
   }
 }
 
 TEST(Sampling, OfALatinHypercubeHasOnePointInEveryStratumOfEachAxis) {
   for (const std::size_t count : {1u, 2u, 7u, 100u, 1000u}) {
-    const auto points = points_of({SamplingMethod::latin_hypercube, count, 3}, 12);
     for (std::size_t axis = 0; axis < 12; ++axis) {
       std::set<std::size_t> strata;
-      for (const UnitPoint& point : points) strata.insert(stratum(point[axis], count));
+      for (const double x : unit_sample({SamplingMethod::latin_hypercube, count, 3}, axis))
+        strata.insert(stratum(x, count));
       EXPECT_EQ(strata.size(), count);
       EXPECT_EQ(*strata.rbegin(), count - 1);
     }
   }
 }
 
-TEST(Sampling, OfASobolSequenceIsBalancedInElementaryIntervals) {
-  // Along each axis 2^k intervals of length 2^-k hold one of 2^k points each; in the plane of the first two axes, which
-  // is a (0, k, 2)-net, so does every box of 2^-i x 2^(i-k).
-  constexpr std::size_t k = 7, count = 1 << k;
-  const auto points = points_of({SamplingMethod::sobol, count, 11}, kSobolAxes);
-  for (std::size_t axis = 0; axis < kSobolAxes; ++axis) {
-    std::set<std::size_t> intervals;
-    for (const UnitPoint& point : points) intervals.insert(stratum(point[axis], count));
-    EXPECT_EQ(intervals.size(), count) << axis;
-  }
-  for (std::size_t i = 0; i <= k; ++i) {
-    std::set<std::pair<std::size_t, std::size_t>> boxes;
-    for (const UnitPoint& point : points) {
-      boxes.emplace(stratum(point[0], std::size_t{1} << i), stratum(point[1], std::size_t{1} << (k - i)));
-    }
-    EXPECT_EQ(boxes.size(), count) << i;
-  }
-}
-
-/// scipy.stats.qmc.Sobol(d=53, scramble=False).random(1024) of scipy 1.10.1, times 1024.
-constexpr std::size_t kAxes = 53;
-struct SobolPoint {
-  std::size_t index;
-  std::uint32_t coordinates[kAxes];
-};
-constexpr SobolPoint kScipy[] = {
-    {0, {}},
-    {5, {896, 896, 128, 384, 896, 640, 896, 384, 384, 128, 384, 896, 896, 128, 896, 384, 896, 384,
-         384, 640, 640, 640, 896, 384, 384, 384, 896, 128, 640, 640, 896, 640, 384, 384, 128, 128,
-         128, 384, 896, 384, 384, 128, 640, 384, 384, 640, 128, 640, 640, 896, 640, 384, 640}},
-    {777, {709, 959, 167, 281, 651, 365, 195, 781, 357, 331, 763, 713, 393, 485, 583, 527, 413, 885,
-           379, 771, 243, 279, 969, 493, 353, 149, 61,  799, 65,  113, 555, 921, 115, 3,   825, 969,
-           473, 359, 351, 367, 739, 273, 971, 411, 329, 155, 385, 33,  795, 975, 85,  37,  631}},
-    {1000, {225,  99,  531, 693, 287, 929, 47,  921, 513, 71,   87,  261, 165,  393, 147, 379, 737, 353,
-            1015, 743, 535, 563, 973, 553, 597, 929, 41,  1003, 61,  349, 151,  149, 303, 607, 821, 789,
-            869,  851, 315, 491, 935, 261, 983, 719, 861, 95,   893, 941, 1023, 491, 361, 529, 771}}};
-
-TEST(SobolAxis, IsThatOfScipy) {
-  static_assert(kAxes == kSobolAxes);
-  for (std::size_t axis = 0; axis < kSobolAxes; ++axis) {
-    const SobolAxis sequence(axis);
-    for (const SobolPoint& point : kScipy) {
-      // The first 1024 points lie on multiples of 2^-10.
-      EXPECT_EQ(sequence.at(static_cast<std::uint32_t>(point.index)), point.coordinates[axis] << 22)
-          << "axis " << axis << ", point " << point.index;
-    }
-  }
-}
-
 TEST(Sampling, IsReadFromItsText) {
-  const Sampling sampling = parse_sampling("sobol:64", 9);
-  EXPECT_EQ(sampling.method, SamplingMethod::sobol);
+  const Sampling sampling = parse_sampling("random:64", 9);
+  EXPECT_EQ(sampling.method, SamplingMethod::random);
   EXPECT_EQ(sampling.count, 64u);
   EXPECT_EQ(sampling.seed, 9u);
   for (const char* text : {"", "lhs", "lhs:", ":5", "lhs:0", "lhs:-1", "lhs:1.5", "lhs:1000001", "halton:5", "LHS:5",
-                           "lhs:5:6", "lhs: 5"}) {
+                           "lhs:5:6", "lhs: 5", "points:5"}) {
     const auto error = test::input_error_of([&] { parse_sampling(text, 1); });
     ASSERT_TRUE(error) << text;
-    EXPECT_NE(std::string(error->what()).find("allowed: lhs:N, sobol:N or random:N"), std::string::npos);
+    EXPECT_NE(std::string(error->what()).find("allowed: lhs:N or random:N"), std::string::npos);
   }
 }
 
-TEST(Sampling, OfTooManyAxesForSobolIsRefused) {
-  EXPECT_TRUE(test::input_error_of([] { UnitSample({SamplingMethod::sobol, 4, 1}, kSobolAxes + 1); }));
-  EXPECT_EQ(points_of({SamplingMethod::random, 4, 1}, kSobolAxes + 1).size(), 4u);
-}
-
 TEST(SampledAxis, IsARangeOrAList) {
-  const Axis linear = parse_sampled_axis("a.b=1:3"), logarithmic = parse_sampled_axis("a=1:1e4:log");
-  EXPECT_EQ(value_at(linear, 0.0), "1");
-  EXPECT_EQ(value_at(linear, 0.25), "1.5");
-  EXPECT_EQ(value_at(parse_sampled_axis("a=3:1"), 0.25), "2.5");
-  EXPECT_EQ(value_at(logarithmic, 0.5), "100");
-  const Axis list = parse_sampled_axis("a=x,y,z");
-  EXPECT_EQ(value_at(list, 0.0) + value_at(list, 0.33) + value_at(list, 0.34) + value_at(list, 0.999), "xxyz");
+  const Axis linear = parse_axis("a.b=1:3", true), logarithmic = parse_axis("a=1:1e4:log", true);
+  EXPECT_EQ(linear.value_at(0.0), "1");
+  EXPECT_EQ(linear.value_at(0.25), "1.5");
+  EXPECT_EQ(parse_axis("a=3:1", true).value_at(0.25), "2.5");
+  EXPECT_EQ(logarithmic.value_at(0.5), "100");
+  const Axis list = parse_axis("a=x,y,z", true);
+  EXPECT_EQ(list.value_at(0.0) + list.value_at(0.33) + list.value_at(0.34) + list.value_at(0.999), "xxyz");
 }
 
 TEST(SampledAxis, RefusesARangeWithACountAndAGridOneWithout) {
   for (const char* text : {"a=1:2:3", "a=1:2:3:log", "a=1:2:lin", "a=0:2:log", "a=1:", "a=1:2:log:log", "a=nan:1"}) {
-    EXPECT_TRUE(test::input_error_of([&] { parse_sampled_axis(text); })) << text;
+    EXPECT_TRUE(test::input_error_of([&] { parse_axis(text, true); })) << text;
   }
-  const auto sampled = test::input_error_of([] { parse_sampled_axis("a=1:2:3"); });
+  const auto sampled = test::input_error_of([] { parse_axis("a=1:2:3", true); });
   EXPECT_NE(std::string(sampled->what()).find("beside --sample, which has its own; allowed: a:b"), std::string::npos);
   const auto grid = test::input_error_of([] { parse_axis("a=1:2"); });
   EXPECT_NE(std::string(grid->what()).find("a:b and a:b:log with --sample"), std::string::npos);
 }
 
-TEST(SweepPoints, OfALatinHypercubeGiveListedValuesEqualShares) {
-  const SweepPoints points({parse_sampled_axis("a=x,y,z"), parse_sampled_axis("b=0:1")},
-                           {SamplingMethod::latin_hypercube, 30, 1});
-  ASSERT_EQ(points.size(), 30u);
-  std::map<std::string, int> uses;
-  for (std::size_t run = 0; run < points.size(); ++run) ++uses[points.values(run)[0]];
-  EXPECT_EQ(uses, (std::map<std::string, int>{{"x", 10}, {"y", 10}, {"z", 10}}));
-  EXPECT_EQ(points.overrides(3)[1], "b=" + points.values(3)[1]);
+// ---- Cases and shards
+
+Cases cases_of(const Values& vary, std::optional<Sampling> sampling = {}) {
+  std::vector<Axis> axes;
+  for (const std::string& text : vary) axes.push_back(parse_axis(text, sampling.has_value()));
+  return {{}, {}, std::move(axes), sampling};
 }
 
-// ---- Grids and shards
+TEST(Cases, OfALatinHypercubeGiveListedValuesEqualShares) {
+  const Cases cases = cases_of({"a=x,y,z", "b=0:1"}, Sampling{SamplingMethod::latin_hypercube, 30, 1});
+  ASSERT_EQ(cases.size(), 30u);
+  std::map<std::string, int> uses;
+  for (std::size_t i = 0; i < cases.size(); ++i) ++uses[cases.values(i)[0]];
+  EXPECT_EQ(uses, (std::map<std::string, int>{{"x", 10}, {"y", 10}, {"z", 10}}));
+  EXPECT_EQ(cases.changes(3)[1], "b=" + cases.values(3)[1]);
+}
 
-TEST(Grid, HasAllCombinationsTheLastAxisFastest) {
-  const SweepPoints grid({{"a", {"1", "2"}}, {"b", {"x"}}, {"c", {"p", "q", "r"}}});
+TEST(Cases, OfAGridHaveAllCombinationsTheLastAxisFastest) {
+  const Cases grid = cases_of({"a=1,2", "b=x", "c=p,q,r"});
   ASSERT_EQ(grid.size(), 6u);
   EXPECT_EQ(grid.values(0), (Values{"1", "x", "p"}));
   EXPECT_EQ(grid.values(1), (Values{"1", "x", "q"}));
   EXPECT_EQ(grid.values(3), (Values{"2", "x", "p"}));
   EXPECT_EQ(grid.values(5), (Values{"2", "x", "r"}));
-  EXPECT_EQ(grid.overrides(4), (Values{"a=2", "b=x", "c=q"}));
+  EXPECT_EQ(grid.changes(4), (Values{"a=2", "b=x", "c=q"}));
 }
 
-TEST(Grid, RefusesAFieldTwice) {
-  EXPECT_TRUE(test::input_error_of([] { SweepPoints({{"a", {"1"}}, {"b", {"1"}}, {"a", {"2"}}}); }));
+TEST(Cases, AreThePointsOfAFile) {
+  const test::TemporaryDirectory directory;
+  const auto read = [&](const std::string& text) {
+    test::write_plainly(directory / "points.csv", text);
+    return Cases({}, {}, read_points(directory / "points.csv"));
+  };
+  const Cases cases = read("environment.spacing_m,device\n2e-3,\"{\"\"type\"\": \"\"ideal\"\"}\"\n1e-3,x\n2e-3,x\n");
+  ASSERT_EQ(cases.size(), 3u);
+  EXPECT_EQ(cases.changes(0), (Values{"environment.spacing_m=0.002", R"(device={"type":"ideal"})"}));
+  EXPECT_EQ(cases.values(2), (Values{"0.002", "x"}));
+  EXPECT_EQ(cases.at(1), 2u) << "neighbours share an environment";
+  for (const auto& [text, says] :
+       {std::pair{"a,b\n1\n", "points.csv, line 2: got 1 values"},
+        std::pair{"a\n1\n,\n", "points.csv, line 3: got 2 values"},
+        std::pair{"a\n1\n\n", "points.csv, line 3: got an empty value"}, std::pair{"a\n", "points.csv: has no rows"},
+        std::pair{"", "has no rows"}, std::pair{"a,a\n1,2\n", "got \"a\" twice"}}) {
+    const auto error = test::input_error_of([&, bad = text] { read(bad); });
+    ASSERT_TRUE(error) << text;
+    EXPECT_NE(std::string(error->what()).find(says), std::string::npos) << error->what();
+  }
 }
 
-TEST(Grid, RefusesMoreRunsThanItMayHaveHoweverMany) {
-  const Values thousand(1000, "0");
-  EXPECT_EQ(SweepPoints({{"a", thousand}, {"b", thousand}}).size(), kMostRuns);
-  EXPECT_TRUE(test::input_error_of([&] { SweepPoints({{"a", thousand}, {"b", thousand}, {"c", {"0", "1"}}}); }));
+TEST(Cases, RefuseAFieldTwice) {
+  EXPECT_TRUE(test::input_error_of([] { cases_of({"a=1", "b=1", "a=2"}); }));
+}
+
+TEST(Cases, RefuseMoreRunsThanTheyMayHaveHoweverMany) {
+  EXPECT_EQ(cases_of({"a=0:1:1000", "b=0:1:1000"}).size(), kMostRuns);
+  EXPECT_TRUE(test::input_error_of([&] { cases_of({"a=0:1:1000", "b=0:1:1000", "c=0,1"}); }));
   // 1000^7 is beyond 64 bits.
-  std::vector<Axis> axes;
-  for (const char* path : {"a", "b", "c", "d", "e", "f", "g"}) axes.push_back({path, thousand});
-  EXPECT_TRUE(test::input_error_of([&] { SweepPoints grid(axes); }));
+  Values vary;
+  for (const char* path : {"a", "b", "c", "d", "e", "f", "g"}) vary.push_back(std::string(path) + "=0:1:1000");
+  EXPECT_TRUE(test::input_error_of([&] { cases_of(vary); }));
+}
+
+using Numbers = std::vector<std::size_t>;
+
+Numbers order_of(const Cases& cases) {
+  Numbers order;
+  for (std::size_t place = 0; place < cases.size(); ++place) order.push_back(cases.at(place));
+  return order;
+}
+
+TEST(Cases, RunInOrderWhereTheEnvironmentStaysTheSame) {
+  EXPECT_EQ(order_of(cases_of({"a=1,2", "b=1,2"})), (Numbers{0, 1, 2, 3}));
+}
+
+TEST(Cases, OfOneEnvironmentFollowEachOther) {
+  EXPECT_EQ(order_of(cases_of({"a=1,2", "environment.spacing_m=1e-3,2e-3,3e-3", "environment.width_m=1,2"})),
+            (Numbers{0, 6, 1, 7, 2, 8, 3, 9, 4, 10, 5, 11}));
+  EXPECT_EQ(order_of(cases_of({"environment.width_m=1,2", "scenario=x,y"})), (Numbers{0, 2, 1, 3}));
+}
+
+TEST(Cases, OfASampleFollowEachOtherByTheListedFields) {
+  const Cases cases = cases_of({"environment.file=x.stl,y.stl", "environment.scale=1:2", "a=1:2"},
+                               Sampling{SamplingMethod::latin_hypercube, 40, 1});
+  const Numbers order = order_of(cases);
+  EXPECT_EQ(std::set<std::size_t>(order.begin(), order.end()).size(), 40u);
+  for (std::size_t i = 0; i < 40; ++i) EXPECT_EQ(cases.values(order[i])[0], i < 20 ? "x.stl" : "y.stl");
 }
 
 TEST(Shard, IsReadFromItsText) {
@@ -303,4 +303,4 @@ TEST(Shard, SharesOutEveryRunOnce) {
 }
 
 }  // namespace
-}  // namespace hapbench::sweep_points_test
+}  // namespace hapbench::cases_test
