@@ -1,6 +1,7 @@
 #include "scenarios/batch/run_sweep.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <ctime>
@@ -51,13 +52,13 @@ FinishedRun compute(const SweepPlan& plan, const SweepOptions& options, std::siz
     run_with_shell(loaded, shell, std::nullopt, false);
     seconds = std::min(seconds, processor_seconds() - again);
   }
-  return {row_text(sweep_row(plan, run, report.summary)), seconds};
+  return {finished_row(plan, run, report.summary), seconds};
 }
 
 }  // namespace
 
 fs::path table_of(const SweepOptions& options) {
-  return options.directory / part_name("sweep", options.shard);
+  return options.directory / table_name(options.shard);
 }
 
 SweepReport run_sweep(const SweepPlan& plan, const SweepOptions& options) {
@@ -65,13 +66,11 @@ SweepReport run_sweep(const SweepPlan& plan, const SweepOptions& options) {
   SweepReport report;
   report.table = table_of(options);
   const auto keep = [&](std::size_t run, std::string_view text) {
-    const auto row = parse_row(plan, text);
-    if (!row)
-      fail_in_file(report.table, fmt::format("got the row \"{}\"; allowed: rows of this sweep", text.substr(0, 60)));
-    return row->outcome != kErrorOutcome &&
+    return sweep_row(plan, text).outcome != kErrorOutcome &&
            (!options.keep_runs || fs::exists(run_folder(options, run) / "summary.json"));
   };
-  TableFile table({report.table, sweep_header(plan), sweep_description(plan, part), plan.cases.size()},
+  TableFile table({report.table, fmt::format("{}", fmt::join(sweep_columns(plan), ",")), plan.description(part),
+                   plan.cases.size(), true},
                   options.resume ? TableFile::Keep(keep) : nullptr);
   report.resumed = table.count();
   const std::size_t size = part.size(plan.cases.size());
@@ -87,7 +86,7 @@ SweepReport run_sweep(const SweepPlan& plan, const SweepOptions& options) {
     } catch (const IoError&) {
       throw;  // further runs could not be kept either; --resume goes on
     } catch (const std::exception& error) {
-      return {row_text(error_row(plan, run)), [&, run, problem = std::string(error.what())] {
+      return {error_row(plan, run), [&, run, problem = std::string(error.what())] {
                 if (!report.failed || run < report.failed->run) report.failed = FailedRun{run, problem};
               }};
     }
@@ -99,7 +98,7 @@ SweepReport run_sweep(const SweepPlan& plan, const SweepOptions& options) {
     return report;
   }
   table.finish([&](std::string_view text) {
-    SweepRow row = parse_row(plan, text).value();
+    SweepRow row = sweep_row(plan, text);
     report.counts.add(row);
     if (size <= SweepReport::kMostRows) report.rows.push_back(std::move(row));
   });

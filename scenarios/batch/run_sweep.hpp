@@ -26,26 +26,6 @@ struct SweepOptions {
   Shard part() const { return shard.value_or(Shard{}); }
 };
 
-/// A run that an exception ended.
-struct FailedRun {
-  std::size_t run = 0;
-  std::string problem;
-};
-
-/// Result of a sweep.
-struct SweepReport {
-  /// Maximum number of rows in a report.
-  static constexpr std::size_t kMostRows = 10'000;
-
-  std::size_t done = 0;             ///< number of the shard's runs that have a row
-  SweepCounts counts;               ///< of the table
-  std::vector<SweepRow> rows;       ///< of the table, by run number; empty if there are more than kMostRows
-  std::optional<FailedRun> failed;  ///< the failed run with the lowest number
-  std::size_t resumed = 0;          ///< number of rows that were there before
-  int signal = 0;                   ///< the signal that stopped the sweep before there was a table, or 0
-  std::filesystem::path table;      ///< sweep.csv, or sweep.I_of_N.csv
-};
-
 /// The table of a sweep or of one of its shards in a folder: sweep.csv, or sweep.0_of_4.csv.
 std::filesystem::path table_of(const SweepOptions& options);
 

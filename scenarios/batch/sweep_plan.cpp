@@ -127,6 +127,12 @@ Json content_of(const SweepPlan& plan, const Json& files, const Json& plugins) {
 
 }  // namespace
 
+Json SweepPlan::description(const Shard& shard) const {
+  Json json = {{"definition", definition}, {"runs", cases.size()}, {"shard", shard_text(shard)}};
+  json.update(content);
+  return json;
+}
+
 std::vector<std::size_t> runs_to_check(const Cases& cases) {
   if (cases.size() <= kMostChecked || cases.sampling()) {
     std::vector<std::size_t> runs(std::min(cases.size(), kMostChecked));

@@ -18,6 +18,9 @@ struct SweepPlan {
   /// Everything that determines the rows: scenes, overrides, points, hashes of the files the scenarios name, program.
   Json content;
   std::string definition;  ///< FNV-1a of the content, as 16 hexadecimal digits
+
+  /// The JSON file beside the table of a shard, which says what it is about.
+  Json description(const Shard& shard) const;
 };
 
 /// Maximum number of runs of a sample, and of values of a field of a grid, that are checked before the first run.

@@ -22,15 +22,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The field in which the descriptions of a table's shards differ.
-constexpr const char* kShardField = "shard";
-
 fs::path with_ending(fs::path file, const std::string& ending) {
   return file += ending;
 }
 
 fs::path beside(fs::path table) {
   return table.replace_extension(".json");
+}
+
+/// Behind the names of a table's files while it grows. Several processes may write one that does not stay.
+std::string ending_of(const TableTitle& title) {
+  return title.stays ? ".part" : fmt::format(".{:08x}.part", std::random_device()());
 }
 
 /// The definition in the JSON beside a table; empty when there is none to be read.
@@ -67,6 +69,15 @@ class TableLines {
     if (row && *row < cases_) return *row;
     refuse();
   }
+  /// Calls `check` and puts the line in front of the message of an InputError.
+  template <class Check>
+  bool checked(Check check) const {
+    try {
+      return check();
+    } catch (const InputError& error) {
+      fail_in_line(file_, number_, error.problem());
+    }
+  }
   [[noreturn]] void refuse() const {
     fail_in_line(file_, number_, fmt::format("got the row \"{}\"; allowed: rows of this table", line_.substr(0, 60)));
   }
@@ -81,24 +92,32 @@ class TableLines {
 };
 
 /// The tables of shards in a folder, by their index. Throws InputError when they are not of one number of shards.
-std::map<std::size_t, fs::path> shards_in(const fs::path& folder, const std::string& stem, std::size_t& count) {
+std::map<std::size_t, fs::path> shards_in(const fs::path& folder, std::size_t& count) {
   std::map<std::size_t, fs::path> shards;
   std::error_code ignored;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored)) {
-    const std::string name = entry.path().filename().string();
-    if (!name.starts_with(stem + ".") || !name.ends_with(".csv")) continue;
-    const Words words = parts_of(std::string_view(name).substr(stem.size() + 1, name.size() - stem.size() - 5), '_');
-    if (words.size() != 3 || words[1] != "of") continue;
-    const auto index = whole_number(words[0]), of = whole_number(words[2]);
-    if (!index || !of) continue;
-    if (!shards.empty() && *of != count) {
-      fail_in_file(entry.path(), fmt::format("is one of {} shards, {} one of {}; allowed: shards of one division", *of,
+    std::size_t index = 0, of = 0;
+    if (std::sscanf(entry.path().filename().c_str(), "sweep.%zu_of_%zu.csv", &index, &of) != 2) continue;
+    if (entry.path().filename() != table_name(Shard{index, of})) continue;
+    if (!shards.empty() && of != count) {
+      fail_in_file(entry.path(), fmt::format("is one of {} shards, {} one of {}; allowed: shards of one division", of,
                                              shards.begin()->second.string(), count));
     }
-    count = *of;
-    shards.emplace(*index, entry.path());
+    count = of;
+    shards.emplace(index, entry.path());
   }
   return shards;
+}
+
+/// Throws InputError that names the shards that are missing.
+void require_all(const fs::path& folder, const std::map<std::size_t, fs::path>& shards, std::size_t count) {
+  constexpr std::size_t kMostShown = 10;
+  std::vector<std::string> missing;
+  for (std::size_t i = 0; i < count && missing.size() < kMostShown; ++i)
+    if (!shards.contains(i)) missing.push_back(shard_text({i, count}));
+  if (missing.empty()) return;
+  throw InputError(fmt::format("{}: {} of {} shards missing: {}{}", folder.string(), count - shards.size(), count,
+                               fmt::join(missing, ", "), count - shards.size() > kMostShown ? ", ..." : ""));
 }
 
 }  // namespace
@@ -129,9 +148,9 @@ std::vector<std::string> csv_cells(std::string_view line) {
 
 TableFile::TableFile(TableTitle title, const Keep& keep)
     : title_(std::move(title)),
-      part_(with_ending(title_.file, title_.ending)),
+      part_(with_ending(title_.file, ending_of(title_))),
       about_(beside(title_.file)),
-      about_part_(with_ending(about_, title_.ending)),
+      about_part_(with_ending(about_, part_.string().substr(title_.file.string().size()))),
       out_(nullptr, std::fclose),
       has_(title_.cases) {
   if (keep) resume(keep);
@@ -145,6 +164,15 @@ TableFile::TableFile(TableTitle title, const Keep& keep)
   if (!out_) throw IoError("write", part_, {errno, std::generic_category()});
   std::setvbuf(out_.get(), nullptr, _IOFBF, std::size_t{1} << 16);  // so that a line is written at once
   if (is_new) append(title_.header + "\n");
+}
+
+TableFile::~TableFile() {
+  if (!title_.stays) remove_parts();
+}
+
+void TableFile::remove_parts() noexcept {
+  std::error_code ignored;
+  for (const fs::path& part : {part_, about_part_}) fs::remove(part, ignored);
 }
 
 /// Finds the rows that are there, and leaves the part without its last line if that is torn.
@@ -167,7 +195,7 @@ void TableFile::resume(const Keep& keep) {
   if (lines.next() && lines.line() != title_.header) lines.refuse();
   while (lines.next()) {
     const std::size_t i = lines.row();
-    const bool stays = keep(i, lines.line());
+    const bool stays = lines.checked([&] { return keep(i, lines.line()); });
     count_ += static_cast<std::size_t>(stays) - static_cast<std::size_t>(has_[i]);
     has_[i] = stays;
   }
@@ -187,7 +215,7 @@ std::size_t TableFile::rows_under_way(const fs::path& file) {
   return lines - std::min<std::size_t>(lines, 1);
 }
 
-void TableFile::append(std::string text) {
+void TableFile::append(const std::string& text) {
   if (std::fwrite(text.data(), 1, text.size(), out_.get()) != text.size() || std::fflush(out_.get()) != 0)
     throw IoError("write", part_, {errno, std::generic_category()});
 }
@@ -221,36 +249,30 @@ void TableFile::finish(const Seen& seen) {
   files.write(about_, json_text(title_.about));
   files.take(std::move(table));
   files.commit();
-  std::error_code ignored;
-  for (const fs::path& part : {part_, about_part_}) fs::remove(part, ignored);
+  remove_parts();
 }
 
-fs::path part_name(std::string_view stem, const std::optional<Shard>& shard) {
-  return shard ? fmt::format("{}.{}_of_{}.csv", stem, shard->index, shard->count) : fmt::format("{}.csv", stem);
+std::string table_name(const std::optional<Shard>& shard) {
+  return shard ? fmt::format("sweep.{}_of_{}.csv", shard->index, shard->count) : "sweep.csv";
 }
 
-bool join_shards(const fs::path& folder, const std::string& stem) {
+bool join_shards(const fs::path& folder) {
   std::size_t count = 0;
-  const std::map<std::size_t, fs::path> shards = shards_in(folder, stem, count);
+  const std::map<std::size_t, fs::path> shards = shards_in(folder, count);
   if (shards.empty()) return false;
-  const fs::path whole = folder / part_name(stem, std::nullopt), first = shards.begin()->second;
+  const fs::path whole = folder / table_name(std::nullopt), first = shards.begin()->second;
   std::error_code ignored;
   const bool is_there = fs::exists(whole, ignored);
   if (shards.size() < count && is_there) return false;
-  // Several processes may join at once.
-  TableTitle title{whole, "", parse_json(read_text_file(beside(first), kLargestJsonFile)), 0,
-                   fmt::format(".{:08x}.part", std::random_device()())};
+  require_all(folder, shards, count);
+  TableTitle title{whole, "", parse_json(read_text_file(beside(first), kLargestJsonFile)), 0, false};
   const std::string definition = title.about.value("definition", "");
-  if (is_there && definition_in(beside(whole)) == definition) return true;
-  std::vector<std::string> missing;
-  for (std::size_t i = 0; i < count && missing.size() < 10; ++i)
-    if (!shards.contains(i)) missing.push_back(shard_text({i, count}));
-  if (!missing.empty()) {
-    throw InputError(fmt::format("{}: {} of {} shards missing: {}{}", folder.string(), count - shards.size(), count,
-                                 fmt::join(missing, ", "), count - shards.size() > missing.size() ? ", ..." : ""));
-  }
+  const auto is_older = [&](const auto& shard) {
+    return fs::last_write_time(shard.second) <= fs::last_write_time(whole);
+  };
+  if (is_there && definition_in(beside(whole)) == definition && std::ranges::all_of(shards, is_older)) return true;
   title.cases = std::min(title.about.value("runs", std::size_t{0}), kMostRuns);
-  title.about[kShardField] = shard_text({});
+  title.about["shard"] = shard_text({});
   TableLines header(first, 0);
   header.next();
   title.header = header.line();

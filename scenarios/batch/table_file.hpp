@@ -24,10 +24,10 @@ std::vector<std::string> csv_cells(std::string_view line);
 /// What a table is: the file, its columns, and the JSON beside it, whose "definition" is equal for equal tables.
 struct TableTitle {
   std::filesystem::path file;
-  std::string header;            ///< line without its end; the first column is the number of the case
-  Json about;                    ///< written beside the table as NAME.json
-  std::size_t cases = 0;         ///< rows have numbers below
-  std::string ending = ".part";  ///< of the files' names while the table grows
+  std::string header;     ///< line without its end; the first column is the number of the case
+  Json about;             ///< written beside the table as NAME.json
+  std::size_t cases = 0;  ///< rows have numbers below
+  bool stays = true;      ///< as it is when its object goes, to be resumed; otherwise it goes, too, unless finished
 };
 
 /// A table with a row for each case. It grows as FILE.part, with its JSON beside it, a row at a time and in any order,
@@ -42,6 +42,9 @@ class TableFile {
   /// Begins a table, over one that was under way. With `keep`, goes on with it, or with a finished one: a torn last
   /// line is dropped. Throws InputError when that is another table or damaged, and IoError.
   explicit TableFile(TableTitle title, const Keep& keep = {});
+  ~TableFile();
+  TableFile(const TableFile&) = delete;
+  TableFile& operator=(const TableFile&) = delete;
 
   /// Whether a table that is under way, or else the finished one, is of this definition.
   static bool is_of(const std::filesystem::path& file, const std::string& definition);
@@ -58,7 +61,8 @@ class TableFile {
 
  private:
   void resume(const Keep& keep);
-  void append(std::string text);
+  void append(const std::string& text);
+  void remove_parts() noexcept;
 
   TableTitle title_;
   std::filesystem::path part_, about_, about_part_;
@@ -67,13 +71,13 @@ class TableFile {
   std::size_t count_ = 0;
 };
 
-/// The name of a table of which a shard is written: STEM.csv, or STEM.I_of_N.csv.
-std::filesystem::path part_name(std::string_view stem, const std::optional<Shard>& shard);
+/// The file of a sweep, sweep.csv, or of one of its shards, sweep.0_of_4.csv.
+std::string table_name(const std::optional<Shard>& shard);
 
-/// Joins the tables of all shards that are in a folder into that of the whole, STEM.csv, unless it is there. False when
-/// there are none, or not all beside a whole one. Throws InputError for tables that are damaged, incomplete or not of
-/// one definition, and IoError.
-bool join_shards(const std::filesystem::path& folder, const std::string& stem);
+/// Joins the tables of all shards that are in a folder into sweep.csv, unless that is there and newer. False when there
+/// are none, or not all beside a whole table. Throws InputError for tables that are damaged, incomplete or not of one
+/// definition, and IoError.
+bool join_shards(const std::filesystem::path& folder);
 
 /// A row, and what is to be called when the table has it, one at a time.
 struct TableRow {

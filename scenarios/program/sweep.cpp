@@ -1,12 +1,12 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "scenarios/batch/league.hpp"
 #include "scenarios/batch/parallel_for.hpp"
-#include "scenarios/batch/read_sweep.hpp"
 #include "scenarios/batch/table_file.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/description/metric_sections.hpp"
@@ -119,23 +119,15 @@ int verdict(const SweepPlan& plan, const SweepReport& report) {
   return kSuccess;
 }
 
-void append(std::vector<std::string>& words, std::vector<std::string> more) {
-  words.insert(words.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
-}
-
-/// A command of this program on a scenario, up to its options.
-std::vector<std::string> command_words(const char* name, const fs::path& file) {
-  return {this_program().string(), name, fs::absolute(file).lexically_normal().string()};
-}
-
 /// Prints the command that repeats the run of a row.
 int print_row(const SweepCommand& command, const Cases& cases) {
   if (command.row >= cases.size())
     throw InputError(fmt::format("--row: got {}; allowed: 0 ... {}", command.row, cases.size() - 1));
   cases.load(command.row);  // throws if the row's scenario is wrong
-  std::vector<std::string> words = command_words("run", cases.scene(command.row).file);
-  for (const std::string& override : cases.overrides(command.row)) append(words, {"--set", override});
-  append(words, plugin_words());
+  const fs::path scene = fs::absolute(cases.scene(command.row).file).lexically_normal();
+  std::vector<std::string> words = {this_program().string(), "run", scene.string()};
+  for (const std::string& override : cases.overrides(command.row)) words.insert(words.end(), {"--set", override});
+  std::ranges::copy(plugin_words(), std::back_inserter(words));
   print(command.output, shell_line(words) + "\n", Json{{"row", command.row}, {"command", words}});
   return kSuccess;
 }
@@ -195,8 +187,7 @@ namespace {
 int sweep(const SweepCommand& command) {
   std::error_code ignored;
   if (fs::is_directory(command.scenario, ignored))
-    if (join_shards(command.scenario, "sweep") ||
-        fs::is_regular_file(fs::path(command.scenario) / "sweep.csv", ignored))
+    if (join_shards(command.scenario) || fs::is_regular_file(fs::path(command.scenario) / "sweep.csv", ignored))
       return reprint(command);
   if (command.vary.empty() && command.points.empty())
     throw InputError("sweep: got no scenario or no --vary; allowed: both, or the folder of a finished sweep");

@@ -311,7 +311,7 @@ RobustnessReport run_robustness(const RobustnessPlan& plan, const RobustnessOpti
     report.verdicts[sample].assign(cells.begin() + static_cast<std::ptrdiff_t>(leading), cells.end());
     return true;
   };
-  TableFile table({file, header(plan), {{"definition", name}}, plan.samples()},
+  TableFile table({file, header(plan), {{"definition", name}}, plan.samples(), true},
                   resume ? TableFile::Keep(keep) : nullptr);
   report.resumed = table.count();
   fs::remove_all(scratch);  // of a process that was killed

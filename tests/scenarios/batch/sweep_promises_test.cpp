@@ -90,7 +90,7 @@ TEST_F(SweepPromises, TheSameBytesWhateverTheJobsTheShardsAndTheKills) {
     const std::size_t shards = random_.below(5);
     for (std::size_t i = 0; i < shards; ++i) run_part(plan, out, Shard{i, shards});
     if (shards == 0) run_part(plan, out, std::nullopt);
-    EXPECT_EQ(join_shards(out, "sweep"), shards > 0);
+    EXPECT_EQ(join_shards(out), shards > 0);
     for (const char* file : {"sweep.csv", "sweep.json"})
       ASSERT_EQ(read_file(out / file), read_file(whole / file)) << "attempt " << attempt << ", " << shards << " shards";
     fs::remove_all(out);

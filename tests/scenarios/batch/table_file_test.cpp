@@ -20,7 +20,7 @@ using Rows = std::vector<std::string>;
 class TableFiles : public testing::Test {
  protected:
   TableTitle title(const std::string& definition = "mine") const {
-    return {file_, "index,a", {{"definition", definition}}, 9};
+    return {file_, "index,a", {{"definition", definition}}, 9, true};
   }
   /// The rows that a table keeps when it goes on.
   Rows resumed(const std::string& definition = "mine") const {
@@ -122,14 +122,14 @@ TEST_F(TableFiles, OnAFullDiskAreAnErrorThatNamesThem) {
 TEST_F(TableFiles, OfShardsAreJoinedWhenAllAreThere) {
   const auto write_shard = [&](std::size_t i, std::size_t n, const Rows& rows, const std::string& definition = "mine") {
     TableTitle shard = title(definition);
-    shard.file = directory_ / part_name("sweep", Shard{i, n});
+    shard.file = directory_ / table_name(Shard{i, n});
     shard.about["runs"] = 4;
     shard.about["shard"] = shard_text({i, n});
     TableFile table(shard);
     for (const std::string& row : rows) table.add(static_cast<std::size_t>(row[0] - '0'), row);
     table.finish();
   };
-  const auto join = [&] { return join_shards(directory_.path(), "sweep"); };
+  const auto join = [&] { return join_shards(directory_.path()); };
   EXPECT_FALSE(join());
   write_shard(1, 3, {"3,d"});
   expect_refusal([&] { join(); }, "2 of 3 shards missing: 0/3, 2/3");
@@ -142,7 +142,12 @@ TEST_F(TableFiles, OfShardsAreJoinedWhenAllAreThere) {
   EXPECT_TRUE(join());
   EXPECT_EQ(read_file(file_), "index,a\n0,a\n1,c\n2,\"b,\"\n3,d\n");
   EXPECT_EQ(Json::parse(read_file(directory_ / "sweep.json"))["shard"], "0/1");
+  EXPECT_EQ(directory_.entries().size(), 8u) << "nothing else is left";
   EXPECT_TRUE(join()) << "it is there";
+  write_shard(1, 3, {"3,new"});
+  fs::last_write_time(directory_ / "sweep.1_of_3.csv", fs::last_write_time(file_) + std::chrono::seconds(1));
+  EXPECT_TRUE(join());
+  EXPECT_EQ(read_file(file_), "index,a\n0,a\n1,c\n2,\"b,\"\n3,new\n");
   write_shard(0, 2, {"0,a"});
   expect_refusal([&] { join(); }, "allowed: shards of one division");
 }
