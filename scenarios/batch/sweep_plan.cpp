@@ -24,7 +24,7 @@ namespace {
 struct Point {
   std::vector<std::string> warnings;
   SectionParts sections;
-  std::string files;  ///< the objects that name files
+  std::string files;  ///< the folder and the objects that name files
   AlgorithmOrigin origin;
 };
 
@@ -35,6 +35,7 @@ Point examine(const SweepPlan& plan, std::size_t run) {
               find_algorithm(scenario.rendering.algorithm)->origin};
   if (loaded.files.all().empty()) return point;
   const Json json = written_object(scenario);
+  point.files = loaded.file.parent_path().string() + "\n";
   for (const auto& file : loaded.files.all()) {
     const Json::json_pointer field(file->pointer());
     point.files += file->pointer() + " " + json.at(field.parent_pointer()).dump() + "\n";
