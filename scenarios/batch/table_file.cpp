@@ -130,6 +130,7 @@ std::string csv_cell(std::string_view text) {
 }
 
 std::vector<std::string> csv_cells(std::string_view line) {
+  if (line.ends_with('\r')) line.remove_suffix(1);
   std::vector<std::string> cells(1);
   bool in_quotes = false;
   for (std::size_t i = 0; i < line.size(); ++i) {

@@ -191,7 +191,7 @@ TEST(Cases, AreThePointsOfAFile) {
     test::write_plainly(directory / "points.csv", text);
     return Cases({}, {}, read_points(directory / "points.csv"));
   };
-  const Cases cases = read("environment.spacing_m,device\n2e-3,\"{\"\"type\"\": \"\"ideal\"\"}\"\n1e-3,x\n2e-3,x\n");
+  const Cases cases = read("environment.spacing_m,device\r\n2e-3,\"{\"\"type\"\": \"\"ideal\"\"}\"\n1e-3,x\n2e-3,x\n");
   ASSERT_EQ(cases.size(), 3u);
   EXPECT_EQ(cases.changes(0), (Values{"environment.spacing_m=0.002", R"(device={"type":"ideal"})"}));
   EXPECT_EQ(cases.values(2), (Values{"0.002", "x"}));
