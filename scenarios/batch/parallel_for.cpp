@@ -6,10 +6,8 @@
 #include <oneapi/tbb/task_arena.h>
 
 #include <algorithm>
+#include <atomic>
 #include <exception>
-#include <mutex>
-#include <numeric>
-#include <vector>
 
 #include "scenarios/run/progress_bar.hpp"
 #include "scenarios/run/stop_signal.hpp"
@@ -36,29 +34,6 @@ class HandOver {
   void give() {}
   void take() {}
 #endif
-};
-
-/// Keeps the exception of the lowest job that failed.
-class Failure {
- public:
-  bool has_error() {
-    const std::lock_guard lock(mutex_);
-    return error_ != nullptr;
-  }
-  void note(std::size_t job) {
-    const std::lock_guard lock(mutex_);
-    if (error_ && job > job_) return;
-    job_ = job;
-    error_ = std::current_exception();
-  }
-  void rethrow() const {
-    if (error_) std::rethrow_exception(error_);
-  }
-
- private:
-  std::mutex mutex_;
-  std::size_t job_ = 0;
-  std::exception_ptr error_;
 };
 
 }  // namespace
@@ -96,37 +71,33 @@ void parallel_for(const NextRun& next, std::size_t jobs, const std::function<Del
   finished.take();
 }
 
-void parallel_for(std::span<const std::size_t> runs, std::size_t jobs, const std::function<Delivery(std::size_t)>& work,
-                  const std::function<bool()>& stop) {
-  auto at = runs.begin();
-  const auto next = [&]() -> std::optional<std::size_t> {
-    if (at == runs.end() || stop()) return std::nullopt;
-    return *at++;
-  };
-  parallel_for(next, jobs, work);
-}
-
 std::size_t available_threads() {
   return static_cast<std::size_t>(tbb::info::default_concurrency());
 }
 
 void for_each_job(std::size_t count, const JobOptions& options, const std::function<void(std::size_t)>& job) {
-  std::vector<std::size_t> jobs(count);
-  std::iota(jobs.begin(), jobs.end(), std::size_t{0});
   ProgressBar bar(options.label, count, !options.label.empty());
-  Failure failure;
-  std::size_t done = 0;
+  std::atomic<bool> has_failed = false;
+  std::size_t begun = 0, done = 0, lowest = count;
+  std::exception_ptr error;  // of the lowest job that failed
+  const auto next = [&]() -> std::optional<std::size_t> {
+    const bool ends = begun == count || has_failed || StopSignal::received() != 0;
+    return ends ? std::nullopt : std::optional(begun++);
+  };
   const auto work = [&](std::size_t i) -> Delivery {
     try {
       job(i);
     } catch (...) {
-      failure.note(i);
+      has_failed = true;
+      return [&, i, caught = std::current_exception()] {
+        if (i < lowest) error = caught;
+        lowest = std::min(lowest, i);
+      };
     }
     return [&] { bar.show(++done); };
   };
-  const auto stop = [&failure] { return failure.has_error() || StopSignal::received() != 0; };
-  parallel_for(jobs, std::max<std::size_t>(1, options.threads), work, stop);
-  failure.rethrow();
+  parallel_for(next, std::max<std::size_t>(1, options.threads), work);
+  if (error) std::rethrow_exception(error);
   if (done < count) throw_if_stopped();
 }
 

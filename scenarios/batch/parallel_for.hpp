@@ -3,7 +3,6 @@
 #include <cstddef>
 #include <functional>
 #include <optional>
-#include <span>
 #include <string>
 
 /// Loops over runs on several threads.
@@ -21,11 +20,6 @@ using NextRun = std::function<std::optional<std::size_t>()>;
 /// exception from any of them stops the loop and is rethrown. Threads are those of oneTBB. Overhead: some microseconds
 /// for each run.
 void parallel_for(const NextRun& next, std::size_t jobs, const std::function<Delivery(std::size_t run)>& work);
-/// Same for a list of runs. `stop` is asked before each start; when it returns true, runs in flight are finished and no
-/// other one starts.
-void parallel_for(std::span<const std::size_t> runs, std::size_t jobs,
-                  const std::function<Delivery(std::size_t run)>& work, const std::function<bool()>& stop);
-
 /// Number of threads that this process may use at once.
 std::size_t available_threads();
 

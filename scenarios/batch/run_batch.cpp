@@ -5,9 +5,9 @@
 #include <chrono>
 #include <map>
 #include <set>
+#include "scenarios/batch/axis.hpp"
 #include "scenarios/batch/parallel_for.hpp"
 #include "scenarios/batch/result_folders.hpp"
-#include "scenarios/batch/sweep_points.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "sim/core/random.hpp"
 

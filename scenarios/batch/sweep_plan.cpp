@@ -24,17 +24,18 @@ namespace {
 struct Point {
   std::vector<std::string> warnings;
   SectionParts sections;
-  std::string files;  ///< the objects that name files
+  std::string files;  ///< the folder and the objects that name files
   AlgorithmOrigin origin;
 };
 
 Point examine(const SweepPlan& plan, std::size_t run) {
-  const LoadedScenario loaded = scenario_of(plan, run);
+  const LoadedScenario loaded = plan.cases.load(run);
   const Scenario& scenario = loaded.scenario;
   Point point{loaded.warnings, sections_of(scenario, scenario.reference_force.has_value()), "",
               find_algorithm(scenario.rendering.algorithm)->origin};
   if (loaded.files.all().empty()) return point;
   const Json json = written_object(scenario);
+  point.files = loaded.file.parent_path().string() + "\n";
   for (const auto& file : loaded.files.all()) {
     const Json::json_pointer field(file->pointer());
     point.files += file->pointer() + " " + json.at(field.parent_pointer()).dump() + "\n";
@@ -62,7 +63,7 @@ Json check_files(SweepPlan& plan, const std::vector<std::size_t>& runs, SectionP
   constexpr std::size_t kMostScans = 8;  // whose shells are made before the runs
   Json hashes = Json::array();
   for (const std::size_t run : runs) {
-    LoadedScenario loaded = scenario_of(plan, run);
+    LoadedScenario loaded = plan.cases.load(run);
     append_new(plan.warnings, check_named_files(loaded, hashes.size() < kMostScans));
     if (std::holds_alternative<RecordedPosition>(loaded.scenario.motion.position))
       add_sections(sections, sections_of(loaded.scenario, loaded.files.at(kMotionFile).stroke()->force.has_value()));
@@ -73,8 +74,9 @@ Json check_files(SweepPlan& plan, const std::vector<std::size_t>& runs, SectionP
 }
 
 /// The values of an axis; only the ends of a range that has very many.
-Json axis_content(const Axis& axis) {
+Json axis_content(const Axis& axis, bool of_a_file) {
   constexpr std::size_t kMostListed = 10'000;
+  if (of_a_file) return {{"path", axis.path}};
   if (!axis.range || (axis.steps > 0 && axis.steps <= kMostListed)) {
     Json values = Json::array();
     for (std::size_t i = 0; i < axis.size(); ++i) values.push_back(axis.value(i));
@@ -90,16 +92,30 @@ Json axis_content(const Axis& axis) {
   return content;
 }
 
+std::string hash_of_points(const Cases& cases) {
+  std::string text;
+  for (std::size_t i = 0; i < cases.size(); ++i)
+    for (const std::string& change : cases.changes(i)) text += change + "\n";
+  return hash_text(hash_of(text));
+}
+
 /// The CPU does not count: shards of one sweep may come from several machines.
 Json content_of(const SweepPlan& plan, const Json& files, const Json& plugins) {
   const Provenance program = provenance();
+  const std::vector<ScenarioText>& scenes = plan.cases.scenes();
+  const auto& sampling = plan.cases.sampling();
+  const bool of_a_file = sampling && sampling->method == SamplingMethod::points;
   Json vary = Json::array();
-  for (const Axis& axis : plan.points.axes()) vary.push_back(axis_content(axis));
-  Json content = {{"scenario", plan.scenario.json}, {"set", plan.overrides}, {"vary", std::move(vary)}};
-  if (const auto& sampling = plan.points.sampling()) {
-    content["sample"] = {
-        {"method", sampling_name(sampling->method)}, {"runs", sampling->count}, {"seed", sampling->seed}};
-  }
+  for (const Axis& axis : plan.cases.axes()) vary.push_back(axis_content(axis, of_a_file));
+  Json content;
+  if (scenes.size() == 1) content["scenario"] = scenes[0].json;
+  if (scenes.size() > 1)
+    for (const ScenarioText& scene : scenes) content["scenarios"].push_back(scene.json);
+  content["set"] = plan.cases.sets();
+  content["vary"] = std::move(vary);
+  if (sampling) content["sample"] = {{"method", sampling_name(sampling->method)}, {"runs", sampling->count}};
+  if (of_a_file) content["sample"]["hash"] = hash_of_points(plan.cases);
+  if (sampling && !of_a_file) content["sample"]["seed"] = sampling->seed;
   content["files"] = files;
   if (!plugins.empty()) content["plugins"] = plugins;
   content["program"] = {{"hapbench_version", program.version},
@@ -112,37 +128,36 @@ Json content_of(const SweepPlan& plan, const Json& files, const Json& plugins) {
 
 }  // namespace
 
-std::vector<std::size_t> runs_to_check(const SweepPoints& points) {
-  if (points.size() <= kMostChecked || points.sampling()) {
-    std::vector<std::size_t> runs(std::min(points.size(), kMostChecked));
+Json SweepPlan::description(const Shard& shard) const {
+  Json json = {{"definition", definition}, {"runs", cases.size()}, {"shard", shard_text(shard)}};
+  json.update(content);
+  return json;
+}
+
+std::vector<std::size_t> runs_to_check(const Cases& cases) {
+  if (cases.size() <= kMostChecked || cases.sampling()) {
+    std::vector<std::size_t> runs(std::min(cases.size(), kMostChecked));
     std::iota(runs.begin(), runs.end(), std::size_t{0});
     return runs;
   }
   std::set<std::size_t> runs;
   std::size_t stride = 1;
-  for (std::size_t a = points.axes().size(); a-- > 0;) {
-    const std::size_t size = points.axes()[a].size(), count = std::min(size, kMostChecked);
+  for (std::size_t a = cases.axes().size(); a-- > 0;) {
+    const std::size_t size = cases.axes()[a].size(), count = std::min(size, kMostChecked);
     for (std::size_t i = 0; i < count; ++i) {
       const std::size_t place = count == 1 ? 0 : i * (size - 1) / (count - 1);
       runs.insert(place * stride);
-      if (points.axes().size() > 1) runs.insert(points.size() - 1 - place * stride);
+      if (cases.axes().size() > 1) runs.insert(cases.size() - 1 - place * stride);
     }
     stride *= size;
   }
   return {runs.begin(), runs.end()};
 }
 
-SweepPlan plan_sweep(ScenarioText scenario, std::vector<std::string> overrides, SweepPoints points, std::size_t jobs,
-                     bool progress) {
-  SweepPlan plan{.scenario = std::move(scenario),
-                 .overrides = std::move(overrides),
-                 .points = std::move(points),
-                 .warnings = {},
-                 .metrics = {},
-                 .bounded = {},
-                 .content = {},
-                 .definition = ""};
-  const std::vector<std::size_t> runs = runs_to_check(plan.points);
+SweepPlan plan_sweep(Cases cases, std::size_t jobs, bool progress) {
+  SweepPlan plan{
+      .cases = std::move(cases), .warnings = {}, .metrics = {}, .bounded = {}, .content = {}, .definition = ""};
+  const std::vector<std::size_t> runs = runs_to_check(plan.cases);
   SectionParts sections;
   std::map<std::string, std::string> plugins;
   std::map<std::string, std::size_t> first_runs;  // of each combination of files
@@ -163,18 +178,6 @@ SweepPlan plan_sweep(ScenarioText scenario, std::vector<std::string> overrides, 
   plan.content = content_of(plan, hashes, plugins);
   plan.definition = hash_text(hash_of(json_text(plan.content)));
   return plan;
-}
-
-std::vector<std::string> overrides_of(const SweepPlan& plan, std::size_t run) {
-  std::vector<std::string> overrides = plan.overrides;
-  for (std::string& override : plan.points.overrides(run)) overrides.push_back(std::move(override));
-  return overrides;
-}
-
-LoadedScenario scenario_of(const SweepPlan& plan, std::size_t run) {
-  LoadedScenario loaded = load_scenario(plan.scenario, overrides_of(plan, run));
-  loaded.scenario.time.stride = plan.points.stride(run);
-  return loaded;
 }
 
 }  // namespace hapbench

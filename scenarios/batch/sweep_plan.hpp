@@ -4,24 +4,23 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/batch/sweep_points.hpp"
-#include "scenarios/description/load_scenario.hpp"
+#include "scenarios/batch/cases.hpp"
 
 namespace hapbench {
 
-/// A scenario to run at the points of a grid or a sample, checked before the first run. Its size does not depend on the
-/// number of runs, except for the points (sweep_points.hpp).
+/// Cases to run, checked before the first run.
 struct SweepPlan {
-  ScenarioText scenario;
-  std::vector<std::string> overrides;  ///< of all runs, as in --set; those of the points follow
-  SweepPoints points;
+  Cases cases;
 
   std::vector<std::string> warnings;  ///< of the runs that were checked, without duplicates
   std::vector<std::string> metrics;   ///< that some of these runs have
   std::vector<std::string> bounded;   ///< those of the metrics whose rows say by how much they may be wrong
-  /// Everything that determines the rows: scenario, overrides, points, hashes of the files the scenarios name, program.
+  /// Everything that determines the rows: scenes, overrides, points, hashes of the files the scenarios name, program.
   Json content;
   std::string definition;  ///< FNV-1a of the content, as 16 hexadecimal digits
+
+  /// The JSON file beside the table of a shard, which says what it is about.
+  Json description(const Shard& shard) const;
 };
 
 /// Maximum number of runs of a sample, and of values of a field of a grid, that are checked before the first run.
@@ -30,18 +29,11 @@ inline constexpr std::size_t kMostChecked = 1000;
 /// The runs that are checked, in order: all if there are at most kMostChecked. Of a larger grid, the runs at the edges
 /// through its first and its last run, along each of which one field takes all its values (at most kMostChecked of
 /// them, the ends included). Of a larger sample, the first runs.
-std::vector<std::size_t> runs_to_check(const SweepPoints& points);
+std::vector<std::size_t> runs_to_check(const Cases& cases);
 
 /// Loads the scenarios of the runs to check and reads the files they name, to find errors before anything is run or
 /// written. Takes about 0.1 ms for each run on each of `jobs` threads. `progress` allows a progress bar. Throws
 /// InputError, that of the run with the lowest number if there are several.
-SweepPlan plan_sweep(ScenarioText scenario, std::vector<std::string> overrides, SweepPoints points, std::size_t jobs,
-                     bool progress);
-
-/// The overrides of one run: the plan's and the point's. Precondition, here and below: run < plan.points.size().
-std::vector<std::string> overrides_of(const SweepPlan& plan, std::size_t run);
-
-/// The scenario of one run. Thread-safe. Throws InputError when it was not checked and is wrong.
-LoadedScenario scenario_of(const SweepPlan& plan, std::size_t run);
+SweepPlan plan_sweep(Cases cases, std::size_t jobs, bool progress);
 
 }  // namespace hapbench

@@ -5,12 +5,10 @@
 
 #include <algorithm>
 #include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 
-#include "results/io/atomic_file.hpp"
-#include "results/io/json_text.hpp"
 #include "results/summary/outcome_names.hpp"
+#include "scenarios/batch/table_file.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/json_file.hpp"
 #include "scenarios/input/text_lines.hpp"
@@ -19,112 +17,78 @@
 namespace hapbench {
 namespace {
 
-namespace fs = std::filesystem;
-
-/// The cells in front of the metrics: run, varied fields, outcome, expected, steps.
-std::size_t leading_columns(const SweepPlan& plan) {
-  return 1 + plan.points.axes().size() + 3;
+/// The place of `outcome`, behind the number of the run and the varied fields; `expected`, `steps` and the metrics
+/// follow.
+std::size_t outcome_at(const SweepPlan& plan) {
+  return 1 + plan.cases.axes().size();
 }
 
-std::size_t cells_in(std::string_view line) {
-  return static_cast<std::size_t>(std::count(line.begin(), line.end(), ',')) + 1;
+std::size_t column_count(const SweepPlan& plan) {
+  return outcome_at(plan) + 3 + plan.metrics.size() + plan.bounded.size() + 1;
 }
 
-/// The number in a cell: a count if it is a whole number, so that it is printed as it is in the table.
-Metric::Value value_in(std::string_view cell) {
-  if (const auto count = whole_number(cell)) return static_cast<std::uint64_t>(*count);
+/// A number: a count if it is whole, so that it is printed as it is in the table; null for other texts.
+Json number_json(const std::string& cell) {
+  if (const auto count = whole_number(cell)) return *count;
   if (const auto number = finite_number(cell)) return *number;
-  return {};
+  return nullptr;
 }
 
-Json json_of(const Metric::Value& value) {
-  return std::visit(
-      [](const auto& number) {
-        if constexpr (std::is_same_v<std::decay_t<decltype(number)>, std::monostate>)
-          return Json(nullptr);
-        else
-          return Json(number);
-      },
-      value);
-}
-
-/// The value of a varied field, whose type is not known.
-Json json_of_text(const std::string& text) {
+/// A text, the value of a varied field or a truth, by its looks.
+Json text_json(const std::string& text) {
+  if (text.starts_with('{') || text.starts_with('[')) return parse_json(text);
   if (text == "true" || text == "false") return text == "true";
-  const Metric::Value value = value_in(text);
-  return std::holds_alternative<std::monostate>(value) ? Json(text) : json_of(value);
+  const Json number = number_json(text);
+  return number.is_null() ? Json(text) : number;
 }
 
-void append_line(AtomicFile& file, std::string_view line) {
-  file.append(line);
-  file.append("\n");
+/// The first cells of a run's line.
+std::vector<std::string> leading_cells(const SweepPlan& plan, std::size_t run) {
+  std::vector<std::string> cells = plan.cases.values(run);
+  cells.insert(cells.begin(), std::to_string(run));
+  return cells;
 }
 
-void check_belongs(const ShardTitle& table, const ShardTitle& first) {
-  const auto differs = [&](const char* what, const std::string& here, const std::string& there) {
-    if (here == there) return;
-    fail_in_file(table.file, fmt::format("is of another sweep than {}: {} {}, there {}; allowed: shards of one sweep",
-                                         first.file.string(), what, here, there));
-  };
-  differs("definition", table.definition, first.definition);
-  differs("runs", std::to_string(table.runs), std::to_string(first.runs));
-  differs("shards", std::to_string(table.shard.count), std::to_string(first.shard.count));
-  differs("columns", table.header, first.header);
-}
-
-/// The only field in which the descriptions of a sweep's shards differ.
-constexpr const char* kShardField = "shard";
-
-/// The description beside a table.
-fs::path description_of(fs::path table) {
-  return table.replace_extension(".json");
+std::string line_of(const std::vector<std::string>& cells) {
+  std::string line;
+  for (const std::string& cell : cells) line += csv_cell(cell) + ",";
+  line.pop_back();
+  return line;
 }
 
 }  // namespace
 
-// ---- Shards
-
-Shard parse_shard(const std::string& text) {
-  const std::size_t slash = std::min(text.find('/'), text.size());
-  const auto index = whole_number(std::string_view(text).substr(0, slash));
-  const auto count = whole_number(std::string_view(text).substr(std::min(slash + 1, text.size())));
-  if (!index || !count || *index >= *count || *count > kMostRuns) {
-    throw InputError(
-        fmt::format("--shard: got \"{}\"; allowed: i/n with 0 <= i < n <= {}, as in 0/4", text, kMostRuns));
-  }
-  return {*index, *count};
-}
-
-std::string shard_text(const Shard& shard) {
-  return fmt::format("{}/{}", shard.index, shard.count);
-}
-
-// ---- Rows
-
 std::optional<double> SweepRow::number(const SweepPlan& plan, std::string_view metric) const {
-  const auto column = std::find(plan.metrics.begin(), plan.metrics.end(), metric) - plan.metrics.begin();
-  return number_of(metrics[static_cast<std::size_t>(column)]);
+  const auto place = std::ranges::find(plan.metrics, metric) - plan.metrics.begin();
+  return finite_number(cells[outcome_at(plan) + 3 + static_cast<std::size_t>(place)]);
 }
 
 std::optional<double> SweepRow::tolerance(const SweepPlan& plan, std::string_view metric) const {
-  const auto name = std::find(plan.bounded.begin(), plan.bounded.end(), metric);
+  const auto name = std::ranges::find(plan.bounded, metric);
   if (name == plan.bounded.end()) return std::nullopt;
-  return number_of(tolerances[static_cast<std::size_t>(name - plan.bounded.begin())]);
+  const auto place = plan.metrics.size() + static_cast<std::size_t>(name - plan.bounded.begin());
+  return finite_number(cells[outcome_at(plan) + 3 + place]);
 }
 
-SweepRow sweep_row(const SweepPlan& plan, std::size_t run, const RunSummary& summary) {
-  SweepRow row{.run = run,
-               .outcome = std::string(outcome_name(summary.result.outcome)),
-               .expected = summary.expected,
-               .steps = static_cast<std::size_t>(summary.result.rows),
-               .metrics = {},
-               .tolerances = {},
-               .state_hash = hash_text(summary.metrics.state_hash)};
+std::vector<std::string> sweep_columns(const SweepPlan& plan) {
+  std::vector<std::string> columns = {"index"};
+  for (const Axis& axis : plan.cases.axes()) columns.push_back(axis.path);
+  columns.insert(columns.end(), {"outcome", "expected", "steps"});
+  columns.insert(columns.end(), plan.metrics.begin(), plan.metrics.end());
+  for (const std::string& metric : plan.bounded) columns.push_back(std::string(kToleranceOf) + metric);
+  columns.emplace_back("state_hash");
+  return columns;
+}
+
+std::string finished_row(const SweepPlan& plan, std::size_t run, const RunSummary& summary) {
+  std::vector<std::string> cells = leading_cells(plan, run);
+  cells.insert(cells.end(), {std::string(outcome_name(summary.result.outcome)), summary.expected ? "true" : "false",
+                             std::to_string(summary.result.rows)});
   const MetricList metrics = metric_list(summary);
   auto next = metrics.begin();  // the columns are in the same order, but some runs have more metrics than others
   for (const std::string& name : plan.metrics) {
     const bool is_it = next != metrics.end() && next->name == name;
-    row.metrics.push_back(is_it ? next->value : Metric::Value());
+    cells.push_back(is_it ? cell_text(next->value) : "");
     if (is_it) ++next;
   }
   if (next != metrics.end()) {
@@ -136,73 +100,40 @@ SweepRow sweep_row(const SweepPlan& plan, std::size_t run, const RunSummary& sum
   for (const std::string& name : plan.bounded) {
     const Metric* metric = find_metric(metrics, name);
     const auto tolerance = metric != nullptr ? metric->tolerance() : std::nullopt;
-    row.tolerances.push_back(tolerance ? Metric::Value(*tolerance) : Metric::Value());
+    cells.push_back(tolerance ? cell_text(*tolerance) : "");
   }
-  return row;
+  cells.push_back(hash_text(summary.metrics.state_hash));
+  return line_of(cells);
 }
 
-SweepRow error_row(const SweepPlan& plan, std::size_t run) {
-  return {.run = run,
-          .outcome = std::string(kErrorOutcome),
-          .expected = false,
-          .steps = std::nullopt,
-          .metrics = std::vector<Metric::Value>(plan.metrics.size()),
-          .tolerances = std::vector<Metric::Value>(plan.bounded.size()),
-          .state_hash = ""};
+std::string error_row(const SweepPlan& plan, std::size_t run) {
+  std::vector<std::string> cells = leading_cells(plan, run);
+  cells.insert(cells.end(), {std::string(kErrorOutcome), "false"});
+  cells.resize(column_count(plan));
+  return line_of(cells);
 }
 
-std::string sweep_header(const SweepPlan& plan) {
-  std::vector<std::string> columns = {"index"};
-  for (const Axis& axis : plan.points.axes()) columns.push_back(axis.path);
-  columns.insert(columns.end(), {"outcome", "expected", "steps"});
-  columns.insert(columns.end(), plan.metrics.begin(), plan.metrics.end());
-  for (const std::string& metric : plan.bounded) columns.push_back(std::string(kToleranceOf) + metric);
-  columns.emplace_back("state_hash");
-  return fmt::format("{}", fmt::join(columns, ","));
-}
-
-std::string row_text(const SweepPlan& plan, const SweepRow& row) {
-  std::string text = fmt::format("{},{},{},{},{}", row.run, fmt::join(plan.points.values(row.run), ","), row.outcome,
-                                 row.expected, row.steps ? std::to_string(*row.steps) : "");
-  for (const auto* values : {&row.metrics, &row.tolerances}) {
-    for (const Metric::Value& value : *values) text += "," + cell_text(value);
-  }
-  return text + "," + row.state_hash;
-}
-
-std::optional<SweepRow> parse_row(const SweepPlan& plan, std::string_view text) {
-  const Words cells = parts_of(text, ',');
-  const std::size_t axes = plan.points.axes().size(), first_metric = leading_columns(plan);
+SweepRow sweep_row(const SweepPlan& plan, std::string_view line) {
+  std::vector<std::string> cells = csv_cells(line);
+  const std::size_t outcome = outcome_at(plan);
   const auto run = whole_number(cells[0]);
-  if (!run || *run >= plan.points.size() ||
-      cells.size() != first_metric + plan.metrics.size() + plan.bounded.size() + 1)
-    return std::nullopt;
-  for (std::size_t a = 0; a < axes; ++a)
-    if (cells[1 + a] != plan.points.value(*run, a)) return std::nullopt;
-  SweepRow row{.run = *run,
-               .outcome = std::string(cells[1 + axes]),
-               .expected = cells[2 + axes] == "true",
-               .steps = whole_number(cells[3 + axes]),
-               .metrics = {},
-               .tolerances = {},
-               .state_hash = std::string(cells.back())};
-  row.metrics.reserve(plan.metrics.size());
-  for (std::size_t m = first_metric; m + 1 < cells.size(); ++m)
-    (row.metrics.size() < plan.metrics.size() ? row.metrics : row.tolerances).push_back(value_in(cells[m]));
-  return row;
+  if (!run || cells.size() != column_count(plan))
+    throw InputError(fmt::format("got the row \"{}\"; allowed: rows of this sweep", line.substr(0, 60)));
+  return {.run = *run,
+          .values = {cells.begin() + 1, cells.begin() + static_cast<std::ptrdiff_t>(outcome)},
+          .outcome = cells[outcome],
+          .expected = cells[outcome + 1] == "true",
+          .state_hash = cells.back(),
+          .cells = cells};
 }
 
 Json row_json(const SweepPlan& plan, const SweepRow& row) {
-  Json json = {{"index", row.run}};
-  for (std::size_t a = 0; a < plan.points.axes().size(); ++a)
-    json[plan.points.axes()[a].path] = json_of_text(plan.points.value(row.run, a));
-  json["outcome"] = row.outcome;
-  json["expected"] = row.expected;
-  json["steps"] = row.steps ? Json(*row.steps) : Json(nullptr);
-  for (std::size_t m = 0; m < plan.metrics.size(); ++m) json[plan.metrics[m]] = json_of(row.metrics[m]);
-  for (std::size_t m = 0; m < plan.bounded.size(); ++m)
-    json[std::string(kToleranceOf) + plan.bounded[m]] = json_of(row.tolerances[m]);
-  json["state_hash"] = row.state_hash.empty() ? Json(nullptr) : Json(row.state_hash);
+  const std::vector<std::string> names = sweep_columns(plan);
+  const std::size_t steps = outcome_at(plan) + 2;
+  Json json;
+  for (std::size_t c = 0; c < names.size(); ++c)
+    json[names[c]] = c < steps ? text_json(row.cells[c]) : number_json(row.cells[c]);
+  json[names.back()] = row.state_hash.empty() ? Json(nullptr) : Json(row.state_hash);
   return json;
 }
 
@@ -218,149 +149,131 @@ void SweepCounts::add(const SweepRow& row) {
   if (!first_unexpected) first_unexpected = row.run;
 }
 
-// ---- Tables of shards
+namespace {
 
-std::string title_line(const Shard& shard, std::size_t runs, std::string_view definition) {
-  return fmt::format("# hapbench sweep, shard {} of {} runs, definition {}", shard_text(shard), runs, definition);
-}
+namespace fs = std::filesystem;
 
-ShardRows::ShardRows(fs::path file, std::size_t piece) : piece_(piece) {
-  title_.file = std::move(file);
-  read_title(line().value_or(""));
-  title_.header = line().value_or("");
-  if (!title_.header.starts_with("index,")) fail_in_line(title_.file, 2, "is not the header of a sweep's table");
-  columns_ = cells_in(title_.header);
-  run_ = title_.shard.index;
-}
+struct Sign {
+  std::string_view text;
+  bool (*holds)(double a, double b);
+};
 
-/// Accepts exactly what `title_line` writes.
-void ShardRows::read_title(std::string_view line) {
-  const Words words = words_of(line);
-  if (words.size() == 10) {
-    const Words shard = parts_of(words[4], '/');
-    const auto index = whole_number(shard.front()), count = whole_number(shard.back()), runs = whole_number(words[6]);
-    if (index && count && runs && *index < *count && *count <= kMostRuns && *runs <= kMostRuns) {
-      title_.shard = {*index, *count};
-      title_.runs = *runs;
-      title_.definition = words[9];
-      if (line == title_line(title_.shard, title_.runs, title_.definition)) return;
+/// Longer ones first.
+constexpr Sign kSigns[] = {
+    {"<=", [](double a, double b) { return a <= b; }}, {">=", [](double a, double b) { return a >= b; }},
+    {"!=", [](double a, double b) { return a != b; }}, {"<", [](double a, double b) { return a < b; }},
+    {">", [](double a, double b) { return a > b; }},   {"=", [](double a, double b) { return a == b; }}};
+
+/// A condition on the cells of a row.
+class Condition {
+ public:
+  Condition(const std::string& text, const std::vector<std::string>& columns) {
+    const std::size_t end = std::min(text.find_first_of("<>=!"), text.size());
+    const std::string rest = text.substr(end), name = text.substr(0, end);
+    sign_ = std::find_if(std::begin(kSigns), std::end(kSigns), [&](const Sign& s) { return rest.starts_with(s.text); });
+    if (sign_ != std::end(kSigns)) value_ = rest.substr(sign_->text.size());
+    number_ = finite_number(value_);
+    const bool is_equality = sign_ != std::end(kSigns) && (sign_->text == "=" || sign_->text == "!=");
+    if (value_.empty() || (!number_ && !is_equality)) {
+      throw InputError(fmt::format(
+          "--where: got \"{}\"; allowed: a column of sweep.csv, one of < <= > >= = !=, and a number (a text with = and !=), "
+          "as inside_max_m<3e-4 or outcome=completes",
+          text));
     }
+    require_valid_name("--where: got", name, columns);
+    column_ = static_cast<std::size_t>(std::find(columns.begin(), columns.end(), name) - columns.begin());
   }
-  fail_in_line(title_.file, 1, "is not the table of a shard, as \"hapbench sweep --shard i/n\" writes it");
-}
 
-std::optional<std::string_view> ShardRows::next() {
-  const auto row = line();
-  if (run_ >= title_.runs) {
-    if (row) fail_in_line(title_.file, lines_, "got a row behind the last one");
-    return std::nullopt;
+  bool holds(const std::vector<std::string>& cells) const {
+    if (!number_) return (cells[column_] == value_) == (sign_->text == "=");
+    const auto number = finite_number(cells[column_]);
+    return number && sign_->holds(*number, *number_);
   }
-  if (!row) {
-    const std::size_t rows = title_.shard.size(title_.runs);
-    fail_in_file(title_.file,
-                 fmt::format("ends after {} of {} rows; allowed: complete tables", run_ / title_.shard.count, rows));
+
+ private:
+  std::size_t column_ = 0;
+  const Sign* sign_ = nullptr;
+  std::string value_;
+  std::optional<double> number_;
+};
+
+/// The axis that sweep.json describes.
+Axis axis_of(const Json& json) {
+  Axis axis{.path = json.at("path")};
+  if (json.contains("values")) {
+    axis.values = json.at("values").get<std::vector<std::string>>();
+  } else if (json.contains("range")) {
+    axis.range = Range{json.at("range").at(0), json.at("range").at(1), json.at("scale") == "log"};
+    axis.steps = json.value("count", std::size_t{0});
   }
-  if (cells_in(*row) != columns_)
-    fail_in_line(title_.file, lines_, fmt::format("got {} cells; allowed: {}", cells_in(*row), columns_));
-  const std::string_view number = row->substr(0, row->find(','));
-  if (whole_number(number) != run_)
-    fail_in_line(title_.file, lines_, fmt::format("got run \"{}\"; allowed: {}, the next of the shard", number, run_));
-  run_ += title_.shard.count;
-  return row;
+  return axis;
 }
 
-std::optional<std::string_view> ShardRows::line() {
-  std::size_t end = 0;
-  while ((end = text_.find('\n', given_)) == std::string::npos) {
-    if (read_piece()) continue;
-    if (given_ < text_.size()) fail_in_file(title_.file, "ends within a line; allowed: complete tables");
-    return std::nullopt;
+/// The cases without their scenes, which only those that run need.
+Cases cases_of(const Json& json) {
+  std::vector<Axis> axes;
+  for (const Json& axis : json.at("vary")) axes.push_back(axis_of(axis));
+  if (!json.contains("sample")) return {{}, json.at("set"), std::move(axes)};
+  const Json& sample = json.at("sample");
+  const std::size_t count = std::min(sample.at("runs").get<std::size_t>(), kMostRuns);
+  if (sample.at("method") == sampling_name(SamplingMethod::points)) {
+    const std::size_t fields = axes.size();
+    return {{}, json.at("set"), PointTable{std::move(axes), std::vector(fields, std::vector<std::uint32_t>(count))}};
   }
-  const auto line = std::string_view(text_).substr(given_, end - given_);
-  given_ = end + 1;
-  ++lines_;
-  return line;
+  return {{},
+          json.at("set"),
+          std::move(axes),
+          parse_sampling(fmt::format("{}:{}", sample.at("method").get<std::string>(), count), sample.at("seed"))};
 }
 
-bool ShardRows::read_piece() {
-  text_.erase(0, given_);
-  given_ = 0;
-  std::error_code error;
-  std::ifstream in(title_.file, std::ios::binary);
-  if (!in || !fs::is_regular_file(title_.file, error))
-    fail_in_file(title_.file, "is no file that can be read; allowed: sweep_shard_I_of_N.csv of a sweep");
-  in.seekg(static_cast<std::streamoff>(offset_));
-  const std::size_t before = text_.size();
-  text_.resize(before + piece_);
-  in.read(text_.data() + before, static_cast<std::streamsize>(piece_));
-  const auto length = static_cast<std::size_t>(in.gcount());
-  text_.resize(before + length);
-  offset_ += length;
-  return length > 0;
+SweepPlan plan_of(const fs::path& file) {
+  try {
+    const Json json = parse_json(read_text_file(file, kLargestJsonFile));
+    return {.cases = cases_of(json),
+            .warnings = {},
+            .metrics = {},
+            .bounded = {},
+            .content = {},
+            .definition = json.at("definition")};
+  } catch (const Json::exception&) {
+    fail_in_file(file, "is not the description of a sweep");
+  } catch (const InputError& error) {
+    rethrow_with_file(error, file);
+  }
 }
 
-// ---- Tables
+}  // namespace
 
-void write_sweep_table(const fs::path& file, const SweepPlan& plan, const std::optional<Shard>& shard,
-                       const std::function<std::string(std::size_t)>& row, FileSet& files) {
-  const Shard part = shard.value_or(Shard{});
-  AtomicFile out(file);
-  if (shard) append_line(out, title_line(part, plan.points.size(), plan.definition));
-  append_line(out, sweep_header(plan));
-  for (std::size_t run = part.index; run < plan.points.size(); run += part.count) append_line(out, row(run));
-  files.take(std::move(out));
-}
+SweepOnRecord read_sweep(const fs::path& folder, const std::vector<std::string>& conditions) {
+  SweepOnRecord found{plan_of(folder / "sweep.json"), {}};
+  const fs::path file = found.report.table = folder / "sweep.csv";
+  std::ifstream in(file);
+  std::string line;
+  std::getline(in, line);
+  const std::vector<std::string> columns = csv_cells(line);
+  for (std::size_t c = outcome_at(found.plan) + 3; c + 1 < columns.size(); ++c) {
+    if (columns[c].starts_with(kToleranceOf))
+      found.plan.bounded.push_back(columns[c].substr(kToleranceOf.size()));
+    else
+      found.plan.metrics.push_back(columns[c]);
+  }
+  if (columns != sweep_columns(found.plan))
+    fail_in_file(file, "is not the table of the sweep that sweep.json describes");
 
-Json sweep_description(const SweepPlan& plan, const Shard& shard) {
-  Json description = {{"definition", plan.definition}, {"runs", plan.points.size()}, {kShardField, shard_text(shard)}};
-  description.update(plan.content);
-  return description;
-}
-
-void check_complete(std::span<const ShardTitle> tables) {
-  std::map<std::size_t, const ShardTitle*> shards;
-  for (const ShardTitle& table : tables) {
-    check_belongs(table, tables.front());
-    const auto [other, is_new] = shards.emplace(table.shard.index, &table);
-    if (!is_new) {
-      fail_in_file(table.file, fmt::format("is shard {}, as is {}; allowed: each shard once", shard_text(table.shard),
-                                           other->second->file.string()));
+  std::vector<Condition> all;
+  for (const std::string& text : conditions) all.emplace_back(text, columns);
+  try {
+    while (std::getline(in, line)) {
+      SweepRow row = sweep_row(found.plan, line);
+      if (!std::ranges::all_of(all, [&row](const Condition& c) { return c.holds(row.cells); })) continue;
+      found.report.counts.add(row);
+      if (found.report.rows.size() < SweepReport::kMostRows) found.report.rows.push_back(std::move(row));
     }
+  } catch (const InputError& error) {
+    rethrow_with_file(error, file);
   }
-  const std::size_t count = tables.front().shard.count;
-  if (shards.size() == count) return;
-  constexpr std::size_t kMostShown = 10;
-  std::vector<std::string> missing;
-  for (std::size_t i = 0; i < count && missing.size() < kMostShown; ++i)
-    if (!shards.contains(i)) missing.push_back(shard_text({i, count}));
-  throw InputError(fmt::format("{} of {} shards missing: {}{}", count - shards.size(), count, fmt::join(missing, ", "),
-                               count - shards.size() > kMostShown ? ", ..." : ""));
-}
-
-std::size_t merge_shard_tables(const fs::path& file, std::span<const fs::path> files) {
-  // All pieces together take 64 MB, unless that leaves less than a page for each file.
-  const std::size_t piece =
-      std::clamp((std::size_t{1} << 26) / files.size(), std::size_t{1} << 12, std::size_t{1} << 16);
-  std::vector<ShardRows> shards;
-  std::vector<ShardTitle> titles;
-  for (const fs::path& shard : files) titles.push_back(shards.emplace_back(shard, piece).title());
-  check_complete(titles);
-  std::sort(shards.begin(), shards.end(),
-            [](const ShardRows& a, const ShardRows& b) { return a.title().shard.index < b.title().shard.index; });
-  AtomicFile out(file);
-  append_line(out, shards[0].title().header);
-  for (std::size_t run = 0; run < titles[0].runs; ++run) append_line(out, shards[run % shards.size()].next().value());
-  for (ShardRows& shard : shards) shard.next();  // refuses anything after the last row
-  FileSet both;
-  both.take(std::move(out));
-  const fs::path description = description_of(titles[0].file);
-  if (std::error_code ignored; fs::is_regular_file(description, ignored)) {
-    Json json = parse_json(read_text_file(description, kLargestJsonFile));
-    json[kShardField] = shard_text({});
-    both.write(description_of(file), json_text(json));
-  }
-  both.commit();
-  return titles[0].runs;
+  found.report.done = found.plan.cases.size();
+  return found;
 }
 
 }  // namespace hapbench

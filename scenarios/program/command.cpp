@@ -15,7 +15,7 @@
 #include "results/io/atomic_file.hpp"
 #include "results/io/json_text.hpp"
 #include "scenarios/batch/parallel_for.hpp"
-#include "scenarios/batch/sweep_points.hpp"
+#include "scenarios/batch/axis.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/memory_limit.hpp"

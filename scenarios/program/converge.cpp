@@ -239,19 +239,18 @@ int converge(const ConvergeOptions& options) {
   sweep.jobs = options.jobs == 0 ? available_threads() : options.jobs;
   sweep.resume = options.resume;
   sweep.progress = !options.output.quiet;
-  const SweepPlan plan =
-      plan_sweep(scenario, options.overrides, SweepPoints({levels.axis}), sweep.jobs, sweep.progress);
+  const SweepPlan plan = plan_sweep(Cases({scenario}, options.overrides, {levels.axis}), sweep.jobs, sweep.progress);
   std::vector<std::string> metrics = options.metrics;
   if (metrics.empty()) metrics = {chosen_metric(plan, "")};
   require_names("--metric: got", metrics, plan.metrics);
   print_warnings(plan.warnings);
   require_writable_directory(sweep.directory);
-  check_journal(plan, sweep);
+  check_table_under_way(plan, sweep);
   // Those of another sweep must not stand beside this one if it is stopped.
   std::error_code ignored;
   for (const char* name : {kOrders, kLevels, kTimes}) fs::remove(sweep.directory / name, ignored);
 
-  std::vector<std::optional<double>> seconds(plan.points.size());
+  std::vector<std::optional<double>> seconds(plan.cases.size());
   sweep.timed = [&seconds](std::size_t run, double time) { seconds[run] = time; };
   const SweepReport report = run_sweep(plan, sweep);
   if (report.signal != 0) throw Stopped{report.signal};

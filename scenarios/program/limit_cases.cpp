@@ -200,7 +200,7 @@ LimitCases::LimitCases(const LimitOptions& options)
   if (!options.over.empty()) {
     std::vector<Axis> axes;
     for (const std::string& text : options.over) axes.push_back(parse_axis(text));
-    over_.emplace(std::move(axes));
+    over_.emplace(std::vector<ScenarioText>(), std::vector<std::string>(), std::move(axes));
   }
   for (std::size_t row = 0; row < std::max<std::size_t>(1, devices_.size()) * points(); ++row) {
     for (std::size_t scene = 0; scene < scenes_.size(); ++scene) add_case(options, row, scene);
@@ -236,7 +236,7 @@ void LimitCases::add_case(const LimitOptions& options, std::size_t row, std::siz
 std::vector<std::string> LimitCases::overrides(std::size_t row, std::size_t scene) const {
   std::vector<std::string> all = overrides_;
   if (over_) {
-    const std::vector<std::string> varied = over_->overrides(row % points());
+    const std::vector<std::string> varied = over_->changes(row % points());
     all.insert(all.end(), varied.begin(), varied.end());
   }
   return has_devices() ? overrides_on(device(row), scenes_[scene], all) : all;

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/batch/sweep_points.hpp"
+#include "scenarios/batch/cases.hpp"
 #include "scenarios/description/scenario.hpp"
 #include "scenarios/program/command.hpp"
 #include "scenarios/studies/stability/field_limit.hpp"
@@ -76,7 +76,7 @@ class LimitCases {
   std::vector<ComparedDevice> devices_;  ///< none: each scene's own
   std::vector<ScenarioText> scenes_;
   std::vector<std::string> algorithms_;  ///< none: each scene's own
-  std::optional<SweepPoints> over_;
+  std::optional<Cases> over_;
   std::vector<std::string> overrides_;
   std::vector<LimitCase> cases_;
 };

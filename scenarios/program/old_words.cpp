@@ -26,6 +26,7 @@ constexpr OldWord kOldWords[] = {
     {"", "complete", "scripts/completion, which prints a completion for bash"},
     {"", "completion", "scripts/completion, which prints a completion for bash"},
     {"", "man", "hapbench --help, and --help of each command"},
+    {"", "merge", "hapbench sweep FOLDER, which joins the tables of the shards in it"},
     {"", "suite", "hapbench compare GROUP --algorithms all --seeds 5"},
     {"compare", "--devices", kDevices},
     {"compare", "--friction", kDevices},
@@ -47,7 +48,7 @@ constexpr OldWord kOldWords[] = {
     {"sweep", "--dry-run", kSlurm},
     {"sweep", "--partition", kSlurm},
     {"sweep", "--slurm", kSlurm},
-    {"sweep", "--status", "squeue, and the tables sweep_shard_I_of_N.csv that are in the folder"},
+    {"sweep", "--status", "squeue, and the tables sweep.I_of_N.csv that are in the folder"},
     {"sweep", "--time", kSlurm},
 };
 

@@ -2,7 +2,6 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <numeric>
 #include <optional>
 #include <set>
 
@@ -81,10 +80,9 @@ class ThesisRuns {
 
   /// Runs all of them on several threads.
   void run_all(std::size_t jobs, bool progress) {
-    std::vector<std::size_t> runs(scenarios_.size());
-    std::iota(runs.begin(), runs.end(), std::size_t{0});
-    ProgressBar bar("thesis", runs.size(), progress);
-    std::size_t done = 0;
+    ProgressBar bar("thesis", scenarios_.size(), progress);
+    std::size_t begun = 0, done = 0;
+    const auto next = [&] { return begun < scenarios_.size() ? std::optional(begun++) : std::nullopt; };
     const auto work = [&](std::size_t i) -> Delivery {
       std::vector<std::string> problems = run(scenarios_[i]);
       return [&, i, problems = std::move(problems)] {
@@ -92,7 +90,7 @@ class ThesisRuns {
         bar.show(++done, true);
       };
     };
-    parallel_for(runs, jobs, work, [] { return false; });
+    parallel_for(next, jobs, work);
   }
 
   /// Runs one of them unless that has been done.

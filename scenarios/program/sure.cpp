@@ -50,12 +50,12 @@ SureStudy::SureStudy(const ScenarioText& scenario, const std::vector<std::string
     if (!algorithms.empty()) axes.push_back({.path = "rendering.algorithm", .values = algorithms});
     LevelSweep levels = level_sweep(loaded, path, kSureLevels, kSureRatio, true);
     axes.push_back(levels.axis);
-    SweepPlan plan = plan_sweep(scenario, overrides, SweepPoints(std::move(axes)), options.jobs, options.progress);
+    SweepPlan plan = plan_sweep(Cases({scenario}, overrides, std::move(axes)), options.jobs, options.progress);
     options.directory = directory / folder;
     require_writable_directory(options.directory);
     SweepReport report = run_sweep(plan, options);
     if (report.signal != 0) {
-      std::filesystem::remove(options.directory / "sweep.journal");  // it is not resumed
+      std::filesystem::remove(options.directory / "sweep.csv.part");  // it is not resumed
       throw Stopped{report.signal};
     }
     return Part{std::move(levels), std::move(plan), std::move(report)};

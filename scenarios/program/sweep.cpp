@@ -1,14 +1,13 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <iterator>
 #include <nlohmann/json.hpp>
 
-#include "scenarios/batch/journal.hpp"
 #include "scenarios/batch/league.hpp"
 #include "scenarios/batch/parallel_for.hpp"
-#include "scenarios/batch/read_sweep.hpp"
-#include "scenarios/batch/sweep_table.hpp"
+#include "scenarios/batch/table_file.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/description/metric_sections.hpp"
 #include "scenarios/program/command.hpp"
@@ -25,6 +24,7 @@ struct SweepCommand {
   std::string scenario;
   std::vector<std::string> vary;
   std::string sample;
+  std::string points;
   std::uint64_t seed = 1;
   std::string metric;
   std::vector<std::string> where;
@@ -39,18 +39,37 @@ struct SweepCommand {
   OutputOptions output;
 };
 
-SweepPoints points_of(const SweepCommand& command) {
-  const bool sampled = !command.sample.empty();
-  std::vector<Axis> axes;
-  for (const std::string& text : command.vary) {
-    axes.push_back(sampled ? parse_sampled_axis(text) : parse_axis(text));
-    Axis& axis = axes.back();
-    if (axis.path == "rendering.algorithm" && axis.values == std::vector<std::string>{"all"}) {
-      axis.values = all_algorithms();
-    }
+/// The scenes that an axis names, or the one of the command line.
+std::vector<ScenarioText> scenes_of(const SweepCommand& command, const std::vector<Axis>& axes) {
+  const auto axis = std::ranges::find(axes, kSceneAxis, &Axis::path);
+  if (axis == axes.end()) {
+    if (command.scenario.empty())
+      throw InputError("sweep: got no scenario or no --vary; allowed: both, or the folder of a finished sweep");
+    return {read_scenario_text(find_scenario(command.scenario))};
   }
-  if (!sampled) return SweepPoints(std::move(axes));
-  return SweepPoints(std::move(axes), parse_sampling(command.sample, command.seed));
+  if (!command.scenario.empty() || axis->range) {
+    throw InputError(fmt::format("--vary: got \"{}\" as a {}; allowed: a list of scenarios, and none before it",
+                                 kSceneAxis, axis->range ? "range" : "field beside a scenario"));
+  }
+  std::vector<ScenarioText> scenes;
+  for (const std::string& name : axis->values) scenes.push_back(read_scenario_text(find_scenario(name)));
+  return scenes;
+}
+
+Cases cases_of(const SweepCommand& command) {
+  if (!command.points.empty()) {
+    if (!command.vary.empty() || !command.sample.empty())
+      throw InputError(
+          "--points: got it beside --vary or --sample; allowed: the file alone, which has fields and values");
+    PointTable points = read_points(command.points);
+    std::vector<ScenarioText> scenes = scenes_of(command, points.axes);
+    return {std::move(scenes), command.overrides, std::move(points)};
+  }
+  std::vector<Axis> axes;
+  for (const std::string& text : command.vary) axes.push_back(parse_axis(text, !command.sample.empty()));
+  std::vector<ScenarioText> scenes = scenes_of(command, axes);
+  if (command.sample.empty()) return {std::move(scenes), command.overrides, std::move(axes)};
+  return {std::move(scenes), command.overrides, std::move(axes), parse_sampling(command.sample, command.seed)};
 }
 
 SweepOptions sweep_options(const SweepCommand& command, const fs::path& scenario) {
@@ -80,46 +99,35 @@ void print_some_warnings(std::vector<std::string> warnings) {
 }
 
 std::string run_text(const SweepPlan& plan, std::size_t run) {
-  return fmt::format("run {} ({})", run, fmt::join(plan.points.overrides(run), ", "));
+  return fmt::format("run {} ({})", run, fmt::join(plan.cases.changes(run), ", "));
 }
 
 /// Reports runs that failed or ended unexpectedly and returns the exit status.
 int verdict(const SweepPlan& plan, const SweepReport& report) {
   const SweepCounts& counts = report.counts;
+  const std::string scene = plan.cases.scenes().front().file.string();
   if (report.failed) {
-    print_error(fmt::format("{}: {} of {} runs failed, the first: {}: {}", plan.scenario.file.string(), counts.failed,
-                            counts.runs, run_text(plan, report.failed->run), one_line(report.failed->problem)));
+    print_error(fmt::format("{}: {} of {} runs failed, the first: {}: {}", scene, counts.failed, counts.runs,
+                            run_text(plan, report.failed->run), one_line(report.failed->problem)));
     return kInternalFault;
   }
   if (counts.unexpected > 0) {
-    print_note(fmt::format("{}: {} of {} runs did not end as expected, the first: {}", plan.scenario.file.string(),
-                           counts.unexpected, counts.runs, run_text(plan, *counts.first_unexpected)));
+    print_note(fmt::format("{}: {} of {} runs did not end as expected, the first: {}", scene, counts.unexpected,
+                           counts.runs, run_text(plan, *counts.first_unexpected)));
     return kUnexpectedOutcome;
   }
   return kSuccess;
 }
 
-void append(std::vector<std::string>& words, std::vector<std::string> more) {
-  words.insert(words.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
-}
-
-/// A command of this program on a scenario, up to its options.
-std::vector<std::string> command_words(const char* name, const fs::path& file) {
-  return {this_program().string(), name, fs::absolute(file).lexically_normal().string()};
-}
-
 /// Prints the command that repeats the run of a row.
-int print_row(const SweepCommand& command, const fs::path& file) {
-  const SweepPoints points = points_of(command);
-  if (command.row >= points.size()) {
-    throw InputError(fmt::format("--row: got {}; allowed: 0 ... {}", command.row, points.size() - 1));
-  }
-  std::vector<std::string> overrides = command.overrides;
-  append(overrides, points.overrides(command.row));
-  load_scenario(file, overrides);  // throws if the row's scenario is wrong
-  std::vector<std::string> words = command_words("run", file);
-  for (const std::string& override : overrides) append(words, {"--set", override});
-  append(words, plugin_words());
+int print_row(const SweepCommand& command, const Cases& cases) {
+  if (command.row >= cases.size())
+    throw InputError(fmt::format("--row: got {}; allowed: 0 ... {}", command.row, cases.size() - 1));
+  cases.load(command.row);  // throws if the row's scenario is wrong
+  const fs::path scene = fs::absolute(cases.scene(command.row).file).lexically_normal();
+  std::vector<std::string> words = {this_program().string(), "run", scene.string()};
+  for (const std::string& override : cases.overrides(command.row)) words.insert(words.end(), {"--set", override});
+  std::ranges::copy(plugin_words(), std::back_inserter(words));
   print(command.output, shell_line(words) + "\n", Json{{"row", command.row}, {"command", words}});
   return kSuccess;
 }
@@ -130,11 +138,11 @@ void print_sweep(const SweepCommand& command, const SweepPlan& plan, const Sweep
   if (command.output.json) return print(command.output, "", summary_json(plan, report));
   std::string text = summary_text(plan, report, metric);
   if (!command.where.empty()) {
-    text += fmt::format("{} of {} runs have {}\n", report.counts.runs, plan.points.size(),
+    text += fmt::format("{} of {} runs have {}\n", report.counts.runs, plan.cases.size(),
                         fmt::join(command.where, " and "));
   }
   const std::string folder = report.table.parent_path().string();
-  const bool sampled = plan.points.sampling() && plan.points.axes().size() > 1;
+  const bool sampled = plan.cases.sampling() && plan.cases.axes().size() > 1;
   if (sampled || !command.metric.empty()) {
     text += fmt::format("\"hapbench plot {} --metric {}\" draws it{}\n", folder, metric,
                         sampled ? " and tells how much each field matters" : "");
@@ -145,8 +153,8 @@ void print_sweep(const SweepCommand& command, const SweepPlan& plan, const Sweep
 /// Prints the sweep of a folder, without a run.
 int reprint(const SweepCommand& command) {
   const bool runs = !command.vary.empty() || !command.overrides.empty() || !command.sample.empty() ||
-                    !command.out.empty() || !command.shard.empty() || command.resume || command.keep_runs ||
-                    command.print;
+                    !command.points.empty() || !command.out.empty() || !command.shard.empty() || command.resume ||
+                    command.keep_runs || command.print;
   if (runs) {
     throw InputError(fmt::format(
         "{}: holds a finished sweep, which is printed again; allowed beside it: --where, --metric, --json, --quiet",
@@ -159,11 +167,12 @@ int reprint(const SweepCommand& command) {
 
 }  // namespace
 
-void check_journal(const SweepPlan& plan, const SweepOptions& options) {
-  const fs::path file = options.directory / (stem_of(options.shard) + ".journal");
-  const std::size_t rows = Journal::count_rows(file);
-  if (options.resume || rows == 0 || Journal::is_being_written(file)) return;
-  if (Journal::is_of(file, journal_title(plan, options.part(), options.keep_runs))) {
+void check_table_under_way(const SweepPlan& plan, const SweepOptions& options) {
+  const fs::path table = table_of(options);
+  const std::size_t rows = TableFile::rows_under_way(table);
+  const fs::path file = table.string() + ".part";
+  if (options.resume || rows == 0) return;
+  if (TableFile::is_of(table, plan.definition)) {
     fail_in_file(file,
                  fmt::format("holds {} finished runs of this sweep, which was interrupted; allowed: --resume to go on "
                              "from there, another --out, or to begin anew without this file",
@@ -177,28 +186,28 @@ namespace {
 
 int sweep(const SweepCommand& command) {
   std::error_code ignored;
-  if (fs::is_regular_file(fs::path(command.scenario) / "sweep.csv", ignored)) return reprint(command);
-  if (command.scenario.empty() || command.vary.empty()) {
+  if (fs::is_directory(command.scenario, ignored))
+    if (join_shards(command.scenario) || fs::is_regular_file(fs::path(command.scenario) / "sweep.csv", ignored))
+      return reprint(command);
+  if (command.vary.empty() && command.points.empty())
     throw InputError("sweep: got no scenario or no --vary; allowed: both, or the folder of a finished sweep");
-  }
   if (!command.where.empty() && !command.shard.empty())
     throw InputError(
-        "--where: got it for a shard; allowed: for a whole sweep, or \"hapbench sweep FOLDER\" of the merged one");
+        "--where: got it for a shard; allowed: for a whole sweep, or \"hapbench sweep FOLDER\" of the joined one");
   // All input is checked before anything runs or is written.
-  const fs::path file = find_scenario(command.scenario);
-  if (command.print) return print_row(command, file);
-  const SweepOptions options = sweep_options(command, file);
-  const SweepPlan plan =
-      plan_sweep(read_scenario_text(file), command.overrides, points_of(command), options.jobs, options.progress);
+  Cases cases = cases_of(command);
+  if (command.print) return print_row(command, cases);
+  const SweepOptions options = sweep_options(command, cases.scenes().front().file);
+  const SweepPlan plan = plan_sweep(std::move(cases), options.jobs, options.progress);
   chosen_metric(plan, command.metric);  // throws if there is none of that name
   print_some_warnings(plan.warnings);
   require_writable_directory(options.directory);
-  check_journal(plan, options);
+  check_table_under_way(plan, options);
 
   const SweepReport report = run_sweep(plan, options);
   if (report.signal != 0) {
     print_note(fmt::format("stopped after {} of {} runs; the same command with --resume continues", report.done,
-                           options.part().size(plan.points.size())));
+                           options.part().size(plan.cases.size())));
     return kStopped + report.signal;
   }
   const SweepReport kept = command.where.empty() ? report : read_sweep(options.directory, command.where).report;
@@ -208,7 +217,8 @@ int sweep(const SweepCommand& command) {
 
 void add_run_options(Command& command, SweepCommand& options) {
   command.add("--jobs", options.jobs, "runs at once; results do not depend on it (default: one per thread)");
-  command.flag("--resume", options.resume, "continue an interrupted sweep of the same definition");
+  command.flag("--resume", options.resume,
+               "continue an interrupted sweep of the same definition, and try again what failed");
   command.flag("--keep-runs", options.keep_runs, "also write the files of each run, into runs/INDEX");
   CommandOption row = command.add("--row", options.row, "index of the run for --print");
   CommandOption print = command.flag("--print", options.print, "only print the command that repeats the run of --row");
@@ -228,13 +238,16 @@ void add_sweep(CommandLine& line) {
       .add(
           "--vary", options.vary,
           "a field and its values: path=a:b:n (n numbers from a to b), path=a:b:n:log (in equal ratios) or path=v,w,... "
-          "(numbers or texts; rendering.algorithm=all). Several give all combinations; the last one varies fastest. "
-          "With --sample: path=a:b, path=a:b:log or path=v,w,...")
+          "(numbers, names or JSON; rendering.algorithm=all; scenario=v,w in place of SCENARIO). Several give all "
+          "combinations; the last one varies fastest. With --sample: path=a:b, path=a:b:log or path=v,w,...")
       .repeatable();
-  const CommandOption sample =
-      command.add("--sample", options.sample,
-                  "run a sample of points instead of all combinations: lhs:N (Latin hypercube), sobol:N (shifted Sobol "
-                  "sequence, best for powers of two) or random:N; listed values take equal shares");
+  const CommandOption sample = command.add(
+      "--sample", options.sample,
+      "run a sample of points instead of all combinations: lhs:N (Latin hypercube) or random:N; listed values "
+      "take equal shares");
+  command.add(
+      "--points", options.points,
+      "run the points of a CSV file instead: fields' paths in the first line, their values in each further one");
   command.add("--seed", options.seed, "seed of the sample (default: 1)").needs(sample);
   command.add("--metric", options.metric,
               "the column of sweep.csv that is shown, by which runs are ordered (default: " +
@@ -247,53 +260,15 @@ void add_sweep(CommandLine& line) {
   command.add("--out", options.out, "directory of sweep.csv (default: results/out/sweep_NAME)");
   add_overrides(command, options.overrides, "override a field of all runs: path=value");
   add_run_options(command, options);
-  command.add("--shard", options.shard,
-              "i/n with 0 <= i < n: do only the runs whose index leaves the remainder i on division by n");
+  command.add("--shard", options.shard, "i/n with 0 <= i < n: do only every n-th run, from the i-th on");
   add_output_options(command, options.output);
   command.footer(
       "sweep.csv has a row for each run: index, the varied fields, outcome (\"error\" when it could not be computed), "
       "expected, steps, every metric, state_hash. \"hapbench sweep FOLDER\" prints it again, without a run. Shards write "
-      "sweep_shard_I_of_N.csv; \"hapbench merge\" joins them. "
+      "sweep.I_of_N.csv, and the same joins them. "
       "Ctrl-C stops after the runs that are under way.\n"
       "Exit status: 0 success, 1 a run could not be computed, 2 bad input or usage, 3 a run did not end as expected, "
       "130 stopped by Ctrl-C.");
-}
-
-namespace {
-
-struct MergeOptions {
-  std::vector<std::string> files;
-  std::string out;
-  OutputOptions output;
-};
-
-int merge(const MergeOptions& options) {
-  require_writable_file(options.out);
-  for (const std::string& file : options.files) {
-    std::error_code unknown;
-    if (fs::equivalent(file, options.out, unknown))
-      throw InputError(fmt::format("--out: got \"{}\", one of the tables to join; allowed: another file", options.out));
-  }
-  const std::size_t shards = options.files.size();
-  const std::size_t runs =
-      merge_shard_tables(options.out, std::vector<fs::path>(options.files.begin(), options.files.end()));
-  print(options.output, fmt::format("{} runs of {} shards in {}\n", runs, shards, options.out),
-        {{"runs", runs}, {"shards", shards}, {"file", options.out}});
-  return kSuccess;
-}
-
-}  // namespace
-
-void add_merge(CommandLine& line) {
-  auto [command, options] = line.command("merge", "Join the tables of all shards of a sweep", merge);
-  command.add("files", options.files, "sweep_shard_I_of_N.csv for every I, in any order").required();
-  command
-      .add(
-          "--out", options.out,
-          "file of the table, which gets the same bytes as sweep.csv of the undivided sweep; a JSON file beside it, as "
-          "sweep.json, names everything the table depends on")
-      .required();
-  add_output_options(command, options.output);
 }
 
 }  // namespace hapbench

@@ -21,6 +21,6 @@ Json summary_json(const SweepPlan& plan, const SweepReport& report);
 
 /// Refuses to begin anew, without --resume, where the finished runs of the same sweep would be lost, and tells when
 /// those of another are.
-void check_journal(const SweepPlan& plan, const SweepOptions& options);
+void check_table_under_way(const SweepPlan& plan, const SweepOptions& options);
 
 }  // namespace hapbench

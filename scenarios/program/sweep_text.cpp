@@ -41,7 +41,7 @@ bool has_failed(const SweepRow& row) {
 
 /// The runs with the headings that run and compare have.
 std::string runs_text(const SweepPlan& plan, std::span<const SweepRow> rows) {
-  const std::vector<Axis>& axes = plan.points.axes();
+  const std::vector<Axis>& axes = plan.cases.axes();
   std::vector<RunHeading> metrics;
   std::vector<Table::Column> columns;
   if (axes.size() == 1) {
@@ -65,8 +65,8 @@ std::string runs_text(const SweepPlan& plan, std::span<const SweepRow> rows) {
     std::vector<std::string> cells;
     if (axes.size() > 1) cells.push_back(std::to_string(row.run));
     for (std::size_t a = 0; a < axes.size(); ++a) {
-      const std::string value = plan.points.value(row.run, a);
-      cells.push_back(plan.points.sampling() ? shown_value(value) : value);
+      const std::string& value = row.values[a];
+      cells.push_back(plan.cases.sampling() ? shown_value(value) : value);
     }
     cells.push_back(row.outcome);
     for (const RunHeading& heading : metrics) {
@@ -94,9 +94,9 @@ struct GridCell {
 class Grid {
  public:
   Grid(const SweepPlan& plan, const std::vector<SweepRow>& rows, std::string_view metric)
-      : first_down_(!holds_texts(plan.points.axes()[1]) || holds_texts(plan.points.axes()[0])),
-        across_(plan.points.axes()[first_down_ ? 1 : 0]),
-        down_(plan.points.axes()[first_down_ ? 0 : 1]) {
+      : first_down_(!holds_texts(plan.cases.axes()[1]) || holds_texts(plan.cases.axes()[0])),
+        across_(plan.cases.axes()[first_down_ ? 1 : 0]),
+        down_(plan.cases.axes()[first_down_ ? 0 : 1]) {
     for (const SweepRow& row : rows) {
       const bool failed = has_failed(row);
       cells_.push_back(
@@ -205,8 +205,8 @@ std::string map_text(const Grid& grid, std::string_view metric) {
 }
 
 std::string grid_text(const SweepPlan& plan, const std::vector<SweepRow>& rows, std::string_view metric) {
-  const bool is_grid = plan.points.axes().size() == 2 && !plan.points.sampling();
-  if (!is_grid || rows.size() != plan.points.size() || rows.size() > kMostCells) return "";
+  const bool is_grid = plan.cases.axes().size() == 2 && !plan.cases.sampling();
+  if (!is_grid || rows.size() != plan.cases.size() || rows.size() > kMostCells) return "";
   const Grid grid(plan, rows, metric);
   std::string text = fmt::format("{}\n\n{}\n", metric, table_text(grid));
   constexpr std::size_t kMostAcross = 40;  // a wider map does not fit beside its labels
@@ -217,13 +217,13 @@ std::string grid_text(const SweepPlan& plan, const std::vector<SweepRow>& rows, 
 /// The rows with the least of the metric, failures last; for a single axis all rows.
 std::string listed_text(const SweepPlan& plan, std::vector<SweepRow> rows, const std::string& metric) {
   constexpr std::size_t kMostListed = 20;
-  const bool single = plan.points.axes().size() == 1;
+  const bool single = plan.cases.axes().size() == 1;
   if (rows.empty() || (single && rows.size() > kMostRowsShown)) return "";
   const auto key = [&](const SweepRow& row) {
-    const auto value = single ? finite_number(plan.points.value(row.run, 0)) : row.number(plan, metric);
+    const auto value = single ? finite_number(row.values[0]) : row.number(plan, metric);
     return value.value_or(std::numeric_limits<double>::infinity());
   };
-  if (!single || plan.points.sampling())
+  if (!single || plan.cases.sampling())
     std::ranges::stable_sort(rows, {}, [&](const SweepRow& row) { return std::pair(has_failed(row), key(row)); });
   if (single) return runs_text(plan, rows) + "\n";
   const std::size_t shown = std::min(kMostListed, rows.size());

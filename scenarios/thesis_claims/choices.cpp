@@ -8,7 +8,7 @@
 #include <set>
 
 #include "results/io/json_text.hpp"
-#include "scenarios/batch/sweep_points.hpp"
+#include "scenarios/batch/axis.hpp"
 #include "scenarios/description/reader.hpp"
 #include "scenarios/description/writer.hpp"
 #include "scenarios/input/text_lines.hpp"
@@ -295,16 +295,14 @@ std::vector<std::string> Choices::values_on_record() const {
   return values;
 }
 
-std::vector<std::string> Choices::values_at(std::span<const double> point) const {
-  std::vector<std::string> values;
-  for (std::size_t i = 0; i < all_.size(); ++i) {
-    const OpenChoice& choice = all_[i];
-    Axis axis{choice.id, choice.options.value_or(std::vector<std::string>()), {}};
+std::vector<Axis> Choices::axes() const {
+  std::vector<Axis> axes;
+  for (const OpenChoice& choice : all_) {
+    Axis& axis = axes.emplace_back(Axis{choice.id, choice.options.value_or(std::vector<std::string>())});
     if (choice.range)
       axis.range = Range{choice.range->first, choice.range->second, choice.scale == OpenChoice::Scale::log};
-    values.push_back(value_at(axis, point[i]));
   }
-  return values;
+  return axes;
 }
 
 std::vector<std::string> Choices::overrides(const Scenario& scenario, std::span<const std::string> values) const {

@@ -10,6 +10,7 @@
 #include <variant>
 #include <vector>
 
+#include "scenarios/batch/axis.hpp"
 #include "scenarios/thesis_claims/evidence.hpp"
 
 /// Choices that the thesis leaves open and that the bundled scenarios make: results/reference/choices.json.
@@ -53,11 +54,10 @@ class Choices {
   /// FNV-1a of the file's content, as 16 hexadecimal digits; spelling and white space do not count.
   const std::string& hash() const { return hash_; }
 
+  /// What each choice can take: a range in its scale, or its options.
+  std::vector<Axis> axes() const;
   /// The values on record, one for each choice, as texts for --set.
   std::vector<std::string> values_on_record() const;
-  /// The values at a point of the unit cube with an axis for each choice: across a range in its scale, or an option
-  /// each on an equal share.
-  std::vector<std::string> values_at(std::span<const double> point) const;
 
   /// Returns the changes that these values make to a scenario, as overrides "path=value" for load_scenario. Choices
   /// that concern the same field are applied in order. Throws InputError when a choice's path is no field of a scenario

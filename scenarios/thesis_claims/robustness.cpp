@@ -12,9 +12,7 @@
 
 #include "results/io/atomic_file.hpp"
 #include "results/io/json_text.hpp"
-#include "scenarios/batch/journal.hpp"
-#include "scenarios/batch/parallel_for.hpp"
-#include "scenarios/batch/sampling.hpp"
+#include "scenarios/batch/table_file.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/run/assemble.hpp"
@@ -216,10 +214,11 @@ std::optional<ClaimRobustness::DecidingChoice> deciding_choice(const RobustnessP
 RobustnessPlan plan_robustness(Choices choices, PublishedNumbers published, std::vector<Claim> claims, ResultsRead read,
                                std::size_t samples) {
   std::erase_if(claims, [](const Claim& claim) { return claim.timing; });
-  RobustnessPlan plan{std::move(choices), std::move(published), std::move(claims), std::move(read), {}};
   const Sampling sampling{SamplingMethod::latin_hypercube, samples, kRobustnessSeed};
-  const UnitSample sample(sampling, plan.choices.all().size());
-  for (std::size_t i = 0; i < samples; ++i) plan.values.push_back(plan.choices.values_at(sample.point(i)));
+  Cases cases({}, {}, choices.axes(), sampling);
+  RobustnessPlan plan{std::move(choices), std::move(published), std::move(claims),
+                      std::move(read),    std::move(cases),     {}};
+  for (std::size_t i = 0; i < samples; ++i) plan.values.push_back(plan.cases.values(i));
   return plan;
 }
 
@@ -295,73 +294,47 @@ std::string definition(const RobustnessPlan& plan, const std::string& program) {
   return fmt::format("robustness {}", hash_text(hash_of(json_text(content))));
 }
 
-/// The sample and the verdicts in a row; none when it is not of this plan.
-std::optional<std::pair<std::size_t, Verdicts>> read_row(const RobustnessPlan& plan, const std::string& row) {
-  const Words cells = parts_of(row, ',');
-  const auto sample = whole_number(cells.front());
-  const std::size_t leading = 1 + plan.choices.all().size();
-  if (!sample || *sample >= plan.samples() || cells.size() != leading + plan.claims.size()) return std::nullopt;
-  const Verdicts verdicts(cells.begin() + static_cast<std::ptrdiff_t>(leading), cells.end());
-  if (robustness_row(plan, *sample, verdicts) != row) return std::nullopt;
-  return std::pair{*sample, verdicts};
-}
-
-/// Copies the verdicts of the journal into the report and returns the samples that are left.
-std::vector<std::size_t> samples_to_do(const RobustnessPlan& plan, const fs::path& journal,
-                                       const std::vector<std::string>& rows, RobustnessReport& report) {
-  std::vector<bool> done(plan.samples());
-  for (const std::string& row : rows) {
-    auto read = read_row(plan, row);
-    if (!read) fail_in_file(journal, fmt::format("got the row \"{}\"; allowed: rows of this plan", row.substr(0, 60)));
-    done[read->first] = true;
-    report.verdicts[read->first] = std::move(read->second);
-  }
-  std::vector<std::size_t> left;
-  for (std::size_t sample = 0; sample < plan.samples(); ++sample) {
-    if (!done[sample]) left.push_back(sample);
-  }
-  report.resumed = report.done = plan.samples() - left.size();
-  return left;
-}
-
 }  // namespace
 
 RobustnessReport run_robustness(const RobustnessPlan& plan, const RobustnessOptions& options) {
-  const fs::path file = options.directory / "robustness.journal", scratch = options.directory / "robustness";
-  const std::string title = definition(plan, options.program);
+  const fs::path file = options.directory / "robustness_samples.csv", scratch = options.directory / "robustness";
+  const std::string name = definition(plan, options.program);
   // Results of a program without an identity cannot be trusted: compute them again.
-  const bool resume = !options.anew && !options.program.empty() && Journal::is_of(file, title);
-  std::vector<std::string> rows;
-  Journal journal(file, title, resume, [&rows](Journal::Place, std::string_view row) { rows.emplace_back(row); });
+  const bool resume = !options.anew && !options.program.empty() && TableFile::is_of(file, name);
   RobustnessReport report;
   report.verdicts.resize(plan.samples());
-  const std::vector<std::size_t> left = samples_to_do(plan, file, rows, report);
+  const auto keep = [&](std::size_t sample, std::string_view row) {
+    const std::size_t leading = 1 + plan.choices.all().size();
+    const Words cells = parts_of(row, ',');
+    if (cells.size() != leading + plan.claims.size())
+      fail_in_file(file, fmt::format("got the row \"{}\"; allowed: rows of this plan", row.substr(0, 60)));
+    report.verdicts[sample].assign(cells.begin() + static_cast<std::ptrdiff_t>(leading), cells.end());
+    return true;
+  };
+  TableFile table({file, header(plan), {{"definition", name}}, plan.samples(), true},
+                  resume ? TableFile::Keep(keep) : nullptr);
+  report.resumed = table.count();
   fs::remove_all(scratch);  // of a process that was killed
   ProgressBar bar("robustness", plan.samples(), options.progress);
   bar.start_at(report.resumed);
   std::map<std::size_t, std::vector<std::string>> problems;
-  const auto judge = [&](std::size_t sample) -> Delivery {
-    return [&, sample, judged = judge_sample(plan, sample, scratch / std::to_string(sample))] {
-      journal.add(robustness_row(plan, sample, judged.verdicts));
-      journal.flush();
-      report.verdicts[sample] = judged.verdicts;
-      problems[sample] = judged.problems;
-      bar.show(++report.done, true);
-    };
-  };
-  const auto work = [&](std::size_t sample) -> Delivery {
-    try {
-      return judge(sample);
-    } catch (const Stopped&) {
-      return {};  // the same command judges it
-    }
-  };
-  parallel_for(left, options.jobs, work, [] { return StopSignal::received() != 0; });
+  for_each(plan.cases, {}, options.jobs, table, [&](std::size_t sample) -> TableRow {
+    const SampleVerdicts judged = judge_sample(plan, sample, scratch / std::to_string(sample));
+    return {robustness_row(plan, sample, judged.verdicts), [&, sample, judged] {
+              report.verdicts[sample] = judged.verdicts;
+              problems[sample] = judged.problems;
+              bar.show(table.count(), true);
+            }};
+  });
   std::error_code ignored;
   fs::remove_all(scratch, ignored);
   for (const auto& [sample, texts] : problems)
     report.problems.insert(report.problems.end(), texts.begin(), texts.end());
-  if (report.done < plan.samples()) report.signal = StopSignal::received();
+  report.done = table.count();
+  if (report.done < plan.samples())
+    report.signal = StopSignal::received();
+  else
+    table.finish();
   return report;
 }
 

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "results/summary/provenance.hpp"
+#include "scenarios/batch/cases.hpp"
 #include "scenarios/thesis_claims/choices.hpp"
 #include "scenarios/thesis_claims/claims.hpp"
 
@@ -57,7 +58,8 @@ struct RobustnessPlan {
   PublishedNumbers published;
   std::vector<Claim> claims;
   ResultsRead read;  ///< by the claims; other records of a scenario are left out until a claim asks for them
-  std::vector<std::vector<std::string>> values;  ///< for each sample one of each choice
+  Cases cases;       ///< the samples: an axis for each choice
+  std::vector<std::vector<std::string>> values;  ///< of the cases
 
   std::size_t samples() const { return values.size(); }
   /// Costly claims are judged in the first of the samples only.
@@ -108,10 +110,10 @@ std::vector<ClaimRobustness> robustness_of(const RobustnessPlan& plan, const std
                                            const std::vector<std::vector<std::string>>& verdicts);
 
 struct RobustnessOptions {
-  std::filesystem::path directory;                ///< of the journal and of results while they are needed; exists
-  std::size_t jobs = 1;                           ///< samples at once
-  bool anew = false;                              ///< use nothing that an interrupted run has left
-  bool progress = false;                          ///< allow a progress bar
+  std::filesystem::path directory;  ///< of the samples' table and of results while they are needed; exists
+  std::size_t jobs = 1;             ///< samples at once
+  bool anew = false;                ///< use nothing that an interrupted run has left
+  bool progress = false;            ///< allow a progress bar
   std::string program = provenance().identity();  ///< whose samples are continued; empty: those of none
 };
 
@@ -125,9 +127,8 @@ struct RobustnessReport {
 };
 
 /// Judges every sample of a plan, `jobs` at once. Verdicts depend neither on `jobs` nor on interruptions. Each sample's
-/// are in a journal at once: after a kill the same plan, judged by the same program, goes on from there. SIGINT and
-/// SIGTERM end it after the samples in flight. Throws InputError when another process is at work in the directory,
-/// IoError when something cannot be written.
+/// are in a table at once (table_file.hpp): after a kill the same plan, judged by the same program, goes on from there.
+/// SIGINT and SIGTERM end it after the samples in flight. Throws IoError when something cannot be written.
 RobustnessReport run_robustness(const RobustnessPlan& plan, const RobustnessOptions& options);
 
 /// robustness.csv: sample, a column for each choice and one for each claim.

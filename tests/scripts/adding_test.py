@@ -450,15 +450,13 @@ class Adding(unittest.TestCase):
         (self.folder / "stroke.csv").write_text(stroke)
         vary = ["--vary", "environment.height_m=0.001,0.0011", "--vary", "tool.width_m=0.002,0.003"]
         self.hapbench("sweep", "scene.json", *vary, "--shard", "0/2", "--out", "sweep", "--quiet")
-        of_sweep, header, *rows = (self.folder / "sweep/sweep_shard_0_of_2.csv").read_text().splitlines()
-        self.assertIn("shard 0/2 of 4 runs", of_sweep)
+        header, *rows = (self.folder / "sweep/sweep.0_of_2.csv").read_text().splitlines()
         self.assertIn("environment.height_m,tool.width_m", header)
         self.assertEqual(len(rows), 2)
         self.assertIn("missing.csv", self.hapbench("sweep", "scene.json", "--vary", "hand.file=stroke.csv,missing.csv", "--out", "bad", status=2))
         (self.folder / "stroke.csv").write_text(stroke + "1,0,0,0,0,0,-1\n")
         self.hapbench("sweep", "scene.json", *vary, "--shard", "1/2", "--out", "sweep", "--quiet")
-        shards = [f"sweep/sweep_shard_{i}_of_2.csv" for i in range(2)]
-        self.assertIn("is of another sweep", self.hapbench("merge", *shards, "--out", "merged", status=2))
+        self.assertIn("is of another sweep", self.hapbench("sweep", "sweep", status=2))
 
 
 if __name__ == "__main__":

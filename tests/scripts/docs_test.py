@@ -91,12 +91,13 @@ class Bench:
         write_log(folder / "log.csv")
         shutil.copy(folder / "mydevice.json", folder / "log_device.json")
         shutil.copy(SOURCE / "scenarios/validation/epfl_paddle.json", folder)
+        shutil.copy(SOURCE / "scenarios/library/studies/stability_delay.json", folder / "mine.json")
         compile_law(folder / "depth_weighted.so")
         self.must("new", "mesh", "--from", "my.stl", "--out", "my.json")
         for name in "abc":
             shutil.copy(folder / "my.json", folder / f"{name}.json")
         for shard in range(2):
-            self.sweep("--shard", f"{shard}/2", "--out", ".")
+            self.sweep("--shard", f"{shard}/2", "--out", "shards")
         for out in ("results/good/peg", "results/out/peg"):
             self.must("run", "peg_in_hole_2d_shaped_stiffness", *FEW_STEPS, "--out", out)
 

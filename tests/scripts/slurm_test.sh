@@ -70,8 +70,8 @@ done
 sweep() { printf '%s\n' single_spring --set record.trajectory=false --set time.steps=100000 --vary "rendering.stiffness_N_per_m=1e3:1e4:$runs:log" --out "$folder/$1"; }
 submit() { mapfile -t words < <(sweep out) && sbatch --parsable --array=0-2 --output="$folder/task_%a.log" "$here/scripts/sweep.sbatch" "${words[@]}"; }
 wait_for_the_queue() { while [[ -n $(squeue --noheader) ]]; do sleep 0.2; done; }
-shard=$folder/out/sweep_shard_
-is_begun() { [[ -e $shard$1_of_3.csv ]] || (($(cat "$shard$1_of_3.journal" 2>/dev/null | wc -l) > 2)); }
+shard=$folder/out/sweep.
+is_begun() { [[ -e $shard$1_of_3.csv ]] || (($(cat "$shard$1_of_3.csv.part" 2>/dev/null | wc -l) > 2)); }
 
 # Task 1 is killed, and task 0 stopped and requeued, as preemption does, once both have begun. With more runs, a busy machine leaves time
 # for that.

@@ -4,7 +4,7 @@
 #include <map>
 #include <optional>
 
-#include "scenarios/batch/sweep_points.hpp"
+#include "scenarios/batch/axis.hpp"
 
 /// The search for the edge of the stable values of a field, whatever makes a value stable.
 namespace hapbench {

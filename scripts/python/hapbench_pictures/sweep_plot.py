@@ -55,6 +55,7 @@ class Sweep:
         plan = load_object(folder / "sweep.json") if (folder / "sweep.json").is_file() else {}
         self.axes = at(plan, "/vary") or [{"path": name} for name in names[1:names.index("outcome")]]
         self.fields, self.sampled = [entry["path"] for entry in self.axes], "sample" in plan
+        self.of_file = at(plan, "/sample/method") == "points"
         metrics = [name for name in names[names.index("outcome") + 1:] if any(is_number(row[name]) for row in self.rows)]
         self.metric = metric or next((name for name in USUAL if name in metrics), metrics[0])
         if self.metric not in metrics:
@@ -111,7 +112,7 @@ class Sweep:
             column = self.column(self.fields[i])
             column = [value for value, yes in zip(column, ok) if yes] if isinstance(column, list) else column[ok]
             place = None
-            if "range" in entry and len(column):
+            if ("range" in entry or self.of_file and isinstance(column, np.ndarray)) and len(column):
                 place = np.log(column) if self.is_logarithmic(i) else column
                 place = (place - place.min()) / (np.ptp(place) or 1.0)
             found.append(sensitivity(column, place, y[ok]))

@@ -4,7 +4,6 @@
 
 #include <atomic>
 #include <latch>
-#include <numeric>
 #include <set>
 #include <stdexcept>
 #include <thread>
@@ -13,50 +12,40 @@
 namespace hapbench::parallel_for_test {
 namespace {
 
-std::vector<std::size_t> numbers_to(std::size_t n) {
-  std::vector<std::size_t> numbers(n);
-  std::iota(numbers.begin(), numbers.end(), std::size_t{0});
-  return numbers;
-}
-
-bool never() {
-  return false;
+/// Calls `work` for the runs below `count`, until `stop`.
+void for_each_run(
+    std::size_t count, std::size_t jobs, const std::function<Delivery(std::size_t)>& work,
+    const std::function<bool()>& stop = [] { return false; }) {
+  std::size_t begun = 0;  // no lock: that is the promise
+  parallel_for([&] { return begun < count && !stop() ? std::optional(begun++) : std::nullopt; }, jobs, work);
 }
 
 class ForEachRun : public testing::TestWithParam<std::size_t> {};
 
-TEST_P(ForEachRun, DoesAndDeliversEachOnceOneDeliveryAtATime) {
-  const std::vector<std::size_t> runs = {7, 3, 500, 3000, 0, 12};
-  std::multiset<std::size_t> delivered;  // no lock: that is the promise
-  parallel_for(
-      runs, GetParam(), [&](std::size_t run) { return [&, run] { delivered.insert(run); }; }, never);
-  EXPECT_EQ(delivered, std::multiset<std::size_t>(runs.begin(), runs.end()));
-}
-
-TEST_P(ForEachRun, HasNoMoreInFlightThanJobsAndStartsInOrder) {
+TEST_P(ForEachRun, StartsInOrderAndDeliversEachOnceOneDeliveryAtATime) {
+  std::multiset<std::size_t> runs;  // no lock either
   std::atomic<std::size_t> delivered = 0;
-  parallel_for(
-      numbers_to(400), GetParam(),
-      [&](std::size_t run) {
-        // All before this one have started, and all of them but jobs - 1 are delivered.
-        EXPECT_LT(run, delivered + GetParam());
-        std::this_thread::yield();
-        return [&] { ++delivered; };
-      },
-      never);
+  for_each_run(400, GetParam(), [&](std::size_t run) {
+    // All before this one have started, and all of them but jobs - 1 are delivered.
+    EXPECT_LT(run, delivered + GetParam());
+    std::this_thread::yield();
+    return [&, run] {
+      runs.insert(run);
+      ++delivered;
+    };
+  });
   EXPECT_EQ(delivered, 400u);
+  EXPECT_EQ(std::set<std::size_t>(runs.begin(), runs.end()).size(), 400u);
 }
 
 TEST_P(ForEachRun, StopsAfterThoseInFlight) {
   std::size_t delivered = 0;
   std::atomic<bool> stop = false;
-  parallel_for(
-      numbers_to(10'000), GetParam(),
-      [&](std::size_t run) {
-        if (run == 20) stop = true;
-        return [&] { ++delivered; };
-      },
-      [&] { return stop.load(); });
+  const auto work = [&](std::size_t run) {
+    if (run == 20) stop = true;
+    return [&] { ++delivered; };
+  };
+  for_each_run(10'000, GetParam(), work, [&] { return stop.load(); });
   EXPECT_GE(delivered, 21u);
   EXPECT_LE(delivered, 21u + GetParam());
 }
@@ -67,22 +56,8 @@ TEST_P(ForEachRun, PassesExceptionsOn) {
     return {};
   };
   const auto fail_in_delivery = [](std::size_t) -> Delivery { return [] { throw std::runtime_error("delivery"); }; };
-  EXPECT_THROW(parallel_for(numbers_to(100), GetParam(), fail_in_work, never), std::runtime_error);
-  EXPECT_THROW(parallel_for(numbers_to(100), GetParam(), fail_in_delivery, never), std::runtime_error);
-}
-
-TEST_P(ForEachRun, AsksForTheNextRunOneThreadAtATime) {
-  std::size_t given = 0;  // no lock
-  std::multiset<std::size_t> delivered;
-  parallel_for([&]() -> std::optional<std::size_t> { return given < 1000 ? std::optional(given++) : std::nullopt; },
-               GetParam(), [&](std::size_t run) { return [&, run] { delivered.insert(run); }; });
-  const std::vector<std::size_t> all = numbers_to(1000);
-  EXPECT_EQ(delivered, std::multiset<std::size_t>(all.begin(), all.end()));
-}
-
-TEST_P(ForEachRun, TakesNoRuns) {
-  parallel_for(
-      {}, GetParam(), [](std::size_t) -> Delivery { throw std::logic_error("none"); }, never);
+  EXPECT_THROW(for_each_run(100, GetParam(), fail_in_work), std::runtime_error);
+  EXPECT_THROW(for_each_run(100, GetParam(), fail_in_delivery), std::runtime_error);
 }
 
 INSTANTIATE_TEST_SUITE_P(Jobs, ForEachRun, testing::Values(1, 2, 7));
@@ -91,13 +66,10 @@ TEST(ForEachRunInParallel, HasAsManyThreadsAsJobsEvenOnASmallerMachine) {
   // Each of four runs waits until all four have begun: with fewer threads none would ever come to its end.
   std::latch begun(4);
   std::size_t delivered = 0;
-  parallel_for(
-      numbers_to(4), 4,
-      [&](std::size_t) -> Delivery {
-        begun.arrive_and_wait();
-        return [&] { ++delivered; };
-      },
-      never);
+  for_each_run(4, 4, [&](std::size_t) -> Delivery {
+    begun.arrive_and_wait();
+    return [&] { ++delivered; };
+  });
   EXPECT_EQ(delivered, 4u);
 }
 

@@ -1,13 +1,15 @@
 #include "scenarios/batch/run_sweep.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <set>
 
-#include "scenarios/batch/journal.hpp"
 #include "scenarios/batch/sweep_plan.hpp"
 #include "scenarios/batch/sweep_table.hpp"
+#include "scenarios/batch/table_file.hpp"
 #include "scenarios/description/metric_sections.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "tests/results/files.hpp"
@@ -22,20 +24,20 @@ using test::minimal_scenario;
 using test::read_file;
 using Numbers = std::vector<std::size_t>;
 
-SweepPoints grid(const std::vector<std::string>& vary) {
+Cases grid(const std::vector<std::string>& vary, const ScenarioText& scene = {}, std::vector<std::string> sets = {}) {
   std::vector<Axis> axes;
   for (const std::string& text : vary) axes.push_back(parse_axis(text));
-  return SweepPoints(axes);
+  return {{scene}, std::move(sets), std::move(axes)};
 }
 
 SweepPlan plan_of(const Json& scenario, const std::vector<std::string>& vary,
                   const fs::path& file = test::data_directory() / "sweep.json") {
-  return plan_sweep({file, scenario}, {}, grid(vary), 2, false);
+  return plan_sweep(grid(vary, {file, scenario}), 2, false);
 }
 
 TEST(RunsToCheck, AreAllOfAFewAndTheEdgesOfMany) {
   EXPECT_EQ(runs_to_check(grid({"a=1,2,3", "b=1,2"})), (Numbers{0, 1, 2, 3, 4, 5}));
-  const SweepPoints many = grid({"a=1:100:100", "b=1:100:100", "c=x,y,z"});
+  const Cases many = grid({"a=1:100:100", "b=1:100:100", "c=x,y,z"});
   const Numbers checked = runs_to_check(many);
   EXPECT_TRUE(std::is_sorted(checked.begin(), checked.end()));
   EXPECT_LE(checked.size(), 2u * (100 + 100 + 3));
@@ -51,7 +53,7 @@ TEST(RunsToCheck, OfAMillionAreFew) {
   EXPECT_EQ(checked.size(), kMostChecked);
   EXPECT_EQ(checked.front(), 0u);
   EXPECT_EQ(checked.back(), 999'999u);
-  const SweepPoints sample({parse_sampled_axis("a=1:2")}, {SamplingMethod::sobol, 1'000'000, 1});
+  const Cases sample({}, {}, {parse_axis("a=1:2", true)}, Sampling{SamplingMethod::random, 1'000'000, 1});
   EXPECT_EQ(runs_to_check(sample).size(), kMostChecked);
 }
 
@@ -60,13 +62,6 @@ TEST(SweepPlan, OfALongRangeDescribesItByItsEnds) {
   EXPECT_EQ(content("seed=1:3:3"), (Json{{"path", "seed"}, {"values", {"1", "2", "3"}}}));
   EXPECT_EQ(content("seed=1:20000:20000"),
             (Json{{"path", "seed"}, {"range", {1.0, 20000.0}}, {"scale", "linear"}, {"count", 20000}}));
-}
-
-TEST(SweepPlan, LoadsTheScenarioOfEachRun) {
-  const SweepPlan plan = plan_of(minimal_scenario("plane"), {"time.steps=1,2", "rendering.algorithm=mean,summation"});
-  const LoadedScenario loaded = scenario_of(plan, 2);
-  EXPECT_EQ(loaded.scenario.time.steps, 2);
-  EXPECT_EQ(loaded.scenario.rendering.algorithm, "mean");
 }
 
 TEST(SweepPlan, RefusesTheLowestBadRunWhateverTheThreads) {
@@ -93,7 +88,7 @@ TEST(SweepPlan, GivesEachWarningOnceInTheOrderOfRuns) {
 
 TEST(SweepPlan, HasTheColumnsOfWhateverSomeRunRecords) {
   const auto header = [](const std::vector<std::string>& vary) {
-    return sweep_header(plan_of(minimal_scenario("plane"), vary));
+    return fmt::format("{}", fmt::join(sweep_columns(plan_of(minimal_scenario("plane"), vary)), ","));
   };
   EXPECT_EQ(header({"record.energy=false"}).find("energy."), std::string::npos);
   EXPECT_NE(header({"record.energy=false,true"}).find(",energy.created_sum_J,"), std::string::npos);
@@ -116,7 +111,7 @@ TEST(SweepPlan, HasExactlyTheMetricsOfItsRuns) {
     const bool has_targets = json.contains("hand") && json["hand"]["type"] == "tracking";  // which take their time
     const SweepPlan plan = plan_of(json, {has_targets ? "seed=1" : "time.steps=2"});
     std::vector<std::string> names;
-    for (const Metric& metric : metric_list(run_scenario(scenario_of(plan, 0), std::nullopt, false).summary))
+    for (const Metric& metric : metric_list(run_scenario(plan.cases.load(0), std::nullopt, false).summary))
       names.push_back(metric.name);
     EXPECT_EQ(plan.metrics, names) << name;
     for (const std::string& bounded : plan.bounded)
@@ -139,17 +134,17 @@ TEST(SweepPlan, HasAnotherDefinitionForEveryOtherContent) {
     definitions.insert(plan_of(plane, vary).definition);
   }
   definitions.insert(plan_of(other, {"time.steps=1,2"}).definition);
-  const SweepPoints grid({parse_axis("time.steps=1,2")});
-  definitions.insert(plan_sweep({"sweep.json", plane}, {"seed=5"}, grid, 1, false).definition);
-  const std::vector<Axis> box = {parse_sampled_axis("seed=1,2,3")};
+  const std::vector<std::string> steps = {"time.steps=1,2"};
+  definitions.insert(plan_sweep(grid(steps, {"sweep.json", plane}, {"seed=5"}), 1, false).definition);
+  const std::vector<Axis> box = {parse_axis("seed=1,2,3", true)};
   for (const Sampling& sampling :
        {Sampling{SamplingMethod::latin_hypercube, 3, 1}, Sampling{SamplingMethod::latin_hypercube, 3, 2},
         Sampling{SamplingMethod::latin_hypercube, 4, 1}, Sampling{SamplingMethod::random, 3, 1}}) {
-    definitions.insert(plan_sweep({"sweep.json", plane}, {}, SweepPoints(box, sampling), 1, false).definition);
+    definitions.insert(plan_sweep(Cases({{"sweep.json", plane}}, {}, box, sampling), 1, false).definition);
   }
   EXPECT_EQ(definitions.size(), 11u);
   // Threads, the file's place and spelling do not count.
-  EXPECT_EQ(plan_sweep({"elsewhere.json", plane}, {}, grid, 7, false).definition,
+  EXPECT_EQ(plan_sweep(grid(steps, {"elsewhere.json", plane}), 7, false).definition,
             plan_of(plane, {"time.steps=1.0,2e0"}).definition);
 }
 
@@ -198,89 +193,19 @@ TEST(SweepPlan, RefusesBadMeshesOfToolsBeforeTheFirstRun) {
   }
 }
 
-TEST(SweepPlan, RefusesBadNamedFilesOfAnyRun) {
-  const test::TemporaryDirectory directory;
-  test::write_plainly(directory / "shell.csv", test::read_file(test::data_directory() / "shell.csv"));
-  const auto error = test::input_error_of([&] {
-    plan_of(minimal_scenario("point_shell"), {"environment.file=shell.csv,missing.csv"}, directory / "sweep.json");
-  });
-  ASSERT_TRUE(error);
-  EXPECT_NE(std::string(error->what()).find("missing.csv"), std::string::npos) << error->what();
-}
-
-// ---- Runs
-
-Numbers runs_to_do(const SweepPoints& points, const Shard& shard) {
-  Numbers runs;
-  for (RunOrder order(points, shard); const auto run = order.next();) runs.push_back(*run);
-  return runs;
-}
-
-TEST(RunsToDo, AreInOrderWhereTheEnvironmentStaysTheSame) {
-  const SweepPoints points({parse_axis("a=1,2"), parse_axis("b=1,2")});
-  EXPECT_EQ(runs_to_do(points, {}), (Numbers{0, 1, 2, 3}));
-  EXPECT_EQ(runs_to_do(points, {1, 3}), Numbers{1});
-  EXPECT_EQ(runs_to_do(points, {4, 5}), Numbers{});
-}
-
-TEST(RunsToDo, OfOneEnvironmentFollowEachOther) {
-  const SweepPoints points(
-      {parse_axis("a=1,2"), parse_axis("environment.spacing_m=1e-3,2e-3,3e-3"), parse_axis("environment.width_m=1,2")});
-  EXPECT_EQ(runs_to_do(points, {}), (Numbers{0, 6, 1, 7, 2, 8, 3, 9, 4, 10, 5, 11}));
-  EXPECT_EQ(runs_to_do(points, {1, 2}), (Numbers{1, 7, 3, 9, 5, 11}));
-}
-
-TEST(RunsToDo, OfASampleFollowEachOtherByTheListedFields) {
-  const SweepPoints points({parse_sampled_axis("environment.file=x.stl,y.stl"),
-                            parse_sampled_axis("environment.scale=1:2"), parse_sampled_axis("a=1:2")},
-                           {SamplingMethod::latin_hypercube, 40, 1});
-  const Numbers all = runs_to_do(points, {});
-  Numbers sorted = all;
-  std::sort(sorted.begin(), sorted.end());
-  for (std::size_t i = 0; i < 40; ++i) EXPECT_EQ(sorted[i], i);
-  for (std::size_t i = 0; i < 40; ++i) EXPECT_EQ(points.value(all[i], 0), i < 20 ? "x.stl" : "y.stl");
-}
-
 // ---- Sweeps
 
 class RunSweep : public testing::Test {
  protected:
-  SweepReport run(const SweepPlan& plan, const fs::path& directory, bool resume = false,
-                  std::size_t most_places = 1000) const {
+  SweepReport run(const SweepPlan& plan, const fs::path& directory) const {
     fs::create_directories(directory);
     SweepOptions options;
     options.directory = directory;
     options.jobs = 3;
-    options.resume = resume;
-    options.most_places = most_places;
     return run_sweep(plan, options);
   }
   test::TemporaryDirectory directory_;
 };
-
-TEST_F(RunSweep, HasOneTableWhateverTheOrderOfTheRuns) {
-  // The environment varies fastest, so its runs are not done in the order of the table.
-  const SweepPlan plan = plan_of(minimal_scenario("plane"), {"time.steps=1:40:40", "environment.spacing_m=5e-4,4e-4"});
-  const SweepReport report = run(plan, directory_.path());
-  ASSERT_EQ(report.rows.size(), 80u);
-  for (std::size_t i = 0; i < 80; ++i) EXPECT_EQ(report.rows[i].run, i);
-  const std::string table = read_file(report.table);
-  for (const std::size_t places : {1u, 7u, 79u}) {
-    run(plan, directory_.path(), false, places);
-    EXPECT_EQ(read_file(report.table), table) << places;
-  }
-}
-
-TEST_F(RunSweep, OfManyRunsKeepsNoRows) {
-  const SweepPlan plan = plan_of(minimal_scenario("springs"), {"seed=1:10001:10001"});
-  const SweepReport report = run(plan, directory_.path());
-  EXPECT_EQ(report.done, 10'001u);
-  EXPECT_EQ(report.counts.runs, 10'001u);
-  EXPECT_TRUE(report.rows.empty());
-  const auto lines = test::lines_of(read_file(report.table));
-  ASSERT_EQ(lines.size(), 10'002u);
-  for (std::size_t i = 0; i < 10'001; i += 100) EXPECT_EQ(parse_row(plan, lines[1 + i]).value().run, i);
-}
 
 TEST_F(RunSweep, HasErrorRowsForRunsThatNobodyChecked) {
   // So many values are not all checked before the first run; 4567 is one that is not.
@@ -292,78 +217,22 @@ TEST_F(RunSweep, HasErrorRowsForRunsThatNobodyChecked) {
   ASSERT_TRUE(report.failed);
   EXPECT_EQ(report.failed->run, 4567u);
   EXPECT_NE(report.failed->problem.find("/seed: got -1"), std::string::npos) << report.failed->problem;
-  EXPECT_EQ(row_text(plan, report.rows[4567]), row_text(plan, error_row(plan, 4567)));
+  EXPECT_EQ(test::lines_of(read_file(report.table)).at(4568), error_row(plan, 4567));
+  EXPECT_EQ(report.rows[4567].cells, csv_cells(error_row(plan, 4567)));
+  EXPECT_EQ(report.rows[4568].outcome, "completes");
 }
 
 TEST_F(RunSweep, LeavesTheTableAndItsDescriptionOnly) {
   const SweepPlan plan = plan_of(minimal_scenario("plane"), {"time.steps=1,2"});
   const SweepReport report = run(plan, directory_.path());
   EXPECT_EQ(directory_.entries(), (std::vector<std::string>{"sweep.csv", "sweep.json"}));
-  EXPECT_EQ(read_file(report.table),
-            sweep_header(plan) + "\n" + row_text(plan, report.rows[0]) + "\n" + row_text(plan, report.rows[1]) + "\n");
+  const auto lines = test::lines_of(read_file(report.table));
+  ASSERT_EQ(lines.size(), 3u);
+  EXPECT_EQ(csv_cells(lines[0]), sweep_columns(plan));
+  for (const SweepRow& row : report.rows) EXPECT_EQ(csv_cells(lines[1 + row.run]), row.cells);
   const Json description = Json::parse(read_file(directory_ / "sweep.json"));
   EXPECT_EQ(description["definition"], plan.definition);
   EXPECT_EQ(description["vary"][0]["values"], (Json{"1", "2"}));
-}
-
-/// A sweep of a scenario whose file is there when it is planned.
-class FailingSweep : public RunSweep {
- protected:
-  FailingSweep() {
-    restore();
-    plan_ = plan_of(minimal_scenario("point_shell"), {"environment.file=a.csv,b.csv", "time.steps=1,2"},
-                    directory_ / "sweep.json");
-  }
-  void restore() const {
-    for (const char* name : {"a.csv", "b.csv"}) {
-      test::write_plainly(directory_ / name, read_file(test::data_directory() / "shell.csv"));
-    }
-  }
-  std::optional<SweepPlan> plan_;
-};
-
-TEST_F(FailingSweep, HasErrorRowsForWhatFailsAndGoesOn) {
-  fs::remove(directory_ / "a.csv");
-  const SweepReport report = run(*plan_, directory_ / "out");
-  ASSERT_EQ(report.rows.size(), 4u);
-  ASSERT_TRUE(report.failed);
-  EXPECT_EQ(report.failed->run, 0u);
-  EXPECT_NE(report.failed->problem.find("a.csv"), std::string::npos);
-  EXPECT_EQ(row_text(*plan_, report.rows[1]), row_text(*plan_, error_row(*plan_, 1)));
-  EXPECT_EQ(row_text(*plan_, report.rows[2]).find("2,b.csv,1,completes,true,1,"), 0u);
-  for (const SweepRow& row : report.rows) {
-    EXPECT_EQ(test::cells_of(row_text(*plan_, row)).size(), test::cells_of(sweep_header(*plan_)).size());
-  }
-}
-
-TEST_F(FailingSweep, TriesWhatFailedAgainWhenItIsResumed) {
-  run(*plan_, directory_ / "whole");
-  fs::remove(directory_ / "a.csv");
-  run(*plan_, directory_ / "out");
-  restore();
-  // A sweep that was stopped when everything had been tried: the journal has the rows that did not fail.
-  const std::string title = "definition " + plan_->definition + ", shard 0/1, runs are not kept";
-  {
-    Journal journal(directory_ / "out/sweep.journal", title, false);
-    const auto rows = test::lines_of(read_file(directory_ / "out/sweep.csv"));
-    journal.add(rows[3]);
-    journal.add(rows[4]);
-  }
-  const SweepReport report = run(*plan_, directory_ / "out", true);
-  EXPECT_EQ(report.resumed, 2u);
-  EXPECT_FALSE(report.failed);
-  EXPECT_EQ(read_file(directory_ / "out/sweep.csv"), read_file(directory_ / "whole/sweep.csv"));
-}
-
-TEST_F(RunSweep, TakesNoRowsFromItsJournalThatAreNotItsOwn) {
-  const SweepPlan plan = plan_of(minimal_scenario("plane"), {"time.steps=1,2"});
-  const std::string title = "definition " + plan.definition + ", shard 0/1, runs are not kept";
-  const std::string good = row_text(plan, run(plan, directory_.path()).rows[0]);
-  for (const std::string& row : {std::string("2") + good.substr(1), "0,7" + good.substr(3), std::string("x"),
-                                 std::string(","), good + ",", std::string("99999999999999999999,1")}) {
-    Journal(directory_ / "sweep.journal", title, false).add(row);
-    EXPECT_TRUE(test::input_error_of([&] { run(plan, directory_.path(), true); })) << row;
-  }
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <csignal>
 #include <map>
 
+#include "scenarios/batch/table_file.hpp"
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/file_tree.hpp"
 #include "tests/scenarios/support/program.hpp"
@@ -100,11 +101,7 @@ TEST_F(ConvergeCommand, GoesOnAfterAStop) {
   const Words long_ones = words({"--set", "time.steps=20000", "--levels", "9", "--jobs", "1"});
   {
     test::RunningProgram study(test::hapbench_program(), long_ones);
-    const auto has_rows = [&] {
-      std::error_code none;
-      const fs::path journal = directory_ / "out/sweep.journal";
-      return fs::exists(journal, none) && lines_of(read_file(journal)).size() > 3;
-    };
+    const auto has_rows = [&] { return TableFile::rows_under_way(directory_ / "out/sweep.csv") > 2; };
     ASSERT_TRUE(study.runs_until(has_rows));
     EXPECT_EQ(study.end_by(SIGTERM), 143);
   }

@@ -114,8 +114,8 @@ TEST(Headings, OfEveryListHaveAMeaning) {
 }
 
 TEST(Words, OfTheOutputsAreKnownToDescribe) {
-  for (const char* word : {"league.csv", "sweep.json", "sweep_shard_0_of_2.csv", "precision_shaping_timing.csv",
-                           "quantum", "planar.first_tilt", "C5"})
+  for (const char* word : {"league.csv", "sweep.json", "sweep.0_of_2.csv", "precision_shaping_timing.csv", "quantum",
+                           "planar.first_tilt", "C5"})
     EXPECT_TRUE(is_described(word)) << word;
   const std::string choice = test::hapbench({"describe", "planar.first_tilt"}).out;
   EXPECT_NE(choice.find("0.02 ... 0.2"), std::string::npos) << choice;

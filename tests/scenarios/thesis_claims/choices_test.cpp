@@ -34,6 +34,12 @@ std::vector<BundledScenario> thesis_scenarios() {
   return all;
 }
 
+Texts values_at(const Choices& choices, double coordinate) {
+  Texts values;
+  for (const Axis& axis : choices.axes()) values.push_back(axis.value_at(coordinate));
+  return values;
+}
+
 TEST(ChoicesOnRecord, AreWhatTheScenariosHave) {
   const Choices choices(kReference / "choices.json");
   const Texts on_record = choices.values_on_record();
@@ -48,8 +54,8 @@ TEST(ChoicesOnRecord, ConcernEachAScenarioThatThenDiffers) {
   const Choices choices(kReference / "choices.json");
   const Texts on_record = choices.values_on_record();
   // Ends of ranges and options other than the one on record; one of them differs from it.
-  const Texts low = choices.values_at(std::vector<double>(choices.all().size(), 0.0));
-  const Texts high = choices.values_at(std::vector<double>(choices.all().size(), 0.999));
+  const Texts low = values_at(choices, 0.0);
+  const Texts high = values_at(choices, 0.999);
   std::set<std::string> changing;
   for (const BundledScenario& bundled : thesis_scenarios()) {
     const Scenario scenario = load_scenario(bundled.file).scenario;
@@ -144,7 +150,8 @@ Json subjects_scenario() {
 TEST_F(ChoicesFile, GivesOverridesOfScenariosItNames) {
   const Choices choices = read(file({factor(), option()}));
   EXPECT_EQ(choices.values_on_record(), (Texts{"1", "a"}));
-  EXPECT_EQ(choices.values_at(std::vector<double>{0.5, 0.7}), (Texts{"1", "b"}));
+  EXPECT_EQ(choices.axes()[0].value_at(0.5), "1");
+  EXPECT_EQ(choices.axes()[1].value_at(0.7), "b");
   Json springs = {{"name", "task1"},
                   {"time", {{"step_s", 0.001}, {"steps", 1}}},
                   {"environment", {{"type", "springs"}, {"groups", {{{"direction", {1, 0, 0}}, {"count", 1}}}}}}};

@@ -118,11 +118,12 @@ TEST_F(Robustness, JudgesEverySampleWithItsOwnChoices) {
 TEST_F(Robustness, DependsNeitherOnJobsNorOnInterruptions) {
   const RobustnessPlan p = plan(8);
   const RobustnessReport whole = run(p, 1);
-  const std::string journal = test::read_file(directory_ / "robustness.journal");
+  const std::string table = test::read_file(directory_ / "robustness_samples.csv");
   // The first five samples and half a line more, as a kill may leave it.
   std::size_t end = 0;
-  for (int line = 0; line < 6; ++line) end = journal.find('\n', end) + 1;
-  test::write_plainly(directory_ / "robustness.journal", journal.substr(0, end + 9));
+  for (int line = 0; line < 6; ++line) end = table.find('\n', end) + 1;
+  test::write_plainly(directory_ / "robustness_samples.csv.part", table.substr(0, end + 9));
+  fs::rename(directory_ / "robustness_samples.json", directory_ / "robustness_samples.json.part");
   const RobustnessReport resumed = run(p, 3);
   EXPECT_EQ(resumed.resumed, 5u);
   EXPECT_EQ(resumed.verdicts, whole.verdicts);

@@ -1,14 +1,16 @@
-#include "scenarios/batch/sweep_points.hpp"
+#include "scenarios/batch/axis.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <set>
+#include <nlohmann/json.hpp>
 #include <string_view>
 
 #include "results/io/json_text.hpp"
+#include "scenarios/description/writer.hpp"
 #include "scenarios/input/input_error.hpp"
+#include "scenarios/input/json_file.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "sim/core/math.hpp"
 
@@ -86,17 +88,61 @@ std::size_t steps_of(const std::string& text, std::string_view word) {
   return *n;
 }
 
+/// The parts between commas that stand outside of JSON's brackets and strings.
+Words listed_words(std::string_view list) {
+  Words words;
+  std::size_t begin = 0, depth = 0;
+  bool in_string = false;
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    const char c = list[i];
+    if (in_string && c == '\\') {
+      ++i;
+    } else if (c == '"') {
+      in_string = !in_string;
+    } else if (in_string) {
+      continue;
+    } else if (c == '{' || c == '[') {
+      ++depth;
+    } else if ((c == '}' || c == ']') && depth > 0) {
+      --depth;
+    } else if (c == ',' && depth == 0) {
+      words.push_back(list.substr(begin, i - begin));
+      begin = i + 1;
+    }
+  }
+  words.push_back(list.substr(begin));
+  return words;
+}
+
+bool begins_json(std::string_view text) {
+  return text.starts_with('{') || text.starts_with('[') || text.starts_with('"');
+}
+
 std::vector<std::string> listed_values(const std::string& text, std::string_view list) {
-  const Words words = parts_of(list, ',');
+  const Words words = listed_words(list);
   if (words.size() > kMostRuns)
     refuse_axis(text, fmt::format("got {} values", words.size()), fmt::format("at most {}", kMostRuns));
   std::vector<std::string> values;
   for (const std::string_view word : words) {
-    if (word.empty()) refuse_axis(text, "got an empty value", "numbers or texts separated by commas");
-    const auto number = finite_number(word);
-    values.push_back(number ? number_text(*number) : std::string(word));
+    try {
+      values.push_back(axis_value(word));
+    } catch (const InputError& error) {
+      refuse_axis(text, error.problem(), "numbers, names and JSON, separated by commas");
+    }
   }
   return values;
+}
+
+/// The description of a field by its path; null when there is none, or when it is in the entries of a list.
+const ValueGuide* guide_at(const ValueGuide& guide, std::string_view path) {
+  const std::size_t dot = std::min(path.find('.'), path.size());
+  for (const FieldGuide& field : guide.fields) {
+    if (field.name != path.substr(0, dot)) continue;
+    return dot == path.size() ? &field.value : guide_at(field.value, path.substr(dot + 1));
+  }
+  for (const ValueGuide& choice : guide.choices)
+    if (const ValueGuide* found = guide_at(choice, path)) return found;
+  return nullptr;
 }
 
 Axis read_axis(const std::string& text, bool sampled) {
@@ -110,10 +156,10 @@ Axis read_axis(const std::string& text, bool sampled) {
                         : "path=a:b:n, path=a:b:n:log or path=v,w, as in time.step_s=0.0001:0.001:10");
   }
   const std::string_view values = std::string_view(text).substr(equals + 1);
-  const auto needs_quotes = [](unsigned char c) { return c < 0x20 || c == 0x7f || c == '"'; };
-  if (std::any_of(values.begin(), values.end(), needs_quotes))
-    refuse_axis(text, "has quotes or control characters", "numbers or plain texts");
-  const bool is_range = values.find(',') == std::string_view::npos && values.find(':') != std::string_view::npos;
+  if (std::any_of(values.begin(), values.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }))
+    refuse_axis(text, "has control characters", "numbers, names and JSON");
+  const bool is_range =
+      !begins_json(values) && values.find(',') == std::string_view::npos && values.find(':') != std::string_view::npos;
   if (!is_range) {
     axis.values = listed_values(text, values);
     return axis;
@@ -124,95 +170,43 @@ Axis read_axis(const std::string& text, bool sampled) {
   return axis;
 }
 
-void check_paths(const std::vector<Axis>& axes) {
-  std::set<std::string> paths;
-  for (const Axis& axis : axes) {
-    if (paths.insert(axis.path).second) continue;
-    throw InputError(fmt::format("--vary: got \"{}\" twice; allowed: each field once", axis.path));
-  }
-}
-
 }  // namespace
 
 double Range::value_at(double part) const {
   return value_between(*this, part, 1.0);
 }
 
-Axis parse_axis(const std::string& text) {
-  return read_axis(text, false);
+Axis parse_axis(const std::string& text, bool sampled) {
+  Axis axis = read_axis(text, sampled);
+  const ValueGuide* guide = guide_at(scenario_guide(), axis.path);
+  if (guide == nullptr) return axis;
+  axis.whole = axis.range && guide->schema.value("type", Json()) == "integer";
+  if (axis.values == std::vector<std::string>{"all"} && guide->schema.contains("enum"))
+    axis.values = guide->schema["enum"].get<std::vector<std::string>>();
+  return axis;
 }
 
-Axis parse_sampled_axis(const std::string& text) {
-  return read_axis(text, true);
+std::string axis_value(std::string_view text) {
+  if (text.empty()) throw InputError("got an empty value");
+  if (const auto number = finite_number(text)) return number_text(*number);
+  return begins_json(text) ? parse_json(std::string(text)).dump() : std::string(text);
 }
 
 std::string Axis::value(std::size_t i) const {
   if (!range) return values[i];
-  return number_text(value_between(*range, static_cast<double>(i), static_cast<double>(steps - 1)));
+  const double value = value_between(*range, static_cast<double>(i), static_cast<double>(steps - 1));
+  return number_text(whole ? std::round(value) : value);
 }
 
-std::size_t place_at(const Axis& axis, double coordinate) {
-  const auto count = static_cast<double>(axis.values.size());
-  return std::min(static_cast<std::size_t>(coordinate * count), axis.values.size() - 1);
+std::size_t Axis::place_at(double coordinate) const {
+  const auto count = static_cast<double>(values.size());
+  return std::min(static_cast<std::size_t>(coordinate * count), values.size() - 1);
 }
 
-std::string value_at(const Axis& axis, double coordinate) {
-  return axis.range ? number_text(axis.range->value_at(coordinate)) : axis.values[place_at(axis, coordinate)];
-}
-
-SweepPoints::SweepPoints(std::vector<Axis> axes) : axes_(std::move(axes)) {
-  check_paths(axes_);
-  double size = 1.0;  // a double, because the product may overflow integers
-  for (const Axis& axis : axes_) size *= static_cast<double>(axis.size());
-  if (size > static_cast<double>(kMostRuns))
-    throw InputError(fmt::format("--vary: got a grid of {:.7g} runs; allowed: at most {}", size, kMostRuns));
-  strides_.resize(axes_.size());
-  for (std::size_t a = axes_.size(); a-- > 0; size_ *= axes_[a].size()) strides_[a] = size_;
-}
-
-SweepPoints::SweepPoints(std::vector<Axis> axes, const Sampling& sampling)
-    : axes_(std::move(axes)), sampling_(sampling), size_(sampling.count) {
-  check_paths(axes_);
-  sample_.emplace(sampling, axes_.size());
-}
-
-std::size_t SweepPoints::place(std::size_t run, std::size_t axis) const {
-  return sample_ ? place_at(axes_[axis], sample_->at(run, axis)) : run / strides_[axis] % axes_[axis].size();
-}
-
-std::size_t SweepPoints::run(std::size_t number, const std::vector<std::size_t>& order) const {
-  std::size_t run = 0;
-  for (std::size_t i = order.size(); i-- > 0; number /= axes_[order[i]].size())
-    run += number % axes_[order[i]].size() * strides_[order[i]];
-  return run;
-}
-
-std::string SweepPoints::value(std::size_t run, std::size_t axis) const {
-  return sample_ ? value_at(axes_[axis], sample_->at(run, axis)) : axes_[axis].value(place(run, axis));
-}
-
-std::vector<std::string> SweepPoints::values(std::size_t run) const {
-  std::vector<std::string> values(axes_.size());
-  for (std::size_t a = 0; a < axes_.size(); ++a) values[a] = value(run, a);
-  return values;
-}
-
-std::vector<std::string> SweepPoints::overrides(std::size_t run) const {
-  std::vector<std::string> overrides = values(run);
-  for (std::size_t a = 0; a < axes_.size(); ++a) overrides[a].insert(0, axes_[a].path + "=");
-  for (std::size_t a = 0; a < axes_.size(); ++a) {
-    if (axes_[a].along.empty()) continue;
-    const std::vector<std::string>& more = axes_[a].along[place(run, a)].overrides;
-    overrides.insert(overrides.end(), more.begin(), more.end());
-  }
-  return overrides;
-}
-
-std::int64_t SweepPoints::stride(std::size_t run) const {
-  std::int64_t stride = 1;
-  for (std::size_t a = 0; a < axes_.size(); ++a)
-    if (!axes_[a].along.empty()) stride *= axes_[a].along[place(run, a)].stride;
-  return stride;
+std::string Axis::value_at(double coordinate) const {
+  if (!range) return values[place_at(coordinate)];
+  const double value = range->value_at(coordinate);
+  return number_text(whole ? std::round(value) : value);
 }
 
 }  // namespace hapbench
