@@ -18,6 +18,8 @@ constexpr std::string_view kDevices = "hapbench limit tap_wall tap_corner tap_ho
 
 constexpr std::string_view kSlurm = "sbatch --array=0-99 scripts/sweep.sbatch SCENE --vary ... --out FOLDER";
 
+constexpr std::string_view kErrors = "hapbench compare SCENE --errors, of one number hapbench converge SCENE";
+
 /// By command, so that what one command lost stands together.
 constexpr OldWord kOldWords[] = {
     {"*", "--memory", "ulimit -d KILOBYTES before the command; without it three quarters of what is free"},
@@ -25,13 +27,16 @@ constexpr OldWord kOldWords[] = {
     {"", "completion", "scripts/completion, which prints a completion for bash"},
     {"", "man", "hapbench --help, and --help of each command"},
     {"", "suite", "hapbench compare GROUP --algorithms all --seeds 5"},
+    {"compare", "--check", kErrors},
     {"compare", "--devices", kDevices},
     {"compare", "--friction", kDevices},
     {"compare", "--resolution", kDevices},
+    {"compare", "--sure", kErrors},
     {"compare", "--vibration", kDevices},
     {"plot", "--no-sketch", "the same without it: plot draws no sketches"},
     {"reproduce", "--subjects",
      "their record, in the manual of the thesis's claims (scenarios/thesis_claims/README.md)"},
+    {"run", "--sure", "hapbench converge SCENE, of the points with --vary environment.spacing_m"},
     {"stability", "--evaluations", kSampleOfHands},
     {"stability", "--objective", kSampleOfHands},
     {"stability", "--search", kSampleOfHands},
