@@ -1,12 +1,13 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "scenarios/description/load_scenario.hpp"
 
-/// Scenes sampled more finely: the overrides that do it, for --check, --sure and converge.
+/// Scenes sampled more finely, for converge and compare --errors.
 namespace hapbench {
 
 /// The field that sets the distance of the shell's points, and this distance.
@@ -19,14 +20,11 @@ struct PointDistance {
 /// None where no field sets it.
 std::optional<PointDistance> point_distance(const LoadedScenario& loaded);
 
-/// The overrides of a scenario sampled more finely, and how a reader is told.
+/// The overrides of a scenario sampled more finely.
 struct FinerScene {
-  std::vector<std::string> overrides;  ///< none where it cannot be
-  std::string change;                  ///< without overrides: why
+  std::vector<std::string> overrides = {};
+  std::int64_t stride = 1;  ///< TimeFields::stride, so that metrics are taken at the times of the coarse rows
 };
-
-/// Points so many times closer.
-FinerScene with_finer_spacing(const LoadedScenario& loaded, int times);
 
 /// A step so many times shorter, first among the overrides, over the same time; delays of devices keep their length.
 FinerScene with_finer_step(const Scenario& scenario, int times);

@@ -14,7 +14,6 @@
 #include "scenarios/batch/statistics.hpp"
 #include "scenarios/description/metric_sections.hpp"
 #include "scenarios/run/encounter.hpp"
-#include "sim/core/math.hpp"
 
 namespace hapbench {
 namespace {
@@ -43,22 +42,14 @@ std::vector<std::size_t> common_seeds(const League& league, std::size_t scenario
   return seeds.empty() ? where_none_fails(0) : seeds;
 }
 
-/// The values of a metric in the common seeds of the scenario; none where the run failed.
-std::vector<std::optional<double>> values_of(const League& league, std::size_t scenario, std::size_t algorithm,
-                                             std::size_t metric) {
-  std::vector<std::optional<double>> values;
+/// The values of a metric in the common seeds of the scenario, without those of runs that failed or do not have it.
+std::vector<double> values_of(const League& league, std::size_t scenario, std::size_t algorithm, std::size_t metric) {
+  std::vector<double> values;
   for (const std::size_t k : league.common[scenario]) {
     const LeagueRun& run = league.runs.run(scenario, algorithm, k);
-    values.push_back(run.failed ? std::nullopt : run.metrics[metric]);
+    if (!run.failed && run.metrics[metric]) values.push_back(*run.metrics[metric]);
   }
   return values;
-}
-
-std::vector<double> known(const std::vector<std::optional<double>>& values) {
-  std::vector<double> numbers;
-  for (const auto& value : values)
-    if (value) numbers.push_back(*value);
-  return numbers;
 }
 
 std::optional<double> mean_tolerance(const League& league, std::size_t scenario, std::size_t algorithm,
@@ -76,19 +67,6 @@ bool is_same(double a, double b) {
   return std::abs(a - b) <= kSameRank * std::max(std::abs(a), std::abs(b));
 }
 
-/// Compares two algorithms by the seeds in which both have a value; none if these are fewer than two.
-std::optional<bool> differ_beyond_spread(const std::vector<std::optional<double>>& a,
-                                         const std::vector<std::optional<double>>& b) {
-  std::vector<double> of_a, of_b;
-  for (std::size_t k = 0; k < a.size(); ++k) {
-    if (!a[k] || !b[k]) continue;
-    of_a.push_back(*a[k]);
-    of_b.push_back(*b[k]);
-  }
-  if (of_a.size() < 2) return std::nullopt;
-  return std::abs(paired_t(of_a, of_b)) > critical_t(of_a.size() - 1);
-}
-
 /// The standings of one scenario and metric.
 class ScenarioStandings {
  public:
@@ -96,21 +74,16 @@ class ScenarioStandings {
       : better_(league.runs.better[metric]) {
     const LeagueRuns& runs = league.runs;
     for (std::size_t a = 0; a < runs.algorithms.size(); ++a) {
-      values_.push_back(values_of(league, scenario, a, metric));
       failures_.push_back(league.failures(scenario, a));
       Standing standing;
-      const std::vector<double> numbers = known(values_[a]);
+      const std::vector<double> numbers = values_of(league, scenario, a, metric);
       if (!numbers.empty()) standing.mean = mean_of(numbers);
       standing.tolerance = mean_tolerance(league, scenario, a, metric);
-      if (numbers.size() >= 2 && league.seeds_matter[scenario]) {
-        standing.spread = standard_deviation(numbers);
-        standing.standard_error = standard_error(numbers);
-      }
+      if (numbers.size() >= 2 && league.seeds_matter[scenario]) standing.spread = standard_deviation(numbers);
       standings_.push_back(standing);
     }
     if (better_ == Better::none) return;
     rank();
-    compare_with_best(league.seeds_matter[scenario]);
   }
 
   const std::vector<Standing>& standings() const { return standings_; }
@@ -146,67 +119,22 @@ class ScenarioStandings {
     }
   }
 
-  void compare_with_best(bool seeds_matter) {
-    std::optional<std::size_t> best;
-    for (std::size_t a = 0; a < standings_.size(); ++a) {
-      if (failures_[a] > 0 || !standings_[a].mean) continue;
-      if (!best || is_better(a, *best)) best = a;
-    }
-    if (!best) return;  // all failed, or no algorithm has the metric
-    const double best_mean = *standings_[*best].mean;
-    for (std::size_t a = 0; a < standings_.size(); ++a) {
-      Standing& standing = standings_[a];
-      if (failures_[a] > 0 || !standing.mean) continue;
-      if (*standing.mean == best_mean)
-        standing.ratio_to_best = 1.0;
-      else if (best_mean > 0.0 && *standing.mean > 0.0)
-        standing.ratio_to_best = better_ == Better::more ? best_mean / *standing.mean : *standing.mean / best_mean;
-      if (a == *best || !seeds_matter) continue;
-      standing.beyond_spread = differ_beyond_spread(values_[a], values_[*best]);
-      // Rounding errors may be the same with every seed, which makes t infinite.
-      if (is_same(*standing.mean, best_mean) && standing.beyond_spread) standing.beyond_spread = false;
-    }
-  }
-
   Better better_;
   std::vector<Standing> standings_;
-  std::vector<std::vector<std::optional<double>>> values_;
   std::vector<std::size_t> failures_;
 };
-
-std::optional<double> mean_rank(const League& league, std::size_t scenario, std::size_t algorithm) {
-  std::vector<double> ranks;
-  for (std::size_t m = 0; m < league.runs.metrics.size(); ++m)
-    if (const auto rank = league.at(scenario, algorithm, m).rank) ranks.push_back(static_cast<double>(*rank));
-  return ranks.empty() ? std::nullopt : std::optional(mean_of(ranks));
-}
-
-bool wins(const League& league, std::size_t scenario, std::size_t algorithm) {
-  const auto own = mean_rank(league, scenario, algorithm);
-  if (!own || league.failures(scenario, algorithm) > 0) return false;
-  for (std::size_t b = 0; b < league.runs.algorithms.size(); ++b) {
-    const auto other = mean_rank(league, scenario, b);
-    if (other && *other < *own) return false;
-  }
-  return true;
-}
 
 LawStanding law_standing(const League& league, std::size_t algorithm) {
   LawStanding law;
   law.algorithm = algorithm;
-  std::vector<double> ranks, logarithms;
+  std::vector<double> ranks;
   for (std::size_t s = 0; s < league.runs.scenarios.size(); ++s) {
     for (std::size_t m = 0; m < league.runs.metrics.size(); ++m) {
-      const Standing& standing = league.at(s, algorithm, m);
-      if (standing.rank) ranks.push_back(static_cast<double>(*standing.rank));
-      if (standing.ratio_to_best) logarithms.push_back(math::log(*standing.ratio_to_best));
+      if (const auto rank = league.at(s, algorithm, m).rank) ranks.push_back(static_cast<double>(*rank));
     }
     if (league.failures(s, algorithm) > 0) law.fails.push_back(s);
-    if (wins(league, s, algorithm)) law.wins.push_back(s);
   }
   if (!ranks.empty()) law.mean_rank = mean_of(ranks);
-  if (!logarithms.empty() && law.fails.empty()) law.mean_ratio = math::exp(mean_of(logarithms));
-  law.ratios = logarithms.size();
   return law;
 }
 
@@ -343,20 +271,9 @@ const Field<StandingRow> kStandingFields[] = {
     {{"spread", "by name",
       "standard deviation over these seeds; empty when there is one, or when seeds change nothing"},
      [](const StandingRow& r) { return cell_if(r.standing().spread); }},
-    {{"standard_error", "by name", "of the mean: spread over the root of these seeds"},
-     [](const StandingRow& r) { return cell_if(r.standing().standard_error); },
-     Field<StandingRow>::In::json},
-    {{"mean_tolerance", "by name", "by how much the mean may be wrong, where that is known"},
-     [](const StandingRow& r) { return cell_if(r.standing().tolerance); },
-     Field<StandingRow>::In::json},
     {{"rank", "1",
       "1 + the number of algorithms that did better in this scenario by this metric; those with failures are last"},
      [](const StandingRow& r) { return cell_if(r.standing().rank); }},
-    {{"ratio_to_best", "1", "how many times worse than the best mean; empty after a failure"},
-     [](const StandingRow& r) { return cell_if(r.standing().ratio_to_best); }},
-    {{"beyond_spread", "",
-      "true when the mean differs from the best by more than the spread of the seeds: paired t, 5 %"},
-     [](const StandingRow& r) { return cell_if(r.standing().beyond_spread); }},
     {{"common_seeds", "1",
       "seeds that mean and spread are over: those in which no algorithm failed that has any success in the scenario; if "
       "there are none, all seeds of the algorithms that never failed"},
@@ -391,9 +308,6 @@ Json league_json(const League& league) {
   for (const LawStanding& law : league.laws) {
     laws.push_back({{"algorithm", runs.algorithms[law.algorithm]},
                     {"mean_rank", or_null(law.mean_rank)},
-                    {"mean_ratio_to_best", or_null(law.mean_ratio)},
-                    {"ratios", law.ratios},
-                    {"wins", names_of(law.wins, runs.scenarios)},
                     {"fails", names_of(law.fails, runs.scenarios)}});
   }
   return {{"standings", std::move(rows)}, {"laws", std::move(laws)}};

@@ -46,7 +46,6 @@ inline constexpr double kSameRank = 1e-3;
 struct Standing {
   std::optional<double> mean;    ///< none when its runs failed or no run has the metric
   std::optional<double> spread;  ///< sample standard deviation; none for one seed or if seeds change nothing
-  std::optional<double> standard_error = {};  ///< of the mean: spread / sqrt(common seeds); none without a spread
   /// By how much the mean may be wrong: the mean of what its numbers may be wrong by; none where none is known.
   std::optional<double> tolerance = {};
   /// 1 + the number of better algorithms. Those without failures come first, ordered by their means; means within
@@ -54,24 +53,13 @@ struct Standing {
   /// thrown out at once has no settled force). The others follow by their number of failed seeds. None if no algorithm
   /// has the metric, or no direction of it is better.
   std::optional<std::size_t> rank;
-  /// How many times worse than the best, mean / best mean or where more is better the inverse; none after a failure,
-  /// without a rank, and where a mean is not > 0.
-  std::optional<double> ratio_to_best;
-  /// The difference to the best is larger than the spread: |t| of the differences for each seed exceeds the two-sided
-  /// 5 % quantile of Student's t (statistics.hpp). Differences are paired, because each seed gives all algorithms the
-  /// same start and noise. Never true within kSameRank of the best. None for the best itself, after a failure, and
-  /// where no spread is known.
-  std::optional<bool> beyond_spread;
 };
 
 /// One algorithm over all scenarios and metrics.
 struct LawStanding {
   std::size_t algorithm = 0;
-  std::optional<double> mean_rank;   ///< mean of its ranks, including those for failures
-  std::optional<double> mean_ratio;  ///< geometric mean of its ratios to the best; none after a failure
-  std::size_t ratios = 0;            ///< number of ratios in mean_ratio
-  std::vector<std::size_t> wins;     ///< scenarios without its failure in which no algorithm has a smaller mean rank
-  std::vector<std::size_t> fails;    ///< scenarios in which at least one seed failed
+  std::optional<double> mean_rank;  ///< mean of its ranks, including those for failures
+  std::vector<std::size_t> fails;   ///< scenarios in which at least one seed failed
 };
 
 struct League {

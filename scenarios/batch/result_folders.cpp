@@ -93,6 +93,9 @@ ResultPairs pair_results(const fs::path& a, const fs::path& b) {
   return pairs;
 }
 
+namespace {
+
+/// The list of results that a command left in a directory; empty where there is none or it cannot be read.
 ResultList results_on_record(const fs::path& directory) {
   const fs::path file = directory / kResultListFile;
   std::error_code error;
@@ -104,6 +107,8 @@ ResultList results_on_record(const fs::path& directory) {
     return {};
   }
 }
+
+}  // namespace
 
 void replace_earlier_results(const fs::path& directory, const ResultList& now) {
   const fs::path file = directory / kResultListFile;

@@ -35,9 +35,6 @@ inline constexpr const char* kResultListFile = "hapbench_results.json";
 /// be written.
 void replace_earlier_results(const std::filesystem::path& directory, const ResultList& now);
 
-/// Reads the list of results that a command left in a directory; empty where there is none or it cannot be read.
-ResultList results_on_record(const std::filesystem::path& directory);
-
 /// Removes the list if none of the files it names exists, for instance after a command was stopped in its first run.
 void forget_results_if_none(const std::filesystem::path& directory);
 

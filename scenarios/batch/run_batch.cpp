@@ -23,16 +23,14 @@ constexpr std::int64_t kMostSeed = std::int64_t{1} << 53;
 constexpr std::uint64_t kJitterStream = 0x6a697474;
 constexpr const char* kSeedDirectory = "seed_";
 
-LoadedScenario load(const BatchPlan& plan, std::size_t scenario, std::size_t algorithm, const ScenarioText& text) {
+LoadedScenario load(const BatchPlan& plan, std::size_t scenario, std::size_t algorithm) {
   std::vector<std::string> overrides = plan.definition.overrides;
-  if (plan.on_record.empty()) overrides.push_back("rendering.algorithm=" + plan.definition.algorithms[algorithm]);
-  if (!plan.scenario_overrides.empty()) {
-    const std::vector<std::string>& own = plan.scenario_overrides[scenario];
-    overrides.insert(overrides.end(), own.begin(), own.end());
-  }
-  LoadedScenario loaded = load_scenario(text, overrides);
+  overrides.push_back("rendering.algorithm=" + plan.definition.algorithms[algorithm]);
+  const FinerScene finer = plan.finer.empty() ? FinerScene{} : plan.finer[scenario];
+  overrides.insert(overrides.end(), finer.overrides.begin(), finer.overrides.end());
+  LoadedScenario loaded = load_scenario(plan.scenarios[scenario], overrides);
   loaded.scenario.rendering.skips = plan.definition.skips;
-  loaded.scenario.time.stride = plan.stride;
+  loaded.scenario.time.stride = finer.stride;
   return loaded;
 }
 
@@ -118,7 +116,7 @@ BatchPlan plan_batch(BatchDefinition definition) {
   for (std::size_t s = 0; s < plan.scenarios.size(); ++s) {
     std::vector<std::string> common;  // to all algorithms: what only one of them reads has an effect here
     for (std::size_t a = 0; a < plan.definition.algorithms.size(); ++a) {
-      const LoadedScenario loaded = load(plan, s, a, plan.scenarios[s]);
+      const LoadedScenario loaded = load(plan, s, a);
       if (a == 0) {  // the files are those of the scenario
         check_seeds_and_jitter(plan.definition, loaded);
         add(plan.warnings, check_named_files(loaded));
@@ -131,34 +129,9 @@ BatchPlan plan_batch(BatchDefinition definition) {
   return plan;
 }
 
-std::optional<BatchPlan> comparison_on_record(const fs::path& folder) {
-  const ResultList list = results_on_record(folder);
-  const auto is_comparison = [](const fs::path& table) { return table.filename() == "comparison.csv"; };
-  if (list.runs.empty() || std::none_of(list.tables.begin(), list.tables.end(), is_comparison)) return std::nullopt;
-  BatchPlan plan;
-  std::vector<std::string>& algorithms = plan.definition.algorithms;
-  for (const fs::path& run : list.runs) {  // by scenario, algorithm and seed, as run_directory has them
-    const bool seeded = run.filename().string().starts_with(kSeedDirectory);
-    const fs::path law = seeded ? run.parent_path() : run;
-    ScenarioText text = read_scenario_text(folder / run / "scenario.effective.json");
-    const std::string scenario = law.has_parent_path() ? law.parent_path().string() : text.json.value("name", "");
-    if (plan.names.empty() || plan.names.back() != scenario) {
-      plan.names.push_back(scenario);
-      plan.scenarios.push_back(text);
-    }
-    if (plan.names.size() == 1 && (algorithms.empty() || algorithms.back() != law.filename()))
-      algorithms.push_back(law.filename().string());
-    plan.on_record.push_back(std::move(text));
-  }
-  plan.definition.seeds = plan.on_record.size() / (plan.names.size() * algorithms.size());
-  if (plan.size() != plan.on_record.size()) fail_in_file(folder / kResultListFile, "does not list a comparison's runs");
-  return plan;
-}
-
 LoadedScenario scenario_of(const BatchPlan& plan, std::size_t number) {
   const BatchRun run = plan.run(number);
-  if (!plan.on_record.empty()) return load(plan, run.scenario, run.algorithm, plan.on_record[number]);
-  LoadedScenario loaded = load(plan, run.scenario, run.algorithm, plan.scenarios[run.scenario]);
+  LoadedScenario loaded = load(plan, run.scenario, run.algorithm);
   Scenario& scenario = loaded.scenario;
   scenario.seed += static_cast<std::int64_t>(run.seed);
   // Adding zero would change -0 to 0.

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 #include <vector>
+#include "scenarios/batch/finer_scene.hpp"
 #include "scenarios/description/load_scenario.hpp"
 #include "scenarios/run/run_scenario.hpp"
 
@@ -34,12 +35,8 @@ struct BatchPlan {
   std::vector<ScenarioText> scenarios;
   std::vector<std::string> names;     ///< unique names of the scenarios' files, without extension
   std::vector<std::string> warnings;  ///< without duplicates
-  /// Further overrides of each scenario, which come after those of the definition; may be empty as a whole.
-  std::vector<std::vector<std::string>> scenario_overrides;
-  std::int64_t stride = 1;  ///< TimeFields::stride of all runs
-  /// The scenario of each run, complete with algorithm, seed and start, of a comparison read back from its results
-  /// (comparison_on_record); empty for a comparison that is planned from its scenarios.
-  std::vector<ScenarioText> on_record = {};
+  /// How each scenario is sampled more finely, after the overrides of the definition; may be empty as a whole.
+  std::vector<FinerScene> finer = {};
 
   std::size_t size() const { return scenarios.size() * definition.algorithms.size() * definition.seeds; }
   BatchRun run(std::size_t number) const;
@@ -48,10 +45,6 @@ struct BatchPlan {
 /// Loads every scenario with every algorithm and reads the files they name. Throws InputError for the first that is
 /// wrong, for two scenarios of one name, and where jitter cannot shift the start because the motion prescribes it.
 BatchPlan plan_batch(BatchDefinition definition);
-
-/// The plan of a comparison whose results are in a folder, from the scenarios that its runs keep there; none where the
-/// folder holds no comparison of algorithms. Throws InputError when a scenario of it cannot be read.
-std::optional<BatchPlan> comparison_on_record(const std::filesystem::path& folder);
 
 /// A shift of the start [m] whose direction depends only on the scenario's seed, so that all algorithms start from the
 /// same places. Directions are uniform on the sphere, in planar scenes on the circle z = 0.

@@ -65,9 +65,6 @@ void capture_output(CapturedOutput* output) noexcept;
 /// Writes the page that `report` makes of the runs in a folder. Throws IoError when it cannot be made, after the Python
 /// tool has explained why on standard error.
 void write_report(const std::filesystem::path& folder, bool quiet);
-/// Checks whether the ranking of a comparison in a folder holds, unless it was checked or is none: writes ranking.csv,
-/// or notes why that cannot be. Runs all of it anew.
-void check_comparison(const std::filesystem::path& folder, bool quiet);
 
 /// Draws the run in a folder into a file, FILE.svg. Throws IoError likewise.
 void write_way(const std::filesystem::path& folder, const std::filesystem::path& file, bool quiet);

@@ -2,7 +2,8 @@
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
-#include <map>
+#include <algorithm>
+#include <cmath>
 #include <set>
 #include <span>
 
@@ -17,9 +18,9 @@
 #include "scenarios/input/json_file.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/command.hpp"
+#include "scenarios/program/compare_errors.hpp"
 #include "scenarios/program/result_tables.hpp"
 #include "scenarios/program/run_table.hpp"
-#include "scenarios/program/sure.hpp"
 #include "scenarios/run/encounter.hpp"
 #include "scenarios/run/recorders.hpp"
 #include "scenarios/run/stop_signal.hpp"
@@ -30,15 +31,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kRankingFile = "ranking.csv";
-
 struct CompareOptions {
   std::vector<std::string> metrics;
   unsigned seeds = 1;
   double jitter = 0.0;
   bool html = false;
-  bool check = false;
-  bool sure = false;
+  bool errors = false;
   Skips skips = Skips::on;
   std::vector<std::string> scenarios;
   std::vector<std::string> algorithms;  ///< empty: all
@@ -75,25 +73,14 @@ fs::path directory_of(const CompareOptions& options, const BatchPlan& plan) {
   return results_directory(options.out, plan.names.size() > 1 ? "compare" : "compare_" + plan.names[0]);
 }
 
-/// A page always says whether the ranking holds.
-bool checks_ranking(const CompareOptions& options) {
-  return options.check || options.html;
-}
-
 /// Makes the directories and removes the results of an earlier comparison from them.
-void prepare(const fs::path& out, const BatchPlan& plan, bool league, bool sure) {
+void prepare(const fs::path& out, const BatchPlan& plan, bool league) {
   ResultList results;
   for (std::size_t i = 0; i < plan.size(); ++i) results.runs.push_back(run_directory(plan, i));
   for (std::size_t s = 0; s < plan.scenarios.size(); ++s) {
     results.tables.push_back(scenario_directory(plan, s) / "comparison.csv");
   }
   if (league) results.tables.emplace_back("league.csv");
-  results.tables.emplace_back(kRankingFile);  // `report` makes it later, too
-  for (std::size_t s = 0; sure && s < plan.scenarios.size(); ++s) {
-    for (const char* file :
-         {"sure_step/sweep.csv", "sure_step/sweep.json", "sure_spacing/sweep.csv", "sure_spacing/sweep.json"})
-      results.tables.push_back(scenario_directory(plan, s) / file);
-  }
   for (const fs::path& run : results.runs) require_writable_directory(out / run);
   replace_earlier_results(out, results);
 }
@@ -104,6 +91,14 @@ double expected_bytes(const BatchPlan& plan) {
   for (std::size_t i = 0; i < plan.size(); i += each)
     bytes += static_cast<double>(each) * expected_output_bytes(scenario_of(plan, i).scenario);
   return bytes;
+}
+
+/// The metrics of the league, or without one those of the printed table.
+std::vector<std::string> compared(const CompareOptions& options, const BatchPlan& plan, const BatchReport& report) {
+  if (wants_league(options, plan)) return options.metrics;
+  std::vector<std::string> metrics = compared_metrics();
+  if (have_reference(report.runs)) metrics.insert(metrics.end(), kFidelityMetrics, std::end(kFidelityMetrics) - 1);
+  return metrics;
 }
 
 BatchOptions batch_options(const CompareOptions& options, const BatchPlan& plan, const fs::path& out) {
@@ -158,28 +153,26 @@ std::string letters(const std::vector<std::size_t>& scenarios) {
   return fmt::format("{}", fmt::join(texts, " "));
 }
 
-/// The columns of a scenario in a table of standings: the rank, also the ratio to the best, also mean and spread.
-enum class Detail { rank, ratio, spread };
-
-/// The rank and a sign for: failed, beyond the spread, within it, or unknown.
-std::string rank_cell(const Standing& standing, bool failed) {
-  const char sign = failed ? 'x' : !standing.beyond_spread ? ' ' : *standing.beyond_spread ? '*' : '~';
-  return standing.rank ? fmt::format("{}{}", *standing.rank, sign) : "- ";
-}
+/// The columns of a scenario in a table of standings: the rank, or also mean and spread.
+enum class Detail { rank, spread };
 
 std::vector<Table::Column> standing_columns(std::size_t scenarios, Detail detail) {
   std::vector<Table::Column> columns = {{"algorithm", false}};
   for (std::size_t s = 0; s < scenarios; ++s) {
     columns.push_back({scenarios > 1 ? letter(s) + " " : "rank ", true,
                        scenarios > 1
-                           ? "of compare: rank in the scenario that has this letter above the table; x: a run "
-                             "failed, *: differs from the best by more than the spread over the seeds, ~: does not"
+                           ? "of compare: rank in the scenario that has this letter above the table; x: a run failed"
                            : "rank"});
-    if (detail == Detail::rank) continue;
-    columns.push_back({"ratio", true, "ratio_to_best"});
     if (detail == Detail::spread) columns.insert(columns.end(), {{"mean", true, "mean"}, {"spread", true, "spread"}});
   }
   return columns;
+}
+
+/// By how much the mean may be wrong: by what its numbers may be, or by what another choice of seeds gives.
+std::optional<double> mean_error(const League& league, std::size_t scenario, const Standing& standing) {
+  if (!standing.spread) return standing.tolerance;
+  const double of_seeds = *standing.spread / std::sqrt(static_cast<double>(league.common[scenario].size()));
+  return std::max(standing.tolerance, std::optional(of_seeds));
 }
 
 Table standings(const League& league, std::size_t metric, Detail detail) {
@@ -188,14 +181,11 @@ Table standings(const League& league, std::size_t metric, Detail detail) {
     std::vector<std::string> cells = {league.runs.algorithms[a]};
     for (std::size_t s = 0; s < league.runs.scenarios.size(); ++s) {
       const Standing& standing = league.at(s, a, metric);
-      cells.push_back(rank_cell(standing, league.failures(s, a) > 0));
+      cells.push_back(standing.rank ? fmt::format("{}{}", *standing.rank, league.failures(s, a) > 0 ? 'x' : ' ')
+                                    : "- ");
       if (detail == Detail::rank) continue;
-      cells.push_back(significant(standing.ratio_to_best, 3));
-      if (detail == Detail::spread) {
-        const auto tolerance = std::max(standing.standard_error, standing.tolerance);
-        cells.insert(cells.end(),
-                     {standing.mean ? deserved(*standing.mean, tolerance) : "-", significant(standing.spread, 2)});
-      }
+      cells.push_back(standing.mean ? deserved(*standing.mean, mean_error(league, s, standing)) : "-");
+      cells.push_back(significant(standing.spread, 2));
     }
     table.add(std::move(cells));
   }
@@ -203,77 +193,37 @@ Table standings(const League& league, std::size_t metric, Detail detail) {
 }
 
 std::string standings_text(const League& league, std::size_t metric) {
-  for (const Detail detail : {Detail::spread, Detail::ratio}) {
-    const Table table = standings(league, metric, detail);
-    if (table.width() <= prose_width()) return table.text();
-  }
-  return standings(league, metric, Detail::rank).text(prose_width());
-}
-
-/// "diverges B D; leaves_hole A"; where that is long, with counts: "diverges 12; leaves_hole 7".
-std::string fails_text(const League& league, const LawStanding& law) {
-  std::map<std::string, std::vector<std::size_t>> scenarios;
-  for (const std::size_t s : law.fails) {
-    for (std::size_t k = 0; k < league.runs.seeds; ++k) {
-      const LeagueRun& run = league.runs.run(s, law.algorithm, k);
-      auto& known = scenarios[run.outcome];
-      if (run.failed && (known.empty() || known.back() != s)) known.push_back(s);
-    }
-  }
-  std::vector<std::string> texts, counts;
-  for (const auto& [outcome, where] : scenarios) {
-    if (where.empty()) continue;
-    texts.push_back(fmt::format("{} {}", outcome, letters(where)));
-    counts.push_back(fmt::format("{} {}", outcome, where.size()));
-  }
-  constexpr std::size_t kLongest = 30;
-  const std::string text = fmt::format("{}", fmt::join(texts, "; "));
-  return text.size() <= kLongest ? text : fmt::format("{}", fmt::join(counts, "; "));
+  const Table table = standings(league, metric, Detail::spread);
+  return table.width() <= prose_width() ? table.text() : standings(league, metric, Detail::rank).text(prose_width());
 }
 
 std::vector<Table::Column> law_columns() {
   return {
       {"algorithm", false},
       {"mean rank", true, "mean of the algorithm's ranks over all metrics and scenarios, with those after failures"},
-      {"ratio", true,
-       "under all metrics and scenarios: geometric mean of the ratios to the best; none after a failure"},
-      {"of", true, "of compare: number of ratios in the geometric mean"},
-      {"wins", false, "letters of the scenarios in which no algorithm has a better mean rank, or how many they are"},
-      {"fails", false, "outcomes that count as failures, with the letters of their scenarios, or how many they are"}};
+      {"fails", false, "letters of the scenarios in which a run failed"}};
 }
 
 std::string laws_text(const League& league) {
-  constexpr std::size_t kMostLetters = 12;
   Table table(law_columns());
-  for (const LawStanding& law : league.laws) {
-    table.add({league.runs.algorithms[law.algorithm], significant(law.mean_rank, 3), significant(law.mean_ratio, 3),
-               std::to_string(law.ratios),
-               law.wins.size() <= kMostLetters ? letters(law.wins) : std::to_string(law.wins.size()),
-               fails_text(league, law)});
-  }
+  for (const LawStanding& law : league.laws)
+    table.add({league.runs.algorithms[law.algorithm], significant(law.mean_rank, 3), letters(law.fails)});
   return table.text();
 }
 
-/// Explains the signs of the spread and their rule.
+/// Says where no spread is known, and why.
 std::string spread_text(const League& league) {
   if (league.runs.seeds < 2) return "one seed: no spread is known; --seeds K gives one\n";
   std::vector<std::size_t> alike;
   for (std::size_t s = 0; s < league.seeds_matter.size(); ++s) {
     if (!league.seeds_matter[s]) alike.push_back(s);
   }
-  std::string text;
-  if (alike.size() < league.seeds_matter.size()) {
-    text = fmt::format(
-        "* differs from the best by more than the spread over {} seeds, ~ does not: t of the differences\n"
-        "seed by seed (each seed gives all the same start and noise) against its 5 % quantile, two-sided\n",
-        league.runs.seeds);
-  }
-  if (!alike.empty()) {
-    text += fmt::format(
-        "nothing is random in {}: all seeds are one run, no spread is known; --jitter METRES shifts the start\n",
-        letters(alike));
-  }
-  return text;
+  const std::string random = "\"hapbench report\" says what lies between laws, seed by seed\n";
+  return alike.empty() ? random
+                       : fmt::format(
+                             "nothing is random in {}: all seeds are one run, no spread is known; --jitter METRES "
+                             "shifts the start\n",
+                             letters(alike));
 }
 
 /// Names the seeds that the means are over, in a scenario in which some runs failed.
@@ -288,8 +238,8 @@ std::string failed_seeds_text(const League& league, std::size_t scenario) {
   return fmt::format("\n   means over {} of {} seeds; failed: {}", common, seeds, fmt::join(failed, ", "));
 }
 
-/// For each metric a table of algorithms and scenarios, with as much of rank, ratio to the best, mean and spread as
-/// fits into kTableWidth, then a line for each algorithm, then the signs and the rule by which a difference counts.
+/// For each metric a table of algorithms and scenarios, with rank, mean and spread as far as they fit into kTableWidth,
+/// then a line for each algorithm.
 std::string league_text(const League& league) {
   std::string text;
   const std::size_t scenarios = league.runs.scenarios.size();
@@ -303,14 +253,11 @@ std::string league_text(const League& league) {
                                                  : "neither less nor more is better: not ranked",
                         standings_text(league, m));
   }
-  return text +
-         fmt::format(
-             "\nall metrics and scenarios\n\n{}\n"
-             "ratio: to the best; in the last table the geometric mean of so many, none after a failure. wins:\n"
-             "no other has a better mean rank there. Closer than {} % share a rank. x: a run failed; it ranks\n"
-             "behind all that did not, by the number of failures; of the others those without such a number are\n"
-             "last.\n{}",
-             laws_text(league), 100.0 * kSameRank, spread_text(league));
+  return text + fmt::format(
+                    "\nall metrics and scenarios\n\n{}\n"
+                    "Means closer than {} % share a rank. x: a run failed; it ranks behind all that did not, by the\n"
+                    "number of failures; of the others those without such a number are last.\n{}",
+                    laws_text(league), 100.0 * kSameRank, spread_text(league));
 }
 
 Json summaries_json(const BatchPlan& plan, const BatchReport& report, bool league) {
@@ -326,41 +273,6 @@ Json summaries_json(const BatchPlan& plan, const BatchReport& report, bool leagu
     summaries.push_back(std::move(summary));
   }
   return summaries;
-}
-
-/// Repeats the comparison more finely. Without a league its columns are those of the printed table.
-RankingCheck ranking_of(const BatchPlan& plan, const BatchReport& report, bool league, std::vector<std::string> metrics,
-                        const BatchOptions& batch) {
-  if (!league) {
-    metrics = compared_metrics();
-    if (have_reference(report.runs)) metrics.insert(metrics.end(), kFidelityMetrics, std::end(kFidelityMetrics) - 1);
-  }
-  return check_ranking(plan, make_league(league_runs(plan, report, metrics)), batch);
-}
-
-/// The metrics of a league's table, in their order.
-std::vector<std::string> league_metrics(const fs::path& file) {
-  std::vector<std::string> metrics;
-  const std::string text = read_text_file(file, kLargestJsonFile);
-  for (CsvReader rows{LineReader(text), file}; rows.next();) {
-    const std::string metric(rows.cells().at(2));
-    if (std::find(metrics.begin(), metrics.end(), metric) == metrics.end()) metrics.push_back(metric);
-  }
-  return metrics;
-}
-
-/// Refines the runs of each scenario, adds what was found to their summaries, and tells it.
-std::string add_sure(const CompareOptions& options, const BatchPlan& plan, const fs::path& out, Json& summaries) {
-  std::string text;
-  const std::vector<std::string>& algorithms = plan.definition.algorithms;
-  for (std::size_t s = 0; s < plan.scenarios.size(); ++s) {
-    const SureStudy study(plan.scenarios[s], options.overrides, algorithms, out / scenario_directory(plan, s),
-                          options.jobs, options.output);
-    if (plan.scenarios.size() > 1) text += "\n" + plan.names[s] + "\n";
-    text += study.text("algorithm", algorithms);
-    for (std::size_t a = 0; a < algorithms.size(); ++a) summaries[s * algorithms.size() + a]["sure"] = study.json(a);
-  }
-  return text;
 }
 
 /// Reports runs that diverge although their scenario does not expect it, the only expectation that concerns every
@@ -388,25 +300,22 @@ int verdict(const BatchPlan& plan, const BatchReport& report, bool league) {
 }
 
 int compare(const CompareOptions& options) {
-  if (options.sure && (options.seeds > 1 || options.jitter != 0.0))
-    throw InputError("--sure: got it beside --seeds or --jitter; allowed: for the scenarios as they are");
   if (options.scenarios.empty())
     throw InputError("compare: scenarios is required; \"hapbench compare --help\" explains");
   // All input is checked before anything runs or is written.
   const BatchPlan plan = plan_of(options);
   const fs::path out = directory_of(options, plan);
   print_warnings(plan.warnings);
-  prepare(out, plan, wants_league(options, plan), options.sure);
+  prepare(out, plan, wants_league(options, plan));
   announce_large_output(expected_bytes(plan));
 
-  std::optional<RankingCheck> ranking;
+  std::optional<ComparedErrors> errors;
   const BatchReport report = [&] {
     try {
       BatchReport runs = run_batch(plan, batch_options(options, plan, out));
       BatchOptions batch = batch_options(options, plan, out);
       if (options.jobs == 0) batch.jobs = available_threads();
-      if (checks_ranking(options))
-        ranking = ranking_of(plan, runs, wants_league(options, plan), options.metrics, batch);
+      if (options.errors) errors = errors_of(plan, runs, compared(options, plan, runs), batch);
       return runs;
     } catch (const Stopped&) {
       forget_results_if_none(out);
@@ -418,21 +327,17 @@ int compare(const CompareOptions& options) {
     write_comparison(out / scenario_directory(plan, s) / "comparison.csv", reports_of(plan, report, s), options.seeds);
   }
   std::string last = fmt::format("\nresults in {}\n", out.string());
-  if (ranking) {
-    write_ranking(out / kRankingFile, *ranking);
-    last = ranking_text(*ranking) + last;
-  }
+  if (errors) last = errors->text + last;
   Json json = summaries_json(plan, report, wants_league(options, plan));
-  if (options.sure) last = add_sure(options, plan, out, json) + last;
   if (wants_league(options, plan)) {
     const League league = make_league(league_runs(plan, report, options.metrics));
     write_league(out / "league.csv", league);
     Json batch = {{"runs", std::move(json)}};
     batch.update(league_json(league));
-    if (ranking) batch["ranking"] = ranking_json(*ranking);
+    if (errors) batch["errors"] = std::move(errors->json);
     print(options.output, league_text(league) + last, batch);
   } else {
-    if (options.check) json = {{"runs", std::move(json)}, {"ranking", ranking_json(*ranking)}};
+    if (errors) json = {{"runs", std::move(json)}, {"errors", std::move(errors->json)}};
     print(options.output, comparison_text(report.runs) + own_depth_models_text(plan) + last, json);
   }
   if (options.html) write_report(out, options.output.quiet || options.output.json);
@@ -440,23 +345,6 @@ int compare(const CompareOptions& options) {
 }
 
 }  // namespace
-
-void check_comparison(const fs::path& folder, bool quiet) {
-  std::error_code ignored;
-  const fs::path file = folder / kRankingFile, league = folder / "league.csv";
-  if (fs::is_regular_file(file, ignored)) return;
-  try {
-    const std::optional<BatchPlan> plan = comparison_on_record(folder);
-    if (!plan) return;
-    const BatchOptions batch{.directory = std::nullopt, .jobs = available_threads(), .progress = !quiet};
-    const BatchReport report = run_batch(*plan, batch);
-    const bool has_league = fs::is_regular_file(league, ignored);
-    const std::vector<std::string> metrics = has_league ? league_metrics(league) : std::vector<std::string>();
-    write_ranking(file, ranking_of(*plan, report, has_league, metrics, batch));
-  } catch (const InputError& error) {
-    print_note(fmt::format("{}: whether the ranking holds cannot be checked: {}", folder.string(), error.what()));
-  }
-}
 
 std::vector<Table::Column> league_headings() {
   return joined_headings({standing_columns(26, Detail::rank), standing_columns(1, Detail::spread), law_columns()});
@@ -486,20 +374,15 @@ void add_compare(CommandLine& line) {
       "directory of the results (default: results/out/compare_NAME, for several scenarios results/out/compare)");
   add_overrides(command, options.overrides);
   command.flag("--html", options.html, "also write OUT/report.html: curves, replay, metrics, commands");
-  command.flag("--check", options.check,
-               "also repeat it at half the distance of the shell's points and at half the step, and say of each metric "
-               "whether the ranking holds, drifts or flips (\"hapbench describe flips\"); --html does");
-  command.flag(
-      "--sure", options.sure,
-      "also run each at a half and a quarter of the step, and of the distance of the shell's points, and print how "
-      "far that moves each number");
+  command.flag("--errors", options.errors,
+               "also run each at half and a quarter of the step and of the distance of the shell's points, and say of "
+               "each metric how far that moves it and which laws' order holds");
   add_skip_option(command, options.skips);
   add_output_options(command, options.output);
   command.footer(
       "Files go to OUT/[SCENARIO/]ALGORITHM[/seed_K], the parts in brackets where there are several, and "
-      "comparison.csv of each scenario beside them. Several scenarios or seeds, or --by, give a league: rank, ratio to "
-      "the best, mean and spread over the seeds, whether a difference exceeds the spread, and where each algorithm wins "
-      "and fails; league.csv has all of it; ranking.csv has the numbers of --check, which are measured at the same times with both steps. A run fails when it diverges, has no contact or loses it, goes through the "
+      "comparison.csv of each scenario beside them. Several scenarios or seeds, or --by, give a league: rank, mean and "
+      "spread over the seeds, and where each algorithm fails; league.csv has all of it. A run fails when it diverges, has no contact or loses it, goes through the "
       "surface, is not dragged or stuck, or "
       "ends otherwise than its scenario allows; it ranks behind all others. The results of an earlier comparison in OUT "
       "are removed, other files are not.");

@@ -14,7 +14,7 @@
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/command.hpp"
 #include "scenarios/program/result_tables.hpp"
-#include "scenarios/program/sure.hpp"
+#include "scenarios/program/run_table.hpp"
 #include "scenarios/program/sweep.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/stop_signal.hpp"
@@ -154,7 +154,7 @@ std::string verdict_text(const ConvergeStudy& study) {
                        three          ? "of three levels alone"
                        : c.asymptotic ? "asymptotic"
                                       : "not yet asymptotic",
-                       sure_text(*c.extrapolated, c.errors.back()),
+                       with_error_text(*c.extrapolated, c.errors.back()),
                        c.gci ? fmt::format(", GCI {:.2g} %", 100.0 * *c.gci) : "");
   }
   if (!c.band) return fmt::format("no order: {}", c.reason);
@@ -162,7 +162,7 @@ std::string verdict_text(const ConvergeStudy& study) {
   return fmt::format("no order: {}; last levels {}", c.reason,
                      low == high
                          ? significant(low, 6)
-                         : fmt::format("{} ... {}", sure_number(low, high - low), sure_number(high, high - low)));
+                         : fmt::format("{} ... {}", number_text(low, high - low), number_text(high, high - low)));
 }
 
 /// The coarsest level whose error and those of all finer ones are below, and what it costs.
@@ -197,7 +197,7 @@ std::string study_text(const ConvergeStudy& study, std::optional<double> most) {
     const auto error = study.relative_error(i);
     const Convergence& c = study.found;
     table.add({study.levels.axis.values[i], study.rows[i].outcome,
-               study.results[i] ? sure_number(*study.results[i], c.errors[i]) : "-",
+               study.results[i] ? number_text(*study.results[i], c.errors[i]) : "-",
                c.order && c.orders[i] ? fmt::format("{:.2f}", *c.orders[i]) : "-",
                error ? significant(100.0 * *error, 2) : "-", significant(study.seconds[i], 2)});
   }

@@ -6,7 +6,6 @@
 
 #include "results/io/columns.hpp"
 #include "results/summary/outcome_names.hpp"
-#include "scenarios/batch/ranking_check.hpp"
 #include "scenarios/description/metric_sections.hpp"
 #include "scenarios/description/scenario.hpp"
 #include "scenarios/input/text_lines.hpp"
@@ -134,7 +133,6 @@ struct Word {
 constexpr const char* kOutcome = "outcome of a run";
 constexpr const char* kMotion = "class of motion, of limit and stability";
 constexpr const char* kTime = "number of timing.json";
-constexpr const char* kHolds = "verdict of compare --check on a metric";
 constexpr const char* kVerdict = "verdict on a claim";
 constexpr const char* kResultFile = "file of the results";
 
@@ -174,7 +172,6 @@ constexpr Word kWords[] = {
 std::vector<Word> all_words() {
   std::vector<Word> all(std::begin(kWords), std::end(kWords));
   for (const OutcomeInfo& outcome : outcome_infos()) all.push_back({outcome.name, kOutcome, outcome.meaning});
-  for (const HoldingInfo& holding : holding_infos()) all.push_back({holding.name, kHolds, holding.meaning});
   for (const RunVerdict verdict : kRunVerdicts)
     all.push_back({run_verdict_name(verdict), kMotion, run_verdict_meaning(verdict)});
   for (const Verdict verdict : kVerdicts) all.push_back({verdict_name(verdict), kVerdict, text_of(verdict).meaning});

@@ -1,18 +1,14 @@
 #pragma once
 
 #include <cstddef>
-#include <filesystem>
 #include <span>
-#include <string>
 #include <vector>
 
-#include "scenarios/input/json_file.hpp"
 #include "sim/core/types.hpp"
 #include "sim/geometry/point_shell.hpp"
 #include "sim/mesh/triangle_soup.hpp"
 
-/// Guesses for a new scenario from a mesh: the tip of a tool, the distance of a surface's points, and where a tool that
-/// comes along -z starts over it.
+/// Guesses for a new scenario from a mesh: the tip of a tool, and where a tool that comes along -z starts over it.
 namespace hapbench {
 
 /// The guessed tip of a tool's mesh.
@@ -24,26 +20,6 @@ struct TipOfMesh {
 /// Guesses a tool's tip. A mesh without a longest direction has it at its lowest place, along -z. Precondition: it has
 /// triangles.
 TipOfMesh guess_tip(const TriangleSoup& mesh);
-
-/// A mesh's scene as guessed_spacing starts from it.
-struct SpacingTest {
-  double diameter = 0.001;  ///< of the tool [m]
-  double spacing = 0.0001;  ///< at which it has `points` [m]
-  std::size_t points = 0;
-};
-
-/// The chosen distance of a mesh's points, and why.
-struct GuessedSpacing {
-  double spacing = 0.0;  ///< [m]
-  std::string note;
-};
-
-/// Chooses environment.spacing_m of a scene as the widest of a fifth, a tenth, a twentieth and a fortieth of the tool's
-/// diameter at half of which the columns that `compare` prints of shaped_stiffness, mean, proxy and summation do not
-/// flip (judged_column) and mean force and depth of the scene's own law do not move by more than kHeld. Where none
-/// passes whose half takes up to 250 000 points it is that of `test`. Runs the scene with the four laws up to five
-/// times. `directory`: what its relative paths start from. Throws InputError and Stopped.
-GuessedSpacing guessed_spacing(const Json& scene, const std::filesystem::path& directory, const SpacingTest& test);
 
 /// The point nearest to the middle of those within `tolerance` of the top.
 Vec3 middle_of_the_top(const std::vector<SurfacePoint>& points, double top, double tolerance);

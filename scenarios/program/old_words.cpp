@@ -20,6 +20,8 @@ constexpr std::string_view kMaps = "hapbench limit stability_z_width, and other 
 
 constexpr std::string_view kSlurm = "sbatch --array=0-99 scripts/sweep.sbatch SCENE --vary ... --out FOLDER";
 
+constexpr std::string_view kErrors = "hapbench compare SCENE --errors, of one number hapbench converge SCENE";
+
 /// By command, so that what one command lost stands together.
 constexpr OldWord kOldWords[] = {
     {"*", "--memory", "ulimit -d KILOBYTES before the command; without it three quarters of what is free"},
@@ -28,13 +30,16 @@ constexpr OldWord kOldWords[] = {
     {"", "man", "hapbench --help, and --help of each command"},
     {"", "merge", "hapbench sweep FOLDER, which joins the tables of the shards in it"},
     {"", "suite", "hapbench compare GROUP --algorithms all --seeds 5"},
+    {"compare", "--check", kErrors},
     {"compare", "--devices", kDevices},
     {"compare", "--friction", kDevices},
     {"compare", "--resolution", kDevices},
+    {"compare", "--sure", kErrors},
     {"compare", "--vibration", kDevices},
     {"plot", "--no-sketch", "the same without it: plot draws no sketches"},
     {"reproduce", "--subjects",
      "their record, in the manual of the thesis's claims (scenarios/thesis_claims/README.md)"},
+    {"run", "--sure", "hapbench converge SCENE, of the points with --vary environment.spacing_m"},
     {"stability", "--algorithms", kMaps},
     {"stability", "--count", "hapbench stress --count N"},
     {"stability", "--evaluations", kSampleOfHands},

@@ -88,7 +88,6 @@ int plot(const PictureOptions& options) {
 }
 
 int report(const PictureOptions& options) {
-  for (const std::string& folder : options.runs) check_comparison(folder, options.quiet);
   return become("report", options);
 }
 
@@ -164,8 +163,7 @@ void add_report(CommandLine& line) {
   add_common(command, options, "folders that run or compare wrote",
              "FILE.html (default: report.html in the folder of the runs)");
   command.footer(
-      "One HTML file that needs no server and no network. Of a comparison it says whether the ranking holds; where "
-      "that was not checked, all of it runs anew first (compare --check). The replay shows up to four runs side by side, with their "
+      "One HTML file that needs no server and no network. The replay shows up to four runs side by side, with their "
       "depths if they were run with --set record.contacts=true.\n"
       "  hapbench report results/out/compare_drag");
 }

@@ -4,7 +4,6 @@
 
 #include "results/record/recorder.hpp"
 #include "scenarios/batch/league.hpp"
-#include "scenarios/batch/ranking_check.hpp"
 #include "scenarios/batch/sweep_table.hpp"
 #include "scenarios/description/metric_sections.hpp"
 #include "scenarios/description/scenario.hpp"
@@ -130,9 +129,6 @@ std::vector<DescribedTable> result_tables() {
   add("comparison.csv", "of compare: one line per algorithm", comparison_columns());
   add("league.csv", "of compare with several scenarios or seeds: one line per scenario, algorithm and metric",
       league_columns());
-  add("ranking.csv",
-      "of compare --check or --html: one line per scenario, halved spacing or step, metric and algorithm",
-      ranking_columns());
   for (const DescribedTable& table : limit_tables()) tables.push_back(table);
   add("converge.csv", "of converge: one line per metric", converge_columns());
   add("converge_levels.csv", "of converge: one line per metric and level", converge_level_columns());

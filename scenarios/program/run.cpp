@@ -9,7 +9,6 @@
 #include "scenarios/input/json_file.hpp"
 #include "scenarios/program/command.hpp"
 #include "scenarios/program/run_table.hpp"
-#include "scenarios/program/sure.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/recorders.hpp"
 
@@ -24,7 +23,6 @@ struct RunOptions {
   std::vector<std::string> overrides;
   Skips skips = Skips::on;
   bool latency = false;
-  bool sure = false;
   OutputOptions output;
 };
 
@@ -64,7 +62,7 @@ int run(const RunOptions& options) {
   Table latencies = latency_table();
   std::vector<RunReport> reports;
   Json summaries = Json::array();
-  std::string targets, sure;
+  std::string targets;
   int status = kSuccess;
   for (std::size_t i = 0; i < scenarios.size(); ++i) {
     const RunReport& report = reports.emplace_back(run_scenario(scenarios[i], directories[i], !options.output.quiet));
@@ -76,12 +74,6 @@ int run(const RunOptions& options) {
       latencies.add(latency_cells(report.summary.name, *report.timing.latency));
       summaries.back()["step_latency"] = step_latency_json(*report.timing.latency);
     }
-    if (options.sure) {
-      const SureStudy study(read_scenario_text(scenarios[i].file), options.overrides, {}, directories[i], 0,
-                            options.output);
-      sure += study.text("scenario", {report.summary.name});
-      summaries.back()["sure"] = study.json(0);
-    }
     for (const std::string& unmet : report.unmet) {
       print_error(fmt::format(R"({}: {} (field expect; --set expect={{"outcome":"{}"}} expects what came))",
                               scenarios[i].file.string(), unmet, outcome_name(report.summary.result.outcome)));
@@ -91,7 +83,7 @@ int run(const RunOptions& options) {
   const fs::path where = directories.size() == 1 ? directories[0] : directories[0].parent_path();
   const std::string latency_text = options.latency ? "\n" + latencies.text() : "";
   print(options.output,
-        table.text() + fidelity_text(reports) + unsettled_text(reports) + step_time_text(reports) + targets + sure +
+        table.text() + fidelity_text(reports) + unsettled_text(reports) + step_time_text(reports) + targets +
             latency_text + fmt::format("\nresults in {}\n", where.string()),
         summaries);
   return status;
@@ -109,10 +101,6 @@ void add_run(CommandLine& line) {
   add_overrides(command, options.overrides, "override a field: path=value, as in time.steps=100");
   command.flag("--latency", options.latency,
                "time every step, as record.timing does, and print percentiles and missed deadlines");
-  command.flag(
-      "--sure", options.sure,
-      "also run each at a half and a quarter of the step, and of the distance of the shell's points, and print "
-      "how far that moves each number");
   add_skip_option(command, options.skips);
   add_output_options(command, options.output);
 }

@@ -2,18 +2,17 @@
 
 #include <array>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "results/io/columns.hpp"
 #include "results/observe/step_times.hpp"
-#include "scenarios/batch/ranking_check.hpp"
 #include "scenarios/program/table.hpp"
 #include "scenarios/run/run_scenario.hpp"
 
-/// Tables with a row for each run, as `run` and `compare` print and write them, and of `compare --check`: whether the
-/// ranking holds when the scenes are sampled twice as finely.
+/// Tables with a row for each run, as `run` and `compare` print and write them.
 namespace hapbench {
 
 /// A heading of the printed tables of runs.
@@ -92,7 +91,10 @@ void write_comparison(const std::filesystem::path& file, std::span<const RunRepo
 /// The metrics of the printed table of runs, each a number.
 std::vector<std::string> compared_metrics();
 
-/// A table with a line for each metric and halved quantity, and the rule of the verdicts.
-std::string ranking_text(const RankingCheck& check);
+/// A number with the digits that its error leaves it: one where the error is larger, six where it is 0, four where it
+/// is not known.
+std::string number_text(double value, const std::optional<double>& error);
+/// The same with the error behind: "1.234 +- 0.005".
+std::string with_error_text(double value, const std::optional<double>& error);
 
 }  // namespace hapbench

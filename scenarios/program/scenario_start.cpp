@@ -103,7 +103,7 @@ class Start {
       place_tool();
     }
     if (kind.source == StartSource::stroke) choose_stroke_steps();
-    choose_spacing();
+    note_spacing();
   }
 
   ScenarioStart result() const { return {text(), notes_, warnings_}; }
@@ -323,14 +323,12 @@ class Start {
     values_["steps"] = static_cast<std::int64_t>(std::ceil(rounded(way / speed) / kStep));
   }
 
-  /// Chooses the distance of the mesh's points by a test of the scene as it is.
-  void choose_spacing() {
+  /// Says how far apart a mesh's points are.
+  void note_spacing() {
     if (!has("@spacing@")) return;
-    const double first = values_.at("spacing").get<double>();
-    if (count_ == 0) count_ = points().size();
-    const GuessedSpacing guessed = guessed_spacing(parse_json(text()), directory_, {diameter_, first, count_});
-    values_["spacing"] = guessed.spacing;
-    notes_.push_back(fmt::format("{} points, {}", points().size(), guessed.note));
+    notes_.push_back(fmt::format("{} points, {} apart: a tenth of the tool's diameter",
+                                 count_ == 0 ? points().size() : count_,
+                                 length_text(values_.at("spacing").get<double>())));
   }
 
   /// Places the tool above the plane's middle, at a scale that makes it about as long as a tooth.

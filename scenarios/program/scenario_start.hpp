@@ -49,7 +49,7 @@ struct ScenarioStart {
 
 /// Makes a start for a file in `directory`. A mesh gets the unit, of mm, m and cm, in which it is 3 to 300 mm long, as
 /// what tools of a millimetre and more work on, or which comes closest; in doubt the notes have both readings. Its
-/// points are as far apart as a test allows (guessed_spacing). The tool is 1 mm thick, or a fiftieth of a longer
+/// points are a tenth of the tool's diameter apart. The tool is 1 mm thick, or a fiftieth of a longer
 /// object, and starts 1 mm above the middle of the highest places; a drag starts where it has room and covers most of
 /// it. Normals of an open mesh that point away from the tool are turned round. Throws InputError when a file cannot be
 /// used.

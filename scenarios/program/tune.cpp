@@ -249,6 +249,14 @@ std::string margins_text(const TuneMargins& margins) {
   return fmt::format("{}", fmt::join(texts, ", "));
 }
 
+/// A metric of the choice with the digits that its spread over the seeds leaves it, three where none is known.
+std::string metric_text(const TunedLaw& law, const char* name, double factor) {
+  const auto value = law.choice->metrics.find(name), spread = law.spread.find(name);
+  if (value == law.choice->metrics.end()) return "-";
+  const auto error = spread == law.spread.end() ? std::nullopt : std::optional(factor * spread->second);
+  return significant(factor * value->second, deserved_digits(factor * value->second, error, 3));
+}
+
 std::string metrics_text(const TunedLaw& law) {
   constexpr std::tuple<const char*, const char*, double> kTexts[kTuneMetrics.size()] = {
       {"deepest inside", "mm", 1e3}, {"force above 30 Hz", "N rms", 1.0},
@@ -259,9 +267,9 @@ std::string metrics_text(const TunedLaw& law) {
     const auto value = law.choice->metrics.find(kTuneMetrics[i]), spread = law.spread.find(kTuneMetrics[i]);
     if (value == law.choice->metrics.end()) continue;
     const auto& [name, unit, factor] = kTexts[i];
-    texts.push_back(fmt::format("{} {:.3g}{} {}", name, factor * value->second,
-                                spread == law.spread.end() ? "" : fmt::format(" +- {:.1g}", factor * spread->second),
-                                unit));
+    const bool known = spread != law.spread.end();
+    texts.push_back(fmt::format("{} {}{} {}", name, metric_text(law, kTuneMetrics[i], factor),
+                                known ? fmt::format(" +- {:.1g}", factor * spread->second) : "", unit));
   }
   return fmt::format("{}", fmt::join(texts, ", "));
 }
@@ -305,14 +313,10 @@ Table tune_table(const std::vector<TunedLaw>& laws) {
       table.add({law.algorithm, "none", "-", "-", "-", "-", "-", "-", law.binding});
       continue;
     }
-    const auto metric = [&](const char* name, double unit) {
-      const auto found = law.choice->metrics.find(name);
-      return found == law.choice->metrics.end() ? "-" : significant(found->second * unit, 3);
-    };
     table.add({law.algorithm, stiffness_text(*law.choice), significant(law.choice->setting.damping_ratio, 3),
                significant(law.margins.gain, 3), significant(law.margins.delay_samples, 3),
-               metric("inside_settled_m", 1e3), metric("force_rms_above_30Hz_N", 1.0),
-               metric("settled_force_step_max_N", 1.0), law.binding});
+               metric_text(law, "inside_settled_m", 1e3), metric_text(law, "force_rms_above_30Hz_N", 1.0),
+               metric_text(law, "settled_force_step_max_N", 1.0), law.binding});
   }
   return table;
 }

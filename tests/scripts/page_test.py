@@ -6,7 +6,10 @@ import os
 import re
 import shlex
 
-from fixture import PROGRAM, hapbench, main, ran
+import numpy as np
+from scipy import stats
+
+from fixture import hapbench, main
 from pictures_fixture import Given, drawn, make_runs
 
 setUpModule = make_runs
@@ -49,39 +52,22 @@ class Page(Given):
         for text in ("in contact 4.9 % of the run &lt;b&gt;", "landing force max<br><span class=unit>N</span>", "7.25", "force rms above 30Hz", "0.125"):
             self.assertTrue(text in page, text)
 
-    def test_a_comparison_says_whether_its_ranking_holds(self):
-        out = self.root / "checked"
-        hapbench("compare", "peg_in_hole_2d_shaped_stiffness", "--algorithms", "mean,shaped_stiffness", "--set", "time.steps=300",
-                 "--html", "--out", out, "--quiet")
-        section = re.search(r'<section id="ranking".*?</section>', (out / "report.html").read_text(), re.S)[0]
-        rows = [line.split(",") for line in (out / "ranking.csv").read_text().splitlines()[1:]]
-        self.assertEqual(len(re.findall("<tr", section)), 1 + len(rows) / 2)
-        for verdict in {row[7] for row in rows}:
-            self.assertIn(verdict, section)
-        self.assertIn("environment.spacing_m 0.1 mm -&gt; 50 um", section)
-
-    def test_a_page_made_later_checks_the_ranking(self):
-        # The springs have no points, so that one half of the check has a reason in its place.
-        words = ["peg_in_hole_2d_shaped_stiffness", "springs_limited_mean", "--algorithms", "mean,shaped_stiffness", "--seeds", "2",
-                 "--jitter", "1e-6", "--by", "force_max_N,inside_max_m", "--set", "time.steps=200", "--quiet"]
-        hapbench("compare", *words, "--out", self.root / "later")
-        hapbench("compare", *words, "--check", "--out", self.root / "at_once")
-        page = self.page(self.root / "later")
-        self.assertEqual(*((self.root / name / "ranking.csv").read_bytes() for name in ("later", "at_once")))
-        self.assertIn("springs have no points", re.search(r'<section id="ranking".*?</section>', page, re.S)[0])
-        # Nothing of it is left when the comparison is made anew.
-        hapbench("compare", *words, "--out", self.root / "later")
-        self.assertFalse((self.root / "later" / "ranking.csv").exists())
-
-    def test_a_page_says_why_no_ranking_was_checked(self):
-        folder = self.copy("peg")
-        (folder / "ranking.csv").unlink(missing_ok=True)
-        file = folder / "mean" / "scenario.effective.json"
-        file.write_text(file.read_text().replace('"algorithm": "mean"', '"algorithm": "of_a_plugin"'))
-        done = ran(PROGRAM, "report", folder, "--out", self.root / "page.html")
-        self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertRegex(done.stderr, "whether the ranking holds cannot be checked: .*mean/scenario.effective.json.*of_a_plugin")
-        self.assertIn("cannot be checked", (self.root / "page.html").read_text(encoding="utf-8"))
+    def test_a_comparison_over_seeds_says_what_lies_between_laws(self):
+        out = self.root / "seeds"
+        hapbench("compare", "peg_in_hole_2d_shaped_stiffness", "--algorithms", "mean,shaped_stiffness,summation", "--set", "time.steps=200", "--seeds", "4",
+                 "--jitter", "1e-6", "--by", "force_max_N", "--out", out, "--quiet")
+        page = self.page(out)
+        said = re.findall(r"<code>force_max_N</code>: (\w+) has (\S+) ± (\S+) more than (\w+) over 4 seeds, which (\w+)",
+                          re.search(r'<section id="seeds".*?</section>', page, re.S)[0])
+        self.assertEqual(len(said), 2)
+        value = lambda law: np.array([json.loads((out / law / f"seed_{k}" / "summary.json").read_text())["metrics"]["force_max_N"] for k in range(4)])
+        for law, mean, within, least, word in said:
+            more = value(law) - value(least)
+            low, high = stats.t.interval(0.95, 3, more.mean(), stats.sem(more))
+            self.assertAlmostEqual(float(mean) / more.mean(), 1, delta=0.006)
+            self.assertAlmostEqual(float(within) / (0.5 * (high - low)), 1, delta=0.06)
+            self.assertEqual(word, "chance" if low > 0 else "may")
+        self.assertNotIn('id="seeds"', self.page(self.root / "peg"))
 
     def test_the_commands_repeat_the_run(self):
         page = self.page(self.root / "springs")

@@ -10,6 +10,7 @@
 #include "results/io/json_text.hpp"
 #include "results/summary/outcome_names.hpp"
 #include "scenarios/batch/finer_scene.hpp"
+#include "scenarios/description/metric_sections.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/studies/stability/field_limit.hpp"
 #include "sim/core/math.hpp"
@@ -126,8 +127,7 @@ Convergence convergence_of(std::span<const LevelResult> levels, double ratio, do
 
 namespace {
 
-/// Counts of contacts at the rows that the metrics take in. Other points come with another surface: then it is the
-/// number of first touches that tells whether the tool meets the same things.
+/// Counts of contacts at the rows that the metrics take in.
 constexpr const char* kContactCounts[] = {"landings", "steps_in_contact", "colliding_mean", "rendered_mean"};
 
 /// Of the step. A device samples: between its samples the force is held, which is of the first order.
@@ -154,10 +154,10 @@ LevelSweep step_levels(const Scenario& scenario, std::size_t levels, double rati
   LevelSweep sweep{.axis = {kStepPath}, .formal_order = order_in_step(scenario), .no_order = noise_reason(scenario)};
   int times = 1;
   for (std::size_t i = 0; i < levels; ++i, times *= static_cast<int>(ratio)) {
-    std::vector<std::string> overrides = with_finer_step(scenario, times).overrides;
+    auto [overrides, stride] = with_finer_step(scenario, times);
     sweep.axis.values.push_back(overrides.front().substr(std::string_view(kStepPath).size() + 1));
     overrides.erase(overrides.begin());
-    sweep.axis.along.push_back({std::move(overrides), times});
+    sweep.axis.along.push_back({std::move(overrides), stride});
   }
   return sweep;
 }
@@ -178,8 +178,7 @@ double coarsest_value(const LoadedScenario& loaded, const std::string& path) {
 
 }  // namespace
 
-LevelSweep level_sweep(const LoadedScenario& loaded, const std::string& path, std::size_t levels, double ratio,
-                       bool as_it_is) {
+LevelSweep level_sweep(const LoadedScenario& loaded, const std::string& path, std::size_t levels, double ratio) {
   LevelSweep sweep;
   if (path == kStepPath) {
     sweep = step_levels(loaded.scenario, levels, ratio);
@@ -188,10 +187,6 @@ LevelSweep level_sweep(const LoadedScenario& loaded, const std::string& path, st
     double value = coarsest_value(loaded, path);
     for (std::size_t i = 0; i < levels; ++i, value /= ratio)
       sweep.axis.values.emplace_back(std::string_view(NumberText(value)));
-    if (as_it_is && own_value(loaded.scenario, path).is_null()) {
-      sweep.axis.values.front() = "null";
-      sweep.no_order = "the mesh's own points are not as far apart everywhere as those of the other levels";
-    }
   }
   sweep.ratio = ratio;
   return sweep;
@@ -202,24 +197,55 @@ std::optional<double> level_result(const SweepPlan& plan, const SweepRow& row, c
   return failed ? std::nullopt : row.number(plan, metric);
 }
 
+namespace {
+
+/// The counts by which contacts are said to switch. Other points come with another surface: then it is the number of
+/// first touches that tells whether the tool meets the same things.
+std::span<const char* const> counts_of(const LevelSweep& levels) {
+  constexpr std::size_t kOfAnySurface = 1;
+  return std::span(kContactCounts)
+      .first(levels.axis.path.starts_with("environment.") ? kOfAnySurface : std::size(kContactCounts));
+}
+
+LevelResult level_named(const LevelSweep& levels, std::size_t level, std::string outcome, std::string state_hash) {
+  return {.setting = fmt::format("{} = {}", levels.axis.path, levels.axis.values[level]),
+          .outcome = std::move(outcome),
+          .result = std::nullopt,
+          .state_hash = std::move(state_hash)};
+}
+
+}  // namespace
+
+LevelResult level_result(const LevelSweep& levels, std::size_t level, const RunSummary& summary,
+                         const std::string& metric) {
+  LevelResult result = level_named(levels, level, std::string(outcome_name(summary.result.outcome)),
+                                   fmt::format("{:x}", summary.metrics.state_hash));
+  const MetricList metrics = metric_list(summary);
+  if (summary.result.outcome != Outcome::diverges) result.result = number_of(value_of(metrics, metric));
+  for (const char* name : counts_of(levels))
+    result.contacts.emplace_back(name, number_of(value_of(metrics, name)).value_or(0.0));
+  return result;
+}
+
+Convergence convergence_of(const LevelSweep& levels, std::span<const LevelResult> results) {
+  const auto is_first = [&](const LevelResult& level) { return level.state_hash == results.front().state_hash; };
+  const bool alike = results.size() > 1 && results.back().result && std::ranges::all_of(results, is_first);
+  return convergence_of(results, levels.ratio, levels.formal_order,
+                        alike
+                            ? fmt::format("{} has no effect here: all runs are the same, bit for bit", levels.axis.path)
+                            : levels.no_order);
+}
+
 Convergence convergence_of(const LevelSweep& levels, const SweepPlan& plan, std::span<const SweepRow> rows,
                            const std::string& metric) {
-  const bool other_points = levels.axis.path.starts_with("environment.");
-  const std::span counts = std::span(kContactCounts).first(other_points ? 1 : std::size(kContactCounts));
   std::vector<LevelResult> results;
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    LevelResult& level = results.emplace_back();
-    level.setting = fmt::format("{} = {}", levels.axis.path, levels.axis.values[i]);
-    level.outcome = rows[i].outcome;
+    LevelResult& level = results.emplace_back(level_named(levels, i, rows[i].outcome, rows[i].state_hash));
     level.result = level_result(plan, rows[i], metric);
-    for (const char* name : counts) level.contacts.emplace_back(name, rows[i].number(plan, name).value_or(0.0));
+    for (const char* name : counts_of(levels))
+      level.contacts.emplace_back(name, rows[i].number(plan, name).value_or(0.0));
   }
-  const auto is_first = [&](const SweepRow& row) { return row.state_hash == rows.front().state_hash; };
-  if (rows.size() > 1 && results.back().result && std::ranges::all_of(rows, is_first)) {
-    return convergence_of(results, levels.ratio, levels.formal_order,
-                          fmt::format("{} has no effect here: all runs are the same, bit for bit", levels.axis.path));
-  }
-  return convergence_of(results, levels.ratio, levels.formal_order, levels.no_order);
+  return convergence_of(levels, results);
 }
 
 }  // namespace hapbench

@@ -21,6 +21,7 @@ struct LevelResult {
   /// Counts of contacts, by name. Where they differ between the last levels, contacts have switched between them, and
   /// the differences are not those of one smooth motion.
   std::vector<std::pair<std::string, double>> contacts = {};
+  std::string state_hash = {};  ///< equal for runs that are the same, bit for bit
 };
 
 /// The verdict on a metric.
@@ -61,13 +62,19 @@ struct LevelSweep {
 
 /// The levels of a field. With shorter steps the run lasts as long, delays of devices keep their length, and metrics of
 /// motion, force and contact are taken at the times of the coarsest rows. A mesh without a spacing begins with the mean
-/// distance of its vertices; with `as_it_is` with its own vertices. Throws InputError when the field is no number > 0
-/// or an integer, and for a ratio of steps that is not whole.
-LevelSweep level_sweep(const LoadedScenario& loaded, const std::string& path, std::size_t levels, double ratio,
-                       bool as_it_is = false);
+/// distance of its vertices. Throws InputError when the field is no number > 0 or an integer, and for a ratio of steps
+/// that is not whole.
+LevelSweep level_sweep(const LoadedScenario& loaded, const std::string& path, std::size_t levels, double ratio);
 
 /// The metric of a level's run; none where it has none, diverges or could not be computed.
 std::optional<double> level_result(const SweepPlan& plan, const SweepRow& row, const std::string& metric);
+
+/// What the run of a level gave of a metric.
+LevelResult level_result(const LevelSweep& levels, std::size_t level, const RunSummary& summary,
+                         const std::string& metric);
+
+/// The verdict on the results of the levels.
+Convergence convergence_of(const LevelSweep& levels, std::span<const LevelResult> results);
 
 /// The verdict on a metric of the plan, of as many rows as the axis has levels.
 Convergence convergence_of(const LevelSweep& levels, const SweepPlan& plan, std::span<const SweepRow> rows,

@@ -303,7 +303,7 @@ constexpr ExplainRule kRules[] = {
      }},
     {"facets", "distance of the surface's points over that at which four are in contact, where the tool moves on them",
      "1", 1.15, "the surface is sampled too coarsely, facets are felt: {} times the distance that keeps four contacts",
-     "half of environment.spacing_m or grid_m; \"compare --check\" tells what depends on it", coarseness,
+     "half of environment.spacing_m or grid_m; \"compare --errors\" tells what depends on it", coarseness,
      [](const RunFiles& r) {
        const auto distance = point_distance(r.loaded);
        return distance ? fmt::format("now {}", length_text(distance->metres)) : std::string();

@@ -17,8 +17,7 @@ from .given import common_folder, given_runs, given_sweep, labels
 from .panels import DARK, LIGHT, PATH_COLUMNS, SPANS, draw_over_time, draw_path, looks, on_dark, projections, settings
 from .quantities import REFERENCE, SHORT, TRAJECTORY, USUAL, Samples, quantity, tables_of
 from .replay import replays, surface_of
-from .sections import (commands_section, metric_rows, metrics_section, provenance, ranking_section, scenario_section, summary_section,
-                       warnings_section)
+from .sections import (commands_section, metric_rows, metrics_section, provenance, scenario_section, seeds_section, summary_section, warnings_section)
 
 STYLE = Path(__file__).parent / "page.css"
 SIZE, PATH_SIZE = (4.0, 2.0), (4.0, 2.9)  # [inch]: on a phone as legible as the text around it
@@ -60,7 +59,7 @@ def sections(runs, names, words):
         ("fidelity", "Fidelity", "Against the measured force", fidelity_section(runs, names)),
         ("late", "Late contacts", "Contacts that came late", late_section(runs, names)),
         ("metrics", "Metrics", "Metrics", metrics_section(runs, names)),
-        ("ranking", "Ranking", "Does the ranking hold?", ranking_section(words)),
+        ("seeds", "Seeds", "Between algorithms, over the seeds", seeds_section(runs)),
         ("scenario", "Scenario", "Scenario", scenario_section(runs, names)),
         ("rerun", "Rerun", "Run it again", commands_section(runs, words)),
         ("provenance", "Provenance", "Provenance", provenance(runs)),

@@ -1,19 +1,18 @@
 """The sections of a page of runs that are text and tables."""
 import json
 import shlex
-from pathlib import Path
 
-from hapbench.columns import read_records
+import numpy as np
+
 from hapbench_report.json_input import at, number_or_none
 from hapbench_report.live_link import live_link
 from hapbench_report.markup import cell, columns, command, deserved_digits, heading_cell, named, number, number_cell, table, text
 from hapbench_report.runs import plugin_text, provenance_of, provenance_section
 
-from .given import differing, fields_of
+from .given import SEED_FOLDER, differing, fields_of
 
 MOST_FIRST = 12  # runs in the first table
 FIRST = ("force_mean_in_contact_N", "force_max_N", "force_step_p99_N", "force_rms_above_30Hz_N", "inside_max_m")
-COMPARISON, LEAGUE, RANKING = "comparison.csv", "league.csv", "ranking.csv"
 # Metrics of summary.json in the first table, as far as any run has them. Those that separate algorithms come first.
 METRICS = ("landings", "landing_force_max_N", "force_mean_in_contact_N", "force_step_p99_N", "settled_force_step_max_N",
            "force_rms_above_30Hz_N", "force_reversals_per_s", "force_max_N", "velocity_total_variation_m_per_s", "depth_max_m",
@@ -107,43 +106,38 @@ def every_metric(runs, labels):
     return table(headings, rows, "All metrics")
 
 
-def ranking_section(words):
-    """Whether the rankings of the comparisons among the folders hold when they are sampled twice as finely."""
-    found = ""
-    for folder in map(Path, words):
-        if (folder / RANKING).is_file():
-            found += ranking_table(read_records(folder / RANKING))
-        elif (folder / COMPARISON).is_file() or (folder / LEAGUE).is_file():
-            found += f"<p class=note>{text(folder)}: cannot be checked; <code>hapbench report</code> says why.</p>"
-    return found
+def seeds_section(runs):
+    """What lies between laws over the seeds of a comparison: of each metric the law with the least mean against every other."""
+    scenes = {}
+    for run in runs:
+        if SEED_FOLDER.fullmatch(run.directory.name):
+            scenes.setdefault(run.name, {}).setdefault(run.algorithm, {})[run.directory.name] = run
+    said = [f"<li>{text(scene)}, <code>{name}</code>: {text(sentence)}</li>" for scene, laws in scenes.items() for name in FIRST
+            for sentence in between(laws, name)]
+    return said and f"<ul>{''.join(said)}</ul><p class=note>Seed by seed, as a seed gives all laws the same start; ±: 95 % interval of the mean.</p>"
 
 
-def ranking_table(records):
-    """A row for each metric and what was halved, beside the verdict the numbers of each algorithm."""
-    rows = {}
-    for record in records:
-        rows.setdefault((record["scenario"], record["halved"], record["change"], record["metric"], record["verdict"],
-                         record["best_before"], record["best_after"]), {})[record["algorithm"]] = record
-    laws = list(dict.fromkeys(record["algorithm"] for record in records if record["algorithm"]))
-    cells = []
-    for (scenario, halved, change, metric, verdict, before, after), of in rows.items():
-        kind = {"holds": "good", "flips": "bad"}.get(verdict)
-        best = before.replace("_", " ") + (f" → {after.replace('_', ' ')}" if after != before else "")
-        cells.append([cell(text(scenario)), cell(text(change)), cell(f"<code>{text(metric)}</code>" if metric else ""),
-                      cell(f"<b class={kind}>{text(verdict)}</b>" if kind else text(verdict)), cell(text(best)),
-                      *(cell(moved(of.get(law)), classes="number") for law in laws)])
-    headings = [*map(heading_cell, ("Scenario", "Halved", "Metric", "Ranking", "Best")),
-                *(heading_cell(text(law.replace("_", " ")), True) for law in laws)]
-    return table(headings, cells, "<b>Sampled twice as finely</b> Holds: no two algorithms change their order, and no number moves by "
-                 "more than 10 %; drifts: a number does; flips: two more than 10 % apart both times change their order, one that "
-                 "fails being the worst", "sortable")
+def between(laws, metric):
+    """A sentence for each law beside the one with the least mean, over the seeds in which both have the metric."""
+    values = {law: {seed: run.metric(metric) for seed, run in of.items() if run.metric(metric) is not None} for law, of in laws.items()}
+    values = {law: of for law, of in values.items() if len(of) > 1}
+    least = min(values, key=lambda law: np.mean(list(values[law].values())), default=None)
+    for law in values:
+        shared = [seed for seed in values[law] if seed in values[least]]
+        if law == least or len(shared) < 2:
+            continue
+        more = np.array([values[law][seed] - values[least][seed] for seed in shared])
+        mean, within = more.mean(), critical_t(len(more) - 1) * more.std(ddof=1) / np.sqrt(len(more))
+        yield (f"{law} has {number(mean, 3)} ± {number(within, 2)} more than {least} over {len(more)} seeds, "
+               + ("which chance does not explain" if mean > within else "which may be chance"))
 
 
-def moved(record):
-    if record is None:
-        return ""
-    return " → ".join(number(float(record[key]), deserved_digits(float(record[key]), float(record.get(f"tolerance_{key}") or 0), 3))
-                      if record[key] else "–" for key in ("before", "after"))
+def critical_t(degrees):
+    """Two-sided 5 % quantile of Student's t; beyond a table by Abramowitz and Stegun 26.7.5, to 0.001."""
+    table, z = (12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228), 1.959964
+    if degrees <= len(table):
+        return table[degrees - 1]
+    return z + (z**3 + z) / (4 * degrees) + (5 * z**5 + 16 * z**3 + 3 * z) / (96 * degrees**2)
 
 
 def metric_cell(value, tolerance):

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <set>
 
 #include "algorithms/registry.hpp"
 #include "tests/results/files.hpp"
@@ -142,34 +141,25 @@ TEST_F(CompareCommand, ExitsWith3WhenOneDivergesUnexpectedly) {
   EXPECT_EQ(lines_of(run.err).size(), 1u);
 }
 
-/// A bur along a molar's fissure, resampled to 0.25 mm, as `new` once guessed: summation, whose stiffness grows with
-/// the number of points, is the smoothest there and hammers at half of that.
+/// A bur along a molar's fissure, its points 0.25 mm apart: summation, whose stiffness grows with the number of points,
+/// is the smoothest there and hammers at half of that.
 TEST_F(CompareCommand, SaysThatTheSamplingMakesTheWinner) {
-  const Words words = {
-      "compare", "bur_fissure", "--set", "environment.spacing_m=0.00025", "--algorithms", "shaped_stiffness,summation",
-      "--out",   out_};
-  const auto with = [&words](const Words& more) {
-    Words all = words;
-    all.insert(all.end(), more.begin(), more.end());
-    return hapbench(all);
+  const auto with = [this](const std::string& more) {
+    return hapbench({"compare", "bur_fissure", "--set", "environment.spacing_m=0.00025", "--algorithms",
+                     "shaped_stiffness,summation", "--out", out_, "--errors", more});
   };
-  const Json json = with({"--check", "--json"}).json();
+  const Json json = with("--json").json();
   ASSERT_EQ(json["runs"].size(), 2u);
-  std::set<std::string> metrics;
-  for (const Json& row : json["ranking"]) {
-    metrics.insert(row["metric"]);
-    if (row["metric"] != "force_step_p99_N" || row["halved"] != "spacing") continue;
-    EXPECT_EQ(row["verdict"], "flips") << row;
-    EXPECT_EQ(row["best_before"], "summation");
-    EXPECT_EQ(row["best_after"], "shaped_stiffness");
+  ASSERT_EQ(json["errors"].size(), 7u) << "the numbers of the printed table";
+  for (const Json& row : json["errors"]) {
+    EXPECT_EQ(row["order"].size(), row["says"].get<std::string>().starts_with("the order holds") ? 2u : 1u) << row;
+    EXPECT_EQ(row["numbers"][0]["value"], json["runs"][0]["metrics"][row["metric"]]);
+    if (row["metric"] == "force_step_p99_N") {
+      EXPECT_EQ(row["says"], "no order holds: summation ~ shaped_stiffness");
+    }
   }
-  EXPECT_EQ(metrics.size(), 7u) << "the numbers of the printed table";
-  EXPECT_EQ(lines_of(test::read_file(directory_ / "out/ranking.csv")).size(), 1u + 2 * 7 * 2);
-  // The table is about the runs in the folder.
-  const ProgramRun text = with({});
-  EXPECT_EQ(text.out.find("does the ranking hold?"), std::string::npos);
-  EXPECT_FALSE(fs::exists(directory_.path() / "out/ranking.csv"));
-  EXPECT_NE(with({"--check"}).out.find("\nforce_step_p99_N         spacing   flips"), std::string::npos);
+  const std::string text = with("--wide").out;
+  EXPECT_NE(text.find("\nforce_step_p99_N: no order holds: summation ~ shaped_stiffness\n"), std::string::npos) << text;
 }
 
 TEST_F(CompareCommand, ComparesWithTheMeasuredForce) {

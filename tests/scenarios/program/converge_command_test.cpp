@@ -1,4 +1,3 @@
-#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,7 +10,7 @@
 #include "tests/scenarios/support/file_tree.hpp"
 #include "tests/scenarios/support/program.hpp"
 
-/// hapbench converge, run --sure and compare --sure: what they print and write.
+/// hapbench converge and compare --errors: what they print and write.
 namespace hapbench::converge_command_test {
 namespace {
 
@@ -114,45 +113,41 @@ TEST_F(ConvergeCommand, GoesOnAfterAStop) {
   EXPECT_TRUE(levels[8]["seconds"].is_number());
 }
 
-/// The value is that of the run; the error is that of its level, by either.
-TEST_F(ConvergeCommand, SureIsOfTheRunItself) {
-  const Words scene = {"press_into_hole", "--set", "time.steps=400", "--sure", "--json"};
-  Words run = {"run", "--out", file("run")},
-        compare = {"compare", "--algorithms", "mean,shaped_stiffness", "--out", file("compare")};
-  run.insert(run.end(), scene.begin(), scene.end());
-  compare.insert(compare.end(), scene.begin(), scene.end());
-  const Json one = hapbench(run).json()[0], two = hapbench(compare).json()[1];
-  ASSERT_EQ(one["algorithm"], two["algorithm"]);
-  EXPECT_EQ(one["sure"], two["sure"]);
-  const Json& force = one["sure"]["force_max_N"];
-  EXPECT_EQ(force["value"], one["metrics"]["force_max_N"]);
-  EXPECT_EQ(force["error_estimate"].get<double>(),
-            force["error_of_step"].get<double>() + force["error_of_spacing"].get<double>());
-  for (const char* part : {"step", "spacing"}) {
-    const auto rows = table(fmt::format("run/sure_{}/sweep.csv", part));
-    const Words& f = rows.at("force_max_N");
-    ASSERT_EQ(f.size(), 3u);
-    // At least as far as the furthest of the finer runs.
-    const double far =
-        std::max(std::abs(std::stod(f[0]) - std::stod(f[1])), std::abs(std::stod(f[0]) - std::stod(f[2])));
-    EXPECT_GE(force[fmt::format("error_of_{}", part)].get<double>(), far) << part;
-    EXPECT_EQ(std::stod(f[0]), force["value"].get<double>());
+/// The error of a comparison's numbers is that of the coarsest of three levels, by either.
+TEST_F(ConvergeCommand, KnowsTheErrorsOfAComparison) {
+  const Words shorter = {"--set", "time.steps=400", "--json"};
+  Words compare = {"compare",     "press_into_hole", "--algorithms", "mean,shaped_stiffness", "--by",
+                   "force_max_N", "--errors",        "--out",        file("compare")};
+  compare.insert(compare.end(), shorter.begin(), shorter.end());
+  const Json number = hapbench(compare).json()["errors"][0]["numbers"][1];
+  double sum = 0.0;
+  for (const auto& [field, part] :
+       {std::pair{"time.step_s", "error_of_step"}, {"environment.grid_m", "error_of_spacing"}}) {
+    Words more = {"--vary",   field,         "--levels", "3",
+                  "--metric", "force_max_N", "--set",    "rendering.algorithm=shaped_stiffness"};
+    more.insert(more.end(), shorter.begin(), shorter.end());
+    const Json coarsest = hapbench(words(more, field, "press_into_hole")).json()["levels"][0];
+    EXPECT_EQ(number["value"], coarsest["result"]);
+    EXPECT_EQ(number[part], coarsest["error_estimate"]) << field;
+    sum += coarsest["error_estimate"].get<double>();
   }
-  EXPECT_EQ(table("run/sure_step/sweep.csv").at("steps"), (Words{"400", "800", "1600"}));
+  EXPECT_DOUBLE_EQ(number["error_estimate"].get<double>(), sum);
 }
 
-TEST_F(ConvergeCommand, SureSaysWhatItDoesNotKnow) {
-  const std::string out = hapbench({"run", "springs_oscillation", "--sure", "--out", file("a")}).out;
-  EXPECT_NE(out.find("springs have no points"), std::string::npos) << out;
-  EXPECT_NE(out.find("29 +- 1"), std::string::npos) << "force_max_N\n" << out;
-  // Diverges, so that it has no number; and points so far apart that the tip slips between them.
-  const Json json = hapbench({"run", "single_spring_unstable", "--sure", "--json", "--out", file("b")}).json();
-  EXPECT_TRUE(json[0]["sure"]["force_max_N"]["error_estimate"].is_null());
-  EXPECT_TRUE(json[0]["sure"]["force_max_N"]["value"].is_null());
-  const Words wide = {"run",   "plane_pressed_round",         "--sure", "--out",    file("c"),
-                      "--set", "environment.spacing_m=0.003", "--set",  "expect={}"};
-  const std::string unknown = hapbench(wide).out;
+TEST_F(ConvergeCommand, AComparisonSaysWhatItDoesNotKnow) {
+  // Points so far apart that the tip slips between them; and a law that diverges, so that it has no number.
+  const std::string unknown =
+      hapbench({"compare", "plane_pressed_round", "--algorithms", "shaped_stiffness", "--errors", "--out", file("a"),
+                "--set", "environment.spacing_m=0.003", "--set", "expect={}"})
+          .out;
   EXPECT_NE(unknown.find("2.103 +- ?"), std::string::npos) << "force_mean_in_contact_N\n" << unknown;
+  const Json json =
+      hapbench({"compare", "springs_unlimited_shaped_stiffness", "--algorithms", "shaped_stiffness,summation", "--by",
+                "force_max_N", "--errors", "--json", "--out", file("b")})
+          .json();
+  EXPECT_TRUE(json["errors"][0]["numbers"][1]["value"].is_null()) << json["errors"];
+  EXPECT_TRUE(json["errors"][0]["numbers"][1]["error_estimate"].is_null());
+  EXPECT_EQ(json["errors"][0]["says"], "there is nothing to compare");
 }
 
 }  // namespace

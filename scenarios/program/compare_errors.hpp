@@ -1,0 +1,22 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "scenarios/batch/run_batch.hpp"
+#include "scenarios/input/json_file.hpp"
+
+/// `compare --errors`: which numbers of a comparison are how sure, and which order of laws is larger than that.
+namespace hapbench {
+
+/// What is known of the errors of a comparison.
+struct ComparedErrors {
+  std::string text;           ///< for each scenario a table and a sentence on each metric
+  Json json = Json::array();  ///< an object for each scenario and metric
+};
+
+/// Runs the comparison more finely. `metrics` as in league_runs. Throws Stopped.
+ComparedErrors errors_of(const BatchPlan& plan, const BatchReport& report, const std::vector<std::string>& metrics,
+                         const BatchOptions& options);
+
+}  // namespace hapbench
