@@ -22,6 +22,9 @@ constexpr OldWord kOldWords[] = {
     {"", "complete", "scripts/completion, which prints a completion for bash"},
     {"", "completion", "scripts/completion, which prints a completion for bash"},
     {"", "man", "hapbench --help, and --help of each command"},
+    {"", "precision",
+     "hapbench_accuracy, the benchmark of run time against error (tests/README.md), whose picture scripts/reproduce draws; "
+     "hapbench converge SCENE --metric NAME"},
     {"", "suite", "hapbench compare GROUP --algorithms all --seeds 5"},
     {"plot", "--no-sketch", "the same without it: plot draws no sketches"},
     {"reproduce", "--subjects",

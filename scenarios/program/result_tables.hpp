@@ -54,7 +54,6 @@ std::vector<Table::Column> diff_headings();
 std::vector<Table::Column> league_headings();
 std::vector<Table::Column> limit_headings(bool smallest);
 std::vector<Table::Column> map_headings();
-std::vector<Table::Column> precision_headings(const std::string& timed);
 std::vector<Table::Column> run_headings();
 std::vector<Table::Column> latency_headings();
 std::vector<Table::Column> stability_headings();

@@ -88,8 +88,6 @@ TEST(Headings, OfEveryTableAreKnownToDescribe) {
       {"stability", "single_spring"},
       {"stability", "--map", "time_step", "--size", "2", "--algorithms", "mean"},
       {"stability", "--stress", "--count", "10"},
-      {"precision", "stiffness", "--repetitions", "1"},
-      {"precision", "shaping", "--repetitions", "1"},
       {"reproduce", "--only", "R2"}};
   std::set<std::pair<std::string, std::string>> titles;
   for (const Words& words : commands) {
@@ -115,9 +113,8 @@ TEST(Headings, OfEveryListHaveAMeaning) {
 }
 
 TEST(Words, OfTheOutputsAreKnownToDescribe) {
-  for (const char* word :
-       {"league.csv", "sweep.json", "sweep_shard_0_of_2.csv", "precision_shaping_timing.csv",
-        "stability_map_z_width.csv", "1 / lambda_max(S)", "K lambda_max", "quantum", "planar.first_tilt", "C5"})
+  for (const char* word : {"league.csv", "sweep.json", "sweep_shard_0_of_2.csv", "stability_map_z_width.csv",
+                           "1 / lambda_max(S)", "K lambda_max", "quantum", "planar.first_tilt", "C5"})
     EXPECT_TRUE(is_described(word)) << word;
   const std::string choice = test::hapbench({"describe", "planar.first_tilt"}).out;
   EXPECT_NE(choice.find("0.02 ... 0.2"), std::string::npos) << choice;
