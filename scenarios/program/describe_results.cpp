@@ -86,7 +86,7 @@ std::vector<Description> describe_columns(const std::string& name) {
   return descriptions;
 }
 
-/// True for a file's name, in which capital letters stand for any characters: precision_STUDY.csv.
+/// True for a file's name, in which capital letters stand for any characters: stability_map_NAME.csv.
 bool is_named(std::string_view file, std::string_view name) {
   const auto is_capital = [](unsigned char c) { return std::isupper(c) != 0; };
   const auto first = std::find_if(file.begin(), file.end(), is_capital);

@@ -29,6 +29,9 @@ constexpr OldWord kOldWords[] = {
     {"", "completion", "scripts/completion, which prints a completion for bash"},
     {"", "man", "hapbench --help, and --help of each command"},
     {"", "merge", "hapbench sweep FOLDER, which joins the tables of the shards in it"},
+    {"", "precision",
+     "hapbench_accuracy, the benchmark of run time against error (tests/README.md), whose picture scripts/reproduce draws; "
+     "hapbench converge SCENE --metric NAME"},
     {"", "suite", "hapbench compare GROUP --algorithms all --seeds 5"},
     {"compare", "--check", kErrors},
     {"compare", "--devices", kDevices},

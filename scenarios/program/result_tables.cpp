@@ -14,62 +14,6 @@
 namespace hapbench {
 namespace {
 
-/// The columns of all studies; a study writes those that it computes.
-constexpr Column kPrecisionColumns[] = {
-    {"setting", "", "what the row is of"},
-    {"outcome", "", "how its run ended"},
-    {"seconds_per_step", "s", "of precision_*_timing.csv: least time of a step over the repetitions"},
-    {"seconds_per_call", "s", "of precision_*_timing.csv: least time of a call over the repetitions"},
-    {"step_s", "s", "time step"},
-    {"error_final_m", "m", "distance from the reference at the end"},
-    {"error_rms_m", "m", "root mean square distance from the reference"},
-    {"error_max_m", "m", "largest distance from the reference"},
-    {"error_final_N", "N",
-     "along a prescribed motion, of the rendered force: distance from the reference's at the end"},
-    {"error_rms_N", "N", "root mean square of that distance"},
-    {"error_max_N", "N", "largest such distance"},
-    {"undamped_energy_gain_relative", "1", "energy at the end over that at the start, - 1, without damping"},
-    {"undamped_energy_swing_relative", "1", "largest |energy - that at the start|, over the latter, without damping"},
-    {"ideal_height_error_rms_m", "m", "root mean square of tip height - height of the ideal trajectory"},
-    {"ideal_height_error_max_m", "m", "largest |tip height - height of the ideal trajectory|"},
-    {"ideal_lateral_error_rms_m", "m", "root mean square of lateral place of the tip - that of the ideal trajectory"},
-    {"interpenetration_max_m", "m", "largest true depth of the tool in the exact block"},
-    {"force_step_max_N", "N", "largest force step ||f_k - f_(k-1)||"},
-    {"tensor_error_rms", "1", "root mean square ||S - S of the exact optimum||, over the contact sets"},
-    {"tensor_error_max", "1", "largest ||S - S of the exact optimum||"},
-    {"ratio_error_max", "1", "largest |ratio of a contact - that of the exact optimum|"},
-    {"spacing_m", "m", "grid of the density field that the shell is made of"},
-    {"points", "1", "points of the shell"},
-    {"shell_bytes", "byte", "memory of the shell's points and normals"},
-    {"contacts_mean", "1", "mean number of contacts of a set"},
-    {"kept_mean", "1", "mean number of contacts behind reduction or merging"},
-    {"pushed_m", "m", "way of the tool from the start of the stroke"},
-    {"depth_max_mean_m", "m", "mean of the largest penetration depth, over the poses"},
-    {"rate_Hz", "Hz", "rate at which contacts are found"},
-    {"force_rms_above_30Hz_N", "N", "as the metric of that name"},
-    {"stiffness_max_N_per_m", "N/m",
-     "largest K up to which the handle vibrates by at most 10 mm/s rms above 30 Hz, to 5 %; empty where none is found"},
-    {"theory_N_per_m", "N/m", "largest stable K of one spring whose contact is found at that rate and held"},
-    {"points_tested_mean", "1", "mean number of points that a query compares with the tool"},
-    {"force_error_relative", "1", "rms difference to exact shaping of all contacts, over the rms force"},
-    {"order_spread_relative", "1", "largest change of the force with the order of the points, over the rms force"},
-    {"depth_error_max_m", "m", "largest difference of the force to exact shaping of all contacts, over K"},
-    {"half_angle_rad", "rad", "half the wedge's angle"},
-    {"ratio_min", "1", "smallest stiffness ratio u^T S u of a contact"},
-    {"ratio_max", "1", "largest stiffness ratio u^T S u of a contact"},
-    {"along_way_out", "1", "stiffness along the way out of the wedge, in units of K"},
-    {"along_formula", "1", "the same in closed form"},
-    {"across", "1", "stiffness across the wedge, in units of K"},
-    {"across_formula", "1", "the same in closed form"},
-    {"lambda_max", "1", "largest eigenvalue of S"},
-    {"force_jump_max_N_per_um", "N/um",
-     "largest change of the force over a step of the prescribed stroke, per micrometre"},
-    {"force_change_max_N", "N", "the same change"},
-    {"force_change_fine_max_N", "N",
-     "the largest change over a tenth of the step: a tenth of it for a slope, as large for a jump"},
-    {"force_jump_max_N", "N", "the jump J by which both are J + slope * step"},
-    {"stiffness_over_step", "1", "force_jump_max_N_per_um in units of K"}};
-
 constexpr Column kShellColumns[] = {
     {"x_m", "m", "x of a point of the shell"},         {"y_m", "m", "y of a point of the shell"},
     {"z_m", "m", "z of a point of the shell"},         {"nx", "1", "x of the outward unit normal there"},
@@ -110,11 +54,9 @@ std::vector<Table::Column> joined_headings(const std::vector<std::vector<Table::
 }
 
 std::vector<Table::Column> printed_headings() {
-  std::vector<std::vector<Table::Column>> all = {
-      run_headings(),       league_headings(),          converge_headings(),
-      stability_headings(), precision_headings("step"), precision_headings("call"),
-      diff_headings(),      sweep_headings(),           tune_headings(),
-      claim_headings()};
+  std::vector<std::vector<Table::Column>> all = {run_headings(),       league_headings(), converge_headings(),
+                                                 stability_headings(), diff_headings(),   sweep_headings(),
+                                                 tune_headings(),      claim_headings()};
   for (const DescribedTable& table : result_tables()) all.push_back(table.headings);
   return joined_headings(all);
 }
@@ -139,8 +81,6 @@ std::vector<DescribedTable> result_tables() {
   add("root_locus.csv", "of stability SCENARIO: eigenvalues of a step as the case's number grows",
       root_locus_columns());
   tables.push_back(stress_table());
-  add("precision_STUDY.csv", "of precision: one line per setting, with the columns of its study",
-      all(kPrecisionColumns));
   add("shell.csv", "of shell: one line per point of the environment", all(kShellColumns));
   return tables;
 }

@@ -25,7 +25,6 @@ std::vector<Table::Column> claim_headings();
 std::vector<Table::Column> converge_headings();
 std::vector<Table::Column> diff_headings();
 std::vector<Table::Column> league_headings();
-std::vector<Table::Column> precision_headings(const std::string& timed);
 std::vector<Table::Column> run_headings();
 std::vector<Table::Column> latency_headings();
 std::vector<Table::Column> stability_headings();

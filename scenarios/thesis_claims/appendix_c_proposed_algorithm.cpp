@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "algorithms/registry.hpp"
-#include "scenarios/studies/precision/measure.hpp"
 #include "scenarios/thesis_claims/claims.hpp"
+#include "scenarios/thesis_claims/contact_sets.hpp"
 #include "scenarios/thesis_claims/measurements.hpp"
 
 /// Claims of appendix C: what the proposed algorithm does to point density and damping.

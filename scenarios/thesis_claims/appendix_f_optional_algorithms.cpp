@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "algorithms/registry.hpp"
-#include "scenarios/studies/precision/measure.hpp"
 #include "scenarios/thesis_claims/claims.hpp"
+#include "scenarios/thesis_claims/contact_sets.hpp"
 #include "sim/core/math.hpp"
 
 /// Claims of appendix F: the thesis's optional algorithms.

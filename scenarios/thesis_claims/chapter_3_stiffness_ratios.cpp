@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "algorithms/laws/shaped_stiffness.hpp"
-#include "scenarios/studies/precision/measure.hpp"
 #include "scenarios/thesis_claims/claims.hpp"
+#include "scenarios/thesis_claims/contact_sets.hpp"
 #include "scenarios/thesis_claims/measurements.hpp"
 
 /// Claims of chapter 3: the stiffness ratios after some iterations and in the limit.

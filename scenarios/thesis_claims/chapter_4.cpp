@@ -7,8 +7,8 @@
 #include "scenarios/batch/statistics.hpp"
 #include "scenarios/description/parts.hpp"
 #include "scenarios/run/assemble.hpp"
-#include "scenarios/studies/precision/measure.hpp"
 #include "scenarios/thesis_claims/claims.hpp"
+#include "scenarios/thesis_claims/contact_sets.hpp"
 #include "scenarios/thesis_claims/measurements.hpp"
 #include "sim/contact/contact_source.hpp"
 

@@ -43,7 +43,7 @@ def cells_of(row, path=""):
 
 
 def table_in(name, folder, printed):
-    """Rows of a CSV file in the folder, or of the JSON that was printed: its list at a place such as interval.limits."""
+    """Rows of a CSV file in the folder, or of the JSON that was printed: its list at a place such as interval.limits, or a panel's settings."""
     if isinstance(name, tuple):
         return name[1](table_in(name[0], folder, printed))
     if callable(name):
@@ -52,6 +52,9 @@ def table_in(name, folder, printed):
         with open(folder / name, encoding="utf-8", newline="") as file:
             return list(csv.DictReader(file))
     found = json.loads(printed)
+    if name.startswith("panel "):
+        return [cells_of({**setting, "setting": setting["name"].partition("/")[2].removesuffix("/manual_time"), "outcome": setting["label"]})
+                for setting in found["benchmarks"]]
     for key in filter(None, name.removeprefix("json").split(".")):
         found = found[key]
     return [cells_of(row) for row in (found if isinstance(found, list) else [found])]
@@ -62,7 +65,11 @@ def answer_to(question, command):
     with tempfile.TemporaryDirectory(prefix="hapbench-test-") as scratch:
         for name, text in GIVEN.items():
             Path(scratch, name).write_text(text, encoding="utf-8")
-        done = ran(PROGRAM, *shlex.split(command), "--json", "--out", "out", cwd=scratch)
+        if command.startswith("hapbench_accuracy "):
+            program, panel = command.split()
+            done = ran(Path(PROGRAM).with_name(program), f"--benchmark_filter={panel}", "--benchmark_min_time=0.0001", "--benchmark_format=json", cwd=scratch)
+        else:
+            done = ran(PROGRAM, *shlex.split(command), "--json", "--out", "out", cwd=scratch)
         if done.returncode != question.status:
             raise AssertionError(f"{command}: status {done.returncode}, expected {question.status}\n{done.stderr}")
         return {table: table_in(now, Path(scratch, "out"), done.stdout) for table, now in question.tables.items()}

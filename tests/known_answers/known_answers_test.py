@@ -1,5 +1,4 @@
 """Every printed field has a known answer: tests/known_answers/README.md."""
-import re
 import unittest
 
 import of_batches  # noqa: F401  (registers scenes)
@@ -8,7 +7,7 @@ import of_energy  # noqa: F401
 import of_forces  # noqa: F401
 import of_limits  # noqa: F401
 import of_places  # noqa: F401
-import of_precision  # noqa: F401
+import of_convergence  # noqa: F401
 import of_runs  # noqa: F401
 import of_slow_contacts  # noqa: F401
 from answers import SCENES, Answer, Bench, Within
@@ -50,7 +49,7 @@ class KnownAnswers(unittest.TestCase):
         fields = {field for field in printed_fields(benches(scratch_folder(unittest)).values()) if ":" in field}
         for bench in FOUND.values():
             for file in bench.folder.rglob("*.csv"):
-                name = re.sub(r"precision_[a-z_]+\.csv", "precision_STUDY.csv", file.name.replace("_timing", ""))
+                name = file.name.replace("_timing", "")
                 header = file.read_text(encoding="utf-8").split("\n")[0].split(",")
                 if f"{name}:{header[0]}" in fields and f"{name}:metrics" not in fields:
                     varied = {column for column in header if "." in column and name == "limit_runs.csv"}

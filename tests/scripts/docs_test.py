@@ -24,7 +24,7 @@ COMMANDS = [command for manual in MANUALS for command in manual.commands()]
 # No option of the program is like it, so that no other is named as the one that may have been meant.
 UNKNOWN = "--zzzz"
 # Minutes long: parsed, not run.
-LONG = {"precision", "reproduce", "stress"}
+LONG = {"reproduce", "stress"}
 FEW_STEPS = ["--set", 'time={"step_s": 0.0005, "steps": 40}']
 SHORTER = {"run": FEW_STEPS, "compare": FEW_STEPS, "sweep": FEW_STEPS, "converge": [*FEW_STEPS, "--levels", "3"], "limit": [*FEW_STEPS, "--resolution", "0.5"],
            "tune": [*FEW_STEPS, "--damping-ratio", "0.3:0.7"]}

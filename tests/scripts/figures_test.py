@@ -35,7 +35,7 @@ RUNS = (
 )
 # Figures that between them use every way of drawing: thinned marks, shaded areas, round ones, arrows, rasterised marks, maps.
 # They are drawn by the command, in every format; the others as SVG only, which takes a third of the time.
-DRAWN_BY_COMMAND = "A.5,B.4,C.1,C.3,D.7,E.3,precision,stability-z_width"
+DRAWN_BY_COMMAND = "A.5,B.4,C.1,C.3,D.7,E.3,accuracy,stability-z_width"
 
 
 def hapbench(*words):
@@ -80,8 +80,7 @@ def make_results(directory):
     for scene, scenario in (("peg", "tilt_sweep_shaped_stiffness"), ("wedge", "wedge_stiffness")):
         out = directory / "stiffness" / scene
         hapbench("compare", scenario, "--set=record.stiffness_tensor=true", "--out", out)
-    for folder in ("precision", "precision_hole"):
-        make_studies(directory / folder)
+    make_accuracy(directory / "accuracy")
     for study in ("time_step", "damping_ratio", "z_width", "delay", "velocity_filter", "hand", "integrators"):
         hapbench("limit", f"stability_{study}", "--resolution", "0.5", "--algorithms", "shaped_stiffness", "--out", directory / f"stability_{study}")
     hapbench("limit", "device_limits", "--device", "touch,omega.3", "--resolution", "0.5", "--out", directory / "device_limits")
@@ -108,31 +107,25 @@ def make_results(directory):
     (loop / "timing.json").write_text(json.dumps(timing))
 
 
-def make_studies(directory):
-    """Tables as of `hapbench precision`, whose runs would take longer than all else here."""
+def make_accuracy(directory):
+    """As of hapbench_accuracy, whose runs would take longer than all else here: each setting twice as exact in twice the time, but the last."""
     directory.mkdir()
-    settings = {
-        "integrators": [f"{name} dt={step}"
-                        for name in ("leapfrog", "velocity_verlet", "rk4", "implicit_euler", "implicit_midpoint")
-                        for step in ("0.001", "0.0001")],
-        "time_step": ["dt=0.001", "dt=0.0001"],
+    columns = ("error_rms_m", "tensor_error_rms", "force_error_relative", "ideal_height_error_rms_m", "created_by_sampling_J")
+    panels = {
+        "integrators": [f"{name} dt={step}" for name in ("leapfrog", "rk4", "implicit_euler") for step in ("0.001", "0.0001")],
         "shaping": ["m=0", "m=1", "exact"],
-        "reduction": ["shaped_stiffness 0.9", "exact_shaping off"],
+        "reduction": ["shaped_stiffness 0.9", "exact_shaping 0.9"],
+        "merging": ["merged_shaping 0.0001"],
         "spacing": ["signed_distance 0.0004", "binary 0.0002"],
-        "algorithms": ["mean", "original_averaging", "one_without_a_look", "mean + angular_damping"],
-        "late_contacts": [f"shaped_stiffness {between} {every}" for between in ("hold", "linear") for every in (1, 8)],
-        "query_time": ["neighbour_list 0.1mm", "neighbour_list 0.2mm", "every_point 0.1mm", "every_point 0.2mm"],
+        "algorithms": ["original_averaging", "one_without_a_look", "mean", "mean + angular_damping"],
+        "late_contacts": [f"shaped_stiffness {between} {every}" for between in ("hold", "linear") for every in (2, 8)],
+        "skips": ["taken", "off"],
+        "events": ["leapfrog dt=0.001", "event dt=0.001"],
     }
-    columns = ("step_s", "error_rms_m", "tensor_error_rms", "force_error_relative", "ideal_height_error_rms_m",
-               "pushed_m", "contacts_mean", "points_tested_mean", "rate_Hz", "stiffness_max_N_per_m", "theory_N_per_m")
-    for study, names in settings.items():
-        rows = [f"{name},{'diverges' if name.startswith('original') else 'completes'}" + f",{0.001 / (i + 1)}" * len(columns)
-                for i, name in enumerate(names)]
-        (directory / f"precision_{study}.csv").write_text("\n".join(["setting,outcome," + ",".join(columns), *rows]) + "\n")
-        times = [f"{name},{1e-6 * (i + 1)},{1e-6 * (i + 1)}" for i, name in enumerate(names)]
-        (directory / f"precision_{study}_timing.csv").write_text(
-            "\n".join(["setting,seconds_per_step,seconds_per_call", *times]) + "\n"
-        )
+    settings = [{"name": f"{panel}/{name}/manual_time", "label": "diverges" if name.startswith("original") else "completes", "step_s": 0.001,
+                 "seconds_per_step": 1e-6 * 2**i, "seconds_per_call": 1e-6 * 2**i, **dict.fromkeys(columns, 0.001 / 2 ** min(i, len(names) - 2))}
+                for panel, names in panels.items() for i, name in enumerate(names)]
+    (directory / "accuracy.json").write_text(json.dumps({"benchmarks": settings}))
 
 
 class Figures(unittest.TestCase):

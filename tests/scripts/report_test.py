@@ -101,7 +101,7 @@ class Page(WithResults):
             self.assertEqual(number(given), shown)
 
     def test_studies_are_folded_and_name_their_units(self):
-        study = self.results / "precision" / "precision_x.csv"
+        study = self.results / "study" / "study_x.csv"
         study.parent.mkdir()
         self.addCleanup(shutil.rmtree, study.parent)
         study.write_text("setting,error_rms_m,length_m,seconds_per_step,force_max_N,kept_mean\na,0.0002,0.5,1e-6,3,2\n")
@@ -281,7 +281,7 @@ class BadInput(WithResults):
     def test_tables(self):
         for text, said in (("", "empty"), ("a,b\n1\n", "line 2: got 1 fields; allowed: 2")):
             self.written("results/run/summary.json", "{}")
-            file = self.written("results/precision/study.csv", text)
+            file = self.written("results/study/study.csv", text)
             self.assertIn(f"{file}: {said}", self.refused(file.parents[1]))
 
     def test_claims(self):

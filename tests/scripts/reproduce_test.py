@@ -17,7 +17,7 @@ class Reproduce(unittest.TestCase):
         (self.root / "results" / "reference").mkdir(parents=True)
         self.put("scripts/reproduce", (SOURCE / "scripts" / "reproduce").read_text(encoding="utf-8"))
         self.put("scenarios/library/studies/stability_z_width.json", '{\n  "ask": "limit"\n}\n')
-        for name in ("scripts/setup", "scripts/figures", "scripts/report", "bin/cmake"):
+        for name in ("scripts/setup", "scripts/figures", "scripts/report", "bin/cmake", "build/release/bin/hapbench_accuracy"):
             self.put(name, NOTHING)
 
     def put(self, name, text):
@@ -42,7 +42,8 @@ class Reproduce(unittest.TestCase):
         self.assertIn("Report: ", out)
 
     def test_one_part_failed(self):
-        status, out, _ = self.run_with('#!/bin/sh\n[ "$1" != precision ] || exit 7\n')
+        self.put("build/release/bin/hapbench_accuracy", "#!/bin/sh\nexit 7\n")
+        status, out, _ = self.run_with(NOTHING)
         self.assertEqual(status, 1)
         self.assertIn("FAILED: Run time against error (exit status 7)", out)
         self.assertIn("== Report", out)  # the others were done

@@ -31,8 +31,6 @@ def renewed(manual, scratch, program):
     makers = dict(blocks.MAKERS)
     if program:
         makers["session"] = lambda old: blocks.session(old, program, scratch)
-        makers["force_jumps"] = lambda old: blocks.force_jumps(old, program, scratch)
-        makers["ideal_trajectory"] = lambda old: blocks.ideal_trajectory(old, program, scratch)
         makers["controllers"] = lambda old: blocks.controllers(old, program, scratch)
         makers["hunt_crossley"] = lambda old: blocks.hunt_crossley(old, program, scratch)
     text = blocks.renewed(manual.text, makers)

@@ -19,19 +19,6 @@ REFERENCE = ROOT / "results" / "reference"
 VERDICTS = ("reproduced", "reproduced in kind", "not reproduced", "refuted", "not reproducible")
 TASKS = {"D1": "upright, 0.52 mm aside", "D2": "upright, centre", "D3": "turning, 3 mm high", "D4": "turning, 4 mm high"}
 PAIR = re.compile(r"success(?: rate)? (.+?) vs ([^;(]+)")
-# Name in the study, heading, factor of the unit.
-COLUMNS = (
-    ("ideal_height_error_rms_m", "height error [mm rms]", 1e3),
-    ("ideal_lateral_error_rms_m", "lateral error [mm rms]", 1e3),
-    ("interpenetration_max_m", "deepest in the wall [mm]", 1e3),
-    ("force_step_max_N", "largest force step [N]", 1.0),
-)
-JUMP_COLUMNS = (
-    ("force_jump_max_N_per_um", "change over 1 µm [N/µm]", 1.0),
-    ("force_change_fine_max_N", "over 0.1 µm [N]", 1.0),
-    ("force_jump_max_N", "jump [N]", 1.0),
-    ("stiffness_over_step", "over 1 µm, in K", 1.0),
-)
 
 
 class BlockError(Exception):
@@ -168,25 +155,6 @@ def which_law(text):
 def wrapped(lines, width=110):
     """Sentences in lines of that width; tables stay."""
     return "\n".join(line if line.startswith("|") else "\n".join(textwrap.wrap(line, width)) for line in lines)
-
-
-def ideal_trajectory(old, program, directory):
-    """Every algorithm against the ideal trajectory of task 2."""
-    return study_table(old, program, directory, "algorithms", COLUMNS)
-
-
-def force_jumps(old, program, directory):
-    """How far every algorithm's force jumps as contacts come and go."""
-    return study_table(old, program, directory, "force_jumps", JUMP_COLUMNS)
-
-
-def study_table(old, program, directory, study, columns):
-    found = json.loads(program.run(["precision", study, "--repetitions", "1", "--json"], directory))[0]["rows"]
-    lines = [f"| | {' | '.join(heading for _, heading, _ in columns)} |", "|---" * (len(columns) + 1) + "|"]
-    for row in found:
-        cells = (f"{factor * row[name]:.3g}" if row.get(name) is not None else "" for name, _, factor in columns)
-        lines.append(f"| `{row['setting'].replace(' + ', '` + `')}` | {' | '.join(cells)} |")
-    return program.stamped("\n".join(lines), old)
 
 
 TAPPED = 10_000.0  # K [N/m] of the wall that a hand taps on with a controller

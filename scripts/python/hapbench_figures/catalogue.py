@@ -90,9 +90,7 @@ FIGURES = (
     Figure("stiffness", None, "Stiffness in every direction, all algorithms", stiffness_fields.of_all_algorithms),
     Figure("proxy", None, "The drill turned in the hole, with a proxy and with shaping", drill.rotated),
     Figure("torque", None, "The torque that is lost as the drill is turned", drill.lost),
-    Figure("precision", None, "Work against precision", performance.work_precision),
-    Figure("query-time", None, "Query time over penetration depth", performance.query_time),
-    Figure("late-contacts", None, "How stiff with late contacts", performance.late_contacts),
+    Figure("accuracy", None, "Run time against error", performance.run_time_against_error),
     Figure("latency", None, "Latency of a step", performance.latency),
     *(Figure(f"stability-{name}", None, f"Stability over {name.replace('_', ' ')}", stability.stability_over(f"stability_{name}"))
       for name in ("time_step", "damping_ratio", "z_width", "delay", "velocity_filter", "hand")),

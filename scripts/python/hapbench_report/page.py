@@ -29,7 +29,7 @@ def report(runs, studies, claims, choices, figures, scenes, credibility):
         ("subjects", "Subjects", "Simulated subjects", target_tables(runs, tables)),
         ("tables", "Tables", "Parameters and limits of the thesis", parameter_tables(runs, tables) + limits_table(studies, tables)),
         ("runs", "Runs", "Runs", runs_section(runs)),
-        ("studies", "Studies", "Precision and other studies", studies_section(studies)),
+        ("studies", "Studies", "Tables of studies", studies_section(studies)),
         ("timing", "Timing", "Timing", timing_section(runs, studies)),
         ("rerun", "Rerun", "Run it again", rerun_section()),
         ("parameters", "Scenarios", "Scenario of every run", parameters_section(runs, links)),

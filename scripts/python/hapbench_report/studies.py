@@ -1,4 +1,4 @@
-"""Tables that hapbench writes beside runs as CSV (stability limits, precision studies and their times, comparisons): folded,
+"""Tables that hapbench writes beside runs as CSV (stability limits, comparisons, times): folded,
 with units in their heads."""
 from dataclasses import dataclass
 from pathlib import Path
@@ -47,10 +47,8 @@ def is_table(path: Path):
 def studies_section(studies):
     # Limits and times have places of their own.
     others = [s for s in studies if s.path != LIMITS and not s.path.endswith("_timing.csv")]
-    others.sort(key=lambda study: not study.path.startswith("precision/"))
     shown = "".join(study_table(study) for study in others)
-    return ("<p>Precision studies give the error against a reference solution, one study per choice; their times are under "
-            "Timing.</p>" + shown if shown else '<p class="note">No studies among these results.</p>')
+    return shown or '<p class="note">No studies among these results.</p>'
 
 
 def study_table(study):

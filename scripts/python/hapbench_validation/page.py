@@ -23,7 +23,7 @@ vibrates at its first contact, or a good setting is never tried. It moves nobody
 | claim | is the code right? | are the numbers converged? | does hardware agree? | how much do inputs matter? |
 |---|---|---|---|---|
 | forces and stiffness of the algorithms | [known answers](../../tests/known_answers/README.md), [claims of the thesis](../thesis_claims/README.md) | `compare --errors`, `converge` | the thesis's own figures; no other measurement | `sweep --sample`; [claims](../thesis_claims/README.md) sampled over choices that are ours |
-| motion of the tool in time | [observed orders](../../tests/verification/README.md), closed forms in [known answers](../../tests/known_answers/README.md) | [precision and converge](../studies/README.md) | no | `converge`, `sweep` |
+| motion of the tool in time | [observed orders](../../tests/verification/README.md), closed forms in [known answers](../../tests/known_answers/README.md) | [run time against error](../studies/README.md#run-time-against-error), `converge` | no | `converge`, `sweep` |
 | limits of stability, linear | eigenvalues and polynomials, `tests/device_model/linear_loops_test.cpp` | bisection to a stated width | see below | [maps](../studies/README.md#stability) |
 | limits of an impedance device at a wall | exact maps, elastic transmission included: `tests/device_model/linear_loops_test.cpp`, `tests/device_model/elastic_motion_test.cpp` | the handle moves exactly between samples | **cases below** | intervals below: dry friction, delay, damping, press, tremor; of presets `limit --device` prints intervals |
 | limits of an admittance device | `tests/device_model/admittance_device_test.cpp` | `limit` to a stated width | **no measured limit was found** | [maps](../studies/README.md#stability) |

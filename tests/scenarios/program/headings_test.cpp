@@ -86,8 +86,6 @@ TEST(Headings, OfEveryTableAreKnownToDescribe) {
       {"tune", "single_spring"},
       {"stability", "single_spring"},
       {"stress", "--count", "10"},
-      {"precision", "stiffness", "--repetitions", "1"},
-      {"precision", "shaping", "--repetitions", "1"},
       {"reproduce", "--only", "R2"}};
   std::set<std::pair<std::string, std::string>> titles;
   for (const Words& words : commands) {
@@ -113,8 +111,7 @@ TEST(Headings, OfEveryListHaveAMeaning) {
 }
 
 TEST(Words, OfTheOutputsAreKnownToDescribe) {
-  for (const char* word : {"league.csv", "sweep.json", "sweep.0_of_2.csv", "precision_shaping_timing.csv", "quantum",
-                           "planar.first_tilt", "C5"})
+  for (const char* word : {"league.csv", "sweep.json", "sweep.0_of_2.csv", "quantum", "planar.first_tilt", "C5"})
     EXPECT_TRUE(is_described(word)) << word;
   const std::string choice = test::hapbench({"describe", "planar.first_tilt"}).out;
   EXPECT_NE(choice.find("0.02 ... 0.2"), std::string::npos) << choice;

@@ -165,7 +165,6 @@ const Words kCommands[] = {
     {"stress", "--count", "1000000000", "--quiet"},
     {"limit", "single_spring", "--vary", "rendering.stiffness_N_per_m", "--set", "time.steps=500000000", "--set",
      "record.trajectory=false", "--set", "rendering.damping_ratio=0", "--quiet"},
-    {"precision", "time_step", "--scenario", "single_spring", "--set", "time.steps=10000000", "--quiet"},
 };
 
 TEST_F(InterruptedCommand, EndsWith130AndLeavesNothing) {

@@ -8,7 +8,7 @@
 #include "scenarios/run/stop_signal.hpp"
 #include "sim/contact/late_contacts.hpp"
 #include "tests/results/files.hpp"
-#include "tests/scenarios/studies/precision/results.hpp"
+#include "tests/scenarios/support/bundled.hpp"
 
 /// Runs whose contacts come late, from a file, or from a library of the user's own.
 namespace hapbench::contacts_from_elsewhere_test {

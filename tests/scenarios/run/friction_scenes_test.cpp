@@ -5,7 +5,7 @@
 
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/stop_signal.hpp"
-#include "tests/scenarios/studies/precision/results.hpp"
+#include "tests/scenarios/support/bundled.hpp"
 
 /// Scenes of dry friction against their closed forms.
 namespace hapbench::friction_scenes_test {

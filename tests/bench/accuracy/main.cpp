@@ -1,0 +1,71 @@
+#include <benchmark/benchmark.h>
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cstdio>
+#include <exception>
+#include <limits>
+
+#include "results/summary/provenance.hpp"
+#include "tests/bench/accuracy/accuracy.hpp"
+#include "tests/scenarios/support/bundled.hpp"
+
+namespace hapbench::accuracy {
+namespace {
+
+/// Times a setting, the least of all runs, with its errors beside it.
+void measure(benchmark::State& state, const Setting& setting, const Errors& errors) {
+  using Clock = std::chrono::steady_clock;
+  const Work work = setting.work();
+  double least = std::numeric_limits<double>::infinity();
+  for (auto _ : state) {
+    if (work.prepare) work.prepare();
+    const auto start = Clock::now();
+    work.run();
+    const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
+    least = std::min(least, seconds);
+    state.SetIterationTime(seconds);
+  }
+  state.SetLabel(errors.outcome);
+  state.counters["seconds_per_" + setting.unit] = least / static_cast<double>(work.count);
+  for (const auto& [name, value] : errors.values)
+    if (value) state.counters[name] = *value;
+}
+
+void add(const Panel& panel) {
+  for (const Setting& setting : panel) {
+    benchmark::RegisterBenchmark(setting.name.c_str(), [setting,
+                                                        errors = once(setting.errors)](benchmark::State& state) {
+      measure(state, setting, errors());
+    })->UseManualTime();
+  }
+}
+
+int run_benchmarks(int argc, char** argv) {
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
+  const Provenance program = provenance();
+  benchmark::AddCustomContext("commit", program.commit);
+  benchmark::AddCustomContext("cpu", program.cpu);
+  using test::bundled;
+  const Scenario drill = bundled("rotate_in_hole"), molar = bundled("drag_molar");
+  add(integrators(bundled("springs_oscillation")));
+  for (const auto panel : {algorithms, spacing, shaping, reduction, merging}) add(panel(drill));
+  for (const auto panel : {late_contacts, skips}) add(panel(molar));
+  add(events(bundled("bounce_plane")));
+  // A filter that matches nothing is a mistake.
+  return benchmark::RunSpecifiedBenchmarks() == 0 ? 2 : 0;
+}
+
+}  // namespace
+}  // namespace hapbench::accuracy
+
+/// `hapbench_accuracy [--benchmark_…]` measures run time against error.
+int main(int argc, char** argv) {
+  try {
+    return hapbench::accuracy::run_benchmarks(argc, argv);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "hapbench_accuracy: %s\n", error.what());
+    return 1;
+  }
+}
