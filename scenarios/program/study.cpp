@@ -24,8 +24,12 @@ fs::path study_file(const std::string& word) {
   std::error_code error;
   if (word.ends_with(".json")) {
     if (!fs::is_regular_file(word, error)) return {};
-    const std::string text = read_text_file(word, kLargestJsonFile);
-    return text.find("\"ask\"") == std::string::npos ? fs::path() : fs::path(word);
+    try {
+      const std::string text = read_text_file(word, kLargestJsonFile);
+      return text.find("\"ask\"") == std::string::npos ? fs::path() : fs::path(word);
+    } catch (const InputError&) {
+      return {};  // its command refuses it
+    }
   }
   if (word.empty() || word.find('/') != std::string::npos || fs::exists(word, error)) return {};
   const fs::path file = installed_folder("scenarios") / "library" / "studies" / (word + ".json");

@@ -63,9 +63,9 @@ def convergence(bench):
     seconds = Table(out / "converge_levels_timing.csv")["seconds"]
     bench.add("converge_levels.csv:seconds", bool(np.all((seconds > 1e-6) & (seconds < 0.1))), True, "640 steps take more than a microsecond, less than 0.1 s",
               EXACT, ("of a step", bool(np.all(seconds / 640 > 1e-6))))
-    sure = bench.json("run", base, "--sure", "--out", bench.folder / "sure")[0]["sure"][metric]
     error = verdict_on(f[:3])[2][0]
-    for name, value, within, naive, wrong in (
-            ("value", f[0], near, "extrapolated", limit), ("error_estimate", error, fine, "from the finest of three", abs(f[0] - f[2])),
-            ("error_of_step", error, fine, "from the finest of three", abs(f[0] - f[2])), ("error_of_spacing", None, EXACT, "springs have none", 0.0)):
-        bench.add(f"run --json: {name}", sure[name], value, "three levels of the same recurrence", within, (naive, wrong))
+    said, = bench.json("compare", base, "--algorithms", "summation", "--by", metric, "--errors", "--out", bench.folder / "errors")["errors"]
+    number = said["numbers"][0]
+    assert number["value"] == printed["levels"][0]["result"] and number["error_estimate"] == number["error_of_step"]
+    bench.add("compare --json: error_of_step", number["error_of_step"], error, "three levels of the same recurrence", fine,
+              ("from the finest of three", abs(f[0] - f[2])))

@@ -41,7 +41,7 @@ def load_studies(results: Path):
 
 
 def is_table(path: Path):
-    return path.parts[0] != "replay" and not path.name.startswith("limit")
+    return path.parts[0] != "replay" and path.name not in ("limit.csv", "limit_runs.csv")
 
 
 def studies_section(studies):

@@ -177,7 +177,7 @@ TEST(Commands, HaveTheNumbersOnRecord) {
        {"limit", "single_spring", "--over", "integrator.type=leapfrog,rk4,implicit_euler", "--over",
         "rendering.damping_ratio=0,1", "--stable", "bounded"}},
       {"limit:wall", {"limit", "wall_on_handle", "--over", "rendering.damping_N_s_per_m=0.1:150:3:log"}},
-      {"stress", {"stress", "--count", "3000"}},
+      {"stress:sets", {"stress", "--count", "3000"}},
   };
   const test::TemporaryDirectory directory;
   test::NumbersByName numbers;
