@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/batch/parallel_for.hpp"
 #include "scenarios/batch/axis.hpp"
+#include "scenarios/batch/parallel_for.hpp"
 #include "scenarios/description/load_scenario.hpp"
 #include "scenarios/studies/stability/edge_search.hpp"
 #include "scenarios/studies/stability/judged_run.hpp"

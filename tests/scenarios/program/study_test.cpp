@@ -32,18 +32,18 @@ TEST_F(Study, IsTheWordsOfItsCommand) {
              "device": [{"type": "ideal"}]}})");
   const auto words = StudyWords::in({"limit", "--quiet", mine, "--resolution=0.5"});
   ASSERT_TRUE(words);
-  EXPECT_EQ(words->words(), (Words{"limit",          "a",
-                                   "b.json",         "--between",
-                                   "100:1e+05", "--smallest",
-                                   "--algorithms",   "mean,proxy",
-                                   "--bound",        "x=1",
-                                   "--bound",        "y=2",
-                                   "--set",          R"(hand={"mass_kg":1})",
-                                   "--set",          "seed=3",
-                                   "--over",         "device.delay_samples=0:8:5:log",
-                                   "--over",         "integrator.type=rk4,event",
-                                   "--over",         R"(device=[{"type":"ideal"}])",
-                                   "--quiet",        "--resolution=0.5"}))
+  EXPECT_EQ(words->words(), (Words{"limit",        "a",
+                                   "b.json",       "--between",
+                                   "100:1e+05",    "--smallest",
+                                   "--algorithms", "mean,proxy",
+                                   "--bound",      "x=1",
+                                   "--bound",      "y=2",
+                                   "--set",        R"(hand={"mass_kg":1})",
+                                   "--set",        "seed=3",
+                                   "--over",       "device.delay_samples=0:8:5:log",
+                                   "--over",       "integrator.type=rk4,event",
+                                   "--over",       R"(device=[{"type":"ideal"}])",
+                                   "--quiet",      "--resolution=0.5"}))
       << "an option that is given goes before the study's";
   EXPECT_FALSE(StudyWords::in({"limit", "single_spring"}));
   EXPECT_FALSE(StudyWords::in({"describe", "stability_z_width"}));
@@ -66,8 +66,9 @@ TEST_F(Study, OfTheProgramHasANameOfItsOwnAndIsAnswered) {
   for (const BundledStudy& study : bundled_studies()) {
     EXPECT_FALSE(scenes.contains(study.name)) << study.name;
     EXPECT_FALSE(study.summary.empty()) << study.name;
-    const test::ProgramRun run = test::hapbench({study.ask, study.name, "--set", "time.steps=20", "--resolution", "0.5", "--algorithms", "mean",
-                                                 "--out", (directory_ / study.name).string(), "--quiet"});
+    const test::ProgramRun run =
+        test::hapbench({study.ask, study.name, "--set", "time.steps=20", "--resolution", "0.5", "--algorithms", "mean",
+                        "--out", (directory_ / study.name).string(), "--quiet"});
     EXPECT_EQ(run.status, 0) << study.name << ": " << run.err;
   }
 }
