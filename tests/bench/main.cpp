@@ -1,27 +1,14 @@
 #include <algorithm>
-#include <cstdio>
-#include <exception>
 #include <map>
 #include <string_view>
 
-#include "results/summary/provenance.hpp"
 #include "tests/bench/bench.hpp"
+#include "tests/bench/benchmark_program.hpp"
 
 namespace hapbench::bench {
 namespace {
 
 bool refuted = false;
-
-/// Adds the commit and the machine to the output; --benchmark_format=json has them under "context".
-void add_context() {
-  const Provenance program = provenance();
-  const InstructionSet instructions = instruction_set();
-  benchmark::AddCustomContext("commit", program.commit);
-  benchmark::AddCustomContext("cpu", program.cpu);
-  benchmark::AddCustomContext("compiler", program.compiler);
-  benchmark::AddCustomContext("flags", program.build_type + " " + program.flags);
-  benchmark::AddCustomContext("instruction_set", instructions.widest);
-}
 
 /// Removes our option --full from the arguments and returns whether it was there.
 bool take_full(int& argc, char** argv) {
@@ -32,20 +19,19 @@ bool take_full(int& argc, char** argv) {
   return full;
 }
 
-int run_benchmarks(int argc, char** argv) {
-  const bool full = take_full(argc, argv);
-  benchmark::Initialize(&argc, argv);
-  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
-  add_context();
+void add_benchmarks(bool full) {
   for (const auto register_group : {register_search, register_shaping, register_reduction, register_laws,
                                     register_proxy, register_steps, register_latencies, register_ideal_trajectory,
                                     register_shells, register_skips, register_growth_over_contacts}) {
     register_group();
   }
   register_growth_over_points(full);
-  // A filter that matches nothing is a mistake.
-  if (benchmark::RunSpecifiedBenchmarks() == 0) return 2;
-  return refuted ? 1 : 0;
+}
+
+int run(int argc, char** argv) {
+  const bool full = take_full(argc, argv);
+  const int status = run_benchmarks("hapbench_bench", argc, argv, [full] { add_benchmarks(full); });
+  return status == 0 && refuted ? 1 : status;
 }
 
 }  // namespace
@@ -67,10 +53,5 @@ bool proved(benchmark::State& state, const std::string& benchmark, const std::fu
 
 /// `hapbench_bench [--full] [--benchmark_…]` runs the benchmarks.
 int main(int argc, char** argv) {
-  try {
-    return hapbench::bench::run_benchmarks(argc, argv);
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "hapbench_bench: %s\n", error.what());
-    return 1;
-  }
+  return hapbench::bench::run(argc, argv);
 }

@@ -1,13 +1,8 @@
-#include <benchmark/benchmark.h>
-#include <fmt/format.h>
-
 #include <chrono>
-#include <cstdio>
-#include <exception>
 #include <limits>
 
-#include "results/summary/provenance.hpp"
 #include "tests/bench/accuracy/accuracy.hpp"
+#include "tests/bench/benchmark_program.hpp"
 #include "tests/scenarios/support/bundled.hpp"
 
 namespace hapbench::accuracy {
@@ -41,20 +36,13 @@ void add(const Panel& panel) {
   }
 }
 
-int run_benchmarks(int argc, char** argv) {
-  benchmark::Initialize(&argc, argv);
-  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
-  const Provenance program = provenance();
-  benchmark::AddCustomContext("commit", program.commit);
-  benchmark::AddCustomContext("cpu", program.cpu);
+void add_panels() {
   using test::bundled;
   const Scenario drill = bundled("rotate_in_hole"), molar = bundled("drag_molar");
   add(integrators(bundled("springs_oscillation")));
   for (const auto panel : {algorithms, spacing, shaping, reduction, merging}) add(panel(drill));
   for (const auto panel : {late_contacts, skips}) add(panel(molar));
   add(events(bundled("bounce_plane")));
-  // A filter that matches nothing is a mistake.
-  return benchmark::RunSpecifiedBenchmarks() == 0 ? 2 : 0;
 }
 
 }  // namespace
@@ -62,10 +50,5 @@ int run_benchmarks(int argc, char** argv) {
 
 /// `hapbench_accuracy [--benchmark_…]` measures run time against error.
 int main(int argc, char** argv) {
-  try {
-    return hapbench::accuracy::run_benchmarks(argc, argv);
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "hapbench_accuracy: %s\n", error.what());
-    return 1;
-  }
+  return hapbench::bench::run_benchmarks("hapbench_accuracy", argc, argv, hapbench::accuracy::add_panels);
 }

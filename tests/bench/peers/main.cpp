@@ -2,14 +2,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdio>
-#include <exception>
 #include <map>
 
 #include "algorithms/peers/peer_source.hpp"
-#include "results/summary/provenance.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "sim/contact/neighbour_list_query.hpp"
+#include "tests/bench/benchmark_program.hpp"
 #include "tests/bench/peers/contact_library.hpp"
 #include "tests/bench/task_scene.hpp"
 
@@ -151,13 +149,7 @@ void time_search_and_depths(benchmark::State& state, const std::string& task) {
   time_ours(state, *parts.source, scene.poses);
 }
 
-int run(int argc, char** argv) {
-  benchmark::Initialize(&argc, argv);
-  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
-  const Provenance program = provenance();
-  benchmark::AddCustomContext("commit", program.commit);
-  benchmark::AddCustomContext("cpu", program.cpu);
-  benchmark::AddCustomContext("compiler", program.compiler);
+void add_benchmarks() {
   for (const std::string task : kTasks) {
     benchmark::RegisterBenchmark(("peers/hapbench/" + task).c_str(), time_search, task);
     benchmark::RegisterBenchmark(("peers/hapbench_with_depths/" + task).c_str(), time_search_and_depths, task);
@@ -166,17 +158,11 @@ int run(int argc, char** argv) {
                                    [library, task](benchmark::State& state) { time_library(state, library, task); });
     }
   }
-  return benchmark::RunSpecifiedBenchmarks() == 0 ? 2 : 0;
 }
 
 }  // namespace
 }  // namespace hapbench::bench
 
 int main(int argc, char** argv) {
-  try {
-    return hapbench::bench::run(argc, argv);
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "hapbench_bench_peers: %s\n", error.what());
-    return 1;
-  }
+  return hapbench::bench::run_benchmarks("hapbench_bench_peers", argc, argv, hapbench::bench::add_benchmarks);
 }

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <benchmark/benchmark.h>
+
+#include <cstdio>
+#include <exception>
+
+#include "results/summary/provenance.hpp"
+
+namespace hapbench::bench {
+
+/// The main function of a program of Google Benchmark: runs what `add` registers, with the commit and the machine under
+/// "context" of --benchmark_format=json. Returns the exit status: 2 for an unknown argument and for a filter that
+/// matches nothing, which is a mistake; 1 for an exception.
+template <class Add>
+int run_benchmarks(const char* program, int argc, char** argv, Add add) {
+  try {
+    benchmark::Initialize(&argc, argv);
+    if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
+    const Provenance made_by = provenance();
+    benchmark::AddCustomContext("commit", made_by.commit);
+    benchmark::AddCustomContext("cpu", made_by.cpu);
+    benchmark::AddCustomContext("compiler", made_by.compiler);
+    benchmark::AddCustomContext("flags", made_by.build_type + " " + made_by.flags);
+    benchmark::AddCustomContext("instruction_set", instruction_set().widest);
+    add();
+    return benchmark::RunSpecifiedBenchmarks() == 0 ? 2 : 0;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s: %s\n", program, error.what());
+    return 1;
+  }
+}
+
+}  // namespace hapbench::bench
