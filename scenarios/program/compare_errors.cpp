@@ -18,7 +18,18 @@ namespace {
 class ScenarioErrors {
  public:
   ScenarioErrors(const League& league, const FinerRuns& finer, std::size_t scenario)
-      : league_(league), finer_(finer), scenario_(scenario) {}
+      : league_(league), finer_(finer), scenario_(scenario) {
+    for (std::size_t m = 0; m < league.runs.metrics.size(); ++m) {
+      known_.emplace_back();
+      numbers_.emplace_back();
+      for (std::size_t a = 0; a < league.runs.algorithms.size(); ++a) {
+        const KnownError known = known_error(a, m);
+        const bool failed = league.failures(scenario, a) > 0;
+        known_.back().push_back(known);
+        numbers_.back().push_back({failed ? std::nullopt : league.at(scenario, a, m).mean, known.sum()});
+      }
+    }
+  }
 
   std::string text() const {
     std::vector<Table::Column> columns = {{"algorithm", false}};
@@ -31,13 +42,14 @@ class ScenarioErrors {
       const bool known = heading != std::end(kRunHeadings) && heading->factor != 0.0;
       columns.push_back({known ? heading->title : metric});
       factors.push_back(known ? heading->factor : 1.0);
-      sentences += wrapped(fmt::format("{}: {}", metric, held_text(numbers(m), league_.runs.algorithms, kSameRank)), 0);
+      sentences +=
+          wrapped(fmt::format("{}: {}", metric, held_text(numbers_[m], league_.runs.algorithms, kSameRank)), 0);
     }
     Table table(columns);
     for (std::size_t a = 0; a < league_.runs.algorithms.size(); ++a) {
       std::vector<std::string> cells = {league_.runs.algorithms[a]};
       for (std::size_t m = 0; m < factors.size(); ++m) {
-        const auto [value, error] = numbers(m)[a];
+        const auto& [value, error] = numbers_[m][a];
         const auto scaled = error ? std::optional(factors[m] * *error) : std::nullopt;
         cells.push_back(value ? with_error_text(factors[m] * *value, scaled) : "-");
       }
@@ -49,10 +61,10 @@ class ScenarioErrors {
 
   void add_json(Json& rows) const {
     for (std::size_t m = 0; m < league_.runs.metrics.size(); ++m) {
-      const std::vector<NumberWithError> found = numbers(m);
+      const std::vector<NumberWithError>& found = numbers_[m];
       Json numbers = Json::array();
       for (std::size_t a = 0; a < found.size(); ++a) {
-        const KnownError known = known_error(a, m);
+        const KnownError& known = known_[m][a];
         numbers.push_back({{"algorithm", league_.runs.algorithms[a]},
                            {"value", or_null(found[a].value)},
                            {"error_estimate", or_null(found[a].error)},
@@ -74,7 +86,7 @@ class ScenarioErrors {
   }
 
  private:
-  /// Of a mean over the common seeds no more than the mean of their errors.
+  /// The mean of the errors over the common seeds, which bounds the error of their mean.
   KnownError known_error(std::size_t algorithm, std::size_t metric) const {
     const LeagueRuns& runs = league_.runs;
     const std::vector<std::size_t>& seeds = league_.common[scenario_];
@@ -93,18 +105,11 @@ class ScenarioErrors {
     return mean;
   }
 
-  std::vector<NumberWithError> numbers(std::size_t metric) const {
-    std::vector<NumberWithError> numbers;
-    for (std::size_t a = 0; a < league_.runs.algorithms.size(); ++a) {
-      const bool failed = league_.failures(scenario_, a) > 0;
-      numbers.push_back({failed ? std::nullopt : league_.at(scenario_, a, metric).mean, known_error(a, metric).sum()});
-    }
-    return numbers;
-  }
-
   const League& league_;
   const FinerRuns& finer_;
   std::size_t scenario_;
+  std::vector<std::vector<KnownError>> known_;         ///< by metric and algorithm
+  std::vector<std::vector<NumberWithError>> numbers_;  ///< likewise: the means that are compared
 };
 
 }  // namespace

@@ -20,8 +20,7 @@ Cell value_cell(const std::optional<JudgedValue>& run) {
   return run ? Cell(run->value) : Cell();
 }
 
-/// What lies beyond a limit: a class of motion or "end of the range"; without a limit, the class at the range's low
-/// end.
+/// The class of motion just beyond a limit, or "end of the range"; without a limit, the class at the range's low end.
 std::string beyond_text(const FieldLimit& limit) {
   if (limit.beyond) return std::string(run_verdict_name(limit.beyond->verdict));
   return limit.value ? "end of the range" : std::string(run_verdict_name(limit.runs.front().verdict));
@@ -300,7 +299,7 @@ void tell_limits(const LimitAnswers& answers, Report& report) {
                    {"from", question.range.from},
                    {"to", question.range.to},
                    {"resolution", question.resolution},
-                   {"rule", rule_text(question, is_moved(asked.load(0, 0).scenario))},
+                   {"rule", rule_text(question, is_moved(asked.scenario(0, 0)))},
                    {"limits", std::move(limits)}};
 }
 

@@ -39,6 +39,7 @@ std::vector<ComparedDevice> devices_named(const std::string& name) {
 /// The devices, those with what --set changes marked, each with what else nobody published of it: both ends, or its dry
 /// friction times the factors.
 std::vector<ComparedDevice> asked_devices(const LimitOptions& options) {
+  const bool none_other = options.friction == std::vector<std::string>{kNoOthers};
   for (const std::string& override : options.overrides) {
     const std::string_view path = overridden_path(override);
     if (path == "device" || path == "device.type" || path == "device.preset") {
@@ -47,14 +48,14 @@ std::vector<ComparedDevice> asked_devices(const LimitOptions& options) {
           "of your own goes into --device, as a file NAME.json",
           path));
     }
-    if (path == "device.coulomb_N" && !options.friction.empty() && options.friction.front() != kNoOthers)
+    if (path == "device.coulomb_N" && !options.friction.empty() && !none_other)
       throw InputError("--friction: got it beside --set device.coulomb_N; allowed: either");
   }
   std::vector<ComparedDevice> devices;
   for (const ComparedDevice& chosen : chosen_devices(options.devices)) {
     const ComparedDevice device = with_marked_name(chosen, options.overrides);
     devices.push_back(device);
-    if (options.friction == std::vector<std::string>{kNoOthers}) continue;
+    if (none_other) continue;
     for (const std::string& factor : options.friction) {
       if (const auto other = with_friction_times(device, number_between("--friction", factor, 0.0, 1e3)))
         devices.push_back(*other);
@@ -123,6 +124,10 @@ LimitQuestion question_of(const LimitOptions& options, const ScenarioText& scene
 }
 
 }  // namespace
+
+void add_once(std::vector<std::string>& texts, const std::string& text) {
+  if (std::find(texts.begin(), texts.end(), text) == texts.end()) texts.push_back(text);
+}
 
 std::optional<Range> range_of(const char* option, const std::string& text) {
   if (text.empty()) return std::nullopt;
@@ -202,34 +207,29 @@ LimitCases::LimitCases(const LimitOptions& options)
     for (const std::string& text : options.over) axes.push_back(parse_axis(text));
     over_.emplace(std::vector<ScenarioText>(), std::vector<std::string>(), std::move(axes));
   }
-  for (std::size_t row = 0; row < std::max<std::size_t>(1, devices_.size()) * points(); ++row) {
-    for (std::size_t scene = 0; scene < scenes_.size(); ++scene) add_case(options, row, scene);
-  }
   std::vector<std::string> warnings;
-  for (const LimitCase& asked : cases_) {
-    for (const std::string& warning : asked.question.warnings) {
-      if (std::find(warnings.begin(), warnings.end(), warning) == warnings.end()) warnings.push_back(warning);
-    }
+  for (std::size_t row = 0; row < std::max<std::size_t>(1, devices_.size()) * points(); ++row) {
+    for (std::size_t scene = 0; scene < scenes_.size(); ++scene) add_cases(options, row, scene, warnings);
   }
   print_warnings(warnings);
 }
 
-void LimitCases::add_case(const LimitOptions& options, std::size_t row, std::size_t scene) {
+void LimitCases::add_cases(const LimitOptions& options, std::size_t row, std::size_t scene,
+                           std::vector<std::string>& warnings) {
   with_device(has_devices() ? &device(row) : nullptr, [&] {
     const std::vector<std::string> overrides = this->overrides(row, scene);
     LimitCase asked{&scenes_[scene], overrides, {}, question_of(options, scenes_[scene], overrides)};
     const LoadedScenario loaded = load_scenario(scenes_[scene], overrides);
-    for (const std::string& warning : check_named_files(loaded)) asked.question.warnings.push_back(warning);
+    for (const std::string& warning : asked.question.warnings) add_once(warnings, warning);
+    for (const std::string& warning : check_named_files(loaded)) add_once(warnings, warning);
     // A field of the rendering changes nothing of hand and device.
     if (asked.question.path.starts_with("rendering.")) asked.question.tremor = tremor_speeds(loaded);
-    if (algorithms_.empty()) {
-      asked.algorithm = loaded.scenario.rendering.algorithm;
-      cases_.push_back(asked);
-    }
-    for (const std::string& algorithm : algorithms_) {
+    const std::vector<std::string> own = {loaded.scenario.rendering.algorithm};
+    for (const std::string& algorithm : algorithms_.empty() ? own : algorithms_) {
       asked.algorithm = algorithm;
       cases_.push_back(asked);
     }
+    scenarios_.push_back(loaded.scenario);
   });
 }
 
@@ -255,10 +255,6 @@ std::vector<std::string> LimitCases::over() const {
 
 std::vector<std::string> LimitCases::values(std::size_t row) const {
   return over_ ? over_->values(row % points()) : std::vector<std::string>{};
-}
-
-LoadedScenario LimitCases::load(std::size_t row, std::size_t column) const {
-  return load_scenario(*at(row, column).scene, at(row, column).overrides);
 }
 
 }  // namespace hapbench

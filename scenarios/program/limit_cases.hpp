@@ -21,6 +21,9 @@ void add_bound(const std::string& text, std::map<std::string, MetricBound>& boun
 /// The number that an option was given. Throws InputError unless it is one from `least` to `most`.
 double number_between(const char* option, const std::string& text, double least, double most);
 
+/// Appends a text unless it is there already.
+void add_once(std::vector<std::string>& texts, const std::string& text);
+
 /// The names that --device takes besides files: "all", "impedance" for every preset, and each device.
 std::vector<std::string> device_names();
 /// The devices of these names and files, each once; a preset's name with [soft] or [stiff] behind it is the preset at
@@ -65,13 +68,16 @@ class LimitCases {
   std::vector<std::string> over() const;
   std::vector<std::string> values(std::size_t row) const;
   /// The scene of a column as it is on the row's device, with the scenario's value of the field.
-  LoadedScenario load(std::size_t row, std::size_t column) const;
+  const Scenario& scenario(std::size_t row, std::size_t column) const {
+    return scenarios_[row * scenes_.size() + column / algorithms_of_a_scene()];
+  }
 
  private:
   std::size_t points() const { return over_ ? over_->size() : 1; }
   std::size_t algorithms_of_a_scene() const { return algorithms_.empty() ? 1 : algorithms_.size(); }
   std::vector<std::string> overrides(std::size_t row, std::size_t scene) const;
-  void add_case(const LimitOptions& options, std::size_t row, std::size_t scene);
+  /// Adds those of a scene with all algorithms. Warnings that are not among them yet are added.
+  void add_cases(const LimitOptions& options, std::size_t row, std::size_t scene, std::vector<std::string>& warnings);
 
   std::vector<ComparedDevice> devices_;  ///< none: each scene's own
   std::vector<ScenarioText> scenes_;
@@ -79,6 +85,7 @@ class LimitCases {
   std::optional<Cases> over_;
   std::vector<std::string> overrides_;
   std::vector<LimitCase> cases_;
+  std::vector<Scenario> scenarios_;  ///< by rows and scenes
 };
 
 }  // namespace hapbench

@@ -82,9 +82,9 @@ std::string remarks_text(const FieldLimit& limit, const LimitQuestion& question)
   return limit.inconsistent.empty() ? text : text + inconsistent_text(limit);
 }
 
-const ImpedanceDeviceConfig* with_dry_friction(const Scenario& scenario) {
+bool has_dry_friction(const Scenario& scenario) {
   const auto* device = std::get_if<ImpedanceDeviceConfig>(&scenario.device);
-  return device != nullptr && device->coulomb > 0.0 ? device : nullptr;
+  return device != nullptr && device->coulomb > 0.0;
 }
 
 std::string damping_text(const RenderingConfig& rendering) {
@@ -116,19 +116,14 @@ std::string first_of(const std::vector<std::string>& names) {
   return fmt::format("{}{}", fmt::join(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(shown), ", "), more);
 }
 
-/// Appends a text unless it is there already.
-void add_once(std::vector<std::string>& texts, const std::string& text) {
-  if (std::find(texts.begin(), texts.end(), text) == texts.end()) texts.push_back(text);
-}
-
 /// The delay of each impedance device in the first scene, as "0 of touch; 1 (0.5 ms in steps of 0.5 ms) of mine"; empty
 /// when none has one.
 std::string delays_text(const LimitCases& asked) {
   std::map<std::string, std::vector<std::string>> names;
   for (std::size_t row = 0; row < asked.rows(); ++row) {
-    const LoadedScenario loaded = asked.load(row, 0);
-    if (handle_moves_tool(loaded.scenario.device) && !asked.device(row).name.ends_with(']'))
-      add_once(names[delay_text(loaded.scenario)], asked.device(row).name);
+    const Scenario& scenario = asked.scenario(row, 0);
+    if (handle_moves_tool(scenario.device) && !asked.device(row).name.ends_with(']'))
+      add_once(names[delay_text(scenario)], asked.device(row).name);
   }
   std::vector<std::string> parts;
   for (const auto& [delay, having] : names) parts.push_back(fmt::format("{} of {}", delay, fmt::join(having, ", ")));
@@ -179,14 +174,14 @@ std::string LimitAnswers::detailed_text() const {
   bool has_friction = false;
   for (std::size_t column = 0; column < asked_.columns(); ++column) {
     const LimitQuestion& question = asked_.at(0, column).question;
-    const Scenario scenario = asked_.load(0, column).scenario;
+    const Scenario& scenario = asked_.scenario(0, column);
     const bool is_first = column == 0 || asked_.scene_name(column) != asked_.scene_name(column - 1);
     if (is_first) text += question_text(question, scenario);
     remarks += remarks_text(at(0, column), question);
-    has_friction = has_friction || with_dry_friction(scenario) != nullptr;
+    has_friction = has_friction || has_dry_friction(scenario);
   }
   const LimitCase& first = asked_.at(0, 0);
-  const Scenario scenario = asked_.load(0, 0).scenario;
+  const Scenario& scenario = asked_.scenario(0, 0);
   text += limit_columns(this).table(rows_of(*this)).text() + "\n" +
           wrapped(rule_text(first.question, is_moved(scenario)), 0) + remarks +
           (has_friction ? approaches_text(limits_) : "");
@@ -204,12 +199,12 @@ std::string LimitAnswers::grid_text() const {
       over, [](const auto& path) { return path.starts_with("rendering.") || path.starts_with("time."); });
   std::vector<std::string> rules;
   for (std::size_t column = 0; as_in_first_row && column < asked_.columns(); ++column) {
-    const Scenario scenario = asked_.load(0, column).scenario;
+    const Scenario& scenario = asked_.scenario(0, column);
     add_once(rules, fmt::format("{} steps of {} s; {}\n", scenario.time.steps, significant(scenario.time.step),
                                 damping_text(scenario.rendering)));
   }
   return text + fmt::format("{}", fmt::join(rules, "")) + "\n" + grid().text() +
-         wrapped(rule_text(question, is_moved(asked_.load(0, 0).scenario)), 0) + ends_text() + notes_text();
+         wrapped(rule_text(question, is_moved(asked_.scenario(0, 0))), 0) + ends_text() + notes_text();
 }
 
 std::vector<Table::Column> LimitAnswers::row_headings() const {
@@ -300,7 +295,7 @@ std::string LimitAnswers::notes_text() const {
           0);
     text += delays_text(asked_);
   }
-  if (any([&](std::size_t row, std::size_t c) { return with_dry_friction(asked_.load(row, c).scenario) != nullptr; }))
+  if (any([&](std::size_t row, std::size_t c) { return has_dry_friction(asked_.scenario(row, c)); }))
     text += approaches_text(limits_);
   if (any([&](std::size_t row, std::size_t c) {
         return at(row, c).is_beyond_linear(asked_.at(row, c).question.resolution);

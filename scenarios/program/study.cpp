@@ -19,21 +19,32 @@ constexpr const char* kAsk = "ask";
 /// What is said of a study, and is no option of its command.
 constexpr const char* kNoOptions[] = {kAsk, "scenarios", "summary", "source", "$schema"};
 
-/// The file of a study's name, or a file that is one; empty for anything else.
-fs::path study_file(const std::string& word) {
+fs::path studies_folder() {
+  return installed_folder("scenarios") / "library" / "studies";
+}
+
+struct StudyFile {
+  fs::path file;
+  std::string text;
+};
+
+/// The study that a word names, or whose file it is; none for anything else, and for what cannot be read: a command
+/// refuses that with its place.
+std::optional<StudyFile> find_study(const std::string& word) {
   std::error_code error;
-  if (word.ends_with(".json")) {
-    if (!fs::is_regular_file(word, error)) return {};
-    try {
-      const std::string text = read_text_file(word, kLargestJsonFile);
-      return text.find("\"ask\"") == std::string::npos ? fs::path() : fs::path(word);
-    } catch (const InputError&) {
-      return {};  // its command refuses it
+  try {
+    if (word.ends_with(".json") && fs::is_regular_file(word, error)) {
+      std::string text = read_text_file(word, kLargestJsonFile);
+      if (text.find("\"ask\"") == std::string::npos) return std::nullopt;
+      return StudyFile{word, std::move(text)};
     }
+    if (word.empty() || word.find('/') != std::string::npos || fs::exists(word, error)) return std::nullopt;
+    const fs::path file = studies_folder() / (word + ".json");
+    if (!fs::exists(file, error)) return std::nullopt;
+    return StudyFile{file, read_text_file(file, kLargestJsonFile)};
+  } catch (const InputError&) {
+    return std::nullopt;
   }
-  if (word.empty() || word.find('/') != std::string::npos || fs::exists(word, error)) return {};
-  const fs::path file = installed_folder("scenarios") / "library" / "studies" / (word + ".json");
-  return fs::exists(file, error) ? file : fs::path();
 }
 
 std::string text_of(const Json& value) {
@@ -96,7 +107,7 @@ Json study_json(const fs::path& file, const std::string& text) {
 
 std::vector<BundledStudy> bundled_studies() {
   std::vector<BundledStudy> found;
-  for (const auto& entry : fs::directory_iterator(installed_folder("scenarios") / "library" / "studies")) {
+  for (const auto& entry : fs::directory_iterator(studies_folder())) {
     if (entry.path().extension() != ".json") continue;
     const Json study = study_json(entry.path(), read_text_file(entry.path(), kLargestJsonFile));
     found.push_back({entry.path().stem().string(), study[kAsk], study.value("summary", ""), entry.path()});
@@ -110,11 +121,11 @@ std::optional<StudyWords> StudyWords::in(const std::vector<std::string>& words) 
   for (std::size_t place = 1; place < words.size(); ++place) {
     // The value of an option is none: a file of a device has no "ask".
     if (words[place].starts_with("-")) continue;
-    const fs::path file = study_file(words[place]);
-    if (file.empty()) continue;
+    const std::optional<StudyFile> named = find_study(words[place]);
+    if (!named) continue;
+    const auto& [file, text] = *named;
     StudyWords found;
     found.file_ = file;
-    const std::string text = read_text_file(file, kLargestJsonFile);
     const Json study = study_json(file, text);
     if (study[kAsk] != words[0]) {
       fail_in_line(file, line_of(text, kAsk),
