@@ -23,19 +23,16 @@ inline bool is_stable_step(const Eigen::MatrixXd& A) {
   return spectral_radius(A) <= 1.0 + 1e-13;
 }
 
-/// The largest value from `least` to `most` up to which `stable(value)`, or the step `step_matrix(value)` is stable,
-/// with a relative error of 1e-11; zero if `least` is unstable, infinite if all values are stable.
+/// The largest value from `least` to `most` up to which the step `step_matrix(value)` is stable, with a relative error
+/// of 1e-11; zero if `least` is unstable, infinite if all values are stable.
 ///
 /// It is the first edge from below: values a tenth apart are tried from `least` on, and the first unstable one is
 /// bisected against the last stable one. An unstable range that begins and ends within a tenth is overlooked. The tests
 /// compare the edges of random loops with their frequency responses, which show every crossing.
-template <class Stable>
-double first_edge_of(double least, double most, Stable stable) {
-  return stable(least) ? largest_stable(least, 1e-11, stable, most, 1.1) : 0.0;
-}
 template <class StepMatrix>
 double first_edge(double least, double most, StepMatrix step_matrix) {
-  return first_edge_of(least, most, [&](double value) { return is_stable_step(step_matrix(value)); });
+  const auto stable = [&](double value) { return is_stable_step(step_matrix(value)); };
+  return stable(least) ? largest_stable(least, 1e-11, stable, most, 1.1) : 0.0;
 }
 
 /// The loop of an impedance device at a wall, as a linear system along one axis in SI units: the loop without

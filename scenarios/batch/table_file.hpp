@@ -21,7 +21,7 @@ std::string csv_cell(std::string_view text);
 /// The cells of a line, without their quotes and a carriage return at its end.
 std::vector<std::string> csv_cells(std::string_view line);
 
-/// What a table is: the file, its columns, and the JSON beside it, whose "definition" is equal for equal tables.
+/// The file of a table, its columns, and the JSON beside it, whose "definition" is equal for equal tables.
 struct TableTitle {
   std::filesystem::path file;
   std::string header;     ///< line without its end; the first column is the number of the case

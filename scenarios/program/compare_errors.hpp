@@ -9,7 +9,7 @@
 /// `compare --errors`: which numbers of a comparison are how sure, and which order of laws is larger than that.
 namespace hapbench {
 
-/// What is known of the errors of a comparison.
+/// The errors of a comparison's numbers, in words and as JSON.
 struct ComparedErrors {
   std::string text;           ///< for each scenario a table and a sentence on each metric
   Json json = Json::array();  ///< an object for each scenario and metric

@@ -2,10 +2,9 @@
 import math
 
 import numpy as np
-from scipy import stats
 
 from answers import EXACT, ROUNDING, Run, Table, norms, scene
-from physics import BINNED, PLAIN, Phases, nearest_rank
+from physics import PLAIN, Phases, nearest_rank
 
 UP = {"type": "springs", "groups": [{"direction": [0, 1, 0], "count": 2}]}
 LAWS = ["mean", "virtual_coupling", "summation", "shaped_stiffness"]

@@ -4,7 +4,7 @@ import math
 import numpy as np
 
 from answers import EXACT, ROUNDING, Table, Within, scene
-from physics import PLAIN, HeldLoop, bisected, class_of, grows, high_pass, motion_of, step_matrix
+from physics import PLAIN, HeldLoop, bisected, class_of, grows, high_pass, motion_of
 
 
 @scene
