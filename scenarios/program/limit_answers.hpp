@@ -36,8 +36,6 @@ class LimitAnswers {
   Table grid() const;
   std::string ends_text() const;
   std::string notes_text() const;
-  std::vector<Table::Column> row_headings() const;
-  std::vector<std::string> row_cells(std::size_t row) const;
   std::string title(std::size_t column) const { return asked_.scene_name(column) + "\n" + asked_.algorithm(column); }
   std::string row_name(std::size_t row) const;
 

@@ -207,23 +207,6 @@ std::string LimitAnswers::grid_text() const {
          wrapped(rule_text(question, is_moved(asked_.scenario(0, 0))), 0) + ends_text() + notes_text();
 }
 
-std::vector<Table::Column> LimitAnswers::row_headings() const {
-  std::vector<Table::Column> columns;
-  if (asked_.has_devices()) columns.push_back({"device", false});
-  for (const std::string& path : asked_.over()) columns.push_back({path});
-  return columns;
-}
-
-std::vector<std::string> LimitAnswers::row_cells(std::size_t row) const {
-  std::vector<std::string> cells;
-  if (asked_.has_devices()) cells.push_back(asked_.device(row).name);
-  for (const std::string& value : asked_.values(row)) {
-    const auto number = finite_number(value);
-    cells.push_back(number ? significant(*number) : value);
-  }
-  return cells;
-}
-
 std::string LimitAnswers::row_name(std::size_t row) const {
   std::vector<std::string> names;
   if (asked_.has_devices()) names.push_back(asked_.device(row).name);
@@ -233,12 +216,19 @@ std::string LimitAnswers::row_name(std::size_t row) const {
 }
 
 Table LimitAnswers::grid() const {
-  std::vector<Table::Column> columns = row_headings();
+  std::vector<Table::Column> columns;
+  if (asked_.has_devices()) columns = {{"device", false}};
+  for (const std::string& path : asked_.over()) columns.push_back({path});
   if (asked_.has_devices()) columns.push_back({"pub-\nlished"});
   for (std::size_t c = 0; c < asked_.columns(); ++c) columns.push_back({title(c)});
   Table table(columns, kGridGap);
   for (std::size_t row = 0; row < asked_.rows(); ++row) {
-    std::vector<std::string> cells = row_cells(row);
+    std::vector<std::string> cells;
+    if (asked_.has_devices()) cells.push_back(asked_.device(row).name);
+    for (const std::string& value : asked_.values(row)) {
+      const auto number = finite_number(value);
+      cells.push_back(number ? significant(*number) : value);
+    }
     if (asked_.has_devices()) {
       const auto& published = asked_.device(row).published_stiffness;
       cells.push_back(published ? value_text(*published) : "-");

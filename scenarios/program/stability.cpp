@@ -1,14 +1,11 @@
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include <array>
 #include <cmath>
 
-#include "results/io/atomic_file.hpp"
 #include "results/io/json_text.hpp"
 #include "results/io/table_writer.hpp"
-#include "results/summary/outcome_names.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/description/load_scenario.hpp"
 #include "scenarios/program/command.hpp"
