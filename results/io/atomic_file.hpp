@@ -33,16 +33,15 @@ class FileSet;
 
 /// A file that appears under its final name complete or not at all.
 ///
-/// Bytes go to a hidden temporary of a random name in the same directory; `commit` gives it its final name. Several
-/// writers of one target do not disturb each other: the last to commit wins. The temporary is locked (flock) while it
-/// is written, which tells remove_stale_temporaries that its writer lives, in another container or on another host,
-/// too.
+/// Bytes go to a hidden temporary, .NAME.tmp, in the same directory; `commit` gives it its final name. The temporary is
+/// locked (flock) while it is written: a second writer is refused. What a killed process left is overwritten by the
+/// next writer.
 ///
 /// Safe against a killed process, not against a power cut: fsync would cost milliseconds for each of the thousands of
 /// files of a sweep, whose rows can be computed again.
 class AtomicFile {
  public:
-  /// Opens the temporary. The directory must exist. Throws IoError.
+  /// Opens the temporary. The directory must exist. Throws IoError, also when the file is being written.
   explicit AtomicFile(std::filesystem::path target);
   /// Without `commit`: removes the temporary, leaves what is at the target.
   ~AtomicFile();
@@ -72,7 +71,7 @@ class AtomicFile {
 
   void flush() noexcept;
   void throw_error();
-  std::error_code rename();
+  void rename();
   void discard() noexcept;
 
   std::filesystem::path target_;
@@ -84,18 +83,18 @@ class AtomicFile {
 };
 
 /// Files that replace earlier ones together: when one of them cannot be written, all earlier ones stay. A killed
-/// process leaves a mixture if it dies between the first and the last renaming, which takes microseconds a file.
+/// process leaves a mixture if it dies between the first and the last renaming, which takes microseconds a file; the
+/// file that was taken last, such as a summary, tells then, since it is the last to come.
 class FileSet {
  public:
   /// The file gets its final name with the others.
   void take(AtomicFile file) { files_.push_back(std::move(file)); }
   /// The whole contents of a file. Throws IoError.
   void write(const std::filesystem::path& target, std::string_view contents);
-  /// The file, if there is one, goes with the others' replacement. Files go in this order and before any comes, which
-  /// come in the order in which they were taken.
+  /// The file, if there is one, goes when the others are complete and before any comes, which come in the order in
+  /// which they were taken.
   void remove(std::filesystem::path file) { removed_.push_back(std::move(file)); }
-  /// After remove_stale_temporaries in all folders concerned. Throws IoError, after which everything is as it was. Call
-  /// once, last.
+  /// Throws IoError. Call once, last.
   void commit();
 
  private:
@@ -103,13 +102,8 @@ class FileSet {
   std::vector<std::filesystem::path> removed_;
 };
 
-/// The whole contents at once, after remove_stale_temporaries. Throws IoError.
+/// The whole contents at once. Throws IoError.
 void write_file_atomically(const std::filesystem::path& target, std::string_view contents);
-
-/// Removes the temporaries of AtomicFile that killed processes left in `directory` and returns how many. Temporaries
-/// that are being written stay, and so does every other file. A directory that
-/// does not exist has none; one that cannot be listed throws IoError. A file that cannot be removed is left.
-std::size_t remove_stale_temporaries(const std::filesystem::path& directory);
 
 /// Creates directories for results. Its destructor removes those that are still empty, so that failed or stopped work
 /// leaves none behind.
