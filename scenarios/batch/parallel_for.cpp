@@ -40,23 +40,36 @@ class HandOver {
 
 void parallel_for(const NextRun& next, std::size_t jobs, const std::function<Delivery(std::size_t)>& work) {
   HandOver started, finished;
+  // An exception that leaves a stage of the pipeline would leak the deliveries of the runs that are under way.
+  std::exception_ptr failure;
+  std::atomic<bool> has_failed = false;
   started.give();
   const auto start = [&](tbb::flow_control& control) -> std::size_t {
     started.take();
-    const auto run = next();
+    const auto run = has_failed ? std::nullopt : next();
     started.give();
     if (!run) control.stop();
     return run.value_or(0);
   };
   const auto compute = [&](std::size_t run) {
     started.take();
-    auto delivery = work(run);
+    Delivery delivery;
+    try {
+      delivery = work(run);
+    } catch (...) {
+      delivery = [caught = std::current_exception()] { std::rethrow_exception(caught); };
+    }
     finished.give();
     return delivery;
   };
   const auto deliver = [&](const Delivery& delivery) {
     finished.take();
-    if (delivery) delivery();
+    try {
+      if (delivery && !failure) delivery();
+    } catch (...) {
+      failure = std::current_exception();
+      has_failed = true;
+    }
     finished.give();
   };
   using tbb::filter_mode;
@@ -69,6 +82,7 @@ void parallel_for(const NextRun& next, std::size_t jobs, const std::function<Del
   arena.execute([&] { tbb::parallel_pipeline(jobs, pipeline); });
   started.take();
   finished.take();
+  if (failure) std::rethrow_exception(failure);
 }
 
 std::size_t available_threads() {
