@@ -51,11 +51,6 @@ TEST(ImpedanceHand, IsASpringAndADamperFromTargetToHandle) {
   EXPECT_EQ(hand.force(3.0, view), Vec3(100 * 6 + 10 * 0, 0, 100 * 1 - 10 * 3));
 }
 
-TEST(ImpedanceHand, DoesNotPushOnATargetItMovesWith) {
-  ImpedanceHand hand(100.0, 10.0, {Profile::Shape(Profile::Ramp{0.0, 1.0}), 0.0, 0.0});
-  EXPECT_EQ(hand.force(2.0, {{{2, 0, 0}, {1, 0, 0}}, {}, {}}), Vec3(0, 0, 0));
-}
-
 /// Over ten minutes the mean square of eight tones is that of their amplitudes to 1 %: what beats does so faster than
 /// once in ten seconds or stays below that share.
 TEST(Tremor, HasItsStandardDeviationInItsBandAlone) {

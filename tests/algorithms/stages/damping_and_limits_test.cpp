@@ -92,12 +92,6 @@ TEST(Friction, IsViscousOnTheTangentialVelocityPlusAShareOfTheSpringForce) {
   EXPECT_LE((rendered(config) - (kSpring - 2.0 * kSpring.norm() * tangential)).norm(), 4 * kEps * 100);
 }
 
-TEST(Friction, IsAddedToDamping) {
-  RenderingConfig config = dyadic();
-  config.mu_s = 3.0;
-  EXPECT_EQ(rendered(config), Vec3(-4.0 - 96 * 0.5, 8.0 - 96 * 0.125 - 3 * 0.125, 6.0));
-}
-
 TEST(MaxDamping, ScalesTheNormalDampingSoThatItsLargestEigenvalueIsTheLimit) {
   RenderingConfig config = dyadic();
   config.max_damping = 24.0;  // lambda_max(B S) = 96
@@ -112,16 +106,6 @@ TEST(MaxDamping, CountsTheStiffestDirectionOfS) {
   EXPECT_EQ(force, Vec3(-6.0, -24.0, -12.0));
 }
 
-TEST(MaxDamping, LeavesSmallerDampingAndFrictionAlone) {
-  RenderingConfig config = dyadic();
-  config.mu_s = 3.0;
-  const Vec3 without = rendered(config);
-  config.max_damping = 96.0;
-  EXPECT_EQ(rendered(config), without);
-  config.max_damping = 24.0;
-  EXPECT_EQ(rendered(config).z(), without.z()) << "friction along z";
-}
-
 TEST(MaxForce, ScalesTheRenderedForceToItsLength) {
   RenderingConfig config = dyadic();
   config.mu_s = 3.0;
@@ -129,15 +113,6 @@ TEST(MaxForce, ScalesTheRenderedForceToItsLength) {
   config.max_force = 10.0;
   EXPECT_NEAR(rendered(config).norm(), 10.0, 4 * kEps * 10);
   EXPECT_LE((rendered(config).normalized() - without.normalized()).norm(), 4 * kEps);
-}
-
-TEST(MaxForce, LeavesShorterForcesAlone) {
-  RenderingConfig config = dyadic();
-  const Vec3 without = rendered(config);
-  config.max_force = without.norm();
-  EXPECT_EQ(rendered(config), without);
-  config.max_force = 1e9;
-  EXPECT_EQ(rendered(config), without);
 }
 
 TEST(DampingAndLimits, AToolAtRestFeelsTheSpringsAlone) {

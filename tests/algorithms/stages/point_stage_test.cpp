@@ -78,13 +78,6 @@ TEST(GradientReduction, IsTheAlgorithmOfTheThesisOnRandomSets) {
   }
 }
 
-TEST(GradientReduction, KeepsTheDeepestOfSimilarContacts) {
-  const std::vector<Vec3> same(4, Vec3::UnitX());
-  const ContactBuffer contacts = reduced({}, test::contacts_of(same, {2.0, 1.0, 5.0, 3.0}));
-  EXPECT_EQ(indices(contacts), std::vector<std::uint32_t>{2});
-  EXPECT_EQ(contacts.depth[0], 5.0);
-}
-
 TEST(GradientReduction, OfEquallyDeepContactsTheFirstStays) {
   const std::vector<Vec3> same(3, Vec3::UnitX());
   EXPECT_EQ(indices(reduced({}, test::contacts_of(same, {2.0, 2.0, 2.0}))), std::vector<std::uint32_t>{0});
@@ -95,26 +88,6 @@ TEST(GradientReduction, InnerProductsEqualToTheThresholdAreNotSimilar) {
   const std::vector<Vec3> gradients = {{1, 0, 0}, {0.5, std::sqrt(0.75), 0}};
   EXPECT_EQ(reduced({0.5, 100, {}}, test::contacts_of(gradients)).size(), 2u);
   EXPECT_EQ(reduced({std::nextafter(0.5, 0.0), 100, {}}, test::contacts_of(gradients)).size(), 1u);
-}
-
-TEST(GradientReduction, TheFirstSimilarKeptContactAbsorbsEvenIfALaterOneIsMoreSimilar) {
-  // The third lies between the first two and is similar to both, nearer to the second.
-  const auto at = [](double degrees) {
-    return Vec3(std::cos(degrees * std::numbers::pi / 180), std::sin(degrees * std::numbers::pi / 180), 0);
-  };
-  const ContactBuffer contacts = reduced({std::cos(10 * std::numbers::pi / 180), 100, {}},
-                                         test::contacts_of({at(0), at(12), at(8)}, {1.0, 1.0, 7.0}));
-  EXPECT_EQ(indices(contacts), (std::vector<std::uint32_t>{2, 1}));
-}
-
-TEST(GradientReduction, AReplacementIsComparedWithFromThenOn) {
-  // The first is replaced by the second, 8 degrees on; the third is similar to the second only.
-  const auto at = [](double degrees) {
-    return Vec3(std::cos(degrees * std::numbers::pi / 180), std::sin(degrees * std::numbers::pi / 180), 0);
-  };
-  const ContactBuffer contacts = reduced({std::cos(10 * std::numbers::pi / 180), 100, {}},
-                                         test::contacts_of({at(0), at(8), at(16)}, {1.0, 2.0, 1.5}));
-  EXPECT_EQ(indices(contacts), std::vector<std::uint32_t>{1});
 }
 
 TEST(GradientReduction, ContactsBeyondMaxPointsAreDroppedAndCountedUntilReset) {
@@ -260,33 +233,6 @@ class LocalAverage : public testing::Test {
 // One rounding of a product, a sum, a division and a norm.
 constexpr double kRounding = 4 * std::numeric_limits<double>::epsilon();
 
-TEST_F(LocalAverage, MergesContactsOfACellIntoTheMeanOfTheirDepthVectors) {
-  const std::vector<Contact> all = {{0.0, 3.0, {1, 0, 0}}, {0.2, 4.0, {0, 1, 0}}};
-  const ContactBuffer contacts = averaged(all, {0, 1});
-  ASSERT_EQ(contacts.size(), 1u);
-  // Mean of (3, 0, 0) and (0, 4, 0): length 5/2, direction (3, 4)/5.
-  EXPECT_NEAR(contacts.depth[0], 2.5, kRounding * 2.5);
-  EXPECT_LE((contacts.gradient(0) - Vec3(0.6, 0.8, 0)).norm(), kRounding);
-}
-
-TEST_F(LocalAverage, KeepsContactsOfDifferentCellsApart) {
-  const std::vector<Contact> all = {{0.0, 3.0, {1, 0, 0}}, {1.0, 4.0, {0, 1, 0}}};
-  const ContactBuffer contacts = averaged(all, {0, 1});
-  ASSERT_EQ(contacts.size(), 2u);
-  for (std::size_t i = 0; i < 2; ++i) {
-    EXPECT_EQ(contacts.index[i], i);
-    EXPECT_EQ(contacts.depth[i], all[i].depth);
-    EXPECT_EQ(contacts.gradient(i), all[i].gradient);
-  }
-}
-
-TEST_F(LocalAverage, CountsOnlyCollidingPointsOfACell) {
-  const std::vector<Contact> all = {{0.0, 2.0, {1, 0, 0}}, {0.1, 9.0, {1, 0, 0}}, {0.2, 4.0, {1, 0, 0}}};
-  const ContactBuffer contacts = averaged(all, {0, 2});
-  ASSERT_EQ(contacts.size(), 1u);
-  EXPECT_EQ(contacts.depth[0], 3.0);
-}
-
 TEST_F(LocalAverage, KeepsIndexPointAndNormalOfTheCellsFirstContact) {
   const std::vector<Contact> all = {{1.0, 1.0, {0, 0, 1}}, {0.1, 2.0, {1, 0, 0}}, {0.2, 4.0, {0, 1, 0}}};
   const ContactBuffer contacts = averaged(all, {0, 1, 2});
@@ -302,11 +248,6 @@ TEST_F(LocalAverage, DropsACellWhoseDepthVectorsCancel) {
   const ContactBuffer contacts = averaged(all, {0, 1, 2, 3});
   ASSERT_EQ(contacts.size(), 1u);
   EXPECT_EQ(contacts.index[0], 2u);
-}
-
-TEST_F(LocalAverage, MayLeaveNoContact) {
-  EXPECT_TRUE(averaged({{0.0, 2.0, {1, 0, 0}}, {0.1, 2.0, {-1, 0, 0}}}, {0, 1}).empty());
-  EXPECT_TRUE(averaged({{0.0, 2.0, {1, 0, 0}}}, {}).empty());
 }
 
 TEST_F(LocalAverage, PadsTheMergedContacts) {

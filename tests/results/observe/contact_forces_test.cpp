@@ -64,11 +64,6 @@ TEST(SettlingRule, WithAStartTakesAllBeforeForLanding) {
   EXPECT_EQ(phases({.from = 0.0, .time = 0.03}, "##....##"), "ssaaaass");
 }
 
-TEST(SettlingRule, WithoutSettlingTimeHasNoLandings) {
-  EXPECT_EQ(phases({.from = {}, .time = 0.0}, ".##.#"), "assas");
-  EXPECT_EQ(forces_of({{0, false}, {1}, {1}, {0, false}, {1}}, {.from = {}, .time = 0.0}).landings, 2u);
-}
-
 TEST(SettlingRule, RoundsTimesToRows) {
   EXPECT_EQ(phases({.from = {}, .time = 0.0349}, "#####"), "lllss");
   EXPECT_EQ(phases({.from = {}, .time = 0.0251}, "#####"), "lllss");
@@ -156,11 +151,6 @@ TEST(ContactForces, AShortBreakOfContactVibratesAndALongOneStartsFromRest) {
   };
   EXPECT_GT(with_break(2), 0.0);
   EXPECT_EQ(with_break(4), with_break(400));
-}
-
-TEST(ContactForces, HaveNoVibrationAtSixtyHertzOrLess) {
-  EXPECT_FALSE(forces_of(trembling(10, 1), {.from = {}, .time = 0.0}, 1.0 / 60.0).rms_above_cutoff());
-  EXPECT_TRUE(forces_of(trembling(10, 1), {.from = {}, .time = 0.0}, 1.0 / 61.0).rms_above_cutoff());
 }
 
 TEST(ContactForces, OfSeveralRunsAddUp) {

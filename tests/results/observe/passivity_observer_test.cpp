@@ -35,14 +35,6 @@ TEST(PassivityObserver, FindsTheLeastEnergyAndItsTime) {
   EXPECT_EQ(m.net_created(), 3.0);
 }
 
-TEST(PassivityObserver, APassiveRunHasCreatedNothing) {
-  PassivityObserver observer(kDt);
-  for (std::uint64_t k = 0; k < 5; ++k) observer.on_step(row(k, -1.0));
-  EXPECT_EQ(observer.metrics()->energy_min, 0.0);
-  EXPECT_EQ(observer.metrics()->energy_end, 2.0);
-  EXPECT_EQ(observer.metrics()->net_created(), 0.0);
-}
-
 TEST(PassivityObserver, AnEnergyThatIsNoNumberIsNotNothing) {
   PassivityObserver observer(kDt);
   const double nan = std::numeric_limits<double>::quiet_NaN();

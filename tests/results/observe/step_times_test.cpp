@@ -45,20 +45,6 @@ TEST(StepTimes, TimesAStepOfManySeconds) {
   EXPECT_GE(times.nanoseconds()[0] + times.overhead(), 5'000'000'000u);
 }
 
-TEST(StepTimes, AddUpToTheTimeThatPassed) {
-  constexpr std::uint64_t kSteps = 1000;
-  StepTimes times(kSteps);
-  const auto before = Clock::now();
-  times.start();
-  for (std::uint64_t i = 0; i < kSteps; ++i) {
-    busy_for(std::chrono::microseconds(1));
-    times.lap();
-  }
-  const auto passed = std::chrono::nanoseconds(Clock::now() - before).count();
-  const auto ns = times.nanoseconds();
-  EXPECT_LE(std::accumulate(ns.begin(), ns.end(), std::int64_t{0}), passed);
-}
-
 /// Whether more than half of many empty steps take less than a reading of the clock, which is subtracted from each.
 bool empty_steps_take_nothing() {
   StepTimes times(10'001);
@@ -128,23 +114,6 @@ Times scrambled(std::uint64_t n) {
   Times times(n);
   for (std::uint64_t i = 0; i < n; ++i) times[i] = 1 + i * 7919 % n;
   return times;
-}
-
-// The value of rank r among 1 … n is r.
-TEST(StepLatency, PercentilesAreThoseOfNearestRank) {
-  const StepLatency thousand = step_latency(scrambled(1000), 0);
-  EXPECT_EQ(thousand.p50, 500u);
-  EXPECT_EQ(thousand.p95, 950u);
-  EXPECT_EQ(thousand.p99, 990u);
-  EXPECT_EQ(thousand.p99_9, 999u);
-  EXPECT_EQ(thousand.max, 1000u);
-  const StepLatency seven = step_latency(scrambled(7), 0);  // ranks ceil(3.5), ceil(6.65), ceil(6.93), ceil(6.993)
-  EXPECT_EQ(seven.p50, 4u);
-  EXPECT_EQ(seven.p95, 7u);
-  EXPECT_EQ(seven.p99_9, 7u);
-  const StepLatency one = step_latency(Times{42}, 0);
-  EXPECT_EQ(one.p50, 42u);
-  EXPECT_EQ(one.p99_9, 42u);
 }
 
 // By definition: at least p percent of the steps are as short as the percentile, and fewer are shorter.
@@ -255,12 +224,6 @@ TEST(Timing, TextHoldsMeanTimeInstructionSetAndCpu) {
   "cpu": "Some CPU"
 }
 )");
-}
-
-TEST(Timing, HoldsTheLatencyOfTimedSteps) {
-  RunTiming timing;
-  timing.latency = step_latency(std::vector<std::uint64_t>{1000, 2000}, 20);
-  EXPECT_EQ(timing_json(timing, {}, kProvenance)["step_latency"], step_latency_json(*timing.latency));
 }
 
 TEST(Timing, OfNoStepsHasNoMean) {

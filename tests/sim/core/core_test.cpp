@@ -67,27 +67,6 @@ TEST(Random, UniformIsTheTop53BitsOfMt19937_64) {
   EXPECT_EQ(random.uniform(), static_cast<double>(9981545732273789042u >> 11) * 0x1.0p-53);
 }
 
-TEST(Random, SameSeedGivesSameNumbers) {
-  Random a(7), b(7), c(8);
-  bool differs = false;
-  for (int i = 0; i < 100; ++i) {
-    const double x = a.uniform();
-    EXPECT_EQ(x, b.uniform());
-    differs |= x != c.uniform();
-  }
-  EXPECT_TRUE(differs);
-}
-
-TEST(Random, NumbersStayInTheirRange) {
-  Random random(1);
-  for (int i = 0; i < 100000; ++i) {
-    const double x = random.uniform(-3.0, 5.0);
-    ASSERT_GE(x, -3.0);
-    ASSERT_LT(x, 5.0);
-    ASSERT_LT(random.below(7), 7u);
-  }
-}
-
 TEST(Random, NormalNumbersHaveTheMomentsOfTheNormalDistribution) {
   Random random(4);
   constexpr int n = 200'000;
@@ -111,18 +90,6 @@ TEST(Random, DerivesSeedsThatDifferForNeighboursOfBothKinds) {
   }
   EXPECT_EQ(seeds.size(), 10'000u);
   static_assert(Random::derive(3, 5) == 3 * 0x9e3779b97f4a7c15u + 5, "results depend on it");
-}
-
-TEST(Random, DirectionsAreUnitVectors) {
-  Random random(2);
-  // Three rounded squares and a rounded root.
-  const double tolerance = 4 * std::numeric_limits<double>::epsilon();
-  for (int i = 0; i < 10000; ++i) {
-    ASSERT_NEAR(random.direction().norm(), 1.0, tolerance);
-    const Vec3 planar = random.direction_in_plane();
-    ASSERT_NEAR(planar.norm(), 1.0, tolerance);
-    ASSERT_EQ(planar.z(), 0.0);
-  }
 }
 
 TEST(Random, DirectionsFavourNoOctant) {
@@ -187,16 +154,6 @@ TEST(Profile, CosineWaypointsFollowHalfACosineOnEachLeg) {
   }
 }
 
-TEST(Profile, CosineWaypointsStartAndEndEachLegAtRest) {
-  const Profile profile = Profile::Shape(Waypoints{{{0.0, 0.0}, {1.0, 1.0}, {2.0, -3.0}}, kCosine});
-  // The curvature of a leg of height h is at most pi^2 h / 2 < 20, so a step e from rest moves by less than 10 e^2.
-  const double e = 1e-4;
-  for (const double t : {0.0, 1.0, 2.0}) {
-    EXPECT_NEAR(profile(t + e), profile(t), 10 * e * e) << t;
-    EXPECT_NEAR(profile(t - e), profile(t), 10 * e * e) << t;
-  }
-}
-
 TEST(Profile, RateIsTheTimeDerivativeOfEveryShape) {
   const Profile profiles[] = {3.0, Profile::Shape(Profile::Ramp{1.0, -2.0}),
                               Profile::Shape(Profile::Sine{1.0, 2.0, 3.0, 0.5}),
@@ -211,13 +168,6 @@ TEST(Profile, RateIsTheTimeDerivativeOfEveryShape) {
   }
   EXPECT_EQ(profiles[3].rate(1.0), -2.0) << "a corner belongs to the leg that begins there";
   EXPECT_EQ(profiles[3].rate(3.0), 0.0);
-}
-
-TEST(Profile, KeepsTheShapeItWasGiven) {
-  const Profile profile = Profile::Shape(Profile::Ramp{0.5, -2.0});
-  ASSERT_TRUE(std::holds_alternative<Profile::Ramp>(profile.shape()));
-  EXPECT_EQ(std::get<Profile::Ramp>(profile.shape()).rate_per_s, -2.0);
-  EXPECT_EQ(std::get<Profile::Constant>(Profile(3.0).shape()).value, 3.0);
 }
 
 }  // namespace

@@ -16,22 +16,6 @@ std::vector<SurfacePoint> random_points(Random& random, std::size_t n) {
   return points;
 }
 
-TEST(PointShell, ReturnsThePointsItWasGivenInOrder) {
-  Random random(1);
-  for (const std::size_t n : {0u, 1u, 7u, 8u, 9u, 100u}) {
-    const auto points = random_points(random, n);
-    const PointShell shell(points, 0.001);
-    ASSERT_EQ(shell.size(), n);
-    EXPECT_EQ(shell.cell_size(), 0.001);
-    for (std::size_t i = 0; i < n; ++i) {
-      EXPECT_EQ(shell.point(i).position, points[i].position);
-      EXPECT_EQ(shell.point(i).normal, points[i].normal);
-      EXPECT_EQ(Vec3(shell.x()[i], shell.y()[i], shell.z()[i]), points[i].position);
-      EXPECT_EQ(Vec3(shell.nx()[i], shell.ny()[i], shell.nz()[i]), points[i].normal);
-    }
-  }
-}
-
 TEST(PointShell, IsPaddedToWholePacksWithPointsFarAway) {
   Random random(2);
   for (std::size_t n = 0; n <= 17; ++n) {
@@ -65,19 +49,6 @@ TEST(PointShell, CellsAreCubesBetweenHalfIntegerMultiplesOfTheirSize) {
     for (std::size_t i = 0; i < along.size(); ++i) points[i].position[axis] = along[i];
     EXPECT_EQ(PointShell(points, 1.0).cell_of_points(), expected) << "along axis " << axis;
   }
-}
-
-TEST(PointShell, CellsAreNumberedInOrderOfFirstAppearance) {
-  Random random(4);
-  const auto points = random_points(random, 500);
-  const auto cells = PointShell(points, 0.004).cell_of_points();
-  std::uint32_t next = 0;
-  for (const std::uint32_t cell : cells) {
-    ASSERT_LE(cell, next);
-    if (cell == next) ++next;
-  }
-  EXPECT_GT(next, 8u);
-  EXPECT_LT(next, points.size());
 }
 
 TEST(PointShell, TwoPointsShareACellExactlyWhenAllTheirCoordinatesDo) {

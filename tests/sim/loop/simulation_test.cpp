@@ -30,19 +30,6 @@ SimulationConfig config_of(std::uint64_t steps) {
   return config;
 }
 
-TEST(Simulation, RowsAreAsManyAsSteps) {
-  for (const std::uint64_t steps : {1u, 2u, 17u}) {
-    Recorder recorder;
-    Simulation simulation(config_of(steps), fake_parts(spring), {&recorder});
-    const SimulationResult result = simulation.run();
-    EXPECT_EQ(result.outcome, Outcome::completes);
-    EXPECT_EQ(result.rows, steps);
-    EXPECT_EQ(recorder.rows.size(), steps);
-    EXPECT_FALSE(simulation.step());
-    EXPECT_EQ(recorder.rows.size(), steps);
-  }
-}
-
 TEST(Simulation, OfNoStepsCompletesWithoutARow) {
   Recorder recorder;
   Calls calls;
@@ -240,20 +227,6 @@ TEST(Simulation, ResetReproducesTheRunBitForBit) {
     EXPECT_EQ(simulation.source().work().queries, queries);
     EXPECT_EQ(simulation.algorithm().work().iterations, iterations);
   }
-}
-
-TEST(Simulation, SteppingIsRunning) {
-  Recorder stepped, ran;
-  Simulation a(config_of(20), fake_parts(spring), {&stepped}), b(config_of(20), fake_parts(spring), {&ran});
-  std::uint64_t row = 0;
-  do {
-    EXPECT_EQ(a.next_row(), row++);
-  } while (row < 20 && a.step());
-  while (a.step()) {
-  }
-  b.run();
-  ASSERT_EQ(stepped.rows.size(), ran.rows.size());
-  EXPECT_EQ(stepped.rows.back().tool.pose.position, ran.rows.back().tool.pose.position);
 }
 
 std::array<Profile, 3> some_path() {

@@ -389,20 +389,6 @@ TEST_P(MeshToolOf, LeavesItsBodyAtTheExitDistance) {
   }
 }
 
-TEST_P(MeshToolOf, DoesNotDependOnWhereAndHowLargeItIs) {
-  Random random(7);
-  const TriangleSoup half = test::scaled(soup_, 0.5);
-  const MeshTool small(grid_of(half, 0.5 * GetParam().spacing));
-  for (std::size_t i = 0; i < cases(2000); ++i) {
-    const ToolPose pose = random_pose(random);
-    const Vec3 x = random_place(grid_, random);
-    // Positions of some metres, in a field that changes no faster than sqrt(3).
-    ASSERT_NEAR(field(tool_, pose, to_world(pose, x)), field(tool_, kHome, x), 1e-13);
-    // Powers of two change no bit.
-    ASSERT_EQ(field(small, kHome, 0.5 * x), 0.5 * field(tool_, kHome, x));
-  }
-}
-
 TEST_P(MeshToolOf, SurvivesPosesAndDirectionsThatAreNotFinite) {
   const PointShell shell({{{0, 0, 0.5}, {0, 0, 1}}}, 0.1);
   ShellQuery brute(shell, tool_);
