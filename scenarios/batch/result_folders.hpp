@@ -6,19 +6,6 @@
 
 namespace hapbench {
 
-/// The results that two folders have in common, by relative paths; an empty path is the folder itself.
-struct ResultPairs {
-  std::vector<std::filesystem::path> runs;    ///< folders with a summary.json
-  std::vector<std::filesystem::path> sweeps;  ///< tables of sweeps, sweep.csv
-  std::vector<std::filesystem::path> only_in_a, only_in_b;
-
-  bool empty() const { return runs.empty() && sweeps.empty(); }
-};
-
-/// Searches both folders, in the order of names. Throws InputError when one cannot be read, holds no result, or has
-/// none in common with the other.
-ResultPairs pair_results(const std::filesystem::path& a, const std::filesystem::path& b);
-
 /// The files that a command with several runs writes into a directory, by relative paths.
 struct ResultList {
   std::vector<std::filesystem::path> runs;    ///< directories of runs

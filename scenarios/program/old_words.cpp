@@ -27,6 +27,7 @@ constexpr OldWord kOldWords[] = {
     {"*", "--memory", "ulimit -d KILOBYTES before the command; without it three quarters of what is free"},
     {"", "complete", "scripts/completion, which prints a completion for bash"},
     {"", "completion", "scripts/completion, which prints a completion for bash"},
+    {"", "diff", "hapbench report A B --tolerance 0, which says what differs, with status 3"},
     {"", "man", "hapbench --help, and --help of each command"},
     {"", "merge", "hapbench sweep FOLDER, which joins the tables of the shards in it"},
     {"", "precision",

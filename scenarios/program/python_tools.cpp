@@ -28,6 +28,7 @@ struct PictureOptions {
   std::vector<std::string> where;
   std::string from;
   std::string to;
+  std::string tolerance;
   std::string out;
   bool quiet = false;
 };
@@ -77,6 +78,7 @@ int become(const std::string& tool, const PictureOptions& options) {
   for (const std::string& condition : options.where) command.add("--where", condition);
   command.add("--from", options.from);
   command.add("--to", options.to);
+  command.add("--tolerance", options.tolerance);
   command.add("--out", options.out);
   command.add("--");
   for (const std::string& run : options.runs) command.add(run);
@@ -135,7 +137,7 @@ void write_way(const std::filesystem::path& folder, const std::filesystem::path&
 
 void add_plot(CommandLine& line) {
   auto [command, options] = line.command("plot", "Draw runs over time and in space, a sweep, limits", plot);
-  add_common(command, options, "folders that run, compare, sweep, stability --map or limit wrote",
+  add_common(command, options, "folders that run, compare, sweep or limit wrote",
              "FILE.svg, .png or .pdf (default: plot.svg in the folder of the runs)");
   command.add("--y", options.quantities, "the quantities to draw, separated by commas (below)");
   command.add("--metric", options.metric, "for a sweep: the column of sweep.csv to draw");
@@ -162,10 +164,18 @@ void add_report(CommandLine& line) {
       line.command("report", "Write a page of runs: curves, replay with sound, metrics, scenario, commands", report);
   add_common(command, options, "folders that run or compare wrote",
              "FILE.html (default: report.html in the folder of the runs)");
+  command.add(
+      "--tolerance", options.tolerance,
+      "no page: compare the results of two folders, in status 3 if they differ by more than this, of a metric relative "
+      "to the larger of the two, of a column to its largest magnitude; 0: the same digits");
   command.footer(
       "One HTML file that needs no server and no network. The replay shows up to four runs side by side, with their "
-      "depths if they were run with --set record.contacts=true.\n"
-      "  hapbench report results/out/compare_drag");
+      "depths if they were run with --set record.contacts=true. Of two runs, what differs comes first.\n"
+      "For a regression test keep the results of a good version and compare every new one with them by --tolerance: outcome, "
+      "metrics, warnings, trajectory.csv and sweep.csv, and with 0 the state hash. What one of them alone has makes them "
+      "differ; fields are shown but do not count; provenance, times and counted work are not looked at.\n"
+      "  hapbench report results/out/compare_drag\n"
+      "  hapbench report results/good results/out --tolerance 1e-9");
 }
 
 }  // namespace hapbench

@@ -55,8 +55,8 @@ std::vector<Table::Column> joined_headings(const std::vector<std::vector<Table::
 
 std::vector<Table::Column> printed_headings() {
   std::vector<std::vector<Table::Column>> all = {run_headings(),       league_headings(), converge_headings(),
-                                                 stability_headings(), diff_headings(),   sweep_headings(),
-                                                 tune_headings(),      claim_headings()};
+                                                 stability_headings(), sweep_headings(),  tune_headings(),
+                                                 claim_headings()};
   for (const DescribedTable& table : result_tables()) all.push_back(table.headings);
   return joined_headings(all);
 }

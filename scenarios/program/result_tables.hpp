@@ -23,7 +23,6 @@ std::vector<Column> tune_trial_columns();
 // scenes or algorithms.
 std::vector<Table::Column> claim_headings();
 std::vector<Table::Column> converge_headings();
-std::vector<Table::Column> diff_headings();
 std::vector<Table::Column> league_headings();
 std::vector<Table::Column> run_headings();
 std::vector<Table::Column> latency_headings();

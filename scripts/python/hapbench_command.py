@@ -3,13 +3,12 @@ long."""
 import argparse
 import difflib
 import errno
-import fcntl
 import os
 import sys
 import threading
 import time
 
-SUCCESS, FAILED, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
+SUCCESS, FAILED, BAD_INPUT, DIFFERENT, INTERRUPTED = 0, 1, 2, 3, 130
 SILENCE = 2.0  # before a notice [s]
 
 
@@ -43,7 +42,6 @@ def write(file, data):
         scratch = file.with_name(f".{file.name}.{os.getpid()}.tmp")
         try:
             with scratch.open("wb") as open_scratch:
-                fcntl.flock(open_scratch, fcntl.LOCK_EX)  # or the program takes it for one that a killed process has left
                 open_scratch.write(data if isinstance(data, bytes) else data.encode())
                 open_scratch.flush()
                 scratch.replace(file)

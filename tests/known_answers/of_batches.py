@@ -1,4 +1,4 @@
-"""Scenes behind the tables of compare, sweep and diff: recomputed from the summaries of single runs."""
+"""Scenes behind the tables of compare and sweep: recomputed from the summaries of single runs."""
 import math
 
 import numpy as np
@@ -88,7 +88,7 @@ FAILS = {("mean", "thrown"), ("summation", "thrown"), ("shaped_stiffness", "thro
 
 @scene
 def swept(bench):
-    """A sweep is its single runs, and `diff` tells them apart by a bit."""
+    """A sweep is its single runs."""
     base = bench.scenario("swept", time={"step_s": 0.001, "steps": 300}, environment=UP, initial={"position_m": [1e-3, -1e-3, 0]},
                           hand={"type": "force", "y_N": -0.5}, rendering={"algorithm": "mean", **PLAIN, "damping_ratio": 0.1},
                           expect={"outcome": "completes"})
@@ -115,38 +115,6 @@ def swept(bench):
     may_err = [name for name in table.names if name.startswith("tolerances.")]
     known = [[run.summary["tolerances"].get(name.split(".", 1)[1], math.nan) for name in may_err] for run in runs]
     bench.add("sweep.csv:tolerances", [table[name][1] for name in may_err], known[1], "a single run, the same digits", EXACT, ("the run before", known[0]))
-    swept_words(bench, base, runs)
-
-
-def swept_words(bench, base, runs):
-    again = bench.run(base, "--set", "rendering.stiffness_N_per_m=1000", out="again", statuses=(0, 3))
-    nudged = bench.run(base, "--set", f"rendering.stiffness_N_per_m={np.nextafter(1000, 2000)!r}", out="nudged", statuses=(0, 3))
-    diff = lambda a, b, *more: bench.json("diff", a.folder, b.folder, *more, statuses=(0, 3))
-    same, other, within = diff(runs[1], again), diff(again, nudged), diff(again, nudged, "--tolerance", "1e-9")
-    bench.add("diff --json: equal", [same["equal"], other["equal"], within["equal"]], [True, False, True],
-              "the same run; a stiffness one bit larger; the same within 1e-9", EXACT, ("by six digits", [True, True, True]))
-    a, b = again.table(), nudged.table()
-    first = next(k for k in range(300) if any(x[name] != y[name] for x, y in [(a.rows[k], b.rows[k])] for name in a.names))
-    told = other["runs"]["."]["trajectory"]
-    bench.add("diff --json: row", told["first"]["row"], first, "first line that differs as text", EXACT, ("from 1", first + 1))
-    largest = {name: float(np.nanmax(np.abs(a[name] - b[name]))) for name in told["columns"]}
-    bench.add("diff --json: largest", [c["largest"] for c in told["columns"].values()], list(largest.values()), "numpy's", EXACT,
-              ("in the first row that differs", [abs(a[name][first] - b[name][first]) for name in largest]))
-    bench.add("diff --json: relative", [c["relative"] for c in told["columns"].values()],
-              [largest[name] / max(np.nanmax(np.abs(a[name])), np.nanmax(np.abs(b[name]))) for name in largest],
-              "over the column's largest", ROUNDING, ("over the value there", [1.0] * len(largest)))
-    results = other["runs"]["."]["results"]
-    for key, run in (("a", again), ("b", nudged)):
-        bench.add(f"diff --json: {key}", [float(r[key]) for r in results.values()], [run.metric(name) for name in results], "of that run's summary",
-                  EXACT, ("of the other", [(nudged if run is again else again).metric(name) for name in results]))
-    for key in ("only_in_a", "only_in_b"):
-        bench.add(f"diff --json: {key}", len(other[key]), 0, "both are one run", EXACT, ("what differs", len(results)))
-    bench.add("diff --json: reordered", told["reordered"], False, "the same columns", EXACT, ("rows differ", True))
-    bench.add("diff --json: column", told["first"]["column"], next(name for name in a.names if a.rows[first][name] != b.rows[first][name]),
-              "first cell that differs", EXACT, ("the time", "time_s"))
-    bench.add("diff --json: rows", told["rows"], [300, 300], "lines", EXACT, ("with the header", [301, 301]))
-    bench.add("diff --json: unshared", len(other["runs"]["."]["unshared"]), 0, "the same metrics", EXACT, ("what differs", len(results)))
-    bench.add("diff --json: tolerance", [same["tolerance"], within["tolerance"]], [0.0, 1e-9], "as given", EXACT, ("a default", [1e-9, 1e-9]))
 
 
 @scene

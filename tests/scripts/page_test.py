@@ -9,8 +9,10 @@ import shlex
 import numpy as np
 from scipy import stats
 
-from fixture import hapbench, main
+from fixture import PROGRAM, hapbench, main, ran
 from pictures_fixture import Given, drawn, make_runs
+
+from hapbench_pictures.differences import are_equal, differences
 
 setUpModule = make_runs
 
@@ -51,6 +53,10 @@ class Page(Given):
         self.assertEqual(re.findall(r'<section id="(\w+)"', page), ["summary", "warnings", "metrics", "scenario", "rerun", "provenance"])
         for text in ("in contact 4.9 % of the run &lt;b&gt;", "landing force max<br><span class=unit>N</span>", "7.25", "force rms above 30Hz", "0.125"):
             self.assertTrue(text in page, text)
+
+    def test_what_differs_between_two_runs_comes_first(self):
+        page = self.page(self.root / "mesh", self.root / "springs")
+        self.assertEqual(re.findall(r'<section id="(\w+)"', page)[0], "differences")
 
     def test_a_comparison_over_seeds_says_what_lies_between_laws(self):
         out = self.root / "seeds"
@@ -112,6 +118,61 @@ class Page(Given):
                             ((self.root / "none",), "no such folder")):
             error = drawn("report", *words, expected=2)
             self.assertTrue(said in error and error.count("\n") == 1, error)
+
+
+class Regression(Given):
+    """report A B --tolerance."""
+
+    @staticmethod
+    def told(a, b, tolerance="0", expected=0):
+        done = ran(PROGRAM, "report", a, b, "--tolerance", tolerance)
+        assert done.returncode == expected, done
+        return done.stdout + done.stderr
+
+    def repeated(self, name, *more):
+        hapbench("run", "peg_in_hole_2d_shaped_stiffness", "--set", "time.steps=300", *more, "--out", self.root / name, "--quiet")
+        return self.root / name
+
+    def test_a_repeated_run_is_equal(self):
+        self.assertIn("the results are equal\n", self.told(self.repeated("once"), self.repeated("again")))
+
+    def test_fields_results_and_columns_are_named(self):
+        a, b = self.repeated("once"), self.repeated("stiffer", "--set", "rendering.stiffness_N_per_m=20002")
+        said = self.told(a, b, expected=3)
+        for text in ("rendering.stiffness_N_per_m  20000  20002", "force_max_N", "trajectory.csv: 300 rows, first different in row 0", "not equal"):
+            self.assertIn(text, said)
+        self.assertIn("equal within", self.told(a, b, "0.5"))
+
+    def test_columns_are_measured_as_numpy_does(self):
+        a, b = self.repeated("once"), self.repeated("nudged", "--set", f"rendering.stiffness_N_per_m={np.nextafter(20000, 30000)!r}")
+        found = differences(a, b)
+        self.assertEqual([are_equal(found, tolerance) for tolerance in (0.0, 1e-9)], [False, True])
+        x, y = (np.genfromtxt(folder / "trajectory.csv", delimiter=",", names=True) for folder in (a, b))
+        table = found["runs"]["."]["trajectory"]
+        differs = {name: np.flatnonzero((x[name] != y[name]) & ~(np.isnan(x[name]) & np.isnan(y[name]))) for name in x.dtype.names}
+        self.assertEqual(list(table["columns"]), [name for name, rows in differs.items() if rows.size])
+        self.assertEqual(table["first"]["row"], min(rows[0] for rows in differs.values() if rows.size))
+        for name, of in table["columns"].items():
+            off = np.abs(x[name] - y[name])
+            self.assertEqual((of["largest"], of["row"]), (np.nanmax(off), np.nanargmax(off)))
+            self.assertEqual(of["relative"], np.nanmax(off) / max(np.nanmax(np.abs(x[name])), np.nanmax(np.abs(y[name]))))
+
+    def test_runs_and_sweeps_are_paired_by_their_paths(self):
+        a, b = self.root / "pairs_a", self.root / "pairs_b"
+        for out, law, start in ((a, "summation", "0.005"), (b, "proxy", "0.006")):
+            hapbench("compare", "peg_in_hole_2d_shaped_stiffness", "--algorithms", f"mean,{law}", "--set", "time.steps=50", "--out", out, "--quiet")
+            hapbench("sweep", "single_spring", "--vary", "rendering.stiffness_N_per_m=100,200", "--set", f"initial.position_m=[{start},0,0]", "--out", out / "sweep",
+                     "--quiet")
+        found = differences(a, b)
+        self.assertEqual((list(found["runs"]), found["only_in_a"], found["only_in_b"]), (["mean"], ["summation/summary.json"], ["proxy/summary.json"]))
+        self.assertEqual(found["runs"]["mean"]["results"], {})
+        self.assertIn("force_max_N", found["sweeps"]["sweep/sweep.csv"]["columns"])
+        self.assertIn("in A alone: summation/summary.json", self.told(a, b, expected=3))
+
+    def test_what_is_no_result_is_refused(self):
+        run = self.repeated("once")
+        for other, tolerance in ((self.root / "none", "0"), (run / "summary.json", "0"), (run, "-1"), (run, "nan")):
+            self.assertEqual(self.told(run, other, tolerance, 2).count("\n"), 1)
 
 
 if __name__ == "__main__":

@@ -13,8 +13,9 @@ def main(words):
                 from .plot import plot as run
             else:
                 from .report import report as run
-            run(rest)
+            status = run(rest)
         sys.stdout.flush()
+        return status or SUCCESS
     except InputError as error:
         say_error(error)
         return BAD_INPUT
@@ -27,7 +28,6 @@ def main(words):
     except KeyboardInterrupt:
         print(f"hapbench: {command} stopped; nothing was written", file=sys.stderr)
         return INTERRUPTED
-    return SUCCESS
 
 
 if __name__ == "__main__":

@@ -1,11 +1,13 @@
 """`hapbench report`: one page of the runs given, and nothing else. Curves are drawn on light and on dark ground, one drawing for
 each quantity; with a measured force, the rendered one beside it."""
 import base64
+import math
 from pathlib import Path
 
 import numpy as np
 
-from hapbench_command import Arguments, write
+from hapbench.results import SCENARIO, SUMMARY
+from hapbench_command import DIFFERENT, SUCCESS, Arguments, write
 from hapbench_report.json_input import InputError
 from hapbench_report.live_link import place_live_page
 from hapbench_report.markup import in_colour, table, text
@@ -13,6 +15,7 @@ from hapbench_report.page import whole_page
 from hapbench_report.replay import player
 from hapbench_style import SETTINGS, curve, picture, plt
 
+from .differences import are_equal, differences, in_words, number
 from .given import common_folder, given_runs, given_sweep, labels
 from .panels import DARK, LIGHT, PATH_COLUMNS, SPANS, draw_over_time, draw_path, looks, on_dark, projections, settings
 from .quantities import REFERENCE, SHORT, TRAJECTORY, USUAL, Samples, quantity, tables_of
@@ -27,17 +30,21 @@ def arguments(words):
     parser = Arguments(prog="hapbench report", description="Writes a page of runs.")
     parser.add_argument("runs", nargs="+", metavar="RUN")
     parser.add_argument("--out", type=Path)
+    parser.add_argument("--tolerance")
     parser.add_argument("--quiet", action="store_true")
     return parser.parse_args(words)
 
 
 def report(words):
+    """The exit status, which tells whether the two folders of --tolerance differ."""
     options = arguments(words)
+    if options.tolerance is not None:
+        return test_of_regression(options)
     if given_sweep(options.runs):
         raise InputError(f"{options.runs[0]}: is a sweep; allowed: folders of runs (\"hapbench plot\" draws a sweep; with "
                          "--keep-runs it keeps its runs, in the folder \"runs\")")
     runs = given_runs(options.runs)
-    page = whole_page(sections(runs, labels(runs), options.runs), further_style=STYLE.read_text(encoding="utf-8"),
+    page = whole_page(differences_section(options.runs) + sections(runs, labels(runs), options.runs), further_style=STYLE.read_text(encoding="utf-8"),
                       title=", ".join(dict.fromkeys(run.name for run in runs)))
     file = options.out or common_folder(options.runs) / "report.html"
     if file.suffix not in (".html", ".htm"):
@@ -46,6 +53,29 @@ def report(words):
     place_live_page(file.parent)
     if not options.quiet:
         print(f"page of {len(runs)} run{'s' if len(runs) > 1 else ''} in {file}, {file.stat().st_size / 1e6:.1f} MB")
+    return SUCCESS
+
+
+def test_of_regression(options):
+    if len(options.runs) != 2:
+        raise InputError(f"--tolerance: got {len(options.runs)} folders; allowed: two, whose results are compared")
+    tolerance = number(options.tolerance)
+    if not 0.0 <= tolerance < math.inf:
+        raise InputError(f"--tolerance: got {options.tolerance}; allowed: a number >= 0")
+    a, b = map(Path, options.runs)
+    found = differences(a, b)
+    if not options.quiet:
+        print(in_words(a, b, found, tolerance))
+    return SUCCESS if are_equal(found, tolerance) else DIFFERENT
+
+
+def differences_section(words):
+    """Of two runs what differs; of other folders nothing."""
+    a, b = map(Path, words) if len(words) == 2 else (Path(), Path())
+    if a == b or not all((folder / name).is_file() for folder in (a, b) for name in (SUMMARY, SCENARIO)):
+        return []
+    words = in_words(a, b, differences(a, b), 0.0)
+    return [("differences", "Differences", "What differs", f"<pre>{text(words)}</pre>")]
 
 
 def sections(runs, names, words):

@@ -116,6 +116,23 @@ Times scrambled(std::uint64_t n) {
   return times;
 }
 
+// The value of rank r among 1 … n is r.
+TEST(StepLatency, PercentilesAreThoseOfNearestRank) {
+  const StepLatency thousand = step_latency(scrambled(1000), 0);
+  EXPECT_EQ(thousand.p50, 500u);
+  EXPECT_EQ(thousand.p95, 950u);
+  EXPECT_EQ(thousand.p99, 990u);
+  EXPECT_EQ(thousand.p99_9, 999u);
+  EXPECT_EQ(thousand.max, 1000u);
+  const StepLatency seven = step_latency(scrambled(7), 0);  // ranks ceil(3.5), ceil(6.65), ceil(6.93), ceil(6.993)
+  EXPECT_EQ(seven.p50, 4u);
+  EXPECT_EQ(seven.p95, 7u);
+  EXPECT_EQ(seven.p99_9, 7u);
+  const StepLatency one = step_latency(Times{42}, 0);
+  EXPECT_EQ(one.p50, 42u);
+  EXPECT_EQ(one.p99_9, 42u);
+}
+
 // By definition: at least p percent of the steps are as short as the percentile, and fewer are shorter.
 TEST(StepLatency, PercentilesSplitTheStepsAsDefined) {
   for (std::uint64_t n = 1; n < 300; ++n) {
