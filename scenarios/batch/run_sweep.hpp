@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "scenarios/batch/sweep_plan.hpp"
-#include "scenarios/batch/sweep_table.hpp"
 
 namespace hapbench {
 
@@ -28,6 +27,20 @@ struct SweepOptions {
 
 /// The table of a sweep or of one of its shards in a folder: sweep.csv, or sweep.0_of_4.csv.
 std::filesystem::path table_of(const SweepOptions& options);
+
+/// A run that an exception ended.
+struct FailedRun {
+  std::size_t run = 0;
+  std::string problem;
+};
+
+/// What became of a sweep.
+struct SweepReport {
+  std::size_t done = 0;             ///< number of the shard's runs that have a row
+  std::size_t resumed = 0;          ///< number of rows that were there before
+  std::optional<FailedRun> failed;  ///< the failed run with the lowest number
+  int signal = 0;                   ///< the signal that stopped the sweep before there was a table, or 0
+};
 
 /// Runs the shard's part of a plan, `jobs` runs at once, and writes the table and, beside it, a JSON file that says
 /// what it holds. Runs in one environment share its shell. Files depend neither on `jobs` nor on interruptions.

@@ -19,6 +19,8 @@ struct SweepPlan {
   Json content;
   std::string definition;  ///< FNV-1a of the content, as 16 hexadecimal digits
 
+  /// The names of the columns of the table (sweep_table.hpp).
+  std::vector<std::string> columns() const;
   /// The JSON file beside the table of a shard, which says what it is about.
   Json description(const Shard& shard) const;
 };

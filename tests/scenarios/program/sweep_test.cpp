@@ -181,27 +181,6 @@ TEST_F(SweepCommand, KeepsTheRunsAsRunWritesThem) {
   EXPECT_FALSE(fs::exists(directory_ / "a/runs/000024"));
 }
 
-TEST_F(SweepCommand, ReadsMeshesOnSeveralThreads) {
-  test::write_plainly(directory_ / "cube.obj", read_file(fs::path(HAPBENCH_TEST_DATA) / "cube.obj"));
-  test::write_plainly(directory_ / "cube.json",
-                      R"({"time": {"step_s": 0.0005, "steps": 20}, "expect": {"outcome": "went_through"},
-                          "environment": {"type": "mesh", "file": "cube.obj", "scale": 0.001}})");
-  const auto sweep_cube = [&](const char* out, const char* jobs) {
-    return hapbench({"sweep", (directory_ / "cube.json").string(), "--vary", "environment.scale=0.001:0.002:12",
-                     "--jobs", jobs, "--out", (directory_ / out).string()});
-  };
-  const ProgramRun run = sweep_cube("seven", "7");
-  EXPECT_EQ(run.status, 0) << run.err;
-  sweep_cube("one", "1");
-  EXPECT_EQ(table("seven"), table("one"));
-}
-
-TEST_F(SweepCommand, VariesAllAlgorithmsByOneWord) {
-  const ProgramRun run = hapbench({"sweep", "single_spring", "--vary", "rendering.algorithm=all", "--out",
-                                   (directory_ / "out").string(), "--json"});
-  EXPECT_EQ(run.json()["rows"].size(), algorithms().size()) << run.err;
-}
-
 TEST_F(SweepCommand, PrintsTheCommandThatRepeatsARun) {
   sweep("a");
   const auto lines = lines_of(table("a"));
@@ -219,23 +198,6 @@ TEST_F(SweepCommand, PrintsTheCommandThatRepeatsARun) {
   EXPECT_EQ(summary["state_hash"], cells_of(lines[1 + 14]).back());
 }
 
-/// A sweep in parts, and the script that makes them tasks of Slurm.
-class SweepShards : public PegSweep {};
-
-TEST_F(SweepShards, AreJoinedInTheirFolder) {
-  const ProgramRun whole = sweep("whole");
-  for (const char* i : {"0", "1"}) EXPECT_EQ(sweep("out", {"--shard", std::string(i) + "/3"}).status, 0);
-  const ProgramRun early = hapbench({"sweep", (directory_ / "out").string()});
-  EXPECT_EQ(early.status, 2);
-  EXPECT_NE(early.err.find("1 of 3 shards missing: 2/3"), std::string::npos) << early.err;
-  sweep("out", {"--shard", "2/3"});
-  const ProgramRun joined = hapbench({"sweep", (directory_ / "out").string()});
-  EXPECT_EQ(joined.status, 0) << joined.err;
-  EXPECT_EQ(joined.out.substr(0, 500), whole.out.substr(0, 500));
-  for (const char* file : {"sweep.csv", "sweep.json"})
-    EXPECT_EQ(read_file(directory_ / "out" / file), read_file(directory_ / "whole" / file)) << file;
-}
-
 TEST_F(SweepCommand, VariesScenesAndWholeObjects) {
   const std::string devices = R"(device={"type":"ideal"},{"type":"impedance","preset":"touch"})";
   const ProgramRun run =
@@ -251,7 +213,7 @@ TEST_F(SweepCommand, VariesScenesAndWholeObjects) {
 }
 
 /// As Slurm would run them: a task for each shard, of which one is given again, and the last joins the tables.
-TEST_F(SweepShards, AreTasksOfTheScriptForSlurm) {
+TEST_F(SweepCommand, RunsInShardsByTheScriptForSlurm) {
   const auto task = [&](const std::string& number, Words more) {
     more.insert(more.begin(), {"HAPBENCH=" + test::hapbench_program().string(), "SLURM_ARRAY_TASK_COUNT=3",
                                "SLURM_ARRAY_TASK_ID=" + number, HAPBENCH_SCENARIOS "/../scripts/sweep.sbatch"});
