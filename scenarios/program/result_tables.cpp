@@ -5,7 +5,7 @@
 #include "results/record/recorder.hpp"
 #include "scenarios/batch/league.hpp"
 #include "scenarios/description/scenario.hpp"
-#include "scenarios/program/limit_answers.hpp"
+#include "scenarios/program/limit_cases.hpp"
 #include "scenarios/program/run_table.hpp"
 #include "scenarios/run/recorders.hpp"
 

@@ -1,7 +1,8 @@
-#include "scenarios/program/limit_answers.hpp"
+#include "scenarios/program/limit_cases.hpp"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -38,15 +39,15 @@ struct Ends {
   std::optional<double> low_tolerance, high_tolerance;
 };
 Ends ends_of(const LimitRow& r) {
-  const FieldLimit& l = r.found();
-  if (r.asked().question.smallest)
+  const FieldLimit& l = r.found;
+  if (r.asked.question.smallest)
     return {l.value, l.other_value, l.beyond, l.other_beyond, l.tolerance(), l.other_tolerance()};
   return {l.other_value, l.value, l.other_beyond, l.beyond, l.other_tolerance(), l.tolerance()};
 }
 
 /// A line of limit_runs.csv.
 struct LimitRunRow {
-  LimitRow limit;
+  const LimitRow& limit;
   JudgedValue run;
 };
 const LimitRow& place_of(const LimitRow& row) {
@@ -58,30 +59,27 @@ const LimitRow& place_of(const LimitRunRow& row) {
 
 /// What tells the cases apart.
 template <class Row>
-Columns<Row> place_columns(const LimitCases* asked) {
+Columns<Row> place_columns(const LimitTable* table) {
   Columns<Row> columns;
-  const auto cases = [](const Row& r) -> const LimitCases& { return place_of(r).answers.asked(); };
-  if (asked == nullptr || asked->has_devices()) {
+  if (table == nullptr || table->has_devices) {
     columns.add(
         "device", "",
         "ideal, admittance, the preset of an impedance device (* with numbers of --set, [soft] and [stiff] at the "
         "ends of what is not published), or a file's",
-        [cases](const Row& r) -> Cell { return cases(r).device(place_of(r).row).name; });
+        [](const Row& r) -> Cell { return place_of(r).device->name; });
   }
-  if (asked == nullptr || asked->has_devices() || asked->scenes().size() > 1) {
-    columns.add("scenario", "", "name of the scene's file",
-                [cases](const Row& r) -> Cell { return cases(r).scene_name(place_of(r).column); },
-                {.heading = asked == nullptr ? "" : "scenario"});
+  if (table == nullptr || table->has_devices || table->scenes.size() > 1) {
+    columns.add("scenario", "", "name of the scene's file", [](const Row& r) -> Cell { return place_of(r).scene; },
+                {.heading = table == nullptr ? "" : "scenario"});
   }
-  const std::vector<std::string> over = asked == nullptr ? std::vector<std::string>{} : asked->over();
-  for (std::size_t i = 0; i < over.size(); ++i) {
-    columns.add(over[i], "by name", "value of the field that varies besides", [cases, i](const Row& r) -> Cell {
-      const std::string value = cases(r).values(place_of(r).row)[i];
+  for (std::size_t i = 0; table != nullptr && i < table->over.size(); ++i) {
+    columns.add(table->over[i], "by name", "value of the field that varies besides", [i](const Row& r) -> Cell {
+      const std::string& value = place_of(r).values[i];
       const auto number = finite_number(value);
       return number ? Cell(*number) : Cell(value);
     });
   }
-  columns.add("algorithm", "", "force algorithm", [](const Row& r) -> Cell { return place_of(r).found().algorithm; },
+  columns.add("algorithm", "", "force algorithm", [](const Row& r) -> Cell { return place_of(r).found.algorithm; },
               {.heading = "algorithm"});
   return columns;
 }
@@ -93,37 +91,37 @@ void add_edges(Columns<LimitRow>& columns, bool smallest) {
   };
   columns.add(
       "", "by field", smallest ? "high" : "low",
-      [=](const LimitRow& r) { return edge_text(r.found().other_value, r.found().other_tolerance()); },
+      [=](const LimitRow& r) { return edge_text(r.found.other_value, r.found.other_tolerance()); },
       only_printed(smallest ? "high end" : "low end"));
   columns.add(
       "", "",
       fmt::format("what becomes of the run at the first value {} end; \"end of the range\": none was tried",
                   smallest ? "above the high" : "below the low"),
-      [](const LimitRow& r) -> Cell { return other_beyond_text(r.found()); },
+      [](const LimitRow& r) -> Cell { return other_beyond_text(r.found); },
       only_printed(smallest ? "above it" : "below it"));
   columns.add(
-      "", "by field", "limit", [=](const LimitRow& r) { return edge_text(r.found().value, r.found().tolerance()); },
+      "", "by field", "limit", [=](const LimitRow& r) { return edge_text(r.found.value, r.found.tolerance()); },
       only_printed("first edge"));
   columns.add(
       "", "",
       "what becomes of the run at the first unstable value beyond the first edge, a class of motion; \"end of the "
       "range\": no value up to there is unstable",
-      [](const LimitRow& r) -> Cell { return beyond_text(r.found()); }, only_printed("beyond it"));
+      [](const LimitRow& r) -> Cell { return beyond_text(r.found); }, only_printed("beyond it"));
 }
 
 void add_ends(Columns<LimitRow>& columns) {
   columns.add(
-      "field", "", "path of the field", [](const LimitRow& r) -> Cell { return r.asked().question.path; }, only_csv());
+      "field", "", "path of the field", [](const LimitRow& r) -> Cell { return r.asked.question.path; }, only_csv());
   columns.add(
       "side", "", "largest or smallest: the stable value that was asked for",
-      [](const LimitRow& r) -> Cell { return r.asked().question.smallest ? "smallest" : "largest"; }, only_csv());
+      [](const LimitRow& r) -> Cell { return r.asked.question.smallest ? "smallest" : "largest"; }, only_csv());
   columns.add("limit", "by field",
               "the last stable value before the first edge, by bisection on runs; empty when there is none",
-              [](const LimitRow& r) { return cell_if(r.found().value); });
+              [](const LimitRow& r) { return cell_if(r.found.value); });
   columns.add("beyond", "by field", "the first unstable value beyond it; empty when the range ends stable",
-              [](const LimitRow& r) { return value_cell(r.found().beyond); });
+              [](const LimitRow& r) { return value_cell(r.found.beyond); });
   columns.add("class_beyond", "", "what became of the run there (describe stability)",
-              [](const LimitRow& r) -> Cell { return beyond_text(r.found()); });
+              [](const LimitRow& r) -> Cell { return beyond_text(r.found); });
   columns.add(
       "low", "by field",
       "the low end of the interval of stable values that the limit ends: its smallest stable value, to the resolution",
@@ -142,28 +140,28 @@ void add_ends(Columns<LimitRow>& columns) {
 
 void add_theory(Columns<LimitRow>& columns) {
   columns.add("theory", "by field", "the limit in theory; empty where there is none",
-              [](const LimitRow& r) { return cell_if(r.found().theory); });
+              [](const LimitRow& r) { return cell_if(r.found.theory); });
   columns.add(
       "linear", "by field",
       "of a device at what only pushes: the largest value at which the loop of device, hand and surface is stable "
       "while they touch, without dry friction and encoder, by its eigenvalues; a limit beyond it is held up by "
       "bounces, dry friction or the end of the run; empty where there is a theory or no device",
-      [](const LimitRow& r) { return cell_if(r.found().linear); });
+      [](const LimitRow& r) { return cell_if(r.found.linear); });
   columns.add(
       "", "by field", "theory",
       [](const LimitRow& r) -> Cell {
-        const auto& value = r.found().theory;
+        const auto& value = r.found.theory;
         return !value ? "-" : std::isinf(*value) || *value == 0.0 ? "none" : significant(*value, 6);
       },
       only_printed("theory"));
   columns.add(
       "", "%", "first edge / theory - 1, in percent",
       [](const LimitRow& r) -> Cell {
-        const auto difference = r.found().difference(), tolerance = r.found().tolerance();
+        const auto difference = r.found.difference(), tolerance = r.found.tolerance();
         if (!difference) return "-";
         return deserved_difference(
             100.0 * *difference,
-            tolerance ? std::optional(100.0 * *tolerance / std::abs(*r.found().value)) : std::nullopt);
+            tolerance ? std::optional(100.0 * *tolerance / std::abs(*r.found.value)) : std::nullopt);
       },
       only_printed("off theory %"));
 }
@@ -172,23 +170,21 @@ void add_theory(Columns<LimitRow>& columns) {
 void add_closed_forms(Columns<LimitRow>& columns) {
   for (std::size_t i = 0; i < stiffness_limits().size(); ++i) {
     const StiffnessLimit& known = stiffness_limits()[i];
-    columns.add(known.name, "N/m",
-                fmt::format("the K at which {}; for {} ({})", known.formula, known.applies, known.source),
-                [i](const LimitRow& r) {
-                  return r.found().closed_forms.empty() ? Cell() : cell_if(r.found().closed_forms[i]);
-                });
+    columns.add(
+        known.name, "N/m", fmt::format("the K at which {}; for {} ({})", known.formula, known.applies, known.source),
+        [i](const LimitRow& r) { return r.found.closed_forms.empty() ? Cell() : cell_if(r.found.closed_forms[i]); });
   }
   columns.add("no_theory", "", "why the eigenvalues of the loop tell nothing; empty where they do",
-              [](const LimitRow& r) -> Cell { return r.found().no_theory; });
+              [](const LimitRow& r) -> Cell { return r.found.no_theory; });
   columns.add("worst_hand", "N/m",
               "least edge over passive hands of 100 to 1000 N/m and 0.1 to 0.5 kg, and none, by eigenvalues",
-              [](const LimitRow& r) { return cell_if(r.found().worst_hand); });
+              [](const LimitRow& r) { return cell_if(r.found.worst_hand); });
 }
 
 void add_search(Columns<LimitRow>& columns) {
   columns.add(
       "limit_tolerance", "by field", "how far beyond the limit the edge may lie: beyond - limit",
-      [](const LimitRow& r) { return cell_if(r.found().tolerance()); }, only_json());
+      [](const LimitRow& r) { return cell_if(r.found.tolerance()); }, only_json());
   columns.add(
       "low_tolerance", "by field", "the same of the low end",
       [](const LimitRow& r) { return cell_if(ends_of(r).low_tolerance); }, only_json());
@@ -196,34 +192,34 @@ void add_search(Columns<LimitRow>& columns) {
       "high_tolerance", "by field", "the same of the high end",
       [](const LimitRow& r) { return cell_if(ends_of(r).high_tolerance); }, only_json());
   columns.add("undecided", "1", "runs that were too short to tell slow motion from rest, though lengthened",
-              [](const LimitRow& r) -> Cell { return std::uint64_t{r.found().undecided}; });
+              [](const LimitRow& r) -> Cell { return std::uint64_t{r.found.undecided}; });
   columns.add(
       "unstable_without_contact", "", "true when hand and device alone are unstable beyond the edge",
-      [](const LimitRow& r) -> Cell { return r.found().unstable_alone; }, only_json());
+      [](const LimitRow& r) -> Cell { return r.found.unstable_alone; }, only_json());
   columns.add(
       "has_effect", "", "false when the field changes no run",
-      [](const LimitRow& r) -> Cell { return r.found().has_effect; }, only_json());
+      [](const LimitRow& r) -> Cell { return r.found.has_effect; }, only_json());
 }
 
 /// Numbers of the run at the limit, for cases to be compared by.
 void add_settled(Columns<LimitRow>& columns) {
-  const auto settled = [](const LimitRow& r, double value) { return r.found().value ? Cell(value) : Cell(); };
+  const auto settled = [](const LimitRow& r, double value) { return r.found.value ? Cell(value) : Cell(); };
   columns.add("vibration_m_per_s", "m/s",
               "at the limit: rms of the handle's speed above 30 Hz in the last quarter of the run",
-              [](const LimitRow& r) { return r.found().value ? cell_if(r.found().settled.vibration) : Cell(); });
+              [](const LimitRow& r) { return r.found.value ? cell_if(r.found.settled.vibration) : Cell(); });
   columns.add("contacts", "1", "at the limit: mean number of rendered contacts there",
-              [=](const LimitRow& r) { return settled(r, r.found().settled.contacts); });
+              [=](const LimitRow& r) { return settled(r, r.found.settled.contacts); });
   columns.add("lambda_max", "1", "at the limit: largest eigenvalue of the mean S there",
-              [=](const LimitRow& r) { return settled(r, r.found().settled.lambda_max); });
+              [=](const LimitRow& r) { return settled(r, r.found.settled.lambda_max); });
   columns.add("stiffness_ratio", "1", "limit over that of the first scene with the first algorithm, all else equal",
-              [](const LimitRow& r) { return cell_if(r.answers.ratio(r.row, r.column).value); });
+              [](const LimitRow& r) { return cell_if(r.stiffness_ratio); });
   columns.add("rendered_ratio", "1", "the same of K lambda_max",
-              [](const LimitRow& r) { return cell_if(r.answers.ratio(r.row, r.column).rendered); });
+              [](const LimitRow& r) { return cell_if(r.rendered_ratio); });
 }
 
-Columns<LimitRunRow> run_columns(const LimitCases* asked) {
-  Columns<LimitRunRow> columns = place_columns<LimitRunRow>(asked);
-  columns.add(asked == nullptr ? "{field}" : asked->at(0, 0).question.path, "by name", "value of the field",
+Columns<LimitRunRow> run_columns(const LimitTable* table) {
+  Columns<LimitRunRow> columns = place_columns<LimitRunRow>(table);
+  columns.add(table == nullptr ? "{field}" : table->first().asked.question.path, "by name", "value of the field",
               [](const LimitRunRow& r) -> Cell { return r.run.value; });
   columns.add("class", "", "what became of the run (describe stability)",
               [](const LimitRunRow& r) -> Cell { return std::string(run_verdict_name(r.run.verdict)); });
@@ -233,7 +229,7 @@ Columns<LimitRunRow> run_columns(const LimitCases* asked) {
 Json row_json(const Columns<LimitRow>& columns, const LimitRow& row) {
   Json json = columns.json(row);
   Json inconsistent = Json::array();
-  for (const JudgedValue& run : row.found().inconsistent)
+  for (const JudgedValue& run : row.found.inconsistent)
     inconsistent.push_back({{"value", run.value}, {"class", run_verdict_name(run.verdict)}});
   json[kInconsistent] = json[kAstray] = inconsistent;
   return json;
@@ -241,29 +237,22 @@ Json row_json(const Columns<LimitRow>& columns, const LimitRow& row) {
 
 }  // namespace
 
-std::vector<LimitRow> rows_of(const LimitAnswers& answers) {
-  std::vector<LimitRow> rows;
-  for (std::size_t row = 0; row < answers.asked().rows(); ++row)
-    for (std::size_t column = 0; column < answers.asked().columns(); ++column) rows.push_back({answers, row, column});
-  return rows;
-}
-
-Columns<LimitRow> limit_columns(const LimitAnswers* answers) {
-  const LimitCases* asked = answers == nullptr ? nullptr : &answers->asked();
-  Columns<LimitRow> columns = place_columns<LimitRow>(asked);
-  add_edges(columns, asked != nullptr && asked->at(0, 0).question.smallest);
+Columns<LimitRow> limit_columns(const LimitTable* table) {
+  Columns<LimitRow> columns = place_columns<LimitRow>(table);
+  add_edges(columns, table != nullptr && table->first().asked.question.smallest);
   add_ends(columns);
   add_theory(columns);
   add_search(columns);
-  if (asked == nullptr || asked->has_devices()) {
+  if (table == nullptr || table->has_devices) {
     columns.add("published_N_per_m", "N/m", "published largest stable stiffness of a wall on the device",
-                [](const LimitRow& r) { return cell_if(r.answers.asked().device(r.row).published_stiffness); });
+                [](const LimitRow& r) { return cell_if(r.device->published_stiffness); });
   }
-  if (asked == nullptr || asked->is_grid()) add_settled(columns);
-  if (answers == nullptr || answers->have_closed_forms()) add_closed_forms(columns);
+  if (table == nullptr || table->is_grid()) add_settled(columns);
+  const auto has_closed_forms = [](const LimitRow& row) { return !row.found.closed_forms.empty(); };
+  if (table == nullptr || std::ranges::any_of(table->rows, has_closed_forms)) add_closed_forms(columns);
   columns.add("runs", "1", "runs of the search",
-              [](const LimitRow& r) -> Cell { return std::uint64_t{r.found().runs.size()}; }, {.heading = "runs"});
-  const auto inconsistent = [](const LimitRow& r) -> Cell { return std::uint64_t{r.found().inconsistent.size()}; };
+              [](const LimitRow& r) -> Cell { return std::uint64_t{r.found.runs.size()}; }, {.heading = "runs"});
+  const auto inconsistent = [](const LimitRow& r) -> Cell { return std::uint64_t{r.found.inconsistent.size()}; };
   columns.add(kInconsistent, "1", "runs that are unstable on the stable side of the limit, or stable beyond it",
               inconsistent, {.heading = "inconsistent"});
   columns.add(kAstray, "1", "the same as inconsistent_runs, by its former name", inconsistent);
@@ -280,26 +269,24 @@ std::vector<DescribedTable> limit_tables() {
   return {limits, run_columns(nullptr).described("limit_runs.csv", "of limit: one line per run")};
 }
 
-void tell_limits(const LimitAnswers& answers, Report& report) {
-  const LimitCases& asked = answers.asked();
-  const LimitQuestion& question = asked.at(0, 0).question;
-  const Columns<LimitRow> columns = limit_columns(&answers);
-  const std::vector<LimitRow> rows = rows_of(answers);
+void tell_limits(const LimitTable& table, Report& report) {
+  const LimitQuestion& question = table.first().asked.question;
+  const Columns<LimitRow> columns = limit_columns(&table);
   std::vector<LimitRunRow> runs;
   Json limits = Json::array();
-  for (const LimitRow& row : rows) {
+  for (const LimitRow& row : table.rows) {
     limits.push_back(row_json(columns, row));
-    for (const JudgedValue& run : row.found().runs) runs.push_back({row, run});
+    for (const JudgedValue& run : row.found.runs) runs.push_back({row, run});
   }
-  report.write("limit.csv", columns, rows);
-  report.write("limit_runs.csv", run_columns(&asked), runs);
-  report.say(answers.text());
+  report.write("limit.csv", columns, table.rows);
+  report.write("limit_runs.csv", run_columns(&table), runs);
+  report.say(limit_text(table));
   report.json() = {{"field", question.path},
                    {"side", question.smallest ? "smallest" : "largest"},
                    {"from", question.range.from},
                    {"to", question.range.to},
                    {"resolution", question.resolution},
-                   {"rule", rule_text(question, is_moved(asked.scenario(0, 0)))},
+                   {"rule", rule_text(question, is_moved(table.first().scenario))},
                    {"limits", std::move(limits)}};
 }
 
