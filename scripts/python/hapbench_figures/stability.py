@@ -33,8 +33,8 @@ def spaced(number):
 
 
 def root_locus(results):
-    locus = results.records("stability/root_locus.csv")
-    limits = {row["case"]: row for row in results.records("stability/limits.csv")}
+    locus = results.records("spring_limits/root_locus.csv")
+    limits = {row["case"]: row for row in results.records("spring_limits/limits.csv")}
     figure, axes = style.panels(1, 3, 2.7, sharey=True)
     turn = np.linspace(0, 2 * np.pi, 181)
     for ax, (case, id_, title, symbol, unit) in zip(axes[0], CASES):
