@@ -1,5 +1,3 @@
-#include "scenarios/batch/sweep_plan.hpp"
-
 #include <algorithm>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -11,6 +9,7 @@
 #include "results/io/json_text.hpp"
 #include "results/summary/provenance.hpp"
 #include "scenarios/batch/parallel_for.hpp"
+#include "scenarios/batch/run_sweep.hpp"
 #include "scenarios/batch/sweep_table.hpp"
 #include "scenarios/description/descriptions.hpp"
 #include "scenarios/description/metric_sections.hpp"

@@ -66,8 +66,8 @@ TEST_F(SweepCommand, StartsNoFurtherRunsWhereTheyCannotBeKept) {
   EXPECT_EQ(table("a"), table("b"));
 }
 
-TEST_F(SweepCommand, HasTheNumbersOfTheRunsAlone) {
-  const ProgramRun run = sweep("a");
+TEST_F(SweepCommand, HasTheRunsThatThePrintedCommandRepeats) {
+  const ProgramRun run = sweep("a", {"--keep-runs", "--jobs", "4"});
   ASSERT_EQ(run.status, 0) << run.err;
   EXPECT_EQ(run.err, "");
   const auto lines = lines_of(table("a"));
@@ -80,10 +80,20 @@ TEST_F(SweepCommand, HasTheNumbersOfTheRunsAlone) {
   const Words cells = cells_of(lines[1 + 12 + 0 + 2]);
   EXPECT_EQ((Words{cells.begin(), cells.begin() + 4}), (Words{"14", "20000", "2e-05", "exact_shaping"}));
 
-  hapbench({"run", "peg_in_hole_2d_shaped_stiffness", "--out", (directory_ / "run").string(), "--set",
-            "rendering.stiffness_N_per_m=20000", "--set", "environment.spacing_m=2e-05", "--set",
-            "rendering.algorithm=exact_shaping"});
+  const ProgramRun printed = sweep("a", {"--row", "14", "--print"});
+  EXPECT_EQ(lines_of(printed.out).size(), 1u);
+  // As a shell takes it apart: the quotes around the list of outcomes are its own.
+  EXPECT_NE(printed.out.find(" --set 'expect.outcome=[\"completes\","), std::string::npos) << printed.out;
+  Words words = sweep("a", {"--row", "14", "--print", "--json"}).json()["command"];
+  EXPECT_EQ(words[0], fs::canonical(test::hapbench_program()));
+  words.erase(words.begin());
+  words.insert(words.end(), {"--out", (directory_ / "run").string()});
+  ASSERT_EQ(hapbench(words).status, 0);
+  // Byte for byte, the counted allocations of a run beside others included.
+  test::expect_same_files(directory_ / "a/runs/000014", directory_ / "run");
   const Json summary = Json::parse(read_file(directory_ / "run/summary.json"));
+  EXPECT_EQ(summary["work"]["allocations"], 0);
+  EXPECT_TRUE(fs::exists(directory_ / "a/runs/000023/trajectory.csv"));
   EXPECT_EQ(cells[4], summary["outcome"]);
   EXPECT_EQ(cells[6], std::to_string(summary["steps"].get<int>()));
   EXPECT_EQ(cells.back(), summary["state_hash"]);
@@ -163,39 +173,6 @@ TEST_F(SweepCommand, PrintsTheRunsThatKeepConditions) {
   EXPECT_EQ(hapbench({"sweep", out, "--vary", "seed=1,2"}).status, 2);
   test::write_plainly(directory_ / "a/sweep.csv", lines[0] + "\n" + lines[2] + "\n0,1,2,3\n");
   EXPECT_NE(hapbench({"sweep", out}).err.find("allowed: rows of this sweep"), std::string::npos);
-}
-
-TEST_F(SweepCommand, KeepsTheRunsAsRunWritesThem) {
-  // Byte for byte, the counted allocations of a run beside others included.
-  EXPECT_EQ(sweep("a", {"--keep-runs", "--jobs", "4"}).status, 0);
-  Words words = {"run", "peg_in_hole_2d_shaped_stiffness", "--out", (directory_ / "a/run").string()};
-  for (const char* set :
-       {"expect.outcome=[\"completes\",\"leaves_hole\",\"lost_contact\",\"diverges\"]", "expect.metrics={}",
-        "rendering.stiffness_N_per_m=20000", "environment.spacing_m=2e-05", "rendering.algorithm=exact_shaping"}) {
-    words.insert(words.end(), {"--set", set});
-  }
-  hapbench(words);
-  test::expect_same_files(directory_ / "a/runs/000014", directory_ / "a/run");
-  EXPECT_EQ(Json::parse(read_file(directory_ / "a/runs/000014/summary.json"))["work"]["allocations"], 0);
-  EXPECT_TRUE(fs::exists(directory_ / "a/runs/000023/trajectory.csv"));
-  EXPECT_FALSE(fs::exists(directory_ / "a/runs/000024"));
-}
-
-TEST_F(SweepCommand, PrintsTheCommandThatRepeatsARun) {
-  sweep("a");
-  const auto lines = lines_of(table("a"));
-  const ProgramRun printed = sweep("a", {"--row", "14", "--print"});
-  ASSERT_EQ(printed.status, 0) << printed.err;
-  EXPECT_EQ(lines_of(printed.out).size(), 1u);
-  // As a shell takes it apart: the quotes around the list of outcomes are its own.
-  EXPECT_NE(printed.out.find(" --set 'expect.outcome=[\"completes\","), std::string::npos) << printed.out;
-  Words words = sweep("a", {"--row", "14", "--print", "--json"}).json()["command"];
-  EXPECT_EQ(words[0], fs::canonical(test::hapbench_program()));
-  words.erase(words.begin());
-  words.insert(words.end(), {"--out", (directory_ / "run").string()});
-  ASSERT_EQ(hapbench(words).status, 0);
-  const Json summary = Json::parse(read_file(directory_ / "run/summary.json"));
-  EXPECT_EQ(summary["state_hash"], cells_of(lines[1 + 14]).back());
 }
 
 TEST_F(SweepCommand, VariesScenesAndWholeObjects) {
