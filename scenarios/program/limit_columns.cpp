@@ -26,12 +26,6 @@ std::string beyond_text(const FieldLimit& limit) {
   if (limit.beyond) return std::string(run_verdict_name(limit.beyond->verdict));
   return limit.value ? "end of the range" : std::string(run_verdict_name(limit.runs.front().verdict));
 }
-/// The same of the other end of the interval of stable values.
-std::string other_beyond_text(const FieldLimit& limit) {
-  if (limit.other_beyond) return std::string(run_verdict_name(limit.other_beyond->verdict));
-  return limit.value ? "end of the range" : "-";
-}
-
 /// The low and the high end of the interval of stable values.
 struct Ends {
   const std::optional<double>&low, &high;
@@ -84,58 +78,46 @@ Columns<Row> place_columns(const LimitTable* table) {
   return columns;
 }
 
-/// What is only printed, before the numbers of the files.
-void add_edges(Columns<LimitRow>& columns, bool smallest) {
-  const auto edge_text = [](const std::optional<double>& value, const std::optional<double>& tolerance) -> Cell {
-    return value ? deserved(*value, tolerance, 6) : std::string("none");
+/// The edge that was asked for and the ends of the interval that it ends. Printed is the end on the other side, too.
+void add_ends(Columns<LimitRow>& columns, const LimitTable* table) {
+  const bool smallest = table != nullptr && table->first().asked.question.smallest;
+  const auto printed_if = [](bool shown, const char* heading) {
+    return Shown{.heading = shown ? heading : "", .digits = 6};
   };
-  columns.add(
-      "", "by field", smallest ? "high" : "low",
-      [=](const LimitRow& r) { return edge_text(r.found.other_value, r.found.other_tolerance()); },
-      only_printed(smallest ? "high end" : "low end"));
-  columns.add(
-      "", "",
-      fmt::format("what becomes of the run at the first value {} end; \"end of the range\": none was tried",
-                  smallest ? "above the high" : "below the low"),
-      [](const LimitRow& r) -> Cell { return other_beyond_text(r.found); },
-      only_printed(smallest ? "above it" : "below it"));
-  columns.add(
-      "", "by field", "limit", [=](const LimitRow& r) { return edge_text(r.found.value, r.found.tolerance()); },
-      only_printed("first edge"));
-  columns.add(
-      "", "",
-      "what becomes of the run at the first unstable value beyond the first edge, a class of motion; \"end of the "
-      "range\": no value up to there is unstable",
-      [](const LimitRow& r) -> Cell { return beyond_text(r.found); }, only_printed("beyond it"));
-}
-
-void add_ends(Columns<LimitRow>& columns) {
+  const bool low = table == nullptr || !smallest, high = table == nullptr || smallest;
   columns.add(
       "field", "", "path of the field", [](const LimitRow& r) -> Cell { return r.asked.question.path; }, only_csv());
   columns.add(
       "side", "", "largest or smallest: the stable value that was asked for",
       [](const LimitRow& r) -> Cell { return r.asked.question.smallest ? "smallest" : "largest"; }, only_csv());
-  columns.add("limit", "by field",
-              "the last stable value before the first edge, by bisection on runs; empty when there is none",
-              [](const LimitRow& r) { return cell_if(r.found.value); });
+  columns.add(
+      "limit", "by field",
+      "the last stable value before the first edge, by bisection on runs; empty when there is none",
+      [](const LimitRow& r) { return cell_if(r.found.value); }, printed_if(true, "first edge"),
+      [](const LimitRow& r) { return r.found.tolerance(); });
   columns.add("beyond", "by field", "the first unstable value beyond it; empty when the range ends stable",
               [](const LimitRow& r) { return value_cell(r.found.beyond); });
-  columns.add("class_beyond", "", "what became of the run there (describe stability)",
-              [](const LimitRow& r) -> Cell { return beyond_text(r.found); });
+  columns.add(
+      "class_beyond", "", "what became of the run there (describe stability), or \"end of the range\"",
+      [](const LimitRow& r) -> Cell { return beyond_text(r.found); }, printed_if(true, "beyond it"));
   columns.add(
       "low", "by field",
       "the low end of the interval of stable values that the limit ends: its smallest stable value, to the resolution",
-      [](const LimitRow& r) { return cell_if(ends_of(r).low); });
+      [](const LimitRow& r) { return cell_if(ends_of(r).low); }, printed_if(low, "low end"),
+      [](const LimitRow& r) { return ends_of(r).low_tolerance; });
   columns.add("below", "by field", "the first value below that is not stable; empty when the range begins stable",
               [](const LimitRow& r) { return value_cell(ends_of(r).below); });
-  columns.add("class_below", "", "what became of the run there",
-              [](const LimitRow& r) { return verdict_cell(ends_of(r).below); });
-  columns.add("high", "by field", "the high end of this interval",
-              [](const LimitRow& r) { return cell_if(ends_of(r).high); });
+  columns.add(
+      "class_below", "", "what became of the run there",
+      [](const LimitRow& r) { return verdict_cell(ends_of(r).below); }, printed_if(low, "below it"));
+  columns.add(
+      "high", "by field", "the high end of this interval", [](const LimitRow& r) { return cell_if(ends_of(r).high); },
+      printed_if(high, "high end"), [](const LimitRow& r) { return ends_of(r).high_tolerance; });
   columns.add("above", "by field", "the first value above that is not stable; empty when the range ends stable",
               [](const LimitRow& r) { return value_cell(ends_of(r).above); });
-  columns.add("class_above", "", "what became of the run there",
-              [](const LimitRow& r) { return verdict_cell(ends_of(r).above); });
+  columns.add(
+      "class_above", "", "what became of the run there",
+      [](const LimitRow& r) { return verdict_cell(ends_of(r).above); }, printed_if(high, "above it"));
 }
 
 void add_theory(Columns<LimitRow>& columns) {
@@ -239,8 +221,7 @@ Json row_json(const Columns<LimitRow>& columns, const LimitRow& row) {
 
 Columns<LimitRow> limit_columns(const LimitTable* table) {
   Columns<LimitRow> columns = place_columns<LimitRow>(table);
-  add_edges(columns, table != nullptr && table->first().asked.question.smallest);
-  add_ends(columns);
+  add_ends(columns, table);
   add_theory(columns);
   add_search(columns);
   if (table == nullptr || table->has_devices) {
@@ -262,9 +243,6 @@ Columns<LimitRow> limit_columns(const LimitTable* table) {
 std::vector<DescribedTable> limit_tables() {
   DescribedTable limits = limit_columns(nullptr).described(
       "limit.csv", "of limit: one line per device, values of --over, scene and algorithm");
-  Columns<LimitRow> of_smallest;
-  add_edges(of_smallest, true);
-  for (const Table::Column& heading : of_smallest.headings()) limits.headings.push_back(heading);
   limits.headings.push_back({"pub-\nlished", true, "published_N_per_m"});
   return {limits, run_columns(nullptr).described("limit_runs.csv", "of limit: one line per run")};
 }
