@@ -7,10 +7,40 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/batch/sweep_plan.hpp"
-#include "scenarios/batch/sweep_table.hpp"
+#include "scenarios/batch/cases.hpp"
 
+/// Sweeps: cases that are checked first (sweep_plan.cpp), then run. sweep_table.hpp reads what they leave.
 namespace hapbench {
+
+/// Cases to run, checked before the first run.
+struct SweepPlan {
+  Cases cases;
+
+  std::vector<std::string> warnings;  ///< of the runs that were checked, without duplicates
+  std::vector<std::string> metrics;   ///< that some of these runs have
+  std::vector<std::string> bounded;   ///< those of the metrics whose rows say by how much they may be wrong
+  /// Everything that determines the rows: scenes, overrides, points, hashes of the files the scenarios name, program.
+  Json content;
+  std::string definition;  ///< FNV-1a of the content, as 16 hexadecimal digits
+
+  /// The names of the columns of the table (sweep_table.hpp).
+  std::vector<std::string> columns() const;
+  /// The JSON file beside the table of a shard, which says what it is about.
+  Json description(const Shard& shard) const;
+};
+
+/// Maximum number of runs of a sample, and of values of a field of a grid, that are checked before the first run.
+inline constexpr std::size_t kMostChecked = 1000;
+
+/// The runs that are checked, in order: all if there are at most kMostChecked. Of a larger grid, the runs at the edges
+/// through its first and its last run, along each of which one field takes all its values (at most kMostChecked of
+/// them, the ends included). Of a larger sample, the first runs.
+std::vector<std::size_t> runs_to_check(const Cases& cases);
+
+/// Loads the scenarios of the runs to check and reads the files they name, to find errors before anything is run or
+/// written. Takes about 0.1 ms for each run on each of `jobs` threads. `progress` allows a progress bar. Throws
+/// InputError, that of the run with the lowest number if there are several.
+SweepPlan plan_sweep(Cases cases, std::size_t jobs, bool progress);
 
 struct SweepOptions {
   std::filesystem::path directory;  ///< for all files; must exist
@@ -28,6 +58,20 @@ struct SweepOptions {
 
 /// The table of a sweep or of one of its shards in a folder: sweep.csv, or sweep.0_of_4.csv.
 std::filesystem::path table_of(const SweepOptions& options);
+
+/// A run that an exception ended.
+struct FailedRun {
+  std::size_t run = 0;
+  std::string problem;
+};
+
+/// What became of a sweep.
+struct SweepReport {
+  std::size_t done = 0;             ///< number of the shard's runs that have a row
+  std::size_t resumed = 0;          ///< number of rows that were there before
+  std::optional<FailedRun> failed;  ///< the failed run with the lowest number
+  int signal = 0;                   ///< the signal that stopped the sweep before there was a table, or 0
+};
 
 /// Runs the shard's part of a plan, `jobs` runs at once, and writes the table and, beside it, a JSON file that says
 /// what it holds. Runs in one environment share its shell. Files depend neither on `jobs` nor on interruptions.

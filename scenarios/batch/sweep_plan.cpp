@@ -1,5 +1,3 @@
-#include "scenarios/batch/sweep_plan.hpp"
-
 #include <algorithm>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -11,6 +9,8 @@
 #include "results/io/json_text.hpp"
 #include "results/summary/provenance.hpp"
 #include "scenarios/batch/parallel_for.hpp"
+#include "scenarios/batch/run_sweep.hpp"
+#include "scenarios/batch/sweep_table.hpp"
 #include "scenarios/description/descriptions.hpp"
 #include "scenarios/description/metric_sections.hpp"
 #include "scenarios/description/writer.hpp"
@@ -127,6 +127,16 @@ Json content_of(const SweepPlan& plan, const Json& files, const Json& plugins) {
 }
 
 }  // namespace
+
+std::vector<std::string> SweepPlan::columns() const {
+  std::vector<std::string> columns = {"index"};
+  for (const Axis& axis : cases.axes()) columns.push_back(axis.path);
+  columns.insert(columns.end(), {"outcome", "expected", "steps"});
+  columns.insert(columns.end(), metrics.begin(), metrics.end());
+  for (const std::string& metric : bounded) columns.push_back(std::string(kToleranceOf) + metric);
+  columns.emplace_back("state_hash");
+  return columns;
+}
 
 Json SweepPlan::description(const Shard& shard) const {
   Json json = {{"definition", definition}, {"runs", cases.size()}, {"shard", shard_text(shard)}};

@@ -8,47 +8,21 @@
 #include <string_view>
 #include <vector>
 
-#include "results/summary/summary.hpp"
-#include "scenarios/batch/sweep_plan.hpp"
+#include "scenarios/batch/axis.hpp"
 
-/// sweep.csv: its columns and rows, and what they tell.
+/// The table of a sweep, sweep.csv, as it is read from its folder.
 namespace hapbench {
 
-/// Outcome of a run that an exception ended.
+/// Outcome of a run that an exception ended; the cells behind `expected` are empty.
 inline constexpr std::string_view kErrorOutcome = "error";
 
 /// Stands before the name of a metric in the heading of its tolerance, as in summary.json.
 inline constexpr std::string_view kToleranceOf = "tolerances.";
 
-/// A row of sweep.csv.
-struct SweepRow {
-  std::size_t run = 0;
-  std::vector<std::string> values;  ///< of the varied fields
-  std::string outcome;              ///< kErrorOutcome: the cells behind `expected` are empty
-  bool expected = false;            ///< the scenario's expectations are met
-  std::string state_hash;
-  std::vector<std::string> cells;  ///< all of them
+/// The cells of a line.
+using SweepRow = std::vector<std::string>;
 
-  /// The value of a metric of the plan as a number; none when the run has none. Precondition: the plan has the metric.
-  std::optional<double> number(const SweepPlan& plan, std::string_view metric) const;
-  /// By how much that metric may be wrong; none where that is not known.
-  std::optional<double> tolerance(const SweepPlan& plan, std::string_view metric) const;
-};
-
-/// The names of the columns: run number, the varied fields, outcome, expected, steps, every metric, the tolerances of
-/// the bounded ones, state_hash.
-std::vector<std::string> sweep_columns(const SweepPlan& plan);
-/// The line of a finished run, without its end. Throws InputError if the run has a metric for which there is no column.
-std::string finished_row(const SweepPlan& plan, std::size_t run, const RunSummary& summary);
-/// The line of a run that an exception ended.
-std::string error_row(const SweepPlan& plan, std::size_t run);
-/// The row in a line. Throws InputError when it has more or fewer cells than there are columns.
-SweepRow sweep_row(const SweepPlan& plan, std::string_view line);
-/// The row as an object with the columns' names: numbers and booleans as such, null for empty cells. The values of
-/// varied fields are typed by their text, as those of --set are.
-Json row_json(const SweepPlan& plan, const SweepRow& row);
-
-/// How the runs of a sweep ended.
+/// How runs ended.
 struct SweepCounts {
   struct Count {
     std::size_t runs = 0;
@@ -60,38 +34,38 @@ struct SweepCounts {
   std::size_t unexpected = 0;  ///< runs that ended otherwise than their scenario expects, failed ones not included
   std::optional<std::size_t> first_unexpected;
 
-  void add(const SweepRow& row);
+  void add(std::size_t run, const std::string& outcome, bool is_expected);
 };
 
-/// A run that an exception ended.
-struct FailedRun {
-  std::size_t run = 0;
-  std::string problem;
-};
-
-/// Result of a sweep.
-struct SweepReport {
-  /// Maximum number of rows in a report.
+/// Columns: the run's number, the varied fields, outcome, expected, steps, every metric, the tolerances of the bounded
+/// ones, state_hash.
+struct SweepTable {
+  /// Maximum number of rows that are kept.
   static constexpr std::size_t kMostRows = 10'000;
 
-  std::size_t done = 0;             ///< number of the shard's runs that have a row
-  SweepCounts counts;               ///< of the table
-  std::vector<SweepRow> rows;       ///< of the table, by run number; empty if there are more than kMostRows
-  std::optional<FailedRun> failed;  ///< the failed run with the lowest number
-  std::size_t resumed = 0;          ///< number of rows that were there before
-  int signal = 0;                   ///< the signal that stopped the sweep before there was a table, or 0
-  std::filesystem::path table;      ///< sweep.csv, or sweep.I_of_N.csv
+  std::filesystem::path file;
+  std::string definition;  ///< of the plan
+  std::vector<Axis> axes;  ///< the fields that vary; without their values for the points of a file
+  bool sampled = false;    ///< no grid
+  std::size_t cases = 0;   ///< of the whole sweep
+  std::vector<std::string> columns;
+  std::vector<SweepRow> rows;  ///< those that keep the conditions; none when they are more than kMostRows
+  SweepCounts counts;          ///< of all rows
+  SweepCounts kept;            ///< of those that keep the conditions
+
+  /// The place of `outcome`.
+  std::size_t outcome_place() const { return 1 + axes.size(); }
+  const std::string& outcome(const SweepRow& row) const { return row[outcome_place()]; }
+  std::vector<std::string> metrics() const;
+  /// None for a column that there is not, and where a cell is no number.
+  std::optional<double> number(const SweepRow& row, std::string_view column) const;
+  /// By how much a metric may be wrong; none where that is not known.
+  std::optional<double> tolerance(const SweepRow& row, std::string_view metric) const;
 };
 
-/// A finished sweep, read back from its folder.
-struct SweepOnRecord {
-  SweepPlan plan;      ///< its cases, without scenes, its metrics and definition
-  SweepReport report;  ///< of the rows that keep the conditions
-};
-
-/// Reads sweep.csv and sweep.json. `conditions` are texts such as "inside_max_m<3e-4": a column, one of < <= > >= = !=,
-/// and a number, or with = and != a text; a row without a number in a column keeps no condition on numbers. Throws
-/// InputError.
-SweepOnRecord read_sweep(const std::filesystem::path& folder, const std::vector<std::string>& conditions);
+/// Reads the table of a sweep or of one of its shards, and the JSON file beside it. `conditions` are texts such as
+/// "inside_max_m<3e-4": a column, one of < <= > >= = !=, and a number, or with = and != a text; a row without a number
+/// in a column keeps no condition on numbers. Throws InputError.
+SweepTable read_sweep(const std::filesystem::path& file, const std::vector<std::string>& conditions = {});
 
 }  // namespace hapbench

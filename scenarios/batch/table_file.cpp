@@ -227,7 +227,7 @@ void TableFile::add(std::size_t i, std::string_view row) {
   has_[i] = true;
 }
 
-void TableFile::finish(const Seen& seen) {
+void TableFile::finish() {
   out_.reset();
   std::vector<std::uintmax_t> places(title_.cases);  // 0, where the header stands: no row
   TableLines lines(part_, title_.cases);
@@ -244,7 +244,6 @@ void TableFile::finish(const Seen& seen) {
     if (in.tellg() != offset) in.seekg(offset);
     if (!std::getline(in, line)) throw IoError("read", part_, std::make_error_code(std::errc::io_error));
     table.append(line + "\n");
-    if (seen) seen(line);
   }
   FileSet files;
   files.write(about_, json_text(title_.about));

@@ -37,7 +37,6 @@ class TableFile {
  public:
   /// Whether a row that was written before stays; one that does not is written again. May throw.
   using Keep = std::function<bool(std::size_t i, std::string_view row)>;
-  using Seen = std::function<void(std::string_view row)>;
 
   /// Begins a table, over one that was under way. With `keep`, goes on with it, or with a finished one: a torn last
   /// line is dropped. Throws InputError when that is another table or damaged, and IoError.
@@ -56,8 +55,8 @@ class TableFile {
   std::size_t count() const { return count_; }
   /// Other processes see the row when this returns. Throws IoError. Precondition: it is one line.
   void add(std::size_t i, std::string_view row);
-  /// Puts the rows in order, by number; of two of one case the later stays. Calls `seen` for each. Throws IoError.
-  void finish(const Seen& seen = {});
+  /// Puts the rows in order, by number; of two of one case the later stays. Throws IoError.
+  void finish();
 
  private:
   void resume(const Keep& keep);

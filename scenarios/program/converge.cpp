@@ -48,7 +48,7 @@ struct ConvergeOptions {
 /// The levels of a field with what a metric came to at each, and the verdict.
 struct ConvergeStudy {
   const LevelSweep& levels;
-  std::span<const SweepRow> rows;
+  const SweepTable& runs;
   std::span<const std::optional<double>> seconds;  ///< of each run; none for one that was done before
   std::string metric;
   std::vector<std::optional<double>> results;
@@ -75,7 +75,8 @@ const LevelField kLevelFields[] = {
      LevelField::In::csv},
     {{"value", "by field", "value of the field that is refined"},
      [](const LevelRow& r) { return cell_if(finite_number(r.study.levels.axis.values[r.level])); }},
-    {{"outcome", "", "how the run ended"}, [](const LevelRow& r) -> Cell { return r.study.rows[r.level].outcome; }},
+    {{"outcome", "", "how the run ended"},
+     [](const LevelRow& r) -> Cell { return r.study.runs.outcome(r.study.runs.rows[r.level]); }},
     {{"result", "by name", "the metric, at the times of the coarsest rows; empty where the run has none or diverges"},
      [](const LevelRow& r) { return cell_if(r.study.results[r.level]); }},
     {{"observed_order", "1", "p = ln((f_1 - f_2) / (f_2 - f_3)) / ln r of this level and the two before, if any"},
@@ -118,7 +119,7 @@ const OrderField kOrderFields[] = {
 std::vector<LevelRow> level_rows(const std::vector<ConvergeStudy>& studies) {
   std::vector<LevelRow> rows;
   for (const ConvergeStudy& study : studies)
-    for (std::size_t i = 0; i < study.rows.size(); ++i) rows.push_back({study, i});
+    for (std::size_t i = 0; i < study.results.size(); ++i) rows.push_back({study, i});
   return rows;
 }
 
@@ -140,7 +141,7 @@ Json study_json(const ConvergeStudy& study) {
   add_row(json, kOrderFields, study);
   json["band"] = study.found.band ? Json::array({study.found.band->first, study.found.band->second}) : Json(nullptr);
   Json& levels = json["levels"] = Json::array();
-  for (std::size_t i = 0; i < study.rows.size(); ++i) add_row(levels.emplace_back(), kLevelFields, {study, i});
+  for (std::size_t i = 0; i < study.results.size(); ++i) add_row(levels.emplace_back(), kLevelFields, {study, i});
   return json;
 }
 
@@ -167,10 +168,10 @@ std::string verdict_text(const ConvergeStudy& study) {
 
 /// The coarsest level whose error and those of all finer ones are below, and what it costs.
 std::string enough_text(const ConvergeStudy& study, double most) {
-  std::size_t first = study.rows.size();
+  std::size_t first = study.results.size();
   while (first > 0 && study.relative_error(first - 1) && *study.relative_error(first - 1) < most) --first;
   const std::string below = fmt::format("below {:g} %: ", 100.0 * most), &path = study.levels.axis.path;
-  if (first < study.rows.size()) {
+  if (first < study.results.size()) {
     const auto &seconds = study.seconds[first], &own = study.seconds.front();
     return below +
            fmt::format("{} = {} ({:.2g} %{}){}", path, study.levels.axis.values[first],
@@ -180,7 +181,7 @@ std::string enough_text(const ConvergeStudy& study, double most) {
                            ? fmt::format(", {:.2g} s a run, {:.2g} times the first level's", *seconds, *seconds / *own)
                            : "");
   }
-  const auto error = study.relative_error(study.rows.size() - 1);
+  const auto error = study.relative_error(study.results.size() - 1);
   if (!study.found.asymptotic || !error) return below + "no level is known to be";
   const double finer = math::pow(*error / most, 1.0 / *study.found.order);
   return below + fmt::format("no level is; by this order {} = {:.2g} would be", path,
@@ -193,10 +194,10 @@ std::string study_text(const ConvergeStudy& study, std::optional<double> most) {
   columns.insert(columns.begin(), {path});
   columns.insert(columns.begin() + 2, {study.metric});
   Table table(columns);
-  for (std::size_t i = 0; i < study.rows.size(); ++i) {
+  for (std::size_t i = 0; i < study.results.size(); ++i) {
     const auto error = study.relative_error(i);
     const Convergence& c = study.found;
-    table.add({study.levels.axis.values[i], study.rows[i].outcome,
+    table.add({study.levels.axis.values[i], study.runs.outcome(study.runs.rows[i]),
                study.results[i] ? number_text(*study.results[i], c.errors[i]) : "-",
                c.order && c.orders[i] ? fmt::format("{:.2f}", *c.orders[i]) : "-",
                error ? significant(100.0 * *error, 2) : "-", significant(study.seconds[i], 2)});
@@ -241,7 +242,7 @@ int converge(const ConvergeOptions& options) {
   sweep.progress = !options.output.quiet;
   const SweepPlan plan = plan_sweep(Cases({scenario}, options.overrides, {levels.axis}), sweep.jobs, sweep.progress);
   std::vector<std::string> metrics = options.metrics;
-  if (metrics.empty()) metrics = {chosen_metric(plan, "")};
+  if (metrics.empty()) metrics = {chosen_metric(plan.metrics, "")};
   require_names("--metric: got", metrics, plan.metrics);
   print_warnings(plan.warnings);
   require_writable_directory(sweep.directory);
@@ -254,10 +255,11 @@ int converge(const ConvergeOptions& options) {
   sweep.timed = [&seconds](std::size_t run, double time) { seconds[run] = time; };
   const SweepReport report = run_sweep(plan, sweep);
   if (report.signal != 0) throw Stopped{report.signal};
+  const SweepTable runs = read_sweep(table_of(sweep));
   std::vector<ConvergeStudy> studies;
   for (const std::string& metric : metrics) {
-    studies.push_back({levels, report.rows, seconds, metric, {}, convergence_of(levels, plan, report.rows, metric)});
-    for (const SweepRow& row : report.rows) studies.back().results.push_back(level_result(plan, row, metric));
+    studies.push_back({levels, runs, seconds, metric, {}, convergence_of(levels, runs, metric)});
+    for (const SweepRow& row : runs.rows) studies.back().results.push_back(level_result(runs, row, metric));
   }
   write_studies(sweep.directory, studies);
   std::string text = fmt::format("{}: {} from {} in ratios of {:g}, formal order {:g}\n\n", loaded.scenario.name,
@@ -271,8 +273,8 @@ int converge(const ConvergeOptions& options) {
   print(options.output, text + fmt::format("results in {0}\n\"hapbench plot {0}\" draws them\n", where),
         studies.size() == 1 ? json.front() : json);
   if (!report.failed) return kSuccess;
-  print_error(fmt::format("{}: {} of {} runs failed, the first: {}", file.string(), report.counts.failed,
-                          report.counts.runs, one_line(report.failed->problem)));
+  print_error(fmt::format("{}: {} of {} runs failed, the first: {}", file.string(), runs.counts.failed,
+                          runs.counts.runs, one_line(report.failed->problem)));
   return kInternalFault;
 }
 

@@ -1,20 +1,21 @@
 #include <fmt/format.h>
 
 #include "scenarios/program/command_line.hpp"
-#include "scenarios/program/limit_answers.hpp"
+#include "scenarios/program/limit_cases.hpp"
 
 namespace hapbench {
 namespace {
 
 int limit(const LimitOptions& options) {
-  const LimitCases asked(options);
-  const std::string name = options.scenarios.size() > 1 ? "limit" : "limit_" + asked.scene_name(0);
+  LimitTable table = limit_cases(options);
+  const std::string name = options.scenarios.size() > 1 ? "limit" : "limit_" + table.first().scene;
   const std::filesystem::path out = results_directory(options.out, name);
   require_writable_directory(out);
-  const std::vector<FieldLimit> limits = field_limits(asked.all(), job_options(options.jobs, options.output, "limit"));
-  const LimitAnswers answers(asked, limits);
+  std::vector<LimitCase> cases;
+  for (const LimitRow& row : table.rows) cases.push_back(row.asked);
+  add_limits(table, field_limits(cases, job_options(options.jobs, options.output, "limit")));
   Report report(options.output, out);
-  tell_limits(answers, report);
+  tell_limits(table, report);
   report.say(fmt::format("\nresults in {}\n", out.string()));
   return report.finish();
 }

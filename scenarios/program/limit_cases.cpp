@@ -123,6 +123,27 @@ LimitQuestion question_of(const LimitOptions& options, const ScenarioText& scene
   return question;
 }
 
+/// Adds the cases of a scene with all algorithms. Warnings that are not among them yet are added.
+void add_cases(const LimitOptions& options, LimitRow row, const ScenarioText& scene, std::vector<std::string> overrides,
+               const std::vector<std::string>& algorithms, LimitTable& table, std::vector<std::string>& warnings) {
+  with_device(row.device ? &*row.device : nullptr, [&] {
+    if (row.device) overrides = overrides_on(*row.device, scene, overrides);
+    row.scene = scene.file.stem().string();
+    row.asked = {&scene, overrides, {}, question_of(options, scene, overrides)};
+    const LoadedScenario loaded = load_scenario(scene, overrides);
+    row.scenario = loaded.scenario;
+    for (const std::string& warning : row.asked.question.warnings) add_once(warnings, warning);
+    for (const std::string& warning : check_named_files(loaded)) add_once(warnings, warning);
+    // A field of the rendering changes nothing of hand and device.
+    if (row.asked.question.path.starts_with("rendering.")) row.asked.question.tremor = tremor_speeds(loaded);
+    const std::vector<std::string> own = {loaded.scenario.rendering.algorithm};
+    for (const std::string& algorithm : algorithms.empty() ? own : algorithms) {
+      row.asked.algorithm = algorithm;
+      table.rows.push_back(row);
+    }
+  });
+}
+
 }  // namespace
 
 void add_once(std::vector<std::string>& texts, const std::string& text) {
@@ -195,66 +216,43 @@ std::vector<ComparedDevice> chosen_devices(const std::vector<std::string>& given
   return chosen;
 }
 
-LimitCases::LimitCases(const LimitOptions& options)
-    : scenes_(asked_scenes(options.scenarios)), overrides_(options.overrides) {
+LimitTable limit_cases(const LimitOptions& options) {
   if (options.devices.empty() && !options.friction.empty())
     throw InputError("--friction: got factors; allowed: with --device");
-  if (!options.devices.empty()) devices_ = asked_devices(options);
-  if (!options.algorithms.empty())
-    algorithms_ = chosen_names("--algorithms: got", options.algorithms, all_algorithms());
-  if (!options.over.empty()) {
-    std::vector<Axis> axes;
-    for (const std::string& text : options.over) axes.push_back(parse_axis(text));
-    over_.emplace(std::vector<ScenarioText>(), std::vector<std::string>(), std::move(axes));
+  LimitTable table{.scenes = asked_scenes(options.scenarios), .has_devices = !options.devices.empty()};
+  std::vector<std::optional<ComparedDevice>> devices = {std::nullopt};
+  if (table.has_devices) {
+    const std::vector<ComparedDevice> asked = asked_devices(options);
+    devices.assign(asked.begin(), asked.end());
   }
+  std::vector<std::string> algorithms;
+  if (!options.algorithms.empty()) algorithms = chosen_names("--algorithms: got", options.algorithms, all_algorithms());
+  std::vector<Axis> axes;
+  for (const std::string& text : options.over) axes.push_back(parse_axis(text));
+  for (const Axis& axis : axes) table.over.push_back(axis.path);
+  const Cases over({}, options.overrides, std::move(axes));
+  table.columns = table.scenes.size() * std::max<std::size_t>(1, algorithms.size());
   std::vector<std::string> warnings;
-  for (std::size_t row = 0; row < std::max<std::size_t>(1, devices_.size()) * points(); ++row) {
-    for (std::size_t scene = 0; scene < scenes_.size(); ++scene) add_cases(options, row, scene, warnings);
+  for (const std::optional<ComparedDevice>& device : devices) {
+    for (std::size_t point = 0; point < over.size(); ++point) {
+      for (const ScenarioText& scene : table.scenes)
+        add_cases(options, {device, over.values(point)}, scene, over.overrides(point), algorithms, table, warnings);
+    }
   }
   print_warnings(warnings);
+  return table;
 }
 
-void LimitCases::add_cases(const LimitOptions& options, std::size_t row, std::size_t scene,
-                           std::vector<std::string>& warnings) {
-  with_device(has_devices() ? &device(row) : nullptr, [&] {
-    const std::vector<std::string> overrides = this->overrides(row, scene);
-    LimitCase asked{&scenes_[scene], overrides, {}, question_of(options, scenes_[scene], overrides)};
-    const LoadedScenario loaded = load_scenario(scenes_[scene], overrides);
-    for (const std::string& warning : asked.question.warnings) add_once(warnings, warning);
-    for (const std::string& warning : check_named_files(loaded)) add_once(warnings, warning);
-    // A field of the rendering changes nothing of hand and device.
-    if (asked.question.path.starts_with("rendering.")) asked.question.tremor = tremor_speeds(loaded);
-    const std::vector<std::string> own = {loaded.scenario.rendering.algorithm};
-    for (const std::string& algorithm : algorithms_.empty() ? own : algorithms_) {
-      asked.algorithm = algorithm;
-      cases_.push_back(asked);
-    }
-    scenarios_.push_back(loaded.scenario);
-  });
-}
-
-std::vector<std::string> LimitCases::overrides(std::size_t row, std::size_t scene) const {
-  std::vector<std::string> all = overrides_;
-  if (over_) {
-    const std::vector<std::string> varied = over_->changes(row % points());
-    all.insert(all.end(), varied.begin(), varied.end());
+void add_limits(LimitTable& table, std::vector<FieldLimit> limits) {
+  for (std::size_t i = 0; i < table.rows.size(); ++i) {
+    LimitRow& row = table.rows[i];
+    row.found = std::move(limits[i]);
+    const FieldLimit& reference = table.rows[i - i % table.columns].found;
+    if (!row.found.value || !reference.value) continue;
+    row.stiffness_ratio = *row.found.value / *reference.value;
+    if (const double lambda = reference.settled.lambda_max; lambda > 0.0)
+      row.rendered_ratio = *row.stiffness_ratio * row.found.settled.lambda_max / lambda;
   }
-  return has_devices() ? overrides_on(device(row), scenes_[scene], all) : all;
-}
-
-std::string LimitCases::scene_name(std::size_t column) const {
-  return scenes_[column / algorithms_of_a_scene()].file.stem().string();
-}
-
-std::vector<std::string> LimitCases::over() const {
-  std::vector<std::string> paths;
-  if (over_)
-    for (const Axis& axis : over_->axes()) paths.push_back(axis.path);
-  return paths;
-}
-
-std::vector<std::string> LimitCases::values(std::size_t row) const {
-  return over_ ? over_->values(row % points()) : std::vector<std::string>{};
 }
 
 }  // namespace hapbench

@@ -7,11 +7,11 @@
 
 #include "scenarios/batch/cases.hpp"
 #include "scenarios/description/scenario.hpp"
-#include "scenarios/program/command.hpp"
+#include "scenarios/program/report.hpp"
 #include "scenarios/studies/stability/field_limit.hpp"
 #include "scenarios/studies/stability/scene_devices.hpp"
 
-/// What `limit` asks, and options that other searches take, too.
+/// What `limit` asks and finds, and options that other searches take, too.
 namespace hapbench {
 
 /// "a:b"; none for an empty text. Throws InputError that names the option.
@@ -43,49 +43,44 @@ struct LimitOptions {
   OutputOptions output;
 };
 
-/// Every case of the question, by rows: a device with values of the fields that vary besides; and by columns: a scene
-/// with an algorithm.
-class LimitCases {
- public:
-  /// Loads every case, and prints its warnings. Throws InputError.
-  explicit LimitCases(const LimitOptions& options);
-
-  const std::vector<LimitCase>& all() const { return cases_; }
-  std::size_t rows() const { return cases_.size() / columns(); }
-  std::size_t columns() const { return scenes_.size() * algorithms_of_a_scene(); }
-  const LimitCase& at(std::size_t row, std::size_t column) const { return cases_[row * columns() + column]; }
-
-  bool has_devices() const { return !devices_.empty(); }
-  /// True where a table of rows and columns shows the limits, and not one of every number.
-  bool is_grid() const { return has_devices() || over_; }
-  /// Precondition: has_devices().
-  const ComparedDevice& device(std::size_t row) const { return devices_[row / points()]; }
-  const std::vector<ScenarioText>& scenes() const { return scenes_; }
-  /// The name of a scene is that of its file.
-  std::string scene_name(std::size_t column) const;
-  const std::string& algorithm(std::size_t column) const { return at(0, column).algorithm; }
-  /// Paths of the fields that vary besides, and their values.
-  std::vector<std::string> over() const;
-  std::vector<std::string> values(std::size_t row) const;
-  /// The scene of a column as it is on the row's device, with the scenario's value of the field.
-  const Scenario& scenario(std::size_t row, std::size_t column) const {
-    return scenarios_[row * scenes_.size() + column / algorithms_of_a_scene()];
-  }
-
- private:
-  std::size_t points() const { return over_ ? over_->size() : 1; }
-  std::size_t algorithms_of_a_scene() const { return algorithms_.empty() ? 1 : algorithms_.size(); }
-  std::vector<std::string> overrides(std::size_t row, std::size_t scene) const;
-  /// Adds those of a scene with all algorithms. Warnings that are not among them yet are added.
-  void add_cases(const LimitOptions& options, std::size_t row, std::size_t scene, std::vector<std::string>& warnings);
-
-  std::vector<ComparedDevice> devices_;  ///< none: each scene's own
-  std::vector<ScenarioText> scenes_;
-  std::vector<std::string> algorithms_;  ///< none: each scene's own
-  std::optional<Cases> over_;
-  std::vector<std::string> overrides_;
-  std::vector<LimitCase> cases_;
-  std::vector<Scenario> scenarios_;  ///< by rows and scenes
+/// A case of the question and, once it is found, its answer: a line of limit.csv.
+struct LimitRow {
+  std::optional<ComparedDevice> device = {};  ///< none: the scene's own
+  std::vector<std::string> values = {};       ///< of the fields that vary besides
+  std::string scene = {};                     ///< the name of its file
+  Scenario scenario = {};                     ///< as it is asked for, with its own value of the field
+  LimitCase asked = {};
+  FieldLimit found = {};
+  /// The limit over that of the first scene and algorithm, all else equal, and the same of K lambda_max(S), the
+  /// stiffness that the hand meets; none where either has no limit.
+  std::optional<double> stiffness_ratio = {}, rendered_ratio = {};
 };
+
+/// The devices, on each of them all values of --over, for each of these all scenes with all algorithms.
+struct LimitTable {
+  std::vector<ScenarioText> scenes = {};
+  bool has_devices = false;
+  std::vector<std::string> over = {};  ///< paths of the fields that vary besides
+  std::vector<LimitRow> rows = {};
+  std::size_t columns = 1;  ///< scenes times algorithms: as many rows follow each other with all else equal
+
+  const LimitRow& first() const { return rows.front(); }
+  /// True where a table of rows and columns shows the limits, and not one of every number.
+  bool is_grid() const { return has_devices || !over.empty(); }
+};
+
+/// Loads every case, and prints its warnings. Throws InputError.
+LimitTable limit_cases(const LimitOptions& options);
+/// Puts the limits of all cases, in their order, into the table.
+void add_limits(LimitTable& table, std::vector<FieldLimit> limits);
+
+/// The columns of limit.csv for this table; without one all that there may be, for `describe`.
+Columns<LimitRow> limit_columns(const LimitTable* table);
+/// The tables of the command.
+std::vector<DescribedTable> limit_tables();
+/// What is printed of the limits.
+std::string limit_text(const LimitTable& table);
+/// Writes limit.csv and limit_runs.csv, and tells what was found.
+void tell_limits(const LimitTable& table, Report& report);
 
 }  // namespace hapbench

@@ -65,8 +65,9 @@ class Columns {
   };
 
   void add(std::string name, std::string unit, std::string meaning, std::function<Cell(const Row&)> cell,
-           Shown shown = {}) {
-    entries_.push_back({std::move(name), std::move(unit), std::move(meaning), std::move(cell), std::move(shown)});
+           Shown shown = {}, std::function<std::optional<double>(const Row&)> tolerance = {}) {
+    entries_.push_back({std::move(name), std::move(unit), std::move(meaning), std::move(cell), std::move(shown),
+                        std::move(tolerance)});
   }
   void add(const Columns& more) { entries_.insert(entries_.end(), more.entries_.begin(), more.entries_.end()); }
 

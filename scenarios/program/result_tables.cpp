@@ -4,10 +4,8 @@
 
 #include "results/record/recorder.hpp"
 #include "scenarios/batch/league.hpp"
-#include "scenarios/batch/sweep_table.hpp"
-#include "scenarios/description/metric_sections.hpp"
 #include "scenarios/description/scenario.hpp"
-#include "scenarios/program/limit_answers.hpp"
+#include "scenarios/program/limit_cases.hpp"
 #include "scenarios/program/run_table.hpp"
 #include "scenarios/run/recorders.hpp"
 
@@ -18,28 +16,6 @@ constexpr Column kShellColumns[] = {
     {"x_m", "m", "x of a point of the shell"},         {"y_m", "m", "y of a point of the shell"},
     {"z_m", "m", "z of a point of the shell"},         {"nx", "1", "x of the outward unit normal there"},
     {"ny", "1", "y of the outward unit normal there"}, {"nz", "1", "z of the outward unit normal there"}};
-
-/// A sweep's table has the metrics that `expect` may bound between `steps` and `state_hash`.
-std::vector<Column> sweep_columns() {
-  static const MetricList kShownMetrics = metrics_without_values();
-  std::vector<Column> columns = {{"index", "1", "number of the run, from 0; the varied fields follow, by their paths"},
-                                 {"outcome", "", "how the run ended; \"error\" for one that could not be computed"},
-                                 {"expected", "", "true when it ended as the scenario's expect says"},
-                                 {"steps", "1", "rows of the run"}};
-  for (const Metric& metric : kShownMetrics) columns.push_back({metric.name.c_str(), metric.unit, metric.meaning});
-  static const std::vector<std::string> kTolerances = [] {
-    std::vector<std::string> names;
-    for (const Metric& metric : kShownMetrics) names.push_back(std::string(kToleranceOf) + metric.name);
-    return names;
-  }();
-  for (std::size_t i = 0; i < kShownMetrics.size(); ++i) {
-    if (kShownMetrics[i].bounded)
-      columns.push_back({kTolerances[i].c_str(), kShownMetrics[i].unit, "by how much the metric may be wrong"});
-  }
-  columns.push_back(
-      {"state_hash", "", "over the bits of position, velocity and force of every row: equal for equal runs"});
-  return columns;
-}
 
 std::vector<Column> all(std::span<const Column> columns) {
   return {columns.begin(), columns.end()};
@@ -55,7 +31,7 @@ std::vector<Table::Column> joined_headings(const std::vector<std::vector<Table::
 
 std::vector<Table::Column> printed_headings() {
   std::vector<std::vector<Table::Column>> all = {run_headings(),       league_headings(), converge_headings(),
-                                                 stability_headings(), sweep_headings(),  tune_headings(),
+                                                 stability_headings(), tune_headings(),
                                                  claim_headings()};
   for (const DescribedTable& table : result_tables()) all.push_back(table.headings);
   return joined_headings(all);
@@ -76,7 +52,7 @@ std::vector<DescribedTable> result_tables() {
   add("converge_levels.csv", "of converge: one line per metric and level", converge_level_columns());
   add("tune.csv", "of tune: one line per algorithm", tune_columns());
   add("tune_trials.csv", "of tune: one line per algorithm, setting and K that was tried", tune_trial_columns());
-  add("sweep.csv", "of sweep: one line per run", sweep_columns());
+  tables.push_back(sweep_table());
   add("limits.csv", "of stability SCENARIO: one line per limit", stability_limit_columns());
   add("root_locus.csv", "of stability SCENARIO: eigenvalues of a step as the case's number grows",
       root_locus_columns());

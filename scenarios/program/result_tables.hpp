@@ -16,6 +16,7 @@ std::vector<Column> converge_level_columns();
 std::vector<Column> stability_limit_columns();
 std::vector<Column> root_locus_columns();
 DescribedTable stress_table();
+DescribedTable sweep_table();
 std::vector<Column> tune_columns();
 std::vector<Column> tune_trial_columns();
 
@@ -27,7 +28,6 @@ std::vector<Table::Column> league_headings();
 std::vector<Table::Column> run_headings();
 std::vector<Table::Column> latency_headings();
 std::vector<Table::Column> stability_headings();
-std::vector<Table::Column> sweep_headings();
 std::vector<Table::Column> tune_headings();
 
 std::vector<Table::Column> joined_headings(const std::vector<std::vector<Table::Column>>& tables);

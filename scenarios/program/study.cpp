@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kAsk = "ask";
 /// What is said of a study, and is no option of its command.
-constexpr const char* kNoOptions[] = {kAsk, "scenarios", "summary", "source", "$schema"};
+constexpr const char* kNoOptions[] = {kAsk, "scenarios", "summary", "source", "alone", "$schema"};
 
 fs::path studies_folder() {
   return installed_folder("scenarios") / "library" / "studies";
@@ -85,6 +85,13 @@ std::vector<std::string> option_words(const std::string& option, const Json& val
   return words;
 }
 
+/// A scenario's file is looked for beside the study's first, and then as other words of a command are.
+std::string scenario_beside(const fs::path& study, const std::string& name) {
+  const fs::path file = study.parent_path() / name;
+  std::error_code error;
+  return name.ends_with(".json") && fs::exists(file, error) ? file.lexically_normal().string() : name;
+}
+
 std::size_t line_of(const std::string& text, const std::string& key) {
   const std::size_t at = text.find("\"" + key + "\"");
   return 1 + static_cast<std::size_t>(std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n'));
@@ -134,7 +141,7 @@ std::optional<StudyWords> StudyWords::in(const std::vector<std::string>& words) 
     found.words_ = words;
     found.words_.erase(found.words_.begin() + static_cast<std::ptrdiff_t>(place));
     std::vector<std::string> asked;
-    for (const Json& scenario : study["scenarios"]) asked.push_back(text_of(scenario));
+    for (const Json& scenario : study["scenarios"]) asked.push_back(scenario_beside(file, text_of(scenario)));
     for (const auto& [key, value] : study.items()) {
       const std::string option = "--" + key;
       const auto is_given = [&option](const std::string& word) {

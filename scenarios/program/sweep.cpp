@@ -103,8 +103,7 @@ std::string run_text(const SweepPlan& plan, std::size_t run) {
 }
 
 /// Reports runs that failed or ended unexpectedly and returns the exit status.
-int verdict(const SweepPlan& plan, const SweepReport& report) {
-  const SweepCounts& counts = report.counts;
+int verdict(const SweepPlan& plan, const SweepReport& report, const SweepCounts& counts) {
   const std::string scene = plan.cases.scenes().front().file.string();
   if (report.failed) {
     print_error(fmt::format("{}: {} of {} runs failed, the first: {}: {}", scene, counts.failed, counts.runs,
@@ -132,19 +131,19 @@ int print_row(const SweepCommand& command, const Cases& cases) {
   return kSuccess;
 }
 
-/// Prints the rows that a finished sweep has, as far as they keep the conditions of --where.
-void print_sweep(const SweepCommand& command, const SweepPlan& plan, const SweepReport& report) {
-  const std::string metric = chosen_metric(plan, command.metric);
-  if (command.output.json) return print(command.output, "", summary_json(plan, report));
-  std::string text = summary_text(plan, report, metric);
-  if (!command.where.empty()) {
-    text += fmt::format("{} of {} runs have {}\n", report.counts.runs, plan.cases.size(),
-                        fmt::join(command.where, " and "));
-  }
-  const std::string folder = report.table.parent_path().string();
-  const bool sampled = plan.cases.sampling() && plan.cases.axes().size() > 1;
+/// Prints the rows that a finished sweep has, as far as they keep the conditions of --where; `resumed`: how many were
+/// there before.
+void print_sweep(const SweepCommand& command, const SweepTable& table, std::size_t resumed = 0) {
+  const std::string metric = chosen_metric(table.metrics(), command.metric);
+  if (command.output.json) return print(command.output, "", summary_json(table));
+  std::string text = summary_text(table, metric);
+  if (resumed > 0) text += fmt::format("\n{} of the runs were done before\n", resumed);
+  text += fmt::format("\nresults in {}\n", table.file.string());
+  if (!command.where.empty())
+    text += fmt::format("{} of {} runs have {}\n", table.kept.runs, table.cases, fmt::join(command.where, " and "));
+  const bool sampled = table.sampled && table.axes.size() > 1;
   if (sampled || !command.metric.empty()) {
-    text += fmt::format("\"hapbench plot {} --metric {}\" draws it{}\n", folder, metric,
+    text += fmt::format("\"hapbench plot {} --metric {}\" draws it{}\n", table.file.parent_path().string(), metric,
                         sampled ? " and tells how much each field matters" : "");
   }
   print(command.output, text, {});
@@ -160,8 +159,7 @@ int reprint(const SweepCommand& command) {
         "{}: holds a finished sweep, which is printed again; allowed beside it: --where, --metric, --json, --quiet",
         command.scenario));
   }
-  const SweepOnRecord found = read_sweep(command.scenario, command.where);
-  print_sweep(command, found.plan, found.report);
+  print_sweep(command, read_sweep(fs::path(command.scenario) / "sweep.csv", command.where));
   return kSuccess;
 }
 
@@ -199,7 +197,7 @@ int sweep(const SweepCommand& command) {
   if (command.print) return print_row(command, cases);
   const SweepOptions options = sweep_options(command, cases.scenes().front().file);
   const SweepPlan plan = plan_sweep(std::move(cases), options.jobs, options.progress);
-  chosen_metric(plan, command.metric);  // throws if there is none of that name
+  chosen_metric(plan.metrics, command.metric);  // throws if there is none of that name
   print_some_warnings(plan.warnings);
   require_writable_directory(options.directory);
   check_table_under_way(plan, options);
@@ -210,9 +208,9 @@ int sweep(const SweepCommand& command) {
                            options.part().size(plan.cases.size())));
     return kStopped + report.signal;
   }
-  const SweepReport kept = command.where.empty() ? report : read_sweep(options.directory, command.where).report;
-  print_sweep(command, plan, kept);
-  return verdict(plan, report);
+  const SweepTable table = read_sweep(table_of(options), command.where);
+  print_sweep(command, table, report.resumed);
+  return verdict(plan, report, table.counts);
 }
 
 void add_run_options(Command& command, SweepCommand& options) {

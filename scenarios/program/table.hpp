@@ -2,13 +2,12 @@
 
 #include <cstddef>
 #include <cstdio>
-#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
-/// Text for the terminal: the width of the output, tables, wrapped prose, maps of characters.
+/// Text for the terminal: the width of the output, tables, wrapped prose.
 namespace hapbench {
 
 /// Tables aim at this width, and prose is never wider [characters].
@@ -79,19 +78,5 @@ int deserved_digits(double value, const std::optional<double>& tolerance, int mo
 std::string deserved(double value, const std::optional<double>& tolerance, int digits = 4);
 /// The same of a difference: "0" where it is within the tolerance.
 std::string deserved_difference(double difference, const std::optional<double>& tolerance);
-
-/// The axis below a map: its name and ends.
-struct MapColumns {
-  std::string name;
-  std::size_t count = 0;
-  std::string low;
-  std::string high;
-};
-
-/// A map for the terminal, a character for each cell, rows upwards: row 0 is the lowest. `row_labels` has a text, which
-/// may be empty, for each row.
-std::string character_map(const MapColumns& columns, const std::string& row_name,
-                          const std::vector<std::string>& row_labels,
-                          const std::function<char(std::size_t column, std::size_t row)>& cell);
 
 }  // namespace hapbench

@@ -3,7 +3,7 @@ import math
 
 import numpy as np
 
-from answers import EXACT, ROUNDING, Table, Within, scene
+from answers import EXACT, ROUNDING, SOURCE, Table, Within, scene
 from physics import PLAIN, HeldLoop, bisected, class_of, grows, high_pass, motion_of
 
 
@@ -83,6 +83,20 @@ def limits_of_springs(bench):
     ends = [max(v for c, v in at if c == case) for case in cases]
     bench.add("root_locus.csv:value", ends, [1.25 * v for v in value], "up to 1.25 of the limit", Within("as the limit", relative=1e-8),
               ("up to the limit", value))
+
+
+@scene
+def real_paddle(bench):
+    """Three predictions for the paddle of scenarios/validation: its ultimate stiffness over B without dry friction, by the held loop."""
+    m, b, T, B = 0.1362, 3.0, 0.00035, (0, 30, 60)
+    linear = [word for field in ("coulomb_N=0", "encoder_step_m=0", "force_max_N=null") for word in ("--set", f"device.{field}")]
+    rows = bench.json("limit", SOURCE / "scenarios" / "validation" / "epfl_position_loop.json", *linear, "--over", "rendering.damping_N_s_per_m=0,30,60",
+                      "--stable", "bounded", "--resolution", "1e-4", "--out", "paddle")["limits"]
+    known = [bisected(lambda K: HeldLoop(m, b, T, K, damping, delay=1).radius() < 1, 1, 1e6) for damping in B]
+    early = [bisected(lambda K: HeldLoop(m, b, T, K, damping).radius() < 1, 1, 1e7) for damping in B]
+    for name, within in (("theory", Within("an edge by eigenvalues, bisected to 1e-8", relative=1e-8)),
+                         ("limit", Within("growth of a percent over a quarter of the run, 1e-5 a step, is seen", relative=5e-3))):
+        bench.add(f"limit.csv:{name}", [row[name] for row in rows], known, "eigenvalues of the held loop", within, ("without the delay", early))
 
 
 @scene

@@ -69,28 +69,20 @@ def make_results(directory):
         out = directory / "thesis" / (Path(scenarios[0]).stem if len(scenarios) == 1 else "")
         hapbench("run", *scenarios, *(f"--set={text}" for text in overrides), "--out", out)
     name = "corner_continuous_normal_projection"
-    hapbench("run", name, "--out", directory / "beyond" / name)
-    hapbench("stability", "single_spring", "--out", directory / "stability")
-    hapbench(*("compare", "rotate_in_hole_proxy", "--algorithms", "proxy,shaped_stiffness,exact_shaping"),
-             *("--set=time.duration_s=2", "--set=record.every=8", "--set=rendering.reduction={}"),
-             *("--out", directory / "proxy"))
-    hapbench(*("compare", "lost_torque", "--algorithms", "original_averaging,shaped_stiffness"),
-             *("--out", directory / "torque"))
-    hapbench("compare", "peg_in_hole_2d_shaped_stiffness", "--out", directory / "compare")
-    for scene, scenario in (("peg", "tilt_sweep_shaped_stiffness"), ("wedge", "wedge_stiffness")):
-        out = directory / "stiffness" / scene
-        hapbench("compare", scenario, "--set=record.stiffness_tensor=true", "--out", out)
+    hapbench("run", name, "--out", directory / "run_beyond" / name)
+    for ask, study, *words in (("stability", "spring_limits"), ("compare", "torque_in_hole"), ("compare", "laws_in_hole"), ("compare", "stiffness_peg"),
+                               ("compare", "stiffness_wedge"), ("compare", "proxy_in_hole", "--set=time.duration_s=2", "--set=record.every=8"),
+                               ("limit", "hardware_paddle", "--resolution", "0.5")):
+        hapbench(ask, study, *words, "--out", directory / study)
     make_accuracy(directory / "accuracy")
     for study in ("time_step", "damping_ratio", "z_width", "delay", "velocity_filter", "hand", "integrators"):
         hapbench("limit", f"stability_{study}", "--resolution", "0.5", "--algorithms", "shaped_stiffness", "--out", directory / f"stability_{study}")
     hapbench("limit", "device_limits", "--device", "touch,omega.3", "--resolution", "0.5", "--out", directory / "device_limits")
     hapbench(*("sweep", "task2_rotate_signed_distance", "--vary=hand.force_N=0.2,3.5", "--set=time.duration_s=2", "--keep-runs"),
-             *('--set=record={"ideal_trajectory":true,"every":8}', "--out", directory / "hands"))
-    for task in ("vertical", "rotational"):
-        for algorithm in ("original_averaging", "shaped_stiffness"):
-            hapbench(*("sweep", f"{task}_peg_in_hole_{algorithm}", "--vary=hand.task.threshold.cutoff_Hz=null,30"),
-                     *("--vary=hand.task.threshold.grace_s=0,0.01", "--set=hand.trials=1", "--set=hand.task.time_limit_s=1"),
-                     *("--set=hand.task.targets_per_place=1", "--out", directory / "threshold" / f"{task}_{algorithm}"))
+             *('--set=record={"ideal_trajectory":true,"every":8}', "--out", directory / "task2_hands"))
+    scenes = ",".join(f"{task}_peg_in_hole_{law}" for task in ("vertical", "rotational") for law in ("original_averaging", "shaped_stiffness"))
+    hapbench(*("sweep", f"--vary=scenario={scenes}", "--vary=hand.task.threshold.cutoff_Hz=null,30", "--vary=hand.task.threshold.grace_s=0,0.01"),
+             *("--set=hand.trials=1", "--set=hand.task.time_limit_s=1", "--set=hand.task.targets_per_place=1", "--out", directory / "checked_force"))
     timing = {
         "step_latency": {
             "steps": 10,
@@ -102,7 +94,7 @@ def make_results(directory):
     (directory / "thesis" / "gradient_flip" / "timing.json").write_text(json.dumps(timing))
     # The load of the loop is drawn where it is known.
     timing["step_latency"]["over_time_s"] = [1e-6, 2e-6, 3e-6]
-    loop = directory / "latency" / "task2_rotate_signed_distance"
+    loop = directory / "step_latency" / "task2_rotate_signed_distance"
     loop.mkdir(parents=True)
     (loop / "timing.json").write_text(json.dumps(timing))
 

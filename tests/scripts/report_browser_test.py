@@ -68,7 +68,7 @@ class InBrowser(Page):
             self.assertGreater(self.js(COUNT_COLOURS % picture), 20, part)
 
     def test_every_figure_is_loaded(self):
-        self.assertEqual(self.js("[...document.images].map((i) => i.complete && i.naturalWidth > 0)"), [True] * 6)  # one is of the section of credibility
+        self.assertEqual(self.js("[...document.images].map((i) => i.complete && i.naturalWidth > 0)"), [True] * 5)
 
     def test_a_click_on_the_slider_moves_the_tools(self):
         for scene in range(2):

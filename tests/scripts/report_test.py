@@ -125,7 +125,6 @@ class Page(WithResults):
             self.assertTrue("not claimed" in row or "href=" in row or "<code>" in row, row)
         for path in re.findall(r"<code class=file>([^<]+)</code>", section):
             self.assertTrue((SOURCE / path).exists(), path)
-        self.assertIn('src="data:image/svg+xml;base64,', section)
         self.assertNotRegex(strip(section), r"\*\*|\]\(|^\|")
 
     def test_cells_of_cards_carry_their_headings(self):

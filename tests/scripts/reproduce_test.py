@@ -54,15 +54,17 @@ class Reproduce(unittest.TestCase):
         self.assertEqual(self.run_with(program, "--only", "T1", HAPBENCH_PLUGIN_PATH="/plugins")[0], 0)
 
     def test_a_figure_after_what_it_needs(self):
-        """Figures that miss a scene of the thesis, what a part makes, and a study; the program writes what it is asked for."""
+        """Figures that miss a scene of the thesis, and studies; the program writes what it is asked for."""
         out = "results/out/reproduce"
-        needs = {"2": "thesis/wedge/trajectory.csv", "A.4-root-locus": "stability/limits.csv",
-                 "stability-z_width": "stability_z_width/limit.csv", "proxy": "proxy/proxy/summary.json"}
+        needs = {"2": "thesis/wedge/trajectory.csv", "A.4-root-locus": "spring_limits/limits.csv",
+                 "stability-z_width": "stability_z_width/limit.csv", "proxy": "proxy_in_hole/proxy/summary.json"}
+        for study in ("spring_limits", "proxy_in_hole"):
+            self.put(f"scenarios/library/studies/{study}.json", '{\n  "ask": "compare"\n}\n')
         self.put("scripts/figures", "#!/bin/sh\necho \"$@\" >> asked\n" + "".join(
             f'[ -e {out}/{file} ] || echo "figures: skipped {name} (no {file})" >&2\n'
             for name, file in needs.items()) + "exit 0\n")
         makes = "".join(f"*\" --out {out}/{folder}\"*) mkdir -p {out}/{file.rpartition('/')[0]}; touch {out}/{file};;\n"
-                        for folder, file in (("thesis/wedge", needs["2"]), ("stability ", needs["A.4-root-locus"]), ("proxy", needs["proxy"]),
+                        for folder, file in (("thesis/wedge", needs["2"]), ("spring_limits", needs["A.4-root-locus"]), ("proxy_in_hole", needs["proxy"]),
                                              ("stability_z_width", needs["stability-z_width"])))
         program = f'#!/bin/sh\necho "$@" >> ran\ncase "$* " in\n{makes}esac\n'
         status, said, err = self.run_with(program, "--figure", ",".join(needs))
@@ -75,7 +77,7 @@ class Reproduce(unittest.TestCase):
         self.put("scripts/figures", '#!/bin/sh\necho "figures: skipped 2 (no nowhere/x.csv)" >&2\nexit 1\n')
         status, said, err = self.run_with(NOTHING, "--figure", "2")
         self.assertEqual(status, 1)
-        self.assertIn("no part of scripts/reproduce makes nowhere/x.csv", err)
+        self.assertIn("no study makes nowhere", err)
         self.assertIn("skipped 2", said)
 
     def test_a_claim_with_its_figures(self):

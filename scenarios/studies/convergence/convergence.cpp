@@ -192,9 +192,10 @@ LevelSweep level_sweep(const LoadedScenario& loaded, const std::string& path, st
   return sweep;
 }
 
-std::optional<double> level_result(const SweepPlan& plan, const SweepRow& row, const std::string& metric) {
-  const bool failed = row.outcome == kErrorOutcome || row.outcome == outcome_name(Outcome::diverges);
-  return failed ? std::nullopt : row.number(plan, metric);
+std::optional<double> level_result(const SweepTable& table, const SweepRow& row, const std::string& metric) {
+  const std::string& outcome = table.outcome(row);
+  const bool failed = outcome == kErrorOutcome || outcome == outcome_name(Outcome::diverges);
+  return failed ? std::nullopt : table.number(row, metric);
 }
 
 namespace {
@@ -236,14 +237,12 @@ Convergence convergence_of(const LevelSweep& levels, std::span<const LevelResult
                             : levels.no_order);
 }
 
-Convergence convergence_of(const LevelSweep& levels, const SweepPlan& plan, std::span<const SweepRow> rows,
-                           const std::string& metric) {
+Convergence convergence_of(const LevelSweep& levels, const SweepTable& table, const std::string& metric) {
   std::vector<LevelResult> results;
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    LevelResult& level = results.emplace_back(level_named(levels, i, rows[i].outcome, rows[i].state_hash));
-    level.result = level_result(plan, rows[i], metric);
-    for (const char* name : counts_of(levels))
-      level.contacts.emplace_back(name, rows[i].number(plan, name).value_or(0.0));
+  for (const SweepRow& row : table.rows) {
+    LevelResult& level = results.emplace_back(level_named(levels, results.size(), table.outcome(row), row.back()));
+    level.result = level_result(table, row, metric);
+    for (const char* name : counts_of(levels)) level.contacts.emplace_back(name, table.number(row, name).value_or(0.0));
   }
   return convergence_of(levels, results);
 }

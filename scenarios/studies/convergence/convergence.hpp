@@ -6,7 +6,9 @@
 #include <utility>
 #include <vector>
 
-#include "scenarios/batch/run_sweep.hpp"
+#include "results/summary/summary.hpp"
+#include "scenarios/batch/sweep_table.hpp"
+#include "scenarios/description/load_scenario.hpp"
 
 /// How far a number is from converged: observed order, Richardson's value and grid convergence index (Roache 1994; ASME
 /// V&V 20) of a metric at levels h, h/r, h/r^2, …; or why no order can be stated. The levels are those of a sweep of
@@ -67,7 +69,7 @@ struct LevelSweep {
 LevelSweep level_sweep(const LoadedScenario& loaded, const std::string& path, std::size_t levels, double ratio);
 
 /// The metric of a level's run; none where it has none, diverges or could not be computed.
-std::optional<double> level_result(const SweepPlan& plan, const SweepRow& row, const std::string& metric);
+std::optional<double> level_result(const SweepTable& table, const SweepRow& row, const std::string& metric);
 
 /// What the run of a level gave of a metric.
 LevelResult level_result(const LevelSweep& levels, std::size_t level, const RunSummary& summary,
@@ -76,8 +78,7 @@ LevelResult level_result(const LevelSweep& levels, std::size_t level, const RunS
 /// The verdict on the results of the levels.
 Convergence convergence_of(const LevelSweep& levels, std::span<const LevelResult> results);
 
-/// The verdict on a metric of the plan, of as many rows as the axis has levels.
-Convergence convergence_of(const LevelSweep& levels, const SweepPlan& plan, std::span<const SweepRow> rows,
-                           const std::string& metric);
+/// The verdict on a metric of the table, which has as many rows as the axis has levels.
+Convergence convergence_of(const LevelSweep& levels, const SweepTable& table, const std::string& metric);
 
 }  // namespace hapbench

@@ -95,5 +95,6 @@ FIGURES = (
     *(Figure(f"stability-{name}", None, f"Stability over {name.replace('_', ' ')}", stability.stability_over(f"stability_{name}"))
       for name in ("time_step", "damping_ratio", "z_width", "delay", "velocity_filter", "hand")),
     Figure("devices", None, "What each device renders with each algorithm", stability.of_all_devices),
+    Figure("hardware", None, "Measured and predicted limits of a real paddle", stability.hardware),
     Figure("stability-integrators", None, "Stability under each integrator", stability.integrators),
 )

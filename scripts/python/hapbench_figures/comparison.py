@@ -13,7 +13,7 @@ METRICS = (
     ("depth_max_m", "depth", "greatest [mm]", 1e3),
     ("steps", "way out", "steps until\nit leaves", 1),
 )
-COMPARED = "compare/comparison.csv"
+COMPARED = "laws_in_hole/comparison.csv"
 LEAST_RATIO = 1e-4  # drawn: the original algorithm's may be zero
 
 

@@ -78,7 +78,7 @@ def wall_damping(ax, results):
     forces = np.stack([dp.rows["fspring_x_N"], dp.rows["fspring_y_N"]], 1)[pick]
     along = forces[:, 0] ** 2 / np.maximum(np.einsum("ij,ij->i", forces, forces), 1e-300)
     ax.plot(dp.tilt[pick], along, **line_of("original_averaging"))
-    tensor = results.table("stiffness/peg/shaped_stiffness/stiffness_tensor.csv")
+    tensor = results.table("stiffness_peg/shaped_stiffness/stiffness_tensor.csv")
     ax.plot(hs.tilt[pick], tensor["sxx"][pick], **line_of("shaped_stiffness"))
     ax.text(0.6, 1.06, "stiffness shaping", ha="right")
     ax.text(0.05, 0.3, "original", color=style.look("original_averaging").colour)

@@ -17,7 +17,7 @@ STROKES = (("thesis/corner_normal_projection", "normal_projection", "normal proj
            ("thesis/corner_shaped_stiffness", "shaped_stiffness", "shortest distance", {"lw": 3.2, "alpha": 0.35}))
 # Not of the thesis, so the figure is drawn without it too.
 CONTINUOUS = (
-    "beyond/corner_continuous_normal_projection", "continuous_normal_projection", "continuous (ours)", {"lw": 1.1})
+    "run_beyond/corner_continuous_normal_projection", "continuous_normal_projection", "continuous (ours)", {"lw": 1.1})
 
 
 def draw_contacts(ax, sweep, tilt, colours=(style.AMBER, style.PETROL)):

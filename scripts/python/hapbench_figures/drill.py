@@ -8,7 +8,7 @@ import hapbench_style as style
 from . import published
 from .results import MissingResult
 
-HANDS = "hands"  # a sweep of task 2 over the hand's force, tilted from upright to 1.047 rad and back
+HANDS = "task2_hands"  # a sweep of task 2 over the hand's force, tilted from upright to 1.047 rad and back
 LOOKS = ((style.PETROL, "o"), (style.AMBER, "^"), (style.PLUM, "s"), (style.GREY, "D"), (style.BLACK, "v"))
 MARKS = 40  # of a hand at most: more could not be told from their neighbours
 OF_PROXY = ("shaped_stiffness", "exact_shaping", "proxy")
@@ -90,7 +90,7 @@ def trajectory(results):
 
 
 def rows_of(results, name):
-    rows = results.table(f"proxy/{name}/ideal_trajectory.csv")
+    rows = results.table(f"proxy_in_hole/{name}/ideal_trajectory.csv")
     kept = rows["time_s"] > SETTLED
     return {key: column[kept][::EVERY] for key, column in rows.items()}
 
@@ -98,7 +98,7 @@ def rows_of(results, name):
 def rotated(results):
     figure, axes = style.panels(1, 3, 3.1, gridspec_kw={"width_ratios": [0.75, 1.2, 1.2]})
     section, height, depth = axes[0]
-    scenario = results.json("proxy/proxy/scenario.effective.json")
+    scenario = results.json("proxy_in_hole/proxy/scenario.effective.json")
     draw_block(section, scenario["environment"])
     spring = 1e3 * abs(scenario["hand"]["z_N"]) / scenario["rendering"]["stiffness_N_per_m"]
     errors = {}
@@ -137,7 +137,7 @@ def lost(results):
     force_over_time, torque_over_time, arm_over_time = axes[0]
     most = {}
     for name in OF_TORQUE:
-        rows, look = results.table(f"torque/{name}/trajectory.csv"), style.look(name)
+        rows, look = results.table(f"torque_in_hole/{name}/trajectory.csv"), style.look(name)
         force, torque = norm(rows, "f", "N"), norm(rows, "t", "Nm")
         acting = force > 0
         time, line = rows["time_s"][acting], {"color": look.colour, "lw": 1.1, "label": look.label}

@@ -1,5 +1,6 @@
 """Stability: the root locus of A.3, and the largest stable stiffness over other fields (`limit --over`) and on each device (`limit --device`)."""
 from itertools import cycle
+from pathlib import Path
 from textwrap import wrap
 
 import numpy as np
@@ -8,6 +9,7 @@ from matplotlib.patches import Patch
 from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter
 
 import hapbench_style as style
+from hapbench.columns import read_records
 from hapbench_report.markup import column
 
 from . import published
@@ -31,8 +33,8 @@ def spaced(number):
 
 
 def root_locus(results):
-    locus = results.records("stability/root_locus.csv")
-    limits = {row["case"]: row for row in results.records("stability/limits.csv")}
+    locus = results.records("spring_limits/root_locus.csv")
+    limits = {row["case"]: row for row in results.records("spring_limits/limits.csv")}
     figure, axes = style.panels(1, 3, 2.7, sharey=True)
     turn = np.linspace(0, 2 * np.pi, 181)
     for ax, (case, id_, title, symbol, unit) in zip(axes[0], CASES):
@@ -308,3 +310,27 @@ def of_all_devices(results):
         "stiffness of a wall. If shaping makes one K safe in every direction, its marks stand in one column in all panels, "
         "while those of the sum fall back by the number of contacts. Ours."
     )
+
+
+MEASURED = Path(__file__).resolve().parents[3] / "scenarios" / "validation" / "measured.csv"
+SCATTER = 1.3  # of sessions of measuring one setting, a factor
+
+
+def hardware(results):
+    """K over B of the EPFL paddle behind its three velocity filters: measured in sessions, and predicted."""
+    predicted, (damping, stiffness) = results.records("hardware_paddle/limit.csv"), ("damping_N_s_per_m", "stiffness_N_per_m")
+    filters = {"A": "10 Hz filter", "A'": "50 Hz filter", "A''": "1 kHz filter"}
+    figure, axes = style.panels(1, len(filters), 2.7, sharey=True)
+    for ax, (case, title) in zip(axes[0], filters.items()):
+        measured = [row for row in read_records(MEASURED) if row["case"] == case]
+        rows = [row for row in predicted if float(row["device.velocity_filter.cutoff_Hz"]) == float(measured[0]["velocity_filter_Hz"])]
+        ax.plot(numbers(rows, f"rendering.{damping}"), numbers(rows, "limit"), color=style.PETROL, label="predicted")
+        K = numbers(measured, stiffness)
+        ax.errorbar(numbers(measured, damping), K, yerr=[K - K / SCATTER, K * SCATTER - K], fmt="o", color=style.AMBER, ms=3, lw=0.8,
+                    label=f"measured, x{SCATTER:g}")
+        ax.set(title=title, yscale="log", xlabel="damping B [N s/m]")
+    axes[0, 0].set_ylabel("largest stable stiffness K [N/m]")
+    axes[0, 0].legend()
+    return figure, ("Stiffness at which a haptic paddle that a finger presses on a wall begins to vibrate, over the wall's damping, behind "
+                    "three velocity filters: measured by others (scenarios/validation/measured.csv; bars: the scatter of sessions), and "
+                    "predicted with one value of all that was not published, which nothing was fitted to. Where the line ends no K is stable. Ours.")

@@ -12,7 +12,7 @@ from . import published, scene
 
 SWEEP = "tilt_sweep_shaped_stiffness"
 # The same sweep and the wedge, under every algorithm.
-PEG, WEDGE = "stiffness/peg", "stiffness/wedge"
+PEG, WEDGE = "stiffness_peg", "stiffness_wedge"
 TITLES = {"summation": "sum", "mean": "mean", "virtual_coupling": "coupling", "shaped_stiffness": "shaping"}
 DIRECTIONS = np.linspace(0, 2 * np.pi, 73)
 # Half of a panel's side and the marks on it, in units of K.

@@ -17,10 +17,10 @@ EVERY_SAMPLE = 2048.0  # where a threshold without a filter is drawn [Hz]
 def threshold(results):
     """Success of both algorithms over the bandwidth of the force that is checked."""
     figure, axes = style.panels(1, 4, 2.7, sharey=True)
-    range_, graced = {}, {}
+    range_, graced, table = {}, {}, results.records("checked_force/sweep.csv")
     for ax, (task, place, claim, title) in zip(axes[0], TARGETS):
         for method, short in METHODS:
-            rows = results.records(f"threshold/{task}_{method}/sweep.csv")
+            rows = [row for row in table if row["scenario"] == f"{task}_peg_in_hole_{method}"]
             cutoff = np.nan_to_num([float(r["hand.task.threshold.cutoff_Hz"].replace("null", "nan")) for r in rows],
                                    nan=EVERY_SAMPLE)
             grace = numbers(rows, "hand.task.threshold.grace_s")

@@ -53,7 +53,7 @@ PERIOD = 1 / 2048  # of the trainer's loop [s]
 
 def loop_load(ax, results, task, duration):
     """Share of the loop's period that a step takes, over time, on an axis of its own; None where nobody has timed it."""
-    path = f"latency/{task}_signed_distance/timing.json"
+    path = f"step_latency/{task}_signed_distance/timing.json"
     timing = results.json(path) if results.has(path) else {}
     medians = np.array((timing.get("step_latency") or {}).get("over_time_s", []))
     if not len(medians):

@@ -1,5 +1,4 @@
-"""How far to believe a number: the page of scenarios/validation, which scripts/validation writes, as a section."""
-import base64
+"""How far to believe a number: the page of scenarios/validation as a section."""
 import posixpath
 import re
 from pathlib import Path
@@ -11,30 +10,25 @@ INSIDE = {"thesis_claims/README.md": "ledger", "studies/README.md": "studies"}  
 
 
 def load_credibility(page=PAGE):
-    """The page as Markdown and its figure; None without them, as in an installed tree."""
-    figure = page.parent / "validation.svg"
-    return (page.read_text(encoding="utf-8"), figure.read_bytes()) if page.is_file() and figure.is_file() else None
+    """The page as Markdown; None without it, as in an installed tree."""
+    return page.read_text(encoding="utf-8") if page.is_file() else None
 
 
 def credibility_section(loaded):
     if loaded is None:
         return '<p class="note">No page of scenarios/validation in this tree.</p>'
-    markdown, figure = loaded
-    parts = re.split(r"(?m)^(?=##+ )", markdown)
-    shown = "".join(block_of(part, figure) for part in parts if not part.startswith(("### ", "## Do it again")))
-    return shown + "<p>Every point of every case: <code>scenarios/validation/README.md</code>.</p>"
+    return "".join(block_of(part) for part in re.split(r"(?m)^(?=##+ )", loaded))
 
 
-def block_of(part, figure):
-    """A heading with paragraphs, lists, tables and the figure below it; the page's own title is the section's."""
+def block_of(part):
+    """A heading with paragraphs, commands, lists and tables below it; the page's own title is the section's."""
     out = []
     for block in re.split(r"\n{2,}", part.strip()):
         lines = block.split("\n")
         if block.startswith("## "):
             out.append(f"<h3>{text(block[3:])}</h3>")
-        elif block.startswith("!["):
-            picture = base64.b64encode(figure).decode()
-            out.append(f'<img alt="{text(block[2:block.index("]")])}" style="max-width:100%" src="data:image/svg+xml;base64,{picture}">')
+        elif block.startswith("    "):
+            out.append("<pre>" + text("\n".join(line[4:] for line in lines)) + "</pre>")
         elif block.startswith("|"):
             head, _, *rows = ([inline(cell) for cell in re.split(r"(?<!\\)\|", line.strip("|"))] for line in lines)
             out.append(table([heading_cell(cell) for cell in head], [[f"<td>{cell}</td>" for cell in row] for row in rows], classes="stack"))

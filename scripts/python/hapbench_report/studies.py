@@ -9,7 +9,7 @@ from .json_input import at, number_or_none
 from .markup import cell, column, counted, folded, heading_cell, number_cell, table, text
 
 # The stability limits, which stand beside the published ones.
-LIMITS = "stability/limits.csv"
+LIMITS = "spring_limits/limits.csv"
 # A longer one is the data of a figure, not a table to read.
 MOST_ROWS = 100
 

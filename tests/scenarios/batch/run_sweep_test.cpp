@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <set>
 
-#include "scenarios/batch/sweep_plan.hpp"
 #include "scenarios/batch/sweep_table.hpp"
 #include "scenarios/batch/table_file.hpp"
 #include "scenarios/description/metric_sections.hpp"
@@ -86,16 +85,6 @@ TEST(SweepPlan, GivesEachWarningOnceInTheOrderOfRuns) {
   EXPECT_EQ(plan.warnings, alone);
 }
 
-TEST(SweepPlan, HasTheColumnsOfWhateverSomeRunRecords) {
-  const auto header = [](const std::vector<std::string>& vary) {
-    return fmt::format("{}", fmt::join(sweep_columns(plan_of(minimal_scenario("plane"), vary)), ","));
-  };
-  EXPECT_EQ(header({"record.energy=false"}).find("energy."), std::string::npos);
-  EXPECT_NE(header({"record.energy=false,true"}).find(",energy.created_sum_J,"), std::string::npos);
-  EXPECT_EQ(header({"record.energy=false,true"}), header({"record.energy=true,false"}));
-  EXPECT_EQ(header({"record.energy=false,true"}).find("ideal_trajectory"), std::string::npos);
-}
-
 TEST(SweepPlan, HasExactlyTheMetricsOfItsRuns) {
   std::vector<test::NamedScenario> scenarios = test::rich_scenarios();
   for (test::NamedScenario& minimal : test::minimal_scenarios()) scenarios.push_back(std::move(minimal));
@@ -167,18 +156,6 @@ Json plane_under_mesh_tool() {
   return scenario;
 }
 
-TEST(SweepPlan, DefinesAToolByItsMesh) {
-  const test::TemporaryDirectory directory;
-  const auto definition = [&](const std::string& contents) {
-    test::write_plainly(directory / "tool.obj", contents);
-    return plan_of(plane_under_mesh_tool(), {"time.steps=1,2"}, directory / "sweep.json").definition;
-  };
-  const std::string cube = test::read_file(test::data_directory() / "cube.obj");
-  const std::string first = definition(cube);
-  EXPECT_EQ(definition(cube), first);
-  EXPECT_NE(definition(cube + "# more\n"), first);
-}
-
 TEST(SweepPlan, RefusesBadMeshesOfToolsBeforeTheFirstRun) {
   const test::TemporaryDirectory directory;
   const std::string cube = test::read_file(test::data_directory() / "cube.obj");
@@ -193,46 +170,26 @@ TEST(SweepPlan, RefusesBadMeshesOfToolsBeforeTheFirstRun) {
   }
 }
 
-// ---- Sweeps
-
-class RunSweep : public testing::Test {
- protected:
-  SweepReport run(const SweepPlan& plan, const fs::path& directory) const {
-    fs::create_directories(directory);
-    SweepOptions options;
-    options.directory = directory;
-    options.jobs = 3;
-    return run_sweep(plan, options);
-  }
-  test::TemporaryDirectory directory_;
-};
-
-TEST_F(RunSweep, HasErrorRowsForRunsThatNobodyChecked) {
+TEST(RunSweep, HasErrorRowsForRunsThatNobodyChecked) {
+  const test::TemporaryDirectory directory;
   // So many values are not all checked before the first run; 4567 is one that is not.
   std::string seeds = "seed=0";
   for (int i = 1; i < 6000; ++i) seeds += "," + std::to_string(i == 4567 ? -1 : i);
   const SweepPlan plan = plan_of(minimal_scenario("springs"), {seeds});
-  const SweepReport report = run(plan, directory_.path());
-  EXPECT_EQ(report.counts.failed, 1u);
+  SweepOptions options;
+  options.directory = directory.path();
+  options.jobs = 3;
+  const SweepReport report = run_sweep(plan, options);
   ASSERT_TRUE(report.failed);
   EXPECT_EQ(report.failed->run, 4567u);
   EXPECT_NE(report.failed->problem.find("/seed: got -1"), std::string::npos) << report.failed->problem;
-  EXPECT_EQ(test::lines_of(read_file(report.table)).at(4568), error_row(plan, 4567));
-  EXPECT_EQ(report.rows[4567].cells, csv_cells(error_row(plan, 4567)));
-  EXPECT_EQ(report.rows[4568].outcome, "completes");
-}
-
-TEST_F(RunSweep, LeavesTheTableAndItsDescriptionOnly) {
-  const SweepPlan plan = plan_of(minimal_scenario("plane"), {"time.steps=1,2"});
-  const SweepReport report = run(plan, directory_.path());
-  EXPECT_EQ(directory_.entries(), (std::vector<std::string>{"sweep.csv", "sweep.json"}));
-  const auto lines = test::lines_of(read_file(report.table));
-  ASSERT_EQ(lines.size(), 3u);
-  EXPECT_EQ(csv_cells(lines[0]), sweep_columns(plan));
-  for (const SweepRow& row : report.rows) EXPECT_EQ(csv_cells(lines[1 + row.run]), row.cells);
-  const Json description = Json::parse(read_file(directory_ / "sweep.json"));
-  EXPECT_EQ(description["definition"], plan.definition);
-  EXPECT_EQ(description["vary"][0]["values"], (Json{"1", "2"}));
+  const SweepTable table = read_sweep(table_of(options));
+  EXPECT_EQ(table.columns, plan.columns());
+  EXPECT_EQ(table.counts.failed, 1u);
+  SweepRow row = {"4567", "-1", "error", "false"};
+  row.resize(plan.columns().size());
+  EXPECT_EQ(table.rows[4567], row);
+  EXPECT_EQ(table.outcome(table.rows[4568]), "completes");
 }
 
 }  // namespace

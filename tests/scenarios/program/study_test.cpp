@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <map>
 #include <set>
 
 #include "scenarios/description/bundled_scenarios.hpp"
@@ -45,6 +46,8 @@ TEST_F(Study, IsTheWordsOfItsCommand) {
                                    "--over",       R"(device=[{"type":"ideal"}])",
                                    "--quiet",      "--resolution=0.5"}))
       << "an option that is given goes before the study's";
+  test::write_plainly(directory_ / "b.json", "{}");
+  EXPECT_EQ(StudyWords::in({"limit", mine})->words()[2], (directory_ / "b.json").string()) << "beside the study";
   EXPECT_FALSE(StudyWords::in({"limit", "single_spring"}));
   EXPECT_FALSE(StudyWords::in({"describe", "stability_z_width"}));
 }
@@ -59,6 +62,15 @@ TEST_F(Study, IsRefusedByAnotherCommandAndAtTheLineOfItsFault) {
   EXPECT_NE(wrong.err.find(mine + ":4: limit: --stable: "), std::string::npos) << wrong.err;
 }
 
+/// What makes a question of a command a matter of a second.
+const std::map<std::string, Words> kShorter = {
+    {"compare", {"--set", "time.steps=20", "--set", "expect={}", "--algorithms", "mean"}},
+    {"limit", {"--set", "time.steps=20", "--resolution", "0.5", "--algorithms", "mean"}},
+    {"run", {"--set", "time.steps=20"}},
+    {"stability", {}},
+    {"stress", {"--count", "100"}},
+    {"sweep", {"--row", "0", "--print"}}};
+
 TEST_F(Study, OfTheProgramHasANameOfItsOwnAndIsAnswered) {
   std::set<std::string> scenes;
   for (const BundledScenario& scene : bundled_scenarios()) scenes.insert(scene.name);
@@ -66,10 +78,12 @@ TEST_F(Study, OfTheProgramHasANameOfItsOwnAndIsAnswered) {
   for (const BundledStudy& study : bundled_studies()) {
     EXPECT_FALSE(scenes.contains(study.name)) << study.name;
     EXPECT_FALSE(study.summary.empty()) << study.name;
-    const test::ProgramRun run =
-        test::hapbench({study.ask, study.name, "--set", "time.steps=20", "--resolution", "0.5", "--algorithms", "mean",
-                        "--out", (directory_ / study.name).string(), "--quiet"});
-    EXPECT_EQ(run.status, 0) << study.name << ": " << run.err;
+    Words words = {study.ask, study.name, "--out", (directory_ / study.name).string(), "--quiet"};
+    const Words& shorter = kShorter.at(study.ask);
+    words.insert(words.end(), shorter.begin(), shorter.end());
+    const test::ProgramRun run = test::hapbench(words);
+    // How shortened runs end is not asked.
+    EXPECT_TRUE(run.status == 0 || (study.ask == "run" && run.status == 3)) << study.name << ": " << run.err;
   }
 }
 

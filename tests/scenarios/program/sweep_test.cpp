@@ -66,8 +66,8 @@ TEST_F(SweepCommand, StartsNoFurtherRunsWhereTheyCannotBeKept) {
   EXPECT_EQ(table("a"), table("b"));
 }
 
-TEST_F(SweepCommand, HasTheNumbersOfTheRunsAlone) {
-  const ProgramRun run = sweep("a");
+TEST_F(SweepCommand, HasTheRunsThatThePrintedCommandRepeats) {
+  const ProgramRun run = sweep("a", {"--keep-runs", "--jobs", "4"});
   ASSERT_EQ(run.status, 0) << run.err;
   EXPECT_EQ(run.err, "");
   const auto lines = lines_of(table("a"));
@@ -80,10 +80,20 @@ TEST_F(SweepCommand, HasTheNumbersOfTheRunsAlone) {
   const Words cells = cells_of(lines[1 + 12 + 0 + 2]);
   EXPECT_EQ((Words{cells.begin(), cells.begin() + 4}), (Words{"14", "20000", "2e-05", "exact_shaping"}));
 
-  hapbench({"run", "peg_in_hole_2d_shaped_stiffness", "--out", (directory_ / "run").string(), "--set",
-            "rendering.stiffness_N_per_m=20000", "--set", "environment.spacing_m=2e-05", "--set",
-            "rendering.algorithm=exact_shaping"});
+  const ProgramRun printed = sweep("a", {"--row", "14", "--print"});
+  EXPECT_EQ(lines_of(printed.out).size(), 1u);
+  // As a shell takes it apart: the quotes around the list of outcomes are its own.
+  EXPECT_NE(printed.out.find(" --set 'expect.outcome=[\"completes\","), std::string::npos) << printed.out;
+  Words words = sweep("a", {"--row", "14", "--print", "--json"}).json()["command"];
+  EXPECT_EQ(words[0], fs::canonical(test::hapbench_program()));
+  words.erase(words.begin());
+  words.insert(words.end(), {"--out", (directory_ / "run").string()});
+  ASSERT_EQ(hapbench(words).status, 0);
+  // Byte for byte, the counted allocations of a run beside others included.
+  test::expect_same_files(directory_ / "a/runs/000014", directory_ / "run");
   const Json summary = Json::parse(read_file(directory_ / "run/summary.json"));
+  EXPECT_EQ(summary["work"]["allocations"], 0);
+  EXPECT_TRUE(fs::exists(directory_ / "a/runs/000023/trajectory.csv"));
   EXPECT_EQ(cells[4], summary["outcome"]);
   EXPECT_EQ(cells[6], std::to_string(summary["steps"].get<int>()));
   EXPECT_EQ(cells.back(), summary["state_hash"]);
@@ -165,77 +175,6 @@ TEST_F(SweepCommand, PrintsTheRunsThatKeepConditions) {
   EXPECT_NE(hapbench({"sweep", out}).err.find("allowed: rows of this sweep"), std::string::npos);
 }
 
-TEST_F(SweepCommand, KeepsTheRunsAsRunWritesThem) {
-  // Byte for byte, the counted allocations of a run beside others included.
-  EXPECT_EQ(sweep("a", {"--keep-runs", "--jobs", "4"}).status, 0);
-  Words words = {"run", "peg_in_hole_2d_shaped_stiffness", "--out", (directory_ / "a/run").string()};
-  for (const char* set :
-       {"expect.outcome=[\"completes\",\"leaves_hole\",\"lost_contact\",\"diverges\"]", "expect.metrics={}",
-        "rendering.stiffness_N_per_m=20000", "environment.spacing_m=2e-05", "rendering.algorithm=exact_shaping"}) {
-    words.insert(words.end(), {"--set", set});
-  }
-  hapbench(words);
-  test::expect_same_files(directory_ / "a/runs/000014", directory_ / "a/run");
-  EXPECT_EQ(Json::parse(read_file(directory_ / "a/runs/000014/summary.json"))["work"]["allocations"], 0);
-  EXPECT_TRUE(fs::exists(directory_ / "a/runs/000023/trajectory.csv"));
-  EXPECT_FALSE(fs::exists(directory_ / "a/runs/000024"));
-}
-
-TEST_F(SweepCommand, ReadsMeshesOnSeveralThreads) {
-  test::write_plainly(directory_ / "cube.obj", read_file(fs::path(HAPBENCH_TEST_DATA) / "cube.obj"));
-  test::write_plainly(directory_ / "cube.json",
-                      R"({"time": {"step_s": 0.0005, "steps": 20}, "expect": {"outcome": "went_through"},
-                          "environment": {"type": "mesh", "file": "cube.obj", "scale": 0.001}})");
-  const auto sweep_cube = [&](const char* out, const char* jobs) {
-    return hapbench({"sweep", (directory_ / "cube.json").string(), "--vary", "environment.scale=0.001:0.002:12",
-                     "--jobs", jobs, "--out", (directory_ / out).string()});
-  };
-  const ProgramRun run = sweep_cube("seven", "7");
-  EXPECT_EQ(run.status, 0) << run.err;
-  sweep_cube("one", "1");
-  EXPECT_EQ(table("seven"), table("one"));
-}
-
-TEST_F(SweepCommand, VariesAllAlgorithmsByOneWord) {
-  const ProgramRun run = hapbench({"sweep", "single_spring", "--vary", "rendering.algorithm=all", "--out",
-                                   (directory_ / "out").string(), "--json"});
-  EXPECT_EQ(run.json()["rows"].size(), algorithms().size()) << run.err;
-}
-
-TEST_F(SweepCommand, PrintsTheCommandThatRepeatsARun) {
-  sweep("a");
-  const auto lines = lines_of(table("a"));
-  const ProgramRun printed = sweep("a", {"--row", "14", "--print"});
-  ASSERT_EQ(printed.status, 0) << printed.err;
-  EXPECT_EQ(lines_of(printed.out).size(), 1u);
-  // As a shell takes it apart: the quotes around the list of outcomes are its own.
-  EXPECT_NE(printed.out.find(" --set 'expect.outcome=[\"completes\","), std::string::npos) << printed.out;
-  Words words = sweep("a", {"--row", "14", "--print", "--json"}).json()["command"];
-  EXPECT_EQ(words[0], fs::canonical(test::hapbench_program()));
-  words.erase(words.begin());
-  words.insert(words.end(), {"--out", (directory_ / "run").string()});
-  ASSERT_EQ(hapbench(words).status, 0);
-  const Json summary = Json::parse(read_file(directory_ / "run/summary.json"));
-  EXPECT_EQ(summary["state_hash"], cells_of(lines[1 + 14]).back());
-}
-
-/// A sweep in parts, and the script that makes them tasks of Slurm.
-class SweepShards : public PegSweep {};
-
-TEST_F(SweepShards, AreJoinedInTheirFolder) {
-  const ProgramRun whole = sweep("whole");
-  for (const char* i : {"0", "1"}) EXPECT_EQ(sweep("out", {"--shard", std::string(i) + "/3"}).status, 0);
-  const ProgramRun early = hapbench({"sweep", (directory_ / "out").string()});
-  EXPECT_EQ(early.status, 2);
-  EXPECT_NE(early.err.find("1 of 3 shards missing: 2/3"), std::string::npos) << early.err;
-  sweep("out", {"--shard", "2/3"});
-  const ProgramRun joined = hapbench({"sweep", (directory_ / "out").string()});
-  EXPECT_EQ(joined.status, 0) << joined.err;
-  EXPECT_EQ(joined.out.substr(0, 500), whole.out.substr(0, 500));
-  for (const char* file : {"sweep.csv", "sweep.json"})
-    EXPECT_EQ(read_file(directory_ / "out" / file), read_file(directory_ / "whole" / file)) << file;
-}
-
 TEST_F(SweepCommand, VariesScenesAndWholeObjects) {
   const std::string devices = R"(device={"type":"ideal"},{"type":"impedance","preset":"touch"})";
   const ProgramRun run =
@@ -251,7 +190,7 @@ TEST_F(SweepCommand, VariesScenesAndWholeObjects) {
 }
 
 /// As Slurm would run them: a task for each shard, of which one is given again, and the last joins the tables.
-TEST_F(SweepShards, AreTasksOfTheScriptForSlurm) {
+TEST_F(SweepCommand, RunsInShardsByTheScriptForSlurm) {
   const auto task = [&](const std::string& number, Words more) {
     more.insert(more.begin(), {"HAPBENCH=" + test::hapbench_program().string(), "SLURM_ARRAY_TASK_COUNT=3",
                                "SLURM_ARRAY_TASK_ID=" + number, HAPBENCH_SCENARIOS "/../scripts/sweep.sbatch"});

@@ -132,14 +132,6 @@ TEST(Deserved, OfADifferenceWithinItsToleranceIsNothing) {
   EXPECT_EQ(deserved_difference(-1.234, {}), "-1.2");
 }
 
-TEST(CharacterMap, HasTheFirstRowBelow) {
-  const auto cell = [](std::size_t column, std::size_t row) { return row == 0 ? 'a' : column == 1 ? 'c' : 'b'; };
-  EXPECT_EQ(character_map({"x", 2, "1", "9"}, "y", {"low", "high"}, cell),
-            "       high   b c  y\n"
-            "        low   a a\n"
-            "             1 ... 9  x\n");
-}
-
 std::vector<const ModelInfo*> all_models() {
   std::vector<const ModelInfo*> models(stages().begin(), stages().end());
   for (const AlgorithmEntry& entry : algorithms()) models.push_back(entry.info);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 
+#include "scenarios/batch/run_sweep.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "sim/loop/integrators/table.hpp"
 #include "tests/results/files.hpp"
@@ -194,13 +195,12 @@ TEST(ObservedOrder, IsRarelyFoundInNoise) {
 
 struct Study {
   LevelSweep levels;
-  SweepPlan plan;
-  SweepReport report;
+  SweepTable runs;
 
-  Convergence of(const std::string& metric) const { return convergence_of(levels, plan, report.rows, metric); }
+  Convergence of(const std::string& metric) const { return convergence_of(levels, runs, metric); }
   std::vector<std::optional<double>> results(const std::string& metric) const {
     std::vector<std::optional<double>> results;
-    for (const SweepRow& row : report.rows) results.push_back(level_result(plan, row, metric));
+    for (const SweepRow& row : runs.rows) results.push_back(level_result(runs, row, metric));
     return results;
   }
 };
@@ -208,11 +208,10 @@ struct Study {
 Study studied(const ScenarioText& scenario, const std::string& path = kStepPath, std::size_t count = 5) {
   const test::TemporaryDirectory directory;
   LevelSweep levels = level_sweep(load_scenario(scenario, {}), path, count, 2.0);
-  SweepPlan plan = plan_sweep(Cases({scenario}, {}, {levels.axis}), 1, false);
   SweepOptions options;
   options.directory = directory.path();
-  SweepReport report = run_sweep(plan, options);
-  return {std::move(levels), std::move(plan), std::move(report)};
+  run_sweep(plan_sweep(Cases({scenario}, {}, {levels.axis}), 1, false), options);
+  return {std::move(levels), read_sweep(table_of(options))};
 }
 Study studied(const Json& scenario, const std::string& path = kStepPath, std::size_t count = 5) {
   return studied(ScenarioText{test::data_directory() / "converge.json", scenario}, path, count);
@@ -312,7 +311,7 @@ TEST(Converge, MeasuresAtTheTimesOfTheCoarsestRows) {
     for (const auto& result : results) EXPECT_NEAR(*result, *results.front(), 1e-12 * *results.front()) << metric;
     EXPECT_NE(study.of(metric).reason.find("rounding"), std::string::npos) << study.of(metric).reason;
   }
-  EXPECT_EQ(study.report.rows[4].cells[4], std::to_string(16 * kSteps)) << "its steps";
+  EXPECT_EQ(study.runs.rows[4][4], std::to_string(16 * kSteps)) << "its steps";
 }
 
 TEST(Converge, KeepsTheLengthOfDelays) {
@@ -333,8 +332,7 @@ TEST(Converge, HasNoNumberWhereARunHasNone) {
   Json scene = spring(0.0, "leapfrog");
   scene["time"] = {{"step_s", 0.064}, {"steps", 400}};
   const Study study = studied(scene);
-  EXPECT_EQ(study.report.rows[0].outcome, "diverges");
-  EXPECT_EQ(study.report.rows[1].outcome, "diverges");
+  for (const std::size_t level : {0u, 1u}) EXPECT_EQ(study.runs.outcome(study.runs.rows[level]), "diverges");
   EXPECT_FALSE(study.results("force_max_N")[0]);
   const Convergence c = study.of("force_max_N");
   EXPECT_FALSE(c.errors[0] || c.errors[1]);
