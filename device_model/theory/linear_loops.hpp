@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <span>
+#include <string>
 #include <variant>
 
 #include "device_model/admittance_device.hpp"
@@ -120,6 +121,19 @@ struct AdmittanceLoop {
   /// with the time step T and the virtual mass M. All components are in metres, so that the eigenvalues are exact to
   /// rounding.
   Eigen::MatrixXd state_matrix() const;
+};
+
+/// Eigenvalues of the matrices of longer delays take seconds [samples].
+inline constexpr double kLongestLoopDelay = 200.0;
+
+/// Device, hand and wall as a linear loop, as it is while nothing saturates and the contact lasts.
+struct DeviceLoop {
+  std::variant<SampledLoop, AdmittanceLoop> loop;
+  std::string no_theory;  ///< why the loop's eigenvalues do not tell its stability; empty where they do
+
+  Eigen::MatrixXd state_matrix() const {
+    return std::visit([](const auto& linear) { return linear.state_matrix(); }, loop);
+  }
 };
 
 }  // namespace hapbench

@@ -140,9 +140,16 @@ void add_ends(Columns<LimitRow>& columns) {
               [](const LimitRow& r) { return verdict_cell(ends_of(r).above); });
 }
 
-void add_theory(Columns<LimitRow>& columns) {
+void add_theory(Columns<LimitRow>& columns, bool with_inequality) {
   columns.add("theory", "by field", "the limit in theory; empty where there is none",
               [](const LimitRow& r) { return cell_if(r.found().theory); });
+  if (with_inequality) {
+    columns.add(
+        "closed_form", "by field",
+        "the same where the integrator's inequality ends, of leapfrog 4 - 2 lambda B dt / M - lambda K dt^2 / M >= 0 "
+        "with lambda = lambda_max(S) (A.3); empty where it has none",
+        [](const LimitRow& r) { return cell_if(r.found().closed_form); });
+  }
   columns.add(
       "linear", "by field",
       "of a device at what only pushes: the largest value at which the loop of device, hand and surface is stable "
@@ -253,7 +260,7 @@ Columns<LimitRow> limit_columns(const LimitAnswers* answers) {
   Columns<LimitRow> columns = place_columns<LimitRow>(asked);
   add_edges(columns, asked != nullptr && asked->at(0, 0).question.smallest);
   add_ends(columns);
-  add_theory(columns);
+  add_theory(columns, answers == nullptr || answers->have_inequality());
   add_search(columns);
   if (asked == nullptr || asked->has_devices()) {
     columns.add("published_N_per_m", "N/m", "published largest stable stiffness of a wall on the device",

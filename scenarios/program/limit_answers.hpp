@@ -24,6 +24,9 @@ class LimitAnswers {
   const LimitCases& asked() const { return asked_; }
   const FieldLimit& at(std::size_t row, std::size_t column) const { return limits_[row * asked_.columns() + column]; }
   LimitRatio ratio(std::size_t row, std::size_t column) const;
+  bool have_inequality() const {
+    return std::ranges::any_of(limits_, [](const FieldLimit& limit) { return limit.closed_form.has_value(); });
+  }
   bool have_closed_forms() const {
     return std::ranges::any_of(limits_, [](const FieldLimit& limit) { return !limit.closed_forms.empty(); });
   }

@@ -135,7 +135,7 @@ void write_way(const std::filesystem::path& folder, const std::filesystem::path&
 
 void add_plot(CommandLine& line) {
   auto [command, options] = line.command("plot", "Draw runs over time and in space, a sweep, limits", plot);
-  add_common(command, options, "folders that run, compare, sweep, stability --map or limit wrote",
+  add_common(command, options, "folders that run, compare, sweep or limit wrote",
              "FILE.svg, .png or .pdf (default: plot.svg in the folder of the runs)");
   command.add("--y", options.quantities, "the quantities to draw, separated by commas (below)");
   command.add("--metric", options.metric, "for a sweep: the column of sweep.csv to draw");

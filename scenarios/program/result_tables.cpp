@@ -54,9 +54,9 @@ std::vector<Table::Column> joined_headings(const std::vector<std::vector<Table::
 }
 
 std::vector<Table::Column> printed_headings() {
-  std::vector<std::vector<Table::Column>> all = {run_headings(),       league_headings(), converge_headings(),
-                                                 stability_headings(), diff_headings(),   sweep_headings(),
-                                                 tune_headings(),      claim_headings()};
+  std::vector<std::vector<Table::Column>> all = {run_headings(),  league_headings(), converge_headings(),
+                                                 diff_headings(), sweep_headings(),  tune_headings(),
+                                                 claim_headings()};
   for (const DescribedTable& table : result_tables()) all.push_back(table.headings);
   return joined_headings(all);
 }
@@ -77,9 +77,6 @@ std::vector<DescribedTable> result_tables() {
   add("tune.csv", "of tune: one line per algorithm", tune_columns());
   add("tune_trials.csv", "of tune: one line per algorithm, setting and K that was tried", tune_trial_columns());
   add("sweep.csv", "of sweep: one line per run", sweep_columns());
-  add("limits.csv", "of stability SCENARIO: one line per limit", stability_limit_columns());
-  add("root_locus.csv", "of stability SCENARIO: eigenvalues of a step as the case's number grows",
-      root_locus_columns());
   tables.push_back(stress_table());
   add("shell.csv", "of shell: one line per point of the environment", all(kShellColumns));
   return tables;

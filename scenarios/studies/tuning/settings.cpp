@@ -8,7 +8,7 @@
 #include "scenarios/batch/run_batch.hpp"
 #include "scenarios/input/json_file.hpp"
 #include "scenarios/studies/stability/field_limit.hpp"
-#include "scenarios/studies/stability/stability_limits.hpp"
+#include "scenarios/studies/stability/scene_loop.hpp"
 #include "scenarios/studies/tuning/tune.hpp"
 #include "sim/core/math.hpp"
 

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <complex>
@@ -16,7 +15,7 @@
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/studies/stability/judged_run.hpp"
-#include "scenarios/studies/stability/stability_limits.hpp"
+#include "scenarios/studies/stability/scene_loop.hpp"
 #include "sim/core/math.hpp"
 
 namespace hapbench {
@@ -24,16 +23,6 @@ namespace {
 
 constexpr double kResolution = 5e-3;  // of K
 constexpr double kFinest = 1.004;     // ratio of zeta, or of the mass, at which the search ends
-
-/// True for springs that push and pull: their loop does not depend on the run.
-bool stay_in_contact(const Scenario& scenario) {
-  try {
-    require_bilateral_springs(scenario);
-    return true;
-  } catch (const InputError&) {
-    return false;
-  }
-}
 
 /// The runs of one family member at K and G K.
 struct MemberRuns {
@@ -53,10 +42,7 @@ class Tuner {
       for (FamilyMember& member : family_of(own, over)) family_.push_back(std::move(member));
       over_hands_ = over_hands_ || over == FamilyOver::hands;
     }
-    if (stay_in_contact(own.scenario)) {
-      const Mat3 S = stiffness_tensor_of(own.scenario);
-      springs_lambda_ = Eigen::SelfAdjointEigenSolver<Mat3>(S, Eigen::EigenvaluesOnly).eigenvalues()[2];
-    }
+    if (springs_stay(own.scenario)) springs_lambda_ = stiffness_eigenvalues(own.scenario)[2];
   }
 
   TunedLaw tuned() {

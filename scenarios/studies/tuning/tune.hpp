@@ -136,7 +136,7 @@ std::vector<TuneSetting> settings_of(const TuneQuestion& question, const TuneRan
 ///   - the run at K is settled and keeps the limits: stable (judged_run.hpp), where a script moves the tool by
 ///     kMostVibration,
 ///   - the run at G K is settled, and
-///   - the loop of device, hand and surface while they touch (stability_limits.hpp) is stable up to G K by its
+///   - the loop of device, hand and surface while they touch (scene_loop.hpp) is stable up to G K by its
 ///     eigenvalues, for an impedance device with each hand of hand_family() where a hand holds the handle.
 /// Values of zeta in ratios of 10^(1/4) are tried with each filter; where K can be raised by half a percent, it is, to
 /// its first edge; then zeta and mass are refined until a change by 0.4 % raises K no more. The choice is verified at

@@ -63,7 +63,7 @@ def rerun_section():
                 "$hapbench run scenarios/limits/*.json --out results/out/reproduce/limits       # closed forms of A.3\n"
                 "$hapbench run scenarios/beyond/*.json --out results/out/reproduce/beyond       # beyond the thesis\n"
                 "$hapbench run scenarios/examples/*.json --out results/out/reproduce/examples\n"
-                "$hapbench stability single_spring --out results/out/reproduce/stability\n"
+                "$hapbench limit spring_stiffness --out results/out/reproduce/spring_stiffness          # a study\n"
                 "$hapbench describe scenario                                                    # what every field means")
             + "<p>This report:</p>" + command(
                 "scripts/report results/out/reproduce --figures results/out/figures --claims results/reference/claims.json \\\n"

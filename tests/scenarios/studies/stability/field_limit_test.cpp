@@ -39,6 +39,7 @@ TEST(FieldLimit, OfOneSpringIsThatOfTheory) {
   const FieldLimit limit = ask({"single_spring", "rendering.stiffness_N_per_m", kLong}).front();
   ASSERT_TRUE(limit.value && limit.beyond && limit.theory);
   EXPECT_NEAR(*limit.theory, 433731.0, 0.002 * 433731.0);  // A.3; bisection stops at 0.1 %
+  EXPECT_NEAR(limit.closed_form.value(), *limit.theory, 1e-9 * *limit.theory);
   EXPECT_NEAR(*limit.value, 433731.0, 0.01 * 433731.0);
   EXPECT_LE(limit.beyond->value, *limit.value * 1.001 * (1.0 + 1e-12));
   EXPECT_TRUE(limit.inconsistent.empty());
