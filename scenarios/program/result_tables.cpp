@@ -55,8 +55,7 @@ std::vector<Table::Column> joined_headings(const std::vector<std::vector<Table::
 
 std::vector<Table::Column> printed_headings() {
   std::vector<std::vector<Table::Column>> all = {run_headings(),  league_headings(), converge_headings(),
-                                                 diff_headings(), sweep_headings(),  tune_headings(),
-                                                 claim_headings()};
+                                                 diff_headings(), sweep_headings(),  claim_headings()};
   for (const DescribedTable& table : result_tables()) all.push_back(table.headings);
   return joined_headings(all);
 }
@@ -74,8 +73,7 @@ std::vector<DescribedTable> result_tables() {
   for (const DescribedTable& table : limit_tables()) tables.push_back(table);
   add("converge.csv", "of converge: one line per metric", converge_columns());
   add("converge_levels.csv", "of converge: one line per metric and level", converge_level_columns());
-  add("tune.csv", "of tune: one line per algorithm", tune_columns());
-  add("tune_trials.csv", "of tune: one line per algorithm, setting and K that was tried", tune_trial_columns());
+  for (const DescribedTable& table : tune_tables()) tables.push_back(table);
   add("sweep.csv", "of sweep: one line per run", sweep_columns());
   tables.push_back(stress_table());
   add("shell.csv", "of shell: one line per point of the environment", all(kShellColumns));

@@ -14,8 +14,7 @@ namespace hapbench {
 std::vector<Column> converge_columns();
 std::vector<Column> converge_level_columns();
 DescribedTable stress_table();
-std::vector<Column> tune_columns();
-std::vector<Column> tune_trial_columns();
+std::vector<DescribedTable> tune_tables();
 
 // The headings of printed tables, from which the tables are made; without those that are names of fields, metrics,
 // scenes or algorithms.
@@ -26,7 +25,6 @@ std::vector<Table::Column> league_headings();
 std::vector<Table::Column> run_headings();
 std::vector<Table::Column> latency_headings();
 std::vector<Table::Column> sweep_headings();
-std::vector<Table::Column> tune_headings();
 
 std::vector<Table::Column> joined_headings(const std::vector<std::vector<Table::Column>>& tables);
 /// All of them, also those whose titles are names that `describe` knows.

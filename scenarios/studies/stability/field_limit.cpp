@@ -117,10 +117,7 @@ class Search {
       for (const double end : {0.0, 1.0}) {
         if (!applies(search.at(search.question_.value_at(end)).scenario)) return;
       }
-      for (int i = 0; i <= intervals; ++i) {
-        const double part = static_cast<double>(i) / intervals;
-        tried_[part] = holds(part);
-      }
+      tried_ = scanned(intervals, [this](double part) { return holds(part); });
     }
 
     /// The middles of all stretches of stable values, for runs to try: a stretch may lie between the values of a scan.
@@ -175,22 +172,15 @@ class Search {
 
   /// FieldLimit::linear
   std::optional<double> linear_edge(double lambda) const {
-    const auto stable = [&](double part) {
-      const Scenario scenario = at(question_.value_at(part)).scenario;
-      return is_stable_step(device_loop(scenario, lambda).state_matrix()) &&
-             (!scenario.rendering.dry_friction ||
-              is_stable_step(device_loop(stuck_scene(scenario), 1.0).state_matrix()));
-    };
     for (const double end : {0.0, 1.0}) {
       const Scenario scenario = at(question_.value_at(end)).scenario;
-      if (!has_device(scenario) || !unknown_to_theory(scenario).empty()) return std::nullopt;
+      if (!has_device(scenario) || contact_step(scenario, lambda).size() == 0) return std::nullopt;
     }
-    std::map<double, bool> tried;
-    for (int i = 0; i <= 2 * kEdgeIntervals; ++i) {
-      const double part = 0.5 * i / kEdgeIntervals;
-      tried[part] = stable(part);
-    }
-    const FoundEdge edge = find_edge(question_, std::move(tried), stable, kTheoryResolution, false);
+    const auto stable = [&](double part) {
+      return std::ranges::all_of(contact_loops(at(question_.value_at(part)).scenario, lambda, false),
+                                 [](const auto& loop) { return is_stable_step(loop.second); });
+    };
+    const FoundEdge edge = find_edge(question_, scanned(2 * kEdgeIntervals, stable), stable, kTheoryResolution, false);
     if (!edge.stable) return std::nullopt;
     return edge.beyond ? question_.value_at(*edge.stable) : std::numeric_limits<double>::infinity();
   }

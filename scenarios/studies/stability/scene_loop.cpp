@@ -1,5 +1,7 @@
 #include "scenarios/studies/stability/scene_loop.hpp"
 
+#include <fmt/format.h>
+
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <nlohmann/json.hpp>
@@ -149,6 +151,24 @@ Eigen::MatrixXd contact_step(const Scenario& scenario, double lambda) {
   if (!has_device(scenario)) return tool_on_spring(scenario, lambda).step_matrix();
   if (delay_of(scenario) > kLongestLoopDelay || !unknown_to_theory(scenario).empty()) return {};
   return device_loop(scenario, lambda).state_matrix();
+}
+
+std::vector<std::pair<std::string, Eigen::MatrixXd>> contact_loops(const Scenario& scenario, double lambda,
+                                                                   bool over_hands) {
+  std::vector<std::pair<std::string, Eigen::MatrixXd>> all = {{"", contact_step(scenario, lambda)}};
+  if (all[0].second.size() == 0) return {};
+  if (scenario.rendering.dry_friction)
+    all.emplace_back("the tool held by friction", contact_step(stuck_scene(scenario), 1.0));
+  const bool held = spring_of(scenario.hand) != nullptr || std::holds_alternative<DragHandFields>(scenario.hand);
+  if (!over_hands || !held || !std::holds_alternative<ImpedanceDeviceConfig>(scenario.device)) return all;
+  SampledLoop loop = std::get<SampledLoop>(device_loop(scenario, lambda).loop);
+  for (const AttachedHand& hand : hand_family()) {
+    loop.hand = hand;
+    all.emplace_back(
+        hand.mass == 0.0 ? "no hand" : fmt::format("a hand of {} kg and {} N/m", hand.mass, hand.stiffness),
+        loop.state_matrix());
+  }
+  return all;
 }
 
 }  // namespace hapbench

@@ -2,6 +2,8 @@
 
 #include <Eigen/Core>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "device_model/theory/linear_loops.hpp"
 #include "scenarios/description/scenario.hpp"
@@ -45,5 +47,11 @@ double delay_of(const Scenario& scenario);
 /// integrator alone. Empty for a loop that is too large to solve, and for a device with fields that are
 /// unknown_to_theory.
 Eigen::MatrixXd contact_step(const Scenario& scenario, double lambda);
+
+/// The maps of a step of the loop of device, hand and a wall of lambda K (contact_step), by the name of the hand, which
+/// is empty for the scene's own: with `over_hands`, on an impedance device that a hand holds, each of hand_family(),
+/// too. With dry friction also that of the tool which it holds (stuck_scene). None where there is no contact_step.
+std::vector<std::pair<std::string, Eigen::MatrixXd>> contact_loops(const Scenario& scenario, double lambda,
+                                                                   bool over_hands);
 
 }  // namespace hapbench

@@ -169,6 +169,20 @@ TEST(DeviceLoop, SaysWhatIsNotLinear) {
   EXPECT_NE(device_loop(dry, 1.0).no_theory, "");
 }
 
+/// Of a virtual mass M with an undamped bristle, stable up to K_t = 4 M / dt^2.
+TEST(ContactLoops, HaveThatOfAToolHeldByFriction) {
+  for (const double factor : {0.99, 1.01}) {
+    Scenario scenario = load_scenario(find_scenario("drag_molar_dry")).scenario;
+    const double edge = 4.0 * scenario.rendering.mass / (scenario.time.step * scenario.time.step);
+    scenario.rendering.dry_friction = DryFrictionConfig{0.3, factor * edge, 0.0};
+    const auto loops = contact_loops(scenario, 1.0, false);
+    ASSERT_EQ(loops.size(), 2u);
+    EXPECT_TRUE(is_stable_step(loops[0].second));
+    EXPECT_EQ(loops[1].first, "the tool held by friction");
+    EXPECT_EQ(is_stable_step(loops[1].second), factor < 1.0);
+  }
+}
+
 TEST(DeviceLoop, KnowsEveryFieldOfTheDevices) {
   Scenario scenario;
   const LowPassFilter filter{50.0, 3};
