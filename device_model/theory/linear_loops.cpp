@@ -84,7 +84,7 @@ const char* SampledLoop::nonlinearity() const {
   return nullptr;
 }
 
-Eigen::MatrixXd SampledLoop::step_map() const {
+Eigen::MatrixXd SampledLoop::state_matrix() const {
   const double T = period, m = moving_mass(), delay = device.delay_samples;
   const Eigen::Index whole = static_cast<Eigen::Index>(std::floor(delay));
   const double part = delay - static_cast<double>(whole);
@@ -98,13 +98,13 @@ Eigen::MatrixXd SampledLoop::step_map() const {
   };
   const Eigen::Index forces = kModes + states_of(velocity) + states_of(position);
   const Eigen::Index n = forces + kept + (device.transmission ? 2 : 0);
-  const auto unit = [n](Eigen::Index i) -> Eigen::RowVectorXd { return Eigen::RowVectorXd::Unit(n + 1, i); };
-  Eigen::MatrixXd A = Eigen::MatrixXd::Zero(n, n + 1);
+  const auto unit = [n](Eigen::Index i) -> Eigen::RowVectorXd { return Eigen::RowVectorXd::Unit(n, i); };
+  Eigen::MatrixXd A = Eigen::MatrixXd::Zero(n, n);
 
   // The output of a filter with the input `u`; its states are the next ones.
   Eigen::Index next = kModes;
   const auto filtered = [&](const std::vector<LowPassMode>& modes, const Eigen::RowVectorXd& u) {
-    Eigen::RowVectorXd output = Eigen::RowVectorXd::Zero(n + 1);
+    Eigen::RowVectorXd output = Eigen::RowVectorXd::Zero(n);
     for (const LowPassMode& mode : modes) {
       const Eigen::Index at = next;
       next += is_pair(mode) ? 2 : 1;
@@ -119,7 +119,7 @@ Eigen::MatrixXd SampledLoop::step_map() const {
     }
     return output;
   };
-  const Eigen::RowVectorXd measured = unit(kPosition) + unit(n);
+  const Eigen::RowVectorXd measured = unit(kPosition);
   A.row(kLastPosition) = measured;
   Eigen::RowVectorXd force = -(wall_damping * T / m) * filtered(velocity, measured - unit(kLastPosition));
   force -= stiffness * T * T / m * (position.empty() ? measured : filtered(position, measured));
@@ -143,19 +143,6 @@ Eigen::MatrixXd SampledLoop::step_map() const {
   return A;
 }
 
-double speed_of_noise(const SampledLoop& loop) {
-  const Eigen::MatrixXd map = loop.step_map();
-  const Eigen::Index n = map.rows();
-  Eigen::MatrixXd A = map.leftCols(n), P = map.col(n) * map.col(n).transpose();
-  // P is the sum of A^i b b^T A^iT over the first 2^k periods.
-  for (int doubling = 0; doubling < 50; ++doubling) {
-    P += A * P * A.transpose();
-    A *= A;
-  }
-  const Eigen::Index speed = loop.device.transmission ? n - 1 : Eigen::Index{kVelocity};
-  return std::sqrt(P(speed, speed)) / loop.period;
-}
-
 double eigenvalue_edge(SampledLoop loop) {
   const double unit = loop.moving_mass() / (loop.period * loop.period);
   return first_edge(kLeastEdge * unit, kNoEdge * unit, [&loop](double K) {
@@ -177,26 +164,6 @@ double worst_hand_edge(SampledLoop loop) {
     least = std::min(least, eigenvalue_edge(loop));
   }
   return least;
-}
-
-Eigen::MatrixXd HeldSpring::state_matrix() const {
-  SpringDamper damper = spring;
-  damper.K = 0.0;
-  const Eigen::DiagonalMatrix<double, 2> in_metres(1.0, spring.dt);
-  const Eigen::Matrix2d advance = in_metres * damper.step_matrix() * in_metres.inverse();
-  const Eigen::Vector2d pull = -spring.lambda * spring.K * (in_metres * damper.input_step());
-  const Eigen::Index size = 2 + (delay + every - 1) / every;
-  Eigen::MatrixXd moving = Eigen::MatrixXd::Identity(2, size);
-  for (std::int64_t row = 0; row < every; ++row) {
-    // How many queries before this one the one is that serves.
-    const std::int64_t before = row >= delay ? 0 : (delay - row + every - 1) / every;
-    moving = advance * moving;
-    moving.col(before == 0 ? 0 : 1 + before) += pull;
-  }
-  Eigen::MatrixXd A = Eigen::MatrixXd::Zero(size, size);
-  A.topRows<2>() = moving;
-  for (Eigen::Index past = 2; past < size; ++past) A(past, past == 2 ? 0 : past - 1) = 1.0;
-  return A;
 }
 
 namespace {

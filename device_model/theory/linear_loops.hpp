@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <span>
+#include <string>
 #include <variant>
 
 #include "device_model/admittance_device.hpp"
@@ -71,14 +72,8 @@ struct SampledLoop {
   /// handle are the last two components. All components
   /// are in metres, so that the eigenvalues are exact to rounding. The motion between samples is exact (matrix
   /// exponential).
-  Eigen::MatrixXd state_matrix() const { return step_map().leftCols(step_map().rows()); }
-  /// The state matrix, and behind it a column for the noise of sample k.
-  Eigen::MatrixXd step_map() const;
+  Eigen::MatrixXd state_matrix() const;
 };
-
-/// How much the noise of the sensor moves the handle: standard deviation of its true velocity over that of the noise
-/// [1/s], once a stable loop is stationary, from the covariance P = A P A^T + b b^T of its state.
-double speed_of_noise(const SampledLoop& loop);
 
 /// The exact limit: the largest K up to which no eigenvalue of the loop leaves the unit circle (first_edge), with the
 /// loop's other parameters. Zero if there is none above 1e-8 m / T^2. Takes about 0.5 ms.
@@ -90,20 +85,6 @@ std::span<const AttachedHand> hand_family();
 
 /// The smallest eigenvalue_edge of the loop with each hand of the family in place of its own.
 double worst_hand_edge(SampledLoop loop);
-
-/// A virtual mass at a spring whose contacts are found every so manieth row, serve a delay later and are held in
-/// between (LateContacts): a sampled loop inside the one of the rows. The damper sees the velocity of every row.
-struct HeldSpring {
-  SpringDamper spring;     ///< as it would be with the contacts of every row
-  std::int64_t every = 1;  ///< [rows]
-  std::int64_t delay = 0;  ///< [rows]
-
-  /// The map of the state at a row with a query to that at the next such row,
-  ///   (x, T v, x at the query before, x at the one before that, …),
-  /// with the time step T and as many queries as may still serve. Exact for integrators that hold the force over a
-  /// step.
-  Eigen::MatrixXd state_matrix() const;
-};
 
 /// The loop of an AdmittanceDevice at a wall, as a linear system along one axis: the loop while neither the limiter of
 /// the input nor the servo saturates and the contact lasts. In each step, as in Simulation, the hand's force f = -k x_h
@@ -120,6 +101,19 @@ struct AdmittanceLoop {
   /// with the time step T and the virtual mass M. All components are in metres, so that the eigenvalues are exact to
   /// rounding.
   Eigen::MatrixXd state_matrix() const;
+};
+
+/// Eigenvalues of the matrices of longer delays take seconds [samples].
+inline constexpr double kLongestLoopDelay = 200.0;
+
+/// Device, hand and wall as a linear loop, as it is while nothing saturates and the contact lasts.
+struct DeviceLoop {
+  std::variant<SampledLoop, AdmittanceLoop> loop;
+  std::string no_theory;  ///< why the loop's eigenvalues do not tell its stability; empty where they do
+
+  Eigen::MatrixXd state_matrix() const {
+    return std::visit([](const auto& linear) { return linear.state_matrix(); }, loop);
+  }
 };
 
 }  // namespace hapbench

@@ -145,10 +145,4 @@ std::span<const StiffnessLimit> stiffness_limits() {
   return kLimits;
 }
 
-const StiffnessLimit* find_stiffness_limit(std::string_view name) {
-  const auto found =
-      std::find_if(std::begin(kLimits), std::end(kLimits), [name](const auto& limit) { return limit.name == name; });
-  return found == std::end(kLimits) ? nullptr : &*found;
-}
-
 }  // namespace hapbench

@@ -2,7 +2,6 @@
 
 #include <optional>
 #include <span>
-#include <string_view>
 
 #include "device_model/theory/linear_loops.hpp"
 
@@ -22,8 +21,5 @@ struct StiffnessLimit {
 
 /// The table of limits, which everything that draws or writes limits reads.
 std::span<const StiffnessLimit> stiffness_limits();
-
-/// Null if there is no limit of that name.
-const StiffnessLimit* find_stiffness_limit(std::string_view name);
 
 }  // namespace hapbench

@@ -256,8 +256,7 @@ void warn_of_unread_rendering(const Scenario& scenario, const Json& json, std::v
 /// A warning where the integrator does not step the bristle of dry friction stably: the tool never comes to rest.
 void warn_of_stiff_bristle(const Scenario& scenario, std::vector<std::string>& warnings) {
   const RenderingConfig& r = scenario.rendering;
-  const bool is_explicit = scenario.integrator.type->stability_limit != nullptr;
-  if (!r.dry_friction || !is_explicit || handle_moves_tool(scenario.device)) return;
+  if (!r.dry_friction || handle_moves_tool(scenario.device)) return;
   const SpringDamper bristle = bristle_of(*r.dry_friction, r, scenario.time.step);
   if (bristle.is_stable()) return;
   warnings.push_back(fmt::format(

@@ -120,9 +120,16 @@ void add_ends(Columns<LimitRow>& columns, const LimitTable* table) {
       [](const LimitRow& r) { return verdict_cell(ends_of(r).above); }, printed_if(high, "above it"));
 }
 
-void add_theory(Columns<LimitRow>& columns) {
+void add_theory(Columns<LimitRow>& columns, bool with_inequality) {
   columns.add("theory", "by field", "the limit in theory; empty where there is none",
               [](const LimitRow& r) { return cell_if(r.found.theory); });
+  if (with_inequality) {
+    columns.add(
+        "closed_form", "by field",
+        "the same where the integrator's inequality ends, of leapfrog 4 - 2 lambda B dt / M - lambda K dt^2 / M >= 0 "
+        "with lambda = lambda_max(S) (A.3); empty where it has none",
+        [](const LimitRow& r) { return cell_if(r.found.closed_form); });
+  }
   columns.add(
       "linear", "by field",
       "of a device at what only pushes: the largest value at which the loop of device, hand and surface is stable "
@@ -222,7 +229,8 @@ Json row_json(const Columns<LimitRow>& columns, const LimitRow& row) {
 Columns<LimitRow> limit_columns(const LimitTable* table) {
   Columns<LimitRow> columns = place_columns<LimitRow>(table);
   add_ends(columns, table);
-  add_theory(columns);
+  const auto has_inequality = [](const LimitRow& row) { return row.found.closed_form.has_value(); };
+  add_theory(columns, table == nullptr || std::ranges::any_of(table->rows, has_inequality));
   add_search(columns);
   if (table == nullptr || table->has_devices) {
     columns.add("published_N_per_m", "N/m", "published largest stable stiffness of a wall on the device",

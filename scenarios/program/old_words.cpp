@@ -11,12 +11,7 @@ struct OldWord {
   std::string_view instead;
 };
 
-constexpr std::string_view kSampleOfHands =
-    "hapbench sweep SCENE --sample lhs:400 --vary hand.x_N=-5:5, with a hand of type \"force\"";
-
 constexpr std::string_view kDevices = "hapbench limit tap_wall tap_corner tap_hole --device all";
-
-constexpr std::string_view kMaps = "hapbench limit stability_z_width, and other studies (hapbench list studies)";
 
 constexpr std::string_view kSlurm = "sbatch --array=0-99 scripts/sweep.sbatch SCENE --vary ... --out FOLDER";
 
@@ -33,6 +28,9 @@ constexpr OldWord kOldWords[] = {
     {"", "precision",
      "hapbench_accuracy, the benchmark of run time against error (tests/README.md), whose picture scripts/reproduce draws; "
      "hapbench converge SCENE --metric NAME"},
+    {"", "stability",
+     "hapbench limit spring_stiffness, spring_damping or spring_time_step; for --map other studies (hapbench list studies), "
+     "for --stress hapbench stress, for --search hapbench sweep SCENE --sample lhs:400 --vary hand.x_N=-5:5"},
     {"", "suite", "hapbench compare GROUP --algorithms all --seeds 5"},
     {"compare", "--check", kErrors},
     {"compare", "--devices", kDevices},
@@ -44,15 +42,6 @@ constexpr OldWord kOldWords[] = {
     {"reproduce", "--subjects",
      "their record, in the manual of the thesis's claims (scenarios/thesis_claims/README.md)"},
     {"run", "--sure", "hapbench converge SCENE, of the points with --vary environment.spacing_m"},
-    {"stability", "--algorithms", kMaps},
-    {"stability", "--count", "hapbench stress --count N"},
-    {"stability", "--evaluations", kSampleOfHands},
-    {"stability", "--integrators", kMaps},
-    {"stability", "--map", kMaps},
-    {"stability", "--objective", kSampleOfHands},
-    {"stability", "--search", kSampleOfHands},
-    {"stability", "--size", kMaps},
-    {"stability", "--stress", "hapbench stress"},
     {"sweep", "--cpus", kSlurm},
     {"sweep", "--dry-run", kSlurm},
     {"sweep", "--partition", kSlurm},

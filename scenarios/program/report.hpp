@@ -39,6 +39,15 @@ inline Shown only_csv() {
 /// The cell of a number as it is printed: the digits that its tolerance leaves; "-" for nothing.
 std::string printed(const Cell& cell, const Shown& shown, const std::optional<double>& tolerance);
 
+/// The cell of a number, a count, true or false, or a text; nothing for one of these that is not there.
+template <class Value>
+Cell cell_of(const Value& value) {
+  if constexpr (requires { value.has_value(); })
+    return cell_if(value);
+  else
+    return value;
+}
+
 /// A table that `describe` knows.
 struct DescribedTable {
   struct Entry {
@@ -64,9 +73,12 @@ class Columns {
     std::function<std::optional<double>(const Row&)> tolerance = {};  ///< by how much the number may be wrong
   };
 
-  void add(std::string name, std::string unit, std::string meaning, std::function<Cell(const Row&)> cell,
-           Shown shown = {}, std::function<std::optional<double>(const Row&)> tolerance = {}) {
-    entries_.push_back({std::move(name), std::move(unit), std::move(meaning), std::move(cell), std::move(shown),
+  /// `of`: a member of the row, or a function of it.
+  template <class Of>
+  void add(std::string name, std::string unit, std::string meaning, Of of, Shown shown = {},
+           std::function<std::optional<double>(const Row&)> tolerance = {}) {
+    entries_.push_back({std::move(name), std::move(unit), std::move(meaning),
+                        [of](const Row& row) { return cell_of(std::invoke(of, row)); }, std::move(shown),
                         std::move(tolerance)});
   }
   void add(const Columns& more) { entries_.insert(entries_.end(), more.entries_.begin(), more.entries_.end()); }

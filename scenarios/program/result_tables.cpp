@@ -30,8 +30,7 @@ std::vector<Table::Column> joined_headings(const std::vector<std::vector<Table::
 }
 
 std::vector<Table::Column> printed_headings() {
-  std::vector<std::vector<Table::Column>> all = {run_headings(),       league_headings(), converge_headings(),
-                                                 stability_headings(), tune_headings(),
+  std::vector<std::vector<Table::Column>> all = {run_headings(), league_headings(), converge_headings(),
                                                  claim_headings()};
   for (const DescribedTable& table : result_tables()) all.push_back(table.headings);
   return joined_headings(all);
@@ -50,12 +49,8 @@ std::vector<DescribedTable> result_tables() {
   for (const DescribedTable& table : limit_tables()) tables.push_back(table);
   add("converge.csv", "of converge: one line per metric", converge_columns());
   add("converge_levels.csv", "of converge: one line per metric and level", converge_level_columns());
-  add("tune.csv", "of tune: one line per algorithm", tune_columns());
-  add("tune_trials.csv", "of tune: one line per algorithm, setting and K that was tried", tune_trial_columns());
+  for (const DescribedTable& table : tune_tables()) tables.push_back(table);
   tables.push_back(sweep_table());
-  add("limits.csv", "of stability SCENARIO: one line per limit", stability_limit_columns());
-  add("root_locus.csv", "of stability SCENARIO: eigenvalues of a step as the case's number grows",
-      root_locus_columns());
   tables.push_back(stress_table());
   add("shell.csv", "of shell: one line per point of the environment", all(kShellColumns));
   return tables;

@@ -13,12 +13,9 @@ namespace hapbench {
 // The columns of tables that are defined as fields in the sources of their commands.
 std::vector<Column> converge_columns();
 std::vector<Column> converge_level_columns();
-std::vector<Column> stability_limit_columns();
-std::vector<Column> root_locus_columns();
 DescribedTable stress_table();
 DescribedTable sweep_table();
-std::vector<Column> tune_columns();
-std::vector<Column> tune_trial_columns();
+std::vector<DescribedTable> tune_tables();
 
 // The headings of printed tables, from which the tables are made; without those that are names of fields, metrics,
 // scenes or algorithms.
@@ -27,8 +24,6 @@ std::vector<Table::Column> converge_headings();
 std::vector<Table::Column> league_headings();
 std::vector<Table::Column> run_headings();
 std::vector<Table::Column> latency_headings();
-std::vector<Table::Column> stability_headings();
-std::vector<Table::Column> tune_headings();
 
 std::vector<Table::Column> joined_headings(const std::vector<std::vector<Table::Column>>& tables);
 /// All of them, also those whose titles are names that `describe` knows.

@@ -22,22 +22,20 @@ bool is_bad(const StressCounts& counts) {
 
 Columns<StressCounts> stress_columns() {
   Columns<StressCounts> columns;
-  const auto count = [&columns](const char* name, const char* meaning, std::uint64_t StressCounts::*of,
-                                const char* heading) {
-    columns.add(name, "1", meaning, [of](const StressCounts& c) -> Cell { return c.*of; }, {.heading = heading});
-  };
-  columns.add("algorithm", "", "force algorithm", [](const StressCounts& c) -> Cell { return c.algorithm; },
-              {.heading = "algorithm"});
-  count("sets", "random contact sets drawn", &StressCounts::sets, "sets");
-  count("in_contact", "sets whose tool touches a point", &StressCounts::in_contact, "in contact");
-  count("non_finite", "answers that are not finite", &StressCounts::non_finite, "non-finite");
-  count("out_of_bound", "finite answers beyond what the law allows", &StressCounts::out_of_bound, "out of bound");
-  count("points_dropped", "contacts that a full reduction refused", &StressCounts::points_dropped, "points dropped");
+  columns.add("algorithm", "", "force algorithm", &StressCounts::algorithm, {.heading = "algorithm"});
+  columns.add("sets", "1", "random contact sets drawn", &StressCounts::sets, {.heading = "sets"});
+  columns.add("in_contact", "1", "sets whose tool touches a point", &StressCounts::in_contact,
+              {.heading = "in contact"});
+  columns.add("non_finite", "1", "answers that are not finite", &StressCounts::non_finite, {.heading = "non-finite"});
+  columns.add("out_of_bound", "1", "finite answers beyond what the law allows", &StressCounts::out_of_bound,
+              {.heading = "out of bound"});
+  columns.add("points_dropped", "1", "contacts that a full reduction refused", &StressCounts::points_dropped,
+              {.heading = "points dropped"});
   columns.add("largest_force_per_K_d", "1", "largest ||f_spring|| in units of K times the set's deepest penetration",
-              [](const StressCounts& c) -> Cell { return c.largest_force; }, {.heading = "largest |f|/(K d)"});
+              &StressCounts::largest_force, {.heading = "largest |f|/(K d)"});
   columns.add("largest_share_of_bound", "1",
               "largest ||f_spring|| in units of the law's bound; empty for laws without one",
-              [](const StressCounts& c) { return cell_if(c.largest_share); }, {.heading = "of its bound", .digits = 3});
+              &StressCounts::largest_share, {.heading = "of its bound", .digits = 3});
   columns.add(
       "first_bad_set", "1", "number of the first set with a bad answer",
       [](const StressCounts& c) { return is_bad(c) ? Cell(c.first_bad) : Cell(); }, only_json());

@@ -6,15 +6,15 @@
 #include <tuple>
 
 #include "results/io/json_text.hpp"
-#include "results/io/table_writer.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/description/metric_sections.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/limit_cases.hpp"
+#include "scenarios/program/report.hpp"
 #include "scenarios/program/result_tables.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/progress_bar.hpp"
-#include "scenarios/studies/stability/stability_limits.hpp"
+#include "scenarios/studies/stability/scene_loop.hpp"
 #include "scenarios/studies/tuning/tune.hpp"
 
 namespace hapbench {
@@ -54,99 +54,116 @@ struct Tuning {
   }
 };
 
-// ---- Files and JSON
+// ---- Tables and JSON
 
-template <std::size_t i>
-Cell tune_metric(const TuneMetrics& metrics) {
-  const auto found = metrics.find(kTuneMetrics[i]);
-  return found == metrics.end() ? Cell() : Cell(found->second);
+/// With the digits that the search leaves it.
+std::string stiffness_text(const TuneTrial& choice) {
+  return deserved(choice.stiffness, 0.005 * choice.stiffness);
+}
+
+/// A metric of the choice with the digits that its spread over the seeds leaves it, three where none is known.
+std::string metric_text(const TunedLaw& law, const char* name, double factor) {
+  if (!law.choice) return "-";
+  const auto value = law.choice->metrics.find(name), spread = law.spread.find(name);
+  if (value == law.choice->metrics.end()) return "-";
+  const auto error = spread == law.spread.end() ? std::nullopt : std::optional(factor * spread->second);
+  return significant(factor * value->second, deserved_digits(factor * value->second, error, 3));
 }
 
 constexpr const char* kRatioColumn = "rendering.damping_ratio";
 
-using TrialRow = std::pair<const TunedLaw*, const TuneTrial*>;
-using TrialField = Field<TrialRow>;
-
-const TrialField kTrialFields[] = {
-    {{"algorithm", "", "force algorithm"}, [](const TrialRow& r) -> Cell { return r.first->algorithm; }},
-    {{"stiffness_N_per_m", "N/m", "K"}, [](const TrialRow& r) -> Cell { return r.second->stiffness; }},
-    {{kRatioColumn, "1", "zeta; empty where it has no part"},
-     [](const TrialRow& r) { return cell_if(r.second->setting.damping_ratio); }},
-    {{"mass_kg", "kg", "virtual mass; empty where it is not searched"},
-     [](const TrialRow& r) { return cell_if(r.second->setting.mass); }},
-    {{"velocity_filter", "", "of the device, as JSON; empty: the scene's"},
-     [](const TrialRow& r) -> Cell { return r.second->setting.filter; }},
-    {{"feasible", "", "true when every constraint is kept"},
-     [](const TrialRow& r) -> Cell { return r.second->feasible(); }},
-    {{"binding", "",
-      "the first constraint that is not: settled (at K), margin (up to G K), a limited metric, or runs, the bound on them"},
-     [](const TrialRow& r) -> Cell { return r.second->binding; }},
-    {{"why", "", "the same in words"}, [](const TrialRow& r) -> Cell { return r.second->why; }},
-    {{"inside_max_m", "m", "of the scene's own run at K; empty where it was not asked for"},
-     [](const TrialRow& r) { return tune_metric<0>(r.second->metrics); }},
-    {{"force_rms_above_30Hz_N", "N", "likewise"}, [](const TrialRow& r) { return tune_metric<1>(r.second->metrics); }},
-    {{"settled_force_step_max_N", "N", "likewise"},
-     [](const TrialRow& r) { return tune_metric<2>(r.second->metrics); }}};
-
-using LawField = Field<TunedLaw>;
-
-template <class Value>
-Cell of_choice(const TunedLaw& law, Value value) {
-  return law.choice ? Cell(value(*law.choice)) : Cell();
+/// A member of the choice; nothing where nothing is feasible.
+template <class Member>
+auto of_choice(Member member) {
+  return [member](const TunedLaw& law) { return law.choice ? cell_of(std::invoke(member, *law.choice)) : Cell(); };
 }
 
-Cell chosen_ratio(const TunedLaw& law) {
-  return law.choice ? cell_if(law.choice->setting.damping_ratio) : Cell();
+void add_choice(Columns<TunedLaw>& columns) {
+  columns.add("stiffness_N_per_m", "N/m", "the largest K; empty when nothing is feasible",
+              of_choice(&TuneTrial::stiffness));
+  const auto text = [](const TunedLaw& l) { return l.choice ? stiffness_text(*l.choice) : "none"; };
+  columns.add("", "N/m", "of tune: the largest stiffness that keeps margin and limits [N/m]", text, only_printed("K"));
+  columns.add(kRatioColumn, "1", "zeta with it; empty where it has no part", of_choice(&TuneTrial::damping_ratio),
+              {.json = false, .heading = "zeta", .digits = 3});
+  columns.add("damping_ratio", "1", "the same", of_choice(&TuneTrial::damping_ratio), only_json());
+  columns.add("mass_kg", "kg", "virtual mass with it, of an admittance device; else empty: the scene's",
+              of_choice(&TuneTrial::mass));
+  columns.add("velocity_filter", "", "with it, as JSON; empty: the scene's", of_choice(&TuneTrial::filter));
+  columns.add("lambda_max", "1",
+              "largest eigenvalue of the mean S in the end of the run: K lambda_max is the stiffness rendered",
+              of_choice(&TuneTrial::lambda_max));
 }
 
-const LawField kLawFields[] = {
-    {{"algorithm", "", "force algorithm"}, [](const TunedLaw& l) -> Cell { return l.algorithm; }},
-    {{"feasible", "", "false when nothing that was tried keeps all constraints"},
-     [](const TunedLaw& l) -> Cell { return l.choice.has_value(); }},
-    {{"stiffness_N_per_m", "N/m", "the largest K; empty when nothing is feasible"},
-     [](const TunedLaw& l) { return of_choice(l, [](const TuneTrial& t) { return t.stiffness; }); }},
-    {{kRatioColumn, "1", "zeta with it; empty where it has no part"}, chosen_ratio, LawField::In::csv},
-    {{"damping_ratio", "1", "the same"}, chosen_ratio, LawField::In::json},
-    {{"mass_kg", "kg", "virtual mass with it, of an admittance device; else empty: the scene's"},
-     [](const TunedLaw& l) { return l.choice ? cell_if(l.choice->setting.mass) : Cell(); }},
-    {{"velocity_filter", "", "with it, as JSON; empty: the scene's"},
-     [](const TunedLaw& l) { return of_choice(l, [](const TuneTrial& t) { return t.setting.filter; }); }},
-    {{"lambda_max", "1",
-      "largest eigenvalue of the mean S in the end of the run: K lambda_max is the stiffness rendered"},
-     [](const TunedLaw& l) { return of_choice(l, [](const TuneTrial& t) { return t.lambda_max; }); }},
-    {{"binding", "",
-      "what a larger K does not keep: settled, margin, a limited metric, or range, the end of the search"},
-     [](const TunedLaw& l) -> Cell { return l.binding; }},
-    {{"why", "", "the same in words"}, [](const TunedLaw& l) -> Cell { return l.why; }},
-    {{"relax", "", "where nothing is feasible: which limit to relax, and to what"},
-     [](const TunedLaw& l) -> Cell { return l.relax; }},
-    {{"gain_margin", "1", "largest factor on K, up to 64, at which all runs and the loop in contact are settled"},
-     [](const TunedLaw& l) { return cell_if(l.margins.gain); },
-     LawField::In::csv},
-    {{"delay_margin_samples", "time steps", "likewise of further delay of the device, up to 64; empty without device"},
-     [](const TunedLaw& l) { return cell_if(l.margins.delay_samples); },
-     LawField::In::csv},
-    {{"damping_margin", "1", "damping ratio of the least damped mode of the loop in contact; empty without one"},
-     [](const TunedLaw& l) { return cell_if(l.margins.damping_ratio); },
-     LawField::In::csv},
-    {{"verified", "1", "full-length runs from K to G K that show the choice to be settled"},
-     [](const TunedLaw& l) -> Cell { return std::uint64_t{l.verified}; }},
-    {{"runs", "1", "simulations in all"}, [](const TunedLaw& l) -> Cell { return std::uint64_t{l.runs}; }}};
+void add_margins(Columns<TunedLaw>& columns) {
+  const auto add = [&](const char* name, const char* unit, const char* meaning, std::optional<double> TuneMargins::*of,
+                       const char* heading) {
+    columns.add(name, unit, meaning, [of](const TunedLaw& l) { return l.margins.*of; },
+                {.json = false, .heading = heading, .digits = 3});
+  };
+  add("gain_margin", "1", "largest factor on K, up to 64, at which all runs and the loop in contact are settled",
+      &TuneMargins::gain, "gain");
+  add("delay_margin_samples", "time steps", "likewise of further delay of the device, up to 64; empty without device",
+      &TuneMargins::delay_samples, "delay");
+  add("damping_margin", "1", "damping ratio of the least damped mode of the loop in contact; empty without one",
+      &TuneMargins::damping_ratio, "");
+}
 
-Json numbers_of(const TuneMetrics& metrics) {
-  Json json = Json::object();
-  for (const auto& [name, value] : metrics) json[name] = value;
-  return json;
+Columns<TunedLaw> law_columns() {
+  Columns<TunedLaw> columns;
+  columns.add("algorithm", "", "force algorithm", &TunedLaw::algorithm, {.heading = "algorithm"});
+  columns.add("feasible", "", "false when nothing that was tried keeps all constraints",
+              [](const TunedLaw& l) { return l.choice.has_value(); });
+  add_choice(columns);
+  columns.add("binding", "",
+              "what a larger K does not keep: settled, margin, a limited metric, or range, the end of the search",
+              &TunedLaw::binding);
+  columns.add("why", "", "the same in words", &TunedLaw::why);
+  columns.add("relax", "", "where nothing is feasible: which limit to relax, and to what", &TunedLaw::relax);
+  add_margins(columns);
+  columns.add("verified", "1", "full-length runs from K to G K that show the choice to be settled",
+              &TunedLaw::verified);
+  columns.add("runs", "1", "simulations in all", &TunedLaw::runs);
+  const auto add_metric = [&](const char* name, double factor, const char* heading) {
+    columns.add(
+        "", "by name", name, [=](const TunedLaw& l) { return metric_text(l, name, factor); }, only_printed(heading));
+  };
+  add_metric("inside_settled_m", 1e3, "inside mm");
+  add_metric("force_rms_above_30Hz_N", 1.0, "vibration N");
+  add_metric("settled_force_step_max_N", 1.0, "step N");
+  columns.add("", "", "of tune: what a larger K does not keep", &TunedLaw::binding, only_printed("binding"));
+  return columns;
+}
+
+Columns<TuneTrial> trial_columns() {
+  Columns<TuneTrial> columns;
+  columns.add("algorithm", "", "force algorithm", &TuneTrial::algorithm);
+  columns.add("stiffness_N_per_m", "N/m", "K", &TuneTrial::stiffness);
+  columns.add(kRatioColumn, "1", "zeta; empty where it has no part", &TuneTrial::damping_ratio);
+  columns.add("mass_kg", "kg", "virtual mass; empty where it is not searched", &TuneTrial::mass);
+  columns.add("velocity_filter", "", "of the device, as JSON; empty: the scene's", &TuneTrial::filter);
+  columns.add("feasible", "", "true when every constraint is kept", &TuneTrial::feasible);
+  columns.add("binding", "",
+              "the first constraint that is not: settled (at K), margin (up to G K), a limited metric, or runs, the "
+              "bound on them",
+              &TuneTrial::binding);
+  columns.add("why", "", "the same in words", &TuneTrial::why);
+  for (const char* name : {kTuneMetrics[0], kTuneMetrics[1], kTuneMetrics[2]}) {
+    columns.add(name, name == kTuneMetrics[0] ? "m" : "N",
+                "of the scene's own run at K; empty where it was not asked for", [name](const TuneTrial& trial) {
+                  const auto found = trial.metrics.find(name);
+                  return found == trial.metrics.end() ? Cell() : Cell(found->second);
+                });
+  }
+  return columns;
 }
 
 Json law_json(const TunedLaw& law) {
-  Json json;
-  add_row(json, kLawFields, law);
+  Json json = law_columns().json(law);
   json["margins"] = {{"gain", or_null(law.margins.gain)},
                      {"delay_samples", or_null(law.margins.delay_samples)},
                      {"damping_ratio", or_null(law.margins.damping_ratio)}};
-  json["metrics"] = law.choice ? numbers_of(law.choice->metrics) : Json::object();
-  json["spread"] = numbers_of(law.spread);
+  json["metrics"] = law.choice ? law.choice->metrics : TuneMetrics();
+  json["spread"] = law.spread;
   return json;
 }
 
@@ -187,31 +204,15 @@ Json tuned_scenario(const Tuning& tuning, const TunedLaw& law, const std::string
     const std::string section(overridden_path(override).substr(0, overridden_path(override).find('.')));
     if (section != "name" && section != "expect") json[section] = effective.at(section);
   }
-  if (!law.choice->setting.filter.empty()) json["device"] = effective.at("device");
+  if (!law.choice->filter.empty()) json["device"] = effective.at("device");
   Json& rendering = json["rendering"];
   for (const char* name : {"algorithm", "stiffness_N_per_m", "damping_ratio", "damping_N_s_per_m", "mass_kg"})
     rendering[name] = effective.at("rendering").at(name);
-  if (!law.choice->setting.damping_ratio) {
+  if (!law.choice->damping_ratio) {
     rendering.erase("damping_ratio");
     rendering.erase("damping_N_s_per_m");
   }
   return json;
-}
-
-fs::path write_tuning(const Tuning& tuning, const std::string& scene, const fs::path& out) {
-  FileSet files;
-  write_csv(out / "tune.csv", kLawFields, tuning.laws, &files);
-  std::vector<TrialRow> trials;
-  for (const TunedLaw& law : tuning.laws)
-    for (const TuneTrial& trial : law.trials) trials.emplace_back(&law, &trial);
-  write_csv(out / "tune_trials.csv", kTrialFields, trials, &files);
-  fs::path tuned;
-  if (const TunedLaw* law = tuning.recommended()) {
-    tuned = out / (tuning.question.scenario.file.stem().string() + "_tuned.json");
-    files.write(tuned, json_text(tuned_scenario(tuning, *law, scene, out)));
-  }
-  files.commit();
-  return tuned;
 }
 
 // ---- Text
@@ -228,13 +229,8 @@ std::string limits_text(const Tuning& tuning) {
   return text + range("zeta", tuning.ranges.damping_ratio) + range("virtual mass [kg]", tuning.ranges.mass);
 }
 
-/// With the digits that the search leaves it.
-std::string stiffness_text(const TuneTrial& choice) {
-  return deserved(choice.stiffness, 0.005 * choice.stiffness);
-}
-
 std::string choice_text(const TuneTrial& choice) {
-  return fmt::format("K = {} N/m{}", stiffness_text(choice), setting_text(choice.setting));
+  return fmt::format("K = {} N/m{}", stiffness_text(choice), setting_text(choice));
 }
 
 std::string margins_text(const TuneMargins& margins) {
@@ -247,14 +243,6 @@ std::string margins_text(const TuneMargins& margins) {
   add("{} samples more delay", margins.delay_samples, kMostDelay);
   add("least damped mode {}", margins.damping_ratio, 2.0);
   return fmt::format("{}", fmt::join(texts, ", "));
-}
-
-/// A metric of the choice with the digits that its spread over the seeds leaves it, three where none is known.
-std::string metric_text(const TunedLaw& law, const char* name, double factor) {
-  const auto value = law.choice->metrics.find(name), spread = law.spread.find(name);
-  if (value == law.choice->metrics.end()) return "-";
-  const auto error = spread == law.spread.end() ? std::nullopt : std::optional(factor * spread->second);
-  return significant(factor * value->second, deserved_digits(factor * value->second, error, 3));
 }
 
 std::string metrics_text(const TunedLaw& law) {
@@ -306,24 +294,9 @@ std::string recommendation_text(const Tuning& tuning) {
   return text;
 }
 
-Table tune_table(const std::vector<TunedLaw>& laws) {
-  Table table(tune_headings());
-  for (const TunedLaw& law : laws) {
-    if (!law.choice) {
-      table.add({law.algorithm, "none", "-", "-", "-", "-", "-", "-", law.binding});
-      continue;
-    }
-    table.add({law.algorithm, stiffness_text(*law.choice), significant(law.choice->setting.damping_ratio, 3),
-               significant(law.margins.gain, 3), significant(law.margins.delay_samples, 3),
-               metric_text(law, "inside_settled_m", 1e3), metric_text(law, "force_rms_above_30Hz_N", 1.0),
-               metric_text(law, "settled_force_step_max_N", 1.0), law.binding});
-  }
-  return table;
-}
-
 std::string tuning_text(const Tuning& tuning) {
   std::string text = wrapped(fmt::format("{}: {}", tuning.scene, limits_text(tuning)), 0) + "\n" +
-                     recommendation_text(tuning) + "\n" + tune_table(tuning.laws).text() + "\n";
+                     recommendation_text(tuning) + "\n" + law_columns().table(tuning.laws).text() + "\n";
   for (const TunedLaw& law : tuning.laws) {
     if (!law.choice)
       text += wrapped(fmt::format("{}: nothing is feasible, {}; {}", law.algorithm, law.why, law.relax), 0);
@@ -399,35 +372,31 @@ int tune(const TuneOptions& options) {
     bar.show(i + 1);
   }
   tuning.ranking = ranking_of(tuning.laws);
-  const fs::path tuned = write_tuning(tuning, options.scenario, out);
-  std::string end = tuned.empty() ? "" : fmt::format("\"hapbench run {}\" gives these metrics\n", tuned.string());
-  end += fmt::format("results in {0}\n\"hapbench plot {0}\" draws them\n", out.string());
+  Report report(options.output, out);
+  report.write("tune.csv", law_columns(), tuning.laws);
+  std::vector<TuneTrial> trials;
+  for (const TunedLaw& law : tuning.laws) trials.insert(trials.end(), law.trials.begin(), law.trials.end());
+  report.write("tune_trials.csv", trial_columns(), trials);
+  report.say(tuning_text(tuning));
   if (handle_moves_tool(loaded.scenario.device) && delay_of(loaded.scenario) > 0.0)
-    end = wrapped(fmt::format("delay_samples: {}; {}", delay_text(loaded.scenario), kWhoseSamples), 0) + end;
-  print(options.output, tuning_text(tuning) + end, tuning_json(tuning, tuned));
-  return kSuccess;
+    report.say(wrapped(fmt::format("delay_samples: {}; {}", delay_text(loaded.scenario), kWhoseSamples), 0));
+  fs::path tuned;
+  if (const TunedLaw* law = tuning.recommended()) {
+    tuned = out / (file.stem().string() + "_tuned.json");
+    report.files().write(tuned, json_text(tuned_scenario(tuning, *law, options.scenario, out)));
+    report.say(fmt::format("\"hapbench run {}\" gives these metrics\n", tuned.string()));
+  }
+  report.say(fmt::format("results in {0}\n\"hapbench plot {0}\" draws them\n", out.string()));
+  report.json() = tuning_json(tuning, tuned);
+  return report.finish();
 }
 
 }  // namespace
 
-std::vector<Column> tune_columns() {
-  return columns_of(kLawFields);
-}
-
-std::vector<Column> tune_trial_columns() {
-  return columns_of(kTrialFields);
-}
-
-std::vector<Table::Column> tune_headings() {
-  return {{"algorithm", false},
-          {"K", true, "of tune: the largest stiffness that keeps margin and limits [N/m]"},
-          {"zeta", true, "of tune: the damping ratio with it"},
-          {"gain", true, "of tune: gain_margin, the factor on K up to which all runs are settled"},
-          {"delay", true, "of tune: delay_margin_samples"},
-          {"inside mm", true, "inside_settled_m"},
-          {"vibration N", true, "force_rms_above_30Hz_N"},
-          {"step N", true, "settled_force_step_max_N"},
-          {"binding", false, "of tune: what a larger K does not keep"}};
+std::vector<DescribedTable> tune_tables() {
+  return {
+      law_columns().described("tune.csv", "of tune: one line per algorithm"),
+      trial_columns().described("tune_trials.csv", "of tune: one line per algorithm, setting and K that was tried")};
 }
 
 void add_tune(CommandLine& line) {

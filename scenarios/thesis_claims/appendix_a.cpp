@@ -6,7 +6,7 @@
 #include <map>
 #include <optional>
 
-#include "scenarios/studies/stability/stability_limits.hpp"
+#include "scenarios/studies/stability/field_limit.hpp"
 #include "scenarios/thesis_claims/claims.hpp"
 #include "scenarios/thesis_claims/measurements.hpp"
 #include "sim/core/math.hpp"
@@ -279,23 +279,50 @@ constexpr Figure kDampedStiffness = {"K_max (B from zeta)", "A4.stiffness.damped
 constexpr Figure kDampingThere = {"B there", "A4.damping.damped"};
 constexpr Figure kFigures[] = {kUndampedStiffness, kDampingAlone, kDampedStiffness, kDampingThere};
 
-Measured measure_stability_limits(const Evidence& e) {
-  Measured measured;
-  const auto add = [&measured](const Figure& figure, double value) {
-    measured.push_back({figure.name, {{"limit", {value}}}});
-  };
-  for (const StabilityLimit& limit : stability_limits(e.load("single_spring").scenario)) {
-    if (limit.which == StabilityCase::stiffness_undamped) add(kUndampedStiffness, limit.simulation);
-    if (limit.which == StabilityCase::damping_alone) add(kDampingAlone, limit.simulation);
-    if (limit.which != StabilityCase::stiffness_damped) continue;
-    add(kDampedStiffness, limit.simulation);
-    add(kDampingThere, limit.damping_at_limit);
+constexpr const char* kSpring = "single_spring";
+constexpr double kLimitResolution = 1e-4;
+
+/// The largest value of a field at which the run of the spring, struck once, stays bounded.
+double largest_bounded(const Evidence& e, const std::string& field, const Range& range,
+                       std::vector<std::string> overrides) {
+  const LoadedScenario loaded = e.load(kSpring, overrides);
+  if (e.overrides) {
+    const std::vector<std::string> chosen = e.overrides(load_scenario(loaded.file).scenario);
+    overrides.insert(overrides.begin(), chosen.begin(), chosen.end());
   }
-  return measured;
+  overrides.insert(overrides.end(), {"time.steps=20000", "initial.velocity_m_per_s=[0.001,0,0]"});
+  const ScenarioText scene = read_scenario_text(loaded.file);
+  LimitQuestion question = limit_question(scene, overrides, field, range);
+  question.bounded = true;
+  question.resolution = kLimitResolution;
+  return field_limit({&scene, overrides, loaded.scenario.rendering.algorithm, question}).value.value_or(0.0);
+}
+
+double largest_stiffness(const Evidence& e, std::vector<std::string> overrides = {}) {
+  return largest_bounded(e, "rendering.stiffness_N_per_m", {1e3, 1e9, true}, std::move(overrides));
+}
+double largest_undamped_stiffness(const Evidence& e) {
+  return largest_stiffness(e, {"rendering.damping_ratio=0"});
+}
+double largest_damping_alone(const Evidence& e) {
+  return largest_bounded(e, "rendering.damping_N_s_per_m", {1.0, 1e5, true}, {"rendering.stiffness_N_per_m=0"});
+}
+
+/// The damping that belongs to a stiffness by the scene's zeta [N s/m].
+double damping_at(const Evidence& e, double stiffness) {
+  const RenderingConfig rendering = e.load(kSpring).scenario.rendering;
+  return 2.0 * rendering.damping_ratio * std::sqrt(stiffness * rendering.mass);
+}
+
+Measured measure_stability_limits(const Evidence& e) {
+  const double damped = largest_stiffness(e);
+  const auto limit = [](const Figure& figure, double value) { return MeasuredCase{figure.name, {{"limit", {value}}}}; };
+  return {limit(kUndampedStiffness, largest_undamped_stiffness(e)), limit(kDampingAlone, largest_damping_alone(e)),
+          limit(kDampedStiffness, damped), limit(kDampingThere, damping_at(e, damped))};
 }
 
 Finding judge_stability_limits(const Measured& measured, const PublishedNumbers& published) {
-  const auto digits = static_cast<int>(std::lround(-math::log10(kLimitTolerance)));  // what bisection leaves
+  const auto digits = static_cast<int>(std::lround(-math::log10(kLimitResolution)));  // what bisection leaves
   double worst = 0.0;
   std::string text;
   for (const MeasuredCase& m : measured) {
@@ -310,15 +337,7 @@ Finding judge_stability_limits(const Measured& measured, const PublishedNumbers&
 
 /// The damping that the largest stiffness without damping would have, and the largest one alone [N s/m].
 Measured measure_damping_at_limit(const Evidence& e) {
-  const Scenario scenario = e.load("single_spring").scenario;
-  MeasuredCase m{"", {}};
-  for (const StabilityLimit& limit : stability_limits(scenario)) {
-    if (limit.which == StabilityCase::damping_alone) m.values["alone"] = {limit.simulation};
-    if (limit.which != StabilityCase::stiffness_undamped) continue;
-    m.values["there"] = {2.0 * scenario.rendering.damping_ratio *
-                         std::sqrt(limit.simulation * scenario.rendering.mass)};
-  }
-  return {m};
+  return {{"", {{"alone", {largest_damping_alone(e)}}, {"there", {damping_at(e, largest_undamped_stiffness(e))}}}}};
 }
 
 Finding judge_damping_at_limit(const Measured& measured, const PublishedNumbers& p) {

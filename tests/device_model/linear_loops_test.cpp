@@ -285,6 +285,10 @@ TEST(SampledLoop, IsTheMapOfTheDeviceWithATransmission) {
   }
 }
 
+std::optional<double> limit(std::string_view name, const SampledLoop& loop) {
+  return std::ranges::find(stiffness_limits(), name, &StiffnessLimit::name)->largest(loop);
+}
+
 /// A stiff transmission is none; a soft one resonates and lowers the edge.
 TEST(SampledLoop, ATransmissionThatIsStiffIsNone) {
   SampledLoop loop = light_loop();
@@ -296,29 +300,8 @@ TEST(SampledLoop, ATransmissionThatIsStiffIsNone) {
   EXPECT_NEAR(eigenvalue_edge(loop), rigid, 1e-4 * rigid);
   loop.device.transmission = Transmission{0.5, 1e5, 0.1};
   EXPECT_LT(eigenvalue_edge(loop), 0.7 * rigid);
-  EXPECT_FALSE(find_stiffness_limit("stable_gil_hulin")->largest(loop)) << "counts on one mass";
-  EXPECT_TRUE(find_stiffness_limit("passive_with_delay")->largest(loop)) << "the transmission is the hand's";
-}
-
-TEST(SampledLoop, ItsNoiseMovesTheHandleAsMuchAsTheCovarianceSays) {
-  SampledLoop loop = light_loop();
-  loop.device.viscous = 2.0;
-  loop.device.velocity_filter = LowPassFilter{60.0, 2};
-  loop.device.position_noise = 1e-6;
-  loop.stiffness = 400.0;
-  loop.wall_damping = 3.0;
-  ImpedanceDevice device(loop.device, loop.period);
-  device.reset({});
-  double squares = 0.0;
-  constexpr int kSamples = 400'000;
-  for (int k = 0; k < kSamples; ++k) {
-    const HandleState tool = device.sampled();
-    device.drive(-loop.stiffness * tool.position - loop.wall_damping * tool.velocity, Vec3::Zero());
-    squares += device.handle().velocity.squaredNorm();
-  }
-  // The loop remembers for about 40 ms, so three axes have 30 000 independent values: 0.4 % of a deviation, five of
-  // them.
-  EXPECT_NEAR(std::sqrt(squares / (3.0 * kSamples)) / 1e-6 / speed_of_noise(loop), 1.0, 0.02);
+  EXPECT_FALSE(limit("stable_gil_hulin", loop)) << "counts on one mass";
+  EXPECT_TRUE(limit("passive_with_delay", loop)) << "the transmission is the hand's";
 }
 
 TEST(HandFamily, NeedsLessStiffnessThanAnyOfItsHands) {
@@ -334,10 +317,6 @@ TEST(HandFamily, NeedsLessStiffnessThanAnyOfItsHands) {
     met = met || edge == worst;
   }
   EXPECT_TRUE(met);
-}
-
-std::optional<double> limit(const char* name, const SampledLoop& loop) {
-  return find_stiffness_limit(name)->largest(loop);
 }
 
 SampledLoop damped_loop() {
@@ -451,9 +430,7 @@ TEST(StiffnessLimits, TheUndampedHandleHasAClosedForm) {
 TEST(StiffnessLimits, EveryRowSaysWhereItComesFromAndWhenItApplies) {
   for (const StiffnessLimit& limit : stiffness_limits()) {
     for (const char* text : {limit.name, limit.formula, limit.source, limit.applies}) EXPECT_STRNE(text, "");
-    EXPECT_EQ(find_stiffness_limit(limit.name), &limit);
   }
-  EXPECT_EQ(find_stiffness_limit("none"), nullptr);
 }
 
 AdmittanceLoop random_loop(Random& random) {

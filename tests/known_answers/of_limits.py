@@ -1,4 +1,4 @@
-"""Scenes behind the tables of limit and stability: the eigenvalues and the motion of linear recurrences."""
+"""Scenes behind the tables of limit, tune and stress: the eigenvalues and the motion of linear recurrences."""
 import math
 
 import numpy as np
@@ -28,61 +28,34 @@ def limit_of_handle(bench):
 
 @scene
 def limits_of_springs(bench):
-    """The limits of one spring under leapfrog (thesis A.3), and its root locus."""
-    M, dt, zeta = 0.1, 0.0005, 0.7
-    base = bench.scenario("limits_of_springs", time={"step_s": dt, "steps": 400}, initial={"position_m": [1e-3, 0, 0]},
+    """The limits of two springs side by side under leapfrog (thesis A.3), and under rk4."""
+    M, dt, zeta, lam, K = 0.1, 0.0005, 0.7, 2.0, 20000.0
+    base = bench.scenario("limits_of_springs", time={"step_s": dt, "steps": 20000}, initial={"position_m": [1e-3, 0, 0], "velocity_m_per_s": [1e-3, 0, 0]},
                           environment={"type": "springs", "groups": [{"direction": [1, 0, 0], "count": 2}]},
-                          rendering={**PLAIN, "algorithm": "summation", "damping_ratio": zeta, "stiffness_N_per_m": 20000})
-    found = bench.json("stability", base, "--out", "limits")[0]
-    printed = found["limits"]
-    bench.add("stability --json: integrator", found["integrator"], "leapfrog", "the default", EXACT, ("another", "rk4"))
-    bench.add("stability --json: simulation_tolerance", [row["simulation_tolerance"] for row in printed], [1e-4 * row["simulation"] for row in printed],
-              "bisection on runs ends at 1e-4", ROUNDING, ("of maps", [1e-3 * row["simulation"] for row in printed]))
-    table, locus = Table(bench.folder / "limits" / "limits.csv"), Table(bench.folder / "limits" / "root_locus.csv")
-    lam, K = 2.0, 20000.0
+                          rendering={**PLAIN, "algorithm": "summation", "damping_ratio": zeta, "stiffness_N_per_m": K})
+
+    def asked(folder, *words):
+        bench.json("limit", base, "--stable", "bounded", "--resolution", "1e-4", *words, "--out", folder)
+        return Table(bench.folder / folder / "limit.csv")
+
+    tables = (asked("K", "--between", "1e3:1e9", "--over", "rendering.damping_ratio=0,0.7"),
+              asked("B", "--vary", "rendering.damping_N_s_per_m", "--between", "1:1e5", "--set", "rendering.stiffness_N_per_m=0"),
+              asked("dt", "--vary", "time.step_s", "--between", "1e-5:0.1"))
     # 4 - 2 lam B dt / M - lam K dt^2 / M = 0 with B = 2 zeta sqrt(K M): a quadratic in s = sqrt(K) dt / sqrt(M).
     s = -2 * zeta + math.sqrt(4 * zeta ** 2 + 4 / lam)
-    known = {"stiffness_undamped": (4 * M / (lam * dt ** 2), "N/m", 0.0), "damping_alone": (2 * M / (lam * dt), "N s/m", 2 * M / (lam * dt)),
-             "stiffness_damped": (M * s * s / dt ** 2, "N/m", 2 * zeta * s * M / dt), "time_step": (s * math.sqrt(M / K), "s", 2 * zeta * math.sqrt(K * M))}
-    cases = list(known)
-    value = [known[c][0] for c in cases]
-    exact, runs = Within("rounding of a quadratic's root", relative=1e-12), Within("bisection ends at 1e-4; growth of 1e-6 a step is seen", relative=1.1e-4)
-    single = [2 * value[0], 2 * value[1], 433731.0, 2 * value[3]]
-    wrong = ("of a single spring", single)
-    bench.columns("limits.csv", table, [
-        ("analytic", value, "4 - 2 lam B dt / M - lam K dt^2 / M = 0", exact, *wrong), ("simulation", value, "the same", runs, *wrong),
-        ("eigenvalue", value, "the same", Within("bisection on eigenvalues, ends at 1e-9", relative=1e-8), *wrong),
-        ("damping_at_limit_N_s_per_m", [known[c][2] for c in cases], "B from zeta there", Within("as the limit", relative=1e-8), "of the scenario's K",
-         [2 * zeta * math.sqrt(K * M)] * 4), ("lambda_max", np.full(4, lam), "two springs side by side", ROUNDING, "one", np.ones(4))])
-    bench.add("limits.csv:case", table["case"], cases, "in this order", EXACT, ("the other way round", cases[::-1]))
-    bench.add("limits.csv:unit", table["unit"], [known[c][1] for c in cases], "of what grows", EXACT, ("N/m", ["N/m"] * 4))
-    bench.hapbench("stability", base, "--out", "rk4", "--set", "integrator.type=rk4", "--set", "rendering.damping_ratio=0")
+    value = [4 * M / (lam * dt ** 2), M * s * s / dt ** 2, 2 * M / (lam * dt), s * math.sqrt(M / K)]
+    fine = Within("bisected to 1e-12, of eigenvalues near a double one to rounding", relative=1e-9)
+    runs = Within("bisection ends at 1e-4; growth of 2e-6 a step is seen", relative=1.1e-4)
+    wrong = ("of a single spring", [2 * value[0], 433731.0, 2 * value[2], 2 * value[3]])
+    for column, within in (("closed_form", fine), ("theory", fine), ("limit", runs)):
+        bench.add(f"limit.csv:{column}", np.concatenate([table[column] for table in tables]), value, "4 - 2 lam B dt / M - lam K dt^2 / M = 0", within, wrong)
     # |1 + z + z^2/2 + z^3/6 + z^4/24| = 1 at z = i 2 sqrt 2, and on the real axis at the root of z^3/24 + z^2/6 + z/2 + 1.
+    rk4 = ("--set", "integrator.type=rk4")
     real = -np.roots([1 / 24, 1 / 6, 1 / 2, 1]).real[np.abs(np.roots([1 / 24, 1 / 6, 1 / 2, 1]).imag) < 1e-9][0]
-    bench.add("limits.csv:analytic", Table(bench.folder / "rk4" / "limits.csv")["analytic"][:2], [8 * M / (lam * dt ** 2), real * M / (lam * dt)],
-              "polynomial of Runge and Kutta's method", Within("roots of a polynomial, and ours bisected", relative=1e-10), ("leapfrog's", value[:2]))
-    at = [(c, v) for c, v in zip(locus["case"], locus["value"])]
-
-    def matrix(case, v):
-        k, B, t = {"stiffness_undamped": (v, 0, dt), "damping_alone": (0, v, dt), "stiffness_damped": (v, 2 * zeta * math.sqrt(v * M), dt),
-                   "time_step": (K, 2 * zeta * math.sqrt(K * M), v)}[case]
-        k, B = lam * k, lam * B
-        return np.array([[1 - k * t * t / M, t - B * t * t / M], [-k * t / M, 1 - B * t / M]])
-
-    known = [np.linalg.eigvals(matrix(c, v)) for c, v in at]
-    near = Within("an eigenvalue near a double one is known to the root of rounding", absolute=5e-8)
-    first, second = locus["first_real"] + 1j * locus["first_imaginary"], locus["second_real"] + 1j * locus["second_imaginary"]
-    sums, products = np.array([k.sum().real for k in known]), np.array([k.prod().real for k in known])
-    for name, ours, theirs, wrong in (("first_real", (first + second).real, sums, products), ("second_real", (first * second).real, products, sums),
-                                      ("first_imaginary", np.abs(first.imag), [abs(k[0].imag) for k in known], np.full(len(at), 0.5)),
-                                      ("second_imaginary", np.abs(second.imag), [abs(k[1].imag) for k in known], np.full(len(at), 0.5))):
-        bench.add(f"root_locus.csv:{name}", ours, theirs, "trace, determinant and imaginary parts of numpy's", near, ("of another", wrong))
-    bench.add("root_locus.csv:spectral_radius", locus["spectral_radius"], [np.abs(k).max() for k in known], "numpy's eigenvalues", near,
-              ("least modulus", [np.abs(k).min() for k in known]))
-    bench.add("root_locus.csv:case", list(dict.fromkeys(locus["case"])), cases, "as in limits.csv", EXACT, ("the other way round", cases[::-1]))
-    ends = [max(v for c, v in at if c == case) for case in cases]
-    bench.add("root_locus.csv:value", ends, [1.25 * v for v in value], "up to 1.25 of the limit", Within("as the limit", relative=1e-8),
-              ("up to the limit", value))
+    of_rk4 = (asked("rk4_K", "--between", "1e3:1e9", "--set", "rendering.damping_ratio=0", *rk4),
+              asked("rk4_B", "--vary", "rendering.damping_N_s_per_m", "--between", "1:1e5", "--set", "rendering.stiffness_N_per_m=0", *rk4))
+    bench.add("limit.csv:theory", np.concatenate([table["theory"] for table in of_rk4]), [8 * M / (lam * dt ** 2), real * M / (lam * dt)],
+              "polynomial of Runge and Kutta's method", fine, ("leapfrog's", [value[0], value[2]]))
 
 
 @scene

@@ -70,13 +70,15 @@ def make_results(directory):
         hapbench("run", *scenarios, *(f"--set={text}" for text in overrides), "--out", out)
     name = "corner_continuous_normal_projection"
     hapbench("run", name, "--out", directory / "run_beyond" / name)
-    for ask, study, *words in (("stability", "spring_limits"), ("compare", "torque_in_hole"), ("compare", "laws_in_hole"), ("compare", "stiffness_peg"),
+    for ask, study, *words in (("compare", "torque_in_hole"), ("compare", "laws_in_hole"), ("compare", "stiffness_peg"),
                                ("compare", "stiffness_wedge"), ("compare", "proxy_in_hole", "--set=time.duration_s=2", "--set=record.every=8"),
                                ("limit", "hardware_paddle", "--resolution", "0.5")):
         hapbench(ask, study, *words, "--out", directory / study)
     make_accuracy(directory / "accuracy")
     for study in ("time_step", "damping_ratio", "z_width", "delay", "velocity_filter", "hand", "integrators"):
         hapbench("limit", f"stability_{study}", "--resolution", "0.5", "--algorithms", "shaped_stiffness", "--out", directory / f"stability_{study}")
+    for study in ("spring_stiffness", "spring_damping"):
+        hapbench("limit", study, "--out", directory / study)
     hapbench("limit", "device_limits", "--device", "touch,omega.3", "--resolution", "0.5", "--out", directory / "device_limits")
     hapbench(*("sweep", "task2_rotate_signed_distance", "--vary=hand.force_N=0.2,3.5", "--set=time.duration_s=2", "--keep-runs"),
              *('--set=record={"ideal_trajectory":true,"every":8}', "--out", directory / "task2_hands"))

@@ -208,11 +208,6 @@ class Studies(Scratch):
         self.assertEqual((row.rows, row["state_hash"][0]), (1, alone.state_hash))
         self.assertEqual(row["force_max_N"][0], alone.metrics["force_max_N"])
 
-    def test_stability(self):
-        report = hapbench.stability("single_spring")
-        self.assertIn("stiffness_undamped", list(report.limits.case))
-        self.assertEqual(report.report[0]["name"], "single_spring")
-
     def test_commands(self):
         self.assertIn("mean", json.dumps(hapbench.command("describe", "mean")))
 

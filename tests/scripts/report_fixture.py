@@ -13,7 +13,8 @@ def make_results(directory):
     """Short runs, one recorded time, limits, and the replay's recordings."""
     for scenario in SCENARIOS:
         hapbench("run", scenario, "--set", "record.timing=true", "--quiet", "--out", directory / "thesis" / scenario)
-    hapbench("stability", "spring_limits", "--quiet", "--out", directory / "spring_limits")
+    for study in ("spring_stiffness", "spring_damping", "spring_time_step"):
+        hapbench("limit", study, "--quiet", "--out", directory / study)
     record_replays(PROGRAM, directory / "replay")
 
 
@@ -24,7 +25,7 @@ def make_figures(directory):
                                                 ("Height", "7a–c"), ("Ours", None))):
         (directory / f"f{i}.svg").write_text(SVG, encoding="utf-8")
         entries.append({"id": f"f{i}", "title": title, "thesis_figure": thesis_figure, "caption": f"Caption {i}.",
-                        "files": [f"f{i}.svg", f"f{i}.pdf"], "sources": ["thesis/single_spring/trajectory.csv", "spring_limits/limits.csv"] if i == 1 else []})
+                        "files": [f"f{i}.svg", f"f{i}.pdf"], "sources": ["thesis/single_spring/trajectory.csv", "spring_stiffness/limit.csv"] if i == 1 else []})
     (directory / "figures.json").write_text(json.dumps({"figures": entries}), encoding="utf-8")
 
 

@@ -16,7 +16,8 @@ class Reproduce(unittest.TestCase):
         self.root = scratch_folder(self)
         (self.root / "results" / "reference").mkdir(parents=True)
         self.put("scripts/reproduce", (SOURCE / "scripts" / "reproduce").read_text(encoding="utf-8"))
-        self.put("scenarios/library/studies/stability_z_width.json", '{\n  "ask": "limit"\n}\n')
+        for study in ("stability_z_width", "spring_stiffness"):
+            self.put(f"scenarios/library/studies/{study}.json", '{\n  "ask": "limit"\n}\n')
         for name in ("scripts/setup", "scripts/figures", "scripts/report", "bin/cmake", "build/release/bin/hapbench_accuracy"):
             self.put(name, NOTHING)
 
@@ -56,15 +57,15 @@ class Reproduce(unittest.TestCase):
     def test_a_figure_after_what_it_needs(self):
         """Figures that miss a scene of the thesis, and studies; the program writes what it is asked for."""
         out = "results/out/reproduce"
-        needs = {"2": "thesis/wedge/trajectory.csv", "A.4-root-locus": "spring_limits/limits.csv",
+        needs = {"2": "thesis/wedge/trajectory.csv", "A.4-root-locus": "spring_stiffness/limit.csv",
                  "stability-z_width": "stability_z_width/limit.csv", "proxy": "proxy_in_hole/proxy/summary.json"}
-        for study in ("spring_limits", "proxy_in_hole"):
+        for study in ("spring_stiffness", "proxy_in_hole"):
             self.put(f"scenarios/library/studies/{study}.json", '{\n  "ask": "compare"\n}\n')
         self.put("scripts/figures", "#!/bin/sh\necho \"$@\" >> asked\n" + "".join(
             f'[ -e {out}/{file} ] || echo "figures: skipped {name} (no {file})" >&2\n'
             for name, file in needs.items()) + "exit 0\n")
         makes = "".join(f"*\" --out {out}/{folder}\"*) mkdir -p {out}/{file.rpartition('/')[0]}; touch {out}/{file};;\n"
-                        for folder, file in (("thesis/wedge", needs["2"]), ("spring_limits", needs["A.4-root-locus"]), ("proxy_in_hole", needs["proxy"]),
+                        for folder, file in (("thesis/wedge", needs["2"]), ("spring_stiffness", needs["A.4-root-locus"]), ("proxy_in_hole", needs["proxy"]),
                                              ("stability_z_width", needs["stability-z_width"])))
         program = f'#!/bin/sh\necho "$@" >> ran\ncase "$* " in\n{makes}esac\n'
         status, said, err = self.run_with(program, "--figure", ",".join(needs))

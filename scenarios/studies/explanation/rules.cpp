@@ -15,7 +15,7 @@
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/run/scene_facts.hpp"
 #include "scenarios/studies/stability/judged_run.hpp"
-#include "scenarios/studies/stability/stability_limits.hpp"
+#include "scenarios/studies/stability/scene_loop.hpp"
 
 namespace hapbench {
 namespace {

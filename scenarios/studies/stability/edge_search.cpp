@@ -34,6 +34,15 @@ bool SearchWay::apart(double a, double b, double resolution_asked) const {
   return high - low > resolution_asked * (range.to - range.from);
 }
 
+std::map<double, bool> scanned(int intervals, const std::function<bool(double)>& stable) {
+  std::map<double, bool> tried;
+  for (int i = 0; i <= intervals; ++i) {
+    const double part = static_cast<double>(i) / intervals;
+    tried[part] = stable(part);
+  }
+  return tried;
+}
+
 FoundEdge find_edge(const SearchWay& way, std::map<double, bool> tried, const std::function<bool(double)>& stable,
                     double resolution, bool beside) {
   const auto holds = [&](double part) { return tried[part] = stable(part); };

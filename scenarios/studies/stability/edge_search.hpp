@@ -36,6 +36,9 @@ struct FoundEdge {
   std::optional<double> before;  ///< the last unstable part before it
 };
 
+/// Which ends of so many equal parts of a way are stable, from its begin on.
+std::map<double, bool> scanned(int intervals, const std::function<bool(double)>& stable);
+
 /// The edge behind the own value, or if that is not stable behind the first stable values of the way; of the parts
 /// `tried`, which hold at least both ends. With `beside`, tries values on either side of it, too, and goes on where one
 /// of them shows an edge before it; then finds the other end of the interval.

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -19,7 +18,7 @@
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/run/assemble.hpp"
-#include "scenarios/studies/stability/stability_limits.hpp"
+#include "scenarios/studies/stability/scene_loop.hpp"
 #include "sim/core/bisection.hpp"
 #include "sim/core/math.hpp"
 
@@ -54,7 +53,7 @@ class Search {
     const auto at_part = [&](double part) {
       return JudgedValue{question_.value_at(part), runs.at(question_.value_at(part)).verdict};
     };
-    const Theory theory(*this);
+    const Theory theory(*this, has_theory, step_is_stable, kTheoryIntervals);
     std::map<double, bool> tried;
     for (int i = 0; i <= kEdgeIntervals; ++i) tried[static_cast<double>(i) / kEdgeIntervals] = {};
     for (const double part : theory.islands()) tried[part] = {};
@@ -80,6 +79,7 @@ class Search {
         !question_.holds(suspect.verdict) && unstable_without_contact(at(suspect.value), question_.most_vibration);
     limit.theory = theory.edge();
     limit.theory_has_none = theory.has_none();
+    limit.closed_form = Theory(*this, has_closed_form, has_margin, kEdgeIntervals).edge();
     limit.undecided = static_cast<std::size_t>(
         std::count_if(runs.begin(), runs.end(), [](const auto& run) { return run.second.undecided; }));
     add_closed_forms(limit);
@@ -107,17 +107,17 @@ class Search {
     return load_scenario(*asked_.scene, overrides);
   }
 
-  /// The edges by the eigenvalues of a step, along the whole way.
+  /// The edges of what is stable without a run, along the whole way.
   class Theory {
    public:
-    explicit Theory(const Search& search) : search_(search) {
+    using Predicate = bool (*)(const Scenario&);
+    /// Empty unless it `applies` to the scene at both ends.
+    Theory(const Search& search, Predicate applies, Predicate stable, int intervals)
+        : search_(search), stable_(stable) {
       for (const double end : {0.0, 1.0}) {
-        if (!has_theory(search.at(search.question_.value_at(end)).scenario)) return;
+        if (!applies(search.at(search.question_.value_at(end)).scenario)) return;
       }
-      for (int i = 0; i <= kTheoryIntervals; ++i) {
-        const double part = static_cast<double>(i) / kTheoryIntervals;
-        tried_[part] = holds(part);
-      }
+      tried_ = scanned(intervals, [this](double part) { return holds(part); });
     }
 
     /// The middles of all stretches of stable values, for runs to try: a stretch may lie between the values of a scan.
@@ -144,9 +144,10 @@ class Search {
     }
 
    private:
-    bool holds(double part) const { return step_is_stable(search_.at(search_.question_.value_at(part)).scenario); }
+    bool holds(double part) const { return stable_(search_.at(search_.question_.value_at(part)).scenario); }
 
     const Search& search_;
+    Predicate stable_;
     std::map<double, bool> tried_;
   };
 
@@ -157,8 +158,7 @@ class Search {
         !std::holds_alternative<ImpedanceDeviceConfig>(scenario.device))
       return;
     if (!scenario.rendering.damping && scenario.rendering.damping_ratio != 0.0) return;  // B is not that of any K
-    const Eigen::SelfAdjointEigenSolver<Mat3> S(stiffness_tensor_of(scenario), Eigen::EigenvaluesOnly);
-    const double lambda = S.eigenvalues()[2];
+    const double lambda = stiffness_eigenvalues(scenario)[2];
     const DeviceLoop start = device_loop(scenario, lambda);
     const auto& sampled = std::get<SampledLoop>(start.loop);
     limit.no_theory = start.no_theory;
@@ -172,63 +172,41 @@ class Search {
 
   /// FieldLimit::linear
   std::optional<double> linear_edge(double lambda) const {
-    const auto stable = [&](double part) {
-      const Scenario scenario = at(question_.value_at(part)).scenario;
-      return is_stable_step(device_loop(scenario, lambda).state_matrix()) &&
-             (!scenario.rendering.dry_friction ||
-              is_stable_step(device_loop(stuck_scene(scenario), 1.0).state_matrix()));
-    };
     for (const double end : {0.0, 1.0}) {
       const Scenario scenario = at(question_.value_at(end)).scenario;
-      if (!has_device(scenario) || !unknown_to_theory(scenario).empty()) return std::nullopt;
+      if (!has_device(scenario) || contact_step(scenario, lambda).size() == 0) return std::nullopt;
     }
-    std::map<double, bool> tried;
-    for (int i = 0; i <= 2 * kEdgeIntervals; ++i) {
-      const double part = 0.5 * i / kEdgeIntervals;
-      tried[part] = stable(part);
-    }
-    const FoundEdge edge = find_edge(question_, std::move(tried), stable, kTheoryResolution, false);
+    const auto stable = [&](double part) {
+      return std::ranges::all_of(contact_loops(at(question_.value_at(part)).scenario, lambda, false),
+                                 [](const auto& loop) { return is_stable_step(loop.second); });
+    };
+    const FoundEdge edge = find_edge(question_, scanned(2 * kEdgeIntervals, stable), stable, kTheoryResolution, false);
     if (!edge.stable) return std::nullopt;
     return edge.beyond ? question_.value_at(*edge.stable) : std::numeric_limits<double>::infinity();
   }
 
-  /// True for springs that stay in contact, and devices whose loop is linear.
+  /// True for springs that stay in contact, with a tool that is alone or a device whose loop is linear.
   static bool has_theory(const Scenario& scenario) {
-    return springs_stay(scenario) && (!has_device(scenario) || device_loop(scenario, 1.0).no_theory.empty());
-  }
-
-  static bool springs_stay(const Scenario& scenario) {
-    try {
-      has_device(scenario) ? require_bilateral_springs(scenario) : require_lasting_springs(scenario);
-      return true;
-    } catch (const InputError&) {
-      return false;
-    }
-  }
-
-  /// True for a device that is part of the loop.
-  static bool has_device(const Scenario& scenario) {
-    return !std::holds_alternative<IdealDeviceFields>(scenario.device);
+    return springs_stay(scenario) && (has_device(scenario) ? device_loop(scenario, 1.0).no_theory.empty()
+                                                           : std::holds_alternative<NoHandFields>(scenario.hand));
   }
 
   /// True when no mode of the springs leaves the unit circle, alone or in the loop of the device.
   static bool step_is_stable(const Scenario& scenario) {
-    const RenderingConfig& r = scenario.rendering;
-    const double B = normal_damping(r);
-    const Eigen::SelfAdjointEigenSolver<Mat3> S(stiffness_tensor_of(scenario), Eigen::EigenvaluesOnly);
-    return std::all_of(S.eigenvalues().begin(), S.eigenvalues().end(), [&](double lambda) {
-      if (has_device(scenario)) {
-        constexpr double kNoWall = 1e-12;  // a direction without springs: the handle is free to go
-        return lambda < kNoWall || is_stable_step(device_loop(scenario, lambda).state_matrix());
-      }
-      const SpringDamper mode{.K = r.stiffness,
-                              .B = B,
-                              .M = r.mass,
-                              .dt = scenario.time.step,
-                              .lambda = lambda,
-                              .integrator = scenario.integrator.type};
-      return mode.is_stable();
+    const Vec3 lambdas = stiffness_eigenvalues(scenario);
+    return std::all_of(lambdas.begin(), lambdas.end(), [&](double lambda) {
+      constexpr double kNoWall = 1e-12;  // a direction without springs: the handle is free to go
+      if (!has_device(scenario)) return tool_on_spring(scenario, lambda).is_stable();
+      return lambda < kNoWall || is_stable_step(device_loop(scenario, lambda).state_matrix());
     });
+  }
+
+  /// True where the integrator's inequality tells whether a step is stable.
+  static bool has_closed_form(const Scenario& scenario) {
+    return !has_device(scenario) && has_theory(scenario) && scenario.integrator.type->stability_margin != nullptr;
+  }
+  static bool has_margin(const Scenario& scenario) {
+    return *tool_on_spring(scenario, stiffness_eigenvalues(scenario)[2]).margin() >= 0.0;
   }
 
   const LimitCase& asked_;

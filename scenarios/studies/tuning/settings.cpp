@@ -8,7 +8,6 @@
 #include "scenarios/batch/run_batch.hpp"
 #include "scenarios/input/json_file.hpp"
 #include "scenarios/studies/stability/field_limit.hpp"
-#include "scenarios/studies/stability/stability_limits.hpp"
 #include "scenarios/studies/tuning/tune.hpp"
 #include "sim/core/math.hpp"
 
@@ -161,24 +160,6 @@ std::vector<FamilyMember> speeds_of(const LoadedScenario& loaded) {
 std::vector<FamilyMember> family_of(const LoadedScenario& loaded, FamilyOver over) {
   if (over == FamilyOver::hands) return hands_of(loaded.scenario);
   return over == FamilyOver::seeds ? seeds_of(loaded) : speeds_of(loaded);
-}
-
-std::vector<std::pair<std::string, Eigen::MatrixXd>> contact_loops(const Scenario& scenario, double lambda,
-                                                                   bool over_hands) {
-  std::vector<std::pair<std::string, Eigen::MatrixXd>> all = {{"", contact_step(scenario, lambda)}};
-  if (all[0].second.size() == 0) return {};
-  if (scenario.rendering.dry_friction)
-    all.emplace_back("the tool held by friction", contact_step(stuck_scene(scenario), 1.0));
-  const bool held = spring_of(scenario.hand) != nullptr || std::holds_alternative<DragHandFields>(scenario.hand);
-  if (!over_hands || !held || !std::holds_alternative<ImpedanceDeviceConfig>(scenario.device)) return all;
-  SampledLoop loop = std::get<SampledLoop>(device_loop(scenario, lambda).loop);
-  for (const AttachedHand& hand : hand_family()) {
-    loop.hand = hand;
-    all.emplace_back(
-        hand.mass == 0.0 ? "no hand" : fmt::format("a hand of {} kg and {} N/m", hand.mass, hand.stiffness),
-        loop.state_matrix());
-  }
-  return all;
 }
 
 }  // namespace hapbench

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <complex>
@@ -16,7 +15,7 @@
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/studies/stability/judged_run.hpp"
-#include "scenarios/studies/stability/stability_limits.hpp"
+#include "scenarios/studies/stability/scene_loop.hpp"
 #include "sim/core/math.hpp"
 
 namespace hapbench {
@@ -24,21 +23,6 @@ namespace {
 
 constexpr double kResolution = 5e-3;  // of K
 constexpr double kFinest = 1.004;     // ratio of zeta, or of the mass, at which the search ends
-
-/// True for springs that push and pull: their loop does not depend on the run.
-bool stay_in_contact(const Scenario& scenario) {
-  try {
-    require_bilateral_springs(scenario);
-    return true;
-  } catch (const InputError&) {
-    return false;
-  }
-}
-
-/// The runs of one family member at K and G K.
-struct MemberRuns {
-  JudgedRun at_K, at_GK;
-};
 
 /// Tunes one law of a question.
 class Tuner {
@@ -53,10 +37,7 @@ class Tuner {
       for (FamilyMember& member : family_of(own, over)) family_.push_back(std::move(member));
       over_hands_ = over_hands_ || over == FamilyOver::hands;
     }
-    if (stay_in_contact(own.scenario)) {
-      const Mat3 S = stiffness_tensor_of(own.scenario);
-      springs_lambda_ = Eigen::SelfAdjointEigenSolver<Mat3>(S, Eigen::EigenvaluesOnly).eigenvalues()[2];
-    }
+    if (springs_stay(own.scenario)) springs_lambda_ = stiffness_eigenvalues(own.scenario)[2];
   }
 
   TunedLaw tuned() {
@@ -84,7 +65,7 @@ class Tuner {
       law.why = !beyond_.why.empty() ? beyond_.why : cap_.empty() ? "the end of the range that was searched" : cap_;
       law.margins = margins(*best_);
       law.spread = spread(*best_);
-      law.overrides = overrides(best_->setting, best_->stiffness);
+      law.overrides = overrides(*best_, best_->stiffness);
       along_stiffness(*best_);
     } else {
       explain(law);
@@ -132,20 +113,10 @@ class Tuner {
     for (const auto& [name, bound] : question_.limits) add(name);
     return metrics;
   }
-  /// The runs of the members [first, last).
-  std::vector<MemberRuns> runs_of(const TuneTrial& trial, std::size_t first, std::size_t last) {
-    std::vector<MemberRuns> runs(last - first);
-    in_parallel(2 * runs.size(), [&](std::size_t job) {
-      const bool margin = job % 2 != 0;
-      (margin ? runs[job / 2].at_GK : runs[job / 2].at_K) =
-          judged(at(trial.setting, (margin ? question_.margin : 1.0) * trial.stiffness, family_[first + job / 2]));
-    });
-    return runs;
-  }
-  /// The metrics of the members [0, last).
-  std::vector<TuneMetrics> metrics_of(const TuneTrial& trial, std::size_t last) {
-    std::vector<TuneMetrics> metrics(last);
-    in_parallel(last, [&](std::size_t i) { metrics[i] = metrics_of(at(trial.setting, trial.stiffness, family_[i])); });
+  /// The metrics of the first members.
+  std::vector<TuneMetrics> metrics_of(const TuneTrial& trial, std::size_t members) {
+    std::vector<TuneMetrics> metrics(members);
+    in_parallel(members, [&](std::size_t i) { metrics[i] = metrics_of(at(trial, trial.stiffness, family_[i])); });
     return metrics;
   }
 
@@ -172,24 +143,37 @@ class Tuner {
 
   /// Finds the first of the members from `first` on that is not settled with the margin.
   void judge_motion(TuneTrial& trial, std::size_t first, std::size_t last) {
-    const std::vector<MemberRuns> runs = runs_of(trial, first, last);
-    if (first == 0) trial.lambda_max = runs[0].at_K.settled.lambda_max;
+    std::vector<JudgedRun> runs(2 * (last - first));  // of each member at K and at G K
+    in_parallel(runs.size(), [&](std::size_t job) {
+      const double gain = job % 2 != 0 ? question_.margin : 1.0;
+      runs[job] = judged(at(trial, gain * trial.stiffness, family_[first + job / 2]));
+    });
+    if (first == 0) trial.lambda_max = runs[0].settled.lambda_max;
     for (std::size_t i = first; i < last; ++i) {
-      const auto& [at_K, at_GK] = runs[i - first];
+      const JudgedRun &at_K = runs[2 * (i - first)], &at_GK = runs[2 * (i - first) + 1];
       if (!is_stable(at_K.verdict)) {
         trial.too_soft = at_K.verdict >= RunVerdict::thrown_out && at_K.verdict <= RunVerdict::went_through;
-        return fail(trial, "settled", fmt::format("{}{}", run_verdict_name(at_K.verdict), with(family_[i])));
+        return fail(trial, "settled", std::string(run_verdict_name(at_K.verdict)) + with(family_[i]));
       }
       trial.settled = true;
       if (!is_stable(at_GK.verdict)) {
         return fail(trial, "margin",
                     fmt::format("at {:g} K {}{}", question_.margin, run_verdict_name(at_GK.verdict), with(family_[i])));
       }
-      if (springs_lambda_) continue;  // was asked before the runs
-      const Scenario scenario = at(trial.setting, trial.stiffness, family_[i]).scenario;
-      if (const auto hand = unstable_loop(scenario, at_K.settled.lambda_max, trial.stiffness, question_.margin))
-        return fail(trial, "margin", loop_text(hand->empty() ? family_[i].name : *hand));
+      // Of springs it was asked before the runs.
+      if (!springs_lambda_ && !judge_loop(trial, i, at_K.settled.lambda_max, family_[i].name)) return;
     }
+  }
+
+  /// False where the loop in contact of a member is unstable up to the margin.
+  bool judge_loop(TuneTrial& trial, std::size_t member, double lambda, const std::string& own_hand) const {
+    const Scenario scenario = at(trial, trial.stiffness, family_[member]).scenario;
+    const auto hand = unstable_loop(scenario, lambda, trial.stiffness, question_.margin);
+    if (!hand) return true;
+    fail(trial, "margin",
+         fmt::format("below {:g} K the loop in contact is unstable with {}", question_.margin,
+                     hand->empty() ? own_hand : *hand));
+    return false;
   }
 
   /// Finds the first limit that a member does not keep, and the worst of each metric.
@@ -219,24 +203,14 @@ class Tuner {
     trial.binding = binding;
     trial.why = why;
   }
-  std::string loop_text(const std::string& hand) const {
-    return fmt::format("below {:g} K the loop in contact is unstable with {}", question_.margin, hand);
-  }
-
   const TuneTrial& tried(const TuneSetting& setting, double stiffness) {
     const auto [place, is_new] = trials_.try_emplace({setting, stiffness});
     TuneTrial& trial = place->second;
     if (!is_new) return trial;
-    trial.setting = setting;
+    static_cast<TuneSetting&>(trial) = setting;
+    trial.algorithm = algorithm_;
     trial.stiffness = stiffness;
-    if (springs_lambda_) {
-      const Scenario scenario = at(setting, stiffness, family_[0]).scenario;
-      const auto hand = unstable_loop(scenario, *springs_lambda_, stiffness, question_.margin);
-      if (hand) {
-        fail(trial, "margin", loop_text(hand->empty() ? "the device alone" : *hand));
-        return trial;
-      }
-    }
+    if (springs_lambda_ && !judge_loop(trial, 0, *springs_lambda_, "the device alone")) return trial;
     if (runs_ >= kMostTuneRuns) {
       fail(trial, "runs", fmt::format("the search ended after {} runs", runs_));
       return trial;
@@ -262,9 +236,9 @@ class Tuner {
       for (bool better = true; better;) {
         better = false;
         for (const double step : {ratio, 1.0 / ratio}) {
-          TuneSetting next = best_->setting;
+          TuneSetting next = *best_;
           if (stepped(next.damping_ratio, ranges_.damping_ratio, step)) better = improve(next, range) || better;
-          next = best_->setting;
+          next = *best_;
           if (stepped(next.mass, ranges_.mass, step)) better = improve(next, range) || better;
         }
       }
@@ -279,16 +253,12 @@ class Tuner {
       way.range.from = best_->stiffness * (1.0 + kResolution);
       if (!(way.range.from < range.to)) return false;
       if (!feasible(setting, way.range.from)) {
-        if (setting == best_->setting) beyond_ = tried(setting, way.range.from);
+        if (setting == *best_) beyond_ = tried(setting, way.range.from);
         return false;
       }
     }
     const auto holds = [&](double part) { return feasible(setting, way.value_at(part)); };
-    std::map<double, bool> scan;
-    for (int i = 0; i <= kEdgeIntervals; ++i) {
-      const double part = static_cast<double>(i) / kEdgeIntervals;
-      scan[part] = holds(part);
-    }
+    std::map<double, bool> scan = scanned(kEdgeIntervals, holds);
     if (const auto between = window(setting, way, scan)) scan[*between] = true;
     const FoundEdge edge = find_edge(way, std::move(scan), holds, kResolution, false);
     if (!edge.stable) return false;
@@ -318,7 +288,7 @@ class Tuner {
   bool settled(const TuneTrial& trial, double gain, const std::string& more = {}) {
     std::vector<char> stable(family_.size());
     in_parallel(family_.size(), [&](std::size_t i) {
-      const LoadedScenario loaded = at(trial.setting, gain * trial.stiffness, family_[i], more);
+      const LoadedScenario loaded = at(trial, gain * trial.stiffness, family_[i], more);
       const double lambda = springs_lambda_.value_or(trial.lambda_max);
       stable[i] = !unstable_loop(loaded.scenario, lambda, trial.stiffness, gain) && is_stable(judged(loaded).verdict);
     });
@@ -339,12 +309,9 @@ class Tuner {
   /// The last of the values along a way up to which `holds`.
   static double last_of(const SearchWay& way, const std::function<bool(double)>& holds) {
     const auto at_part = [&](double part) { return holds(way.value_at(part)); };
-    std::map<double, bool> scan;
-    for (int i = 0; i <= kEdgeIntervals; ++i) {
-      const double part = static_cast<double>(i) / kEdgeIntervals;
-      scan[part] = (i == 0 || std::prev(scan.end())->second) && at_part(part);
-    }
-    return way.value_at(find_edge(way, scan, at_part, way.resolution, false).stable.value_or(0.0));
+    bool all = true;  // a run beyond the first edge tells nothing
+    std::map<double, bool> scan = scanned(kEdgeIntervals, [&](double part) { return all = all && at_part(part); });
+    return way.value_at(find_edge(way, std::move(scan), at_part, way.resolution, false).stable.value_or(0.0));
   }
 
   TuneMargins margins(const TuneTrial& choice) {
@@ -354,7 +321,7 @@ class Tuner {
       const SearchWay gains{.range = {question_.margin, std::min(kMostGain, most), true}, .resolution = kResolution};
       margins.gain = last_of(gains, [&](double gain) { return settled(choice, gain); });
     }
-    const Scenario scenario = at(choice.setting, choice.stiffness, family_[0]).scenario;
+    const Scenario scenario = at(choice, choice.stiffness, family_[0]).scenario;
     if (!std::holds_alternative<IdealDeviceFields>(scenario.device)) {
       const bool impedance = std::holds_alternative<ImpedanceDeviceConfig>(scenario.device);
       const double own = delay_of(scenario);
@@ -377,11 +344,10 @@ class Tuner {
   }
 
   TuneMetrics spread(const TuneTrial& choice) {
-    const LoadedScenario own = at(choice.setting, choice.stiffness, family_[0]);
+    const LoadedScenario own = at(choice, choice.stiffness, family_[0]);
     const std::vector<FamilyMember> seeds = family_of(own, FamilyOver::seeds);
     std::vector<TuneMetrics> all(seeds.size() + 1, choice.metrics);
-    in_parallel(seeds.size(),
-                [&](std::size_t i) { all[i] = metrics_of(at(choice.setting, choice.stiffness, seeds[i])); });
+    in_parallel(seeds.size(), [&](std::size_t i) { all[i] = metrics_of(at(choice, choice.stiffness, seeds[i])); });
     TuneMetrics spread;
     for (const auto& [name, value] : choice.metrics) {
       std::vector<double> values;
@@ -394,7 +360,7 @@ class Tuner {
 
   /// Trials from a thirtieth of the choice's stiffness to thirty times, for pictures.
   void along_stiffness(const TuneTrial& choice) {
-    const TuneSetting setting = choice.setting;
+    const TuneSetting setting = choice;
     const Range around{choice.stiffness / 30.0, choice.stiffness * 30.0, true};
     for (int i = 0; i <= kEdgeIntervals; ++i) {
       const double K = around.value_at(static_cast<double>(i) / kEdgeIntervals);
@@ -438,7 +404,7 @@ class Tuner {
         else if (bound.min && value->second < *bound.min)
           law.relax += fmt::format("{} >= {:.3g} in place of {:.3g}; ", name, value->second * 0.999, *bound.min);
       }
-      law.relax += fmt::format("then K = {:.4g} N/m{}", nearest->stiffness, setting_text(nearest->setting));
+      law.relax += fmt::format("then K = {:.4g} N/m{}", nearest->stiffness, setting_text(*nearest));
       return;
     }
     law.binding = "margin";
@@ -460,14 +426,15 @@ class Tuner {
       largest = gain;
       law.why = trial.why;
       law.relax = fmt::format("margin {:.3g} in place of {:g}; then K = {:.4g} N/m{}", std::floor(gain * 100.0) / 100.0,
-                              question_.margin, trial.stiffness, setting_text(trial.setting));
+                              question_.margin, trial.stiffness, setting_text(trial));
     }
     if (largest > 0.0) return;
     law.binding = "settled";
     // Where too soft and too stiff meet, at a setting where only the margin is missing if there is one.
     const TuneTrial *soft = nullptr, *stiff = nullptr, *before = nullptr;
     for (const auto& [key, trial] : trials_) {
-      const bool meets = before != nullptr && before->setting == trial.setting && before->too_soft && !trial.too_soft;
+      const bool meets =
+          before != nullptr && static_cast<const TuneSetting&>(*before) == trial && before->too_soft && !trial.too_soft;
       if (meets && (stiff == nullptr || (!stiff->settled && trial.settled))) {
         soft = before;
         stiff = &trial;

@@ -1,11 +1,9 @@
 #pragma once
 
-#include <Eigen/Core>
 #include <array>
 #include <map>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "scenarios/description/load_scenario.hpp"
@@ -38,13 +36,6 @@ inline constexpr int kSeeds = 5;
 ///   speeds  the script of hand and tool at half and twice its speed
 std::vector<FamilyMember> family_of(const LoadedScenario& loaded, FamilyOver over);
 
-/// The maps of a step of the loop of device, hand and a wall of lambda K (contact_step), by the name of the hand, which
-/// is empty for the scene's own: with `over_hands`, on an impedance device that a hand holds, each of hand_family(),
-/// too. With dry friction also that of the tool which it holds (stuck_scene). None where the loop is too large to
-/// solve.
-std::vector<std::pair<std::string, Eigen::MatrixXd>> contact_loops(const Scenario& scenario, double lambda,
-                                                                   bool over_hands);
-
 /// The metrics of a choice, in the order of tables; the first three are what --max-inside, --max-vibration and
 /// --max-step bound.
 inline constexpr std::array kTuneMetrics = {"inside_max_m",     "force_rms_above_30Hz_N",  "settled_force_step_max_N",
@@ -76,9 +67,9 @@ std::vector<std::string> overrides_of(const TuneSetting& setting, double stiffne
 /// ", zeta = 0.3, 0.2 kg", for what was chosen.
 std::string setting_text(const TuneSetting& setting);
 
-/// A setting and K, tried.
-struct TuneTrial {
-  TuneSetting setting;
+/// A setting and K, tried for a law.
+struct TuneTrial : TuneSetting {
+  std::string algorithm = {};
   double stiffness = 0.0;
   /// The constraint that is not kept: "settled" (at K), "margin" (at G K), "runs" (the bound on them is reached) or the
   /// limited metric; empty where all are.
@@ -136,7 +127,7 @@ std::vector<TuneSetting> settings_of(const TuneQuestion& question, const TuneRan
 ///   - the run at K is settled and keeps the limits: stable (judged_run.hpp), where a script moves the tool by
 ///     kMostVibration,
 ///   - the run at G K is settled, and
-///   - the loop of device, hand and surface while they touch (stability_limits.hpp) is stable up to G K by its
+///   - the loop of device, hand and surface while they touch (scene_loop.hpp) is stable up to G K by its
 ///     eigenvalues, for an impedance device with each hand of hand_family() where a hand holds the handle.
 /// Values of zeta in ratios of 10^(1/4) are tried with each filter; where K can be raised by half a percent, it is, to
 /// its first edge; then zeta and mass are refined until a change by 0.4 % raises K no more. The choice is verified at

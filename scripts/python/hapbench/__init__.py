@@ -10,7 +10,7 @@ from .results import Folder, Run, Trial, load
 from .table import Table
 
 __all__ = ["Folder", "InputError", "Parameter", "ResultError", "Run", "ScenarioError", "ScenarioWarning", "Simulation", "Table",
-           "Trial", "algorithms", "command", "compare", "force_law", "limit", "load", "load_plugin", "main", "run", "stability", "sweep"]
+           "Trial", "algorithms", "command", "compare", "force_law", "limit", "load", "load_plugin", "main", "run", "sweep"]
 
 _COMPILED = {"Parameter": "laws", "force_law": "laws"}
 

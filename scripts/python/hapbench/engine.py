@@ -80,11 +80,6 @@ def sweep(scenario: Scenario, vary: Mapping[str, object], overrides: Overrides =
     return _report(words, scenario, overrides, out, progress, sample=sample, seed=seed, keep_runs=keep_runs, resume=resume, jobs=jobs)
 
 
-def stability(scenarios: Scenario | Sequence[Scenario], overrides: Overrides = None, *, out: Place = None, progress: Progress = None) -> "Report":
-    """Limits of springs scenarios, as `hapbench stability` finds them: a Report with the tables `limits` and `root_locus`."""
-    return _report(["stability"], scenarios, overrides, out, progress)
-
-
 def limit(scenarios: Scenario | Sequence[Scenario], overrides: Overrides = None, *, vary: str | None = None, between: str | None = None,
           over: Mapping[str, str] | None = None, algorithms: Names = None, device: Names = None, stable: str | None = None,
           resolution: float | None = None, jobs: int | None = None, out: Place = None, progress: Progress = None) -> "Report":

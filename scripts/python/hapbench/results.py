@@ -118,7 +118,7 @@ class Run(_WithTables):
 
 
 class Folder(_WithTables):
-    """A folder that sweep, compare, stability, limit … wrote: `tables` of its CSV files by their paths, those of its runs
+    """A folder that sweep, compare, limit … wrote: `tables` of its CSV files by their paths, those of its runs
     aside, `runs` below it by theirs, `json` of its other files. `folder.sweep` is the table of sweep.csv."""
 
     def __init__(self, folder):
@@ -151,7 +151,7 @@ def load(folder: str | os.PathLike) -> "Run | Folder":
     """Reads a folder of results: a Run, or else a Folder of tables and runs. Raises ResultError."""
     folder = Path(folder)
     if not folder.is_dir():
-        raise ResultError(f"{folder}: is not a folder; allowed: one that run, compare, sweep, stability, limit … wrote")
+        raise ResultError(f"{folder}: is not a folder; allowed: one that run, compare, sweep, limit … wrote")
     if (folder / SUMMARY).is_file():
         return load_run(folder)
     found = Folder(folder)

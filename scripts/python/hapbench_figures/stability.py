@@ -1,4 +1,5 @@
 """Stability: the root locus of A.3, and the largest stable stiffness over other fields (`limit --over`) and on each device (`limit --device`)."""
+import json
 from itertools import cycle
 from pathlib import Path
 from textwrap import wrap
@@ -20,11 +21,7 @@ LIMIT, LIMIT_RUNS = "limit.csv", "limit_runs.csv"
 PANEL = 2.6  # [inch]
 LEGEND = 0.3  # [inch]
 STEP = 0.16  # of a row, between algorithms
-CASES = (
-    ("stiffness_undamped", "A4.stiffness", "B = 0, K grows", "K", "N/m"),
-    ("damping_alone", "A4.damping", "K = 0, B grows", "B", "N s/m"),
-    ("stiffness_damped", "A4.stiffness.damped", "ζ = 0.7, K grows", "K", "N/m"),
-)
+SPRING = published.DIRECTORY.parents[2] / "scenarios" / "limits" / "single_spring.json"
 
 
 def spaced(number):
@@ -33,30 +30,33 @@ def spaced(number):
 
 
 def root_locus(results):
-    locus = results.records("spring_limits/root_locus.csv")
-    limits = {row["case"]: row for row in results.records("spring_limits/limits.csv")}
+    scene = json.loads(SPRING.read_text(encoding="utf-8"))
+    dt, M, zeta = scene["time"]["step_s"], scene["rendering"]["mass_kg"], scene["rendering"]["damping_ratio"]
+    poles = lambda K, B: sorted(np.linalg.eigvals([[1 - K * dt * dt / M, dt - B * dt * dt / M], [-K * dt / M, 1 - B * dt / M]]),
+                                key=lambda pole: (-pole.imag, -pole.real))
+    undamped, damped = results.records("spring_stiffness/limit.csv")
+    damper = results.records("spring_damping/limit.csv")[0]
+    cases = (("A4.stiffness", "B = 0, K grows", "K", "N/m", undamped, lambda K: poles(K, 0)),
+             ("A4.damping", "K = 0, B grows", "B", "N s/m", damper, lambda B: poles(0, B)),
+             ("A4.stiffness.damped", f"ζ = {zeta:g}, K grows", "K", "N/m", damped, lambda K: poles(K, 2 * zeta * np.sqrt(K * M))))
     figure, axes = style.panels(1, 3, 2.7, sharey=True)
     turn = np.linspace(0, 2 * np.pi, 181)
-    for ax, (case, id_, title, symbol, unit) in zip(axes[0], CASES):
-        rows = [row for row in locus if row["case"] == case]
-        ax.plot(np.cos(turn), np.sin(turn), color=style.BLACK, lw=0.8)
-        for which, colour, line in (("first", style.PETROL, "-"), ("second", style.AMBER, (0, (4, 1.2)))):
-            ax.plot(numbers(rows, f"{which}_real"), numbers(rows, f"{which}_imaginary"), color=colour, ls=line, lw=1.5)
+    for ax, (id_, title, symbol, unit, ours, at) in zip(axes[0], cases):
         value = published.value(id_)
-        nearest = rows[int(np.argmin(np.abs(numbers(rows, "value") - value)))]
-        poles = [complex(float(nearest[f"{which}_real"]), float(nearest[f"{which}_imaginary"])) for which in ("first", "second")]
-        leaving = min(poles, key=lambda pole: pole.real)  # at -1; the other one stays inside or at 1
+        ax.plot(np.cos(turn), np.sin(turn), color=style.BLACK, lw=0.8)
+        for way, colour, line in zip(np.array([at(v) for v in np.linspace(0, 1.25 * value, 401)]).T, (style.PETROL, style.AMBER), ("-", (0, (4, 1.2)))):
+            ax.plot(way.real, way.imag, color=colour, ls=line, lw=1.5)
+        leaving = min(at(value), key=lambda pole: pole.real)  # at -1; the other one stays inside or at 1
         ax.plot(leaving.real, leaving.imag, marker="D", mfc="white", mec=style.RED, ms=5, zorder=5)
-        ours = float(limits[case]["simulation"])
         style.note(ax, 0.5, 0.98, f"published {symbol} = {spaced(value)} {unit}", style.RED, ha="center")
-        style.note(ax, 0.5, 0.02, f"ours {spaced(ours)} {unit}", ha="center", va="bottom")
+        style.note(ax, 0.5, 0.02, f"ours {spaced(float(ours['limit']))} {unit}", ha="center", va="bottom")
         ax.set(title=title, xlabel="real part", xlim=(-1.75, 1.4), ylim=(-1.6, 1.6), aspect="equal")
     axes[0, 0].set_ylabel("imaginary part")
     style.letter(axes[0])
     return figure, ("Root locus of the integrator on one spring and damper: both eigenvalues (petrol, amber dashed) as "
                     "stiffness or damping grows, and the unit circle, outside of which it is unstable. Diamonds: the "
                     "eigenvalue that leaves it, at the published limit. Ours, below: the limit at which bisection over "
-                    "simulated runs finds divergence. M = 0.1 kg, time step 0.5 ms (A.3).")
+                    f"simulated runs finds divergence. M = {M:g} kg, time step {1e3 * dt:g} ms (A.3).")
 
 
 # Class -> its name, colour and hatching; light to dark, so that they can be told apart in grey.

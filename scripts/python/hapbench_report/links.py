@@ -18,7 +18,7 @@ class Links:
         self._tables = {}
         tables = load_tables()
         # The limits stand beside the published ones.
-        self._studies = {s.path: anchor(tables["limits"]["label"]) if s.path == LIMITS else s.anchor for s in studies}
+        self._studies = {s.path: anchor(tables["limits"]["label"]) if s.path in LIMITS else s.anchor for s in studies}
         for part in (*tables["parameters"], *tables["targets"]):
             self._tables[part["label"]] = anchor(part["label"])
 

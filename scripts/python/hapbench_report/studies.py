@@ -8,8 +8,8 @@ from hapbench.columns import read_rows
 from .json_input import at, number_or_none
 from .markup import cell, column, counted, folded, heading_cell, number_cell, table, text
 
-# The stability limits, which stand beside the published ones.
-LIMITS = "spring_limits/limits.csv"
+# The limits of a spring, which stand beside the published ones.
+LIMITS = ("spring_stiffness/limit.csv", "spring_damping/limit.csv", "spring_time_step/limit.csv")
 # A longer one is the data of a figure, not a table to read.
 MOST_ROWS = 100
 
@@ -41,12 +41,12 @@ def load_studies(results: Path):
 
 
 def is_table(path: Path):
-    return path.parts[0] != "replay" and path.name not in ("limit.csv", "limit_runs.csv")
+    return path.as_posix() in LIMITS or (path.parts[0] != "replay" and path.name not in ("limit.csv", "limit_runs.csv"))
 
 
 def studies_section(studies):
     # Limits and times have places of their own.
-    others = [s for s in studies if s.path != LIMITS and not s.path.endswith("_timing.csv")]
+    others = [s for s in studies if s.path not in LIMITS and not s.path.endswith("_timing.csv")]
     shown = "".join(study_table(study) for study in others)
     return shown or '<p class="note">No studies among these results.</p>'
 

@@ -118,22 +118,24 @@ def scaled(value, scale):
     return ABSENT if value is None else number(value * scale)
 
 
+# Field and zeta -> limit and unit.
+LIMIT_CASES = {("rendering.stiffness_N_per_m", "0"): ("stiffness undamped", "N/m"), ("rendering.stiffness_N_per_m", "0.7"): ("stiffness damped", "N/m"),
+               ("rendering.damping_N_s_per_m", ""): ("damping alone", "N s/m"), ("time.step_s", ""): ("time step", "s")}
+
+
 def limits_table(studies, tables):
     part = tables["limits"]
-    study = next((s for s in studies if s.path == LIMITS), None)
     rows = []
-    for row in study.rows if study else []:
-        value = dict(zip(study.header, row))
-        published = part["published"].get(value.get("case"), ABSENT)
-        rows.append([cell(text(value.get("case", "").replace("_", " "))), cell(text(value.get("unit", ""))),
-                     cell(text(published), classes="number"),
-                     *(cell(shown_number(value.get(key, "")), classes="number ours")
-                       for key in ("analytic", "eigenvalue", "simulation", "damping_at_limit_N_s_per_m"))])
-    headings = [heading_cell("Limit"), heading_cell("Unit"), *(heading_cell(t, True) for t in (
-        "Thesis", "Closed form", "Eigenvalues", "Simulation", "Damping there, N s/m"))]
+    for study in (s for path in LIMITS for s in studies if s.path == path):
+        for row in study.rows:
+            value = dict(zip(study.header, row))
+            case, unit = LIMIT_CASES[value["field"], value.get("rendering.damping_ratio", "")]
+            rows.append([cell(text(case)), cell(text(unit)), cell(text(part["published"].get(case, ABSENT)), classes="number"),
+                         *(cell(shown_number(value.get(key, "")), classes="number ours") for key in ("closed_form", "theory", "limit"))])
+    headings = [heading_cell("Limit"), heading_cell("Unit"), *(heading_cell(t, True) for t in ("Thesis", "Closed form", "Eigenvalues", "Simulation"))]
     return (f'<div id="{anchor(part["label"])}">' + table(
         headings, rows, f"<b>Section {text(part['label'])}</b> {text(part['title'])} of the leapfrog step with Table A.4 (appendix A)")
-        + "</div>" + command("hapbench stability single_spring"))
+        + "</div>" + command("hapbench limit spring_stiffness\nhapbench limit spring_damping\nhapbench limit spring_time_step"))
 
 
 def shown_number(value):

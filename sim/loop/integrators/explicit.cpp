@@ -1,7 +1,4 @@
-#include <algorithm>
 #include <cmath>
-#include <limits>
-#include <optional>
 #include <tuple>
 #include <utility>
 
@@ -34,31 +31,6 @@ double margin(const SpringDamper& s) {
   return 4.0 - 2.0 * s.lambda * s.B * s.dt / s.M - s.lambda * s.K * s.dt * s.dt / s.M;
 }
 
-constexpr double kNever = std::numeric_limits<double>::infinity();
-
-/// Positive root of a x^2 + 2 b x = 4; infinite if there is none.
-double positive_root(double a, double b) {
-  if (a == 0.0) return b == 0.0 ? kNever : 2.0 / b;
-  return 4.0 / (b + std::sqrt(b * b + 4.0 * a));
-}
-
-/// The value at which the margin is zero.
-std::optional<double> leapfrog_limit(const RaisedSpringDamper& problem) {
-  const double M = problem.given.M, dt = problem.given.dt, lambda = problem.given.lambda;
-  if (problem.raised == StabilityCase::time_step) {
-    const SpringDamper system = problem.at(dt);
-    return positive_root(lambda * system.K / M, lambda * system.B / M);
-  }
-  if (lambda == 0.0) return kNever;
-  if (problem.raised == StabilityCase::stiffness_undamped) return 4.0 * M / (lambda * dt * dt);
-  if (problem.raised == StabilityCase::damping_alone) return 2.0 * M / (lambda * dt);
-  // With a fixed B the inequality is linear in K, with B = 2 zeta sqrt(K M) quadratic in sqrt K.
-  if (problem.damping) {
-    return std::max(0.0, (4.0 - 2.0 * lambda * *problem.damping * dt / M) * M / (lambda * dt * dt));
-  }
-  return math::square(positive_root(lambda * dt * dt / M, 2.0 * problem.damping_ratio * lambda * dt / std::sqrt(M)));
-}
-
 /// Velocity Verlet: half a kick with the row's force, drift, half a kick with the force at the new position and the
 /// velocity after the first half:
 ///
@@ -77,10 +49,6 @@ class VelocityVerlet final : public Integrator {
     tool.velocity = half + field.force_at(1.0, tool.pose.position, half) / mass * (0.5 * dt);
   }
 };
-
-std::optional<double> velocity_verlet_limit(const RaisedSpringDamper& problem) {
-  return limit_of_one_alone(problem, {4.0, 4.0});
-}
 
 /// A piece of a step by the classical Runge-Kutta method of order 4: from the part `from` of the step of dt on, `h`
 /// long [s], with the force at its begin. Calls `stage` after each force but the first. Returns position and velocity.
@@ -153,11 +121,8 @@ class Event final : public Integrator {
   double tolerance_;
 };
 
-/// Limits from the ends of the stability region |1 + z + z^2/2 + z^3/6 + z^4/24| <= 1 on the imaginary axis, z^2 = -8,
-/// and on the real axis.
-std::optional<double> rk4_limit(const RaisedSpringDamper& problem) {
-  return limit_of_one_alone(problem, {8.0, 2.785293563405282});
-}
+/// The end of the stability region |1 + z + z^2/2 + z^3/6 + z^4/24| <= 1 on the real axis.
+constexpr double kRk4Damper = 2.785293563405282;
 
 }  // namespace
 
@@ -172,7 +137,7 @@ const IntegratorEntry kLeapfrog = {
     .holds_force = true,
     .step_matrix = step_matrix,
     .stability_margin = margin,
-    .stability_limit = leapfrog_limit,
+    .damper_limit = 2.0,
 };
 
 const IntegratorEntry kVelocityVerlet = {
@@ -184,7 +149,7 @@ const IntegratorEntry kVelocityVerlet = {
     .make = make_integrator<VelocityVerlet>,
     .order = 2,
     .forces = 2,
-    .stability_limit = velocity_verlet_limit,
+    .damper_limit = 4.0,
 };
 
 const IntegratorEntry kRk4 = {
@@ -198,7 +163,7 @@ const IntegratorEntry kRk4 = {
     .order = 4,
     .damped_order = 4,
     .forces = 4,
-    .stability_limit = rk4_limit,
+    .damper_limit = kRk4Damper,
 };
 
 const IntegratorEntry kEvent = {
@@ -212,7 +177,7 @@ const IntegratorEntry kEvent = {
     .order = 4,
     .damped_order = 4,
     .forces = 5,
-    .stability_limit = rk4_limit,
+    .damper_limit = kRk4Damper,
 };
 
 }  // namespace hapbench

@@ -1,7 +1,5 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
-#include <limits>
-#include <optional>
 
 #include "sim/loop/integrators/table.hpp"
 
@@ -24,11 +22,6 @@ Vec3 velocity_change(const Mat3& resistance, const Vec3& impulse, double mass) n
   const Eigen::SelfAdjointEigenSolver<Mat3> modes(A);
   const Mat3& axes = modes.eigenvectors();
   return axes * (axes.transpose() * explicit_change).cwiseQuotient(modes.eigenvalues().cwiseMax(1.0));
-}
-
-/// The integrators are stable on springs at every stiffness, damping and time step.
-std::optional<double> no_stability_limit(const RaisedSpringDamper&) {
-  return std::numeric_limits<double>::infinity();
 }
 
 /// (M I + dt D + dt^2 K) dv = dt (f - dt K v);  v += dv,  p += dt v.
@@ -71,7 +64,6 @@ const IntegratorEntry kImplicitEuler = {
              .known_failure = "takes energy out of every oscillation, all of it where K dt^2 / M is large; sees no "
                               "contact before it is there"},
     .make = make_integrator<ImplicitEuler>,
-    .stability_limit = no_stability_limit,
 };
 
 const IntegratorEntry kImplicitMidpoint = {
@@ -85,7 +77,6 @@ const IntegratorEntry kImplicitMidpoint = {
     .make = make_integrator<ImplicitMidpoint>,
     .order = 2,
     .damped_order = 2,
-    .stability_limit = no_stability_limit,
 };
 
 }  // namespace hapbench

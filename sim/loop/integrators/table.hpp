@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string_view>
@@ -54,7 +55,6 @@ std::unique_ptr<Integrator> make_integrator(const IntegratorOptions& options) {
 }
 
 struct SpringDamper;
-struct RaisedSpringDamper;
 
 /// Description of an integrator. The theory is that of one spring-damper (spring_damper.hpp); functions without a
 /// closed form are null, and callers then use steps of the integrator itself.
@@ -70,8 +70,8 @@ struct IntegratorEntry {
   Eigen::Matrix2d (*step_matrix)(const SpringDamper&) = nullptr;
   /// Positive if and only if a step is stable.
   double (*stability_margin)(const SpringDamper&) = nullptr;
-  /// The largest stable value; infinite if every value is stable, nullopt without a closed form for this problem.
-  std::optional<double> (*stability_limit)(const RaisedSpringDamper&) = nullptr;
+  /// The largest B dt / M of a damper without a spring at which a step is stable; of the implicit ones every value is.
+  double damper_limit = std::numeric_limits<double>::infinity();
 };
 
 // The table. To add an integrator, define its entry in explicit.cpp, implicit.cpp or a new file, and add two lines

@@ -172,7 +172,6 @@ TEST(Commands, HaveTheNumbersOnRecord) {
       {"sweep:peg",
        {"sweep", "peg_in_hole_2d_shaped_stiffness", "--vary", "rendering.stiffness_N_per_m=1e3:1e5:4:log", "--vary",
         "rendering.algorithm=mean,proxy", "--vary", "integrator.type=leapfrog,rk4,implicit_midpoint"}},
-      {"stability:limits", {"stability", "single_spring"}},
       {"limit:over",
        {"limit", "single_spring", "--over", "integrator.type=leapfrog,rk4,implicit_euler", "--over",
         "rendering.damping_ratio=0,1", "--stable", "bounded"}},

@@ -82,7 +82,6 @@ TEST(Headings, OfEveryTableAreKnownToDescribe) {
       {"converge", "springs_oscillation", "--metric", "force_max_N,final_position_m.x", "--levels", "3"},
       {"compare", "springs_oscillation", "--errors", "--algorithms", "mean,summation", "--out", "g"},
       {"tune", "single_spring"},
-      {"stability", "single_spring"},
       {"stress", "--count", "10"},
       {"reproduce", "--only", "R2"}};
   std::set<std::pair<std::string, std::string>> titles;

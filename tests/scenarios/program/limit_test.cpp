@@ -1,6 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <map>
 
 #include "tests/results/files.hpp"
@@ -149,22 +148,6 @@ TEST_F(LimitCommand, SaysWhichDelaysDiffer) {
                 .out.find("\ndelay_samples: 0 of touch; 1.5 (1.5 ms in steps of 1 ms) of mine"),
             std::string::npos);
   EXPECT_EQ(on("touch,falcon,ideal").out.find("delay_samples"), std::string::npos);
-}
-
-TEST_F(LimitCommand, IsAskedForEachValueOfAnotherField) {
-  const ProgramRun run = hapbench({"limit", "single_spring", "--over", "rendering.damping_ratio=0,0.7", "--over",
-                                   "rendering.mass_kg=0.1,0.2", "--stable", "bounded", "--out", file("out"), "--json"});
-  ASSERT_EQ(run.status, 0) << run.err;
-  const Json rows = run.json()["limits"];
-  ASSERT_EQ(rows.size(), 4u);
-  for (const Json& row : rows) {
-    const double zeta = row["rendering.damping_ratio"].get<double>(), mass = row["rendering.mass_kg"].get<double>();
-    // 4 = 2 B dt / M + K dt^2 / M with B = 2 zeta sqrt(K M): a quadratic equation in sqrt(K / M) dt.
-    const double root = 2.0 * (std::sqrt(1.0 + zeta * zeta) - zeta), edge = mass * root * root / (0.0005 * 0.0005);
-    EXPECT_NEAR(row["theory"].get<double>(), edge, 1e-6 * edge);
-    EXPECT_NEAR(row["limit"].get<double>(), edge, 2e-3 * edge) << "bisection ends at 0.1 %";
-    EXPECT_EQ(row["class_beyond"], "diverged");
-  }
 }
 
 TEST_F(LimitCommand, SaysThatAFieldHasNoEffect) {

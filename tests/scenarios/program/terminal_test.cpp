@@ -85,7 +85,6 @@ TEST(Terminal, HasTablesInItsWidthOrInFull) {
       {"run", "peg_in_hole_2d_mean", "--latency"},
       {"compare", "peg_in_hole_2d_mean"},
       {"compare", "peg_in_hole_2d_mean", "single_spring"},
-      {"stability", "single_spring"},
       {"limit", "single_spring", "--vary=rendering.stiffness_N_per_m"},
       {"sweep", "single_spring", "--vary=seed=1,2"},
       {"reproduce", "--only=A2"},
@@ -319,7 +318,6 @@ class OutputDirectory : public testing::Test {
     return {{"run", "single_spring", "--out", out.string()},
             {"run", "single_spring", "single_damper", "--out", out.string()},
             {"compare", "single_spring", "--algorithms", "mean", "--out", out.string()},
-            {"stability", "single_spring", "--out", out.string()},
             {"sweep", "single_spring", "--vary", "seed=1,2", "--out", out.string()},
             {"shell", "peg_in_hole_2d_mean", "--out", (out / "s.csv").string()}};
   }

@@ -2,7 +2,6 @@
 
 #include <cmath>
 
-#include "device_model/theory/linear_loops.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/run/stop_signal.hpp"
@@ -46,57 +45,6 @@ std::vector<std::string> late(std::int64_t every, std::int64_t delay, const char
   return {"rendering.contacts.every=" + std::to_string(every),
           "rendering.contacts.delay_samples=" + std::to_string(delay),
           std::string("rendering.contacts.between=") + between};
-}
-
-// Held contacts of a spring are a sampled loop.
-
-TEST(HeldSpring, IsTheSampledLoopOfItsPeriodAndDelay) {
-  for (const double B : {0.0, 20.0}) {
-    for (const std::int64_t every : {1, 2, 5}) {
-      for (const std::int64_t delay : {0, 1, 3, 5, 12}) {
-        SCOPED_TRACE(testing::Message() << B << " " << every << " " << delay);
-        auto overrides = late(every, delay, "hold");
-        overrides.insert(overrides.end(), {"time.steps=300", "rendering.damping_N_s_per_m=" + std::to_string(B)});
-        const Scenario scenario = bundled("single_spring", overrides);
-        const auto rows = rows_of(scenario);
-        const double dt = scenario.time.step;
-        const HeldSpring loop{{.K = 20000.0, .B = B, .M = 0.1, .dt = dt}, every, delay};
-        const Eigen::MatrixXd A = loop.state_matrix();
-        // Before the first contacts, springs at the origin pull as none do.
-        Eigen::VectorXd state = Eigen::VectorXd::Unit(A.rows(), 0) * 1e-3;
-        double largest = 0.0;
-        for (std::size_t k = 0; k < rows.size(); k += static_cast<std::size_t>(every)) {
-          largest = std::max(largest, state.norm());
-          // Some roundings of the state in each of 300 rows.
-          ASSERT_NEAR(rows[k].position.x(), state[0], 1e-12 * largest) << k;
-          ASSERT_NEAR(rows[k].velocity.x() * dt, state[1], 1e-12 * largest) << k;
-          state = A * state;
-        }
-      }
-    }
-  }
-}
-
-TEST(HeldSpring, GrowsBeyondItsEdgeAndDiesOutBelow) {
-  for (const std::int64_t every : {1, 4, 8}) {
-    for (const std::int64_t delay : {0, 3}) {
-      const auto loop_at = [&](double K) {
-        return HeldSpring{{.K = K, .B = 1.4 * std::sqrt(0.1 * K), .M = 0.1, .dt = 0.0005}, every, delay};
-      };
-      const double edge = first_edge(1.0, 1e12, [&](double K) { return loop_at(K).state_matrix(); });
-      if (every == 1 && delay == 0) {
-        EXPECT_NEAR(edge, 433731.0, 1.0);  // the closed form of a damped spring (thesis A.3)
-      }
-      for (const double factor : {0.95, 1.05}) {
-        auto overrides = late(every, delay, "hold");
-        overrides.insert(overrides.end(),
-                         {"time.steps=6000", "rendering.stiffness_N_per_m=" + std::to_string(factor * edge)});
-        const auto rows = rows_of(bundled("single_spring", overrides));
-        const double end = rows.back().position.norm() + 0.0005 * rows.back().velocity.norm();
-        EXPECT_EQ(end < 1e-3, factor < 1.0) << every << " " << delay << " " << edge << " " << end;
-      }
-    }
-  }
 }
 
 // Linear contacts of a plane are fresh.

@@ -8,7 +8,6 @@
 
 #include "scenarios/description/load_scenario.hpp"
 #include "scenarios/input/installed_folder.hpp"
-#include "scenarios/studies/stability/stability_limits.hpp"
 
 namespace hapbench::judged_run_test {
 namespace {
@@ -222,16 +221,6 @@ TEST(MotionClassifier, IsAtRestOnlyAfterManyQuietRows) {
   EXPECT_FALSE(classifier.at_rest());
   see(1e-13, 1);
   EXPECT_TRUE(classifier.at_rest());
-}
-
-TEST(SpringDamperMargin, ChangesItsSignWhereAnEigenvalueLeavesTheUnitCircle) {
-  for (const double lambda : {0.5, 1.0, 7.0}) {
-    for (double K = 1e4; K < 1e7; K *= 1.1) {
-      const SpringDamper system{K, 1.4 * std::sqrt(0.1 * K), 0.1, 0.0005, lambda};
-      if (std::abs(*system.margin()) < 1e-9) continue;  // the limit itself, to rounding
-      EXPECT_EQ(*system.margin() > 0.0, system.spectral_radius() < 1.0) << K << " " << lambda;
-    }
-  }
 }
 
 }  // namespace

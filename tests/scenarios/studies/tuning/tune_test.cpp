@@ -71,30 +71,6 @@ RandomDevice random_device(Random& random) {
   return made;
 }
 
-/// The largest edge of the loop over B.
-double exact_edge(SampledLoop loop) {
-  const auto edge = [&](double B) {
-    loop.wall_damping = B;
-    return eigenvalue_edge(loop);
-  };
-  return best_over_damping(edge, loop.device.handle_mass / loop.period);
-}
-
-TEST(Tune, OfOneSpringIsTheExactEdgeOverTheMargin) {
-  Random random(34);
-  for (int i = 0; i < 3; ++i) {
-    const RandomDevice device = random_device(random);
-    TuneQuestion asked = question("single_spring", device.overrides);
-    asked.margin = 1.5 + random.uniform();
-    const TunedLaw law = tuned_law(asked, "summation");
-    ASSERT_TRUE(law.choice) << device.overrides.back() << " " << law.why;
-    EXPECT_NEAR(law.choice->stiffness * asked.margin / exact_edge(device.loop), 1.0, kWithin)
-        << device.overrides[0] << " " << device.overrides.back();
-    EXPECT_EQ(law.binding, "margin");
-    EXPECT_EQ(law.verified, 5u) << "five gains of one run";
-  }
-}
-
 /// A hand on the handle: the least edge of the family, which the program's own map has as worst_hand.
 TEST(Tune, OfAHeldHandleIsTheEdgeOfTheWorstHand) {
   Random random(35);
@@ -159,23 +135,6 @@ TEST(Tune, OfTheDeviceAtAWallIsTheEdgeOfTheWorstHand) {
   EXPECT_NEAR(2.0 * law.choice->stiffness / best, 1.0, kWithin);
 }
 
-TEST(Tune, FallsWithDelayAndMargin) {
-  const auto tuned = [](double delay, double margin) {
-    TuneQuestion asked = question(
-        "single_spring",
-        {"time.steps=4000",
-         fmt::format(R"(device={{"type":"impedance","handle_mass_kg":0.1,"viscous_N_s_per_m":0.5,"delay_samples":{}}})",
-                     delay)});
-    asked.margin = margin;
-    return tuned_law(asked, "summation").choice->stiffness;
-  };
-  const double K = tuned(1.0, 2.0);
-  EXPECT_GT(tuned(0.0, 2.0), K);
-  EXPECT_LT(tuned(2.0, 2.0), K);
-  EXPECT_GT(tuned(1.0, 1.5), K);
-  EXPECT_LT(tuned(1.0, 4.0), K);
-}
-
 TEST(Tune, KeepsLimitsAndSaysWhatBinds) {
   TuneQuestion asked = question("tap_wall", {});
   asked.threads = 2;
@@ -207,20 +166,6 @@ TEST(Tune, SaysWhichLimitToRelaxAndByHowMuch) {
   EXPECT_GT(needed, 1e-6);
   asked.limits["inside_max_m"].max = 1.01 * needed;  // it is printed with three digits
   EXPECT_TRUE(tuned_law(asked, "shaped_stiffness").choice);
-}
-
-/// Of a virtual mass M with an undamped bristle, stable up to K_t = 4 M / dt^2.
-TEST(Family, HasTheLoopOfAToolHeldByFriction) {
-  for (const double factor : {0.99, 1.01}) {
-    Scenario scenario = load_scenario(find_scenario("drag_molar_dry")).scenario;
-    const double edge = 4.0 * scenario.rendering.mass / (scenario.time.step * scenario.time.step);
-    scenario.rendering.dry_friction = DryFrictionConfig{0.3, factor * edge, 0.0};
-    const auto loops = contact_loops(scenario, 1.0, false);
-    ASSERT_EQ(loops.size(), 2u);
-    EXPECT_TRUE(is_stable_step(loops[0].second));
-    EXPECT_EQ(loops[1].first, "the tool held by friction");
-    EXPECT_EQ(is_stable_step(loops[1].second), factor < 1.0);
-  }
 }
 
 TEST(Family, HastensScripts) {

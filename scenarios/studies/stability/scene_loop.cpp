@@ -1,0 +1,174 @@
+#include "scenarios/studies/stability/scene_loop.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "algorithms/stages/damping_and_limits.hpp"
+#include "scenarios/description/descriptions.hpp"
+#include "scenarios/description/writer.hpp"
+#include "scenarios/run/assemble.hpp"
+
+namespace hapbench {
+namespace {
+
+/// Keeps the stiffness tensor of the last row.
+class LastTensor final : public Observer {
+ public:
+  void on_step(const StepRecord& record) noexcept override { S = record.force.S; }
+  Mat3 S = Mat3::Zero();
+};
+
+/// A hand whose force does not depend on the handle.
+bool is_blind(const HandFields& hand) {
+  return std::holds_alternative<NoHandFields>(hand) || std::holds_alternative<ForceHandFields>(hand) ||
+         std::holds_alternative<PushHandFields>(hand);
+}
+
+DeviceLoop impedance_loop(const Scenario& scenario, const ImpedanceDeviceConfig& device, double lambda) {
+  DeviceLoop result;
+  SampledLoop& loop = result.loop.emplace<SampledLoop>();
+  loop.device = device;
+  loop.period = scenario.time.step;
+  loop.stiffness = lambda * scenario.rendering.stiffness;
+  loop.wall_damping = lambda * normal_damping(scenario.rendering);
+  if (const auto* hand = std::get_if<MassSpringDamperHandFields>(&scenario.hand))
+    loop.hand = {hand->mass, hand->spring.stiffness, hand->spring.damping};
+  else if (!is_blind(scenario.hand))
+    result.no_theory = "the hand's force is sampled";
+  if (const char* nonlinearity = loop.nonlinearity()) result.no_theory = nonlinearity;
+  return result;
+}
+
+DeviceLoop admittance_loop(const Scenario& scenario, const AdmittanceDeviceConfig& device, double lambda) {
+  DeviceLoop result;
+  AdmittanceLoop& loop = result.loop.emplace<AdmittanceLoop>();
+  loop.tool = tool_on_spring(scenario, lambda);
+  loop.servo = device.servo;
+  loop.mechanics = device.mechanics;
+  if (const auto* hand = std::get_if<ImpedanceHandFields>(&scenario.hand)) {
+    loop.hand_stiffness = hand->stiffness;
+    loop.hand_damping = hand->damping;
+  } else if (!is_blind(scenario.hand)) {
+    result.no_theory = "the hand is no spring and damper";
+  }
+  return result;
+}
+
+/// The fields of devices that their loops have, that SampledLoop::nonlinearity names, or that do nothing while nothing
+/// saturates, with a blank before and after each. Any other that is not at its default leaves no theory.
+constexpr std::string_view kKnownToTheory =
+    " /handle_mass_kg /viscous_N_s_per_m /coulomb_N /encoder_step_m /delay_samples /force_max_N /force_step_N "
+    "/force_slew_N_per_s /position_noise_m /velocity_filter/noise_m /velocity_filter/cutoff_Hz /velocity_filter/order "
+    "/position_filter/cutoff_Hz /position_filter/order /transmission/motor_share /transmission/stiffness_N_per_m "
+    "/transmission/damping_N_s_per_m /force_limit_N /sensor/weight_offset_N /sensor/weight_compensated /sensor/noise_N "
+    "/servo/stiffness_N_per_m /servo/damping_N_s_per_m /servo/max_force_N /servo/delay_samples "
+    "/mechanics/carriage_mass_kg /mechanics/handle_mass_kg /mechanics/friction_N_s_per_m "
+    "/mechanics/structure_stiffness_N_per_m /mechanics/structure_damping_N_s_per_m ";
+
+}  // namespace
+
+bool springs_stay(const Scenario& scenario) {
+  const auto* springs = std::get_if<SpringsEnvironment>(&scenario.environment);
+  const RenderingConfig& r = scenario.rendering;
+  return springs != nullptr && springs->bilateral && springs->signed_depths && !r.has_friction() && !r.hunt_crossley &&
+         !(r.late && r.late->any()) && !r.max_damping && !r.max_force && !r.force_stage && !r.passivity_controller &&
+         std::holds_alternative<FreePosition>(scenario.motion.position);
+}
+
+bool has_device(const Scenario& scenario) {
+  return !std::holds_alternative<IdealDeviceFields>(scenario.device);
+}
+
+Vec3 stiffness_eigenvalues(Scenario scenario) {
+  scenario.time.steps = 1;
+  scenario.bounds = {};
+  scenario.initial.position = Vec3(1e-3, 1e-3, 1e-3);
+  LastTensor tensor;
+  Simulation(simulation_config(scenario), assemble(scenario), {&tensor}).run();
+  return Eigen::SelfAdjointEigenSolver<Mat3>(tensor.S, Eigen::EigenvaluesOnly).eigenvalues();
+}
+
+SpringDamper tool_on_spring(const Scenario& scenario, double lambda) {
+  const RenderingConfig& r = scenario.rendering;
+  return {r.stiffness, normal_damping(r), r.mass, scenario.time.step, lambda, scenario.integrator.type};
+}
+
+Scenario stuck_scene(Scenario scenario) {
+  RenderingConfig& r = scenario.rendering;
+  const SpringDamper bristle = bristle_of(*r.dry_friction, r, scenario.time.step);
+  r.stiffness = bristle.K;
+  r.damping = bristle.B;
+  if (auto* device = std::get_if<ImpedanceDeviceConfig>(&scenario.device)) {
+    const auto* filter = std::get_if<LowPassFilter>(&device->velocity_filter);
+    device->position_filter = filter != nullptr ? std::optional(*filter) : std::nullopt;
+  }
+  return scenario;
+}
+
+double delay_of(const Scenario& scenario) {
+  if (const auto* impedance = std::get_if<ImpedanceDeviceConfig>(&scenario.device)) return impedance->delay_samples;
+  const auto* admittance = std::get_if<AdmittanceDeviceConfig>(&scenario.device);
+  return admittance != nullptr ? static_cast<double>(admittance->servo.delay) : 0.0;
+}
+
+std::string unknown_to_theory(const Scenario& scenario) {
+  // With the parts of the device, so that only fields of theirs can differ.
+  DeviceFields plain = AdmittanceDeviceConfig{};
+  if (const auto* device = std::get_if<ImpedanceDeviceConfig>(&scenario.device)) {
+    auto& parts = plain.emplace<ImpedanceDeviceConfig>();
+    if (std::holds_alternative<LowPassFilter>(device->velocity_filter)) parts.velocity_filter = LowPassFilter{};
+    if (std::holds_alternative<AdaptiveWindowFilter>(device->velocity_filter))
+      parts.velocity_filter = AdaptiveWindowFilter{};
+    if (device->position_filter) parts.position_filter.emplace();
+    if (device->transmission) parts.transmission.emplace();
+  }
+  std::string unknown;
+  for (const Json& change : Json::diff(written(plain), written(scenario.device))) {
+    const std::string path = change["path"].get<std::string>();
+    if (kKnownToTheory.find(" " + path + " ") == std::string_view::npos)
+      unknown += (unknown.empty() ? "device" : ", device") + path;
+  }
+  std::replace(unknown.begin(), unknown.end(), '/', '.');
+  return unknown;
+}
+
+DeviceLoop device_loop(const Scenario& scenario, double lambda) {
+  const auto* impedance = std::get_if<ImpedanceDeviceConfig>(&scenario.device);
+  const auto* admittance = std::get_if<AdmittanceDeviceConfig>(&scenario.device);
+  DeviceLoop result = impedance != nullptr ? impedance_loop(scenario, *impedance, lambda)
+                                           : admittance_loop(scenario, *admittance, lambda);
+  if (delay_of(scenario) > kLongestLoopDelay)
+    result.no_theory = "a delay beyond 200 samples makes the loop too large to solve";
+  if (const std::string unknown = unknown_to_theory(scenario); !unknown.empty())
+    result.no_theory = unknown + ": not in the theory of the loop";
+  return result;
+}
+
+Eigen::MatrixXd contact_step(const Scenario& scenario, double lambda) {
+  if (!has_device(scenario)) return tool_on_spring(scenario, lambda).step_matrix();
+  if (delay_of(scenario) > kLongestLoopDelay || !unknown_to_theory(scenario).empty()) return {};
+  return device_loop(scenario, lambda).state_matrix();
+}
+
+std::vector<std::pair<std::string, Eigen::MatrixXd>> contact_loops(const Scenario& scenario, double lambda,
+                                                                   bool over_hands) {
+  std::vector<std::pair<std::string, Eigen::MatrixXd>> all = {{"", contact_step(scenario, lambda)}};
+  if (all[0].second.size() == 0) return {};
+  if (scenario.rendering.dry_friction)
+    all.emplace_back("the tool held by friction", contact_step(stuck_scene(scenario), 1.0));
+  const bool held = spring_of(scenario.hand) != nullptr || std::holds_alternative<DragHandFields>(scenario.hand);
+  if (!over_hands || !held || !std::holds_alternative<ImpedanceDeviceConfig>(scenario.device)) return all;
+  SampledLoop loop = std::get<SampledLoop>(device_loop(scenario, lambda).loop);
+  for (const AttachedHand& hand : hand_family()) {
+    loop.hand = hand;
+    all.emplace_back(
+        hand.mass == 0.0 ? "no hand" : fmt::format("a hand of {} kg and {} N/m", hand.mass, hand.stiffness),
+        loop.state_matrix());
+  }
+  return all;
+}
+
+}  // namespace hapbench
