@@ -24,14 +24,6 @@ double standard_error(const std::vector<double>& values) {
   return values.empty() ? 0.0 : standard_deviation(values) / std::sqrt(static_cast<double>(values.size()));
 }
 
-double quantile_of(std::vector<double> values, double p) {
-  std::sort(values.begin(), values.end());
-  const double rank = p * static_cast<double>(values.size() - 1);
-  const auto below = static_cast<std::size_t>(rank);
-  const double above = values[std::min(below + 1, values.size() - 1)];
-  return std::lerp(values[below], above, rank - static_cast<double>(below));
-}
-
 double paired_t(const std::vector<double>& a, const std::vector<double>& b) {
   if (a.size() < 2) return 0.0;
   std::vector<double> differences;

@@ -14,10 +14,6 @@ double standard_deviation(const std::vector<double>& values);
 /// Standard error of the mean: standard deviation / sqrt(n); 0 for fewer than two values.
 double standard_error(const std::vector<double>& values);
 
-/// The share p of the values lies below it, interpolated linearly between ranks (type 7 of Hyndman and Fan 1996).
-/// Precondition: values are not empty, 0 <= p <= 1.
-double quantile_of(std::vector<double> values, double p);
-
 /// Student's t of a paired test; 0 for fewer than two pairs, infinite when all pairs have the same difference.
 double paired_t(const std::vector<double>& a, const std::vector<double>& b);
 

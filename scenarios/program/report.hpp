@@ -3,8 +3,10 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -36,6 +38,20 @@ inline Shown only_csv() {
   return {true, false};
 }
 
+/// The cell of a number, a count, a truth, a text, one of them that need not exist, or of what is a cell already.
+template <class Value>
+Cell cell_of(const Value& value) {
+  if constexpr (requires { value.has_value(); }) {
+    return value ? cell_of(*value) : Cell();
+  } else if constexpr (std::is_convertible_v<Value, std::string_view>) {
+    return std::string(std::string_view(value));
+  } else if constexpr (std::is_integral_v<Value> && !std::is_same_v<Value, bool>) {
+    return static_cast<std::uint64_t>(value);
+  } else {
+    return value;
+  }
+}
+
 /// The cell of a number as it is printed: the digits that its tolerance leaves; "-" for nothing.
 std::string printed(const Cell& cell, const Shown& shown, const std::optional<double>& tolerance);
 
@@ -64,13 +80,20 @@ class Columns {
     std::function<std::optional<double>(const Row&)> tolerance = {};  ///< by how much the number may be wrong
   };
 
-  void add(std::string name, std::string unit, std::string meaning, std::function<Cell(const Row&)> cell,
-           Shown shown = {}) {
-    entries_.push_back({std::move(name), std::move(unit), std::move(meaning), std::move(cell), std::move(shown)});
+  /// `get`: what a row has in the column, as a function of the row or a member of it (cell_of).
+  template <class Get>
+  void add(std::string name, std::string unit, std::string meaning, Get get, Shown shown = {}) {
+    const auto cell = [get = std::move(get)](const Row& row) { return cell_of(std::invoke(get, row)); };
+    entries_.push_back({std::move(name), std::move(unit), std::move(meaning), cell, std::move(shown)});
+  }
+  /// A column that is in no file; `unit` is empty for text.
+  template <class Get>
+  void print(std::string heading, std::string unit, std::string meaning, Get get) {
+    add("", std::move(unit), std::move(meaning), std::move(get), only_printed(std::move(heading)));
   }
   void add(const Columns& more) { entries_.insert(entries_.end(), more.entries_.begin(), more.entries_.end()); }
 
-  void write(const std::filesystem::path& file, const std::vector<Row>& rows, FileSet& files) const {
+  void write(const std::filesystem::path& file, std::span<const Row> rows, FileSet& files) const {
     std::string header;
     for (const Entry& entry : entries_)
       if (entry.shown.csv) header += (header.empty() ? "" : ",") + entry.name;
@@ -95,7 +118,7 @@ class Columns {
   }
 
   /// `gap`: blanks between columns.
-  Table table(const std::vector<Row>& rows, std::size_t gap = 2) const {
+  Table table(std::span<const Row> rows, std::size_t gap = 2) const {
     Table table(headings(), gap);
     for (const Row& row : rows) {
       std::vector<std::string> cells;

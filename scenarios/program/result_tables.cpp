@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include "results/record/recorder.hpp"
-#include "scenarios/batch/league.hpp"
 #include "scenarios/batch/sweep_table.hpp"
 #include "scenarios/description/metric_sections.hpp"
 #include "scenarios/description/scenario.hpp"
+#include "scenarios/program/league_text.hpp"
 #include "scenarios/program/limit_answers.hpp"
 #include "scenarios/program/run_table.hpp"
 #include "scenarios/run/recorders.hpp"
@@ -54,9 +54,9 @@ std::vector<Table::Column> joined_headings(const std::vector<std::vector<Table::
 }
 
 std::vector<Table::Column> printed_headings() {
-  std::vector<std::vector<Table::Column>> all = {run_headings(),       league_headings(), converge_headings(),
-                                                 stability_headings(), diff_headings(),   sweep_headings(),
-                                                 tune_headings(),      claim_headings()};
+  std::vector<std::vector<Table::Column>> all = {run_headings(),  league_headings(), stability_headings(),
+                                                 diff_headings(), sweep_headings(),  tune_headings(),
+                                                 claim_headings()};
   for (const DescribedTable& table : result_tables()) all.push_back(table.headings);
   return joined_headings(all);
 }
@@ -68,12 +68,11 @@ std::vector<DescribedTable> result_tables() {
   };
   for (const ResultTable& table : record_tables()) add(table.file, table.holds, all(table.columns));
   add(kTargetTable.file, kTargetTable.holds, all(kTargetTable.columns));
-  add("comparison.csv", "of compare: one line per algorithm", comparison_columns());
-  add("league.csv", "of compare with several scenarios or seeds: one line per scenario, algorithm and metric",
-      league_columns());
+  tables.push_back(comparison_columns().described("comparison.csv", "of compare: one line per algorithm"));
+  tables.push_back(league_columns().described(
+      "league.csv", "of compare with several scenarios or seeds: one line per scenario, algorithm and metric"));
   for (const DescribedTable& table : limit_tables()) tables.push_back(table);
-  add("converge.csv", "of converge: one line per metric", converge_columns());
-  add("converge_levels.csv", "of converge: one line per metric and level", converge_level_columns());
+  for (const DescribedTable& table : converge_tables()) tables.push_back(table);
   add("tune.csv", "of tune: one line per algorithm", tune_columns());
   add("tune_trials.csv", "of tune: one line per algorithm, setting and K that was tried", tune_trial_columns());
   add("sweep.csv", "of sweep: one line per run", sweep_columns());

@@ -11,10 +11,9 @@
 namespace hapbench {
 
 // The columns of tables that are defined as fields in the sources of their commands.
-std::vector<Column> converge_columns();
-std::vector<Column> converge_level_columns();
 std::vector<Column> stability_limit_columns();
 std::vector<Column> root_locus_columns();
+std::vector<DescribedTable> converge_tables();
 DescribedTable stress_table();
 std::vector<Column> tune_columns();
 std::vector<Column> tune_trial_columns();
@@ -22,11 +21,7 @@ std::vector<Column> tune_trial_columns();
 // The headings of printed tables, from which the tables are made; without those that are names of fields, metrics,
 // scenes or algorithms.
 std::vector<Table::Column> claim_headings();
-std::vector<Table::Column> converge_headings();
 std::vector<Table::Column> diff_headings();
-std::vector<Table::Column> league_headings();
-std::vector<Table::Column> run_headings();
-std::vector<Table::Column> latency_headings();
 std::vector<Table::Column> stability_headings();
 std::vector<Table::Column> sweep_headings();
 std::vector<Table::Column> tune_headings();

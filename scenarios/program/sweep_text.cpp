@@ -56,7 +56,7 @@ std::string runs_text(const SweepPlan& plan, std::span<const SweepRow> rows) {
   }
   columns.push_back({"outcome", false});
   for (const RunHeading& heading : kRunHeadings) {
-    if (heading.factor == 0.0 || !has_metric(plan, heading.shows[0])) continue;
+    if (!has_metric(plan, heading.metric)) continue;
     metrics.push_back(heading);
     columns.push_back({heading.title});
   }
@@ -70,8 +70,8 @@ std::string runs_text(const SweepPlan& plan, std::span<const SweepRow> rows) {
     }
     cells.push_back(row.outcome);
     for (const RunHeading& heading : metrics) {
-      const double value = row.number(plan, heading.shows[0]).value_or(std::numeric_limits<double>::quiet_NaN());
-      const int digits = deserved_digits(value, row.tolerance(plan, heading.shows[0]), 3);
+      const double value = row.number(plan, heading.metric).value_or(std::numeric_limits<double>::quiet_NaN());
+      const int digits = deserved_digits(value, row.tolerance(plan, heading.metric), 3);
       cells.push_back(significant(heading.factor * value, digits));
     }
     table.add(std::move(cells));

@@ -38,15 +38,6 @@ class Differences : public testing::Test {
   test::TemporaryDirectory directory_;
 };
 
-TEST_F(Differences, OfEqualRunsAreNone) {
-  const RunDifference d = difference();
-  EXPECT_TRUE(d.fields.empty() && d.metrics.empty() && d.unshared.empty());
-  ASSERT_TRUE(d.trajectory);
-  EXPECT_FALSE(d.trajectory->first);
-  EXPECT_EQ(d.trajectory->rows_a, 3u);
-  EXPECT_FALSE(d.is_beyond(0.0));
-}
-
 TEST_F(Differences, OfProvenanceAndWorkDoNotCount) {
   write("b", "summary.json",
         R"({"name": "y", "outcome": "completes", "steps": 3, "metrics": {"force_max_N": 4, "ratio_min": null},
@@ -105,21 +96,6 @@ TEST_F(Differences, OfOutcomesCountWhateverTheTolerance) {
   text.replace(text.find("completes"), 9, "diverges!");
   write("b", "summary.json", text);
   EXPECT_TRUE(difference().is_beyond(1e9));
-}
-
-TEST_F(Differences, OfTrajectoriesNameTheFirstCellAndTheLargestOfEachColumn) {
-  write("b", "trajectory.csv", "t_s,fx_N\n0,1\n0.5,-2.5\n1,5\n");
-  const RunDifference d = difference();
-  ASSERT_TRUE(d.trajectory->first);
-  EXPECT_EQ(d.trajectory->first->row, 1u);
-  EXPECT_EQ(d.trajectory->first->column, "fx_N");
-  EXPECT_EQ(d.trajectory->first->b, "-2.5");
-  ASSERT_EQ(d.trajectory->columns.size(), 1u);
-  EXPECT_EQ(d.trajectory->columns[0].largest, 1.0);
-  EXPECT_EQ(d.trajectory->columns[0].row, 2u);
-  EXPECT_EQ(d.trajectory->columns[0].relative, 0.2) << "of 5";
-  EXPECT_TRUE(d.is_beyond(0.199));
-  EXPECT_FALSE(d.is_beyond(0.2));
 }
 
 TEST_F(Differences, OfLengthCountWhateverTheTolerance) {

@@ -26,15 +26,6 @@ class DiffCommand : public testing::Test {
   test::TemporaryDirectory directory_;
 };
 
-TEST_F(DiffCommand, FindsARunRepeatedToBeEqual) {
-  run("a");
-  run("b");
-  const ProgramRun same = diff("a", "b");
-  EXPECT_EQ(same.status, 0) << same.out;
-  EXPECT_NE(same.out.find("the results are equal\n"), std::string::npos) << same.out;
-  EXPECT_EQ(diff("a", "b", {"--quiet"}).out, "");
-}
-
 TEST_F(DiffCommand, ShowsFieldsResultsAndWhereTheTrajectoriesPart) {
   run("a");
   run("b", {"--set", "rendering.stiffness_N_per_m=20002"});

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 
+#include "scenarios/batch/comparison.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "sim/loop/integrators/table.hpp"
 #include "tests/results/files.hpp"
@@ -70,17 +71,6 @@ TEST(ObservedOrder, FollowsTheFormulas) {
   EXPECT_FALSE(convergence_of(levels_with({1.6, 1.2, 1.0}), 2.0, 2.0).asymptotic) << "1 / 1.2 is not";
 }
 
-TEST(ObservedOrder, IsAsymptoticWhereTheLevelsBeforeAgree) {
-  // A second term half as large at h = 1: at the last four of six levels the orders are 1.12 and 1.06.
-  const auto two_terms = [](double share) { return [share](double h) { return 1000.0 + h + share * h * h; }; };
-  EXPECT_TRUE(convergence_of(levels_of(two_terms(0.5), 6), 2.0, 1.0).asymptotic);
-  // One twice as large: at the last four of five they are 1.51 and 1.35, and 2^0.166 is 1.12.
-  const Convergence bent = convergence_of(levels_of(two_terms(2.0), 5), 2.0, 1.0);
-  ASSERT_TRUE(bent.order) << bent.reason;
-  EXPECT_NEAR(*bent.order, 1.348, 1e-3);
-  EXPECT_FALSE(bent.asymptotic);
-}
-
 /// The order of the exact solution is bracketed: what is extrapolated is within the GCI of it.
 TEST(ObservedOrder, ItsIndexHoldsTheLimit) {
   for (const double share : {-0.4, -0.1, 0.1, 1.0, 3.0}) {
@@ -102,23 +92,13 @@ TEST(ObservedOrder, IsNotStatedWhereDifferencesChangeTheirSign) {
   EXPECT_NEAR(*c.errors[4], 0.3, 1e-12);
 }
 
-TEST(ObservedOrder, OverlooksWhatTheCoarsestOfFiveDo) {
-  const Convergence c = convergence_of(levels_with({0.0, 1.8, 1.4, 1.2, 1.1}), 2.0, 1.0);
-  ASSERT_TRUE(c.order) << c.reason;
-  EXPECT_NEAR(*c.order, 1.0, 1e-12);
-}
-
-TEST(ObservedOrder, IsNotStatedBeyondTwiceTheFormalOne) {
-  const auto cubic = [](double h) { return 1.0 + h * h * h; };
-  expect_no_order(convergence_of(levels_of(cubic), 2.0, 1.0), "more than twice the formal one, 1");
-  EXPECT_NEAR(convergence_of(levels_of(cubic), 2.0, 2.0).order.value_or(0.0), 3.0, 1e-9);
-}
-
 TEST(ObservedOrder, IsNotStatedWhereDifferencesGrowOrStagnate) {
   expect_no_order(convergence_of(levels_with({1.0, 1.1, 1.3, 1.7}), 2.0, 1.0), "do not shrink");
   expect_no_order(convergence_of(levels_with({1.0, 1.1, 1.2, 1.3}), 2.0, 1.0), "do not shrink");
   // The last three alone would have order 0.4.
   expect_no_order(convergence_of(levels_with({1.0, 1.01, 1.2, 1.344}), 2.0, 1.0), "do not shrink");
+  const auto cubic = levels_of([](double h) { return 1.0 + h * h * h; });
+  expect_no_order(convergence_of(cubic, 2.0, 1.0), "more than twice the formal one, 1");
 }
 
 TEST(ObservedOrder, IsNotStatedAtRounding) {
@@ -166,13 +146,6 @@ TEST(ObservedOrder, CountsLevelsThatEndAsTheFinest) {
   expect_no_order(convergence_of(levels_with({1.0, 2.0}), 2.0, 1.0), "2 levels are fewer than three");
 }
 
-TEST(ObservedOrder, IsNotStatedWhereOneKnowsBefore) {
-  const Convergence c =
-      convergence_of(levels_of([](double h) { return 1.0 + h; }), 2.0, 1.0, "the noise is drawn anew");
-  expect_no_order(c, "the noise is drawn anew");
-  EXPECT_TRUE(c.band);
-}
-
 /// Of noise an order is rarely stated: of the last four levels all differences must have one sign (a twelfth of the
 /// orders of four numbers), and both orders must be credible.
 TEST(ObservedOrder, IsRarelyFoundInNoise) {
@@ -194,25 +167,20 @@ TEST(ObservedOrder, IsRarelyFoundInNoise) {
 
 struct Study {
   LevelSweep levels;
-  SweepPlan plan;
-  SweepReport report;
+  std::vector<RunReport> runs;
 
-  Convergence of(const std::string& metric) const { return convergence_of(levels, plan, report.rows, metric); }
-  std::vector<std::optional<double>> results(const std::string& metric) const {
-    std::vector<std::optional<double>> results;
-    for (const SweepRow& row : report.rows) results.push_back(level_result(plan, row, metric));
+  std::vector<LevelResult> levels_of(const std::string& metric) const {
+    std::vector<LevelResult> results;
+    for (std::size_t i = 0; i < runs.size(); ++i) results.push_back(level_result(levels, i, runs[i].summary, metric));
     return results;
   }
+  Convergence of(const std::string& metric) const { return convergence_of(levels, levels_of(metric)); }
 };
 
 Study studied(const ScenarioText& scenario, const std::string& path = kStepPath, std::size_t count = 5) {
-  const test::TemporaryDirectory directory;
   LevelSweep levels = level_sweep(load_scenario(scenario, {}), path, count, 2.0);
-  SweepPlan plan = plan_sweep(Cases({scenario}, {}, {levels.axis}), 1, false);
-  SweepOptions options;
-  options.directory = directory.path();
-  SweepReport report = run_sweep(plan, options);
-  return {std::move(levels), std::move(plan), std::move(report)};
+  const Cases cases({scenario}, {}, {levels.axis});
+  return {std::move(levels), run_all({&cases, 1}, {})};
 }
 Study studied(const Json& scenario, const std::string& path = kStepPath, std::size_t count = 5) {
   return studied(ScenarioText{test::data_directory() / "converge.json", scenario}, path, count);
@@ -307,12 +275,13 @@ TEST(Converge, MeasuresAtTheTimesOfTheCoarsestRows) {
   scene["rendering"]["damping_ratio"] = 0;
   const Study study = studied(scene);
   for (const char* metric : {"force_max_N", "force_step_max_N", "force_reversals"}) {
-    const auto results = study.results(metric);
+    const auto levels = study.levels_of(metric);
+    const double first = *levels.front().result;
     // Times are products of two roundings each, over a period of 2 pi 1e-3 m.
-    for (const auto& result : results) EXPECT_NEAR(*result, *results.front(), 1e-12 * *results.front()) << metric;
+    for (const LevelResult& level : levels) EXPECT_NEAR(*level.result, first, 1e-12 * first) << metric;
     EXPECT_NE(study.of(metric).reason.find("rounding"), std::string::npos) << study.of(metric).reason;
   }
-  EXPECT_EQ(study.report.rows[4].cells[4], std::to_string(16 * kSteps)) << "its steps";
+  EXPECT_EQ(study.runs[4].summary.result.rows, 16u * kSteps);
 }
 
 TEST(Converge, KeepsTheLengthOfDelays) {
@@ -333,9 +302,8 @@ TEST(Converge, HasNoNumberWhereARunHasNone) {
   Json scene = spring(0.0, "leapfrog");
   scene["time"] = {{"step_s", 0.064}, {"steps", 400}};
   const Study study = studied(scene);
-  EXPECT_EQ(study.report.rows[0].outcome, "diverges");
-  EXPECT_EQ(study.report.rows[1].outcome, "diverges");
-  EXPECT_FALSE(study.results("force_max_N")[0]);
+  for (const std::size_t i : {0u, 1u}) EXPECT_EQ(study.runs[i].summary.result.outcome, Outcome::diverges);
+  EXPECT_FALSE(study.levels_of("force_max_N")[0].result);
   const Convergence c = study.of("force_max_N");
   EXPECT_FALSE(c.errors[0] || c.errors[1]);
   EXPECT_TRUE(c.errors[2] && c.band);
@@ -347,15 +315,6 @@ TEST(Converge, SaysWhereAFieldHasNoEffect) {
   const Convergence c = studied(spring(0.2, "leapfrog"), "tool.diameter_m", 3).of("force_max_N");
   EXPECT_FALSE(c.order);
   EXPECT_EQ(c.reason, "tool.diameter_m has no effect here: all runs are the same, bit for bit");
-}
-
-TEST(Converge, StatesNoOrderOfNoise) {
-  Json scene = spring(0.2, "leapfrog");
-  scene["device"] = {{"type", "admittance"}, {"sensor", {{"noise_N", 0.01}}}};
-  const LoadedScenario loaded = load_scenario(ScenarioText{"x.json", scene}, {});
-  EXPECT_EQ(level_sweep(loaded, kStepPath, 3, 2.0).no_order,
-            "the noise of the force sensor is drawn anew in every step");
-  EXPECT_EQ(level_sweep(loaded, "tool.diameter_m", 3, 2.0).no_order, "") << "other fields draw the same noise";
 }
 
 TEST(Converge, RefusesFieldsThatAreNoLengths) {

@@ -90,16 +90,14 @@ class FlatTip : public testing::Test {
   };
   Found found(const std::vector<std::string>& algorithms, const std::string& metric) const {
     test::write_plainly(directory_ / "scene.json", scene_.dump());
-    const BatchPlan plan =
-        plan_batch({.scenarios = {directory_ / "scene.json"}, .algorithms = algorithms, .overrides = {}});
-    const BatchReport report = run_batch(plan, {});
-    const FinerRuns finer(plan, report, {});
+    const Comparison comparison = planned({.scenarios = {directory_ / "scene.json"}, .algorithms = algorithms});
+    const std::vector<RunReport> reports = run_all(comparison.scenes, {});
+    const FinerRuns finer(comparison, reports, {});
     Found found;
     found.refined = finer.refined(0);
-    for (std::size_t i = 0; i < plan.size(); ++i) {
+    for (std::size_t i = 0; i < reports.size(); ++i) {
       found.known.push_back(finer.known_error(i, metric));
-      found.numbers.push_back(
-          {number_of(value_of(metric_list(report.runs[i].summary), metric)), found.known.back().sum()});
+      found.numbers.push_back({number_of(value_of(metric_list(reports[i].summary), metric)), found.known.back().sum()});
     }
     found.says = held_text(found.numbers, algorithms, kSame);
     return found;
