@@ -98,10 +98,9 @@ Columns<LevelRow> level_columns(const ConvergeStudy& study) {
               "with an order 1.25 |f - f*|, else the largest distance from a finer level or in the band", &Row::error);
   columns.print("error %", "1", "of converge: error over the result of the finest level",
                 [](const Row& r) { return r.share ? significant(100.0 * *r.share, 2) : "-"; });
-  columns.add("seconds", "s", "processor time of the run", &Row::seconds, only_json());
-  columns.print("run s", "1",
-                "of converge: processor time of the level's run [s]; of one under some milliseconds the least of five",
-                [](const Row& r) { return significant(r.seconds, 2); });
+  columns.add("seconds", "s",
+              "of converge: processor time of the level's run [s]; of one under some milliseconds the least of five",
+              &Row::seconds, {.csv = false, .heading = "run s", .digits = 2});
   return columns;
 }
 

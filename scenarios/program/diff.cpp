@@ -8,6 +8,7 @@
 #include "scenarios/batch/result_folders.hpp"
 #include "scenarios/batch/run_difference.hpp"
 #include "scenarios/program/command.hpp"
+#include "scenarios/program/report.hpp"
 #include "scenarios/program/result_tables.hpp"
 
 namespace hapbench {
@@ -17,26 +18,6 @@ namespace fs = std::filesystem;
 
 constexpr const char* kInFirst = "of diff: the value in the first folder, RUN_A; its line A names it";
 constexpr const char* kInSecond = "of diff: the value in the second folder, RUN_B; its line B names it";
-
-const std::vector<Table::Column> kFieldDifferenceHeadings = {
-    {"field", false, "of diff: a field in which the scenarios differ"}, {"A", true, kInFirst}, {"B", true, kInSecond}};
-const std::vector<Table::Column> kResultDifferenceHeadings = {
-    {"result", false, "of diff: a metric, or another entry of summary.json"},
-    {"A", true, kInFirst},
-    {"B", true, kInSecond},
-    {"relative", true, "|A - B| over the larger of |A| and |B|"}};
-const std::vector<Table::Column> kColumnDifferenceHeadings = {
-    {"column", false, "of diff: a column of trajectory.csv or sweep.csv that differs"},
-    {"largest difference", true, "largest |A - B| of the column"},
-    {"in row", true, "where the largest difference is, from 0"},
-    {"relative to the largest", true, "the largest difference over the column's largest magnitude"}};
-const std::vector<Table::Column> kRunDifferenceHeadings = {
-    {"run", false, "of diff: folder of a run, below A and B"},
-    {"is", false, "equal, or differs by more than the tolerance"},
-    {"fields", true, "number of fields in which the scenarios differ, which do not count"},
-    {"results", true, "number of metrics and other results that differ"},
-    {"largest relative", true, "largest relative difference of these"},
-    {"from row", true, "first row of trajectory.csv that differs, from 0"}};
 
 struct DiffOptions {
   std::string a;
@@ -56,27 +37,69 @@ std::string shown_size(double value) {
   return std::isinf(value) ? "no number" : significant(value, 3);
 }
 
-std::string fields_text(const RunDifference& run) {
-  if (run.fields.empty()) return "";
-  Table table(kFieldDifferenceHeadings);
-  for (const NamedDifference& field : run.fields) {
-    table.add({field.name, cut_value(field.values.a), cut_value(field.values.b)});
-  }
-  return table.text() + "\n";
+Columns<NamedDifference> field_columns() {
+  Columns<NamedDifference> columns;
+  columns.print("field", "", "of diff: a field in which the scenarios differ", &NamedDifference::name);
+  columns.print("A", "1", kInFirst, [](const NamedDifference& d) { return cut_value(d.values.a); });
+  columns.print("B", "1", kInSecond, [](const NamedDifference& d) { return cut_value(d.values.b); });
+  return columns;
+}
+
+Columns<NamedDifference> result_columns() {
+  Columns<NamedDifference> columns;
+  columns.print("result", "", "of diff: a metric, or another entry of summary.json", &NamedDifference::name);
+  columns.print("A", "1", kInFirst, [](const NamedDifference& d) { return cut_value(d.values.a); });
+  columns.print("B", "1", kInSecond, [](const NamedDifference& d) { return cut_value(d.values.b); });
+  columns.print("relative", "1", "|A - B| over the larger of |A| and |B|",
+                [](const NamedDifference& d) { return shown_size(d.values.relative); });
+  return columns;
+}
+
+Columns<ColumnDifference> column_columns() {
+  Columns<ColumnDifference> columns;
+  columns.print("column", "", "of diff: a column of trajectory.csv or sweep.csv that differs",
+                &ColumnDifference::column);
+  columns.print("largest difference", "1", "largest |A - B| of the column",
+                [](const ColumnDifference& d) { return shown_size(d.largest); });
+  columns.print("in row", "1", "where the largest difference is, from 0", &ColumnDifference::row);
+  columns.print("relative to the largest", "1", "the largest difference over the column's largest magnitude",
+                [](const ColumnDifference& d) { return shown_size(d.relative); });
+  return columns;
+}
+
+/// The differences of a run in one line.
+struct RunRow {
+  std::string path;
+  RunDifference run;
+};
+
+Columns<RunRow> run_columns(double tolerance) {
+  Columns<RunRow> columns;
+  columns.print("run", "", "of diff: folder of a run, below A and B", &RunRow::path);
+  columns.print("is", "", "equal, or differs by more than the tolerance",
+                [tolerance](const RunRow& r) { return r.run.is_beyond(tolerance) ? "differs" : "equal"; });
+  columns.print("fields", "1", "number of fields in which the scenarios differ, which do not count",
+                [](const RunRow& r) { return r.run.fields.size(); });
+  columns.print("results", "1", "number of metrics and other results that differ",
+                [](const RunRow& r) { return r.run.metrics.size(); });
+  columns.print("largest relative", "1", "largest relative difference of these", [](const RunRow& r) {
+    double relative = 0.0;
+    for (const NamedDifference& metric : r.run.metrics) relative = std::max(relative, metric.values.relative);
+    return shown_size(relative);
+  });
+  columns.print("from row", "1", "first row of trajectory.csv that differs, from 0", [](const RunRow& r) {
+    const auto& trajectory = r.run.trajectory;
+    return trajectory && trajectory->first ? Cell(std::uint64_t{trajectory->first->row}) : Cell();
+  });
+  return columns;
 }
 
 std::string metrics_text(const RunDifference& run, double tolerance) {
-  Table table(kResultDifferenceHeadings);
-  std::size_t within = 0;
-  for (const NamedDifference& metric : run.metrics) {
-    const CellDifference& values = metric.values;
-    if (tolerance > 0.0 && values.relative <= tolerance) {
-      ++within;
-    } else {
-      table.add({metric.name, cut_value(values.a), cut_value(values.b), shown_size(values.relative)});
-    }
-  }
-  std::string text = run.metrics.size() > within ? table.text() : "";
+  std::vector<NamedDifference> beyond;
+  for (const NamedDifference& metric : run.metrics)
+    if (!(tolerance > 0.0 && metric.values.relative <= tolerance)) beyond.push_back(metric);
+  std::string text = beyond.empty() ? "" : result_columns().table(beyond).text();
+  const std::size_t within = run.metrics.size() - beyond.size();
   if (within > 0) text += fmt::format("{} more within the tolerance\n", within);
   return text.empty() ? "" : text + "\n";
 }
@@ -96,16 +119,14 @@ std::string columns_text(const char* name, const TableDifference& difference) {
     return fmt::format("{}: {}, the same{}\n{}", name, rows, whole ? "" : " as far as both go", columns);
   }
   const FirstDifference& first = *difference.first;
-  Table table(kColumnDifferenceHeadings);
-  for (const ColumnDifference& column : difference.columns) {
-    table.add({column.column, shown_size(column.largest), std::to_string(column.row), shown_size(column.relative)});
-  }
   return fmt::format("{}: {}, first different in row {} (from 0), column {}: {} and {}\n{}\n{}", name, rows, first.row,
-                     first.column, cut_value(first.a), cut_value(first.b), columns, table.text());
+                     first.column, cut_value(first.a), cut_value(first.b), columns,
+                     column_columns().table(difference.columns).text());
 }
 
 std::string run_text(const RunDifference& run, double tolerance) {
-  std::string text = fields_text(run) + metrics_text(run, tolerance);
+  std::string text = run.fields.empty() ? "" : field_columns().table(run.fields).text() + "\n";
+  text += metrics_text(run, tolerance);
   if (!run.unshared.empty()) {
     text += fmt::format("in A (<) or B (>) alone:\n  {}\n", fmt::join(run.unshared, "\n  "));
   }
@@ -162,18 +183,6 @@ Json run_json(const RunDifference& run) {
                                                   : Json(nullptr)}};
 }
 
-/// The differences of a run in one line.
-std::vector<std::string> run_cells(const fs::path& path, const RunDifference& run, double tolerance) {
-  double relative = 0.0;
-  for (const NamedDifference& metric : run.metrics) relative = std::max(relative, metric.values.relative);
-  return {path.empty() ? "." : path.generic_string(),
-          run.is_beyond(tolerance) ? "differs" : "equal",
-          std::to_string(run.fields.size()),
-          std::to_string(run.metrics.size()),
-          shown_size(relative),
-          run.trajectory && run.trajectory->first ? std::to_string(run.trajectory->first->row) : "-"};
-}
-
 /// Collects the results while the pairs are compared one by one.
 struct Differences {
   bool beyond = false;
@@ -183,15 +192,16 @@ struct Differences {
 };
 
 void compare_all_runs(const DiffOptions& options, const ResultPairs& pairs, Differences& report) {
-  Table table(kRunDifferenceHeadings);
+  std::vector<RunRow> rows;
   for (const fs::path& path : pairs.runs) {
-    const RunDifference run = compare_runs(fs::path(options.a) / path, fs::path(options.b) / path);
+    const auto& [name, run] =
+        rows.emplace_back(RunRow{path.empty() ? "." : path.generic_string(),
+                                 compare_runs(fs::path(options.a) / path, fs::path(options.b) / path)});
     report.beyond |= run.is_beyond(options.tolerance);
-    if (pairs.runs.size() == 1) report.text += run_text(run, options.tolerance);
-    table.add(run_cells(path, run, options.tolerance));
-    report.runs[path.empty() ? "." : path.generic_string()] = run_json(run);
+    report.runs[name] = run_json(run);
   }
-  if (pairs.runs.size() > 1) report.text += table.text();
+  report.text += rows.size() == 1 ? run_text(rows.front().run, options.tolerance)
+                                  : run_columns(options.tolerance).table(rows).text();
 }
 
 void compare_all_sweeps(const DiffOptions& options, const ResultPairs& pairs, Differences& report) {
@@ -237,9 +247,9 @@ int diff(const DiffOptions& options) {
 
 }  // namespace
 
-std::vector<Table::Column> diff_headings() {
-  return joined_headings(
-      {kFieldDifferenceHeadings, kResultDifferenceHeadings, kColumnDifferenceHeadings, kRunDifferenceHeadings});
+std::vector<DescribedTable> diff_tables() {
+  return {field_columns().described(), result_columns().described(), column_columns().described(),
+          run_columns(0.0).described()};
 }
 
 void add_diff(CommandLine& line) {

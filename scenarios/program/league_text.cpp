@@ -163,11 +163,10 @@ Json league_json(const League& league) {
   return {{"standings", std::move(rows)}, {"laws", std::move(laws)}};
 }
 
-std::vector<Table::Column> league_headings() {
-  std::vector<Table::Column> all = standings_columns(26, false).headings();
-  for (const auto& more : {standings_columns(1, true).headings(), law_columns().headings()})
-    all.insert(all.end(), more.begin(), more.end());
-  return all;
+std::vector<DescribedTable> league_tables() {
+  return {league_columns().described(
+              "league.csv", "of compare with several scenarios or seeds: one line per scenario, algorithm and metric"),
+          standings_columns(26, false).described(), standings_columns(1, true).described(), law_columns().described()};
 }
 
 }  // namespace hapbench

@@ -19,7 +19,6 @@ std::string league_text(const League& league);
 /// Their rows, null for missing values.
 Json league_json(const League& league);
 
-/// The headings of what is printed.
-std::vector<Table::Column> league_headings();
+std::vector<DescribedTable> league_tables();
 
 }  // namespace hapbench

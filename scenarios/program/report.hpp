@@ -55,7 +55,7 @@ Cell cell_of(const Value& value) {
 /// The cell of a number as it is printed: the digits that its tolerance leaves; "-" for nothing.
 std::string printed(const Cell& cell, const Shown& shown, const std::optional<double>& tolerance);
 
-/// A table that `describe` knows.
+/// A table that `describe` knows; without a file one that is only printed.
 struct DescribedTable {
   struct Entry {
     Entry(std::string name_of, std::string unit_of, std::string meaning_of)
@@ -134,14 +134,13 @@ class Columns {
   std::vector<Table::Column> headings() const {
     std::vector<Table::Column> headings;
     for (const Entry& entry : entries_) {
-      const bool in_file = entry.shown.csv || entry.shown.json;
       if (!entry.shown.heading.empty())
-        headings.push_back({entry.shown.heading, !entry.unit.empty(), in_file ? entry.name : entry.meaning});
+        headings.push_back({entry.shown.heading, !entry.unit.empty(), entry.shown.csv ? entry.name : entry.meaning});
     }
     return headings;
   }
 
-  DescribedTable described(std::string file, std::string holds) const {
+  DescribedTable described(std::string file = {}, std::string holds = {}) const {
     DescribedTable table{std::move(file), std::move(holds), {}, headings()};
     for (const Entry& entry : entries_)
       if (entry.shown.csv) table.columns.push_back({entry.name, entry.unit, entry.meaning});

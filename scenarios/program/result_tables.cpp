@@ -1,6 +1,7 @@
 #include "scenarios/program/result_tables.hpp"
 
-#include <fmt/format.h>
+#include <algorithm>
+#include <iterator>
 
 #include "results/record/recorder.hpp"
 #include "scenarios/batch/sweep_table.hpp"
@@ -45,34 +46,15 @@ std::vector<Column> all(std::span<const Column> columns) {
   return {columns.begin(), columns.end()};
 }
 
-}  // namespace
-
-std::vector<Table::Column> joined_headings(const std::vector<std::vector<Table::Column>>& tables) {
-  std::vector<Table::Column> all;
-  for (const std::vector<Table::Column>& table : tables) all.insert(all.end(), table.begin(), table.end());
-  return all;
-}
-
-std::vector<Table::Column> printed_headings() {
-  std::vector<std::vector<Table::Column>> all = {run_headings(),  league_headings(), stability_headings(),
-                                                 diff_headings(), sweep_headings(),  tune_headings(),
-                                                 claim_headings()};
-  for (const DescribedTable& table : result_tables()) all.push_back(table.headings);
-  return joined_headings(all);
-}
-
-std::vector<DescribedTable> result_tables() {
+std::vector<DescribedTable> all_tables() {
   std::vector<DescribedTable> tables;
   const auto add = [&tables](const char* file, const char* holds, std::span<const Column> columns) {
     tables.push_back({file, holds, {columns.begin(), columns.end()}, {}});
   };
   for (const ResultTable& table : record_tables()) add(table.file, table.holds, all(table.columns));
   add(kTargetTable.file, kTargetTable.holds, all(kTargetTable.columns));
-  tables.push_back(comparison_columns().described("comparison.csv", "of compare: one line per algorithm"));
-  tables.push_back(league_columns().described(
-      "league.csv", "of compare with several scenarios or seeds: one line per scenario, algorithm and metric"));
-  for (const DescribedTable& table : limit_tables()) tables.push_back(table);
-  for (const DescribedTable& table : converge_tables()) tables.push_back(table);
+  for (auto* tables_of : {run_tables, league_tables, limit_tables, converge_tables, diff_tables, claim_tables})
+    std::ranges::move(tables_of(), std::back_inserter(tables));
   add("tune.csv", "of tune: one line per algorithm", tune_columns());
   add("tune_trials.csv", "of tune: one line per algorithm, setting and K that was tried", tune_trial_columns());
   add("sweep.csv", "of sweep: one line per run", sweep_columns());
@@ -82,6 +64,22 @@ std::vector<DescribedTable> result_tables() {
   tables.push_back(stress_table());
   add("shell.csv", "of shell: one line per point of the environment", all(kShellColumns));
   return tables;
+}
+
+}  // namespace
+
+std::vector<DescribedTable> result_tables() {
+  std::vector<DescribedTable> tables = all_tables();
+  std::erase_if(tables, [](const DescribedTable& table) { return table.file.empty(); });
+  return tables;
+}
+
+std::vector<Table::Column> printed_headings() {
+  std::vector<Table::Column> all;
+  for (const auto& headings : {stability_headings(), sweep_headings(), tune_headings()})
+    all.insert(all.end(), headings.begin(), headings.end());
+  for (const DescribedTable& table : all_tables()) all.insert(all.end(), table.headings.begin(), table.headings.end());
+  return all;
 }
 
 }  // namespace hapbench

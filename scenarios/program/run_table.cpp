@@ -237,14 +237,12 @@ Columns<LatencyRow> latency_columns() {
   return columns;
 }
 
-std::vector<Table::Column> run_headings() {
+std::vector<DescribedTable> run_tables() {
   Columns<RunReport> runs = run_columns(true);
   add_metrics(runs, kFidelityHeadings);
-  std::vector<Table::Column> all = runs.headings();
-  all.push_back({"ratio", false, "ratio_max"});
-  for (const auto& more : {place_columns().headings(), latency_columns().headings()})
-    all.insert(all.end(), more.begin(), more.end());
-  return all;
+  runs.print("ratio", "", "ratio_max", [](const RunReport&) { return Cell(); });
+  return {comparison_columns().described("comparison.csv", "of compare: one line per algorithm"), runs.described(),
+          place_columns().described(), latency_columns().described()};
 }
 
 namespace {

@@ -71,8 +71,7 @@ std::vector<ComparedRun> compared_runs(std::span<const RunReport> reports, std::
 /// comparisons give equal bytes; several seeds get a column in front.
 Columns<ComparedRun> comparison_columns(bool seeds = false);
 
-/// The headings of all these.
-std::vector<Table::Column> run_headings();
+std::vector<DescribedTable> run_tables();
 
 /// A number with the digits that its error leaves it: one where the error is larger, six where it is 0, four where it
 /// is not known.

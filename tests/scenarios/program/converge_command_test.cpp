@@ -73,27 +73,6 @@ TEST_F(ConvergeCommand, NamesTheCoarsestLevelThatIsEnough) {
       << last("0.1%");
 }
 
-/// The error of a comparison's numbers is that of the coarsest of three levels, by either.
-TEST_F(ConvergeCommand, KnowsTheErrorsOfAComparison) {
-  const Words shorter = {"--set", "time.steps=400", "--json"};
-  Words compare = {"compare",     "press_into_hole", "--algorithms", "mean,shaped_stiffness", "--by",
-                   "force_max_N", "--errors",        "--out",        file("compare")};
-  compare.insert(compare.end(), shorter.begin(), shorter.end());
-  const Json number = hapbench(compare).json()["errors"][0]["numbers"][1];
-  double sum = 0.0;
-  for (const auto& [field, part] :
-       {std::pair{"time.step_s", "error_of_step"}, {"environment.grid_m", "error_of_spacing"}}) {
-    Words more = {"--vary",   field,         "--levels", "3",
-                  "--metric", "force_max_N", "--set",    "rendering.algorithm=shaped_stiffness"};
-    more.insert(more.end(), shorter.begin(), shorter.end());
-    const Json coarsest = hapbench(words(more, field, "press_into_hole")).json()["levels"][0];
-    EXPECT_EQ(number["value"], coarsest["result"]);
-    EXPECT_EQ(number[part], coarsest["error_estimate"]) << field;
-    sum += coarsest["error_estimate"].get<double>();
-  }
-  EXPECT_DOUBLE_EQ(number["error_estimate"].get<double>(), sum);
-}
-
 TEST_F(ConvergeCommand, AComparisonSaysWhatItDoesNotKnow) {
   // Points so far apart that the tip slips between them; and a law that diverges, so that it has no number.
   const std::string unknown =

@@ -117,19 +117,5 @@ TEST_F(FlatTip, HasNoOrderWhereTwoStiffnessesCrossAsPointsGrowDenser) {
   EXPECT_EQ(forces.refined, "time.step_s 0.0005, 0.00025, 0.000125; environment.spacing_m 4e-04, 2e-04, 1e-04");
 }
 
-TEST_F(FlatTip, HasAnOrderThatNoSamplingChanges) {
-  // Two springs pressed by 1 mm: K d of their mean, 2 K d of their sum, whatever the step.
-  scene_ = {{"time", {{"step_s", 0.0005}, {"steps", 200}}},
-            {"environment", {{"type", "springs"}, {"groups", Json::array({{{"direction", {0, 1, 0}}, {"count", 2}}})}}},
-            {"motion", {{"position", {{"type", "prescribed"}, {"x_m", 0}, {"y_m", -1e-3}, {"z_m", 0}}}}},
-            {"rendering", {{"stiffness_N_per_m", 1000}, {"damping_N_s_per_m", 0}}}};
-  const Found forces = found({"summation", "mean", "highest_depth"}, "force_max_N");
-  EXPECT_EQ(forces.says, "what holds is <: mean ~ highest_depth < summation");
-  EXPECT_NEAR(*forces.numbers[0].value, 2.0, 1e-9);
-  EXPECT_EQ(forces.numbers[0].error, 0.0);
-  EXPECT_FALSE(forces.known[0].has_points);
-  EXPECT_TRUE(forces.refined.ends_with("; springs have no points")) << forces.refined;
-}
-
 }  // namespace
 }  // namespace hapbench::known_error_test
