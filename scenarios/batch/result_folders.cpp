@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Returns true if a path from the list stays below the directory when all links but its last part are followed.
+/// Returns true if a path stays below the directory when all links but its last part are followed.
 bool lies_below(const fs::path& directory, const fs::path& path) {
   if (path.empty() || path.is_absolute()) return false;
   std::error_code error;
@@ -28,21 +28,25 @@ bool lies_below(const fs::path& directory, const fs::path& path) {
          !fs::is_symlink(fs::symlink_status(root / path, error));
 }
 
-std::vector<fs::path> paths_in(const Json& json, const char* name) {
+/// The paths that a command listed under a name, without those that lead elsewhere; none where the list cannot be read.
+std::vector<fs::path> listed(const fs::path& directory, const char* name) {
   std::vector<fs::path> paths;
-  if (!json.is_object() || !json.contains(name) || !json[name].is_array()) return paths;
-  for (const Json& path : json[name])
-    if (path.is_string()) paths.emplace_back(path.get<std::string>());
+  try {
+    const Json list = parse_json(read_text_file(directory / kResultListFile, kLargestJsonFile)).at(name);
+    if (!list.is_array()) return {};
+    for (const Json& path : list)
+      if (path.is_string() && lies_below(directory, path.get<std::string>()))
+        paths.emplace_back(path.get<std::string>());
+  } catch (const std::exception&) {
+    paths.clear();
+  }
   return paths;
 }
 
-void write_list(const fs::path& file, const ResultList& list) {
-  const auto texts = [](const std::vector<fs::path>& paths) {
-    Json json = Json::array();
-    for (const fs::path& path : paths) json.push_back(path.generic_string());
-    return json;
-  };
-  write_file_atomically(file, json_text({{"runs", texts(list.runs)}, {"tables", texts(list.tables)}}));
+Json texts_of(const std::vector<fs::path>& paths) {
+  Json texts = Json::array();
+  for (const fs::path& path : paths) texts.push_back(path.generic_string());
+  return texts;
 }
 
 /// Removes the empty directories from `path` up to, but not including, `directory`.
@@ -52,50 +56,30 @@ void remove_empty(const fs::path& directory, fs::path path) {
     if (!fs::is_directory(directory / path, error) || !fs::remove(directory / path, error) || error) return;
 }
 
-bool contains(const std::vector<fs::path>& paths, const fs::path& path) {
-  return std::find(paths.begin(), paths.end(), path) != paths.end();
-}
-
-/// The list of results that a command left in a directory; empty where there is none or it cannot be read.
-ResultList results_on_record(const fs::path& directory) {
-  const fs::path file = directory / kResultListFile;
-  std::error_code error;
-  if (!fs::is_regular_file(file, error)) return {};
-  try {
-    const Json json = parse_json(read_text_file(file, kLargestJsonFile));
-    return {paths_in(json, "runs"), paths_in(json, "tables")};
-  } catch (const InputError&) {
-    return {};
-  }
-}
-
 }  // namespace
 
 void replace_earlier_results(const fs::path& directory, const ResultList& now) {
-  const fs::path file = directory / kResultListFile;
-  const ResultList earlier = results_on_record(directory);
-  std::error_code ignored;
-  for (const fs::path& run : earlier.runs) {
-    if (contains(now.runs, run) || !lies_below(directory, run)) continue;
+  for (const fs::path& run : listed(directory, "runs")) {
+    if (std::ranges::find(now.runs, run) != now.runs.end()) continue;
     remove_run(directory / run);
     remove_empty(directory, run);
   }
-  for (const fs::path& table : earlier.tables) {
-    if (!lies_below(directory, table) || !fs::is_regular_file(directory / table, ignored)) continue;
+  std::error_code ignored;
+  for (const fs::path& table : listed(directory, "tables")) {
+    if (!fs::is_regular_file(directory / table, ignored)) continue;
     fs::remove(directory / table, ignored);
     remove_empty(directory, table.parent_path());
   }
-  write_list(file, now);
+  write_file_atomically(directory / kResultListFile,
+                        json_text({{"runs", texts_of(now.runs)}, {"tables", texts_of(now.tables)}}));
 }
 
 void forget_results_if_none(const fs::path& directory) {
-  const ResultList list = results_on_record(directory);
   std::error_code ignored;
-  const auto is_there = [&](const fs::path& path) {
-    return fs::exists(directory / path, ignored) && !fs::is_empty(directory / path, ignored);
-  };
-  if (std::any_of(list.runs.begin(), list.runs.end(), is_there)) return;
-  if (std::any_of(list.tables.begin(), list.tables.end(), is_there)) return;
+  for (const char* name : {"runs", "tables"}) {
+    for (const fs::path& path : listed(directory, name))
+      if (fs::exists(directory / path, ignored) && !fs::is_empty(directory / path, ignored)) return;
+  }
   fs::remove(directory / kResultListFile, ignored);
 }
 

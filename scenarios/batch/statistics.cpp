@@ -1,5 +1,6 @@
 #include "scenarios/batch/statistics.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <limits>
@@ -24,14 +25,6 @@ double standard_error(const std::vector<double>& values) {
   return values.empty() ? 0.0 : standard_deviation(values) / std::sqrt(static_cast<double>(values.size()));
 }
 
-double quantile_of(std::vector<double> values, double p) {
-  std::sort(values.begin(), values.end());
-  const double rank = p * static_cast<double>(values.size() - 1);
-  const auto below = static_cast<std::size_t>(rank);
-  const double above = values[std::min(below + 1, values.size() - 1)];
-  return std::lerp(values[below], above, rank - static_cast<double>(below));
-}
-
 double paired_t(const std::vector<double>& a, const std::vector<double>& b) {
   if (a.size() < 2) return 0.0;
   std::vector<double> differences;
@@ -44,12 +37,7 @@ double paired_t(const std::vector<double>& a, const std::vector<double>& b) {
 double critical_t(std::size_t degrees) {
   constexpr double kCritical[] = {12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228};
   if (degrees == 0) return std::numeric_limits<double>::infinity();
-  if (degrees <= std::size(kCritical)) return kCritical[degrees - 1];
-  // Cornish and Fisher's expansion about the normal quantile (Abramowitz and Stegun 26.7.5), right to 1.3e-4 from here.
-  constexpr double z = 1.959963984540054, z3 = z * z * z, z5 = z3 * z * z, z7 = z5 * z * z;
-  const auto n = static_cast<double>(degrees);
-  return z + (z3 + z) / (4.0 * n) + (5.0 * z5 + 16.0 * z3 + 3.0 * z) / (96.0 * n * n) +
-         (3.0 * z7 + 19.0 * z5 + 17.0 * z3 - 15.0 * z) / (384.0 * n * n * n);
+  return kCritical[std::min(degrees, std::size(kCritical)) - 1];
 }
 
 }  // namespace hapbench

@@ -14,16 +14,13 @@ double standard_deviation(const std::vector<double>& values);
 /// Standard error of the mean: standard deviation / sqrt(n); 0 for fewer than two values.
 double standard_error(const std::vector<double>& values);
 
-/// The share p of the values lies below it, interpolated linearly between ranks (type 7 of Hyndman and Fan 1996).
-/// Precondition: values are not empty, 0 <= p <= 1.
-double quantile_of(std::vector<double> values, double p);
-
 /// Student's t of a paired test; 0 for fewer than two pairs, infinite when all pairs have the same difference.
 double paired_t(const std::vector<double>& a, const std::vector<double>& b);
 
 /// Significance level of critical_t.
 inline constexpr double kSignificance = 0.05;
-/// Two-sided 5 % quantile of Student's t, to 5e-4; infinite for 0 degrees of freedom.
+/// Two-sided 5 % quantile of Student's t, to 5e-4; infinite for 0 degrees of freedom. Beyond 10 that of 10, which is a
+/// little strict: an experiment of the thesis has six subjects.
 double critical_t(std::size_t degrees);
 
 }  // namespace hapbench

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <optional>
 
 #include "scenarios/batch/league.hpp"
@@ -19,10 +20,10 @@ class ScenarioErrors {
  public:
   ScenarioErrors(const League& league, const FinerRuns& finer, std::size_t scenario)
       : league_(league), finer_(finer), scenario_(scenario) {
-    for (std::size_t m = 0; m < league.runs.metrics.size(); ++m) {
+    for (std::size_t m = 0; m < league.metrics.size(); ++m) {
       known_.emplace_back();
       numbers_.emplace_back();
-      for (std::size_t a = 0; a < league.runs.algorithms.size(); ++a) {
+      for (std::size_t a = 0; a < league.algorithms.size(); ++a) {
         const KnownError known = known_error(a, m);
         const bool failed = league.failures(scenario, a) > 0;
         known_.back().push_back(known);
@@ -32,40 +33,35 @@ class ScenarioErrors {
   }
 
   std::string text() const {
-    std::vector<Table::Column> columns = {{"algorithm", false}};
-    std::vector<double> factors;
+    Columns<std::size_t> columns;  // a row is the place of an algorithm
+    columns.print("algorithm", "", "", [this](std::size_t a) { return league_.algorithms[a]; });
     std::string sentences;
-    for (std::size_t m = 0; m < league_.runs.metrics.size(); ++m) {
-      const std::string& metric = league_.runs.metrics[m];
-      const auto* heading =
-          std::ranges::find_if(kRunHeadings, [&](const RunHeading& h) { return h.shows[0] == metric; });
-      const bool known = heading != std::end(kRunHeadings) && heading->factor != 0.0;
-      columns.push_back({known ? heading->title : metric});
-      factors.push_back(known ? heading->factor : 1.0);
-      sentences +=
-          wrapped(fmt::format("{}: {}", metric, held_text(numbers_[m], league_.runs.algorithms, kSameRank)), 0);
-    }
-    Table table(columns);
-    for (std::size_t a = 0; a < league_.runs.algorithms.size(); ++a) {
-      std::vector<std::string> cells = {league_.runs.algorithms[a]};
-      for (std::size_t m = 0; m < factors.size(); ++m) {
+    for (std::size_t m = 0; m < league_.metrics.size(); ++m) {
+      const std::string& metric = league_.metrics[m];
+      const auto* heading = std::ranges::find(kRunHeadings, metric, &RunHeading::metric);
+      const bool known = heading != std::end(kRunHeadings);
+      const double factor = known ? heading->factor : 1.0;
+      columns.print(known ? heading->title : metric, "by name", "", [this, m, factor](std::size_t a) {
         const auto& [value, error] = numbers_[m][a];
-        const auto scaled = error ? std::optional(factors[m] * *error) : std::nullopt;
-        cells.push_back(value ? with_error_text(factors[m] * *value, scaled) : "-");
-      }
-      table.add(std::move(cells));
+        const auto scaled = error ? std::optional(factor * *error) : std::nullopt;
+        return value ? with_error_text(factor * *value, scaled) : "-";
+      });
+      sentences += wrapped(fmt::format("{}: {}", metric, held_text(numbers_[m], league_.algorithms, kSameRank)), 0);
     }
-    return fmt::format("\nhow sure: {}\n\n{}\n{}\n{}", league_.runs.scenarios[scenario_], table.text(prose_width()),
-                       sentences, wrapped(fmt::format("+-: {}", finer_.refined(scenario_)), 0));
+    std::vector<std::size_t> places(league_.algorithms.size());
+    std::iota(places.begin(), places.end(), std::size_t{0});
+    return fmt::format("\nhow sure: {}\n\n{}\n{}\n{}", league_.scenarios[scenario_],
+                       columns.table(places).text(prose_width()), sentences,
+                       wrapped(fmt::format("+-: {}", finer_.refined(scenario_)), 0));
   }
 
   void add_json(Json& rows) const {
-    for (std::size_t m = 0; m < league_.runs.metrics.size(); ++m) {
+    for (std::size_t m = 0; m < league_.metrics.size(); ++m) {
       const std::vector<NumberWithError>& found = numbers_[m];
       Json numbers = Json::array();
       for (std::size_t a = 0; a < found.size(); ++a) {
         const KnownError& known = known_[m][a];
-        numbers.push_back({{"algorithm", league_.runs.algorithms[a]},
+        numbers.push_back({{"algorithm", league_.algorithms[a]},
                            {"value", or_null(found[a].value)},
                            {"error_estimate", or_null(found[a].error)},
                            {"error_of_step", or_null(known.step)},
@@ -74,29 +70,28 @@ class ScenarioErrors {
       Json order = Json::array();
       for (const auto& group : held_order(found, kSameRank).groups) {
         Json names = Json::array();
-        for (const std::size_t a : group) names.push_back(league_.runs.algorithms[a]);
+        for (const std::size_t a : group) names.push_back(league_.algorithms[a]);
         order.push_back(std::move(names));
       }
-      rows.push_back({{"scenario", league_.runs.scenarios[scenario_]},
-                      {"metric", league_.runs.metrics[m]},
+      rows.push_back({{"scenario", league_.scenarios[scenario_]},
+                      {"metric", league_.metrics[m]},
                       {"order", std::move(order)},
                       {"numbers", std::move(numbers)},
-                      {"says", held_text(found, league_.runs.algorithms, kSameRank)}});
+                      {"says", held_text(found, league_.algorithms, kSameRank)}});
     }
   }
 
  private:
   /// The mean of the errors over the common seeds, which bounds the error of their mean.
   KnownError known_error(std::size_t algorithm, std::size_t metric) const {
-    const LeagueRuns& runs = league_.runs;
     const std::vector<std::size_t>& seeds = league_.common[scenario_];
     KnownError mean{.step = 0.0, .spacing = 0.0};
     const auto add = [&seeds](std::optional<double>& sum, const std::optional<double>& error) {
       sum = sum && error ? std::optional(*sum + *error / static_cast<double>(seeds.size())) : std::nullopt;
     };
     for (const std::size_t seed : seeds) {
-      const std::size_t run = (scenario_ * runs.algorithms.size() + algorithm) * runs.seeds + seed;
-      const KnownError known = finer_.known_error(run, runs.metrics[metric]);
+      const std::size_t run = (scenario_ * league_.algorithms.size() + algorithm) * league_.seeds + seed;
+      const KnownError known = finer_.known_error(run, league_.metrics[metric]);
       add(mean.step, known.step);
       add(mean.spacing, known.spacing);
       mean.has_points = known.has_points;
@@ -114,12 +109,12 @@ class ScenarioErrors {
 
 }  // namespace
 
-ComparedErrors errors_of(const BatchPlan& plan, const BatchReport& report, const std::vector<std::string>& metrics,
-                         const BatchOptions& options) {
-  const League league = make_league(league_runs(plan, report, metrics));
-  const FinerRuns finer(plan, report, options);
+ComparedErrors errors_of(const Comparison& comparison, std::span<const RunReport> reports,
+                         const std::vector<std::string>& metrics, const JobOptions& jobs) {
+  const League league = league_of(comparison, reports, metrics);
+  const FinerRuns finer(comparison, reports, jobs);
   ComparedErrors errors;
-  for (std::size_t s = 0; s < plan.scenarios.size(); ++s) {
+  for (std::size_t s = 0; s < comparison.scenes.size(); ++s) {
     const ScenarioErrors scenario(league, finer, s);
     errors.text += scenario.text();
     scenario.add_json(errors.json);

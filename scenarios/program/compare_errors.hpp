@@ -1,9 +1,10 @@
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
-#include "scenarios/batch/run_batch.hpp"
+#include "scenarios/batch/comparison.hpp"
 #include "scenarios/input/json_file.hpp"
 
 /// `compare --errors`: which numbers of a comparison are how sure, and which order of laws is larger than that.
@@ -15,8 +16,8 @@ struct ComparedErrors {
   Json json = Json::array();  ///< an object for each scenario and metric
 };
 
-/// Runs the comparison more finely. `metrics` as in league_runs. Throws Stopped.
-ComparedErrors errors_of(const BatchPlan& plan, const BatchReport& report, const std::vector<std::string>& metrics,
-                         const BatchOptions& options);
+/// Runs the comparison more finely. `metrics` as in league_of. Throws Stopped.
+ComparedErrors errors_of(const Comparison& comparison, std::span<const RunReport> reports,
+                         const std::vector<std::string>& metrics, const JobOptions& jobs);
 
 }  // namespace hapbench

@@ -144,8 +144,6 @@ constexpr Word kWords[] = {
      "the scenario with every default filled in; run again it gives the same files"},
     {"timing.json", kResultFile,
      "of record.timing: wall times, percentiles, missed deadlines and histogram of single steps"},
-    {"converge_levels_timing.csv", kResultFile,
-     "processor time of the run of each level of converge; all other files of it are the same bytes in every run"},
     {"sweep.json", kResultFile,
      "what a sweep's table is a function of: scenario, overrides, points, named files, program"},
     {"sweep.csv.part", kResultFile,

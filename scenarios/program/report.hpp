@@ -3,8 +3,10 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -36,19 +38,24 @@ inline Shown only_csv() {
   return {true, false};
 }
 
+/// The cell of a number, a count, a truth, a text, one of them that need not exist, or of what is a cell already.
+template <class Value>
+Cell cell_of(const Value& value) {
+  if constexpr (requires { value.has_value(); }) {
+    return value ? cell_of(*value) : Cell();
+  } else if constexpr (std::is_convertible_v<Value, std::string_view>) {
+    return std::string(std::string_view(value));
+  } else if constexpr (std::is_integral_v<Value> && !std::is_same_v<Value, bool>) {
+    return static_cast<std::uint64_t>(value);
+  } else {
+    return value;
+  }
+}
+
 /// The cell of a number as it is printed: the digits that its tolerance leaves; "-" for nothing.
 std::string printed(const Cell& cell, const Shown& shown, const std::optional<double>& tolerance);
 
-/// The cell of a number, a count, true or false, or a text; nothing for one of these that is not there.
-template <class Value>
-Cell cell_of(const Value& value) {
-  if constexpr (requires { value.has_value(); })
-    return cell_if(value);
-  else
-    return value;
-}
-
-/// A table that `describe` knows.
+/// A table that `describe` knows; without a file one that is only printed.
 struct DescribedTable {
   struct Entry {
     Entry(std::string name_of, std::string unit_of, std::string meaning_of)
@@ -73,17 +80,22 @@ class Columns {
     std::function<std::optional<double>(const Row&)> tolerance = {};  ///< by how much the number may be wrong
   };
 
-  /// `of`: a member of the row, or a function of it.
-  template <class Of>
-  void add(std::string name, std::string unit, std::string meaning, Of of, Shown shown = {},
+  /// `get`: what a row has in the column, as a function of the row or a member of it (cell_of).
+  template <class Get>
+  void add(std::string name, std::string unit, std::string meaning, Get get, Shown shown = {},
            std::function<std::optional<double>(const Row&)> tolerance = {}) {
-    entries_.push_back({std::move(name), std::move(unit), std::move(meaning),
-                        [of](const Row& row) { return cell_of(std::invoke(of, row)); }, std::move(shown),
-                        std::move(tolerance)});
+    const auto cell = [get = std::move(get)](const Row& row) { return cell_of(std::invoke(get, row)); };
+    entries_.push_back(
+        {std::move(name), std::move(unit), std::move(meaning), cell, std::move(shown), std::move(tolerance)});
+  }
+  /// A column that is in no file; `unit` is empty for text.
+  template <class Get>
+  void print(std::string heading, std::string unit, std::string meaning, Get get) {
+    add("", std::move(unit), std::move(meaning), std::move(get), only_printed(std::move(heading)));
   }
   void add(const Columns& more) { entries_.insert(entries_.end(), more.entries_.begin(), more.entries_.end()); }
 
-  void write(const std::filesystem::path& file, const std::vector<Row>& rows, FileSet& files) const {
+  void write(const std::filesystem::path& file, std::span<const Row> rows, FileSet& files) const {
     std::string header;
     for (const Entry& entry : entries_)
       if (entry.shown.csv) header += (header.empty() ? "" : ",") + entry.name;
@@ -108,7 +120,7 @@ class Columns {
   }
 
   /// `gap`: blanks between columns.
-  Table table(const std::vector<Row>& rows, std::size_t gap = 2) const {
+  Table table(std::span<const Row> rows, std::size_t gap = 2) const {
     Table table(headings(), gap);
     for (const Row& row : rows) {
       std::vector<std::string> cells;
@@ -124,14 +136,13 @@ class Columns {
   std::vector<Table::Column> headings() const {
     std::vector<Table::Column> headings;
     for (const Entry& entry : entries_) {
-      const bool in_file = entry.shown.csv || entry.shown.json;
       if (!entry.shown.heading.empty())
-        headings.push_back({entry.shown.heading, !entry.unit.empty(), in_file ? entry.name : entry.meaning});
+        headings.push_back({entry.shown.heading, !entry.unit.empty(), entry.shown.csv ? entry.name : entry.meaning});
     }
     return headings;
   }
 
-  DescribedTable described(std::string file, std::string holds) const {
+  DescribedTable described(std::string file = {}, std::string holds = {}) const {
     DescribedTable table{std::move(file), std::move(holds), {}, headings()};
     for (const Entry& entry : entries_)
       if (entry.shown.csv) table.columns.push_back({entry.name, entry.unit, entry.meaning});

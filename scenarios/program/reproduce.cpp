@@ -14,6 +14,7 @@
 #include "scenarios/input/json_file.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/command.hpp"
+#include "scenarios/program/report.hpp"
 #include "scenarios/program/result_tables.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/progress_bar.hpp"
@@ -212,6 +213,22 @@ std::string claims_text(const std::vector<JudgedClaim>& judged) {
   return text;
 }
 
+/// The claims of the ledger.
+Columns<Json> claim_columns() {
+  Columns<Json> columns;
+  columns.print("id", "", "id of a claim, which describe explains",
+                [](const Json& claim) { return claim.at("id").get<std::string>(); });
+  columns.print("verdict", "", "on the claim; where most samples of the choices have another one, that in brackets",
+                verdicts_text);
+  columns.print(
+      "robustness", "",
+      "the share of the samples of the choices on record in which the verdict is the same, and what decides it",
+      robustness_text);
+  columns.print("measured", "", "what the claim's verdict is about",
+                [](const Json& claim) { return claim.at("measured").get<std::string>(); });
+  return columns;
+}
+
 int reproduce(const ReproduceOptions& options) {
   const fs::path reference = installed_folder("results/reference");
   const std::vector<Claim> claims = chosen_claims(options.only);
@@ -240,11 +257,8 @@ int reproduce(const ReproduceOptions& options) {
   }
 
   const Json json = ledger_json(judged, published, robustness);
-  Table table(claim_headings());
-  for (const Json& claim : json.at("claims"))
-    table.add({claim.at("id"), verdicts_text(claim), robustness_text(claim), claim.at("measured")});
   std::string text = options.only.empty() ? wrapped(json.at("headline").get<std::string>()) + "\n\n" : "";
-  text += table.text();
+  text += claim_columns().table(json.at("claims").get<std::vector<Json>>()).text();
   if (!options.only.empty()) text += claims_text(judged);
   if (ledger) {
     FileSet files;
@@ -262,12 +276,8 @@ int reproduce(const ReproduceOptions& options) {
 
 }  // namespace
 
-std::vector<Table::Column> claim_headings() {
-  return {{"id", false, "id of a claim, which describe explains"},
-          {"verdict", false, "on the claim; where most samples of the choices have another one, that in brackets"},
-          {"robustness", false,
-           "the share of the samples of the choices on record in which the verdict is the same, and what decides it"},
-          {"measured", false, "what the claim's verdict is about"}};
+std::vector<DescribedTable> claim_tables() {
+  return {claim_columns().described()};
 }
 
 void add_reproduce(CommandLine& line) {

@@ -1,10 +1,12 @@
 #include "scenarios/program/result_tables.hpp"
 
-#include <fmt/format.h>
+#include <algorithm>
+#include <iterator>
 
 #include "results/record/recorder.hpp"
-#include "scenarios/batch/league.hpp"
+#include "scenarios/description/metric_sections.hpp"
 #include "scenarios/description/scenario.hpp"
+#include "scenarios/program/league_text.hpp"
 #include "scenarios/program/limit_cases.hpp"
 #include "scenarios/program/run_table.hpp"
 #include "scenarios/run/recorders.hpp"
@@ -21,39 +23,33 @@ std::vector<Column> all(std::span<const Column> columns) {
   return {columns.begin(), columns.end()};
 }
 
-}  // namespace
-
-std::vector<Table::Column> joined_headings(const std::vector<std::vector<Table::Column>>& tables) {
-  std::vector<Table::Column> all;
-  for (const std::vector<Table::Column>& table : tables) all.insert(all.end(), table.begin(), table.end());
-  return all;
-}
-
-std::vector<Table::Column> printed_headings() {
-  std::vector<std::vector<Table::Column>> all = {run_headings(), league_headings(), converge_headings(),
-                                                 claim_headings()};
-  for (const DescribedTable& table : result_tables()) all.push_back(table.headings);
-  return joined_headings(all);
-}
-
-std::vector<DescribedTable> result_tables() {
+std::vector<DescribedTable> all_tables() {
   std::vector<DescribedTable> tables;
   const auto add = [&tables](const char* file, const char* holds, std::span<const Column> columns) {
     tables.push_back({file, holds, {columns.begin(), columns.end()}, {}});
   };
   for (const ResultTable& table : record_tables()) add(table.file, table.holds, all(table.columns));
   add(kTargetTable.file, kTargetTable.holds, all(kTargetTable.columns));
-  add("comparison.csv", "of compare: one line per algorithm", comparison_columns());
-  add("league.csv", "of compare with several scenarios or seeds: one line per scenario, algorithm and metric",
-      league_columns());
-  for (const DescribedTable& table : limit_tables()) tables.push_back(table);
-  add("converge.csv", "of converge: one line per metric", converge_columns());
-  add("converge_levels.csv", "of converge: one line per metric and level", converge_level_columns());
-  for (const DescribedTable& table : tune_tables()) tables.push_back(table);
+  for (auto* tables_of : {run_tables, league_tables, limit_tables, converge_tables, tune_tables, claim_tables})
+    std::ranges::move(tables_of(), std::back_inserter(tables));
   tables.push_back(sweep_table());
   tables.push_back(stress_table());
   add("shell.csv", "of shell: one line per point of the environment", all(kShellColumns));
   return tables;
+}
+
+}  // namespace
+
+std::vector<DescribedTable> result_tables() {
+  std::vector<DescribedTable> tables = all_tables();
+  std::erase_if(tables, [](const DescribedTable& table) { return table.file.empty(); });
+  return tables;
+}
+
+std::vector<Table::Column> printed_headings() {
+  std::vector<Table::Column> all;
+  for (const DescribedTable& table : all_tables()) all.insert(all.end(), table.headings.begin(), table.headings.end());
+  return all;
 }
 
 }  // namespace hapbench

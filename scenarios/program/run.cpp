@@ -58,20 +58,18 @@ int run(const RunOptions& options) {
   for (const LoadedScenario& loaded : scenarios) bytes += expected_output_bytes(loaded.scenario);
   announce_large_output(bytes);
 
-  RunTable table({"scenario", "algorithm"});
-  Table latencies = latency_table();
+  std::vector<LatencyRow> latencies;
   std::vector<RunReport> reports;
   Json summaries = Json::array();
   std::string targets;
   int status = kSuccess;
   for (std::size_t i = 0; i < scenarios.size(); ++i) {
     const RunReport& report = reports.emplace_back(run_scenario(scenarios[i], directories[i], !options.output.quiet));
-    table.add({report.summary.name, report.summary.algorithm}, report);
     targets += targets_text(report);
     print_warnings(run_warnings({&report, 1}));
     summaries.push_back(summary_json(report.summary));
     if (options.latency) {
-      latencies.add(latency_cells(report.summary.name, *report.timing.latency));
+      latencies.push_back({report.summary.name, *report.timing.latency});
       summaries.back()["step_latency"] = step_latency_json(*report.timing.latency);
     }
     for (const std::string& unmet : report.unmet) {
@@ -81,10 +79,10 @@ int run(const RunOptions& options) {
     }
   }
   const fs::path where = directories.size() == 1 ? directories[0] : directories[0].parent_path();
-  const std::string latency_text = options.latency ? "\n" + latencies.text() : "";
+  const std::string latency_text = options.latency ? "\n" + latency_columns().table(latencies).text() : "";
   print(options.output,
-        table.text() + fidelity_text(reports) + unsettled_text(reports) + step_time_text(reports) + targets +
-            latency_text + fmt::format("\nresults in {}\n", where.string()),
+        run_table(reports, true) + fidelity_text(reports) + unsettled_text(reports) + step_time_text(reports) +
+            targets + latency_text + fmt::format("\nresults in {}\n", where.string()),
         summaries);
   return status;
 }

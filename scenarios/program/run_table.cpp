@@ -5,14 +5,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <string_view>
+#include <utility>
 
-#include "results/io/atomic_file.hpp"
+#include "results/observe/target_metrics.hpp"
 #include "results/summary/outcome_names.hpp"
 #include "scenarios/description/metric_sections.hpp"
-#include "scenarios/description/scenario.hpp"
-#include "scenarios/program/result_tables.hpp"
 
 namespace hapbench {
 namespace {
@@ -59,34 +59,61 @@ std::string distinct_name(const RunReport& report, std::span<const RunReport> re
   return one_scenario ? report.summary.algorithm : report.summary.name;
 }
 
-std::vector<Table::Column> columns_behind(const std::vector<std::string>& names) {
-  std::vector<Table::Column> columns;
-  for (const std::string& name : names) columns.push_back({name, false});
-  for (const RunHeading& heading : kRunHeadings) columns.push_back({heading.title, heading.number});
+void add_metrics(Columns<RunReport>& columns, std::span<const RunHeading> headings) {
+  for (const RunHeading& heading : headings) {
+    columns.print(heading.title, "1", heading.metric, [&heading](const RunReport& r) {
+      return metric_cell(metric_list(r.summary), heading.metric, heading.factor);
+    });
+  }
+}
+
+Columns<RunReport> run_columns(bool of_scenes) {
+  Columns<RunReport> columns;
+  if (of_scenes) columns.print("scenario", "", "", [](const RunReport& r) { return r.summary.name; });
+  columns.print("algorithm", "", "", [](const RunReport& r) { return r.summary.algorithm; });
+  columns.print("outcome", "", "outcome", [](const RunReport& r) { return outcome_name(r.summary.result.outcome); });
+  add_metrics(columns, kRunHeadings);
+  columns.print("ratio", "", "ratio_min", [](const RunReport& r) {
+    const MetricList metrics = metric_list(r.summary.metrics);
+    const auto least = number_of(value_of(metrics, "ratio_min")), most = number_of(value_of(metrics, "ratio_max"));
+    return least && most ? fmt::format("{}..{}", cell(least, 2), cell(most, 2)) : "-";
+  });
+  columns.print("us/\nstep", "1", "step_p50_s",
+                [](const RunReport& r) { return r.timing.step_p50 ? short_time(*r.timing.step_p50) : "-"; });
   return columns;
 }
 
-std::string cell_below(const RunHeading& heading, const RunReport& report, const MetricList& metrics) {
-  const std::string_view first = heading.shows[0];
-  if (first == "outcome") return std::string(outcome_name(report.summary.result.outcome));
-  if (first == "step_p50_s") return report.timing.step_p50 ? short_time(*report.timing.step_p50) : "-";
-  if (heading.shows[1] == nullptr) return metric_cell(metrics, first, heading.factor);
-  const auto value = number_of(value_of(metrics, first));
-  const auto other = number_of(value_of(metrics, heading.shows[1]));
-  return value && other ? fmt::format("{}..{}", cell(value, 2), cell(other, 2)) : "-";
-}
+/// Of runs with a reference force: measured with the stroke, or ideal.
+constexpr RunHeading kFidelityHeadings[] = {
+    {"error\n%", "fidelity.force_error_relative", 100.0},
+    {"normal\nrms N", "fidelity.force_error_normal_rms_N", 1.0},
+    {"tangential\nrms N", "fidelity.force_error_tangential_rms_N", 1.0},
+    {"direction\ndeg", "fidelity.force_direction_error_rad", 57.295779513082323},
+    {"artefacts\n%", "fidelity.force_artefact_share", 100.0},
+    {"lag\nms", "fidelity.force_lag_s", 1e3}};
 
-/// The names of all algorithms fit into kTableWidth with it.
-constexpr std::size_t kNarrowGap = 1;
+bool has_reference(const RunReport& report) {
+  return report.summary.section("fidelity") != nullptr;
+}
 
 }  // namespace
 
-RunTable::RunTable(const std::vector<std::string>& names) : table_(columns_behind(names), kNarrowGap) {}
+std::string run_table(std::span<const RunReport> reports, bool of_scenes) {
+  constexpr std::size_t kNarrowGap = 1;  // the names of all algorithms fit into kTableWidth with it
+  return run_columns(of_scenes).table(reports, kNarrowGap).text();
+}
 
-void RunTable::add(std::vector<std::string> names, const RunReport& report) {
-  const MetricList metrics = metric_list(report.summary.metrics);
-  for (const RunHeading& heading : kRunHeadings) names.push_back(cell_below(heading, report, metrics));
-  table_.add(std::move(names));
+std::string fidelity_text(std::span<const RunReport> reports) {
+  std::vector<RunReport> with_reference;
+  std::ranges::copy_if(reports, std::back_inserter(with_reference), has_reference);
+  if (with_reference.empty()) return "";
+  Columns<RunReport> columns;
+  const bool one_scenario = reports.front().summary.name == reports.back().summary.name;
+  columns.print(one_scenario ? "algorithm" : "scenario", "", "",
+                [&](const RunReport& r) { return distinct_name(r, reports); });
+  add_metrics(columns, kFidelityHeadings);
+  return fmt::format("\nrendered force against the reference, measured or ideal\n\n{}",
+                     columns.table(with_reference).text());
 }
 
 std::vector<std::string> run_warnings(std::span<const RunReport> reports) {
@@ -155,85 +182,67 @@ std::string unsettled_text(std::span<const RunReport> reports) {
       "\n{}", wrapped(fmt::format("\"-\": under 1/30 s of settled contact ({}){}", fmt::join(names, ", "), advice), 0));
 }
 
-const std::vector<Table::Column> kTargetHeadings = {{"place", true, "number of the target, from 0"},
-                                                    {"success rate", true, "targets.0.success_rate.mean"},
-                                                    {"completion s", true, "targets.0.completion_time_s.mean"},
-                                                    {"model force N", true, "targets.0.model_force_N.mean"},
-                                                    {"speed mm/s", true, "targets.0.speed_m_per_s.mean"}};
+namespace {
 
-std::vector<Table::Column> latency_headings() {
-  std::vector<Table::Column> columns = {{"step latency", false, "of run --latency: the scene whose steps were timed"},
-                                        {"steps"}};
-  for (const char* part : {"p50", "p95", "p99", "p99.9"})
-    columns.push_back({fmt::format("{} us", part), true,
-                       fmt::format("what {} % of the steps take at most, each by itself [us]", part + 1)});
-  columns.push_back({"max us", true, "the longest step [us]"});
-  for (const double deadline : kStepDeadlines)
-    columns.push_back({fmt::format("> {:.3f} ms", 1e3 * deadline), true, "number of steps that took longer"});
-  columns.push_back({"clock us", true, "what reading the clock takes, which is within each step's time [us]"});
+Columns<PlaceMetrics> place_columns() {
+  Columns<PlaceMetrics> columns;
+  columns.print("place", "1", "number of the target, from 0",
+                [](const PlaceMetrics& p) { return std::to_string(p.place); });
+  const auto add = [&columns](const char* title, const char* meaning, SubjectMean PlaceMetrics::*of, double factor) {
+    columns.print(title, "1", meaning, [of, factor](const PlaceMetrics& p) {
+      const SubjectMean& m = p.*of;
+      if (m.subjects == 0) return std::string("-");
+      return fmt::format("{} +- {}", deserved(factor * m.mean, 0.1 * factor * m.standard_error, 3),
+                         significant(factor * m.standard_error, 2));
+    });
+  };
+  add("success rate", "targets.0.success_rate.mean", &PlaceMetrics::success_rate, 1.0);
+  add("completion s", "targets.0.completion_time_s.mean", &PlaceMetrics::completion_time, 1.0);
+  add("model force N", "targets.0.model_force_N.mean", &PlaceMetrics::model_force, 1.0);
+  add("speed mm/s", "targets.0.speed_m_per_s.mean", &PlaceMetrics::speed, 1e3);
   return columns;
 }
 
+}  // namespace
+
 std::string targets_text(const RunReport& report) {
   if (report.summary.section("targets") == nullptr) return "";
-  const auto cell = [](const SubjectMean& m, int digits) {
-    return m.subjects == 0 ? "-"
-                           : fmt::format("{} +- {}", deserved(m.mean, 0.1 * m.standard_error, digits),
-                                         significant(m.standard_error, 2));
+  return fmt::format("\n{}: targets, mean +- standard error over subjects\n\n{}", report.summary.name,
+                     place_columns().table(place_metrics(report.targets)).text());
+}
+
+Columns<LatencyRow> latency_columns() {
+  Columns<LatencyRow> columns;
+  const auto add_time = [&columns](const std::string& title, const std::string& meaning,
+                                   std::uint64_t StepLatency::*time) {
+    columns.print(title, "us", meaning, [time](const LatencyRow& r) {
+      return r.latency.steps > 0 ? fmt::format("{:.3f}", static_cast<double>(r.latency.*time) / 1e3) : "-";
+    });
   };
-  Table table(kTargetHeadings);
-  for (const PlaceMetrics& place : place_metrics(report.targets)) {
-    SubjectMean speed = place.speed;
-    speed.mean *= 1e3;
-    speed.standard_error *= 1e3;
-    table.add({std::to_string(place.place), cell(place.success_rate, 3), cell(place.completion_time, 3),
-               cell(place.model_force, 3), cell(speed, 3)});
+  columns.print("step latency", "", "of run --latency: the scene whose steps were timed", &LatencyRow::scenario);
+  columns.print("steps", "1", "", [](const LatencyRow& r) { return r.latency.steps; });
+  for (const auto& [part, time] : {std::pair{"50", &StepLatency::p50},
+                                   {"95", &StepLatency::p95},
+                                   {"99", &StepLatency::p99},
+                                   {"99.9", &StepLatency::p99_9}}) {
+    add_time(fmt::format("p{} us", part), fmt::format("what {} % of the steps take at most, each by itself [us]", part),
+             time);
   }
-  return fmt::format("\n{}: targets, mean +- standard error over subjects\n\n{}", report.summary.name, table.text());
-}
-
-Table latency_table() {
-  return Table(latency_headings());
-}
-
-std::vector<std::string> latency_cells(const std::string& name, const StepLatency& latency) {
-  std::vector<std::string> cells = {name, std::to_string(latency.steps)};
-  const auto add_time = [&](std::uint64_t ns) {
-    cells.push_back(latency.steps > 0 ? fmt::format("{:.3f}", static_cast<double>(ns) / 1e3) : "-");
-  };
-  for (const std::uint64_t ns : {latency.p50, latency.p95, latency.p99, latency.p99_9, latency.max}) add_time(ns);
-  for (const std::uint64_t misses : latency.misses) cells.push_back(std::to_string(misses));
-  add_time(latency.overhead);
-  return cells;
-}
-
-std::string fidelity_text(std::span<const RunReport> reports) {
-  const bool one_scenario = reports.front().summary.name == reports.back().summary.name;
-  std::vector<Table::Column> columns = {{one_scenario ? "algorithm" : "scenario", false}};
-  for (const RunHeading& heading : kFidelityHeadings) columns.push_back({heading.title});
-  Table table(columns);
-  bool any = false;
-  for (const RunReport& report : reports) {
-    if (report.summary.section("fidelity") == nullptr) continue;
-    any = true;
-    const MetricList metrics = metric_list(report.summary);
-    std::vector<std::string> cells = {distinct_name(report, reports)};
-    for (const RunHeading& heading : kFidelityHeadings)
-      cells.push_back(metric_cell(metrics, heading.shows[0], heading.factor));
-    table.add(std::move(cells));
+  add_time("max us", "the longest step [us]", &StepLatency::max);
+  for (std::size_t i = 0; i < std::size(kStepDeadlines); ++i) {
+    columns.print(fmt::format("> {:.3f} ms", 1e3 * kStepDeadlines[i]), "1", "number of steps that took longer",
+                  [i](const LatencyRow& r) { return r.latency.misses[i]; });
   }
-  return any ? fmt::format("\nrendered force against the reference, measured or ideal\n\n{}", table.text()) : "";
+  add_time("clock us", "what reading the clock takes, which is within each step's time [us]", &StepLatency::overhead);
+  return columns;
 }
 
-std::vector<Table::Column> run_headings() {
-  std::vector<Table::Column> headings = joined_headings({kTargetHeadings, latency_headings()});
-  const auto add = [&headings](const RunHeading& heading) {
-    for (const char* shown : heading.shows)
-      if (shown != nullptr) headings.push_back({heading.title, heading.number, shown});
-  };
-  for (const RunHeading& heading : kRunHeadings) add(heading);
-  for (const RunHeading& heading : kFidelityHeadings) add(heading);
-  return headings;
+std::vector<DescribedTable> run_tables() {
+  Columns<RunReport> runs = run_columns(true);
+  add_metrics(runs, kFidelityHeadings);
+  runs.print("ratio", "", "ratio_max", [](const RunReport&) { return Cell(); });
+  return {comparison_columns().described("comparison.csv", "of compare: one line per algorithm"), runs.described(),
+          place_columns().described(), latency_columns().described()};
 }
 
 namespace {
@@ -270,35 +279,30 @@ constexpr const char* kComparedMetrics[] = {"force_max_N",
 
 }  // namespace
 
-std::vector<Column> comparison_columns() {
-  std::vector<Column> columns = {
-      {"algorithm", "", "force algorithm"}, {"outcome", "", "how the run ended"}, {"steps", "1", "rows of the run"}};
-  const MetricList metrics = metrics_without_values();
-  for (const char* name : kComparedMetrics) {
-    const Metric& metric = *find_metric(metrics, name);
-    columns.push_back({name, metric.unit, metric.meaning});
-  }
-  return columns;
-}
-
-void write_comparison(const std::filesystem::path& file, std::span<const RunReport> reports, std::size_t seeds) {
-  std::string text = (seeds > 1 ? "seed," : "") + header_of(comparison_columns()) + "\n";
+std::vector<ComparedRun> compared_runs(std::span<const RunReport> reports, std::size_t seeds) {
+  std::vector<ComparedRun> runs;
   for (std::size_t i = 0; i < reports.size(); ++i) {
     const RunSummary& run = reports[i].summary;
-    if (seeds > 1) text += fmt::format("{},", i % seeds);
-    text += fmt::format("{},{},{}", run.algorithm, outcome_name(run.result.outcome), run.result.rows);
+    runs.push_back({i % seeds, run.algorithm, std::string(outcome_name(run.result.outcome)), run.result.rows, {}});
     const MetricList metrics = metric_list(run);
-    for (const char* name : kComparedMetrics) text += "," + cell_text(value_of(metrics, name));
-    text += "\n";
+    for (const char* name : kComparedMetrics)
+      runs.back().metrics.push_back(std::visit([](const auto& value) { return Cell(value); }, value_of(metrics, name)));
   }
-  write_file_atomically(file, text);
+  return runs;
 }
 
-std::vector<std::string> compared_metrics() {
-  std::vector<std::string> metrics;
-  for (const RunHeading& heading : kRunHeadings)
-    if (heading.factor != 0.0) metrics.emplace_back(heading.shows[0]);
-  return metrics;
+Columns<ComparedRun> comparison_columns(bool seeds) {
+  Columns<ComparedRun> columns;
+  if (seeds) columns.add("seed", "1", "number of the repetition", &ComparedRun::seed);
+  columns.add("algorithm", "", "force algorithm", &ComparedRun::algorithm);
+  columns.add("outcome", "", "how the run ended", &ComparedRun::outcome);
+  columns.add("steps", "1", "rows of the run", &ComparedRun::steps);
+  const MetricList metrics = metrics_without_values();
+  for (std::size_t i = 0; i < std::size(kComparedMetrics); ++i) {
+    const Metric& metric = *find_metric(metrics, kComparedMetrics[i]);
+    columns.add(metric.name, metric.unit, metric.meaning, [i](const ComparedRun& r) { return r.metrics[i]; });
+  }
+  return columns;
 }
 
 std::string number_text(double value, const std::optional<double>& error) {

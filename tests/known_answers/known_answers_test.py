@@ -49,7 +49,7 @@ class KnownAnswers(unittest.TestCase):
         fields = {field for field in printed_fields(benches(scratch_folder(unittest)).values()) if ":" in field}
         for bench in FOUND.values():
             for file in bench.folder.rglob("*.csv"):
-                name = file.name.replace("_timing", "")
+                name = file.name
                 header = file.read_text(encoding="utf-8").split("\n")[0].split(",")
                 if f"{name}:{header[0]}" in fields and f"{name}:metrics" not in fields:
                     varied = {column for column in header if "." in column and name == "limit_runs.csv"}

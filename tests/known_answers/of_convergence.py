@@ -60,8 +60,10 @@ def convergence(bench):
         bench.add(f"converge_levels.csv:{name}", levels[name], value, "recurrence of leapfrog, formulas of Roache", within, (naive, wrong))
     for name, value, wrong in (("metric", metric, "x"), ("outcome", "completes", "diverges")):
         bench.add(f"converge_levels.csv:{name}", levels[name], [value] * 5, "as asked, and stable below 2 M / B", EXACT, ("another", [wrong] * 5))
-    seconds = Table(out / "converge_levels_timing.csv")["seconds"]
-    bench.add("converge_levels.csv:seconds", bool(np.all((seconds > 1e-6) & (seconds < 0.1))), True, "640 steps take more than a microsecond, less than 0.1 s",
+    times = Table(out / "converge_levels_timing.csv")
+    bench.add("converge_levels_timing.csv:value", times["value"], steps, "as of the levels", EXACT, ("of the finest first", steps[::-1]))
+    seconds = times["seconds"]
+    bench.add("converge_levels_timing.csv:seconds", bool(np.all((seconds > 1e-6) & (seconds < 0.1))), True, "640 steps take more than a microsecond, less than 0.1 s",
               EXACT, ("of a step", bool(np.all(seconds / 640 > 1e-6))))
     error = verdict_on(f[:3])[2][0]
     said, = bench.json("compare", base, "--algorithms", "summation", "--by", metric, "--errors", "--out", bench.folder / "errors")["errors"]

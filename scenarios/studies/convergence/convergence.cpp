@@ -4,17 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
-#include "algorithms/stages/damping_and_limits.hpp"
-#include "results/io/json_text.hpp"
 #include "results/summary/outcome_names.hpp"
-#include "scenarios/batch/finer_scene.hpp"
 #include "scenarios/description/metric_sections.hpp"
-#include "scenarios/input/input_error.hpp"
-#include "scenarios/studies/stability/field_limit.hpp"
 #include "sim/core/math.hpp"
-#include "sim/loop/integrators/table.hpp"
 
 namespace hapbench {
 namespace {
@@ -127,103 +120,23 @@ Convergence convergence_of(std::span<const LevelResult> levels, double ratio, do
 
 namespace {
 
-/// Counts of contacts at the rows that the metrics take in.
+/// Counts of contacts at the rows that the metrics take in, by which contacts are said to switch. Other points come
+/// with another surface: then it is the first that tells whether the tool meets the same things.
 constexpr const char* kContactCounts[] = {"landings", "steps_in_contact", "colliding_mean", "rendered_mean"};
-
-/// Of the step. A device samples: between its samples the force is held, which is of the first order.
-double order_in_step(const Scenario& scenario) {
-  const IntegratorEntry& integrator = *scenario.integrator.type;
-  if (!std::holds_alternative<IdealDeviceFields>(scenario.device)) return 1.0;
-  const RenderingConfig& r = scenario.rendering;
-  return normal_damping(r) > 0.0 || r.has_friction() ? integrator.damped_order : integrator.order;
-}
-
-std::string noise_reason(const Scenario& scenario) {
-  const auto* admittance = std::get_if<AdmittanceDeviceConfig>(&scenario.device);
-  const char* source = std::holds_alternative<TrackingHandFields>(scenario.hand) ? "hand"
-                       : admittance != nullptr && admittance->sensor.noise > 0.0 ? "force sensor"
-                                                                                 : nullptr;
-  return source == nullptr ? "" : fmt::format("the noise of the {} is drawn anew in every step", source);
-}
-
-LevelSweep step_levels(const Scenario& scenario, std::size_t levels, double ratio) {
-  if (ratio != std::round(ratio)) {
-    throw InputError(fmt::format(
-        "--ratio: got {}; allowed for {}: whole numbers, so that the rows of all levels coincide", ratio, kStepPath));
-  }
-  LevelSweep sweep{.axis = {kStepPath}, .formal_order = order_in_step(scenario), .no_order = noise_reason(scenario)};
-  int times = 1;
-  for (std::size_t i = 0; i < levels; ++i, times *= static_cast<int>(ratio)) {
-    auto [overrides, stride] = with_finer_step(scenario, times);
-    sweep.axis.values.push_back(overrides.front().substr(std::string_view(kStepPath).size() + 1));
-    overrides.erase(overrides.begin());
-    sweep.axis.along.push_back({std::move(overrides), stride});
-  }
-  return sweep;
-}
-
-/// The field's value in the scenario.
-double coarsest_value(const LoadedScenario& loaded, const std::string& path) {
-  const Json own = own_value(loaded.scenario, path);
-  if (own.is_number_float() && own.get<double>() > 0.0) return own.get<double>();
-  if (own.is_null()) {
-    const auto distance = point_distance(loaded);
-    if (distance && path == distance->path) return distance->metres;
-  }
-  throw InputError(
-      fmt::format("--vary: got {}, which is {} in the scenario; allowed: a field that is a number > 0 and no "
-                  "integer, such as {}, environment.grid_m, environment.spacing_m or tool.grid_m",
-                  path, own.is_null() ? "not given" : own.dump(), kStepPath));
-}
-
-}  // namespace
-
-LevelSweep level_sweep(const LoadedScenario& loaded, const std::string& path, std::size_t levels, double ratio) {
-  LevelSweep sweep;
-  if (path == kStepPath) {
-    sweep = step_levels(loaded.scenario, levels, ratio);
-  } else {
-    sweep.axis = {path};
-    double value = coarsest_value(loaded, path);
-    for (std::size_t i = 0; i < levels; ++i, value /= ratio)
-      sweep.axis.values.emplace_back(std::string_view(NumberText(value)));
-  }
-  sweep.ratio = ratio;
-  return sweep;
-}
-
-std::optional<double> level_result(const SweepTable& table, const SweepRow& row, const std::string& metric) {
-  const std::string& outcome = table.outcome(row);
-  const bool failed = outcome == kErrorOutcome || outcome == outcome_name(Outcome::diverges);
-  return failed ? std::nullopt : table.number(row, metric);
-}
-
-namespace {
-
-/// The counts by which contacts are said to switch. Other points come with another surface: then it is the number of
-/// first touches that tells whether the tool meets the same things.
-std::span<const char* const> counts_of(const LevelSweep& levels) {
-  constexpr std::size_t kOfAnySurface = 1;
-  return std::span(kContactCounts)
-      .first(levels.axis.path.starts_with("environment.") ? kOfAnySurface : std::size(kContactCounts));
-}
-
-LevelResult level_named(const LevelSweep& levels, std::size_t level, std::string outcome, std::string state_hash) {
-  return {.setting = fmt::format("{} = {}", levels.axis.path, levels.axis.values[level]),
-          .outcome = std::move(outcome),
-          .result = std::nullopt,
-          .state_hash = std::move(state_hash)};
-}
 
 }  // namespace
 
 LevelResult level_result(const LevelSweep& levels, std::size_t level, const RunSummary& summary,
                          const std::string& metric) {
-  LevelResult result = level_named(levels, level, std::string(outcome_name(summary.result.outcome)),
-                                   fmt::format("{:x}", summary.metrics.state_hash));
+  const std::string& path = levels.axis.path;
+  LevelResult result{.setting = fmt::format("{} = {}", path, levels.axis.values[level]),
+                     .outcome = std::string(outcome_name(summary.result.outcome)),
+                     .result = std::nullopt,
+                     .state_hash = summary.metrics.state_hash};
   const MetricList metrics = metric_list(summary);
   if (summary.result.outcome != Outcome::diverges) result.result = number_of(value_of(metrics, metric));
-  for (const char* name : counts_of(levels))
+  const std::span<const char* const> counts = kContactCounts;
+  for (const char* name : counts.first(path.starts_with("environment.") ? 1 : counts.size()))
     result.contacts.emplace_back(name, number_of(value_of(metrics, name)).value_or(0.0));
   return result;
 }
@@ -235,16 +148,6 @@ Convergence convergence_of(const LevelSweep& levels, std::span<const LevelResult
                         alike
                             ? fmt::format("{} has no effect here: all runs are the same, bit for bit", levels.axis.path)
                             : levels.no_order);
-}
-
-Convergence convergence_of(const LevelSweep& levels, const SweepTable& table, const std::string& metric) {
-  std::vector<LevelResult> results;
-  for (const SweepRow& row : table.rows) {
-    LevelResult& level = results.emplace_back(level_named(levels, results.size(), table.outcome(row), row.back()));
-    level.result = level_result(table, row, metric);
-    for (const char* name : counts_of(levels)) level.contacts.emplace_back(name, table.number(row, name).value_or(0.0));
-  }
-  return convergence_of(levels, results);
 }
 
 }  // namespace hapbench

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
@@ -7,12 +8,10 @@
 #include <vector>
 
 #include "results/summary/summary.hpp"
-#include "scenarios/batch/sweep_table.hpp"
-#include "scenarios/description/load_scenario.hpp"
+#include "scenarios/studies/convergence/level_sweep.hpp"
 
 /// How far a number is from converged: observed order, Richardson's value and grid convergence index (Roache 1994; ASME
-/// V&V 20) of a metric at levels h, h/r, h/r^2, …; or why no order can be stated. The levels are those of a sweep of
-/// one field.
+/// V&V 20) of a metric at levels h, h/r, h/r^2, … of one field; or why no order can be stated.
 namespace hapbench {
 
 /// What a run at one level gave.
@@ -23,7 +22,7 @@ struct LevelResult {
   /// Counts of contacts, by name. Where they differ between the last levels, contacts have switched between them, and
   /// the differences are not those of one smooth motion.
   std::vector<std::pair<std::string, double>> contacts = {};
-  std::string state_hash = {};  ///< equal for runs that are the same, bit for bit
+  std::uint64_t state_hash = 0;  ///< equal for runs that are the same, bit for bit
 };
 
 /// The verdict on a metric.
@@ -52,33 +51,11 @@ struct Convergence {
 Convergence convergence_of(std::span<const LevelResult> levels, double ratio, double formal_order,
                            const std::string& no_order = "");
 
-inline constexpr const char* kStepPath = "time.step_s";
-
-/// The levels of a scene's field, from the scenario's own value to finer ones.
-struct LevelSweep {
-  Axis axis;                  ///< the field's values, with what has to change along with them
-  double ratio = 2.0;         ///< of each value to the next
-  double formal_order = 2.0;  ///< of the integrator, or of whatever a distance between points or of a grid approximates
-  std::string no_order;       ///< why no metric of this scene can have an order; empty otherwise
-};
-
-/// The levels of a field. With shorter steps the run lasts as long, delays of devices keep their length, and metrics of
-/// motion, force and contact are taken at the times of the coarsest rows. A mesh without a spacing begins with the mean
-/// distance of its vertices. Throws InputError when the field is no number > 0 or an integer, and for a ratio of steps
-/// that is not whole.
-LevelSweep level_sweep(const LoadedScenario& loaded, const std::string& path, std::size_t levels, double ratio);
-
-/// The metric of a level's run; none where it has none, diverges or could not be computed.
-std::optional<double> level_result(const SweepTable& table, const SweepRow& row, const std::string& metric);
-
-/// What the run of a level gave of a metric.
+/// What the run of a level gave of a metric; no result where it has none or diverges.
 LevelResult level_result(const LevelSweep& levels, std::size_t level, const RunSummary& summary,
                          const std::string& metric);
 
 /// The verdict on the results of the levels.
 Convergence convergence_of(const LevelSweep& levels, std::span<const LevelResult> results);
-
-/// The verdict on a metric of the table, which has as many rows as the axis has levels.
-Convergence convergence_of(const LevelSweep& levels, const SweepTable& table, const std::string& metric);
 
 }  // namespace hapbench

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scenarios/batch/finer_scene.hpp"
 #include "scenarios/description/metric_sections.hpp"
 #include "scenarios/run/assemble.hpp"
 
@@ -15,16 +14,6 @@ namespace {
 
 constexpr std::size_t kErrorLevels = 3;
 constexpr double kErrorRatio = 2.0;
-
-/// The overrides of a level.
-FinerScene level_of(const LevelSweep& levels, std::size_t level) {
-  FinerScene scene{{fmt::format("{}={}", levels.axis.path, levels.axis.values[level])}};
-  if (levels.axis.along.empty()) return scene;
-  const auto& [overrides, stride] = levels.axis.along[level];
-  scene.overrides.insert(scene.overrides.end(), overrides.begin(), overrides.end());
-  scene.stride = stride;
-  return scene;
-}
 
 LevelSweep spacing_levels(const LoadedScenario& loaded, const PointDistance& distance) {
   LevelSweep levels = level_sweep(loaded, distance.path, kErrorLevels, kErrorRatio);
@@ -35,6 +24,24 @@ LevelSweep spacing_levels(const LoadedScenario& loaded, const PointDistance& dis
   return levels;
 }
 
+/// The runs of a scene's finer levels. Throws InputError where one of them cannot be run.
+Cases finer_cases(const LevelSweep& levels, const Cases& cases) {
+  Axis axis = levels.axis;
+  axis.values.erase(axis.values.begin());
+  if (!axis.along.empty()) axis.along.erase(axis.along.begin());
+  std::vector<Axis> axes = cases.axes();
+  axes.insert(axes.begin(), axis);
+  Cases finer(cases.scenes(), cases.sets(), std::move(axes));
+  for (std::size_t i = 0; i < axis.values.size(); ++i) {
+    try {
+      check_named_files(finer.load(i * cases.size()));
+    } catch (const InputError& error) {
+      throw InputError(fmt::format("{} = {}: {}", axis.path, axis.values[i], error.problem()));
+    }
+  }
+  return finer;
+}
+
 }  // namespace
 
 std::optional<double> KnownError::sum() const {
@@ -42,81 +49,64 @@ std::optional<double> KnownError::sum() const {
   return *step + spacing.value_or(0.0) + tolerance;
 }
 
-FinerRuns::FinerRuns(const BatchPlan& plan, const BatchReport& report, BatchOptions options)
-    : plan_(plan), report_(report), finer_plan_(plan) {
-  finer_plan_.scenarios.clear();
-  finer_plan_.names.clear();
-  const std::size_t each = plan.size() / plan.scenarios.size();
-  for (std::size_t s = 0; s < plan.scenarios.size(); ++s) {
-    const LoadedScenario loaded = scenario_of(plan, s * each);
-    Parts parts;
+FinerRuns::FinerRuns(const Comparison& comparison, std::span<const RunReport> reports, const JobOptions& jobs)
+    : comparison_(comparison), reports_(reports) {
+  std::vector<Cases> finer;
+  std::size_t runs = 0;
+  const auto add = [&](Part& part, const Cases& cases) {
+    try {
+      finer.push_back(finer_cases(part.levels, cases));
+      part.first = runs;
+      runs += finer.back().size();
+    } catch (const InputError& error) {
+      part.why_not = error.what();
+    }
+  };
+  for (const Cases& cases : comparison.scenes) {
+    const LoadedScenario loaded = cases.load(0);
+    Parts& parts = parts_.emplace_back();
     parts.step.levels = level_sweep(loaded, kStepPath, kErrorLevels, kErrorRatio);
-    add(parts.step, plan, s);
+    add(parts.step, cases);
     parts.has_points = !std::holds_alternative<SpringsEnvironment>(loaded.scenario.environment);
     if (const auto distance = point_distance(loaded)) {
       parts.spacing.levels = spacing_levels(loaded, *distance);
-      add(parts.spacing, plan, s);
+      add(parts.spacing, cases);
     } else {
       parts.spacing.why_not = parts.has_points
                                   ? "no field sets the distance of the points; only a finer file could tell"
                                   : "springs have no points";
     }
-    parts_.push_back(std::move(parts));
   }
-  options.directory.reset();
-  finer_ = run_batch(finer_plan_, options);
-}
-
-/// Adds the finer levels of a scenario to the plan, unless one of them cannot be run.
-void FinerRuns::add(Part& part, const BatchPlan& plan, std::size_t scenario) {
-  part.half = finer_plan_.scenarios.size();
-  std::vector<FinerScene> levels;
-  for (std::size_t i = 1; i < kErrorLevels; ++i) {
-    levels.push_back(level_of(part.levels, i));
-    std::vector<std::string> overrides = plan.definition.overrides;
-    overrides.push_back("rendering.algorithm=" + plan.definition.algorithms[0]);
-    overrides.insert(overrides.end(), levels.back().overrides.begin(), levels.back().overrides.end());
-    try {
-      check_named_files(load_scenario(plan.scenarios[scenario], overrides));
-    } catch (const InputError& error) {
-      part.why_not = fmt::format("{} = {}: {}", part.levels.axis.path, part.levels.axis.values[i], error.problem());
-      return;
-    }
-  }
-  for (FinerScene& level : levels) {
-    finer_plan_.scenarios.push_back(plan.scenarios[scenario]);
-    finer_plan_.names.push_back(plan.names[scenario]);
-    finer_plan_.finer.push_back(std::move(level));
-  }
+  finer_ = run_all(finer, jobs);
 }
 
 std::optional<double> FinerRuns::error_by(const Part& part, std::size_t run, const std::string& metric) const {
   if (!part.why_not.empty()) return std::nullopt;
-  const std::size_t each = plan_.size() / plan_.scenarios.size();
-  std::vector<LevelResult> results;
-  for (std::size_t i = 0; i < kErrorLevels; ++i) {
-    const RunReport& level = i == 0 ? report_.runs[run] : finer_.runs[(part.half + i - 1) * each + run % each];
+  const std::size_t each = comparison_.each();
+  std::vector<LevelResult> results = {level_result(part.levels, 0, reports_[run].summary, metric)};
+  for (std::size_t i = 1; i < kErrorLevels; ++i) {
+    const RunReport& level = finer_[part.first + (i - 1) * each + run % each];
     results.push_back(level_result(part.levels, i, level.summary, metric));
   }
   return convergence_of(part.levels, results).errors.front();
 }
 
 KnownError FinerRuns::known_error(std::size_t run, const std::string& metric) const {
-  const Parts& parts = parts_[plan_.run(run).scenario];
+  const Parts& parts = parts_[comparison_.scene(run)];
   KnownError known{.step = error_by(parts.step, run, metric),
                    .spacing = error_by(parts.spacing, run, metric),
                    .has_points = parts.has_points};
-  const MetricList metrics = metric_list(report_.runs[run].summary);
+  const MetricList metrics = metric_list(reports_[run].summary);
   if (const Metric* found = find_metric(metrics, metric)) known.tolerance = found->tolerance().value_or(0.0);
   return known;
 }
 
-std::string FinerRuns::refined(std::size_t scenario) const {
+std::string FinerRuns::refined(std::size_t scene) const {
   const auto text = [](const Part& part) {
     if (!part.why_not.empty()) return part.why_not;
     return fmt::format("{} {}", part.levels.axis.path, fmt::join(part.levels.axis.values, ", "));
   };
-  return fmt::format("{}; {}", text(parts_[scenario].step), text(parts_[scenario].spacing));
+  return fmt::format("{}; {}", text(parts_[scene].step), text(parts_[scene].spacing));
 }
 
 namespace {

@@ -1,12 +1,11 @@
 #pragma once
 
-#include <array>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "scenarios/batch/run_batch.hpp"
+#include "scenarios/batch/comparison.hpp"
 #include "scenarios/studies/convergence/convergence.hpp"
 
 /// What is known of the error of a run's numbers: how far runs with half and a quarter of the step, and of the distance
@@ -24,36 +23,34 @@ struct KnownError {
   std::optional<double> sum() const;
 };
 
-/// The runs of a batch again, by step and by spacing.
+/// The runs of a comparison again, by step and by spacing.
 class FinerRuns {
  public:
-  /// Runs them, without files. `report` is that of `plan`; both have to outlive this. Throws Stopped.
-  FinerRuns(const BatchPlan& plan, const BatchReport& report, BatchOptions options);
+  /// Runs them, without files. `reports` are those of `comparison`; both have to outlive this. Throws Stopped.
+  FinerRuns(const Comparison& comparison, std::span<const RunReport> reports, const JobOptions& jobs);
 
-  /// Of a metric of the run with that number in the plan; metrics are taken at the times of its own rows.
+  /// Of a metric of the run with that number in the comparison; metrics are taken at the times of its own rows.
   KnownError known_error(std::size_t run, const std::string& metric) const;
 
-  /// What was refined of a scenario, and why something was not, in a clause.
-  std::string refined(std::size_t scenario) const;
+  /// What was refined of a scene, and why something was not, in a clause.
+  std::string refined(std::size_t scene) const;
 
  private:
   struct Part {
     LevelSweep levels;
-    std::size_t half = 0;  ///< place of the first finer scenario among all
-    std::string why_not;   ///< why there are no levels; empty otherwise
+    std::size_t first = 0;  ///< number of the first finer run
+    std::string why_not;    ///< why there are no levels; empty otherwise
   };
   struct Parts {
     Part step, spacing;
     bool has_points = true;
   };
-  void add(Part& part, const BatchPlan& plan, std::size_t scenario);
   std::optional<double> error_by(const Part& part, std::size_t run, const std::string& metric) const;
 
-  const BatchPlan& plan_;
-  const BatchReport& report_;
-  std::vector<Parts> parts_;  ///< of each scenario
-  BatchPlan finer_plan_;
-  BatchReport finer_;
+  const Comparison& comparison_;
+  std::span<const RunReport> reports_;
+  std::vector<Parts> parts_;      ///< of each scene
+  std::vector<RunReport> finer_;  ///< by part, then by level, then as in the comparison
 };
 
 /// A number of a table and what is known of its error.

@@ -10,10 +10,10 @@
 #include "device_model/velocity_filter.hpp"
 #include "results/observe/butterworth.hpp"
 #include "results/observe/contact_forces.hpp"
-#include "scenarios/batch/finer_scene.hpp"
 #include "scenarios/input/json_file.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/run/scene_facts.hpp"
+#include "scenarios/studies/convergence/level_sweep.hpp"
 #include "scenarios/studies/stability/judged_run.hpp"
 #include "scenarios/studies/stability/scene_loop.hpp"
 

@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "device_model/theory/linear_loops.hpp"
-#include "scenarios/batch/run_batch.hpp"
+#include "scenarios/batch/comparison.hpp"
 #include "scenarios/input/json_file.hpp"
 #include "scenarios/studies/stability/field_limit.hpp"
 #include "scenarios/studies/tuning/tune.hpp"
@@ -111,15 +111,10 @@ std::vector<FamilyMember> hands_of(const Scenario& scenario) {
 }
 
 std::vector<FamilyMember> seeds_of(const LoadedScenario& loaded) {
+  const Axis axis = seed_axis(loaded.scenario, kSeeds, kSeedShift);
   std::vector<FamilyMember> seeds;
-  for (int k = 1; k < kSeeds; ++k) {
-    Scenario scenario = loaded.scenario;
-    scenario.seed += k;
-    const Vec3 start = scenario.initial.position + start_shift(scenario, kSeedShift);
-    seeds.push_back({fmt::format("seed {}", scenario.seed),
-                     {fmt::format("seed={}", scenario.seed),
-                      fmt::format("initial.position_m=[{},{},{}]", start.x(), start.y(), start.z())}});
-  }
+  for (std::size_t k = 1; k < kSeeds; ++k)
+    seeds.push_back({"seed " + axis.values[k], {"seed=" + axis.values[k], axis.along[k].overrides.front()}});
   return seeds;
 }
 

@@ -42,18 +42,6 @@ TEST_F(EarlierResults, AreRemovedWhereTheyAreNotWrittenAnew) {
   EXPECT_FALSE(fs::exists(out_ / "a"));
 }
 
-TEST_F(EarlierResults, OfNobodyAndForeignFilesStay) {
-  fs::create_directory(out_);
-  write_run("older");  // of no list
-  replace_earlier_results(out_, {{"mean"}, {}});
-  write_run("mean");
-  write("mean/notes.txt");
-  write("notes.txt");
-  replace_earlier_results(out_, {{"proxy"}, {}});
-  EXPECT_EQ(names(), (Names{"mean/notes.txt", "notes.txt", "older/scenario.effective.json", "older/summary.json",
-                            "older/trajectory.csv"}));
-}
-
 TEST_F(EarlierResults, OutsideTheFolderAreNotTouched) {
   fs::create_directory(out_);
   fs::create_directory(directory_ / "mine");

@@ -5,15 +5,15 @@
 #include <cmath>
 #include <functional>
 
-#include "scenarios/batch/run_sweep.hpp"
+#include "scenarios/batch/comparison.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "sim/loop/integrators/table.hpp"
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/errors.hpp"
 #include "tests/scenarios/support/scenarios.hpp"
 
-/// Observed orders of sequences whose order is known, and of such as have none; studies of scenes with a closed form,
-/// and of scenes that have no order.
+/// Observed orders of sequences whose order is known, and of such as have none; levels of scenes, and scenes that have
+/// no order.
 namespace hapbench::convergence_test {
 namespace {
 
@@ -71,17 +71,6 @@ TEST(ObservedOrder, FollowsTheFormulas) {
   EXPECT_FALSE(convergence_of(levels_with({1.6, 1.2, 1.0}), 2.0, 2.0).asymptotic) << "1 / 1.2 is not";
 }
 
-TEST(ObservedOrder, IsAsymptoticWhereTheLevelsBeforeAgree) {
-  // A second term half as large at h = 1: at the last four of six levels the orders are 1.12 and 1.06.
-  const auto two_terms = [](double share) { return [share](double h) { return 1000.0 + h + share * h * h; }; };
-  EXPECT_TRUE(convergence_of(levels_of(two_terms(0.5), 6), 2.0, 1.0).asymptotic);
-  // One twice as large: at the last four of five they are 1.51 and 1.35, and 2^0.166 is 1.12.
-  const Convergence bent = convergence_of(levels_of(two_terms(2.0), 5), 2.0, 1.0);
-  ASSERT_TRUE(bent.order) << bent.reason;
-  EXPECT_NEAR(*bent.order, 1.348, 1e-3);
-  EXPECT_FALSE(bent.asymptotic);
-}
-
 /// The order of the exact solution is bracketed: what is extrapolated is within the GCI of it.
 TEST(ObservedOrder, ItsIndexHoldsTheLimit) {
   for (const double share : {-0.4, -0.1, 0.1, 1.0, 3.0}) {
@@ -103,23 +92,13 @@ TEST(ObservedOrder, IsNotStatedWhereDifferencesChangeTheirSign) {
   EXPECT_NEAR(*c.errors[4], 0.3, 1e-12);
 }
 
-TEST(ObservedOrder, OverlooksWhatTheCoarsestOfFiveDo) {
-  const Convergence c = convergence_of(levels_with({0.0, 1.8, 1.4, 1.2, 1.1}), 2.0, 1.0);
-  ASSERT_TRUE(c.order) << c.reason;
-  EXPECT_NEAR(*c.order, 1.0, 1e-12);
-}
-
-TEST(ObservedOrder, IsNotStatedBeyondTwiceTheFormalOne) {
-  const auto cubic = [](double h) { return 1.0 + h * h * h; };
-  expect_no_order(convergence_of(levels_of(cubic), 2.0, 1.0), "more than twice the formal one, 1");
-  EXPECT_NEAR(convergence_of(levels_of(cubic), 2.0, 2.0).order.value_or(0.0), 3.0, 1e-9);
-}
-
 TEST(ObservedOrder, IsNotStatedWhereDifferencesGrowOrStagnate) {
   expect_no_order(convergence_of(levels_with({1.0, 1.1, 1.3, 1.7}), 2.0, 1.0), "do not shrink");
   expect_no_order(convergence_of(levels_with({1.0, 1.1, 1.2, 1.3}), 2.0, 1.0), "do not shrink");
   // The last three alone would have order 0.4.
   expect_no_order(convergence_of(levels_with({1.0, 1.01, 1.2, 1.344}), 2.0, 1.0), "do not shrink");
+  const auto cubic = levels_of([](double h) { return 1.0 + h * h * h; });
+  expect_no_order(convergence_of(cubic, 2.0, 1.0), "more than twice the formal one, 1");
 }
 
 TEST(ObservedOrder, IsNotStatedAtRounding) {
@@ -167,13 +146,6 @@ TEST(ObservedOrder, CountsLevelsThatEndAsTheFinest) {
   expect_no_order(convergence_of(levels_with({1.0, 2.0}), 2.0, 1.0), "2 levels are fewer than three");
 }
 
-TEST(ObservedOrder, IsNotStatedWhereOneKnowsBefore) {
-  const Convergence c =
-      convergence_of(levels_of([](double h) { return 1.0 + h; }), 2.0, 1.0, "the noise is drawn anew");
-  expect_no_order(c, "the noise is drawn anew");
-  EXPECT_TRUE(c.band);
-}
-
 /// Of noise an order is rarely stated: of the last four levels all differences must have one sign (a twelfth of the
 /// orders of four numbers), and both orders must be credible.
 TEST(ObservedOrder, IsRarelyFoundInNoise) {
@@ -195,23 +167,20 @@ TEST(ObservedOrder, IsRarelyFoundInNoise) {
 
 struct Study {
   LevelSweep levels;
-  SweepTable runs;
+  std::vector<RunReport> runs;
 
-  Convergence of(const std::string& metric) const { return convergence_of(levels, runs, metric); }
-  std::vector<std::optional<double>> results(const std::string& metric) const {
-    std::vector<std::optional<double>> results;
-    for (const SweepRow& row : runs.rows) results.push_back(level_result(runs, row, metric));
+  std::vector<LevelResult> levels_of(const std::string& metric) const {
+    std::vector<LevelResult> results;
+    for (std::size_t i = 0; i < runs.size(); ++i) results.push_back(level_result(levels, i, runs[i].summary, metric));
     return results;
   }
+  Convergence of(const std::string& metric) const { return convergence_of(levels, levels_of(metric)); }
 };
 
 Study studied(const ScenarioText& scenario, const std::string& path = kStepPath, std::size_t count = 5) {
-  const test::TemporaryDirectory directory;
   LevelSweep levels = level_sweep(load_scenario(scenario, {}), path, count, 2.0);
-  SweepOptions options;
-  options.directory = directory.path();
-  run_sweep(plan_sweep(Cases({scenario}, {}, {levels.axis}), 1, false), options);
-  return {std::move(levels), read_sweep(table_of(options))};
+  const Cases cases({scenario}, {}, {levels.axis});
+  return {std::move(levels), run_all({&cases, 1}, {})};
 }
 Study studied(const Json& scenario, const std::string& path = kStepPath, std::size_t count = 5) {
   return studied(ScenarioText{test::data_directory() / "converge.json", scenario}, path, count);
@@ -219,8 +188,6 @@ Study studied(const Json& scenario, const std::string& path = kStepPath, std::si
 
 constexpr double kStep = 1e-3, kStiffness = 1000.0, kMass = 0.1, kStart = 1e-3;
 constexpr int kSteps = 40;
-/// Of the last row of the coarsest level, at which all are measured.
-constexpr double kLastTime = (kSteps - 1) * kStep;
 
 /// A mass on one spring that holds from both sides.
 Json spring(double zeta, const char* integrator) {
@@ -236,52 +203,15 @@ Json spring(double zeta, const char* integrator) {
             {"friction", {{"mu_s_N_s_per_m", 0}, {"mu_f_s_per_m", 0}}}}}};
 }
 
-/// Free oscillation from rest at `start` about 0.
-double oscillation(double start, double omega, double zeta, double t) {
-  const double damped = omega * std::sqrt(1.0 - zeta * zeta);
-  return start * std::exp(-zeta * omega * t) * (std::cos(damped * t) + zeta * omega / damped * std::sin(damped * t));
-}
-
-TEST(Converge, SmoothMotionHasTheOrderOfEveryIntegrator) {
-  const double omega = std::sqrt(kStiffness / kMass);
+TEST(Converge, KnowsTheFormalOrderOfEveryIntegrator) {
   for (const IntegratorEntry* integrator : kIntegrators) {
     for (const double zeta : {0.0, 0.2}) {
-      const Study study = studied(spring(zeta, integrator->info.name));
-      const int formal = zeta > 0.0 ? integrator->damped_order : integrator->order;
-      EXPECT_EQ(study.levels.formal_order, formal) << integrator->info.name;
-      const Convergence c = study.of("final_position_m.x");
-      ASSERT_TRUE(c.order) << integrator->info.name << " " << zeta << ": " << c.reason;
-      // Between the last levels omega h is 0.1 / 8 to 0.1 / 16; the next term is so much of the first, times some
-      // units.
-      EXPECT_NEAR(*c.order, formal, 0.1) << integrator->info.name << " " << zeta;
-      const double exact = oscillation(kStart, omega, zeta, kLastTime);
-      EXPECT_LE(std::abs(*c.extrapolated - exact), *c.errors.back()) << integrator->info.name << " " << zeta;
-      EXPECT_LT(*c.gci, 0.05) << "an index that holds everything says nothing";
+      const ScenarioText scenario{"x.json", spring(zeta, integrator->info.name)};
+      EXPECT_EQ(level_sweep(load_scenario(scenario, {}), kStepPath, 3, 2.0).formal_order,
+                zeta > 0.0 ? integrator->damped_order : integrator->order)
+          << integrator->info.name << " " << zeta;
     }
   }
-}
-
-/// A flat tip that rests on a plane and swings about its depth of rest, F / K, without leaving it.
-TEST(Converge, LastingContactWithAPlaneHasTheFormalOrder) {
-  constexpr double kForce = 1.0, kZeta = 0.1, kDeep = 0.5 * kForce / kStiffness;  // to 1.5 F / K
-  const Json scene = {{"time", {{"step_s", kStep}, {"steps", kSteps}}},
-                      {"environment", {{"type", "plane"}, {"size_m", 0.004}, {"spacing_m", 0.0004}}},
-                      {"tool", {{"diameter_m", 0.01}, {"length_m", 0.01}, {"tip", "flat"}}},
-                      {"initial", {{"position_m", {0, 0, -kDeep}}}},
-                      {"hand", {{"type", "force"}, {"x_N", 0}, {"y_N", 0}, {"z_N", -kForce}}},
-                      {"rendering",
-                       {{"algorithm", "mean"},
-                        {"stiffness_N_per_m", kStiffness},
-                        {"mass_kg", kMass},
-                        {"damping_ratio", kZeta},
-                        {"friction", {{"mu_s_N_s_per_m", 0}, {"mu_f_s_per_m", 0}}}}}};
-  const Convergence c = studied(scene).of("final_position_m.z");
-  ASSERT_TRUE(c.order) << c.reason;
-  EXPECT_NEAR(*c.order, 1.0, 0.1);
-  EXPECT_TRUE(c.asymptotic);
-  const double rest = -kForce / kStiffness;
-  const double exact = rest + oscillation(-kDeep - rest, std::sqrt(kStiffness / kMass), kZeta, kLastTime);
-  EXPECT_LE(std::abs(*c.extrapolated - exact), *c.errors.back());
 }
 
 TEST(Converge, PegWhoseContactsSwitchHasNoOrder) {
@@ -306,12 +236,13 @@ TEST(Converge, MeasuresAtTheTimesOfTheCoarsestRows) {
   scene["rendering"]["damping_ratio"] = 0;
   const Study study = studied(scene);
   for (const char* metric : {"force_max_N", "force_step_max_N", "force_reversals"}) {
-    const auto results = study.results(metric);
+    const auto levels = study.levels_of(metric);
+    const double first = *levels.front().result;
     // Times are products of two roundings each, over a period of 2 pi 1e-3 m.
-    for (const auto& result : results) EXPECT_NEAR(*result, *results.front(), 1e-12 * *results.front()) << metric;
+    for (const LevelResult& level : levels) EXPECT_NEAR(*level.result, first, 1e-12 * first) << metric;
     EXPECT_NE(study.of(metric).reason.find("rounding"), std::string::npos) << study.of(metric).reason;
   }
-  EXPECT_EQ(study.runs.rows[4][4], std::to_string(16 * kSteps)) << "its steps";
+  EXPECT_EQ(study.runs[4].summary.result.rows, 16u * kSteps);
 }
 
 TEST(Converge, KeepsTheLengthOfDelays) {
@@ -332,8 +263,8 @@ TEST(Converge, HasNoNumberWhereARunHasNone) {
   Json scene = spring(0.0, "leapfrog");
   scene["time"] = {{"step_s", 0.064}, {"steps", 400}};
   const Study study = studied(scene);
-  for (const std::size_t level : {0u, 1u}) EXPECT_EQ(study.runs.outcome(study.runs.rows[level]), "diverges");
-  EXPECT_FALSE(study.results("force_max_N")[0]);
+  for (const std::size_t i : {0u, 1u}) EXPECT_EQ(study.runs[i].summary.result.outcome, Outcome::diverges);
+  EXPECT_FALSE(study.levels_of("force_max_N")[0].result);
   const Convergence c = study.of("force_max_N");
   EXPECT_FALSE(c.errors[0] || c.errors[1]);
   EXPECT_TRUE(c.errors[2] && c.band);
@@ -345,15 +276,6 @@ TEST(Converge, SaysWhereAFieldHasNoEffect) {
   const Convergence c = studied(spring(0.2, "leapfrog"), "tool.diameter_m", 3).of("force_max_N");
   EXPECT_FALSE(c.order);
   EXPECT_EQ(c.reason, "tool.diameter_m has no effect here: all runs are the same, bit for bit");
-}
-
-TEST(Converge, StatesNoOrderOfNoise) {
-  Json scene = spring(0.2, "leapfrog");
-  scene["device"] = {{"type", "admittance"}, {"sensor", {{"noise_N", 0.01}}}};
-  const LoadedScenario loaded = load_scenario(ScenarioText{"x.json", scene}, {});
-  EXPECT_EQ(level_sweep(loaded, kStepPath, 3, 2.0).no_order,
-            "the noise of the force sensor is drawn anew in every step");
-  EXPECT_EQ(level_sweep(loaded, "tool.diameter_m", 3, 2.0).no_order, "") << "other fields draw the same noise";
 }
 
 TEST(Converge, RefusesFieldsThatAreNoLengths) {

@@ -90,16 +90,14 @@ class FlatTip : public testing::Test {
   };
   Found found(const std::vector<std::string>& algorithms, const std::string& metric) const {
     test::write_plainly(directory_ / "scene.json", scene_.dump());
-    const BatchPlan plan =
-        plan_batch({.scenarios = {directory_ / "scene.json"}, .algorithms = algorithms, .overrides = {}});
-    const BatchReport report = run_batch(plan, {});
-    const FinerRuns finer(plan, report, {});
+    const Comparison comparison = planned({.scenarios = {directory_ / "scene.json"}, .algorithms = algorithms});
+    const std::vector<RunReport> reports = run_all(comparison.scenes, {});
+    const FinerRuns finer(comparison, reports, {});
     Found found;
     found.refined = finer.refined(0);
-    for (std::size_t i = 0; i < plan.size(); ++i) {
+    for (std::size_t i = 0; i < reports.size(); ++i) {
       found.known.push_back(finer.known_error(i, metric));
-      found.numbers.push_back(
-          {number_of(value_of(metric_list(report.runs[i].summary), metric)), found.known.back().sum()});
+      found.numbers.push_back({number_of(value_of(metric_list(reports[i].summary), metric)), found.known.back().sum()});
     }
     found.says = held_text(found.numbers, algorithms, kSame);
     return found;
@@ -117,20 +115,6 @@ TEST_F(FlatTip, HasNoOrderWhereTwoStiffnessesCrossAsPointsGrowDenser) {
   EXPECT_GE(*forces.known[1].spacing, (25.3 - 4.45) * kOne);
   EXPECT_EQ(forces.known[0].step, 0.0) << "the motion is prescribed";
   EXPECT_EQ(forces.refined, "time.step_s 0.0005, 0.00025, 0.000125; environment.spacing_m 4e-04, 2e-04, 1e-04");
-}
-
-TEST_F(FlatTip, HasAnOrderThatNoSamplingChanges) {
-  // Two springs pressed by 1 mm: K d of their mean, 2 K d of their sum, whatever the step.
-  scene_ = {{"time", {{"step_s", 0.0005}, {"steps", 200}}},
-            {"environment", {{"type", "springs"}, {"groups", Json::array({{{"direction", {0, 1, 0}}, {"count", 2}}})}}},
-            {"motion", {{"position", {{"type", "prescribed"}, {"x_m", 0}, {"y_m", -1e-3}, {"z_m", 0}}}}},
-            {"rendering", {{"stiffness_N_per_m", 1000}, {"damping_N_s_per_m", 0}}}};
-  const Found forces = found({"summation", "mean", "highest_depth"}, "force_max_N");
-  EXPECT_EQ(forces.says, "what holds is <: mean ~ highest_depth < summation");
-  EXPECT_NEAR(*forces.numbers[0].value, 2.0, 1e-9);
-  EXPECT_EQ(forces.numbers[0].error, 0.0);
-  EXPECT_FALSE(forces.known[0].has_points);
-  EXPECT_TRUE(forces.refined.ends_with("; springs have no points")) << forces.refined;
 }
 
 }  // namespace

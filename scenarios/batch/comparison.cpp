@@ -1,0 +1,149 @@
+#include "scenarios/batch/comparison.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "scenarios/run/assemble.hpp"
+#include "sim/core/random.hpp"
+
+namespace hapbench {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Largest seed of a scenario.
+constexpr std::int64_t kMostSeed = std::int64_t{1} << 53;
+/// Random stream of the start's shift, which keeps it independent of everything else that the scenario's seed
+/// determines.
+constexpr std::uint64_t kJitterStream = 0x6a697474;
+
+bool lies_in_the_plane(const Environment& environment) {
+  if (std::holds_alternative<Hole2d>(environment)) return true;
+  const auto* springs = std::get_if<SpringsEnvironment>(&environment);
+  if (springs == nullptr || (springs->random.count > 0 && !springs->random.planar)) return false;
+  return std::all_of(springs->groups.begin(), springs->groups.end(),
+                     [](const SpringGroup& group) { return group.direction.z() == 0.0; });
+}
+
+void check_seeds_and_jitter(const ComparisonQuestion& question, const LoadedScenario& loaded) {
+  const Scenario& scenario = loaded.scenario;
+  const std::int64_t most = kMostSeed - static_cast<std::int64_t>(question.seeds - 1);
+  if (scenario.seed > most) {
+    throw InputError(fmt::format("{}: /seed: got {}; allowed: at most {} with {} seeds", loaded.file.string(),
+                                 scenario.seed, most, question.seeds));
+  }
+  if (question.jitter != 0.0 && !std::holds_alternative<FreePosition>(scenario.motion.position)) {
+    throw InputError(fmt::format(
+        "{}: /motion/position: prescribes the tool's place, which --jitter cannot shift; allowed with it: \"free\"",
+        loaded.file.string()));
+  }
+}
+
+std::vector<std::string> names_of(const std::vector<fs::path>& files) {
+  std::vector<std::string> names;
+  std::set<std::string> seen;
+  for (const fs::path& file : files) {
+    names.push_back(file.stem().string());
+    if (seen.insert(names.back()).second) continue;
+    throw InputError(fmt::format("{}: a second scenario named \"{}\"; allowed: one of each name in a comparison",
+                                 file.string(), names.back()));
+  }
+  return names;
+}
+
+bool contains(const std::vector<std::string>& warnings, const std::string& warning) {
+  return std::find(warnings.begin(), warnings.end(), warning) != warnings.end();
+}
+
+/// Appends the warnings that are not in the list yet.
+void add(std::vector<std::string>& warnings, const std::vector<std::string>& more) {
+  for (const std::string& warning : more)
+    if (!contains(warnings, warning)) warnings.push_back(warning);
+}
+
+/// The cases of a scene; adds its warnings, of those about its fields what all algorithms have: what only one of them
+/// reads has an effect here.
+Cases cases_of(const ComparisonQuestion& question, const fs::path& file, std::vector<std::string>& warnings) {
+  const ScenarioText text = read_scenario_text(file);
+  std::vector<Axis> axes = {{"rendering.algorithm", question.algorithms}};
+  const Cases alone({text}, question.overrides, axes);
+  std::vector<std::string> common;
+  for (std::size_t a = 0; a < alone.size(); ++a) {
+    const LoadedScenario loaded = alone.load(a);
+    if (a == 0) {  // the files are those of the scenario
+      check_seeds_and_jitter(question, loaded);
+      add(warnings, check_named_files(loaded));
+      common = loaded.warnings;
+      if (question.seeds > 1 || question.jitter != 0.0)
+        axes.push_back(seed_axis(loaded.scenario, question.seeds, question.jitter));
+    }
+    std::erase_if(common, [&loaded](const std::string& warning) { return !contains(loaded.warnings, warning); });
+  }
+  add(warnings, common);
+  return {{text}, question.overrides, std::move(axes)};
+}
+
+}  // namespace
+
+Vec3 start_shift(const Scenario& scenario, double length) {
+  Random random(Random::derive(kJitterStream, static_cast<std::uint64_t>(scenario.seed)));
+  return length * (lies_in_the_plane(scenario.environment) ? random.direction_in_plane() : random.direction());
+}
+
+Axis seed_axis(const Scenario& scenario, std::size_t seeds, double jitter) {
+  Axis axis{"seed"};
+  Scenario own = scenario;
+  for (std::size_t k = 0; k < seeds; ++k, ++own.seed) {
+    axis.values.push_back(std::to_string(own.seed));
+    if (jitter == 0.0) continue;
+    const Vec3 start = own.initial.position + start_shift(own, jitter);
+    axis.along.push_back({{fmt::format("initial.position_m=[{},{},{}]", start.x(), start.y(), start.z())}});
+  }
+  return axis;
+}
+
+fs::path Comparison::scene_folder(std::size_t scene) const {
+  return scenes.size() > 1 ? fs::path(names[scene]) : fs::path();
+}
+
+fs::path Comparison::folder(std::size_t run) const {
+  const fs::path folder = scene_folder(scene(run)) / algorithm(run);
+  return seeds > 1 ? folder / fmt::format("seed_{}", run % seeds) : folder;
+}
+
+Comparison planned(const ComparisonQuestion& question) {
+  Comparison comparison{{}, names_of(question.scenarios), question.algorithms, question.seeds};
+  const std::size_t scenes = question.scenarios.size(), size = scenes * comparison.each();
+  if (size > kMostRuns) {
+    throw InputError(fmt::format("got {} scenarios x {} algorithms x {} seeds = {} runs; allowed: at most {}", scenes,
+                                 question.algorithms.size(), question.seeds, size, kMostRuns));
+  }
+  for (const fs::path& file : question.scenarios)
+    comparison.scenes.push_back(cases_of(question, file, comparison.warnings));
+  return comparison;
+}
+
+std::vector<RunReport> run_all(std::span<const Cases> all, const JobOptions& jobs,
+                               const std::function<fs::path(std::size_t)>& folder) {
+  struct Place {
+    const Cases& cases;
+    std::size_t i, run;
+  };
+  std::vector<Place> order;
+  for (const Cases& cases : all) {
+    const std::size_t first = order.size();
+    for (std::size_t place = 0; place < cases.size(); ++place)
+      order.push_back({cases, cases.at(place), first + cases.at(place)});
+  }
+  std::vector<RunReport> reports(order.size());
+  for_each_job(order.size(), jobs, [&](std::size_t place) {
+    const auto& [cases, i, run] = order[place];
+    reports[run] = run_scenario(cases.load(i), folder ? std::optional(folder(run)) : std::nullopt, false);
+    reports[run].targets.clear();
+  });
+  return reports;
+}
+
+}  // namespace hapbench
