@@ -29,7 +29,7 @@ bool has_failed(const SweepTable& table, const SweepRow& row) {
 }
 
 /// What a cell of the file holds, by its looks.
-Cell cell_of(const std::string& text) {
+Cell cell_of_text(const std::string& text) {
   if (text.empty()) return {};
   if (text == "true" || text == "false") return text == "true";
   if (const auto count = whole_number(text)) return std::uint64_t{*count};
@@ -61,7 +61,7 @@ Columns<SweepRow> file_columns(const std::vector<std::string>& names) {
     const bool is_hash = c + 1 == names.size();  // which may look like a number
     const Column column = described(names[c], metrics);
     columns.add(column.name, column.unit, column.meaning, [c, is_hash](const SweepRow& row) {
-      return is_hash && !row[c].empty() ? Cell(row[c]) : cell_of(row[c]);
+      return is_hash && !row[c].empty() ? Cell(row[c]) : cell_of_text(row[c]);
     });
   }
   return columns;
@@ -83,13 +83,13 @@ Columns<SweepRow> run_columns(const SweepTable& table) {
   columns.add(
       "", "", "outcome", [&table](const SweepRow& row) -> Cell { return table.outcome(row); }, only_printed("outcome"));
   for (const RunHeading& heading : kRunHeadings) {
-    if (heading.factor == 0.0 || std::ranges::find(table.columns, heading.shows[0]) == table.columns.end()) continue;
+    if (std::ranges::find(table.columns, heading.metric) == table.columns.end()) continue;
     const auto cell = [&table, heading](const SweepRow& row) -> Cell {
-      const auto value = table.number(row, heading.shows[0]);
+      const auto value = table.number(row, heading.metric);
       if (!value) return "-";
-      return significant(heading.factor * *value, deserved_digits(*value, table.tolerance(row, heading.shows[0]), 3));
+      return significant(heading.factor * *value, deserved_digits(*value, table.tolerance(row, heading.metric), 3));
     };
-    columns.add("", "by name", heading.shows[0], cell, only_printed(heading.title));
+    columns.add("", "by name", heading.metric, cell, only_printed(heading.title));
   }
   return columns;
 }
@@ -180,8 +180,8 @@ DescribedTable sweep_table() {
 std::string summary_text(const SweepTable& table, const std::string& metric) {
   std::string text = grid_text(table, metric);
   if (text.empty()) text = listed_text(table, metric);
-  const auto& outcomes = table.kept.outcomes;
-  return text + count_columns().table({outcomes.begin(), outcomes.end()}).text();
+  const std::vector<OutcomeCount> outcomes(table.kept.outcomes.begin(), table.kept.outcomes.end());
+  return text + count_columns().table(outcomes).text();
 }
 
 Json summary_json(const SweepTable& table) {
