@@ -16,9 +16,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kInFirst = "of diff: the value in the first folder, RUN_A; its line A names it";
-constexpr const char* kInSecond = "of diff: the value in the second folder, RUN_B; its line B names it";
-
 struct DiffOptions {
   std::string a;
   std::string b;
@@ -37,19 +34,22 @@ std::string shown_size(double value) {
   return std::isinf(value) ? "no number" : significant(value, 3);
 }
 
-Columns<NamedDifference> field_columns() {
+Columns<NamedDifference> value_columns(const char* heading, const char* meaning) {
   Columns<NamedDifference> columns;
-  columns.print("field", "", "of diff: a field in which the scenarios differ", &NamedDifference::name);
-  columns.print("A", "1", kInFirst, [](const NamedDifference& d) { return cut_value(d.values.a); });
-  columns.print("B", "1", kInSecond, [](const NamedDifference& d) { return cut_value(d.values.b); });
+  columns.print(heading, "", meaning, &NamedDifference::name);
+  columns.print("A", "1", "of diff: the value in the first folder, RUN_A; its line A names it",
+                [](const NamedDifference& d) { return cut_value(d.values.a); });
+  columns.print("B", "1", "of diff: the value in the second folder, RUN_B; its line B names it",
+                [](const NamedDifference& d) { return cut_value(d.values.b); });
   return columns;
 }
 
+Columns<NamedDifference> field_columns() {
+  return value_columns("field", "of diff: a field in which the scenarios differ");
+}
+
 Columns<NamedDifference> result_columns() {
-  Columns<NamedDifference> columns;
-  columns.print("result", "", "of diff: a metric, or another entry of summary.json", &NamedDifference::name);
-  columns.print("A", "1", kInFirst, [](const NamedDifference& d) { return cut_value(d.values.a); });
-  columns.print("B", "1", kInSecond, [](const NamedDifference& d) { return cut_value(d.values.b); });
+  Columns<NamedDifference> columns = value_columns("result", "of diff: a metric, or another entry of summary.json");
   columns.print("relative", "1", "|A - B| over the larger of |A| and |B|",
                 [](const NamedDifference& d) { return shown_size(d.values.relative); });
   return columns;
