@@ -62,11 +62,8 @@ struct CapturedOutput {
 /// Redirects what the commands of this thread print into `output`, for a host that is no terminal; null ends that.
 void capture_output(CapturedOutput* output) noexcept;
 
-/// Writes the page that `report` makes of the runs in a folder. Throws IoError when it cannot be made, after the Python
-/// tool has explained why on standard error.
-void write_report(const std::filesystem::path& folder, bool quiet);
-
-/// Draws the run in a folder into a file, FILE.svg. Throws IoError likewise.
+/// Draws the run in a folder into a file, FILE.svg. Throws IoError when it cannot be made, after the Python tool has
+/// explained why on standard error.
 void write_way(const std::filesystem::path& folder, const std::filesystem::path& file, bool quiet);
 
 /// Warns on standard error of results of more than 100 MB.

@@ -31,7 +31,6 @@ struct CompareOptions {
   std::vector<std::string> metrics;
   unsigned seeds = 1;
   double jitter = 0.0;
-  bool html = false;
   bool errors = false;
   std::vector<std::string> scenarios;
   std::vector<std::string> algorithms;  ///< empty: all
@@ -204,9 +203,7 @@ int compare(const CompareOptions& options) {
   }
   report.say(fmt::format("\nresults in {}\n", asked.out.string()));
   judge(asked, reports, report);
-  const int status = report.finish();
-  if (options.html) write_report(asked.out, options.output.quiet || options.output.json);
-  return status;
+  return report.finish();
 }
 
 }  // namespace
@@ -235,7 +232,6 @@ void add_compare(CommandLine& line) {
       "--out", options.out,
       "directory of the results (default: results/out/compare_NAME, for several scenarios results/out/compare)");
   add_overrides(command, options.overrides);
-  command.flag("--html", options.html, "also write OUT/report.html: curves, replay, metrics, commands");
   command.flag("--errors", options.errors,
                "also run each at half and a quarter of the step and of the distance of the shell's points, and say of "
                "each metric how far that moves it and which laws' order holds");

@@ -151,7 +151,7 @@ constexpr Word kWords[] = {
     {"sweep.I_of_N.csv", kResultFile,
      "rows of a shard of a sweep, which \"hapbench sweep FOLDER\" joins; columns as in sweep.csv"},
     {"hapbench_results.json", kResultFile, "what a comparison wrote into its folder, which the next one there removes"},
-    {"report.html", kResultFile, "a page to read and replay, of report, compare --html or scripts/reproduce"},
+    {"report.html", kResultFile, "a page to read and replay, of report or scripts/reproduce"},
     {"plot.svg", kResultFile, "the picture of plot"},
     {"figures.json", kResultFile,
      "figures that scripts/figures drew, with their captions and the files they were drawn of"},

@@ -35,6 +35,7 @@ constexpr OldWord kOldWords[] = {
     {"compare", "--check", kErrors},
     {"compare", "--devices", kDevices},
     {"compare", "--friction", kDevices},
+    {"compare", "--html", "hapbench report FOLDER, of the comparison's folder"},
     {"compare", "--no-skip", "hapbench run SCENE --no-skip"},
     {"compare", "--resolution", kDevices},
     {"compare", "--sure", kErrors},

@@ -101,38 +101,22 @@ void add_common(Command& command, PictureOptions& options, const std::string& ru
 
 }  // namespace
 
-namespace {
-
-/// Runs the tool beside this program and waits; `doing` is what the user is told.
-void finish_tool(ToolCommand& command, const char* doing, const std::filesystem::path& folder, bool quiet) {
-  std::fflush(stdout);
-  pid_t tool = 0;
-  if (const int error = posix_spawn(&tool, command.launcher(), nullptr, nullptr, command.arguments().data(), environ))
-    command.fail(error);
-  const WaitNotice notice(doing, !quiet);
-  int status = 0;
-  while (waitpid(tool, &status, 0) < 0 && errno == EINTR) {
-  }
-  throw_if_stopped();
-  if (status != 0) throw IoError("draw what is in", folder, std::make_error_code(std::errc::io_error));
-}
-
-}  // namespace
-
-void write_report(const std::filesystem::path& folder, bool quiet) {
-  ToolCommand command(kPictures, "report", quiet);
-  command.add("--");
-  command.add(folder.string());
-  finish_tool(command, "writing the report", folder, quiet);
-}
-
 void write_way(const std::filesystem::path& folder, const std::filesystem::path& file, bool quiet) {
   ToolCommand command(kPictures, "plot", true);
   command.add("--y", "path");
   command.add("--out", file.string());
   command.add("--");
   command.add(folder.string());
-  finish_tool(command, "drawing", folder, quiet);
+  std::fflush(stdout);
+  pid_t tool = 0;
+  if (const int error = posix_spawn(&tool, command.launcher(), nullptr, nullptr, command.arguments().data(), environ))
+    command.fail(error);
+  const WaitNotice notice("drawing", !quiet);
+  int status = 0;
+  while (waitpid(tool, &status, 0) < 0 && errno == EINTR) {
+  }
+  throw_if_stopped();
+  if (status != 0) throw IoError("draw what is in", folder, std::make_error_code(std::errc::io_error));
 }
 
 void add_plot(CommandLine& line) {

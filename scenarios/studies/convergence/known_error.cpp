@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "scenarios/description/metric_sections.hpp"
 #include "scenarios/run/assemble.hpp"
@@ -111,52 +112,37 @@ std::string FinerRuns::refined(std::size_t scene) const {
 
 namespace {
 
-/// Orders numbers that have a value and an error.
-class NumberOrder {
- public:
-  NumberOrder(std::span<const NumberWithError> numbers, double rounding) : numbers_(numbers), rounding_(rounding) {}
+/// Whether the first of two numbers is less by more than both errors and by more than rounding.
+using IsLess = std::function<bool(std::size_t, std::size_t)>;
 
-  double value(std::size_t i) const { return *numbers_[i].value; }
-
-  bool is_less(std::size_t a, std::size_t b) const {
-    const double apart = value(b) - value(a);
-    return apart > *numbers_[a].error + *numbers_[b].error &&
-           apart > rounding_ * std::max(std::abs(value(a)), std::abs(value(b)));
+/// Cuts a sorted order wherever all to the left are less than all to the right.
+std::vector<std::vector<std::size_t>> cut(std::span<const std::size_t> order, const IsLess& is_less) {
+  std::vector<std::vector<std::size_t>> groups;
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    const bool is_cut = std::ranges::all_of(order.first(k), [&](std::size_t a) {
+      return std::ranges::all_of(order.subspan(k), [&](std::size_t b) { return is_less(a, b); });
+    });
+    if (is_cut) groups.emplace_back();
+    groups.back().push_back(order[k]);
   }
+  return groups;
+}
 
-  /// Cuts a sorted order wherever all to the left are less than all to the right.
-  std::vector<std::vector<std::size_t>> cut(std::span<const std::size_t> order) const {
-    std::vector<std::vector<std::size_t>> groups;
-    for (std::size_t k = 0; k < order.size(); ++k) {
-      const auto left = order.first(k), right = order.subspan(k);
-      const bool is_cut = std::ranges::all_of(left, [&](std::size_t a) {
-        return std::ranges::all_of(right, [&](std::size_t b) { return is_less(a, b); });
-      });
-      if (is_cut) groups.emplace_back();
-      groups.back().push_back(order[k]);
-    }
-    return groups;
+/// The member of a group that is apart from the fewest others, of several the one with the largest error; none where
+/// no two are apart.
+std::optional<std::size_t> least_sure(const std::vector<std::size_t>& group, std::span<const NumberWithError> numbers,
+                                      const IsLess& is_less) {
+  std::optional<std::size_t> found;
+  std::ptrdiff_t fewest = 0, all = 0;
+  for (const std::size_t a : group) {
+    const auto apart = std::ranges::count_if(group, [&](std::size_t b) { return is_less(a, b) || is_less(b, a); });
+    all += apart;
+    if (found && (apart > fewest || (apart == fewest && *numbers[a].error <= *numbers[*found].error))) continue;
+    found = a;
+    fewest = apart;
   }
-
-  /// The member of a group that is apart from the fewest others, of several the one with the largest error; none where
-  /// no two are apart.
-  std::optional<std::size_t> least_sure(const std::vector<std::size_t>& group) const {
-    std::optional<std::size_t> found;
-    std::ptrdiff_t fewest = 0, all = 0;
-    for (const std::size_t a : group) {
-      const auto apart = std::ranges::count_if(group, [&](std::size_t b) { return is_less(a, b) || is_less(b, a); });
-      all += apart;
-      if (found && (apart > fewest || (apart == fewest && *numbers_[a].error <= *numbers_[*found].error))) continue;
-      found = a;
-      fewest = apart;
-    }
-    return all > 0 ? found : std::nullopt;
-  }
-
- private:
-  std::span<const NumberWithError> numbers_;
-  double rounding_;
-};
+  return all > 0 ? found : std::nullopt;
+}
 
 std::string joined(std::span<const std::size_t> places, std::span<const std::string> names, const char* between) {
   std::vector<std::string> found;
@@ -167,17 +153,21 @@ std::string joined(std::span<const std::size_t> places, std::span<const std::str
 }  // namespace
 
 HeldOrder held_order(std::span<const NumberWithError> numbers, double rounding) {
-  const NumberOrder order(numbers, rounding);
+  const IsLess is_less = [&](std::size_t a, std::size_t b) {
+    const double apart = *numbers[b].value - *numbers[a].value;
+    return apart > *numbers[a].error + *numbers[b].error &&
+           apart > rounding * std::max(std::abs(*numbers[a].value), std::abs(*numbers[b].value));
+  };
   std::vector<std::size_t> sorted;
   for (std::size_t i = 0; i < numbers.size(); ++i)
     if (numbers[i].value && numbers[i].error) sorted.push_back(i);
-  std::ranges::stable_sort(sorted, {}, [&order](std::size_t i) { return order.value(i); });
+  std::ranges::stable_sort(sorted, {}, [&](std::size_t i) { return *numbers[i].value; });
   HeldOrder held;
   for (bool again = true; again;) {
     again = false;
-    held.groups = order.cut(sorted);
+    held.groups = cut(sorted, is_less);
     for (const std::vector<std::size_t>& group : held.groups) {
-      const auto unsure = order.least_sure(group);
+      const auto unsure = least_sure(group, numbers, is_less);
       if (!unsure) continue;
       held.unplaced.push_back(*unsure);
       std::erase(sorted, *unsure);
