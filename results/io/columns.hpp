@@ -48,37 +48,8 @@ Cell cell_if(const std::optional<Value>& value) {
   return value ? Cell(*value) : Cell();
 }
 
-/// A column of a table whose rows are of type `Row`, with its cell in such a row. A constant array of fields describes
-/// a table once, for CSV (write_csv in table_writer.hpp), for JSON (add_row) and for documentation (columns_of).
-template <class Row>
-struct Field {
-  enum class In { both, csv, json };
-
-  Column column;
-  Cell (*cell)(const Row& row);
-  In in = In::both;
-};
-
-/// The columns of the CSV file.
-template <class Row, std::size_t size>
-std::vector<Column> columns_of(const Field<Row> (&fields)[size]) {
-  std::vector<Column> columns;
-  for (const Field<Row>& field : fields) {
-    if (field.in != Field<Row>::In::json) columns.push_back(field.column);
-  }
-  return columns;
-}
-
 /// Adds a cell to a JSON object, under the name of its column.
 void add_cell(nlohmann::ordered_json& object, const Column& column, const Cell& cell);
-
-/// Adds a row to a JSON object: the names of columns and their cells.
-template <class Row, std::size_t size>
-void add_row(nlohmann::ordered_json& object, const Field<Row> (&fields)[size], const Row& row) {
-  for (const Field<Row>& field : fields) {
-    if (field.in != Field<Row>::In::csv) add_cell(object, field.column, field.cell(row));
-  }
-}
 
 /// The direction in which a metric gets better, all else equal. Most have none: a position, a count, a work.
 enum class Better { none, less, more };

@@ -64,22 +64,6 @@ class CsvWriter {
   std::size_t cells_ = 0;  ///< of the row being written
 };
 
-/// Writes a table of fields, a line for each row; `together` as in CsvWriter::finish. Throws IoError.
-template <class Row, std::size_t size>
-void write_csv(const std::filesystem::path& file, const Field<Row> (&fields)[size], const std::vector<Row>& rows,
-               FileSet* together = nullptr) {
-  CsvWriter csv(file, columns_of(fields));
-  std::vector<Cell> cells;
-  for (const Row& row : rows) {
-    cells.clear();
-    for (const Field<Row>& field : fields) {
-      if (field.in != Field<Row>::In::json) cells.push_back(field.cell(row));
-    }
-    csv.cells(cells);
-  }
-  csv.finish(together);
-}
-
 /// A table of numbers in memory with the same rows as the CSV file; an empty cell is NaN. It grows by memory pages of
 /// its own and not on the heap, so that a recorded step allocates nothing.
 class MemoryTable {

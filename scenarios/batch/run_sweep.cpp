@@ -4,7 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <ctime>
 #include <exception>
 
 #include "results/io/atomic_file.hpp"
@@ -22,19 +21,6 @@ namespace hapbench {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// The row of a run, and the time that it took of this thread's processor, which other processes share without
-/// lengthening it.
-struct FinishedRun {
-  std::string row;
-  double seconds = 0.0;
-};
-
-double processor_seconds() {
-  timespec now{};
-  ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
 
 fs::path run_folder(const SweepOptions& options, std::size_t run) {
   return options.directory / "runs" / fmt::format("{:06}", run);
@@ -79,21 +65,9 @@ std::string finished_row(const SweepPlan& plan, std::size_t run, const RunSummar
   return line_of(plan, run, cells);
 }
 
-FinishedRun compute(const SweepPlan& plan, const SweepOptions& options, std::size_t run) {
-  const LoadedScenario loaded = plan.cases.load(run);
-  const auto shell = make_shell(loaded.scenario, loaded.files);
-  std::optional<fs::path> output;
-  if (options.keep_runs) output = run_folder(options, run);
-  const double before = processor_seconds();
-  const RunReport report = run_with_shell(loaded, shell, output, false);
-  double seconds = processor_seconds() - before;
-  constexpr double kShort = 0.005;  // [s]
-  for (int more = options.timed && seconds < kShort ? 4 : 0; more > 0; --more) {
-    const double again = processor_seconds();
-    run_with_shell(loaded, shell, std::nullopt, false);
-    seconds = std::min(seconds, processor_seconds() - again);
-  }
-  return {finished_row(plan, run, report.summary), seconds};
+std::string computed_row(const SweepPlan& plan, const SweepOptions& options, std::size_t run) {
+  const auto output = options.keep_runs ? std::optional(run_folder(options, run)) : std::nullopt;
+  return finished_row(plan, run, run_scenario(plan.cases.load(run), output, false).summary);
 }
 
 }  // namespace
@@ -122,9 +96,8 @@ SweepReport run_sweep(const SweepPlan& plan, const SweepOptions& options) {
   bar.start_at(report.resumed);
   const auto work = [&](std::size_t run) -> TableRow {
     try {
-      FinishedRun finished = compute(plan, options, run);
-      return {std::move(finished.row), [&, run, seconds = finished.seconds] {
-                if (options.timed) options.timed(run, seconds);
+      return {computed_row(plan, options, run), [&] {
+                if (options.added) options.added();
                 bar.show(table.count(), true);
               }};
     } catch (const IoError&) {

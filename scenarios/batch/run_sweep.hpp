@@ -49,9 +49,7 @@ struct SweepOptions {
   bool resume = false;     ///< keep the rows that an earlier sweep of this plan has, but for those of failed runs
   bool keep_runs = false;  ///< write the files of each run into runs/NUMBER
   bool progress = false;   ///< allow a progress bar
-  /// Is told the processor time of each run that is computed, without the making of its shell [s]: of runs under some
-  /// milliseconds, which noise would drown, the least of five. Null: nobody asks.
-  std::function<void(std::size_t run, double seconds)> timed = {};
+  std::function<void()> added = {};  ///< is called after each row of a finished run that the table gets
 
   Shard part() const { return shard.value_or(Shard{}); }
 };

@@ -102,28 +102,13 @@ TEST(CsvWriter, KeepsAnErrorOfItsRowsForFinish) {
 constexpr Column kColumns[] = {{"n", "1", ""}, {"x", "m", ""}, {"y", "m", ""},
                                {"z", "m", ""}, {"a", "1", ""}, {"b", "1", ""}};
 
-struct Fruit {
-  std::string name;
-  std::optional<double> weight;
-  std::uint64_t seeds;
-  bool ripe;
-};
-
-const Field<Fruit> kFruitFields[] = {
-    {{"name", "", "what it is called"}, [](const Fruit& f) -> Cell { return f.name; }},
-    {{"weight_kg", "kg", "its weight"}, [](const Fruit& f) { return cell_if(f.weight); }},
-    {{"seeds", "1", "their number"}, [](const Fruit& f) -> Cell { return f.seeds; }, Field<Fruit>::In::csv},
-    {{"ripe", "", "whether it is"}, [](const Fruit& f) -> Cell { return f.ripe; }}};
-
-TEST(Fields, DescribeATableForCsvJsonAndDocumentation) {
-  const std::vector<Fruit> fruits = {{"apple, red", 0.25, 5, true}, {"plum", std::nullopt, 1, false}};
+TEST(CsvWriter, WritesCellsWhoseTypesAreKnownLate) {
   const TemporaryDirectory dir;
-  write_csv(dir / "fruits.csv", kFruitFields, fruits);
+  CsvWriter csv(dir / "fruits.csv", "name,weight_kg,seeds,ripe");
+  csv.cells(std::vector<Cell>{"apple, red", 0.25, std::uint64_t{5}, true});
+  csv.cells(std::vector<Cell>{"plum", Cell(), std::uint64_t{1}, false});
+  csv.finish();
   EXPECT_EQ(read_file(dir / "fruits.csv"), "name,weight_kg,seeds,ripe\n\"apple, red\",0.25,5,true\nplum,,1,false\n");
-  nlohmann::ordered_json plum = {{"place", 2}};
-  add_row(plum, kFruitFields, fruits[1]);
-  EXPECT_EQ(plum.dump(), R"({"place":2,"name":"plum","weight_kg":null,"ripe":false})");
-  EXPECT_EQ(header_of(columns_of(kFruitFields)), "name,weight_kg,seeds,ripe");
 }
 
 TEST(MemoryTable, HoldsTheNumbersOfItsCells) {

@@ -44,7 +44,7 @@ class SweepPromises : public testing::Test {
   void interrupt(const SweepPlan& plan, SweepOptions options) {
     const std::uint64_t way = random_.below(3);
     std::uint64_t rows = random_.below(plan.cases.size());
-    options.timed = [&rows, way](std::size_t, double) {
+    options.added = [&rows, way] {
       if (rows-- != 0) return;
       if (way == 0) throw Killed();
       stop_work(SIGTERM);
