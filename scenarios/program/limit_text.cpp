@@ -16,7 +16,8 @@ namespace {
 
 constexpr std::size_t kGridGap = 1;  // three scenes and two algorithms then fit into kTableWidth
 constexpr const char* kBeyondLinear =
-    "bounces, dry friction or the end of the run hold the tool, and one that rests on the surface may not be stable";
+    "bounces below 30 Hz, dry friction or the end of the run hold the tool, and one that rests on the surface may not "
+    "be stable";
 constexpr double kNone = std::numeric_limits<double>::infinity();
 
 /// States the question of one scene.

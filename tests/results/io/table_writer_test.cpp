@@ -111,17 +111,6 @@ TEST(CsvWriter, WritesCellsWhoseTypesAreKnownLate) {
   EXPECT_EQ(read_file(dir / "fruits.csv"), "name,weight_kg,seeds,ripe\n\"apple, red\",0.25,5,true\nplum,,1,false\n");
 }
 
-TEST(MemoryTable, HoldsTheNumbersOfItsCells) {
-  MemoryTable table(kColumns);
-  EXPECT_EQ(table.rows(), 0u);
-  EXPECT_TRUE(table.numbers().empty());
-  const double more[] = {5.0};
-  table.row(std::uint64_t{1}, Vec3(2.0, 3.0, 4.0), std::span<const double>(more), std::optional<double>());
-  ASSERT_EQ(table.rows(), 1u);
-  for (std::size_t i = 0; i < 5; ++i) EXPECT_EQ(table.numbers()[i], static_cast<double>(i + 1));
-  EXPECT_TRUE(std::isnan(table.numbers()[5]));
-}
-
 TEST(MemoryTable, KeepsEveryRowWhileItGrows) {
   MemoryTable table(kColumns);
   constexpr std::uint64_t kRows = 100'000;

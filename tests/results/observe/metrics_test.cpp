@@ -130,10 +130,6 @@ TEST(Metrics, CountContactsDepthAndRatioOverAllRows) {
   EXPECT_EQ(m.ratio->max, 1.5);
 }
 
-TEST(Metrics, WithoutContactHaveNoRatio) {
-  EXPECT_FALSE(metrics_of_velocities({Vec3::Zero(), Vec3::UnitX()}).ratio);
-}
-
 TEST(Metrics, OfNoRowsAreZeroAndHaveNoVibrationPower) {
   const Metrics m = MetricsObserver(kDt).metrics();
   EXPECT_EQ(m.rows, 0u);
@@ -206,10 +202,6 @@ TEST(StateHash, TellsAMirroredRunFromTheOriginal) {
               for (Vec3* v : {&r.tool.pose.position, &r.tool.velocity, &r.force.rendered}) v->x() = -v->x();
             }),
             unchanged);
-}
-
-TEST(MetricsObserver, AsksForTheRatio) {
-  EXPECT_TRUE(MetricsObserver(kDt).wants_ratio());
 }
 
 TEST(MetricsObserver, AllocatesNothing) {

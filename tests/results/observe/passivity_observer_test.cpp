@@ -35,16 +35,6 @@ TEST(PassivityObserver, FindsTheLeastEnergyAndItsTime) {
   EXPECT_EQ(m.net_created(), 3.0);
 }
 
-TEST(PassivityObserver, AnEnergyThatIsNoNumberIsNotNothing) {
-  PassivityObserver observer(kDt);
-  const double nan = std::numeric_limits<double>::quiet_NaN();
-  for (const double force : {1.0, nan, -5.0}) observer.on_step(row(0, force));
-  observer.on_step(row(1, 1.0));
-  EXPECT_TRUE(std::isnan(observer.metrics()->net_created()));
-  const auto all = merged({observer.metrics(), PassivityMetrics{-2.0, 0.2, 6.0}});
-  EXPECT_TRUE(std::isnan(all->net_created()));
-}
-
 TEST(PassivityObserver, WithoutRowsThereIsNothingToSay) {
   EXPECT_FALSE(PassivityObserver(kDt).metrics());
   EXPECT_FALSE(merged(std::vector<std::optional<PassivityMetrics>>{}));

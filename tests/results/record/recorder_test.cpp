@@ -62,11 +62,6 @@ TEST(TrajectoryRecorder, LeavesTheRatioEmptyWhenNothingIsRendered) {
   EXPECT_TRUE(lines_of(read_file(dir / "trajectory.csv")).at(1).ends_with(",0,0,0,,"));
 }
 
-TEST(TrajectoryRecorder, AsksForTheRatio) {
-  const TemporaryDirectory dir;
-  EXPECT_TRUE(Recorder(dir / "trajectory.csv", trajectory_rows()).wants_ratio());
-}
-
 TEST(TrajectoryRecorder, KeepsEveryNthRowCountedFromTheFirst) {
   const TemporaryDirectory dir;
   const ContactBuffer none(1);
@@ -78,16 +73,6 @@ TEST(TrajectoryRecorder, KeepsEveryNthRowCountedFromTheFirst) {
   EXPECT_TRUE(lines[1].starts_with("0,"));
   EXPECT_TRUE(lines[2].starts_with("3,"));
   EXPECT_TRUE(lines[3].starts_with("6,"));
-}
-
-TEST(TrajectoryRecorder, ThatIsNeverFinishedLeavesNoFile) {
-  const TemporaryDirectory dir;
-  const ContactBuffer none(1);
-  {
-    Recorder recorder(dir / "trajectory.csv", trajectory_rows());
-    recorder.on_step(test::row(0, 0.0, none));
-  }
-  EXPECT_TRUE(dir.entries().empty());
 }
 
 TEST(TrajectoryRecorder, AddsPoseAndTorqueAfterTheUsualColumns) {
@@ -170,15 +155,6 @@ TEST(StiffnessRecorder, WritesTheTensorAndItsLargestEigenvalue) {
   EXPECT_NEAR(test::number_in(cells_of(lines[1]).at(8)), (15.0 + std::sqrt(185.0)) / 2.0, 1e-13);
 }
 
-TEST(StiffnessRecorder, WritesZerosWithoutContact) {
-  const TemporaryDirectory dir;
-  const ContactBuffer none(1);
-  Recorder recorder(dir / "stiffness_tensor.csv", stiffness_rows());
-  recorder.on_step(test::row(0, 0.0, none));
-  recorder.finish();
-  EXPECT_EQ(lines_of(read_file(dir / "stiffness_tensor.csv")).at(1), "0,0,0,0,0,0,0,0,0");
-}
-
 constexpr ShapingOperations kShaping = {.start =
                                             [](ContactBuffer& contacts) noexcept {
                                               for (std::size_t i = 0; i < contacts.size(); ++i)
@@ -252,17 +228,6 @@ TEST(RatioRecorder, EqualsDirectEvaluationForEachRequestedIteration) {
     EXPECT_NEAR(number_in(cells[5]), expected.ratio_max, tolerance);
     EXPECT_NEAR(number_in(cells[6]), expected.lambda_max, tolerance);
   }
-}
-
-TEST(RatioRecorder, SortsTheIterationsAndCountsDuplicatesOnce) {
-  const TemporaryDirectory dir;
-  const ContactBuffer contacts = test::contacts_along({Vec3::UnitX()});
-  Recorder recorder(dir / "ratios.csv", ratio_rows({10, 1, 10, 0}, kShaping, 1));
-  recorder.on_step(test::row(0, 0.0, contacts));
-  recorder.finish();
-  EXPECT_EQ(read_file(dir / "ratios.csv"),
-            "step,time_s,iteration,rendered,ratio_min,ratio_max,lambda_max\n"
-            "0,0,0,1,1,1,1\n0,0,1,1,1,1,1\n0,0,10,1,1,1,1\n");
 }
 
 TEST(RatioRecorder, LeavesTheContactsOfTheRunUnchanged) {

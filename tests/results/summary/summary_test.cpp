@@ -191,81 +191,6 @@ TEST(Summary, HasNullForWhatDoesNotExist) {
   EXPECT_TRUE(metrics["vibration_power_above_30Hz_m2_per_s2"].is_null());
 }
 
-TEST(Summary, OfARunThatOnlyLandsHasNoNumbersOfSettledContact) {
-  RunSummary run = example();
-  run.metrics.contact.settled_rows = 0;
-  run.metrics.contact.settled = 0.0;
-  run.metrics.reduction.reset();
-  const auto metrics = summary_json(run)["metrics"];
-  EXPECT_EQ(metrics["landing_force_max_N"], 2.0);
-  for (const char* name :
-       {"force_mean_in_contact_N", "settled_force_max_N", "force_step_p99_N", "settled_force_step_max_N",
-        "force_rms_above_30Hz_N", "force_reversals_per_s", "reduction_changes", "reduction_force_step_max_N"}) {
-    EXPECT_TRUE(metrics.at(name).is_null()) << name;
-  }
-}
-
-TEST(Summary, OfNoRowsHasNeitherMeansNorAFinalPosition) {
-  RunSummary run = example();
-  run.metrics = {};
-  const auto metrics = summary_json(run)["metrics"];
-  EXPECT_TRUE(metrics["colliding_mean"].is_null());
-  EXPECT_TRUE(metrics["rendered_mean"].is_null());
-  EXPECT_TRUE(metrics["final_position_m"].is_null());
-  EXPECT_EQ(metrics["colliding_max"], 0);
-}
-
-TEST(Summary, OfNoRowsHasNoObservedEnergy) {
-  RunSummary run = example();
-  run.passivity.reset();
-  EXPECT_TRUE(summary_json(run)["passivity"]["net_created_J"].is_null());
-  EXPECT_FALSE(metric_of(run, "passivity.net_created_J"));
-  EXPECT_EQ(metric_of(example(), "passivity.net_created_J"), 0.25);
-}
-
-TEST(Summary, GivesTheFinalPositionToExpectationsByCoordinate) {
-  RunSummary run = example();
-  const MetricList metrics = metric_list(run);
-  EXPECT_EQ(number_of(value_of(metrics, "final_position_m.x")), 0.5);
-  EXPECT_EQ(number_of(value_of(metrics, "final_position_m.y")), -0.25);
-  EXPECT_EQ(number_of(value_of(metrics, "final_position_m.z")), 0.0);
-  run.metrics = {};
-  EXPECT_FALSE(metric_of(run, "final_position_m.x"));
-  EXPECT_FALSE(number_of(value_of(metrics, "final_position_m.w"))) << "there is no such metric";
-}
-
-/// Every number of the sections is there under its path, counts as counts.
-TEST(Summary, ListsTheNumbersOfItsSections) {
-  RunSummary run = example();
-  EnergyMetrics energy;
-  energy.created_max = 0.5;
-  energy.events.emplace_back();
-  std::vector<PlaceMetrics> places(2);
-  places.back().place = 7;
-  run.sections = {{"energy", metric_list(energy), {{"events", events_json(energy)}}},
-                  {"ideal_trajectory", metric_list(IdealTrajectoryMetrics{}), nlohmann::ordered_json::object()},
-                  {"targets", metric_list(places), nlohmann::ordered_json::object()}};
-  const auto json = summary_json(run);
-  std::size_t in_sections = 0;
-  for (const Metric& metric : metric_list(run)) {
-    const std::string& name = metric.name;
-    const Metric::Value& value = metric.value;
-    if (name.starts_with("final_position_m.")) continue;
-    const bool in_metrics = name.find('.') == std::string::npos;
-    std::string pointer = (in_metrics ? "/metrics/" : "/") + name;
-    std::replace(pointer.begin(), pointer.end(), '.', '/');
-    const auto& entry = json.at(nlohmann::ordered_json::json_pointer(pointer));
-    EXPECT_EQ(entry.is_number_unsigned(), std::holds_alternative<std::uint64_t>(value)) << name;
-    EXPECT_EQ(entry.is_null(), std::holds_alternative<std::monostate>(value)) << name;
-    const auto number = entry.is_null() ? std::nullopt : std::optional(entry.get<double>());
-    EXPECT_EQ(number, number_of(value)) << name;
-    in_sections += in_metrics ? 0 : 1;
-  }
-  // Passivity, energy, ideal trajectory of two hands, and two target places with four means each.
-  EXPECT_EQ(in_sections, 4u + 12u + (2u * 10u + 1u) + 2u * 4u * 3u);
-  EXPECT_EQ(json["energy"]["events"].size(), 1u);
-}
-
 // The summaries of the scalar and the SIMD build must be identical, so they must not name the instruction set.
 TEST(Summary, WithTheRealProvenanceDoesNotNameTheInstructionSet) {
   RunSummary run = example();
@@ -287,10 +212,6 @@ TEST(OutcomeNames, LeadBackToTheirOutcomes) {
   EXPECT_EQ(names, (std::vector<std::string_view>{"completes", "leaves_hole", "tool_horizontal", "not_dragged", "stuck",
                                                   "no_contact", "lost_contact", "went_through", "diverges"}));
   EXPECT_EQ(outcome_name(Outcome::diverges), "diverges");
-}
-
-TEST(OutcomeNames, DoNotIncludeOtherWords) {
-  for (const char* name : {"", "complete", "Completes", "completes "}) EXPECT_FALSE(outcome_named(name)) << name;
 }
 
 TEST(ColumnsJson, HoldsTheColumnsOfEachFileAndTheMetrics) {
@@ -361,13 +282,6 @@ TEST(Provenance, NamesTheFlagsThatCanChangeNumbers) {
 TEST(Provenance, CpuModelIsTheFirstOneOfCpuinfo) {
   std::istringstream cpuinfo("processor\t: 0\nmodel\t\t: 1\nmodel name\t: Some CPU @ 2 GHz\nmodel name\t: Other\n");
   EXPECT_EQ(cpu_model(cpuinfo), "Some CPU @ 2 GHz");
-}
-
-TEST(Provenance, CpuModelIsUnknownWhenCpuinfoHasNone) {
-  std::istringstream without("processor\t: 0\nmodel name\t:\n");
-  EXPECT_EQ(cpu_model(without), "unknown");
-  std::istringstream empty;
-  EXPECT_EQ(cpu_model(empty), "unknown");
 }
 
 }  // namespace
