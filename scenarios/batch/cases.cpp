@@ -47,6 +47,11 @@ std::vector<std::size_t> run_order(const std::vector<Axis>& axes) {
 
 }  // namespace
 
+void append_new(std::vector<std::string>& texts, const std::vector<std::string>& more) {
+  for (const std::string& text : more)
+    if (std::find(texts.begin(), texts.end(), text) == texts.end()) texts.push_back(text);
+}
+
 std::string_view sampling_name(SamplingMethod method) {
   return kMethodNames[static_cast<std::size_t>(method)];
 }

@@ -13,6 +13,9 @@
 
 namespace hapbench {
 
+/// Appends the texts, such as warnings of cases, that are not in the list yet.
+void append_new(std::vector<std::string>& texts, const std::vector<std::string>& more);
+
 /// The path of the axis whose values name scenes.
 inline constexpr const char* kSceneAxis = "scenario";
 

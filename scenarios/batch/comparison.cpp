@@ -57,12 +57,6 @@ bool contains(const std::vector<std::string>& warnings, const std::string& warni
   return std::find(warnings.begin(), warnings.end(), warning) != warnings.end();
 }
 
-/// Appends the warnings that are not in the list yet.
-void add(std::vector<std::string>& warnings, const std::vector<std::string>& more) {
-  for (const std::string& warning : more)
-    if (!contains(warnings, warning)) warnings.push_back(warning);
-}
-
 /// The cases of a scene; adds its warnings, of those about its fields what all algorithms have: what only one of them
 /// reads has an effect here.
 Cases cases_of(const ComparisonQuestion& question, const fs::path& file, std::vector<std::string>& warnings) {
@@ -74,14 +68,14 @@ Cases cases_of(const ComparisonQuestion& question, const fs::path& file, std::ve
     const LoadedScenario loaded = alone.load(a);
     if (a == 0) {  // the files are those of the scenario
       check_seeds_and_jitter(question, loaded);
-      add(warnings, check_named_files(loaded));
+      append_new(warnings, check_named_files(loaded));
       common = loaded.warnings;
       if (question.seeds > 1 || question.jitter != 0.0)
         axes.push_back(seed_axis(loaded.scenario, question.seeds, question.jitter));
     }
     std::erase_if(common, [&loaded](const std::string& warning) { return !contains(loaded.warnings, warning); });
   }
-  add(warnings, common);
+  append_new(warnings, common);
   return {{text}, question.overrides, std::move(axes)};
 }
 

@@ -21,7 +21,7 @@ Vec3 start_shift(const Scenario& scenario, double length);
 /// The scenario's seed and those after it, each with its start_shift along with it unless `jitter` [m] is 0.
 Axis seed_axis(const Scenario& scenario, std::size_t seeds, double jitter);
 
-/// What is to be compared.
+/// The question of `compare`.
 struct ComparisonQuestion {
   std::vector<std::filesystem::path> scenarios;  ///< files
   std::vector<std::string> algorithms;
@@ -46,10 +46,11 @@ struct Comparison {
   const std::string& algorithm(std::size_t run) const { return algorithms[run % each() / seeds]; }
   /// The scenario of a run. Thread-safe.
   LoadedScenario load(std::size_t run) const { return scenes[scene(run)].load(run % each()); }
-  /// Of the tables of a scene, relative to that of the comparison: SCENARIO if there are several, else empty.
+  /// Returns the folder of a scene's tables, relative to that of the comparison: SCENARIO if there are several scenes,
+  /// else empty.
   std::filesystem::path scene_folder(std::size_t scene) const;
-  /// Of a run's files, relative to that of the comparison: [SCENARIO/]ALGORITHM[/seed_K], the parts in brackets where
-  /// there are several.
+  /// Returns the folder of a run's files, relative to that of the comparison: [SCENARIO/]ALGORITHM[/seed_K], the parts
+  /// in brackets where there are several.
   std::filesystem::path folder(std::size_t run) const;
 };
 

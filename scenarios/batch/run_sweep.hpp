@@ -63,7 +63,7 @@ struct FailedRun {
   std::string problem;
 };
 
-/// What became of a sweep.
+/// The result of a sweep: how many of its runs have a row, and why others have none.
 struct SweepReport {
   std::size_t done = 0;             ///< number of the shard's runs that have a row
   std::size_t resumed = 0;          ///< number of rows that were there before

@@ -52,11 +52,6 @@ std::vector<Point> examine_all(const SweepPlan& plan, const std::vector<std::siz
   return points;
 }
 
-void append_new(std::vector<std::string>& warnings, const std::vector<std::string>& more) {
-  for (const std::string& warning : more)
-    if (std::find(warnings.begin(), warnings.end(), warning) == warnings.end()) warnings.push_back(warning);
-}
-
 /// Reads the files that the scenarios of these runs name, adds their warnings to the plan and what they measured to the
 /// sections, and returns their hashes.
 Json check_files(SweepPlan& plan, const std::vector<std::size_t>& runs, SectionParts& sections) {
@@ -129,9 +124,7 @@ Json content_of(const SweepPlan& plan, const Json& files, const Json& plugins) {
 }  // namespace
 
 std::vector<std::string> SweepPlan::columns() const {
-  std::vector<std::string> columns = {"index"};
-  for (const Axis& axis : cases.axes()) columns.push_back(axis.path);
-  columns.insert(columns.end(), {"outcome", "expected", "steps"});
+  std::vector<std::string> columns = leading_columns(cases.axes());
   columns.insert(columns.end(), metrics.begin(), metrics.end());
   for (const std::string& metric : bounded) columns.push_back(std::string(kToleranceOf) + metric);
   columns.emplace_back("state_hash");

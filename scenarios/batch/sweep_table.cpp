@@ -93,14 +93,19 @@ SweepTable described_table(const fs::path& file) {
 
 /// Whether the columns are those of a sweep of these fields.
 bool has_columns_of_sweep(const SweepTable& table) {
-  SweepRow first = {"index"};
-  for (const Axis& axis : table.axes) first.push_back(axis.path);
-  first.insert(first.end(), {"outcome", "expected", "steps"});
+  const std::vector<std::string> first = leading_columns(table.axes);
   return table.columns.size() > first.size() && table.columns.back() == "state_hash" &&
          std::equal(first.begin(), first.end(), table.columns.begin());
 }
 
 }  // namespace
+
+std::vector<std::string> leading_columns(const std::vector<Axis>& axes) {
+  std::vector<std::string> columns = {"index"};
+  for (const Axis& axis : axes) columns.push_back(axis.path);
+  columns.insert(columns.end(), {"outcome", "expected", "steps"});
+  return columns;
+}
 
 void SweepCounts::add(std::size_t run, const std::string& outcome, bool is_expected) {
   const bool is_failure = outcome == kErrorOutcome;

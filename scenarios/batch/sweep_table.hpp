@@ -19,6 +19,9 @@ inline constexpr std::string_view kErrorOutcome = "error";
 /// Stands before the name of a metric in the heading of its tolerance, as in summary.json.
 inline constexpr std::string_view kToleranceOf = "tolerances.";
 
+/// The first columns of the table: the run's number, the fields, outcome, expected and steps.
+std::vector<std::string> leading_columns(const std::vector<Axis>& axes);
+
 /// The cells of a line.
 using SweepRow = std::vector<std::string>;
 

@@ -61,7 +61,7 @@ class TableLines {
   }
   const std::string& line() const { return line_; }
   std::uintmax_t begin() const { return begin_; }
-  /// Where the last whole line ends [bytes from the file's beginning].
+  /// Returns the offset of the end of the last whole line [bytes].
   std::uintmax_t end() const { return end_; }
   /// The number of the row's case. Throws InputError.
   std::size_t row() const {

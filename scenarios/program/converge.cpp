@@ -144,7 +144,8 @@ Columns<ConvergeStudy> order_columns() {
 Json study_json(const ConvergeStudy& study) {
   Json json = order_columns().json(study);
   json["band"] = study.band ? Json::array({study.band->first, study.band->second}) : Json(nullptr);
-  for (const LevelRow& row : study.levels) json["levels"].push_back(level_columns(study).json(row));
+  const Columns<LevelRow> columns = level_columns(study);
+  for (const LevelRow& row : study.levels) json["levels"].push_back(columns.json(row));
   return json;
 }
 

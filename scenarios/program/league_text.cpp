@@ -154,7 +154,8 @@ std::string league_text(const League& league) {
 
 Json league_json(const League& league) {
   Json rows = Json::array(), laws = Json::array();
-  for (const Standing& standing : league.standings) rows.push_back(league_columns().json(standing));
+  const Columns<Standing> columns = league_columns();
+  for (const Standing& standing : league.standings) rows.push_back(columns.json(standing));
   for (const LawStanding& law : league.laws) {
     std::vector<std::string> fails;
     for (const std::size_t scenario : law.fails) fails.push_back(league.scenarios[scenario]);

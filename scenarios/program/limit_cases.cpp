@@ -132,8 +132,8 @@ void add_cases(const LimitOptions& options, LimitRow row, const ScenarioText& sc
     row.asked = {&scene, overrides, {}, question_of(options, scene, overrides)};
     const LoadedScenario loaded = load_scenario(scene, overrides);
     row.scenario = loaded.scenario;
-    for (const std::string& warning : row.asked.question.warnings) add_once(warnings, warning);
-    for (const std::string& warning : check_named_files(loaded)) add_once(warnings, warning);
+    append_new(warnings, row.asked.question.warnings);
+    append_new(warnings, check_named_files(loaded));
     // A field of the rendering changes nothing of hand and device.
     if (row.asked.question.path.starts_with("rendering.")) row.asked.question.tremor = tremor_speeds(loaded);
     const std::vector<std::string> own = {loaded.scenario.rendering.algorithm};
@@ -145,10 +145,6 @@ void add_cases(const LimitOptions& options, LimitRow row, const ScenarioText& sc
 }
 
 }  // namespace
-
-void add_once(std::vector<std::string>& texts, const std::string& text) {
-  if (std::find(texts.begin(), texts.end(), text) == texts.end()) texts.push_back(text);
-}
 
 std::optional<Range> range_of(const char* option, const std::string& text) {
   if (text.empty()) return std::nullopt;

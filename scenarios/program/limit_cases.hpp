@@ -21,9 +21,6 @@ void add_bound(const std::string& text, std::map<std::string, MetricBound>& boun
 /// The number that an option was given. Throws InputError unless it is one from `least` to `most`.
 double number_between(const char* option, const std::string& text, double least, double most);
 
-/// Appends a text unless it is there already.
-void add_once(std::vector<std::string>& texts, const std::string& text);
-
 /// The names that --device takes besides files: "all", "impedance" for every preset, and each device.
 std::vector<std::string> device_names();
 /// The devices of these names and files, each once; a preset's name with [soft] or [stiff] behind it is the preset at

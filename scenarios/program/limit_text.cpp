@@ -117,7 +117,7 @@ std::string delays_text(const LimitTable& table) {
   for (std::size_t i = 0; i < table.rows.size(); i += table.columns) {
     const LimitRow& row = table.rows[i];
     if (handle_moves_tool(row.scenario.device) && !row.device->name.ends_with(']'))
-      add_once(names[delay_text(row.scenario)], row.device->name);
+      append_new(names[delay_text(row.scenario)], {row.device->name});
   }
   std::vector<std::string> parts;
   for (const auto& [delay, having] : names) parts.push_back(fmt::format("{} of {}", delay, fmt::join(having, ", ")));
@@ -247,8 +247,8 @@ std::string grid_text(const LimitTable& table) {
   std::vector<std::string> rules;
   for (std::size_t c = 0; as_in_first_row && c < table.columns; ++c) {
     const Scenario& scenario = table.rows[c].scenario;
-    add_once(rules, fmt::format("{} steps of {} s; {}\n", scenario.time.steps, significant(scenario.time.step),
-                                damping_text(scenario.rendering)));
+    append_new(rules, {fmt::format("{} steps of {} s; {}\n", scenario.time.steps, significant(scenario.time.step),
+                                   damping_text(scenario.rendering))});
   }
   return text + fmt::format("{}", fmt::join(rules, "")) + "\n" + grid(table).text() +
          wrapped(rule_text(question, is_moved(table.first().scenario)), 0) + notes_text(table);

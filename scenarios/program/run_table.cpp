@@ -59,27 +59,36 @@ std::string distinct_name(const RunReport& report, std::span<const RunReport> re
   return one_scenario ? report.summary.algorithm : report.summary.name;
 }
 
-void add_metrics(Columns<RunReport>& columns, std::span<const RunHeading> headings) {
+/// A run with its metrics, which are listed once for all columns.
+struct ListedRun {
+  explicit ListedRun(const RunReport& of) : report(of), metrics(metric_list(of.summary)) {}
+
+  const RunReport& report;
+  MetricList metrics;
+};
+
+void add_metrics(Columns<ListedRun>& columns, std::span<const RunHeading> headings) {
   for (const RunHeading& heading : headings) {
-    columns.print(heading.title, "1", heading.metric, [&heading](const RunReport& r) {
-      return metric_cell(metric_list(r.summary), heading.metric, heading.factor);
-    });
+    columns.print(heading.title, "1", heading.metric,
+                  [&heading](const ListedRun& r) { return metric_cell(r.metrics, heading.metric, heading.factor); });
   }
 }
 
-Columns<RunReport> run_columns(bool of_scenes) {
-  Columns<RunReport> columns;
-  if (of_scenes) columns.print("scenario", "", "", [](const RunReport& r) { return r.summary.name; });
-  columns.print("algorithm", "", "", [](const RunReport& r) { return r.summary.algorithm; });
-  columns.print("outcome", "", "outcome", [](const RunReport& r) { return outcome_name(r.summary.result.outcome); });
+Columns<ListedRun> run_columns(bool of_scenes) {
+  Columns<ListedRun> columns;
+  if (of_scenes) columns.print("scenario", "", "", [](const ListedRun& r) { return r.report.summary.name; });
+  columns.print("algorithm", "", "", [](const ListedRun& r) { return r.report.summary.algorithm; });
+  columns.print("outcome", "", "outcome",
+                [](const ListedRun& r) { return outcome_name(r.report.summary.result.outcome); });
   add_metrics(columns, kRunHeadings);
-  columns.print("ratio", "", "ratio_min", [](const RunReport& r) {
-    const MetricList metrics = metric_list(r.summary.metrics);
-    const auto least = number_of(value_of(metrics, "ratio_min")), most = number_of(value_of(metrics, "ratio_max"));
+  columns.print("ratio", "", "ratio_min", [](const ListedRun& r) {
+    const auto least = number_of(value_of(r.metrics, "ratio_min")), most = number_of(value_of(r.metrics, "ratio_max"));
     return least && most ? fmt::format("{}..{}", cell(least, 2), cell(most, 2)) : "-";
   });
-  columns.print("us/\nstep", "1", "step_p50_s",
-                [](const RunReport& r) { return r.timing.step_p50 ? short_time(*r.timing.step_p50) : "-"; });
+  columns.print("us/\nstep", "1", "step_p50_s", [](const ListedRun& r) {
+    const auto& median = r.report.timing.step_p50;
+    return median ? short_time(*median) : "-";
+  });
   return columns;
 }
 
@@ -100,17 +109,19 @@ bool has_reference(const RunReport& report) {
 
 std::string run_table(std::span<const RunReport> reports, bool of_scenes) {
   constexpr std::size_t kNarrowGap = 1;  // the names of all algorithms fit into kTableWidth with it
-  return run_columns(of_scenes).table(reports, kNarrowGap).text();
+  const std::vector<ListedRun> runs(reports.begin(), reports.end());
+  return run_columns(of_scenes).table(runs, kNarrowGap).text();
 }
 
 std::string fidelity_text(std::span<const RunReport> reports) {
-  std::vector<RunReport> with_reference;
-  std::ranges::copy_if(reports, std::back_inserter(with_reference), has_reference);
+  std::vector<ListedRun> with_reference;
+  for (const RunReport& report : reports)
+    if (has_reference(report)) with_reference.emplace_back(report);
   if (with_reference.empty()) return "";
-  Columns<RunReport> columns;
+  Columns<ListedRun> columns;
   const bool one_scenario = reports.front().summary.name == reports.back().summary.name;
   columns.print(one_scenario ? "algorithm" : "scenario", "", "",
-                [&](const RunReport& r) { return distinct_name(r, reports); });
+                [&](const ListedRun& r) { return distinct_name(r.report, reports); });
   add_metrics(columns, kFidelityHeadings);
   return fmt::format("\nrendered force against the reference, measured or ideal\n\n{}",
                      columns.table(with_reference).text());
@@ -238,9 +249,9 @@ Columns<LatencyRow> latency_columns() {
 }
 
 std::vector<DescribedTable> run_tables() {
-  Columns<RunReport> runs = run_columns(true);
+  Columns<ListedRun> runs = run_columns(true);
   add_metrics(runs, kFidelityHeadings);
-  runs.print("ratio", "", "ratio_max", [](const RunReport&) { return Cell(); });
+  runs.print("ratio", "", "ratio_max", [](const ListedRun&) { return Cell(); });
   return {comparison_columns().described("comparison.csv", "of compare: one line per algorithm"), runs.described(),
           place_columns().described(), latency_columns().described()};
 }

@@ -167,7 +167,7 @@ std::string chosen_metric(const std::vector<std::string>& metrics, const std::st
 
 DescribedTable sweep_table() {
   const MetricList metrics = metrics_without_values();
-  std::vector<std::string> names = {"index", "outcome", "expected", "steps"};
+  std::vector<std::string> names = leading_columns({});
   for (const Metric& metric : metrics) names.push_back(metric.name);
   for (const Metric& metric : metrics)
     if (metric.bounded) names.push_back(std::string(kToleranceOf) + metric.name);

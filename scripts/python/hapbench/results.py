@@ -13,10 +13,10 @@ from .table import Table
 SUMMARY, SCENARIO = "summary.json", "scenario.effective.json"
 
 
-def read_json(file):
-    """The content of a JSON file. Raises ResultError."""
+def read_json(file, **how):
+    """The content of a JSON file; `how` as of json.loads. Raises ResultError."""
     try:
-        return json.loads(file.read_text(encoding="utf-8"))
+        return json.loads(file.read_text(encoding="utf-8"), **how)
     except (OSError, UnicodeDecodeError) as error:
         raise ResultError(f"{file}: cannot be read: {error}") from error
     except (ValueError, RecursionError) as error:

@@ -7,7 +7,7 @@ import math
 import zlib
 
 from hapbench.columns import read_rows
-from hapbench_report.json_input import InputError
+from hapbench_report.json_input import InputError, load_object
 
 SUMMARY, SWEEP, TRAJECTORY = "summary.json", "sweep.csv", "trajectory.csv"
 NO_RESULTS = ("name", "algorithm", "expected", "warnings", "work", "provenance", "state_hash")
@@ -50,13 +50,7 @@ def of_runs(a, b):
 
 def read_object(file):
     """A JSON object with its numbers as they are written. Raises InputError."""
-    try:
-        found = json.loads(file.read_text(encoding="utf-8"), parse_float=str, parse_int=str)
-    except (OSError, UnicodeDecodeError, ValueError, RecursionError) as error:
-        raise InputError(f"{file}: cannot be read: {error}") from error
-    if not isinstance(found, dict):
-        raise InputError(f"{file}: is not what a run writes; allowed: a JSON object")
-    return found
+    return load_object(file, parse_float=str, parse_int=str)
 
 
 def flat(value, path=""):

@@ -11,8 +11,9 @@ def shown(value):
     return text if len(text) <= 60 else text[:57] + "…"
 
 
-def load_object(file):
-    value = load_json(file)
+def load_object(file, **how):
+    """An object; `how` as of json.loads. Raises InputError."""
+    value = load_json(file, **how)
     if not isinstance(value, dict):
         raise InputError(f"{file}: /: got {shown(value)}; allowed: an object")
     return value
