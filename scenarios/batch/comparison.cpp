@@ -53,10 +53,6 @@ std::vector<std::string> names_of(const std::vector<fs::path>& files) {
   return names;
 }
 
-bool contains(const std::vector<std::string>& warnings, const std::string& warning) {
-  return std::find(warnings.begin(), warnings.end(), warning) != warnings.end();
-}
-
 /// The cases of a scene; adds its warnings, of those about its fields what all algorithms have: what only one of them
 /// reads has an effect here.
 Cases cases_of(const ComparisonQuestion& question, const fs::path& file, std::vector<std::string>& warnings) {
@@ -73,7 +69,9 @@ Cases cases_of(const ComparisonQuestion& question, const fs::path& file, std::ve
       if (question.seeds > 1 || question.jitter != 0.0)
         axes.push_back(seed_axis(loaded.scenario, question.seeds, question.jitter));
     }
-    std::erase_if(common, [&loaded](const std::string& warning) { return !contains(loaded.warnings, warning); });
+    std::erase_if(common, [&loaded](const std::string& warning) {
+      return std::ranges::find(loaded.warnings, warning) == loaded.warnings.end();
+    });
   }
   append_new(warnings, common);
   return {{text}, question.overrides, std::move(axes)};
