@@ -34,6 +34,14 @@ inline const std::vector<std::string> kHandAboveLimit = {
 /// Total variation of the velocity [m/s], power of the velocity above 30 Hz [m^2/s^2] and reversals of the force.
 MeasuredCase vibration(const std::string& name, const RunSummary& summary);
 
+/// A metric of the section ideal_trajectory; none if nothing was measured.
+std::optional<double> ideal_trajectory_metric(const RunSummary& summary, const std::string& key);
+
+/// The vibration of a law and of stiffness shaping, with all points, in the planar peg and then in a scene of task 2
+/// with these overrides; with it "diverges", 1 or 0.
+Measured vibrations_beside_shaping(const Evidence& e, const std::string& law, const std::string& task,
+                                   const std::vector<std::string>& overrides_of_task);
+
 /// An algorithm vibrates, compared with a smooth one, if it has rule.vibrates times the total variation and the square
 /// of it times the power.
 bool vibrates_much_more(const MeasuredCase& a, const MeasuredCase& b, const PublishedNumbers& p);
@@ -64,25 +72,5 @@ class SwingDecay {
   bool decayed_ = false;
   double first_extreme_ = 0.0, last_extreme_ = 0.0;
 };
-
-/// Instead of a number of iterations: the exact limit.
-inline constexpr int kExactLimit = -1;
-
-/// Rounding may lift a result of the search above the true supremum by this much.
-inline constexpr double kSearchRounding = 1e-9;
-
-/// Result of a search for contacts that stiffness shaping makes stiff.
-struct StiffestContacts {
-  double lambda_max = 0.0;  ///< largest eigenvalue of S, in units of K
-  std::size_t sets = 0;     ///< of contacts tried
-};
-
-/// Climbs from random sets of up to eight weighted directions to ones whose stiffness tensor, after so many iterations
-/// of shaping, has a larger and larger largest eigenvalue. The weights before the first iteration stand for many
-/// contacts in one direction. The same result on every call; about half a second.
-///
-/// No set exceeds (1 + sqrt 3)/2, in the plane (1 + sqrt 2)/2, whatever the number of iterations; the proof is in
-/// results/reference/BEYOND.md. The search shows that the bound is sharp, and would show an error in the proof.
-StiffestContacts stiffest_contacts(int iterations);
 
 }  // namespace hapbench
