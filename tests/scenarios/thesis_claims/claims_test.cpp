@@ -338,14 +338,6 @@ TEST(Wording, SpellsThresholds) {
   EXPECT_EQ(plain(15.0), "15");
 }
 
-TEST(VerdictName, IsThatOfTheLedger) {
-  EXPECT_EQ(verdict_name(Verdict::reproduced), "reproduced");
-  EXPECT_EQ(verdict_name(Verdict::in_kind), "reproduced in kind");
-  EXPECT_EQ(verdict_name(Verdict::not_reproduced), "not reproduced");
-  EXPECT_EQ(verdict_name(Verdict::refuted), "refuted");
-  EXPECT_EQ(verdict_name(Verdict::not_reproducible), "not reproducible");
-}
-
 MeasuredCase vibrating(double variation, double power) {
   return {"", {{"velocity_variation", {variation}}, {"vibration_power", {power}}, {"force_reversals", {6}}}};
 }

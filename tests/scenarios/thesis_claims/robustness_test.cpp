@@ -219,28 +219,6 @@ TEST(FirstOrderIndex, IsTheFormulasByHand) {
   EXPECT_TRUE(std::isnan(first_order_index(Bins{0, 1}, Values{0, 1}))) << "every bin has one point";
 }
 
-TEST(FirstOrderIndex, IsUnbiasedWithoutInfluenceAndThatOfAModelWithOne) {
-  // y = [x1 < 1/2] or [x2 < 1/2]: Var(E[y | x1]) / Var(y) = (1/16) / (3/16) = 1/3.
-  double without = 0.0, with = 0.0;
-  constexpr int kRepeats = 400;
-  constexpr std::size_t kPoints = 128;
-  for (int repeat = 0; repeat < kRepeats; ++repeat) {
-    const auto seed = static_cast<std::uint64_t>(repeat);
-    const Values a = uniform(kPoints, 3 * seed), b = uniform(kPoints, 3 * seed + 1), c = uniform(kPoints, 3 * seed + 2);
-    Values y(kPoints);
-    for (std::size_t i = 0; i < kPoints; ++i) y[i] = a[i] < 0.5 || b[i] < 0.5 ? 1.0 : 0.0;
-    // Bins with an edge where y changes; of equal count, the bin across it would blur the step.
-    Bins eighths(kPoints);
-    for (std::size_t i = 0; i < kPoints; ++i) eighths[i] = static_cast<std::size_t>(8.0 * a[i]);
-    with += first_order_index(eighths, y) / kRepeats;
-    without += first_order_index(equal_count_bins(c, 8), y) / kRepeats;
-  }
-  // One estimate scatters by about sqrt(2 (B - 1)) / n = 0.03 without and 0.07 with influence; four standard errors of
-  // the mean of 400.
-  EXPECT_NEAR(without, 0.0, 4 * 0.03 / 20);
-  EXPECT_NEAR(with, 1.0 / 3.0, 4 * 0.07 / 20);
-}
-
 TEST(DecidingInput, IsTheOneThatDecidesOrNone) {
   constexpr std::size_t kPoints = 96;
   std::vector<Bins> bins;
