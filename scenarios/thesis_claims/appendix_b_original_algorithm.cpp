@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 
 #include "algorithms/registry.hpp"
@@ -53,10 +54,10 @@ Measured measure_groove(const Evidence& e) {
         const LoadedScenario loaded = e.load(scene, {fmt::format("environment.groups.0.direction=[{},{},0]", -s, -c),
                                                      fmt::format("environment.groups.1.direction=[{},{},0]", s, -c),
                                                      "rendering.algorithm=" + algorithm});
-        SwingDecay swings;
-        for_each_row(loaded, [&](const StepRecord& row) { swings.add(row.tool.pose.position.x()); });
+        std::vector<double> across;
+        for_each_row(loaded, [&](const StepRecord& row) { across.push_back(row.tool.pose.position.x()); });
         m.values["given"] = {loaded.scenario.rendering.damping_ratio};
-        if (const auto ratio = swings.damping_ratio()) m.values[scene + algorithm] = {*ratio};
+        if (const auto ratio = damping_ratio_of_swings(across)) m.values[scene + algorithm] = {*ratio};
       }
     }
   }

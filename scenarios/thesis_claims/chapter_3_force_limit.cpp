@@ -76,7 +76,10 @@ Finding judge_force_limit(const Measured& measured, const PublishedNumbers& publ
 // in which it does not, `uphill` how much of the way the tool goes there is uphill. A case for each kind.
 
 Measured measure_saturated_motion(const Evidence& e) {
-  const LoadedScenario loaded = e.load("task2_rotate_signed_distance", kHandAboveLimit);
+  // During one rotation of the drill to and fro the hand pushes with more than the input limit of 2 N all the time.
+  const LoadedScenario loaded =
+      e.load("task2_rotate_signed_distance",
+             {R"(hand.force_N={"type":"sine","mean":3.5,"amplitude":1.4,"period_s":1.7})", "time.duration_s=6"});
   const double limit = input_force_limit(loaded.scenario.device).value();
   struct Rows {
     double rows = 0.0, against = 0.0, way = 0.0, uphill = 0.0;

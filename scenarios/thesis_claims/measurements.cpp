@@ -55,26 +55,16 @@ std::string vibrations_text(const Measured& cases) {
   });
 }
 
-void SwingDecay::add(double x) {
-  const bool is_extreme = rows_ >= 2 && (last_ - before_) * (x - last_) < 0.0;
-  if (is_extreme && !decayed_) {
-    const double extreme = std::abs(last_);
-    if (extreme < kSmallest) {
-      decayed_ = true;
-    } else {
-      if (extremes_ == 0) first_extreme_ = extreme;
-      last_extreme_ = extreme;
-      ++extremes_;
-    }
+std::optional<double> damping_ratio_of_swings(std::span<const double> x) {
+  constexpr double kSmallest = 1e-6;  // [m]
+  std::vector<double> extremes;
+  for (std::size_t i = 1; i + 1 < x.size(); ++i) {
+    if ((x[i] - x[i - 1]) * (x[i + 1] - x[i]) >= 0.0) continue;
+    if (std::abs(x[i]) < kSmallest) break;
+    extremes.push_back(std::abs(x[i]));
   }
-  before_ = last_;
-  last_ = x;
-  ++rows_;
-}
-
-std::optional<double> SwingDecay::damping_ratio() const {
-  if (extremes_ < 2) return std::nullopt;
-  const double q = math::pow(last_extreme_ / first_extreme_, 1.0 / static_cast<double>(extremes_ - 1));
+  if (extremes.size() < 2) return std::nullopt;
+  const double q = math::pow(extremes.back() / extremes.front(), 1.0 / static_cast<double>(extremes.size() - 1));
   if (q >= 1.0) return 0.0;
   const double log_q = math::log(q);
   return -log_q / std::sqrt(std::numbers::pi * std::numbers::pi + log_q * log_q);

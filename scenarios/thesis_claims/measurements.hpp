@@ -1,7 +1,7 @@
 #pragma once
 
-#include <cstddef>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -26,11 +26,6 @@ inline ContactBuffer wall_point(double beyond, const char* depth_model) {
   return contacts;
 }
 
-/// Overrides of task 2: the hand pushes with more than the input limit of 2 N all the time, during one rotation of the
-/// drill to and fro.
-inline const std::vector<std::string> kHandAboveLimit = {
-    R"(hand.force_N={"type":"sine","mean":3.5,"amplitude":1.4,"period_s":1.7})", "time.duration_s=6"};
-
 /// Total variation of the velocity [m/s], power of the velocity above 30 Hz [m^2/s^2] and reversals of the force.
 MeasuredCase vibration(const std::string& name, const RunSummary& summary);
 
@@ -53,24 +48,9 @@ inline constexpr const char* kVibrationRule =
     "reproduced: <rule.vibrates> times the total variation of velocity, and the square of it times the power above 30 Hz,";
 std::string vibrations_text(const Measured& cases);
 
-/// Measures the damping ratio of a swing about zero from the ratio q of successive extremes,
-/// zeta = -ln q / sqrt(pi^2 + ln^2 q).
-class SwingDecay {
- public:
-  /// Extremes closer to zero than this end the decay [m]: rounding and grazing contact are no swings.
-  static constexpr double kSmallest = 1e-6;
-
-  /// Adds the coordinate of the next row [m].
-  void add(double x);
-  /// From the first and the last extreme; none with fewer than two, since a motion that never turns swings not.
-  std::optional<double> damping_ratio() const;
-
- private:
-  double before_ = 0.0, last_ = 0.0;
-  std::size_t rows_ = 0;
-  std::size_t extremes_ = 0;
-  bool decayed_ = false;
-  double first_extreme_ = 0.0, last_extreme_ = 0.0;
-};
+/// The damping ratio of a swing about zero [m], a value for each row, from the ratio q of successive extremes,
+/// zeta = -ln q / sqrt(pi^2 + ln^2 q). An extreme within a micrometre of zero ends the decay: rounding and grazing
+/// contact are no swings. None with fewer than two, since a motion that never turns swings not.
+std::optional<double> damping_ratio_of_swings(std::span<const double> x);
 
 }  // namespace hapbench

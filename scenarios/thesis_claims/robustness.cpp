@@ -109,7 +109,10 @@ std::vector<std::vector<std::string>> read_readings(const fs::path& file, const 
   for (const std::string_view column : csv.columns()) {
     const std::string id(column);
     require_valid_name(file.string() + ": got the column", id, ids);
-    places.push_back(static_cast<std::size_t>(std::find(ids.begin(), ids.end(), id) - ids.begin()));
+    const auto place = static_cast<std::size_t>(std::find(ids.begin(), ids.end(), id) - ids.begin());
+    if (std::find(places.begin(), places.end(), place) != places.end())
+      fail_in_file(file, fmt::format("got the column \"{}\" twice; allowed: each once", id));
+    places.push_back(place);
   }
   std::vector<std::vector<std::string>> readings;
   while (csv.next_not_blank()) {

@@ -87,8 +87,8 @@ using Verdicts = std::map<std::string, std::string>;
 /// The ledger's verdicts by claim, without those on claims about times and those that take long to judge.
 Verdicts verdicts_on_record() {
   Verdicts verdicts;
-  for (const Json& entry : Json::parse(test::read_file(kReference / "claims.json")).at("claims"))
-    verdicts[entry.at("id")] = entry.at("verdict");
+  const Json ledger = Json::parse(test::read_file(kReference / "claims.json"));
+  for (const Json& entry : ledger.at("claims")) verdicts[entry.at("id")] = entry.at("verdict");
   for (const Claim& claim : all_claims())
     if (claim.timing || claim.costly) verdicts.erase(claim.id);
   return verdicts;

@@ -75,8 +75,9 @@ TEST(ChoicesOnRecord, ConcernEachAScenarioThatThenDiffers) {
 }
 
 TEST(ChoicesOnRecord, NameScenariosThatThereAre) {
+  const Choices choices(kReference / "choices.json");
   const std::vector<BundledScenario> scenarios = thesis_scenarios();
-  for (const OpenChoice& choice : Choices(kReference / "choices.json").all()) {
+  for (const OpenChoice& choice : choices.all()) {
     for (const ChosenField& field : choice.fields) {
       for (const std::string& pattern : field.scenarios)
         EXPECT_TRUE(std::any_of(scenarios.begin(), scenarios.end(),
@@ -105,8 +106,9 @@ TEST(ChoicesOnRecord, AreAsTheSchemaSays) {
 
 /// What the schema cannot say: a reading is one value for each choice, in a cell without quotes.
 TEST(ChoicesOnRecord, AreInTheirRangesAndFitIntoTables) {
+  const Choices choices(kReference / "choices.json");
   std::set<std::string> ids;
-  for (const OpenChoice& choice : Choices(kReference / "choices.json").all()) {
+  for (const OpenChoice& choice : choices.all()) {
     EXPECT_TRUE(ids.insert(choice.id).second) << choice.id << " twice";
     const auto number = finite_number(choice.value);
     Texts texts = choice.options;
