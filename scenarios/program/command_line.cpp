@@ -55,11 +55,6 @@ CommandOption& CommandOption::one_of(const std::vector<std::string>& words) {
   return *this;
 }
 
-CommandOption& CommandOption::value_if_none(const std::string& value) {
-  option_->expected(0, 1)->default_str(value);
-  return *this;
-}
-
 CommandOption& CommandOption::needs(const CommandOption& other) {
   option_->needs(other.option_);
   return *this;

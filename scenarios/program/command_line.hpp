@@ -67,8 +67,6 @@ class CommandOption {
   CommandOption& range(std::int64_t least, std::int64_t greatest);
   /// Refuses other words.
   CommandOption& one_of(const std::vector<std::string>& words);
-  /// May be given without a value, which then is this.
-  CommandOption& value_if_none(const std::string& value);
   CommandOption& needs(const CommandOption& other);
   CommandOption& excludes(const CommandOption& other);
 

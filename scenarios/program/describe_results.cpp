@@ -159,10 +159,9 @@ constexpr Word kWords[] = {
     {"claims.md", kResultFile, "the ledger of reproduce, for people"},
     {"choices.json", kResultFile, "what the thesis leaves open and what was chosen; \"describe choices_schema\""},
     {"choices.md", kResultFile, "the choices on record, for people"},
-    {"robustness.csv", kResultFile, "of reproduce --robustness: the choices and verdicts of each sample"},
+    {"robustness.csv", kResultFile, "of reproduce --choices: the choices and verdicts of each reading"},
     {"robustness.json", kResultFile,
      "how many samples have the verdict on record, and which choices decide it, for each claim"},
-    {"robustness.md", kResultFile, "robustness.json for people"},
     {"quantum", "number of import",
      "the step in which the recorded places come along an axis, seen in their differences (its row resolution, quantum_m of "
      "--json); K times it is the step of force that the recording alone makes"}};

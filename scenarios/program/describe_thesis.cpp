@@ -150,7 +150,7 @@ Description describe_choice(const Json& choice) {
   }
   return {
       text +
-          "\nwhat it does to the verdicts: results/reference/robustness.md; \"hapbench reproduce --robustness\" samples it\n",
+          "\nwhat it does to the verdicts: results/reference/claims.md; \"hapbench reproduce --choices\" judges by others\n",
       choice};
 }
 

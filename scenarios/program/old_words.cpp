@@ -42,6 +42,8 @@ constexpr OldWord kOldWords[] = {
     {"compare", "--vibration", kDevices},
     {"converge", "--resume", "the same without it: the runs are made again"},
     {"plot", "--no-sketch", "the same without it: plot draws no sketches"},
+    {"reproduce", "--robustness",
+     "hapbench reproduce --choices results/reference/readings.csv, or of scripts/readings.py 256"},
     {"reproduce", "--subjects",
      "their record, in the manual of the thesis's claims (scenarios/thesis_claims/README.md)"},
     {"run", "--sure", "hapbench converge SCENE, of the points with --vary environment.spacing_m"},

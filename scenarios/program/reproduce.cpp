@@ -16,7 +16,6 @@
 #include "scenarios/program/command.hpp"
 #include "scenarios/program/report.hpp"
 #include "scenarios/program/result_tables.hpp"
-#include "scenarios/run/assemble.hpp"
 #include "scenarios/run/progress_bar.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/thesis_claims/ledger.hpp"
@@ -32,19 +31,15 @@ struct ReproduceOptions {
   std::string out = (fs::path("results") / "out" / "reproduce").string();
   std::string ledger;
   bool anew = false;
-  std::int64_t samples = 0;  ///< of the choices; 0 for none
-  std::size_t jobs = available_threads();
+  std::string readings;  ///< file; empty for none
+  unsigned jobs = static_cast<unsigned>(available_threads());
   OutputOptions output;
 };
-
-std::vector<std::string> claim_ids() {
-  return names_of(all_claims(), &Claim::id);
-}
 
 std::vector<Claim> chosen_claims(const std::vector<std::string>& ids) {
   std::vector<Claim> claims = all_claims();
   if (ids.empty()) return claims;
-  const std::vector<std::string> valid = claim_ids();
+  const std::vector<std::string> valid = names_of(claims, &Claim::id);
   std::set<std::string> chosen;
   for (const std::string& id : ids) {
     const auto same = [&id](const std::string& other) { return lower_case(other) == lower_case(id); };
@@ -80,28 +75,22 @@ class ThesisRuns {
   const fs::path& directory() const { return directory_; }
 
   /// Runs all of them on several threads.
-  void run_all(std::size_t jobs, bool progress) {
-    ProgressBar bar("thesis", scenarios_.size(), progress);
-    std::size_t begun = 0, done = 0;
-    const auto next = [&] { return begun < scenarios_.size() ? std::optional(begun++) : std::nullopt; };
-    const auto work = [&](std::size_t i) -> Delivery {
-      std::vector<std::string> problems = run(scenarios_[i]);
-      return [&, i, problems = std::move(problems)] {
-        tell(scenarios_[i], problems);
-        bar.show(++done, true);
-      };
-    };
-    parallel_for(next, jobs, work);
+  void run_all(unsigned jobs, bool progress) {
+    std::vector<std::vector<std::string>> problems(scenarios_.size());
+    for_each_job(scenarios_.size(), {jobs, progress ? "thesis" : ""},
+                 [&](std::size_t i) { problems[i] = run(scenarios_[i]); });
+    for (std::size_t i = 0; i < scenarios_.size(); ++i) note(scenarios_[i], problems[i]);
   }
 
   /// Runs one of them unless that has been done.
   void provide(const std::string& name) {
     for (const BundledScenario& bundled : scenarios_) {
-      if (bundled.name == name && !done_.contains(name)) tell(bundled, run(bundled));
+      if (bundled.name == name && !done_.contains(name)) note(bundled, run(bundled));
     }
   }
 
-  bool all_as_expected() const { return as_expected_; }
+  /// What runs did otherwise than their scenarios expect.
+  const std::vector<std::string>& problems() const { return problems_; }
 
  private:
   std::vector<std::string> run(const BundledScenario& bundled) const {
@@ -109,31 +98,28 @@ class ThesisRuns {
     if (!anew_ && is_current(directory_ / bundled.name, loaded)) return {};
     return run_scenario(loaded, directory_ / bundled.name, false).unmet;
   }
-  void tell(const BundledScenario& bundled, const std::vector<std::string>& problems) {
+  void note(const BundledScenario& bundled, const std::vector<std::string>& problems) {
     done_.insert(bundled.name);
-    as_expected_ = as_expected_ && problems.empty();
-    for (const std::string& problem : problems) print_error(fmt::format("{}: {}", bundled.name, problem));
+    for (const std::string& problem : problems) problems_.push_back(fmt::format("{}: {}", bundled.name, problem));
   }
 
   fs::path directory_;
   bool anew_;
   std::vector<BundledScenario> scenarios_;
   std::set<std::string> done_;
-  bool as_expected_ = true;
+  std::vector<std::string> problems_;
 };
 
-/// Judges the claims by the thesis's runs, and notes in `read` which results that needs.
+/// Judges the claims by the thesis's runs.
 std::vector<JudgedClaim> judge(const std::vector<Claim>& claims, const PublishedNumbers& published,
-                               const Choices& choices, ThesisRuns& runs, ResultsRead& read, bool progress) {
+                               const Choices& choices, ThesisRuns& runs, bool progress) {
   std::set<std::string> used;  // scenarios of the current claim
-  const auto provide = [&](const std::string& scenario, const std::string& part) {
-    used.insert(scenario);
-    read[scenario].insert(part);
+  const auto note = [&](const std::string& scenario) { used.insert(scenario); };
+  const auto provide = [&](const std::string& scenario) {
+    note(scenario);
     runs.provide(scenario);
   };
-  const Evidence evidence{published, ResultFiles(runs.directory(), provide), {}, [&](const std::string& scenario) {
-                            used.insert(scenario);
-                          }};
+  const Evidence evidence{published, runs.directory(), provide, {}, note};
   std::vector<JudgedClaim> judged;
   ProgressBar bar("claims", claims.size(), progress);
   for (const Claim& claim : claims) {
@@ -146,53 +132,45 @@ std::vector<JudgedClaim> judge(const std::vector<Claim>& claims, const Published
   return judged;
 }
 
-std::vector<JudgedClaim> to_judge_again(std::vector<JudgedClaim> judged) {
-  std::erase_if(judged, [](const JudgedClaim& j) { return !j.can_be_sampled(); });
-  return judged;
-}
-
-/// Prints the first few problems of a sample's runs.
-void print_problems(const std::vector<std::string>& problems) {
+/// Prints the first few problems of the readings' runs.
+void print_problems(const std::vector<ReadingVerdicts>& judged) {
   constexpr std::size_t kMost = 10;
-  for (std::size_t i = 0; i < std::min(problems.size(), kMost); ++i) {
-    print_error(fmt::format("not measured: {}", one_line(problems[i])));
+  std::size_t problems = 0;
+  for (const ReadingVerdicts& reading : judged) {
+    for (const std::string& problem : reading.problems)
+      if (++problems <= kMost) print_error("not measured: " + one_line(problem));
   }
-  if (problems.size() > kMost) print_error(fmt::format("{} more like these", problems.size() - kMost));
+  if (problems > kMost) print_error(fmt::format("{} more like these", problems - kMost));
 }
 
-/// The content of robustness.json, and the signal that stopped the samples, or 0.
-struct SampledRobustness {
-  Json record;
-  int signal = 0;
-};
+/// The content of robustness.json; an empty record when there is no such file.
+Json read_record(const fs::path& file) {
+  if (!fs::exists(file)) return {{"claims", Json::array()}};
+  return parse_json(read_text_file(file, kLargestJsonFile));
+}
 
-/// Judges the claims again at samples of the choices, and writes robustness.* into `directory` if one is given.
-SampledRobustness sample_robustness(const ReproduceOptions& options, const RobustnessPlan& plan,
-                                    const std::vector<JudgedClaim>& on_record,
-                                    const std::optional<fs::path>& directory) {
-  RobustnessReport report = run_robustness(plan, {options.out, options.jobs, options.anew, !options.output.quiet});
-  print_problems(report.problems);
-  if (report.signal != 0) {
-    fmt::print(stderr, "hapbench: stopped after {} of {} samples; the same command continues from there\n", report.done,
-               plan.samples());
-    return {{}, report.signal};
-  }
-  std::vector<std::string> verdicts;
-  for (const JudgedClaim& j : on_record) verdicts.emplace_back(verdict_name(j.finding.verdict));
-  const std::vector<ClaimRobustness> robustness = robustness_of(plan, verdicts, report.verdicts);
-  // Samples of single claims leave those of the others as they are.
+/// Judges the claims again under the readings, and writes robustness.* into `directory` if one is given. Returns the
+/// content of robustness.json.
+Json judge_readings(const ReproduceOptions& options, const Readings& readings,
+                    const std::optional<fs::path>& directory) {
+  const fs::path scratch = fs::path(options.out) / "robustness";
+  std::vector<ReadingVerdicts> judged(readings.values.size());
+  for_each_job(judged.size(), {options.jobs, options.output.quiet ? "" : "robustness"},
+               [&](std::size_t i) { judged[i] = judge_reading(readings, i, scratch / std::to_string(i)); });
+  std::error_code ignored;
+  fs::remove(scratch, ignored);
+  print_problems(judged);
+  // Readings of single claims leave those of the others as they are.
   const bool some = directory && !options.only.empty() && fs::exists(*directory / "robustness.json");
-  const Json before =
-      some ? parse_json(read_text_file(*directory / "robustness.json", kLargestJsonFile)) : Json::object();
-  const Json record = robustness_json(plan, on_record, robustness, before);
+  const Json record =
+      robustness_json(readings, judged, some ? read_record(*directory / "robustness.json") : Json::object());
   if (directory) {
     FileSet files;
-    if (!some) files.write(*directory / "robustness.csv", robustness_table(plan, report.verdicts));
+    if (!some) files.write(*directory / "robustness.csv", robustness_table(readings, judged));
     files.write(*directory / "robustness.json", json_text(record));
-    files.write(*directory / "robustness.md", robustness_markdown(record));
     files.commit();
   }
-  return {record};
+  return record;
 }
 
 /// The file of the ledger. None for single claims unless --ledger is given: they would replace the ledger of all
@@ -235,43 +213,38 @@ int reproduce(const ReproduceOptions& options) {
   const Choices choices(reference / "choices.json");
   const PublishedNumbers published =
       choices.with_numbers(PublishedNumbers(reference / "published"), choices.values_on_record());
+  Readings readings{choices, published, {}, {}};
+  if (!options.readings.empty()) readings.values = read_readings(options.readings, choices);
   require_writable_directory(options.out);
   ThesisRuns runs(options);
   // Single claims run only the scenarios they need.
   if (options.only.empty()) runs.run_all(options.jobs, !options.output.quiet);
 
-  ResultsRead read;
-  const std::vector<JudgedClaim> judged = judge(claims, published, choices, runs, read, !options.output.quiet);
+  const std::vector<JudgedClaim> judged = judge(claims, published, choices, runs, !options.output.quiet);
   const std::optional<fs::path> ledger = ledger_file(options);
-  RobustnessOnRecord robustness(reference / "robustness.json");
-  if (options.samples > 0) {
-    const std::vector<JudgedClaim> again = to_judge_again(judged);
-    std::vector<Claim> sampled;
-    for (const JudgedClaim& j : again) sampled.push_back(j.claim);
-    const RobustnessPlan plan =
-        plan_robustness(choices, published, sampled, read, static_cast<std::size_t>(options.samples));
-    const SampledRobustness sampled_robustness =
-        sample_robustness(options, plan, again, ledger ? std::optional(ledger->parent_path()) : std::nullopt);
-    if (sampled_robustness.signal != 0) return kStopped + sampled_robustness.signal;
-    robustness = RobustnessOnRecord(sampled_robustness.record);
+  Json robustness = read_record(reference / "robustness.json");
+  if (!readings.values.empty()) {
+    readings.claims = judged;
+    std::erase_if(readings.claims, [](const JudgedClaim& j) { return !j.can_be_sampled(); });
+    robustness = judge_readings(options, readings, ledger ? std::optional(ledger->parent_path()) : std::nullopt);
   }
 
-  const Json json = ledger_json(judged, published, robustness);
-  std::string text = options.only.empty() ? wrapped(json.at("headline").get<std::string>()) + "\n\n" : "";
-  text += claim_columns().table(json.at("claims").get<std::vector<Json>>()).text();
-  if (!options.only.empty()) text += claims_text(judged);
+  Report report(options.output, options.out);
+  report.json() = ledger_json(judged, published, robustness);
+  const Json& json = report.json();
+  if (options.only.empty()) report.say(wrapped(json.at("headline").get<std::string>()) + "\n\n");
+  report.say(claim_columns().table(json.at("claims").get<std::vector<Json>>()).text());
+  if (!options.only.empty()) report.say(claims_text(judged));
   if (ledger) {
-    FileSet files;
-    files.write(*ledger, json_text(json));
-    files.write(fs::path(*ledger).replace_extension(".md"), ledger_markdown(json));
-    files.write(ledger->parent_path() / "choices.md", choices.markdown());
-    files.commit();
-    text += fmt::format("\nledger in {}\n", ledger->string());
+    report.files().write(*ledger, json_text(json));
+    report.files().write(fs::path(*ledger).replace_extension(".md"), ledger_markdown(json));
+    report.files().write(ledger->parent_path() / "choices.md", choices.markdown());
+    report.say(fmt::format("\nledger in {}\n", ledger->string()));
   } else {
-    text += "\nno ledger is written of single claims without --ledger FILE\n";
+    report.say("\nno ledger is written of single claims without --ledger FILE\n");
   }
-  print(options.output, text, json);
-  return runs.all_as_expected() ? kSuccess : kUnexpectedOutcome;
+  for (const std::string& problem : runs.problems()) report.fault(problem, kUnexpectedOutcome);
+  return report.finish();
 }
 
 }  // namespace
@@ -292,21 +265,18 @@ void add_reproduce(CommandLine& line) {
   command.add("--out", options.out, "directory of the results (default: results/out/reproduce)");
   command.add("--ledger", options.ledger,
               "file of the ledger, JSON, with a Markdown table beside it (default: OUT/claims.json; with --only none)");
-  command.flag("--anew", options.anew,
-               "run every scenario and judge every sample again, even where results are current");
+  command.flag("--anew", options.anew, "run every scenario again, even where results are current");
   command.add("--jobs", options.jobs, "runs at once (default: one for each processor)").range(1, 1024);
-  command
-      .add(
-          "--robustness", options.samples,
-          "judge every claim again at this many samples of the choices on record (default: 256), appendix D at a quarter "
-          "of them; writes robustness.csv, .json and .md beside the ledger, if there is one; with --only, .json and .md keep "
-          "what they have of other claims")
-      .value_if_none("256")
-      .range(4, 100'000);
+  command.add(
+      "--choices", options.readings,
+      "judge every claim again under each reading of FILE.csv, appendix D in the first quarter of them: a row each, a "
+      "column for each choice that it reads otherwise than on record, as results/reference/readings.csv; writes "
+      "robustness.csv and .json beside the ledger, if there is one; with --only, .json keeps what it has of other "
+      "claims");
   add_output_options(command, options.output);
   command.footer(
-      "choices.md beside the ledger lists what the thesis leaves open (results/reference/choices.json). Ctrl-C stops "
-      "--robustness after the samples under way; the same command continues from there.\n"
+      "choices.md beside the ledger lists what the thesis leaves open (results/reference/choices.json); "
+      "scripts/readings.py draws readings of it.\n"
       "Exit status: 0 success, 2 bad input or usage, 3 a run did not end as its scenario expects, 130 stopped by Ctrl-C.");
 }
 

@@ -4,16 +4,14 @@
 #include <cmath>
 #include <iterator>
 #include <map>
-#include <optional>
 
 #include "scenarios/studies/stability/field_limit.hpp"
 #include "scenarios/thesis_claims/claims.hpp"
 #include "scenarios/thesis_claims/measurements.hpp"
 #include "sim/core/math.hpp"
 
-/// Claim of A.1: the planar peg.
-/// Claims of A.2: a mass on many springs.
-/// Claim of A.3: the stability limits of the integrator.
+/// Claims of appendix A: the planar peg (A.1), a mass on many springs (A.2), the stability limits of the integrator
+/// (A.3).
 namespace hapbench {
 namespace {
 
@@ -25,7 +23,7 @@ constexpr double kRates[] = {0.3, 0.6, 1.2, 3.0};
 constexpr const char *kOriginal = "original_averaging", *kShaped = "shaped_stiffness";
 
 MeasuredCase peg(const Evidence& e, const std::string& scene, const std::string& algorithm, const std::string& name,
-                 std::span<const std::string> overrides = {}) {
+                 const std::vector<std::string>& overrides = {}) {
   return vibration(algorithm + ", " + name, e.run(scene + algorithm, overrides).summary);
 }
 
@@ -37,7 +35,7 @@ Measured measure_peg_motion(const Evidence& e) {
     measured.push_back(peg(e, "peg_in_hole_2d_", algorithm, "the trainer's friction"));
   for (const double tilt : kTilts) {
     for (const double rate : kRates) {
-      const std::string overrides[] = {
+      const std::vector<std::string> overrides = {
           fmt::format(R"(motion.orientation.tilt_rad={{"type":"ramp","start":{},"rate_per_s":{}}})", tilt, rate)};
       for (const char* algorithm : {kOriginal, kShaped})
         measured.push_back(peg(e, frictionless, algorithm, fmt::format("{} rad, {} rad/s", tilt, rate), overrides));
@@ -65,34 +63,10 @@ Finding judge_peg_motion(const Measured& measured, const PublishedNumbers& p) {
                   measured.at(2)["velocity_variation"] / measured.at(3)["velocity_variation"], pairs, more, much_more)};
 }
 
-}  // namespace
-
-std::vector<Claim> appendix_a_planar_peg() {
-  return {
-      {.id = "A1",
-       .place = "A.1.2, Fig. A.2",
-       .claim = "the original algorithm vibrates in the planar peg-in-hole, stiffness shaping is smooth",
-       .published = "obvious vibration against smooth motion",
-       .rule = std::string(kVibrationRule) +
-               " as with stiffness shaping, with the parameters of Table A.1; in kind: more of both",
-       .measure = measure_peg_motion,
-       .judge = judge_peg_motion},
-  };
-}
-
-namespace {
-
 /// The algorithms of the thesis. The normal projection is missing: on springs it equals stiffness shaping.
 constexpr const char* kAlgorithms[] = {"original_averaging", "summation",        "mean",
                                        "virtual_coupling",   "shaped_stiffness", "tandpasta"};
 constexpr std::size_t kPairs = 100;  ///< of Table A.3
-
-/// Describes how a mass comes to rest.
-struct Approach {
-  bool arrives = false;    ///< at the end within rule.arrived of the origin
-  double overshoot = 0.0;  ///< furthest beyond either axis [m]
-  double swings = 0.0;     ///< crossings of the axes by more than that
-};
 
 class Swings {
  public:
@@ -108,36 +82,35 @@ class Swings {
   double side_ = 0.0, count_ = 0.0;
 };
 
-struct SpringScene {
-  const char* scenario;  ///< springs_unlimited or springs_limited
-  std::size_t pairs;
-  std::optional<bool> signed_depths = {};  ///< none: as the scenario has it
-};
-
-Approach approach(const Evidence& e, const SpringScene& scene, const std::string& algorithm) {
-  const std::size_t upward = std::max<std::size_t>(1, scene.pairs / 10);
-  std::vector<std::string> overrides = {fmt::format("environment.groups.0.count={}", scene.pairs),
-                                        fmt::format("environment.groups.1.count={}", scene.pairs),
-                                        fmt::format("environment.groups.2.count={}", upward),
-                                        // 4 s are long enough for the slowest algorithm, which creeps.
-                                        "time.steps=8000", "record.ratio_iterations=[]"};
-  if (scene.signed_depths) overrides.push_back(fmt::format("environment.signed={}", *scene.signed_depths));
-  const LoadedScenario loaded = e.load(fmt::format("{}_{}", scene.scenario, algorithm), overrides);
+/// How the mass comes to rest: whether it is at the end within rule.arrived of the origin; how far it goes beyond
+/// either axis [m]; how often it crosses the axes by more than that distance.
+MeasuredCase approach(const Evidence& e, const std::string& scene, std::size_t pairs, const std::string& algorithm,
+                      std::vector<std::string> overrides = {}) {
+  overrides.insert(overrides.end(), {fmt::format("environment.groups.0.count={}", pairs),
+                                     fmt::format("environment.groups.1.count={}", pairs),
+                                     fmt::format("environment.groups.2.count={}", std::max<std::size_t>(1, pairs / 10)),
+                                     // 4 s are long enough for the slowest algorithm, which creeps.
+                                     "time.steps=8000", "record.ratio_iterations=[]"});
+  const LoadedScenario loaded = e.load(fmt::format("{}_{}", scene, algorithm), overrides);
   const double far = threshold(e.published, "arrived") * loaded.scenario.initial.position.norm();
   const auto rows = static_cast<std::uint64_t>(loaded.scenario.time.steps);
-  Approach result;
+  bool arrives = false;
+  double overshoot = 0.0;
   Swings x, y;
-  e.for_each_row(loaded, [&](const StepRecord& row) {
+  for_each_row(loaded, [&](const StepRecord& row) {
     const Vec3& p = row.tool.pose.position;
     // The start is in the negative quadrant.
-    result.overshoot = std::max({result.overshoot, p.x(), p.y()});
+    overshoot = std::max({overshoot, p.x(), p.y()});
     x.add(p.x(), far);
     y.add(p.y(), far);
     // A run that diverges does not reach its last row.
-    result.arrives = row.step + 1 == rows && p.norm() <= far;
+    arrives = row.step + 1 == rows && p.norm() <= far;
   });
-  result.swings = x.count() + y.count();
-  return result;
+  return {algorithm,
+          {{"pairs", {static_cast<double>(pairs)}},
+           {"arrives", {arrives ? 1.0 : 0.0}},
+           {"overshoot", {overshoot}},
+           {"swings", {x.count() + y.count()}}}};
 }
 
 // ---- A2, A3: a case for each algorithm, number of pairs and reading of the depth: signed, or its absolute value along
@@ -145,21 +118,13 @@ Approach approach(const Evidence& e, const SpringScene& scene, const std::string
 
 constexpr std::size_t kPairCounts[] = {1, 2, 4, 10, 30, kPairs};
 
-MeasuredCase approach_case(const char* algorithm, std::size_t pairs, const Approach& a) {
-  return {algorithm,
-          {{"pairs", {static_cast<double>(pairs)}},
-           {"arrives", {a.arrives ? 1.0 : 0.0}},
-           {"overshoot", {a.overshoot}},
-           {"swings", {a.swings}}}};
-}
-
 Measured measure_springs_unlimited(const Evidence& e) {
   Measured measured;
   for (const bool signed_depths : {true, false}) {
     for (const std::size_t pairs : kPairCounts) {
       for (const char* algorithm : kAlgorithms) {
-        const Approach a = approach(e, {"springs_unlimited", pairs, signed_depths}, algorithm);
-        measured.push_back(approach_case(algorithm, pairs, a));
+        measured.push_back(
+            approach(e, "springs_unlimited", pairs, algorithm, {fmt::format("environment.signed={}", signed_depths)}));
         measured.back().values["signed"] = {signed_depths ? 1.0 : 0.0};
       }
     }
@@ -207,7 +172,7 @@ Measured measure_springs_limited(const Evidence& e) {
   for (const std::size_t pairs : {kPairs, kStablePairs}) {
     for (const char* algorithm : kAlgorithms) {
       for (const char* scene : {"springs_unlimited", "springs_limited"})
-        measured.push_back(approach_case(algorithm, pairs, approach(e, {scene, pairs}, algorithm)));
+        measured.push_back(approach(e, scene, pairs, algorithm));
     }
   }
   return measured;
@@ -235,49 +200,7 @@ Finding judge_springs_limited(const Measured& runs, const PublishedNumbers& p) {
                                         : "smooth without the limits and fluctuating with them: " + fluctuate)};
 }
 
-}  // namespace
-
-std::vector<Claim> appendix_a_springs() {
-  return {
-      {.id = "A2",
-       .place = "A.2, Fig. A.4",
-       .claim = "without limits every algorithm brings the springs to the origin smoothly",
-       .published = "every algorithm, 100 pairs",
-       .rule = fmt::format(
-           "reproduced: each of the thesis's {} algorithms ends within <rule.arrived.mean*100> % of the start's distance from "
-           "the origin, with at most <rule.smooth_swings> swings beyond that, with the {} pairs of Table A.3, under one reading "
-           "of the depth's sign; in kind: with fewer pairs",
-           std::size(kAlgorithms), kPairs),
-       .measure = measure_springs_unlimited,
-       .judge = judge_springs_unlimited},
-      {.id = "A3",
-       .place = "A.2, Fig. A.5",
-       .claim = "with limits the proposed algorithm keeps its performance, others fluctuate",
-       .published = "B_max <A3.damping> N s/m, F_max <A3.force> N",
-       .rule = fmt::format(
-           "reproduced: with the limits stiffness shaping arrives, overshoots at most <rule.same_overshoot.mean*100> % further "
-           "and swings no more often than without, while another algorithm, smooth without them as in A2 (at most "
-           "<rule.smooth_swings> swings of <rule.arrived.mean*100> %), swings <rule.fluctuates> times more with them, with {} "
-           "pairs; in kind: with {}",
-           kPairs, kStablePairs),
-       .measure = measure_springs_limited,
-       .judge = judge_springs_limited},
-  };
-}
-
-namespace {
-
 // ---- A4: the stability limits. A case for each published figure.
-
-struct Figure {
-  const char* name;
-  const char* published;  ///< id
-};
-constexpr Figure kUndampedStiffness = {"K_max (B = 0)", "A4.stiffness"};
-constexpr Figure kDampingAlone = {"B_max (K = 0)", "A4.damping"};
-constexpr Figure kDampedStiffness = {"K_max (B from zeta)", "A4.stiffness.damped"};
-constexpr Figure kDampingThere = {"B there", "A4.damping.damped"};
-constexpr Figure kFigures[] = {kUndampedStiffness, kDampingAlone, kDampedStiffness, kDampingThere};
 
 constexpr const char* kSpring = "single_spring";
 constexpr double kLimitResolution = 1e-4;
@@ -316,19 +239,22 @@ double damping_at(const Evidence& e, double stiffness) {
 
 Measured measure_stability_limits(const Evidence& e) {
   const double damped = largest_stiffness(e);
-  const auto limit = [](const Figure& figure, double value) { return MeasuredCase{figure.name, {{"limit", {value}}}}; };
-  return {limit(kUndampedStiffness, largest_undamped_stiffness(e)), limit(kDampingAlone, largest_damping_alone(e)),
-          limit(kDampedStiffness, damped), limit(kDampingThere, damping_at(e, damped))};
+  return {{"K_max (B = 0)", {{"limit", {largest_undamped_stiffness(e)}}}},
+          {"B_max (K = 0)", {{"limit", {largest_damping_alone(e)}}}},
+          {"K_max (B from zeta)", {{"limit", {damped}}}},
+          {"B there", {{"limit", {damping_at(e, damped)}}}}};
 }
 
 Finding judge_stability_limits(const Measured& measured, const PublishedNumbers& published) {
+  static const std::map<std::string, const char*> kPublished = {{"K_max (B = 0)", "A4.stiffness"},
+                                                                {"B_max (K = 0)", "A4.damping"},
+                                                                {"K_max (B from zeta)", "A4.stiffness.damped"},
+                                                                {"B there", "A4.damping.damped"}};
   const auto digits = static_cast<int>(std::lround(-math::log10(kLimitResolution)));  // what bisection leaves
   double worst = 0.0;
   std::string text;
   for (const MeasuredCase& m : measured) {
-    const auto figure =
-        std::find_if(std::begin(kFigures), std::end(kFigures), [&m](const Figure& f) { return f.name == m.name; });
-    worst = std::max(worst, std::abs(m["limit"] / published[figure->published].mean - 1.0));
+    worst = std::max(worst, std::abs(m["limit"] / published[kPublished.at(m.name)].mean - 1.0));
     append_item(text, fmt::format("{} {:.{}g}", m.name, m["limit"], digits), ", ");
   }
   return {decide(worst <= threshold(published, "same_limit"), false), text,
@@ -352,8 +278,39 @@ Finding judge_damping_at_limit(const Measured& measured, const PublishedNumbers&
 
 }  // namespace
 
-std::vector<Claim> appendix_a_stability() {
+std::vector<Claim> appendix_a() {
   return {
+      {.id = "A1",
+       .place = "A.1.2, Fig. A.2",
+       .claim = "the original algorithm vibrates in the planar peg-in-hole, stiffness shaping is smooth",
+       .published = "obvious vibration against smooth motion",
+       .rule = std::string(kVibrationRule) +
+               " as with stiffness shaping, with the parameters of Table A.1; in kind: more of both",
+       .measure = measure_peg_motion,
+       .judge = judge_peg_motion},
+      {.id = "A2",
+       .place = "A.2, Fig. A.4",
+       .claim = "without limits every algorithm brings the springs to the origin smoothly",
+       .published = "every algorithm, 100 pairs",
+       .rule = fmt::format(
+           "reproduced: each of the thesis's {} algorithms ends within <rule.arrived.mean*100> % of the start's distance from "
+           "the origin, with at most <rule.smooth_swings> swings beyond that, with the {} pairs of Table A.3, under one reading "
+           "of the depth's sign; in kind: with fewer pairs",
+           std::size(kAlgorithms), kPairs),
+       .measure = measure_springs_unlimited,
+       .judge = judge_springs_unlimited},
+      {.id = "A3",
+       .place = "A.2, Fig. A.5",
+       .claim = "with limits the proposed algorithm keeps its performance, others fluctuate",
+       .published = "B_max <A3.damping> N s/m, F_max <A3.force> N",
+       .rule = fmt::format(
+           "reproduced: with the limits stiffness shaping arrives, overshoots at most <rule.same_overshoot.mean*100> % further "
+           "and swings no more often than without, while another algorithm, smooth without them as in A2 (at most "
+           "<rule.smooth_swings> swings of <rule.arrived.mean*100> %), swings <rule.fluctuates> times more with them, with {} "
+           "pairs; in kind: with {}",
+           kPairs, kStablePairs),
+       .measure = measure_springs_limited,
+       .judge = judge_springs_limited},
       {.id = "A4",
        .place = "A.3, root locus",
        .claim = "largest stable stiffness and damping at 0.5 ms",

@@ -1,7 +1,9 @@
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 
 #include "algorithms/registry.hpp"
@@ -49,14 +51,13 @@ Measured measure_groove(const Evidence& e) {
     MeasuredCase& m = measured.emplace_back(MeasuredCase{fmt::format("{}°", degrees), {}});
     for (const std::string scene : {"groove_friction", "groove_swing"}) {
       for (const std::string algorithm : {"original_averaging", "shaped_stiffness"}) {
-        const std::string overrides[] = {fmt::format("environment.groups.0.direction=[{},{},0]", -s, -c),
-                                         fmt::format("environment.groups.1.direction=[{},{},0]", s, -c),
-                                         "rendering.algorithm=" + algorithm};
-        const LoadedScenario loaded = e.load(scene, overrides);
-        SwingDecay swings;
-        e.for_each_row(loaded, [&](const StepRecord& row) { swings.add(row.tool.pose.position.x()); });
+        const LoadedScenario loaded = e.load(scene, {fmt::format("environment.groups.0.direction=[{},{},0]", -s, -c),
+                                                     fmt::format("environment.groups.1.direction=[{},{},0]", s, -c),
+                                                     "rendering.algorithm=" + algorithm});
+        std::vector<double> across;
+        for_each_row(loaded, [&](const StepRecord& row) { across.push_back(row.tool.pose.position.x()); });
         m.values["given"] = {loaded.scenario.rendering.damping_ratio};
-        if (const auto ratio = swings.damping_ratio()) m.values[scene + algorithm] = {*ratio};
+        if (const auto ratio = damping_ratio_of_swings(across)) m.values[scene + algorithm] = {*ratio};
       }
     }
   }
@@ -64,21 +65,20 @@ Measured measure_groove(const Evidence& e) {
 }
 
 Finding judge_groove(const Measured& measured, const PublishedNumbers& p) {
-  std::size_t under_damped = 0;
-  std::string text;
+  const std::string original = "groove_frictionoriginal_averaging";
   const auto ratio = [](const MeasuredCase& m, const std::string& run) {
     return m.values.contains(run) ? fmt::format("{:.2f}", m[run]) : "none";
   };
-  for (const MeasuredCase& m : measured) {
-    const std::string original = "groove_frictionoriginal_averaging";
-    if (m.values.contains(original) && m[original] <= threshold(p, "under_damped") * m["given"]) ++under_damped;
-    append_item(text,
-                fmt::format("{}: {} against {} ({} against {})", m.name, ratio(m, original),
-                            ratio(m, "groove_frictionshaped_stiffness"), ratio(m, "groove_swingoriginal_averaging"),
-                            ratio(m, "groove_swingshaped_stiffness")));
-  }
+  const std::string text = said_of_each(measured, [&](const MeasuredCase& m) {
+    return fmt::format("{}: {} against {} ({} against {})", m.name, ratio(m, original),
+                       ratio(m, "groove_frictionshaped_stiffness"), ratio(m, "groove_swingoriginal_averaging"),
+                       ratio(m, "groove_swingshaped_stiffness"));
+  });
+  const auto under_damped = std::count_if(measured.begin(), measured.end(), [&](const MeasuredCase& m) {
+    return m.values.contains(original) && m[original] <= threshold(p, "under_damped") * m["given"];
+  });
   return {
-      decide(under_damped == measured.size(), under_damped > 0),
+      decide(under_damped == std::ssize(measured), under_damped > 0),
       "damping ratio of the swings across a groove, original against stiffness shaping (without friction), gradients "
       "either side of its middle by " +
           text,
@@ -132,14 +132,12 @@ std::vector<Claim> appendix_b_original_algorithm() {
       {.id = "B1",
        .place = "B.3.1",
        .claim = "flipped gradients pull the tool into the object",
-       .published = "",
        .rule = "reproduced: force into the wall beyond the median line, out of it with the surface normal",
        .measure = measure_flipped_gradient,
        .judge = judge_flipped_gradient},
       {.id = "B2",
        .place = "B.3.2",
        .claim = "with distributed contact the original algorithm is under-damped",
-       .published = "",
        .rule =
            "reproduced: at every angle between the contacts a mass swings across a groove, damped at most <rule.under_damped> "
            "times as much as given; in kind: at some angle",

@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <iterator>
 #include <map>
 
+#include "results/observe/target_metrics.hpp"
 #include "scenarios/batch/statistics.hpp"
-#include "scenarios/thesis_claims/experiments.hpp"
+#include "scenarios/thesis_claims/claims.hpp"
 #include "sim/core/math.hpp"
 
 /// Claims of appendix D: the man-machine experiments with simulated subjects.
@@ -27,7 +27,15 @@ constexpr MeasuredColumn kMeasures[] = {{kSuccessRate, "removed", "success"},
 
 /// Largest difference of a success rate or a completion time to the published one, in standard errors of the
 /// difference; half a unit of the last published digit is added.
-constexpr double kStandardErrors = 2.0;
+constexpr double kStandardErrors = 2.0;  // in words in the rule
+
+std::string percent(double share) {
+  return plain(100.0 * share) + " %";
+}
+
+/// The columns of targets.csv that count here: place, subject, removed, time_s, model_force_N, speed_m_per_s; NaN where
+/// there is no value.
+using TargetTable = std::map<std::string, std::vector<double>>;
 
 /// Mean of a column over each subject's targets at a place; subjects without a value are left out.
 std::map<double, double> subject_means(const TargetTable& targets, const char* column, double place) {
@@ -44,9 +52,10 @@ std::map<double, double> subject_means(const TargetTable& targets, const char* c
   return means;
 }
 
-}  // namespace
-
-Measured measure_experiment(const TargetTable& original, const TargetTable& shaped, double place) {
+/// A case for each measure, with the mean of each subject that has one with either algorithm.
+Measured measure(const Evidence& e, const std::string& task, double place) {
+  const TargetTable original = e.table(task + "_original_averaging", "targets.csv"),
+                    shaped = e.table(task + "_shaped_stiffness", "targets.csv");
   Measured measured;
   for (const MeasuredColumn& column : kMeasures) {
     MeasuredCase& m = measured.emplace_back();
@@ -62,19 +71,13 @@ Measured measure_experiment(const TargetTable& original, const TargetTable& shap
   return measured;
 }
 
+/// Half a unit of the last digit with which the thesis prints a mean.
 double half_a_digit(double printed) {
   const std::string text = plain(printed);
   const auto point = text.find('.');
   // Every mean of appendix D is printed with a digit behind the point, 1.0 too.
   const auto digits = point == std::string::npos ? 1 : text.size() - point - 1;
   return 0.5 * math::pow(10.0, -static_cast<double>(digits));
-}
-
-namespace {
-
-Measured measure(const Evidence& e, const std::string& task, double place) {
-  return measure_experiment(e.results.table(task + "_original_averaging", "targets.csv"),
-                            e.results.table(task + "_shaped_stiffness", "targets.csv"), place);
 }
 
 /// Comparison of one measure with the published one.
@@ -110,8 +113,7 @@ Compared compare(const MeasuredCase& m, const PublishedNumbers& published, const
   return c;
 }
 
-}  // namespace
-
+/// `id` is that of a claim D1 to D4; `published_difference`: whether the thesis found one.
 Finding judge_experiment(const Measured& measured, const PublishedNumbers& published, const std::string& id,
                          bool published_difference) {
   bool all = true, success = false;
@@ -142,8 +144,6 @@ Finding judge_experiment(const Measured& measured, const PublishedNumbers& publi
                           farthest, most)};
 }
 
-namespace {
-
 /// The published measures of an experiment; `of_speed` is the part of a speed's id that names what is printed of it.
 std::string published_measures(const std::string& id, const std::string& of_speed = "") {
   return fmt::format(
@@ -156,9 +156,9 @@ std::string published_measures(const std::string& id, const std::string& of_spee
 std::string rule() {
   return fmt::format(
       "reproduced: every measure significant or not (paired t, {}) as published, in its direction, means that would be "
-      "printed alike counting as no difference, and success rates and completion times within {} standard errors of the "
+      "printed alike counting as no difference, and success rates and completion times within two standard errors of the "
       "difference and half a printed digit; in kind: the success rate is significant or not as published",
-      percent(kSignificance), in_words(kStandardErrors));
+      percent(kSignificance));
 }
 
 constexpr const char *kVertical = "vertical_peg_in_hole", *kRotational = "rotational_peg_in_hole";
@@ -193,87 +193,63 @@ constexpr double kOffsets[] = {0.4e-3, 0.46e-3, 0.52e-3, 0.58e-3, 0.64e-3, 0.7e-
 constexpr double kHeights[] = {2e-3, 2.5e-3, 3e-3, 3.5e-3, 4e-3, 4.5e-3};            ///< over the hole's bottom [m]
 constexpr double kHoleDepth = 5e-3;
 
-struct Pilot {
-  const char* task;
-  const char* name;
-  std::span<const double> values;
-  Vec3 (*place)(double value);
-};
-constexpr Pilot kPilots[] = {
-    {kVertical, "offset", kOffsets, [](double x) { return Vec3(x, 0.0, -kHoleDepth); }},
-    {kRotational, "height", kHeights, [](double z) { return Vec3(0.0, 0.0, z - kHoleDepth); }},
-};
-
-/// Success rates at the places of a pilot: four targets each of every subject, a place at a time, since a drill that is
-/// lost at one place would spoil the others.
-std::vector<double> success_rates(const TargetRuns& run, const Pilot& pilot, const std::string& algorithm) {
-  std::vector<double> rates;
-  for (const double value : pilot.values) {
-    const Vec3 p = pilot.place(value);
-    const std::string overrides[] = {fmt::format("hand.task.places_m=[[{},{},{}]]", p.x(), p.y(), p.z()),
-                                     "hand.task.targets_per_place=4", "hand.trials=1"};
-    const std::vector<TargetRow> targets = run(std::string(pilot.task) + "_" + algorithm, overrides);
-    rates.push_back(place_metrics(targets).at(0).success_rate.mean);
-  }
-  return rates;
+/// The subjects' success rate at a place: four targets each, and no other place, since a drill that is lost at one
+/// would spoil the others.
+double success_rate(const Evidence& e, const std::string& scenario, const Vec3& place) {
+  const RunReport run =
+      e.run(scenario, {fmt::format("hand.task.places_m=[[{},{},{}]]", place.x(), place.y(), place.z()),
+                       "hand.task.targets_per_place=4", "hand.trials=1"});
+  return place_metrics(run.targets).at(0).success_rate.mean;
 }
 
-}  // namespace
-
-Measured measure_pilots(const TargetRuns& run) {
+Measured measure_pilots(const Evidence& e) {
   Measured measured;
-  for (const Pilot& pilot : kPilots) {
-    const auto original = success_rates(run, pilot, "original_averaging"),
-               shaped = success_rates(run, pilot, "shaped_stiffness");
-    for (std::size_t i = 0; i < pilot.values.size(); ++i) {
-      measured.push_back(
-          {pilot.name, {{"value", {pilot.values[i]}}, {"original", {original[i]}}, {"shaped", {shaped[i]}}}});
-    }
-  }
+  const auto add = [&](const char* name, const std::string& task, double value, const Vec3& place) {
+    measured.push_back({name,
+                        {{"value", {value}},
+                         {"original", {success_rate(e, task + "_original_averaging", place)}},
+                         {"shaped", {success_rate(e, task + "_shaped_stiffness", place)}}}});
+  };
+  for (const double offset : kOffsets) add("offset", kVertical, offset, {offset, 0.0, -kHoleDepth});
+  for (const double height : kHeights) add("height", kRotational, height, {0.0, 0.0, height - kHoleDepth});
   return measured;
 }
 
-namespace {
-
-/// The result of one pilot experiment.
 struct PilotResult {
   bool as_published = true;  ///< hardly any target beyond the published place, most at the easiest
   bool somewhere = false;    ///< a place where hardly any is removed, but most with stiffness shaping
+
+  const char* said() const { return as_published ? "as published" : somewhere ? "another threshold" : "no threshold"; }
 };
 
-PilotResult pilot_result(const std::vector<const MeasuredCase*>& places, const std::function<bool(double)>& is_hard) {
+template <class IsHard>
+PilotResult pilot_result(const Measured& measured, const char* pilot, IsHard is_hard) {
   PilotResult found;
   double easiest = 0.0;
-  for (const MeasuredCase* m : places) {
-    const bool hardly_any = (*m)["original"] <= kHardlyAny;
-    if (is_hard((*m)["value"]) && !hardly_any) found.as_published = false;
-    if (hardly_any && (*m)["shaped"] >= kMostTrials) found.somewhere = true;
-    easiest = std::max(easiest, (*m)["original"]);
+  for (const MeasuredCase& m : measured) {
+    if (m.name != pilot) continue;
+    const bool hardly_any = m["original"] <= kHardlyAny;
+    if (is_hard(m["value"]) && !hardly_any) found.as_published = false;
+    if (hardly_any && m["shaped"] >= kMostTrials) found.somewhere = true;
+    easiest = std::max(easiest, m["original"]);
   }
   found.as_published = found.as_published && easiest >= kMostTrials;
   return found;
 }
 
-}  // namespace
-
 Finding judge_pilots(const Measured& measured, const PublishedNumbers& published) {
-  std::map<std::string, std::vector<const MeasuredCase*>> places;
-  std::string text;
-  for (const MeasuredCase& m : measured) {
-    places[m.name].push_back(&m);
-    append_item(text,
-                fmt::format("{} {:.2f} mm: {:.2f} vs {:.2f}", m.name, 1e3 * m["value"], m["original"], m["shaped"]));
-  }
   const double furthest = published["D6.offset"].at_most, lowest = published["D6.height"].at_least;
-  const PilotResult offset = pilot_result(places["offset"], [furthest](double x) { return x > furthest; });
-  const PilotResult height = pilot_result(places["height"], [lowest](double z) { return z < lowest; });
-  const auto say = [](const PilotResult& t) {
-    return t.as_published ? "as published" : t.somewhere ? "another threshold" : "no threshold";
-  };
+  const PilotResult offset = pilot_result(measured, "offset", [furthest](double x) { return x > furthest; });
+  const PilotResult height = pilot_result(measured, "height", [lowest](double z) { return z < lowest; });
+  const std::string text = said_of_each(measured, [](const MeasuredCase& m) {
+    return fmt::format("{} {:.2f} mm: {:.2f} vs {:.2f}", m.name, 1e3 * m["value"], m["original"], m["shaped"]);
+  });
   return {decide(offset.as_published && height.as_published, offset.somewhere || height.somewhere),
           "success of the original algorithm vs stiffness shaping: " + text,
-          fmt::format("offset: {}; height: {}", say(offset), say(height))};
+          fmt::format("offset: {}; height: {}", offset.said(), height.said())};
 }
+
+}  // namespace
 
 std::vector<Claim> appendix_d_experiments() {
   return {
@@ -334,12 +310,7 @@ std::vector<Claim> appendix_d_experiments() {
            "offset and height; in kind: somewhere at most {0} where stiffness shaping has at least {1}, for offset or "
            "height",
            percent(kHardlyAny), percent(kMostTrials)),
-       .measure =
-           [](const Evidence& e) {
-             return measure_pilots([&e](const std::string& scenario, std::span<const std::string> overrides) {
-               return e.run(scenario, overrides).targets;
-             });
-           },
+       .measure = measure_pilots,
        .judge = judge_pilots,
        .costly = true},
   };

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "results/io/columns.hpp"
 #include "results/observe/ideal_trajectory.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/thesis_claims/claims.hpp"
@@ -18,7 +17,6 @@ constexpr double kPressedTilts[] = {0.35, 0.68, 1.0};  ///< [rad]
 constexpr std::uint64_t kRowsBetweenLooks = 8;
 /// Rows before this time are ignored [s]: the start is not the resting place at every tilt.
 constexpr double kLanded = 0.5;
-constexpr const char* kAllPoints = "rendering.reduction=null";
 
 /// The largest depth of the drill in the block after it has landed, at each tilt [m]. The largest one, because a drill
 /// that pops through has left the block at the end.
@@ -32,7 +30,7 @@ MeasuredCase pressed(const Evidence& e, const std::string& name, const std::stri
     IdealTrajectoryObserver ideal(std::get<BlockEnvironment>(loaded.scenario.environment).block,
                                   make_cylinder(loaded.scenario.tool));
     double& deepest = m.values["depth"].emplace_back(0.0);
-    e.for_each_row(loaded, [&](const StepRecord& row) {
+    for_each_row(loaded, [&](const StepRecord& row) {
       if (row.step % kRowsBetweenLooks != 0 || row.time < kLanded) return;
       ideal.on_step(row);
       if (ideal.error()) deepest = std::max(deepest, ideal.error()->interpenetration);
@@ -79,7 +77,8 @@ const char* const kSinkingRule =
     "stiffness shaping; in kind: deeper at every tilt";
 
 Measured measure_averaging(const Evidence& e) {
-  return {pressed_shaped(e), pressed(e, "mean", "press_towards_rim", {"rendering.algorithm=mean", kAllPoints}),
+  return {pressed_shaped(e),
+          pressed(e, "mean", "press_towards_rim", {"rendering.algorithm=mean", "rendering.reduction=null"}),
           pressed(e, "mean after the reduction", "press_towards_rim", {"rendering.algorithm=mean"})};
 }
 
@@ -88,10 +87,9 @@ Measured measure_averaging(const Evidence& e) {
 Measured measure_original(const Evidence& e) {
   Measured measured;
   for (const std::string law : {kProposedLaw, "original_averaging"}) {
-    const std::string overrides[] = {"rendering.algorithm=" + law};
-    const RunSummary summary = e.run("task2_held", overrides).summary;
-    const auto deepest = value_of(summary.section("ideal_trajectory")->metrics, "gentle.interpenetration_max_m");
-    measured.push_back({law, {{"depth", {number_of(deepest).value_or(0.0)}}}});
+    const RunSummary summary = e.run("task2_held", {"rendering.algorithm=" + law}).summary;
+    const auto depth = ideal_trajectory_metric(summary, "gentle.interpenetration_max_m");
+    measured.push_back({law, {{"depth", {depth.value_or(0.0)}}}});
   }
   return measured;
 }
@@ -108,10 +106,6 @@ Finding judge_original(const Measured& m, const PublishedNumbers& p) {
 // squares.
 
 constexpr double kCouplings[] = {5000.0, 20000.0, 40000.0};  ///< [N/m]
-
-Measured measure_coupling(const Evidence& e) {
-  return {pressed_shaped(e), pressed(e, "virtual coupling", "press_coupled", {})};
-}
 
 Measured measure_couplings(const Evidence& e) {
   Measured measured = {pressed_shaped(e)};
@@ -131,21 +125,6 @@ Finding judge_couplings(const Measured& m, const PublishedNumbers&) {
 }
 
 // ---- S1: the plain sum of all points, in the planar peg and in the turn of task 2, beside stiffness shaping.
-
-Measured measure_summation(const Evidence& e) {
-  Measured measured;
-  for (const std::string scene : {"peg_in_hole_2d_frictionless_shaped_stiffness", "task2_held"}) {
-    for (const std::string law : {"summation", "shaped_stiffness"}) {
-      const std::string overrides[] = {"rendering.algorithm=" + law, kAllPoints, "record.ratio_iterations=[]",
-                                       "metrics.from_s=0"};
-      const RunSummary summary = e.run(scene, overrides).summary;
-      MeasuredCase& m =
-          measured.emplace_back(vibration(law + (scene == "task2_held" ? ", task 2" : ", planar peg"), summary));
-      m.values["diverges"] = {summary.result.outcome == Outcome::diverges ? 1.0 : 0.0};
-    }
-  }
-  return measured;
-}
 
 Finding judge_summation(const Measured& m, const PublishedNumbers& p) {
   const auto unstable = [&](std::size_t i) {
@@ -173,12 +152,13 @@ std::vector<Claim> chapter_1_penetration() {
        .claim = "so does virtual coupling",
        .published = "easily",
        .rule = kSinkingRule,
-       .measure = measure_coupling,
+       .measure = [](const Evidence& e) -> Measured {
+         return {pressed_shaped(e), pressed(e, "virtual coupling", "press_coupled", {})};
+       },
        .judge = judge_sinking},
       {.id = "V2b",
        .place = "1.2, Fig. 2d",
        .claim = "the stiffer a virtual coupling, the less the drill sinks in",
-       .published = "",
        .rule = "holds: at every tilt",
        .measure = measure_couplings,
        .judge = judge_couplings,
@@ -190,7 +170,10 @@ std::vector<Claim> chapter_1_penetration() {
        .rule =
            "reproduced: in the planar peg (Table A.1) and in task 2 it diverges, or its velocity varies <rule.vibrates> "
            "times as much as with stiffness shaping, with the square of it times the power above 30 Hz; in kind: in one",
-       .measure = measure_summation,
+       .measure =
+           [](const Evidence& e) {
+             return vibrations_beside_shaping(e, "summation", "task2_held", {"metrics.from_s=0"});
+           },
        .judge = judge_summation},
       {.id = "B1b",
        .place = "B.3.1",

@@ -4,10 +4,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "results/io/columns.hpp"
 #include "results/observe/ideal_trajectory.hpp"
 #include "scenarios/description/parts.hpp"
-#include "scenarios/thesis_claims/claims.hpp"
+#include "scenarios/thesis_claims/measurements.hpp"
 
 /// Claims of 3.6: the drill turned in the hole against the ideal trajectory.
 namespace hapbench {
@@ -24,12 +23,10 @@ constexpr double kForces[] = {0.2, 0.5, 1.0, 1.5, 1.9, 2.5, 3.5};  ///< [N]
 Measured measure_ideal_trajectory(const Evidence& e) {
   Measured measured;
   for (const double force : kForces) {
-    const std::string overrides[] = {fmt::format("hand.force_N={}", force)};
-    const RunSummary summary = e.run("task2_held", overrides).summary;
-    const MetricList& metrics = summary.section("ideal_trajectory")->metrics;
+    const RunSummary summary = e.run("task2_held", {fmt::format("hand.force_N={}", force)}).summary;
+    const std::string hand = force < kGentleForce ? "gentle." : "firm.";
     const auto number = [&](const char* key) -> std::vector<double> {
-      const char* hand = force < kGentleForce ? "gentle." : "firm.";
-      return {number_of(value_of(metrics, std::string(hand) + key)).value_or(std::nan(""))};
+      return {ideal_trajectory_metric(summary, hand + key).value_or(std::nan(""))};
     };
     measured.push_back({fmt::format("{} N", force),
                         {{"force", {force}},

@@ -19,7 +19,7 @@ Measured measure_counts(const Evidence& e, const std::string& task) {
   Measured measured;
   for (const std::string density : kDensities) {
     const std::string name = task + "_" + density;
-    const auto table = e.results.table(name, "trajectory.csv");
+    const auto table = e.table(name, "trajectory.csv");
     std::vector<double> raw, reduced;
     for (std::size_t i = 0; i < table.at("colliding").size(); ++i) {
       if (table.at("colliding")[i] == 0.0) continue;
@@ -31,18 +31,16 @@ Measured measure_counts(const Evidence& e, const std::string& task) {
                          {"raw_deviation", {standard_deviation(raw)}},
                          {"reduced_mean", {mean_of(reduced)}},
                          {"reduced_deviation", {standard_deviation(reduced)}},
-                         {"reduced_max", {e.results.number(name, "metrics.rendered_max")}}}});
+                         {"reduced_max", {e.number(name, "metrics.rendered_max")}}}});
   }
   return measured;
 }
 
 std::string counts_text(const Measured& counts) {
-  std::string text;
-  for (const MeasuredCase& c : counts) {
-    append_item(text, fmt::format("{}: raw {:.1f} ± {:.1f}, reduced {:.2f} ± {:.2f}, at most {}", c.name, c["raw_mean"],
-                                  c["raw_deviation"], c["reduced_mean"], c["reduced_deviation"], c["reduced_max"]));
-  }
-  return text;
+  return said_of_each(counts, [](const MeasuredCase& c) {
+    return fmt::format("{}: raw {:.1f} ± {:.1f}, reduced {:.2f} ± {:.2f}, at most {}", c.name, c["raw_mean"],
+                       c["raw_deviation"], c["reduced_mean"], c["reduced_deviation"], c["reduced_max"]);
+  });
 }
 
 Finding judge_flat_reduction(const Measured& counts, const PublishedNumbers& published) {
@@ -51,12 +49,6 @@ Finding judge_flat_reduction(const Measured& counts, const PublishedNumbers& pub
   return {decide(one, false), counts_text(counts),
           one ? "on a flat all gradients are equal, so one point is left" : "more than one point is left on the flat"};
 }
-
-/// Ids of the published pairs of raw and reduced counts; the appendix gives other ones than 3.3.
-struct PublishedCounts {
-  const char* raw;
-  const char* reduced;
-};
 
 /// The thesis gives two recordings of a task and no error of either: a number of ours is near one of them if it is no
 /// further from it than the other one is.
@@ -70,24 +62,26 @@ struct Nearness {
   bool raw, mean, spread;
 };
 
-Nearness nearness(const MeasuredCase& c, const PublishedNumbers& p, const PublishedCounts& one,
-                  const PublishedCounts& other) {
-  const PublishedNumber &raw = p[one.raw], &raw_2 = p[other.raw], &reduced = p[one.reduced],
-                        &reduced_2 = p[other.reduced];
+/// `one` and `other` end the ids of the recordings' counts.
+Nearness nearness(const MeasuredCase& c, const PublishedNumbers& p, const std::string& task, const char* one,
+                  const char* other) {
+  const std::string raws = task + ".raw", reduceds = task + ".reduced";
+  const PublishedNumber &raw = p[raws + one], &raw_2 = p[raws + other], &reduced = p[reduceds + one],
+                        &reduced_2 = p[reduceds + other];
   return {is_near(c["raw_mean"], raw.mean, raw_2.mean) && is_near(c["raw_deviation"], raw.spread, raw_2.spread),
           is_near(c["reduced_mean"], reduced.mean, reduced_2.mean),
           is_near(c["reduced_deviation"], reduced.spread, reduced_2.spread)};
 }
 
-Finding judge_reduced_points(const Measured& counts, const PublishedNumbers& published, const PublishedCounts& a,
-                             const PublishedCounts& b) {
+/// The appendix gives other counts than 3.3.
+Finding judge_reduced_points(const Measured& counts, const PublishedNumbers& published, const std::string& task) {
   const double bound = published["T3.reduced.bound"].at_most;
   std::size_t all = 0, means = 0;
   std::string why;
   for (const MeasuredCase& c : counts) {
     const bool bounded = c["reduced_max"] < bound;
     bool whole = false, mean = false, raw = false;
-    for (const Nearness& near : {nearness(c, published, a, b), nearness(c, published, b, a)}) {
+    for (const Nearness& near : {nearness(c, published, task, "", ".C3"), nearness(c, published, task, ".C3", "")}) {
       raw = raw || near.raw;
       mean = mean || (near.raw && near.mean);
       whole = whole || (near.raw && near.mean && near.spread && bounded);
@@ -105,14 +99,6 @@ Finding judge_reduced_points(const Measured& counts, const PublishedNumbers& pub
   return {decide(all == counts.size(), means > 0), counts_text(counts), why};
 }
 
-Finding judge_turning(const Measured& counts, const PublishedNumbers& p) {
-  return judge_reduced_points(counts, p, {"T2.raw", "T2.reduced"}, {"T2.raw.C3", "T2.reduced.C3"});
-}
-
-Finding judge_spinning(const Measured& counts, const PublishedNumbers& p) {
-  return judge_reduced_points(counts, p, {"T3.raw", "T3.reduced"}, {"T3.raw.C3", "T3.reduced.C3"});
-}
-
 const char* const kCountsRule =
     "reproduced: at both densities mean and spread of the raw counts (calibrated) and of the reduced ones as near to those "
     "of 3.3 or C.3 as these are to each other, and no row keeps <T3.reduced.bound.at_most> or more; in kind: the means of one "
@@ -125,9 +111,8 @@ constexpr double kHeldForces[] = {0.2, 0.5, 1.0, 1.8};  ///< [N]; the last one i
 Measured measure_hands(const Evidence& e) {
   Measured measured;
   for (const double force : kHeldForces) {
-    const std::string overrides[] = {fmt::format("hand.force_N={}", force)};
     double rows = 0.0, raw = 0.0, kept = 0.0;
-    e.for_each_row(e.load("task2_held", overrides), [&](const StepRecord& row) {
+    for_each_row(e.load("task2_held", {fmt::format("hand.force_N={}", force)}), [&](const StepRecord& row) {
       if (row.colliding == 0) return;
       rows += 1.0;
       raw += static_cast<double>(row.colliding);
@@ -139,9 +124,9 @@ Measured measure_hands(const Evidence& e) {
 }
 
 Finding judge_hands(const Measured& measured, const PublishedNumbers& p) {
-  std::string text;
-  for (const MeasuredCase& m : measured)
-    append_item(text, fmt::format("{}: raw {:.0f}, at most {} kept", m.name, m["raw"], m["kept"]));
+  const std::string text = said_of_each(measured, [](const MeasuredCase& m) {
+    return fmt::format("{}: raw {:.0f}, at most {} kept", m.name, m["raw"], m["kept"]);
+  });
   const double most = p["T2.raw"].mean + p["T2.raw"].spread;
   return {found(measured.front()["raw"] <= most && measured.back()["raw"] > most), text,
           "the published counts fit a hand about ten times gentler than those of appendix D"};
@@ -165,7 +150,7 @@ std::vector<Claim> chapter_3_reduction() {
            "raw <T2.raw>, reduced <T2.reduced> (C.3: <T2.raw.C3>, <T2.reduced.C3>), below <T3.reduced.bound.at_most>",
        .rule = kCountsRule,
        .measure = [](const Evidence& e) { return measure_counts(e, "task2_rotate"); },
-       .judge = judge_turning},
+       .judge = [](const Measured& m, const PublishedNumbers& p) { return judge_reduced_points(m, p, "T2"); }},
       {.id = "T2b",
        .place = "3.3, D.4",
        .claim = "task 2's raw counts are those of a hand much gentler than the subjects of appendix D",
@@ -182,7 +167,7 @@ std::vector<Claim> chapter_3_reduction() {
            "raw <T3.raw>, reduced <T3.reduced> (C.3: <T3.raw.C3>, <T3.reduced.C3>), below <T3.reduced.bound.at_most>",
        .rule = kCountsRule,
        .measure = [](const Evidence& e) { return measure_counts(e, "task3_spin"); },
-       .judge = judge_spinning},
+       .judge = [](const Measured& m, const PublishedNumbers& p) { return judge_reduced_points(m, p, "T3"); }},
   };
 }
 

@@ -2,180 +2,38 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <fnmatch.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <set>
 
 #include "results/io/json_text.hpp"
-#include "scenarios/batch/axis.hpp"
-#include "scenarios/description/reader.hpp"
-#include "scenarios/description/writer.hpp"
+#include "scenarios/input/installed_folder.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "sim/core/hash.hpp"
 
 namespace hapbench {
 namespace {
 
-constexpr NumberRange kAnyNumber = {-1e12, 1e12, ""};
-constexpr std::size_t kLongest = 2000;
-constexpr std::size_t kMostChoices = 1000;
-
-constexpr Choice<OpenChoice::Scale> kScales[] = {{"linear", OpenChoice::Scale::linear},
-                                                 {"log", OpenChoice::Scale::log}};
-constexpr Choice<OpenChoice::Chosen> kChosen[] = {{"before", OpenChoice::Chosen::before},
-                                                  {"after", OpenChoice::Chosen::after}};
-
-[[noreturn]] void refuse(const Fields& f, const char* field, const std::string& problem) {
-  throw InputError(InputError::Kind::relation, member(f.at(), field), problem);
-}
-
-/// Refuses texts that a CSV cell or a dotted path cannot hold without quotes.
-void check_plain(const Fields& f, const char* field, const std::string& text) {
-  const auto is_odd = [](unsigned char c) { return c <= 0x20 || c == 0x7f || c == '"' || c == ','; };
-  if (!text.empty() && std::none_of(text.begin(), text.end(), is_odd)) return;
-  refuse(f, field,
-         fmt::format("got \"{}\"; allowed: a text without spaces, commas, quotes and control characters", text));
-}
-
-/// The value is a number beside a range and a text beside options. The reader asks for the one that belongs there; the
-/// schema allows both.
-void describe_value(Fields& f, OpenChoice& choice, bool is_text) {
-  const auto number = [&choice](Fields& v) {
-    double value = 0.0;
-    if (const auto* held = std::get_if<double>(&choice.value)) value = *held;
-    v.number(value, kAnyNumber);
-    if (v.reads()) choice.value = value;
-  };
-  const auto text = [&choice](Fields& v) {
-    std::string value;
-    if (const auto* held = std::get_if<std::string>(&choice.value)) value = *held;
-    v.text(value, kLongest);
-    if (v.reads()) choice.value = value;
-  };
-  f.field("value", "on record: what the scenarios have", Presence::required, [&](Fields& v) {
-    if (!v.reads()) return v.one_or_list(is_text, number, text);
-    is_text ? text(v) : number(v);
-  });
-}
-
-void check_range(const Fields& f, const OpenChoice& choice) {
-  const auto [low, high] = *choice.range;
-  const double value = std::get<double>(choice.value);
-  if (!(low < high)) refuse(f, "range", fmt::format("got {} and {}; allowed: the smaller number first", low, high));
-  if (choice.scale == OpenChoice::Scale::log && !(low > 0.0)) {
-    refuse(f, "range", fmt::format("got {} for an end of a logarithmic range; allowed: numbers > 0", low));
-  }
-  if (value < low || value > high) {
-    refuse(f, "value", fmt::format("got {}; allowed: a number of the range {} ... {}", value, low, high));
-  }
-}
-
-void check_choice(const Fields& f, const OpenChoice& choice) {
-  check_plain(f, "id", choice.id);
-  if (choice.range) check_range(f, choice);
-  if (choice.options) {
-    for (const std::string& option : *choice.options) check_plain(f, "options", option);
-    require_valid_name(member(f.at(), "value") + ": got", std::get<std::string>(choice.value), *choice.options);
-    if (choice.scale == OpenChoice::Scale::log) {
-      refuse(f, "scale", "got \"log\" beside options; allowed: \"log\" beside a range");
-    }
-  }
-  if (choice.fields.empty() && choice.options) {
-    const auto& options = *choice.options;
-    if (!std::all_of(options.begin(), options.end(), [](const auto& o) { return finite_number(o).has_value(); }))
-      refuse(f, "options", "got a text of a choice without fields; allowed: numbers");
-  }
-  const bool times =
-      std::any_of(choice.fields.begin(), choice.fields.end(), [](const ChosenField& c) { return c.times; });
-  if (!times) return;
-  if (choice.options) refuse(f, "fields", "got \"times\" beside options; allowed: beside a range");
-  if (const double value = std::get<double>(choice.value); value != 1.0) {
-    refuse(f, "value", fmt::format("got {} of a choice that multiplies; allowed: 1", value));
-  }
-}
-
-/// The whole file.
-struct ChoicesFile {
-  std::vector<OpenChoice> choices;
-};
-
-}  // namespace
-
-static void describe(Fields& f, ChosenField& field) {
-  f.list(
-      "scenarios", field.scenarios, {1, 100}, "names of bundled scenarios; * stands for any characters",
-      [](Fields& s, std::string& name) { s.text(name, kLongest); }, Presence::required);
-  f.text("path", field.path, kLongest, "of the field, as in --set; * stands for every index of a list",
-         Presence::required);
-  f.boolean("times", field.times, "the choice multiplies what the scenario has; its value on record is 1");
-}
-
-static void describe(Fields& f, OpenChoice& choice) {
-  f.text("id", choice.id, kLongest, "name, as in task2.hand_angle", Presence::required);
-  f.text("what", choice.what, kLongest, "was chosen", Presence::required);
-  f.text("thesis", choice.thesis, kLongest, "what the thesis says of it, or that it does not", Presence::required);
-  f.if_any("range", choice.range, "plausible values", [](Fields& r, std::pair<double, double>& range) {
-    r.pair(
-        "a pair of numbers [least, greatest]", [&](Fields& a) { a.number(range.first, kAnyNumber); },
-        [&](Fields& b) { b.number(range.second, kAnyNumber); });
-  });
-  f.if_any("options", choice.options, "plausible values, as texts for --set",
-           [](Fields& o, std::vector<std::string>& options) {
-             o.list(options, {2, 100}, [](Fields& t, std::string& text) { t.text(text, kLongest); });
-           });
-  f.exactly_one_of("range", "options");
-  describe_value(f, choice, f.given("options"));
-  f.text("unit", choice.unit, kLongest, "of the number; none for a ratio or options");
-  f.choice("scale", choice.scale, kScales, "scale", "of the range: values are sampled evenly in it");
-  f.choice("chosen", choice.chosen, kChosen, "time", "before or after results were seen", Presence::required);
-  f.text("why", choice.why, kLongest, "this value", Presence::required);
-  f.list("fields", choice.fields, {1, 100}, "that the choice sets; none: rules read the number by the choice's id",
-         [](Fields& c, ChosenField& field) { c.object(field); });
-  if (f.reads()) check_choice(f, choice);
-}
-
-static void describe(Fields& f, ChoicesFile& file) {
-  f.ignored("$schema", "for editors");
-  f.list(
-      "choices", file.choices, {1, kMostChoices}, "all choices on record",
-      [](Fields& c, OpenChoice& choice) { c.object(choice); }, Presence::required);
-  if (!f.reads()) return;
-  std::set<std::string> ids;
-  for (std::size_t i = 0; i < file.choices.size(); ++i) {
-    if (ids.insert(file.choices[i].id).second) continue;
-    throw InputError(InputError::Kind::relation, member(element(member(f.at(), "choices"), i), "id"),
-                     fmt::format("got \"{}\" twice; allowed: each once", file.choices[i].id));
-  }
-}
-
-std::vector<OpenChoice> read_choices(const Json& json) {
-  ChoicesFile file;
-  Reader reader(json, "");
-  reader.object(file);
-  return file.choices;
-}
-
-Json choices_schema() {
-  ChoicesFile defaults;
-  SchemaWriter writer;
-  writer.object(defaults);
-  Json schema = {{"$schema", "http://json-schema.org/draft-07/schema#"},
-                 {"title", "Choices on record"},
-                 {"description", "What the thesis leaves open, and what the bundled scenarios chose."}};
-  schema.update(writer.schema());
-  return schema;
-}
-
-namespace {
-
 std::string number_text(double number) {
   return std::string(std::string_view(NumberText(number)));
 }
 
-std::string value_text(const OpenChoice& choice) {
-  const auto* number = std::get_if<double>(&choice.value);
-  return number != nullptr ? number_text(*number) : std::get<std::string>(choice.value);
+OpenChoice choice_of(const Json& json) {
+  OpenChoice choice;
+  for (const auto& [name, text] :
+       {std::pair{"id", &choice.id}, std::pair{"what", &choice.what}, std::pair{"thesis", &choice.thesis},
+        std::pair{"why", &choice.why}, std::pair{"chosen", &choice.chosen}})
+    json.at(name).get_to(*text);
+  const Json& value = json.at("value");
+  choice.value = value.is_number() ? number_text(value.get<double>()) : value.get<std::string>();
+  choice.unit = json.value("unit", "");
+  if (json.contains("range")) choice.range = json.at("range").get<std::pair<double, double>>();
+  choice.options = json.value("options", choice.options);
+  choice.logarithmic = json.value("scale", "linear") == "log";
+  for (const Json& field : json.value("fields", Json::array()))
+    choice.fields.push_back({field.at("scenarios"), field.at("path"), field.value("times", false)});
+  return choice;
 }
 
 bool concerns(const ChosenField& field, const std::string& scenario) {
@@ -199,14 +57,14 @@ class Changes {
             text = number_text(finite_number(value).value_or(1.0) * node.get<double>());
           }
           node = Json::accept(text) ? parse_json(text) : Json(text);
-          set(path, text);
+          values_[path] = text;
         },
         choice);
   }
 
   std::vector<std::string> overrides() const {
     std::vector<std::string> texts;
-    for (const auto& [path, value] : values_) texts.push_back(path + "=" + value);
+    for (const auto& [path, value] : values_.items()) texts.push_back(path + "=" + value.get<std::string>());
     return texts;
   }
 
@@ -236,19 +94,9 @@ class Changes {
                                  path.empty() ? "the scenario" : fmt::format("\"{}\"", path), problem));
   }
 
-  void set(const std::string& path, const std::string& value) {
-    const auto found =
-        std::find_if(values_.begin(), values_.end(), [&path](const auto& entry) { return entry.first == path; });
-    if (found == values_.end()) {
-      values_.emplace_back(path, value);
-    } else {
-      found->second = value;
-    }
-  }
-
   Json scenario_;  ///< with every default, so that every field exists
   std::string name_;
-  std::vector<std::pair<std::string, std::string>> values_;  ///< by path, in the order of their first change
+  Json values_ = Json::object();  ///< texts by path, in the order of their first change
 };
 
 std::string fields_text(const OpenChoice& choice) {
@@ -261,48 +109,37 @@ std::string fields_text(const OpenChoice& choice) {
 }
 
 std::string range_text(const OpenChoice& choice) {
-  if (choice.options) return fmt::format("{}", fmt::join(*choice.options, ", "));
-  return fmt::format("{} ... {}{}", choice.range->first, choice.range->second,
-                     choice.scale == OpenChoice::Scale::log ? " (log)" : "");
+  if (!choice.range) return fmt::format("{}", fmt::join(choice.options, ", "));
+  return fmt::format("{} ... {}{}", choice.range->first, choice.range->second, choice.logarithmic ? " (log)" : "");
 }
 
 }  // namespace
 
-bool names_scenario(std::string_view pattern, std::string_view scenario) {
-  const std::size_t star = pattern.find('*');
-  if (star == std::string_view::npos) return pattern == scenario;
-  if (!scenario.starts_with(pattern.substr(0, star))) return false;
-  for (std::size_t from = star; from <= scenario.size(); ++from) {
-    if (names_scenario(pattern.substr(star + 1), scenario.substr(from))) return true;
-  }
-  return false;
+bool names_scenario(const std::string& pattern, const std::string& scenario) {
+  return ::fnmatch(pattern.c_str(), scenario.c_str(), 0) == 0;
 }
 
 Choices::Choices(const std::filesystem::path& file) {
+  std::string at = "/choices";
   try {
     const Json json = parse_json(read_text_file(file, kLargestJsonFile));
-    all_ = read_choices(json);
     hash_ = hash_text(hash_of(json_text(json)));
-    for (const Json& choice : json.at("choices")) texts_.push_back(json_text(choice));
+    for (const Json& choice : json.at("choices")) {
+      at = element("/choices", all_.size());
+      all_.push_back(choice_of(choice));
+      texts_.push_back(json_text(choice));
+    }
   } catch (const InputError& error) {
     rethrow_with_file(error, file);
+  } catch (const Json::exception& problem) {
+    fail_in_file(file, fmt::format("{}: {}; allowed: what choices.schema.json says", at, problem.what()));
   }
 }
 
 std::vector<std::string> Choices::values_on_record() const {
   std::vector<std::string> values;
-  for (const OpenChoice& choice : all_) values.push_back(value_text(choice));
+  for (const OpenChoice& choice : all_) values.push_back(choice.value);
   return values;
-}
-
-std::vector<Axis> Choices::axes() const {
-  std::vector<Axis> axes;
-  for (const OpenChoice& choice : all_) {
-    Axis& axis = axes.emplace_back(Axis{choice.id, choice.options.value_or(std::vector<std::string>())});
-    if (choice.range)
-      axis.range = Range{choice.range->first, choice.range->second, choice.scale == OpenChoice::Scale::log};
-  }
-  return axes;
 }
 
 std::vector<std::string> Choices::overrides(const Scenario& scenario, std::span<const std::string> values) const {
@@ -339,12 +176,15 @@ std::string Choices::markdown() const {
   std::string text =
       "| id | choice | the thesis | value | plausible | seen results? | why | fields |\n|---|---|---|---|---|---|---|---|\n";
   for (const OpenChoice& choice : all_) {
-    text +=
-        fmt::format("| {} | {} | {} | {}{}{} | {} | {} | {} | {} |\n", choice.id, choice.what, choice.thesis,
-                    value_text(choice), choice.unit.empty() ? "" : " ", choice.unit, range_text(choice),
-                    choice.chosen == OpenChoice::Chosen::before ? "before" : "after", choice.why, fields_text(choice));
+    text += fmt::format("| {} | {} | {} | {}{}{} | {} | {} | {} | {} |\n", choice.id, choice.what, choice.thesis,
+                        choice.value, choice.unit.empty() ? "" : " ", choice.unit, range_text(choice), choice.chosen,
+                        choice.why, fields_text(choice));
   }
   return text;
+}
+
+Json choices_schema() {
+  return parse_json(read_text_file(installed_folder("results/reference") / "choices.schema.json", kLargestJsonFile));
 }
 
 }  // namespace hapbench

@@ -1,20 +1,17 @@
 #pragma once
 
-#include <cstddef>
 #include <filesystem>
 #include <optional>
 #include <span>
 #include <string>
-#include <string_view>
 #include <utility>
-#include <variant>
 #include <vector>
 
-#include "scenarios/batch/axis.hpp"
+#include "scenarios/input/json_file.hpp"
 #include "scenarios/thesis_claims/evidence.hpp"
 
 /// Choices that the thesis leaves open and that the bundled scenarios make: results/reference/choices.json.
-/// The format of results/reference/choices.json.
+/// choices.schema.json beside it says what each part means and what is allowed; a test checks the file by it.
 namespace hapbench {
 
 /// A field that a choice sets, in the scenarios that have it.
@@ -25,37 +22,30 @@ struct ChosenField {
 };
 
 struct OpenChoice {
-  enum class Scale { linear, log };
-  enum class Chosen { before, after };
-
-  std::string id;
-  std::string what;
-  std::string thesis;                               ///< what it says of the matter, or that it does not
-  std::variant<double, std::string> value = 0.0;    ///< as the scenarios have it; a text is one of the options
-  std::string unit;                                 ///< of a number; empty for a ratio
-  std::optional<std::pair<double, double>> range;   ///< plausible values of a number; exactly one of this …
-  std::optional<std::vector<std::string>> options;  ///< … and this, texts as in --set
-  Scale scale = Scale::linear;                      ///< of the range
-  Chosen chosen = Chosen::after;                    ///< before or after results were seen
-  std::string why;
-  std::vector<ChosenField> fields;  ///< none for a number that rules read by the choice's id
+  std::string id, what, thesis, why;
+  std::string value;                               ///< as the scenarios have it, a text as in --set
+  std::string unit;                                ///< of a number; empty for a ratio
+  std::optional<std::pair<double, double>> range;  ///< plausible values of a number; exactly one of this …
+  std::vector<std::string> options;                ///< … and these, texts as in --set
+  bool logarithmic = false;                        ///< the range is sampled evenly in the logarithm
+  std::string chosen;                              ///< "before" or "after" results were seen
+  std::vector<ChosenField> fields;                 ///< none for a number that rules read by the choice's id
 };
 
 /// True when a pattern of a choice's scenarios matches this scenario's name; '*' stands for any characters.
-bool names_scenario(std::string_view pattern, std::string_view scenario);
+bool names_scenario(const std::string& pattern, const std::string& scenario);
 
 /// All choices on record.
 class Choices {
  public:
-  /// Reads the file. Throws InputError with file, JSON pointer, the value given and what is allowed.
+  /// Reads the file. Throws InputError with file and JSON pointer of a choice that lacks a part or has another type of
+  /// it.
   explicit Choices(const std::filesystem::path& file);
 
   const std::vector<OpenChoice>& all() const { return all_; }
   /// FNV-1a of the file's content, as 16 hexadecimal digits; spelling and white space do not count.
   const std::string& hash() const { return hash_; }
 
-  /// What each choice can take: a range in its scale, or its options.
-  std::vector<Axis> axes() const;
   /// The values on record, one for each choice, as texts for --set.
   std::vector<std::string> values_on_record() const;
 
@@ -80,10 +70,7 @@ class Choices {
   std::string hash_;
 };
 
-/// The choices of a file. Throws InputError with JSON pointer, the value given and what is allowed.
-std::vector<OpenChoice> read_choices(const Json& json);
-
-/// The JSON Schema (draft 7) that results/reference/choices.schema.json holds.
+/// The JSON Schema (draft 7) of that file, results/reference/choices.schema.json. Throws InputError.
 Json choices_schema();
 
 }  // namespace hapbench

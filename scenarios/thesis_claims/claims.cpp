@@ -34,26 +34,12 @@ std::string plain(double number) {
   return text;
 }
 
-std::string percent(double share) {
-  return plain(100.0 * share) + " %";
-}
-
-std::string in_words(double number) {
-  constexpr std::pair<double, const char*> kWords[] = {
-      {0.5, "half"}, {1.0, "one"}, {2.0, "two"}, {5.0, "five"}, {10.0, "ten"}};
-  for (const auto& [value, word] : kWords) {
-    if (value == number) return word;
-  }
-  return plain(number);
-}
-
 std::vector<Claim> all_claims() {
   std::vector<Claim> claims;
   for (const auto chapter :
        {chapter_3_reduction, chapter_3_cost, chapter_3_stiffness_ratios, chapter_3_force_limit,
-        chapter_3_ideal_trajectory, appendix_a_planar_peg, appendix_a_springs, appendix_a_stability, chapter_4_depths,
-        appendix_b_original_algorithm, chapter_4_discussion, appendix_c_proposed_algorithm, chapter_1_penetration,
-        appendix_f_optional_algorithms, appendix_d_experiments}) {
+        chapter_3_ideal_trajectory, appendix_a, chapter_4_depths, appendix_b_original_algorithm, chapter_4_discussion,
+        appendix_c_proposed_algorithm, chapter_1_penetration, appendix_f_optional_algorithms, appendix_d_experiments}) {
     for (Claim& claim : chapter()) claims.push_back(std::move(claim));
   }
   return claims;

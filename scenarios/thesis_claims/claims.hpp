@@ -62,31 +62,46 @@ using Measured = std::vector<MeasuredCase>;
 /// Appends an item to an enumeration in words.
 void append_item(std::string& list, std::string_view item, std::string_view separator = "; ");
 
-// Thresholds as the rules of claims write them.
+/// What `text_of` says of each case, one after the other.
+template <class TextOf>
+std::string said_of_each(const Measured& measured, TextOf text_of, std::string_view separator = "; ") {
+  std::string said;
+  for (const MeasuredCase& m : measured) append_item(said, text_of(m), separator);
+  return said;
+}
 
-/// "half", "one", "two", "five" or "ten"; other numbers as `plain` has them.
-std::string in_words(double number);
-/// "2 %" for 0.02.
-std::string percent(double share);
-/// Six digits at most: "0.1", "15", "1e-9".
+/// A number as the rules of claims write it, with six digits at most: "0.1", "15", "1e-9".
 std::string plain(double number);
 
 /// Its texts hold published numbers by id, which PublishedNumbers::fill puts in. A threshold of ours that `measure` or
 /// `judge` compares with is a choice on record without fields, such as rule.easily; the rule's text names it in the
 /// same way, which also tells that the choice reaches the claim.
 struct Claim {
-  const char* id;
-  const char* place;      ///< in the thesis
-  const char* claim;      ///< in our words
-  std::string published;  ///< its numbers, for people
-  std::string rule;       ///< of the verdict, for people: with the thresholds that `judge` compares with
+  const char* id = "";
+  const char* place = "";      ///< in the thesis
+  const char* claim = "";      ///< in our words
+  std::string published = {};  ///< its numbers, for people
+  std::string rule = {};       ///< of the verdict, for people: with the thresholds that `judge` compares with
   /// Takes the deciding numbers from the results of scenarios, or computes them.
-  Measured (*measure)(const Evidence& evidence);
+  Measured (*measure)(const Evidence& evidence) = nullptr;
   /// Depends on its arguments alone.
-  Finding (*judge)(const Measured& measured, const PublishedNumbers& published);
+  Finding (*judge)(const Measured& measured, const PublishedNumbers& published) = nullptr;
   bool timing = false;  ///< the finding holds times, so no two runs agree
   bool ours = false;    ///< found on the way: no claim of the thesis, and not counted among those
   bool costly = false;  ///< takes long to measure: judged again for a part of a sample only (robustness.hpp)
+};
+
+/// A claim with the verdict on it.
+struct JudgedClaim {
+  Claim claim;
+  Finding finding;
+  std::vector<std::string> scenarios = {};  ///< bundled ones that it was measured with, in the order of their names
+  std::string reach = {};                   ///< of the choices, as Choices::reach has it; empty: none reaches it
+
+  /// Whether another reading of the choices could change the verdict: a simulation shows it, and a choice reaches it.
+  bool can_be_sampled() const {
+    return !claim.timing && finding.verdict != Verdict::not_reproducible && !reach.empty();
+  }
 };
 
 /// All of them, in the order of the ledger.
@@ -109,9 +124,7 @@ std::vector<Claim> chapter_3_force_limit();           ///< L
 std::vector<Claim> chapter_3_ideal_trajectory();      ///< J
 std::vector<Claim> chapter_4_depths();                ///< G
 std::vector<Claim> chapter_4_discussion();            ///< B4, C1 to C4, C7
-std::vector<Claim> appendix_a_planar_peg();           ///< A1
-std::vector<Claim> appendix_a_springs();              ///< A2, A3
-std::vector<Claim> appendix_a_stability();            ///< A4
+std::vector<Claim> appendix_a();                      ///< A
 std::vector<Claim> appendix_b_original_algorithm();   ///< B1 to B3
 std::vector<Claim> appendix_c_proposed_algorithm();   ///< P, C5, C6
 std::vector<Claim> appendix_d_experiments();          ///< D

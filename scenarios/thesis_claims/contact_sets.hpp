@@ -26,36 +26,20 @@ double seconds_per_call(std::size_t calls, int repetitions, Work work) {
   return least / static_cast<double>(calls);
 }
 
-/// Seconds per contact set of `force`, which computes the force of a copy of the set that `load` has made; the time of
-/// copying is subtracted.
-template <class Load, class Force>
-double seconds_per_force(const std::vector<ContactBuffer>& sets, int repetitions, Load load, Force force) {
-  const double copying = seconds_per_call(sets.size(), repetitions, [&] {
-    for (const ContactBuffer& set : sets) load(set);
-  });
-  const double seconds = seconds_per_call(sets.size(), repetitions, [&] {
-    for (const ContactBuffer& set : sets) {
-      load(set);
-      force();
-    }
-  });
-  return std::max(0.0, seconds - copying);
-}
-
 /// Prepares a scenario in which a hand presses a drill into the block's hole to be measured: its device becomes an
 /// ideal one with the same force limit, so that the device adds no dynamics of its own; it ends after one period of the
-/// tilt and records nothing. Throws InputError when the scenario has no block_with_hole, or a tool whose ideal
-/// trajectory is not known.
+/// tilt and records nothing.
 Scenario drill_in_hole(Scenario scenario);
 
-/// The colliding points of every `stride`-th row of a scenario, with depth and gradient, before any point stage; rows
-/// without contact are left out.
-std::vector<ContactBuffer> contact_sets(Scenario scenario, std::uint64_t stride);
+/// Before or after the scenario's point stages.
+enum class Points { colliding, rendered };
 
-/// The contacts of every `stride`-th row of a scenario after its point stages, without rows that have none.
-std::vector<ContactBuffer> rendered_contact_sets(const Scenario& scenario, std::uint64_t stride);
+/// The points of every `stride`-th row of a scenario, with depth and gradient; rows without contact are left out.
+std::vector<ContactBuffer> contact_sets(const Scenario& scenario, std::uint64_t stride,
+                                        Points points = Points::colliding);
 
-/// The size of the largest set.
+/// The largest set, and its size.
+ContactBuffer largest_of(const std::vector<ContactBuffer>& sets);
 std::size_t largest_size(const std::vector<ContactBuffer>& sets);
 
 }  // namespace hapbench

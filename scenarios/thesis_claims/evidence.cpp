@@ -4,13 +4,11 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <regex>
 
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/description/load_scenario.hpp"
-#include "scenarios/input/input_error.hpp"
 #include "scenarios/input/json_file.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/run/assemble.hpp"
@@ -30,12 +28,6 @@ PublishedNumber number_of(const Json& value) {
   number.at_least = value.value("at_least", number.at_least);
   number.at_most = value.value("at_most", number.at_most);
   return number;
-}
-
-double value_of(std::string_view cell) {
-  double value = std::numeric_limits<double>::quiet_NaN();
-  std::from_chars(cell.data(), cell.data() + cell.size(), value);
-  return value;
 }
 
 }  // namespace
@@ -85,53 +77,32 @@ std::string PublishedNumbers::fill(const std::string& text) const {
   return filled.append(end, text.end());
 }
 
-Json ResultFiles::summary(const std::string& scenario) const {
-  provide_(scenario, "summary.json");
-  return read_summary(scenario);
-}
-
-Json ResultFiles::read_summary(const std::string& scenario) const {
-  return parse_json(read_text_file(directory_ / scenario / "summary.json", kLargestJsonFile));
-}
-
-double ResultFiles::number(const std::string& scenario, const std::string& path) const {
-  provide_(scenario, path.substr(0, path.find('.')));
+double Evidence::number(const std::string& scenario, const std::string& path) const {
+  provide(scenario);
   std::string pointer = "/" + path;
   std::replace(pointer.begin(), pointer.end(), '.', '/');
-  const Json value = read_summary(scenario).value(Json::json_pointer(pointer), Json(nullptr));
-  return value.is_number() ? value.get<double>() : std::numeric_limits<double>::quiet_NaN();
+  const Json summary = parse_json(read_text_file(directory / scenario / "summary.json", kLargestJsonFile));
+  const Json value = summary.value(Json::json_pointer(pointer), Json());
+  return value.is_number() ? value.get<double>() : std::nan("");
 }
 
-std::map<std::string, std::vector<double>> ResultFiles::table(const std::string& scenario,
-                                                              const std::string& file) const {
-  provide_(scenario, file);
-  const std::filesystem::path path = directory_ / scenario / file;
+std::map<std::string, std::vector<double>> Evidence::table(const std::string& scenario, const std::string& file) const {
+  provide(scenario);
+  const fs::path path = directory / scenario / file;
   const std::string text = read_named_file(path);
-  if (text.empty()) throw InputError(fmt::format("{}: is empty", path.string()));
+  if (text.empty()) fail_in_file(path, "is empty; allowed: a header and rows");
   CsvReader csv{LineReader(text), path};
   std::vector<std::vector<double>*> columns;
   std::map<std::string, std::vector<double>> table;
   for (const std::string_view name : csv.columns()) columns.push_back(&table[std::string(name)]);
   while (csv.next()) {
-    for (std::size_t i = 0; i < columns.size(); ++i) columns[i]->push_back(value_of(csv.cells()[i]));
+    for (std::size_t i = 0; i < columns.size(); ++i)
+      columns[i]->push_back(finite_number(csv.cells()[i]).value_or(std::nan("")));
   }
   return table;
 }
 
-namespace {
-
-class RowObserver final : public Observer {
- public:
-  explicit RowObserver(const std::function<void(const StepRecord&)>& row) : row_(row) {}
-  void on_step(const StepRecord& record) noexcept override { row_(record); }
-
- private:
-  const std::function<void(const StepRecord&)>& row_;
-};
-
-}  // namespace
-
-LoadedScenario Evidence::load(const std::string& name, std::span<const std::string> more) const {
+LoadedScenario Evidence::load(const std::string& name, const std::vector<std::string>& more) const {
   if (used) used(name);
   const ScenarioText text = read_scenario_text(find_scenario(name));
   std::vector<std::string> all;
@@ -140,19 +111,22 @@ LoadedScenario Evidence::load(const std::string& name, std::span<const std::stri
   return load_scenario(text, all);
 }
 
-RunReport Evidence::run(const std::string& name, std::span<const std::string> more) const {
-  const LoadedScenario loaded = load(name, more);
-  return run_with_shell(loaded, shell(loaded), std::nullopt, false);
+RunReport Evidence::run(const std::string& name, const std::vector<std::string>& more) const {
+  return run_scenario(load(name, more), std::nullopt, false);
 }
 
-std::shared_ptr<const PointShell> Evidence::shell(const LoadedScenario& loaded) const {
-  return make_shell(loaded.scenario, loaded.files);
-}
+void for_each_row(const LoadedScenario& loaded, const std::function<void(const StepRecord&)>& row) {
+  class RowObserver final : public Observer {
+   public:
+    explicit RowObserver(const std::function<void(const StepRecord&)>& row_of) : row_(row_of) {}
+    void on_step(const StepRecord& record) noexcept override { row_(record); }
 
-void Evidence::for_each_row(const LoadedScenario& loaded, const std::function<void(const StepRecord&)>& row) const {
-  const Scenario& scenario = loaded.scenario;
-  RowObserver observer(row);
-  Simulation simulation(simulation_config(scenario), assemble(scenario, loaded.files, shell(loaded), {}), {&observer});
+   private:
+    const std::function<void(const StepRecord&)>& row_;
+  } observer(row);
+  const auto shell = make_shell(loaded.scenario, loaded.files);
+  Simulation simulation(simulation_config(loaded.scenario), assemble(loaded.scenario, loaded.files, shell, {}),
+                        {&observer});
   run_to_end(simulation);
 }
 

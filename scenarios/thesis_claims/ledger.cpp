@@ -1,123 +1,40 @@
 #include "scenarios/thesis_claims/ledger.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
-#include <algorithm>
+#include <map>
 #include <optional>
 
 namespace hapbench {
-
-namespace fs = std::filesystem;
-
 namespace {
+
+constexpr const char *kWaiting = "not sampled yet", *kUntouched = "depends on no recorded choice";
 
 std::string text_at(const Json& claim, const char* key) {
   return claim.at(key).get<std::string>();
 }
 
-/// The verdict that most samples have; of several the one on record, if it is one of them.
-std::string majority_of(const ClaimRobustness& claim) {
-  std::string majority = claim.on_record;
-  std::size_t most = claim.holds;
-  for (const auto& [verdict, count] : claim.verdicts) {
-    if (count > most) {
-      majority = verdict;
-      most = count;
-    }
-  }
-  return majority;
-}
-
 }  // namespace
 
-Json robustness_json(const RobustnessPlan& plan, const std::vector<JudgedClaim>& judged,
-                     const std::vector<ClaimRobustness>& claims, const Json& before) {
-  Json entries = Json::array();
-  for (std::size_t i = 0; i < claims.size(); ++i) {
-    const ClaimRobustness& claim = claims[i];
-    Json decided_by = nullptr;
-    if (claim.decided_by) decided_by = {{"choice", claim.decided_by->id}, {"index", claim.decided_by->index}};
-    entries.push_back({{"id", claim.id},
-                       {"choices", judged[i].reach},
-                       {"on_record", claim.on_record},
-                       {"majority", majority_of(claim)},
-                       {"judged", claim.judged},
-                       {"holds", claim.holds},
-                       {"reproduced", claim.reproduced},
-                       {"not_measured", claim.not_measured},
-                       {"verdicts", claim.verdicts},
-                       {"decided_by", std::move(decided_by)}});
-  }
-  for (const Json& old : before.value("claims", Json::array())) {
-    const auto same = [&old](const ClaimRobustness& claim) { return old.at("id") == claim.id; };
-    if (std::none_of(claims.begin(), claims.end(), same)) entries.push_back(old);
-  }
-  return {{"choices", plan.choices.hash()},
-          {"samples", plan.samples()},
-          {"costly_samples", plan.costly_samples()},
-          {"seed", kRobustnessSeed},
-          {"claims", std::move(entries)}};
-}
-
-std::string robustness_markdown(const Json& record) {
-  std::string text = fmt::format(
-      "Every claim judged again at {} points of the ranges of the choices on record (choices.md), a Latin hypercube, the "
-      "costly ones at {}. S is the first-order Sobol index of the choice that decides whether the verdict holds.\n\n"
-      "| id | verdict on record | of most samples | judged | holds | reproduced | not measured | verdicts | decided by |\n"
-      "|---|---|---|---|---|---|---|---|---|\n",
-      record.at("samples").get<std::size_t>(), record.at("costly_samples").get<std::size_t>());
-  for (const Json& claim : record.at("claims")) {
-    const auto count = [&claim](const char* key) { return claim.at(key).get<std::size_t>(); };
-    std::vector<std::string> verdicts;
-    for (const auto& [verdict, samples] : claim.at("verdicts").items())
-      verdicts.push_back(fmt::format("{} {}", verdict, samples.get<std::size_t>()));
-    std::string decided_by = count("holds") < count("judged") ? "no single choice" : "";
-    if (const Json& by = claim.at("decided_by"); !by.is_null())
-      decided_by = fmt::format("{} (S = {:.2f})", text_at(by, "choice"), by.at("index").get<double>());
-    const bool same = claim.at("majority") == claim.at("on_record");
-    text += fmt::format("| {} | {} | {} | {} | {} | {} | {} | {} | {} |\n", text_at(claim, "id"),
-                        text_at(claim, "on_record"), same ? "the same" : "**" + text_at(claim, "majority") + "**",
-                        count("judged"), count("holds"), count("reproduced"), count("not_measured"),
-                        fmt::join(verdicts, ", "), decided_by);
-  }
-  return text;
-}
-
-RobustnessOnRecord::RobustnessOnRecord(const Json& record) {
+Json robustness_on_record(const Json& record, const JudgedClaim& judged) {
   try {
     for (const Json& claim : record.at("claims")) {
-      claim.at("majority").get<std::string>();
-      claims_[claim.at("id").get<std::string>()] = claim;
+      if (claim.at("id") != judged.claim.id) continue;
+      const bool same = judged.can_be_sampled() && claim.at("choices") == judged.reach &&
+                        claim.at("on_record") == verdict_name(judged.finding.verdict);
+      if (!same) break;
+      Json counts = claim;
+      for (const char* key : {"id", "on_record", "choices"}) counts.erase(key);
+      return counts;
     }
-  } catch (const Json::exception& problem) {
-    throw InputError(fmt::format("is no record of robustness: {}", problem.what()));
-  }
-}
-
-RobustnessOnRecord::RobustnessOnRecord(const fs::path& file) {
-  if (!fs::exists(file)) return;
-  try {
-    *this = RobustnessOnRecord(parse_json(read_text_file(file, kLargestJsonFile)));
-  } catch (const InputError& error) {
-    rethrow_with_file(error, file);
-  }
-}
-
-Json RobustnessOnRecord::of(const JudgedClaim& judged) const {
-  const auto found = claims_.find(judged.claim.id);
-  if (found == claims_.end() || !judged.can_be_sampled() || found->second.value("choices", "") != judged.reach ||
-      found->second.value("on_record", "") != verdict_name(judged.finding.verdict)) {
     return nullptr;
+  } catch (const Json::exception& problem) {
+    throw InputError(fmt::format("robustness.json: is no record of robustness: {}", problem.what()));
   }
-  Json counts = found->second;
-  for (const char* key : {"id", "on_record", "choices"}) counts.erase(key);
-  return counts;
 }
 
-Json ledger_json(const std::vector<JudgedClaim>& judged, const PublishedNumbers& published,
-                 const RobustnessOnRecord& robustness) {
+Json ledger_json(const std::vector<JudgedClaim>& judged, const PublishedNumbers& published, const Json& robustness) {
   Json claims = Json::array();
   for (const JudgedClaim& j : judged) {
     Json& claim = claims.emplace_back(Json{{"id", j.claim.id},
@@ -127,7 +44,7 @@ Json ledger_json(const std::vector<JudgedClaim>& judged, const PublishedNumbers&
                                            {"measured", j.finding.measured},
                                            {"rule", published.fill(j.claim.rule)},
                                            {"verdict", verdict_name(j.finding.verdict)},
-                                           {"robustness", robustness.of(j)},
+                                           {"robustness", robustness_on_record(robustness, j)},
                                            {"choices_reach_it", !j.reach.empty()},
                                            {"why", j.finding.why},
                                            {"scenarios", j.scenarios},
@@ -162,7 +79,7 @@ std::string robustness_text(const Json& claim) {
   if (robustness.is_null()) {
     if (claim.at("timing").get<bool>()) return "not sampled: times of one machine";
     if (claim.at("verdict") == verdict_name(Verdict::not_reproducible)) return "not sampled: nothing to simulate";
-    return claim.at("choices_reach_it").get<bool>() ? "not sampled yet" : "depends on no recorded choice";
+    return claim.at("choices_reach_it").get<bool>() ? kWaiting : kUntouched;
   }
   const auto judged = robustness.at("judged").get<std::size_t>(), holds = robustness.at("holds").get<std::size_t>();
   std::string text = fmt::format("this verdict in {} of {} samples", holds, judged);
@@ -181,26 +98,24 @@ std::string robustness_text(const Json& claim) {
 }
 
 std::string ledger_headline(const Json& claims) {
-  std::size_t all = 0, survive = 0, changes = 0, untouched = 0, other = 0, waiting = 0;
+  std::size_t all = 0, survive = 0, changes = 0;
+  std::map<std::string, std::size_t> not_sampled;  // by what robustness_text says
   std::string changed;
   for (const Json& claim : claims) {
     if (claim.at("ours").get<bool>()) continue;
     ++all;
-    const Json& robustness = claim.at("robustness");
     if (const auto majority = other_majority(claim)) {
       ++changes;
       append_item(changed, fmt::format("{} (most samples: {}; recorded: {})", text_at(claim, "id"), *majority,
                                        text_at(claim, "verdict")));
-    } else if (!robustness.is_null()) {
-      ++survive;
-    } else if (claim.at("timing").get<bool>() || claim.at("verdict") == verdict_name(Verdict::not_reproducible)) {
-      ++other;
-    } else if (claim.at("choices_reach_it").get<bool>()) {
-      ++waiting;
+    } else if (claim.at("robustness").is_null()) {
+      ++not_sampled[robustness_text(claim)];
     } else {
-      ++untouched;
+      ++survive;
     }
   }
+  const std::size_t waiting = not_sampled[kWaiting], untouched = not_sampled[kUntouched],
+                    other = all - survive - changes - waiting - untouched;
   std::string text = fmt::format(
       "Of {} verdicts on claims of the thesis, {} of the {} sampled would survive another reasonable reading: most samples "
       "of the choices on record have them, too. ",

@@ -1,56 +1,20 @@
 #pragma once
 
-#include <filesystem>
-#include <map>
 #include <string>
 #include <vector>
 
+#include "scenarios/input/json_file.hpp"
 #include "scenarios/thesis_claims/claims.hpp"
-#include "scenarios/thesis_claims/robustness.hpp"
 
 /// The ledger's files: the verdict on each claim, and its robustness against the choices on record.
 namespace hapbench {
 
-/// A claim with the verdict on it.
-struct JudgedClaim {
-  Claim claim;
-  Finding finding;
-  std::vector<std::string> scenarios = {};  ///< bundled ones that it was measured with, in the order of their names
-  std::string reach = {};                   ///< of the choices, as Choices::reach has it; empty: none reaches it
+/// What robustness.json says of a claim, if the recorded verdict is this one and the choices that reach it are the
+/// same; else null. Throws InputError when it is no such record.
+Json robustness_on_record(const Json& record, const JudgedClaim& judged);
 
-  /// Whether another reading of the choices could change the verdict: a simulation shows it, and a choice reaches it.
-  bool can_be_sampled() const {
-    return !claim.timing && finding.verdict != Verdict::not_reproducible && !reach.empty();
-  }
-};
-
-/// robustness.json: the counts of every claim, and the hash of the choices they are about. `judged` as the plan's
-/// claims. Of claims that are not among them, it keeps what such a record from before has.
-Json robustness_json(const RobustnessPlan& plan, const std::vector<JudgedClaim>& judged,
-                     const std::vector<ClaimRobustness>& claims, const Json& before = Json::object());
-/// The same as a Markdown table.
-std::string robustness_markdown(const Json& record);
-
-/// The record of robustness.json about claims, by id.
-class RobustnessOnRecord {
- public:
-  /// An empty record.
-  RobustnessOnRecord() = default;
-  /// Throws InputError when it is no such record.
-  explicit RobustnessOnRecord(const Json& record);
-  /// The same from a file; empty when there is none.
-  explicit RobustnessOnRecord(const std::filesystem::path& file);
-
-  /// The claim's counts if the recorded verdict is this one and the choices that reach it are the same; else null.
-  Json of(const JudgedClaim& judged) const;
-
- private:
-  std::map<std::string, Json> claims_;
-};
-
-/// claims.json: the headline and the claims.
-Json ledger_json(const std::vector<JudgedClaim>& judged, const PublishedNumbers& published,
-                 const RobustnessOnRecord& robustness);
+/// claims.json: the headline and the claims. `robustness` has what robustness.json holds.
+Json ledger_json(const std::vector<JudgedClaim>& judged, const PublishedNumbers& published, const Json& robustness);
 
 // The functions below take a claim as ledger_json writes it.
 

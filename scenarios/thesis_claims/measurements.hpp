@@ -1,7 +1,7 @@
 #pragma once
 
-#include <cstddef>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -26,13 +26,16 @@ inline ContactBuffer wall_point(double beyond, const char* depth_model) {
   return contacts;
 }
 
-/// Overrides of task 2: the hand pushes with more than the input limit of 2 N all the time, during one rotation of the
-/// drill to and fro.
-inline const std::vector<std::string> kHandAboveLimit = {
-    R"(hand.force_N={"type":"sine","mean":3.5,"amplitude":1.4,"period_s":1.7})", "time.duration_s=6"};
-
 /// Total variation of the velocity [m/s], power of the velocity above 30 Hz [m^2/s^2] and reversals of the force.
 MeasuredCase vibration(const std::string& name, const RunSummary& summary);
+
+/// A metric of the section ideal_trajectory; none if nothing was measured.
+std::optional<double> ideal_trajectory_metric(const RunSummary& summary, const std::string& key);
+
+/// The vibration of a law and of stiffness shaping, with all points, in the planar peg and then in a scene of task 2
+/// with these overrides; with it "diverges", 1 or 0.
+Measured vibrations_beside_shaping(const Evidence& e, const std::string& law, const std::string& task,
+                                   const std::vector<std::string>& overrides_of_task);
 
 /// An algorithm vibrates, compared with a smooth one, if it has rule.vibrates times the total variation and the square
 /// of it times the power.
@@ -45,44 +48,9 @@ inline constexpr const char* kVibrationRule =
     "reproduced: <rule.vibrates> times the total variation of velocity, and the square of it times the power above 30 Hz,";
 std::string vibrations_text(const Measured& cases);
 
-/// Measures the damping ratio of a swing about zero from the ratio q of successive extremes,
-/// zeta = -ln q / sqrt(pi^2 + ln^2 q).
-class SwingDecay {
- public:
-  /// Extremes closer to zero than this end the decay [m]: rounding and grazing contact are no swings.
-  static constexpr double kSmallest = 1e-6;
-
-  /// Adds the coordinate of the next row [m].
-  void add(double x);
-  /// From the first and the last extreme; none with fewer than two, since a motion that never turns swings not.
-  std::optional<double> damping_ratio() const;
-
- private:
-  double before_ = 0.0, last_ = 0.0;
-  std::size_t rows_ = 0;
-  std::size_t extremes_ = 0;
-  bool decayed_ = false;
-  double first_extreme_ = 0.0, last_extreme_ = 0.0;
-};
-
-/// Instead of a number of iterations: the exact limit.
-inline constexpr int kExactLimit = -1;
-
-/// Rounding may lift a result of the search above the true supremum by this much.
-inline constexpr double kSearchRounding = 1e-9;
-
-/// Result of a search for contacts that stiffness shaping makes stiff.
-struct StiffestContacts {
-  double lambda_max = 0.0;  ///< largest eigenvalue of S, in units of K
-  std::size_t sets = 0;     ///< of contacts tried
-};
-
-/// Climbs from random sets of up to eight weighted directions to ones whose stiffness tensor, after so many iterations
-/// of shaping, has a larger and larger largest eigenvalue. The weights before the first iteration stand for many
-/// contacts in one direction. The same result on every call; about half a second.
-///
-/// No set exceeds (1 + sqrt 3)/2, in the plane (1 + sqrt 2)/2, whatever the number of iterations; the proof is in
-/// results/reference/BEYOND.md. The search shows that the bound is sharp, and would show an error in the proof.
-StiffestContacts stiffest_contacts(int iterations);
+/// The damping ratio of a swing about zero [m], a value for each row, from the ratio q of successive extremes,
+/// zeta = -ln q / sqrt(pi^2 + ln^2 q). An extreme within a micrometre of zero ends the decay: rounding and grazing
+/// contact are no swings. None with fewer than two, since a motion that never turns swings not.
+std::optional<double> damping_ratio_of_swings(std::span<const double> x);
 
 }  // namespace hapbench

@@ -3,20 +3,17 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <map>
 #include <optional>
-#include <set>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "results/summary/provenance.hpp"
-#include "scenarios/batch/cases.hpp"
+#include "scenarios/batch/parallel_for.hpp"
 #include "scenarios/thesis_claims/choices.hpp"
 #include "scenarios/thesis_claims/claims.hpp"
 
-/// Robustness of the verdicts: the claims judged again at a Latin hypercube of the ranges of the choices on record, and
-/// the choices that decide. The values on record are not among the samples; they are the ledger's.
+/// Robustness of the verdicts: the claims judged again under other readings of what the thesis leaves open, and the
+/// choices that decide. A reading has one value for each choice on record. The values on record are the ledger's.
 namespace hapbench {
 
 // Statistics of a sample: which input decides a yes or no.
@@ -49,91 +46,42 @@ std::optional<DecidingInput> deciding_input(const std::vector<std::vector<std::s
                                             std::vector<double> y, std::uint64_t seed, double level = 0.01,
                                             std::size_t permutations = 999);
 
-/// The parts of each scenario's results that claims read: files, and sections of summary.json.
-using ResultsRead = std::map<std::string, std::set<std::string>>;
-
-/// The inputs of the verdicts of a sample.
-struct RobustnessPlan {
+/// What is judged again.
+struct Readings {
   Choices choices;
   PublishedNumbers published;
-  std::vector<Claim> claims;
-  ResultsRead read;  ///< by the claims; other records of a scenario are left out until a claim asks for them
-  Cases cases;       ///< the samples: an axis for each choice
-  std::vector<std::vector<std::string>> values;  ///< of the cases
+  std::vector<JudgedClaim> claims;               ///< with the ledger's verdicts
+  std::vector<std::vector<std::string>> values;  ///< of each reading, as texts for --set
 
-  std::size_t samples() const { return values.size(); }
-  /// Costly claims are judged in the first of the samples only.
-  std::size_t costly_samples() const { return samples() / 4; }
+  /// Costly claims are judged in the first quarter of the readings only.
+  std::size_t costly() const { return (values.size() + 3) / 4; }
 };
 
-inline constexpr std::uint64_t kRobustnessSeed = 1;
-
-/// The plan for so many samples. Claims about times are left out. `published` without the choices' numbers.
-RobustnessPlan plan_robustness(Choices choices, PublishedNumbers published, std::vector<Claim> claims, ResultsRead read,
-                               std::size_t samples);
+/// The readings of a CSV file: a row each, a column for each choice that the file reads otherwise than on record.
+/// Throws InputError with the line for a column that is no choice's, a number out of the choice's range and a text that
+/// is none of its options.
+std::vector<std::vector<std::string>> read_readings(const std::filesystem::path& file, const Choices& choices);
 
 /// Cells of claims without a verdict: one that could not be measured (a run diverged where its scenario does not expect
-/// it, a field refuses the value), and a costly one beyond the samples for those.
+/// it, a field refuses the value), and a costly one beyond the readings for those.
 inline constexpr const char* kNotMeasured = "error";
 inline constexpr const char* kNotJudged = "";
 
-/// A sample's verdict on each claim, by name.
-struct SampleVerdicts {
+/// A reading's verdict on each claim, by name.
+struct ReadingVerdicts {
   std::vector<std::string> verdicts;
   std::vector<std::string> problems;  ///< of the claims that could not be measured, for people
 };
 
-/// Judges the claims under a sample's choices. Scenarios run when a claim asks, once, into `directory`, which is
-/// removed afterwards. For several threads, with a directory each. Throws IoError.
-SampleVerdicts judge_sample(const RobustnessPlan& plan, std::size_t sample, const std::filesystem::path& directory);
-
-/// Robustness of one claim's verdict.
-struct ClaimRobustness {
-  std::string id;
-  std::string on_record;       ///< the ledger's verdict
-  std::size_t judged = 0;      ///< samples with a verdict
-  std::size_t holds = 0;       ///< with the ledger's
-  std::size_t reproduced = 0;  ///< with "reproduced"
-  std::size_t not_measured = 0;
-  std::map<std::string, std::size_t> verdicts;  ///< samples with each
-  /// The choice that decides whether the ledger's verdict holds, and its first-order index (sensitivity.hpp); none when
-  /// the verdict never changes or no choice stands out.
-  struct DecidingChoice {
-    std::string id;
-    double index = 0.0;
-  };
-  std::optional<DecidingChoice> decided_by;
-};
-
-/// Counts and deciding choice of each claim. `on_record` are the ledger's verdicts, `verdicts` those of each sample.
-std::vector<ClaimRobustness> robustness_of(const RobustnessPlan& plan, const std::vector<std::string>& on_record,
-                                           const std::vector<std::vector<std::string>>& verdicts);
-
-struct RobustnessOptions {
-  std::filesystem::path directory;  ///< of the samples' table and of results while they are needed; exists
-  std::size_t jobs = 1;             ///< samples at once
-  bool anew = false;                ///< use nothing that an interrupted run has left
-  bool progress = false;            ///< allow a progress bar
-  std::string program = provenance().identity();  ///< whose samples are continued; empty: those of none
-};
-
-/// The verdicts of all samples.
-struct RobustnessReport {
-  std::vector<std::vector<std::string>> verdicts;  ///< by sample and claim; of a stopped run not to be used
-  std::vector<std::string> problems;               ///< of this process's samples, in their order
-  std::size_t done = 0;                            ///< samples
-  std::size_t resumed = 0;                         ///< of them, by an earlier process
-  int signal = 0;                                  ///< the signal that stopped it, or 0
-};
-
-/// Judges every sample of a plan, `jobs` at once. Verdicts depend neither on `jobs` nor on interruptions. Each sample's
-/// are in a table at once (table_file.hpp): after a kill the same plan, judged by the same program, goes on from there.
-/// SIGINT and SIGTERM end it after the samples in flight. Throws IoError when something cannot be written.
-RobustnessReport run_robustness(const RobustnessPlan& plan, const RobustnessOptions& options);
+/// Judges the claims under one reading. Scenarios run when a claim asks, once, into `directory`, which is removed
+/// afterwards. For several threads, with a directory each. Throws IoError.
+ReadingVerdicts judge_reading(const Readings& readings, std::size_t reading, const std::filesystem::path& directory);
 
 /// robustness.csv: sample, a column for each choice and one for each claim.
-std::string robustness_table(const RobustnessPlan& plan, const std::vector<std::vector<std::string>>& verdicts);
-/// A row of it, without its end.
-std::string robustness_row(const RobustnessPlan& plan, std::size_t sample, const std::vector<std::string>& verdicts);
+std::string robustness_table(const Readings& readings, const std::vector<ReadingVerdicts>& judged);
+
+/// robustness.json: what the readings' verdicts say of each claim, and the hash of the choices that reach it. Of claims
+/// that are not among the readings', it keeps what such a record from before has.
+Json robustness_json(const Readings& readings, const std::vector<ReadingVerdicts>& judged, const Json& before);
 
 }  // namespace hapbench

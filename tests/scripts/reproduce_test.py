@@ -1,4 +1,7 @@
-"""How scripts/reproduce runs its parts, with a program that does nothing in place of hapbench."""
+"""How scripts/reproduce runs its parts, with a program that does nothing in place of hapbench, and what scripts/readings.py draws."""
+import csv
+import json
+import math
 import os
 import shlex
 import signal
@@ -104,6 +107,23 @@ class Reproduce(unittest.TestCase):
         # Its pipes are closed when the parts are gone, too.
         process.communicate()
         self.assertEqual(process.returncode, 143)
+
+
+class Readings(unittest.TestCase):
+    def test_lie_in_every_stratum_of_each_choice(self):
+        drawn = subprocess.run([SOURCE / "scripts" / "readings.py", "8"], stdout=subprocess.PIPE, text=True, check=True)
+        readings = list(csv.DictReader(drawn.stdout.splitlines()))
+        choices = json.loads((SOURCE / "results" / "reference" / "choices.json").read_text(encoding="utf-8"))["choices"]
+        self.assertEqual(list(readings[0]), [choice["id"] for choice in choices])
+        for choice in choices:
+            values = [reading[choice["id"]] for reading in readings]
+            if "options" in choice:
+                self.assertLessEqual(set(values), set(choice["options"]))
+                self.assertEqual(len(set(values)), min(8, len(choice["options"])), choice["id"])
+                continue
+            scale = math.log if choice.get("scale") == "log" else float
+            low, high = map(scale, choice["range"])
+            self.assertEqual(sorted(int(8 * (scale(float(value)) - low) / (high - low)) for value in values), list(range(8)), choice["id"])
 
 
 if __name__ == "__main__":

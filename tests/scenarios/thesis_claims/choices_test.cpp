@@ -1,11 +1,13 @@
 #include "scenarios/thesis_claims/choices.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <set>
 
-#include "results/io/json_text.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
+#include "scenarios/input/text_lines.hpp"
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/errors.hpp"
 #include "tests/scenarios/support/schema_validator.hpp"
@@ -34,12 +36,6 @@ std::vector<BundledScenario> thesis_scenarios() {
   return all;
 }
 
-Texts values_at(const Choices& choices, double coordinate) {
-  Texts values;
-  for (const Axis& axis : choices.axes()) values.push_back(axis.value_at(coordinate));
-  return values;
-}
-
 TEST(ChoicesOnRecord, AreWhatTheScenariosHave) {
   const Choices choices(kReference / "choices.json");
   const Texts on_record = choices.values_on_record();
@@ -54,8 +50,11 @@ TEST(ChoicesOnRecord, ConcernEachAScenarioThatThenDiffers) {
   const Choices choices(kReference / "choices.json");
   const Texts on_record = choices.values_on_record();
   // Ends of ranges and options other than the one on record; one of them differs from it.
-  const Texts low = values_at(choices, 0.0);
-  const Texts high = values_at(choices, 0.999);
+  Texts low, high;
+  for (const OpenChoice& choice : choices.all()) {
+    low.push_back(choice.range ? fmt::format("{}", choice.range->first) : choice.options.front());
+    high.push_back(choice.range ? fmt::format("{}", choice.range->second) : choice.options.back());
+  }
   std::set<std::string> changing;
   for (const BundledScenario& bundled : thesis_scenarios()) {
     const Scenario scenario = load_scenario(bundled.file).scenario;
@@ -77,15 +76,13 @@ TEST(ChoicesOnRecord, ConcernEachAScenarioThatThenDiffers) {
 
 TEST(ChoicesOnRecord, NameScenariosThatThereAre) {
   const Choices choices(kReference / "choices.json");
+  const std::vector<BundledScenario> scenarios = thesis_scenarios();
   for (const OpenChoice& choice : choices.all()) {
     for (const ChosenField& field : choice.fields) {
-      for (const std::string& pattern : field.scenarios) {
-        // A choice of this field and pattern alone concerns some scenario.
-        const auto names = thesis_scenarios();
-        EXPECT_TRUE(std::any_of(names.begin(), names.end(),
+      for (const std::string& pattern : field.scenarios)
+        EXPECT_TRUE(std::any_of(scenarios.begin(), scenarios.end(),
                                 [&](const BundledScenario& b) { return names_scenario(pattern, b.name); }))
             << choice.id << ": " << pattern;
-      }
     }
   }
 }
@@ -95,11 +92,42 @@ TEST(ChoicesOnRecord, AreTheTableInTheTree) {
       << "renew it with hapbench reproduce --ledger results/reference/claims.json";
 }
 
-TEST(ChoicesSchema, InTheTreeIsTheOneTheReaderHas) {
-  EXPECT_EQ(test::read_file(kReference / "choices.schema.json"), json_text(choices_schema()))
-      << "renew it with hapbench describe choices_schema >results/reference/choices.schema.json";
+TEST(ChoicesOnRecord, AreAsTheSchemaSays) {
   const test::SchemaValidator schema(choices_schema());
-  EXPECT_EQ(schema.complaints(Json::parse(test::read_file(kReference / "choices.json"))), "");
+  const Json file = Json::parse(test::read_file(kReference / "choices.json"));
+  EXPECT_EQ(schema.complaints(file), "");
+  for (const char* change :
+       {R"({"choices": null})", R"({"choices": [{"id": "a"}]})", R"({"choice": []})", R"({"choices": []})"}) {
+    Json changed = file;
+    changed.merge_patch(Json::parse(change));
+    EXPECT_NE(schema.complaints(changed), "") << change;
+  }
+}
+
+/// What the schema cannot say: a reading is one value for each choice, in a cell without quotes.
+TEST(ChoicesOnRecord, AreInTheirRangesAndFitIntoTables) {
+  const Choices choices(kReference / "choices.json");
+  std::set<std::string> ids;
+  for (const OpenChoice& choice : choices.all()) {
+    EXPECT_TRUE(ids.insert(choice.id).second) << choice.id << " twice";
+    const auto number = finite_number(choice.value);
+    Texts texts = choice.options;
+    texts.insert(texts.end(), {choice.id, choice.value});
+    for (const std::string& text : texts) EXPECT_EQ(text.find_first_of(" ,\"\t\n"), std::string::npos) << text;
+    if (choice.range) {
+      const auto [low, high] = *choice.range;
+      EXPECT_TRUE(number && low < high && low <= *number && *number <= high) << choice.id;
+      EXPECT_TRUE(!choice.logarithmic || low > 0.0) << choice.id;
+    } else {
+      EXPECT_EQ(std::count(choice.options.begin(), choice.options.end(), choice.value), 1) << choice.id;
+      EXPECT_FALSE(choice.logarithmic) << choice.id;
+    }
+    const bool read_by_rules = choice.fields.empty();
+    for (const std::string& option : choice.options)
+      EXPECT_TRUE(!read_by_rules || finite_number(option)) << choice.id << ": rules read numbers";
+    for (const ChosenField& field : choice.fields)
+      EXPECT_TRUE(!field.times || (choice.range && choice.value == "1")) << choice.id << " multiplies";
+  }
 }
 
 class ChoicesFile : public testing::Test {
@@ -150,8 +178,6 @@ Json subjects_scenario() {
 TEST_F(ChoicesFile, GivesOverridesOfScenariosItNames) {
   const Choices choices = read(file({factor(), option()}));
   EXPECT_EQ(choices.values_on_record(), (Texts{"1", "a"}));
-  EXPECT_EQ(choices.axes()[0].value_at(0.5), "1");
-  EXPECT_EQ(choices.axes()[1].value_at(0.7), "b");
   Json springs = {{"name", "task1"},
                   {"time", {{"step_s", 0.001}, {"steps", 1}}},
                   {"environment", {{"type", "springs"}, {"groups", {{{"direction", {1, 0, 0}}, {"count", 1}}}}}}};
@@ -204,55 +230,18 @@ TEST_F(ChoicesFile, ChangesItsHashWithItsContentOnly) {
   EXPECT_NE(read(file({factor(), option()})).hash(), hash);
 }
 
-struct BadChoice {
-  Json change;  ///< merged into a choice
-  bool option;
-  const char* says;
-};
-
-TEST_F(ChoicesFile, RefusesWhatContradictsItself) {
-  const BadChoice kBad[] = {
-      {{{"value", 3}}, false, "/choices/0/value: got 3"},
-      {{{"value", "1"}}, false, "/choices/0/value: got \"1\"; allowed: a number"},
-      {{{"value", 1.5}}, false, "/choices/0/value: got 1.5 of a choice that multiplies; allowed: 1"},
-      {{{"range", {2, 0.5}}}, false, "/choices/0/range: got 2 and 0.5"},
-      {{{"range", {0, 2}}}, false, "/choices/0/range: got 0 for an end of a logarithmic range"},
-      {{{"range", nullptr}}, false, "/choices/0: missing field; allowed: exactly one of \"range\" and \"options\""},
-      {{{"options", {"a", "b"}}}, false, "/choices/0: got both \"range\" and \"options\""},
-      {{{"scale", "lin"}}, false, "/choices/0/scale: got \"lin\""},
-      {{{"chosen", nullptr}}, false, "/choices/0: missing field \"chosen\""},
-      {{{"fields", Json::array()}}, false, "/choices/0/fields: got []"},
-      {{{"wy", "y"}}, false, "/choices/0/wy: unknown field"},
-      {{{"id", "a b"}}, false, "/choices/0/id: got \"a b\""},
-      {{{"value", "c"}}, true, "/choices/0/value: got \"c\"; allowed: \"a\", \"b\""},
-      {{{"value", 1}}, true, "/choices/0/value: got 1; allowed: a text"},
-      {{{"options", {"a", "b,c"}}}, true, "/choices/0/options: got \"b,c\""},
-      {{{"fields", {{{"scenarios", {"x"}}, {"path", "seed"}, {"times", true}}}}},
-       true,
-       "/choices/0/fields: got \"times\" beside"},
-      {{{"fields", nullptr}}, true, "/choices/0/options: got a text of a choice without fields"},
-      {{{"scale", "log"}}, true, "/choices/0/scale: got \"log\" beside options"}};
-  for (const BadChoice& bad : kBad) {
-    Json choice = bad.option ? option() : factor();
-    choice.merge_patch(bad.change);
-    const auto error = test::input_error_of([&] { read(file({choice})); });
-    ASSERT_TRUE(error) << bad.says;
-    EXPECT_NE(std::string(error->what()).find("choices.json: " + std::string(bad.says)), std::string::npos)
-        << error->what();
+TEST_F(ChoicesFile, NamesTheChoiceThatLacksAPart) {
+  for (const char* part : {"id", "value", "chosen"}) {
+    Json without = option();
+    without.erase(part);
+    const auto error = test::input_error_of([&] { read(file({factor(), without})); });
+    ASSERT_TRUE(error) << part;
+    const std::string said = error->what();
+    EXPECT_NE(said.find("choices.json: /choices/1: "), std::string::npos) << said;
+    EXPECT_NE(said.find("'" + std::string(part) + "' not found; allowed: what choices.schema.json says"),
+              std::string::npos)
+        << said;
   }
-  const auto twice = test::input_error_of([&] { read(file({factor(), factor()})); });
-  ASSERT_TRUE(twice);
-  EXPECT_NE(std::string(twice->what()).find("/choices/1/id: got \"stiffness\" twice"), std::string::npos)
-      << twice->what();
-}
-
-TEST_F(ChoicesFile, IsATableForPeople) {
-  const std::string text = read(file({factor(), option()})).markdown();
-  EXPECT_NE(
-      text.find("| stiffness | w | t | 1 | 0.5 ... 2 (log) | after | y | `rendering.stiffness_N_per_m ×` of task* |\n"),
-      std::string::npos)
-      << text;
-  EXPECT_NE(text.find("| a | a, b | before | y | `environment.density` of task2_*, x |\n"), std::string::npos) << text;
 }
 
 }  // namespace

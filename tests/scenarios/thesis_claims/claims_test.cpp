@@ -333,22 +333,9 @@ TEST(Claims, AreThoseOfTheLedger) {
 }
 
 TEST(Wording, SpellsThresholds) {
-  EXPECT_EQ(in_words(0.5), "half");
-  EXPECT_EQ(in_words(5.0), "five");
-  EXPECT_EQ(in_words(7.5), "7.5");
-  EXPECT_EQ(percent(0.02), "2 %");
-  EXPECT_EQ(percent(0.005), "0.5 %");
   EXPECT_EQ(plain(1e-9), "1e-9");
   EXPECT_EQ(plain(1e-12), "1e-12");
   EXPECT_EQ(plain(15.0), "15");
-}
-
-TEST(VerdictName, IsThatOfTheLedger) {
-  EXPECT_EQ(verdict_name(Verdict::reproduced), "reproduced");
-  EXPECT_EQ(verdict_name(Verdict::in_kind), "reproduced in kind");
-  EXPECT_EQ(verdict_name(Verdict::not_reproduced), "not reproduced");
-  EXPECT_EQ(verdict_name(Verdict::refuted), "refuted");
-  EXPECT_EQ(verdict_name(Verdict::not_reproducible), "not reproducible");
 }
 
 MeasuredCase vibrating(double variation, double power) {

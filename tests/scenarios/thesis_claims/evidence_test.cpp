@@ -13,13 +13,14 @@ namespace {
 
 class ResultFile : public testing::Test {
  protected:
-  std::map<std::string, std::vector<double>> table_of(const std::string& text) {
+  Evidence evidence() {
     std::filesystem::create_directories(directory_ / "scene");
+    return {{}, directory_.path(), [this](const std::string& name) { asked_for_ += name + " "; }};
+  }
+  std::map<std::string, std::vector<double>> table_of(const std::string& text) {
+    const Evidence e = evidence();
     test::write_plainly(directory_ / "scene/trajectory.csv", text);
-    const ResultFiles files(directory_.path(), [this](const std::string& name, const std::string& part) {
-      asked_for_ = name + "/" + part;
-    });
-    return files.table("scene", "trajectory.csv");
+    return e.table("scene", "trajectory.csv");
   }
 
   test::TemporaryDirectory directory_;
@@ -28,7 +29,7 @@ class ResultFile : public testing::Test {
 
 TEST_F(ResultFile, IsReadByColumn) {
   const auto table = table_of("time_s,outcome,force_N\n0,completes,1.5\n0.5,,\n");
-  EXPECT_EQ(asked_for_, "scene/trajectory.csv");
+  EXPECT_EQ(asked_for_, "scene ");
   ASSERT_EQ(table.size(), 3u);
   EXPECT_EQ(table.at("time_s"), (std::vector<double>{0.0, 0.5}));
   EXPECT_EQ(table.at("force_N")[0], 1.5);
@@ -46,17 +47,13 @@ TEST_F(ResultFile, WithARowThatIsCutOffIsRefusedAndNotPassedOver) {
   }
 }
 
-TEST_F(ResultFile, TellsWhichPartOfTheSummaryIsRead) {
-  std::filesystem::create_directories(directory_ / "scene");
+TEST_F(ResultFile, GivesNumbersOfItsSummary) {
+  const Evidence e = evidence();
   test::write_plainly(directory_ / "scene/summary.json", R"({"metrics": {"a": 2, "b": null}, "steps": 7})");
-  std::string asked_for;
-  const ResultFiles files(directory_.path(),
-                          [&](const std::string&, const std::string& part) { asked_for += part + " "; });
-  EXPECT_EQ(files.number("scene", "metrics.a"), 2.0);
-  EXPECT_TRUE(std::isnan(files.number("scene", "metrics.b")));
-  EXPECT_EQ(files.number("scene", "steps"), 7.0);
-  EXPECT_EQ(files.summary("scene")["steps"], 7);
-  EXPECT_EQ(asked_for, "metrics metrics steps summary.json ");
+  EXPECT_EQ(e.number("scene", "metrics.a"), 2.0);
+  EXPECT_TRUE(std::isnan(e.number("scene", "metrics.b")));
+  EXPECT_EQ(e.number("scene", "steps"), 7.0);
+  EXPECT_EQ(asked_for_, "scene scene scene ");
 }
 
 TEST_F(ResultFile, ThatIsEmptyIsRefused) {

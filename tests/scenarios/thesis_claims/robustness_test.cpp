@@ -8,6 +8,7 @@
 #include "scenarios/thesis_claims/ledger.hpp"
 #include "sim/core/random.hpp"
 #include "tests/results/files.hpp"
+#include "tests/scenarios/support/errors.hpp"
 
 namespace hapbench::robustness_test {
 namespace {
@@ -18,162 +19,128 @@ namespace fs = std::filesystem;
 class Robustness : public testing::Test {
  protected:
   Robustness() {
+    const auto choice = [](const char* id, Json more) {
+      Json json = {{"id", id}, {"what", ""}, {"thesis", ""}, {"chosen", "after"}, {"why", ""}};
+      json.update(more);
+      json["fields"][0]["scenarios"] = {"springs_unlimited_mean"};
+      return json;
+    };
+    const Json path = {{"path", "rendering.stiffness_N_per_m"}, {"times", true}};
     const Json choices = {
         {"choices",
-         {{{"id", "stiffness"},
-           {"what", ""},
-           {"thesis", ""},
-           {"value", 1},
-           {"range", {0.5, 2}},
-           {"scale", "log"},
-           {"chosen", "after"},
-           {"why", ""},
-           {"fields",
-            {{{"scenarios", {"springs_unlimited_mean"}}, {"path", "rendering.stiffness_N_per_m"}, {"times", true}}}}},
-          {{"id", "seed"},
-           {"what", ""},
-           {"thesis", ""},
-           {"value", "1"},
-           {"options", {"1", "2"}},
-           {"chosen", "after"},
-           {"why", ""},
-           {"fields", {{{"scenarios", {"springs_unlimited_mean"}}, {"path", "seed"}}}}}}}};
+         {choice("stiffness", {{"value", 1}, {"range", {0.5, 2}}, {"fields", Json::array({path})}}),
+          choice("seed", {{"value", "1"}, {"options", {"1", "2"}}, {"fields", {{{"path", "seed"}}}}})}}};
     test::write_plainly(directory_ / "choices.json", choices.dump());
   }
 
-  static const std::vector<Claim>& claims() {
-    static const std::vector<Claim> claims = {
-        {.id = "stiff",
-         .place = "",
-         .claim = "",
-         .published = "",
-         .rule = "",
-         .measure = [](const Evidence& e) -> Measured {
-           return {{"",
-                    {{"stiffness", {e.load("springs_unlimited_mean").scenario.rendering.stiffness}},
-                     {"force", {e.results.number("springs_unlimited_mean", "metrics.force_max_N")}}}}};
-         },
-         .judge = [](const Measured& m, const PublishedNumbers&) -> Finding {
-           EXPECT_GT(m[0]["force"], 0.0);
-           return {m[0]["stiffness"] > 20000.0 ? Verdict::reproduced : Verdict::in_kind, "", ""};
-         }},
-        {.id = "costly",
-         .place = "",
-         .claim = "",
-         .published = "",
-         .rule = "",
-         .measure = [](const Evidence&) { return Measured(); },
-         .judge = [](const Measured&, const PublishedNumbers&) -> Finding {
-           return {Verdict::refuted, "", ""};
-         },
-         .costly = true},
-        {.id = "failing",
-         .place = "",
-         .claim = "",
-         .published = "",
-         .rule = "",
-         .measure = [](const Evidence& e) -> Measured {
-           e.results.table("springs_unlimited_mean", "none.csv");
-           return {};
-         },
-         .judge = [](const Measured&, const PublishedNumbers&) -> Finding { return {}; }},
-        {.id = "timing",
-         .place = "",
-         .claim = "",
-         .published = "",
-         .rule = "",
-         .measure = nullptr,
-         .judge = nullptr,
-         .timing = true}};
-    return claims;
+  static Claim claim(const char* id, Measured (*measure)(const Evidence&),
+                     Finding (*judge)(const Measured&, const PublishedNumbers&)) {
+    return {.id = id, .measure = measure, .judge = judge};
+  }
+  static std::vector<JudgedClaim> claims() {
+    const Claim stiff = claim(
+        "stiff",
+        [](const Evidence& e) -> Measured {
+          return {{"",
+                   {{"stiffness", {e.load("springs_unlimited_mean").scenario.rendering.stiffness}},
+                    {"force", {e.number("springs_unlimited_mean", "metrics.force_max_N")}}}}};
+        },
+        [](const Measured& m, const PublishedNumbers&) -> Finding {
+          EXPECT_GT(m[0]["force"], 0.0);
+          return {m[0]["stiffness"] > 20000.0 ? Verdict::reproduced : Verdict::in_kind, "", ""};
+        });
+    Claim costly = claim(
+        "costly", [](const Evidence&) { return Measured(); },
+        [](const Measured&, const PublishedNumbers&) -> Finding {
+          return {Verdict::refuted, "", ""};
+        });
+    costly.costly = true;
+    const Claim failing = claim(
+        "failing",
+        [](const Evidence& e) -> Measured {
+          e.table("springs_unlimited_mean", "none.csv");
+          return {};
+        },
+        [](const Measured&, const PublishedNumbers&) -> Finding { return {}; });
+    return {{stiff, {Verdict::reproduced, "", ""}, {}, "reach"},
+            {costly, {Verdict::refuted, "", ""}, {}, "reach"},
+            {failing, {Verdict::reproduced, "", ""}, {}, "reach"}};
   }
 
-  RobustnessPlan plan(std::size_t samples) const {
-    return plan_robustness(Choices(directory_ / "choices.json"),
-                           PublishedNumbers(HAPBENCH_SCENARIOS "/../results/reference/published"), claims(),
-                           {{"springs_unlimited_mean", {"metrics"}}}, samples);
-  }
-  RobustnessReport run(const RobustnessPlan& plan, std::size_t jobs) const {
-    return run_robustness(plan, {.directory = directory_.path(), .jobs = jobs, .program = "a commit"});
+  Readings readings(std::size_t count) const {
+    std::string file = "stiffness,seed\n";
+    for (std::size_t i = 0; i < count; ++i)
+      file += std::to_string(0.5 + 1.5 * static_cast<double>(i * 7 % count) / static_cast<double>(count)) +
+              (i % 2 == 0 ? ",2\n" : ",1\n");
+    test::write_plainly(directory_ / "readings.csv", file);
+    const Choices choices(directory_ / "choices.json");
+    return {choices, {}, claims(), read_readings(directory_ / "readings.csv", choices)};
   }
   test::TemporaryDirectory directory_;
 };
 
-TEST_F(Robustness, JudgesEverySampleWithItsOwnChoices) {
-  const RobustnessPlan p = plan(16);
-  const RobustnessReport report = run(p, 2);
-  ASSERT_EQ(report.verdicts.size(), 16u);
-  EXPECT_EQ(report.problems.size(), 16u);
-  for (std::size_t sample = 0; sample < 16; ++sample) {
-    const bool stiff = *finite_number(p.values[sample][0]) > 1.0;
-    EXPECT_EQ(report.verdicts[sample], (std::vector<std::string>{stiff ? "reproduced" : "reproduced in kind",
-                                                                 sample < 4 ? "refuted" : "", "error"}));
+TEST_F(Robustness, JudgesEveryReadingByItsOwnChoices) {
+  const Readings r = readings(6);
+  std::vector<ReadingVerdicts> judged;
+  for (std::size_t i = 0; i < 6; ++i) {
+    const bool stiff = *finite_number(r.values[i][0]) > 1.0;
+    judged.push_back(judge_reading(r, i, directory_ / "runs"));
+    EXPECT_EQ(judged[i].verdicts,
+              (std::vector<std::string>{stiff ? "reproduced" : "reproduced in kind", i < 2 ? "refuted" : "", "error"}));
+    ASSERT_EQ(judged[i].problems.size(), 1u);
+    EXPECT_NE(judged[i].problems[0].find("none.csv"), std::string::npos) << judged[i].problems[0];
   }
-  EXPECT_FALSE(fs::exists(directory_ / "robustness")) << "results of samples are removed";
-  const auto lines = test::lines_of(robustness_table(p, report.verdicts));
-  EXPECT_EQ(lines.at(0), "sample,stiffness,seed,stiff,costly,failing");
-  EXPECT_EQ(lines.size(), 17u);
-}
-
-TEST_F(Robustness, DependsNeitherOnJobsNorOnInterruptions) {
-  const RobustnessPlan p = plan(8);
-  const RobustnessReport whole = run(p, 1);
-  const std::string table = test::read_file(directory_ / "robustness_samples.csv");
-  // The first five samples and half a line more, as a kill may leave it.
-  std::size_t end = 0;
-  for (int line = 0; line < 6; ++line) end = table.find('\n', end) + 1;
-  test::write_plainly(directory_ / "robustness_samples.csv.part", table.substr(0, end + 9));
-  fs::rename(directory_ / "robustness_samples.json", directory_ / "robustness_samples.json.part");
-  const RobustnessReport resumed = run(p, 3);
-  EXPECT_EQ(resumed.resumed, 5u);
-  EXPECT_EQ(resumed.verdicts, whole.verdicts);
-  EXPECT_EQ(run(p, 2).resumed, 8u) << "all is there";
-  EXPECT_EQ(run(plan(4), 2).resumed, 0u) << "another plan begins anew";
+  EXPECT_FALSE(fs::exists(directory_ / "runs")) << "results are removed";
+  const auto lines = test::lines_of(robustness_table(r, judged));
+  ASSERT_EQ(lines.size(), 7u);
+  EXPECT_EQ(lines[0], "sample,stiffness,seed,stiff,costly,failing");
+  EXPECT_EQ(lines[1], "0,0.500000,2,reproduced in kind,refuted,error");
 }
 
 TEST_F(Robustness, CountsAndNamesWhatDecides) {
-  const RobustnessPlan p = plan(64);
-  std::vector<std::vector<std::string>> verdicts;
-  for (std::size_t sample = 0; sample < 64; ++sample) {
-    verdicts.push_back({p.values[sample][1] == "2" ? "reproduced" : "refuted", sample < 16 ? "refuted" : "",
-                        sample % 2 == 0 ? "error" : "reproduced"});
-  }
-  const auto claims = robustness_of(p, {"reproduced", "refuted", "reproduced"}, verdicts);
+  const Readings r = readings(64);
+  std::vector<ReadingVerdicts> judged;
+  for (std::size_t i = 0; i < 64; ++i)
+    judged.push_back({{r.values[i][1] == "2" ? "reproduced" : "refuted", i < 16 ? "refuted" : "",
+                       i % 2 == 0 ? "error" : "reproduced"},
+                      {}});
+  const Json record = robustness_json(r, judged, Json::object());
+  EXPECT_EQ(record.at("costly_samples"), 16);
+  const Json& claims = record.at("claims");
   ASSERT_EQ(claims.size(), 3u);
-  EXPECT_EQ(claims[0].judged, 64u);
-  EXPECT_EQ(claims[0].holds, 32u);
-  EXPECT_EQ(claims[0].reproduced, 32u);
-  ASSERT_TRUE(claims[0].decided_by);
-  EXPECT_EQ(claims[0].decided_by->id, "seed");
-  EXPECT_DOUBLE_EQ(claims[0].decided_by->index, 1.0);
-  EXPECT_EQ(claims[1].judged, 16u);
-  EXPECT_EQ(claims[1].holds, 16u);
-  EXPECT_EQ(claims[1].reproduced, 0u);
-  EXPECT_FALSE(claims[1].decided_by) << "it never changes";
-  EXPECT_EQ(claims[2].judged, 32u);
-  EXPECT_EQ(claims[2].not_measured, 32u);
-  EXPECT_EQ(claims[2].verdicts, (std::map<std::string, std::size_t>{{"reproduced", 32}}));
+  EXPECT_EQ(claims[0].at("verdicts"), Json({{"refuted", 32}, {"reproduced", 32}}));
+  EXPECT_EQ(claims[0].at("majority"), "reproduced") << "of two as frequent, the one on record";
+  EXPECT_EQ(claims[0].at("decided_by"), Json({{"choice", "seed"}, {"index", 1.0}}));
+  const auto counts = [&claims](std::size_t c) {
+    return std::vector<int>{claims[c].at("judged"), claims[c].at("holds"), claims[c].at("reproduced"),
+                            claims[c].at("not_measured")};
+  };
+  EXPECT_EQ(counts(0), (std::vector<int>{64, 32, 32, 0}));
+  EXPECT_EQ(counts(1), (std::vector<int>{16, 16, 0, 0}));
+  EXPECT_TRUE(claims[1].at("decided_by").is_null()) << "it never changes";
+  EXPECT_EQ(counts(2), (std::vector<int>{32, 32, 32, 32}));
+  EXPECT_EQ(claims[2].at("verdicts"), Json({{"reproduced", 32}}));
 }
 
 TEST_F(Robustness, GoesIntoTheLedgerWhileItIsAboutTheSameChoicesAndVerdict) {
-  const RobustnessPlan p = plan(4);
-  const std::vector<std::vector<std::string>> verdicts(4, {"reproduced", "refuted", "error"});
-  const JudgedClaim same{p.claims[0], {Verdict::reproduced, "", ""}, {}, "reach"};
+  Readings r = readings(4);
+  const std::vector<ReadingVerdicts> judged(4, {{"reproduced", "refuted", "error"}, {}});
+  const Json record = robustness_json(r, judged, Json::object());
+  const JudgedClaim& same = r.claims[0];
   JudgedClaim other = same, untouched = same, moved = same;
   other.finding.verdict = Verdict::refuted;
   moved.reach = "another";
   untouched.reach = "";
-  const Json record = robustness_json(p, std::vector<JudgedClaim>(3, same),
-                                      robustness_of(p, {"reproduced", "refuted", "reproduced"}, verdicts));
-  const RobustnessOnRecord on_record(record);
-  EXPECT_EQ(on_record.of(same).at("holds"), 4);
-  EXPECT_EQ(on_record.of(same).at("majority"), "reproduced");
-  EXPECT_TRUE(on_record.of(other).is_null()) << "the verdict has changed since";
-  EXPECT_TRUE(on_record.of(moved).is_null()) << "the choices that reach it have changed since";
-  EXPECT_TRUE(on_record.of(untouched).is_null()) << "samples say nothing of it";
-  EXPECT_TRUE(RobustnessOnRecord(directory_ / "none.json").of(same).is_null());
+  EXPECT_EQ(robustness_on_record(record, same).at("holds"), 4);
+  EXPECT_EQ(robustness_on_record(record, same).at("majority"), "reproduced");
+  EXPECT_TRUE(robustness_on_record(record, other).is_null()) << "the verdict has changed since";
+  EXPECT_TRUE(robustness_on_record(record, moved).is_null()) << "the choices that reach it have changed since";
+  EXPECT_TRUE(robustness_on_record(record, untouched).is_null()) << "readings say nothing of it";
+  EXPECT_TRUE(test::input_error_of([&] { robustness_on_record(Json::object(), same); }));
   // A record of other claims keeps it.
-  EXPECT_EQ(RobustnessOnRecord(robustness_json(p, {}, {}, record)).of(same), on_record.of(same));
+  Readings none = r;
+  none.claims.clear();
+  EXPECT_EQ(robustness_json(none, {}, record).at("claims"), record.at("claims"));
 }
 
 /// A claim as the ledger has it, with counts unless they are null.
@@ -250,28 +217,6 @@ TEST(FirstOrderIndex, IsTheFormulasByHand) {
   EXPECT_EQ(first_order_index(bin, Values{0, 0, 0, 0, 1, 1, 1, 1}), 1.0);
   EXPECT_TRUE(std::isnan(first_order_index(bin, Values(8, 1.0)))) << "nothing changes";
   EXPECT_TRUE(std::isnan(first_order_index(Bins{0, 1}, Values{0, 1}))) << "every bin has one point";
-}
-
-TEST(FirstOrderIndex, IsUnbiasedWithoutInfluenceAndThatOfAModelWithOne) {
-  // y = [x1 < 1/2] or [x2 < 1/2]: Var(E[y | x1]) / Var(y) = (1/16) / (3/16) = 1/3.
-  double without = 0.0, with = 0.0;
-  constexpr int kRepeats = 400;
-  constexpr std::size_t kPoints = 128;
-  for (int repeat = 0; repeat < kRepeats; ++repeat) {
-    const auto seed = static_cast<std::uint64_t>(repeat);
-    const Values a = uniform(kPoints, 3 * seed), b = uniform(kPoints, 3 * seed + 1), c = uniform(kPoints, 3 * seed + 2);
-    Values y(kPoints);
-    for (std::size_t i = 0; i < kPoints; ++i) y[i] = a[i] < 0.5 || b[i] < 0.5 ? 1.0 : 0.0;
-    // Bins with an edge where y changes; of equal count, the bin across it would blur the step.
-    Bins eighths(kPoints);
-    for (std::size_t i = 0; i < kPoints; ++i) eighths[i] = static_cast<std::size_t>(8.0 * a[i]);
-    with += first_order_index(eighths, y) / kRepeats;
-    without += first_order_index(equal_count_bins(c, 8), y) / kRepeats;
-  }
-  // One estimate scatters by about sqrt(2 (B - 1)) / n = 0.03 without and 0.07 with influence; four standard errors of
-  // the mean of 400.
-  EXPECT_NEAR(without, 0.0, 4 * 0.03 / 20);
-  EXPECT_NEAR(with, 1.0 / 3.0, 4 * 0.07 / 20);
 }
 
 TEST(DecidingInput, IsTheOneThatDecidesOrNone) {
