@@ -125,7 +125,7 @@ static void describe(Fields& f, Lateness& late) {
 /// A name, or an object that names a file. The visitors hold on to the file's name.
 static void describe_contact_source(Fields& f, RenderingConfig& rendering) {
   constexpr TypeName kTypes[] = {{kTrace, "contacts recorded at times, of a prescribed motion"},
-                                 {kContactPlugin, "a shared library by hapbench_contacts.h, whose code is run"}};
+                                 {kContactPlugin, "a shared library by hapbench_module.h, whose code is run"}};
   std::string& source = rendering.contact_source;
   const bool is_plugin = source == kContactPlugin;
   f.plain_or_object(

@@ -19,9 +19,9 @@
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/memory_limit.hpp"
-#include "scenarios/plugins/load_plugin.hpp"
 #include "scenarios/program/fields_text.hpp"
 #include "scenarios/program/table.hpp"
+#include "scenarios/run/load_module.hpp"
 #include "scenarios/run/scene_facts.hpp"
 #include "sim/loop/integrators/table.hpp"
 
@@ -198,7 +198,7 @@ std::filesystem::path this_program() {
 
 std::vector<std::string> plugin_words() {
   std::vector<std::string> words;
-  for (const LoadedPlugin& plugin : loaded_plugins()) words.insert(words.end(), {"--plugin", plugin.file.string()});
+  for (const LoadedLaw& law : loaded_laws()) words.insert(words.end(), {"--plugin", law.file.string()});
   return words;
 }
 

@@ -10,13 +10,13 @@
 #include <string>
 #include <string_view>
 
-#include "algorithms/plugin/plugin_law.hpp"
+#include "algorithms/module/module.hpp"
 #include "scenarios/description/writer.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/text_lines.hpp"
-#include "scenarios/plugins/load_plugin.hpp"
 #include "scenarios/program/command.hpp"
 #include "scenarios/program/study.hpp"
+#include "scenarios/run/load_module.hpp"
 
 namespace hapbench {
 
@@ -230,16 +230,16 @@ std::vector<CommandText> CommandLine::texts() const {
 namespace {
 
 void load_plugins(const std::vector<std::string>& files) {
-  for (const std::string& file : files) load_plugin(file);
-  if (const char* folders = std::getenv("HAPBENCH_PLUGIN_PATH")) load_plugins_in("HAPBENCH_PLUGIN_PATH", folders);
+  for (const std::string& file : files) load_law(file);
+  if (const char* folders = std::getenv("HAPBENCH_PLUGIN_PATH")) load_laws_in("HAPBENCH_PLUGIN_PATH", folders);
 }
 
-/// Makes a success fail when a plugin's law failed: its runs count as diverged, which by itself need not be a failure.
+/// Makes a success fail when a module failed: its runs count as diverged, which by itself need not be a failure.
 int status_with_faults(int status) {
-  const PluginFaults faults = take_plugin_faults();
+  const ModuleFaults faults = take_module_faults();
   if (faults.count == 0) return status;
   std::fflush(stdout);
-  print_error(fmt::format("the law of a plugin failed {}; runs that it failed in count as diverged: {}",
+  print_error(fmt::format("a law or source of contacts from outside failed {}; its runs count as diverged: {}",
                           faults.count == 1 ? "once" : fmt::format("{} times", faults.count), faults.first));
   return status == kSuccess ? kUnexpectedOutcome : status;
 }
@@ -273,7 +273,7 @@ int CommandLine::run(std::vector<std::string> words) {
     throw InputError(problem_of(error, *app_));
   }
   load_plugins(plugins_);
-  take_plugin_faults();  // forgets those of an earlier command of this process
+  take_module_faults();  // forgets those of an earlier command of this process
   return status_with_faults(chosen_.action());
 }
 

@@ -124,8 +124,8 @@ class CommandLine {
     return {command, *options};
   }
   /// Replaces a study by its words (study.hpp), loads the plugins that the words and HAPBENCH_PLUGIN_PATH name, then
-  /// runs the command. Returns its exit status; for a success during which the law of a plugin failed,
-  /// kUnexpectedOutcome. Throws what the command throws, and InputError for a wrong usage and for plugins.
+  /// runs the command. Returns its exit status; for a success during which a law or a source of contacts from outside
+  /// failed, kUnexpectedOutcome. Throws what the command throws, and InputError for a wrong usage and for plugins.
   int run(int argc, char** argv);
   /// The chosen command's note on its results for when it is stopped.
   const std::string& when_stopped() const { return chosen_.when_stopped; }

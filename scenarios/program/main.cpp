@@ -7,7 +7,6 @@
 #include <exception>
 #include <string>
 
-#include "algorithms/plugin/plugin_call.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/memory_limit.hpp"
 #include "scenarios/program/command.hpp"
@@ -32,14 +31,25 @@ namespace {
   std::quick_exit(hapbench::kInternalFault);
 }
 
+std::atomic<bool> main_has_returned{false};
+
+/// A module that calls exit does not end the program with success.
+void refuse_exit() {
+  if (main_has_returned) return;
+  hapbench::print_error("internal fault: a module or a library called exit");
+  std::_Exit(hapbench::kInternalFault);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   // Exceeding the file size limit should be an ordinary write error and not terminate the process.
   std::signal(SIGXFSZ, SIG_IGN);
-  hapbench::name_plugins_that_end_the_process(hapbench::kInternalFault);
+  std::atexit(refuse_exit);
   std::set_terminate(end_with_a_reason);
   hapbench::limit_memory();
   const hapbench::StopSignal signals;
-  return hapbench::run_program_to_exit(argc, argv);
+  const int status = hapbench::run_program_to_exit(argc, argv);
+  main_has_returned = true;
+  return status;
 }

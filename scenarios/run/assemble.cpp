@@ -11,7 +11,7 @@
 #include "device_model/hands/tracking_hand.hpp"
 #include "device_model/ideal_device.hpp"
 #include "device_model/impedance_device.hpp"
-#include "scenarios/plugins/load_plugin.hpp"
+#include "scenarios/run/load_module.hpp"
 #include "scenarios/run/scene_facts.hpp"
 #include "sim/contact/contact_source.hpp"
 #include "sim/contact/late_contacts.hpp"
@@ -22,18 +22,17 @@
 namespace hapbench {
 namespace {
 
+/// Room for the contacts of a module, which need not come from triangles.
+constexpr std::size_t kMostModuleContacts = 10'000;
+
 void add(std::vector<double>& numbers, const Vec3& p) {
   numbers.insert(numbers.end(), {p.x(), p.y(), p.z()});
 }
 
-const HapbenchContactSource& contact_library_of(const Scenario& scenario) {
-  return contact_plugin(resolve_path(scenario, scenario.rendering.contact_file));
-}
-
 }  // namespace
 
-PeerSurface peer_surface(const Scenario& scenario, const NamedFiles& files) {
-  PeerSurface surface;
+SurfaceArrays surface_arrays(const Scenario& scenario, const NamedFiles& files) {
+  SurfaceArrays surface;
   const auto take = [&surface](const auto& triangles) {
     for (const auto& triangle : triangles)
       surface.triangles.insert(surface.triangles.end(), triangle.begin(), triangle.end());
@@ -54,21 +53,28 @@ PeerSurface peer_surface(const Scenario& scenario, const NamedFiles& files) {
   return surface;
 }
 
-void require_contact_source(const Scenario& scenario) {
-  if (scenario.rendering.contact_source == kContactPlugin) contact_library_of(scenario);
+namespace {
+
+/// The file of the library of rendering.contact_source.
+std::filesystem::path contact_library(const Scenario& scenario) {
+  return resolve_path(scenario, scenario.rendering.contact_file);
 }
 
-std::unique_ptr<ContactSource> make_peer_source(const Scenario& scenario, const NamedFiles& files) {
+std::unique_ptr<ContactSource> make_module_contacts(const Scenario& scenario, const NamedFiles& files) {
   const auto* drill = std::get_if<CylinderFields>(&scenario.tool);
   const bool is_flat = drill != nullptr && drill->tip == Tip::flat;
-  const HapbenchTool tool = {.radius = make_tool(scenario, files)->half_width(),
-                             .length = is_flat ? drill->length : 0.0};
-  const PeerSurface surface = peer_surface(scenario, files);
-  return std::make_unique<PeerSource>(contact_library_of(scenario), scenario.rendering.contact_config, surface, tool,
-                                      kMostPluginContacts);
+  const SurfaceArrays surface = surface_arrays(scenario, files);
+  const HapbenchRun run = {.data = nullptr,
+                           .stiffness = scenario.rendering.stiffness,
+                           .capacity = kMostModuleContacts,
+                           .vertices = surface.vertices.data(),
+                           .vertex_count = surface.vertices.size() / 3,
+                           .triangles = surface.triangles.data(),
+                           .triangle_count = surface.triangles.size() / 3,
+                           .tool_radius = make_tool(scenario, files)->half_width(),
+                           .tool_length = is_flat ? drill->length : 0.0};
+  return module_contacts(contact_library(scenario), scenario.rendering.contact_config, run);
 }
-
-namespace {
 
 /// The rules in a fixed order, whatever order the scenario names them in: the first that holds gives the run its
 /// outcome.
@@ -108,7 +114,8 @@ std::vector<std::string> named_file_warnings(const LoadedScenario& loaded) {
 
 std::vector<std::string> check_named_files(const LoadedScenario& loaded, bool looks_at_scan) {
   const Scenario& scenario = loaded.scenario;
-  with_file(loaded, [&] { require_contact_source(scenario); });
+  if (scenario.rendering.contact_source == kContactPlugin)
+    with_file(loaded, [&] { require_contacts_in(contact_library(scenario)); });
   for (const auto& file : loaded.files.all()) {
     try {
       file->check();
@@ -161,7 +168,7 @@ SimulationParts assemble(const Scenario& scenario, const NamedFiles& files, std:
   } else if (rendering.contact_source == kTrace) {
     parts.source = std::make_unique<TraceSource>(files.at(kContactFile).trace(), scenario.time.step);
   } else if (rendering.contact_source != kOwnContacts) {
-    parts.source = make_peer_source(scenario, files);
+    parts.source = make_module_contacts(scenario, files);
   } else {
     auto search = make_contact_query(*parts.shell, *parts.tool, rendering.skips);
     parts.source = std::make_unique<ShellSource>(*parts.shell, *parts.tool, std::move(search),

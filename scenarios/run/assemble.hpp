@@ -3,7 +3,6 @@
 #include <memory>
 #include <vector>
 
-#include "algorithms/peers/peer_source.hpp"
 #include "scenarios/description/load_scenario.hpp"
 #include "scenarios/description/parts.hpp"
 
@@ -30,14 +29,14 @@ SimulationParts assemble(const Scenario& scenario, std::shared_ptr<const PointSh
 /// The only or first run, with a shell of its own.
 SimulationParts assemble(const Scenario& scenario);
 
+/// An environment as triangles.
+struct SurfaceArrays {
+  std::vector<double> vertices;          ///< x, y, z of each [m]
+  std::vector<std::uint32_t> triangles;  ///< three vertices of each
+};
+
 /// The scenario's environment as triangles: those whose vertices our shell has, or those of its mesh file; without
 /// triangles, the points of other environments. Throws InputError when the file cannot be used.
-PeerSurface peer_surface(const Scenario& scenario, const NamedFiles& files);
-
-/// Loads the library of rendering.contact_source, if that is one. Throws InputError when it cannot.
-void require_contact_source(const Scenario& scenario);
-
-/// The contacts of the library of rendering.contact_source. Precondition: it is kContactPlugin. Throws InputError.
-std::unique_ptr<ContactSource> make_peer_source(const Scenario& scenario, const NamedFiles& files);
+SurfaceArrays surface_arrays(const Scenario& scenario, const NamedFiles& files);
 
 }  // namespace hapbench

@@ -6,8 +6,6 @@
 #include <chrono>
 #include <string_view>
 
-#include "algorithms/plugin/plugin_call.hpp"
-
 namespace hapbench {
 
 namespace {
@@ -21,7 +19,7 @@ std::atomic<Clock::time_point> received_at;
 static_assert(std::atomic<int>::is_always_lock_free && std::atomic<Clock::time_point>::is_always_lock_free,
               "a signal handler may not lock");
 
-/// Time after which a signal that nobody has asked for ends the process: a plugin may loop, a pipe may never deliver.
+/// Time after which a signal that nobody has asked for ends the process: a module may loop, a pipe may never deliver.
 constexpr unsigned kPatience = 2;  // [s]
 
 /// A signal that follows the first one within this time is taken for the same: timeout(1) sends each one twice, to its
@@ -35,9 +33,7 @@ void end_process(int signal) {
 
 void end_without_notice(int) {
   constexpr std::string_view kText = "hapbench: ended amid work that did not notice the signal for two seconds\n";
-  if (!write_running_plugins()) {
-    [[maybe_unused]] const auto written = ::write(STDERR_FILENO, kText.data(), kText.size());
-  }
+  [[maybe_unused]] const auto written = ::write(STDERR_FILENO, kText.data(), kText.size());
   end_process(received_signal);
 }
 

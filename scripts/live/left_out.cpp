@@ -1,10 +1,9 @@
-// Replaces the parts of the engine that need an operating system: the folder of an installation, plugins and signals.
+// Replaces the parts of the engine that need an operating system: the folder of an installation, modules and signals.
 #include <filesystem>
 
-#include "algorithms/plugin/plugin_call.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/input/input_error.hpp"
-#include "scenarios/plugins/load_plugin.hpp"
+#include "scenarios/run/load_module.hpp"
 #include "scenarios/run/stop_signal.hpp"
 
 namespace hapbench {
@@ -26,11 +25,12 @@ std::filesystem::path find_scenario(const std::string& name, const std::filesyst
   throw InputError(name + ": no such file and no bundled scenario");
 }
 
-const HapbenchContactSource& contact_plugin(const std::filesystem::path&) {
+void require_contacts_in(const std::filesystem::path&) {
   refuse_library();
 }
-PluginCall::PluginCall(const char*, const char*) noexcept {}
-PluginCall::~PluginCall() = default;
+std::unique_ptr<ContactSource> module_contacts(const std::filesystem::path&, const std::string&, const HapbenchRun&) {
+  refuse_library();
+}
 
 void throw_if_stopped() {}
 

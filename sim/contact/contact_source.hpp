@@ -69,7 +69,7 @@ std::unique_ptr<ContactQuery> make_contact_query(const PointShell& shell, const 
 
 /// The environment as the step loop sees it: answers which contacts a tool in a given pose has, each with its depth and
 /// gradient. A shell of points needs a search and a depth model for that (algorithms/depth/depth_model.hpp); springs
-/// know their depths, and so do other libraries (algorithms/peers).
+/// know their depths, and so do modules (algorithms/module).
 class ContactSource {
  public:
   virtual ~ContactSource() = default;

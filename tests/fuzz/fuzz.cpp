@@ -15,7 +15,7 @@
 #include <variant>
 #include <vector>
 
-#include "algorithms/plugin/plugin_law.hpp"
+#include "algorithms/module/module.hpp"
 #include "scenarios/batch/table_file.hpp"
 #include "scenarios/description/load_scenario.hpp"
 #include "scenarios/description/parts.hpp"
@@ -140,8 +140,8 @@ void read_device(std::string_view text) {
   device_of_file(file_with(text));
 }
 
-/// The table of a plugin whose texts and numbers are the bytes: it becomes a law or is refused.
-void read_plugin(std::string_view bytes) {
+/// The table of a law whose texts and numbers are the bytes: it becomes a law or is refused.
+void read_module(std::string_view bytes) {
   std::vector<std::string> texts;  // between bytes of zero
   std::istringstream in{std::string(bytes)};
   for (std::string text; std::getline(in, text, '\0');) texts.push_back(text);
@@ -153,20 +153,19 @@ void read_plugin(std::string_view bytes) {
     std::memcpy(numbers.data(), texts[i].data(), std::min(sizeof numbers, texts[i].size()));
     parameters.push_back({text(i + 1), text(i + 2), numbers[0], numbers[1], numbers[2], text(5)});
   }
-  HapbenchPlugin plugin = {};
-  plugin.version = HAPBENCH_PLUGIN_VERSION;
-  plugin.gives = static_cast<std::uint32_t>(texts[6].size());
-  plugin.name = text(0);
-  plugin.summary = text(1);
-  plugin.formula = text(2);
-  plugin.source = text(3);
-  plugin.known_failure = text(4);
-  plugin.parameters = texts[7].starts_with('-') ? nullptr : parameters.data();
-  plugin.parameter_count = parameters.size() + (texts[7].starts_with('+') ? std::size_t{1} << 40 : 0);
-  plugin.create = [](const double*, double, std::size_t) -> void* { return nullptr; };
-  plugin.evaluate = [](void*, const HapbenchContacts*, double*, HapbenchForce*) { return 0; };
+  auto table = std::make_shared<HapbenchModule>();
+  table->version = HAPBENCH_MODULE_VERSION;
+  table->kind = HAPBENCH_LAW;
+  table->name = text(0);
+  table->summary = text(1);
+  table->formula = text(2);
+  table->source = text(3);
+  table->known_failure = text(4);
+  table->parameters = texts[7].starts_with('-') ? nullptr : parameters.data();
+  table->parameter_count = parameters.size() + (texts[7].starts_with('+') ? std::size_t{1} << 40 : 0);
+  table->step = [](void*, const HapbenchPose*, HapbenchContacts*, HapbenchForce*, char*) { return 0; };
   try {
-    plugin_entry(plugin, {"fuzz.so", ""});
+    law_entry({table, "fuzz.so"}, "");
   } catch (const std::invalid_argument&) {
   }
 }
@@ -189,7 +188,7 @@ constexpr std::array kTargets = {
     Target{"stroke", read_stroke},
     Target{"table", read_table},
     Target{"device", read_device},
-    Target{"plugin", read_plugin},
+    Target{"module", read_module},
     Target{"trace", read_trace},
 };
 

@@ -5,7 +5,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 LARGEST = 20_000  # bytes; scripts/fuzz makes none that is larger
-PATTERNS = {"scenario": "*.json", "run": "*.json", "device": "*.json", "plugin": "plugin"}
+PATTERNS = {"scenario": "*.json", "run": "*.json", "device": "*.json", "module": "module"}
 
 
 def files(pattern):

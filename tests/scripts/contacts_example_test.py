@@ -13,7 +13,7 @@ K = 20000
 class SphereByPython(unittest.TestCase):
     def test_the_force_is_that_of_the_sphere(self):
         folder = scratch_folder(self)
-        must(sys.executable, SOURCE / "algorithms" / "peers" / "examples" / "sphere_trace.py", folder)
+        must(sys.executable, SOURCE / "algorithms" / "module" / "examples" / "sphere_trace.py", folder)
         hapbench("run", folder / "sphere.json", "--out", folder / "out", "--quiet")
         with open(folder / "out" / "trajectory.csv", encoding="utf-8", newline="") as lines:
             rows = list(csv.DictReader(lines))

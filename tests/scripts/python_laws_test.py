@@ -1,4 +1,4 @@
-"""Force laws in Python, and plugins beside them. Arguments: those of python_fixture.py."""
+"""Force laws in Python, and modules beside them. Arguments: those of python_fixture.py."""
 import json
 import subprocess
 import threading
@@ -207,12 +207,12 @@ class TheEndOfTheInterpreter(Scratch):
                         "assert begun.wait(60)\n")
 
 
-PLUGIN = SOURCE / "algorithms/plugin/examples/depth_weighted.c"
+PLUGIN = SOURCE / "algorithms/module/examples/depth_weighted.c"
 
 
 class Plugins(Scratch):
     def test_stand_beside_laws_in_python(self):
-        subprocess.run(["cc", "-shared", "-fPIC", f"-I{SOURCE}/algorithms/plugin", "-o", self.root / "law.so", PLUGIN, "-lm"], check=True)
+        subprocess.run(["cc", "-shared", "-fPIC", f"-I{SOURCE}/algorithms/module", "-o", self.root / "law.so", PLUGIN, "-lm"], check=True)
         before = set(hapbench.algorithms())
         hapbench.load_plugin(self.root / "law.so")
         (name,) = set(hapbench.algorithms()) - before
@@ -223,7 +223,7 @@ class Plugins(Scratch):
     def test_none_is_loaded_while_a_thread_computes(self):
         source = self.root / "other.c"
         source.write_text(PLUGIN.read_text().replace("depth_weighted", "other_law"))
-        subprocess.run(["cc", "-shared", "-fPIC", f"-I{SOURCE}/algorithms/plugin", "-o", self.root / "other.so", source, "-lm"], check=True)
+        subprocess.run(["cc", "-shared", "-fPIC", f"-I{SOURCE}/algorithms/module", "-o", self.root / "other.so", source, "-lm"], check=True)
         begun, let_go = threading.Event(), threading.Event()
 
         def wait(*_):

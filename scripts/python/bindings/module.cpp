@@ -119,7 +119,7 @@ PYBIND11_MODULE(_hapbench, module) {
   using namespace hapbench;
   module.doc() = "The compiled part of hapbench: use the package around it.";
   translate_errors();
-  guard_plugins();
+  guard_law_loading();
   end_work_before_interpreter();
   module.def(
       "set_program", [](const std::string& program) { set_this_program(program); }, py::arg("program"),

@@ -4,14 +4,18 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 #include <memory>
+#include <thread>
 #include <utility>
 
+#include "algorithms/module/module.hpp"
 #include "algorithms/registry.hpp"
 #include "bindings/bindings.hpp"
 #include "sim/core/hash.hpp"
 
+/// A force law in Python is a module (hapbench_module.h) whose functions call it.
 namespace hapbench {
 namespace {
 
@@ -20,25 +24,54 @@ namespace py = pybind11;
 /// The arguments of a law, by their names; `own` stands for the law's own parameters.
 enum class Argument { depths, gradients, points, normals, stiffness, own };
 
-/// A force law in Python: a function, or a class whose objects are called.
+/// Name, default, minimum, maximum, unit, meaning.
+using GivenParameter = std::tuple<std::string, double, double, double, std::string, std::string>;
+
+/// A function, or a class whose objects are called, and its table.
 struct Definition {
   std::string name;
   py::object callable;
   bool is_class = false;
+  std::vector<GivenParameter> given;
+  std::array<std::string, 4> texts;  ///< summary, formula, source, known failure
   /// The function's arguments in their order; for an own parameter its index in the table.
   std::vector<std::pair<Argument, std::size_t>> arguments;
+  std::vector<HapbenchParameter> parameters;
+  HapbenchModule table = {};
 };
 
-using SharedDefinition = std::shared_ptr<const Definition>;
+/// The interpreter's state of a thread that Python has not made, for as long as a law lives: making one takes longer
+/// than a call.
+class KeptThread {
+ public:
+  KeptThread() {
+    if (PyGILState_GetThisThreadState() != nullptr) return;
+    PyGILState_Ensure();
+    state_ = PyEval_SaveThread();
+  }
+  /// Precondition: the interpreter is not held. A state of another thread stays until the interpreter ends.
+  void give_back() noexcept {
+    if (state_ == nullptr || thread_ != std::this_thread::get_id()) return;
+    PyEval_RestoreThread(state_);
+    PyGILState_Release(PyGILState_UNLOCKED);
+  }
+
+ private:
+  std::thread::id thread_ = std::this_thread::get_id();
+  PyThreadState* state_ = nullptr;
+};
 
 /// A numpy array with `width` numbers for each contact, of which laws get a view of the first rows.
 class ContactArray {
  public:
   ContactArray(std::size_t capacity, py::ssize_t width) : width_(width), numbers_(shape(capacity)) {}
 
-  double* data() { return numbers_.mutable_data(); }
-  /// The view of the first n rows; reused while n stays the same.
-  const py::object& view(std::size_t n) {
+  /// The view of the first n rows, filled from one array for each column; reused while n stays the same.
+  const py::object& filled(std::size_t n, std::initializer_list<const double*> columns) {
+    double* out = numbers_.mutable_data();
+    for (std::size_t i = 0; i < n; ++i) {
+      for (const double* column : columns) *out++ = column[i];
+    }
     if (n != rows_) {
       view_ = py::array_t<double>(shape(n), numbers_.data(), numbers_);
       rows_ = n;
@@ -58,149 +91,68 @@ class ContactArray {
   std::size_t rows_ = std::numeric_limits<std::size_t>::max();
 };
 
-void copy(const double* from, std::size_t n, ContactArray& to) {
-  std::copy_n(from, n, to.data());
-}
-
-void copy(const double* x, const double* y, const double* z, std::size_t n, ContactArray& to) {
-  double* out = to.data();
-  for (std::size_t i = 0; i < n; ++i) {
-    *out++ = x[i];
-    *out++ = y[i];
-    *out++ = z[i];
-  }
-}
-
-class PythonLaw final : public SingleSpringLaw {
+/// A law for one run. Precondition of everything: the interpreter is held.
+class PythonLaw {
  public:
-  PythonLaw(SharedDefinition definition, const std::vector<double>& own, double stiffness)
-      : SingleSpringLaw(stiffness), definition_(std::move(definition)) {
-    const Held held;
-    state_ = std::make_unique<State>();
-    for (const double value : own) state_->own.push_back(py::float_(value));
-    state_->stiffness = py::float_(stiffness);
-  }
-
-  ~PythonLaw() override {
-    if (!Py_IsInitialized()) {
-      static_cast<void>(state_.release());
-      return;
-    }
-    const Held held;
-    state_.reset();
-  }
-
-  void prepare(std::size_t capacity) override {
-    const Held held;
-    for (const auto& [argument, place] : definition_->arguments) {
-      if (argument < Argument::stiffness && !column(argument))
-        column(argument) = std::make_unique<ContactArray>(capacity, argument == Argument::depths ? 1 : 3);
+  PythonLaw(const Definition& definition, const double* values, const HapbenchRun& run)
+      : definition_(&definition), stiffness_(run.stiffness) {
+    for (std::size_t i = 0; i < definition.given.size(); ++i) own_.emplace_back(values[i]);
+    for (const auto& [argument, place] : definition.arguments) {
+      if (argument < Argument::stiffness)
+        columns_[static_cast<std::size_t>(argument)].emplace(run.capacity, argument == Argument::depths ? 1 : 3);
     }
     start();
-  }
-
-  void reset() noexcept override {
-    ForceLaw::reset();
-    start();
-  }
-
-  LawForce evaluate(ContactBuffer& contacts) noexcept override {
-    if (contacts.empty()) return {};
-    if (failed_) return no_force(contacts);
-    LawForce force;
-    failed_ = !runs_in_python([&] { force = force_of(call(contacts), contacts); });
-    return failed_ ? no_force(contacts) : force;
-  }
-
- private:
-  /// Python objects, which are made and released while the interpreter is held.
-  struct State {
-    py::object callable;
-    std::vector<py::object> own;
-    py::object stiffness;
-    std::array<std::unique_ptr<ContactArray>, 4> columns;
-  };
-
-  std::unique_ptr<ContactArray>& column(Argument argument) {
-    return state_->columns[static_cast<std::size_t>(argument)];
   }
 
   /// Makes a new object of a law that is a class.
-  void start() noexcept {
-    failed_ = !runs_in_python(
-        [this] { state_->callable = definition_->is_class ? definition_->callable() : definition_->callable; });
+  void start() { callable_ = definition_->is_class ? definition_->callable() : definition_->callable; }
+
+  void step(HapbenchContacts& contacts, HapbenchForce& force) {
+    const py::object answer = call(contacts);
+    if (py::isinstance<py::tuple>(answer)) return take_force(answer, contacts.n, force);
+    const auto weights = numbers(answer);
+    if (weights.ndim() == 0) {
+      std::fill_n(contacts.weight, contacts.n, require_finite(*weights.data(), "the weight"));
+    } else if (weights.ndim() == 1 && static_cast<std::size_t>(weights.size()) == contacts.n) {
+      const double* values = weights.data();
+      for (std::size_t i = 0; i < contacts.n; ++i) contacts.weight[i] = require_finite(values[i], "a weight");
+    } else {
+      throw wrong(py::str("an array of the shape {}").format(weights.attr("shape")), contacts.n);
+    }
   }
 
-  /// The answer after an error, which ends the run.
-  static LawForce no_force(ContactBuffer& contacts) noexcept {
-    set_weights(contacts, 0.0);
-    return {Vec3::Constant(std::numeric_limits<double>::quiet_NaN()), Mat3::Zero()};
-  }
-
-  py::object call(const ContactBuffer& c) {
-    const std::size_t n = c.size();
+ private:
+  py::object call(const HapbenchContacts& contacts) {
     std::array<PyObject*, 64> arguments;
     std::size_t count = 0;
-    for (const auto& [argument, place] : definition_->arguments) {
-      arguments[count++] = this->argument(c, n, argument, place).ptr();
-    }
-    PyObject* result = PyObject_Vectorcall(state_->callable.ptr(), arguments.data(), count, nullptr);
+    for (const auto& [which, place] : definition_->arguments)
+      arguments[count++] = argument(contacts, which, place).ptr();
+    PyObject* result = PyObject_Vectorcall(callable_.ptr(), arguments.data(), count, nullptr);
     if (result == nullptr) throw py::error_already_set();
     return py::reinterpret_steal<py::object>(result);
   }
 
-  const py::object& argument(const ContactBuffer& c, std::size_t n, Argument which, std::size_t place) {
-    switch (which) {
-      case Argument::depths:
-        copy(c.depth.data(), n, *column(which));
-        break;
-      case Argument::gradients:
-        copy(c.ux.data(), c.uy.data(), c.uz.data(), n, *column(which));
-        break;
-      case Argument::points:
-        copy(c.x.data(), c.y.data(), c.z.data(), n, *column(which));
-        break;
-      case Argument::normals:
-        copy(c.nx.data(), c.ny.data(), c.nz.data(), n, *column(which));
-        break;
-      case Argument::stiffness:
-        return state_->stiffness;
-      case Argument::own:
-        return state_->own[place];
-    }
-    return column(which)->view(n);
+  const py::object& argument(const HapbenchContacts& c, Argument which, std::size_t place) {
+    if (which == Argument::stiffness) return stiffness_;
+    if (which == Argument::own) return own_[place];
+    ContactArray& array = *columns_[static_cast<std::size_t>(which)];
+    if (which == Argument::depths) return array.filled(c.n, {c.depth});
+    if (which == Argument::gradients) return array.filled(c.n, {c.gx, c.gy, c.gz});
+    return which == Argument::points ? array.filled(c.n, {c.x, c.y, c.z}) : array.filled(c.n, {c.nx, c.ny, c.nz});
   }
 
-  LawForce force_of(const py::object& answer, ContactBuffer& contacts) {
-    gives_weights_ = !py::isinstance<py::tuple>(answer);
-    if (!gives_weights_) return given_force(answer, contacts);
-    const auto weights = numbers(answer);
-    const std::size_t n = contacts.size();
-    if (weights.ndim() == 0) {
-      set_weights(contacts, require_finite(*weights.data(), "the weight"));
-    } else if (weights.ndim() == 1 && static_cast<std::size_t>(weights.size()) == n) {
-      const double* values = weights.data();
-      for (std::size_t i = 0; i < n; ++i) contacts.weight[i] = require_finite(values[i], "a weight");
-    } else {
-      throw wrong(py::str("an array of the shape {}").format(weights.attr("shape")), n);
-    }
-    return weighted_force(contacts, K_);
-  }
-
-  LawForce given_force(const py::object& answer, ContactBuffer& contacts) {
+  void take_force(const py::object& answer, std::size_t n, HapbenchForce& to) const {
     const auto parts = py::reinterpret_borrow<py::tuple>(answer);
-    if (parts.size() != 2) throw wrong(py::str("a tuple of {}").format(parts.size()), contacts.size());
+    if (parts.size() != 2) throw wrong(py::str("a tuple of {}").format(parts.size()), n);
     const auto force = numbers(parts[0]), tensor = numbers(parts[1]);
     if (force.ndim() != 1 || force.size() != 3 || tensor.ndim() != 2 || tensor.shape(0) != 3 || tensor.shape(1) != 3)
-      throw wrong(py::str("arrays of the shapes {} and {}").format(force.attr("shape"), tensor.attr("shape")),
-                  contacts.size());
-    LawForce result;
-    for (int i = 0; i < 3; ++i) result.spring[i] = require_finite(force.data()[i], "the force");
-    for (int i = 0; i < 9; ++i) result.S(i / 3, i % 3) = require_finite(tensor.data()[i], "the stiffness tensor");
-    if (result.S != result.S.transpose())
+      throw wrong(py::str("arrays of the shapes {} and {}").format(force.attr("shape"), tensor.attr("shape")), n);
+    const double *f = force.data(), *S = tensor.data();
+    for (int i = 0; i < 9; ++i) require_finite(S[i], "the stiffness tensor");
+    if (S[1] != S[3] || S[2] != S[6] || S[5] != S[7])
       throw py::value_error(title() + "got a stiffness tensor that is not symmetric");
-    set_weights(contacts, 1.0 / static_cast<double>(contacts.size()));
-    return result;
+    to = {1, {f[0], f[1], f[2]}, {S[0], S[1], S[2], S[4], S[5], S[8]}};
+    for (const double value : to.force) require_finite(value, "the force");
   }
 
   using Numbers = py::array_t<double, py::array::c_style | py::array::forcecast>;
@@ -225,13 +177,47 @@ class PythonLaw final : public SingleSpringLaw {
 
   std::string title() const { return "force law \"" + definition_->name + "\": "; }
 
-  SharedDefinition definition_;
-  std::unique_ptr<State> state_;
-  bool failed_ = false;
+  const Definition* definition_;
+  py::object callable_;
+  std::vector<py::float_> own_;
+  py::float_ stiffness_;
+  std::array<std::optional<ContactArray>, 4> columns_;
 };
 
-/// Name, default, minimum, maximum, unit, meaning.
-using GivenParameter = std::tuple<std::string, double, double, double, std::string, std::string>;
+struct State {
+  KeptThread thread;
+  std::unique_ptr<PythonLaw> law;
+};
+
+void* create(const double* values, const char*, const HapbenchRun* run, char* fault) {
+  auto state = std::make_unique<State>();
+  const auto& definition = *static_cast<const Definition*>(run->data);
+  if (runs_in_python([&] { state->law = std::make_unique<PythonLaw>(definition, values, *run); }))
+    return state.release();
+  state->thread.give_back();
+  std::snprintf(fault, HAPBENCH_FAULT_SIZE, "an error in Python");
+  return nullptr;
+}
+
+int step(void* state, const HapbenchPose*, HapbenchContacts* contacts, HapbenchForce* force, char* fault) {
+  if (runs_in_python([&] { static_cast<State*>(state)->law->step(*contacts, *force); })) return 0;
+  std::snprintf(fault, HAPBENCH_FAULT_SIZE, "an error in Python");
+  return 1;
+}
+
+void reset(void* state) {
+  runs_in_python([state] { static_cast<State*>(state)->law->start(); });
+}
+
+void destroy(void* given) {
+  if (!Py_IsInitialized()) return;  // the interpreter has destroyed its objects
+  const std::unique_ptr<State> state(static_cast<State*>(given));
+  {
+    const py::gil_scoped_acquire held;
+    state->law.reset();
+  }
+  state->thread.give_back();
+}
 
 Argument argument_named(const std::string& name) {
   if (name == "depths") return Argument::depths;
@@ -241,41 +227,52 @@ Argument argument_named(const std::string& name) {
   return name == "stiffness" ? Argument::stiffness : Argument::own;
 }
 
+/// Any thread may release the last reference; it is destroyed only while there is an interpreter.
+void destroy_definition(Definition* definition) {
+  if (!Py_IsInitialized()) return;
+  const py::gil_scoped_acquire held;
+  delete definition;
+}
+
+void fill_table(Definition& definition, const std::vector<std::string>& arguments) {
+  for (const auto& [name, initial, least, greatest, unit, meaning] : definition.given)
+    definition.parameters.push_back({name.c_str(), unit.c_str(), least, greatest, initial, meaning.c_str()});
+  for (const std::string& argument : arguments) {
+    const auto place = std::find_if(definition.given.begin(), definition.given.end(),
+                                    [&](const GivenParameter& p) { return std::get<0>(p) == argument; });
+    definition.arguments.emplace_back(argument_named(argument),
+                                      static_cast<std::size_t>(place - definition.given.begin()));
+  }
+  const auto& [summary, formula, source, known_failure] = definition.texts;
+  definition.table = {.version = HAPBENCH_MODULE_VERSION,
+                      .kind = HAPBENCH_LAW,
+                      .name = definition.name.c_str(),
+                      .summary = summary.c_str(),
+                      .formula = formula.c_str(),
+                      .source = source.c_str(),
+                      .known_failure = known_failure.c_str(),
+                      .parameters = definition.parameters.data(),
+                      .parameter_count = definition.parameters.size(),
+                      .data = &definition,
+                      .create = create,
+                      .step = step,
+                      .reset = reset,
+                      .destroy = destroy};
+}
+
 void add_force_law(const std::string& name, const py::object& callable, bool is_class,
                    const std::vector<std::string>& arguments, const std::vector<GivenParameter>& parameters,
                    const std::array<std::string, 4>& texts, const std::string& depth_model, const std::string& file,
                    const std::string& source) {
   if (is_work_under_way()) throw std::runtime_error("a force law cannot be defined while something is computed");
-  Definition definition{name, callable, is_class, {}};
-  std::vector<OwnParameter> own;
-  for (const auto& [own_name, initial, least, greatest, unit, meaning] : parameters)
-    own.push_back({.name = own_name.c_str(),
-                   .range = {least, greatest, unit.c_str()},
-                   .initial = initial,
-                   .meaning = meaning.c_str()});
-  for (const std::string& argument : arguments) {
-    const auto place = std::find_if(parameters.begin(), parameters.end(),
-                                    [&](const GivenParameter& p) { return std::get<0>(p) == argument; });
-    definition.arguments.emplace_back(argument_named(argument), static_cast<std::size_t>(place - parameters.begin()));
-  }
   const DepthModelEntry* fixed = depth_model.empty() ? nullptr : find_depth_model(depth_model);
   if (!depth_model.empty() && fixed == nullptr)
     throw std::invalid_argument("unknown depth model \"" + depth_model + "\"");
-
-  const ModelInfo info = {.name = name.c_str(),
-                          .summary = texts[0].c_str(),
-                          .formula = texts[1].c_str(),
-                          .source = texts[2].c_str(),
-                          .known_failure = texts[3].c_str(),
-                          .parameters = kStiffnessAlone};
-  AlgorithmEntry entry;
-  entry.info = &info;
+  const std::shared_ptr<Definition> definition(new Definition{name, callable, is_class, parameters, texts, {}, {}},
+                                               destroy_definition);
+  fill_table(*definition, arguments);
+  AlgorithmEntry entry = law_entry({{definition, &definition->table}, file}, hash_text(hash_of(source)));
   if (fixed != nullptr) entry.fixed_depth_model = fixed->info->name;
-  entry.own_parameters = own;
-  entry.origin = {file, hash_text(hash_of(source))};
-  entry.make_law = [shared = shared_by_threads(std::move(definition)), name](const RenderingConfig& config) {
-    return std::make_unique<PythonLaw>(shared, own_values(config, *find_algorithm(name)), config.stiffness);
-  };
   add_algorithm(std::move(entry));
 }
 

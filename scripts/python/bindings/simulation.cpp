@@ -55,9 +55,12 @@ class PythonSimulation {
   PythonSimulation(const std::string& scenario, const std::vector<std::string>& overrides)
       : loaded_(load_scenario(find_scenario(scenario), overrides)) {
     const UnderWay counted;
-    SimulationParts parts = with_file(loaded_, [&] { return assemble(loaded_.scenario); });
-    last_.emplace(parts.source->capacity());
-    simulation_.emplace(simulation_config(loaded_.scenario), std::move(parts), std::vector<Observer*>{&*last_});
+    {
+      const py::gil_scoped_release released;
+      SimulationParts parts = with_file(loaded_, [&] { return assemble(loaded_.scenario); });
+      last_.emplace(parts.source->capacity());
+      simulation_.emplace(simulation_config(loaded_.scenario), std::move(parts), std::vector<Observer*>{&*last_});
+    }
     raise_python_error();
   }
 

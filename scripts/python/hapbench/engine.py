@@ -106,7 +106,7 @@ def algorithms() -> list[str]:
 def load_plugin(file: str | os.PathLike) -> None:
     """Take a law from a shared object with hapbench's C interface, as --plugin does; it then stands beside the others.
 
-    Raises ScenarioError for what is no plugin, and while another thread computes."""
+    Raises ScenarioError for what is no law, and while another thread computes."""
     command("--plugin", os.fspath(file), "list", "--quiet")
 
 

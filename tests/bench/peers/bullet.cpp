@@ -16,7 +16,7 @@ constexpr double kMillimetres = 1e3;
 /// Collects the contacts of one pair.
 class Taker final : public btCollisionWorld::ContactResultCallback {
  public:
-  Taker(std::span<HapbenchContact> room, const btCollisionObject& tool) : room_(room), tool_(&tool) {}
+  Taker(std::span<PeerContact> room, const btCollisionObject& tool) : room_(room), tool_(&tool) {}
 
   btScalar addSingleResult(btManifoldPoint& point, const btCollisionObjectWrapper* a, int, int index_a,
                            const btCollisionObjectWrapper*, int, int index_b) override {
@@ -35,16 +35,16 @@ class Taker final : public btCollisionWorld::ContactResultCallback {
   std::size_t found = 0;
 
  private:
-  std::span<HapbenchContact> room_;
+  std::span<PeerContact> room_;
   const btCollisionObject* tool_;
 };
 
-class Bullet {
+class Bullet final : public Peer {
  public:
-  Bullet(const HapbenchSurface& surface, const HapbenchTool& drill)
-      : vertices_(surface.vertices, surface.vertices + 3 * surface.vertex_count),
-        triangles_(surface.triangles, surface.triangles + 3 * surface.triangle_count),
-        drill_(btVector3(drill.radius, drill.radius, drill.length / 2.0) * kMillimetres) {
+  explicit Bullet(const HapbenchRun& run)
+      : vertices_(run.vertices, run.vertices + 3 * run.vertex_count),
+        triangles_(run.triangles, run.triangles + 3 * run.triangle_count),
+        drill_(btVector3(run.tool_radius, run.tool_radius, run.tool_length / 2.0) * kMillimetres) {
     for (double& x : vertices_) x *= kMillimetres;
     indices_ = std::make_unique<btTriangleIndexVertexArray>(
         static_cast<int>(triangles_.size() / 3), triangles_.data(), static_cast<int>(3 * sizeof(int)),
@@ -56,7 +56,7 @@ class Bullet {
     tool_.setCollisionShape(&drill_);
   }
 
-  std::size_t contacts_at(const HapbenchPose& pose, std::span<HapbenchContact> room) {
+  std::size_t contacts_at(const HapbenchPose& pose, std::span<PeerContact> room) override {
     const auto& r = pose.rotation;
     const btMatrix3x3 rotation(r[0], r[1], r[2], r[3], r[4], r[5], r[6], r[7], r[8]);
     const btVector3 centre(pose.centre[0], pose.centre[1], pose.centre[2]);
@@ -81,9 +81,8 @@ class Bullet {
 
 }  // namespace
 
-const HapbenchContactSource& bullet() {
-  static const HapbenchContactSource library = contact_library<Bullet>("bullet");
-  return library;
+std::unique_ptr<Peer> bullet(const HapbenchRun& run) {
+  return std::make_unique<Bullet>(run);
 }
 
 }  // namespace hapbench::bench

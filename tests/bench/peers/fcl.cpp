@@ -12,24 +12,24 @@ namespace {
 
 using Surface = fcl::BVHModel<fcl::OBBRSSd>;
 
-class Fcl {
+class Fcl final : public Peer {
  public:
-  Fcl(const HapbenchSurface& surface, const HapbenchTool& drill) {
+  explicit Fcl(const HapbenchRun& run) {
     std::vector<fcl::Vector3d> vertices;
-    for (std::size_t i = 0; i < 3 * surface.vertex_count; i += 3)
-      vertices.emplace_back(surface.vertices[i], surface.vertices[i + 1], surface.vertices[i + 2]);
+    for (std::size_t i = 0; i < 3 * run.vertex_count; i += 3)
+      vertices.emplace_back(run.vertices[i], run.vertices[i + 1], run.vertices[i + 2]);
     std::vector<fcl::Triangle> triangles;
-    for (std::size_t i = 0; i < 3 * surface.triangle_count; i += 3)
-      triangles.emplace_back(surface.triangles[i], surface.triangles[i + 1], surface.triangles[i + 2]);
+    for (std::size_t i = 0; i < 3 * run.triangle_count; i += 3)
+      triangles.emplace_back(run.triangles[i], run.triangles[i + 1], run.triangles[i + 2]);
     auto model = std::make_shared<Surface>();
     model->beginModel();
     model->addSubModel(vertices, triangles);
     model->endModel();
     surface_ = std::make_unique<fcl::CollisionObjectd>(model);
-    tool_ = std::make_unique<fcl::CollisionObjectd>(std::make_shared<fcl::Cylinderd>(drill.radius, drill.length));
+    tool_ = std::make_unique<fcl::CollisionObjectd>(std::make_shared<fcl::Cylinderd>(run.tool_radius, run.tool_length));
   }
 
-  std::size_t contacts_at(const HapbenchPose& pose, std::span<HapbenchContact> room) {
+  std::size_t contacts_at(const HapbenchPose& pose, std::span<PeerContact> room) override {
     const auto& r = pose.rotation;
     fcl::Matrix3d rotation;
     rotation << r[0], r[1], r[2], r[3], r[4], r[5], r[6], r[7], r[8];
@@ -55,9 +55,8 @@ class Fcl {
 
 }  // namespace
 
-const HapbenchContactSource& fcl() {
-  static const HapbenchContactSource library = contact_library<Fcl>("fcl");
-  return library;
+std::unique_ptr<Peer> fcl(const HapbenchRun& run) {
+  return std::make_unique<Fcl>(run);
 }
 
 }  // namespace hapbench::bench

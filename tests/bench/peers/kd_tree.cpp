@@ -24,33 +24,32 @@ using Traits =
 using Tree = CGAL::Kd_tree<Traits>;
 using Box = CGAL::Fuzzy_iso_box<Traits>;
 
-class KdTree {
+class KdTree final : public Peer {
  public:
-  KdTree(const HapbenchSurface& surface, const HapbenchTool& drill) : drill_(drill) {
-    for (std::uint32_t i = 0; i < surface.vertex_count; ++i) {
-      const double* p = &surface.vertices[3 * i];
+  explicit KdTree(const HapbenchRun& run) : length_(run.tool_length), radius_(run.tool_radius) {
+    for (std::uint32_t i = 0; i < run.vertex_count; ++i) {
+      const double* p = &run.vertices[3 * i];
       tree_.insert({{p[0], p[1], p[2]}, i});
     }
     tree_.build();
   }
 
   /// The indices of the points in the drill, ascending.
-  std::size_t contacts_at(const HapbenchPose& pose, std::span<HapbenchContact> room) {
+  std::size_t contacts_at(const HapbenchPose& pose, std::span<PeerContact> room) override {
     near_.clear();
     points_.clear();
     const auto& r = pose.rotation;
     const Kernel::Vector_3 axis(r[2], r[5], r[8]);
     const Kernel::Point_3 centre(pose.centre[0], pose.centre[1], pose.centre[2]);
     const auto half = [this](double a) {
-      return drill_.length / 2.0 * std::abs(a) + drill_.radius * std::sqrt(std::max(0.0, 1.0 - a * a));
+      return length_ / 2.0 * std::abs(a) + radius_ * std::sqrt(std::max(0.0, 1.0 - a * a));
     };
     const Kernel::Vector_3 reach(half(axis.x()), half(axis.y()), half(axis.z()));
     tree_.search(std::back_inserter(near_), Box(centre - reach, centre + reach));
     for (const auto& [point, number] : near_) {
       const Kernel::Vector_3 v = point - centre;
       const double s = v * axis;
-      if (std::abs(s) <= drill_.length / 2.0 && v.squared_length() - s * s <= drill_.radius * drill_.radius)
-        points_.push_back(number);
+      if (std::abs(s) <= length_ / 2.0 && v.squared_length() - s * s <= radius_ * radius_) points_.push_back(number);
     }
     std::sort(points_.begin(), points_.end());
     const std::size_t found = std::min(points_.size(), room.size());
@@ -59,7 +58,7 @@ class KdTree {
   }
 
  private:
-  HapbenchTool drill_;
+  double length_, radius_;  ///< of the drill
   Tree tree_;
   std::vector<Numbered> near_;
   std::vector<std::uint32_t> points_;
@@ -67,9 +66,8 @@ class KdTree {
 
 }  // namespace
 
-const HapbenchContactSource& kd_tree() {
-  static const HapbenchContactSource library = contact_library<KdTree>("kd_tree");
-  return library;
+std::unique_ptr<Peer> kd_tree(const HapbenchRun& run) {
+  return std::make_unique<KdTree>(run);
 }
 
 }  // namespace hapbench::bench

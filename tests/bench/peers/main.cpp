@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <map>
 
-#include "algorithms/peers/peer_source.hpp"
+#include "algorithms/module/module.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "sim/contact/neighbour_list_query.hpp"
 #include "tests/bench/benchmark_program.hpp"
@@ -24,31 +24,31 @@ constexpr std::size_t kRoom = 100'000;
 
 struct Library {
   std::string name;
-  const HapbenchContactSource* source;
+  std::unique_ptr<Peer> (*make)(const HapbenchRun& run);
   bool same_question;  ///< true: which points of the shell are in the drill
 };
 
 std::vector<Library> libraries() {
   std::vector<Library> here;
 #ifdef HAPBENCH_PEER_KD_TREE
-  here.push_back({"cgal_kd_tree", &kd_tree(), true});
+  here.push_back({"cgal_kd_tree", kd_tree, true});
 #endif
 #ifdef HAPBENCH_PEER_FCL
-  here.push_back({"fcl", &fcl(), false});
+  here.push_back({"fcl", fcl, false});
 #endif
 #ifdef HAPBENCH_PEER_BULLET
-  here.push_back({"bullet", &bullet(), false});
+  here.push_back({"bullet", bullet, false});
 #endif
 #ifdef HAPBENCH_PEER_ODE
-  here.push_back({"ode", &ode(), false});
+  here.push_back({"ode", ode, false});
 #endif
   return here;
 }
 
 /// The block with a hole as points or triangles, as the library takes it.
-const PeerSurface& surface_for(const Library& library) {
-  static const PeerSurface points = [] {
-    PeerSurface surface;
+const SurfaceArrays& surface_for(const Library& library) {
+  static const SurfaceArrays points = [] {
+    SurfaceArrays surface;
     const auto shell = block_shell();
     for (std::size_t i = 0; i < shell->size(); ++i) {
       const Vec3& p = shell->point(i).position;
@@ -56,9 +56,23 @@ const PeerSurface& surface_for(const Library& library) {
     }
     return surface;
   }();
-  static const PeerSurface triangles =
-      peer_surface(task_scene("T1").loaded.scenario, NamedFiles(task_scene("T1").loaded.scenario));
+  static const SurfaceArrays triangles =
+      surface_arrays(task_scene("T1").loaded.scenario, NamedFiles(task_scene("T1").loaded.scenario));
   return library.same_question ? points : triangles;
+}
+
+std::unique_ptr<Peer> made(const Library& library, const std::string& task) {
+  const Cylinder drill = make_cylinder(task_scene(task).loaded.scenario.tool);
+  const auto& [vertices, triangles] = surface_for(library);
+  return library.make({.data = nullptr,
+                       .stiffness = 0.0,
+                       .capacity = kRoom,
+                       .vertices = vertices.data(),
+                       .vertex_count = vertices.size() / 3,
+                       .triangles = triangles.data(),
+                       .triangle_count = triangles.size() / 3,
+                       .tool_radius = drill.radius(),
+                       .tool_length = drill.length()});
 }
 
 /// The answers of our search and depths at the poses of the queries.
@@ -79,7 +93,7 @@ const Ours& ours(const std::string& task) {
   Ours answers;
   for (std::size_t k = 0; k < scene.poses.size(); k += kEvery) {
     parts.source->contacts_at(scene.poses[k], contacts);
-    answers.poses.push_back(peer_pose(scene.poses[k], drill.length()));
+    answers.poses.push_back(module_pose(scene.poses[k], drill.length()));
     answers.points.emplace_back(contacts.index.begin(), contacts.index.begin() + static_cast<long>(contacts.size()));
     std::sort(answers.points.back().begin(), answers.points.back().end());
     answers.depths.push_back(contacts.largest_depth());
@@ -91,25 +105,24 @@ const Ours& ours(const std::string& task) {
 /// both see a contact, and how deep it is.
 void time_library(benchmark::State& state, const Library& library, const std::string& task) {
   const Ours& known = ours(task);
-  const Cylinder drill = make_cylinder(task_scene(task).loaded.scenario.tool);
-  Peer peer(*library.source, "{}", surface_for(library), {.radius = drill.radius(), .length = drill.length()});
-  std::vector<HapbenchContact> room(kRoom);
+  const std::unique_ptr<Peer> peer = made(library, task);
+  std::vector<PeerContact> room(kRoom);
   double contacts = 0.0, agreed = 0.0, depth = 0.0, our_depth = 0.0;
   for (std::size_t k = 0; k < known.poses.size(); ++k) {
-    const std::span answer(room.data(), peer.contacts_at(known.poses[k], room));
-    const auto is_same = [](const HapbenchContact& contact, std::uint32_t point) { return contact.index == point; };
+    const std::span answer(room.data(), peer->contacts_at(known.poses[k], room));
+    const auto is_same = [](const PeerContact& contact, std::uint32_t point) { return contact.index == point; };
     if (library.same_question &&
         !std::equal(answer.begin(), answer.end(), known.points[k].begin(), known.points[k].end(), is_same))
       return state.SkipWithError(fmt::format("not the points of our search at pose {}", k).c_str());
     contacts += static_cast<double>(answer.size());
     agreed += answer.empty() == known.points[k].empty() ? 1.0 : 0.0;
     double deepest = 0.0;
-    for (const HapbenchContact& contact : answer) deepest = std::max(deepest, contact.depth);
+    for (const PeerContact& contact : answer) deepest = std::max(deepest, contact.depth);
     depth += deepest;
     our_depth += known.depths[k];
   }
   for (auto _ : state) {
-    for (const HapbenchPose& pose : known.poses) benchmark::DoNotOptimize(peer.contacts_at(pose, room));
+    for (const HapbenchPose& pose : known.poses) benchmark::DoNotOptimize(peer->contacts_at(pose, room));
   }
   const auto n = static_cast<double>(known.poses.size());
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(known.poses.size()));

@@ -12,11 +12,11 @@ namespace {
 constexpr double kMillimetres = 1e3;
 constexpr int kRoom = 0xffff;  // the most that it takes
 
-class Ode {
+class Ode final : public Peer {
  public:
-  Ode(const HapbenchSurface& surface, const HapbenchTool& drill)
-      : vertices_(surface.vertices, surface.vertices + 3 * surface.vertex_count),
-        triangles_(surface.triangles, surface.triangles + 3 * surface.triangle_count),
+  explicit Ode(const HapbenchRun& run)
+      : vertices_(run.vertices, run.vertices + 3 * run.vertex_count),
+        triangles_(run.triangles, run.triangles + 3 * run.triangle_count),
         contacts_(kRoom) {
     dInitODE();
     for (dReal& x : vertices_) x *= static_cast<dReal>(kMillimetres);
@@ -24,7 +24,7 @@ class Ode {
     dGeomTriMeshDataBuildDouble(data_, vertices_.data(), 3 * sizeof(dReal), static_cast<int>(vertices_.size() / 3),
                                 triangles_.data(), static_cast<int>(triangles_.size()), 3 * sizeof(dTriIndex));
     mesh_ = dCreateTriMesh(nullptr, data_, nullptr, nullptr, nullptr);
-    drill_ = dCreateCylinder(nullptr, kMillimetres * drill.radius, kMillimetres * drill.length);
+    drill_ = dCreateCylinder(nullptr, kMillimetres * run.tool_radius, kMillimetres * run.tool_length);
   }
   ~Ode() {
     dGeomDestroy(drill_);
@@ -35,7 +35,7 @@ class Ode {
   Ode(const Ode&) = delete;
   Ode& operator=(const Ode&) = delete;
 
-  std::size_t contacts_at(const HapbenchPose& pose, std::span<HapbenchContact> room) {
+  std::size_t contacts_at(const HapbenchPose& pose, std::span<PeerContact> room) override {
     const auto& r = pose.rotation;
     const dMatrix3 rotation = {r[0], r[1], r[2], 0.0, r[3], r[4], r[5], 0.0, r[6], r[7], r[8], 0.0};
     dGeomSetRotation(drill_, rotation);
@@ -57,9 +57,8 @@ class Ode {
 
 }  // namespace
 
-const HapbenchContactSource& ode() {
-  static const HapbenchContactSource library = contact_library<Ode>("ode");
-  return library;
+std::unique_ptr<Peer> ode(const HapbenchRun& run) {
+  return std::make_unique<Ode>(run);
 }
 
 }  // namespace hapbench::bench

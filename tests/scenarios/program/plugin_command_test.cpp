@@ -21,7 +21,7 @@ using test::read_file;
 using Words = std::vector<std::string>;
 
 std::string plugin(const std::string& name) {
-  return (fs::path(HAPBENCH_TEST_PLUGINS) / (name + ".so")).string();
+  return (fs::path(HAPBENCH_TEST_MODULES) / (name + ".so")).string();
 }
 
 class PluginCommand : public testing::Test {
@@ -40,7 +40,7 @@ TEST_F(PluginCommand, KnowsTheLawAndItsParametersEverywhere) {
   EXPECT_NE(described.out.find("algorithm depth_weighted"), std::string::npos);
   EXPECT_NE(described.out.find("depth_weighted.so, hash "), std::string::npos);
   EXPECT_NE(
-      described.out.find("rendering.parameters.depth_weighted.power\n        a number >= 0 and <= 64 [1]; default 1"),
+      described.out.find("rendering.parameters.depth_weighted.power\n        a number >= 0 and <= 8 [1]; default 1"),
       std::string::npos)
       << described.out;
   const ProgramRun list =
@@ -69,28 +69,11 @@ TEST_F(PluginCommand, ComparesTheLawsWithOurs) {
   const Json provenance = summary("a/depth_weighted")["provenance"];
   EXPECT_EQ(provenance["plugin"]["file"], "depth_weighted.so");
   EXPECT_EQ(provenance["plugin"]["hash"].get<std::string>().size(), 16u);
-  // A plugin beside it changes nothing of a run.
+  // A module beside it changes nothing of a run.
   hapbench({"run", "peg_in_hole_2d_mean", "--out", out("with"), "--plugin", plugin("depth_weighted")});
   hapbench({"run", "peg_in_hole_2d_mean", "--out", out("without")});
   for (const char* file : {"/summary.json", "/scenario.effective.json", "/trajectory.csv"})
     EXPECT_EQ(read_file(out("with") + file), read_file(out("without") + file)) << file;
-}
-
-TEST_F(PluginCommand, StressesLimitsAndMapsTheLaw) {
-  const Words law = {"--plugin", plugin("capped_summation")};
-  const auto with_law = [&law](Words words) {
-    words.insert(words.end(), law.begin(), law.end());
-    return hapbench(words);
-  };
-  const ProgramRun stress = with_law({"stress", "--count", "500", "--out", out("stress"), "--json"});
-  ASSERT_EQ(stress.status, 0) << stress.err;
-  const Json counts = stress.json();
-  EXPECT_EQ(counts.back()["algorithm"], "capped_summation");
-  EXPECT_TRUE(counts.back()["largest_share_of_bound"].is_null()) << "nothing is known of its bound";
-  const ProgramRun limit =
-      with_law({"limit", "single_spring", "--vary", "rendering.parameters.capped_summation.limit", "--between",
-                "0.1:10", "--algorithms", "capped_summation", "--out", out("limit"), "--json"});
-  EXPECT_EQ(limit.status, 0) << limit.err;
 }
 
 TEST_F(PluginCommand, EndsARunAndNoMoreWhenALawFails) {
@@ -100,24 +83,46 @@ TEST_F(PluginCommand, EndsARunAndNoMoreWhenALawFails) {
   run_words.insert(run_words.end(), words.begin(), words.end());
   const ProgramRun run = hapbench(run_words);
   EXPECT_EQ(run.status, 3);
-  EXPECT_NE(run.err.find("outcome is \"diverges\" (hostile reports error 42: the oven? is ? cold, at step 0)"),
-            std::string::npos)
+  EXPECT_NE(
+      run.err.find("outcome is \"diverges\" (hostile (hostile.so) fails in step: the oven? is ? cold, at step 0)"),
+      std::string::npos)
       << run.err;
-  EXPECT_EQ(summary("run")["divergence"]["fault"], "hostile reports error 42: the oven? is ? cold");
+  EXPECT_EQ(summary("run")["divergence"]["fault"], "hostile (hostile.so) fails in step: the oven? is ? cold");
 
   const ProgramRun both = hapbench({"compare", "peg_in_hole_2d_shaped_stiffness", "--plugin", plugin("hostile"),
                                     "--algorithms", "hostile,mean", "--out", out("compare"), "--json"});
   EXPECT_EQ(both.status, 3);
   EXPECT_EQ(both.json()[0]["outcome"], "diverges");
   EXPECT_EQ(both.json()[1]["outcome"], "leaves_hole");
-  EXPECT_NE(both.err.find("hostile diverges at step 0: hostile reports error 42"), std::string::npos) << both.err;
+  EXPECT_NE(both.err.find("hostile diverges at step 0: hostile (hostile.so) fails in step"), std::string::npos)
+      << both.err;
 
   // The failure of a law counts even where a divergence is expected.
   const ProgramRun expected =
       hapbench({"run", "single_spring", "--plugin", plugin("hostile"), "--set", "rendering.algorithm=hostile", "--set",
                 "expect.outcome=diverges", "--out", out("expected")});
   EXPECT_EQ(expected.status, 3);
-  EXPECT_NE(expected.err.find("the law of a plugin failed once"), std::string::npos) << expected.err;
+  EXPECT_NE(expected.err.find("a law or source of contacts from outside failed once"), std::string::npos)
+      << expected.err;
+}
+
+/// It fails even where the scenario expects that a run diverges.
+TEST_F(PluginCommand, FailsWhenASourceOfContactsFails) {
+  const EnvironmentVariable how("HOSTILE", "contacts");
+  const ProgramRun run = hapbench({"run", "plane_wiped_round", "--set",
+                                   R"(rendering.contact_source={"type":"plugin","file":")" + plugin("hostile") + "\"}",
+                                   "--set", "expect={\"outcome\":\"diverges\"}", "--out", out("run")});
+  EXPECT_EQ(run.status, 3);
+  EXPECT_NE(run.err.find("hostile (hostile.so) gives 10001 contacts; allowed: at most 10000"), std::string::npos)
+      << run.err;
+}
+
+TEST_F(PluginCommand, FailsWhenALawEndsTheProgram) {
+  const EnvironmentVariable how("HOSTILE", "exits");
+  const ProgramRun run = hapbench({"run", "single_spring", "--plugin", plugin("hostile"), "--set",
+                                   "rendering.algorithm=hostile", "--out", out("run")});
+  EXPECT_EQ(run.status, 1);
+  EXPECT_EQ(run.err, "hapbench: error: internal fault: a module or a library called exit\n");
 }
 
 TEST_F(PluginCommand, IsStoppedInALawThatDoesNotReturn) {
@@ -128,7 +133,7 @@ TEST_F(PluginCommand, IsStoppedInALawThatDoesNotReturn) {
   const auto sent = std::chrono::steady_clock::now();
   EXPECT_EQ(run.end_by(SIGINT), -SIGINT);
   EXPECT_LT(std::chrono::steady_clock::now() - sent, std::chrono::seconds(5)) << "the machine may be busy";
-  EXPECT_EQ(run.err(), "looping\nhapbench: error: the plugin hostile does not return from evaluate\n");
+  EXPECT_EQ(run.err(), "looping\nhapbench: ended amid work that did not notice the signal for two seconds\n");
 }
 
 TEST_F(PluginCommand, FindsWhatIsNoForceBehindEveryStage) {

@@ -171,7 +171,7 @@ TEST_F(Trace, NeedsAMotionThatIsPrescribed) {
 // A library.
 
 TEST(ContactPlugin, OfASphereGivesTheForceOfASphere) {
-  const std::string source = R"(rendering.contact_source={"type":"plugin","file":")" HAPBENCH_TEST_PLUGINS
+  const std::string source = R"(rendering.contact_source={"type":"plugin","file":")" HAPBENCH_TEST_MODULES
                              R"(/sphere.so","config":{"radius_m":0.002}})";
   const Scenario scenario =
       bundled("plane_wiped_round",
@@ -199,12 +199,12 @@ TEST(ContactPlugin, SaysWhatItMisses) {
     }
     return "";
   };
-  const std::string folder = HAPBENCH_TEST_PLUGINS "/";
-  EXPECT_EQ(said(folder + "sphere.so", "{\"radius\":1}"), "sphere fails: its config has no number radius_m");
+  const std::string folder = HAPBENCH_TEST_MODULES "/";
+  EXPECT_EQ(said(folder + "sphere.so", "{\"radius\":1}"),
+            "sphere (sphere.so) fails in create: its config has no number radius_m");
   EXPECT_NE(said(folder + "none.so", "{}").find("cannot be loaded as a source of contacts: No such file"),
             std::string::npos);
-  EXPECT_NE(said(folder + "depth_weighted.so", "{}")
-                .find("is no source of contacts: it has no function \"hapbench_contacts\" (hapbench_contacts.h)"),
+  EXPECT_NE(said(folder + "depth_weighted.so", "{}").find("holds a law, not a source of contacts; name it in --plugin"),
             std::string::npos);
   EXPECT_NE(said(folder + "sphere.so", "3").find("config: got 3; allowed: an object"), std::string::npos);
 }

@@ -1,4 +1,4 @@
-#include "scenarios/plugins/load_plugin.hpp"
+#include "scenarios/run/load_module.hpp"
 
 #include <gtest/gtest.h>
 
@@ -15,18 +15,18 @@
 #include "tests/scenarios/support/environment_variable.hpp"
 #include "tests/scenarios/support/errors.hpp"
 
-namespace hapbench::load_plugin_test {
+namespace hapbench::load_module_test {
 namespace {
 
 namespace fs = std::filesystem;
 
-fs::path plugin(const std::string& name) {
-  return fs::path(HAPBENCH_TEST_PLUGINS) / (name + ".so");
+fs::path module(const std::string& name) {
+  return fs::path(HAPBENCH_TEST_MODULES) / (name + ".so");
 }
 
 /// Behind the file's name.
 std::string problem_with(const fs::path& file) {
-  const auto error = test::input_error_of([&] { load_plugin(file); });
+  const auto error = test::input_error_of([&] { load_law(file); });
   if (!error) return "";
   const std::string what = error->what(), start = file.string() + ": ";
   EXPECT_TRUE(what.starts_with(start)) << what;
@@ -34,38 +34,42 @@ std::string problem_with(const fs::path& file) {
   return what.substr(start.size());
 }
 
-TEST(LoadPlugin, SaysWhatIsWrongWithAFile) {
+TEST(LoadModule, SaysWhatIsWrongWithAFile) {
   const std::size_t before = algorithms().size();
-  EXPECT_EQ(problem_with("no/such.so"), "cannot be loaded as a plugin: No such file or directory");
-  EXPECT_EQ(problem_with(fs::canonical(HAPBENCH_TEST_PLUGINS)), "is a directory, not a file");
+  EXPECT_EQ(problem_with("no/such.so"), "cannot be loaded as a law: No such file or directory");
+  EXPECT_EQ(problem_with(fs::canonical(HAPBENCH_TEST_MODULES)), "is a directory, not a file");
   const test::TemporaryDirectory directory;
   std::ofstream(directory / "text.so") << "no library";
-  EXPECT_EQ(problem_with(fs::canonical(directory / "text.so")), "is no plugin: file too short");
-  EXPECT_EQ(problem_with(plugin("no_entry_point")),
-            "is no plugin: it has no function \"hapbench_plugin\" (hapbench_plugin.h)");
+  EXPECT_EQ(problem_with(fs::canonical(directory / "text.so")), "is no module: file too short");
+  EXPECT_EQ(problem_with(module("no_entry_point")),
+            "is no module: it has no function \"hapbench_module\" (hapbench_module.h)");
+  for (const char* old : {"law", "contacts"}) {
+    const std::string header = old == std::string("law") ? "hapbench_plugin.h" : "hapbench_contacts.h";
+    EXPECT_EQ(problem_with(module(std::string("old_") + old)),
+              "is built for " + header + " of an earlier version; compile it anew against hapbench_module.h");
+  }
+  EXPECT_EQ(problem_with(module("sphere")),
+            "holds a source of contacts, not a law; name it in rendering.contact_source of a scenario");
   EXPECT_EQ(algorithms().size(), before);
 }
 
-TEST(LoadPlugin, SaysWhatIsWrongWithAPlugin) {
+TEST(LoadModule, SaysWhatIsWrongWithALaw) {
   const std::size_t before = algorithms().size();
   const test::TemporaryDirectory directory;
   const fs::path file = fs::canonical(directory.path()) / "not_loaded_yet.so";
-  fs::copy_file(plugin("hostile"), file);
+  fs::copy_file(module("hostile"), file);
   const auto hostile = [&file](const char* how) {
     const test::EnvironmentVariable chosen("HOSTILE", how);
     return problem_with(file);
   };
   EXPECT_EQ(hostile("refuses"),
-            "does not support version 1 of the interface; allowed: built with the hapbench_plugin.h of this program");
+            "does not support version 1 of the interface; allowed: built with the hapbench_module.h of this program");
   EXPECT_EQ(hostile("version"), "is built for version 2 of the interface; allowed: 1");
-  const std::string unusable = "is no plugin that can be used: ";
+  EXPECT_EQ(hostile("kind"), "its kind is 5; allowed: HAPBENCH_LAW or HAPBENCH_CONTACTS");
+  const std::string unusable = "is no law that can be used: ";
   EXPECT_EQ(hostile("built in"), unusable + "\"mean\" is the name of a built-in algorithm");
-  EXPECT_TRUE(hostile("no name").starts_with(unusable + "an algorithm is called \"\"; allowed: letters"));
-  EXPECT_EQ(hostile("no failure"), unusable + "its known failure is missing");
   EXPECT_EQ(hostile("no table"), unusable + "its table of parameters is missing");
-  EXPECT_EQ(hostile("no create"), unusable + "its function \"create\" is missing");
-  EXPECT_EQ(hostile("no evaluate"), unusable + "its function \"evaluate\" is missing");
-  EXPECT_EQ(hostile("gives"), unusable + "\"gives\" is 5; allowed: HAPBENCH_WEIGHTS or HAPBENCH_FORCE");
+  EXPECT_EQ(hostile("no step"), unusable + "its function \"step\" is missing");
   EXPECT_EQ(hostile("many"), unusable + "it has 1099511627776 parameters; allowed: at most 1000");
   const std::string unprintable = " has characters that cannot be printed: ";
   EXPECT_EQ(hostile("escape"), unusable + "its summary" + unprintable + "\"red: \\u001b[31m\"");
@@ -74,36 +78,36 @@ TEST(LoadPlugin, SaysWhatIsWrongWithAPlugin) {
   EXPECT_EQ(algorithms().size(), before);
 }
 
-TEST(LoadPlugin, LoadsAFileOnceAndALawOnce) {
-  load_plugin(plugin("hostile"));
+TEST(LoadModule, LoadsAFileOnceAndALawOnce) {
+  load_law(module("hostile"));
   const std::size_t after = algorithms().size();
-  load_plugin(plugin("hostile"));
+  load_law(module("hostile"));
   EXPECT_EQ(algorithms().size(), after);
   EXPECT_EQ(find_algorithm("hostile")->origin.file, "hostile.so");
   EXPECT_EQ(find_algorithm("hostile")->origin.hash.size(), 16u);
   const test::TemporaryDirectory directory;
   const fs::path copy = fs::canonical(directory.path()) / "copy.so";
-  fs::copy_file(plugin("hostile"), copy);
-  EXPECT_EQ(problem_with(copy), "is no plugin that can be used: \"hostile\" is the name of the law in " +
-                                    fs::canonical(plugin("hostile")).string());
+  fs::copy_file(module("hostile"), copy);
+  EXPECT_EQ(problem_with(copy), "is no law that can be used: \"hostile\" is the name of the law in " +
+                                    fs::canonical(module("hostile")).string());
 }
 
-TEST(LoadPlugin, LeavesTheArithmeticAlone) {
-  load_plugin(plugin("hostile"));
+TEST(LoadModule, LeavesTheArithmeticAlone) {
+  load_law(module("hostile"));
   volatile double least = std::numeric_limits<double>::min();
   EXPECT_GT(least / 2.0, 0.0);
 }
 
-TEST(LoadPlugin, LoadsFoldersInTheOrderOfNames) {
+TEST(LoadModule, LoadsFoldersInTheOrderOfNames) {
   const test::TemporaryDirectory directory;
-  fs::copy_file(plugin("depth_weighted"), directory / "b.so");
-  fs::copy_file(plugin("capped_summation"), directory / "a.so");
-  std::ofstream(directory / "readme.txt") << "no plugin";
-  load_plugins_in("PATH", ":" + directory.path().string() + ":");
+  fs::copy_file(module("depth_weighted"), directory / "b.so");
+  fs::copy_file(module("capped_summation"), directory / "a.so");
+  std::ofstream(directory / "readme.txt") << "no module";
+  load_laws_in("PATH", ":" + directory.path().string() + ":");
   ASSERT_GE(algorithm_names().size(), 2u);
   EXPECT_EQ(algorithm_names().back(), "depth_weighted");
   EXPECT_EQ(algorithm_names()[algorithm_names().size() - 2], "capped_summation");
-  const auto error = test::input_error_of([] { load_plugins_in("PATH", "/no/such/folder"); });
+  const auto error = test::input_error_of([] { load_laws_in("PATH", "/no/such/folder"); });
   ASSERT_TRUE(error);
   EXPECT_STREQ(error->what(), "PATH: /no/such/folder: No such file or directory");
 }
@@ -117,22 +121,12 @@ LoadedScenario scenario_with(const std::string& rendering) {
       "");
 }
 
-class OwnParameters : public testing::Test {
- protected:
-  static void SetUpTestSuite() { load_plugin(plugin("hostile")); }
-  static Json rendering_of(const std::string& text) {
+TEST(OwnParameters, AreWrittenWithTheirAlgorithmCheckedAndInTheSchema) {
+  load_law(module("hostile"));
+  const auto rendering_of = [](const std::string& text) {
     return effective_scenario(scenario_with(text).scenario, "")["rendering"];
-  }
-  static std::string refusal(const std::string& text) {
-    const auto error = test::input_error_of([&] { scenario_with(text); });
-    return error ? error->what() : "";
-  }
-};
-
-TEST_F(OwnParameters, AreWrittenWithTheirAlgorithmAlone) {
+  };
   EXPECT_FALSE(rendering_of(R"({"algorithm": "mean"})").contains("parameters"));
-  EXPECT_EQ(rendering_of(R"({"algorithm": "hostile"})")["parameters"],
-            Json::parse(R"({"hostile": {"gain": 1.0, "bias": 0.0}})"));
   const std::string given = R"({"algorithm": "hostile", "parameters": {"hostile": {"bias": 0.5}}})";
   EXPECT_EQ(rendering_of(given)["parameters"], Json::parse(R"({"hostile": {"gain": 1.0, "bias": 0.5}})"));
   // Another algorithm's, if given: a comparison changes the algorithm.
@@ -140,20 +134,19 @@ TEST_F(OwnParameters, AreWrittenWithTheirAlgorithmAlone) {
   EXPECT_EQ(rendering_of(others)["parameters"]["hostile"]["bias"], 0.5);
   const Scenario scenario = with_algorithm(scenario_with(others).scenario, "hostile");
   EXPECT_EQ(own_values(scenario.rendering, *find_algorithm("hostile")), (std::vector<double>{1.0, 0.5}));
-}
 
-TEST_F(OwnParameters, AreCheckedWithPointerRangeAndNearestName) {
-  EXPECT_EQ(refusal(R"({"parameters": {"hostile": {"gain": 3}}})"),
+  const auto refusal = [](const std::string& parameters) {
+    const auto error = test::input_error_of([&] { scenario_with(R"({"parameters": )" + parameters + "}"); });
+    return error ? std::string(error->what()) : "";
+  };
+  EXPECT_EQ(refusal(R"({"hostile": {"gain": 3}})"),
             "/rendering/parameters/hostile/gain: got 3; allowed: a number >= 0 and <= 2 [1]");
-  EXPECT_EQ(refusal(R"({"parameters": {"hostile": {"gian": 1}}})"),
+  EXPECT_EQ(refusal(R"({"hostile": {"gian": 1}})"),
             "/rendering/parameters/hostile/gian: unknown field; allowed here: \"gain\", \"bias\"; nearest valid name: "
             "\"gain\"");
-  const std::string unknown = refusal(R"({"parameters": {"hostil": {"gain": 1}}})");
-  EXPECT_TRUE(unknown.starts_with("/rendering/parameters/hostil: unknown field; allowed here: ")) << unknown;
+  const std::string unknown = refusal(R"({"hostil": {"gain": 1}})");
   EXPECT_TRUE(unknown.ends_with("nearest valid name: \"hostile\"")) << unknown;
-}
 
-TEST_F(OwnParameters, AreInTheSchema) {
   const Json schema = scenario_guide().schema;
   const Json& gain =
       schema.at(Json::json_pointer("/properties/rendering/properties/parameters/properties/hostile/properties/gain"));
@@ -163,4 +156,4 @@ TEST_F(OwnParameters, AreInTheSchema) {
 }
 
 }  // namespace
-}  // namespace hapbench::load_plugin_test
+}  // namespace hapbench::load_module_test

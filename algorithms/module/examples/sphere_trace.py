@@ -2,7 +2,7 @@
 """Contacts by Python: those of a ball of 0.5 mm, led over a sphere of 2 mm about the origin, as a trace, and the scene that
 plays them to every law:
 
-    python3 algorithms/peers/examples/sphere_trace.py FOLDER
+    python3 algorithms/module/examples/sphere_trace.py FOLDER
     hapbench compare FOLDER/sphere.json --algorithms all
 """
 import json

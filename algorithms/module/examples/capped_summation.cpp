@@ -8,7 +8,7 @@
  * CMake knows the flags: find_package(hapbench), add_library(capped_summation MODULE capped_summation.cpp),
  * target_link_libraries(capped_summation PRIVATE hapbench::algorithms). */
 #include <algorithm>
-#include <algorithms/plugin/law_plugin.hpp>
+#include <algorithms/module/law_module.hpp>
 
 namespace {
 
@@ -23,7 +23,7 @@ constexpr HapbenchParameter kParameters[] = {{
 
 class CappedSummation final : public hapbench::ForceLaw {
  public:
-  CappedSummation(double stiffness, std::span<const double> parameters) : ForceLaw(stiffness), limit_(parameters[0]) {}
+  CappedSummation(double stiffness, const double* values) : ForceLaw(stiffness), limit_(values[0]) {}
 
   hapbench::LawForce evaluate(hapbench::ContactBuffer& contacts) noexcept override {
     hapbench::set_weights(contacts, 1.0);
@@ -38,15 +38,15 @@ class CappedSummation final : public hapbench::ForceLaw {
 
 }  // namespace
 
-const HapbenchPlugin* hapbench_plugin(uint32_t version) {
-  static const HapbenchPlugin plugin = hapbench::LawPlugin<CappedSummation>::of(
+const HapbenchModule* hapbench_module(uint32_t version) {
+  static const HapbenchModule module = hapbench::law_module<CappedSummation>(
       {
           .name = "capped_summation",
           .summary = "the sum of all penalty springs, scaled down to a greatest stiffness",
           .formula = "c_i = min(1, limit / lambda_max(sum u u^T))",
-          .source = "example of law_plugin.hpp",
+          .source = "example of law_module.hpp",
           .known_failure = "one scale for all directions: those with few points become soft",
       },
       kParameters);
-  return version == HAPBENCH_PLUGIN_VERSION ? &plugin : nullptr;
+  return version == HAPBENCH_MODULE_VERSION ? &module : nullptr;
 }

@@ -1,0 +1,269 @@
+#include "algorithms/module/module.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdio>
+#include <exception>
+#include <limits>
+#include <mutex>
+#include <stdexcept>
+#include <utility>
+
+namespace hapbench {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr std::size_t kMostParameters = 1000;
+
+/// Numbers before and after a law's weights, and what stands in weights that it has not written. No computation gives
+/// this signalling NaN.
+constexpr std::size_t kGuards = 8;
+constexpr auto kUnwritten = std::uint64_t{0x7ff4deadc0ffee00};
+
+constexpr double kLargestLengthError = 1e-3;  ///< of a gradient
+
+std::mutex faults_mutex;
+ModuleFaults& faults() {
+  static ModuleFaults all;
+  return all;
+}
+
+/// May allocate, because the run is over.
+void note_fault(const char* text) {
+  const std::lock_guard lock(faults_mutex);
+  if (faults().count++ == 0) faults().first = text;
+}
+
+/// A module reads and writes these arrays.
+HapbenchContacts view_of(ContactBuffer& c) {
+  return {.n = c.size(),
+          .room = c.capacity(),
+          .index = c.index.data(),
+          .depth = c.depth.data(),
+          .gx = c.ux.data(),
+          .gy = c.uy.data(),
+          .gz = c.uz.data(),
+          .x = c.x.data(),
+          .y = c.y.data(),
+          .z = c.z.data(),
+          .nx = nullptr,
+          .ny = nullptr,
+          .nz = nullptr,
+          .weight = nullptr};
+}
+
+LawForce force_of(const HapbenchForce& answer) {
+  const auto& [xx, xy, xz, yy, yz, zz] = answer.stiffness;
+  LawForce force{{answer.force[0], answer.force[1], answer.force[2]}, {}};
+  force.S << xx, xy, xz, xy, yy, yz, xz, yz, zz;
+  return force;
+}
+
+/// The force of a law that has failed.
+LawForce no_force() {
+  return {Vec3::Constant(kNaN), Mat3::Zero()};
+}
+
+/// The reason for which a contact cannot be used; null for none.
+const char* problem_of(const ContactBuffer& contacts, std::size_t i) {
+  const Vec3 gradient = contacts.gradient(i);
+  if (!contacts.point(i).allFinite() || !gradient.allFinite() || !std::isfinite(contacts.depth[i]))
+    return "gives a contact that is not finite";
+  if (std::abs(gradient.norm() - 1.0) > kLargestLengthError) return "gives a contact whose gradient is no unit vector";
+  return contacts.depth[i] < 0.0 ? "gives a contact with a negative depth" : nullptr;
+}
+
+}  // namespace
+
+template <class Call>
+bool ModuleState::runs(const char* function, const Call& call) noexcept {
+  std::array<char, HAPBENCH_FAULT_SIZE> text;
+  std::array<char, HAPBENCH_FAULT_SIZE + 64> problem;
+  text.front() = text.back() = '\0';
+  try {
+    if (call(text.data())) return true;
+    text.back() = '\0';
+    std::snprintf(problem.data(), problem.size(), "fails in %s: %s", function,
+                  text[0] == '\0' ? "it does not say why" : text.data());
+  } catch (const std::exception& thrown) {
+    std::snprintf(problem.data(), problem.size(), "throws in %s: %s", function, thrown.what());
+  } catch (...) {
+    std::snprintf(problem.data(), problem.size(), "throws in %s", function);
+  }
+  fail(problem.data());
+  return false;
+}
+
+void ModuleState::fail(const char* problem) noexcept {
+  std::snprintf(fault_.data(), fault_.size(), "%s (%s) %s", module_.table->name, module_.file.c_str(), problem);
+  // The text is printed in one line and written as JSON, whatever the module answers.
+  for (char& c : fault_) c = c == '\0' || (c >= ' ' && c <= '~') ? c : '?';
+  note_fault(fault_.data());
+}
+
+bool ModuleState::create(const double* values, const char* config, HapbenchRun run) noexcept {
+  destroy();
+  fault_[0] = '\0';
+  run.data = module_.table->data;
+  const auto create = module_.table->create;
+  created_ = create == nullptr || runs("create", [&](char* fault) {
+               state_ = create(values, config, &run, fault);
+               return state_ != nullptr;
+             });
+  return created_;
+}
+
+void ModuleState::destroy() noexcept {
+  const auto destroy = module_.table->destroy;
+  if (state_ != nullptr && destroy != nullptr) {
+    runs("destroy", [&](char*) {
+      destroy(state_);
+      return true;
+    });
+  }
+  state_ = nullptr;
+  created_ = false;
+}
+
+void ModuleState::reset() noexcept {
+  if (!created_) return;  // which stays its fault
+  fault_[0] = '\0';
+  const auto reset = module_.table->reset;
+  if (reset == nullptr) return;
+  runs("reset", [&](char*) {
+    reset(state_);
+    return true;
+  });
+}
+
+bool ModuleState::step(const HapbenchPose* pose, HapbenchContacts& contacts, HapbenchForce* force) noexcept {
+  if (fault() != nullptr) return false;
+  return runs("step", [&](char* text) { return module_.table->step(state_, pose, &contacts, force, text) == 0; });
+}
+
+void ModuleLaw::prepare(std::size_t capacity) {
+  weights_.resize(capacity + 2 * kGuards);
+  HapbenchRun run = {};
+  run.stiffness = K_;
+  run.capacity = capacity;
+  state_.create(values_.data(), "{}", run);
+}
+
+void ModuleLaw::reset() noexcept {
+  ForceLaw::reset();
+  state_.reset();
+}
+
+LawForce ModuleLaw::failed(const char* problem) noexcept {
+  state_.fail(problem);
+  return no_force();
+}
+
+LawForce ModuleLaw::evaluate(ContactBuffer& contacts) noexcept {
+  if (contacts.empty()) return {};
+  set_weights(contacts, 0.0);
+  const std::size_t n = contacts.size();
+  std::fill_n(weights_.begin(), n + 2 * kGuards, std::bit_cast<double>(kUnwritten));
+  const auto weights = weights_.begin() + kGuards, end = weights + static_cast<std::ptrdiff_t>(n);
+  HapbenchContacts view = view_of(contacts);
+  view.nx = contacts.nx.data(), view.ny = contacts.ny.data(), view.nz = contacts.nz.data();
+  view.weight = &*weights;
+  HapbenchForce answer = {0, {kNaN, kNaN, kNaN}, {kNaN, kNaN, kNaN, kNaN, kNaN, kNaN}};
+  if (!state_.step(nullptr, view, &answer)) return no_force();
+  const auto is_unwritten = [](double number) { return std::bit_cast<std::uint64_t>(number) == kUnwritten; };
+  if (!std::all_of(weights_.begin(), weights, is_unwritten) || !std::all_of(end, end + kGuards, is_unwritten))
+    return failed("writes beyond its weights, of which there is one for each contact");
+  gives_weights_ = answer.given == 0;
+  if (!gives_weights_) std::replace_if(weights, end, is_unwritten, 1.0 / static_cast<double>(n));
+  std::copy(weights, end, contacts.weight.begin());
+  const LawForce force = gives_weights_ ? weighted_force(contacts, K_) : force_of(answer);
+  // A weight that is not finite makes the tensor not finite, too.
+  if (!force.spring.allFinite()) return failed("gives a force that is not finite");
+  if (!force.S.allFinite()) return failed("gives a stiffness that is not finite");
+  return force;
+}
+
+ModuleContacts::ModuleContacts(Module module, const std::string& config, const HapbenchRun& run)
+    : state_(std::move(module)), capacity_(run.capacity), tool_length_(run.tool_length) {
+  if (!state_.create(nullptr, config.c_str(), run)) throw std::runtime_error(state_.fault());
+}
+
+void ModuleContacts::reset() noexcept {
+  work_ = {};
+  state_.reset();
+  fault_ = state_.fault();
+}
+
+void ModuleContacts::contacts_at(const ToolPose& pose, ContactBuffer& contacts) noexcept {
+  ++work_.queries;
+  contacts.clear();
+  HapbenchContacts view = view_of(contacts);
+  view.room = capacity_;
+  const HapbenchPose at = module_pose(pose, tool_length_);
+  if (state_.step(&at, view, nullptr)) take(view.n, contacts);
+  fault_ = state_.fault();
+  contacts.pad();
+}
+
+void ModuleContacts::take(std::size_t n, ContactBuffer& contacts) noexcept {
+  if (n > capacity_) {
+    std::array<char, 80> problem;
+    std::snprintf(problem.data(), problem.size(), "gives %zu contacts; allowed: at most %zu", n, capacity_);
+    return state_.fail(problem.data());
+  }
+  for (std::size_t i = 0; i < n; ++i) {
+    if (const char* problem = problem_of(contacts, i)) return state_.fail(problem);
+    const Vec3 gradient = contacts.gradient(i), unit = gradient / gradient.norm();
+    contacts.set_gradient(i, unit);
+    contacts.nx[i] = -unit.x();
+    contacts.ny[i] = -unit.y();
+    contacts.nz[i] = -unit.z();
+    contacts.weight[i] = 0.0;
+  }
+  contacts.extend(n);
+}
+
+HapbenchPose module_pose(const ToolPose& pose, double tool_length) noexcept {
+  const Vec3 centre = pose.position - 0.5 * tool_length * pose.axis;
+  const Mat3 r = pose.rotation();
+  const Vec3& tip = pose.position;
+  return {.tip = {tip.x(), tip.y(), tip.z()},
+          .centre = {centre.x(), centre.y(), centre.z()},
+          .rotation = {r(0, 0), r(0, 1), r(0, 2), r(1, 0), r(1, 1), r(1, 2), r(2, 0), r(2, 1), r(2, 2)}};
+}
+
+AlgorithmEntry law_entry(Module module, std::string hash) {
+  const HapbenchModule& table = *module.table;
+  if (table.step == nullptr) throw std::invalid_argument("its function \"step\" is missing");
+  if (table.parameter_count > kMostParameters)
+    throw std::invalid_argument("it has " + std::to_string(table.parameter_count) + " parameters; allowed: at most " +
+                                std::to_string(kMostParameters));
+  if (table.parameter_count > 0 && table.parameters == nullptr)
+    throw std::invalid_argument("its table of parameters is missing");
+  const ModelInfo info = {.name = table.name,
+                          .summary = table.summary,
+                          .formula = table.formula,
+                          .source = table.source,
+                          .known_failure = table.known_failure,
+                          .parameters = kStiffnessAlone};
+  std::vector<OwnParameter> parameters;
+  for (std::size_t i = 0; i < table.parameter_count; ++i) {
+    const HapbenchParameter& p = table.parameters[i];
+    parameters.push_back({.name = p.name, .range = {p.min, p.max, p.unit}, .initial = p.initial, .meaning = p.meaning});
+  }
+  const std::string file = module.file;
+  const auto make_law = [module = std::move(module)](const RenderingConfig& config) {
+    return std::make_unique<ModuleLaw>(module, config.stiffness,
+                                       own_values(config, *find_algorithm(module.table->name)));
+  };
+  return checked_copy(
+      {.info = &info, .make_law = make_law, .own_parameters = parameters, .origin = {file, std::move(hash)}});
+}
+
+ModuleFaults take_module_faults() {
+  const std::lock_guard lock(faults_mutex);
+  return std::exchange(faults(), {});
+}
+
+}  // namespace hapbench

@@ -1,0 +1,234 @@
+#include "scenarios/run/load_module.hpp"
+
+#include <dlfcn.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cfenv>
+#include <map>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <utility>
+
+#include "algorithms/module/module.hpp"
+#include "scenarios/input/input_error.hpp"
+#include "scenarios/input/json_file.hpp"
+#include "sim/core/hash.hpp"
+
+namespace hapbench {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kLargestModule = std::size_t{1} << 28;
+
+/// Symbols of the library and its dependencies take precedence over ours. Sanitizers replace functions of all
+/// libraries, so they exclude that.
+#ifdef HAPBENCH_SANITIZED
+constexpr int kApart = RTLD_NOW | RTLD_LOCAL;
+#else
+constexpr int kApart = RTLD_NOW | RTLD_LOCAL | RTLD_DEEPBIND;
+#endif
+
+std::vector<LoadedLaw>& laws() {
+  static std::vector<LoadedLaw> all;
+  return all;
+}
+
+std::function<std::shared_ptr<void>()>& loading_guard() {
+  static std::function<std::shared_ptr<void>()> guard = [] { return nullptr; };
+  return guard;
+}
+
+/// Restores the floating-point environment. Loading a library that was linked with -ffast-math switches off subnormal
+/// numbers for the whole program, which would change the results of every algorithm.
+class KeptFloatingPoint {
+ public:
+  KeptFloatingPoint() { std::fegetenv(&environment_); }
+  ~KeptFloatingPoint() { std::fesetenv(&environment_); }
+  KeptFloatingPoint(const KeptFloatingPoint&) = delete;
+  KeptFloatingPoint& operator=(const KeptFloatingPoint&) = delete;
+
+ private:
+  std::fenv_t environment_{};
+};
+
+/// Also refuses a directory or a pipe before it would be opened as a library.
+std::string hash_of_file(const fs::path& file) {
+  try {
+    return hash_text(hash_of(read_text_file(file, kLargestModule)));
+  } catch (const InputError& error) {
+    fail_in_file(file, error.problem());
+  }
+}
+
+/// Texts of a law go to terminals, pages and JSON. Throws std::invalid_argument for control characters, of which a
+/// terminal's commands are made, and for what is no UTF-8.
+void require_printable(const AlgorithmEntry& entry) {
+  const auto require = [](std::string_view text, const std::string& what) {
+    bool printable = true;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+      const auto byte = static_cast<unsigned char>(text[i]);
+      const bool c1 = byte == 0xc2 && i + 1 < text.size() && static_cast<unsigned char>(text[i + 1]) < 0xa0;
+      printable = printable && byte >= 0x20 && byte != 0x7f && !c1;
+    }
+    // As JSON, in which what is no UTF-8 is the replacement character.
+    const std::string shown = Json(std::string(text)).dump(-1, ' ', true, Json::error_handler_t::replace);
+    if (!printable || shown.find("\\ufffd") != std::string::npos)
+      throw std::invalid_argument(what + " has characters that cannot be printed: " + shown);
+  };
+  const ModelInfo& info = *entry.info;
+  require(info.summary, "its summary");
+  require(info.formula, "its formula");
+  require(info.source, "its source");
+  require(info.known_failure, "its known failure");
+  for (const OwnParameter& p : entry.own_parameters) {
+    require(p.meaning, fmt::format("the meaning of parameter \"{}\"", p.name));
+    require(p.range.unit, fmt::format("the unit of parameter \"{}\"", p.name));
+  }
+}
+
+const char* kind_name(std::uint32_t kind) {
+  return kind == HAPBENCH_LAW ? "law" : "source of contacts";
+}
+
+/// Where a module of this kind is named.
+const char* place_of(std::uint32_t kind) {
+  return kind == HAPBENCH_LAW ? "--plugin" : "rendering.contact_source of a scenario";
+}
+
+/// The function by which the library hands over its table.
+decltype(&hapbench_module) entry_point(const fs::path& file, void* library) {
+  if (void* symbol = dlsym(library, "hapbench_module")) return reinterpret_cast<decltype(&hapbench_module)>(symbol);
+  for (const char* old : {"hapbench_plugin", "hapbench_contacts"}) {
+    if (dlsym(library, old) != nullptr)
+      fail_in_file(file, fmt::format("is built for {}.h of an earlier version; compile it anew against "
+                                     "hapbench_module.h",
+                                     old));
+  }
+  fail_in_file(file, "is no module: it has no function \"hapbench_module\" (hapbench_module.h)");
+}
+
+/// The table of a library, which stays open because its functions may be called at any time. Throws InputError.
+const HapbenchModule& opened(const fs::path& file, std::uint32_t kind) {
+  const KeptFloatingPoint kept;
+  void* library = dlopen(file.c_str(), kApart);
+  if (library == nullptr) {
+    std::string problem = dlerror();
+    const std::string again = file.string() + ": ";
+    if (problem.starts_with(again)) problem.erase(0, again.size());
+    fail_in_file(file, "is no module: " + problem);
+  }
+  const auto entry = entry_point(file, library);
+  const HapbenchModule* table = nullptr;
+  try {
+    table = entry(HAPBENCH_MODULE_VERSION);
+  } catch (...) {
+    fail_in_file(file, "throws in \"hapbench_module\"");
+  }
+  if (table == nullptr)
+    fail_in_file(file, fmt::format("does not support version {} of the interface; allowed: built with the "
+                                   "hapbench_module.h of this program",
+                                   HAPBENCH_MODULE_VERSION));
+  if (table->version != HAPBENCH_MODULE_VERSION)
+    fail_in_file(file, fmt::format("is built for version {} of the interface; allowed: {}", table->version,
+                                   HAPBENCH_MODULE_VERSION));
+  if (table->kind != HAPBENCH_LAW && table->kind != HAPBENCH_CONTACTS)
+    fail_in_file(file, fmt::format("its kind is {}; allowed: HAPBENCH_LAW or HAPBENCH_CONTACTS", table->kind));
+  if (table->kind != kind)
+    fail_in_file(file, fmt::format("holds a {}, not a {}; name it in {}", kind_name(table->kind), kind_name(kind),
+                                   place_of(table->kind)));
+  return *table;
+}
+
+/// The same file, whatever links lead to it.
+fs::path found_file(const fs::path& given, std::uint32_t kind) {
+  std::error_code error;
+  fs::path file = fs::canonical(given, error);
+  if (error) fail_in_file(given, fmt::format("cannot be loaded as a {}: {}", kind_name(kind), error.message()));
+  return file;
+}
+
+/// A table that its library keeps.
+Module module_of(const HapbenchModule& table, const fs::path& file) {
+  return {{std::shared_ptr<void>(), &table}, file.filename().string()};
+}
+
+const HapbenchModule& contacts_table(const fs::path& file) {
+  static std::mutex mutex;
+  static std::map<fs::path, const HapbenchModule*> loaded;
+  const std::lock_guard lock(mutex);
+  const auto found = loaded.find(file);
+  if (found != loaded.end()) return *found->second;
+  hash_of_file(file);
+  const HapbenchModule& table = opened(file, HAPBENCH_CONTACTS);
+  if (table.name == nullptr || table.step == nullptr)
+    fail_in_file(file, "is no source of contacts that can be used: its name or its function \"step\" is missing");
+  loaded.emplace(file, &table);
+  return table;
+}
+
+}  // namespace
+
+void load_law(const fs::path& given) {
+  const fs::path file = found_file(given, HAPBENCH_LAW);
+  if (std::ranges::find(laws(), file, &LoadedLaw::file) != laws().end()) return;
+  const std::shared_ptr<void> guarded = loading_guard()();
+  std::string hash = hash_of_file(file);
+  const HapbenchModule& table = opened(file, HAPBENCH_LAW);
+  try {
+    AlgorithmEntry entry = law_entry(module_of(table, file), std::move(hash));
+    require_printable(entry);
+    const std::string name = entry.info->name;
+    for (const LoadedLaw& other : laws()) {
+      if (other.algorithm == name)
+        throw std::invalid_argument(fmt::format("\"{}\" is the name of the law in {}", name, other.file.string()));
+    }
+    add_algorithm(std::move(entry));
+    laws().push_back({file, name});
+  } catch (const std::invalid_argument& problem) {
+    fail_in_file(file, fmt::format("is no law that can be used: {}", problem.what()));
+  }
+}
+
+void load_laws_in(const std::string& what, const std::string& folders) {
+  for (std::size_t start = 0; start <= folders.size();) {
+    const std::size_t end = std::min(folders.find(':', start), folders.size());
+    const fs::path folder = folders.substr(start, end - start);
+    start = end + 1;
+    if (folder.empty()) continue;
+    std::error_code error;
+    std::vector<fs::path> files;
+    for (fs::directory_iterator entry(folder, error), last; !error && entry != last; entry.increment(error))
+      if (entry->path().extension() == ".so") files.push_back(entry->path());
+    if (error) throw InputError(fmt::format("{}: {}: {}", what, folder.string(), error.message()));
+    std::sort(files.begin(), files.end());
+    for (const fs::path& file : files) load_law(file);
+  }
+}
+
+void guard_loading(std::function<std::shared_ptr<void>()> guard) {
+  loading_guard() = std::move(guard);
+}
+
+const std::vector<LoadedLaw>& loaded_laws() {
+  return laws();
+}
+
+void require_contacts_in(const fs::path& file) {
+  contacts_table(found_file(file, HAPBENCH_CONTACTS));
+}
+
+std::unique_ptr<ContactSource> module_contacts(const fs::path& given, const std::string& config,
+                                               const HapbenchRun& run) {
+  const fs::path file = found_file(given, HAPBENCH_CONTACTS);
+  const HapbenchModule& table = contacts_table(file);
+  try {
+    return std::make_unique<ModuleContacts>(module_of(table, file), config, run);
+  } catch (const std::runtime_error& problem) {
+    throw InputError(problem.what());
+  }
+}
+
+}  // namespace hapbench

@@ -1,1 +1,0 @@
-int nothing_of_interest; /* a library without an entry point */
