@@ -11,7 +11,6 @@
 #include <set>
 #include <utility>
 
-#include "algorithms/registry.hpp"
 #include "results/io/atomic_file.hpp"
 #include "results/io/json_text.hpp"
 #include "scenarios/batch/axis.hpp"
@@ -23,7 +22,6 @@
 #include "scenarios/program/fields_text.hpp"
 #include "scenarios/program/table.hpp"
 #include "scenarios/run/scene_facts.hpp"
-#include "sim/loop/integrators/table.hpp"
 
 namespace hapbench {
 
@@ -115,14 +113,6 @@ void announce_large_output(double bytes) {
   constexpr double kLarge = 1e8;
   if (bytes <= kLarge) return;
   print_note(fmt::format("about {} will be written; \"--set record.every=10\" makes it a tenth", bytes_text(bytes)));
-}
-
-std::vector<std::string> all_algorithms() {
-  return algorithm_names();
-}
-
-std::vector<std::string> all_integrators() {
-  return names_of(kIntegrators, [](const IntegratorEntry* entry) { return entry->info.name; });
 }
 
 void require_names(std::string_view got, const std::vector<std::string>& names, const std::vector<std::string>& valid) {

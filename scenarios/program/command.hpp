@@ -83,10 +83,6 @@ Json or_null(const std::optional<Value>& value) {
   return value ? Json(*value) : Json(nullptr);
 }
 
-/// The names of all registered algorithms.
-std::vector<std::string> all_algorithms();
-/// The names of all integrators.
-std::vector<std::string> all_integrators();
 /// Throws InputError unless each name is among the valid ones and given once; `got` stands before the name in its
 /// message, as in "--only: got".
 void require_names(std::string_view got, const std::vector<std::string>& names, const std::vector<std::string>& valid);
