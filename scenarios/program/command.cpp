@@ -1,11 +1,9 @@
 #include "scenarios/program/command.hpp"
 
 #include <fmt/format.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -44,6 +42,10 @@ std::string shell_word(std::string_view word) {
 
 void capture_output(CapturedOutput* output) noexcept {
   captured = output;
+}
+
+CapturedOutput* captured_output() noexcept {
+  return captured;
 }
 
 void add_output_options(Command& command, OutputOptions& options) {
@@ -190,17 +192,6 @@ std::vector<std::string> plugin_words() {
   std::vector<std::string> words;
   for (const LoadedPlugin& plugin : loaded_plugins()) words.insert(words.end(), {"--plugin", plugin.file.string()});
   return words;
-}
-
-ProgramOutput output_of(const std::vector<std::string>& words) {
-  ProgramOutput output;
-  std::FILE* pipe = ::popen((shell_line(words) + " 2>&1").c_str(), "r");
-  if (pipe == nullptr) throw IoError("run", words[0], std::error_code(errno, std::generic_category()));
-  char piece[4096];
-  for (std::size_t n; (n = std::fread(piece, 1, sizeof piece, pipe)) > 0;) output.text.append(piece, n);
-  const int status = ::pclose(pipe);
-  output.status = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-  return output;
 }
 
 void set_this_program(std::filesystem::path program) {

@@ -61,6 +61,8 @@ struct CapturedOutput {
 
 /// Redirects what the commands of this thread print into `output`, for a host that is no terminal; null ends that.
 void capture_output(CapturedOutput* output) noexcept;
+/// Where this thread's output goes; null when nothing redirects it.
+CapturedOutput* captured_output() noexcept;
 
 /// Draws the run in a folder into a file, FILE.svg. Throws IoError when it cannot be made, after the Python tool has
 /// explained why on standard error.
@@ -118,14 +120,5 @@ void set_this_program(std::filesystem::path program);
 
 /// The options of a command line that load the plugins that this program has loaded.
 std::vector<std::string> plugin_words();
-
-/// The output of a program and how it ended.
-struct ProgramOutput {
-  int status = 0;    ///< exit status; 127 when there is no such program, 128 and more when a signal ended it
-  std::string text;  ///< of standard output and standard error
-};
-
-/// Runs a program and waits for it. Throws IoError when no process can be started.
-ProgramOutput output_of(const std::vector<std::string>& words);
 
 }  // namespace hapbench
