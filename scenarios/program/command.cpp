@@ -54,12 +54,6 @@ void add_output_options(Command& command, OutputOptions& options) {
   command.flag("--wide", output_in_full, "print tables at full width, however narrow the terminal is");
 }
 
-void add_skip_option(Command& command, Skips& skips) {
-  command.flag(
-      "--no-skip", [&skips] { skips = Skips::off; },
-      "compute everything by brute force, even what cannot change the results");
-}
-
 void add_overrides(Command& command, std::vector<std::string>& overrides, const std::string& help) {
   command.add("--set", overrides, help).repeatable();
 }

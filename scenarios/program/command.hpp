@@ -34,8 +34,6 @@ struct OutputOptions {
 
 /// Adds --quiet, --json and --wide.
 void add_output_options(Command& command, OutputOptions& options);
-/// Adds --no-skip.
-void add_skip_option(Command& command, Skips& skips);
 /// Adds --set, repeatable and completed by the fields of scenarios.
 void add_overrides(Command& command, std::vector<std::string>& overrides,
                    const std::string& help = "override a field: path=value");
