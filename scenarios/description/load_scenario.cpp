@@ -244,13 +244,6 @@ ScenarioText read_scenario_text(const fs::path& file) {
   return text;
 }
 
-bool overrides_device(std::span<const std::string> overrides) {
-  return std::any_of(overrides.begin(), overrides.end(), [](const std::string& override) {
-    const std::string_view path = overridden_path(override);
-    return path == "device" || path.starts_with("device.");
-  });
-}
-
 fs::path file_of(const LoadedScenario& loaded, const std::string& pointer) {
   if (!loaded.layers || !pointer.starts_with('/')) return loaded.file;
   try {

@@ -69,9 +69,6 @@ inline std::string_view overridden_path(std::string_view override) noexcept {
   return override.substr(0, override.find('='));
 }
 
-/// True when one of the overrides sets the device or a field of it.
-bool overrides_device(std::span<const std::string> overrides);
-
 /// The file that the value at a JSON pointer comes from: the scenario's own, or one that it extends.
 std::filesystem::path file_of(const LoadedScenario& loaded, const std::string& pointer);
 

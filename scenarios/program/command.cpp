@@ -1,17 +1,14 @@
 #include "scenarios/program/command.hpp"
 
 #include <fmt/format.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <utility>
 
-#include "algorithms/registry.hpp"
 #include "results/io/atomic_file.hpp"
 #include "results/io/json_text.hpp"
 #include "scenarios/batch/axis.hpp"
@@ -23,7 +20,6 @@
 #include "scenarios/program/table.hpp"
 #include "scenarios/run/load_module.hpp"
 #include "scenarios/run/scene_facts.hpp"
-#include "sim/loop/integrators/table.hpp"
 
 namespace hapbench {
 
@@ -48,16 +44,14 @@ void capture_output(CapturedOutput* output) noexcept {
   captured = output;
 }
 
+CapturedOutput* captured_output() noexcept {
+  return captured;
+}
+
 void add_output_options(Command& command, OutputOptions& options) {
   command.flag("--quiet", options.quiet, "print nothing on standard output, and no progress bar");
   command.flag("--json", options.json, "print JSON instead of tables");
   command.flag("--wide", output_in_full, "print tables at full width, however narrow the terminal is");
-}
-
-void add_skip_option(Command& command, Skips& skips) {
-  command.flag(
-      "--no-skip", [&skips] { skips = Skips::off; },
-      "compute everything by brute force, even what cannot change the results");
 }
 
 void add_overrides(Command& command, std::vector<std::string>& overrides, const std::string& help) {
@@ -115,14 +109,6 @@ void announce_large_output(double bytes) {
   constexpr double kLarge = 1e8;
   if (bytes <= kLarge) return;
   print_note(fmt::format("about {} will be written; \"--set record.every=10\" makes it a tenth", bytes_text(bytes)));
-}
-
-std::vector<std::string> all_algorithms() {
-  return algorithm_names();
-}
-
-std::vector<std::string> all_integrators() {
-  return names_of(kIntegrators, [](const IntegratorEntry* entry) { return entry->info.name; });
 }
 
 void require_names(std::string_view got, const std::vector<std::string>& names, const std::vector<std::string>& valid) {
@@ -200,17 +186,6 @@ std::vector<std::string> plugin_words() {
   std::vector<std::string> words;
   for (const LoadedLaw& law : loaded_laws()) words.insert(words.end(), {"--plugin", law.file.string()});
   return words;
-}
-
-ProgramOutput output_of(const std::vector<std::string>& words) {
-  ProgramOutput output;
-  std::FILE* pipe = ::popen((shell_line(words) + " 2>&1").c_str(), "r");
-  if (pipe == nullptr) throw IoError("run", words[0], std::error_code(errno, std::generic_category()));
-  char piece[4096];
-  for (std::size_t n; (n = std::fread(piece, 1, sizeof piece, pipe)) > 0;) output.text.append(piece, n);
-  const int status = ::pclose(pipe);
-  output.status = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-  return output;
 }
 
 void set_this_program(std::filesystem::path program) {

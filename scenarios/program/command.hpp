@@ -34,8 +34,6 @@ struct OutputOptions {
 
 /// Adds --quiet, --json and --wide.
 void add_output_options(Command& command, OutputOptions& options);
-/// Adds --no-skip.
-void add_skip_option(Command& command, Skips& skips);
 /// Adds --set, repeatable and completed by the fields of scenarios.
 void add_overrides(Command& command, std::vector<std::string>& overrides,
                    const std::string& help = "override a field: path=value");
@@ -61,6 +59,8 @@ struct CapturedOutput {
 
 /// Redirects what the commands of this thread print into `output`, for a host that is no terminal; null ends that.
 void capture_output(CapturedOutput* output) noexcept;
+/// Where this thread's output goes; null when nothing redirects it.
+CapturedOutput* captured_output() noexcept;
 
 /// Draws the run in a folder into a file, FILE.svg. Throws IoError when it cannot be made, after the Python tool has
 /// explained why on standard error.
@@ -83,10 +83,6 @@ Json or_null(const std::optional<Value>& value) {
   return value ? Json(*value) : Json(nullptr);
 }
 
-/// The names of all registered algorithms.
-std::vector<std::string> all_algorithms();
-/// The names of all integrators.
-std::vector<std::string> all_integrators();
 /// Throws InputError unless each name is among the valid ones and given once; `got` stands before the name in its
 /// message, as in "--only: got".
 void require_names(std::string_view got, const std::vector<std::string>& names, const std::vector<std::string>& valid);
@@ -122,14 +118,5 @@ void set_this_program(std::filesystem::path program);
 
 /// The options of a command line that load the plugins that this program has loaded.
 std::vector<std::string> plugin_words();
-
-/// The output of a program and how it ended.
-struct ProgramOutput {
-  int status = 0;    ///< exit status; 127 when there is no such program, 128 and more when a signal ended it
-  std::string text;  ///< of standard output and standard error
-};
-
-/// Runs a program and waits for it. Throws IoError when no process can be started.
-ProgramOutput output_of(const std::vector<std::string>& words);
 
 }  // namespace hapbench

@@ -123,6 +123,12 @@ Command CommandLine::command(const std::string& name, const std::string& summary
   return Command(app, chosen_);
 }
 
+void CommandLine::pass_on(const std::string& name, const std::string& summary,
+                          std::function<int(const std::vector<std::string>&)> action) {
+  app_->add_subcommand(name, summary);
+  passed_on_[name] = std::move(action);
+}
+
 namespace {
 
 OptionText text_of(const CLI::Option& option) {
@@ -189,18 +195,11 @@ std::string problem_of(const std::string& word, const CLI::App& program, const C
   return fmt::format("unknown command \"{}\"{}", word, nearest_name_hint(word, names));
 }
 
-/// Says what to write instead of a word that only earlier versions took; empty when there is none.
-std::string old_word_problem(const CLI::App& program, const CLI::App* command) {
-  for (const CLI::App* app : {&program, command}) {
-    const std::string of = app == command && command ? command->get_name() : "";
-    for (const std::string& word : app ? app->remaining() : std::vector<std::string>()) {
-      const std::string name = word.substr(0, word.find('='));
-      const std::string_view instead = instead_of(of, name);
-      if (!instead.empty())
-        return fmt::format("{}\"{}\" is no longer known; instead: {}", of.empty() ? of : of + ": ", name, instead);
-    }
-  }
-  return "";
+/// Refuses a word that only earlier versions took.
+void refuse_old_words(const CLI::App& program, const CLI::App* command) {
+  for (const std::string& word : program.remaining()) refuse_old_word("", word);
+  if (command == nullptr) return;
+  for (const std::string& word : command->remaining()) refuse_old_word(command->get_name(), word);
 }
 
 /// Explains in one line why the command line was refused.
@@ -211,7 +210,7 @@ std::string problem_of(const CLI::ParseError& error, const CLI::App& program) {
   const std::string help = fmt::format("; \"{} {}--help\" explains", kProgramName, words);
   std::vector<std::string> extra = program.remaining(true);
   std::erase(extra, "--");
-  if (std::string old = old_word_problem(program, command); !old.empty()) return old;
+  refuse_old_words(program, command);
   // An unknown option leaves its value behind as an extra word; the option is the mistake to report.
   std::stable_partition(extra.begin(), extra.end(), [](const std::string& word) { return word.starts_with("-"); });
   if (!extra.empty()) return name + problem_of(extra.front(), program, command) + help;
@@ -258,12 +257,16 @@ int CommandLine::run(int argc, char** argv) {
 }
 
 int CommandLine::run(std::vector<std::string> words) {
+  if (!words.empty() && passed_on_.contains(words[0])) {
+    const auto& action = passed_on_[words[0]];
+    return action({words.begin() + 1, words.end()});
+  }
   try {
     std::reverse(words.begin(), words.end());  // as CLI11 takes them
     app_->parse(std::move(words));
   } catch (const CLI::CallForHelp&) {
     const std::vector<CLI::App*> chosen = app_->get_subcommands();
-    if (const std::string old = old_word_problem(*app_, nullptr); !old.empty()) throw InputError(old);
+    refuse_old_words(*app_, nullptr);
     fmt::print("{}", help_text(texts(), chosen.empty() ? kProgramName : chosen.front()->get_name()));
     return kSuccess;
   } catch (const CLI::CallForVersion& version) {

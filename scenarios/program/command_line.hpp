@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -46,9 +47,10 @@ struct CommandText {
   std::vector<OptionText> options;
 };
 
-/// What to write instead of a word that earlier versions took, such as the command "suite" or the option "--search" of
-/// the command "stability"; empty when they did not. `command` is that of an option; empty for a command.
-std::string_view instead_of(std::string_view command, std::string_view word);
+/// Throws an InputError that says what to write instead of a word that earlier versions took, such as the command
+/// "suite" or the option "--search" of the command "stability", which may have a value as NAME=VALUE. `command` is that
+/// of an option; empty for a command.
+void refuse_old_word(const std::string& command, const std::string& word);
 
 /// The help of a command, as wide as prose is; that of the program, which is the first of `texts`, lists the others.
 std::string help_text(const std::vector<CommandText>& texts, const std::string& command);
@@ -123,6 +125,9 @@ class CommandLine {
     command.runs([options, action] { return action(*options); }, when_stopped);
     return {command, *options};
   }
+  /// Adds a command whose words behind its name, options and --help included, all go to `action` as they are.
+  void pass_on(const std::string& name, const std::string& summary,
+               std::function<int(const std::vector<std::string>&)> action);
   /// Replaces a study by its words (study.hpp), loads the plugins that the words and HAPBENCH_PLUGIN_PATH name, then
   /// runs the command. Returns its exit status; for a success during which a law or a source of contacts from outside
   /// failed, kUnexpectedOutcome. Throws what the command throws, and InputError for a wrong usage and for plugins.
@@ -139,6 +144,7 @@ class CommandLine {
   std::unique_ptr<CLI::App> app_;
   ChosenCommand chosen_;
   std::vector<std::string> plugins_;
+  std::map<std::string, std::function<int(const std::vector<std::string>&)>> passed_on_;
 };
 
 }  // namespace hapbench

@@ -47,13 +47,13 @@ Comparison planned(const CompareOptions& options) {
     throw InputError(fmt::format("--jitter: got {}; allowed: 0 ... {} m", options.jitter, kMostJitter));
   }
   const std::vector<std::string>& algorithms = options.algorithms;
-  return planned(ComparisonQuestion{.scenarios = find_scenarios(options.scenarios),
-                                    .algorithms = algorithms.empty()
-                                                      ? all_algorithms()
-                                                      : chosen_names("--algorithms: got", algorithms, all_algorithms()),
-                                    .overrides = options.overrides,
-                                    .seeds = options.seeds,
-                                    .jitter = options.jitter});
+  return planned(ComparisonQuestion{
+      .scenarios = find_scenarios(options.scenarios),
+      .algorithms =
+          algorithms.empty() ? algorithm_names() : chosen_names("--algorithms: got", algorithms, algorithm_names()),
+      .overrides = options.overrides,
+      .seeds = options.seeds,
+      .jitter = options.jitter});
 }
 
 /// A comparison, where its files go, and whether there are several scenarios or seeds to rank over, or metrics to rank

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <span>
 
 #include "scenarios/program/table.hpp"
 
@@ -39,16 +40,16 @@ void find_fields(const ValueGuide& object, const std::string& at, const std::str
 }
 
 /// `at` is the path of the object with a dot behind it.
-void find_types(const ValueGuide& object, const std::string& at, const std::string& type,
-                std::vector<std::pair<std::string, const ValueGuide*>>& found) {
-  for (const ValueGuide& choice : object.choices) find_types(choice, at, type, found);
+void find_types(const ValueGuide& object, const std::string& at, std::vector<FieldType>& found) {
+  for (const ValueGuide& choice : object.choices) find_types(choice, at, found);
   for (const FieldGuide& field : object.fields) {
     for (const ValueGuide& choice : field.value.choices) {
-      const auto same = [&choice](const auto& known) { return known.second->schema == choice.schema; };
-      if (choice.type == type && std::none_of(found.begin(), found.end(), same))
-        found.emplace_back(at + field.name, &choice);
+      const auto same = [&choice](const FieldType& known) {
+        return known.type->type == choice.type && known.type->schema == choice.schema;
+      };
+      if (std::none_of(found.begin(), found.end(), same)) found.push_back({at + field.name, &choice});
     }
-    find_types(field.value, at + field.name + ".", type, found);
+    find_types(field.value, at + field.name + ".", found);
   }
 }
 
@@ -126,11 +127,15 @@ const FieldGuide* find_field(const std::string& path) {
   return found.empty() ? nullptr : found.front().field;
 }
 
-const std::vector<ValueGuide>& types_of(const std::string& field) {
-  static const std::vector<ValueGuide> kNone;
+namespace {
+
+/// The objects among which the "type" of a field chooses; none for other fields.
+std::span<const ValueGuide> types_of(const std::string& field) {
   const FieldGuide* found = find_field(field);
-  return found == nullptr ? kNone : found->value.choices;
+  return found == nullptr ? std::span<const ValueGuide>() : found->value.choices;
 }
+
+}  // namespace
 
 std::vector<std::string> type_names(const std::string& field) {
   std::vector<std::string> names;
@@ -138,9 +143,9 @@ std::vector<std::string> type_names(const std::string& field) {
   return names;
 }
 
-std::vector<std::pair<std::string, const ValueGuide*>> types_called(const std::string& type) {
-  std::vector<std::pair<std::string, const ValueGuide*>> found;
-  find_types(scenario_guide(), "", type, found);
+std::vector<FieldType> all_types() {
+  std::vector<FieldType> found;
+  find_types(scenario_guide(), "", found);
   return found;
 }
 

@@ -19,13 +19,16 @@ struct TypedField {
 /// The fields at that path, those that are the same for several types once.
 std::vector<TypedField> typed_fields(const std::string& path);
 
-/// The objects among which the "type" of a field chooses, as those of "environment"; none for other fields.
-const std::vector<ValueGuide>& types_of(const std::string& field);
-/// Their names.
+/// The names of the types among which a field chooses, as those of "environment"; none for other fields.
 std::vector<std::string> type_names(const std::string& field);
 
-/// The objects of that type, those that are the same in several fields once, each with its field.
-std::vector<std::pair<std::string, const ValueGuide*>> types_called(const std::string& type);
+/// A type among which a field chooses.
+struct FieldType {
+  std::string field;
+  const ValueGuide* type;
+};
+/// All of them, those that are the same in several fields once.
+std::vector<FieldType> all_types();
 
 /// The default of a field; "by scene" for one whose default depends on other fields.
 std::string default_text(const FieldGuide& field);

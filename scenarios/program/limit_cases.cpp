@@ -6,6 +6,7 @@
 #include <iterator>
 #include <set>
 
+#include "algorithms/registry.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/description/metric_sections.hpp"
 #include "scenarios/input/input_error.hpp"
@@ -222,7 +223,8 @@ LimitTable limit_cases(const LimitOptions& options) {
     devices.assign(asked.begin(), asked.end());
   }
   std::vector<std::string> algorithms;
-  if (!options.algorithms.empty()) algorithms = chosen_names("--algorithms: got", options.algorithms, all_algorithms());
+  if (!options.algorithms.empty())
+    algorithms = chosen_names("--algorithms: got", options.algorithms, algorithm_names());
   std::vector<Axis> axes;
   for (const std::string& text : options.over) axes.push_back(parse_axis(text));
   for (const Axis& axis : axes) table.over.push_back(axis.path);

@@ -2,68 +2,38 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
+#include <iterator>
 
 #include "algorithms/registry.hpp"
-#include "device_model/device_presets.hpp"
-#include "scenarios/description/bundled_scenarios.hpp"
-#include "scenarios/description/load_scenario.hpp"
-#include "scenarios/description/metric_sections.hpp"
-#include "scenarios/description/scenario.hpp"
+#include "scenarios/input/input_error.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/command.hpp"
-#include "scenarios/program/describe.hpp"
-#include "scenarios/program/fields_text.hpp"
-#include "scenarios/program/study.hpp"
+#include "scenarios/program/index.hpp"
 #include "scenarios/program/table.hpp"
 #include "scenarios/thesis_claims/ledger.hpp"
-#include "sim/loop/integrators/table.hpp"
 
 namespace hapbench {
 namespace {
 
-/// A thing that has a name.
-struct Listed {
-  std::string kind;  ///< such as "algorithm"
-  std::string name;
-  std::string summary;
-  std::string group = {};   ///< of a scenario
-  std::string source = {};  ///< of a scenario or a claim: its place in the thesis, or the source of its numbers
-  Json claim = {};          ///< as in the ledger
-};
+/// The kinds that lists have, in their order.
+constexpr const char* kListed[] = {"algorithm", "depth model", "stage",    "integrator", "environment", "tool", "hand",
+                                   "device",    "preset",      "scenario", "study",      "metric",      "claim"};
 
-Listed listed_scenario(const BundledScenario& bundled) {
-  try {
-    const Scenario scenario = load_scenario(bundled.file).scenario;
-    return {"scenario", bundled.name, scenario.description, bundled.group, scenario.source};
-  } catch (const InputError& error) {
-    return {"scenario", bundled.name, error.what(), bundled.group};
-  }
-}
-
-std::vector<Listed> everything() {
-  std::vector<Listed> all;
-  const auto add = [&all](const char* kind, const ModelInfo& info) { all.push_back({kind, info.name, info.summary}); };
-  for (const AlgorithmEntry& entry : algorithms()) add("algorithm", *entry.info);
-  for (const DepthModelEntry& entry : depth_models()) add("depth model", *entry.info);
-  for (const ModelInfo* stage : stages()) add("stage", *stage);
-  for (const IntegratorEntry* entry : kIntegrators) add("integrator", entry->info);
-  for (const char* field : {"environment", "tool", "hand", "device"}) {
-    for (const ValueGuide& type : types_of(field)) all.push_back({field, type.type, type.summary});
-  }
-  for (const DevicePreset& preset : device_presets()) all.push_back({"preset", preset.name, preset.device});
-  for (const BundledScenario& bundled : bundled_scenarios()) all.push_back(listed_scenario(bundled));
-  for (const BundledStudy& study : bundled_studies()) all.push_back({"study", study.name, study.summary});
-  for (const Metric& metric : metrics_without_values()) all.push_back({"metric", metric.name, metric.meaning});
-  for (const Json& claim : claims_on_record()) {
-    all.push_back({.kind = "claim",
-                   .name = claim.at("id"),
-                   .summary = claim.at("claim"),
-                   .group = "",
-                   .source = claim.at("place"),
-                   .claim = claim});
+Index everything() {
+  Index index = program_index(), all;
+  std::ranges::move(folder_index(), std::back_inserter(index));
+  for (const std::string_view kind : kListed) {
+    for (Named& thing : index) {
+      if (thing.kind != kind) continue;
+      if (thing.read) thing.read(thing);
+      all.push_back(std::move(thing));
+    }
   }
   return all;
+}
+
+std::string group_of(const Named& thing) {
+  return thing.more.value("group", "");
 }
 
 std::string plural(const std::string& kind) {
@@ -71,11 +41,11 @@ std::string plural(const std::string& kind) {
 }
 
 /// The kinds, and the groups of scenarios.
-std::vector<std::string> sections_of(const std::vector<Listed>& all) {
+std::vector<std::string> sections_of(const Index& all) {
   std::vector<std::string> names;
-  for (const Listed& thing : all) {
-    for (const std::string& name : {thing.kind, thing.group}) {
-      if (!name.empty() && std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  for (const Named& thing : all) {
+    for (const std::string& name : {thing.kind, group_of(thing)}) {
+      if (!name.empty() && std::ranges::find(names, name) == names.end()) names.push_back(name);
     }
   }
   return names;
@@ -108,14 +78,15 @@ std::string scene_of(const std::string& name) {
 }
 
 /// The line of a thing. Scenarios that are one scene under several algorithms share the line of the first.
-std::string entry_of(const std::vector<Listed>& all, const Listed& first) {
-  if (!first.claim.is_null())
-    return entry(fmt::format("{:<5}{}", first.name, verdicts_text(first.claim)), first.summary, 2, kColumn,
+std::string entry_of(const Index& all, const Named& first) {
+  if (first.kind == "claim")
+    return entry(fmt::format("{:<5}{}", first.name, verdicts_text(first.more)), first.summary, 2, kColumn,
                  output_width());
   const std::string scene = scene_of(first.name);
   std::vector<std::string> algorithms;
-  for (const Listed& thing : all) {
-    if (thing.kind == "scenario" && thing.group == first.group && thing.name != scene && scene_of(thing.name) == scene)
+  for (const Named& thing : all) {
+    if (thing.kind == "scenario" && group_of(thing) == group_of(first) && thing.name != scene &&
+        scene_of(thing.name) == scene)
       algorithms.push_back(thing.name.substr(scene.size() + 1));
   }
   if (first.kind != "scenario" || first.name == scene || algorithms.size() < 2)
@@ -125,10 +96,10 @@ std::string entry_of(const std::vector<Listed>& all, const Listed& first) {
          wrapped(fmt::format("*: {}", fmt::join(algorithms, ", ")), kColumn);
 }
 
-std::string list_text(const std::vector<Listed>& all) {
+std::string list_text(const Index& all) {
   std::string text, title;
-  for (const Listed& thing : all) {
-    const std::string of = thing.group.empty() ? plural(thing.kind) : "scenarios: " + thing.group;
+  for (const Named& thing : all) {
+    const std::string group = group_of(thing), of = group.empty() ? plural(thing.kind) : "scenarios: " + group;
     if (of != title) text += (title.empty() ? "" : "\n") + bold(stdout, of) + "\n";
     title = of;
     text += entry_of(all, thing);
@@ -143,7 +114,7 @@ struct ListOptions {
 };
 
 int list(const ListOptions& options) {
-  std::vector<Listed> all = everything();
+  Index all = everything();
   if (!options.what.empty()) {
     // "scenario" and "depth model" are accepted like "scenarios" and "depth_models".
     std::string what = options.what;
@@ -153,25 +124,22 @@ int list(const ListOptions& options) {
       if (what == plural(section)) what = section;
     }
     require_valid_name("got", what, sections);
-    std::erase_if(all, [&what](const Listed& thing) { return thing.kind != what && thing.group != what; });
+    std::erase_if(all, [&what](const Named& thing) { return thing.kind != what && group_of(thing) != what; });
   }
   // There are so many metrics and claims that they are only shown on request.
   const bool of_everything = options.what.empty() && options.grep.empty();
   if (of_everything)
-    std::erase_if(all, [](const Listed& thing) { return thing.kind == "metric" || thing.kind == "claim"; });
+    std::erase_if(all, [](const Named& thing) { return thing.kind == "metric" || thing.kind == "claim"; });
   const std::string pattern = lower_case(options.grep);
-  std::erase_if(all, [&pattern](const Listed& thing) {
-    return lower_case(thing.name + " " + thing.summary + " " + thing.source).find(pattern) == std::string::npos;
+  std::erase_if(all, [&pattern](const Named& thing) {
+    const std::string text = thing.name + " " + thing.summary + " " + thing.more.value("source", "");
+    return lower_case(text).find(pattern) == std::string::npos;
   });
   if (all.empty()) throw InputError(fmt::format("--grep: nothing has \"{}\" in its name or text", options.grep));
   Json json = Json::array();
-  for (const Listed& thing : all) {
+  for (const Named& thing : all) {
     Json& entry = json.emplace_back(Json{{"kind", thing.kind}, {"name", thing.name}, {"summary", thing.summary}});
-    if (!thing.group.empty()) entry.update({{"group", thing.group}, {"source", thing.source}});
-    if (!thing.claim.is_null()) {
-      entry.update(
-          {{"verdict", thing.claim.at("verdict")}, {"majority", thing.claim.at("majority")}, {"source", thing.source}});
-    }
+    entry.update(thing.more);
   }
   print(options.output,
         list_text(all) + (of_everything ? "\"hapbench list metrics\" and \"list claims\" show more.\n" : ""), json);

@@ -1,5 +1,8 @@
+#include <fmt/format.h>
+
 #include <string_view>
 
+#include "scenarios/input/input_error.hpp"
 #include "scenarios/program/command_line.hpp"
 
 namespace hapbench {
@@ -20,6 +23,7 @@ constexpr std::string_view kErrors = "hapbench compare SCENE --errors, of one nu
 /// By command, so that what one command lost stands together.
 constexpr OldWord kOldWords[] = {
     {"*", "--memory", "ulimit -d KILOBYTES before the command; without it three quarters of what is free"},
+    {"*", "--plugin", "the same without it: the command runs no law"},
     {"", "complete", "scripts/completion, which prints a completion for bash"},
     {"", "completion", "scripts/completion, which prints a completion for bash"},
     {"", "diff", "hapbench report A B --tolerance 0, which says what differs, with status 3"},
@@ -57,11 +61,13 @@ constexpr OldWord kOldWords[] = {
 
 }  // namespace
 
-std::string_view instead_of(std::string_view command, std::string_view word) {
+void refuse_old_word(const std::string& command, const std::string& word) {
+  const std::string name = word.substr(0, word.find('='));
   for (const OldWord& old : kOldWords) {
-    if (old.word == word && (old.command == command || old.command == "*")) return old.instead;
+    if (old.word != name || (old.command != command && old.command != "*")) continue;
+    throw InputError(fmt::format("{}\"{}\" is no longer known; instead: {}", command.empty() ? "" : command + ": ",
+                                 name, old.instead));
   }
-  return {};
 }
 
 }  // namespace hapbench

@@ -99,7 +99,9 @@ void add_run(CommandLine& line) {
   add_overrides(command, options.overrides, "override a field: path=value, as in time.steps=100");
   command.flag("--latency", options.latency,
                "time every step, as record.timing does, and print percentiles and missed deadlines");
-  add_skip_option(command, options.skips);
+  command.flag(
+      "--no-skip", [&skips = options.skips] { skips = Skips::off; },
+      "compute everything by brute force, even what cannot change the results");
   add_output_options(command, options.output);
 }
 

@@ -1,8 +1,8 @@
 #include <fmt/format.h>
 
 #include "scenarios/program/command_line.hpp"
+#include "scenarios/program/index.hpp"
 #include "scenarios/program/report.hpp"
-#include "scenarios/program/result_tables.hpp"
 #include "scenarios/studies/stress/law_stress.hpp"
 
 namespace hapbench {
@@ -64,8 +64,8 @@ int stress(const StressOptions& options) {
 
 }  // namespace
 
-DescribedTable stress_table() {
-  return stress_columns().described("stress.csv", "of stress: one line per algorithm");
+std::vector<DescribedTable> stress_tables() {
+  return {stress_columns().described("stress.csv", "of stress: one line per algorithm")};
 }
 
 void add_stress(CommandLine& line) {

@@ -12,7 +12,7 @@
 #include "scenarios/description/metric_sections.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/text_lines.hpp"
-#include "scenarios/program/result_tables.hpp"
+#include "scenarios/program/index.hpp"
 #include "scenarios/program/run_table.hpp"
 #include "scenarios/program/sweep.hpp"
 
@@ -165,7 +165,7 @@ std::string chosen_metric(const std::vector<std::string>& metrics, const std::st
   return std::string(*std::find_if(std::begin(kDefaultMetrics), std::end(kDefaultMetrics) - 1, has));
 }
 
-DescribedTable sweep_table() {
+std::vector<DescribedTable> sweep_tables() {
   const MetricList metrics = metrics_without_values();
   std::vector<std::string> names = leading_columns({});
   for (const Metric& metric : metrics) names.push_back(metric.name);
@@ -174,7 +174,7 @@ DescribedTable sweep_table() {
   names.emplace_back("state_hash");
   DescribedTable table = file_columns(names).described("sweep.csv", "of sweep: one line per run");
   table.headings = count_columns().headings();
-  return table;
+  return {table};
 }
 
 std::string summary_text(const SweepTable& table, const std::string& metric) {

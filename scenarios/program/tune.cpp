@@ -5,13 +5,14 @@
 #include <nlohmann/json.hpp>
 #include <tuple>
 
+#include "algorithms/registry.hpp"
 #include "results/io/json_text.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/description/metric_sections.hpp"
 #include "scenarios/input/text_lines.hpp"
+#include "scenarios/program/index.hpp"
 #include "scenarios/program/limit_cases.hpp"
 #include "scenarios/program/report.hpp"
-#include "scenarios/program/result_tables.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/progress_bar.hpp"
 #include "scenarios/studies/stability/scene_loop.hpp"
@@ -358,7 +359,7 @@ int tune(const TuneOptions& options) {
   const LoadedScenario loaded = load_scenario(tuning.question.scenario, tuning.question.overrides);
   const std::vector<std::string> algorithms =
       options.algorithms.empty() ? std::vector<std::string>{loaded.scenario.rendering.algorithm}
-                                 : chosen_names("--algorithms: got", options.algorithms, all_algorithms());
+                                 : chosen_names("--algorithms: got", options.algorithms, algorithm_names());
   print_warnings(loaded.warnings);
   print_warnings(check_named_files(loaded));
   tuning.scene = loaded.scenario.name + device;

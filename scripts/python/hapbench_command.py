@@ -3,10 +3,16 @@ long."""
 import argparse
 import difflib
 import errno
+import json
 import os
+import shlex
+import shutil
 import sys
+import textwrap
 import threading
 import time
+
+from hapbench.errors import InputError
 
 SUCCESS, FAILED, BAD_INPUT, DIFFERENT, INTERRUPTED = 0, 1, 2, 3, 130
 SILENCE = 2.0  # before a notice [s]
@@ -24,6 +30,143 @@ class Arguments(argparse.ArgumentParser):
     def error(self, message):
         say_error(f"{message}; {self.prog} --help shows what there is")
         sys.exit(BAD_INPUT)
+
+
+class CommandLine(Arguments):
+    """The words behind the name of a command of the program: help and errors are as those of the other commands."""
+
+    def __init__(self, name, summary, footer):
+        super().__init__(prog=f"hapbench {name}", description=summary, epilog=footer, add_help=False, allow_abbrev=False)
+        self.name = name
+        self.add_argument("-h", "--help", action="help", help="print this help")
+
+    def text(self, name, meaning, **more):
+        self.add_argument(name, metavar=more.pop("metavar", "TEXT"), help=meaning, **more)
+
+    def texts(self, name, meaning):
+        """Several values in one word, separated by commas."""
+        self.text(name, meaning, metavar="TEXT,...", action="extend", default=[],
+                  type=lambda text: [part.strip() for part in text.split(",") if part.strip()])
+
+    def number(self, name, meaning, default=None):
+        self.text(name, meaning, metavar="FLOAT", type=float, default=default)
+
+    def one_of(self, names, name, meaning):
+        def checked(word):
+            if word in names:
+                return word
+            quoted = ", ".join(f'"{known}"' for known in names)
+            raise argparse.ArgumentTypeError(f'got "{word}"; allowed: {quoted}{nearest(word, names)}')
+        self.text(name, meaning, type=checked)
+
+    def flag(self, name, meaning):
+        self.add_argument(name, action="store_true", help=meaning)
+
+    def add_output_options(self):
+        self.flag("--quiet", "print nothing on standard output, and no progress bar")
+        self.flag("--json", "print JSON instead of tables")
+        self.flag("--wide", "print tables at full width, however narrow the terminal is")
+
+    def parse(self, words):
+        """An option takes the word behind it as its value, also one that begins with "-"; arguments may stand anywhere."""
+        if not {"-h", "--help"}.isdisjoint(words):
+            self.print_help()
+            self.exit()
+        with_value = {name for action in self._actions if action.nargs != 0 for name in action.option_strings}
+        joined = []
+        for word in words:
+            if joined and joined[-1] in with_value and "--" not in joined:
+                joined[-1] += f"={word}"
+            else:
+                joined.append(word)
+        return self.parse_intermixed_args(joined)
+
+    def error(self, message):
+        subject, _, rest = message.partition(": ")
+        word = rest.split(" ")[0].partition("=")[0]
+        if subject == "the following arguments are required":
+            message = f"{rest} is required"
+        elif subject == "unrecognized arguments" and word.startswith("-"):
+            message = f'unknown option "{word}"{nearest(word, [name for action in self._actions for name in action.option_strings])}'
+        elif subject == "unrecognized arguments":
+            message = f'unexpected argument "{word}"'
+        say_error(f'{self.name}: {message.removeprefix("argument ")}; "{self.prog} --help" explains')
+        sys.exit(BAD_INPUT)
+
+    def format_help(self):
+        width = min(shutil.get_terminal_size((100, 24)).columns, 100)
+        lines = [self.description, f"Usage: {self.prog} [OPTIONS]"]
+        for title, named in (("Arguments:", False), ("Options:", True)):
+            actions = [action for action in self._actions if bool(action.option_strings) == named]
+            if actions:
+                lines += ["", title]
+            for action in actions:
+                word = ",".join(action.option_strings) + (f" {action.metavar}" if action.nargs != 0 else "") if named else action.metavar
+                lines.append(entry(word, action.help, width))
+                if not named:
+                    several = f"{word}..." if action.nargs in ("+", "*") else word
+                    lines[1] += f" {several}" if action.required else f" [{several}]"
+        lines += [""] + [textwrap.fill(line, width, subsequent_indent=" " * (4 if line.startswith(" ") else 0), **WHOLE_WORDS)
+                         for line in self.epilog.splitlines()]
+        return "\n".join(lines) + "\n"
+
+
+WHOLE_WORDS = {"break_long_words": False, "break_on_hyphens": False}
+
+
+def entry(word, meaning, width):
+    """A word with its meaning beside it, or below where the word is too long."""
+    column = 26
+    text = textwrap.fill(meaning, width, initial_indent=" " * column, subsequent_indent=" " * column, **WHOLE_WORDS)
+    return f"  {word}\n{text}" if len(word) + 4 > column else f"  {word}{text[len(word) + 2:]}"
+
+
+def exit_status(name, doing, work):
+    """Does the work of a command, with a notice that says what it is `doing`, unless that is empty. Returns the exit status;
+    what is refused is printed, each fault in a line."""
+    try:
+        with Notice(doing):
+            status = work()
+        sys.stdout.flush()
+        return status or SUCCESS
+    except InputError as error:
+        for fault in getattr(error, "lines", [error]):
+            say_error(fault)
+        return BAD_INPUT
+    except BrokenPipeError:
+        # The reader of a pipe, such as `head`, has seen enough.
+        sys.stderr.close()
+        return SUCCESS
+    except OSError as error:
+        return unwritable(error)
+    except KeyboardInterrupt:
+        print(f"hapbench: {name} stopped; nothing was written", file=sys.stderr)
+        return INTERRUPTED
+
+
+def answer(options, text, data):
+    """Prints what a command answers: its warnings, then the text, or JSON, or nothing."""
+    for warning in data["warnings"] if isinstance(data, dict) else []:
+        print(f"hapbench: warning: {warning}", file=sys.stderr)
+    if not options.quiet:
+        print(json.dumps(data, indent=2, ensure_ascii=False) if options.json else text)
+
+
+def shell_line(*words):
+    return " ".join(map(shlex.quote, map(str, words)))
+
+
+def table_text(headings, rows, wide, numbers=False):
+    """Columns below their headings, the first of them texts; a last column that the terminal has no room for is wrapped."""
+    widths = [max(map(len, column)) for column in zip(headings, *rows)]
+    if sys.stdout.isatty() and not wide:
+        widths[-1] = min(widths[-1], max(24, shutil.get_terminal_size().columns - sum(widths[:-1]) - 2 * len(widths[:-1])))
+    lines = [headings, ["-" * width for width in widths]]
+    for *cells, last in rows:
+        first, *more = textwrap.wrap(last, widths[-1]) or [""]
+        lines += [[*cells, first]] + [[""] * len(cells) + [part] for part in more]
+    return "".join("  ".join(cell.rjust(width) if numbers and i else cell.ljust(width) for i, (cell, width) in enumerate(zip(line, widths))).rstrip()
+                   + "\n" for line in lines)
 
 
 def nearest(name, names):
@@ -61,12 +204,12 @@ def unwritable(error):
 
 
 class Notice:
-    """A line with the seconds, for work that takes longer than two; silent when standard error is no terminal."""
+    """A line with the seconds, for work that takes longer than two; silent without a text, and when standard error is no terminal."""
 
     def __init__(self, text):
         self._text = text
         self._ended = threading.Event()
-        self._thread = threading.Thread(target=self._show, daemon=True) if sys.stderr.isatty() else None
+        self._thread = threading.Thread(target=self._show, daemon=True) if text and sys.stderr.isatty() else None
 
     def say(self, text):
         """Changes the text."""

@@ -17,6 +17,7 @@ from scipy.spatial.transform import Rotation, Slerp
 PROGRAM, SOURCE = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve()
 sys.path.insert(0, str(SOURCE / "scripts" / "python"))
 sys.dont_write_bytecode = True
+from hapbench_import.__main__ import command_line  # noqa: E402
 from hapbench_import.faults import Faults  # noqa: E402
 from hapbench_import.options import options_of  # noqa: E402
 from hapbench_import.recording import open_recording  # noqa: E402
@@ -65,10 +66,12 @@ class Given(unittest.TestCase):
 
     def report(self, data, columns="time=1,position=2", **options):
         """The report of a recording with these contents, by the package that the command starts."""
-        given = {"presets": [str(PRESETS)], "file": [self.write(data)], "columns": columns.split(",") if columns else []}
-        given |= {name.replace("_", "-"): str(value).split(",") for name, value in options.items()}
+        words = [self.write(data)] + (["--columns", columns] if columns else [])
+        for name, value in options.items():
+            words += [f"--{name.replace('_', '-')}"] + ([] if value is True else [str(value)])
+        given = command_line().parse(words)
         chosen = options_of(given)
-        return import_stroke(open_recording(given["file"][0], chosen), chosen)
+        return import_stroke(open_recording(given.file, chosen), chosen)
 
     def stroke(self, data, columns="time=1,position=2", **options):
         return self.report(data, columns, **options).stroke

@@ -53,11 +53,6 @@ inline std::string_view motion_class_name(MotionClass motion) noexcept {
   return text_of(motion).name;
 }
 
-/// True for motion that comes to rest: stable and dying_out.
-inline bool comes_to_rest(MotionClass motion) noexcept {
-  return motion == MotionClass::stable || motion == MotionClass::dying_out;
-}
-
 /// The largest speeds that the tremor of a hand causes without any wall; zeros without a tremor.
 struct TremorSpeeds {
   double target = 0.0;  ///< of the hand's target [m/s]

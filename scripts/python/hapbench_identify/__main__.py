@@ -1,16 +1,13 @@
-"""python -m hapbench_identify NAME=VALUE…; the program calls it for `hapbench identify`.
-
-The words are the options of the command, one for each value of a list. Writes the device's file and the picture of the
-residual, or the signal of --design. Prints JSON: `table`, rows of text, and `json`; or `faults`, each a place and a problem;
-or `io_error`, the number of a system error."""
+"""python -m hapbench_identify WORDS…; the program calls it for `hapbench identify`: fits a device to its log, or makes the signal to
+play."""
 import json
 import math
 import sys
 from pathlib import Path
 
 import numpy as np
-from hapbench_command import write
-from hapbench_import.faults import fail, run_asked
+from hapbench_command import CommandLine, answer, exit_status, shell_line, table_text, write
+from hapbench_import.faults import fail, refuse_source
 from hapbench_import.stroke import number_text
 
 from .design import KINDS, design, travel_of
@@ -18,13 +15,53 @@ from .fit import fit
 from .log import read_log
 from .model import NAMES
 
+FOOTER = """\
+Fits m x'' = u(t - delay) + offset - b x' - c sign(x') to the positions by least squares, integrated exactly. The delay is found in \
+fractions of a sample. Intervals are of 95 %, wider where the residual is correlated; a parameter whose interval is wider than \
+itself cannot be told and is not written. The noise is what the residual has beyond the encoder's step. A constant force besides \
+the commands is told and not part of a device.
+--columns: time, force and position, by default time_s, force_N and position_m. Forces are as commanded at the time of the row, \
+positive in the direction of the position.
+  hapbench identify --design chirp --force 2 --travel 0.08 --mass 0.1 --out chirp.csv
+  hapbench identify log.csv --columns time=t,force=3,position=enc --scale time=1e-6,position=5.5e-5
+  hapbench limit tap_wall --device log_device.json"""
 UNITS = {"handle_mass_kg": "kg", "viscous_N_s_per_m": "N s/m", "coulomb_N": "N", "delay_samples": "samples", "encoder_step_m": "m",
          "position_noise_m": "m", "offset_N": "N"}
 IN_DEVICE = ("handle_mass_kg", "viscous_N_s_per_m", "coulomb_N", "delay_samples", "encoder_step_m", "position_noise_m")
 
 
-def identify(given):
-    log = read_log(given)
+def command_line():
+    line = CommandLine("identify", "Make a device's file from its log: mass, friction, delay, encoder", FOOTER)
+    line.text("log", "CSV of one axis: time, commanded force, position of the handle, no hand on it", nargs="?", metavar="log")
+    line.texts("--columns", "where quantities are, by name or number from 1 (below)")
+    line.texts("--scale", "what units are: time [s], force [N], position [m] (below)")
+    line.flag("--skip-bad-rows", "leave bad rows out and say which, instead of refusing")
+    line.one_of(list(KINDS), "--design", "instead of reading a log, make the signal to play: chirp, steps, multisine")
+    line.number("--force", "of --design: largest force [N]; default 1", 1.0)
+    line.number("--travel", "of --design: way that the handle has [m]; default 0.05", 0.05)
+    line.number("--mass", "of --design: least mass that the handle may have [kg]; default 0.05", 0.05)
+    line.number("--rate", "of --design: of the samples [Hz]; default 1000", 1000.0)
+    line.number("--duration", "of --design [s]; default 5", 5.0)
+    line.text("--out", "the device, LOG_device.json by default, with a picture of the residual beside it; or the signal, signal_KIND.csv")
+    line.add_output_options()
+    return line
+
+
+def run(options):
+    if bool(options.design) == bool(options.log):
+        fail("identify takes either a LOG or --design, which makes the signal to play and to log")
+    out = options.out or (f"signal_{options.design}.csv" if options.design else f"{Path(options.log).stem}_device.json")
+    if options.log:
+        refuse_source(out, options.log, "log")
+    table, data = play(options, out) if options.design else identify(options, out)
+    headings = ["of the signal" if options.design else "of the device", "", "from", "to, 95 %"]
+    next_line = (f"command these forces, log time_s,force_N,position_m, then {shell_line('hapbench', 'identify', 'LOG.csv')}" if options.design
+                 else shell_line("hapbench", "limit", "tap_wall", "--device", out))
+    answer(options, f"{out}\n{table_text(headings, table, options.wide, numbers=True)}\nnext: {next_line}", data | {"next": next_line})
+
+
+def identify(options, out):
+    log = read_log(options)
     found = fit(log)
     told = dict(zip(NAMES, zip(found.values.tolist(), found.intervals.tolist())))
     delay, late = told.pop("delay_s")
@@ -40,17 +77,16 @@ def identify(given):
     told = {name: parameter(*told[name]) for name in UNITS}
     if told["handle_mass_kg"]["value"] is None:
         fail(f"the log cannot tell the mass: the simulated position misses by {found.rms:.3g} m. Is a hand or a spring on the handle, or is a "
-             "sign or a unit wrong? hapbench identify --design makes a signal that tells", given["file"][0])
+             "sign or a unit wrong? hapbench identify --design makes a signal that tells", options.log)
     warnings = log.warnings + warnings_of(told, found, log)
-    out = Path(given["out"][0])
     device = {"type": "impedance"} | {name: float(f"{told[name]['value']:.6g}") for name in IN_DEVICE if told[name]["value"]}
-    write(out, json.dumps(device, indent=2) + "\n")
-    picture = out.with_suffix(".svg")
+    write(Path(out), json.dumps(device, indent=2) + "\n")
+    picture = Path(out).with_suffix(".svg")
     draw(picture, log, found)
     table = [[f"{name} [{UNITS[name]}]", "cannot be told" if one["value"] is None else f"{one['value']:.4g}", *map(shown_end, one["interval"])] for name, one in told.items()]
     table.append(["residual [m]", f"{found.rms:.3g}", "", ""])
-    return {"table": table, "json": told | {"step_s": log.step, "residual_m": found.rms, "samples": int(np.isfinite(log.position).sum()),
-                                            "device": str(out), "picture": str(picture), "warnings": warnings}}
+    return table, told | {"step_s": log.step, "residual_m": found.rms, "samples": int(np.isfinite(log.position).sum()),
+                          "device": out, "picture": str(picture), "warnings": warnings}
 
 
 def parameter(value, interval):
@@ -95,21 +131,23 @@ def draw(file, log, found):
     write(file, picture(figure, "svg"))
 
 
-def play(given):
-    kind = given["design"][0]
-    numbers = {name: float(given[name][0]) for name in ("force", "travel", "rate", "duration", "mass")}
+def play(options, out):
+    kind = options.design
+    numbers = {name: getattr(options, name) for name in ("force", "travel", "rate", "duration", "mass")}
     for name, value in numbers.items():
         if not 0.0 < value < 1e9:
             fail(f"--{name}: got {value:g}; allowed: > 0")
     time, force = design(kind, **numbers)
     rows = "\n".join(f"{number_text(t)},{number_text(f)}" for t, f in zip(time.tolist(), force.tolist()))
-    write(Path(given["out"][0]), f"time_s,force_N\n{rows}\n")
+    write(Path(out), f"time_s,force_N\n{rows}\n")
     travel = float(travel_of(time, force, numbers["mass"]))
     table = [["signal", KINDS[kind], "", ""], ["samples", str(len(time)), "", ""], ["largest force [N]", f"{np.abs(force).max():.3g}", "", ""],
              [f"way of {numbers['mass']:g} kg without friction [m]", f"{travel:.3g}", "", ""]]
-    return {"table": table, "json": {"file": given["out"][0], "design": kind, "samples": len(time), "force_max_N": float(np.abs(force).max()),
-                                     "travel_m": travel, "warnings": []}}
+    return table, {"file": out, "design": kind, "samples": len(time), "force_max_N": float(np.abs(force).max()),
+                   "travel_m": travel, "warnings": []}
 
 
 if __name__ == "__main__":
-    sys.exit(run_asked(lambda given: play(given) if "design" in given else identify(given)))
+    asked_for = command_line().parse(sys.argv[1:])
+    doing = "" if asked_for.quiet else "designing" if asked_for.design else "identifying"
+    sys.exit(exit_status("identify", doing, lambda: run(asked_for)))

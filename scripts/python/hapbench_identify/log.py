@@ -22,17 +22,17 @@ class Log:
     warnings: list
 
 
-def read_log(given):
-    """The log in the words of the command line (__main__)."""
+def read_log(options):
+    """The log that the command line names (__main__)."""
     columns, scale = dict(NAMES), dict.fromkeys(NAMES, 1.0)
-    for option, target in (("columns", columns), ("scale", scale)):
-        for word in given.get(option, ()):
+    for option, words, target in (("columns", options.columns, columns), ("scale", options.scale, scale)):
+        for word in words:
             name, equals, value = word.partition("=")
             if not equals:
                 fail(f"--{option}: got {quoted(word)}; allowed: NAME=VALUE")
             require_name(f"--{option}: got", name, list(NAMES))
             target[name] = value if option == "columns" else _factor(name, value)
-    recording = open_recording(given["file"][0], SimpleNamespace(format="csv", floats=False))
+    recording = open_recording(options.log, SimpleNamespace(format="csv", floats=False))
     time, force, position = (scale[name] * recording.column(_index(recording, name, column)) for name, column in columns.items())
     bad, last = recording.problems(), -math.inf
     for row in range(len(time)):
@@ -43,7 +43,7 @@ def read_log(given):
         if row not in bad:
             last = time[row]
     faults = [(recording.place(row), bad[row]) for row in sorted(bad)]
-    if faults and "skip-bad-rows" not in given:
+    if faults and not options.skip_bad_rows:
         raise Faults(faults[:MOST_FAULTS])
     kept = [row for row in range(len(time)) if row not in bad]
     if len(kept) < FEWEST:

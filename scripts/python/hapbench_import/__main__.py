@@ -1,30 +1,72 @@
-"""python -m hapbench_import NAME=VALUE…; the program calls it for `hapbench import`.
-
-The words are the options of the command, one for each value of a list, and `presets`, their folder, and
-`stiffness_N_per_m`, for the report. Writes the stroke. Prints JSON: `table` and `json` of the report, or of the presets
-for `list`; or `faults`, each a place and a problem; or `io_error`, the number of a system error."""
-import os
+"""python -m hapbench_import WORDS…; the program calls it for `hapbench import`."""
 import sys
 from pathlib import Path
 
-from hapbench_command import write
+from hapbench_command import CommandLine, answer, exit_status, shell_line, table_text, write
 
-from .faults import run_asked
-from .options import list_of_presets, options_of
-from .recording import open_recording
-from .report import json_of, table_of
-from .stroke import import_stroke, stroke_text
+from .faults import fail, refuse_source
+from .options import FORMATS, ORIENTATIONS, PRESETS, list_of_presets, options_of
+
+STIFFNESS = 20000.0  # default of rendering.stiffness_N_per_m [N/m]
+FOOTER = """\
+--columns: time, and position, orientation and force by the first of their columns, or each by itself as px, py, pz, qw, qx, qy, \
+qz, mfx, mfy, mfz. --orientation is none, axis (the direction out of the tip), quat_wxyz, quat_xyzw, axis_angle (axis, angle) or \
+matrix (r11, r12 ... r33, row by row); it turns the tool's frame into the world's.
+Rows with wrong numbers, times that do not increase, quaternions that are no unit and jumps are refused with their lines, and \
+nothing is written.
+  hapbench import log.txt --preset hapi --smooth window=11,order=3 --out stroke.csv
+  hapbench import rec.csv --columns time=t,position=5,orientation=8,force=fx \\
+    --orientation quat_xyzw --scale time=1e-6,position=0.001"""
 
 
-def run(given):
-    if "list" in given:
-        return list_of_presets(given)
-    options = options_of(given)
-    report = import_stroke(open_recording(given["file"][0], options), options)
-    write(Path(os.fsdecode(given["out"][0].encode("utf-8", "surrogateescape"))), stroke_text(report.stroke))
-    stiffness = float(given["stiffness_N_per_m"][0])
-    return {"table": table_of(report, stiffness), "json": {"file": given["out"][0]} | json_of(report, stiffness)}
+def command_line():
+    line = CommandLine("import", "Make a stroke to play back from a recording: poses and measured forces", FOOTER)
+    line.text("file", "the recording", nargs="?", metavar="file")
+    line.text("--preset", "a layout by name or from FILE.json; options below override it")
+    line.flag("--list", "list the presets")
+    line.one_of(FORMATS, "--format", "csv (default), traj (blanks between numbers), hapi, hapi-binary")
+    line.flag("--floats", "hapi-binary: numbers of four bytes")
+    line.texts("--columns", "where quantities are, by name or number from 1 (below)")
+    line.texts("--scale", "what units are: time [s], position [m], angle [rad], force [N] (below)")
+    line.number("--sample-rate", "[Hz] of a file without a column of times")
+    line.one_of(list(ORIENTATIONS), "--orientation", "what its columns hold; default none: the tool never turns")
+    line.texts("--tip-axis", "x,y,z: direction out of the tip in the tool's frame; default 0,0,-1")
+    line.texts("--frame", "recorded directions that are the scenario's x, y, z; y up: x,-z,y")
+    line.texts("--shift", "x,y,z: added to the places of the tip [m], in the scenario's frame")
+    line.flag("--force-by-tool", "forces are the tool's on the object, not the object's on the tool: turn them round")
+    line.number("--rate", "[Hz] of the stroke; default: as recorded, or the median's if irregular")
+    line.texts("--smooth", "window=N,order=M: Savitzky-Golay over N samples, an odd number")
+    line.number("--max-speed", "faster jumps are refused [m/s]; default 5")
+    line.number("--max-gap", "longer gaps are refused, not bridged [s]; default 0.5")
+    line.flag("--skip-bad-rows", "leave bad rows out and say which, instead of refusing")
+    line.text("--out", "the stroke; default: FILE_stroke.csv here")
+    line.add_output_options()
+    return line
+
+
+def run(options):
+    if options.list:
+        presets = list_of_presets()
+        table = table_text(["PRESET", "of"], [[one["preset"], one["description"]] for one in presets], options.wide)
+        return answer(options, f"{table}\nCopy one from {PRESETS}, correct it and give it as --preset FILE.json.", presets)
+    if not options.file:
+        fail('FILE is missing: the recording; "hapbench import --help" explains')
+    if not options.preset and not options.columns:
+        fail("--columns or --preset is missing: which columns hold time and position?")
+    from .recording import open_recording  # loads numpy and scipy, which the help does without
+    from .report import json_of, table_of
+    from .stroke import import_stroke, stroke_text
+    out = options.out or f"{Path(options.file).stem}_stroke.csv"
+    refuse_source(out, options.file, "recording")
+    asked = options_of(options)
+    report = import_stroke(open_recording(options.file, asked), asked)
+    write(Path(out), stroke_text(report.stroke))
+    scenario = f"{Path(out).stem}.json"
+    next_line = f"{shell_line('hapbench', 'new', 'stroke', '--from', out, '--out', scenario)} && {shell_line('hapbench', 'run', scenario)}"
+    table = table_text(["of the stroke", ""], table_of(report, STIFFNESS), options.wide)
+    answer(options, f"{out}\n{table}\nnext: {next_line}", {"file": out} | json_of(report, STIFFNESS) | {"next": next_line})
 
 
 if __name__ == "__main__":
-    sys.exit(run_asked(run))
+    asked_for = command_line().parse(sys.argv[1:])
+    sys.exit(exit_status("import", "" if asked_for.quiet else "importing", lambda: run(asked_for)))

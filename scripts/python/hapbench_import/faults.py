@@ -3,19 +3,24 @@ import json
 import math
 import os
 import re
-import sys
 
-from hapbench_command import INTERRUPTED, SUCCESS, nearest
+from hapbench.errors import InputError
+from hapbench_command import nearest
 
 MOST_FAULTS = 20  # reported at once
 
 
-class Faults(Exception):
+class Faults(InputError):
     """A list of (place, problem)."""
 
     def __init__(self, faults):
         super().__init__(faults)
         self.list = faults
+
+    @property
+    def lines(self):
+        lines = [f"{place}: {problem}" if place else problem for place, problem in self.list]
+        return lines + ([f"no more than {MOST_FAULTS} are shown"] if len(lines) == MOST_FAULTS else [])
 
 
 def fail(problem, place=""):
@@ -50,21 +55,7 @@ def plain(number):
     return repr(float(number)).removesuffix(".0")
 
 
-def run_asked(run):
-    """Prints the reply of `run` to the words NAME=VALUE of the command line, lists of values by their names: JSON, with
-    `faults` or `io_error` in its place. Returns the exit status."""
-    given = {}
-    for word in sys.argv[1:]:
-        # Independent of the locale: arguments are bytes, and texts are UTF-8.
-        name, _, value = os.fsencode(word).decode("utf-8", "surrogateescape").partition("=")
-        given.setdefault(name, []).append(value)
-    try:
-        reply = run(given)
-    except Faults as faults:
-        reply = {"faults": faults.list}
-    except OSError as error:
-        reply = {"io_error": error.errno}
-    except KeyboardInterrupt:
-        return INTERRUPTED
-    sys.stdout.buffer.write(json.dumps(reply, ensure_ascii=False).encode("utf-8", "replace"))
-    return SUCCESS
+def refuse_source(out, source, what):
+    """Refuses to write over the file that is read."""
+    if os.path.exists(out) and os.path.exists(source) and os.path.samefile(out, source):
+        fail(f"--out {out}: is the {what} itself; allowed: another file")

@@ -4,9 +4,11 @@ import math
 import os
 import sys
 from dataclasses import dataclass, field
+from pathlib import Path
 
 from .faults import Faults, fail, finite_number, plain, quoted, require_name, shown
 
+PRESETS = Path(__file__).resolve().parents[3] / "scenarios" / "import" / "presets"
 FORMATS = ("csv", "traj", "hapi", "hapi-binary")
 # The columns of each way to write an orientation, in their order.
 ORIENTATIONS = {
@@ -50,32 +52,33 @@ class Options:
             setattr(self, name, read(self, value))
 
 
-def options_of(given):
-    """The options in the words of the command line (__main__)."""
+def options_of(asked):
+    """The options of the command line (__main__)."""
     options = Options()
-    if "preset" in given:
-        _apply_preset(options, given)
+    if asked.preset:
+        _apply_preset(options, asked.preset)
     for name in ("format", "orientation", "frame"):
-        if name in given:
-            options.set(name, given[name] if name == "frame" else given[name][0])
-    columns = dict(_assignments(given, "columns"))
+        if value := getattr(asked, name):
+            options.set(name, value)
+    columns = dict(_assignments("columns", asked.columns))
     options.set("columns", columns)
     options.optional -= set(columns)
-    options.set("scale", {quantity: _number("--scale", factor) for quantity, factor in _assignments(given, "scale")})
-    for option in ("tip-axis", "shift"):
-        if option in given:
-            if len(given[option]) != 3:
-                fail(f"--{option}: got {len(given[option])} numbers; allowed: three")
-            setattr(options, option.replace("-", "_"), tuple(_number("--" + option, word) for word in given[option]))
-    if "smooth" in given:
-        options.smooth = _smoothing(given)
-    options.sample_rate_Hz = float(given["sample-rate"][0]) if "sample-rate" in given else None if "time" in columns else options.sample_rate_Hz
-    for option in ("rate", "max-speed", "max-gap"):
-        if option in given:
-            setattr(options, option.replace("-", "_"), float(given[option][0]))
-    options.floats |= "floats" in given
-    options.force_by_tool ^= "force-by-tool" in given
-    options.skip_bad_rows = "skip-bad-rows" in given
+    options.set("scale", {quantity: _number("--scale", factor) for quantity, factor in _assignments("scale", asked.scale)})
+    for name, words in (("tip_axis", asked.tip_axis), ("shift", asked.shift)):
+        option = f"--{name.replace('_', '-')}"
+        if words and len(words) != 3:
+            fail(f"{option}: got {len(words)} numbers; allowed: three")
+        if words:
+            setattr(options, name, tuple(_number(option, word) for word in words))
+    if asked.smooth:
+        options.smooth = _smoothing(asked.smooth)
+    options.sample_rate_Hz = asked.sample_rate if asked.sample_rate is not None else None if "time" in columns else options.sample_rate_Hz
+    for name in ("rate", "max_speed", "max_gap"):
+        if (value := getattr(asked, name)) is not None:
+            setattr(options, name, value)
+    options.floats |= asked.floats
+    options.force_by_tool ^= asked.force_by_tool
+    options.skip_bad_rows = asked.skip_bad_rows
     if not 1e-9 < math.hypot(*options.tip_axis) < 1e9:
         fail("tip_axis: allowed: a direction")
     if options.sample_rate_Hz is not None and not 0.0 < options.sample_rate_Hz <= 1e6:
@@ -83,24 +86,23 @@ def options_of(given):
     return options
 
 
-def list_of_presets(given):
-    presets = {name: _read_preset(_file_of(given, name)).get("description", "") for name in _preset_names(given)}
-    return {"table": list(presets.items()), "json": [{"preset": name, "description": text, "file": _file_of(given, name)}
-                                                     for name, text in presets.items()]}
+def list_of_presets():
+    return [{"preset": name, "description": _read_preset(_file_of(name)).get("description", ""), "file": _file_of(name)}
+            for name in _preset_names()]
 
 
-def _preset_names(given):
-    return sorted(name.removesuffix(".json") for name in os.listdir(given["presets"][0]) if name.endswith(".json"))
+def _preset_names():
+    return sorted(file.stem for file in PRESETS.glob("*.json"))
 
 
-def _file_of(given, name):
-    return os.path.join(given["presets"][0], name + ".json")
+def _file_of(name):
+    return str(PRESETS / f"{name}.json")
 
 
 def _read_preset(file):
     """A preset is a JSON file with options as fields; users copy and correct it."""
     try:
-        with open(file.encode("utf-8", "surrogateescape"), encoding="utf-8") as stream:
+        with open(file, encoding="utf-8") as stream:
             preset = json.load(stream)
     except OSError as error:
         fail(f"cannot be read: {error.strerror}", file)
@@ -113,11 +115,10 @@ def _read_preset(file):
     return preset
 
 
-def _apply_preset(options, given):
-    file = given["preset"][0]
+def _apply_preset(options, file):
     if not file.endswith(".json"):
-        require_name("preset: got", file, _preset_names(given))
-        file = _file_of(given, file)
+        require_name("preset: got", file, _preset_names())
+        file = _file_of(file)
     try:
         for name, value in _read_preset(file).items():
             require_name("got field", name, list(_FIELDS))
@@ -127,8 +128,8 @@ def _apply_preset(options, given):
     options.optional = {"orientation", "force"} & set(options.columns)
 
 
-def _assignments(given, option):
-    for word in given.get(option, ()):
+def _assignments(option, words):
+    for word in words:
         name, equals, value = word.partition("=")
         if not name or not equals:
             fail(f"--{option}: got {quoted(word)}; allowed: NAME=VALUE")
@@ -142,9 +143,9 @@ def _number(option, word):
     return value
 
 
-def _smoothing(given):
+def _smoothing(words):
     smoothing = {"window": 0, "order": 0}
-    for name, value in _assignments(given, "smooth"):
+    for name, value in _assignments("smooth", words):
         if not (value.isascii() and value.isdigit() and int(value) <= 100_000):
             fail(f"--smooth: {name}: got {quoted(value)}; allowed: a whole number")
         require_name("--smooth: got", name, list(smoothing))

@@ -54,7 +54,7 @@ class Recording:
 
 def open_recording(file, options):
     try:
-        with open(file.encode("utf-8", "surrogateescape"), "rb") as stream:
+        with open(file, "rb") as stream:
             data = stream.read(LARGEST_FILE + 1)
     except IsADirectoryError:
         fail("is a directory, not a file", file)

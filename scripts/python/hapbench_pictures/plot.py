@@ -4,7 +4,7 @@ import math
 from collections import Counter
 from pathlib import Path
 
-from hapbench_command import Arguments, write
+from hapbench_command import write
 from hapbench_report.json_input import InputError, at
 from hapbench_report.recording import tool_profile
 from hapbench_style import SETTINGS, picture, plt
@@ -25,21 +25,7 @@ SURFACE_SAID = ("dots: section of the surface through", "the middle of the way")
 TOOL_SAID = "outlines: tool on its way"
 
 
-def arguments(words):
-    parser = Arguments(prog="hapbench plot", description="Draws runs over time, or a sweep.")
-    parser.add_argument("runs", nargs="+", metavar="RUN")
-    parser.add_argument("--y", type=lambda text: [name.strip() for name in text.split(",") if name.strip()], default=[])
-    parser.add_argument("--metric")
-    parser.add_argument("--where", action="append", default=[])
-    parser.add_argument("--from", dest="start", metavar="T")
-    parser.add_argument("--to", dest="end", metavar="T")
-    parser.add_argument("--out", type=Path)
-    parser.add_argument("--quiet", action="store_true")
-    return parser.parse_args(words)
-
-
-def plot(words):
-    options = arguments(words)
+def plot(options):
     sweep = given_sweep(options.runs)
     study = given_study(options.runs)
     if study:

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from hapbench.results import SCENARIO, SUMMARY
-from hapbench_command import DIFFERENT, SUCCESS, Arguments, write
+from hapbench_command import DIFFERENT, SUCCESS, write
 from hapbench_report.json_input import InputError
 from hapbench_report.live_link import place_live_page
 from hapbench_report.markup import in_colour, table, text
@@ -26,18 +26,8 @@ STYLE = Path(__file__).parent / "page.css"
 SIZE, PATH_SIZE = (4.0, 2.0), (4.0, 2.9)  # [inch]: on a phone as legible as the text around it
 
 
-def arguments(words):
-    parser = Arguments(prog="hapbench report", description="Writes a page of runs.")
-    parser.add_argument("runs", nargs="+", metavar="RUN")
-    parser.add_argument("--out", type=Path)
-    parser.add_argument("--tolerance")
-    parser.add_argument("--quiet", action="store_true")
-    return parser.parse_args(words)
-
-
-def report(words):
+def report(options):
     """The exit status, which tells whether the two folders of --tolerance differ."""
-    options = arguments(words)
     if options.tolerance is not None:
         return test_of_regression(options)
     if given_sweep(options.runs):

@@ -3,7 +3,7 @@ import sys
 import tempfile
 from pathlib import Path
 
-from hapbench_command import BAD_INPUT, SUCCESS, Arguments, Notice, say_error, unwritable, write
+from hapbench_command import Arguments, exit_status, write
 
 from .credibility import load_credibility
 from .figures import load_figures
@@ -63,15 +63,7 @@ def run(options):
 
 def main(words=None):
     options = arguments(words)
-    try:
-        with Notice("writing the report"):
-            run(options)
-    except InputError as error:
-        say_error(error)
-        return BAD_INPUT
-    except OSError as error:
-        return unwritable(error)
-    return SUCCESS
+    return exit_status("report", "writing the report", lambda: run(options))
 
 
 if __name__ == "__main__":

@@ -6,7 +6,6 @@
 #include <limits>
 #include <memory>
 #include <optional>
-#include <string_view>
 #include <type_traits>
 
 #include "sim/core/model_info.hpp"
@@ -86,13 +85,5 @@ extern const IntegratorEntry kImplicitMidpoint;
 inline constexpr std::array kIntegrators = {
     &kLeapfrog, &kVelocityVerlet, &kRk4, &kImplicitEuler, &kImplicitMidpoint, &kEvent,
 };
-
-/// Returns null if the table has no such name.
-inline const IntegratorEntry* find_integrator(std::string_view name) noexcept {
-  for (const IntegratorEntry* entry : kIntegrators) {
-    if (entry->info.name == name) return entry;
-  }
-  return nullptr;
-}
 
 }  // namespace hapbench

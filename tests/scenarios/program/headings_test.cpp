@@ -5,7 +5,8 @@
 #include <set>
 
 #include "scenarios/input/text_lines.hpp"
-#include "scenarios/program/result_tables.hpp"
+#include "scenarios/program/index.hpp"
+#include "scenarios/program/report.hpp"
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/program.hpp"
 
@@ -104,7 +105,8 @@ TEST(Headings, OfEveryTableAreKnownToDescribe) {
 
 /// Also those of tables that no command above prints.
 TEST(Headings, OfEveryListHaveAMeaning) {
-  for (const Table::Column& heading : printed_headings()) EXPECT_TRUE(is_described(heading.title)) << heading.title;
+  for (const DescribedTable& table : result_tables())
+    for (const Table::Column& heading : table.headings) EXPECT_TRUE(is_described(heading.title)) << heading.title;
 }
 
 TEST(Words, OfTheOutputsAreKnownToDescribe) {

@@ -13,7 +13,6 @@
 #include "scenarios/description/load_scenario.hpp"
 #include "scenarios/description/metric_sections.hpp"
 #include "scenarios/input/text_lines.hpp"
-#include "scenarios/program/describe.hpp"
 #include "scenarios/program/fields_text.hpp"
 #include "scenarios/program/run_table.hpp"
 #include "scenarios/studies/stability/judged_run.hpp"

@@ -19,15 +19,12 @@
 namespace hapbench::stability_test {
 namespace {
 
-TEST(IntegratorTable, HasUniqueNamesThatAreFound) {
+TEST(IntegratorTable, HasUniqueNames) {
   std::set<std::string> names;
   for (const IntegratorEntry* entry : kIntegrators) {
     EXPECT_TRUE(names.insert(entry->info.name).second) << entry->info.name;
-    EXPECT_EQ(find_integrator(entry->info.name), entry);
     EXPECT_NE(entry->make({}), nullptr) << entry->info.name;
   }
-  EXPECT_EQ(find_integrator("no_such"), nullptr);
-  EXPECT_EQ(find_integrator(""), nullptr);
 }
 
 TEST(IntegratorTable, DocumentsEveryRow) {

@@ -100,13 +100,6 @@ TEST(MotionClassifier, OfABeatThatEndsInATroughIsVibrating) {
             MotionClass::vibrating);
 }
 
-TEST(MotionClassifier, WhatDiesOutComesToRest) {
-  EXPECT_TRUE(comes_to_rest(MotionClass::stable));
-  EXPECT_TRUE(comes_to_rest(MotionClass::dying_out));
-  EXPECT_FALSE(comes_to_rest(MotionClass::vibrating));
-  EXPECT_FALSE(comes_to_rest(MotionClass::diverged));
-}
-
 /// The class of a tool that a hand moves to and fro, 20 mm/s at 1 Hz, and that vibrates besides.
 MotionClass class_of_moved_tool(double amplitude, double frequency) {
   constexpr double kStep = 0.0005;
@@ -149,7 +142,8 @@ TEST(MotionClassifier, OfAScriptThatHasEndedSeesSlowSwingingToo) {
   EXPECT_EQ(class_of_swinging_tool(0.0005, 0.0, kSteps / 4), MotionClass::stable) << "not felt";
   EXPECT_EQ(class_of_swinging_tool(0.0, 0.0, kSteps / 4), MotionClass::stable);
   const double length = 0.0005 * kSteps;
-  EXPECT_TRUE(comes_to_rest(class_of_swinging_tool(0.01, 2.0 / length, kSteps / 4)));
+  const MotionClass dying = class_of_swinging_tool(0.01, 2.0 / length, kSteps / 4);
+  EXPECT_TRUE(dying == MotionClass::stable || dying == MotionClass::dying_out);
 }
 
 /// A trembling hand drags a paddle with dry friction: sticking and slipping it shakes at 1.3 mm/s above 30 Hz whatever

@@ -1,0 +1,222 @@
+#include "scenarios/program/index.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <span>
+#include <tuple>
+
+#include "algorithms/registry.hpp"
+#include "device_model/device_presets.hpp"
+#include "device_model/theory/stiffness_limits.hpp"
+#include "scenarios/program/fields_text.hpp"
+#include "scenarios/program/table.hpp"
+#include "scenarios/studies/stability/judged_run.hpp"
+#include "scenarios/thesis_claims/choices.hpp"
+#include "sim/loop/integrators/table.hpp"
+
+namespace hapbench {
+
+std::string facts_text(std::initializer_list<std::pair<const char*, std::string>> facts, std::size_t column) {
+  std::string text;
+  for (const auto& [title, fact] : facts)
+    if (!fact.empty()) text += entry(title, fact, 2, column);
+  return text;
+}
+
+Description joined(const std::vector<Description>& meanings) {
+  if (meanings.size() == 1) return meanings.front();
+  Description all{"", Json::array()};
+  for (const Description& meaning : meanings) {
+    all.text += (all.text.empty() ? "" : "\n") + meaning.text;
+    // A meaning that has several itself adds each.
+    const Json list = meaning.json.is_array() ? meaning.json : Json::array({meaning.json});
+    all.json.insert(all.json.end(), list.begin(), list.end());
+  }
+  return all;
+}
+
+namespace {
+
+/// Appends the card of a parameter to the model's.
+void add_parameter(Description& d, const std::string& path, const char* unit, const char* meaning) {
+  const FieldGuide& field = *find_field(path);
+  const std::string initial = default_text(field), range = field.value.allowed;
+  d.text += card({.name = path, .initial = initial, .allowed = range, .meaning = meaning}, 4);
+  d.json["parameters"].push_back(
+      {{"name", path}, {"unit", unit}, {"default", initial}, {"range", range}, {"meaning", meaning}});
+}
+
+Description describe_model(const char* kind, const ModelInfo& info, std::span<const OwnParameter> own,
+                           const AlgorithmOrigin& origin) {
+  Description d;
+  d.text = fmt::format("{} {}\n{}\n", kind, bold(stdout, info.name), wrapped(info.summary)) +
+           facts_text({{"formula", info.formula}, {"source", info.source}, {"known failure", info.known_failure}}, 17);
+  d.json = {{"kind", kind},
+            {"name", info.name},
+            {"summary", info.summary},
+            {"formula", info.formula},
+            {"source", info.source},
+            {"known_failure", info.known_failure},
+            {"parameters", Json::array()}};
+  if (!origin.file.empty()) {
+    d.text += entry("plugin", fmt::format("{}, hash {}", origin.file, origin.hash), 2, 17);
+    d.json["plugin"] = {{"file", origin.file}, {"hash", origin.hash}};
+  }
+  if (!info.parameters.empty() || !own.empty()) d.text += "\n  parameters\n";
+  for (const auto& [parameter, meaning] : info.parameters)
+    add_parameter(d, parameter.field, parameter.range.unit, meaning);
+  for (const OwnParameter& parameter : own) {
+    add_parameter(d, fmt::format("rendering.parameters.{}.{}", info.name, parameter.name), parameter.range.unit,
+                  parameter.meaning);
+  }
+  return d;
+}
+
+void add_models(Index& index) {
+  const auto add = [&index](const char* kind, const ModelInfo& info, std::span<const OwnParameter> own = {},
+                            const AlgorithmOrigin& origin = {}) {
+    index.push_back({kind, info.name, info.summary,
+                     [kind, &info, own, origin] { return describe_model(kind, info, own, origin); }});
+  };
+  for (const AlgorithmEntry& entry : algorithms()) add("algorithm", *entry.info, entry.own_parameters, entry.origin);
+  for (const DepthModelEntry& entry : depth_models()) add("depth model", *entry.info);
+  for (const ModelInfo* stage : stages()) add("stage", *stage);
+  for (const IntegratorEntry* entry : kIntegrators) add("integrator", entry->info);
+}
+
+/// Shows the numbers of a published device, each with its source.
+Description describe_preset(const DevicePreset& preset) {
+  Description d;
+  d.text = fmt::format("preset {}: {}\n{}", bold(stdout, preset.name), preset.device,
+                       wrapped("of device.type \"impedance\": \"device\": {\"type\": \"impedance\", \"preset\": \"" +
+                               std::string(preset.name) + "\"}; fields beside it override its numbers")) +
+           "\n";
+  d.json = {{"kind", "preset"}, {"name", preset.name}, {"device", preset.device}, {"numbers", Json::object()}};
+  const std::tuple<const char*, SourcedNumber, const char*> numbers[] = {
+      {"handle_mass_kg", preset.handle_mass, ""},
+      {"viscous_N_s_per_m", preset.viscous, ""},
+      {"coulomb_N", preset.coulomb, ""},
+      {"encoder_step_m", preset.encoder_step, ""},
+      {"force_max_N", preset.force_max, ""},
+      {"delay_samples", {config_of(preset).delay_samples, NumberSource::ours}, "none is published; "},
+      {"max_stiffness_N_per_m", preset.max_stiffness, "published largest stable stiffness; "},
+      {"max_damping_N_s_per_m", preset.max_damping, "published largest stable damping; "}};
+  for (const auto& [name, number, meaning] : numbers) {
+    const std::string range =
+        number.low < number.high ? fmt::format(", may be {:.3g} to {:.3g}", number.low, number.high) : "";
+    d.text += entry(fmt::format("{} {:g}", name, number.value), meaning + (source_text(number.source) + range), 2, 32);
+    d.json["numbers"][name] = {
+        {"value", number.value}, {"source", source_text(number.source)}, {"low", number.low}, {"high", number.high}};
+  }
+  return d;
+}
+
+/// The field at that path, once for each group of types that share it.
+Description describe_field(const std::string& path) {
+  if (const std::string values = types_text(path); !values.empty())
+    return {values, {{"field", path}, {"types", type_names(path.substr(0, path.rfind('.')))}}};
+  std::vector<Description> meanings;
+  for (const auto& [types, field] : typed_fields(path)) {
+    Json json = field->schema();
+    if (!types.empty()) json["of"] = types;
+    meanings.push_back({fields_text(path, *field, types), std::move(json)});
+  }
+  return joined(meanings);
+}
+
+Description describe_algorithms() {
+  Description d = describe_field("rendering.algorithm");
+  d.text += wrapped("\"hapbench list algorithms\" shows them with what they do");
+  return d;
+}
+
+Description describe_profile() {
+  // Any field whose value is a function of time.
+  FieldGuide profile = *find_field("motion.orientation.tilt_rad");
+  profile.meaning = "a function of time: a number that does not change, or an object";
+  profile.presence = Presence::no_default;
+  return {fields_text("profile", profile), profile.schema()};
+}
+
+/// Explains how runs are judged to be stable, and what is known in theory.
+Description describe_stability() {
+  Description d;
+  d.json = {{"kind", "stability"}};
+  std::string limits;
+  for (const StiffnessLimit& limit : stiffness_limits()) {
+    limits += fmt::format("  {}\n{}", limit.name, entry("formula", limit.formula, 4, 10));
+    limits += entry("for", limit.applies, 4, 10) + entry("source", limit.source, 4, 10);
+    d.json["limits"].push_back(
+        {{"name", limit.name}, {"formula", limit.formula}, {"applies", limit.applies}, {"source", limit.source}});
+  }
+  d.text = "stability\n" +
+           wrapped(
+               "A run is judged by its motion, quarter by quarter; the amplitude is the largest speed. One that is too "
+               "short to tell is made up to 64 times as long.") +
+           "\n";
+  for (auto motion = kMotionClasses.rbegin(); motion != kMotionClasses.rend(); ++motion)  // "all else" last
+    d.text += entry(motion_class_name(*motion), text_of(*motion).rule, 2, 13);
+  for (
+      const char* paragraph :
+      {"Limits count stable and dying out as stable: the tool comes to rest if the run goes on. A run that goes through "
+       "the surface, loses contact, is stuck or never touches (describe outcomes) has a class of its own and is not "
+       "stable, however calm it is.",
+       "The analytic limit, under leapfrog 4 - 2 lambda B dt / M - lambda K dt^2 / M = 0 with lambda = lambda_max(S), is "
+       "given where the tool is alone with springs that stay in contact and the force is -K S p. Under "
+       "velocity_verlet and rk4 it is that of the eigenvalues of a step; the implicit integrators have none. With a "
+       "device in the loop it is where the first eigenvalue of the loop of hand, handle and wall leaves the unit "
+       "circle, as long as nothing saturates and the contact lasts. With --stable bounded the edge by bisection is that of "
+       "\"diverged\"."})
+    d.text += "\n" + wrapped(paragraph);
+  d.text += "\nlimits of the stiffness K of a wall on an impedance device\n";
+  d.text += wrapped(
+      "b is the handle's damping, c its Coulomb friction, q the encoder's step, m the moving mass, T the period, t_d = d T "
+      "the delay. Each is written beside the edge where it applies.");
+  d.text += limits;
+  return d;
+}
+
+/// Names that stand for no single thing of a list.
+void add_sections(Index& index) {
+  const auto add = [&index](const char* name, Description (*describe)()) {
+    index.push_back({"section", name, "", describe});
+  };
+  add("choices_schema", [] { return Description{"", choices_schema()}; });
+  add("profile", describe_profile);
+  add("scenario", [] { return Description{fields_text("scenario", scenario_guide()), scenario_guide().schema}; });
+  add("schema", [] { return Description{"", scenario_schema()}; });
+  add("stability", describe_stability);
+}
+
+void add_types(Index& index) {
+  const std::vector<FieldType> types = all_types();
+  for (const FieldType& found : types) {
+    const ValueGuide* type = found.type;
+    const auto has_the_name = [type](const FieldType& other) { return other.type->type == type->type; };
+    const std::string of = std::ranges::count_if(types, has_the_name) > 1 ? found.field : "";
+    index.push_back({found.field, type->type, type->summary, [type, of] {
+                       return Description{fields_text(type->type, *type, of), type->schema};
+                     }});
+  }
+}
+
+}  // namespace
+
+Index program_index() {
+  Index index;
+  add_models(index);
+  for (const DevicePreset& preset : device_presets())
+    index.push_back({"preset", preset.name, preset.device, [&preset] { return describe_preset(preset); }});
+  index.push_back({"section", "algorithm", "", describe_algorithms});
+  add_results(index);
+  for (const std::string& path : scenario_field_paths())
+    index.push_back({"field", path, "", [&path] { return describe_field(path); }});
+  add_sections(index);
+  add_types(index);
+  add_words(index);
+  add_headings(index);
+  return index;
+}
+
+}  // namespace hapbench
