@@ -2,7 +2,7 @@
  * hapbench installed below /usr (elsewhere: -IPREFIX/include/hapbench and -LPREFIX/lib), from this folder:
  *
  *     g++ -std=c++20 -O2 -fPIC -shared -ffp-contract=off -DEIGEN_DONT_VECTORIZE -I/usr/include/hapbench \
- *         -I/usr/include/eigen3 capped_summation.cpp -lhapbench -o capped_summation.so
+ *         -I/usr/include/eigen3 capped_summation.cpp -lhapbench_algorithms -lhapbench_sim -o capped_summation.so
  *     hapbench --plugin ./capped_summation.so compare peg_in_hole_2d_shaped_stiffness
  *
  * CMake knows the flags: find_package(hapbench), add_library(capped_summation MODULE capped_summation.cpp),
