@@ -66,25 +66,28 @@ class Launch {
     return process;
   }
   /// Runs it for the host, which gets what it prints on standard output as text, and its other lines as what they are.
-  /// Returns its exit status.
+  /// Returns its exit status. Throws an InputError for what it refuses.
   int run_for(CapturedOutput& host) {
     std::FILE* pipe = ::popen((shell_line(words_) + " 2>&1").c_str(), "r");
     if (pipe == nullptr) fail(errno);
     std::string text;
     for (int c = 0; (c = std::fgetc(pipe)) != EOF;) text += static_cast<char>(c);
-    const int status = ::pclose(pipe);
+    const int ended = ::pclose(pipe), status = WIFEXITED(ended) ? WEXITSTATUS(ended) : kStopped + WTERMSIG(ended);
     constexpr std::string_view kError = "hapbench: error: ", kWarning = "hapbench: warning: ";
+    std::vector<InputError> faults;
     LineReader lines(text);
     while (const auto line = lines.next()) {
       if (line->starts_with(kError)) {
-        host.errors.emplace_back(line->substr(kError.size()));
+        faults.emplace_back(std::string(line->substr(kError.size())));
       } else if (line->starts_with(kWarning)) {
         host.warnings.emplace_back(line->substr(kWarning.size()));
       } else {
         host.text.append(*line).append("\n");
       }
     }
-    return WIFEXITED(status) ? WEXITSTATUS(status) : kStopped + WTERMSIG(status);
+    if (status == kBadInput && !faults.empty()) throw InputError::all(faults);
+    for (const InputError& fault : faults) host.errors.emplace_back(fault.what());
+    return status;
   }
 
  private:
