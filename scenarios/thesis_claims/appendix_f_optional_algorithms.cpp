@@ -82,7 +82,7 @@ std::vector<double> outward_boosts(const Evidence& e) {
 double leaving_time(const Evidence& e, const std::string& algorithm) {
   const std::string overrides[] = {"time.step_s=5e-6", "time.steps=200000", "rendering.friction.mu_s_N_s_per_m=0",
                                    "rendering.friction.mu_f_s_per_m=0", "record.ratio_iterations=[]"};
-  return e.run("peg_in_hole_2d_" + algorithm, overrides).summary.duration;
+  return e.run("peg_in_hole_2d_" + algorithm, overrides).duration;
 }
 
 Measured measure_tandpasta(const Evidence& e) {

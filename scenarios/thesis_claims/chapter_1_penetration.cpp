@@ -89,9 +89,9 @@ Measured measure_original(const Evidence& e) {
   Measured measured;
   for (const std::string law : {kProposedLaw, "original_averaging"}) {
     const std::string overrides[] = {"rendering.algorithm=" + law};
-    const RunSummary summary = e.run("task2_held", overrides).summary;
-    const auto deepest = value_of(summary.section("ideal_trajectory")->metrics, "gentle.interpenetration_max_m");
-    measured.push_back({law, {{"depth", {number_of(deepest).value_or(0.0)}}}});
+    const Result summary = e.run("task2_held", overrides);
+    const auto deepest = number_of(summary.metrics, "ideal_trajectory.gentle.interpenetration_max_m");
+    measured.push_back({law, {{"depth", {deepest.value_or(0.0)}}}});
   }
   return measured;
 }
@@ -138,10 +138,10 @@ Measured measure_summation(const Evidence& e) {
     for (const std::string law : {"summation", "shaped_stiffness"}) {
       const std::string overrides[] = {"rendering.algorithm=" + law, kAllPoints, "record.ratio_iterations=[]",
                                        "metrics.from_s=0"};
-      const RunSummary summary = e.run(scene, overrides).summary;
+      const Result summary = e.run(scene, overrides);
       MeasuredCase& m =
           measured.emplace_back(vibration(law + (scene == "task2_held" ? ", task 2" : ", planar peg"), summary));
-      m.values["diverges"] = {summary.result.outcome == Outcome::diverges ? 1.0 : 0.0};
+      m.values["diverges"] = {summary.end.outcome == Outcome::diverges ? 1.0 : 0.0};
     }
   }
   return measured;

@@ -25,11 +25,10 @@ Measured measure_ideal_trajectory(const Evidence& e) {
   Measured measured;
   for (const double force : kForces) {
     const std::string overrides[] = {fmt::format("hand.force_N={}", force)};
-    const RunSummary summary = e.run("task2_held", overrides).summary;
-    const MetricList& metrics = summary.section("ideal_trajectory")->metrics;
+    const Result summary = e.run("task2_held", overrides);
     const auto number = [&](const char* key) -> std::vector<double> {
-      const char* hand = force < kGentleForce ? "gentle." : "firm.";
-      return {number_of(value_of(metrics, std::string(hand) + key)).value_or(std::nan(""))};
+      const char* hand = force < kGentleForce ? "gentle" : "firm";
+      return {number_of(summary.metrics, fmt::format("ideal_trajectory.{}.{}", hand, key)).value_or(std::nan(""))};
     };
     measured.push_back({fmt::format("{} N", force),
                         {{"force", {force}},

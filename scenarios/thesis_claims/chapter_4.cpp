@@ -192,8 +192,7 @@ Measured measure_highest_depth(const Evidence& e) {
                                             "record.ratio_iterations=[]"};
       // One rotation to and fro says as much as five.
       if (!is_peg) overrides.insert(overrides.end(), {"time.duration_s=6", "record.ideal_trajectory=false"});
-      measured.push_back(
-          vibration(algorithm + (is_peg ? ", planar peg" : ", task 2"), e.run(scene, overrides).summary));
+      measured.push_back(vibration(algorithm + (is_peg ? ", planar peg" : ", task 2"), e.run(scene, overrides)));
     }
   }
   return measured;
@@ -244,8 +243,8 @@ Finding judge_over_reduction(const Measured& measured, const PublishedNumbers& p
 
 Measured measure_turn_into_wall(const Evidence& e, std::initializer_list<std::string> overrides) {
   const std::vector<std::string> more = overrides;
-  return {vibration("as in the thesis", e.run("turned_into_wall", more).summary),
-          vibration("damping sees the turn", e.run("turned_into_wall_angular_damping", more).summary)};
+  return {vibration("as in the thesis", e.run("turned_into_wall", more)),
+          vibration("damping sees the turn", e.run("turned_into_wall_angular_damping", more))};
 }
 
 Finding judge_turn_into_wall(const Measured& measured, const PublishedNumbers& p) {

@@ -140,7 +140,7 @@ LoadedScenario Evidence::load(const std::string& name, std::span<const std::stri
   return load_scenario(text, all);
 }
 
-RunReport Evidence::run(const std::string& name, std::span<const std::string> more) const {
+Result Evidence::run(const std::string& name, std::span<const std::string> more) const {
   const LoadedScenario loaded = load(name, more);
   return run_with_shell(loaded, shell(loaded), std::nullopt, false);
 }

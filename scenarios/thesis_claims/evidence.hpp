@@ -81,7 +81,7 @@ struct Evidence {
   /// A bundled scenario with `overrides`, and then with `more` overrides.
   LoadedScenario load(const std::string& name, std::span<const std::string> more = {}) const;
   /// Runs it in memory.
-  RunReport run(const std::string& name, std::span<const std::string> more = {}) const;
+  Result run(const std::string& name, std::span<const std::string> more = {}) const;
   /// Its environment; null for springs.
   std::shared_ptr<const PointShell> shell(const LoadedScenario& loaded) const;
   /// Runs it in memory and calls `row` for each row.

@@ -13,12 +13,12 @@
 
 namespace hapbench {
 
-MeasuredCase vibration(const std::string& name, const RunSummary& summary) {
-  const Metrics& metrics = summary.metrics;
+MeasuredCase vibration(const std::string& name, const Result& summary) {
+  const auto number = [&](const char* metric) { return number_of(summary.metrics, metric).value_or(0.0); };
   return {name,
-          {{"velocity_variation", {metrics.velocity_total_variation}},
-           {"vibration_power", {metrics.vibration_power.value_or(0.0)}},
-           {"force_reversals", {static_cast<double>(metrics.force_reversals)}}}};
+          {{"velocity_variation", {number("velocity_total_variation_m_per_s")}},
+           {"vibration_power", {number("vibration_power_above_30Hz_m2_per_s2")}},
+           {"force_reversals", {number("force_reversals")}}}};
 }
 
 bool vibrates_much_more(const MeasuredCase& a, const MeasuredCase& b, const PublishedNumbers& p) {

@@ -32,7 +32,7 @@ inline const std::vector<std::string> kHandAboveLimit = {
     R"(hand.force_N={"type":"sine","mean":3.5,"amplitude":1.4,"period_s":1.7})", "time.duration_s=6"};
 
 /// Total variation of the velocity [m/s], power of the velocity above 30 Hz [m^2/s^2] and reversals of the force.
-MeasuredCase vibration(const std::string& name, const RunSummary& summary);
+MeasuredCase vibration(const std::string& name, const Result& summary);
 
 /// An algorithm vibrates, compared with a smooth one, if it has rule.vibrates times the total variation and the square
 /// of it times the power.

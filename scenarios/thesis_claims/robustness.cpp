@@ -157,11 +157,10 @@ class SampleRuns {
     try {
       LoadedScenario loaded = evidence_.load(name);
       if (parts != nullptr) record_only(*parts, loaded.scenario.record);
-      const RunReport report =
-          run_with_shell(loaded, make_shell(loaded.scenario, loaded.files), directory_ / name, false);
+      const Result report = run_with_shell(loaded, make_shell(loaded.scenario, loaded.files), directory_ / name, false);
       const std::vector<Outcome>& expected = loaded.scenario.expect.outcomes;
       // A subject who loses the drill misses the remaining targets, which is a result.
-      const bool diverged = report.summary.result.outcome == Outcome::diverges &&
+      const bool diverged = report.end.outcome == Outcome::diverges &&
                             !std::holds_alternative<TrackingHandFields>(loaded.scenario.hand) &&
                             std::find(expected.begin(), expected.end(), Outcome::diverges) == expected.end();
       return {parts == nullptr, diverged ? name + ": diverged" : ""};
