@@ -69,8 +69,7 @@ fs::path ResultFolder::of_trial(Trial trial, std::size_t trials) {
   return directory;
 }
 
-void ResultFolder::write(const LoadedScenario& loaded, const Simulated& run) {
-  const RecordFields& record = loaded.scenario.record;
+void ResultFolder::write(const RecordFields& record, const WrittenScenario& scenario, const Simulated& run) {
   const Result& result = run.result;
   std::vector<ResultTable> tables = record_tables(record);
   FileSet files;
@@ -81,7 +80,7 @@ void ResultFolder::write(const LoadedScenario& loaded, const Simulated& run) {
     write_target_table(directory_ / kTargetTable.file, result.targets, &files);
   }
   const auto add = [&](const char* name, const std::string& text) { files.write(directory_ / name, text); };
-  add("scenario.effective.json", json_text(effective_scenario(loaded.scenario, directory_)));
+  add("scenario.effective.json", json_text(scenario.effective(directory_)));
   add("columns.json", json_text(columns_json(tables, result.metrics)));
   if (record.timing) add("timing.json", timing_text(result.timing, instruction_set(), provenance()));
   // The summary, which says that a run is there, is the first to go and the last to come.

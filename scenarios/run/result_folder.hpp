@@ -25,7 +25,7 @@ class ResultFolder {
 
   /// Writes the results in place of those of an earlier run: each file appears complete or not at all, the summary
   /// last. Throws IoError.
-  void write(const LoadedScenario& loaded, const Simulated& run);
+  void write(const RecordFields& record, const WrittenScenario& scenario, const Simulated& run);
 
  private:
   std::filesystem::path directory_;

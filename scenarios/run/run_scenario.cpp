@@ -13,13 +13,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Says what made the results, from what.
-void add_origin(const LoadedScenario& loaded, Result& result) {
+/// Says what made the results.
+void add_provenance(Result& result) {
   result.provenance = provenance();
   const AlgorithmOrigin& origin = find_algorithm(result.algorithm)->origin;
   result.provenance.plugin = origin.file;
   result.provenance.plugin_hash = origin.hash;
-  result.scenario_hash = scenario_hash(loaded.scenario, loaded.files);
 }
 
 void finish_tables(const Simulated& run, RunTables& tables) {
@@ -59,12 +58,15 @@ Result run_with_shell(const LoadedScenario& loaded, const std::shared_ptr<const 
   Simulated run = simulate(loaded, shell, target_of, progress, timing);
   Result& result = run.result;
   result.file_warnings = named_file_warnings(loaded);
-  if (output || tables != nullptr) add_origin(loaded, result);
   result.unmet = unmet_expectations(scenario.expect, result);
   result.expected = result.unmet.empty();
+  if (!folder && tables == nullptr) return std::move(result);
+  const WrittenScenario written(scenario);
+  add_provenance(result);
+  result.scenario_hash = written.hash(loaded.files);
   if (folder) {
-    folder->write(loaded, run);
-  } else if (tables != nullptr) {
+    folder->write(scenario.record, written, run);
+  } else {
     finish_tables(run, *tables);
   }
   return std::move(result);

@@ -174,7 +174,7 @@ TEST(PegInHole, VibratesFiveTimesLessWithShapedStiffness) {
 TEST(PegInHole, IsSteeredOutOfTheHoleByItsTilt) {
   for (const char* scenario : {"peg_in_hole_2d_shaped_stiffness", "peg_in_hole_2d_exact_shaping"}) {
     const Result run = report_of(scenario);
-    EXPECT_EQ(run.result.outcome, Outcome::leaves_hole) << scenario;
+    EXPECT_EQ(run.end.outcome, Outcome::leaves_hole) << scenario;
     // 1.2 rad/s from 0.1 rad: horizontal, at pi / 2, only after 1.2 s.
     EXPECT_LT(run.duration, 1.2) << scenario;
     EXPECT_GT(number_of(run.metrics, "final_position_m.y").value(), 0.0) << scenario;
