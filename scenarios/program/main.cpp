@@ -1,5 +1,8 @@
 #include <fmt/format.h>
 #include <unistd.h>
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 
 #include <atomic>
 #include <csignal>
@@ -32,6 +35,16 @@ namespace {
   std::quick_exit(hapbench::kInternalFault);
 }
 
+/// Keeps memory that was freed for what comes next. glibc would give blocks of megabytes, by which meshes grow, back to
+/// the system and fetch them anew page by page: a tenth of the time of a short run on a mesh.
+void keep_freed_memory() {
+#ifdef __GLIBC__
+  constexpr int kMegabyte = 1 << 20;
+  ::mallopt(M_MMAP_THRESHOLD, 32 * kMegabyte);  // the most that glibc takes
+  ::mallopt(M_TRIM_THRESHOLD, 256 * kMegabyte);
+#endif
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -40,6 +53,7 @@ int main(int argc, char** argv) {
   hapbench::name_plugins_that_end_the_process(hapbench::kInternalFault);
   std::set_terminate(end_with_a_reason);
   hapbench::limit_memory();
+  keep_freed_memory();
   const hapbench::StopSignal signals;
   return hapbench::run_program_to_exit(argc, argv);
 }
