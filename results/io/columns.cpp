@@ -47,11 +47,15 @@ std::optional<double> number_of(const Metric::Value& value) {
   return real != nullptr ? std::optional(*real) : std::nullopt;
 }
 
-Metric Metric::within(double of_it, double beside) && {
+std::optional<double> number_of(const MetricList& list, std::string_view name) {
+  return number_of(value_of(list, name));
+}
+
+Metric& Metric::within(double of_it, double beside) {
   bounded = true;
   relative = of_it;
   absolute = beside;
-  return std::move(*this);
+  return *this;
 }
 
 std::optional<double> Metric::tolerance() const {
@@ -63,14 +67,6 @@ std::string cell_text(const Metric::Value& value) {
   if (const auto* count = std::get_if<std::uint64_t>(&value)) return std::to_string(*count);
   const auto* number = std::get_if<double>(&value);
   return number != nullptr ? std::string(NumberText(*number)) : "";
-}
-
-void append(MetricList& list, std::string_view section, const MetricList& more) {
-  const std::string prefix = section.empty() ? "" : std::string(section) + ".";
-  for (const Metric& metric : more) {
-    list.push_back(metric);
-    list.back().name = prefix + metric.name;
-  }
 }
 
 ordered_json columns_json(std::span<const Column> columns) {

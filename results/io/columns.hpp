@@ -76,8 +76,8 @@ struct Metric {
         value(value_from(given)),
         better(direction) {}
 
-  /// The metric with what it may be wrong by: a part of its value, and so much beside [its unit].
-  Metric within(double of_it, double beside) &&;
+  /// Sets the tolerance: `of_it` |value| + `beside` [its unit].
+  Metric& within(double of_it, double beside);
   /// By how much the value may be wrong; none where that is not known or there is no value.
   std::optional<double> tolerance() const;
 
@@ -97,8 +97,7 @@ std::optional<Value> if_any(bool exists, Value value) {
   return exists ? std::optional(value) : std::nullopt;
 }
 
-/// The metrics of a run or of a part of it. Each subject's header has a function `metric_list`, the one place that
-/// names and documents its metrics; the names do not depend on the run, except that each target place has its own.
+/// The metrics of a run or of a part of it, in the order of summary.json.
 using MetricList = std::vector<Metric>;
 
 /// The metric of that name; null when there is none.
@@ -107,11 +106,10 @@ const Metric* find_metric(const MetricList& list, std::string_view name);
 Metric::Value value_of(const MetricList& list, std::string_view name);
 /// A value as a number.
 std::optional<double> number_of(const Metric::Value& value);
+/// The value of that name as a number; none when there is no such metric or it has no value.
+std::optional<double> number_of(const MetricList& list, std::string_view name);
 /// A value as a cell of a CSV file; empty for none.
 std::string cell_text(const Metric::Value& value);
-
-/// Appends `more`, its names in the section, if one is given.
-void append(MetricList& list, std::string_view section, const MetricList& more);
 
 /// columns.json, for other programs: for each file its columns, and for summary.json its metrics, each with name, unit
 /// and meaning.

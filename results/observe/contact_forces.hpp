@@ -5,14 +5,14 @@
 #include <cstdint>
 #include <optional>
 
-#include "results/io/columns.hpp"
 #include "results/observe/butterworth.hpp"
+#include "results/observe/metric_observer.hpp"
 
 namespace hapbench {
 
 /// Counts numbers >= 0 by size, for quantiles in constant memory. A bin is the exponent and the first five bits of the
 /// mantissa of the number's square (norms come as squares): 32 bins to a factor of two. Adding costs a shift and an
-/// increment, histograms of several runs can be added, and the result does not depend on the order.
+/// increment, and the result does not depend on the order.
 class MagnitudeHistogram {
  public:
   /// A quantile between kLeast and kMost has at most this relative error: a bin is sqrt(33 / 32) - 1 = 1.55 % wide, and
@@ -23,7 +23,6 @@ class MagnitudeHistogram {
 
   /// Counts the number whose square this is. Precondition: square >= 0; at most 2^32 - 1 numbers in all.
   void add_square(double square) noexcept { ++counts_[bin_of(square)]; }
-  MagnitudeHistogram& operator+=(const MagnitudeHistogram& other) noexcept;
 
   /// The nearest-rank quantile: the smallest number that at least the share p of all do not exceed. Precondition:
   /// 0 < p <= 1 and not empty.
@@ -57,14 +56,17 @@ class LastQuarterVibration {
  public:
   /// The run has `steps` rows, `dt` seconds apart.
   LastQuarterVibration(std::uint64_t steps, double dt) : steps_(steps), high_pass_(vibration_filter(dt)) {}
+  /// Begins another trial of the run.
+  void begin() noexcept;
   void add(std::uint64_t step, const Vec3& velocity) noexcept;
-  /// Over the quarter that was begun last [m/s]; none at 60 Hz or less and without rows.
+  /// Over the quarter that was begun last, of several trials the largest [m/s]; none at 60 Hz or less and without rows.
   std::optional<double> value() const noexcept;
 
  private:
   std::uint64_t steps_, quarter_ = 0, rows_ = 0;
   std::optional<HighPass> high_pass_;
   double sum_ = 0.0;
+  std::optional<double> of_earlier_trials_;
 };
 
 /// Settled contact shorter than this has no metrics [s]: one period of the cutoff, the slowest vibration. Otherwise a
@@ -81,39 +83,6 @@ struct SettlingRule {
   double time = 0.05;  ///< settling time [s]
 };
 
-/// f_render of landings and of settled contact, as sums and largest squares, so that runs can be added.
-struct ContactForces {
-  std::uint64_t landings = 0;  ///< first touches
-  std::uint64_t landing_rows = 0;
-  double landing_max_squared = 0.0;       ///< largest ||f||^2 [N^2]
-  double landing_step_max_squared = 0.0;  ///< largest ||f_k - f_(k-1)||^2 [N^2]
-
-  std::uint64_t settled_rows = 0;
-  double settled = 0.0;  ///< time of these rows [s]
-  double sum = 0.0;      ///< of ||f|| [N]
-  double max_squared = 0.0;
-  double step_max_squared = 0.0;
-  MagnitudeHistogram steps;                    ///< ||f_k - f_(k-1)||
-  std::optional<double> above_cutoff_squares;  ///< sum of ||high-passed f||^2 [N^2]; nothing at 60 Hz or less
-  std::uint64_t reversals = 0;                 ///< f_k with a negative inner product with f_(k-1)
-
-  /// Adds another run's rows; the step from one run to the next does not count.
-  ContactForces& operator+=(const ContactForces& other) noexcept;
-
-  // The metrics that metric_list documents; nothing without landing rows, or with less settled contact than
-  // kLeastSettled.
-  std::optional<double> landing_max() const noexcept;           ///< [N]
-  std::optional<double> landing_step_max() const noexcept;      ///< [N]
-  std::optional<double> mean() const noexcept;                  ///< [N]
-  std::optional<double> max() const noexcept;                   ///< [N]
-  std::optional<double> step_max() const noexcept;              ///< [N]
-  std::optional<double> step_p99() const noexcept;              ///< [N], within MagnitudeHistogram::kRelativeError
-  std::optional<double> rms_above_cutoff() const noexcept;      ///< [N]
-  std::optional<double> reversals_per_second() const noexcept;  ///< [1/s]
-};
-
-MetricList metric_list(const ContactForces& contact);
-
 /// The difference between a row's force and that of the row before.
 struct ForceChange {
   double squared = 0.0;   ///< ||f_k - f_(k-1)||^2 [N^2]; 0 in the first row
@@ -123,21 +92,27 @@ struct ForceChange {
 /// Sorts the rows of a run into landing, settled contact and the rest, and adds up their forces. Constant memory; a few
 /// nanoseconds a row. The high-pass starts at the first settled row after each landing, at rest at that row's force, so
 /// that the impact does not ring in it.
-class ContactForceObserver {
+class ContactForces {
  public:
   enum class Phase { away, landing, settled };
 
   /// `dt`: time from row to row [s], > 0.
-  ContactForceObserver(double dt, const SettlingRule& rule);
+  ContactForces(double dt, const SettlingRule& rule);
 
+  /// Begins another trial, in which nothing has been touched yet.
+  void begin() noexcept;
   /// Adds the next row and returns its phase.
   Phase add(const Vec3& force, const ForceChange& change, bool in_contact) noexcept;
+  void tell(Section& section) const;
 
-  ContactForces forces() const noexcept;
+  /// True with as much settled contact as its metrics need, kLeastSettled.
+  bool has_settled() const noexcept { return settled() >= kLeastSettled; }
 
  private:
   Phase phase_of_next_row(bool in_contact) noexcept;
   Vec3 filtered(const Vec3& force, Phase phase) noexcept;
+  double settled() const noexcept { return static_cast<double>(settled_rows_) * dt_; }  ///< [s]
+  std::optional<double> step_p99() const noexcept;
 
   double dt_;
   std::uint64_t settling_rows_;
@@ -147,7 +122,17 @@ class ContactForceObserver {
   std::uint64_t row_ = 0;
   std::uint64_t landing_end_ = 0;  ///< the first row after the last landing
   std::uint64_t rows_away_;        ///< since the last contact
-  ContactForces forces_;
+  bool touched_ = false;           ///< in this trial
+
+  std::uint64_t landings_ = 0, landing_rows_ = 0;
+  double landing_max_squared_ = 0.0;       ///< largest ||f||^2 [N^2]
+  double landing_step_max_squared_ = 0.0;  ///< largest ||f_k - f_(k-1)||^2 [N^2]
+  std::uint64_t settled_rows_ = 0;         ///< to which all that follows belongs
+  double sum_ = 0.0;                       ///< of ||f|| [N]
+  double max_squared_ = 0.0, step_max_squared_ = 0.0;
+  MagnitudeHistogram steps_;           ///< ||f_k - f_(k-1)||
+  double above_cutoff_squares_ = 0.0;  ///< sum of ||high-passed f||^2 [N^2]
+  std::uint64_t reversals_ = 0;        ///< f_k with a negative inner product with f_(k-1)
 };
 
 }  // namespace hapbench

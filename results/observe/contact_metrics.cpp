@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/loop/simulation.hpp"
+
 namespace hapbench {
 namespace {
 
@@ -10,13 +12,17 @@ constexpr std::uint64_t kMostAges = 1'000'000;
 
 }  // namespace
 
-ContactAgeObserver::ContactAgeObserver(const LateContacts& contacts, double dt, std::uint64_t steps)
-    : contacts_(contacts), dt_(dt), rows_of_age_(std::min(steps, kMostAges) + 1) {}
+void ContactAgeObserver::begin(const TrialParts& trial) {
+  *this = {};
+  contacts_ = &dynamic_cast<const LateContacts&>(*trial.simulation.source);
+  dt_ = trial.config.dt;
+  rows_of_age_.resize(std::min(trial.config.steps, kMostAges) + 1);
+}
 
 void ContactAgeObserver::on_step(const StepRecord& record) noexcept {
-  asked_ = contacts_.asked();
-  lost_ = contacts_.lost();
-  const LateContacts::Query* query = contacts_.used();
+  asked_ = contacts_->asked();
+  lost_ = contacts_->lost();
+  const LateContacts::Query* query = contacts_->used();
   if (query == nullptr) return;
   const std::uint64_t age = record.step - query->row;
   ++rows_;
@@ -25,27 +31,22 @@ void ContactAgeObserver::on_step(const StepRecord& record) noexcept {
 }
 
 /// The age that this share of the rows does not exceed: that of the nearest rank.
-double ContactAgeObserver::age_of_rank(double share) const noexcept {
+std::optional<double> ContactAgeObserver::age_of_rank(double share) const noexcept {
+  if (rows_ == 0) return std::nullopt;
   auto left = static_cast<std::uint64_t>(std::ceil(share * static_cast<double>(rows_)));
   std::size_t age = 0;
   while (age + 1 < rows_of_age_.size() && rows_of_age_[age] < left) left -= rows_of_age_[age++];
   return dt_ * static_cast<double>(age);
 }
 
-ContactAge ContactAgeObserver::metrics() const noexcept {
-  ContactAge age{.rows = rows_, .max = dt_ * static_cast<double>(oldest_), .queries = asked_};
-  if (rows_ > 0) age.p50 = age_of_rank(0.5), age.p95 = age_of_rank(0.95);
-  if (asked_ > 0) age.lost_share = static_cast<double>(lost_) / static_cast<double>(asked_);
-  return age;
-}
-
-MetricList metric_list(const ContactAge& a) {
-  const bool any = a.rows > 0;
-  return {{"age_p50_s", "s", "half of the rows use contacts found at most so long before", if_any(any, a.p50)},
-          {"age_p95_s", "s", "95 % of the rows use contacts found at most so long before", if_any(any, a.p95)},
-          {"age_max_s", "s", "largest time from the query of contacts to a row that uses them", if_any(any, a.max)},
-          {"asked", "1", "times that contacts were asked for, lost ones included", a.queries},
-          {"lost_share", "1", "share of these that were lost", if_any(a.queries > 0, a.lost_share)}};
+void ContactAgeObserver::tell(Section& s) const {
+  s.metric("age_p50_s", "s", "half of the rows use contacts found at most so long before", age_of_rank(0.5));
+  s.metric("age_p95_s", "s", "95 % of the rows use contacts found at most so long before", age_of_rank(0.95));
+  s.metric("age_max_s", "s", "largest time from the query of contacts to a row that uses them",
+           if_any(rows_ > 0, dt_ * static_cast<double>(oldest_)));
+  s.metric("asked", "1", "times that contacts were asked for, lost ones included", asked_);
+  s.metric("lost_share", "1", "share of these that were lost",
+           if_any(asked_ > 0, static_cast<double>(lost_) / static_cast<double>(asked_)));
 }
 
 void LostTorqueObserver::on_step(const StepRecord& record) noexcept {
@@ -56,17 +57,13 @@ void LostTorqueObserver::on_step(const StepRecord& record) noexcept {
   sum_ += std::sqrt(squared);
 }
 
-LostTorqueMetrics LostTorqueObserver::metrics() const noexcept {
-  const double mean = rows_in_contact_ > 0 ? sum_ / static_cast<double>(rows_in_contact_) : 0.0;
-  return {rows_in_contact_, mean, std::sqrt(max_squared_)};
-}
-
-MetricList metric_list(const LostTorqueMetrics& m) {
-  return {{"lost_mean_Nm", "Nm",
+void LostTorqueObserver::tell(Section& s) const {
+  const bool any = rows_in_contact_ > 0;
+  s.metric("lost_mean_Nm", "Nm",
            "mean ||tau|| of the rows in contact; tau = sum r_i x f_i about the tip's centre is the torque that "
            "the rendered contacts would exert by their shares f_i of f_spring, and that is lost",
-           if_any(m.rows_in_contact > 0, m.mean)},
-          {"lost_max_Nm", "Nm", "largest ||tau|| of a row", if_any(m.rows_in_contact > 0, m.max)}};
+           if_any(any, sum_ / static_cast<double>(rows_in_contact_)));
+  s.metric("lost_max_Nm", "Nm", "largest ||tau|| of a row", if_any(any, std::sqrt(max_squared_)));
 }
 
 }  // namespace hapbench

@@ -1,65 +1,42 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
-#include "results/io/columns.hpp"
+#include "results/observe/metric_observer.hpp"
 #include "sim/contact/late_contacts.hpp"
-#include "sim/loop/observer.hpp"
 
 namespace hapbench {
 
-/// How old the contacts are that a run uses: the time from a query to the rows in which its answer serves.
-struct ContactAge {
-  std::uint64_t rows = 0;                  ///< that have an answer
-  double p50 = 0.0, p95 = 0.0, max = 0.0;  ///< of these rows [s]
-  std::uint64_t queries = 0;
-  double lost_share = 0.0;
-};
-
-MetricList metric_list(const ContactAge& age);
-
-/// Counts the rows of each age. Memory is allocated in the constructor: a number for each row of the run, for a million
-/// at most.
-class ContactAgeObserver final : public Observer {
+/// How old the contacts are that a run uses: the time from a query to the rows in which its answer serves. Counts the
+/// rows of each age, for which `begin` allocates a number for each row of the trial, for a million at most.
+class ContactAgeObserver final : public MetricObserver {
  public:
-  /// `contacts` must outlive the observer.
-  ContactAgeObserver(const LateContacts& contacts, double dt, std::uint64_t steps);
-
+  /// Precondition: the trial's contacts are late.
+  void begin(const TrialParts& trial) override;
   void on_step(const StepRecord& record) noexcept override;
-
-  /// The metrics of the rows seen so far.
-  ContactAge metrics() const noexcept;
+  void tell(Section& section) const override;
 
  private:
-  double age_of_rank(double share) const noexcept;
+  std::optional<double> age_of_rank(double share) const noexcept;
 
-  const LateContacts& contacts_;
-  double dt_;
+  const LateContacts* contacts_ = nullptr;
+  double dt_ = 0.0;
   std::uint64_t rows_ = 0, oldest_ = 0;
   std::uint64_t asked_ = 0, lost_ = 0;
   std::vector<std::uint64_t> rows_of_age_;  ///< by samples; the last entry has all that are older, too
 };
 
-/// The torque on the tool that a device of three degrees of freedom cannot render.
-struct LostTorqueMetrics {
-  std::uint64_t rows_in_contact = 0;  ///< rows with a colliding point
-  double mean = 0.0;                  ///< mean ||tau|| of these rows [N m]; 0 without any
-  double max = 0.0;                   ///< largest ||tau|| of a row [N m]
-};
-
-MetricList metric_list(const LostTorqueMetrics& torque);
-
 /// Observes the lost torque (thesis Fig. 1), tau = sum r_i x f_i about the tip centre, where f_i is the contribution of
 /// contact i to f_spring (SpringState::moment) and r_i its place relative to the tip centre. A device of three degrees
 /// of freedom renders sum f_i and no torque. Constant memory, a nanosecond a row.
-class LostTorqueObserver final : public Observer {
+class LostTorqueObserver final : public MetricObserver {
  public:
+  void begin(const TrialParts&) override { *this = {}; }
   bool wants_springs() const noexcept override { return true; }
   void on_step(const StepRecord& record) noexcept override;
-
-  /// The metrics of the rows seen so far.
-  LostTorqueMetrics metrics() const noexcept;
+  void tell(Section& section) const override;
 
  private:
   std::uint64_t rows_in_contact_ = 0;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "sim/loop/simulation.hpp"
 #include "sim/tool/tool_state.hpp"
 
 namespace hapbench {
@@ -27,6 +28,12 @@ EnergyLedger::EnergyLedger(double mass, double dt, bool position_is_free, std::s
     : mass_(mass), dt_(dt), free_(position_is_free), row_force_moves_(integrator.holds_force) {
   last_.rendered.reserve(capacity);
   rendered_.reserve(capacity);
+}
+
+void EnergyLedger::begin(const TrialParts& trial) {
+  const SimulationParts& parts = trial.simulation;
+  *this = EnergyLedger(trial.config.mass, trial.config.dt, parts.motion->position_is_free(), parts.source->capacity(),
+                       *trial.config.integrator);
 }
 
 void EnergyLedger::on_step(const StepRecord& record) noexcept {
@@ -134,56 +141,47 @@ void EnergyLedger::keep(const StepRecord& record) noexcept {
   std::swap(last_.rendered, rendered_);
 }
 
-EnergyMetrics EnergyLedger::metrics() const {
-  EnergyMetrics metrics;
-  metrics.balance = balance_;
-  metrics.created_sum = created_sum_;
-  metrics.created_max = created_max_;
-  metrics.residual_max = residual_max_;
-  for (const EnergyEvent& event : events_) {
-    if (event.created > 0.0) metrics.events.push_back(event);
-  }
-  return metrics;
+std::span<const EnergyEvent> EnergyLedger::events() const noexcept {
+  const auto created_none = [](const EnergyEvent& event) { return !(event.created > 0.0); };
+  return {events_.begin(), std::find_if(events_.begin(), events_.end(), created_none)};
 }
 
-MetricList metric_list(const EnergyMetrics& m) {
-  const EnergyBalance& b = m.balance;
-  return {
-      {"created_sum_J", "J", "sum of created energy over the steps that created some", m.created_sum, Better::less},
-      {"created_max_J", "J", "most energy that a single step created", m.created_max, Better::less},
-      {"created_J", "J",
-       "what the springs store at the end beyond the work that translation and rotation did on them: made by "
-       "contacts that appear, vanish or change their weights",
-       b.created},
-      {"input_J", "J", "work of f_in on the tool", b.input},
-      {"spring_J", "J",
-       "work of f_spring on the tool; along a prescribed motion by the trapezoidal rule, off by up to K d^2 / 8 where "
-       "a contact begins or ends between rows d apart",
-       b.spring},
-      {"damping_J", "J", "work of damping, friction and force limit: of f - f_spring", b.damping},
-      {"rotation_J", "J", "what the tool's turning put into the springs", b.rotation},
-      {"integration_J", "J", "energy made by the integrator", b.integration},
-      {"script_J", "J", "work of a prescribed motion", b.script},
-      {"hand_J", "J", "work of the hand on the handle", b.hand},
-      {"actuator_J", "J", "work of the device's actuators", b.actuator},
-      {"residual_max_J", "J", "largest |kinetic energy that the terms do not explain| of a row: rounding",
-       m.residual_max, Better::less}};
+void EnergyLedger::tell(Section& s) const {
+  const EnergyBalance& b = balance_;
+  s.metric("created_sum_J", "J", "sum of created energy over the steps that created some", created_sum_, Better::less);
+  s.metric("created_max_J", "J", "most energy that a single step created", created_max_, Better::less);
+  s.metric("created_J", "J",
+           "what the springs store at the end beyond the work that translation and rotation did on them: made by "
+           "contacts that appear, vanish or change their weights",
+           b.created);
+  s.metric("input_J", "J", "work of f_in on the tool", b.input);
+  s.metric("spring_J", "J",
+           "work of f_spring on the tool; along a prescribed motion by the trapezoidal rule, off by up to K d^2 / 8 "
+           "where a contact begins or ends between rows d apart",
+           b.spring);
+  s.metric("damping_J", "J", "work of damping, friction and force limit: of f - f_spring", b.damping);
+  s.metric("rotation_J", "J", "what the tool's turning put into the springs", b.rotation);
+  s.metric("integration_J", "J", "energy made by the integrator", b.integration);
+  s.metric("script_J", "J", "work of a prescribed motion", b.script);
+  s.metric("hand_J", "J", "work of the hand on the handle", b.hand);
+  s.metric("actuator_J", "J", "work of the device's actuators", b.actuator);
+  s.metric("residual_max_J", "J", "largest |kinetic energy that the terms do not explain| of a row: rounding",
+           residual_max_, Better::less);
 }
 
-nlohmann::ordered_json events_json(const EnergyMetrics& energy) {
+void EnergyLedger::add_members(nlohmann::ordered_json& section) const {
   using nlohmann::ordered_json;
   const auto number = [](double value) { return std::isfinite(value) ? ordered_json(value) : ordered_json(nullptr); };
-  ordered_json events = ordered_json::array();
-  for (const EnergyEvent& e : energy.events) {
-    events.push_back({{"step", e.step},
-                      {"time_s", number(e.time)},
-                      {"created_J", number(e.created)},
-                      {"colliding", {e.colliding_before, e.colliding_after}},
-                      {"rendered", {e.rendered_before, e.rendered_after}},
-                      {"appeared", e.appeared},
-                      {"vanished", e.vanished}});
+  ordered_json& list = section["events"] = ordered_json::array();
+  for (const EnergyEvent& e : events()) {
+    list.push_back({{"step", e.step},
+                    {"time_s", number(e.time)},
+                    {"created_J", number(e.created)},
+                    {"colliding", {e.colliding_before, e.colliding_after}},
+                    {"rendered", {e.rendered_before, e.rendered_after}},
+                    {"appeared", e.appeared},
+                    {"vanished", e.vanished}});
   }
-  return events;
 }
 
 }  // namespace hapbench

@@ -2,13 +2,12 @@
 
 #include <array>
 #include <cstdint>
-#include <nlohmann/json_fwd.hpp>
 #include <optional>
+#include <span>
 #include <vector>
 
-#include "results/io/columns.hpp"
+#include "results/observe/metric_observer.hpp"
 #include "sim/loop/integrators/table.hpp"
-#include "sim/loop/observer.hpp"
 
 namespace hapbench {
 
@@ -63,22 +62,8 @@ struct EnergyEvent {
   std::size_t vanished = 0;  ///< contacts of the row before that are not rendered any more
 };
 
-/// The energies of a run that summary.json reports.
-struct EnergyMetrics {
-  EnergyBalance balance;            ///< after the last row
-  double created_sum = 0.0;         ///< sum over the steps that created energy [J]
-  double created_max = 0.0;         ///< largest of a single step [J]
-  double residual_max = 0.0;        ///< largest |residual| of a row [J]
-  std::vector<EnergyEvent> events;  ///< the steps that created the most energy, largest first
-};
-
-/// All but the events.
-MetricList metric_list(const EnergyMetrics& energy);
-/// The events for summary.json: a list of objects.
-nlohmann::ordered_json events_json(const EnergyMetrics& energy);
-
-/// Keeps the balance row by row. Allocates in the constructor only; about 100 ns a row.
-class EnergyLedger final : public Observer {
+/// Keeps the balance row by row. Allocates in the constructor and in `begin` only; about 100 ns a row.
+class EnergyLedger final : public MetricObserver {
  public:
   static constexpr std::size_t kEvents = 10;
 
@@ -86,12 +71,20 @@ class EnergyLedger final : public Observer {
   /// a free position.
   EnergyLedger(double mass, double dt, bool position_is_free, std::size_t capacity,
                const IntegratorEntry& integrator = kLeapfrog);
+  /// To be given all that by `begin`.
+  EnergyLedger() : EnergyLedger(0.0, 0.0, true, 0) {}
 
+  void begin(const TrialParts& trial) override;
   bool wants_energy() const noexcept override { return true; }
   void on_step(const StepRecord& record) noexcept override;
 
+  void tell(Section& section) const override;
+  /// Adds "events": events() as a list of objects.
+  void add_members(nlohmann::ordered_json& section) const override;
+
   const EnergyBalance& balance() const noexcept { return balance_; }
-  EnergyMetrics metrics() const;
+  /// The steps that created the most energy, largest first.
+  std::span<const EnergyEvent> events() const noexcept;
 
  private:
   /// The part of a row that the next step needs.

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "sim/core/math.hpp"
+#include "sim/loop/simulation.hpp"
 
 namespace hapbench {
 
@@ -100,18 +101,6 @@ std::vector<Peak> greatest_peaks(const std::vector<double>& found) {
 
 }  // namespace
 
-std::optional<double> ForceFidelity::relative() const noexcept {
-  return reference_rms > 0.0 ? std::optional(error_rms / reference_rms) : std::nullopt;
-}
-
-std::optional<double> ForceFidelity::reference_mu() const noexcept {
-  return reference_loads > 0.0 ? std::optional(reference_drag / reference_loads) : std::nullopt;
-}
-
-std::optional<double> ForceFidelity::artefact_share() const noexcept {
-  return rendered_rms > 0.0 ? std::optional(across_rms / rendered_rms) : std::nullopt;
-}
-
 std::optional<Lag> lag_between(const std::vector<Vec3>& early, const std::vector<Vec3>& late, double dt, double most) {
   const std::size_t n = std::min(early.size(), late.size());
   // At least half of the samples must overlap.
@@ -140,7 +129,7 @@ std::optional<Lag> lag_between(const std::vector<Vec3>& early, const std::vector
 }
 
 ForceFidelityObserver::ForceFidelityObserver(const ReferenceForce& reference, double dt, std::uint64_t steps)
-    : reference_(&reference), dt_(dt) {
+    : force_(&reference), dt_(dt) {
   every_ = std::max<std::uint64_t>(
       {1, (steps + kMostKept - 1) / kMostKept, static_cast<std::uint64_t>(std::floor(kFinestLag / dt))});
   const auto kept = static_cast<std::size_t>(steps / every_ + 1);
@@ -148,8 +137,12 @@ ForceFidelityObserver::ForceFidelityObserver(const ReferenceForce& reference, do
   kept_rendered_.reserve(kept);
 }
 
+void ForceFidelityObserver::begin(const TrialParts& trial) {
+  *this = ForceFidelityObserver(*trial.reference, trial.config.dt, trial.config.steps);
+}
+
 void ForceFidelityObserver::on_step(const StepRecord& record) noexcept {
-  at_row_ = reference_->at(record.time);
+  at_row_ = force_->at(record.time);
   if (!at_row_) return;
   const Vec3 &wanted = *at_row_, &rendered = record.force.rendered;
   const Vec3 error = rendered - wanted;
@@ -158,21 +151,21 @@ void ForceFidelityObserver::on_step(const StepRecord& record) noexcept {
                       : norm > 0.0 ? Vec3(wanted / norm)
                                    : Vec3::Zero();
   const double along = normal.dot(error);
-  ++sums_.rows;
-  sums_.reference_rms += norm * norm;
-  sums_.error_rms += error.squaredNorm();
-  sums_.normal_rms += along * along;
-  sums_.tangential_rms += (error - along * normal).squaredNorm();
+  ++rows_;
+  reference_ += norm * norm;
+  error_ += error.squaredNorm();
+  normal_ += along * along;
+  tangential_ += (error - along * normal).squaredNorm();
   const double load = std::max(0.0, normal.dot(wanted));
-  sums_.reference_loads += load * load;
-  sums_.reference_drag += load * (wanted - load * normal).norm();
+  loads_ += load * load;
+  drag_ += load * (wanted - load * normal).norm();
   const Vec3 line = norm > 0.0 ? Vec3(wanted / norm) : Vec3::Zero();
-  sums_.across_rms += (rendered - line.dot(rendered) * line).squaredNorm();
-  sums_.rendered_rms += rendered_norm * rendered_norm;
+  across_ += (rendered - line.dot(rendered) * line).squaredNorm();
+  rendered_ += rendered_norm * rendered_norm;
   if (norm > kLeastForce && rendered_norm > kLeastForce) {
-    ++sums_.direction_rows;
+    ++direction_rows_;
     // Near 0, the cosine alone would lose half its digits.
-    sums_.direction_error += math::atan2(wanted.cross(rendered).norm(), wanted.dot(rendered));
+    direction_error_ += math::atan2(wanted.cross(rendered).norm(), wanted.dot(rendered));
   }
   if (record.step % every_ == 0 && kept_reference_.size() < kept_reference_.capacity()) {
     kept_reference_.push_back(wanted);
@@ -180,56 +173,50 @@ void ForceFidelityObserver::on_step(const StepRecord& record) noexcept {
   }
 }
 
-ForceFidelity ForceFidelityObserver::metrics() const {
-  ForceFidelity found = sums_;
-  const double rows = static_cast<double>(std::max<std::uint64_t>(1, found.rows));
-  for (double* sum : {&found.reference_rms, &found.error_rms, &found.normal_rms, &found.tangential_rms,
-                      &found.across_rms, &found.rendered_rms})
-    *sum = std::sqrt(*sum / rows);
-  found.direction_error /= static_cast<double>(std::max<std::uint64_t>(1, found.direction_rows));
-  const auto lag = lag_between(kept_reference_, kept_rendered_, dt_ * static_cast<double>(every_), kMostLag);
-  if (lag) {
-    found.lag = lag->time;
-    found.lag_within = 0.5 * dt_ * static_cast<double>(every_);
-    found.lag_period = lag->period;
-  }
-  return found;
+void ForceFidelityObserver::tell(Section& s) const {
+  const auto rows = static_cast<double>(rows_);
+  const auto rms = [&](double squares) { return if_any(rows_ > 0, std::sqrt(squares / rows)); };
+  const auto share = [&](double part, double whole) {
+    return if_any(whole > 0.0, std::sqrt(part / rows) / std::sqrt(whole / rows));
+  };
+  s.metric("rows", "1", "rows that have a reference force f_m: measured with the stroke, or ideal", rows_);
+  s.metric("reference_force_rms_N", "N", "root mean square of ||f_m||", rms(reference_));
+  s.metric("force_error_rms_N", "N", "root mean square of ||f - f_m||", rms(error_), Better::less);
+  s.metric("force_error_relative", "1", "force_error_rms_N / reference_force_rms_N", share(error_, reference_),
+           Better::less);
+  s.metric("force_error_normal_rms_N", "N",
+           "root mean square of n n^T (f - f_m); n is f_spring / ||f_spring||, what is rendered before damping and "
+           "friction, or where nothing is rendered f_m / ||f_m||",
+           rms(normal_), Better::less);
+  s.metric("force_error_tangential_rms_N", "N", "root mean square of (I - n n^T) (f - f_m), with the same n",
+           rms(tangential_), Better::less);
+  s.metric("reference_mu", "1",
+           "coefficient of dry friction that fits f_m best by least squares: its part across n over that along n, with "
+           "the same n; to be rendered with, the one with the least tangential error is found by a sweep",
+           if_any(loads_ > 0.0, drag_ / loads_));
+  s.metric("force_artefact_share", "1",
+           "root mean square of the part of f across f_m, all of it where f_m is zero, over that of ||f||",
+           share(across_, rendered_), Better::less);
+  s.metric("direction_rows", "1", "rows in which ||f|| and ||f_m|| are both above 0.1 N", direction_rows_);
+  s.metric("force_direction_error_rad", "rad", "mean angle between f and f_m of those rows",
+           if_any(direction_rows_ > 0, direction_error_ / static_cast<double>(direction_rows_)), Better::less);
+  tell_lag(s);
 }
 
-MetricList metric_list(const ForceFidelity& f) {
-  const bool any = f.rows > 0;
-  return {
-      {"rows", "1", "rows that have a reference force f_m: measured with the stroke, or ideal", f.rows},
-      {"reference_force_rms_N", "N", "root mean square of ||f_m||", if_any(any, f.reference_rms)},
-      {"force_error_rms_N", "N", "root mean square of ||f - f_m||", if_any(any, f.error_rms), Better::less},
-      {"force_error_relative", "1", "force_error_rms_N / reference_force_rms_N", f.relative(), Better::less},
-      {"force_error_normal_rms_N", "N",
-       "root mean square of n n^T (f - f_m); n is f_spring / ||f_spring||, what is rendered before damping and "
-       "friction, or where nothing is rendered f_m / ||f_m||",
-       if_any(any, f.normal_rms), Better::less},
-      {"force_error_tangential_rms_N", "N", "root mean square of (I - n n^T) (f - f_m), with the same n",
-       if_any(any, f.tangential_rms), Better::less},
-      {"reference_mu", "1",
-       "coefficient of dry friction that fits f_m best by least squares: its part across n over that along n, with the "
-       "same n; to be rendered with, the one with the least tangential error is found by a sweep",
-       f.reference_mu()},
-      {"force_artefact_share", "1",
-       "root mean square of the part of f across f_m, all of it where f_m is zero, over that of ||f||",
-       f.artefact_share(), Better::less},
-      {"direction_rows", "1", "rows in which ||f|| and ||f_m|| are both above 0.1 N", f.direction_rows},
-      {"force_direction_error_rad", "rad", "mean angle between f and f_m of those rows",
-       if_any(f.direction_rows > 0, f.direction_error), Better::less},
-      Metric("force_lag_s", "s",
-             "time by which f follows f_m: where their correlation (Pearson's, all components) is greatest, within "
-             "0.1 s; of equally great ones, as of a periodic force, that nearest to 0; none where it is greatest at "
-             "the ends of this range or where a force does not vary; told to half the time between the rows that "
-             "are compared",
-             f.lag)
-          .within(0.0, f.lag_within),
-      {"force_lag_period_s", "s",
-       "the lag is known up to multiples of this only: spacing of equally great correlations (to 0.01); none "
-       "where the lag is unambiguous",
-       f.lag_period}};
+void ForceFidelityObserver::tell_lag(Section& s) const {
+  const double apart = dt_ * static_cast<double>(every_);
+  const auto lag = lag_between(kept_reference_, kept_rendered_, apart, kMostLag);
+  s.metric("force_lag_s", "s",
+           "time by which f follows f_m: where their correlation (Pearson's, all components) is greatest, within "
+           "0.1 s; of equally great ones, as of a periodic force, that nearest to 0; none where it is greatest at "
+           "the ends of this range or where a force does not vary; told to half the time between the rows that "
+           "are compared",
+           lag ? std::optional(lag->time) : std::nullopt)
+      .within(0.0, 0.5 * dt_ * static_cast<double>(every_));
+  s.metric("force_lag_period_s", "s",
+           "the lag is known up to multiples of this only: spacing of equally great correlations (to 0.01); none "
+           "where the lag is unambiguous",
+           lag ? lag->period : std::nullopt);
 }
 
 }  // namespace hapbench

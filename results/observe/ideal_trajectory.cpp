@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "sim/core/math.hpp"
+#include "sim/loop/simulation.hpp"
 
 namespace hapbench {
 namespace {
@@ -150,6 +151,10 @@ IdealTrajectoryObserver::IdealTrajectoryObserver(const BlockWithHole& block, con
   assert(every > 0);
 }
 
+void IdealTrajectoryObserver::begin(const TrialParts& trial) {
+  *this = IdealTrajectoryObserver(block_, dynamic_cast<const Cylinder&>(*trial.simulation.tool), every_);
+}
+
 void IdealTrajectoryObserver::on_step(const StepRecord& record) noexcept {
   error_.reset();
   if (record.step % every_ != 0) return;
@@ -158,7 +163,7 @@ void IdealTrajectoryObserver::on_step(const StepRecord& record) noexcept {
   const double sine = lean.norm(), tilt = math::atan2(sine, -pose.axis.z());
   const auto ideal = ideal_place(block_, tool_.radius(), tilt);
   if (!ideal) {
-    ++sums_.rows_without_ideal;
+    ++rows_without_ideal_;
     return;
   }
   TrajectoryError& error = error_.emplace();
@@ -167,72 +172,54 @@ void IdealTrajectoryObserver::on_step(const StepRecord& record) noexcept {
   error.ideal = *ideal;
   error.interpenetration = interpenetration(block_, tool_, pose);
   error.hand_force = record.hand_force.norm();
-  add(error.hand_force < kGentleForce ? sums_.gentle : sums_.firm, error);
+  (error.hand_force < kGentleForce ? gentle_ : firm_).add(error);
 }
 
-void IdealTrajectoryObserver::add(TrajectoryErrors& sums, const TrajectoryError& error) noexcept {
-  const double height = error.actual.height - error.ideal.height;
-  const double lateral = error.actual.lateral - error.ideal.lateral;
-  sums.height_min = sums.rows == 0 ? height : std::min(sums.height_min, height);
-  sums.height_max = sums.rows == 0 ? height : std::max(sums.height_max, height);
-  sums.height_mean += height;
-  sums.height_rms += height * height;
-  sums.lateral_mean += lateral;
-  sums.lateral_rms += lateral * lateral;
-  sums.lateral_max_abs = std::max(sums.lateral_max_abs, std::abs(lateral));
-  sums.interpenetration_mean += error.interpenetration;
-  sums.interpenetration_max = std::max(sums.interpenetration_max, error.interpenetration);
-  ++sums.rows;
+void IdealTrajectoryObserver::Errors::add(const TrajectoryError& error) noexcept {
+  const double height_error = error.actual.height - error.ideal.height;
+  const double lateral_error = error.actual.lateral - error.ideal.lateral;
+  height_min = rows == 0 ? height_error : std::min(height_min, height_error);
+  height_max = rows == 0 ? height_error : std::max(height_max, height_error);
+  height += height_error;
+  height_squares += height_error * height_error;
+  lateral += lateral_error;
+  lateral_squares += lateral_error * lateral_error;
+  lateral_max_abs = std::max(lateral_max_abs, std::abs(lateral_error));
+  interpenetration += error.interpenetration;
+  interpenetration_max = std::max(interpenetration_max, error.interpenetration);
+  ++rows;
 }
 
-IdealTrajectoryMetrics IdealTrajectoryObserver::metrics() const noexcept {
-  IdealTrajectoryMetrics metrics = sums_;
-  for (TrajectoryErrors* errors : {&metrics.gentle, &metrics.firm}) {
-    if (errors->rows == 0) continue;
-    const auto rows = static_cast<double>(errors->rows);
-    errors->height_mean /= rows;
-    errors->height_rms = std::sqrt(errors->height_rms / rows);
-    errors->lateral_mean /= rows;
-    errors->lateral_rms = std::sqrt(errors->lateral_rms / rows);
-    errors->interpenetration_mean /= rows;
-  }
-  return metrics;
+void IdealTrajectoryObserver::Errors::tell(Section s) const {
+  const bool any = rows > 0;
+  const auto mean = [&](double sum) { return sum / static_cast<double>(rows); };
+  s.metric(
+      "rows", "1",
+      "recorded rows at whose tilt the ideal trajectory exists, of a hand below 2 N (gentle) or from 2 N on (firm)",
+      rows);
+  s.metric("height_error_mean_m", "m", "mean of tip height - ideal height; negative: sunk in",
+           if_any(any, mean(height)));
+  s.metric("height_error_rms_m", "m", "root mean square of tip height - ideal height",
+           if_any(any, std::sqrt(mean(height_squares))), Better::less);
+  s.metric("height_error_min_m", "m", "least tip height - ideal height", if_any(any, height_min));
+  s.metric("height_error_max_m", "m", "largest tip height - ideal height", if_any(any, height_max));
+  s.metric("lateral_error_mean_m", "m", "mean of lateral place of the tip - ideal one, towards the lean",
+           if_any(any, mean(lateral)));
+  s.metric("lateral_error_rms_m", "m", "root mean square of lateral place of the tip - ideal one",
+           if_any(any, std::sqrt(mean(lateral_squares))), Better::less);
+  s.metric("lateral_error_max_m", "m", "largest |lateral place of the tip - ideal one|", if_any(any, lateral_max_abs),
+           Better::less);
+  s.metric("interpenetration_mean_m", "m", "mean true depth of the tool in the exact block",
+           if_any(any, mean(interpenetration)), Better::less);
+  s.metric("interpenetration_max_m", "m", "largest true depth of the tool in the exact block",
+           if_any(any, interpenetration_max), Better::less);
 }
 
-namespace {
-
-MetricList metric_list(const TrajectoryErrors& e) {
-  const bool any = e.rows > 0;
-  return {
-      {"rows", "1",
-       "recorded rows at whose tilt the ideal trajectory exists, of a hand below 2 N (gentle) or from 2 N on (firm)",
-       e.rows},
-      {"height_error_mean_m", "m", "mean of tip height - ideal height; negative: sunk in", if_any(any, e.height_mean)},
-      {"height_error_rms_m", "m", "root mean square of tip height - ideal height", if_any(any, e.height_rms),
-       Better::less},
-      {"height_error_min_m", "m", "least tip height - ideal height", if_any(any, e.height_min)},
-      {"height_error_max_m", "m", "largest tip height - ideal height", if_any(any, e.height_max)},
-      {"lateral_error_mean_m", "m", "mean of lateral place of the tip - ideal one, towards the lean",
-       if_any(any, e.lateral_mean)},
-      {"lateral_error_rms_m", "m", "root mean square of lateral place of the tip - ideal one",
-       if_any(any, e.lateral_rms), Better::less},
-      {"lateral_error_max_m", "m", "largest |lateral place of the tip - ideal one|", if_any(any, e.lateral_max_abs),
-       Better::less},
-      {"interpenetration_mean_m", "m", "mean true depth of the tool in the exact block",
-       if_any(any, e.interpenetration_mean), Better::less},
-      {"interpenetration_max_m", "m", "largest true depth of the tool in the exact block",
-       if_any(any, e.interpenetration_max), Better::less}};
-}
-
-}  // namespace
-
-MetricList metric_list(const IdealTrajectoryMetrics& m) {
-  MetricList list;
-  append(list, "gentle", metric_list(m.gentle));
-  append(list, "firm", metric_list(m.firm));
-  list.push_back({"rows_without_ideal", "1", "recorded rows at whose tilt the ideal trajectory does not exist",
-                  m.rows_without_ideal});
-  return list;
+void IdealTrajectoryObserver::tell(Section& s) const {
+  gentle_.tell(s.part("gentle"));
+  firm_.tell(s.part("firm"));
+  s.metric("rows_without_ideal", "1", "recorded rows at whose tilt the ideal trajectory does not exist",
+           rows_without_ideal_);
 }
 
 }  // namespace hapbench

@@ -3,9 +3,8 @@
 #include <cstdint>
 #include <optional>
 
-#include "results/io/columns.hpp"
+#include "results/observe/metric_observer.hpp"
 #include "sim/geometry/analytic_shells.hpp"
-#include "sim/loop/observer.hpp"
 #include "sim/tool/cylinder.hpp"
 
 namespace hapbench {
@@ -52,45 +51,40 @@ struct TrajectoryError {
   double hand_force = 0.0;        ///< norm [N]
 };
 
-/// Errors over the compared rows of one kind of hand, as metric_list documents them. Errors are actual minus ideal [m]:
-/// a negative height error means that the tool has sunk in.
-struct TrajectoryErrors {
-  std::uint64_t rows = 0;
-  double height_mean = 0.0, height_rms = 0.0, height_min = 0.0, height_max = 0.0;
-  double lateral_mean = 0.0, lateral_rms = 0.0, lateral_max_abs = 0.0;
-  double interpenetration_mean = 0.0, interpenetration_max = 0.0;
-};
-
-struct IdealTrajectoryMetrics {
-  TrajectoryErrors gentle;               ///< hand below kGentleForce
-  TrajectoryErrors firm;                 ///< the rest
-  std::uint64_t rows_without_ideal = 0;  ///< tilts at which the ideal trajectory does not exist
-};
-
-MetricList metric_list(const IdealTrajectoryMetrics& ideal_trajectory);
-
 /// Compares rows 0, every, 2 every, … with the ideal trajectory and with the exact hole. Allocates nothing; about 2 us
 /// for each compared row.
-class IdealTrajectoryObserver final : public Observer {
+class IdealTrajectoryObserver final : public MetricObserver {
  public:
   /// Precondition: every > 0.
-  IdealTrajectoryObserver(const BlockWithHole& block, const Cylinder& tool, std::uint64_t every = 1);
+  explicit IdealTrajectoryObserver(const BlockWithHole& block = {}, const Cylinder& tool = {}, std::uint64_t every = 1);
 
+  /// Precondition: the trial's tool is a cylinder.
+  void begin(const TrialParts& trial) override;
   void on_step(const StepRecord& record) noexcept override;
 
   /// Error of the last row; nothing where the ideal trajectory does not exist or the row is not compared.
   const std::optional<TrajectoryError>& error() const noexcept { return error_; }
-  IdealTrajectoryMetrics metrics() const noexcept;
+  void tell(Section& section) const override;
 
  private:
-  /// Sums where the metrics have means.
-  static void add(TrajectoryErrors& sums, const TrajectoryError& error) noexcept;
+  /// Sums and extremes over the compared rows of one kind of hand [m, m^2]. Errors are actual minus ideal: a negative
+  /// height error means that the tool has sunk in.
+  struct Errors {
+    std::uint64_t rows = 0;
+    double height = 0.0, height_squares = 0.0, height_min = 0.0, height_max = 0.0;
+    double lateral = 0.0, lateral_squares = 0.0, lateral_max_abs = 0.0;
+    double interpenetration = 0.0, interpenetration_max = 0.0;
+
+    void add(const TrajectoryError& error) noexcept;
+    void tell(Section section) const;
+  };
 
   BlockWithHole block_;
   Cylinder tool_;
   std::uint64_t every_;
   std::optional<TrajectoryError> error_;
-  IdealTrajectoryMetrics sums_;
+  Errors gentle_, firm_;                  ///< of hands below kGentleForce, and of the rest
+  std::uint64_t rows_without_ideal_ = 0;  ///< tilts at which the ideal trajectory does not exist
 };
 
 }  // namespace hapbench

@@ -35,27 +35,43 @@ double way_to_core(const ToolShape& tool) {
   return std::clamp(tool.half_width() - tip.depth[0], 0.0, tool.half_width());
 }
 
-InsideMetrics& InsideMetrics::operator+=(const InsideMetrics& other) {
-  const auto bound = [](const InsideMetrics& m) {
+void InsideDepths::add(const InsideDepths& trial) {
+  const auto bound = [](const InsideDepths& m) {
     return (1.0 + InsideSearch::kTolerance) * m.max.value_or(0.0) + m.max_within;
   };
-  const double deepest = std::max(bound(*this), bound(other));
-  max = std::max(max, other.max);  // an empty optional is less than any number
+  const double deepest = std::max(bound(*this), bound(trial));
+  max = std::max(max, trial.max);  // an empty optional is less than any number
   max_within = deepest - (1.0 + InsideSearch::kTolerance) * max.value_or(0.0);
-  settled_within = std::max(settled_within, other.settled_within);
-  at_most = std::max(at_most, other.at_most);
+  settled_within = std::max(settled_within, trial.settled_within);
+  at_most = std::max(at_most, trial.at_most);
   if (at_most <= max) at_most.reset();
-  settled.insert(settled.end(), other.settled.begin(), other.settled.end());
-  rows += other.rows;
-  centre_inside += other.centre_inside;
-  return *this;
+  settled.insert(settled.end(), trial.settled.begin(), trial.settled.end());
+  rows += trial.rows;
+  centre_inside += trial.centre_inside;
 }
 
-std::optional<double> InsideMetrics::settled_median() const {
+std::optional<double> InsideDepths::settled_median() const {
   if (settled.empty()) return std::nullopt;
   std::vector<double> sorted = settled;
   std::sort(sorted.begin(), sorted.end());
   return 0.5 * (sorted[(sorted.size() - 1) / 2] + sorted[sorted.size() / 2]);
+}
+
+void InsideDepths::tell(Section& s, bool has_settled) const {
+  s.metric("inside_max_m", "m",
+           "largest distance below the environment's surface of any point of the tool in any row, with record.inside "
+           "in any recorded row; no row is deeper by more than 2 % of it and of the tool's half width, or a warning "
+           "tells by how much; none of springs and beyond the border of an open surface",
+           max, Better::less)
+      .within(InsideSearch::kTolerance, max_within);
+  s.metric("inside_settled_m", "m",
+           "median of that distance over up to twelve rows in settled contact, evenly spread, or with record.inside "
+           "over all recorded ones",
+           has_settled ? settled_median() : std::nullopt, Better::less)
+      .within(InsideSearch::kTolerance, settled_within);
+  s.metric("centre_inside_share", "1",
+           "share of the rows with the tip centre below the surface; a flat tip's is when it is pressed in",
+           if_any(rows > 0, static_cast<double>(centre_inside) / static_cast<double>(rows)), Better::less);
 }
 
 PoseSamples::Sample PoseSamples::joined(const Sample& a, const Sample& b) const noexcept {
@@ -83,7 +99,7 @@ InsideObserver::InsideObserver(std::shared_ptr<const ToolShape> tool, std::share
       back_(way_to_core(*tool_)),
       deepest_(kParts, *tool_),
       settled_(kSettled, *tool_) {
-  if (every_ > 0) metrics_.settled.reserve(steps / every_ + 1);
+  if (every_ > 0) depths_.settled.reserve(steps / every_ + 1);
 }
 
 void InsideObserver::on_step(const StepRecord& record) noexcept {
@@ -91,8 +107,8 @@ void InsideObserver::on_step(const StepRecord& record) noexcept {
   const double free2 = side_ == Side::inside ? tip_free2_inside_ : tip_free2_;
   if (!((pose.position - tip_looked_).squaredNorm() < free2)) look_at_tip(record);
   if (tip_phi_.known) {
-    ++metrics_.rows;
-    if (tip_phi_.value < 0.0) ++metrics_.centre_inside;
+    ++depths_.rows;
+    if (tip_phi_.value < 0.0) ++depths_.centre_inside;
   }
   const Vec3 core = pose.position - back_ * pose.axis;
   const double length = (core - core_).norm();
@@ -114,8 +130,8 @@ void InsideObserver::search_row(const StepRecord& record, bool settled) noexcept
   depth_.reset();
   if (record.step % every_ == 0) depth_ = search_.depth(record.tool.pose);
   if (!depth_) return;
-  metrics_.max = std::max(metrics_.max, depth_);
-  if (settled) metrics_.settled.push_back(*depth_);
+  depths_.max = std::max(depths_.max, depth_);
+  if (settled) depths_.settled.push_back(*depth_);
 }
 
 void InsideObserver::look_at_tip(const StepRecord& record) noexcept {
@@ -170,24 +186,24 @@ void InsideObserver::note_core(const Vec3& place, const SurfaceDistance& phi, do
   if (side_ == Side::outside) outside_ = place;
 }
 
-InsideMetrics InsideObserver::metrics() {
-  InsideMetrics metrics = metrics_;
+InsideDepths InsideObserver::depths() {
+  InsideDepths depths = depths_;
   const double width = tool_->half_width(), error = search_.error();
-  metrics.max_within = metrics.settled_within = InsideSearch::kTolerance * width + error;
-  if (every_ > 0) return metrics;
-  find_deepest(metrics);
+  depths.max_within = depths.settled_within = InsideSearch::kTolerance * width + error;
+  if (every_ > 0) return depths;
+  find_deepest(depths);
   for (const auto& sample : settled_.all()) {
-    if (const auto depth = search_.depth(sample.pose)) metrics.settled.push_back(*depth);
+    if (const auto depth = search_.depth(sample.pose)) depths.settled.push_back(*depth);
   }
-  for (const double depth : metrics.settled) metrics.max = std::max(metrics.max, std::optional(depth));
-  if (metrics.at_most)
-    metrics.max_within = *metrics.at_most - (1.0 + InsideSearch::kTolerance) * metrics.max.value_or(0.0) + error;
-  return metrics;
+  for (const double depth : depths.settled) depths.max = std::max(depths.max, std::optional(depth));
+  if (depths.at_most)
+    depths.max_within = *depths.at_most - (1.0 + InsideSearch::kTolerance) * depths.max.value_or(0.0) + error;
+  return depths;
 }
 
 /// Branch and bound over the run: its parts are halved where they may be deeper than the deepest row known, those with
 /// the largest bound first, down to rows that hardly differ, of which one is searched.
-void InsideObserver::find_deepest(InsideMetrics& metrics) {
+void InsideObserver::find_deepest(InsideDepths& depths) {
   struct Stretch {
     std::size_t first, end;
     double way, bound;  ///< how far the rows are from the one in the middle, and how deep they are at most [m]
@@ -198,10 +214,10 @@ void InsideObserver::find_deepest(InsideMetrics& metrics) {
   const double width = tool_->half_width();
   const auto search = [&](const ToolPose& pose, double way) {
     const double tolerance = InsideSearch::kTolerance - way / width;
-    metrics.max = std::max(metrics.max, search_.depth(pose, metrics.max.value_or(0.0), tolerance));
+    depths.max = std::max(depths.max, search_.depth(pose, depths.max.value_or(0.0), tolerance));
   };
   const auto enough = [&] {
-    return (1.0 + InsideSearch::kTolerance) * metrics.max.value_or(0.0) + InsideSearch::kTolerance * width;
+    return (1.0 + InsideSearch::kTolerance) * depths.max.value_or(0.0) + InsideSearch::kTolerance * width;
   };
   search(std::max_element(parts.begin(), parts.end(), [](auto& a, auto& b) { return a.key < b.key; })->pose, 0.0);
   InsideBound bound(*tool_, *solid_);
@@ -239,7 +255,7 @@ void InsideObserver::find_deepest(InsideMetrics& metrics) {
     }
   }
   if (!open.empty()) rest = std::max(rest, open.top().bound);
-  if (rest > enough()) metrics.at_most = rest;
+  if (rest > enough()) depths.at_most = rest;
 }
 
 }  // namespace hapbench

@@ -5,16 +5,16 @@
 #include <optional>
 #include <vector>
 
+#include "results/observe/metric_observer.hpp"
 #include "sim/contact/inside.hpp"
-#include "sim/loop/observer.hpp"
 
 namespace hapbench {
 
 class MetricsObserver;
 
-/// How deep the tool was in the environment in a run, as metric_list(Metrics) documents it.
-struct InsideMetrics {
-  std::optional<double> max;      ///< [m]
+/// How deep the tool was in the environment, in a trial or in several.
+struct InsideDepths {
+  std::optional<double> max;      ///< of any point of the tool in any row [m]
   std::optional<double> at_most;  ///< no row is deeper [m]; none where that is `max` within InsideSearch::kTolerance
   std::vector<double> settled;    ///< of rows in settled contact [m]
   /// By how much `max` and `settled` may be too low, beside InsideSearch::kTolerance of them [m].
@@ -22,8 +22,11 @@ struct InsideMetrics {
   std::uint64_t rows = 0;  ///< with the tip centre where the inside is known
   std::uint64_t centre_inside = 0;
 
-  InsideMetrics& operator+=(const InsideMetrics& other);
   std::optional<double> settled_median() const;
+  /// Adds the depths of another trial.
+  void add(const InsideDepths& trial);
+  /// Tells the metrics; `has_settled`: settled contact was long enough for those of it.
+  void tell(Section& section, bool has_settled) const;
 };
 
 /// Distance from the tip centre back to the tool's core, the place half its width within the body [m].
@@ -86,7 +89,8 @@ class PoseSamples {
 /// Watches how deep the tool is. A row costs some ten nanoseconds: a point cannot pass the surface before it has moved
 /// by its distance, so that few rows need a look. The deepest point of the tool is looked for after the run only: in
 /// the rows with the deepest contact or centre, in those that may be deeper still (InsideBound), and in some in settled
-/// contact; or in every `every`-th row when that is asked for. Allocates in the constructor and after the run only.
+/// contact; or in every `every`-th row when that is asked for. Allocates in the constructor and after the run only. It
+/// watches one trial, whose outcome depends on it; InsideDepths adds up trials.
 class InsideObserver final : public Observer {
  public:
   /// `metrics`, if given, observes before this and tells which rows are in settled contact. `every`: 0 where no row is
@@ -100,14 +104,14 @@ class InsideObserver final : public Observer {
   const std::optional<double>& depth() const noexcept { return depth_; }
   const Passage& passage() const noexcept { return passage_; }
   /// After the run; looks for the deepest points.
-  InsideMetrics metrics();
+  InsideDepths depths();
 
  private:
   void look_at_tip(const StepRecord& record) noexcept;
   void march(const Vec3& place, double length, double time) noexcept;
   void search_row(const StepRecord& record, bool settled) noexcept;
   void note_core(const Vec3& place, const SurfaceDistance& phi, double time) noexcept;
-  void find_deepest(InsideMetrics& metrics);
+  void find_deepest(InsideDepths& depths);
 
   std::shared_ptr<const ToolShape> tool_;
   std::shared_ptr<const Solid> solid_;
@@ -115,7 +119,7 @@ class InsideObserver final : public Observer {
   std::uint64_t every_;
   InsideSearch search_;
   std::optional<double> depth_;
-  InsideMetrics metrics_;
+  InsideDepths depths_;
   Passage passage_;
   double back_;  ///< of the core behind the tip centre [m]
 

@@ -2,28 +2,33 @@
 
 #include <cmath>
 #include <map>
+#include <string>
+
+#include "sim/loop/simulation.hpp"
 
 namespace hapbench {
 
-TargetMetricsObserver::TargetMetricsObserver(std::size_t subject, std::size_t trial, const TargetTask& task)
-    : order_(task.order()), time_limit_(task.rules().time_limit) {
-  current_.subject = subject;
-  current_.trial = trial;
-  rows_.reserve(order_.size());
+void TargetMetricsObserver::begin(const TrialParts& trial) {
+  const TargetTask& task = *trial.simulation.hand->task();
+  order_ = task.order();
+  time_limit_ = task.rules().time_limit;
+  current_ = {};
+  current_.subject = trial.subject;
+  current_.trial = trial.trial;
+  rows_before_ = rows_.size();
+  rows_.reserve(rows_before_ + order_.size());
 }
 
 void TargetMetricsObserver::fail_rest() {
-  while (rows_.size() < order_.size()) {
-    const std::size_t target = rows_.size();
-    rows_.push_back({current_.subject, current_.trial, target, {order_[target], false, time_limit_}});
-  }
+  while (ended() < order_.size())
+    rows_.push_back({current_.subject, current_.trial, ended(), {order_[ended()], false, time_limit_}});
 }
 
 void TargetMetricsObserver::on_step(const StepRecord& record) noexcept {
   const TargetTask& task = *record.task;
-  if (task.results().size() > rows_.size()) {
+  if (task.results().size() > ended()) {
     TargetRow row = current_;
-    row.target = rows_.size();
+    row.target = ended();
     row.result = task.results().back();
     if (row.rows_on_target > 0) {
       row.model_force /= static_cast<double>(row.rows_on_target);
@@ -97,34 +102,33 @@ std::vector<PlaceMetrics> place_metrics(const std::vector<TargetRow>& rows) {
 
 namespace {
 
-MetricList metric_list(const SubjectMean& m, const char* unit, const char* meaning, Better better = Better::none) {
+void tell_mean(Section s, const SubjectMean& m, const char* unit, const char* meaning, Better better = Better::none) {
   const bool any = m.subjects > 0;
-  return {{"mean", unit, meaning, if_any(any, m.mean), better},
-          {"standard_error", unit, "standard error of that mean, over subjects", if_any(any, m.standard_error)},
-          {"subjects", "1", "subjects that have a value", m.subjects}};
+  s.metric("mean", unit, meaning, if_any(any, m.mean), better);
+  s.metric("standard_error", unit, "standard error of that mean, over subjects", if_any(any, m.standard_error));
+  s.metric("subjects", "1", "subjects that have a value", m.subjects);
+}
+
+void tell_place(Section s, const PlaceMetrics& place) {
+  tell_mean(s.part("success_rate"), place.success_rate, "1",
+            "share of the targets at this place that were removed, mean over subjects", Better::more);
+  tell_mean(s.part("completion_time_s"), place.completion_time, "s",
+            "time until a target at this place was removed or the limit was reached, mean over subjects", Better::less);
+  tell_mean(s.part("model_force_N"), place.model_force, "N",
+            "mean ||f|| of the rows logged at a target of this place, mean over subjects");
+  tell_mean(s.part("speed_m_per_s"), place.speed, "m/s",
+            "mean speed of the handle in the rows logged at a target of this place, mean over subjects");
 }
 
 }  // namespace
 
-MetricList metric_list(const std::vector<PlaceMetrics>& places) {
-  MetricList list;
-  for (const PlaceMetrics& place : places) {
-    const std::string section = std::to_string(place.place);
-    append(list, section + ".success_rate",
-           metric_list(place.success_rate, "1",
-                       "share of the targets at this place that were removed, mean over subjects", Better::more));
-    append(list, section + ".completion_time_s",
-           metric_list(place.completion_time, "s",
-                       "time until a target at this place was removed or the limit was reached, mean over subjects",
-                       Better::less));
-    append(list, section + ".model_force_N",
-           metric_list(place.model_force, "N",
-                       "mean ||f|| of the rows logged at a target of this place, mean over subjects"));
-    append(list, section + ".speed_m_per_s",
-           metric_list(place.speed, "m/s",
-                       "mean speed of the handle in the rows logged at a target of this place, mean over subjects"));
+void TargetMetricsObserver::tell(Section& s) const {
+  std::vector<PlaceMetrics> places = place_metrics(rows_);
+  if (order_.empty()) {
+    places.resize(places_);
+    for (std::size_t i = 0; i < places_; ++i) places[i].place = i;
   }
-  return list;
+  for (const PlaceMetrics& place : places) tell_place(s.part(std::to_string(place.place)), place);
 }
 
 }  // namespace hapbench

@@ -4,8 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "results/io/columns.hpp"
-#include "sim/loop/observer.hpp"
+#include "results/observe/metric_observer.hpp"
 
 namespace hapbench {
 
@@ -21,26 +20,35 @@ struct TargetRow {
   double speed = 0.0;        ///< mean speed of the handle [m/s]
 };
 
-/// Measures the targets of one trial while it runs.
-class TargetMetricsObserver final : public Observer {
+/// Measures the targets of all trials of a run.
+class TargetMetricsObserver final : public MetricObserver {
  public:
-  /// Numbers of subject and trial, from 0, and the task at its beginning.
-  TargetMetricsObserver(std::size_t subject, std::size_t trial, const TargetTask& task);
+  /// `places`: of the task, to name the metrics of an observer that sees no trial.
+  explicit TargetMetricsObserver(std::size_t places = 2) : places_(places) {}
 
+  /// Precondition: the trial's hand has a task.
+  void begin(const TrialParts& trial) override;
   /// Precondition: record.task is not null.
   void on_step(const StepRecord& record) noexcept override;
+  void tell(Section& section) const override;
 
-  /// The trial has come to nothing: the targets that have not ended are not removed, and take the time limit.
+  /// The trial that was begun last has come to nothing: the targets that have not ended are not removed, and take the
+  /// time limit.
   void fail_rest();
 
-  /// One row for each target that has ended.
+  /// One row for each target that has ended, trial by trial.
   const std::vector<TargetRow>& rows() const noexcept { return rows_; }
 
  private:
-  std::vector<std::size_t> order_;  ///< place of each target
-  double time_limit_;
+  /// Targets of this trial that have ended.
+  std::size_t ended() const noexcept { return rows_.size() - rows_before_; }
+
+  std::size_t places_;
+  std::vector<std::size_t> order_;  ///< place of each target; empty before the first trial
+  double time_limit_ = 0.0;
   TargetRow current_;  ///< sums where a finished row has means
   std::vector<TargetRow> rows_;
+  std::size_t rows_before_ = 0;  ///< of earlier trials
 };
 
 /// A mean over subjects and its standard error; without meaning when `subjects` is 0.
@@ -62,7 +70,5 @@ struct PlaceMetrics {
 
 /// The tables of thesis D.4: one entry for each place that occurs.
 std::vector<PlaceMetrics> place_metrics(const std::vector<TargetRow>& rows);
-
-MetricList metric_list(const std::vector<PlaceMetrics>& places);
 
 }  // namespace hapbench

@@ -35,19 +35,6 @@ ordered_json value_json(const Metric::Value& value) {
   return number != nullptr ? ordered_json(*number) : ordered_json(nullptr);
 }
 
-/// An object with a nested object for each section of the names.
-ordered_json metrics_json(const MetricList& list) {
-  ordered_json json = ordered_json::object();
-  for (const Metric& metric : list) {
-    ordered_json* object = &json;
-    std::string_view name = metric.name;
-    for (std::size_t dot; (dot = name.find('.')) != std::string_view::npos; name.remove_prefix(dot + 1))
-      object = &(*object)[std::string(name.substr(0, dot))];
-    (*object)[std::string(name)] = value_json(metric.value);
-  }
-  return json;
-}
-
 /// The tolerances of the metrics that have one, by the full names of these.
 ordered_json tolerances_json(const MetricList& list) {
   ordered_json json = ordered_json::object();
@@ -56,11 +43,30 @@ ordered_json tolerances_json(const MetricList& list) {
   return json;
 }
 
-ordered_json metrics_json(const Metrics& m) {
-  ordered_json json = metrics_json(metric_list(m));
-  const Vec3& p = m.final_position;
-  json["final_position_m"] = m.rows > 0 ? ordered_json({p.x(), p.y(), p.z()}) : ordered_json(nullptr);
-  return json;
+/// The array of a vector whose coordinates are three metrics; null without values.
+ordered_json vector_json(const Metric* xyz) {
+  if (std::holds_alternative<std::monostate>(xyz->value)) return nullptr;
+  return {value_json(xyz[0].value), value_json(xyz[1].value), value_json(xyz[2].value)};
+}
+
+/// Puts each metric into the object of its section, or into "metrics"; further dots lead into nested objects, and the
+/// three coordinates of a vector become an array.
+void add_metrics(ordered_json& json, const MetricList& list) {
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    std::string_view name = list[i].name;
+    const std::string section(name.substr(0, name.find('.')));
+    const bool in_section = section.size() < name.size() && json.contains(section);
+    ordered_json* object = &json[in_section ? section : "metrics"];
+    if (in_section) name.remove_prefix(section.size() + 1);
+    if (name.ends_with(".x")) {
+      (*object)[std::string(name.substr(0, name.size() - 2))] = vector_json(&list[i]);
+      i += 2;
+      continue;
+    }
+    for (std::size_t dot; (dot = name.find('.')) != std::string_view::npos; name.remove_prefix(dot + 1))
+      object = &(*object)[std::string(name.substr(0, dot))];
+    (*object)[std::string(name)] = value_json(list[i].value);
+  }
 }
 
 ordered_json tool_json(const ToolSummary& tool) {
@@ -93,50 +99,36 @@ ordered_json provenance_json(const Provenance& p, const std::string& scenario_ha
 
 }  // namespace
 
-ordered_json summary_json(const RunSummary& run) {
+ordered_json summary_json(const Result& run) {
   std::vector<std::string> warnings = run.file_warnings;
   warnings.insert(warnings.end(), run.warnings.begin(), run.warnings.end());
   ordered_json json = {{"name", run.name},
                        {"algorithm", run.algorithm},
-                       {"outcome", outcome_name(run.result.outcome)},
+                       {"outcome", outcome_name(run.end.outcome)},
                        {"expected", run.expected},
-                       {"steps", run.result.rows},
+                       {"steps", run.end.rows},
                        {"duration_s", number_or_null(run.duration)},
-                       {"divergence", divergence_json(run.result)},
+                       {"divergence", divergence_json(run.end)},
                        {"warnings", warnings},
-                       {"metrics", metrics_json(run.metrics)},
-                       {"passivity", metrics_json(metric_list(run.passivity))}};
-  if (run.tool) json["tool"] = tool_json(*run.tool);
+                       {"metrics", ordered_json::object()}};
   for (const MetricSection& section : run.sections) {
-    json[section.name] = metrics_json(section.metrics);
-    json[section.name].update(section.more);
+    json[section.name] = ordered_json::object();
+    if (section.name == "passivity" && run.tool) json["tool"] = tool_json(*run.tool);
   }
-  json["tolerances"] = tolerances_json(metric_list(run));
-  json["state_hash"] = hash_text(run.metrics.state_hash);
+  add_metrics(json, run.metrics);
+  for (const MetricSection& section : run.sections) json[section.name].update(section.members);
+  json["tolerances"] = tolerances_json(run.metrics);
+  json["state_hash"] = hash_text(run.state_hash);
   json["work"] = work_json(run.work);
   json["provenance"] = provenance_json(run.provenance, run.scenario_hash);
   return json;
 }
 
-const MetricSection* RunSummary::section(std::string_view section_name) const {
-  const auto found =
-      std::find_if(sections.begin(), sections.end(), [&](const MetricSection& s) { return s.name == section_name; });
-  return found == sections.end() ? nullptr : &*found;
+bool Result::has_section(std::string_view section) const {
+  return std::ranges::find(sections, section, &MetricSection::name) != sections.end();
 }
 
-MetricList metric_list(const RunSummary& run) {
-  MetricList list = metric_list(run.metrics);
-  append(list, "", final_position_list(run.metrics));
-  append(list, "passivity", metric_list(run.passivity));
-  for (const MetricSection& section : run.sections) append(list, section.name, section.metrics);
-  return list;
-}
-
-std::optional<double> metric_of(const RunSummary& run, std::string_view name) {
-  return number_of(value_of(metric_list(run), name));
-}
-
-std::string summary_text(const RunSummary& run) {
+std::string summary_text(const Result& run) {
   return json_text(summary_json(run));
 }
 

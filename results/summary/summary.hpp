@@ -9,9 +9,8 @@
 #include <vector>
 
 #include "results/io/columns.hpp"
-#include "results/observe/metrics.hpp"
-#include "results/observe/passivity_observer.hpp"
 #include "results/observe/step_times.hpp"
+#include "results/observe/target_metrics.hpp"
 #include "results/summary/provenance.hpp"
 #include "sim/loop/simulation.hpp"
 #include "sim/tool/profile_point.hpp"
@@ -42,48 +41,11 @@ struct ToolSummary {
   std::vector<ProfilePoint> outline;  ///< ToolShape::outline
 };
 
-/// Metrics that not every run has.
+/// An object of summary.json with metrics of one kind.
 struct MetricSection {
-  std::string name;    ///< of the object in summary.json; stands before the metrics' names, as in "energy.input_J"
-  MetricList metrics;  ///< with their names in the section
-  nlohmann::ordered_json more;  ///< an object: members of the section that are no metrics, as the energy's events
+  std::string name;                ///< stands before the metrics' names, as in "energy.input_J"
+  nlohmann::ordered_json members;  ///< an object: those that are no metrics, as the energy's events
 };
-
-/// Everything summary.json says about one run.
-struct RunSummary {
-  std::string name;       ///< of the scenario
-  std::string algorithm;  ///< as registered
-  SimulationResult result;
-  bool expected = false;  ///< the outcome is the one the scenario expects
-  double duration = 0.0;  ///< simulated time: rows x dt [s]
-  Metrics metrics;
-  std::optional<PassivityMetrics> passivity;  ///< none without rows
-  std::vector<MetricSection> sections;        ///< energy, targets and others, when the scenario asks for them
-  std::optional<ToolSummary> tool;            ///< of a tool that is no cylinder
-  std::vector<std::string> warnings;          ///< what may make the numbers mislead, a sentence each
-  /// About the files that the scenario names, each with its pointer; summary.json has them before the others.
-  std::vector<std::string> file_warnings;
-  RunWork work;
-  Provenance provenance;
-  std::string scenario_hash;  ///< of the effective scenario
-
-  /// The section of that name; null when the run has none.
-  const MetricSection* section(std::string_view name) const;
-};
-
-/// summary.json. The same run gives the same bytes: no time stamps, no timings, no instruction set. Numbers that do not
-/// exist (a ratio without contact, the final position without rows) or are not finite are null.
-nlohmann::ordered_json summary_json(const RunSummary& run);
-
-/// The numbers of a summary that a scenario's `expect` may bound and the table of a sweep holds: those of "metrics"
-/// under their own names, the final position's coordinates, as "final_position_m.x", those of "passivity" and those of
-/// the sections, as "energy.created_sum_J" or "targets.0.success_rate.mean".
-MetricList metric_list(const RunSummary& run);
-/// One of them; nothing when the run has no such metric or the metric has no value.
-std::optional<double> metric_of(const RunSummary& run, std::string_view name);
-
-/// summary.json as text.
-std::string summary_text(const RunSummary& run);
 
 /// Wall times of a run.
 struct RunTiming {
@@ -96,6 +58,41 @@ struct RunTiming {
   std::optional<double> step_p50 = {}, step_p99 = {};
   std::uint64_t preemptions = 0;  ///< involuntary context switches during the step loop
 };
+
+/// The result of a run; of a tracking hand, of all its trials. summary.json, columns.json, timing.json and the printed
+/// tables are views of it.
+struct Result {
+  std::string name;                ///< of the scenario
+  std::string algorithm;           ///< as registered
+  SimulationResult end;            ///< of several trials the worst, with the rows of all
+  bool expected = false;           ///< the run met all that the scenario expects
+  std::vector<std::string> unmet;  ///< expectations that it did not meet
+  double duration = 0.0;           ///< simulated time: rows x dt [s]
+  /// The numbers that a scenario's `expect` may bound and the table of a sweep holds, in this order: those of every run
+  /// under their own names, the final position's coordinates, as "final_position_m.x", then those of the sections, as
+  /// "energy.created_sum_J" or "targets.0.success_rate.mean".
+  MetricList metrics;
+  std::vector<MetricSection> sections;  ///< passivity, and others for which the scenario asks
+  std::uint64_t state_hash = 0;         ///< MetricsObserver::state_hash
+  std::optional<ToolSummary> tool;      ///< of a tool that is no cylinder
+  std::vector<std::string> warnings;    ///< what may make the numbers mislead, a sentence each
+  /// About the files that the scenario names, each with its pointer; summary.json has them before the others.
+  std::vector<std::string> file_warnings;
+  RunWork work;
+  std::vector<TargetRow> targets;  ///< of a tracking hand, all subjects and trials
+  RunTiming timing;
+  Provenance provenance;
+  std::string scenario_hash;  ///< of the effective scenario
+
+  bool has_section(std::string_view section) const;
+};
+
+/// summary.json. The same run gives the same bytes: no time stamps, no timings, no instruction set. Numbers that do not
+/// exist (a ratio without contact, the final position without rows) or are not finite are null.
+nlohmann::ordered_json summary_json(const Result& run);
+
+/// summary.json as text.
+std::string summary_text(const Result& run);
 
 /// A distribution for timing.json, in seconds; percentiles and maximum are null without steps.
 nlohmann::ordered_json step_latency_json(const StepLatency& latency);

@@ -117,8 +117,8 @@ Comparison planned(const ComparisonQuestion& question) {
   return comparison;
 }
 
-std::vector<RunReport> run_all(std::span<const Cases> all, const JobOptions& jobs,
-                               const std::function<fs::path(std::size_t)>& folder) {
+std::vector<Result> run_all(std::span<const Cases> all, const JobOptions& jobs,
+                            const std::function<fs::path(std::size_t)>& folder) {
   struct Place {
     const Cases& cases;
     std::size_t i, run;
@@ -129,7 +129,7 @@ std::vector<RunReport> run_all(std::span<const Cases> all, const JobOptions& job
     for (std::size_t place = 0; place < cases.size(); ++place)
       order.push_back({cases, cases.at(place), first + cases.at(place)});
   }
-  std::vector<RunReport> reports(order.size());
+  std::vector<Result> reports(order.size());
   for_each_job(order.size(), jobs, [&](std::size_t place) {
     const auto& [cases, i, run] = order[place];
     reports[run] = run_scenario(cases.load(i), folder ? std::optional(folder(run)) : std::nullopt, false);

@@ -62,7 +62,7 @@ Comparison planned(const ComparisonQuestion& question);
 /// names, or none without it. Runs in one environment share its shell, which is built once. Neither reports nor files
 /// depend on the number of jobs. Reports have no targets: there may be very many, and files have them. Throws IoError
 /// when something cannot be written, and Stopped after SIGINT or SIGTERM.
-std::vector<RunReport> run_all(std::span<const Cases> cases, const JobOptions& jobs,
-                               const std::function<std::filesystem::path(std::size_t run)>& folder = {});
+std::vector<Result> run_all(std::span<const Cases> cases, const JobOptions& jobs,
+                            const std::function<std::filesystem::path(std::size_t run)>& folder = {});
 
 }  // namespace hapbench

@@ -146,12 +146,12 @@ bool is_failure(std::string_view outcome) {
   return known && outcome_infos()[static_cast<std::size_t>(*known)].is_failure;
 }
 
-bool have_reference(std::span<const RunReport> runs) {
-  const auto has = [](const RunReport& run) { return run.summary.section("fidelity") != nullptr; };
+bool have_reference(std::span<const Result> runs) {
+  const auto has = [](const Result& run) { return run.has_section("fidelity"); };
   return std::ranges::all_of(runs, has);
 }
 
-League league_of(const Comparison& comparison, std::span<const RunReport> reports,
+League league_of(const Comparison& comparison, std::span<const Result> reports,
                  const std::vector<std::string>& metrics) {
   const std::span<const std::string_view> usual =
       have_reference(reports) ? std::span<const std::string_view>(kFidelityMetrics) : kDefaultMetrics;
@@ -163,17 +163,16 @@ League league_of(const Comparison& comparison, std::span<const RunReport> report
     league.better.push_back(metric == nullptr ? Better::none : metric->better);
   }
   for (std::size_t i = 0; i < reports.size(); ++i) {
-    const RunSummary& summary = reports[i].summary;
-    const Outcome outcome = summary.result.outcome;
+    const Result& summary = reports[i];
+    const Outcome outcome = summary.end.outcome;
     const Scenario scenario = comparison.load(i).scenario;
     // No law keeps a tool out that a script leads in: its force along the way is comparable all the same.
     const bool is_led =
         outcome == Outcome::went_through && !std::holds_alternative<FreePosition>(scenario.motion.position);
     const bool failed = is_failure(outcome_name(outcome)) || !outcome_is_expected(scenario.expect, outcome);
-    LeagueRun run{std::string(outcome_name(outcome)), failed && !is_led, summary.metrics.state_hash, {}, {}};
-    const MetricList list = metric_list(summary);
+    LeagueRun run{std::string(outcome_name(outcome)), failed && !is_led, summary.state_hash, {}, {}};
     for (const std::string& name : league.metrics) {
-      const Metric* metric = find_metric(list, name);
+      const Metric* metric = find_metric(summary.metrics, name);
       run.metrics.push_back(metric == nullptr ? std::nullopt : number_of(metric->value));
       run.tolerances.push_back(metric == nullptr ? std::nullopt : metric->tolerance());
     }

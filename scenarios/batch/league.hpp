@@ -90,12 +90,12 @@ inline constexpr std::string_view kFidelityMetrics[] = {"fidelity.force_error_re
 bool is_failure(std::string_view outcome);
 
 /// True when every run has a reference force.
-bool have_reference(std::span<const RunReport> runs);
+bool have_reference(std::span<const Result> runs);
 
-/// The league of a finished comparison with the given metrics (names of metric_list). If `metrics` is empty, they are
+/// The league of a finished comparison with the given metrics (names of summary.json). If `metrics` is empty, they are
 /// kFidelityMetrics if every run has a reference force, otherwise kDefaultMetrics. A run has failed if its outcome is a
 /// failure or is not one that its scenario expects.
-League league_of(const Comparison& comparison, std::span<const RunReport> reports,
+League league_of(const Comparison& comparison, std::span<const Result> reports,
                  const std::vector<std::string>& metrics);
 
 }  // namespace hapbench

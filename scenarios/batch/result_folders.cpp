@@ -9,7 +9,7 @@
 #include "results/io/json_text.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/json_file.hpp"
-#include "scenarios/run/run_scenario.hpp"
+#include "scenarios/run/result_folder.hpp"
 
 namespace hapbench {
 namespace {

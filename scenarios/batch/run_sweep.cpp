@@ -40,10 +40,10 @@ std::string error_row(const SweepPlan& plan, std::size_t run) {
   return line_of(plan, run, cells);
 }
 
-std::string finished_row(const SweepPlan& plan, std::size_t run, const RunSummary& summary) {
-  std::vector<std::string> cells = {std::string(outcome_name(summary.result.outcome)),
-                                    summary.expected ? "true" : "false", std::to_string(summary.result.rows)};
-  const MetricList metrics = metric_list(summary);
+std::string finished_row(const SweepPlan& plan, std::size_t run, const Result& summary) {
+  std::vector<std::string> cells = {std::string(outcome_name(summary.end.outcome)), summary.expected ? "true" : "false",
+                                    std::to_string(summary.end.rows)};
+  const MetricList& metrics = summary.metrics;
   auto next = metrics.begin();  // the columns are in the same order, but some runs have more metrics than others
   for (const std::string& name : plan.metrics) {
     const bool is_it = next != metrics.end() && next->name == name;
@@ -61,13 +61,13 @@ std::string finished_row(const SweepPlan& plan, std::size_t run, const RunSummar
     const auto tolerance = metric != nullptr ? metric->tolerance() : std::nullopt;
     cells.push_back(tolerance ? cell_text(*tolerance) : "");
   }
-  cells.push_back(hash_text(summary.metrics.state_hash));
+  cells.push_back(hash_text(summary.state_hash));
   return line_of(plan, run, cells);
 }
 
 std::string computed_row(const SweepPlan& plan, const SweepOptions& options, std::size_t run) {
   const auto output = options.keep_runs ? std::optional(run_folder(options, run)) : std::nullopt;
-  return finished_row(plan, run, run_scenario(plan.cases.load(run), output, false).summary);
+  return finished_row(plan, run, run_scenario(plan.cases.load(run), output, false));
 }
 
 }  // namespace

@@ -205,14 +205,6 @@ InputError in_file(const InputError& fault, const fs::path& file) {
   return {fault.kind(), place, problem};
 }
 
-/// The scenario with hashes in place of the paths of the files that are named by fields below `pointer`.
-Scenario with_contents(Scenario scenario, const NamedFiles& files, std::string_view pointer = "") {
-  for (const auto& [at, path, content] : files_named_in(scenario)) {
-    if (at.starts_with(pointer)) *path = files.at(at).hash();
-  }
-  return scenario;
-}
-
 }  // namespace
 
 void rethrow_with_file(const InputError& error, const fs::path& file) {
@@ -291,21 +283,40 @@ LoadedScenario load_scenario(const fs::path& file, std::span<const std::string> 
   return load_scenario(read_scenario_text(file), overrides);
 }
 
-Json effective_scenario(const Scenario& scenario, const fs::path& directory) {
-  Scenario effective = scenario;
-  for (const FileReference& file : files_named_in(effective)) {
-    const auto target = without_links(resolve_path(scenario, *file.path));
-    *file.path = target.lexically_proximate(without_links(directory)).generic_string();
-  }
-  return written_object(effective);
+WrittenScenario::WrittenScenario(Scenario scenario) : json_(written_object(scenario)) {
+  for (const FileReference& file : files_named_in(scenario))
+    files_.push_back({Json::json_pointer(file.pointer), without_links(resolve_path(scenario, *file.path))});
 }
 
-Json environment_content(const Scenario& scenario, const NamedFiles& files) {
-  return written(with_contents(scenario, files, "/environment/").environment);
+Json WrittenScenario::effective(const fs::path& directory) const {
+  Json json = json_;
+  for (const auto& [field, path] : files_)
+    json.at(field) = path.lexically_proximate(without_links(directory)).generic_string();
+  return json;
+}
+
+std::string WrittenScenario::hash(const NamedFiles& files) const {
+  Json json = json_;
+  for (const File& file : files_) json.at(file.field) = files.at(file.field.to_string()).hash();
+  return hash_text(hash_of(json_text(json)));
+}
+
+Json effective_scenario(const Scenario& scenario, const fs::path& directory) {
+  return WrittenScenario(scenario).effective(directory);
 }
 
 std::string scenario_hash(const Scenario& scenario, const NamedFiles& files) {
-  return hash_text(hash_of(json_text(written_object(with_contents(scenario, files)))));
+  return WrittenScenario(scenario).hash(files);
+}
+
+Json environment_content(const Scenario& scenario, const NamedFiles& files) {
+  constexpr std::string_view kEnvironment = "/environment";
+  Json json = written(scenario.environment);
+  for (const auto& file : files.all()) {
+    if (file->pointer().starts_with(kEnvironment))
+      json.at(Json::json_pointer(file->pointer().substr(kEnvironment.size()))) = file->hash();
+  }
+  return json;
 }
 
 }  // namespace hapbench

@@ -87,6 +87,26 @@ auto with_file(const LoadedScenario& loaded, Work work) {
   }
 }
 
+/// A scenario with every default filled in, as JSON: what is written beside results and what its hash is taken from are
+/// this text with other names of files.
+class WrittenScenario {
+ public:
+  explicit WrittenScenario(Scenario scenario);
+
+  /// effective_scenario
+  Json effective(const std::filesystem::path& directory) const;
+  /// scenario_hash
+  std::string hash(const NamedFiles& files) const;
+
+ private:
+  struct File {
+    Json::json_pointer field;
+    std::filesystem::path path;
+  };
+  Json json_;
+  std::vector<File> files_;
+};
+
 /// The scenario with every default filled in, as JSON: reading it again gives the same run. File paths are rewritten to
 /// start from `directory`.
 Json effective_scenario(const Scenario& scenario, const std::filesystem::path& directory);

@@ -2,19 +2,18 @@
 
 #include <map>
 #include <memory>
-#include <span>
 #include <string>
 #include <vector>
 
 #include "results/observe/force_fidelity.hpp"
+#include "results/observe/inside.hpp"
+#include "results/observe/metrics.hpp"
 #include "results/summary/summary.hpp"
 #include "scenarios/description/scenario.hpp"
-#include "sim/loop/observer.hpp"
-#include "sim/loop/simulation.hpp"
 
-/// The sections of a summary that not every run has: energy, targets and others. The list in metric_sections.cpp is the
-/// one place that says which there are; observers, summary.json, columns.json, tables of sweeps, `expect` and
-/// `describe` follow from it.
+/// The metrics of runs: those that every run has, and those of the sections of a summary. The list of sections in
+/// metric_sections.cpp is the one place that says which there are; observers, summary.json, columns.json, tables of
+/// sweeps, `expect` and `describe` follow from it.
 namespace hapbench {
 
 /// The sections that a run has: name -> number of target places, 1 for sections without places.
@@ -33,21 +32,15 @@ std::vector<std::string> metric_names();
 /// The same with unit and meaning, without values.
 MetricList metrics_without_values(std::size_t places = 2);
 
-/// The inputs from which the observers of a trial are made.
-struct TrialParts {
-  const Scenario& scenario;
-  const SimulationParts& simulation;
-  std::shared_ptr<const ReferenceForce> reference;  ///< null without
-  std::size_t subject = 0, trial = 0;
-};
-
-/// The observers of a trial for the sections that its scenario asks for.
+/// The observers of a run for the sections that its scenario asks for.
 class SectionObservers {
  public:
-  explicit SectionObservers(const TrialParts& parts);
+  SectionObservers(const Scenario& scenario, bool has_reference_force);
 
+  /// Before each trial.
+  void begin(const TrialParts& trial);
   /// In the order of the sections.
-  const std::vector<std::unique_ptr<Observer>>& all() const { return observers_; }
+  const std::vector<std::unique_ptr<MetricObserver>>& all() const { return observers_; }
 
   /// The observer of that type; null when the scenario does not ask for it.
   template <class Type>
@@ -58,13 +51,17 @@ class SectionObservers {
     return nullptr;
   }
 
-  /// The sections of a run of these trials of one scenario. Several trials have only the sections that can be merged.
-  static std::vector<MetricSection> summarised(std::span<const SectionObservers* const> trials);
+  /// Adds the sections and their metrics. Those that make no sense over several trials are left out when there were
+  /// some.
+  void tell(Result& result) const;
 
  private:
-  std::shared_ptr<const ReferenceForce> reference_;
-  std::vector<std::unique_ptr<Observer>> observers_;
+  std::vector<std::unique_ptr<MetricObserver>> observers_;
   std::vector<std::size_t> kinds_;  ///< place of each observer's section in the list
+  std::size_t trials_ = 0;          ///< begun
 };
+
+/// Tells the metrics of every run. `inside`: null without a solid.
+void tell_common(const MetricsObserver& metrics, const InsideDepths* inside, MetricList& list);
 
 }  // namespace hapbench

@@ -66,7 +66,7 @@ struct Asked {
       results_directory(options.out, comparison.scenes.size() > 1 ? "compare" : "compare_" + comparison.names[0]);
 
   fs::path table(std::size_t scene) const { return comparison.scene_folder(scene) / "comparison.csv"; }
-  std::span<const RunReport> of(std::size_t scene, const std::vector<RunReport>& reports) const {
+  std::span<const Result> of(std::size_t scene, const std::vector<Result>& reports) const {
     return std::span(reports).subspan(scene * comparison.each(), comparison.each());
   }
 };
@@ -88,7 +88,7 @@ void prepare(const Asked& asked) {
 }
 
 /// The metrics of the league, or without one those of the printed table.
-std::vector<std::string> compared(const Asked& asked, const std::vector<RunReport>& reports) {
+std::vector<std::string> compared(const Asked& asked, const std::vector<Result>& reports) {
   if (asked.league) return asked.options.metrics;
   std::vector<std::string> metrics;
   for (const RunHeading& heading : kRunHeadings) metrics.emplace_back(heading.metric);
@@ -98,7 +98,7 @@ std::vector<std::string> compared(const Asked& asked, const std::vector<RunRepor
 
 /// What the runs gave, and more finely, where that was asked for.
 struct Answer {
-  std::vector<RunReport> reports;
+  std::vector<Result> reports;
   std::optional<ComparedErrors> errors = {};
 };
 
@@ -121,8 +121,8 @@ Answer answer_to(const Asked& asked) {
 }
 
 /// The tables of one scenario's runs.
-std::string comparison_text(std::span<const RunReport> reports) {
-  return fmt::format("{}\n\n{}{}{}{}", reports.front().summary.name, run_table(reports, false), fidelity_text(reports),
+std::string comparison_text(std::span<const Result> reports) {
+  return fmt::format("{}\n\n{}{}{}{}", reports.front().name, run_table(reports, false), fidelity_text(reports),
                      unsettled_text(reports), step_time_text(reports));
 }
 
@@ -143,27 +143,27 @@ std::string own_depth_models_text(const Comparison& comparison) {
   return wrapped(fmt::format("defined with a depth model of their own: {}", fmt::join(own, ", ")), 0);
 }
 
-Json summaries_json(const Asked& asked, const std::vector<RunReport>& reports) {
+Json summaries_json(const Asked& asked, const std::vector<Result>& reports) {
   const Comparison& comparison = asked.comparison;
   Json summaries = Json::array();
   for (std::size_t i = 0; i < reports.size(); ++i) {
     Json& summary = summaries.emplace_back(Json::object());
     if (asked.league) summary = {{"scenario", comparison.names[comparison.scene(i)]}, {"seed", i % comparison.seeds}};
-    summary.update(summary_json(reports[i].summary));
+    summary.update(summary_json(reports[i]));
   }
   return summaries;
 }
 
 /// Reports runs that diverge although their scenario does not expect it, the only expectation that concerns every
 /// algorithm: all of a single comparison, the first of a league.
-void judge(const Asked& asked, const std::vector<RunReport>& reports, Report& report) {
+void judge(const Asked& asked, const std::vector<Result>& reports, Report& report) {
   std::vector<std::string> texts;
   for (std::size_t i = 0; i < reports.size(); ++i) {
-    const RunSummary& summary = reports[i].summary;
-    if (summary.result.outcome != Outcome::diverges) continue;
+    const Result& summary = reports[i];
+    if (summary.end.outcome != Outcome::diverges) continue;
     const LoadedScenario loaded = asked.comparison.load(i);
     if (outcome_is_expected(loaded.scenario.expect, Outcome::diverges)) continue;
-    const Divergence& d = summary.result.divergence;
+    const Divergence& d = summary.end.divergence;
     texts.push_back(fmt::format("{}: {} diverges at step {}{}", loaded.file.string(), summary.algorithm, d.step,
                                 d.fault.empty() ? "" : ": " + d.fault));
   }

@@ -109,7 +109,7 @@ class ScenarioErrors {
 
 }  // namespace
 
-ComparedErrors errors_of(const Comparison& comparison, std::span<const RunReport> reports,
+ComparedErrors errors_of(const Comparison& comparison, std::span<const Result> reports,
                          const std::vector<std::string>& metrics, const JobOptions& jobs) {
   const League league = league_of(comparison, reports, metrics);
   const FinerRuns finer(comparison, reports, jobs);

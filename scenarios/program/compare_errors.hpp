@@ -17,7 +17,7 @@ struct ComparedErrors {
 };
 
 /// Runs the comparison more finely. `metrics` as in league_of. Throws Stopped.
-ComparedErrors errors_of(const Comparison& comparison, std::span<const RunReport> reports,
+ComparedErrors errors_of(const Comparison& comparison, std::span<const Result> reports,
                          const std::vector<std::string>& metrics, const JobOptions& jobs);
 
 }  // namespace hapbench

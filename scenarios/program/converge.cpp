@@ -45,7 +45,7 @@ struct ConvergeOptions {
 
 /// The run of a level, and its time.
 struct LevelRun {
-  RunSummary summary;
+  Result result;
   double seconds = 0.0;
 };
 
@@ -66,7 +66,7 @@ struct ConvergeStudy : Convergence {
 
 ConvergeStudy studied(const LevelSweep& levels, const std::vector<LevelRun>& runs, const std::string& metric) {
   std::vector<LevelResult> results;
-  for (std::size_t i = 0; i < runs.size(); ++i) results.push_back(level_result(levels, i, runs[i].summary, metric));
+  for (std::size_t i = 0; i < runs.size(); ++i) results.push_back(level_result(levels, i, runs[i].result, metric));
   ConvergeStudy study{convergence_of(levels, results), metric, levels.axis.path, levels.formal_order, {}};
   for (std::size_t i = 0; i < runs.size(); ++i) {
     LevelRow& row = study.levels.emplace_back(LevelRow{metric, levels.axis.values[i], results[i].outcome,
@@ -220,7 +220,7 @@ LevelRun run_of(const LoadedScenario& loaded) {
   LevelRun run;
   for (int i = 0; i == 0 || (i < 5 && run.seconds < kShort); ++i) {
     const double before = processor_seconds();
-    run.summary = run_with_shell(loaded, shell, std::nullopt, false).summary;
+    run.result = run_with_shell(loaded, shell, std::nullopt, false);
     const double seconds = processor_seconds() - before;
     run.seconds = i == 0 ? seconds : std::min(run.seconds, seconds);
   }
@@ -262,7 +262,7 @@ int converge(const ConvergeOptions& options) {
   std::vector<LevelRun> runs(plan.cases.size());
   for_each_job(runs.size(), jobs, [&](std::size_t i) { runs[i] = run_of(plan.cases.load(i)); });
   Report report(options.output, out);
-  report.say(fmt::format("{}: {} from {} in ratios of {:g}, formal order {:g}\n\n", runs.front().summary.name,
+  report.say(fmt::format("{}: {} from {} in ratios of {:g}, formal order {:g}\n\n", runs.front().result.name,
                          levels.axis.path, levels.axis.values.front(), levels.ratio, levels.formal_order));
   std::vector<ConvergeStudy> studies;
   std::vector<LevelRow> rows;

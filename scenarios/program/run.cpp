@@ -59,22 +59,22 @@ int run(const RunOptions& options) {
   announce_large_output(bytes);
 
   std::vector<LatencyRow> latencies;
-  std::vector<RunReport> reports;
+  std::vector<Result> reports;
   Json summaries = Json::array();
   std::string targets;
   int status = kSuccess;
   for (std::size_t i = 0; i < scenarios.size(); ++i) {
-    const RunReport& report = reports.emplace_back(run_scenario(scenarios[i], directories[i], !options.output.quiet));
+    const Result& report = reports.emplace_back(run_scenario(scenarios[i], directories[i], !options.output.quiet));
     targets += targets_text(report);
     print_warnings(run_warnings({&report, 1}));
-    summaries.push_back(summary_json(report.summary));
+    summaries.push_back(summary_json(report));
     if (options.latency) {
-      latencies.push_back({report.summary.name, *report.timing.latency});
+      latencies.push_back({report.name, *report.timing.latency});
       summaries.back()["step_latency"] = step_latency_json(*report.timing.latency);
     }
     for (const std::string& unmet : report.unmet) {
       print_error(fmt::format(R"({}: {} (field expect; --set expect={{"outcome":"{}"}} expects what came))",
-                              scenarios[i].file.string(), unmet, outcome_name(report.summary.result.outcome)));
+                              scenarios[i].file.string(), unmet, outcome_name(report.end.outcome)));
       status = kUnexpectedOutcome;
     }
   }

@@ -54,17 +54,17 @@ std::string without_numbers(std::string text) {
 }
 
 /// Runs of one scenario are told apart by their algorithms.
-std::string distinct_name(const RunReport& report, std::span<const RunReport> reports) {
-  const bool one_scenario = reports.front().summary.name == reports.back().summary.name;
-  return one_scenario ? report.summary.algorithm : report.summary.name;
+std::string distinct_name(const Result& report, std::span<const Result> reports) {
+  const bool one_scenario = reports.front().name == reports.back().name;
+  return one_scenario ? report.algorithm : report.name;
 }
 
-/// A run with its metrics, which are listed once for all columns.
+/// A run as the row of a table.
 struct ListedRun {
-  explicit ListedRun(const RunReport& of) : report(of), metrics(metric_list(of.summary)) {}
+  explicit ListedRun(const Result& of) : report(of), metrics(of.metrics) {}
 
-  const RunReport& report;
-  MetricList metrics;
+  const Result& report;
+  const MetricList& metrics;
 };
 
 void add_metrics(Columns<ListedRun>& columns, std::span<const RunHeading> headings) {
@@ -76,13 +76,12 @@ void add_metrics(Columns<ListedRun>& columns, std::span<const RunHeading> headin
 
 Columns<ListedRun> run_columns(bool of_scenes) {
   Columns<ListedRun> columns;
-  if (of_scenes) columns.print("scenario", "", "", [](const ListedRun& r) { return r.report.summary.name; });
-  columns.print("algorithm", "", "", [](const ListedRun& r) { return r.report.summary.algorithm; });
-  columns.print("outcome", "", "outcome",
-                [](const ListedRun& r) { return outcome_name(r.report.summary.result.outcome); });
+  if (of_scenes) columns.print("scenario", "", "", [](const ListedRun& r) { return r.report.name; });
+  columns.print("algorithm", "", "", [](const ListedRun& r) { return r.report.algorithm; });
+  columns.print("outcome", "", "outcome", [](const ListedRun& r) { return outcome_name(r.report.end.outcome); });
   add_metrics(columns, kRunHeadings);
   columns.print("ratio", "", "ratio_min", [](const ListedRun& r) {
-    const auto least = number_of(value_of(r.metrics, "ratio_min")), most = number_of(value_of(r.metrics, "ratio_max"));
+    const auto least = number_of(r.metrics, "ratio_min"), most = number_of(r.metrics, "ratio_max");
     return least && most ? fmt::format("{}..{}", cell(least, 2), cell(most, 2)) : "-";
   });
   columns.print("us/\nstep", "1", "step_p50_s", [](const ListedRun& r) {
@@ -101,25 +100,25 @@ constexpr RunHeading kFidelityHeadings[] = {
     {"artefacts\n%", "fidelity.force_artefact_share", 100.0},
     {"lag\nms", "fidelity.force_lag_s", 1e3}};
 
-bool has_reference(const RunReport& report) {
-  return report.summary.section("fidelity") != nullptr;
+bool has_reference(const Result& report) {
+  return report.has_section("fidelity");
 }
 
 }  // namespace
 
-std::string run_table(std::span<const RunReport> reports, bool of_scenes) {
+std::string run_table(std::span<const Result> reports, bool of_scenes) {
   constexpr std::size_t kNarrowGap = 1;  // the names of all algorithms fit into kTableWidth with it
   const std::vector<ListedRun> runs(reports.begin(), reports.end());
   return run_columns(of_scenes).table(runs, kNarrowGap).text();
 }
 
-std::string fidelity_text(std::span<const RunReport> reports) {
+std::string fidelity_text(std::span<const Result> reports) {
   std::vector<ListedRun> with_reference;
-  for (const RunReport& report : reports)
+  for (const Result& report : reports)
     if (has_reference(report)) with_reference.emplace_back(report);
   if (with_reference.empty()) return "";
   Columns<ListedRun> columns;
-  const bool one_scenario = reports.front().summary.name == reports.back().summary.name;
+  const bool one_scenario = reports.front().name == reports.back().name;
   columns.print(one_scenario ? "algorithm" : "scenario", "", "",
                 [&](const ListedRun& r) { return distinct_name(r.report, reports); });
   add_metrics(columns, kFidelityHeadings);
@@ -127,21 +126,20 @@ std::string fidelity_text(std::span<const RunReport> reports) {
                      columns.table(with_reference).text());
 }
 
-std::vector<std::string> run_warnings(std::span<const RunReport> reports) {
+std::vector<std::string> run_warnings(std::span<const Result> reports) {
   struct Warning {
     std::string kind, text;
     std::vector<std::string> algorithms;
   };
   std::vector<Warning> warnings;  // in the order of their first appearance
-  for (const RunReport& report : reports) {
-    for (const std::string& text : report.summary.warnings) {
+  for (const Result& report : reports) {
+    for (const std::string& text : report.warnings) {
       const std::string kind = without_numbers(text);
       auto known = std::find_if(warnings.begin(), warnings.end(), [&](const Warning& w) { return w.kind == kind; });
-      if (known == warnings.end()) known = warnings.insert(known, {kind, report.summary.name + ": " + text, {}});
+      if (known == warnings.end()) known = warnings.insert(known, {kind, report.name + ": " + text, {}});
       auto& algorithms = known->algorithms;
       // The seeds of an algorithm follow each other.
-      if (algorithms.empty() || algorithms.back() != report.summary.algorithm)
-        algorithms.push_back(report.summary.algorithm);
+      if (algorithms.empty() || algorithms.back() != report.algorithm) algorithms.push_back(report.algorithm);
     }
   }
   std::vector<std::string> texts;
@@ -157,15 +155,15 @@ std::vector<std::string> run_warnings(std::span<const RunReport> reports) {
   return texts;
 }
 
-std::string step_time_text(std::span<const RunReport> reports) {
+std::string step_time_text(std::span<const Result> reports) {
   const auto p99_or = [](double none) {
-    return [none](const RunReport& report) { return report.timing.step_p99.value_or(none); };
+    return [none](const Result& report) { return report.timing.step_p99.value_or(none); };
   };
-  const RunReport& quickest = *std::ranges::min_element(reports, {}, p99_or(std::numeric_limits<double>::infinity()));
-  const RunReport& slowest = *std::ranges::max_element(reports, {}, p99_or(0.0));
+  const Result& quickest = *std::ranges::min_element(reports, {}, p99_or(std::numeric_limits<double>::infinity()));
+  const Result& slowest = *std::ranges::max_element(reports, {}, p99_or(0.0));
   if (!slowest.timing.step_p99) return "";
   const std::string quick = distinct_name(quickest, reports), slow = distinct_name(slowest, reports);
-  const auto of = [](const RunReport& report, const std::string& name) {
+  const auto of = [](const Result& report, const std::string& name) {
     return fmt::format("{} ({})", time_text(*report.timing.step_p99), name);
   };
   std::string text = "99 % of the steps take at most ";
@@ -177,14 +175,14 @@ std::string step_time_text(std::span<const RunReport> reports) {
   return "\n" + wrapped(text, 0);
 }
 
-std::string unsettled_text(std::span<const RunReport> reports) {
+std::string unsettled_text(std::span<const Result> reports) {
   std::vector<std::string> names;
   bool landed = false;
-  for (const RunReport& report : reports) {
-    const Metrics& m = report.summary.metrics;
-    if (m.steps_in_contact == 0 || m.contact.mean()) continue;
+  for (const Result& report : reports) {
+    const MetricList& metrics = report.metrics;
+    if (number_of(metrics, "steps_in_contact") == 0.0 || number_of(metrics, "force_mean_in_contact_N")) continue;
     names.push_back(distinct_name(report, reports));
-    landed = landed || m.contact.landing_max();
+    landed = landed || number_of(metrics, "landing_force_max_N");
   }
   if (names.empty()) return "";
   // In runs without landings all contact counts already.
@@ -216,9 +214,9 @@ Columns<PlaceMetrics> place_columns() {
 
 }  // namespace
 
-std::string targets_text(const RunReport& report) {
-  if (report.summary.section("targets") == nullptr) return "";
-  return fmt::format("\n{}: targets, mean +- standard error over subjects\n\n{}", report.summary.name,
+std::string targets_text(const Result& report) {
+  if (!report.has_section("targets")) return "";
+  return fmt::format("\n{}: targets, mean +- standard error over subjects\n\n{}", report.name,
                      place_columns().table(place_metrics(report.targets)).text());
 }
 
@@ -290,14 +288,14 @@ constexpr const char* kComparedMetrics[] = {"force_max_N",
 
 }  // namespace
 
-std::vector<ComparedRun> compared_runs(std::span<const RunReport> reports, std::size_t seeds) {
+std::vector<ComparedRun> compared_runs(std::span<const Result> reports, std::size_t seeds) {
   std::vector<ComparedRun> runs;
   for (std::size_t i = 0; i < reports.size(); ++i) {
-    const RunSummary& run = reports[i].summary;
-    runs.push_back({i % seeds, run.algorithm, std::string(outcome_name(run.result.outcome)), run.result.rows, {}});
-    const MetricList metrics = metric_list(run);
+    const Result& run = reports[i];
+    runs.push_back({i % seeds, run.algorithm, std::string(outcome_name(run.end.outcome)), run.end.rows, {}});
     for (const char* name : kComparedMetrics)
-      runs.back().metrics.push_back(std::visit([](const auto& value) { return Cell(value); }, value_of(metrics, name)));
+      runs.back().metrics.push_back(
+          std::visit([](const auto& value) { return Cell(value); }, value_of(run.metrics, name)));
   }
   return runs;
 }

@@ -31,25 +31,25 @@ inline constexpr RunHeading kRunHeadings[] = {{"con\n%", "contact_share", 100.0}
 
 /// The printed table of runs: outcome, kRunHeadings, the range of ratios, and what half of the steps take at most.
 /// `of_scenes`: of several, told apart by name. Its width does not depend on the times in it.
-std::string run_table(std::span<const RunReport> reports, bool of_scenes);
+std::string run_table(std::span<const Result> reports, bool of_scenes);
 
 /// A paragraph on what 99 % of the steps take at most, in the quickest and the slowest of the runs; empty when no run
 /// was long enough to tell. Precondition: there is a report.
-std::string step_time_text(std::span<const RunReport> reports);
+std::string step_time_text(std::span<const Result> reports);
 
 /// Explains "-" for metrics of settled contact in runs that touched; empty when there is none.
-std::string unsettled_text(std::span<const RunReport> reports);
+std::string unsettled_text(std::span<const Result> reports);
 
 /// The tables of thesis D.4 for a report with targets: mean and standard error over subjects, a line for each place.
 /// Empty for other reports.
-std::string targets_text(const RunReport& report);
+std::string targets_text(const Result& report);
 
 /// A table of the rendered force against the reference, for the reports that have one; empty without any.
-std::string fidelity_text(std::span<const RunReport> reports);
+std::string fidelity_text(std::span<const Result> reports);
 
 /// The warnings of runs that were made side by side. Warnings that differ only in numbers appear once, with the numbers
 /// of the first run and the names of the other algorithms.
-std::vector<std::string> run_warnings(std::span<const RunReport> reports);
+std::vector<std::string> run_warnings(std::span<const Result> reports);
 
 /// The latencies [us] and missed deadlines of the steps of a run.
 struct LatencyRow {
@@ -66,7 +66,7 @@ struct ComparedRun {
   std::vector<Cell> metrics;
 };
 /// The runs of one scene, the seeds of an algorithm one after the other.
-std::vector<ComparedRun> compared_runs(std::span<const RunReport> reports, std::size_t seeds);
+std::vector<ComparedRun> compared_runs(std::span<const Result> reports, std::size_t seeds);
 /// comparison.csv: algorithm, outcome, steps, and the metrics that separate algorithms, without times, so that equal
 /// comparisons give equal bytes; several seeds get a column in front.
 Columns<ComparedRun> comparison_columns(bool seeds = false);

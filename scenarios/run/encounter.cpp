@@ -215,7 +215,8 @@ std::string likely_cause(const Scenario& scenario, Outcome outcome, const Encoun
   if (outcome == Outcome::lost_contact &&
       (std::holds_alternative<ForceHandFields>(scenario.hand) || std::holds_alternative<PushHandFields>(scenario.hand)))
     return "; a hand of constant force goes on pushing where there is no surface";
-  if (outcome == Outcome::lost_contact) return fmt::format("; the largest force was {:.3g} N", e.metrics.force_max);
+  if (outcome == Outcome::lost_contact)
+    return fmt::format("; the largest force was {:.3g} N", std::sqrt(e.contact.force_max_squared));
   return is_free ? "; is initial.position_m right?" : "; is motion.position right?";
 }
 
@@ -227,7 +228,7 @@ std::string size_and_place(const Box& box) {
 
 Outcome outcome_of(const Scenario& scenario, const Encounter& e) {
   if (e.passage && (e.passage->went_through() || e.inside_max > e.tool.half_width())) return Outcome::went_through;
-  if (e.metrics.steps_in_contact == 0) return Outcome::no_contact;
+  if (e.contact.in_contact == 0) return Outcome::no_contact;
   const bool is_free = std::holds_alternative<FreePosition>(scenario.motion.position);
   const bool left = e.approach.last > diagonal(e.environment) + e.tool.reach();
   const bool lost = e.drag && e.drag->lost;
@@ -263,34 +264,37 @@ std::vector<Observer*> EncounterObservers::all() {
   return observers;
 }
 
-Encounter EncounterObservers::encounter(const Metrics& metrics, const ToolShape& tool) const {
-  Encounter encounter{metrics, approach_->approach(), approach_->environment(), tool};
+const InsideDepths* EncounterObservers::depths() {
+  if (inside_ && !depths_) depths_ = inside_->depths();
+  return depths_ ? &*depths_ : nullptr;
+}
+
+Encounter EncounterObservers::encounter(const TrialContact& contact, const ToolShape& tool) {
+  Encounter encounter{contact, approach_->approach(), approach_->environment(), tool};
   if (drag_) {
     encounter.drag = drag_->course();
     encounter.stuck = encounter.drag->stuck;
   }
   if (stuck_) encounter.stuck = stuck_->stuck();
   if (inside_) encounter.passage = inside_->passage();
-  if (metrics.inside) encounter.inside_max = metrics.inside->max.value_or(0.0);
+  if (const InsideDepths* inside = depths()) encounter.inside_max = inside->max.value_or(0.0);
   return encounter;
 }
 
-Outcome EncounterObservers::outcome(const Scenario& scenario, Metrics metrics, const ToolShape& tool, Outcome outcome) {
-  if (!approach_ || outcome != Outcome::completes) return outcome;
-  if (inside_) metrics.inside = inside_->metrics();
-  return outcome_of(scenario, encounter(metrics, tool));
+Outcome EncounterObservers::outcome(const Scenario& scenario, const TrialContact& contact, const ToolShape& tool,
+                                    Outcome outcome) {
+  return approach_ && outcome == Outcome::completes ? outcome_of(scenario, encounter(contact, tool)) : outcome;
 }
 
-void EncounterObservers::judge(const Scenario& scenario, Metrics& metrics, const ToolShape& tool, Outcome& outcome,
-                               std::vector<std::string>& warnings) {
-  if (inside_) metrics.inside = inside_->metrics();
-  if (metrics.inside && metrics.inside->at_most) {
+void EncounterObservers::judge(const Scenario& scenario, const TrialContact& contact, const ToolShape& tool,
+                               Outcome& outcome, std::vector<std::string>& warnings) {
+  if (const InsideDepths* inside = depths(); inside != nullptr && inside->at_most) {
     warnings.push_back(
         fmt::format("inside_max_m, {}, may be too low: no row is deeper than {}; record.inside=true looks at every row",
-                    length_text(metrics.inside->max.value_or(0.0)), length_text(*metrics.inside->at_most)));
+                    length_text(inside->max.value_or(0.0)), length_text(*inside->at_most)));
   }
   if (!approach_) return;
-  const Encounter seen = encounter(metrics, tool);
+  const Encounter seen = encounter(contact, tool);
   if (outcome == Outcome::completes) {
     outcome = outcome_of(scenario, seen);
     if (auto warning = warning_about(scenario, outcome, seen)) warnings.push_back(*warning);
@@ -362,9 +366,9 @@ std::optional<std::string> warning_about(const Scenario& scenario, Outcome outco
                        likely_cause(scenario, outcome, e));
   }
   if (outcome != Outcome::lost_contact || (e.drag && e.drag->lost && e.approach.last == 0.0)) return std::nullopt;
-  const double share = static_cast<double>(e.metrics.steps_in_contact) / static_cast<double>(e.metrics.rows);
+  const double share = static_cast<double>(e.contact.in_contact) / static_cast<double>(e.contact.rows);
   return fmt::format("in contact for {:.3g} % of the run, last at {:.4g} s; ended {} away from the environment ({}){}",
-                     100.0 * share, e.metrics.last_contact.value_or(0.0), length_text(e.approach.last),
+                     100.0 * share, e.contact.last.value_or(0.0), length_text(e.approach.last),
                      size_and_place(e.environment), likely_cause(scenario, outcome, e));
 }
 
@@ -389,15 +393,14 @@ bool outcome_is_expected(const ExpectFields& expect, Outcome outcome) {
   return std::find(expect.outcomes.begin(), expect.outcomes.end(), outcome) != expect.outcomes.end();
 }
 
-std::vector<std::string> unmet_expectations(const ExpectFields& expect, const RunSummary& run) {
+std::vector<std::string> unmet_expectations(const ExpectFields& expect, const Result& run) {
   std::vector<std::string> unmet;
-  if (!outcome_is_expected(expect, run.result.outcome)) {
-    unmet.push_back(fmt::format("outcome is \"{}\"{}; expected {}", outcome_name(run.result.outcome),
-                                divergence_text(run.result), quoted_list(names_of(expect.outcomes))));
+  if (!outcome_is_expected(expect, run.end.outcome)) {
+    unmet.push_back(fmt::format("outcome is \"{}\"{}; expected {}", outcome_name(run.end.outcome),
+                                divergence_text(run.end), quoted_list(names_of(expect.outcomes))));
   }
-  const MetricList metrics = metric_list(run);
   for (const auto& [name, bound] : expect.metrics) {
-    const auto number = number_of(value_of(metrics, name));
+    const auto number = number_of(run.metrics, name);
     if (!number) {
       unmet.push_back(fmt::format("{} has no value; expected one", name));
       continue;
@@ -410,19 +413,19 @@ std::vector<std::string> unmet_expectations(const ExpectFields& expect, const Ru
   return unmet;
 }
 
-std::vector<std::string> force_warnings(const Metrics& metrics) {
+std::vector<std::string> force_warnings(const MetricsObserver& metrics) {
   std::vector<std::string> warnings;
-  if (const auto& friction = metrics.explicit_friction; friction && friction->first_step) {
+  if (const auto& friction = metrics.explicit_friction(); friction && friction->first_step) {
     warnings.push_back(fmt::format(
         "beyond {:.3g} N of spring force, in {} of {} rows, first in step {}, the explicit step of friction is unstable; "
         "what follows is the integrator's doing, not the law's",
-        friction->limit, friction->rows_beyond, metrics.rows, *friction->first_step));
+        friction->limit, friction->rows_beyond, metrics.rows(), *friction->first_step));
   }
-  if (const auto& jumps = metrics.reduction; jumps && jumps->stand_out()) {
+  if (const auto& jumps = metrics.reduction(); jumps && jumps->stand_out()) {
     warnings.push_back(fmt::format(
         "reduction: kept points change in {} of {} steps, force steps up to {:.2g} N there and {:.2g} N elsewhere; "
         "rendering.reduction=null keeps them all",
-        jumps->changes, metrics.rows, jumps->step_max().value_or(0.0), jumps->step_max_elsewhere()));
+        jumps->changes(), metrics.rows(), jumps->step_max().value_or(0.0), jumps->step_max_elsewhere()));
   }
   return warnings;
 }

@@ -166,7 +166,7 @@ class OpenEdgeObserver final : public Observer {
 
 /// The contact of a run that did all its steps with the environment.
 struct Encounter {
-  const Metrics& metrics;
+  const TrialContact& contact;
   const Approach& approach;
   const Box& environment;  ///< around all points of the shell
   const ToolShape& tool;
@@ -197,15 +197,18 @@ class EncounterObservers {
   const InsideObserver* inside() const { return inside_ ? &*inside_ : nullptr; }
 
   /// The outcome of the run that ended with `outcome`, which stays unless it is `completes`.
-  Outcome outcome(const Scenario& scenario, Metrics metrics, const ToolShape& tool, Outcome outcome);
-  /// After the run: adds the depth to its metrics, finds its outcome and adds warnings about it.
-  void judge(const Scenario& scenario, Metrics& metrics, const ToolShape& tool, Outcome& outcome,
+  Outcome outcome(const Scenario& scenario, const TrialContact& contact, const ToolShape& tool, Outcome outcome);
+  /// After the run: finds its outcome and adds warnings about it.
+  void judge(const Scenario& scenario, const TrialContact& contact, const ToolShape& tool, Outcome& outcome,
              std::vector<std::string>& warnings);
+  /// After the run: how deep the tool was, which is looked for at the first call. Null without a solid.
+  const InsideDepths* depths();
 
  private:
-  Encounter encounter(const Metrics& metrics, const ToolShape& tool) const;
+  Encounter encounter(const TrialContact& contact, const ToolShape& tool);
 
   std::optional<InsideObserver> inside_;
+  std::optional<InsideDepths> depths_;
   std::optional<ApproachObserver> approach_;
   std::optional<DragCourseObserver> drag_;
   std::optional<StuckObserver> stuck_;
@@ -220,14 +223,14 @@ std::optional<std::string> scale_warning(const Scenario& scenario, const ToolSha
 std::optional<std::string> warning_about(const Scenario& scenario, Outcome outcome, const Encounter& encounter);
 
 /// The expectations of the scenario that the run does not meet, one sentence each.
-std::vector<std::string> unmet_expectations(const ExpectFields& expect, const RunSummary& run);
+std::vector<std::string> unmet_expectations(const ExpectFields& expect, const Result& run);
 
 /// True when `outcome` is among those the scenario expects.
 bool outcome_is_expected(const ExpectFields& expect, Outcome outcome);
 
 /// Warnings about the forces of a run: it passed the limit of explicit friction, or the reduction makes its force jump
 /// (results/observe).
-std::vector<std::string> force_warnings(const Metrics& metrics);
+std::vector<std::string> force_warnings(const MetricsObserver& metrics);
 
 /// The odd thing about the place of a tool that fills the box in its own frame, as the end of a sentence such as "lies
 /// across its axis"; empty when nothing is odd. Tools have their tip centre at the origin, and their tip points along

@@ -3,24 +3,11 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
-#include <string>
 #include <vector>
 
-#include "results/io/table_writer.hpp"
-#include "results/observe/target_metrics.hpp"
-#include "results/summary/summary.hpp"
-#include "scenarios/description/load_scenario.hpp"
-#include "scenarios/run/recorders.hpp"
+#include "scenarios/run/simulate.hpp"
 
 namespace hapbench {
-
-/// One finished run; of a tracking hand, all its trials.
-struct RunReport {
-  RunSummary summary;
-  std::vector<std::string> unmet;  ///< expectations the run did not meet
-  std::vector<TargetRow> targets;  ///< of a tracking hand, all subjects and trials
-  RunTiming timing;                ///< of a tracking hand, all trials together
-};
 
 /// The tables that a run recorded in memory.
 struct RunTables {
@@ -35,17 +22,13 @@ struct RunTables {
 /// (RenderingConfig), the results are the same but for the counted work. Throws InputError for files it cannot use
 /// (before anything is written), IoError when writing fails, Stopped when a signal ends the run: then nothing of it is
 /// left.
-RunReport run_scenario(const LoadedScenario& loaded, const std::optional<std::filesystem::path>& output, bool progress,
-                       RunTables* tables = nullptr);
+Result run_scenario(const LoadedScenario& loaded, const std::optional<std::filesystem::path>& output, bool progress,
+                    RunTables* tables = nullptr);
 
 /// The same in a shell that is there already and that several runs, also at once, may share: make_shell of the
 /// scenario. `timing` says what is known of the shell's making.
-RunReport run_with_shell(const LoadedScenario& loaded, const std::shared_ptr<const PointShell>& shell,
-                         const std::optional<std::filesystem::path>& output, bool progress,
-                         const RunTiming& timing = {}, RunTables* tables = nullptr);
-
-/// Removes the files that a run wrote into a directory, if it is there, and leaves all others. Throws IoError when the
-/// directory cannot be listed.
-void remove_run(const std::filesystem::path& directory);
+Result run_with_shell(const LoadedScenario& loaded, const std::shared_ptr<const PointShell>& shell,
+                      const std::optional<std::filesystem::path>& output, bool progress, const RunTiming& timing = {},
+                      RunTables* tables = nullptr);
 
 }  // namespace hapbench

@@ -24,7 +24,7 @@ constexpr const char *kOriginal = "original_averaging", *kShaped = "shaped_stiff
 
 MeasuredCase peg(const Evidence& e, const std::string& scene, const std::string& algorithm, const std::string& name,
                  const std::vector<std::string>& overrides = {}) {
-  return vibration(algorithm + ", " + name, e.run(scene + algorithm, overrides).summary);
+  return vibration(algorithm + ", " + name, e.run(scene + algorithm, overrides));
 }
 
 Measured measure_peg_motion(const Evidence& e) {

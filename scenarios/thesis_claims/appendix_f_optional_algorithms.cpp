@@ -84,7 +84,7 @@ double leaving_time(const Evidence& e, const std::string& algorithm) {
       .run("peg_in_hole_2d_" + algorithm,
            {"time.step_s=5e-6", "time.steps=200000", "rendering.friction.mu_s_N_s_per_m=0",
             "rendering.friction.mu_f_s_per_m=0", "record.ratio_iterations=[]"})
-      .summary.duration;
+      .duration;
 }
 
 Measured measure_tandpasta(const Evidence& e) {

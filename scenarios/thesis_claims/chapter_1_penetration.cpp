@@ -87,8 +87,8 @@ Measured measure_averaging(const Evidence& e) {
 Measured measure_original(const Evidence& e) {
   Measured measured;
   for (const std::string law : {kProposedLaw, "original_averaging"}) {
-    const RunSummary summary = e.run("task2_held", {"rendering.algorithm=" + law}).summary;
-    const auto depth = ideal_trajectory_metric(summary, "gentle.interpenetration_max_m");
+    const Result run = e.run("task2_held", {"rendering.algorithm=" + law});
+    const auto depth = ideal_trajectory_metric(run, "gentle.interpenetration_max_m");
     measured.push_back({law, {{"depth", {depth.value_or(0.0)}}}});
   }
   return measured;

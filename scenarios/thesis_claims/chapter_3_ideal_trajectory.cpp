@@ -23,10 +23,10 @@ constexpr double kForces[] = {0.2, 0.5, 1.0, 1.5, 1.9, 2.5, 3.5};  ///< [N]
 Measured measure_ideal_trajectory(const Evidence& e) {
   Measured measured;
   for (const double force : kForces) {
-    const RunSummary summary = e.run("task2_held", {fmt::format("hand.force_N={}", force)}).summary;
+    const Result run = e.run("task2_held", {fmt::format("hand.force_N={}", force)});
     const std::string hand = force < kGentleForce ? "gentle." : "firm.";
     const auto number = [&](const char* key) -> std::vector<double> {
-      return {ideal_trajectory_metric(summary, hand + key).value_or(std::nan(""))};
+      return {ideal_trajectory_metric(run, hand + key).value_or(std::nan(""))};
     };
     measured.push_back({fmt::format("{} N", force),
                         {{"force", {force}},

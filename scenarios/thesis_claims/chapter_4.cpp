@@ -231,8 +231,8 @@ Finding judge_over_reduction(const Measured& measured, const PublishedNumbers& p
 // see the turn, and with one that does; as fast as the scene has it, and slowly.
 
 Measured measure_turn_into_wall(const Evidence& e, const std::vector<std::string>& overrides) {
-  return {vibration("as in the thesis", e.run("turned_into_wall", overrides).summary),
-          vibration("damping sees the turn", e.run("turned_into_wall_angular_damping", overrides).summary)};
+  return {vibration("as in the thesis", e.run("turned_into_wall", overrides)),
+          vibration("damping sees the turn", e.run("turned_into_wall_angular_damping", overrides))};
 }
 
 Finding judge_turn_into_wall(const Measured& measured, const PublishedNumbers& p) {

@@ -111,7 +111,7 @@ LoadedScenario Evidence::load(const std::string& name, const std::vector<std::st
   return load_scenario(text, all);
 }
 
-RunReport Evidence::run(const std::string& name, const std::vector<std::string>& more) const {
+Result Evidence::run(const std::string& name, const std::vector<std::string>& more) const {
   return run_scenario(load(name, more), std::nullopt, false);
 }
 

@@ -64,7 +64,7 @@ struct Evidence {
   /// A bundled scenario with `overrides`, and then with `more` overrides.
   LoadedScenario load(const std::string& name, const std::vector<std::string>& more = {}) const;
   /// Runs it in memory.
-  RunReport run(const std::string& name, const std::vector<std::string>& more = {}) const;
+  Result run(const std::string& name, const std::vector<std::string>& more = {}) const;
 };
 
 /// Runs a scenario in memory and calls `row` for each row. Throws InputError.

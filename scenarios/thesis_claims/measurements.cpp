@@ -10,16 +10,16 @@
 
 namespace hapbench {
 
-MeasuredCase vibration(const std::string& name, const RunSummary& summary) {
-  const Metrics& metrics = summary.metrics;
+MeasuredCase vibration(const std::string& name, const Result& run) {
+  const auto number = [&](const char* metric) { return number_of(run.metrics, metric).value_or(0.0); };
   return {name,
-          {{"velocity_variation", {metrics.velocity_total_variation}},
-           {"vibration_power", {metrics.vibration_power.value_or(0.0)}},
-           {"force_reversals", {static_cast<double>(metrics.force_reversals)}}}};
+          {{"velocity_variation", {number("velocity_total_variation_m_per_s")}},
+           {"vibration_power", {number("vibration_power_above_30Hz_m2_per_s2")}},
+           {"force_reversals", {number("force_reversals")}}}};
 }
 
-std::optional<double> ideal_trajectory_metric(const RunSummary& summary, const std::string& key) {
-  return number_of(value_of(summary.section("ideal_trajectory")->metrics, key));
+std::optional<double> ideal_trajectory_metric(const Result& run, const std::string& key) {
+  return number_of(run.metrics, "ideal_trajectory." + key);
 }
 
 Measured vibrations_beside_shaping(const Evidence& e, const std::string& law, const std::string& task,
@@ -30,9 +30,9 @@ Measured vibrations_beside_shaping(const Evidence& e, const std::string& law, co
       std::vector<std::string> overrides = {"rendering.algorithm=" + algorithm, "rendering.reduction=null",
                                             "record.ratio_iterations=[]"};
       if (scene == task) overrides.insert(overrides.end(), overrides_of_task.begin(), overrides_of_task.end());
-      const RunSummary summary = e.run(scene, overrides).summary;
-      measured.push_back(vibration(algorithm + (scene == task ? ", task 2" : ", planar peg"), summary));
-      measured.back().values["diverges"] = {summary.result.outcome == Outcome::diverges ? 1.0 : 0.0};
+      const Result run = e.run(scene, overrides);
+      measured.push_back(vibration(algorithm + (scene == task ? ", task 2" : ", planar peg"), run));
+      measured.back().values["diverges"] = {run.end.outcome == Outcome::diverges ? 1.0 : 0.0};
     }
   }
   return measured;

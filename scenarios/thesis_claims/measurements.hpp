@@ -27,10 +27,10 @@ inline ContactBuffer wall_point(double beyond, const char* depth_model) {
 }
 
 /// Total variation of the velocity [m/s], power of the velocity above 30 Hz [m^2/s^2] and reversals of the force.
-MeasuredCase vibration(const std::string& name, const RunSummary& summary);
+MeasuredCase vibration(const std::string& name, const Result& run);
 
 /// A metric of the section ideal_trajectory; none if nothing was measured.
-std::optional<double> ideal_trajectory_metric(const RunSummary& summary, const std::string& key);
+std::optional<double> ideal_trajectory_metric(const Result& run, const std::string& key);
 
 /// The vibration of a law and of stiffness shaping, with all points, in the planar peg and then in a scene of task 2
 /// with these overrides; with it "diverges", 1 or 0.

@@ -130,10 +130,10 @@ namespace {
 std::string problem_of_run(const Evidence& evidence, const std::string& name) {
   try {
     const LoadedScenario loaded = evidence.load(name);
-    const RunReport report = run_scenario(loaded, evidence.directory / name, false);
+    const Result run = run_scenario(loaded, evidence.directory / name, false);
     const std::vector<Outcome>& expected = loaded.scenario.expect.outcomes;
     // A subject who loses the drill misses the remaining targets, which is a result.
-    const bool diverged = report.summary.result.outcome == Outcome::diverges &&
+    const bool diverged = run.end.outcome == Outcome::diverges &&
                           !std::holds_alternative<TrackingHandFields>(loaded.scenario.hand) &&
                           std::find(expected.begin(), expected.end(), Outcome::diverges) == expected.end();
     return diverged ? name + ": diverged" : "";

@@ -156,8 +156,6 @@ class Session final : public Observer {
 
   /// The state hash and totals of the run so far, and contacts and stiffness tensor of its last row, as JSON.
   const char* state() {
-    const Metrics metrics = metrics_->metrics();
-    const auto passivity = passivity_->metrics();
     nlohmann::json contacts = nlohmann::json::array();
     for (std::size_t i = 0; i < contacts_->size(); ++i) {
       const Vec3 p = contacts_->point(i), u = contacts_->gradient(i);
@@ -168,10 +166,10 @@ class Session final : public Observer {
     const SimulationResult& result = simulation_->result();
     const bool diverged = result.outcome == Outcome::diverges;
     return text({{"rows", result.rows},
-                 {"state_hash", hash_text(metrics.state_hash)},
+                 {"state_hash", hash_text(metrics_->state_hash())},
                  {"outcome", outcome_name(result.outcome)},
                  {"fault", diverged ? result.divergence.quantity : ""},
-                 {"energy_created_J", passivity ? passivity->net_created() : 0.0},
+                 {"energy_created_J", passivity_->net_created()},
                  {"tensor", tensor},
                  {"contacts", contacts}});
   }

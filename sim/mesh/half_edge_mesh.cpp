@@ -4,12 +4,14 @@
 #include <OpenMesh/Tools/Subdivider/Uniform/LongestEdgeT.hh>
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <limits>
-#include <map>
 #include <numeric>
 #include <optional>
 #include <sstream>
+#include <unordered_map>
 
 namespace hapbench {
 namespace {
@@ -28,6 +30,15 @@ Vec3 unit_normal(const HalfEdgeMesh& mesh, OpenMesh::FaceHandle face) {
 
 /// Coordinates of a cube, and axis and sign of the normal's largest component.
 using Place = std::array<double, 5>;
+
+struct HashOfPlace {
+  std::size_t operator()(const Place& place) const noexcept {
+    std::uint64_t hash = 0;
+    // 0 and -0 are one coordinate.
+    for (const double number : place) hash = (hash ^ std::bit_cast<std::uint64_t>(number + 0.0)) * 0x9e3779b97f4a7c15u;
+    return static_cast<std::size_t>(hash ^ (hash >> 32));
+  }
+};
 
 Vec3 cube_of(const Vec3& position, double spacing) {
   return (position / spacing + Vec3::Constant(0.5)).array().floor();
@@ -78,7 +89,22 @@ std::vector<SurfacePoint> vertices_with_normals(const HalfEdgeMesh& mesh) {
   return points;
 }
 
+namespace {
+
+/// Makes room for that many faces, of a mesh that is nearly closed. Growing step by step would cost a quarter of the
+/// time of `refine`.
+void reserve_faces(HalfEdgeMesh& mesh, double faces) {
+  constexpr double kOpen = 1.02;  // for edges with one face
+  const double more = kOpen * (faces - static_cast<double>(mesh.n_faces()));
+  const auto with = [more](std::size_t now, double each) { return now + static_cast<std::size_t>(each * more); };
+  mesh.reserve(with(mesh.n_vertices(), 0.5), with(mesh.n_edges(), 1.5), with(mesh.n_faces(), 1.0));
+}
+
+}  // namespace
+
 void refine(HalfEdgeMesh& mesh, double longest_edge) {
+  constexpr double kMost = 1e7;  // faces that are worth counting
+  reserve_faces(mesh, std::min(kMost, refined_face_count(mesh, longest_edge, kMost)));
   OpenMesh::Subdivider::Uniform::LongestEdgeT<HalfEdgeMesh, double> subdivider;
   subdivider.set_max_edge_length(longest_edge);
   subdivider(mesh, 1);
@@ -114,15 +140,19 @@ double refined_face_count(const HalfEdgeMesh& mesh, double longest_edge, double 
 }
 
 std::vector<SurfacePoint> thinned(const std::vector<SurfacePoint>& points, double spacing) {
-  std::map<Place, std::size_t> nearest;
+  struct Nearest {
+    std::size_t index;
+    double distance;  ///< from the centre of the cube [m]
+  };
+  std::unordered_map<Place, Nearest, HashOfPlace> nearest;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const auto [entry, is_new] = nearest.try_emplace(place_of(points[i], spacing), i);
-    if (!is_new && distance_from_centre(points[i], spacing) < distance_from_centre(points[entry->second], spacing))
-      entry->second = i;
+    const Nearest here{i, distance_from_centre(points[i], spacing)};
+    const auto [entry, is_new] = nearest.try_emplace(place_of(points[i], spacing), here);
+    if (!is_new && here.distance < entry->second.distance) entry->second = here;
   }
   std::vector<std::size_t> kept;
   kept.reserve(nearest.size());
-  for (const auto& [place, index] : nearest) kept.push_back(index);
+  for (const auto& [place, point] : nearest) kept.push_back(point.index);
   std::sort(kept.begin(), kept.end());
   std::vector<SurfacePoint> thin;
   thin.reserve(kept.size());

@@ -70,7 +70,7 @@ void inside_row(benchmark::State& state, double height) {
     record.force.depth_max = depth;
     observer.on_step(record);
   }
-  const double found = observer.metrics().max.value_or(-1.0);
+  const double found = observer.depths().max.value_or(-1.0);
   if (std::abs(found - depth) > InsideSearch::kTolerance * (depth + scene.tool.radius())) refute(state, "wrong depth");
 }
 

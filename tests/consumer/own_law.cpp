@@ -36,7 +36,7 @@ int main(int argc, char** argv) try {
   hapbench::MetricsObserver metrics(scenario.time.step);
   hapbench::Simulation simulation(hapbench::simulation_config(scenario), std::move(parts), {&metrics});
   simulation.run();
-  std::printf("%s\n%016" PRIx64 "\n", file.c_str(), metrics.metrics().state_hash);
+  std::printf("%s\n%016" PRIx64 "\n", file.c_str(), metrics.state_hash());
 } catch (const std::exception& error) {
   std::fprintf(stderr, "own_law: %s\n", error.what());
   return 2;

@@ -171,10 +171,8 @@ def add_device_field(tree):
 
 def add_metric(tree):
     return {
-        tree.edit("struct LostTorqueMetrics {\n", "  double sum = 0.0;  ///< of ||tau|| [N m]\n"),
-        tree.edit("  return {rows_in_contact_, mean,", "  return {sum_, rows_in_contact_, mean,", replace=True),
-        tree.edit("MetricList metric_list(const LostTorqueMetrics& m) {\n  return {",
-                  """{"lost_sum_Nm", "Nm", "sum of ||tau|| over the rows in contact", m.sum},\n          """),
+        tree.edit("void LostTorqueObserver::tell(Section& s) const {\n",
+                  """  s.metric("lost_sum_Nm", "Nm", "sum of ||tau|| over the rows in contact", sum_);\n"""),
     }
 
 
@@ -227,42 +225,33 @@ def add_metric_section(tree):
     return {
         tree.write("results/observe/stillness.hpp", """#pragma once
 
-#include "results/io/columns.hpp"
-#include "sim/loop/observer.hpp"
+#include "results/observe/metric_observer.hpp"
 
 namespace hapbench {
 
-struct StillnessMetrics {
-  double still = 0.0;  ///< rows in which the tool did not move
-};
-
-inline MetricList metric_list(const StillnessMetrics& metrics) {
-  return {{"still", "1", "rows in which the tool did not move", metrics.still}};
-}
-
-class StillnessObserver final : public Observer {
+class StillnessObserver final : public MetricObserver {
  public:
-  void on_step(const StepRecord& record) noexcept override { metrics_.still += record.tool.velocity.isZero(0.0) ? 1.0 : 0.0; }
-  StillnessMetrics metrics() const noexcept { return metrics_; }
+  void begin(const TrialParts&) override { *this = {}; }
+  void on_step(const StepRecord& record) noexcept override { still_ += record.tool.velocity.isZero(0.0) ? 1.0 : 0.0; }
+  void tell(Section& s) const override { s.metric("still", "1", "rows in which the tool did not move", still_); }
 
  private:
-  StillnessMetrics metrics_;
+  double still_ = 0.0;
 };
 
 }  // namespace hapbench
 """),
-        tree.edit('#include "results/observe/ideal_trajectory.hpp"\n#include "results/observe/target_metrics.hpp"\n',
+        tree.edit('#include "results/observe/passivity_observer.hpp"\n#include "results/observe/target_metrics.hpp"\n',
                   '#include "results/observe/stillness.hpp"\n', before=True),
-        tree.edit("const SectionKind kSections[] = {\n", """    {"stillness", [](const Scenario& s, bool) { return std::size_t{s.record.pose}; },
-     [](const TrialParts&) -> std::unique_ptr<Observer> { return std::make_unique<StillnessObserver>(); },
-     summary_of_one<StillnessObserver>, list_without_values<StillnessObserver>},
+        tree.edit('make<PassivityObserver>, true},\n',
+                  """    {"stillness", [](const Scenario& s, bool) { return std::size_t{s.record.pose}; }, make<StillnessObserver>},
 """),
     }
 
 
 # Each addition with the most files that it may touch.
 ADDITIONS = {"law": (add_law, 3), "tool": (add_tool, 3), "environment": (add_environment, 3), "named file": (add_named_file, 2),
-             "device field": (add_device_field, 2), "metric": (add_metric, 2), "metric section": (add_metric_section, 2),
+             "device field": (add_device_field, 2), "metric": (add_metric, 1), "metric section": (add_metric_section, 2),
              "trajectory column": (add_trajectory_column, 2), "command": (add_command, 3)}
 
 

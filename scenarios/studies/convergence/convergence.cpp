@@ -126,18 +126,17 @@ constexpr const char* kContactCounts[] = {"landings", "steps_in_contact", "colli
 
 }  // namespace
 
-LevelResult level_result(const LevelSweep& levels, std::size_t level, const RunSummary& summary,
+LevelResult level_result(const LevelSweep& levels, std::size_t level, const Result& summary,
                          const std::string& metric) {
   const std::string& path = levels.axis.path;
   LevelResult result{.setting = fmt::format("{} = {}", path, levels.axis.values[level]),
-                     .outcome = std::string(outcome_name(summary.result.outcome)),
+                     .outcome = std::string(outcome_name(summary.end.outcome)),
                      .result = std::nullopt,
-                     .state_hash = summary.metrics.state_hash};
-  const MetricList metrics = metric_list(summary);
-  if (summary.result.outcome != Outcome::diverges) result.result = number_of(value_of(metrics, metric));
+                     .state_hash = summary.state_hash};
+  if (summary.end.outcome != Outcome::diverges) result.result = number_of(summary.metrics, metric);
   const std::span<const char* const> counts = kContactCounts;
   for (const char* name : counts.first(path.starts_with("environment.") ? 1 : counts.size()))
-    result.contacts.emplace_back(name, number_of(value_of(metrics, name)).value_or(0.0));
+    result.contacts.emplace_back(name, number_of(summary.metrics, name).value_or(0.0));
   return result;
 }
 

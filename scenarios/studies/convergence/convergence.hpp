@@ -52,8 +52,7 @@ Convergence convergence_of(std::span<const LevelResult> levels, double ratio, do
                            const std::string& no_order = "");
 
 /// What the run of a level gave of a metric; no result where it has none or diverges.
-LevelResult level_result(const LevelSweep& levels, std::size_t level, const RunSummary& summary,
-                         const std::string& metric);
+LevelResult level_result(const LevelSweep& levels, std::size_t level, const Result& summary, const std::string& metric);
 
 /// The verdict on the results of the levels.
 Convergence convergence_of(const LevelSweep& levels, std::span<const LevelResult> results);

@@ -50,7 +50,7 @@ std::optional<double> KnownError::sum() const {
   return *step + spacing.value_or(0.0) + tolerance;
 }
 
-FinerRuns::FinerRuns(const Comparison& comparison, std::span<const RunReport> reports, const JobOptions& jobs)
+FinerRuns::FinerRuns(const Comparison& comparison, std::span<const Result> reports, const JobOptions& jobs)
     : comparison_(comparison), reports_(reports) {
   std::vector<Cases> finer;
   std::size_t runs = 0;
@@ -84,10 +84,10 @@ FinerRuns::FinerRuns(const Comparison& comparison, std::span<const RunReport> re
 std::optional<double> FinerRuns::error_by(const Part& part, std::size_t run, const std::string& metric) const {
   if (!part.why_not.empty()) return std::nullopt;
   const std::size_t each = comparison_.each();
-  std::vector<LevelResult> results = {level_result(part.levels, 0, reports_[run].summary, metric)};
+  std::vector<LevelResult> results = {level_result(part.levels, 0, reports_[run], metric)};
   for (std::size_t i = 1; i < kErrorLevels; ++i) {
-    const RunReport& level = finer_[part.first + (i - 1) * each + run % each];
-    results.push_back(level_result(part.levels, i, level.summary, metric));
+    const Result& level = finer_[part.first + (i - 1) * each + run % each];
+    results.push_back(level_result(part.levels, i, level, metric));
   }
   return convergence_of(part.levels, results).errors.front();
 }
@@ -97,7 +97,7 @@ KnownError FinerRuns::known_error(std::size_t run, const std::string& metric) co
   KnownError known{.step = error_by(parts.step, run, metric),
                    .spacing = error_by(parts.spacing, run, metric),
                    .has_points = parts.has_points};
-  const MetricList metrics = metric_list(reports_[run].summary);
+  const MetricList& metrics = reports_[run].metrics;
   if (const Metric* found = find_metric(metrics, metric)) known.tolerance = found->tolerance().value_or(0.0);
   return known;
 }

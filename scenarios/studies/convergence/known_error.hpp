@@ -27,7 +27,7 @@ struct KnownError {
 class FinerRuns {
  public:
   /// Runs them, without files. `reports` are those of `comparison`; both have to outlive this. Throws Stopped.
-  FinerRuns(const Comparison& comparison, std::span<const RunReport> reports, const JobOptions& jobs);
+  FinerRuns(const Comparison& comparison, std::span<const Result> reports, const JobOptions& jobs);
 
   /// Of a metric of the run with that number in the comparison; metrics are taken at the times of its own rows.
   KnownError known_error(std::size_t run, const std::string& metric) const;
@@ -48,9 +48,9 @@ class FinerRuns {
   std::optional<double> error_by(const Part& part, std::size_t run, const std::string& metric) const;
 
   const Comparison& comparison_;
-  std::span<const RunReport> reports_;
-  std::vector<Parts> parts_;      ///< of each scene
-  std::vector<RunReport> finer_;  ///< by part, then by level, then as in the comparison
+  std::span<const Result> reports_;
+  std::vector<Parts> parts_;   ///< of each scene
+  std::vector<Result> finer_;  ///< by part, then by level, then as in the comparison
 };
 
 /// A number of a table and what is known of its error.

@@ -328,11 +328,11 @@ namespace {
 /// True when the run, made once more to its end, keeps all bounds.
 bool keeps(const LoadedScenario& loaded, const std::shared_ptr<const PointShell>& shell,
            const std::map<std::string, MetricBound>& bounds) {
-  const RunReport report = run_with_shell(loaded, shell, std::nullopt, false);
+  const Result report = run_with_shell(loaded, shell, std::nullopt, false);
   ExpectFields expect;
-  expect.outcomes = {report.summary.result.outcome};
+  expect.outcomes = {report.end.outcome};
   expect.metrics = bounds;
-  return unmet_expectations(expect, report.summary).empty();
+  return unmet_expectations(expect, report).empty();
 }
 
 /// The verdict of a run that did all its steps in view of what it touched; nothing when only its motion can tell.
@@ -362,8 +362,8 @@ static JudgedRun judged_once(const LoadedScenario& loaded, const std::shared_ptr
   SettledState settled = quarter.state();
   // A run that was cut short there would tell the vibration of an earlier quarter.
   if (classifier.at_rest() && settled.vibration) settled.vibration = 0.0;
-  Metrics touched;
-  touched.steps_in_contact = last.touched ? 1 : 0;
+  TrialContact touched;
+  touched.in_contact = last.touched ? 1 : 0;
   const Outcome outcome = seen.outcome(scenario, touched, *tool, simulation.result().outcome);
   const auto verdict = [&] {
     if (motion == MotionClass::diverged) return RunVerdict::diverged;

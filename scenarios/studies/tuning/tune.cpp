@@ -104,10 +104,10 @@ class Tuner {
     return judged_run(loaded, shell_, rule);
   }
   TuneMetrics metrics_of(const LoadedScenario& loaded) const {
-    const RunSummary summary = run_with_shell(loaded, shell_, std::nullopt, false).summary;
+    const Result summary = run_with_shell(loaded, shell_, std::nullopt, false);
     TuneMetrics metrics;
     const auto add = [&](const std::string& name) {
-      if (const auto value = metric_of(summary, name)) metrics[name] = *value;
+      if (const auto value = number_of(summary.metrics, name)) metrics[name] = *value;
     };
     for (const char* name : kTuneMetrics) add(name);
     for (const auto& [name, bound] : question_.limits) add(name);

@@ -63,7 +63,7 @@ py::dict tables_of(const RecordedTables& tables) {
 }
 
 py::dict run(const std::string& scenario, const std::vector<std::string>& overrides, const py::object& progress) {
-  RunReport report;
+  Result report;
   RunTables tables;
   std::string effective;
   std::vector<std::string> warnings;
@@ -76,9 +76,9 @@ py::dict run(const std::string& scenario, const std::vector<std::string>& overri
     report = run_scenario(loaded, std::nullopt, shown, &tables);
   });
   py::dict result;
-  result["summary"] = summary_text(report.summary);
+  result["summary"] = summary_text(report);
   result["scenario"] = effective;
-  result["timing"] = timing_text(report.timing, instruction_set(), report.summary.provenance);
+  result["timing"] = timing_text(report.timing, instruction_set(), report.provenance);
   result["warnings"] = warnings;
   result["unmet"] = report.unmet;
   py::list trials;

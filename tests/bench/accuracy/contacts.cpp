@@ -36,7 +36,7 @@ Errors off_the_fresh(const Scenario& run, const std::shared_ptr<const PointShell
   return {std::string(outcome_name(late.result.outcome)),
           {{"rate_Hz", 1.0 / (run.time.step * every)},
            {"error_rms_m", distance(late.positions, fresh).rms},
-           {"force_rms_above_30Hz_N", metrics.metrics().contact.rms_above_cutoff()}}};
+           {"force_rms_above_30Hz_N", told(metrics, "force_rms_above_30Hz_N")}}};
 }
 
 /// M v^2 / 2 and what the springs store, at the first and the last row [J], and how often contact began or ended.

@@ -27,14 +27,15 @@ Errors off_the_ideal(const Scenario& scenario, std::shared_ptr<const PointShell>
   IdealTrajectoryObserver ideal(std::get<BlockEnvironment>(scenario.environment).block, make_cylinder(scenario.tool));
   MetricsObserver motion(scenario.time.step);
   const SampledRun run = sampled_run(scenario, std::move(shell), 1, {&ideal, &motion});
-  const IdealTrajectoryMetrics metrics = ideal.metrics();
-  const TrajectoryErrors& errors = metrics.gentle.rows > 0 ? metrics.gentle : metrics.firm;
+  const MetricList metrics = told(ideal);
+  const std::string hand = number_of(metrics, "gentle.rows") > 0.0 ? "gentle." : "firm.";
+  const auto error = [&](const char* name) { return number_of(metrics, hand + name).value_or(0.0); };
   return {std::string(outcome_name(run.result.outcome)),
-          {{"ideal_height_error_rms_m", errors.height_rms},
-           {"ideal_height_error_max_m", std::max(-errors.height_min, errors.height_max)},
-           {"ideal_lateral_error_rms_m", errors.lateral_rms},
-           {"interpenetration_max_m", errors.interpenetration_max},
-           {"force_step_max_N", motion.metrics().force_step_max}}};
+          {{"ideal_height_error_rms_m", error("height_error_rms_m")},
+           {"ideal_height_error_max_m", std::max(-error("height_error_min_m"), error("height_error_max_m"))},
+           {"ideal_lateral_error_rms_m", error("lateral_error_rms_m")},
+           {"interpenetration_max_m", error("interpenetration_max_m")},
+           {"force_step_max_N", told(motion, "force_step_max_N").value_or(0.0)}}};
 }
 
 }  // namespace

@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include "results/io/columns.hpp"
 #include "tests/results/rows.hpp"
 
 namespace hapbench::contact_metrics_test {
@@ -18,17 +17,15 @@ TEST(LostTorque, IsAveragedOverTheRowsInContact) {
   observer.on_step(test::row(1, 0.0, none));
   row.springs.moment = {0, 1, 0};
   observer.on_step(row);
-  const LostTorqueMetrics metrics = observer.metrics();
-  EXPECT_EQ(metrics.rows_in_contact, 2u);
-  EXPECT_EQ(metrics.mean, 3.0);
-  EXPECT_EQ(metrics.max, 5.0);
+  EXPECT_EQ(told(observer, "lost_mean_Nm"), 3.0);
+  EXPECT_EQ(told(observer, "lost_max_Nm"), 5.0);
 }
 
 TEST(LostTorque, HasNoValueWithoutContact) {
   const ContactBuffer none(1);
   LostTorqueObserver observer;
   observer.on_step(test::row(0, 0.0, none));
-  for (const Metric& metric : metric_list(observer.metrics())) {
+  for (const Metric& metric : told(observer)) {
     EXPECT_TRUE(std::holds_alternative<std::monostate>(metric.value)) << metric.name;
   }
 }

@@ -31,11 +31,10 @@ TEST(ForceFidelity, SplitsTheErrorAlongWhatIsRendered) {
   const ReferenceForce measured = constant({0.3, 0, 2});
   ForceFidelityObserver observer(measured, kDt, 1);
   observer.on_step(row(0, {0, 0, 1.6}, {0, 0, 1}));
-  const ForceFidelity found = observer.metrics();
-  EXPECT_NEAR(found.normal_rms, 0.4, 1e-15);
-  EXPECT_NEAR(found.tangential_rms, 0.3, 1e-15);
-  EXPECT_NEAR(found.error_rms, 0.5, 1e-15);
-  EXPECT_NEAR(found.direction_error, std::atan2(0.3, 2.0), 1e-15);
+  EXPECT_NEAR(told(observer, "force_error_normal_rms_N").value(), 0.4, 1e-15);
+  EXPECT_NEAR(told(observer, "force_error_tangential_rms_N").value(), 0.3, 1e-15);
+  EXPECT_NEAR(told(observer, "force_error_rms_N").value(), 0.5, 1e-15);
+  EXPECT_NEAR(told(observer, "force_direction_error_rad").value(), std::atan2(0.3, 2.0), 1e-15);
 }
 
 TEST(ForceFidelity, CountsWhatLiesAcrossAnIdealForceAsArtefact) {
@@ -47,16 +46,17 @@ TEST(ForceFidelity, CountsWhatLiesAcrossAnIdealForceAsArtefact) {
     const double f = 2.0 * kDt * static_cast<double>(k);
     observer.on_step(row(k, {f, f, 0}, {f, f, 0}));
   }
-  EXPECT_NEAR(*observer.metrics().artefact_share(), std::sqrt(0.5), 1e-15);
+  EXPECT_NEAR(told(observer, "force_artefact_share").value(), std::sqrt(0.5), 1e-15);
 }
 
 TEST(ForceFidelity, WhereNothingIsRenderedTheNormalIsTheMeasuredForces) {
   const ReferenceForce measured = constant({0.3, 0, 2});
   ForceFidelityObserver observer(measured, kDt, 1);
   observer.on_step(row(0, Vec3::Zero(), Vec3::Zero()));
-  EXPECT_NEAR(observer.metrics().normal_rms, observer.metrics().reference_rms, 1e-15);
-  EXPECT_NEAR(observer.metrics().tangential_rms, 0.0, 1e-15);
-  EXPECT_EQ(observer.metrics().direction_rows, 0u);
+  EXPECT_NEAR(told(observer, "force_error_normal_rms_N").value(), told(observer, "reference_force_rms_N").value(),
+              1e-15);
+  EXPECT_NEAR(told(observer, "force_error_tangential_rms_N").value(), 0.0, 1e-15);
+  EXPECT_EQ(told(observer, "direction_rows"), 0.0);
 }
 
 TEST(ForceFidelity, PartsAddUpAndTurnWithTheWorld) {
@@ -75,11 +75,12 @@ TEST(ForceFidelity, PartsAddUpAndTurnWithTheWorld) {
     one.on_step(row(k, rendered, spring));
     other.on_step(row(k, turn * rendered, turn * spring));
   }
-  const ForceFidelity a = one.metrics(), b = other.metrics();
-  EXPECT_NEAR(std::hypot(a.normal_rms, a.tangential_rms), a.error_rms, 1e-14);
-  for (const auto part : {&ForceFidelity::error_rms, &ForceFidelity::normal_rms, &ForceFidelity::tangential_rms,
-                          &ForceFidelity::direction_error, &ForceFidelity::reference_rms})
-    EXPECT_NEAR(a.*part, b.*part, 1e-13);
+  EXPECT_NEAR(
+      std::hypot(told(one, "force_error_normal_rms_N").value(), told(one, "force_error_tangential_rms_N").value()),
+      told(one, "force_error_rms_N").value(), 1e-14);
+  for (const char* name : {"force_error_rms_N", "force_error_normal_rms_N", "force_error_tangential_rms_N",
+                           "force_direction_error_rad", "reference_force_rms_N"})
+    EXPECT_NEAR(told(one, name).value(), told(other, name).value(), 1e-13) << name;
 }
 
 TEST(ForceFidelity, LeavesOutRowsThatWereNotMeasured) {
@@ -89,8 +90,8 @@ TEST(ForceFidelity, LeavesOutRowsThatWereNotMeasured) {
     observer.on_step(row(k, Vec3::Zero(), Vec3::Zero()));
     EXPECT_EQ(observer.reference().has_value(), k >= 2 && k <= 4) << k;
   }
-  EXPECT_EQ(observer.metrics().rows, 3u);
-  EXPECT_NEAR(observer.metrics().reference_rms, std::sqrt((1.0 + 4.0 + 9.0) / 3.0), 1e-15);
+  EXPECT_EQ(told(observer, "rows"), 3.0);
+  EXPECT_NEAR(told(observer, "reference_force_rms_N").value(), std::sqrt((1.0 + 4.0 + 9.0) / 3.0), 1e-15);
 }
 
 /// A force that wanders like a hand's, with what is below 5 Hz alone.

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string>
 
 #include "sim/core/random.hpp"
 
@@ -59,24 +60,23 @@ TEST(IdealTrajectory, ErrorsAreActualMinusIdealInThePlaneOfTheTilt) {
   const double tilt = 0.6, azimuth = 2.0;
   const TipPlace ideal = *ideal_place(kBlock, kRadius, tilt);
   const Vec3 lean{std::cos(azimuth), std::sin(azimuth), 0.0}, aside{-lean.y(), lean.x(), 0.0};
-  IdealTrajectoryObserver observer(kBlock, {});
+  IdealTrajectoryObserver observer(kBlock);
   const Vec3 place = (ideal.lateral + 2e-5) * lean + 1e-4 * aside + (ideal.height - 3e-5) * Vec3::UnitZ();
   observer.on_step(row(place, tilt, azimuth, 1.0));
   ASSERT_TRUE(observer.error());
   EXPECT_NEAR(observer.error()->tilt, tilt, 1e-15);
-  const TrajectoryErrors e = observer.metrics().gentle;
-  EXPECT_EQ(e.rows, 1u);
-  EXPECT_NEAR(e.lateral_mean, 2e-5, 1e-17);
-  EXPECT_NEAR(e.height_mean, -3e-5, 1e-17) << "sunk in";
-  EXPECT_NEAR(e.height_rms, 3e-5, 1e-17);
-  EXPECT_GT(e.interpenetration_max, 0.0);
+  EXPECT_EQ(told(observer, "gentle.rows"), 1.0);
+  EXPECT_NEAR(told(observer, "gentle.lateral_error_mean_m").value(), 2e-5, 1e-17);
+  EXPECT_NEAR(told(observer, "gentle.height_error_mean_m").value(), -3e-5, 1e-17) << "sunk in";
+  EXPECT_NEAR(told(observer, "gentle.height_error_rms_m").value(), 3e-5, 1e-17);
+  EXPECT_GT(told(observer, "gentle.interpenetration_max_m"), 0.0);
 }
 
 TEST(IdealTrajectory, SplitsAtTwoNewtonsOfTheHand) {
-  IdealTrajectoryObserver observer(kBlock, {});
+  IdealTrajectoryObserver observer(kBlock);
   for (const double push : {0.0, 1.0, 1.999, 2.0, 5.0}) observer.on_step(row({0, 0, -0.001}, 0.6, 0.0, push));
-  EXPECT_EQ(observer.metrics().gentle.rows, 3u);
-  EXPECT_EQ(observer.metrics().firm.rows, 2u);
+  EXPECT_EQ(told(observer, "gentle.rows"), 3.0);
+  EXPECT_EQ(told(observer, "firm.rows"), 2.0);
 }
 
 TEST(IdealTrajectory, ComparesEachSoManyRows) {
@@ -87,33 +87,33 @@ TEST(IdealTrajectory, ComparesEachSoManyRows) {
     observer.on_step(r);
     EXPECT_EQ(observer.error().has_value(), step == 0 || step == 6) << step;
   }
-  EXPECT_EQ(observer.metrics().gentle.rows, 1u) << "row 0";
-  EXPECT_EQ(observer.metrics().firm.rows, 1u) << "row 6";
-  EXPECT_EQ(observer.metrics().rows_without_ideal, 1u) << "row 3";
+  EXPECT_EQ(told(observer, "gentle.rows"), 1.0) << "row 0";
+  EXPECT_EQ(told(observer, "firm.rows"), 1.0) << "row 6";
+  EXPECT_EQ(told(observer, "rows_without_ideal"), 1.0) << "row 3";
 }
 
 TEST(IdealTrajectory, LeavesOutTiltsWithoutContact) {
-  IdealTrajectoryObserver observer(kBlock, {});
+  IdealTrajectoryObserver observer(kBlock);
   observer.on_step(row({0, 0, -0.001}, 1.2, 0.0, 1.0));
   observer.on_step(row({0, 0, -0.001}, 0.0, 0.0, 1.0));
   EXPECT_FALSE(observer.error());
-  EXPECT_EQ(observer.metrics().rows_without_ideal, 2u);
-  EXPECT_EQ(observer.metrics().gentle.rows, 0u);
+  EXPECT_EQ(told(observer, "rows_without_ideal"), 2.0);
+  EXPECT_EQ(told(observer, "gentle.rows"), 0.0);
 }
 
 TEST(IdealTrajectory, MeansAndExtremesAreOverTheRows) {
   const double tilt = 0.5;
   const TipPlace ideal = *ideal_place(kBlock, kRadius, tilt);
-  IdealTrajectoryObserver observer(kBlock, {});
+  IdealTrajectoryObserver observer(kBlock);
   for (const double error : {-3e-5, 1e-5, 4e-5, -2e-5}) {
     observer.on_step(row({ideal.lateral, 0, ideal.height + error}, tilt, 0.0, 3.0));
   }
-  const TrajectoryErrors e = observer.metrics().firm;
-  EXPECT_NEAR(e.height_mean, 0.0, 1e-17);
-  EXPECT_NEAR(e.height_rms, 1e-5 * std::sqrt((9 + 1 + 16 + 4) / 4.0), 1e-17);
-  EXPECT_NEAR(e.height_min, -3e-5, 1e-17);
-  EXPECT_NEAR(e.height_max, 4e-5, 1e-17);
-  EXPECT_GE(e.interpenetration_max, e.interpenetration_mean);
+  const auto error = [&](const char* name) { return told(observer, std::string("firm.") + name).value(); };
+  EXPECT_NEAR(error("height_error_mean_m"), 0.0, 1e-17);
+  EXPECT_NEAR(error("height_error_rms_m"), 1e-5 * std::sqrt((9 + 1 + 16 + 4) / 4.0), 1e-17);
+  EXPECT_NEAR(error("height_error_min_m"), -3e-5, 1e-17);
+  EXPECT_NEAR(error("height_error_max_m"), 4e-5, 1e-17);
+  EXPECT_GE(error("interpenetration_max_m"), error("interpenetration_mean_m"));
 }
 
 constexpr double kRounding = 1e-11;  // what the header promises

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
+#include <vector>
 
 #include "results/allocations/allocations.hpp"
 #include "tests/support/fakes.hpp"
@@ -28,27 +28,27 @@ TEST(PassivityObserver, FindsTheLeastEnergyAndItsTime) {
   // E: 0, -1 (2 N over 0.5 m), -3, -2, -3
   const double forces[] = {2, 4, -2, 2, 7};
   for (std::uint64_t k = 0; k < std::size(forces); ++k) observer.on_step(row(k, forces[k]));
-  const PassivityMetrics m = *observer.metrics();
-  EXPECT_EQ(m.energy_min, -3.0);
-  EXPECT_EQ(m.time_of_min, 1.0);  // the first of two
-  EXPECT_EQ(m.energy_end, -3.0);
-  EXPECT_EQ(m.net_created(), 3.0);
+  EXPECT_EQ(told(observer, "energy_min_J"), -3.0);
+  EXPECT_EQ(told(observer, "time_of_min_s"), 1.0);  // the first of two
+  EXPECT_EQ(told(observer, "energy_end_J"), -3.0);
+  EXPECT_EQ(told(observer, "net_created_J"), 3.0);
 }
 
-TEST(PassivityObserver, WithoutRowsThereIsNothingToSay) {
-  EXPECT_FALSE(PassivityObserver(kDt).metrics());
-  EXPECT_FALSE(merged(std::vector<std::optional<PassivityMetrics>>{}));
-  EXPECT_FALSE(merged(std::vector<std::optional<PassivityMetrics>>{std::nullopt}));
-}
-
-TEST(PassivityObserver, OfSeveralRunsTheOneThatCreatedMostCounts) {
-  const auto all = merged(std::vector<std::optional<PassivityMetrics>>{PassivityMetrics{-1.0, 0.1, 5.0}, std::nullopt,
-                                                                       PassivityMetrics{-2.0, 0.2, 6.0},
-                                                                       PassivityMetrics{-2.0, 0.3, 7.0}});
-  ASSERT_TRUE(all);
-  EXPECT_EQ(all->energy_min, -2.0);
-  EXPECT_EQ(all->time_of_min, 0.2);
-  EXPECT_EQ(all->energy_end, 6.0);
+TEST(PassivityObserver, OfSeveralTrialsTheOneThatCreatedMostCounts) {
+  SimulationConfig config;
+  config.dt = kDt;
+  const SimulationParts parts = test::fake_parts([](const ToolState&) { return Vec3::Zero(); });
+  PassivityObserver observer;
+  EXPECT_FALSE(told(observer, "energy_min_J"));
+  // Without rows; least energies of -1, -3 and -3 J, which end with -1, -2 and -3 J.
+  for (const std::vector<double>& forces : std::vector<std::vector<double>>{{}, {2, 0}, {4, 2, -2, 0}, {6, 0}}) {
+    observer.begin({config, parts});
+    for (std::uint64_t k = 0; k < forces.size(); ++k) observer.on_step(row(k, forces[k]));
+  }
+  EXPECT_EQ(told(observer, "energy_min_J"), -3.0);
+  EXPECT_EQ(told(observer, "time_of_min_s"), 1.0);
+  EXPECT_EQ(told(observer, "energy_end_J"), -2.0);
+  EXPECT_EQ(observer.net_created(), 3.0) << "of the last trial";
 }
 
 /// A spring of negative stiffness drives the tool away from its middle: all its kinetic energy is from nothing.
@@ -61,9 +61,8 @@ TEST(PassivityObserver, ANegativeSpringCreatesTheKineticEnergy) {
                         {&observer});
   simulation.run();
   // The run moves the tool on after the last row; the row's velocity is that before.
-  const PassivityMetrics m = *observer.metrics();
-  EXPECT_GT(m.net_created(), 1e-3);
-  EXPECT_EQ(m.net_created(), -m.energy_end);
+  EXPECT_GT(observer.net_created(), 1e-3);
+  EXPECT_EQ(observer.net_created(), -observer.energy().value());
 }
 
 TEST(PassivityObserver, WantsSpringsOnlyAndAllocatesNothing) {

@@ -3,6 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
+
+#include "sim/loop/simulation.hpp"
 
 namespace hapbench::target_metrics_test {
 namespace {
@@ -49,12 +52,32 @@ TEST(PlaceMetrics, PlacesAreKeptApart) {
   EXPECT_TRUE(place_metrics({}).empty());
 }
 
+/// A hand with a task, whose trial can begin.
+class TaskHand final : public Hand {
+ public:
+  explicit TaskHand(const TargetTask& task) : task_(task) {}
+  void reset() noexcept override {}
+  Vec3 force(double, const HandView&) noexcept override { return Vec3::Zero(); }
+  const TargetTask* task() const noexcept override { return &task_; }
+
+ private:
+  const TargetTask& task_;
+};
+
+void begin(TargetMetricsObserver& observer, std::size_t subject, std::size_t trial, const TargetTask& task) {
+  const SimulationConfig config;
+  SimulationParts parts;
+  parts.hand = std::make_unique<TaskHand>(task);
+  observer.begin({config, parts, nullptr, subject, trial});
+}
+
 TEST(TargetMetrics, ALostTrialFailsTheTargetsThatAreLeft) {
   TargetRules rules;
   rules.places = {Vec3(0, 0, 0), Vec3(1, 0, 0)};
   rules.targets_per_place = 2;
   TargetTask task(rules, 1);
-  TargetMetricsObserver observer(4, 5, task);
+  TargetMetricsObserver observer;
+  begin(observer, 4, 5, task);
   StepRecord record;
   record.task = &task;
   record.tool.pose.position = rules.places[task.place()];
@@ -82,7 +105,8 @@ TEST(TargetMetrics, ForceAndSpeedMayBeLoggedWithinAnotherDistanceThanTheToleranc
   rules.hold = 10.0;
   rules.time_limit = 4.0;
   TargetTask task(rules, 1);
-  TargetMetricsObserver observer(0, 0, task);
+  TargetMetricsObserver observer;
+  begin(observer, 0, 0, task);
   StepRecord record;
   record.task = &task;
   for (const double x : {0.0, 0.0002, 0.0004, 0.0}) {
@@ -103,7 +127,8 @@ TEST(TargetMetrics, MeansAreOverTheRowsOnTheTarget) {
   rules.targets_per_place = 2;
   rules.hold = 3.0;
   TargetTask task(rules, 1);
-  TargetMetricsObserver observer(4, 5, task);
+  TargetMetricsObserver observer;
+  begin(observer, 4, 5, task);
   StepRecord record;
   record.task = &task;
   const auto step = [&](double x, double force, double speed) {
@@ -132,6 +157,15 @@ TEST(TargetMetrics, MeansAreOverTheRowsOnTheTarget) {
   step(0.0, 2.0, 0.0);
   ASSERT_EQ(observer.rows().size(), 2u);
   EXPECT_EQ(observer.rows()[1].target, 1u);
+  // Rows on a target that has not ended do not count in the next trial, which adds rows of its own.
+  TargetTask next(rules, 2);
+  record.task = &next;
+  begin(observer, 4, 6, next);
+  observer.fail_rest();
+  ASSERT_EQ(observer.rows().size(), 4u);
+  EXPECT_EQ(observer.rows()[2].trial, 6u);
+  EXPECT_EQ(observer.rows()[2].target, 0u);
+  EXPECT_EQ(told(observer, "0.success_rate.mean"), 0.5);
 }
 
 }  // namespace

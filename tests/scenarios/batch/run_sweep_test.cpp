@@ -100,7 +100,7 @@ TEST(SweepPlan, HasExactlyTheMetricsOfItsRuns) {
     const bool has_targets = json.contains("hand") && json["hand"]["type"] == "tracking";  // which take their time
     const SweepPlan plan = plan_of(json, {has_targets ? "seed=1" : "time.steps=2"});
     std::vector<std::string> names;
-    for (const Metric& metric : metric_list(run_scenario(plan.cases.load(0), std::nullopt, false).summary))
+    for (const Metric& metric : run_scenario(plan.cases.load(0), std::nullopt, false).metrics)
       names.push_back(metric.name);
     EXPECT_EQ(plan.metrics, names) << name;
     for (const std::string& bounded : plan.bounded)

@@ -51,12 +51,12 @@ TEST_F(NamedFilesOfAScenario, AreReadOnce) {
   for (const char* environment : {"mesh", "point_shell"}) {
     const LoadedScenario loaded = load(environment, kStroke);
     check_named_files(loaded);
-    const RunReport report = run_scenario(loaded, directory_ / "out", false);
+    const Result report = run_scenario(loaded, directory_ / "out", false);
     for (const char* name : {"cube.obj", "shell.csv", "stroke.csv"})
       fs::rename(directory_ / name, directory_ / (std::string(name) + ".gone"));
-    const RunReport again = run_scenario(loaded, directory_ / "again", false);
-    EXPECT_EQ(again.summary.metrics.state_hash, report.summary.metrics.state_hash);
-    EXPECT_EQ(again.summary.scenario_hash, report.summary.scenario_hash);
+    const Result again = run_scenario(loaded, directory_ / "again", false);
+    EXPECT_EQ(again.state_hash, report.state_hash);
+    EXPECT_EQ(again.scenario_hash, report.scenario_hash);
     EXPECT_THROW(run_scenario(load(environment, kStroke), {}, false), InputError);
     for (const char* name : {"cube.obj", "shell.csv", "stroke.csv"})
       fs::rename(directory_ / (std::string(name) + ".gone"), directory_ / name);

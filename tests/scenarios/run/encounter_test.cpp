@@ -21,21 +21,19 @@ namespace {
 class EncounterWithBlock : public testing::Test {
  protected:
   EncounterWithBlock() {
-    metrics.rows = 1000;
-    metrics.steps_in_contact = 49;
-    metrics.last_contact = 0.249;
+    contact = {.rows = 1000, .in_contact = 49, .last = 0.249};
     approach = {0.0, 0.1, 0.0};
     scenario.environment = MeshEnvironment{"bear.off", 0.001, {}, {}};
     scenario.hand = ForceHandFields{};
     scenario.time = {0.0005, 1000, {}};
   }
-  Outcome outcome() const { return outcome_of(scenario, {metrics, approach, box, tool}); }
+  Outcome outcome() const { return outcome_of(scenario, {contact, approach, box, tool}); }
   std::string warning() const {
-    return warning_about(scenario, outcome(), {metrics, approach, box, tool}).value_or("no warning");
+    return warning_about(scenario, outcome(), {contact, approach, box, tool}).value_or("no warning");
   }
 
   Scenario scenario;
-  Metrics metrics;
+  TrialContact contact;
   Approach approach;
   Cylinder tool;
   Box box{Vec3(0, 0, -0.007), Vec3(0.006, 0.006, 0)};
@@ -63,19 +61,19 @@ TEST_F(EncounterWithBlock, AScriptMayLeadTheToolAway) {
 }
 
 TEST_F(EncounterWithBlock, NoContactAsksForTheScaleWhereSizesAreOutOfProportion) {
-  metrics.steps_in_contact = 0;
+  contact.in_contact = 0;
   approach.closest = 0.0079;
   EXPECT_EQ(outcome(), Outcome::no_contact);
   EXPECT_EQ(warning().find("scale"), std::string::npos);
   for (const double factor : {1e-3, 1e3}) {
     const Box other{factor * box.min, factor * box.max};
-    const auto text = warning_about(scenario, Outcome::no_contact, {metrics, approach, other, tool});
+    const auto text = warning_about(scenario, Outcome::no_contact, {contact, approach, other, tool});
     EXPECT_NE(text.value_or("").find("; is environment.scale right?"), std::string::npos) << factor;
   }
 }
 
 TEST_F(EncounterWithBlock, NoContactTellsWhichHandNeverReaches) {
-  metrics.steps_in_contact = 0;
+  contact.in_contact = 0;
   approach.closest = 0.002;
   ImpedanceHandFields hand;
   hand.target[2] = Profile(0.003);
@@ -86,7 +84,7 @@ TEST_F(EncounterWithBlock, NoContactTellsWhichHandNeverReaches) {
 }
 
 TEST_F(EncounterWithBlock, NoContactOfAStrokeInMillimetresAsksForMetres) {
-  metrics.steps_in_contact = 0;
+  contact.in_contact = 0;
   approach.closest = 1.5;
   scenario.motion.position = RecordedPosition{"stroke.csv"};
   EXPECT_NE(warning().find("; are the positions of motion.position.file in metres?"), std::string::npos) << warning();
@@ -94,10 +92,10 @@ TEST_F(EncounterWithBlock, NoContactOfAStrokeInMillimetresAsksForMetres) {
 
 using Sentences = std::vector<std::string>;
 
-RunSummary run_with_force(double force) {
-  RunSummary run;
-  run.metrics.rows = 10;
-  run.metrics.force_max = force;
+Result run_with_force(double force) {
+  Result run;
+  run.metrics = metrics_without_values();
+  run.metrics.front().value = force;
   return run;
 }
 
@@ -108,10 +106,10 @@ ExpectFields force_between(std::optional<double> min, std::optional<double> max)
 }
 
 TEST(Expectation, IsMetByAnyOfItsOutcomes) {
-  RunSummary run = run_with_force(0.0);
+  Result run = run_with_force(0.0);
   ExpectFields expect;
   for (const Outcome outcome : {Outcome::completes, Outcome::leaves_hole, Outcome::tool_horizontal}) {
-    run.result.outcome = outcome;
+    run.end.outcome = outcome;
     EXPECT_EQ(unmet_expectations(expect, run), Sentences{});
   }
   expect.outcomes = {Outcome::diverges};
@@ -119,9 +117,9 @@ TEST(Expectation, IsMetByAnyOfItsOutcomes) {
 }
 
 TEST(Expectation, OfNoDivergenceSaysWhatDiverged) {
-  RunSummary run = run_with_force(0.0);
-  run.result.outcome = Outcome::diverges;
-  run.result.divergence = {17, 0.0085, "velocity", 2e6, 1e6};
+  Result run = run_with_force(0.0);
+  run.end.outcome = Outcome::diverges;
+  run.end.divergence = {17, 0.0085, "velocity", 2e6, 1e6};
   EXPECT_EQ(
       unmet_expectations({}, run),
       Sentences{"outcome is \"diverges\" (velocity reached 2e+06 at step 17, beyond 1e+06); expected \"completes\", "
@@ -255,16 +253,16 @@ TEST(Drag, OverAMeshKeepsContactAndAllocatesNothing) {
   json["initial"]["position_m"] = {-0.002, 0, 0.0057};
   json["tool"] = {{"diameter_m", 0.001}, {"tip", "round"}};
   json["hand"]["tilt_rad"] = 0.3;
-  const RunReport report = run_scenario(read_scenario(json, HAPBENCH_TEST_DATA), std::nullopt, false);
-  EXPECT_EQ(report.summary.work.allocations, 0u);
-  EXPECT_EQ(report.summary.result.outcome, Outcome::completes);
+  const Result report = run_scenario(read_scenario(json, HAPBENCH_TEST_DATA), std::nullopt, false);
+  EXPECT_EQ(report.work.allocations, 0u);
+  EXPECT_EQ(report.end.outcome, Outcome::completes);
   // Lowered at 20 mm/s it is on the cube after a tenth of a second.
-  EXPECT_GT(report.summary.metrics.steps_in_contact, 4500u);
+  EXPECT_GT(number_of(report.metrics, "steps_in_contact"), 4500.0);
 }
 
-std::string warnings_of(const RunReport& report) {
+std::string warnings_of(const Result& report) {
   std::string text;
-  for (const std::string& warning : report.summary.warnings) text += warning + "\n";
+  for (const std::string& warning : report.warnings) text += warning + "\n";
   return text;
 }
 
@@ -278,8 +276,8 @@ TEST(Drag, TellsOfAToolThatStandsStill) {
   json["rendering"]["friction"] = {{"mu_s_N_s_per_m", 1e5}, {"mu_f_s_per_m", 0}};
   json["integrator"] = {{"type", "implicit_euler"}};
   json["tool"] = {{"diameter_m", 0.0005}};
-  const RunReport report = run_scenario(read_scenario(json, ""), std::nullopt, false);
-  EXPECT_EQ(report.summary.result.outcome, Outcome::not_dragged);
+  const Result report = run_scenario(read_scenario(json, ""), std::nullopt, false);
+  EXPECT_EQ(report.end.outcome, Outcome::not_dragged);
   EXPECT_NE(warnings_of(report).find("the tool stood still since"), std::string::npos) << warnings_of(report);
 }
 
@@ -297,8 +295,8 @@ TEST(Drag, WithoutAWayIsNotDraggedAndToldOfBeforeItRuns) {
     const std::vector<std::string> before = scene_facts(loaded).warnings;
     ASSERT_EQ(before.size(), 1u) << remedy;
     EXPECT_NE(before[0].find(remedy), std::string::npos) << before[0];
-    const RunReport report = run_scenario(loaded, std::nullopt, false);
-    EXPECT_EQ(report.summary.result.outcome, Outcome::not_dragged);
+    const Result report = run_scenario(loaded, std::nullopt, false);
+    EXPECT_EQ(report.end.outcome, Outcome::not_dragged);
     EXPECT_EQ(report.unmet.size(), 1u);
     EXPECT_NE(warnings_of(report).find(remedy), std::string::npos) << warnings_of(report);
   }
@@ -310,9 +308,9 @@ TEST(Drag, TellsOfAToolThatWentThrough) {
   json["hand"]["force_N"] = 50;
   json["rendering"]["stiffness_N_per_m"] = 100;
   json["tool"] = {{"diameter_m", 0.0005}};
-  const RunReport report = run_scenario(read_scenario(json, ""), std::nullopt, false);
-  EXPECT_EQ(report.summary.result.outcome, Outcome::went_through);
-  ASSERT_EQ(report.summary.warnings.size(), 1u) << warnings_of(report);
+  const Result report = run_scenario(read_scenario(json, ""), std::nullopt, false);
+  EXPECT_EQ(report.end.outcome, Outcome::went_through);
+  ASSERT_EQ(report.warnings.size(), 1u) << warnings_of(report);
   EXPECT_NE(warnings_of(report).find("the tool went through the surface: its tip centre was more than its half width"),
             std::string::npos)
       << warnings_of(report);
@@ -322,14 +320,13 @@ TEST(Drag, TellsOfAToolThatWentThrough) {
 /// while the tip centre and the core behind it have always been in the hole.
 TEST(Outcome, OfAShankThatIsInside) {
   const LoadedScenario loaded = load_scenario(find_scenario("pure_rotation"), {});
-  const RunReport report = run_scenario(loaded, std::nullopt, false);
-  EXPECT_EQ(report.summary.result.outcome, Outcome::went_through);
+  const Result report = run_scenario(loaded, std::nullopt, false);
+  EXPECT_EQ(report.end.outcome, Outcome::went_through);
   EXPECT_TRUE(report.unmet.empty());
   // By 0.2 rad the shank only presses on the rim.
   const std::vector<std::string> half = {"motion.orientation.tilt_rad=0.2", "expect={}"};
-  EXPECT_EQ(
-      run_scenario(load_scenario(find_scenario("pure_rotation"), half), std::nullopt, false).summary.result.outcome,
-      Outcome::completes);
+  EXPECT_EQ(run_scenario(load_scenario(find_scenario("pure_rotation"), half), std::nullopt, false).end.outcome,
+            Outcome::completes);
   EXPECT_NE(warnings_of(report).find("a part of it was 0.86"), std::string::npos) << warnings_of(report);
 }
 

@@ -94,7 +94,7 @@ void expect_torques(std::string_view algorithm, const Place& place) {
   const TemporaryDirectory dir;
   const LoadedScenario loaded = read_scenario(pressed_drill(place, algorithm), ".");
   const RenderingConfig& rendering = loaded.scenario.rendering;
-  const RunReport report = run_scenario(loaded, dir.path(), false);
+  const Result report = run_scenario(loaded, dir.path(), false);
   const Table rows(dir / "trajectory.csv"), contacts(dir / "contacts.csv");
   std::size_t next = 0;
   bool is_known = std::find(std::begin(kWeighted), std::end(kWeighted), algorithm) != std::end(kWeighted);
@@ -136,8 +136,8 @@ void expect_torques(std::string_view algorithm, const Place& place) {
   }
   EXPECT_EQ(next, contacts.rows());
   EXPECT_GT(largest, 1e-5);
-  EXPECT_NEAR(metric_of(report.summary, "torque.lost_mean_Nm").value(), sum / in_contact, 1e-12 * largest);
-  EXPECT_NEAR(metric_of(report.summary, "torque.lost_max_Nm").value(), largest, 1e-12 * largest);
+  EXPECT_NEAR(number_of(report.metrics, "torque.lost_mean_Nm").value(), sum / in_contact, 1e-12 * largest);
+  EXPECT_NEAR(number_of(report.metrics, "torque.lost_max_Nm").value(), largest, 1e-12 * largest);
 }
 
 TEST(LostTorque, IsTheSumOverTheContactsOfArmTimesShareForEveryAlgorithm) {

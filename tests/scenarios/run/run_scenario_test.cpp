@@ -33,7 +33,7 @@ LoadedScenario study(const char* record = R"({"trajectory": false})") {
 }
 
 TEST(Trials, EverySubjectDoesEveryTrialOnce) {
-  const RunReport report = run_scenario(study(), std::nullopt, false);
+  const Result report = run_scenario(study(), std::nullopt, false);
   ASSERT_EQ(report.targets.size(), 8u);
   std::set<std::pair<std::size_t, std::size_t>> trials;
   for (const TargetRow& row : report.targets) trials.insert({row.subject, row.trial});
@@ -41,29 +41,26 @@ TEST(Trials, EverySubjectDoesEveryTrialOnce) {
   const std::vector<PlaceMetrics> places = place_metrics(report.targets);
   ASSERT_EQ(places.size(), 2u);
   EXPECT_EQ(places[0].success_rate.subjects, 2u);
-  EXPECT_EQ(report.summary.result.outcome, Outcome::completes);
+  EXPECT_EQ(report.end.outcome, Outcome::completes);
 }
 
 TEST(Trials, EveryStepOfEveryTrialIsTimed) {
-  const RunReport report = run_scenario(study(R"({"trajectory": false, "timing": true})"), std::nullopt, false);
+  const Result report = run_scenario(study(R"({"trajectory": false, "timing": true})"), std::nullopt, false);
   ASSERT_TRUE(report.timing.latency);
-  EXPECT_EQ(report.timing.latency->steps, report.summary.result.rows);
+  EXPECT_EQ(report.timing.latency->steps, report.end.rows);
   EXPECT_FALSE(run_scenario(study(), std::nullopt, false).timing.latency);
 }
 
 TEST(Trials, TrialsDifferAndAnotherRunRepeatsThem) {
-  const RunReport first = run_scenario(study(), std::nullopt, false),
-                  again = run_scenario(study(), std::nullopt, false);
-  EXPECT_EQ(first.summary.metrics.state_hash, again.summary.metrics.state_hash);
+  const Result first = run_scenario(study(), std::nullopt, false), again = run_scenario(study(), std::nullopt, false);
+  EXPECT_EQ(first.state_hash, again.state_hash);
   std::set<double> forces;
   for (const TargetRow& row : first.targets) forces.insert(row.model_force);
   EXPECT_EQ(forces.size(), first.targets.size()) << "no two targets were met alike";
 }
 
 TEST(Trials, AStepAllocatesNothing) {
-  EXPECT_EQ(
-      run_scenario(study(R"({"trajectory": false, "energy": true})"), std::nullopt, false).summary.work.allocations,
-      0u);
+  EXPECT_EQ(run_scenario(study(R"({"trajectory": false, "energy": true})"), std::nullopt, false).work.allocations, 0u);
 }
 
 TEST(Trials, RecordsOfSeveralTrialsLieInDirectoriesOfTheirOwn) {
@@ -128,12 +125,12 @@ TEST(Divergence, OfTheHandleEndsTheRun) {
     "hand": {"type": "impedance", "stiffness_N_per_m": 500, "damping_N_s_per_m": 50,
              "target": {"x_m": 0, "y_m": 0, "z_m": -0.001}}
   })");
-  const RunReport run = run_scenario(read_scenario(scenario, "."), std::nullopt, false);
-  EXPECT_EQ(run.summary.result.outcome, Outcome::diverges);
-  const std::string quantity = run.summary.result.divergence.quantity;
+  const Result run = run_scenario(read_scenario(scenario, "."), std::nullopt, false);
+  EXPECT_EQ(run.end.outcome, Outcome::diverges);
+  const std::string quantity = run.end.divergence.quantity;
   EXPECT_TRUE(quantity == "handle position" || quantity == "handle velocity" || quantity == "measured force")
       << quantity;
-  EXPECT_GT(run.summary.result.divergence.magnitude, run.summary.result.divergence.bound);
+  EXPECT_GT(run.end.divergence.magnitude, run.end.divergence.bound);
 }
 
 /// With SIGINT as a shell in the foreground leaves it; behind "&" it is ignored, and stays so.

@@ -131,9 +131,9 @@ TEST(ScenarioTool, RefusesToBeTakenForACylinder) {
 TEST(ScenarioTool, WarnsThatTheProxyHasNoGuaranteeWhereItIsNotConvex) {
   for (const auto& [fields, algorithm, warnings] :
        {std::tuple{kHourglass, "proxy", 1}, std::tuple{kHourglass, "mean", 0}, std::tuple{kCube, "proxy", 0}}) {
-    const RunReport report = run_scenario(loaded(scene(fields, algorithm)), std::nullopt, false);
+    const Result report = run_scenario(loaded(scene(fields, algorithm)), std::nullopt, false);
     const auto about_that = [](const std::string& warning) { return warning.find("the tool is not convex") == 0; };
-    const auto& all = report.summary.warnings;
+    const auto& all = report.warnings;
     EXPECT_EQ(std::count_if(all.begin(), all.end(), about_that), warnings) << fields << " " << algorithm;
   }
 }
@@ -143,18 +143,18 @@ TEST(ScenarioTool, OfAMeshAsksForItsScaleWhereItIsOutOfProportion) {
     Json json = scene(kCube);
     json["tool"]["scale"] = Json::parse(scale);
     json["tool"]["grid_m"] = nullptr;
-    const RunReport report = run_scenario(loaded(json), std::nullopt, false);
+    const Result report = run_scenario(loaded(json), std::nullopt, false);
     const auto asks = [](const std::string& warning) {
       return warning.starts_with("the tool is ") &&
              warning.ends_with("are tool.scale and the environment's size right?");
     };
-    EXPECT_EQ(std::count_if(report.summary.warnings.begin(), report.summary.warnings.end(), asks), warnings) << scale;
+    EXPECT_EQ(std::count_if(report.warnings.begin(), report.warnings.end(), asks), warnings) << scale;
   }
 }
 
 TEST(ScenarioTool, IsInTheSummaryUnlessItIsACylinder) {
-  EXPECT_FALSE(run_scenario(loaded(scene("{}")), std::nullopt, false).summary.tool);
-  const auto tool = run_scenario(loaded(scene(kHourglass)), std::nullopt, false).summary.tool;
+  EXPECT_FALSE(run_scenario(loaded(scene("{}")), std::nullopt, false).tool);
+  const auto tool = run_scenario(loaded(scene(kHourglass)), std::nullopt, false).tool;
   ASSERT_TRUE(tool);
   EXPECT_EQ(tool->outline, tool_of(kHourglass)->outline());
   EXPECT_EQ(tool->reach, tool_of(kHourglass)->reach());

@@ -8,10 +8,13 @@
 #include <nlohmann/json.hpp>
 #include <tuple>
 
+#include "results/observe/inside.hpp"
+#include "results/observe/metrics.hpp"
 #include "results/summary/outcome_names.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/description/load_scenario.hpp"
 #include "scenarios/description/parts.hpp"
+#include "scenarios/run/assemble.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/studies/stability/judged_run.hpp"
 #include "tests/support/meshes.hpp"
@@ -314,10 +317,20 @@ void expect_true_depths(const Case& c, const MemoryTable& rows, std::optional<do
   }
 }
 
+/// How deep the tool is in a run, from every row or, with 0, from those that a run without a record looks at.
+InsideDepths depths_of(const LoadedScenario& loaded, std::uint64_t every) {
+  const Scenario& scenario = loaded.scenario;
+  SimulationParts parts = assemble(scenario, loaded.files, make_shell(scenario, loaded.files), {});
+  const SimulationConfig config = simulation_config(scenario);
+  MetricsObserver metrics(scenario.time.step, {.settling = scenario.metrics});
+  InsideObserver inside(parts.tool, make_solid(scenario, loaded.files), &metrics, every, config.steps);
+  Simulation(config, std::move(parts), {&metrics, &inside}).run();
+  return inside.depths();
+}
+
 /// Without a record few rows are looked at.
-void expect_seen_without_record(LoadedScenario loaded, const InsideMetrics& exact) {
-  loaded.scenario.record.inside = false;
-  const InsideMetrics few = *run_scenario(loaded, std::nullopt, false).summary.metrics.inside;
+void expect_seen_without_record(const LoadedScenario& loaded) {
+  const InsideDepths few = depths_of(loaded, 0), exact = depths_of(loaded, 1);
   EXPECT_EQ(few.max.has_value(), exact.max.has_value());
   EXPECT_EQ(few.centre_inside, exact.centre_inside);
   if (!exact.max) return;
@@ -335,15 +348,15 @@ TEST_F(ScenesMadeToFool, GetTheirTrueOutcomeAndDepthAlsoWithoutARecord) {
     SCOPED_TRACE(c.name);
     const LoadedScenario loaded = scene(c);
     RunTables tables;
-    const RunReport report = run_scenario(loaded, std::nullopt, false, &tables);
-    const Outcome outcome = report.summary.result.outcome;
+    const Result report = run_scenario(loaded, std::nullopt, false, &tables);
+    const Outcome outcome = report.end.outcome;
     EXPECT_NE(std::find(c.outcomes.begin(), c.outcomes.end(), outcome), c.outcomes.end())
-        << outcome_name(outcome) << (report.summary.warnings.empty() ? "" : ": " + report.summary.warnings[0]);
+        << outcome_name(outcome) << (report.warnings.empty() ? "" : ": " + report.warnings[0]);
     EXPECT_EQ(report.unmet.empty(), outcome == Outcome::completes);
-    EXPECT_TRUE(outcome == Outcome::diverges || report.summary.warnings.empty() == (outcome == Outcome::completes));
-    const InsideMetrics& inside = *report.summary.metrics.inside;
-    if (c.depth) expect_true_depths(c, tables.trials[0].at("trajectory.csv"), inside.max);
-    expect_seen_without_record(loaded, inside);
+    EXPECT_TRUE(outcome == Outcome::diverges || report.warnings.empty() == (outcome == Outcome::completes));
+    if (c.depth)
+      expect_true_depths(c, tables.trials[0].at("trajectory.csv"), number_of(report.metrics, "inside_max_m"));
+    expect_seen_without_record(loaded);
   }
 }
 
@@ -351,11 +364,8 @@ TEST_F(ScenesMadeToFool, GetTheirTrueOutcomeAndDepthAlsoWithoutARecord) {
 /// see.
 TEST(SettledDepth, OfEveryRowIsKnownToTheTolerance) {
   const std::vector<std::string> changes = {"time.steps=400", "expect={}"};
-  LoadedScenario loaded = load_scenario(find_scenario("task3_spin_signed_distance"), changes);
-  const InsideMetrics few = *run_scenario(loaded, std::nullopt, false).summary.metrics.inside;
-  loaded.scenario.record.inside = true;
-  RunTables tables;
-  const InsideMetrics all = *run_scenario(loaded, std::nullopt, false, &tables).summary.metrics.inside;
+  const LoadedScenario loaded = load_scenario(find_scenario("task3_spin_signed_distance"), changes);
+  const InsideDepths few = depths_of(loaded, 0), all = depths_of(loaded, 1);
   const double half_width = make_tool(loaded.scenario)->half_width();
   const double least = *std::min_element(all.settled.begin(), all.settled.end());
   ASSERT_GT(least, 1.5 * InsideSearch::kTolerance * half_width);

@@ -167,11 +167,11 @@ TEST(ObservedOrder, IsRarelyFoundInNoise) {
 
 struct Study {
   LevelSweep levels;
-  std::vector<RunReport> runs;
+  std::vector<Result> runs;
 
   std::vector<LevelResult> levels_of(const std::string& metric) const {
     std::vector<LevelResult> results;
-    for (std::size_t i = 0; i < runs.size(); ++i) results.push_back(level_result(levels, i, runs[i].summary, metric));
+    for (std::size_t i = 0; i < runs.size(); ++i) results.push_back(level_result(levels, i, runs[i], metric));
     return results;
   }
   Convergence of(const std::string& metric) const { return convergence_of(levels, levels_of(metric)); }
@@ -242,7 +242,7 @@ TEST(Converge, MeasuresAtTheTimesOfTheCoarsestRows) {
     for (const LevelResult& level : levels) EXPECT_NEAR(*level.result, first, 1e-12 * first) << metric;
     EXPECT_NE(study.of(metric).reason.find("rounding"), std::string::npos) << study.of(metric).reason;
   }
-  EXPECT_EQ(study.runs[4].summary.result.rows, 16u * kSteps);
+  EXPECT_EQ(study.runs[4].end.rows, 16u * kSteps);
 }
 
 TEST(Converge, KeepsTheLengthOfDelays) {
@@ -263,7 +263,7 @@ TEST(Converge, HasNoNumberWhereARunHasNone) {
   Json scene = spring(0.0, "leapfrog");
   scene["time"] = {{"step_s", 0.064}, {"steps", 400}};
   const Study study = studied(scene);
-  for (const std::size_t i : {0u, 1u}) EXPECT_EQ(study.runs[i].summary.result.outcome, Outcome::diverges);
+  for (const std::size_t i : {0u, 1u}) EXPECT_EQ(study.runs[i].end.outcome, Outcome::diverges);
   EXPECT_FALSE(study.levels_of("force_max_N")[0].result);
   const Convergence c = study.of("force_max_N");
   EXPECT_FALSE(c.errors[0] || c.errors[1]);

@@ -91,13 +91,13 @@ class FlatTip : public testing::Test {
   Found found(const std::vector<std::string>& algorithms, const std::string& metric) const {
     test::write_plainly(directory_ / "scene.json", scene_.dump());
     const Comparison comparison = planned({.scenarios = {directory_ / "scene.json"}, .algorithms = algorithms});
-    const std::vector<RunReport> reports = run_all(comparison.scenes, {});
+    const std::vector<Result> reports = run_all(comparison.scenes, {});
     const FinerRuns finer(comparison, reports, {});
     Found found;
     found.refined = finer.refined(0);
     for (std::size_t i = 0; i < reports.size(); ++i) {
       found.known.push_back(finer.known_error(i, metric));
-      found.numbers.push_back({number_of(value_of(metric_list(reports[i].summary), metric)), found.known.back().sum()});
+      found.numbers.push_back({number_of(reports[i].metrics, metric), found.known.back().sum()});
     }
     found.says = held_text(found.numbers, algorithms, kSame);
     return found;

@@ -206,7 +206,7 @@ TEST(FieldLimit, HasTwoEnds) {
     Words at = pressed;
     at.emplace_back("rendering.algorithm=mean");
     at.push_back("rendering.stiffness_N_per_m=" + std::to_string(stiffness));
-    return metric_of(run_scenario(load_scenario(scenario, at), std::nullopt, false).summary, "inside_settled_m")
+    return number_of(run_scenario(load_scenario(scenario, at), std::nullopt, false).metrics, "inside_settled_m")
         .value();
   };
   EXPECT_LE(settled_at(*bounded.other_value), 1e-4);

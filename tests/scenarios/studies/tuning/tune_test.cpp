@@ -149,8 +149,8 @@ TEST(Tune, KeepsLimitsAndSaysWhatBinds) {
   EXPECT_LE(quiet.choice->worst.at("force_rms_above_30Hz_N"), 0.7 * buzz);
   EXPECT_LE(quiet.choice->stiffness, 1.01 * free.choice->stiffness);
   // What the choice is said to give is what a run gives.
-  const RunSummary run = run_scenario(load_scenario(asked.scenario, quiet.overrides), std::nullopt, false).summary;
-  for (const auto& [name, value] : quiet.choice->metrics) EXPECT_EQ(metric_of(run, name), value) << name;
+  const Result run = run_scenario(load_scenario(asked.scenario, quiet.overrides), std::nullopt, false);
+  for (const auto& [name, value] : quiet.choice->metrics) EXPECT_EQ(number_of(run.metrics, name), value) << name;
 }
 
 TEST(Tune, SaysWhichLimitToRelaxAndByHowMuch) {

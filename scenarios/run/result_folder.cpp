@@ -1,0 +1,102 @@
+#include "scenarios/run/result_folder.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <nlohmann/json.hpp>
+
+#include "results/io/columns.hpp"
+#include "results/io/json_text.hpp"
+
+namespace hapbench {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kTrialDirectory = "subject_";
+
+void create(NewDirectories& directories, const fs::path& directory) {
+  std::error_code error;
+  directories.create(directory, error);
+  if (error) throw IoError("create", directory, error);
+}
+
+std::vector<fs::path> trial_directories(const fs::path& directory) {
+  std::error_code ignored;
+  std::vector<fs::path> found;
+  for (const auto& entry : fs::directory_iterator(directory, ignored)) {
+    if (entry.is_directory(ignored) && entry.path().filename().string().starts_with(kTrialDirectory))
+      found.push_back(entry.path());
+  }
+  return found;
+}
+
+/// Removes optional files that an earlier run with other settings may have left: they would not belong to this run.
+void remove_earlier_run(const fs::path& directory, FileSet& files) {
+  for (const char* name : {"summary.json", "columns.json", kTargetTable.file, "timing.json"})
+    files.remove(directory / name);
+  for (const ResultTable& table : record_tables()) files.remove(directory / table.file);
+  for (const fs::path& trial : trial_directories(directory)) remove_earlier_run(trial, files);
+}
+
+/// Those that this run has not written to, unless somebody keeps other files there.
+void remove_empty_trials(const fs::path& directory) {
+  std::error_code ignored;
+  for (const fs::path& trial : trial_directories(directory)) fs::remove(trial, ignored);
+}
+
+}  // namespace
+
+ResultFolder::ResultFolder(const fs::path& directory) : directory_(directory) {
+  create(directories_, directory);
+  descriptor_ = ::open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor_ < 0 || ::flock(descriptor_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
+  ::close(descriptor_);
+  throw IoError("write, because another run writes to", directory,
+                std::make_error_code(std::errc::device_or_resource_busy));
+}
+
+ResultFolder::~ResultFolder() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+fs::path ResultFolder::of_trial(Trial trial, std::size_t trials) {
+  if (trials == 1) return directory_;
+  fs::path directory = directory_ / fmt::format("{}{}_trial_{}", kTrialDirectory, trial.subject, trial.number);
+  create(directories_, directory);
+  return directory;
+}
+
+void ResultFolder::write(const RecordFields& record, const WrittenScenario& scenario, const Simulated& run) {
+  const Result& result = run.result;
+  std::vector<ResultTable> tables = record_tables(record);
+  FileSet files;
+  remove_earlier_run(directory_, files);
+  for (const auto& recorder : run.recorders) recorder->finish(&files);
+  if (result.has_section("targets")) {
+    tables.push_back(kTargetTable);
+    write_target_table(directory_ / kTargetTable.file, result.targets, &files);
+  }
+  const auto add = [&](const char* name, const std::string& text) { files.write(directory_ / name, text); };
+  add("scenario.effective.json", json_text(scenario.effective(directory_)));
+  add("columns.json", json_text(columns_json(tables, result.metrics)));
+  if (record.timing) add("timing.json", timing_text(result.timing, instruction_set(), provenance()));
+  // The summary, which says that a run is there, is the first to go and the last to come.
+  add("summary.json", summary_text(result));
+  files.commit();
+  remove_empty_trials(directory_);
+}
+
+void remove_run(const fs::path& directory) {
+  std::error_code ignored;
+  if (!fs::is_directory(directory, ignored)) return;
+  FileSet files;
+  remove_earlier_run(directory, files);
+  files.remove(directory / "scenario.effective.json");
+  files.commit();
+  remove_empty_trials(directory);
+}
+
+}  // namespace hapbench

@@ -1,0 +1,300 @@
+#include "scenarios/run/simulate.hpp"
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+
+#include <chrono>
+
+#include "results/allocations/allocations.hpp"
+#include "results/observe/step_times.hpp"
+#include "scenarios/description/metric_sections.hpp"
+#include "scenarios/run/assemble.hpp"
+#include "scenarios/run/encounter.hpp"
+#include "scenarios/run/progress_bar.hpp"
+#include "scenarios/run/stop_signal.hpp"
+
+namespace hapbench {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// The spring force beyond which the explicit step of friction is unstable [N]. Nothing where the position is
+/// prescribed or a handle moves the tool, since no integrator does.
+std::optional<double> friction_limit(const Scenario& scenario, const Motion& motion) {
+  if (!motion.position_is_free() || handle_moves_tool(scenario.device)) return std::nullopt;
+  const RenderingConfig& rendering = scenario.rendering;
+  return explicit_friction_limit(*scenario.integrator.type, rendering.mass, scenario.time.step, rendering.mu_s,
+                                 rendering.mu_f);
+}
+
+MetricsConfig metrics_config(const Scenario& scenario, const SimulationParts& parts) {
+  MetricsConfig config;
+  config.friction_limit = friction_limit(scenario, *parts.motion);
+  config.settling = scenario.metrics;
+  config.steps = static_cast<std::uint64_t>(scenario.time.steps / scenario.time.stride);
+  if (scenario.rendering.reduction) config.most_reduced = parts.source->capacity();
+  return config;
+}
+
+/// The force that the rendered one is compared with: ideal, or measured with a stroke; null without.
+std::shared_ptr<const ReferenceForce> reference_force(const Scenario& scenario, const NamedFiles& files) {
+  if (scenario.reference_force) return std::make_shared<const ReferenceForce>(scenario.reference_force->force);
+  if (!std::holds_alternative<RecordedPosition>(scenario.motion.position)) return nullptr;
+  const auto stroke = files.at(kMotionFile).stroke();
+  if (stroke->force) return {stroke, &*stroke->force};
+  if (scenario.record.force_reference)
+    throw InputError("/record/force_reference: got true; allowed: false, because the stroke has no measured force");
+  return nullptr;
+}
+
+/// Forwards every `stride`-th row, renumbered as if the step were that much longer.
+class RowsApart final : public Observer {
+ public:
+  RowsApart(Observer& observer, std::int64_t stride)
+      : observer_(observer), stride_(static_cast<std::uint64_t>(stride)) {}
+
+  bool wants_ratio() const noexcept override { return observer_.wants_ratio(); }
+  void on_step(const StepRecord& record) noexcept override {
+    if (record.step % stride_ != 0) return;
+    StepRecord row = record;
+    row.step /= stride_;
+    observer_.on_step(row);
+  }
+
+ private:
+  Observer& observer_;
+  std::uint64_t stride_;
+};
+
+/// Watches for contacts beyond the edges of an open mesh; nothing where there are none, or where contacts are not
+/// numbered as the points of the shell.
+std::optional<OpenEdgeObserver> open_edge_observer(const Scenario& scenario, const NamedFiles& files,
+                                                   const SimulationParts& parts) {
+  if (!parts.shell || parts.shell->size() == 0 || !std::holds_alternative<MeshEnvironment>(scenario.environment) ||
+      scenario.rendering.contact_source != kOwnContacts)
+    return std::nullopt;
+  const std::vector<Vec3>& edges = files.at(kEnvironmentFile).mesh().open_edges();
+  if (edges.empty()) return std::nullopt;
+  return OpenEdgeObserver(*parts.shell, edges, parts.tool->half_width());
+}
+
+/// Does what run_to_end does and times every step.
+SimulationResult run_timed(Simulation& simulation, StepTimes& times) {
+  times.start();
+  for (bool more = true; more;) {
+    throw_if_stopped();
+    for (std::uint64_t i = 0; i < kAskEvery && (more = simulation.step()); ++i) times.lap();
+  }
+  throw_if_stopped();
+  return simulation.result();
+}
+
+/// Number of involuntary context switches of this process so far.
+std::uint64_t involuntary_context_switches() {
+  rusage usage{};
+  ::getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::uint64_t>(usage.ru_nivcsw);
+}
+
+RunWork work_of(const Simulation& simulation, std::uint64_t allocations) {
+  RunWork work;
+  work.allocations = allocations;
+  work.search = simulation.source().work();
+  work.steps_skipped = work.search.skipped;
+  work.algorithm = simulation.algorithm().work();
+  work.search += work.algorithm.search;
+  return work;
+}
+
+/// The warnings of the first trial that has some, and how many trials have.
+class TrialWarnings {
+ public:
+  void add(std::vector<std::string> warnings) {
+    ++trials_;
+    if (!warnings.empty() && with_some_++ == 0) {
+      first_ = trials_;
+      warnings_ = std::move(warnings);
+    }
+  }
+  /// Of several trials with their number.
+  std::vector<std::string> all() const {
+    std::vector<std::string> all = warnings_;
+    if (trials_ == 1) return all;
+    for (std::string& warning : all)
+      warning = fmt::format("in {} of {} trials, first in number {}: {}", with_some_, trials_, first_, warning);
+    return all;
+  }
+
+ private:
+  std::vector<std::string> warnings_;
+  std::size_t trials_ = 0, with_some_ = 0, first_ = 0;
+};
+
+/// A run between its trials: the observers that go on from trial to trial, and what the trials gave so far.
+class Run {
+ public:
+  Run(const LoadedScenario& loaded, const std::shared_ptr<const PointShell>& shell, std::size_t trials);
+
+  /// Makes a trial. `label` is that of the progress bar; empty for none.
+  void make(Trial trial, const std::optional<RecordTarget>& target, const std::string& label);
+  Simulated finish(const RunTiming& timing);
+
+ private:
+  SimulationResult step_to_end(Simulation& simulation);
+  void end_trial(EncounterObservers& seen, const std::optional<OpenEdgeObserver>& open_edges, SimulationResult result);
+
+  const LoadedScenario& loaded_;
+  const Scenario& scenario_;
+  const std::shared_ptr<const PointShell>& shell_;
+  std::shared_ptr<const ReferenceForce> reference_;
+  std::shared_ptr<const ToolShape> tool_;
+  std::optional<MetricsObserver> metrics_;  ///< made from the parts of the first trial
+  SectionObservers sections_;
+  std::optional<InsideDepths> inside_;
+  std::optional<StepTimes> times_;               ///< of every step, if they are wanted
+  std::vector<std::uint64_t> step_nanoseconds_;  ///< samples of the time of single steps (StepSampler)
+  std::optional<SimulationResult> worst_;
+  TrialWarnings warnings_;
+  RunWork work_;
+  double loop_seconds_ = 0.0;      ///< wall time of the step loop
+  std::uint64_t preemptions_ = 0;  ///< involuntary context switches in the loop
+  std::vector<std::unique_ptr<Recorder>> recorders_;
+};
+
+Run::Run(const LoadedScenario& loaded, const std::shared_ptr<const PointShell>& shell, std::size_t trials)
+    : loaded_(loaded),
+      scenario_(loaded.scenario),
+      shell_(shell),
+      reference_(reference_force(scenario_, loaded.files)),
+      sections_(scenario_, reference_ != nullptr) {
+  if (scenario_.record.timing) times_.emplace(static_cast<std::size_t>(scenario_.time.steps) * trials);
+}
+
+void Run::make(Trial trial, const std::optional<RecordTarget>& target, const std::string& label) {
+  SimulationParts parts = assemble(scenario_, loaded_.files, shell_, trial);
+  const SimulationConfig config = simulation_config(scenario_);
+  const TrialParts begun{config, parts, reference_.get(), trial.subject, trial.number};
+  const TimeFields& time = scenario_.time;
+  if (!metrics_) metrics_.emplace(time.step * static_cast<double>(time.stride), metrics_config(scenario_, parts));
+  metrics_->begin();
+  sections_.begin(begun);
+  tool_ = parts.tool;
+
+  StepSampler sampler(static_cast<std::uint64_t>(time.steps));
+  RowsApart metrics_rows(*metrics_, time.stride);
+  EncounterObservers seen(scenario_, loaded_.files, parts, &*metrics_);
+  std::optional<OpenEdgeObserver> open_edges = open_edge_observer(scenario_, loaded_.files, parts);
+  Progress bar(label, static_cast<std::uint64_t>(time.steps), !label.empty());
+  std::vector<Observer*> observers = {&sampler.first()};
+  observers.push_back(time.stride == 1 ? static_cast<Observer*>(&*metrics_) : &metrics_rows);
+  for (const auto& observer : sections_.all()) observers.push_back(observer.get());
+  for (Observer* observer : seen.all()) observers.push_back(observer);
+  if (open_edges) observers.push_back(&*open_edges);
+  if (target) {
+    for (auto& recorder :
+         make_recorders({scenario_.record, parts.source->capacity(), sections_, seen.inside()}, *target)) {
+      observers.push_back(recorder.get());
+      recorders_.push_back(std::move(recorder));
+    }
+  }
+  observers.push_back(&bar);
+  observers.push_back(&sampler.last());
+
+  Simulation simulation(config, std::move(parts), std::move(observers));
+  const SimulationResult result = step_to_end(simulation);
+  step_nanoseconds_.insert(step_nanoseconds_.end(), sampler.nanoseconds().begin(), sampler.nanoseconds().end());
+  end_trial(seen, open_edges, result);
+}
+
+SimulationResult Run::step_to_end(Simulation& simulation) {
+  const std::uint64_t allocations_before = heap_allocations();
+  const std::uint64_t preemptions_before = involuntary_context_switches();
+  const auto start = Clock::now();
+  SimulationResult result = times_ ? run_timed(simulation, *times_) : run_to_end(simulation);
+  loop_seconds_ += std::chrono::duration<double>(Clock::now() - start).count();
+  preemptions_ += involuntary_context_switches() - preemptions_before;
+  work_ += work_of(simulation, heap_allocations() - allocations_before);
+  return result;
+}
+
+void Run::end_trial(EncounterObservers& seen, const std::optional<OpenEdgeObserver>& open_edges,
+                    SimulationResult result) {
+  std::vector<std::string> warnings;
+  seen.judge(scenario_, metrics_->trial(), *tool_, result.outcome, warnings);
+  if (open_edges && open_edges->warning()) warnings.push_back(*open_edges->warning());
+  warnings_.add(std::move(warnings));
+  if (const InsideDepths* depths = seen.depths()) {
+    if (inside_)
+      inside_->add(*depths);
+    else
+      inside_ = *depths;
+  }
+  // A subject who loses the drill fails the rest of the targets.
+  if (result.outcome == Outcome::diverges) {
+    if (auto* targets = sections_.find<TargetMetricsObserver>()) targets->fail_rest();
+  }
+  const std::uint64_t rows = result.rows + (worst_ ? worst_->rows : 0);
+  if (!worst_ || result.outcome > worst_->outcome) worst_ = std::move(result);
+  worst_->rows = rows;
+}
+
+void add_step_times(const std::vector<std::uint64_t>& nanoseconds, RunTiming& timing) {
+  if (nanoseconds.empty()) return;
+  const StepLatency latency = step_latency(nanoseconds, 0);
+  timing.step_p50 = 1e-9 * static_cast<double>(latency.p50);
+  if (nanoseconds.size() >= 100) timing.step_p99 = 1e-9 * static_cast<double>(latency.p99);
+}
+
+Simulated Run::finish(const RunTiming& timing) {
+  Result result;
+  result.name = scenario_.name;
+  result.algorithm = scenario_.rendering.algorithm;
+  result.end = *worst_;
+  result.duration = static_cast<double>(worst_->rows) * scenario_.time.step;
+  tell_common(*metrics_, inside_ ? &*inside_ : nullptr, result.metrics);
+  sections_.tell(result);
+  result.state_hash = metrics_->state_hash();
+  result.work = work_;
+  result.warnings = warnings_.all();
+  for (const auto& more : {force_warnings(*metrics_), tool_warnings(scenario_.rendering, *tool_)})
+    result.warnings.insert(result.warnings.end(), more.begin(), more.end());
+  // The fields of a cylinder say all.
+  if (!std::holds_alternative<CylinderFields>(scenario_.tool))
+    result.tool = ToolSummary{tool_->half_width(), tool_->reach(), tool_->convex(), tool_->outline()};
+  if (const auto* targets = sections_.find<TargetMetricsObserver>()) result.targets = targets->rows();
+  result.timing = timing;
+  result.timing.loop = loop_seconds_;
+  result.timing.steps = worst_->rows;
+  result.timing.preemptions = preemptions_;
+  add_step_times(step_nanoseconds_, result.timing);
+  if (times_) result.timing.latency = step_latency(times_->nanoseconds(), times_->overhead());
+  return {std::move(result), std::move(recorders_)};
+}
+
+}  // namespace
+
+std::vector<Trial> trials_of(const Scenario& scenario) {
+  const auto* hand = std::get_if<TrackingHandFields>(&scenario.hand);
+  if (hand == nullptr) return {Trial{}};
+  std::vector<Trial> trials;
+  for (std::size_t subject = 0; subject < hand->subjects.size(); ++subject) {
+    for (std::size_t number = 0; number < static_cast<std::size_t>(hand->trials); ++number) {
+      trials.push_back({subject, number});
+    }
+  }
+  return trials;
+}
+
+Simulated simulate(const LoadedScenario& loaded, const std::shared_ptr<const PointShell>& shell,
+                   const TargetOfTrial& target_of, bool progress, const RunTiming& timing) {
+  const std::vector<Trial> trials = trials_of(loaded.scenario);
+  Run run(loaded, shell, trials.size());
+  for (std::size_t i = 0; i < trials.size(); ++i) {
+    std::string label = progress ? loaded.scenario.name : "";
+    if (progress && trials.size() > 1) label += fmt::format(" {}/{}", i + 1, trials.size());
+    run.make(trials[i], target_of(trials[i]), label);
+  }
+  return run.finish(timing);
+}
+
+}  // namespace hapbench
