@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <memory>
 #include "results/io/atomic_file.hpp"
 #include "results/io/json_text.hpp"
 #include "results/summary/outcome_names.hpp"

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <iterator>
 #include <limits>
 #include <string_view>
@@ -59,33 +60,28 @@ std::string distinct_name(const Result& report, std::span<const Result> reports)
   return one_scenario ? report.algorithm : report.name;
 }
 
-/// A run as the row of a table.
-struct ListedRun {
-  explicit ListedRun(const Result& of) : report(of), metrics(of.metrics) {}
-
-  const Result& report;
-  const MetricList& metrics;
-};
+using ListedRun = std::reference_wrapper<const Result>;
 
 void add_metrics(Columns<ListedRun>& columns, std::span<const RunHeading> headings) {
   for (const RunHeading& heading : headings) {
-    columns.print(heading.title, "1", heading.metric,
-                  [&heading](const ListedRun& r) { return metric_cell(r.metrics, heading.metric, heading.factor); });
+    columns.print(heading.title, "1", heading.metric, [&heading](const ListedRun& r) {
+      return metric_cell(r.get().metrics, heading.metric, heading.factor);
+    });
   }
 }
 
 Columns<ListedRun> run_columns(bool of_scenes) {
   Columns<ListedRun> columns;
-  if (of_scenes) columns.print("scenario", "", "", [](const ListedRun& r) { return r.report.name; });
-  columns.print("algorithm", "", "", [](const ListedRun& r) { return r.report.algorithm; });
-  columns.print("outcome", "", "outcome", [](const ListedRun& r) { return outcome_name(r.report.end.outcome); });
+  if (of_scenes) columns.print("scenario", "", "", [](const ListedRun& r) { return r.get().name; });
+  columns.print("algorithm", "", "", [](const ListedRun& r) { return r.get().algorithm; });
+  columns.print("outcome", "", "outcome", [](const ListedRun& r) { return outcome_name(r.get().end.outcome); });
   add_metrics(columns, kRunHeadings);
   columns.print("ratio", "", "ratio_min", [](const ListedRun& r) {
-    const auto least = number_of(r.metrics, "ratio_min"), most = number_of(r.metrics, "ratio_max");
+    const auto least = number_of(r.get().metrics, "ratio_min"), most = number_of(r.get().metrics, "ratio_max");
     return least && most ? fmt::format("{}..{}", cell(least, 2), cell(most, 2)) : "-";
   });
   columns.print("us/\nstep", "1", "step_p50_s", [](const ListedRun& r) {
-    const auto& median = r.report.timing.step_p50;
+    const auto& median = r.get().timing.step_p50;
     return median ? short_time(*median) : "-";
   });
   return columns;
@@ -100,10 +96,6 @@ constexpr RunHeading kFidelityHeadings[] = {
     {"artefacts\n%", "fidelity.force_artefact_share", 100.0},
     {"lag\nms", "fidelity.force_lag_s", 1e3}};
 
-bool has_reference(const Result& report) {
-  return report.has_section("fidelity");
-}
-
 }  // namespace
 
 std::string run_table(std::span<const Result> reports, bool of_scenes) {
@@ -115,12 +107,12 @@ std::string run_table(std::span<const Result> reports, bool of_scenes) {
 std::string fidelity_text(std::span<const Result> reports) {
   std::vector<ListedRun> with_reference;
   for (const Result& report : reports)
-    if (has_reference(report)) with_reference.emplace_back(report);
+    if (report.has_section("fidelity")) with_reference.emplace_back(report);
   if (with_reference.empty()) return "";
   Columns<ListedRun> columns;
   const bool one_scenario = reports.front().name == reports.back().name;
   columns.print(one_scenario ? "algorithm" : "scenario", "", "",
-                [&](const ListedRun& r) { return distinct_name(r.report, reports); });
+                [&](const ListedRun& r) { return distinct_name(r.get(), reports); });
   add_metrics(columns, kFidelityHeadings);
   return fmt::format("\nrendered force against the reference, measured or ideal\n\n{}",
                      columns.table(with_reference).text());
