@@ -56,6 +56,11 @@ ordered_json tolerances_json(const MetricList& list) {
   return json;
 }
 
+ordered_json finding_json(const Diagnosed& f) {
+  return {{"rule", f.rule},           {"number", f.number}, {"unit", f.unit},  {"value", f.value},
+          {"threshold", f.threshold}, {"says", f.says},     {"try", f.attempt}};
+}
+
 ordered_json metrics_json(const Metrics& m) {
   ordered_json json = metrics_json(metric_list(m));
   const Vec3& p = m.final_position;
@@ -103,9 +108,13 @@ ordered_json summary_json(const RunSummary& run) {
                        {"steps", run.result.rows},
                        {"duration_s", number_or_null(run.duration)},
                        {"divergence", divergence_json(run.result)},
-                       {"warnings", warnings},
-                       {"metrics", metrics_json(run.metrics)},
-                       {"passivity", metrics_json(metric_list(run.passivity))}};
+                       {"warnings", warnings}};
+  if (run.diagnosis) {
+    json["diagnosis"] = ordered_json::array();
+    for (const Diagnosed& finding : *run.diagnosis) json["diagnosis"].push_back(finding_json(finding));
+  }
+  json["metrics"] = metrics_json(run.metrics);
+  json["passivity"] = metrics_json(metric_list(run.passivity));
   if (run.tool) json["tool"] = tool_json(*run.tool);
   for (const MetricSection& section : run.sections) {
     json[section.name] = metrics_json(section.metrics);

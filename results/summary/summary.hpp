@@ -49,6 +49,13 @@ struct MetricSection {
   nlohmann::ordered_json more;  ///< an object: members of the section that are no metrics, as the energy's events
 };
 
+/// Something wrong with a run: a number beyond the threshold of a rule (scenarios/run/diagnosis.hpp).
+struct Diagnosed {
+  std::string rule, number, unit;  ///< names of the rule and of its number; "1" for pure numbers
+  double value = 0.0, threshold = 0.0;
+  std::string says, attempt;  ///< what is wrong, and what to try
+};
+
 /// Everything summary.json says about one run.
 struct RunSummary {
   std::string name;       ///< of the scenario
@@ -63,6 +70,7 @@ struct RunSummary {
   std::vector<std::string> warnings;          ///< what may make the numbers mislead, a sentence each
   /// About the files that the scenario names, each with its pointer; summary.json has them before the others.
   std::vector<std::string> file_warnings;
+  std::optional<std::vector<Diagnosed>> diagnosis;  ///< of a run that asked for it
   RunWork work;
   Provenance provenance;
   std::string scenario_hash;  ///< of the effective scenario

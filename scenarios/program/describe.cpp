@@ -11,6 +11,7 @@
 #include "scenarios/program/fields_text.hpp"
 #include "scenarios/program/study.hpp"
 #include "scenarios/program/table.hpp"
+#include "scenarios/run/diagnosis.hpp"
 #include "scenarios/studies/stability/judged_run.hpp"
 #include "scenarios/thesis_claims/choices.hpp"
 #include "scenarios/thesis_claims/claims.hpp"
@@ -171,6 +172,18 @@ Description describe_stability() {
   return d;
 }
 
+/// The rules by which `run` says what is wrong.
+Description describe_diagnosis() {
+  Description d{"rules of the diagnosis, which run prints and writes to summary.json\n\n", Json::array()};
+  for (const DiagnosisRule& rule : diagnosis_rules()) {
+    const std::string unit = std::string_view(rule.unit) == "1" ? "" : std::string(" ") + rule.unit;
+    d.text += entry(rule.name, fmt::format("{} > {:g}{}", rule.number, rule.threshold, unit), 2, 14);
+    d.json.push_back(
+        {{"rule", rule.name}, {"number", rule.number}, {"unit", rule.unit}, {"threshold", rule.threshold}});
+  }
+  return d;
+}
+
 /// Names that stand for no single thing of a list.
 constexpr struct {
   const char* name;
@@ -179,6 +192,7 @@ constexpr struct {
                   [] {
                     return Description{"", choices_schema()};
                   }},
+                 {"diagnosis", describe_diagnosis},
                  {"profile", describe_profile},
                  {"scenario",
                   [] {
@@ -316,11 +330,12 @@ void add_describe(CommandLine& line) {
       "file of the results, a word or heading that the program prints, a claim, a choice on record or a place of the thesis",
       describe);
   command
-      .add("name", options.name,
-           "a name that \"list\" shows, a field such as rendering.limits, \"scenario\" (all fields), \"schema\", "
-           "\"choices_schema\", \"stability\"; a metric or a column, \"metrics\" or \"columns\" for all of them, a "
-           "heading such as \">30Hz rms N\", or a file such as trajectory.csv; a claim such as C5, a choice such as "
-           "planar.first_tilt or a place such as \"Fig. A.2\"")
+      .add(
+          "name", options.name,
+          "a name that \"list\" shows, a field such as rendering.limits, \"scenario\" (all fields), \"schema\", "
+          "\"choices_schema\", \"stability\", \"diagnosis\"; a metric or a column, \"metrics\" or \"columns\" for all of them, a "
+          "heading such as \">30Hz rms N\", or a file such as trajectory.csv; a claim such as C5, a choice such as "
+          "planar.first_tilt or a place such as \"Fig. A.2\"")
       .required();
   add_output_options(command, options.output);
 }

@@ -19,6 +19,7 @@
 #include "results/record/recorder.hpp"
 #include "scenarios/description/metric_sections.hpp"
 #include "scenarios/run/assemble.hpp"
+#include "scenarios/run/diagnosis.hpp"
 #include "scenarios/run/encounter.hpp"
 #include "scenarios/run/progress_bar.hpp"
 #include "scenarios/run/recorders.hpp"
@@ -140,7 +141,7 @@ class TrialObservers {
   void move_to(const Scenario& scenario, TrialResult& out) {
     out.tool = tool_;
     out.metrics = metrics_.metrics();
-    seen_.judge(scenario, out.metrics, *tool_, out.result.outcome, out.warnings);
+    seen_.judge(out.metrics, out.result.outcome, out.warnings);
     if (open_edges_ && open_edges_->warning()) out.warnings.push_back(*open_edges_->warning());
     // A subject who loses the drill fails the rest of the targets.
     if (out.result.outcome == Outcome::diverges) {
@@ -182,16 +183,18 @@ std::uint64_t involuntary_context_switches() {
 }
 
 /// Runs one trial and records into `target`, if there is one, whose directory exists. `label` is that of the progress
-/// bar; empty for none. Every step is timed into `times`, if that is not null. Throws Stopped when a signal ends the
-/// run.
+/// bar; empty for none. Every step is timed into `times`, if that is not null; `more`, if given, observes, too. Throws
+/// Stopped when a signal ends the run.
 TrialResult run_trial(const LoadedScenario& loaded, const std::shared_ptr<const PointShell>& shell, Trial trial,
-                      const std::optional<RecordTarget>& target, const std::string& label, StepTimes* times) {
+                      const std::optional<RecordTarget>& target, const std::string& label, StepTimes* times,
+                      Observer* more) {
   const Scenario& scenario = loaded.scenario;
   SimulationParts parts = assemble(scenario, loaded.files, shell, trial);
   TrialObservers observers(scenario, loaded.files, parts, trial);
   if (target) observers.record(scenario.record, *target, parts.source->capacity());
   Progress bar(label, static_cast<std::uint64_t>(scenario.time.steps), !label.empty());
   observers.add(bar);
+  if (more != nullptr) observers.add(*more);
   StepSampler sampler(static_cast<std::uint64_t>(scenario.time.steps));
   std::vector<Observer*> all = observers.all();
   all.insert(all.begin(), &sampler.first());
@@ -399,7 +402,7 @@ void remove_run(const fs::path& directory) {
 }
 
 RunReport run_scenario(const LoadedScenario& loaded, const std::optional<fs::path>& output, bool progress,
-                       RunTables* tables) {
+                       RunTables* tables, bool diagnose) {
   RunTiming timing;
   const auto shell = [&] {
     const WaitNotice notice(loaded.scenario.name + ": building the shell", progress);
@@ -408,12 +411,12 @@ RunReport run_scenario(const LoadedScenario& loaded, const std::optional<fs::pat
     timing.shell = seconds_since(start);
     return made;
   }();
-  return run_with_shell(loaded, shell, output, progress, timing, tables);
+  return run_with_shell(loaded, shell, output, progress, timing, tables, diagnose);
 }
 
 RunReport run_with_shell(const LoadedScenario& loaded, const std::shared_ptr<const PointShell>& shell,
                          const std::optional<fs::path>& output, bool progress, const RunTiming& timing,
-                         RunTables* tables) {
+                         RunTables* tables, bool diagnose) {
   const Scenario& scenario = loaded.scenario;
   RunReport report;
   report.timing = timing;
@@ -428,6 +431,8 @@ RunReport run_with_shell(const LoadedScenario& loaded, const std::shared_ptr<con
 
   std::optional<StepTimes> times;
   if (scenario.record.timing) times.emplace(static_cast<std::size_t>(scenario.time.steps) * trials.size());
+  std::optional<DiagnosisObserver> rows;
+  if (diagnose) rows.emplace(scenario, shell.get());
   std::vector<TrialResult> results;
   for (const Trial trial : trials) {
     std::optional<RecordTarget> target;
@@ -440,7 +445,8 @@ RunReport run_with_shell(const LoadedScenario& loaded, const std::shared_ptr<con
     }
     std::string label = progress ? scenario.name : "";
     if (progress && trials.size() > 1) label += fmt::format(" {}/{}", results.size() + 1, trials.size());
-    results.push_back(run_trial(loaded, shell, trial, target, label, times ? &*times : nullptr));
+    results.push_back(
+        run_trial(loaded, shell, trial, target, label, times ? &*times : nullptr, rows ? &*rows : nullptr));
   }
 
   for (const TrialResult& result : results) {
@@ -454,6 +460,7 @@ RunReport run_with_shell(const LoadedScenario& loaded, const std::shared_ptr<con
   if (times) report.timing.latency = step_latency(times->nanoseconds(), times->overhead());
   report.summary = summarise(scenario, results);
   report.summary.file_warnings = named_file_warnings(loaded);
+  if (rows) report.summary.diagnosis = rows->findings(loaded, report.summary, *results.front().tool);
   if (output || tables != nullptr) {
     report.summary.provenance = provenance();
     const AlgorithmOrigin& origin = find_algorithm(scenario.rendering.algorithm)->origin;
