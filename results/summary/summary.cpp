@@ -69,6 +69,11 @@ void add_metrics(ordered_json& json, const MetricList& list) {
   }
 }
 
+ordered_json finding_json(const Diagnosed& f) {
+  return {{"rule", f.rule},           {"number", f.number}, {"unit", f.unit},  {"value", f.value},
+          {"threshold", f.threshold}, {"says", f.says},     {"try", f.attempt}};
+}
+
 ordered_json tool_json(const ToolSummary& tool) {
   ordered_json outline = ordered_json::array();
   for (const auto& [s, rho] : tool.outline) outline.push_back({s, rho});
@@ -109,8 +114,12 @@ ordered_json summary_json(const Result& run) {
                        {"steps", run.end.rows},
                        {"duration_s", number_or_null(run.duration)},
                        {"divergence", divergence_json(run.end)},
-                       {"warnings", warnings},
-                       {"metrics", ordered_json::object()}};
+                       {"warnings", warnings}};
+  if (run.diagnosis) {
+    json["diagnosis"] = ordered_json::array();
+    for (const Diagnosed& finding : *run.diagnosis) json["diagnosis"].push_back(finding_json(finding));
+  }
+  json["metrics"] = ordered_json::object();
   for (const MetricSection& section : run.sections) {
     json[section.name] = ordered_json::object();
     if (section.name == "passivity" && run.tool) json["tool"] = tool_json(*run.tool);

@@ -47,6 +47,13 @@ struct MetricSection {
   nlohmann::ordered_json members;  ///< an object: those that are no metrics, as the energy's events
 };
 
+/// Something wrong with a run: a number beyond the threshold of a rule (scenarios/run/diagnosis.hpp).
+struct Diagnosed {
+  std::string rule, number, unit;  ///< names of the rule and of its number; "1" for pure numbers
+  double value = 0.0, threshold = 0.0;
+  std::string says, attempt;  ///< what is wrong, and what to try
+};
+
 /// Wall times of a run.
 struct RunTiming {
   double shell = 0.0;                  ///< to make or fetch the environment's points [s]
@@ -78,6 +85,7 @@ struct Result {
   std::vector<std::string> warnings;    ///< what may make the numbers mislead, a sentence each
   /// About the files that the scenario names, each with its pointer; summary.json has them before the others.
   std::vector<std::string> file_warnings;
+  std::optional<std::vector<Diagnosed>> diagnosis;  ///< of a run that asked for it
   RunWork work;
   std::vector<TargetRow> targets;  ///< of a tracking hand, all subjects and trials
   RunTiming timing;

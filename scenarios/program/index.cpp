@@ -11,6 +11,7 @@
 #include "device_model/theory/stiffness_limits.hpp"
 #include "scenarios/program/fields_text.hpp"
 #include "scenarios/program/table.hpp"
+#include "scenarios/run/diagnosis.hpp"
 #include "scenarios/studies/stability/judged_run.hpp"
 #include "scenarios/thesis_claims/choices.hpp"
 #include "sim/loop/integrators/table.hpp"
@@ -177,12 +178,25 @@ Description describe_stability() {
   return d;
 }
 
+/// The rules by which `run` says what is wrong.
+Description describe_diagnosis() {
+  Description d{"rules of the diagnosis, which run prints and writes to summary.json\n\n", Json::array()};
+  for (const DiagnosisRule& rule : diagnosis_rules()) {
+    const std::string unit = std::string_view(rule.unit) == "1" ? "" : std::string(" ") + rule.unit;
+    d.text += entry(rule.name, fmt::format("{} > {:g}{}", rule.number, rule.threshold, unit), 2, 14);
+    d.json.push_back(
+        {{"rule", rule.name}, {"number", rule.number}, {"unit", rule.unit}, {"threshold", rule.threshold}});
+  }
+  return d;
+}
+
 /// Names that stand for no single thing of a list.
 void add_sections(Index& index) {
   const auto add = [&index](const char* name, Description (*describe)()) {
     index.push_back({"section", name, "", describe});
   };
   add("choices_schema", [] { return Description{"", choices_schema()}; });
+  add("diagnosis", describe_diagnosis);
   add("profile", describe_profile);
   add("scenario", [] { return Description{fields_text("scenario", scenario_guide()), scenario_guide().schema}; });
   add("schema", [] { return Description{"", scenario_schema()}; });

@@ -27,6 +27,8 @@ constexpr OldWord kOldWords[] = {
     {"", "complete", "scripts/completion, which prints a completion for bash"},
     {"", "completion", "scripts/completion, which prints a completion for bash"},
     {"", "diff", "hapbench report A B --tolerance 0, which says what differs, with status 3"},
+    {"", "explain",
+     "hapbench run SCENE, which prints what is wrong and writes it to summary.json; hapbench describe diagnosis lists the rules"},
     {"", "man", "hapbench --help, and --help of each command"},
     {"", "merge", "hapbench sweep FOLDER, which joins the tables of the shards in it"},
     {"", "precision",

@@ -63,7 +63,8 @@ int run(const RunOptions& options) {
   std::string targets;
   int status = kSuccess;
   for (std::size_t i = 0; i < scenarios.size(); ++i) {
-    const Result& report = reports.emplace_back(run_scenario(scenarios[i], directories[i], !options.output.quiet));
+    const Result& report = reports.emplace_back(
+        run_scenario(scenarios[i], directories[i], !options.output.quiet, nullptr, /*diagnose=*/true));
     targets += targets_text(report);
     print_warnings(run_warnings({&report, 1}));
     summaries.push_back(summary_json(report));
@@ -81,7 +82,7 @@ int run(const RunOptions& options) {
   const std::string latency_text = options.latency ? "\n" + latency_columns().table(latencies).text() : "";
   print(options.output,
         run_table(reports, true) + fidelity_text(reports) + unsettled_text(reports) + step_time_text(reports) +
-            targets + latency_text + fmt::format("\nresults in {}\n", where.string()),
+            targets + latency_text + diagnosis_text(reports) + fmt::format("\nresults in {}\n", where.string()),
         summaries);
   return status;
 }
@@ -89,8 +90,8 @@ int run(const RunOptions& options) {
 }  // namespace
 
 void add_run(CommandLine& line) {
-  auto [command, options] = line.command("run", "Run scenarios and write their results", run,
-                                         "nothing of the unfinished run is written; finished runs are kept");
+  auto [command, options] = line.command("run", "Run scenarios, write their results and say what is wrong with them",
+                                         run, "nothing of the unfinished run is written; finished runs are kept");
   command.add("scenarios", options.scenarios, "scenario files, names of bundled scenarios, or of groups of them")
       .required();
   command.add("--out", options.out,

@@ -161,6 +161,10 @@ std::string step_time_text(std::span<const Result> reports) {
   std::string text = "99 % of the steps take at most ";
   if (reports.size() == 1) {
     text += time_text(*slowest.timing.step_p99);
+    const double step = slowest.duration / static_cast<double>(slowest.end.rows);
+    if (*slowest.timing.step_p99 > step)
+      text += fmt::format(", longer than a step of {}: fewer points, rendering.reduction or a cheaper law",
+                          time_text(step));
   } else {
     text += quick == slow ? of(slowest, slow) : of(quickest, quick) + " to " + of(slowest, slow);
   }
@@ -181,6 +185,23 @@ std::string unsettled_text(std::span<const Result> reports) {
   const std::string_view advice = landed ? "; --set metrics.from_s=0 takes all contact" : "";
   return fmt::format(
       "\n{}", wrapped(fmt::format("\"-\": under 1/30 s of settled contact ({}){}", fmt::join(names, ", "), advice), 0));
+}
+
+std::string diagnosis_text(std::span<const Result> reports) {
+  std::string text;
+  for (const Result& report : reports) {
+    std::string rules;
+    for (const Diagnosed& found : *report.diagnosis) {
+      rules += fmt::format("{}{} ({:.3g})", rules.empty() ? "" : ", ", found.rule, found.value);
+      if (reports.size() > 1) continue;
+      const std::string unit = found.unit == "1" ? "" : " " + found.unit;
+      text += wrapped(
+          fmt::format("{} (rule {}: {:.3g} > {:g}{})", found.says, found.rule, found.value, found.threshold, unit), 0);
+      text += wrapped("try: " + found.attempt, 2);
+    }
+    if (reports.size() > 1 && !rules.empty()) text += wrapped(fmt::format("wrong with {}: {}", report.name, rules), 0);
+  }
+  return text.empty() ? "" : "\n" + text;
 }
 
 namespace {

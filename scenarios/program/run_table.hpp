@@ -40,6 +40,10 @@ std::string step_time_text(std::span<const Result> reports);
 /// Explains "-" for metrics of settled contact in runs that touched; empty when there is none.
 std::string unsettled_text(std::span<const Result> reports);
 
+/// What is wrong with a run by the rules of its diagnosis, and what to try; of several runs a line each, with the names
+/// of the rules. Empty where nothing is.
+std::string diagnosis_text(std::span<const Result> reports);
+
 /// The tables of thesis D.4 for a report with targets: mean and standard error over subjects, a line for each place.
 /// Empty for other reports.
 std::string targets_text(const Result& report);

@@ -15,7 +15,7 @@
 #include "scenarios/program/report.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/progress_bar.hpp"
-#include "scenarios/studies/stability/scene_loop.hpp"
+#include "scenarios/run/scene_loop.hpp"
 #include "scenarios/studies/tuning/tune.hpp"
 
 namespace hapbench {

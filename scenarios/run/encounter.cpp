@@ -105,18 +105,40 @@ DragCourse DragCourseObserver::course() const {
   return course;
 }
 
-std::vector<std::string> drag_warnings(const DragCourse& c, Outcome outcome) {
-  std::vector<std::string> warnings;
-  if (c.lost && outcome != Outcome::went_through) {
-    const std::string where = c.height < 0.0 ? "below it, past an edge" : "above it";
-    warnings.push_back(fmt::format("the dragged tool lost the surface at {:.4g} s and ended {} {}", *c.lost,
-                                   length_text(std::abs(c.height)), where));
+ApproachObserver::ApproachObserver(std::shared_ptr<const PointShell> shell, std::uint64_t steps)
+    : shell_(std::move(shell)), steps_(shell_->bounds()), every_(steps / kLooks + 1) {
+  looks_.reserve(kLooks);
+}
+
+void ApproachObserver::on_step(const StepRecord& record) noexcept {
+  steps_.add(record.tool.pose.position);
+  touched_ = touched_ || record.colliding > 0;
+  if (touched_) return;
+  const Look look{record.time, steps_.distance(), record.tool.pose};
+  if (record.step % every_ == 0) {
+    looks_.push_back(look);
+  } else if (look.from_box <= looks_.back().from_box) {
+    looks_.back() = look;
   }
-  if (c.short_path) {
-    warnings.push_back(fmt::format("{}; the tool was at [{:.4g}, {:.4g}, {:.4g}] m in the end", *c.short_path,
-                                   c.place.x(), c.place.y(), c.place.z()));
+}
+
+double ApproachObserver::closest_to_box() const {
+  return std::ranges::min(looks_, {}, &Look::from_box).from_box;
+}
+
+ApproachObserver::Closest ApproachObserver::closest_to_surface(const ToolShape& tool) const {
+  constexpr double kWithin = 0.99;
+  Closest closest{std::numeric_limits<double>::infinity(), 0.0};
+  const Look* before = nullptr;
+  double gap = 0.0;
+  for (const Look& look : looks_) {
+    // No point of the tool comes closer than it moves.
+    if (before != nullptr && gap - tool.moved_at_most(before->pose, look.pose) > kWithin * closest.distance) continue;
+    before = &look;
+    gap = gap_between(tool, look.pose, *shell_).distance;
+    if (gap < closest.distance) closest = {gap, look.time};
   }
-  return warnings;
+  return closest;
 }
 
 OpenEdgeObserver::OpenEdgeObserver(const PointShell& shell, const std::vector<Vec3>& edges, double reach)
@@ -194,57 +216,32 @@ double closest_target(const ImpedanceHandFields& hand, const TimeFields& time, c
   return closest;
 }
 
-/// The likely cause as the end of a sentence, or where to look when none suggests itself.
-std::string likely_cause(const Scenario& scenario, Outcome outcome, const Encounter& e) {
-  const double size = diagonal(e.environment);
-  if (out_of_proportion(e.tool, e.environment)) return "; " + scale_question(scenario);
-  const auto* mesh = std::get_if<MeshEnvironment>(&scenario.environment);
-  if (outcome == Outcome::no_contact && mesh != nullptr && !mesh->spacing && e.approach.closest == 0.0)
-    return "; only the mesh's vertices can be touched: is environment.spacing_m missing?";
-  const bool recorded = std::holds_alternative<RecordedPosition>(scenario.motion.position);
-  if (recorded && e.approach.closest > kTooLarge * size)
-    return "; are the positions of motion.position.file in metres?";
-  if (const ImpedanceHandFields* hand = spring_of(scenario.hand)) {
-    const double closest = closest_target(*hand, scenario.time, e.environment);
-    if (closest > 0.0)
-      return fmt::format("; hand.target stays {} away from it: does it lead to the surface?", length_text(closest));
+std::vector<std::string> drag_warnings(const DragCourse& c, Outcome outcome) {
+  std::vector<std::string> warnings;
+  if (c.lost && outcome != Outcome::went_through) {
+    const std::string where = c.height < 0.0 ? "below it, past an edge" : "above it";
+    warnings.push_back(fmt::format("the dragged tool lost the surface at {:.4g} s and ended {} {}", *c.lost,
+                                   length_text(std::abs(c.height)), where));
   }
-  const bool is_free = std::holds_alternative<FreePosition>(scenario.motion.position);
-  if (is_free && std::holds_alternative<NoHandFields>(scenario.hand) && outcome == Outcome::no_contact)
-    return "; nothing pushes the tool: is hand missing?";
-  if (outcome == Outcome::lost_contact &&
-      (std::holds_alternative<ForceHandFields>(scenario.hand) || std::holds_alternative<PushHandFields>(scenario.hand)))
-    return "; a hand of constant force goes on pushing where there is no surface";
-  if (outcome == Outcome::lost_contact)
-    return fmt::format("; the largest force was {:.3g} N", std::sqrt(e.contact.force_max_squared));
-  return is_free ? "; is initial.position_m right?" : "; is motion.position right?";
-}
-
-std::string size_and_place(const Box& box) {
-  return fmt::format("{}: {}", size_text(box), place_text(box));
+  if (c.short_path) {
+    warnings.push_back(fmt::format("{}; the tool was at [{:.4g}, {:.4g}, {:.4g}] m in the end", *c.short_path,
+                                   c.place.x(), c.place.y(), c.place.z()));
+  }
+  return warnings;
 }
 
 }  // namespace
 
-Outcome outcome_of(const Scenario& scenario, const Encounter& e) {
-  if (e.passage && (e.passage->went_through() || e.inside_max > e.tool.half_width())) return Outcome::went_through;
-  if (e.contact.in_contact == 0) return Outcome::no_contact;
-  const bool is_free = std::holds_alternative<FreePosition>(scenario.motion.position);
-  const bool left = e.approach.last > diagonal(e.environment) + e.tool.reach();
-  const bool lost = e.drag && e.drag->lost;
-  if ((is_free && left) || lost) return Outcome::lost_contact;
-  if (e.drag && e.drag->not_dragged()) return Outcome::not_dragged;
-  return e.stuck ? Outcome::stuck : Outcome::completes;
-}
-
 EncounterObservers::EncounterObservers(const Scenario& scenario, const NamedFiles& files, const SimulationParts& parts,
-                                       const MetricsObserver* metrics) {
+                                       const MetricsObserver* metrics)
+    : scenario_(scenario), tool_(parts.tool) {
   if (auto solid = make_solid(scenario, files)) {
     const std::int64_t every = scenario.record.inside ? scenario.record.every : 0;
     inside_.emplace(parts.tool, std::move(solid), metrics, static_cast<std::uint64_t>(every),
                     static_cast<std::uint64_t>(scenario.time.steps));
   }
-  if (parts.shell && parts.shell->size() > 0) approach_.emplace(parts.shell->bounds());
+  if (parts.shell && parts.shell->size() > 0)
+    approach_.emplace(parts.shell, static_cast<std::uint64_t>(scenario.time.steps));
   if (const auto* hand = dynamic_cast<const DragHand*>(parts.hand.get()))
     drag_.emplace(*hand, std::get<DragHandFields>(scenario.hand), parts.tool->half_width());
   const bool is_free = std::holds_alternative<FreePosition>(scenario.motion.position);
@@ -269,41 +266,48 @@ const InsideDepths* EncounterObservers::depths() {
   return depths_ ? &*depths_ : nullptr;
 }
 
-Encounter EncounterObservers::encounter(const TrialContact& contact, const ToolShape& tool) {
-  Encounter encounter{contact, approach_->approach(), approach_->environment(), tool};
-  if (drag_) {
-    encounter.drag = drag_->course();
-    encounter.stuck = encounter.drag->stuck;
-  }
-  if (stuck_) encounter.stuck = stuck_->stuck();
-  if (inside_) encounter.passage = inside_->passage();
-  if (const InsideDepths* inside = depths()) encounter.inside_max = inside->max.value_or(0.0);
-  return encounter;
+double EncounterObservers::inside_max() {
+  const InsideDepths* inside = depths();
+  return inside != nullptr ? inside->max.value_or(0.0) : 0.0;
 }
 
-Outcome EncounterObservers::outcome(const Scenario& scenario, const TrialContact& contact, const ToolShape& tool,
-                                    Outcome outcome) {
-  return approach_ && outcome == Outcome::completes ? outcome_of(scenario, encounter(contact, tool)) : outcome;
+std::optional<Stuck> EncounterObservers::stuck() const {
+  if (stuck_) return stuck_->stuck();
+  return drag_ ? drag_->course().stuck : std::nullopt;
 }
 
-void EncounterObservers::judge(const Scenario& scenario, const TrialContact& contact, const ToolShape& tool,
-                               Outcome& outcome, std::vector<std::string>& warnings) {
+Outcome EncounterObservers::outcome_of(const TrialContact& contact) {
+  if (inside_ && (inside_->passage().went_through() || inside_max() > tool_->half_width()))
+    return Outcome::went_through;
+  if (contact.in_contact == 0) return Outcome::no_contact;
+  const bool is_free = std::holds_alternative<FreePosition>(scenario_.motion.position);
+  const StepWay& steps = approach_->steps();
+  if (is_free && steps.distance() > diagonal(steps.environment()) + tool_->reach()) return Outcome::lost_contact;
+  if (drag_ && drag_->course().lost) return Outcome::lost_contact;
+  if (drag_ && drag_->course().not_dragged()) return Outcome::not_dragged;
+  return stuck() ? Outcome::stuck : Outcome::completes;
+}
+
+Outcome EncounterObservers::outcome(const TrialContact& contact, Outcome outcome) {
+  return approach_ && outcome == Outcome::completes ? outcome_of(contact) : outcome;
+}
+
+void EncounterObservers::judge(const TrialContact& contact, Outcome& outcome, std::vector<std::string>& warnings) {
   if (const InsideDepths* inside = depths(); inside != nullptr && inside->at_most) {
     warnings.push_back(
         fmt::format("inside_max_m, {}, may be too low: no row is deeper than {}; record.inside=true looks at every row",
-                    length_text(inside->max.value_or(0.0)), length_text(*inside->at_most)));
+                    length_text(inside_max()), length_text(*inside->at_most)));
   }
   if (!approach_) return;
-  const Encounter seen = encounter(contact, tool);
   if (outcome == Outcome::completes) {
-    outcome = outcome_of(scenario, seen);
-    if (auto warning = warning_about(scenario, outcome, seen)) warnings.push_back(*warning);
+    outcome = outcome_of(contact);
+    if (auto warning = warning_about(outcome, contact)) warnings.push_back(*warning);
   }
-  if (seen.drag) {
-    for (std::string& warning : drag_warnings(*seen.drag, outcome)) warnings.push_back(std::move(warning));
+  if (drag_) {
+    for (std::string& warning : drag_warnings(drag_->course(), outcome)) warnings.push_back(std::move(warning));
   }
-  if (!std::holds_alternative<MeshToolFields>(scenario.tool)) return;
-  if (auto warning = scale_warning(scenario, tool, seen.environment)) warnings.push_back(*warning);
+  if (!std::holds_alternative<MeshToolFields>(scenario_.tool)) return;
+  if (auto warning = scale_warning(scenario_, *tool_, approach_->steps().environment())) warnings.push_back(*warning);
 }
 
 std::optional<std::string> scale_warning(const Scenario& scenario, const ToolShape& tool, const Box& environment) {
@@ -346,30 +350,66 @@ std::string passage_text(const Passage& p, double half_width, double inside_max,
 
 }  // namespace
 
-std::optional<std::string> warning_about(const Scenario& scenario, Outcome outcome, const Encounter& e) {
-  if (outcome == Outcome::went_through) {
-    const bool odd = out_of_proportion(e.tool, e.environment);
-    const bool is_led = !std::holds_alternative<FreePosition>(scenario.motion.position);
-    return passage_text(*e.passage, e.tool.half_width(), e.inside_max, is_led) +
-           (odd ? "; " + scale_question(scenario) : "");
+/// The likely cause as the end of a sentence, or where to look when none suggests itself.
+std::string EncounterObservers::likely_cause(Outcome outcome, const TrialContact& contact) const {
+  const StepWay& steps = approach_->steps();
+  const double size = diagonal(steps.environment());
+  if (out_of_proportion(*tool_, steps.environment())) return "; " + scale_question(scenario_);
+  if (steps.longest() > tool_->half_width()) {
+    return fmt::format(
+        "; near it the tool moved {} in one step, more than its half width of {}: is time.step_s too long?",
+        length_text(steps.longest()), length_text(tool_->half_width()));
   }
-  if ((outcome == Outcome::stuck || outcome == Outcome::not_dragged) && e.stuck) {
+  const auto* mesh = std::get_if<MeshEnvironment>(&scenario_.environment);
+  if (outcome == Outcome::no_contact && mesh != nullptr && !mesh->spacing && approach_->closest_to_box() == 0.0)
+    return "; only the mesh's vertices can be touched: is environment.spacing_m missing?";
+  const bool recorded = std::holds_alternative<RecordedPosition>(scenario_.motion.position);
+  if (recorded && outcome == Outcome::no_contact && approach_->closest_to_box() > kTooLarge * size)
+    return "; are the positions of motion.position.file in metres?";
+  if (const ImpedanceHandFields* hand = spring_of(scenario_.hand)) {
+    const double closest = closest_target(*hand, scenario_.time, steps.environment());
+    if (closest > 0.0)
+      return fmt::format("; hand.target stays {} away from it: does it lead to the surface?", length_text(closest));
+  }
+  const bool is_free = std::holds_alternative<FreePosition>(scenario_.motion.position);
+  if (is_free && std::holds_alternative<NoHandFields>(scenario_.hand) && outcome == Outcome::no_contact)
+    return "; nothing pushes the tool: is hand missing?";
+  if (outcome == Outcome::lost_contact && (std::holds_alternative<ForceHandFields>(scenario_.hand) ||
+                                           std::holds_alternative<PushHandFields>(scenario_.hand)))
+    return "; a hand of constant force goes on pushing where there is no surface";
+  if (outcome == Outcome::lost_contact)
+    return fmt::format("; the largest force was {:.3g} N", std::sqrt(contact.force_max_squared));
+  return is_free ? "; is initial.position_m right?" : "; is motion.position right?";
+}
+
+std::optional<std::string> EncounterObservers::warning_about(Outcome outcome, const TrialContact& contact) {
+  const StepWay& steps = approach_->steps();
+  if (outcome == Outcome::went_through) {
+    const bool is_led = !std::holds_alternative<FreePosition>(scenario_.motion.position);
+    return passage_text(inside_->passage(), tool_->half_width(), inside_max(), is_led) +
+           (out_of_proportion(*tool_, steps.environment()) ? "; " + scale_question(scenario_) : "");
+  }
+  if (const auto s = stuck(); s && (outcome == Outcome::stuck || outcome == Outcome::not_dragged)) {
     return fmt::format(
         "the tool stood still since {:.4g} s, coming {} further while its target went on by {}; it was at "
         "{} under a force of {:.3g} N in the end",
-        e.stuck->since, length_text(e.stuck->way), length_text(e.stuck->target_way), millimetres(e.stuck->place),
-        e.stuck->force);
+        s->since, length_text(s->way), length_text(s->target_way), millimetres(s->place), s->force);
   }
+  const std::string environment =
+      fmt::format("{}: {}", size_text(steps.environment()), place_text(steps.environment()));
   if (outcome == Outcome::no_contact) {
-    return fmt::format("never in contact: the tip came as close as {} (at {:.4g} s) to the environment ({}){}",
-                       length_text(e.approach.closest), e.approach.closest_time, size_and_place(e.environment),
-                       likely_cause(scenario, outcome, e));
+    const auto closest = approach_->closest_to_surface(*tool_);
+    return fmt::format(
+        "never in contact: the tool came as close as {} (at {:.4g} s) to the surface of the environment ({}){}",
+        length_text(closest.distance), closest.time, environment, likely_cause(outcome, contact));
   }
-  if (outcome != Outcome::lost_contact || (e.drag && e.drag->lost && e.approach.last == 0.0)) return std::nullopt;
-  const double share = static_cast<double>(e.contact.in_contact) / static_cast<double>(e.contact.rows);
+  // drag_warnings tell of a tool that lost the surface within the box.
+  if (outcome != Outcome::lost_contact || (drag_ && drag_->course().lost && steps.distance() == 0.0))
+    return std::nullopt;
+  const double share = static_cast<double>(contact.in_contact) / static_cast<double>(contact.rows);
   return fmt::format("in contact for {:.3g} % of the run, last at {:.4g} s; ended {} away from the environment ({}){}",
-                     100.0 * share, e.contact.last.value_or(0.0), length_text(e.approach.last),
-                     size_and_place(e.environment), likely_cause(scenario, outcome, e));
+                     100.0 * share, contact.last.value_or(0.0), length_text(steps.distance()), environment,
+                     likely_cause(outcome, contact));
 }
 
 namespace {

@@ -1,9 +1,12 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -24,30 +27,60 @@
 /// Outcomes of runs, whether they were expected, and warnings about runs whose numbers may mislead.
 namespace hapbench {
 
-/// Distance of the tool's tip centre to the box around an environment; 0 within the box.
-struct Approach {
-  double closest = std::numeric_limits<double>::infinity();  ///< [m]
-  double closest_time = 0.0;                                 ///< of the first row that close [s]
-  double last = std::numeric_limits<double>::infinity();     ///< of the last row [m]
-};
-
-/// Measures the approach during a run; a few nanoseconds a row.
-class ApproachObserver final : public Observer {
+/// The longest way of a place in one step near an environment: in one that began no further from the environment's box
+/// than it was long, so that it may have met the surface, or passed it.
+class StepWay {
  public:
-  explicit ApproachObserver(const Box& environment) : environment_(environment) {}
+  explicit StepWay(const Box& environment) : environment_(environment) {}
 
-  void on_step(const StepRecord& record) noexcept override {
-    approach_.last = distance_to(environment_, record.tool.pose.position);
-    if (approach_.last >= approach_.closest) return;
-    approach_.closest = approach_.last;
-    approach_.closest_time = record.time;
+  void begin() noexcept { distance_ = std::numeric_limits<double>::infinity(); }  ///< a run
+  void add(const Vec3& place) noexcept {
+    const double way = (place - place_).norm();
+    if (distance_ <= way && std::isfinite(way)) longest_ = std::max(longest_, way);
+    place_ = place;
+    distance_ = distance_to(environment_, place);
   }
-  const Approach& approach() const { return approach_; }
-  const Box& environment() const { return environment_; }
+  double longest() const noexcept { return longest_; }    ///< [m]
+  double distance() const noexcept { return distance_; }  ///< of the last place from the box; 0 within [m]
+  const Box& environment() const noexcept { return environment_; }
 
  private:
   Box environment_;
-  Approach approach_;
+  Vec3 place_ = Vec3::Zero();
+  double distance_ = std::numeric_limits<double>::infinity(), longest_ = 0.0;
+};
+
+/// How close a tool came that touches nothing. A row costs some nanoseconds; the distances from the surface itself are
+/// looked up after the run.
+class ApproachObserver final : public Observer {
+ public:
+  /// The shell has points; the run has at most so many steps.
+  ApproachObserver(std::shared_ptr<const PointShell> shell, std::uint64_t steps);
+
+  void on_step(const StepRecord& record) noexcept override;
+
+  const StepWay& steps() const { return steps_; }  ///< of the tip centre
+  /// Of the tip centre to the environment's box before the first contact; 0 within it [m].
+  double closest_to_box() const;
+
+  struct Closest {
+    double distance, time;  ///< of the tool from the nearest point [m], and when [s]
+  };
+  /// In up to 256 rows before the first contact, of as many parts of the run those closest to the environment's box;
+  /// within a hundredth of the distance in these.
+  Closest closest_to_surface(const ToolShape& tool) const;
+
+ private:
+  static constexpr std::size_t kLooks = 256;
+  struct Look {
+    double time, from_box;
+    ToolPose pose;
+  };
+  std::shared_ptr<const PointShell> shell_;
+  StepWay steps_;
+  std::uint64_t every_;
+  std::vector<Look> looks_;
+  bool touched_ = false;
 };
 
 /// The length of the way on which a scenario has the tool dragged in `duration` [s]: along a direction as far as the
@@ -140,9 +173,6 @@ class StuckObserver final : public Observer {
   Stuck stuck_;
 };
 
-/// Warnings that a dragged tool lost the surface, and of a path that ends early.
-std::vector<std::string> drag_warnings(const DragCourse& course, Outcome outcome);
-
 /// Notes when the tool touches an open mesh where it ends. Beyond such an edge there is nothing to touch, and a tool
 /// that reaches past it is held by too few points or by none.
 class OpenEdgeObserver final : public Observer {
@@ -164,31 +194,10 @@ class OpenEdgeObserver final : public Observer {
   Vec3 first_place_ = Vec3::Zero();
 };
 
-/// The contact of a run that did all its steps with the environment.
-struct Encounter {
-  const TrialContact& contact;
-  const Approach& approach;
-  const Box& environment;  ///< around all points of the shell
-  const ToolShape& tool;
-  std::optional<DragCourse> drag = {};  ///< of a hand that drags
-  std::optional<Passage> passage = {};  ///< of an environment with an inside
-  double inside_max = 0.0;              ///< of any part of the tool in any row [m]
-  std::optional<Stuck> stuck = {};      ///< of a hand with a target
-};
-
-/// The outcome of a run that completed, once it is known what it touched: `went_through` when the tool passed the
-/// surface (Passage), by itself or led by a script, or a part of it was deeper than its half width; `no_contact` when
-/// no row had a colliding point; `lost_contact` when a tool that moves freely ended further from the environment's box
-/// than the box is wide and the tool reaches together, as one does that was thrown out or pushed past, or when a
-/// dragged tool lost the surface; `not_dragged` when one came nowhere (DragCourse): it was pressed, and its calm
-/// numbers tell nothing of a drag; `stuck` when it came to stand while the target of its hand went on; else
-/// `completes`.
-Outcome outcome_of(const Scenario& scenario, const Encounter& encounter);
-
 /// Watches a run with a point shell for all that decides its outcome.
 class EncounterObservers {
  public:
-  /// The parts must outlive them; `metrics`, if given, observes before.
+  /// Scenario and parts must outlive them; `metrics`, if given, observes before.
   EncounterObservers(const Scenario& scenario, const NamedFiles& files, const SimulationParts& parts,
                      const MetricsObserver* metrics = nullptr);
 
@@ -196,17 +205,32 @@ class EncounterObservers {
   /// Null without a solid.
   const InsideObserver* inside() const { return inside_ ? &*inside_ : nullptr; }
 
-  /// The outcome of the run that ended with `outcome`, which stays unless it is `completes`.
-  Outcome outcome(const Scenario& scenario, const TrialContact& contact, const ToolShape& tool, Outcome outcome);
+  /// The outcome of a run that ended with `outcome`, which stays unless it is `completes`. That becomes `went_through`
+  /// when the tool passed the surface (Passage), by itself or led by a script, or a part of it was deeper than its half
+  /// width; `no_contact` when no row had a colliding point; `lost_contact` when a tool that moves freely ended further
+  /// from the environment's box than the box is wide and the tool reaches together, as one does that was thrown out or
+  /// pushed past, or when a dragged tool lost the surface; `not_dragged` when one came nowhere (DragCourse): it was
+  /// pressed, and its calm numbers tell nothing of a drag; `stuck` when it came to stand while the target of its hand
+  /// went on.
+  Outcome outcome(const TrialContact& contact, Outcome outcome);
   /// After the run: finds its outcome and adds warnings about it.
-  void judge(const Scenario& scenario, const TrialContact& contact, const ToolShape& tool, Outcome& outcome,
-             std::vector<std::string>& warnings);
+  void judge(const TrialContact& contact, Outcome& outcome, std::vector<std::string>& warnings);
   /// After the run: how deep the tool was, which is looked for at the first call. Null without a solid.
   const InsideDepths* depths();
 
  private:
-  Encounter encounter(const TrialContact& contact, const ToolShape& tool);
+  /// Of a run that did all its steps with the environment.
+  Outcome outcome_of(const TrialContact& contact);
+  /// What happened and what the likely cause is; none for other outcomes, and none for a dragged tool that lost the
+  /// surface within the environment's box.
+  std::optional<std::string> warning_about(Outcome outcome, const TrialContact& contact);
+  std::string likely_cause(Outcome outcome, const TrialContact& contact) const;
+  std::optional<Stuck> stuck() const;
+  /// How deep any part of the tool was in any row; 0 without a solid [m].
+  double inside_max();
 
+  const Scenario& scenario_;
+  std::shared_ptr<const ToolShape> tool_;
   std::optional<InsideObserver> inside_;
   std::optional<InsideDepths> depths_;
   std::optional<ApproachObserver> approach_;
@@ -216,11 +240,6 @@ class EncounterObservers {
 
 /// For a tool whose size is out of proportion with the environment's, a question about scales.
 std::optional<std::string> scale_warning(const Scenario& scenario, const ToolShape& tool, const Box& environment);
-
-/// For `went_through`, `no_contact`, `lost_contact` and `stuck`, what happened and what the likely cause is; none for
-/// others, and none for a dragged tool that lost the surface within the environment's box, of which drag_warnings
-/// tells.
-std::optional<std::string> warning_about(const Scenario& scenario, Outcome outcome, const Encounter& encounter);
 
 /// The expectations of the scenario that the run does not meet, one sentence each.
 std::vector<std::string> unmet_expectations(const ExpectFields& expect, const Result& run);

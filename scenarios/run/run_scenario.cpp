@@ -30,7 +30,7 @@ void finish_tables(const Simulated& run, RunTables& tables) {
 }  // namespace
 
 Result run_scenario(const LoadedScenario& loaded, const std::optional<fs::path>& output, bool progress,
-                    RunTables* tables) {
+                    RunTables* tables, bool diagnose) {
   RunTiming timing;
   const auto shell = [&] {
     const WaitNotice notice(loaded.scenario.name + ": building the shell", progress);
@@ -39,12 +39,12 @@ Result run_scenario(const LoadedScenario& loaded, const std::optional<fs::path>&
     timing.shell = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return made;
   }();
-  return run_with_shell(loaded, shell, output, progress, timing, tables);
+  return run_with_shell(loaded, shell, output, progress, timing, tables, diagnose);
 }
 
 Result run_with_shell(const LoadedScenario& loaded, const std::shared_ptr<const PointShell>& shell,
-                      const std::optional<fs::path>& output, bool progress, const RunTiming& timing,
-                      RunTables* tables) {
+                      const std::optional<fs::path>& output, bool progress, const RunTiming& timing, RunTables* tables,
+                      bool diagnose) {
   const Scenario& scenario = loaded.scenario;
   const std::size_t trials = trials_of(scenario).size();
   std::optional<ResultFolder> folder;
@@ -55,7 +55,7 @@ Result run_with_shell(const LoadedScenario& loaded, const std::shared_ptr<const 
     if (!folder && tables != nullptr) return &tables->trials.emplace_back();
     return std::nullopt;
   };
-  Simulated run = simulate(loaded, shell, target_of, progress, timing);
+  Simulated run = simulate(loaded, shell, target_of, progress, timing, diagnose);
   Result& result = run.result;
   result.file_warnings = named_file_warnings(loaded);
   result.unmet = unmet_expectations(scenario.expect, result);

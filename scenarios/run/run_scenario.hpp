@@ -19,16 +19,16 @@ struct RunTables {
 /// directory, which is created, records of several trials into a subdirectory each; each file appears complete or not
 /// at all, the summary last. With `tables`, and without a directory, what the scenario records goes there. Without
 /// either, the summary has no provenance and no scenario hash. `progress` allows a progress bar. With skips off
-/// (RenderingConfig), the results are the same but for the counted work. Throws InputError for files it cannot use
-/// (before anything is written), IoError when writing fails, Stopped when a signal ends the run: then nothing of it is
-/// left.
+/// (RenderingConfig), the results are the same but for the counted work. `diagnose`: the result says what is wrong with
+/// the run (diagnosis.hpp), for some 20 ns a row. Throws InputError for files it cannot use (before anything is
+/// written), IoError when writing fails, Stopped when a signal ends the run: then nothing of it is left.
 Result run_scenario(const LoadedScenario& loaded, const std::optional<std::filesystem::path>& output, bool progress,
-                    RunTables* tables = nullptr);
+                    RunTables* tables = nullptr, bool diagnose = false);
 
 /// The same in a shell that is there already and that several runs, also at once, may share: make_shell of the
 /// scenario. `timing` says what is known of the shell's making.
 Result run_with_shell(const LoadedScenario& loaded, const std::shared_ptr<const PointShell>& shell,
                       const std::optional<std::filesystem::path>& output, bool progress, const RunTiming& timing = {},
-                      RunTables* tables = nullptr);
+                      RunTables* tables = nullptr, bool diagnose = false);
 
 }  // namespace hapbench

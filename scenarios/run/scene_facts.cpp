@@ -11,6 +11,7 @@
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/encounter.hpp"
 #include "scenarios/run/stop_signal.hpp"
+#include "sim/mesh/triangle_soup.hpp"
 #include "sim/tool/mesh_tool.hpp"
 
 namespace hapbench {
@@ -22,24 +23,6 @@ ToolPose first_pose(const Scenario& scenario, const SimulationParts& parts) {
   const bool is_free = parts.motion->position_is_free();
   return {is_free ? scenario.initial.position : parts.motion->position_at(0.0), parts.motion->axis_at(0.0),
           parts.motion->roll_at(0.0)};
-}
-
-void place_tool(const ToolShape& tool, const ToolPose& pose, const PointShell& shell, SceneFacts::Surface& surface) {
-  constexpr std::size_t kAtOnce = 4096;  // keeps the buffer small, however large the shell
-  ContactBuffer points(std::min(kAtOnce, shell.size()));
-  surface.gap = std::numeric_limits<double>::infinity();
-  for (std::size_t first = 0; first < shell.size(); first += kAtOnce) {
-    points.clear();
-    for (std::size_t i = first; i < std::min(first + kAtOnce, shell.size()); ++i) {
-      const SurfacePoint point = shell.point(i);
-      points.push(static_cast<std::uint32_t>(i), point.position, point.normal);
-    }
-    tool.surface_constraints(pose, Vec3::Zero(), 0.0, points);
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      surface.gap = std::min(surface.gap, -points.depth[i]);
-      if (points.depth[i] >= 0.0) ++surface.touching;
-    }
-  }
 }
 
 /// Lengths and times this far apart are of different units: mm for m is a factor of 1000, cm for m one of 100.
@@ -180,7 +163,9 @@ SceneFacts scene_facts(const LoadedScenario& loaded) {
       facts.warnings.push_back(*warning);
   }
   const ToolPose pose = first_pose(scenario, parts);
-  place_tool(*tool, pose, *shell, surface);
+  const Gap gap = gap_between(*tool, pose, *shell);
+  surface.gap = gap.distance;
+  surface.touching = gap.touching;
   for (std::string& warning : unit_warnings(loaded, *tool, surface)) facts.warnings.push_back(std::move(warning));
   // check_named_files has warned of an open scan.
   if (!is_open_scan(scenario, loaded.files)) {
@@ -200,6 +185,106 @@ std::optional<std::string> inverted_scan_warning(const LoadedScenario& loaded) {
   add_hand_and_motion(scenario, loaded.files, {}, parts);
   const ToolPose pose = first_pose(scenario, parts);
   return wrong_side_warning(*parts.shell, pose.position - way_to_core(*parts.tool) * pose.axis, 0.0);
+}
+
+namespace {
+
+constexpr double kAlways = std::numeric_limits<double>::infinity();
+
+/// The time until which a script moves [s]: 0 if it never does.
+double moves_until(const Profile& profile) {
+  if (profile.is_constant()) return 0.0;
+  const auto* way = std::get_if<Profile::Waypoints>(&profile.shape());
+  return way != nullptr ? way->points.back().first : kAlways;
+}
+
+double any_moves_until(const std::array<Profile, 3>& profiles) {
+  return std::max({moves_until(profiles[0]), moves_until(profiles[1]), moves_until(profiles[2])});
+}
+
+struct HandMovesUntil {
+  double operator()(const NoHandFields&) const { return 0.0; }
+  double operator()(const ForceHandFields& hand) const { return any_moves_until(hand.force); }
+  double operator()(const PushHandFields& hand) const { return moves_until(hand.force); }
+  double operator()(const ImpedanceHandFields& hand) const { return any_moves_until(hand.target); }
+  double operator()(const MassSpringDamperHandFields& hand) const { return any_moves_until(hand.spring.target); }
+  template <class Other>
+  double operator()(const Other&) const {
+    return kAlways;
+  }
+};
+
+}  // namespace
+
+double script_moves_until(const Scenario& scenario) {
+  const auto& orientation = scenario.motion.orientation;
+  if (!orientation) return kAlways;
+  return std::max(
+      {moves_until(orientation->tilt), moves_until(orientation->azimuth), std::visit(HandMovesUntil{}, scenario.hand)});
+}
+
+const TremorConfig* tremor_of(const Scenario& scenario) {
+  const ImpedanceHandFields* hand = spring_of(scenario.hand);
+  return hand != nullptr && hand->tremor ? &*hand->tremor : nullptr;
+}
+
+bool is_moved(const Scenario& scenario) {
+  return script_moves_until(scenario) > 0.0 || tremor_of(scenario) != nullptr;
+}
+
+namespace {
+
+struct PointDistanceOf {
+  const NamedFiles& files;
+
+  std::optional<PointDistance> operator()(const SpringsEnvironment&) const { return std::nullopt; }
+  std::optional<PointDistance> operator()(const PointShellEnvironment&) const { return std::nullopt; }
+  std::optional<PointDistance> operator()(const BlockEnvironment& block) const {
+    return {{"environment.grid_m", block.grid}};
+  }
+  std::optional<PointDistance> operator()(const MeshEnvironment& mesh) const {
+    if (mesh.spacing) return {{"environment.spacing_m", *mesh.spacing}};
+    const TriangleSoup soup = files.at(kEnvironmentFile).mesh().triangles();
+    double area = 0.0;
+    for (const auto& [a, b, c] : soup.triangles) {
+      const Vec3& corner = soup.vertices[a];
+      area += 0.5 * (soup.vertices[b] - corner).cross(soup.vertices[c] - corner).norm();
+    }
+    return {{"environment.spacing_m", std::sqrt(area / static_cast<double>(soup.vertices.size())), false}};
+  }
+  template <class Analytic>
+  std::optional<PointDistance> operator()(const Analytic& shape) const {
+    if constexpr (requires { shape.spacing; }) {
+      return {{"environment.spacing_m", shape.spacing}};
+    } else {
+      return std::nullopt;
+    }
+  }
+};
+
+}  // namespace
+
+std::optional<PointDistance> point_distance(const LoadedScenario& loaded) {
+  return std::visit(PointDistanceOf{loaded.files}, loaded.scenario.environment);
+}
+
+Gap gap_between(const ToolShape& tool, const ToolPose& pose, const PointShell& shell) {
+  constexpr std::size_t kAtOnce = 4096;  // keeps the buffer small, however large the shell
+  ContactBuffer points(std::min(kAtOnce, shell.size()));
+  Gap gap{std::numeric_limits<double>::infinity()};
+  for (std::size_t first = 0; first < shell.size(); first += kAtOnce) {
+    points.clear();
+    for (std::size_t i = first; i < std::min(first + kAtOnce, shell.size()); ++i) {
+      const SurfacePoint point = shell.point(i);
+      points.push(static_cast<std::uint32_t>(i), point.position, point.normal);
+    }
+    tool.surface_constraints(pose, Vec3::Zero(), 0.0, points);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      gap.distance = std::min(gap.distance, -points.depth[i]);
+      if (points.depth[i] >= 0.0) ++gap.touching;
+    }
+  }
+  return gap;
 }
 
 namespace {

@@ -7,6 +7,8 @@
 
 #include "scenarios/description/load_scenario.hpp"
 #include "sim/core/types.hpp"
+#include "sim/geometry/point_shell.hpp"
+#include "sim/tool/tool_shape.hpp"
 
 namespace hapbench {
 
@@ -32,9 +34,7 @@ struct SceneFacts {
   struct Surface {
     Box box;
     std::size_t points = 0;
-    /// Distance of the tool, where it starts, from the nearest point [m]; when negative, how deep the deepest point
-    /// lies in it.
-    double gap = 0.0;
+    double gap = 0.0;          ///< Gap::distance where the tool starts [m]
     std::size_t touching = 0;  ///< points in the tool where it starts
   };
   std::optional<Surface> surface;
@@ -51,6 +51,44 @@ SceneFacts scene_facts(const LoadedScenario& loaded);
 /// for other environments, which cost nothing. One pass over the points of the shell, some 4 ns each; the shell is the
 /// run's, made once in a process. Throws InputError when a named file cannot be used.
 std::optional<std::string> inverted_scan_warning(const LoadedScenario& loaded);
+
+// ---- Who moves the tool. ----
+
+/// The time until which a script moves the hand or turns the tool [s]: 0 if it never does, infinite if it never stops.
+double script_moves_until(const Scenario& scenario);
+/// The tremor of the hand; null without.
+const TremorConfig* tremor_of(const Scenario& scenario);
+/// True when a script moves the hand or turns the tool: then the tool never comes to rest, and only what is above 30 Hz
+/// and 1 mm/s counts as motion, and once the script has ended all beyond 1 mm/s. A hand that trembles moves it, too.
+bool is_moved(const Scenario& scenario);
+
+/// What a handle may vibrate unless it is said otherwise [m/s rms above 30 Hz]. It is a speed because hand-transmitted
+/// vibrations from 16 to 400 Hz of equal speed are about equally unpleasant (Griffin, "Frequency-dependence of
+/// psychophysical and physiological responses to hand-transmitted vibration", Industrial Health 50, 2012). Its value is
+/// our choice, the same as that of the classes of motion; a hand that holds a cylinder feels less than a hundredth of
+/// it at 150 to 200 Hz (Brisben, Hsiao and Johnson, Journal of Neurophysiology 81, 1999).
+inline constexpr double kMostVibration = 1e-3;
+
+// ---- Points and distances. ----
+
+/// The field that sets the distance of the shell's points, and this distance.
+struct PointDistance {
+  const char* path;  ///< of the field, as in --set
+  double metres;
+  bool is_given = true;  ///< false: the mean distance of the vertices of a mesh that is taken as it is
+};
+
+/// None where no field sets it.
+std::optional<PointDistance> point_distance(const LoadedScenario& loaded);
+
+/// The place of a tool against the points of a surface.
+struct Gap {
+  /// Distance of the tool from the nearest point [m]; when negative, how deep the deepest point lies in it.
+  double distance = 0.0;
+  std::size_t touching = 0;  ///< points in the tool
+};
+/// Looks at all points of the shell, which has some.
+Gap gap_between(const ToolShape& tool, const ToolPose& pose, const PointShell& shell);
 
 // ---- Quantities as people read them. ----
 

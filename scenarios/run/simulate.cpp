@@ -9,6 +9,7 @@
 #include "results/observe/step_times.hpp"
 #include "scenarios/description/metric_sections.hpp"
 #include "scenarios/run/assemble.hpp"
+#include "scenarios/run/diagnosis.hpp"
 #include "scenarios/run/encounter.hpp"
 #include "scenarios/run/progress_bar.hpp"
 #include "scenarios/run/stop_signal.hpp"
@@ -133,7 +134,7 @@ class TrialWarnings {
 /// A run between its trials: the observers that go on from trial to trial, and what the trials gave so far.
 class Run {
  public:
-  Run(const LoadedScenario& loaded, const std::shared_ptr<const PointShell>& shell, std::size_t trials);
+  Run(const LoadedScenario& loaded, const std::shared_ptr<const PointShell>& shell, std::size_t trials, bool diagnose);
 
   /// Makes a trial. `label` is that of the progress bar; empty for none.
   void make(Trial trial, const std::optional<RecordTarget>& target, const std::string& label);
@@ -150,6 +151,7 @@ class Run {
   std::shared_ptr<const ToolShape> tool_;
   std::optional<MetricsObserver> metrics_;  ///< made from the parts of the first trial
   SectionObservers sections_;
+  std::optional<DiagnosisObserver> diagnosis_;  ///< if it is wanted
   std::optional<InsideDepths> inside_;
   std::optional<StepTimes> times_;               ///< of every step, if they are wanted
   std::vector<std::uint64_t> step_nanoseconds_;  ///< samples of the time of single steps (StepSampler)
@@ -161,13 +163,15 @@ class Run {
   std::vector<std::unique_ptr<Recorder>> recorders_;
 };
 
-Run::Run(const LoadedScenario& loaded, const std::shared_ptr<const PointShell>& shell, std::size_t trials)
+Run::Run(const LoadedScenario& loaded, const std::shared_ptr<const PointShell>& shell, std::size_t trials,
+         bool diagnose)
     : loaded_(loaded),
       scenario_(loaded.scenario),
       shell_(shell),
       reference_(reference_force(scenario_, loaded.files)),
       sections_(scenario_, reference_ != nullptr) {
   if (scenario_.record.timing) times_.emplace(static_cast<std::size_t>(scenario_.time.steps) * trials);
+  if (diagnose) diagnosis_.emplace(scenario_, shell_.get());
 }
 
 void Run::make(Trial trial, const std::optional<RecordTarget>& target, const std::string& label) {
@@ -178,6 +182,7 @@ void Run::make(Trial trial, const std::optional<RecordTarget>& target, const std
   if (!metrics_) metrics_.emplace(time.step * static_cast<double>(time.stride), metrics_config(scenario_, parts));
   metrics_->begin();
   sections_.begin(begun);
+  if (diagnosis_) diagnosis_->begin();
   tool_ = parts.tool;
 
   StepSampler sampler(static_cast<std::uint64_t>(time.steps));
@@ -190,6 +195,7 @@ void Run::make(Trial trial, const std::optional<RecordTarget>& target, const std
   for (const auto& observer : sections_.all()) observers.push_back(observer.get());
   for (Observer* observer : seen.all()) observers.push_back(observer);
   if (open_edges) observers.push_back(&*open_edges);
+  if (diagnosis_) observers.push_back(&*diagnosis_);
   if (target) {
     for (auto& recorder :
          make_recorders({scenario_.record, parts.source->capacity(), sections_, seen.inside()}, *target)) {
@@ -220,7 +226,7 @@ SimulationResult Run::step_to_end(Simulation& simulation) {
 void Run::end_trial(EncounterObservers& seen, const std::optional<OpenEdgeObserver>& open_edges,
                     SimulationResult result) {
   std::vector<std::string> warnings;
-  seen.judge(scenario_, metrics_->trial(), *tool_, result.outcome, warnings);
+  seen.judge(metrics_->trial(), result.outcome, warnings);
   if (open_edges && open_edges->warning()) warnings.push_back(*open_edges->warning());
   warnings_.add(std::move(warnings));
   if (const InsideDepths* depths = seen.depths()) {
@@ -262,6 +268,7 @@ Simulated Run::finish(const RunTiming& timing) {
   if (!std::holds_alternative<CylinderFields>(scenario_.tool))
     result.tool = ToolSummary{tool_->half_width(), tool_->reach(), tool_->convex(), tool_->outline()};
   if (const auto* targets = sections_.find<TargetMetricsObserver>()) result.targets = targets->rows();
+  if (diagnosis_) result.diagnosis = diagnosis_->findings(loaded_, result, *tool_);
   result.timing = timing;
   result.timing.loop = loop_seconds_;
   result.timing.steps = worst_->rows;
@@ -286,9 +293,9 @@ std::vector<Trial> trials_of(const Scenario& scenario) {
 }
 
 Simulated simulate(const LoadedScenario& loaded, const std::shared_ptr<const PointShell>& shell,
-                   const TargetOfTrial& target_of, bool progress, const RunTiming& timing) {
+                   const TargetOfTrial& target_of, bool progress, const RunTiming& timing, bool diagnose) {
   const std::vector<Trial> trials = trials_of(loaded.scenario);
-  Run run(loaded, shell, trials.size());
+  Run run(loaded, shell, trials.size(), diagnose);
   for (std::size_t i = 0; i < trials.size(); ++i) {
     std::string label = progress ? loaded.scenario.name : "";
     if (progress && trials.size() > 1) label += fmt::format(" {}/{}", i + 1, trials.size());

@@ -27,9 +27,9 @@ std::vector<Trial> trials_of(const Scenario& scenario);
 using TargetOfTrial = std::function<std::optional<RecordTarget>(Trial trial)>;
 
 /// Runs all trials of a scenario in its shell, one after the other. `progress` allows a progress bar; `timing` says
-/// what is known of the shell's making. Throws InputError for files it cannot use, IoError, and Stopped when a signal
-/// ends the run.
+/// what is known of the shell's making; `diagnose`: the result has a diagnosis. Throws InputError for files it cannot
+/// use, IoError, and Stopped when a signal ends the run.
 Simulated simulate(const LoadedScenario& loaded, const std::shared_ptr<const PointShell>& shell,
-                   const TargetOfTrial& target_of, bool progress, const RunTiming& timing);
+                   const TargetOfTrial& target_of, bool progress, const RunTiming& timing, bool diagnose);
 
 }  // namespace hapbench

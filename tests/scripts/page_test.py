@@ -47,10 +47,11 @@ class Page(Given):
         (run / "trajectory.csv").unlink()
         summary = json.loads((run / "summary.json").read_text())
         summary["warnings"] = ["in contact 4.9 % of the run <b>"]
+        summary["diagnosis"] = [{"says": "it buzzes", "try": "less <K>"}]
         summary["metrics"] |= {"landing_force_max_N": 7.25, "force_rms_above_30Hz_N": 0.125}
         (run / "summary.json").write_text(json.dumps(summary))
         page = self.page(run)
-        self.assertEqual(re.findall(r'<section id="(\w+)"', page), ["summary", "warnings", "metrics", "scenario", "rerun", "provenance"])
+        self.assertEqual(re.findall(r'<section id="(\w+)"', page), ["summary", "warnings", "diagnosis", "metrics", "scenario", "rerun", "provenance"])
         for text in ("in contact 4.9 % of the run &lt;b&gt;", "landing force max<br><span class=unit>N</span>", "7.25", "force rms above 30Hz", "0.125"):
             self.assertTrue(text in page, text)
 

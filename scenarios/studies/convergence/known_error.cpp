@@ -9,6 +9,7 @@
 
 #include "scenarios/description/metric_sections.hpp"
 #include "scenarios/run/assemble.hpp"
+#include "scenarios/run/scene_facts.hpp"
 
 namespace hapbench {
 namespace {

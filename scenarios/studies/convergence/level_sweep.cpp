@@ -8,40 +8,12 @@
 #include "algorithms/stages/damping_and_limits.hpp"
 #include "results/io/json_text.hpp"
 #include "scenarios/input/input_error.hpp"
+#include "scenarios/run/scene_facts.hpp"
 #include "scenarios/studies/stability/field_limit.hpp"
 #include "sim/loop/integrators/table.hpp"
-#include "sim/mesh/triangle_soup.hpp"
 
 namespace hapbench {
 namespace {
-
-struct PointDistanceOf {
-  const NamedFiles& files;
-
-  std::optional<PointDistance> operator()(const SpringsEnvironment&) const { return std::nullopt; }
-  std::optional<PointDistance> operator()(const PointShellEnvironment&) const { return std::nullopt; }
-  std::optional<PointDistance> operator()(const BlockEnvironment& block) const {
-    return {{"environment.grid_m", block.grid}};
-  }
-  std::optional<PointDistance> operator()(const MeshEnvironment& mesh) const {
-    if (mesh.spacing) return {{"environment.spacing_m", *mesh.spacing}};
-    const TriangleSoup soup = files.at(kEnvironmentFile).mesh().triangles();
-    double area = 0.0;
-    for (const auto& [a, b, c] : soup.triangles) {
-      const Vec3& corner = soup.vertices[a];
-      area += 0.5 * (soup.vertices[b] - corner).cross(soup.vertices[c] - corner).norm();
-    }
-    return {{"environment.spacing_m", std::sqrt(area / static_cast<double>(soup.vertices.size())), false}};
-  }
-  template <class Analytic>
-  std::optional<PointDistance> operator()(const Analytic& shape) const {
-    if constexpr (requires { shape.spacing; }) {
-      return {{"environment.spacing_m", shape.spacing}};
-    } else {
-      return std::nullopt;
-    }
-  }
-};
 
 /// Of the step. A device samples: between its samples the force is held, which is of the first order.
 double order_in_step(const Scenario& scenario) {
@@ -103,10 +75,6 @@ double coarsest_value(const LoadedScenario& loaded, const std::string& path) {
 }
 
 }  // namespace
-
-std::optional<PointDistance> point_distance(const LoadedScenario& loaded) {
-  return std::visit(PointDistanceOf{loaded.files}, loaded.scenario.environment);
-}
 
 LevelSweep level_sweep(const LoadedScenario& loaded, const std::string& path, std::size_t levels, double ratio) {
   LevelSweep sweep;

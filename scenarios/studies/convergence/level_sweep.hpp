@@ -10,16 +10,6 @@
 /// A scene sampled more and more finely, in its step or in any field.
 namespace hapbench {
 
-/// The field that sets the distance of the shell's points, and this distance.
-struct PointDistance {
-  const char* path;  ///< of the field, as in --set
-  double metres;
-  bool is_given = true;  ///< false: the mean distance of the vertices of a mesh that is taken as it is
-};
-
-/// None where no field sets it.
-std::optional<PointDistance> point_distance(const LoadedScenario& loaded);
-
 inline constexpr const char* kStepPath = "time.step_s";
 
 /// The levels of a scene's field, from the scenario's own value to finer ones.

@@ -18,7 +18,7 @@
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/run/assemble.hpp"
-#include "scenarios/studies/stability/scene_loop.hpp"
+#include "scenarios/run/scene_loop.hpp"
 #include "sim/core/bisection.hpp"
 #include "sim/core/math.hpp"
 

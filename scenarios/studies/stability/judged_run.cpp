@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include "results/observe/contact_forces.hpp"
 #include "results/observe/metrics.hpp"
@@ -14,6 +13,7 @@
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/encounter.hpp"
 #include "scenarios/run/run_scenario.hpp"
+#include "scenarios/run/scene_facts.hpp"
 #include "scenarios/run/stop_signal.hpp"
 #include "sim/contact/stiffness_tensor.hpp"
 #include "sim/core/hash.hpp"
@@ -114,38 +114,6 @@ MotionClass classify(Simulation& simulation, const MotionClassifier& classifier)
 }
 
 namespace {
-
-constexpr double kAlways = std::numeric_limits<double>::infinity();
-
-/// The time until which a script moves [s]: 0 if it never does.
-double moves_until(const Profile& profile) {
-  if (profile.is_constant()) return 0.0;
-  const auto* way = std::get_if<Profile::Waypoints>(&profile.shape());
-  return way != nullptr ? way->points.back().first : kAlways;
-}
-
-double any_moves_until(const std::array<Profile, 3>& profiles) {
-  return std::max({moves_until(profiles[0]), moves_until(profiles[1]), moves_until(profiles[2])});
-}
-
-struct HandMovesUntil {
-  double operator()(const NoHandFields&) const { return 0.0; }
-  double operator()(const ForceHandFields& hand) const { return any_moves_until(hand.force); }
-  double operator()(const PushHandFields& hand) const { return moves_until(hand.force); }
-  double operator()(const ImpedanceHandFields& hand) const { return any_moves_until(hand.target); }
-  double operator()(const MassSpringDamperHandFields& hand) const { return any_moves_until(hand.spring.target); }
-  template <class Other>
-  double operator()(const Other&) const {
-    return kAlways;
-  }
-};
-
-double script_moves_until(const Scenario& scenario) {
-  const auto& orientation = scenario.motion.orientation;
-  if (!orientation) return kAlways;
-  return std::max(
-      {moves_until(orientation->tilt), moves_until(orientation->azimuth), std::visit(HandMovesUntil{}, scenario.hand)});
-}
 
 /// Whether the tool ever touched, where it was last, and a hash of where it was.
 class LastPlace final : public Observer {
@@ -293,15 +261,6 @@ std::string rule_text(const StabilityRule& rule, bool moved) {
   return fmt::format("{}; not: {}", text, fmt::join(others, ", "));
 }
 
-static const TremorConfig* tremor_of(const Scenario& scenario) {
-  const ImpedanceHandFields* hand = spring_of(scenario.hand);
-  return hand != nullptr && hand->tremor ? &*hand->tremor : nullptr;
-}
-
-bool is_moved(const Scenario& scenario) {
-  return script_moves_until(scenario) > 0.0 || tremor_of(scenario) != nullptr;
-}
-
 /// The class of the motion of hand and device without any environment.
 static MotionClass classify_alone(const Scenario& scenario, const NamedFiles& files, const MotionClassifier& classifier,
                                   const std::vector<Observer*>& observers) {
@@ -364,7 +323,7 @@ static JudgedRun judged_once(const LoadedScenario& loaded, const std::shared_ptr
   if (classifier.at_rest() && settled.vibration) settled.vibration = 0.0;
   TrialContact touched;
   touched.in_contact = last.touched ? 1 : 0;
-  const Outcome outcome = seen.outcome(scenario, touched, *tool, simulation.result().outcome);
+  const Outcome outcome = seen.outcome(touched, simulation.result().outcome);
   const auto verdict = [&] {
     if (motion == MotionClass::diverged) return RunVerdict::diverged;
     if (outcome == Outcome::went_through) return RunVerdict::went_through;

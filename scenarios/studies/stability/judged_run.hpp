@@ -11,6 +11,7 @@
 
 #include "results/observe/butterworth.hpp"
 #include "scenarios/description/load_scenario.hpp"
+#include "scenarios/run/scene_facts.hpp"
 #include "sim/geometry/point_shell.hpp"
 #include "sim/loop/observer.hpp"
 #include "sim/loop/simulation.hpp"
@@ -144,9 +145,6 @@ inline bool is_stable(RunVerdict verdict) noexcept {
   return verdict == RunVerdict::stable || verdict == RunVerdict::dying_out;
 }
 
-/// True when a script moves the hand or turns the tool: then the tool never comes to rest, and only what is above 30 Hz
-/// and 1 mm/s counts as motion, and once the script has ended all beyond 1 mm/s. A hand that trembles moves it, too.
-bool is_moved(const Scenario& scenario);
 /// By a run of hand and device alone, with the scenario's first trial. Throws Stopped.
 TremorSpeeds tremor_speeds(const LoadedScenario& loaded);
 
@@ -159,13 +157,6 @@ struct SettledState {
   double touch_speed = 0.0;  ///< of the handle in the first row with a rendered contact [m/s]
   double press = 0.0;        ///< mean force of the hand in rows in contact [N]
 };
-
-/// What a handle may vibrate unless it is said otherwise [m/s rms above 30 Hz]. It is a speed because hand-transmitted
-/// vibrations from 16 to 400 Hz of equal speed are about equally unpleasant (Griffin, "Frequency-dependence of
-/// psychophysical and physiological responses to hand-transmitted vibration", Industrial Health 50, 2012). Its value is
-/// our choice, the same as that of the classes of motion; a hand that holds a cylinder feels less than a hundredth of
-/// it at 150 to 200 Hz (Brisben, Hsiao and Johnson, Journal of Neurophysiology 81, 1999).
-inline constexpr double kMostVibration = 1e-3;
 
 /// What a run has to do to be stable: the one rule of limits, maps of devices and comparisons.
 struct StabilityRule {

@@ -9,7 +9,7 @@
 #include "scenarios/description/descriptions.hpp"
 #include "scenarios/description/reader.hpp"
 #include "scenarios/description/writer.hpp"
-#include "scenarios/studies/stability/scene_loop.hpp"
+#include "scenarios/run/scene_loop.hpp"
 
 namespace hapbench {
 namespace {

@@ -14,8 +14,8 @@
 #include "scenarios/batch/statistics.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/run_scenario.hpp"
+#include "scenarios/run/scene_loop.hpp"
 #include "scenarios/studies/stability/judged_run.hpp"
-#include "scenarios/studies/stability/scene_loop.hpp"
 #include "sim/core/math.hpp"
 
 namespace hapbench {

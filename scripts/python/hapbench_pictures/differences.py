@@ -10,7 +10,7 @@ from hapbench.columns import read_rows
 from hapbench_report.json_input import InputError, load_object
 
 SUMMARY, SWEEP, TRAJECTORY = "summary.json", "sweep.csv", "trajectory.csv"
-NO_RESULTS = ("name", "algorithm", "expected", "warnings", "work", "provenance", "state_hash")
+NO_RESULTS = ("name", "algorithm", "expected", "warnings", "diagnosis", "work", "provenance", "state_hash")
 LONGEST = 24  # of a printed value
 NO_NUMBER = math.inf  # the size of a difference of which not both are numbers
 

@@ -20,7 +20,7 @@ from .given import common_folder, given_runs, given_sweep, labels
 from .panels import DARK, LIGHT, PATH_COLUMNS, SPANS, draw_over_time, draw_path, looks, on_dark, projections, settings
 from .quantities import REFERENCE, SHORT, TRAJECTORY, USUAL, Samples, quantity, tables_of
 from .replay import replays, surface_of
-from .sections import (commands_section, metric_rows, metrics_section, provenance, scenario_section, seeds_section, summary_section, warnings_section)
+from .sections import (commands_section, diagnosis_section, metric_rows, metrics_section, provenance, scenario_section, seeds_section, summary_section, warnings_section)
 
 STYLE = Path(__file__).parent / "page.css"
 SIZE, PATH_SIZE = (4.0, 2.0), (4.0, 2.9)  # [inch]: on a phone as legible as the text around it
@@ -74,6 +74,7 @@ def sections(runs, names, words):
     found = (
         ("summary", "Summary", "Summary", summary_section(runs, names)),
         ("warnings", "Warnings", "Warnings", warnings_section(runs, names)),
+        ("diagnosis", "Diagnosis", "What is wrong, and what to try", diagnosis_section(runs, names)),
         ("replay", "Replay", "Replay", drawn and player(replays(*zip(*drawn)))),
         ("curves", "Curves", "Curves", drawn and curves_section(*zip(*drawn))),
         ("fidelity", "Fidelity", "Against the measured force", fidelity_section(runs, names)),

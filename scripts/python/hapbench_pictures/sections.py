@@ -77,6 +77,12 @@ def warnings_section(runs, labels):
     return said and "<ul>" + "".join(f"<li><b>{text(label)}:</b> {text(warning)}</li>" for label, warning in said) + "</ul>"
 
 
+def diagnosis_section(runs, labels):
+    """What is wrong by the rules of the program, and what to try; of runs that were asked for it."""
+    said = [(label, found) for run, label in zip(runs, labels) for found in run.summary.get("diagnosis", ())]
+    return said and "<ul>" + "".join(f"<li><b>{text(label)}:</b> {text(found['says'])} <i>try: {text(found['try'])}</i></li>" for label, found in said) + "</ul>"
+
+
 def metric_rows(runs, labels, section, names, *beside):
     """Headings and rows of a table of metrics, a row for each run; `beside`: pairs of a heading and its cells."""
     values = [[number_or_none(run.sections.get(section, {}).get(name)) for name in names] for run in runs]

@@ -4,7 +4,7 @@
 #include "tests/scenarios/support/file_tree.hpp"
 #include "tests/scenarios/support/program.hpp"
 
-/// hapbench tune and hapbench explain: what they print, write and refuse.
+/// hapbench tune: what it prints, writes and refuses.
 namespace hapbench::tune_command_test {
 namespace {
 
@@ -73,18 +73,6 @@ TEST_F(TuneCommand, SaysWhatToRelaxAndWritesNoScenario) {
   EXPECT_NE(text.find("nothing is feasible"), std::string::npos) << text;
   EXPECT_NE(text.find("\ndelay_samples: 0.5 (0.5 ms in steps of 1 ms); "), std::string::npos) << text;
   EXPECT_FALSE(fs::exists(file("out/tap_wall_tuned.json")));
-}
-
-TEST_F(TuneCommand, ExplainTellsOfRuns) {
-  hapbench({"run", "drag_molar", "--out", file("calm"), "--quiet"});
-  hapbench({"run", "drag_molar", "--set", "rendering.stiffness_N_per_m=2e6", "--out", file("stiff"), "--quiet"});
-  EXPECT_EQ(hapbench({"explain", file("calm")}).out.find("nothing is wrong by "), 0u);
-  const Json json = hapbench({"explain", file("calm"), file("stiff"), "--json"}).json();
-  EXPECT_TRUE(json[0]["findings"].empty());
-  ASSERT_FALSE(json[1]["findings"].empty());
-  for (const Json& finding : json[1]["findings"]) EXPECT_GT(finding["value"], finding["threshold"]);
-  EXPECT_GE(hapbench({"explain", "--rules", "--json"}).json().size(), 12u);
-  EXPECT_EQ(hapbench({"explain", file("nothing")}).status, 2);
 }
 
 }  // namespace

@@ -17,77 +17,80 @@
 namespace hapbench::encounter_test {
 namespace {
 
-/// A block of 6 x 6 x 7 mm, whose diagonal is 11 mm, and a tool of 10 mm pushed by a hand of constant force.
-class EncounterWithBlock : public testing::Test {
- protected:
-  EncounterWithBlock() {
-    contact = {.rows = 1000, .in_contact = 49, .last = 0.249};
-    approach = {0.0, 0.1, 0.0};
-    scenario.environment = MeshEnvironment{"bear.off", 0.001, {}, {}};
-    scenario.hand = ForceHandFields{};
-    scenario.time = {0.0005, 1000, {}};
+/// A tool of 1 mm above a plane of 10 mm, which a hand pushes.
+Json above_plane() {
+  return Json::parse(R"({
+    "time": {"step_s": 0.0005, "steps": 100},
+    "environment": {"type": "plane", "size_m": 0.01, "spacing_m": 0.0005},
+    "tool": {"diameter_m": 0.001}, "initial": {"position_m": [0, 0, 0.003]},
+    "hand": {"type": "force", "z_N": -1}, "rendering": {"mass_kg": 0.1}
+  })");
+}
+
+/// The run of that scene with a patch.
+Result run_of(const char* patch) {
+  Json json = above_plane();
+  json.merge_patch(Json::parse(patch));
+  return run_scenario(read_scenario(json, HAPBENCH_TEST_DATA), std::nullopt, false);
+}
+
+TEST(Encounter, CompletesWhereTheToolTouchesAndStaysNear) {
+  const Result run = run_of("{}");
+  EXPECT_EQ(run.end.outcome, Outcome::completes);
+  EXPECT_TRUE(run.warnings.empty()) << run.warnings[0];
+}
+
+TEST(Encounter, LostContactWhenTheToolEndedFarAway) {
+  const char* const pushed = R"({"initial": {"position_m": [0, 0, 0]}, "time": {"steps": 500},
+                                 "hand": {"x_N": 8, "z_N": -0.5}})";
+  const Result run = run_of(pushed);
+  EXPECT_EQ(run.end.outcome, Outcome::lost_contact);
+  ASSERT_EQ(run.warnings.size(), 1u);
+  EXPECT_TRUE(run.warnings[0].ends_with(
+      " away from the environment (10 x 10 x 0 mm: x -5 ... 5, y -5 ... 5, z 0 ... 0 mm); a hand of constant force "
+      "goes on pushing where there is no surface"))
+      << run.warnings[0];
+}
+
+TEST(Encounter, AScriptMayLeadTheToolAway) {
+  const char* const led = R"({"initial": null, "hand": null, "motion": {"position": {"type": "prescribed",
+      "x_m": 0, "y_m": 0, "z_m": {"type": "waypoints", "points": [[0, 0], [0.04, 1]]}}}})";
+  EXPECT_EQ(run_of(led).end.outcome, Outcome::completes);
+}
+
+/// The tip centre is in the environment's box all the time, 1 mm from the wall of a hole of 2 mm.
+TEST(Encounter, NoContactIsMeasuredToTheSurface) {
+  const char* const in_hole =
+      R"({"hand": null, "initial": {"position_m": [0, 0, -0.001]}, "tool": {"diameter_m": 0.0006},
+      "environment": {"type": "block_with_hole", "size_m": [0.006, 0.005, 0.004], "hole_diameter_m": 0.002,
+                      "hole_depth_m": 0.003, "grid_m": 0.0001, "spacing_m": null}})";
+  const Result run = run_of(in_hole);
+  EXPECT_EQ(run.end.outcome, Outcome::no_contact);
+  ASSERT_EQ(run.warnings.size(), 1u);
+  const std::string begin = "never in contact: the tool came as close as ";
+  ASSERT_TRUE(run.warnings[0].starts_with(begin)) << run.warnings[0];
+  EXPECT_NEAR(std::stod(run.warnings[0].substr(begin.size())), 1.0 - 0.3, 0.01) << run.warnings[0];
+  EXPECT_TRUE(run.warnings[0].ends_with("; nothing pushes the tool: is hand missing?")) << run.warnings[0];
+}
+
+TEST(Encounter, NoContactTellsTheLikelyCause) {
+  for (const auto& [patch, cause] : {
+           std::pair{R"({"hand": {"z_N": 1}})", "; is initial.position_m right?"},
+           {R"({"hand": {"type": "impedance", "z_N": null, "stiffness_N_per_m": 300, "damping_N_s_per_m": 6,
+                        "target": {"x_m": 0, "y_m": 0, "z_m": 0.003}}})",
+            "; hand.target stays 3 mm away from it: does it lead to the surface?"},
+           {R"({"hand": {"z_N": 1}, "environment": {"type": "mesh", "file": "cube.obj", "scale": 1e-6, "size_m": null,
+                                                    "spacing_m": null}})",
+            "; is environment.scale right?"},
+           {R"({"hand": null, "initial": null,
+               "motion": {"position": {"type": "prescribed", "x_m": 0, "y_m": 0, "z_m": 0.003}}})",
+            "; is motion.position right?"},
+       }) {
+    const Result run = run_of(patch);
+    EXPECT_EQ(run.end.outcome, Outcome::no_contact) << cause;
+    ASSERT_FALSE(run.warnings.empty()) << cause;
+    EXPECT_TRUE(run.warnings[0].ends_with(cause)) << run.warnings[0];
   }
-  Outcome outcome() const { return outcome_of(scenario, {contact, approach, box, tool}); }
-  std::string warning() const {
-    return warning_about(scenario, outcome(), {contact, approach, box, tool}).value_or("no warning");
-  }
-
-  Scenario scenario;
-  TrialContact contact;
-  Approach approach;
-  Cylinder tool;
-  Box box{Vec3(0, 0, -0.007), Vec3(0.006, 0.006, 0)};
-};
-
-TEST_F(EncounterWithBlock, CompletesWhereTheToolTouchedAndStayedNear) {
-  EXPECT_EQ(outcome(), Outcome::completes);
-  EXPECT_EQ(warning(), "no warning");
-  approach.last = 0.0209;  // retracted, by less than box and tool are long
-  EXPECT_EQ(outcome(), Outcome::completes);
-}
-
-TEST_F(EncounterWithBlock, LostContactWhenTheToolEndedFarAway) {
-  approach.last = 0.0211;
-  EXPECT_EQ(outcome(), Outcome::lost_contact);
-  EXPECT_EQ(warning(),
-            "in contact for 4.9 % of the run, last at 0.249 s; ended 21.1 mm away from the environment (6 x 6 x 7 mm: "
-            "x 0 ... 6, y 0 ... 6, z -7 ... 0 mm); a hand of constant force goes on pushing where there is no surface");
-}
-
-TEST_F(EncounterWithBlock, AScriptMayLeadTheToolAway) {
-  scenario.motion.position = PrescribedPosition{};
-  approach.last = 1.0;
-  EXPECT_EQ(outcome(), Outcome::completes);
-}
-
-TEST_F(EncounterWithBlock, NoContactAsksForTheScaleWhereSizesAreOutOfProportion) {
-  contact.in_contact = 0;
-  approach.closest = 0.0079;
-  EXPECT_EQ(outcome(), Outcome::no_contact);
-  EXPECT_EQ(warning().find("scale"), std::string::npos);
-  for (const double factor : {1e-3, 1e3}) {
-    const Box other{factor * box.min, factor * box.max};
-    const auto text = warning_about(scenario, Outcome::no_contact, {contact, approach, other, tool});
-    EXPECT_NE(text.value_or("").find("; is environment.scale right?"), std::string::npos) << factor;
-  }
-}
-
-TEST_F(EncounterWithBlock, NoContactTellsWhichHandNeverReaches) {
-  contact.in_contact = 0;
-  approach.closest = 0.002;
-  ImpedanceHandFields hand;
-  hand.target[2] = Profile(0.003);
-  scenario.hand = hand;
-  EXPECT_NE(warning().find("; hand.target stays 3 mm away from it"), std::string::npos) << warning();
-  scenario.hand = NoHandFields{};
-  EXPECT_NE(warning().find("; nothing pushes the tool"), std::string::npos) << warning();
-}
-
-TEST_F(EncounterWithBlock, NoContactOfAStrokeInMillimetresAsksForMetres) {
-  contact.in_contact = 0;
-  approach.closest = 1.5;
-  scenario.motion.position = RecordedPosition{"stroke.csv"};
-  EXPECT_NE(warning().find("; are the positions of motion.position.file in metres?"), std::string::npos) << warning();
 }
 
 using Sentences = std::vector<std::string>;
@@ -330,30 +333,19 @@ TEST(Outcome, OfAShankThatIsInside) {
   EXPECT_NE(warnings_of(report).find("a part of it was 0.86"), std::string::npos) << warnings_of(report);
 }
 
-/// The approach of a tool whose tip centre is at these places, a second apart, to the cube from -1 to 1.
-Approach approach_of(const std::vector<Vec3>& places) {
-  const ContactBuffer none(1);
-  ApproachObserver observer({-Vec3::Ones(), Vec3::Ones()});
-  for (std::size_t k = 0; k < places.size(); ++k) {
-    StepRecord row = test::row(k, static_cast<double>(k), none);
-    row.tool.pose.position = places[k];
-    observer.on_step(row);
-  }
-  return observer.approach();
-}
-
-TEST(Approach, IsMeasuredFromTheBoxInEveryDirection) {
-  EXPECT_EQ(approach_of({{0, 0, 3}}).last, 2.0);
-  EXPECT_EQ(approach_of({{-4, 0, 5}}).last, 5.0);  // from an edge
-  EXPECT_EQ(approach_of({{3, 4, -3}}).last, std::sqrt(4.0 + 9.0 + 4.0));
-  EXPECT_EQ(approach_of({{0.5, -1, 0}}).last, 0.0);
-}
-
-TEST(Approach, KeepsTheFirstOfTheClosestRows) {
-  const Approach approach = approach_of({{0, 0, 9}, {0, 0, 3}, {3, 0, 0}, {0, 7, 0}});
-  EXPECT_EQ(approach.closest, 2.0);
-  EXPECT_EQ(approach.closest_time, 1.0);
-  EXPECT_EQ(approach.last, 6.0);
+/// The cube from -1 to 1.
+TEST(StepWay, CountsWaysThatMayHaveMetTheBox) {
+  StepWay steps({-Vec3::Ones(), Vec3::Ones()});
+  steps.add({0, 0, 9});
+  EXPECT_EQ(steps.distance(), 8.0);
+  steps.add({0, 0, 4});  // 5 long, but 8 away
+  EXPECT_EQ(steps.longest(), 0.0);
+  steps.add({0, 0, -4});  // 8 long and 3 away: through it
+  EXPECT_EQ(steps.longest(), 8.0);
+  steps.begin();
+  steps.add({-4, 0, 5});
+  EXPECT_EQ(steps.distance(), 5.0);  // from an edge
+  EXPECT_EQ(steps.longest(), 8.0);
 }
 
 }  // namespace

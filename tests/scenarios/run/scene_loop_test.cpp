@@ -6,7 +6,7 @@
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/description/load_scenario.hpp"
 #include "scenarios/run/assemble.hpp"
-#include "scenarios/studies/stability/scene_loop.hpp"
+#include "scenarios/run/scene_loop.hpp"
 #include "sim/core/random.hpp"
 
 /// The linear loops of scenarios against the simulation that they are run by.

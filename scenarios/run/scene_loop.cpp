@@ -1,4 +1,4 @@
-#include "scenarios/studies/stability/scene_loop.hpp"
+#include "scenarios/run/scene_loop.hpp"
 
 #include <fmt/format.h>
 

@@ -1,0 +1,413 @@
+#include "scenarios/run/diagnosis.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "algorithms/stages/damping_and_limits.hpp"
+#include "device_model/velocity_filter.hpp"
+#include "results/observe/contact_forces.hpp"
+#include "scenarios/run/scene_facts.hpp"
+#include "scenarios/run/scene_loop.hpp"
+#include "sim/loop/integrators/table.hpp"
+
+namespace hapbench {
+namespace {
+
+constexpr double kAtLimit = 0.999;  ///< of a limit, from which on a force is at it
+
+/// The largest force that the device or the rendering lets through [N]; none without limits.
+std::optional<double> force_limit(const Scenario& scenario) {
+  const auto* device = std::get_if<ImpedanceDeviceConfig>(&scenario.device);
+  std::optional<double> most = device != nullptr ? device->force_max : std::nullopt;
+  if (const auto& limit = scenario.rendering.max_force) most = std::min(most.value_or(*limit), *limit);
+  return most;
+}
+
+/// True when the directions of two contacts are more than 120 degrees apart, or those of two in 64 of many contacts.
+bool has_opposed(const ContactBuffer& contacts) noexcept {
+  const std::size_t stride = contacts.size() / 64 + 1;
+  for (std::size_t i = 0; i < contacts.size(); i += stride) {
+    for (std::size_t j = 0; j < i; j += stride) {
+      if (contacts.gradient(i).dot(contacts.gradient(j)) < -0.5) return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
+DiagnosisObserver::DiagnosisObserver(const Scenario& scenario, const PointShell* shell)
+    : scenario_(scenario),
+      force_limit_(force_limit(scenario)),
+      input_limit_(input_force_limit(scenario.device)),
+      high_pass_(vibration_filter(scenario.time.step)) {
+  if (shell != nullptr && shell->size() > 0) steps_.emplace(shell->bounds());
+}
+
+void DiagnosisObserver::begin() noexcept {
+  touched_ = false;
+  high_.setZero();
+  if (steps_) steps_->begin();
+}
+
+void DiagnosisObserver::on_step(const StepRecord& record) noexcept {
+  if (record.step == 0 && high_pass_) high_pass_->settle_at(record.force.rendered);
+  if (steps_) {
+    steps_->add(record.tool.pose.position);
+    seen_.longest_step = steps_->longest();
+  }
+  if (record.colliding > 0) add_contact(record);
+  add_to_quarter(record);
+  touched_ = record.colliding > 0;
+  seen_.tip = record.tool.pose.position;
+  seen_.last_force = record.force.rendered;
+}
+
+void DiagnosisObserver::add_contact(const StepRecord& record) noexcept {
+  const Vec3& f = record.force.rendered;
+  ++seen_.touching;
+  if (force_limit_ && f.norm() >= kAtLimit * *force_limit_) ++seen_.at_force_limit;
+  if (input_limit_ && record.hand.input.norm() >= kAtLimit * *input_limit_) ++seen_.at_limiter;
+  if (!touched_) return;
+  seen_.way_in_contact += (record.tool.pose.position - seen_.tip).norm();
+  if (!(f.dot(seen_.last_force) < 0.0)) return;
+  ++seen_.turned;
+  if (has_opposed(*record.rendered)) ++seen_.opposed;
+}
+
+void DiagnosisObserver::add_to_quarter(const StepRecord& record) noexcept {
+  SeenRows::Quarter& last = seen_.last_quarter;
+  const std::uint64_t quarter = record.step * 4 / static_cast<std::uint64_t>(scenario_.time.steps);
+  if (record.step == 0 || quarter != quarter_) last = {.start = record.tool.pose.position};
+  quarter_ = quarter;
+  ++last.rows;
+  last.touches = last.touches && record.colliding > 0;
+  if (!high_pass_) return;
+  const Vec3 high = high_pass_->filter(record.force.rendered);
+  last.high_squares += high.cwiseAbs2();
+  for (int i = 0; i < 3; ++i) last.high_turns[static_cast<std::size_t>(i)] += high[i] * high_[i] < 0.0;
+  high_ = high;
+}
+
+namespace {
+
+using Number = std::optional<double>;
+
+/// A run, as rules see it.
+struct DiagnosedRun {
+  const LoadedScenario& loaded;
+  const Result& result;
+  const ToolShape& tool;
+  const SeenRows& rows;
+
+  const Scenario& scenario() const { return loaded.scenario; }
+  bool ended(Outcome outcome) const { return result.end.outcome == outcome; }
+  /// None where the run has no such metric, or the metric has no value.
+  Number metric(std::string_view name) const { return number_of(result.metrics, name); }
+};
+
+// ---- Numbers
+
+Number quotient(const Number& a, const Number& b) {
+  return a && b && *b > 0.0 ? Number(*a / *b) : std::nullopt;
+}
+
+Number share(std::uint64_t rows, std::uint64_t of) {
+  return quotient(static_cast<double>(rows), static_cast<double>(of));
+}
+
+/// A metric over the mean force in settled contact, which short contacts do not have.
+Number of_mean_force(const DiagnosedRun& run, const char* metric) {
+  return quotient(run.metric(metric), run.metric("force_mean_in_contact_N"));
+}
+
+template <Outcome... kOutcomes>
+Number ended(const DiagnosedRun& run) {
+  return (run.ended(kOutcomes) || ...) ? Number(1.0) : std::nullopt;
+}
+
+bool vibrates(const DiagnosedRun& run) {
+  return run.metric("vibration_last_quarter_m_per_s").value_or(0.0) > kMostVibration;
+}
+
+bool is_free(const DiagnosedRun& run) {
+  return std::holds_alternative<FreePosition>(run.scenario().motion.position);
+}
+
+bool has_springs(const DiagnosedRun& run) {
+  return std::holds_alternative<SpringsEnvironment>(run.scenario().environment);
+}
+
+/// False for runs whose numbers mean something else. Springs that come to rest have no force that a step of it could be
+/// compared with.
+bool completed(const DiagnosedRun& run) {
+  if (has_springs(run) && !vibrates(run)) return false;
+  return !run.ended(Outcome::diverges) && !run.ended(Outcome::went_through) && !run.ended(Outcome::no_contact);
+}
+
+Number if_completed(const DiagnosedRun& run, const Number& number) {
+  return completed(run) ? number : std::nullopt;
+}
+
+Number half_width(const DiagnosedRun& run) {
+  return has_springs(run) ? std::nullopt : Number(run.tool.half_width());
+}
+
+Number longest_step(const DiagnosedRun& run) {
+  return quotient(run.rows.longest_step, half_width(run));
+}
+
+bool steps_too_far(const DiagnosedRun& run) {
+  return longest_step(run).value_or(0.0) > 1.0;
+}
+
+Number buzz(const DiagnosedRun& run) {
+  return if_completed(run, of_mean_force(run, "force_rms_above_30Hz_N"));
+}
+
+/// Half the sign changes of the strongest component of the force above 30 Hz in the last quarter, over its time.
+std::string buzz_frequency(const DiagnosedRun& run) {
+  constexpr std::uint64_t kLeastRows = 10;
+  const SeenRows::Quarter& last = run.rows.last_quarter;
+  Eigen::Index axis = 0;
+  if (last.rows < kLeastRows || !(last.high_squares.maxCoeff(&axis) > 0.0)) return "";
+  const double turns = static_cast<double>(last.high_turns[static_cast<std::size_t>(axis)]);
+  return fmt::format(", at about {:.0f} Hz", 0.5 * turns / (run.scenario().time.step * static_cast<double>(last.rows)));
+}
+
+/// K over the edge of the linear loop in contact, along the stiffest contact seen; none without contact or loop. To six
+/// digits, so that it does not depend on how a build rounds.
+Number share_of_edge(const DiagnosedRun& run) {
+  const Number lambda = run.metric("ratio_max");
+  const double K = run.scenario().rendering.stiffness;
+  if (!lambda || !(*lambda > 0.0) || !(K > 0.0) || !is_free(run)) return std::nullopt;
+  if (contact_step(run.scenario(), *lambda).size() == 0) return std::nullopt;
+  constexpr double kLeast = 1e-9, kMost = 2.0;  // of K: beyond, nothing is wrong
+  Scenario at = run.scenario();
+  const double edge = first_edge(kLeast * K, kMost * K, [&](double stiffness) {
+    at.rendering.stiffness = stiffness;
+    return contact_step(at, *lambda);
+  });
+  return std::stod(fmt::format("{:.6g}", K / std::max(kLeast * K, edge)));
+}
+
+/// Where the run vibrates as at an edge, left its bounds or was thrown off.
+Number edge(const DiagnosedRun& run) {
+  const bool shakes = run.ended(Outcome::diverges) || run.ended(Outcome::lost_contact) || vibrates(run);
+  return shakes || buzz(run).value_or(0.0) > 0.1 ? share_of_edge(run) : std::nullopt;
+}
+
+Number coarseness(const DiagnosedRun& run) {
+  constexpr double kEnough = 4.0, kLeastWay = 10.0;  // contacts; distances of points
+  const auto distance = point_distance(run.loaded);
+  const Number contacts = quotient(run.metric("colliding_mean"), run.metric("contact_share"));
+  if (!distance || !contacts || run.rows.way_in_contact < kLeastWay * distance->metres) return std::nullopt;
+  return if_completed(run, std::sqrt(kEnough / *contacts));
+}
+
+/// The largest force that a step of the encoder makes through B.
+Number encoder_force(const DiagnosedRun& run) {
+  const auto* device = std::get_if<ImpedanceDeviceConfig>(&run.scenario().device);
+  if (device == nullptr) return std::nullopt;
+  constexpr int kSamples = 100;  // in which a filter of any order has its peak, or passes next to nothing
+  VelocityFilter filter(device->velocity_filter, run.scenario().time.step);
+  filter.reset(Vec3::Zero());
+  double fastest = 0.0;
+  for (int i = 0; i < kSamples; ++i) fastest = std::max(fastest, filter.read(Vec3(device->encoder_step, 0.0, 0.0)).x());
+  return quotient(normal_damping(run.scenario().rendering) * fastest, run.metric("force_mean_in_contact_N"));
+}
+
+/// B dt / m of the mass that moves, along the stiffest contact, over the most that the integrator bears; a handle bears
+/// at most 2.
+Number damping(const DiagnosedRun& run) {
+  const Scenario& s = run.scenario();
+  const auto* device = std::get_if<ImpedanceDeviceConfig>(&s.device);
+  const Number lambda = run.metric("ratio_max");
+  if (!lambda || !is_free(run)) return std::nullopt;
+  double B = *lambda * normal_damping(s.rendering);
+  if (const auto& most = s.rendering.max_damping) B = std::min(B, *most);
+  const double mass = device != nullptr ? device->handle_mass : s.rendering.mass;
+  return B * s.time.step / mass / (device != nullptr ? 2.0 : s.integrator.type->damper_limit);
+}
+
+Number drift(const DiagnosedRun& run) {
+  constexpr std::uint64_t kLeastRows = 10;
+  const SeenRows& rows = run.rows;
+  const SeenRows::Quarter& last = rows.last_quarter;
+  if (last.rows < kLeastRows || !last.touches || is_moved(run.scenario()) || !is_free(run)) return std::nullopt;
+  const Vec3 push = rows.last_force.normalized(), way = rows.tip - last.start;
+  return if_completed(run, quotient((way - way.dot(push) * push).norm(), half_width(run)));
+}
+
+// ---- What is said of some runs only
+
+/// Those of the laws that the run does not use, with "or" between.
+std::string other_laws(const DiagnosedRun& run, std::initializer_list<const char*> laws) {
+  std::string text;
+  for (const char* law : laws) {
+    if (run.result.algorithm != law) text += (text.empty() ? "" : " or ") + std::string(law);
+  }
+  return text;
+}
+
+constexpr const char* kShorterStep = "a shorter time.step_s: in one step the tool moves further than its half width";
+
+std::string against_sinking(const DiagnosedRun& run) {
+  if (steps_too_far(run)) return kShorterStep;
+  if (!is_free(run)) return "another motion.position, which leads the tool there";
+  return "more K or a gentler hand; another law where it is soft, too";
+}
+
+std::string against_loss(const DiagnosedRun& run) {
+  if (steps_too_far(run)) return kShorterStep;
+  if (run.ended(Outcome::no_contact))
+    return "environment.scale, initial.position_m and the hand's direction: \"hapbench validate\" shows them";
+  return "less K where it is beyond the edge, or a hand whose way ends on the surface";
+}
+
+std::string softer_never(const DiagnosedRun& run) {
+  return "a law that does not get softer with contacts, such as " +
+         other_laws(run, {"shaped_stiffness", "exact_shaping", "proxy"});
+}
+
+std::string harder_never(const DiagnosedRun& run) {
+  return "K divided by that, or a law whose contacts do not add up, such as " +
+         other_laws(run, {"shaped_stiffness", "mean"});
+}
+
+std::string turned_rows(const DiagnosedRun& run) {
+  if (run.rows.opposed == 0) return "";
+  const double percent = 100.0 * *share(run.rows.opposed, run.rows.turned);
+  return fmt::format(", with contacts from opposite sides in {:.0f} % of these rows", percent);
+}
+
+std::string against_chatter(const DiagnosedRun& run) {
+  if (2 * run.rows.opposed > run.rows.turned) return "less K, or " + other_laws(run, {"shaped_stiffness", "proxy"});
+  return "less K; \"hapbench compare --algorithms all\" shows which law turns least here";
+}
+
+std::string point_spacing(const DiagnosedRun& run) {
+  return fmt::format(", {}", length_text(point_distance(run.loaded)->metres));
+}
+
+// ---- Rules
+
+/// A sentence, the same for every run or by the run.
+struct Sentence {
+  constexpr Sentence(const char* words) : always(words) {}                              // NOLINT: rows of a table
+  constexpr Sentence(std::string (*words)(const DiagnosedRun& run)) : of_run(words) {}  // NOLINT
+  std::string text(const DiagnosedRun& run) const { return of_run != nullptr ? of_run(run) : always; }
+
+  const char* always = "";
+  std::string (*of_run)(const DiagnosedRun& run) = nullptr;
+};
+
+struct Rule {
+  const char *name, *number, *unit;  ///< as those of DiagnosisRule
+  double threshold;
+  const char* says;  ///< what is wrong, {} for the number
+  Number (*value)(const DiagnosedRun& run);
+  Sentence attempt;
+  Sentence more = "";  ///< further facts, behind what is wrong
+};
+
+constexpr Rule kRules[] = {
+    {"diverged", "1 where the run left its bounds", "1", 0.5, "it diverged", ended<Outcome::diverges>,
+     "a shorter time.step_s or less K; \"hapbench tune\" for K and zeta"},
+    {"sank", "1 where the tool went through the surface", "1", 0.5, "the tool went through the surface",
+     ended<Outcome::went_through>, against_sinking},
+    {"lost", "1 where the tool touched nothing, or not in the end", "1", 0.5, "the tool is not where the surface is",
+     ended<Outcome::no_contact, Outcome::lost_contact>, against_loss},
+    {"stuck", "1 where the hand went on and the tool did not", "1", 0.5, "the tool is stuck",
+     ended<Outcome::stuck, Outcome::not_dragged>,
+     "a stiffer hand, less friction where there is any; \"hapbench compare --algorithms all\" shows which law goes on"},
+    {"step", "longest way of the tip in a step near the surface over the tool's half width", "1", 1.0,
+     "near the surface a step takes the tool {} of its half widths further", longest_step,
+     "a shorter time.step_s, a slower hand"},
+    {"edge", "K over the edge of the loop of device, tool and stiffest contact, without dry friction, where it shakes",
+     "1", 0.8, "K is {} times the edge of the stable loop", edge,
+     "less K, a shorter time.step_s, less delay or filter where there is one; \"hapbench tune\""},
+    {"buzz", "force above 30 Hz over the mean force in settled contact", "1", 0.1,
+     "it buzzes: the force above 30 Hz is {} of the mean force", buzz,
+     "less K; a velocity filter or less zeta where the encoder is felt, too; \"hapbench tune --max-vibration\"",
+     buzz_frequency},
+    {"pop", "largest force step in settled contact over the mean force", "1", 0.5,
+     "it pops: a step of the force is {} of the mean force",
+     [](const DiagnosedRun& r) { return if_completed(r, of_mean_force(r, "settled_force_step_max_N")); },
+     "rendering.reduction null where it steps, too; \"hapbench compare --algorithms all\" shows which law steps least"},
+    {"reduction", "largest force step where the kept contacts change, over the mean force in settled contact", "1", 0.1,
+     "the force steps by {} of its mean when the kept contacts change",
+     [](const DiagnosedRun& r) { return of_mean_force(r, "reduction_force_step_max_N"); }, "rendering.reduction null"},
+    {"facets", "distance of the surface's points over that at which four are in contact, where the tool moves on them",
+     "1", 1.15, "the surface is sampled coarsely: at {} times the distance that keeps four points in contact",
+     coarseness, "half of environment.spacing_m or grid_m; \"compare --errors\" tells what depends on it",
+     point_spacing},
+    {"deep", "depth inside in settled contact over the tool's half width", "1", 0.75,
+     "the tool sinks in by {} of its half width",
+     [](const DiagnosedRun& r) { return if_completed(r, quotient(r.metric("inside_settled_m"), half_width(r))); },
+     "more K; \"hapbench tune --max-inside\" tells whether the loop allows it"},
+    {"soft", "K over the stiffness along the softest contact", "1", 3.0,
+     "along some contact it is {} times as soft as K says",
+     [](const DiagnosedRun& r) { return quotient(1.0, r.metric("ratio_min")); }, softer_never},
+    {"hard", "stiffness along the stiffest contact over K", "1", 3.0, "contacts add up to {} K",
+     [](const DiagnosedRun& r) { return r.metric("ratio_max"); }, harder_never},
+    {"damping", "B dt / m of the mass that moves, along the stiffest contact, over the most that a step bears", "1",
+     0.5, "the damping is {} of the most that a step bears", damping,
+     "less zeta, a shorter time.step_s, a smaller rendering.limits.max_damping_N_s_per_m"},
+    {"friction", "rows beyond the force whose friction an explicit step bears", "1", 0.0,
+     "explicit friction is unstable in {} rows: what follows is the integrator's doing",
+     [](const DiagnosedRun& r) { return r.metric("explicit_friction_rows_beyond"); },
+     R"(smaller rendering.friction.mu_f_s_per_m, {"type": "dry"}, or a shorter step)"},
+    {"encoder", "force of one step of the encoder through B over the mean force", "1", 0.1,
+     "each step of the encoder is a force of {} of the mean through the damping", encoder_force,
+     "less zeta, a finer encoder, a low pass as device.velocity_filter or a lower cutoff_Hz of it"},
+    {"saturated", "share of the rows in contact at the largest force", "1", 0.01,
+     "the force is saturated in {} of the contact",
+     [](const DiagnosedRun& r) { return share(r.rows.at_force_limit, r.rows.touching); },
+     "less K or a gentler hand; a stronger device, a larger rendering.limits.max_force_N where that is given"},
+    {"limiter", "share of the rows in contact with more hand force than the device's limiter lets in", "1", 0.2,
+     "the limiter of the hand's force cuts in {} of the contact",
+     [](const DiagnosedRun& r) { return share(r.rows.at_limiter, r.rows.touching); },
+     "a gentler hand; device.force_limit_N is f_th of 2.7"},
+    {"bounces", "landings a second of a tool that no script leads", "1/s", 8.0, "it bounces: {} landings a second",
+     [](const DiagnosedRun& r) {
+       return is_free(r) ? quotient(r.metric("landings"), r.result.duration) : std::nullopt;
+     },
+     "more zeta or less K"},
+    {"chatter", "turns of the force by more than 90 degrees a second in settled contact", "1/s", 10.0,
+     "it chatters: the force turns round {} times a second",
+     [](const DiagnosedRun& r) { return if_completed(r, r.metric("force_reversals_per_s")); }, against_chatter,
+     turned_rows},
+    {"energy", "energy that the rendering created", "J", 1e-3, "the rendering created {} J",
+     [](const DiagnosedRun& r) { return if_completed(r, r.metric("passivity.net_created_J")); },
+     "less K; rendering.passivity_controller where it is off"},
+    {"drift", "way across the force of a tool that a constant hand holds, in the last quarter, over its half width",
+     "1", 0.05, "it drifts by {} of its half width under a constant hand", drift,
+     "rendering.friction {\"type\": \"dry\"} with enough mu; viscous friction never holds"},
+};
+
+}  // namespace
+
+std::vector<DiagnosisRule> diagnosis_rules() {
+  std::vector<DiagnosisRule> rules;
+  for (const Rule& rule : kRules) rules.push_back({rule.name, rule.number, rule.unit, rule.threshold});
+  return rules;
+}
+
+std::vector<Diagnosed> DiagnosisObserver::findings(const LoadedScenario& loaded, const Result& result,
+                                                   const ToolShape& tool) const {
+  const DiagnosedRun run{loaded, result, tool, seen_};
+  std::vector<Diagnosed> findings;
+  for (const Rule& rule : kRules) {
+    const Number value = rule.value(run);
+    if (!value || !(*value > rule.threshold)) continue;
+    const std::string says = fmt::format(fmt::runtime(rule.says), fmt::format("{:.3g}", *value));
+    findings.push_back({rule.name, rule.number, rule.unit, *value, rule.threshold, says + rule.more.text(run),
+                        rule.attempt.text(run)});
+  }
+  return findings;
+}
+
+}  // namespace hapbench

@@ -1,0 +1,76 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "results/observe/butterworth.hpp"
+#include "results/summary/summary.hpp"
+#include "scenarios/description/load_scenario.hpp"
+#include "scenarios/run/encounter.hpp"
+
+/// What is wrong with a run and what to try, by rules, each a number above a threshold. The numbers are metrics, or
+/// come from an observer of all rows.
+namespace hapbench {
+
+/// A rule. What it advises names no law that the run uses, and no cause that was not measured.
+struct DiagnosisRule {
+  const char* name;
+  const char* number;  ///< what it is
+  const char* unit;    ///< "1" for pure numbers
+  double threshold;    ///< something is wrong where the number is larger
+};
+
+/// In the order in which they are told: how the run ended, then why.
+std::vector<DiagnosisRule> diagnosis_rules();
+
+/// What rules need of the rows of a run, of all its trials. The last quarter is that of the last trial, or the quarter
+/// in which that ended.
+struct SeenRows {
+  std::uint64_t touching = 0;        ///< rows in contact; of these
+  std::uint64_t at_force_limit = 0;  ///< with the largest force of device or rendering
+  std::uint64_t at_limiter = 0;      ///< with as much hand force as the device's limiter lets in
+  std::uint64_t turned = 0;        ///< whose force is more than 90 degrees from that of the row before, in contact too
+  std::uint64_t opposed = 0;       ///< of those: with two contacts whose directions are more than 120 degrees apart
+  double way_in_contact = 0.0;     ///< of the tip [m]
+  double longest_step = 0.0;       ///< of the tip near the environment (StepWay) [m]
+  Vec3 last_force = Vec3::Zero();  ///< rendered [N]
+  struct Quarter {
+    std::uint64_t rows = 0;
+    bool touches = true;                        ///< in all of them
+    Vec3 start = Vec3::Zero();                  ///< of the tip [m]
+    Vec3 high_squares = Vec3::Zero();           ///< sum of the squares of the force above 30 Hz [N^2]
+    std::array<std::uint64_t, 3> high_turns{};  ///< its changes of sign
+  } last_quarter;
+  Vec3 tip = Vec3::Zero();  ///< in the last row [m]
+};
+
+/// Watches a run for the rules; some 20 ns a row, in constant memory.
+class DiagnosisObserver final : public Observer {
+ public:
+  /// `shell`: of the scenario, null for springs. Both must outlive the observer.
+  DiagnosisObserver(const Scenario& scenario, const PointShell* shell);
+
+  void begin() noexcept;  ///< a trial
+  void on_step(const StepRecord& record) noexcept override;
+
+  /// What is wrong with the run that gave this result, in the order of the rules. Some ms where a loop is solved.
+  std::vector<Diagnosed> findings(const LoadedScenario& loaded, const Result& result, const ToolShape& tool) const;
+
+ private:
+  void add_contact(const StepRecord& record) noexcept;
+  void add_to_quarter(const StepRecord& record) noexcept;
+
+  const Scenario& scenario_;
+  std::optional<double> force_limit_, input_limit_;  ///< [N]
+  std::optional<HighPass> high_pass_;
+  std::optional<StepWay> steps_;
+  std::uint64_t quarter_ = 0;
+  bool touched_ = false;      ///< in the row before
+  Vec3 high_ = Vec3::Zero();  ///< force above 30 Hz in the row before [N]
+  SeenRows seen_;
+};
+
+}  // namespace hapbench
