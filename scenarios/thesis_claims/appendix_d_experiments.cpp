@@ -196,9 +196,8 @@ constexpr double kHoleDepth = 5e-3;
 /// The subjects' success rate at a place: four targets each, and no other place, since a drill that is lost at one
 /// would spoil the others.
 double success_rate(const Evidence& e, const std::string& scenario, const Vec3& place) {
-  const Result run =
-      e.run(scenario, {fmt::format("hand.task.places_m=[[{},{},{}]]", place.x(), place.y(), place.z()),
-                       "hand.task.targets_per_place=4", "hand.trials=1"});
+  const Result run = e.run(scenario, {fmt::format("hand.task.places_m=[[{},{},{}]]", place.x(), place.y(), place.z()),
+                                      "hand.task.targets_per_place=4", "hand.trials=1"});
   return place_metrics(run.targets).at(0).success_rate.mean;
 }
 
