@@ -6,6 +6,7 @@
 
 #include "results/io/atomic_file.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
+#include "scenarios/description/descriptions.hpp"
 #include "scenarios/description/load_scenario.hpp"
 #include "scenarios/description/parts.hpp"
 #include "scenarios/input/memory_limit.hpp"
@@ -15,8 +16,10 @@
 #include "scenarios/run/progress_bar.hpp"
 #include "scenarios/run/recorders.hpp"
 #include "scenarios/run/scene_facts.hpp"
+#include "scenarios/run/simulate.hpp"
 #include "scenarios/run/stop_signal.hpp"
 #include "scenarios/studies/stability/scene_devices.hpp"
+#include "sim/tool/mesh_tool.hpp"
 
 namespace hapbench {
 namespace {
@@ -36,26 +39,41 @@ std::string surface_text(const SceneFacts::Surface& surface, std::optional<bool>
                      place_text(surface.box), surface.points, closed, start);
 }
 
-std::string tool_text(const ToolFacts& tool) {
-  std::string text = fmt::format("  tool         {}: half width {}, reaches {} from the tip centre", tool.type,
-                                 length_text(tool.half_width), length_text(tool.reach));
-  if (!tool.convex) text += ", not convex";
-  if (tool.mesh) {
+/// The tool as a mesh; null for others.
+const MeshTool* mesh_of(const SceneFacts& facts) {
+  return dynamic_cast<const MeshTool*>(facts.tool.get());
+}
+
+Box box_of(const MeshTool& tool) {
+  return {tool.grid().low(), tool.grid().high()};
+}
+
+std::size_t triangles_of_tool(const LoadedScenario& loaded) {
+  return loaded.files.at(kToolFile).mesh().triangles().triangles.size();
+}
+
+std::string tool_text(const LoadedScenario& loaded, const SceneFacts& facts) {
+  std::string text = fmt::format("  tool         {}: half width {}, reaches {} from the tip centre",
+                                 tool_names()[loaded.scenario.tool.index()], length_text(facts.tool->half_width()),
+                                 length_text(facts.tool->reach()));
+  if (!facts.tool->convex()) text += ", not convex";
+  if (const MeshTool* mesh = mesh_of(facts)) {
     text += fmt::format(
         "\n               from its tip centre {}\n               {} triangles, closed; grid {}, depths right to {}",
-        place_text(tool.mesh->box), tool.mesh->triangles, length_text(tool.mesh->grid),
-        length_text(tool.mesh->error_bound));
+        place_text(box_of(*mesh)), triangles_of_tool(loaded), length_text(mesh->grid().nodes().spacing),
+        length_text(mesh->grid().error_bound()));
   }
   return text + "\n";
 }
 
-std::string facts_text(const Scenario& scenario, const SceneFacts& facts) {
+std::string facts_text(const LoadedScenario& loaded, const SceneFacts& facts) {
+  const Scenario& scenario = loaded.scenario;
   std::string text = facts.surface ? surface_text(*facts.surface, facts.is_closed) : "  environment  springs\n";
-  text += tool_text(facts.tool);
+  text += tool_text(loaded, facts);
   const double duration = scenario.time.step * static_cast<double>(scenario.time.steps);
   text += fmt::format("  run          {} steps of {:.4g} ms = {:.4g} s", scenario.time.steps, 1e3 * scenario.time.step,
                       duration);
-  if (facts.trials > 1) text += fmt::format(", {} trials", facts.trials);
+  if (const std::size_t trials = trials_of(scenario).size(); trials > 1) text += fmt::format(", {} trials", trials);
   return text + fmt::format("\n  writes       about {}\n", bytes_text(expected_output_bytes(scenario)));
 }
 
@@ -63,21 +81,22 @@ Json box_json(const Box& box) {
   return {{box.min.x(), box.min.y(), box.min.z()}, {box.max.x(), box.max.y(), box.max.z()}};
 }
 
-Json facts_json(const Scenario& scenario, const SceneFacts& facts) {
+Json facts_json(const LoadedScenario& loaded, const SceneFacts& facts) {
+  const Scenario& scenario = loaded.scenario;
   Json json = {{"steps", scenario.time.steps},
                {"duration_s", scenario.time.step * static_cast<double>(scenario.time.steps)},
-               {"trials", facts.trials},
+               {"trials", trials_of(scenario).size()},
                {"expected_output_bytes", expected_output_bytes(scenario)}};
-  json["tool"] = {{"type", facts.tool.type},
-                  {"half_width_m", facts.tool.half_width},
-                  {"reach_m", facts.tool.reach},
-                  {"convex", facts.tool.convex}};
-  if (const auto& mesh = facts.tool.mesh) {
-    json["tool"]["triangles"] = mesh->triangles;
+  json["tool"] = {{"type", tool_names()[scenario.tool.index()]},
+                  {"half_width_m", facts.tool->half_width()},
+                  {"reach_m", facts.tool->reach()},
+                  {"convex", facts.tool->convex()}};
+  if (const MeshTool* mesh = mesh_of(facts)) {
+    json["tool"]["triangles"] = triangles_of_tool(loaded);
     json["tool"]["closed"] = true;  // others are refused
-    json["tool"]["box_m"] = box_json(mesh->box);
-    json["tool"]["grid_m"] = mesh->grid;
-    json["tool"]["error_bound_m"] = mesh->error_bound;
+    json["tool"]["box_m"] = box_json(box_of(*mesh));
+    json["tool"]["grid_m"] = mesh->grid().nodes().spacing;
+    json["tool"]["error_bound_m"] = mesh->grid().error_bound();
   }
   if (!facts.surface) return json;
   json["environment"] = {{"box_m", box_json(facts.surface->box)}, {"points", facts.surface->points}};
@@ -120,9 +139,9 @@ int validate(const ValidateOptions& options) {
       print_warnings(warnings);
       const SceneFacts facts = scene_facts(loaded);
       print_warnings(facts.warnings);
-      text += fmt::format("{}: valid\n{}", argument, facts_text(loaded.scenario, facts));
+      text += fmt::format("{}: valid\n{}", argument, facts_text(loaded, facts));
       verdicts.push_back({{"file", argument}, {"valid", true}});
-      verdicts.back().update(facts_json(loaded.scenario, facts));
+      verdicts.back().update(facts_json(loaded, facts));
     } catch (const InputError& error) {
       print_errors(error);
       verdicts.push_back({{"file", argument}, {"valid", false}, {"error", error.what()}, {"errors", messages(error)}});

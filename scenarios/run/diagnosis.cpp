@@ -38,26 +38,19 @@ bool has_opposed(const ContactBuffer& contacts) noexcept {
 
 }  // namespace
 
-DiagnosisObserver::DiagnosisObserver(const Scenario& scenario, const PointShell* shell)
+DiagnosisObserver::DiagnosisObserver(const Scenario& scenario)
     : scenario_(scenario),
       force_limit_(force_limit(scenario)),
       input_limit_(input_force_limit(scenario.device)),
-      high_pass_(vibration_filter(scenario.time.step)) {
-  if (shell != nullptr && shell->size() > 0) steps_.emplace(shell->bounds());
-}
+      high_pass_(vibration_filter(scenario.time.step)) {}
 
 void DiagnosisObserver::begin() noexcept {
   touched_ = false;
   high_.setZero();
-  if (steps_) steps_->begin();
 }
 
 void DiagnosisObserver::on_step(const StepRecord& record) noexcept {
   if (record.step == 0 && high_pass_) high_pass_->settle_at(record.force.rendered);
-  if (steps_) {
-    steps_->add(record.tool.pose.position);
-    seen_.longest_step = steps_->longest();
-  }
   if (record.colliding > 0) add_contact(record);
   add_to_quarter(record);
   touched_ = record.colliding > 0;

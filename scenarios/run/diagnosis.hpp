@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <optional>
@@ -9,7 +10,8 @@
 #include "results/observe/butterworth.hpp"
 #include "results/summary/summary.hpp"
 #include "scenarios/description/load_scenario.hpp"
-#include "scenarios/run/encounter.hpp"
+#include "sim/loop/observer.hpp"
+#include "sim/tool/tool_shape.hpp"
 
 /// What is wrong with a run and what to try, by rules, each a number above a threshold. The numbers are metrics, or
 /// come from an observer of all rows.
@@ -50,11 +52,14 @@ struct SeenRows {
 /// Watches a run for the rules; some 20 ns a row, in constant memory.
 class DiagnosisObserver final : public Observer {
  public:
-  /// `shell`: of the scenario, null for springs. Both must outlive the observer.
-  DiagnosisObserver(const Scenario& scenario, const PointShell* shell);
+  /// The scenario must outlive the observer.
+  explicit DiagnosisObserver(const Scenario& scenario);
 
   void begin() noexcept;  ///< a trial
   void on_step(const StepRecord& record) noexcept override;
+
+  /// After a trial: its EncounterObservers::longest_step [m].
+  void add_longest_step(double way) noexcept { seen_.longest_step = std::max(seen_.longest_step, way); }
 
   /// What is wrong with the run that gave this result, in the order of the rules. Some ms where a loop is solved.
   std::vector<Diagnosed> findings(const LoadedScenario& loaded, const Result& result, const ToolShape& tool) const;
@@ -66,7 +71,6 @@ class DiagnosisObserver final : public Observer {
   const Scenario& scenario_;
   std::optional<double> force_limit_, input_limit_;  ///< [N]
   std::optional<HighPass> high_pass_;
-  std::optional<StepWay> steps_;
   std::uint64_t quarter_ = 0;
   bool touched_ = false;      ///< in the row before
   Vec3 high_ = Vec3::Zero();  ///< force above 30 Hz in the row before [N]

@@ -14,6 +14,14 @@
 #include "sim/tool/mesh_tool.hpp"
 
 namespace hapbench {
+namespace {
+
+std::string millimetres(const Vec3& place) {
+  const Vec3 p = 1e3 * place;
+  return fmt::format("({:.3g}, {:.3g}, {:.3g}) mm", p.x(), p.y(), p.z());
+}
+
+}  // namespace
 
 double way_to_cover(const DragHandFields& hand, double duration) {
   const double way = hand.drag.speed * duration;
@@ -34,22 +42,19 @@ std::optional<std::string> short_path_warning(const DragHandFields& hand, double
 }
 
 DragCourseObserver::DragCourseObserver(const DragHand& hand, const DragHandFields& fields, double half_width)
-    : hand_(hand), fields_(fields) {
-  course_.width = 2.0 * half_width;
-}
+    : hand_(hand), fields_(fields), width_(2.0 * half_width) {}
 
 void DragCourseObserver::on_step(const StepRecord& record) noexcept {
   constexpr double kComes = 0.1;  // of the point's way, at least, where the tool does not stand
   const SurfacePath& path = hand_.path();
-  DragCourse& c = course_;
   time_ = record.time;
-  c.asked = std::min(hand_.drag().speed * record.time, path.length());
-  c.way = std::max(c.way, hand_.nearest());
-  c.place = record.tool.pose.position;
+  asked_ = std::min(hand_.drag().speed * record.time, path.length());
+  way_ = std::max(way_, hand_.nearest());
+  place_ = record.tool.pose.position;
   force_ = record.force.rendered.norm();
   if (record.colliding > 0) last_contact_ = record.time;
-  if (c.asked < static_cast<double>(stand_) * c.width / kStands) return;
-  const Stand now{record.time, c.asked, c.way}, before = stands_[stand_ % kStands];
+  if (asked_ < static_cast<double>(stand_) * width_ / kStands) return;
+  const Stand now{record.time, asked_, way_}, before = stands_[stand_ % kStands];
   stands_[stand_ % kStands] = now;
   if (stand_++ < kStands) return;
   if (now.way - before.way >= kComes * (now.asked - before.asked)) {
@@ -91,18 +96,35 @@ std::optional<Stuck> StuckObserver::stuck() const {
   return stuck_.target_way > width_ && across_ > width_ ? std::optional(stuck_) : std::nullopt;
 }
 
-DragCourse DragCourseObserver::course() const {
-  DragCourse course = course_;
-  const SurfacePoint foot = hand_.path().at(hand_.nearest());
-  course.height = foot.normal.dot(course.place - foot.position);
-  course.path = hand_.path().length();
-  if (stuck_)
-    course.stuck = {stuck_->time, course.way - stuck_->way, course.asked - stuck_->asked, course.place, force_};
-  course.to_cover = way_to_cover(fields_, time_);
-  course.short_path = short_path_warning(fields_, course.path, course.to_cover, course.width);
+std::optional<Stuck> DragCourseObserver::stuck() const {
+  if (!stuck_) return std::nullopt;
+  return Stuck{stuck_->time, way_ - stuck_->way, asked_ - stuck_->asked, place_, force_};
+}
+
+std::optional<double> DragCourseObserver::lost() const {
   const bool presses = hand_.drag().force(time_) > 0.0;
-  if (presses && last_contact_ && time_ - *last_contact_ >= SettlingRule().time) course.lost = last_contact_;
-  return course;
+  const bool is_lost = presses && last_contact_ && time_ - *last_contact_ >= SettlingRule().time;
+  return is_lost ? last_contact_ : std::nullopt;
+}
+
+bool DragCourseObserver::not_dragged() const {
+  return way_ < width_ && way_to_cover(fields_, time_) > 2.0 * width_;
+}
+
+std::vector<std::string> DragCourseObserver::warnings(Outcome outcome) const {
+  std::vector<std::string> warnings;
+  if (const auto since = lost(); since && outcome != Outcome::went_through) {
+    const SurfacePoint foot = hand_.path().at(hand_.nearest());
+    const double height = foot.normal.dot(place_ - foot.position);
+    warnings.push_back(fmt::format("the dragged tool lost the surface at {:.4g} s and ended {} {}", *since,
+                                   length_text(std::abs(height)),
+                                   height < 0.0 ? "below it, past an edge" : "above it"));
+  }
+  if (const auto ends = short_path_warning(fields_, hand_.path().length(), way_to_cover(fields_, time_), width_)) {
+    warnings.push_back(fmt::format("{}; the tool was at [{:.4g}, {:.4g}, {:.4g}] m in the end", *ends, place_.x(),
+                                   place_.y(), place_.z()));
+  }
+  return warnings;
 }
 
 ApproachObserver::ApproachObserver(std::shared_ptr<const PointShell> shell, std::uint64_t steps)
@@ -171,11 +193,10 @@ void OpenEdgeObserver::on_step(const StepRecord& record) noexcept {
 
 std::optional<std::string> OpenEdgeObserver::warning() const {
   if (rows_ == 0) return std::nullopt;
-  const Vec3 p = 1e3 * first_place_;
   return fmt::format(
-      "touched the mesh within {} of where it is open in {} rows, first at {:.4g} s near ({:.3g}, {:.3g}, {:.3g}) mm: "
-      "beyond the edge there is no surface",
-      length_text(reach_), rows_, first_time_, p.x(), p.y(), p.z());
+      "touched the mesh within {} of where it is open in {} rows, first at {:.4g} s near {}: beyond the edge there is no "
+      "surface",
+      length_text(reach_), rows_, first_time_, millimetres(first_place_));
 }
 
 namespace {
@@ -214,20 +235,6 @@ double closest_target(const ImpedanceHandFields& hand, const TimeFields& time, c
     closest = std::min(closest, distance_to(environment, target_at(hand, t)));
   }
   return closest;
-}
-
-std::vector<std::string> drag_warnings(const DragCourse& c, Outcome outcome) {
-  std::vector<std::string> warnings;
-  if (c.lost && outcome != Outcome::went_through) {
-    const std::string where = c.height < 0.0 ? "below it, past an edge" : "above it";
-    warnings.push_back(fmt::format("the dragged tool lost the surface at {:.4g} s and ended {} {}", *c.lost,
-                                   length_text(std::abs(c.height)), where));
-  }
-  if (c.short_path) {
-    warnings.push_back(fmt::format("{}; the tool was at [{:.4g}, {:.4g}, {:.4g}] m in the end", *c.short_path,
-                                   c.place.x(), c.place.y(), c.place.z()));
-  }
-  return warnings;
 }
 
 }  // namespace
@@ -273,23 +280,20 @@ double EncounterObservers::inside_max() {
 
 std::optional<Stuck> EncounterObservers::stuck() const {
   if (stuck_) return stuck_->stuck();
-  return drag_ ? drag_->course().stuck : std::nullopt;
+  return drag_ ? drag_->stuck() : std::nullopt;
 }
 
-Outcome EncounterObservers::outcome_of(const TrialContact& contact) {
+Outcome EncounterObservers::outcome(const TrialContact& contact, Outcome outcome) {
+  if (!approach_ || outcome != Outcome::completes) return outcome;
   if (inside_ && (inside_->passage().went_through() || inside_max() > tool_->half_width()))
     return Outcome::went_through;
   if (contact.in_contact == 0) return Outcome::no_contact;
   const bool is_free = std::holds_alternative<FreePosition>(scenario_.motion.position);
   const StepWay& steps = approach_->steps();
   if (is_free && steps.distance() > diagonal(steps.environment()) + tool_->reach()) return Outcome::lost_contact;
-  if (drag_ && drag_->course().lost) return Outcome::lost_contact;
-  if (drag_ && drag_->course().not_dragged()) return Outcome::not_dragged;
+  if (drag_ && drag_->lost()) return Outcome::lost_contact;
+  if (drag_ && drag_->not_dragged()) return Outcome::not_dragged;
   return stuck() ? Outcome::stuck : Outcome::completes;
-}
-
-Outcome EncounterObservers::outcome(const TrialContact& contact, Outcome outcome) {
-  return approach_ && outcome == Outcome::completes ? outcome_of(contact) : outcome;
 }
 
 void EncounterObservers::judge(const TrialContact& contact, Outcome& outcome, std::vector<std::string>& warnings) {
@@ -299,12 +303,10 @@ void EncounterObservers::judge(const TrialContact& contact, Outcome& outcome, st
                     length_text(inside_max()), length_text(*inside->at_most)));
   }
   if (!approach_) return;
-  if (outcome == Outcome::completes) {
-    outcome = outcome_of(contact);
-    if (auto warning = warning_about(outcome, contact)) warnings.push_back(*warning);
-  }
+  outcome = this->outcome(contact, outcome);
+  if (auto warning = warning_about(outcome, contact)) warnings.push_back(*warning);
   if (drag_) {
-    for (std::string& warning : drag_warnings(drag_->course(), outcome)) warnings.push_back(std::move(warning));
+    for (std::string& warning : drag_->warnings(outcome)) warnings.push_back(std::move(warning));
   }
   if (!std::holds_alternative<MeshToolFields>(scenario_.tool)) return;
   if (auto warning = scale_warning(scenario_, *tool_, approach_->steps().environment())) warnings.push_back(*warning);
@@ -319,11 +321,6 @@ std::optional<std::string> scale_warning(const Scenario& scenario, const ToolSha
 }
 
 namespace {
-
-std::string millimetres(const Vec3& place) {
-  const Vec3 p = 1e3 * place;
-  return fmt::format("({:.3g}, {:.3g}, {:.3g}) mm", p.x(), p.y(), p.z());
-}
 
 /// How a tool passed the surface, as one sentence.
 std::string passage_text(const Passage& p, double half_width, double inside_max, bool is_led) {
@@ -403,9 +400,8 @@ std::optional<std::string> EncounterObservers::warning_about(Outcome outcome, co
         "never in contact: the tool came as close as {} (at {:.4g} s) to the surface of the environment ({}){}",
         length_text(closest.distance), closest.time, environment, likely_cause(outcome, contact));
   }
-  // drag_warnings tell of a tool that lost the surface within the box.
-  if (outcome != Outcome::lost_contact || (drag_ && drag_->course().lost && steps.distance() == 0.0))
-    return std::nullopt;
+  // The course of the drag tells of a tool that lost the surface within the box.
+  if (outcome != Outcome::lost_contact || (drag_ && drag_->lost() && steps.distance() == 0.0)) return std::nullopt;
   const double share = static_cast<double>(contact.in_contact) / static_cast<double>(contact.rows);
   return fmt::format("in contact for {:.3g} % of the run, last at {:.4g} s; ended {} away from the environment ({}){}",
                      100.0 * share, contact.last.value_or(0.0), length_text(steps.distance()), environment,

@@ -33,7 +33,6 @@ class StepWay {
  public:
   explicit StepWay(const Box& environment) : environment_(environment) {}
 
-  void begin() noexcept { distance_ = std::numeric_limits<double>::infinity(); }  ///< a run
   void add(const Vec3& place) noexcept {
     const double way = (place - place_).norm();
     if (distance_ <= way && std::isfinite(way)) longest_ = std::max(longest_, way);
@@ -99,30 +98,7 @@ struct Stuck {
   double force = 0.0;                  ///< size of the rendered force in the last row [N]
 };
 
-/// The progress of a dragged tool on the path along which it was led.
-struct DragCourse {
-  double to_cover = 0.0;      ///< way_to_cover up to the last row [m]
-  double asked = 0.0;         ///< way of the point that leads it [m]
-  double path = 0.0;          ///< length of the path [m]
-  double way = 0.0;           ///< furthest place on the path that the tool came to [m]
-  Vec3 place = Vec3::Zero();  ///< of the tip, in the last row [m]
-  double height = 0.0;        ///< of the tip over the path where that is nearest, in the last row [m]
-  double width = 0.0;         ///< the tool's [m]
-  /// From when on the tool came less than a tenth of the point's way, over every width of its own that the point went
-  /// on.
-  std::optional<Stuck> stuck;
-  /// Time of the last contact, if the tool had no contact for the default settling time before the end although the
-  /// hand pressed: after that long the next touch would be a landing.
-  std::optional<double> lost;
-
-  std::optional<std::string> short_path;  ///< short_path_warning
-
-  /// True when the tool came less than its width along a way of more than two widths: the spring that leads it lags by
-  /// less.
-  bool not_dragged() const { return way < width && to_cover > 2.0 * width; }
-};
-
-/// Follows a dragged tool; a few look-ups in the path's table, no allocation.
+/// Follows a dragged tool on the path along which it is led; a few look-ups in the path's table, no allocation.
 class DragCourseObserver final : public Observer {
  public:
   /// The hand and its fields must outlive the observer. `half_width`: the tool's [m].
@@ -130,7 +106,17 @@ class DragCourseObserver final : public Observer {
 
   void on_step(const StepRecord& record) noexcept override;
 
-  DragCourse course() const;
+  /// From when on the tool came less than a tenth of the way of the point that leads it, over every width of its own
+  /// that the point went on.
+  std::optional<Stuck> stuck() const;
+  /// Time of the last contact, if the tool had no contact for the default settling time before the end although the
+  /// hand pressed: after that long the next touch would be a landing.
+  std::optional<double> lost() const;
+  /// True when the tool came less than its width along a way of more than two widths: the spring that leads it lags by
+  /// less.
+  bool not_dragged() const;
+  /// Warnings that the tool lost the surface, and of a path that ends early.
+  std::vector<std::string> warnings(Outcome outcome) const;
 
  private:
   const DragHand& hand_;
@@ -143,10 +129,12 @@ class DragCourseObserver final : public Observer {
   std::array<Stand, kStands> stands_{};  ///< a quarter of the tool's width of the point's way apart
   std::size_t stand_ = 0;                ///< how many there were
   std::optional<Stand> stuck_;           ///< where it came to stand for good
+  double width_;                         ///< the tool's [m]
+  double asked_ = 0.0, way_ = 0.0;       ///< furthest that the point and the tool came on the path [m]
   double time_ = 0.0;                    ///< of the last row
+  Vec3 place_ = Vec3::Zero();            ///< of the tip in the last row [m]
   double force_ = 0.0;                   ///< rendered in the last row [N]
   std::optional<double> last_contact_;
-  DragCourse course_;
 };
 
 /// Finds a tool that a hand's spring cannot move, that of a subject at a display, too: its target is the intended
@@ -215,12 +203,12 @@ class EncounterObservers {
   Outcome outcome(const TrialContact& contact, Outcome outcome);
   /// After the run: finds its outcome and adds warnings about it.
   void judge(const TrialContact& contact, Outcome& outcome, std::vector<std::string>& warnings);
+  /// The longest way of the tip in a step near the environment; 0 without points [m].
+  double longest_step() const { return approach_ ? approach_->steps().longest() : 0.0; }
   /// After the run: how deep the tool was, which is looked for at the first call. Null without a solid.
   const InsideDepths* depths();
 
  private:
-  /// Of a run that did all its steps with the environment.
-  Outcome outcome_of(const TrialContact& contact);
   /// What happened and what the likely cause is; none for other outcomes, and none for a dragged tool that lost the
   /// surface within the environment's box.
   std::optional<std::string> warning_about(Outcome outcome, const TrialContact& contact);

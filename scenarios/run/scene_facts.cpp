@@ -7,12 +7,10 @@
 #include <limits>
 
 #include "results/observe/inside.hpp"
-#include "scenarios/description/descriptions.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/encounter.hpp"
 #include "scenarios/run/stop_signal.hpp"
 #include "sim/mesh/triangle_soup.hpp"
-#include "sim/tool/mesh_tool.hpp"
 
 namespace hapbench {
 namespace {
@@ -81,18 +79,12 @@ std::vector<std::string> stroke_warnings(const Stroke& stroke, const TimeFields&
 std::vector<std::string> unit_warnings(const LoadedScenario& loaded, const ToolShape& tool,
                                        const SceneFacts::Surface& surface) {
   const Scenario& scenario = loaded.scenario;
+  if (surface.box.min == surface.box.max) return {};  // a single point has no size
   std::vector<std::string> warnings;
-  const auto add = [&warnings](std::optional<std::string> warning) {
-    if (warning) warnings.push_back(std::move(*warning));
-  };
-  if (surface.box.min == surface.box.max) return warnings;  // a single point has no size
-  add(scale_warning(scenario, tool, surface.box));
-  add(start_warning(tool, surface));
-  if (std::holds_alternative<RecordedPosition>(scenario.motion.position)) {
-    for (std::string& warning :
-         stroke_warnings(*loaded.files.at(kMotionFile).stroke(), scenario.time, tool, surface.box))
-      warnings.push_back(std::move(warning));
-  }
+  if (std::holds_alternative<RecordedPosition>(scenario.motion.position))
+    warnings = stroke_warnings(*loaded.files.at(kMotionFile).stroke(), scenario.time, tool, surface.box);
+  if (auto warning = start_warning(tool, surface)) warnings.insert(warnings.begin(), std::move(*warning));
+  if (auto warning = scale_warning(scenario, tool, surface.box)) warnings.insert(warnings.begin(), std::move(*warning));
   return warnings;
 }
 
@@ -121,32 +113,17 @@ bool is_open_scan(const Scenario& scenario, const NamedFiles& files) {
          !files.at(kEnvironmentFile).mesh().open_edges().empty();
 }
 
-ToolFacts tool_facts(const Scenario& scenario, const NamedFiles& files, const ToolShape& tool) {
-  ToolFacts facts{tool_names()[scenario.tool.index()], tool.half_width(), tool.reach(), tool.convex(), {}};
-  const auto* mesh = dynamic_cast<const MeshTool*>(&tool);
-  if (mesh == nullptr) return facts;
-  const SignedDistanceGrid& grid = mesh->grid();
-  facts.mesh = {files.at(kToolFile).mesh().triangles().triangles.size(),
-                {grid.low(), grid.high()},
-                grid.nodes().spacing,
-                grid.error_bound()};
-  return facts;
-}
-
 }  // namespace
 
 SceneFacts scene_facts(const LoadedScenario& loaded) {
   const Scenario& scenario = loaded.scenario;
   SceneFacts facts;
-  if (const auto* hand = std::get_if<TrackingHandFields>(&scenario.hand))
-    facts.trials = hand->subjects.size() * static_cast<std::size_t>(hand->trials);
   const double step = scenario.time.step;
   if (step > kUnitsApart * kUsualStep || kUnitsApart * step < kUsualStep)
     facts.warnings.push_back(
         fmt::format("time.step_s is {:.3g} s; haptic loops step each 1 ms: is it in seconds?", step));
-  const auto tool = make_tool(scenario, loaded.files);
-  facts.tool = tool_facts(scenario, loaded.files, *tool);
-  for (std::string& warning : tool_warnings(scenario.rendering, *tool)) facts.warnings.push_back(std::move(warning));
+  const ToolShape& tool = *(facts.tool = make_tool(scenario, loaded.files));
+  for (std::string& warning : tool_warnings(scenario.rendering, tool)) facts.warnings.push_back(std::move(warning));
   const auto shell = make_shell(scenario, loaded.files);
   throw_if_stopped();  // that may have taken seconds
   if (!shell || shell->size() == 0) return facts;
@@ -159,18 +136,17 @@ SceneFacts scene_facts(const LoadedScenario& loaded) {
   if (const auto* hand = dynamic_cast<const DragHand*>(parts.hand.get())) {
     const auto& fields = std::get<DragHandFields>(scenario.hand);
     const double way = way_to_cover(fields, scenario.time.step * static_cast<double>(scenario.time.steps));
-    if (auto warning = short_path_warning(fields, hand->path().length(), way, 2.0 * tool->half_width()))
+    if (auto warning = short_path_warning(fields, hand->path().length(), way, 2.0 * tool.half_width()))
       facts.warnings.push_back(*warning);
   }
   const ToolPose pose = first_pose(scenario, parts);
-  const Gap gap = gap_between(*tool, pose, *shell);
+  const Gap gap = gap_between(tool, pose, *shell);
   surface.gap = gap.distance;
   surface.touching = gap.touching;
-  for (std::string& warning : unit_warnings(loaded, *tool, surface)) facts.warnings.push_back(std::move(warning));
+  for (std::string& warning : unit_warnings(loaded, tool, surface)) facts.warnings.push_back(std::move(warning));
   // check_named_files has warned of an open scan.
   if (!is_open_scan(scenario, loaded.files)) {
-    if (auto warning = wrong_side_warning(*shell, pose.position, tool->half_width()))
-      facts.warnings.push_back(*warning);
+    if (auto warning = wrong_side_warning(*shell, pose.position, tool.half_width())) facts.warnings.push_back(*warning);
   }
   return facts;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,22 +13,6 @@
 
 namespace hapbench {
 
-/// Facts about the tool of a scenario.
-struct ToolFacts {
-  std::string type;         ///< as the scenario's field
-  double half_width = 0.0;  ///< [m]
-  double reach = 0.0;       ///< of its furthest point from the tip centre [m]
-  bool convex = true;
-  /// Facts about a tool that is a mesh.
-  struct Mesh {
-    std::size_t triangles;
-    Box box;             ///< in the tool's frame [m]
-    double grid;         ///< spacing of the signed distances [m]
-    double error_bound;  ///< of a depth [m]
-  };
-  std::optional<Mesh> mesh;
-};
-
 /// Facts about a scenario that are known before it runs.
 struct SceneFacts {
   /// The points of the environment; springs have none.
@@ -38,9 +23,8 @@ struct SceneFacts {
     std::size_t touching = 0;  ///< points in the tool where it starts
   };
   std::optional<Surface> surface;
-  ToolFacts tool;
-  std::optional<bool> is_closed;  ///< of a mesh
-  std::size_t trials = 1;
+  std::shared_ptr<const ToolShape> tool;
+  std::optional<bool> is_closed;      ///< of a mesh
   std::vector<std::string> warnings;  ///< about the tool, and the way of its drag, in this scene
 };
 

@@ -171,7 +171,7 @@ Run::Run(const LoadedScenario& loaded, const std::shared_ptr<const PointShell>& 
       reference_(reference_force(scenario_, loaded.files)),
       sections_(scenario_, reference_ != nullptr) {
   if (scenario_.record.timing) times_.emplace(static_cast<std::size_t>(scenario_.time.steps) * trials);
-  if (diagnose) diagnosis_.emplace(scenario_, shell_.get());
+  if (diagnose) diagnosis_.emplace(scenario_);
 }
 
 void Run::make(Trial trial, const std::optional<RecordTarget>& target, const std::string& label) {
@@ -235,6 +235,7 @@ void Run::end_trial(EncounterObservers& seen, const std::optional<OpenEdgeObserv
     else
       inside_ = *depths;
   }
+  if (diagnosis_) diagnosis_->add_longest_step(seen.longest_step());
   // A subject who loses the drill fails the rest of the targets.
   if (result.outcome == Outcome::diverges) {
     if (auto* targets = sections_.find<TargetMetricsObserver>()) targets->fail_rest();

@@ -117,7 +117,7 @@ TEST(Diagnosis, AdvisesNoLawThatIsInUse) {
     result.algorithm = law;
     result.metrics = {
         {"ratio_min", "1", "", 0.1}, {"ratio_max", "1", "", 10.0}, {"force_reversals_per_s", "1/s", "", 100.0}};
-    const auto findings = DiagnosisObserver(loaded.scenario, nullptr).findings(loaded, result, *tool);
+    const auto findings = DiagnosisObserver(loaded.scenario).findings(loaded, result, *tool);
     EXPECT_EQ(findings.size(), 4u) << law;  // soft, hard, damping, chatter
     for (const Diagnosed& found : findings)
       EXPECT_FALSE(std::regex_search(found.attempt, std::regex("\\b" + law + "\\b"))) << law << ": " << found.attempt;
