@@ -8,6 +8,7 @@ from answers import PROGRAM, ran
 NO_TABLES = {"run", "import"}  # commands whose JSON does not repeat a table
 NO_WORDS = {"file of the results"}
 TOLERANCES = "tolerances"
+DIAGNOSIS = "diagnosis"
 NO_ANSWERS = {"provenance", "name", "algorithm", "scenario"}
 
 
@@ -24,8 +25,9 @@ def keys_of(data):
         return set().union(*(keys for keys, _ in found)), set().union(*(groups for _, groups in found))
     if not isinstance(data, dict):
         return set(), set()
-    members = {key: value for key, value in data.items() if key not in NO_ANSWERS and key != TOLERANCES}
+    members = {key: value for key, value in data.items() if key not in NO_ANSWERS and key not in (TOLERANCES, DIAGNOSIS)}
     members.update({f"{TOLERANCES}.{name}": value for name, value in data.get(TOLERANCES, {}).items()})  # beside the metrics' own
+    members.update({f"{DIAGNOSIS}.{name}": value for finding in data.get(DIAGNOSIS, []) for name, value in finding.items()})  # words of other keys
     groups = {key for key, value in members.items() if isinstance(value, dict) or isinstance(value, list) and any(isinstance(v, dict) for v in value)}
     within = [keys_of(members[key]) for key in groups]
     return (set(members) - groups).union(*(keys for keys, _ in within)), groups.union(*(more for _, more in within))

@@ -76,6 +76,20 @@ def divergence(bench, run):
     for key, known, naive in (("step", k, k - 1), ("time_s", k * dt, k), ("magnitude", size, bound), ("bound", bound, size)):
         bench.add(f"run --json: {key}", told[key], known, "recurrence against the bounds", grown, ("the row before, or the other", naive))
     bench.add("run --json: quantity", told["quantity"], quantity, "recurrence against the bounds", EXACT, ("the first thing checked", "force"))
+    diagnosed_divergence(bench, run.summary["diagnosis"], K * dt ** 2 / (4 * M))
+
+
+def diagnosed_divergence(bench, findings, share):
+    """Leapfrog without damping is stable up to K = 4 M / dt^2, the edge of which K is `share` times."""
+    edge = next(finding for finding in findings if finding["rule"] == "edge")
+    cells = [("value", share, "half the edge, of a step of the speed alone", 2 * share), ("threshold", 0.8, "the edge itself", 1.0),
+             ("unit", "1", "of K", "N/m"), ("says", f"K is {share:.3g} times the edge of the stable loop", "as if stable", "K is 0.5 times")]
+    for name, known, naive, value in cells:
+        bench.add(f"run --json: diagnosis.{name}", edge[name], known, "4 - K dt^2 / M = 0", EXACT, (naive, value))
+    bench.add("run --json: diagnosis.rule", [finding["rule"] for finding in findings][:2], ["diverged", "edge"], "what happened, then why", EXACT,
+              ("what happened alone", ["diverged"]))
+    for name, words in (("number", "K over the edge"), ("try", "a shorter time.step_s")):
+        bench.add(f"run --json: diagnosis.{name}", words in edge[name], True, "4 - K dt^2 / M = 0", EXACT, ("another cause", False))
 
 
 @scene
