@@ -130,7 +130,8 @@ void SectionObservers::tell(Result& result) const {
     if (trials_ > 1 && !kind.merges) continue;
     Section section(result.metrics, kind.name);
     observers_[i]->tell(section);
-    observers_[i]->add_members(result.sections.emplace_back(kind.name, nlohmann::ordered_json::object()).members);
+    result.sections.push_back({kind.name, nlohmann::ordered_json::object()});
+    observers_[i]->add_members(result.sections.back().members);
   }
 }
 
