@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "algorithms/registry.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/run/stop_signal.hpp"
