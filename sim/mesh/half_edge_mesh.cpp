@@ -4,14 +4,14 @@
 #include <OpenMesh/Tools/Subdivider/Uniform/LongestEdgeT.hh>
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
-#include <cstdint>
 #include <limits>
 #include <numeric>
 #include <optional>
 #include <sstream>
 #include <unordered_map>
+
+#include "sim/core/hash.hpp"
 
 namespace hapbench {
 namespace {
@@ -33,10 +33,9 @@ using Place = std::array<double, 5>;
 
 struct HashOfPlace {
   std::size_t operator()(const Place& place) const noexcept {
-    std::uint64_t hash = 0;
-    // 0 and -0 are one coordinate.
-    for (const double number : place) hash = (hash ^ std::bit_cast<std::uint64_t>(number + 0.0)) * 0x9e3779b97f4a7c15u;
-    return static_cast<std::size_t>(hash ^ (hash >> 32));
+    Hash64 hash;
+    for (const double number : place) hash.real(number + 0.0);  // 0 and -0 are one coordinate
+    return static_cast<std::size_t>(hash.value());
   }
 };
 
