@@ -10,6 +10,7 @@
 #include "device_model/device_presets.hpp"
 #include "device_model/theory/stiffness_limits.hpp"
 #include "scenarios/program/fields_text.hpp"
+#include "scenarios/program/report.hpp"
 #include "scenarios/program/table.hpp"
 #include "scenarios/run/diagnosis.hpp"
 #include "scenarios/studies/stability/judged_run.hpp"
@@ -218,18 +219,19 @@ void add_types(Index& index) {
 }  // namespace
 
 Index program_index() {
+  const std::vector<DescribedTable> tables = result_tables();
   Index index;
   add_models(index);
   for (const DevicePreset& preset : device_presets())
     index.push_back({"preset", preset.name, preset.device, [&preset] { return describe_preset(preset); }});
   index.push_back({"section", "algorithm", "", describe_algorithms});
-  add_results(index);
+  add_results(index, tables);
   for (const std::string& path : scenario_field_paths())
     index.push_back({"field", path, "", [&path] { return describe_field(path); }});
   add_sections(index);
   add_types(index);
   add_words(index);
-  add_headings(index);
+  add_headings(index, tables);
   return index;
 }
 

@@ -46,9 +46,10 @@ Index program_index();
 Index folder_index();
 
 // Parts of program_index, of results.
-void add_results(Index& index);   ///< metrics, files, columns
-void add_words(Index& index);     ///< outcomes, classes of motion, verdicts and others that the program prints
-void add_headings(Index& index);  ///< those whose `summary`, a name or a sentence, says what they mean
+void add_results(Index& index, const std::vector<DescribedTable>& tables);  ///< metrics, files, columns
+void add_words(Index& index);  ///< outcomes, classes of motion, verdicts and others that the program prints
+/// Headings of printed tables, whose `summary`, a name or a sentence, says what they mean.
+void add_headings(Index& index, const std::vector<DescribedTable>& tables);
 
 /// Every table among the results of this program, and those that are only printed, without a file.
 std::vector<DescribedTable> result_tables();

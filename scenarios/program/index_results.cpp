@@ -80,6 +80,7 @@ Description describe_column(const SharedColumn& shared) {
 std::vector<SharedColumn> all_columns(const std::vector<DescribedTable>& tables) {
   std::vector<SharedColumn> all;
   for (const DescribedTable& table : tables) {
+    if (table.file.empty()) continue;
     for (const DescribedTable::Entry& column : table.columns) {
       const auto same = std::ranges::find_if(all, [&column](const SharedColumn& known) {
         return known.column.name == column.name && known.column.meaning == column.meaning;
@@ -182,15 +183,13 @@ std::vector<DescribedTable> result_tables() {
   return tables;
 }
 
-void add_results(Index& index) {
+void add_results(Index& index, const std::vector<DescribedTable>& tables) {
   for (const char* name : {"metrics", "summary.json"}) index.push_back({"section", name, "", describe_metrics});
   for (const Metric& metric : metrics_without_values())
     index.push_back({"metric", metric.name, metric.meaning, [metric] { return describe_metric(metric); }});
   for (const char* name : {"columns", "columns.json"}) index.push_back({"section", name, "", describe_tables});
-  std::vector<DescribedTable> tables = result_tables();
-  std::erase_if(tables, [](const DescribedTable& table) { return table.file.empty(); });
   for (const DescribedTable& table : tables)
-    index.push_back({"file", table.file, "", [table] { return describe_table(table); }});
+    if (!table.file.empty()) index.push_back({"file", table.file, "", [table] { return describe_table(table); }});
   for (const SharedColumn& column : all_columns(tables))
     index.push_back({"column", column.column.name, "", [column] { return describe_column(column); }});
 }
@@ -201,8 +200,8 @@ void add_words(Index& index) {
     index.push_back({word.kind, std::string(word.name), "", [word] { return describe_word(word); }});
 }
 
-void add_headings(Index& index) {
-  for (const DescribedTable& table : result_tables()) {
+void add_headings(Index& index, const std::vector<DescribedTable>& tables) {
+  for (const DescribedTable& table : tables) {
     for (const Table::Column& heading : table.headings) {
       if (!heading.meaning.empty())
         index.push_back({"heading", heading.title, heading.meaning, [heading] { return describe_heading(heading); }});
