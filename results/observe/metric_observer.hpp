@@ -57,7 +57,7 @@ class MetricObserver : public Observer {
   virtual void add_members(nlohmann::ordered_json&) const {}
 };
 
-/// What an observer tells, under the metrics' own names.
+/// The metrics of an observer, named without a section.
 inline MetricList told(const MetricObserver& observer) {
   MetricList list;
   Section section(list, "");

@@ -99,7 +99,7 @@ class MetricsObserver final : public MetricObserver {
   /// True when settled contact was long enough for its metrics.
   bool has_settled() const noexcept { return contact_forces_.has_settled(); }
   std::uint64_t rows() const noexcept { return rows_before_ + now_.rows; }
-  /// Of the trial that was begun last.
+  /// The contact of the current trial: the one after the last `begin`.
   const TrialContact& trial() const noexcept { return now_; }
   /// Nothing where friction cannot become unstable.
   const std::optional<ExplicitFriction>& explicit_friction() const noexcept { return friction_; }
@@ -116,8 +116,9 @@ class MetricsObserver final : public MetricObserver {
   void tell_contacts(Section& section) const;
   void tell_friction(Section& section) const;
 
-  // Of the trial that was begun last.
-  std::uint64_t trials_ = 0;  ///< begun
+  std::uint64_t trials_ = 0;  ///< begun so far
+
+  // State of the current trial, which `begin` resets.
   TrialContact now_;
   Hash64 hash_;
   bool settled_ = false;
@@ -126,7 +127,7 @@ class MetricsObserver final : public MetricObserver {
   Vec3 last_force_ = Vec3::Zero();
   Vec3 position_ = Vec3::Zero();  ///< in the last row [m]
 
-  // Of all trials, or of the earlier ones.
+  // Sums and extremes over all trials; "before": over the trials before the current one.
   std::uint64_t rows_before_ = 0, in_contact_before_ = 0;
   double force_max_squared_before_ = 0.0;
   std::optional<double> last_contact_before_;

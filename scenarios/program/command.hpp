@@ -59,7 +59,7 @@ struct CapturedOutput {
 
 /// Redirects what the commands of this thread print into `output`, for a host that is no terminal; null ends that.
 void capture_output(CapturedOutput* output) noexcept;
-/// Where this thread's output goes; null when nothing redirects it.
+/// Returns the object that collects this thread's output, or null when it is printed.
 CapturedOutput* captured_output() noexcept;
 
 /// Draws the run in a folder into a file, FILE.svg. Throws IoError when it cannot be made, after the Python tool has

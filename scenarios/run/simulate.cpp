@@ -117,7 +117,7 @@ class TrialWarnings {
       warnings_ = std::move(warnings);
     }
   }
-  /// Of several trials with their number.
+  /// The warnings; with several trials, each says how many trials had some.
   std::vector<std::string> all() const {
     std::vector<std::string> all = warnings_;
     if (trials_ == 1) return all;
