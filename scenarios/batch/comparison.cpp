@@ -34,7 +34,7 @@ void check_seeds_and_jitter(const ComparisonQuestion& question, const LoadedScen
     throw InputError(fmt::format("{}: /seed: got {}; allowed: at most {} with {} seeds", loaded.file.string(),
                                  scenario.seed, most, question.seeds));
   }
-  if (question.jitter != 0.0 && !std::holds_alternative<FreePosition>(scenario.motion.position)) {
+  if (question.jitter != 0.0 && !position_is_free(scenario.motion)) {
     throw InputError(fmt::format(
         "{}: /motion/position: prescribes the tool's place, which --jitter cannot shift; allowed with it: \"free\"",
         loaded.file.string()));

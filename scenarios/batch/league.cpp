@@ -167,8 +167,7 @@ League league_of(const Comparison& comparison, std::span<const Result> reports,
     const Outcome outcome = summary.end.outcome;
     const Scenario scenario = comparison.load(i).scenario;
     // No law keeps a tool out that a script leads in: its force along the way is comparable all the same.
-    const bool is_led =
-        outcome == Outcome::went_through && !std::holds_alternative<FreePosition>(scenario.motion.position);
+    const bool is_led = outcome == Outcome::went_through && !position_is_free(scenario.motion);
     const bool failed = is_failure(outcome_name(outcome)) || !outcome_is_expected(scenario.expect, outcome);
     LeagueRun run{std::string(outcome_name(outcome)), failed && !is_led, summary.state_hash, {}, {}};
     for (const std::string& name : league.metrics) {

@@ -147,15 +147,14 @@ void check_contact_source(const Scenario& scenario) {
   const RenderingConfig& rendering = scenario.rendering;
   if (rendering.contact_source == kOwnContacts) return;
   const bool is_trace = rendering.contact_source == kTrace;
-  const char* problem =
-      std::holds_alternative<SpringsEnvironment>(scenario.environment) ? "with springs, which have no surface"
-      : is_trace &&
-              (std::holds_alternative<FreePosition>(scenario.motion.position) || handle_moves_tool(scenario.device))
-          ? "unless motion.position is prescribed, as it was when the contacts were recorded"
-      : rendering.local_average ? "with local_average, which merges shell points"
-      : rendering.reduction && rendering.reduction->shuffle_seed
-          ? "with reduction.shuffle_seed, which orders shell points"
-          : nullptr;
+  const char* problem = std::holds_alternative<SpringsEnvironment>(scenario.environment)
+                            ? "with springs, which have no surface"
+                        : is_trace && (position_is_free(scenario.motion) || handle_moves_tool(scenario.device))
+                            ? "unless motion.position is prescribed, as it was when the contacts were recorded"
+                        : rendering.local_average ? "with local_average, which merges shell points"
+                        : rendering.reduction && rendering.reduction->shuffle_seed
+                            ? "with reduction.shuffle_seed, which orders shell points"
+                            : nullptr;
   if (problem == nullptr) return;
   fail("/rendering/contact_source",
        fmt::format("got \"{}\"; allowed: \"{}\", {}", rendering.contact_source, kOwnContacts, problem));

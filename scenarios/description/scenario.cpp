@@ -29,6 +29,10 @@ const ImpedanceHandFields* spring_of(const HandFields& hand) {
   return passive != nullptr ? &passive->spring : std::get_if<ImpedanceHandFields>(&hand);
 }
 
+bool position_is_free(const MotionFields& motion) {
+  return std::holds_alternative<FreePosition>(motion.position);
+}
+
 bool handle_moves_tool(const DeviceFields& device) {
   return std::holds_alternative<ImpedanceDeviceConfig>(device);
 }

@@ -133,6 +133,9 @@ struct MotionFields {
   PositionFields position;
 };
 
+/// True when forces move the tool's tip, false when a script or a recording prescribes its place.
+bool position_is_free(const MotionFields& motion);
+
 struct NoHandFields {};
 struct ForceHandFields {
   std::array<Profile, 3> force;  ///< [N]

@@ -126,7 +126,7 @@ bool vibrates(const DiagnosedRun& run) {
 }
 
 bool is_free(const DiagnosedRun& run) {
-  return std::holds_alternative<FreePosition>(run.scenario().motion.position);
+  return position_is_free(run.scenario().motion);
 }
 
 bool has_springs(const DiagnosedRun& run) {

@@ -251,7 +251,7 @@ EncounterObservers::EncounterObservers(const Scenario& scenario, const NamedFile
     approach_.emplace(parts.shell, static_cast<std::uint64_t>(scenario.time.steps));
   if (const auto* hand = dynamic_cast<const DragHand*>(parts.hand.get()))
     drag_.emplace(*hand, std::get<DragHandFields>(scenario.hand), parts.tool->half_width());
-  const bool is_free = std::holds_alternative<FreePosition>(scenario.motion.position);
+  const bool is_free = position_is_free(scenario.motion);
   const double width = 2.0 * parts.tool->half_width();
   if (const ImpedanceHandFields* hand = spring_of(scenario.hand); hand != nullptr && is_free)
     stuck_.emplace([hand](double time) { return target_at(*hand, time); }, width);
@@ -288,7 +288,7 @@ Outcome EncounterObservers::outcome(const TrialContact& contact, Outcome outcome
   if (inside_ && (inside_->passage().went_through() || inside_max() > tool_->half_width()))
     return Outcome::went_through;
   if (contact.in_contact == 0) return Outcome::no_contact;
-  const bool is_free = std::holds_alternative<FreePosition>(scenario_.motion.position);
+  const bool is_free = position_is_free(scenario_.motion);
   const StepWay& steps = approach_->steps();
   if (is_free && steps.distance() > diagonal(steps.environment()) + tool_->reach()) return Outcome::lost_contact;
   if (drag_ && drag_->lost()) return Outcome::lost_contact;
@@ -368,7 +368,7 @@ std::string EncounterObservers::likely_cause(Outcome outcome, const TrialContact
     if (closest > 0.0)
       return fmt::format("; hand.target stays {} away from it: does it lead to the surface?", length_text(closest));
   }
-  const bool is_free = std::holds_alternative<FreePosition>(scenario_.motion.position);
+  const bool is_free = position_is_free(scenario_.motion);
   if (is_free && std::holds_alternative<NoHandFields>(scenario_.hand) && outcome == Outcome::no_contact)
     return "; nothing pushes the tool: is hand missing?";
   if (outcome == Outcome::lost_contact && (std::holds_alternative<ForceHandFields>(scenario_.hand) ||
@@ -382,7 +382,7 @@ std::string EncounterObservers::likely_cause(Outcome outcome, const TrialContact
 std::optional<std::string> EncounterObservers::warning_about(Outcome outcome, const TrialContact& contact) {
   const StepWay& steps = approach_->steps();
   if (outcome == Outcome::went_through) {
-    const bool is_led = !std::holds_alternative<FreePosition>(scenario_.motion.position);
+    const bool is_led = !position_is_free(scenario_.motion);
     return passage_text(inside_->passage(), tool_->half_width(), inside_max(), is_led) +
            (out_of_proportion(*tool_, steps.environment()) ? "; " + scale_question(scenario_) : "");
   }

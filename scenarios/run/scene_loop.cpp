@@ -75,7 +75,7 @@ bool springs_stay(const Scenario& scenario) {
   const RenderingConfig& r = scenario.rendering;
   return springs != nullptr && springs->bilateral && springs->signed_depths && !r.has_friction() && !r.hunt_crossley &&
          !(r.late && r.late->any()) && !r.max_damping && !r.max_force && !r.force_stage && !r.passivity_controller &&
-         std::holds_alternative<FreePosition>(scenario.motion.position);
+         position_is_free(scenario.motion);
 }
 
 bool has_device(const Scenario& scenario) {

@@ -188,7 +188,7 @@ class Session final : public Observer {
     const Scenario& scenario = loaded_.scenario;
     const auto* hand = std::get_if<ImpedanceHandFields>(&scenario.hand);
     if (hand == nullptr) throw InputError("/hand/type: allowed: \"impedance\", whose target the pointer leads");
-    if (!scenario.motion.orientation || !std::holds_alternative<FreePosition>(scenario.motion.position))
+    if (!scenario.motion.orientation || !position_is_free(scenario.motion))
       throw InputError("/motion/position/type: allowed: \"free\", because the pointer leads the tool");
     auto led_hand = std::make_unique<PointerHand>(*hand);
     hand_ = led_hand.get();

@@ -248,7 +248,7 @@ double allowed_end(double value, int sign, const std::function<bool(double)>& al
 
 void check_scene(const LoadedScenario& loaded) {
   const Scenario& scenario = loaded.scenario;
-  if (!std::holds_alternative<FreePosition>(scenario.motion.position)) {
+  if (!position_is_free(scenario.motion)) {
     refuse(loaded, "/motion/position/type", "a prescribed tool cannot become unstable; allowed for limit: \"free\"");
   }
   if (scenario.time.steps < 4)
