@@ -30,4 +30,9 @@ inline std::size_t cases(std::size_t n) {
   return (n + part - 1) / part;
 }
 
+/// 1; under AddressSanitizer n, for tests that take every nth case or an nth of the steps there.
+inline std::size_t sanitized(std::size_t n) {
+  return HAPBENCH_TEST_SANITIZED != 0 ? n : 1;
+}
+
 }  // namespace hapbench::test

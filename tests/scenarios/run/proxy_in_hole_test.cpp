@@ -5,6 +5,7 @@
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "sim/contact/contact_source.hpp"
+#include "tests/support/scale.hpp"
 
 /// The guarantees of the proxy, over whole runs.
 namespace hapbench::proxy_in_hole_test {
@@ -96,7 +97,8 @@ INSTANTIATE_TEST_SUITE_P(Scenes, ProxyOverAWholeRun,
                          [](const auto& run) { return std::string(run.param.scenario); });
 
 TEST_P(ProxyOverAWholeRun, NeitherEntersTheShellNorGetsStifferThanOneSpringNorTakesManyPasses) {
-  const PointsInProxy points = watch(GetParam().scenario, GetParam().steps);
+  const PointsInProxy points =
+      watch(GetParam().scenario, GetParam().steps / static_cast<std::int64_t>(test::sanitized(16)));
   EXPECT_TRUE(points.cleared);
   // The hands of the pegs start up to 22 um deep, and leave by 10 um a step.
   EXPECT_LE(points.steps_until_clear, 10u);
