@@ -105,8 +105,8 @@ ordered_json provenance_json(const Provenance& p, const std::string& scenario_ha
 }  // namespace
 
 ordered_json summary_json(const Result& run) {
-  std::vector<std::string> warnings = run.file_warnings;
-  warnings.insert(warnings.end(), run.warnings.begin(), run.warnings.end());
+  ordered_json warnings = ordered_json::array();
+  for (const Warning& warning : run.warnings) warnings.push_back(warning.told());
   ordered_json json = {{"name", run.name},
                        {"algorithm", run.algorithm},
                        {"outcome", outcome_name(run.end.outcome)},

@@ -47,6 +47,18 @@ struct MetricSection {
   nlohmann::ordered_json members;  ///< an object: those that are no metrics, as the energy's events
 };
 
+/// Something that may make the numbers of a run mislead; nothing is refused for it.
+struct Warning {
+  std::string kind;     ///< what it is, in a word: the same for the same reason, whatever numbers the text has
+  std::string pointer;  ///< JSON pointer of the field that it is about; empty when it is about the run
+  std::string text;     ///< a sentence
+
+  /// As results keep it, equal wherever the files lie.
+  std::string told() const { return pointer.empty() ? text : pointer + ": " + text; }
+
+  bool operator==(const Warning&) const = default;
+};
+
 /// Something wrong with a run: a number beyond the threshold of a rule (scenarios/run/diagnosis.hpp).
 struct Diagnosed {
   std::string rule, number, unit;  ///< names of the rule and of its number; "1" for pure numbers
@@ -79,12 +91,10 @@ struct Result {
   /// under their own names, the final position's coordinates, as "final_position_m.x", then those of the sections, as
   /// "energy.created_sum_J" or "targets.0.success_rate.mean".
   MetricList metrics;
-  std::vector<MetricSection> sections;  ///< passivity, and others for which the scenario asks
-  std::uint64_t state_hash = 0;         ///< MetricsObserver::state_hash
-  std::optional<ToolSummary> tool;      ///< of a tool that is no cylinder
-  std::vector<std::string> warnings;    ///< what may make the numbers mislead, a sentence each
-  /// About the files that the scenario names, each with its pointer; summary.json has them before the others.
-  std::vector<std::string> file_warnings;
+  std::vector<MetricSection> sections;              ///< passivity, and others for which the scenario asks
+  std::uint64_t state_hash = 0;                     ///< MetricsObserver::state_hash
+  std::optional<ToolSummary> tool;                  ///< of a tool that is no cylinder
+  std::vector<Warning> warnings;                    ///< about the files that the scenario names, then about the run
   std::optional<std::vector<Diagnosed>> diagnosis;  ///< of a run that asked for it
   RunWork work;
   std::vector<TargetRow> targets;  ///< of a tracking hand, all subjects and trials

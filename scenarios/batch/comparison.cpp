@@ -59,21 +59,21 @@ Cases cases_of(const ComparisonQuestion& question, const fs::path& file, std::ve
   const ScenarioText text = read_scenario_text(file);
   std::vector<Axis> axes = {{"rendering.algorithm", question.algorithms}};
   const Cases alone({text}, question.overrides, axes);
-  std::vector<std::string> common;
+  std::vector<Warning> common;
   for (std::size_t a = 0; a < alone.size(); ++a) {
     const LoadedScenario loaded = alone.load(a);
     if (a == 0) {  // the files are those of the scenario
       check_seeds_and_jitter(question, loaded);
-      append_new(warnings, check_named_files(loaded));
+      append_new(warnings, with_files(loaded, check_named_files(loaded)));
       common = loaded.warnings;
       if (question.seeds > 1 || question.jitter != 0.0)
         axes.push_back(seed_axis(loaded.scenario, question.seeds, question.jitter));
     }
-    std::erase_if(common, [&loaded](const std::string& warning) {
+    std::erase_if(common, [&loaded](const Warning& warning) {
       return std::ranges::find(loaded.warnings, warning) == loaded.warnings.end();
     });
   }
-  append_new(warnings, common);
+  append_new(warnings, with_files(alone.load(0), common));
   return {{text}, question.overrides, std::move(axes)};
 }
 

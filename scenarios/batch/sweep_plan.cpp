@@ -31,7 +31,7 @@ struct Point {
 Point examine(const SweepPlan& plan, std::size_t run) {
   const LoadedScenario loaded = plan.cases.load(run);
   const Scenario& scenario = loaded.scenario;
-  Point point{loaded.warnings, sections_of(scenario, scenario.reference_force.has_value()), "",
+  Point point{with_files(loaded, loaded.warnings), sections_of(scenario, scenario.reference_force.has_value()), "",
               find_algorithm(scenario.rendering.algorithm)->origin};
   if (loaded.files.all().empty()) return point;
   const Json json = written_object(scenario);
@@ -59,7 +59,7 @@ Json check_files(SweepPlan& plan, const std::vector<std::size_t>& runs, SectionP
   Json hashes = Json::array();
   for (const std::size_t run : runs) {
     LoadedScenario loaded = plan.cases.load(run);
-    append_new(plan.warnings, check_named_files(loaded, hashes.size() < kMostScans));
+    append_new(plan.warnings, with_files(loaded, check_named_files(loaded, hashes.size() < kMostScans)));
     if (std::holds_alternative<RecordedPosition>(loaded.scenario.motion.position))
       add_sections(sections, sections_of(loaded.scenario, loaded.files.at(kMotionFile).stroke()->force.has_value()));
     loaded.scenario.name.clear();  // may be that of the scenario's file

@@ -191,9 +191,11 @@ void check_tracking_hand(const Scenario& scenario, double steps) {
   fail("/hand/trials", fmt::format("got {:.3g} steps in all trials; allowed: at most {:.0g}", all_steps, kMostSteps));
 }
 
+constexpr const char* kNoEffect = "no_effect";  ///< of warnings: a given value that nothing reads
+
 /// A warning about an admittance device whose servo or mechanics differ from the usual ones under a hand that does not
 /// feel the handle. Sensor and limiter have an effect under any hand, so a device that changes only these is fine.
-void warn_of_idle_device(const Scenario& scenario, std::vector<std::string>& warnings) {
+void warn_of_idle_device(const Scenario& scenario, std::vector<Warning>& warnings) {
   const char* hand = std::holds_alternative<NoHandFields>(scenario.hand)      ? "none"
                      : std::holds_alternative<ForceHandFields>(scenario.hand) ? "force"
                      : std::holds_alternative<PushHandFields>(scenario.hand)  ? "push"
@@ -203,10 +205,12 @@ void warn_of_idle_device(const Scenario& scenario, std::vector<std::string>& war
   const AdmittanceDeviceConfig usual;
   const bool changes_loop = device->servo != usual.servo || device->mechanics != usual.mechanics;
   if (!changes_loop && (device->sensor != usual.sensor || device->force_limit != usual.force_limit)) return;
-  warnings.push_back(fmt::format(
-      "/device: servo and mechanics (lag, delay, structure) move the handle alone and have no effect on the tool and its "
-      "force: hand.type \"{}\" does not feel the handle; \"impedance\", \"drag\" and \"tracking\" do",
-      hand));
+  warnings.push_back(
+      {kNoEffect, "/device",
+       fmt::format(
+           "servo and mechanics (lag, delay, structure) move the handle alone and have no effect on the tool and "
+           "its force: hand.type \"{}\" does not feel the handle; \"impedance\", \"drag\" and \"tracking\" do",
+           hand)});
 }
 
 /// True when the algorithm documents the field as one of its parameters.
@@ -218,7 +222,7 @@ bool reads(const AlgorithmEntry& algorithm, std::string_view field) {
 
 /// Warnings about values in `json`, other than the defaults, that the rendering does not read: parameters of other
 /// algorithms, and the filter of a velocity that nothing sees.
-void warn_of_unread_rendering(const Scenario& scenario, const Json& json, std::vector<std::string>& warnings) {
+void warn_of_unread_rendering(const Scenario& scenario, const Json& json, std::vector<Warning>& warnings) {
   const AlgorithmEntry& own = *find_algorithm(scenario.rendering.algorithm);
   const Json initial = {{"rendering", written_object(RenderingConfig{})}};
   std::map<std::string, std::vector<std::string>> readers;  // pointer of a field -> algorithms
@@ -240,40 +244,42 @@ void warn_of_unread_rendering(const Scenario& scenario, const Json& json, std::v
   for (const auto& [pointer, names] : readers) {
     if (!is_given(pointer)) continue;
     warnings.push_back(
-        fmt::format("{}: has no effect on this algorithm; it is a parameter of {}", pointer, fmt::join(names, ", ")));
+        {kNoEffect, pointer,
+         fmt::format("has no effect on this algorithm; it is a parameter of {}", fmt::join(names, ", "))});
   }
   for (const char* field : {"damping_ratio", "damping_N_s_per_m"}) {
     const std::string pointer = std::string("/rendering/") + field;
     if (scenario.rendering.hunt_crossley && is_given(pointer))
-      warnings.push_back(fmt::format("{}: has no effect beside rendering.damping", pointer));
+      warnings.push_back({kNoEffect, pointer, "has no effect beside rendering.damping"});
   }
   constexpr const char* kCutoff = "/rendering/angular_velocity_cutoff_Hz";
   if (is_given(kCutoff) && !scenario.rendering.angular_damping)
-    warnings.push_back(fmt::format("{}: has no effect without rendering.angular_damping", kCutoff));
+    warnings.push_back({kNoEffect, kCutoff, "has no effect without rendering.angular_damping"});
 }
 
 /// A warning where the integrator does not step the bristle of dry friction stably: the tool never comes to rest.
-void warn_of_stiff_bristle(const Scenario& scenario, std::vector<std::string>& warnings) {
+void warn_of_stiff_bristle(const Scenario& scenario, std::vector<Warning>& warnings) {
   const RenderingConfig& r = scenario.rendering;
   if (!r.dry_friction || handle_moves_tool(scenario.device)) return;
   const SpringDamper bristle = bristle_of(*r.dry_friction, r, scenario.time.step);
   if (bristle.is_stable()) return;
-  warnings.push_back(fmt::format(
-      "/rendering/friction: a tool that sticks will chatter: a bristle of {:.4g} N/m is too stiff for steps of {:.4g} s "
-      "and a mass of {:.4g} kg",
-      bristle.K, bristle.dt, r.mass));
+  warnings.push_back(
+      {"stiff_bristle", "/rendering/friction",
+       fmt::format("a tool that sticks will chatter: a bristle of {:.4g} N/m is too stiff for steps of {:.4g} s and a "
+                   "mass of {:.4g} kg",
+                   bristle.K, bristle.dt, r.mass)});
 }
 
 /// The first script within `json`, found at `at`, that a run of so long [s] does not play. The reader has checked it.
-std::optional<std::string> first_unplayed(const Json& json, const std::string& at, double duration) {
+std::optional<Warning> first_unplayed(const Json& json, const std::string& at, double duration) {
   if (!json.is_object()) return std::nullopt;
   if (json.value("type", Json()) == "waypoints") {
     const Json& points = json.at("points");
     if (points.size() < 2 || points[points.size() - 2][0].get<double>() < duration) return std::nullopt;
-    return fmt::format(
-        "{}: the script's last waypoint is at {:.6g} s, but the run ends at {:.6g} s; is time.duration_s (or steps) "
-        "right?",
-        at, points.back()[0].get<double>(), duration);
+    return Warning{"unplayed_script", at,
+                   fmt::format("the script's last waypoint is at {:.6g} s, but the run ends at {:.6g} s; is "
+                               "time.duration_s (or steps) right?",
+                               points.back()[0].get<double>(), duration)};
   }
   for (const auto& field : json.items()) {
     if (auto found = first_unplayed(field.value(), at + "/" + field.key(), duration)) return found;
@@ -301,8 +307,8 @@ void check_relations(const Scenario& scenario, double steps) {
   check_tracking_hand(scenario, steps);
 }
 
-std::vector<std::string> relation_warnings(const Scenario& scenario, const Json& json) {
-  std::vector<std::string> warnings;
+std::vector<Warning> relation_warnings(const Scenario& scenario, const Json& json) {
+  std::vector<Warning> warnings;
   warn_of_idle_device(scenario, warnings);
   warn_of_unread_rendering(scenario, json, warnings);
   warn_of_stiff_bristle(scenario, warnings);
@@ -360,32 +366,33 @@ void fix_stages(Fields& f, Scenario& scenario) {
   const RenderingConfig fixed = with_fixed_stages(given);
   const bool has_depth_model = !std::holds_alternative<SpringsEnvironment>(scenario.environment);
   if (has_depth_model && given.depth_model != fixed.depth_model) {
-    f.warn(fmt::format("/rendering/depth_model: \"{}\" is not used: algorithm \"{}\" is defined with \"{}\"",
-                       given.depth_model, given.algorithm, fixed.depth_model));
+    f.warn({kNoEffect, "/rendering/depth_model",
+            fmt::format("\"{}\" is not used: algorithm \"{}\" is defined with \"{}\"", given.depth_model,
+                        given.algorithm, fixed.depth_model)});
   }
   if (given.contact_source != kOwnContacts) {
     const AlgorithmEntry& entry = *find_algorithm(given.algorithm);
     if (!entry.reported_depth_model.empty()) {
-      f.warn(fmt::format("/rendering/contact_source: not used: algorithm \"{}\" finds its points itself",
-                         given.algorithm));
+      f.warn({kNoEffect, "/rendering/contact_source",
+              fmt::format("not used: algorithm \"{}\" finds its points itself", given.algorithm)});
     } else if (!entry.fixed_depth_model.empty()) {
-      f.warn(
-          fmt::format("/rendering/contact_source: algorithm \"{}\" is defined with depth model \"{}\"; here it has "
-                      "the depths of \"{}\"",
-                      given.algorithm, entry.fixed_depth_model, given.contact_source));
+      f.warn({"other_depths", "/rendering/contact_source",
+              fmt::format("algorithm \"{}\" is defined with depth model \"{}\"; here it has the depths of \"{}\"",
+                          given.algorithm, entry.fixed_depth_model, given.contact_source)});
     }
   }
   if (given.reduction && !fixed.reduction) {
-    f.warn(fmt::format("/rendering/reduction: not used: algorithm \"{}\" is defined without", given.algorithm));
+    f.warn({kNoEffect, "/rendering/reduction",
+            fmt::format("not used: algorithm \"{}\" is defined without", given.algorithm)});
   }
   given = fixed;
 }
 
 void warn_of_idle_integrator(Fields& f, const Scenario& scenario) {
   if (!handle_moves_tool(scenario.device) || scenario.integrator.type == IntegratorFields{}.type) return;
-  f.warn(
-      fmt::format("/integrator/type: \"{}\" is not used: device \"impedance\" moves the tool, without a virtual mass",
-                  scenario.integrator.type->info.name));
+  f.warn({kNoEffect, "/integrator/type",
+          fmt::format("\"{}\" is not used: device \"impedance\" moves the tool, without a virtual mass",
+                      scenario.integrator.type->info.name)});
 }
 
 }  // namespace

@@ -43,6 +43,6 @@ void check_relations(const Scenario& scenario, double steps);
 /// Warnings, each beginning with a JSON pointer, about values without effect in `json`, from which the scenario was
 /// read: a device's loop that no hand feels, and the first script of waypoints of hand and motion whose last leg begins
 /// only when the run is over. A shorter time step with the same number of steps does that unnoticed.
-std::vector<std::string> relation_warnings(const Scenario& scenario, const Json& json);
+std::vector<Warning> relation_warnings(const Scenario& scenario, const Json& json);
 
 }  // namespace hapbench

@@ -22,6 +22,8 @@
 /// the files it writes, the schema and the documentation cannot disagree.
 namespace hapbench {
 
+struct Warning;
+
 /// A reference to a function object that can be called with `Arguments`, for parameters that are called and not kept:
 /// unlike std::function it neither copies nor allocates. Valid as long as the object it refers to.
 template <class... Arguments>
@@ -154,7 +156,7 @@ class Fields {
   /// Returns true if the file being read has that field; always false for writers.
   virtual bool given(std::string_view) const { return false; }
   /// Reports something odd that is not an error.
-  virtual void warn(const std::string&) {}
+  virtual void warn(const Warning&) {}
 
   // ---- The same for C++ types, by the primitives above. ----
 

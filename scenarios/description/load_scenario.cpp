@@ -224,7 +224,7 @@ LoadedScenario read_scenario(const Json& json, const fs::path& directory) {
   loaded.scenario.directory = directory;
   Reader reader(json, "", &loaded.warnings);
   reader.object(loaded.scenario);
-  for (std::string& warning : relation_warnings(loaded.scenario, json)) loaded.warnings.push_back(std::move(warning));
+  for (Warning& warning : relation_warnings(loaded.scenario, json)) loaded.warnings.push_back(std::move(warning));
   loaded.files = NamedFiles(loaded.scenario);
   return loaded;
 }
@@ -251,6 +251,13 @@ fs::path file_of(const LoadedScenario& loaded, const std::string& pointer) {
   return loaded.file;
 }
 
+std::vector<std::string> with_files(const LoadedScenario& loaded, const std::vector<Warning>& warnings) {
+  std::vector<std::string> texts;
+  for (const Warning& warning : warnings)
+    texts.push_back(file_of(loaded, warning.pointer).string() + ": " + warning.told());
+  return texts;
+}
+
 LoadedScenario load_scenario(const ScenarioText& text, std::span<const std::string> overrides) {
   LoadedScenario loaded;
   loaded.file = text.file;
@@ -269,10 +276,7 @@ LoadedScenario load_scenario(const ScenarioText& text, std::span<const std::stri
     loaded.scenario = std::move(read.scenario);
     loaded.files = std::move(read.files);
     if (loaded.scenario.name.empty()) loaded.scenario.name = text.file.stem().string();
-    for (const std::string& warning : read.warnings) {
-      const std::string pointer = warning.substr(0, warning.find(':'));
-      loaded.warnings.push_back(file_of(loaded, pointer).string() + ": " + warning);
-    }
+    loaded.warnings = std::move(read.warnings);
     return loaded;
   } catch (const InputError& error) {
     rethrow_with_file(error, loaded);

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "results/summary/summary.hpp"
 #include "scenarios/description/named_files.hpp"
 #include "scenarios/description/scenario.hpp"
 #include "scenarios/input/input_error.hpp"
@@ -36,8 +37,8 @@ struct ScenarioText {
 struct LoadedScenario {
   Scenario scenario;
   std::filesystem::path file;
-  NamedFiles files;                   ///< that the scenario names
-  std::vector<std::string> warnings;  ///< about given values without effect, with file and pointer
+  NamedFiles files;               ///< that the scenario names
+  std::vector<Warning> warnings;  ///< about given values without effect
   /// The file and those it extends as they stand, overrides in the first; null when it extends none.
   std::shared_ptr<const std::vector<ScenarioLayer>> layers;
 };
@@ -71,6 +72,9 @@ inline std::string_view overridden_path(std::string_view override) noexcept {
 
 /// The file that the value at a JSON pointer comes from: the scenario's own, or one that it extends.
 std::filesystem::path file_of(const LoadedScenario& loaded, const std::string& pointer);
+
+/// The warnings with the file and the pointer of each in front, for people.
+std::vector<std::string> with_files(const LoadedScenario& loaded, const std::vector<Warning>& warnings);
 
 /// Throws the error again with the file in front of each fault.
 [[noreturn]] void rethrow_with_file(const InputError& error, const std::filesystem::path& file);

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <ctime>
-#include <map>
 #include <mutex>
 #include <thread>
 
@@ -128,57 +127,39 @@ std::vector<FileReference> files_named_in(Scenario& scenario) {
 
 namespace {
 
-/// Hashes of regular files, which need not be read again while they look unchanged.
-class KnownHashes {
- public:
-  /// A text that differs after a change of the file. Nothing for a file that is not regular, and for one that changed
-  /// so recently that the clock of the file system might not tell the next change.
-  static std::optional<std::string> stamp_of(const std::filesystem::path& file) {
-    struct stat s {};
-    if (::stat(file.c_str(), &s) != 0 || !S_ISREG(s.st_mode)) return std::nullopt;
-    constexpr std::time_t kSettled = 2;  // [s]
-    if (std::time(nullptr) < std::max(s.st_mtim.tv_sec, s.st_ctim.tv_sec) + kSettled) return std::nullopt;
-    return fmt::format("{} {} {} {} {} {} {} {}", s.st_dev, s.st_ino, s.st_size, s.st_mtim.tv_sec, s.st_mtim.tv_nsec,
-                       s.st_ctim.tv_sec, s.st_ctim.tv_nsec, file.string());
-  }
-  std::string find(const std::string& stamp) {
-    const std::lock_guard lock(mutex_);
-    const auto found = hashes_.find(stamp);
-    return found == hashes_.end() ? "" : found->second;
-  }
-  void add(const std::string& stamp, const std::string& hash) {
-    const std::lock_guard lock(mutex_);
-    if (hashes_.size() == kMost) hashes_.clear();
-    hashes_[stamp] = hash;
-  }
-
- private:
-  static constexpr std::size_t kMost = 1000;
-  std::mutex mutex_;
-  std::map<std::string, std::string> hashes_;
-};
-
-KnownHashes& known_hashes() {
-  static KnownHashes hashes;
-  return hashes;
+/// A text that differs after a change of the file, so that a file whose text is known need not be read again. Nothing
+/// for a file that is not regular, and for one that changed so recently that the clock of the file system might not
+/// tell the next change.
+std::optional<std::string> stamp_of(const std::filesystem::path& file) {
+  struct stat s {};
+  if (::stat(file.c_str(), &s) != 0 || !S_ISREG(s.st_mode)) return std::nullopt;
+  constexpr std::time_t kSettled = 2;  // [s]
+  if (std::time(nullptr) < std::max(s.st_mtim.tv_sec, s.st_ctim.tv_sec) + kSettled) return std::nullopt;
+  return fmt::format("hash of {} {} {} {} {} {} {} {}", s.st_dev, s.st_ino, s.st_size, s.st_mtim.tv_sec,
+                     s.st_mtim.tv_nsec, s.st_ctim.tv_sec, s.st_ctim.tv_nsec, file.string());
 }
 
 }  // namespace
 
 void NamedFile::read() {
-  const auto stamp = KnownHashes::stamp_of(path_);
   bytes_ = read_named_file(path_);
   std::string hash = hash_text(hash_of(bytes_));
   if (!hash_.empty() && hash != hash_) fail_in_file(path_, "has changed since the scenario was loaded");
   hash_ = std::move(hash);
-  if (stamp && stamp == KnownHashes::stamp_of(path_)) known_hashes().add(*stamp, hash_);
 }
 
 const std::string& NamedFile::hash() {
   if (!hash_.empty()) return hash_;
-  if (const auto stamp = KnownHashes::stamp_of(path_)) hash_ = known_hashes().find(*stamp);
-  if (hash_.empty()) read();
-  return hash_;
+  const auto stamp = stamp_of(path_);
+  if (!stamp) {
+    read();
+    return hash_;
+  }
+  // Kept under the stamp of before the reading, which a file that changed meanwhile never has again.
+  const auto known = shared_cache().get<std::string>(
+      *stamp, [this] { return read(), std::make_shared<const std::string>(hash_); },
+      [](const std::string& hash) { return hash.size(); });
+  return hash_ = *known;
 }
 
 const NamedFile::Contents& NamedFile::contents() {
@@ -218,8 +199,11 @@ NamedFile::Contents NamedFile::parsed() {
   return {};
 }
 
-std::vector<std::string> NamedFile::warnings() {
-  return content_.kind == FileContent::Kind::mesh ? mesh().warnings() : std::vector<std::string>();
+std::vector<Warning> NamedFile::warnings() {
+  std::vector<Warning> warnings;
+  if (content_.kind != FileContent::Kind::mesh) return warnings;
+  for (const std::string& text : mesh().warnings()) warnings.push_back({"mesh_file", pointer_, text});
+  return warnings;
 }
 
 NamedFiles::NamedFiles(Scenario scenario) {

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "results/observe/force_fidelity.hpp"
+#include "results/summary/summary.hpp"
 #include "scenarios/description/fields.hpp"
 #include "scenarios/description/scenario.hpp"
 #include "scenarios/input/recordings.hpp"
@@ -23,9 +24,9 @@ namespace hapbench {
 /// Values that take long to make, shared by the runs of a process: parsed files, point shells, distance grids. For
 /// several threads.
 ///
-/// The values used last are kept, up to 64 of them and 512 MB. Twice as many as the machine has threads are kept in any
-/// case, so that runs side by side do not take each other's away. A value that was dropped lives on while a run holds
-/// it.
+/// The values used last are kept, up to 128 of them and 512 MB. Twice as many as the machine has threads are kept in
+/// any case, so that runs side by side do not take each other's away. A value that was dropped lives on while a run
+/// holds it.
 class SharedCache {
  public:
   /// The value of that key, which says all that the value depends on. It is made by `make`, which returns a
@@ -53,7 +54,7 @@ class SharedCache {
     std::mutex mutex;
     Made made;
   };
-  static constexpr std::size_t kMost = 64;
+  static constexpr std::size_t kMost = 128;
   static constexpr std::size_t kMostBytes = std::size_t{512} << 20;
 
   std::shared_ptr<const void> get_untyped(const std::string& key, const std::function<Made()>& make);
@@ -102,7 +103,7 @@ class NamedFile {
   /// Reads and parses the file.
   void check() { contents(); }
   /// Warnings about its contents, without the file's directory.
-  std::vector<std::string> warnings();
+  std::vector<Warning> warnings();
 
   /// The points with normals. Precondition, here and below: the content is of that kind.
   const std::vector<SurfacePoint>& points() { return contents().points; }

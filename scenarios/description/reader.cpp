@@ -225,8 +225,8 @@ void Reader::exactly_one_of(const char* a, const char* b) {
   throw InputError(InputError::Kind::shape, at(), fmt::format(fmt::runtime(problem), a, b));
 }
 
-void Reader::warn(const std::string& text) {
-  if (warnings_ != nullptr) warnings_->push_back(text);
+void Reader::warn(const Warning& warning) {
+  if (warnings_ != nullptr) warnings_->push_back(warning);
 }
 
 }  // namespace hapbench

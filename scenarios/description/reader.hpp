@@ -1,5 +1,6 @@
 #pragma once
 
+#include "results/summary/summary.hpp"
 #include "scenarios/description/fields.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/json_file.hpp"
@@ -13,7 +14,7 @@ class Reader final : public Fields {
  public:
   /// Reads `json`, found at the JSON pointer `at`; both must outlive the reader. Warnings are added to `warnings`, if
   /// any.
-  Reader(const Json& json, std::string at, std::vector<std::string>* warnings = nullptr)
+  Reader(const Json& json, std::string at, std::vector<Warning>* warnings = nullptr)
       : json_(json), at_(std::move(at)), warnings_(warnings) {}
 
   void number(double& value, NumberRange range) override;
@@ -40,7 +41,7 @@ class Reader final : public Fields {
   bool reads() const override { return names_ == nullptr && errors_.empty(); }
   std::string at() const override;
   bool given(std::string_view name) const override;
-  void warn(const std::string& text) override;
+  void warn(const Warning& warning) override;
 
  private:
   /// Reads a field or an entry of the value that `parent` reads; both must outlive this reader, as must the name. The
@@ -64,7 +65,7 @@ class Reader final : public Fields {
   std::string_view name_;
   std::size_t index_ = 0;
   bool is_entry_ = false;
-  std::vector<std::string>* warnings_ = nullptr;
+  std::vector<Warning>* warnings_ = nullptr;
   bool null_allowed_ = false;
   /// When not null, the body of an object is called only to collect the names of its fields.
   std::vector<std::string_view>* names_ = nullptr;

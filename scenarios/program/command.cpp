@@ -81,6 +81,10 @@ void print_warnings(const std::vector<std::string>& warnings) {
   for (const std::string& warning : warnings) fmt::print(stderr, "hapbench: warning: {}\n", warning);
 }
 
+void print_warnings(const LoadedScenario& loaded, const std::vector<Warning>& warnings) {
+  print_warnings(with_files(loaded, warnings));
+}
+
 void print_note(std::string_view text) {
   if (captured != nullptr) {
     captured->warnings.emplace_back(text);

@@ -44,6 +44,8 @@ void add_jobs(Command& command, unsigned& jobs, const std::string& help);
 void print(const OutputOptions& options, const std::string& text, const Json& json);
 /// Prints warnings, one line each, on standard error.
 void print_warnings(const std::vector<std::string>& warnings);
+/// The same with the file of each in front.
+void print_warnings(const LoadedScenario& loaded, const std::vector<Warning>& warnings);
 /// Prints "hapbench: TEXT" on standard error.
 void print_note(std::string_view text);
 /// Prints "hapbench: error: TEXT" on standard error.

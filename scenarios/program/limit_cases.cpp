@@ -134,7 +134,7 @@ void add_cases(const LimitOptions& options, LimitRow row, const ScenarioText& sc
     const LoadedScenario loaded = load_scenario(scene, overrides);
     row.scenario = loaded.scenario;
     append_new(warnings, row.asked.question.warnings);
-    append_new(warnings, check_named_files(loaded));
+    append_new(warnings, with_files(loaded, check_named_files(loaded)));
     // A field of the rendering changes nothing of hand and device.
     if (row.asked.question.path.starts_with("rendering.")) row.asked.question.tremor = tremor_speeds(loaded);
     const std::vector<std::string> own = {loaded.scenario.rendering.algorithm};

@@ -134,7 +134,7 @@ int write_new(const NewOptions& options) {
   const Json json = parse_json(start.text);
   LoadedScenario loaded = read_scenario(json, directory);
   loaded.file = out;
-  print_warnings(check_named_files(loaded));
+  print_warnings(loaded, check_named_files(loaded));
   require_writable_directory(directory.empty() ? "." : directory);
   write_file_atomically(out, start.text);
 

@@ -45,9 +45,9 @@ int run(const RunOptions& options) {
   }
   const std::vector<fs::path> directories = output_directories(options.out, scenarios, "", "one of each name in a run");
   for (const LoadedScenario& scenario : scenarios) {
-    const std::vector<std::string> warnings = check_named_files(scenario);
-    print_warnings(scenario.warnings);
-    print_warnings(warnings);
+    const std::vector<Warning> of_files = check_named_files(scenario);
+    print_warnings(scenario, scenario.warnings);
+    print_warnings(scenario, of_files);
   }
   for (const fs::path& directory : directories) require_writable_directory(directory);
   if (options.out.empty() && !options.overrides.empty()) {

@@ -134,11 +134,11 @@ int validate(const ValidateOptions& options) {
         continue;
       }
       const LoadedScenario loaded = load_scenario(file, options.overrides);
-      const std::vector<std::string> warnings = check_named_files(loaded);
-      print_warnings(loaded.warnings);
-      print_warnings(warnings);
+      const std::vector<Warning> of_files = check_named_files(loaded);
+      print_warnings(loaded, loaded.warnings);
+      print_warnings(loaded, of_files);
       const SceneFacts facts = scene_facts(loaded);
-      print_warnings(facts.warnings);
+      print_warnings(loaded, facts.warnings);
       text += fmt::format("{}: valid\n{}", argument, facts_text(loaded, facts));
       verdicts.push_back({{"file", argument}, {"valid", true}});
       verdicts.back().update(facts_json(loaded, facts));
@@ -179,7 +179,7 @@ int shell(const ShellOptions& options) {
   }
   const std::vector<SurfacePoint> points = [&] {
     const WaitNotice notice("building the shell", !options.output.quiet);
-    print_warnings(check_named_files(loaded));
+    print_warnings(loaded, check_named_files(loaded));
     const auto made = make_shell(loaded.scenario, loaded.files);
     throw_if_stopped();  // that may have taken seconds
     return made->points();

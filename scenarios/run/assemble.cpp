@@ -90,12 +90,11 @@ std::vector<StopRule> stop_rules(const Scenario& scenario) {
 
 }  // namespace
 
-std::vector<std::string> named_file_warnings(const LoadedScenario& loaded) {
+std::vector<Warning> named_file_warnings(const LoadedScenario& loaded) {
   const Scenario& scenario = loaded.scenario;
-  std::vector<std::string> warnings;
+  std::vector<Warning> warnings;
   for (const auto& file : loaded.files.all()) {
-    for (const std::string& warning : file->warnings())
-      warnings.push_back(fmt::format("{}: {}", file->pointer(), warning));
+    for (Warning& warning : file->warnings()) warnings.push_back(std::move(warning));
   }
   if (NamedFile* file = loaded.files.find(kMotionFile)) {
     const auto recorded = file->stroke();
@@ -104,15 +103,17 @@ std::vector<std::string> named_file_warnings(const LoadedScenario& loaded) {
     const double end = scenario.time.step * static_cast<double>(scenario.time.steps - 1);
     if (start > end || stop < 0.0) {
       warnings.push_back(
-          fmt::format("{}: the stroke's clock runs from {:.6g} to {:.6g} s and the run's from 0 to {:.6g} s: the tool "
-                      "stays at the {} sample; let the stroke begin at 0 or adapt time",
-                      kMotionFile, start, stop, end, start > end ? "first" : "last"));
+          {"stroke_clock", std::string(kMotionFile),
+           fmt::format(
+               "the stroke's clock runs from {:.6g} to {:.6g} s and the run's from 0 to {:.6g} s: the tool stays "
+               "at the {} sample; let the stroke begin at 0 or adapt time",
+               start, stop, end, start > end ? "first" : "last")});
     }
   }
   return warnings;
 }
 
-std::vector<std::string> check_named_files(const LoadedScenario& loaded, bool looks_at_scan) {
+std::vector<Warning> check_named_files(const LoadedScenario& loaded, bool looks_at_scan) {
   const Scenario& scenario = loaded.scenario;
   if (scenario.rendering.contact_source == kContactPlugin)
     with_file(loaded, [&] { require_contacts_in(contact_library(scenario)); });
@@ -131,11 +132,7 @@ std::vector<std::string> check_named_files(const LoadedScenario& loaded, bool lo
         InputError::Kind::relation, file_of(loaded, "/record/force_reference").string() + ": /record/force_reference",
         fmt::format("got true; allowed: false, because {} has no columns mfx_N,mfy_N,mfz_N", file->path().string()));
   }
-  std::vector<std::string> warnings = named_file_warnings(loaded);
-  for (std::string& warning : warnings) {
-    const std::string pointer = warning.substr(0, warning.find(": "));
-    warning = file_of(loaded, pointer).string() + ": " + warning;
-  }
+  std::vector<Warning> warnings = named_file_warnings(loaded);
   if (!looks_at_scan) return warnings;
   if (auto warning = with_file(loaded, [&] { return inverted_scan_warning(loaded); })) warnings.push_back(*warning);
   return warnings;

@@ -9,13 +9,12 @@
 namespace hapbench {
 
 /// Reads and parses the files that the scenario names, so that faults in them are found before anything is written;
-/// `loaded.files` keeps them for the run. Returns warnings about what is odd in them, each with file and pointer, and,
-/// if it may make the shell for that, inverted_scan_warning. Throws InputError.
-std::vector<std::string> check_named_files(const LoadedScenario& loaded, bool looks_at_scan = true);
+/// `loaded.files` keeps them for the run. Returns named_file_warnings and, if it may make the shell for that,
+/// inverted_scan_warning. Throws InputError.
+std::vector<Warning> check_named_files(const LoadedScenario& loaded, bool looks_at_scan = true);
 
-/// The same warnings with the pointer alone in front, as results keep them: equal wherever the files lie. Precondition:
-/// the files can be used.
-std::vector<std::string> named_file_warnings(const LoadedScenario& loaded);
+/// What is odd in the files that the scenario names. Precondition: they can be used.
+std::vector<Warning> named_file_warnings(const LoadedScenario& loaded);
 
 /// The numbers of the run: steps, start, integrator, bounds.
 SimulationConfig simulation_config(const Scenario& scenario);

@@ -31,14 +31,15 @@ double way_to_cover(const DragHandFields& hand, double duration) {
   return std::min(way, legs);
 }
 
-std::optional<std::string> short_path_warning(const DragHandFields& hand, double path, double to_cover, double width) {
+std::optional<Warning> short_path_warning(const DragHandFields& hand, double path, double to_cover, double width) {
   // By less than the tool is wide it is the edge that ends the way.
   if (to_cover <= path + width) return std::nullopt;
   const std::string ends =
       fmt::format("the path of the drag ends after {} of {}: ", length_text(path), length_text(to_cover));
-  return ends + (hand.path ? "hand.path_m leads no further over the surface; let its points lie on it"
-                           : "beyond, the surface ends or turns against hand.direction; another initial.position_m, a "
-                             "larger hand.smoothing_m or hand.path_m leads further");
+  return Warning{"short_path", "",
+                 ends + (hand.path ? "hand.path_m leads no further over the surface; let its points lie on it"
+                                   : "beyond, the surface ends or turns against hand.direction; another "
+                                     "initial.position_m, a larger hand.smoothing_m or hand.path_m leads further")};
 }
 
 DragCourseObserver::DragCourseObserver(const DragHand& hand, const DragHandFields& fields, double half_width)
@@ -111,18 +112,20 @@ bool DragCourseObserver::not_dragged() const {
   return way_ < width_ && way_to_cover(fields_, time_) > 2.0 * width_;
 }
 
-std::vector<std::string> DragCourseObserver::warnings(Outcome outcome) const {
-  std::vector<std::string> warnings;
+std::vector<Warning> DragCourseObserver::warnings(Outcome outcome) const {
+  std::vector<Warning> warnings;
   if (const auto since = lost(); since && outcome != Outcome::went_through) {
     const SurfacePoint foot = hand_.path().at(hand_.nearest());
     const double height = foot.normal.dot(place_ - foot.position);
-    warnings.push_back(fmt::format("the dragged tool lost the surface at {:.4g} s and ended {} {}", *since,
-                                   length_text(std::abs(height)),
-                                   height < 0.0 ? "below it, past an edge" : "above it"));
+    warnings.push_back(
+        {"drag_lost", "",
+         fmt::format("the dragged tool lost the surface at {:.4g} s and ended {} {}", *since,
+                     length_text(std::abs(height)), height < 0.0 ? "below it, past an edge" : "above it")});
   }
-  if (const auto ends = short_path_warning(fields_, hand_.path().length(), way_to_cover(fields_, time_), width_)) {
-    warnings.push_back(fmt::format("{}; the tool was at [{:.4g}, {:.4g}, {:.4g}] m in the end", *ends, place_.x(),
-                                   place_.y(), place_.z()));
+  if (auto ends = short_path_warning(fields_, hand_.path().length(), way_to_cover(fields_, time_), width_)) {
+    ends->text +=
+        fmt::format("; the tool was at [{:.4g}, {:.4g}, {:.4g}] m in the end", place_.x(), place_.y(), place_.z());
+    warnings.push_back(std::move(*ends));
   }
   return warnings;
 }
@@ -191,12 +194,13 @@ void OpenEdgeObserver::on_step(const StepRecord& record) noexcept {
   }
 }
 
-std::optional<std::string> OpenEdgeObserver::warning() const {
+std::optional<Warning> OpenEdgeObserver::warning() const {
   if (rows_ == 0) return std::nullopt;
-  return fmt::format(
-      "touched the mesh within {} of where it is open in {} rows, first at {:.4g} s near {}: beyond the edge there is no "
-      "surface",
-      length_text(reach_), rows_, first_time_, millimetres(first_place_));
+  return Warning{
+      "open_edge", "",
+      fmt::format("touched the mesh within {} of where it is open in {} rows, first at {:.4g} s near {}: beyond "
+                  "the edge there is no surface",
+                  length_text(reach_), rows_, first_time_, millimetres(first_place_))};
 }
 
 namespace {
@@ -296,28 +300,31 @@ Outcome EncounterObservers::outcome(const TrialContact& contact, Outcome outcome
   return stuck() ? Outcome::stuck : Outcome::completes;
 }
 
-void EncounterObservers::judge(const TrialContact& contact, Outcome& outcome, std::vector<std::string>& warnings) {
+void EncounterObservers::judge(const TrialContact& contact, Outcome& outcome, std::vector<Warning>& warnings) {
   if (const InsideDepths* inside = depths(); inside != nullptr && inside->at_most) {
     warnings.push_back(
-        fmt::format("inside_max_m, {}, may be too low: no row is deeper than {}; record.inside=true looks at every row",
-                    length_text(inside_max()), length_text(*inside->at_most)));
+        {"inside_bound", "",
+         fmt::format("inside_max_m, {}, may be too low: no row is deeper than {}; record.inside=true looks "
+                     "at every row",
+                     length_text(inside_max()), length_text(*inside->at_most))});
   }
   if (!approach_) return;
   outcome = this->outcome(contact, outcome);
   if (auto warning = warning_about(outcome, contact)) warnings.push_back(*warning);
   if (drag_) {
-    for (std::string& warning : drag_->warnings(outcome)) warnings.push_back(std::move(warning));
+    for (Warning& warning : drag_->warnings(outcome)) warnings.push_back(std::move(warning));
   }
   if (!std::holds_alternative<MeshToolFields>(scenario_.tool)) return;
   if (auto warning = scale_warning(scenario_, *tool_, approach_->steps().environment())) warnings.push_back(*warning);
 }
 
-std::optional<std::string> scale_warning(const Scenario& scenario, const ToolShape& tool, const Box& environment) {
+std::optional<Warning> scale_warning(const Scenario& scenario, const ToolShape& tool, const Box& environment) {
   if (!out_of_proportion(tool, environment)) return std::nullopt;
   const bool is_mesh = std::holds_alternative<MeshToolFields>(scenario.tool);
-  return fmt::format("the tool is {} thick and reaches {}, the environment is {}: {}{}",
-                     length_text(2.0 * tool.half_width()), length_text(tool.reach()), size_text(environment),
-                     is_mesh ? "" : "are the tool's lengths in metres, or ", scale_question(scenario));
+  return Warning{"scale", "",
+                 fmt::format("the tool is {} thick and reaches {}, the environment is {}: {}{}",
+                             length_text(2.0 * tool.half_width()), length_text(tool.reach()), size_text(environment),
+                             is_mesh ? "" : "are the tool's lengths in metres, or ", scale_question(scenario))};
 }
 
 namespace {
@@ -347,65 +354,72 @@ std::string passage_text(const Passage& p, double half_width, double inside_max,
 
 }  // namespace
 
-/// The likely cause as the end of a sentence, or where to look when none suggests itself.
-std::string EncounterObservers::likely_cause(Outcome outcome, const TrialContact& contact) const {
+EncounterObservers::Cause EncounterObservers::likely_cause(Outcome outcome, const TrialContact& contact) const {
   const StepWay& steps = approach_->steps();
   const double size = diagonal(steps.environment());
-  if (out_of_proportion(*tool_, steps.environment())) return "; " + scale_question(scenario_);
+  if (out_of_proportion(*tool_, steps.environment())) return {"scale", scale_question(scenario_)};
   if (steps.longest() > tool_->half_width()) {
-    return fmt::format(
-        "; near it the tool moved {} in one step, more than its half width of {}: is time.step_s too long?",
-        length_text(steps.longest()), length_text(tool_->half_width()));
+    return {"step", fmt::format("near it the tool moved {} in one step, more than its half width of {}: is time.step_s "
+                                "too long?",
+                                length_text(steps.longest()), length_text(tool_->half_width()))};
   }
   const auto* mesh = std::get_if<MeshEnvironment>(&scenario_.environment);
   if (outcome == Outcome::no_contact && mesh != nullptr && !mesh->spacing && approach_->closest_to_box() == 0.0)
-    return "; only the mesh's vertices can be touched: is environment.spacing_m missing?";
+    return {"spacing", "only the mesh's vertices can be touched: is environment.spacing_m missing?"};
   const bool recorded = std::holds_alternative<RecordedPosition>(scenario_.motion.position);
   if (recorded && outcome == Outcome::no_contact && approach_->closest_to_box() > kTooLarge * size)
-    return "; are the positions of motion.position.file in metres?";
+    return {"recording", "are the positions of motion.position.file in metres?"};
   if (const ImpedanceHandFields* hand = spring_of(scenario_.hand)) {
     const double closest = closest_target(*hand, scenario_.time, steps.environment());
     if (closest > 0.0)
-      return fmt::format("; hand.target stays {} away from it: does it lead to the surface?", length_text(closest));
+      return {"target",
+              fmt::format("hand.target stays {} away from it: does it lead to the surface?", length_text(closest))};
   }
   const bool is_free = position_is_free(scenario_.motion);
   if (is_free && std::holds_alternative<NoHandFields>(scenario_.hand) && outcome == Outcome::no_contact)
-    return "; nothing pushes the tool: is hand missing?";
+    return {"no_hand", "nothing pushes the tool: is hand missing?"};
   if (outcome == Outcome::lost_contact && (std::holds_alternative<ForceHandFields>(scenario_.hand) ||
                                            std::holds_alternative<PushHandFields>(scenario_.hand)))
-    return "; a hand of constant force goes on pushing where there is no surface";
+    return {"constant_force", "a hand of constant force goes on pushing where there is no surface"};
   if (outcome == Outcome::lost_contact)
-    return fmt::format("; the largest force was {:.3g} N", std::sqrt(contact.force_max_squared));
-  return is_free ? "; is initial.position_m right?" : "; is motion.position right?";
+    return {"force", fmt::format("the largest force was {:.3g} N", std::sqrt(contact.force_max_squared))};
+  return {"start", is_free ? "is initial.position_m right?" : "is motion.position right?"};
 }
 
-std::optional<std::string> EncounterObservers::warning_about(Outcome outcome, const TrialContact& contact) {
+std::optional<Warning> EncounterObservers::warning_about(Outcome outcome, const TrialContact& contact) {
   const StepWay& steps = approach_->steps();
+  const std::string kind(outcome_name(outcome));
   if (outcome == Outcome::went_through) {
     const bool is_led = !position_is_free(scenario_.motion);
-    return passage_text(inside_->passage(), tool_->half_width(), inside_max(), is_led) +
-           (out_of_proportion(*tool_, steps.environment()) ? "; " + scale_question(scenario_) : "");
+    const std::string cause = out_of_proportion(*tool_, steps.environment()) ? "; " + scale_question(scenario_) : "";
+    return Warning{kind, "", passage_text(inside_->passage(), tool_->half_width(), inside_max(), is_led) + cause};
   }
   if (const auto s = stuck(); s && (outcome == Outcome::stuck || outcome == Outcome::not_dragged)) {
-    return fmt::format(
-        "the tool stood still since {:.4g} s, coming {} further while its target went on by {}; it was at "
-        "{} under a force of {:.3g} N in the end",
-        s->since, length_text(s->way), length_text(s->target_way), millimetres(s->place), s->force);
+    return Warning{
+        kind, "",
+        fmt::format("the tool stood still since {:.4g} s, coming {} further while its target went on by {}; it "
+                    "was at {} under a force of {:.3g} N in the end",
+                    s->since, length_text(s->way), length_text(s->target_way), millimetres(s->place), s->force)};
   }
   const std::string environment =
       fmt::format("{}: {}", size_text(steps.environment()), place_text(steps.environment()));
   if (outcome == Outcome::no_contact) {
     const auto closest = approach_->closest_to_surface(*tool_);
-    return fmt::format(
-        "never in contact: the tool came as close as {} (at {:.4g} s) to the surface of the environment ({}){}",
-        length_text(closest.distance), closest.time, environment, likely_cause(outcome, contact));
+    const Cause cause = likely_cause(outcome, contact);
+    return Warning{fmt::format("{} {}", kind, cause.kind), "",
+                   fmt::format("never in contact: the tool came as close as {} (at {:.4g} s) to the surface of the "
+                               "environment ({}); {}",
+                               length_text(closest.distance), closest.time, environment, cause.text)};
   }
   // The course of the drag tells of a tool that lost the surface within the box.
   if (outcome != Outcome::lost_contact || (drag_ && drag_->lost() && steps.distance() == 0.0)) return std::nullopt;
   const double share = static_cast<double>(contact.in_contact) / static_cast<double>(contact.rows);
-  return fmt::format("in contact for {:.3g} % of the run, last at {:.4g} s; ended {} away from the environment ({}){}",
-                     100.0 * share, contact.last.value_or(0.0), length_text(steps.distance()), environment,
-                     likely_cause(outcome, contact));
+  const Cause cause = likely_cause(outcome, contact);
+  return Warning{
+      fmt::format("{} {}", kind, cause.kind), "",
+      fmt::format("in contact for {:.3g} % of the run, last at {:.4g} s; ended {} away from the environment "
+                  "({}); {}",
+                  100.0 * share, contact.last.value_or(0.0), length_text(steps.distance()), environment, cause.text)};
 }
 
 namespace {
@@ -449,19 +463,21 @@ std::vector<std::string> unmet_expectations(const ExpectFields& expect, const Re
   return unmet;
 }
 
-std::vector<std::string> force_warnings(const MetricsObserver& metrics) {
-  std::vector<std::string> warnings;
+std::vector<Warning> force_warnings(const MetricsObserver& metrics) {
+  std::vector<Warning> warnings;
   if (const auto& friction = metrics.explicit_friction(); friction && friction->first_step) {
-    warnings.push_back(fmt::format(
-        "beyond {:.3g} N of spring force, in {} of {} rows, first in step {}, the explicit step of friction is unstable; "
-        "what follows is the integrator's doing, not the law's",
-        friction->limit, friction->rows_beyond, metrics.rows(), *friction->first_step));
+    warnings.push_back(
+        {"friction", "",
+         fmt::format("beyond {:.3g} N of spring force, in {} of {} rows, first in step {}, the explicit "
+                     "step of friction is unstable; what follows is the integrator's doing, not the law's",
+                     friction->limit, friction->rows_beyond, metrics.rows(), *friction->first_step)});
   }
   if (const auto& jumps = metrics.reduction(); jumps && jumps->stand_out()) {
-    warnings.push_back(fmt::format(
-        "reduction: kept points change in {} of {} steps, force steps up to {:.2g} N there and {:.2g} N elsewhere; "
-        "rendering.reduction=null keeps them all",
-        jumps->changes(), metrics.rows(), jumps->step_max().value_or(0.0), jumps->step_max_elsewhere()));
+    warnings.push_back(
+        {"reduction", "",
+         fmt::format("reduction: kept points change in {} of {} steps, force steps up to {:.2g} N there "
+                     "and {:.2g} N elsewhere; rendering.reduction=null keeps them all",
+                     jumps->changes(), metrics.rows(), jumps->step_max().value_or(0.0), jumps->step_max_elsewhere())});
   }
   return warnings;
 }
@@ -477,19 +493,22 @@ std::string odd_frame(const Box& tool) {
   return "";
 }
 
-std::vector<std::string> tool_warnings(const RenderingConfig& rendering, const ToolShape& tool) {
-  std::vector<std::string> warnings;
+std::vector<Warning> tool_warnings(const RenderingConfig& rendering, const ToolShape& tool) {
+  std::vector<Warning> warnings;
   if (rendering.algorithm == "proxy" && !tool.convex()) {
     warnings.push_back(
-        "the tool is not convex: the proxy's guarantee that no point enters it is lost, points may enter where it is concave, "
-        "as at the neck of a bur; a convex tool, or another algorithm, has no such gap");
+        {"not_convex", "",
+         "the tool is not convex: the proxy's guarantee that no point enters it is lost, points may enter "
+         "where it is concave, as at the neck of a bur; a convex tool, or another algorithm, has no such "
+         "gap"});
   }
   if (const auto* mesh = dynamic_cast<const MeshTool*>(&tool)) {
     const Box box{mesh->grid().low(), mesh->grid().high()};
     if (const std::string odd = odd_frame(box); !odd.empty()) {
-      warnings.push_back(fmt::format(
-          "the tool {} (from there {}): are tool.tip_m and tool.tip_axis right? \"hapbench new tool\" guesses them",
-          odd, place_text(box)));
+      warnings.push_back({"tool_frame", "",
+                          fmt::format("the tool {} (from there {}): are tool.tip_m and tool.tip_axis right? \"hapbench "
+                                      "new tool\" guesses them",
+                                      odd, place_text(box))});
     }
   }
   return warnings;

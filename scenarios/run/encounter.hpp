@@ -88,7 +88,7 @@ double way_to_cover(const DragHandFields& hand, double duration);
 
 /// A warning for a path over the surface that falls short of the way `to_cover` [m] by more than the tool's `width`
 /// [m]: how long it is and what to change. It is known before the run.
-std::optional<std::string> short_path_warning(const DragHandFields& hand, double path, double to_cover, double width);
+std::optional<Warning> short_path_warning(const DragHandFields& hand, double path, double to_cover, double width);
 
 /// A tool that stood still to the end while the target of its hand went on.
 struct Stuck {
@@ -116,7 +116,7 @@ class DragCourseObserver final : public Observer {
   /// less.
   bool not_dragged() const;
   /// Warnings that the tool lost the surface, and of a path that ends early.
-  std::vector<std::string> warnings(Outcome outcome) const;
+  std::vector<Warning> warnings(Outcome outcome) const;
 
  private:
   const DragHand& hand_;
@@ -172,7 +172,7 @@ class OpenEdgeObserver final : public Observer {
   void on_step(const StepRecord& record) noexcept override;
 
   /// A warning with the first contact at such a point; nothing when there was none.
-  std::optional<std::string> warning() const;
+  std::optional<Warning> warning() const;
 
  private:
   double reach_;
@@ -202,7 +202,7 @@ class EncounterObservers {
   /// went on.
   Outcome outcome(const TrialContact& contact, Outcome outcome);
   /// After the run: finds its outcome and adds warnings about it.
-  void judge(const TrialContact& contact, Outcome& outcome, std::vector<std::string>& warnings);
+  void judge(const TrialContact& contact, Outcome& outcome, std::vector<Warning>& warnings);
   /// The longest way of the tip in a step near the environment; 0 without points [m].
   double longest_step() const { return approach_ ? approach_->steps().longest() : 0.0; }
   /// After the run: how deep the tool was, which is looked for at the first call. Null without a solid.
@@ -211,8 +211,13 @@ class EncounterObservers {
  private:
   /// What happened and what the likely cause is; none for other outcomes, and none for a dragged tool that lost the
   /// surface within the environment's box.
-  std::optional<std::string> warning_about(Outcome outcome, const TrialContact& contact);
-  std::string likely_cause(Outcome outcome, const TrialContact& contact) const;
+  std::optional<Warning> warning_about(Outcome outcome, const TrialContact& contact);
+  /// A likely cause, or where to look when none suggests itself.
+  struct Cause {
+    const char* kind;
+    std::string text;  ///< the end of a sentence
+  };
+  Cause likely_cause(Outcome outcome, const TrialContact& contact) const;
   std::optional<Stuck> stuck() const;
   /// How deep any part of the tool was in any row; 0 without a solid [m].
   double inside_max();
@@ -227,7 +232,7 @@ class EncounterObservers {
 };
 
 /// For a tool whose size is out of proportion with the environment's, a question about scales.
-std::optional<std::string> scale_warning(const Scenario& scenario, const ToolShape& tool, const Box& environment);
+std::optional<Warning> scale_warning(const Scenario& scenario, const ToolShape& tool, const Box& environment);
 
 /// The expectations of the scenario that the run does not meet, one sentence each.
 std::vector<std::string> unmet_expectations(const ExpectFields& expect, const Result& run);
@@ -237,7 +242,7 @@ bool outcome_is_expected(const ExpectFields& expect, Outcome outcome);
 
 /// Warnings about the forces of a run: it passed the limit of explicit friction, or the reduction makes its force jump
 /// (results/observe).
-std::vector<std::string> force_warnings(const MetricsObserver& metrics);
+std::vector<Warning> force_warnings(const MetricsObserver& metrics);
 
 /// The odd thing about the place of a tool that fills the box in its own frame, as the end of a sentence such as "lies
 /// across its axis"; empty when nothing is odd. Tools have their tip centre at the origin, and their tip points along
@@ -245,6 +250,6 @@ std::vector<std::string> force_warnings(const MetricsObserver& metrics);
 std::string odd_frame(const Box& tool);
 
 /// Warnings about a tool: a proxy keeps points out of convex tools only, and a mesh may lie oddly in its frame.
-std::vector<std::string> tool_warnings(const RenderingConfig& rendering, const ToolShape& tool);
+std::vector<Warning> tool_warnings(const RenderingConfig& rendering, const ToolShape& tool);
 
 }  // namespace hapbench

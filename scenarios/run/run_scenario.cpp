@@ -57,7 +57,6 @@ Result run_with_shell(const LoadedScenario& loaded, const std::shared_ptr<const 
   };
   Simulated run = simulate(loaded, shell, target_of, progress, timing, diagnose);
   Result& result = run.result;
-  result.file_warnings = named_file_warnings(loaded);
   result.unmet = unmet_expectations(scenario.expect, result);
   result.expected = result.unmet.empty();
   if (!folder && tables == nullptr) return std::move(result);

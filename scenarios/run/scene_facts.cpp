@@ -32,19 +32,20 @@ std::string times_text(double factor) {
 }
 
 /// Where the tool starts, against its own size and the environment's.
-std::optional<std::string> start_warning(const ToolShape& tool, const SceneFacts::Surface& surface) {
+std::optional<Warning> start_warning(const ToolShape& tool, const SceneFacts::Surface& surface) {
   const double least = std::min((surface.box.max - surface.box.min).norm(), tool.reach());
   if (surface.gap > kUnitsApart * least) {
-    return fmt::format("the tool starts {} from the environment, {} the size of {}: is its place in metres?",
-                       length_text(surface.gap), times_text(surface.gap / least),
-                       least == tool.reach() ? "the tool" : "the environment");
+    return Warning{"start", "",
+                   fmt::format("the tool starts {} from the environment, {} the size of {}: is its place in metres?",
+                               length_text(surface.gap), times_text(surface.gap / least),
+                               least == tool.reach() ? "the tool" : "the environment")};
   }
   return std::nullopt;
 }
 
 /// A recorded stroke, against the environment, the tool and the time step.
-std::vector<std::string> stroke_warnings(const Stroke& stroke, const TimeFields& time, const ToolShape& tool,
-                                         const Box& environment) {
+std::vector<Warning> stroke_warnings(const Stroke& stroke, const TimeFields& time, const ToolShape& tool,
+                                     const Box& environment) {
   const auto samples = stroke.motion.samples();
   Box box{samples.front().position, samples.front().position};
   double closest = std::numeric_limits<double>::infinity();
@@ -54,20 +55,23 @@ std::vector<std::string> stroke_warnings(const Stroke& stroke, const TimeFields&
   }
   const double size = (environment.max - environment.min).norm(), way = (box.max - box.min).norm();
   const std::string of = fmt::format("the stroke's places are within {}", size_text(box));
-  std::vector<std::string> warnings;
+  std::vector<Warning> warnings;
+  const auto warn = [&warnings](std::string text) {
+    warnings.push_back({"stroke", std::string(kMotionFile), std::move(text)});
+  };
   if (way > kUnitsApart * size) {
-    warnings.push_back(fmt::format("{}, {} the environment's size: are they in metres?", of, times_text(way / size)));
+    warn(fmt::format("{}, {} the environment's size: are they in metres?", of, times_text(way / size)));
   } else if (way > 0.0 && kUnitsApart * way < tool.half_width()) {
-    warnings.push_back(fmt::format("{}, a hundredth of the tool's half width, {}: are they in metres?", of,
-                                   length_text(tool.half_width())));
+    warn(fmt::format("{}, a hundredth of the tool's half width, {}: are they in metres?", of,
+                     length_text(tool.half_width())));
   }
   if (closest > kUnitsApart * size)
-    warnings.push_back(fmt::format("the stroke stays {} away from the environment, {} its size: are places in metres?",
-                                   length_text(closest), times_text(closest / size)));
+    warn(fmt::format("the stroke stays {} away from the environment, {} its size: are places in metres?",
+                     length_text(closest), times_text(closest / size)));
   if (samples.size() < 2) return warnings;
   const double interval = (samples.back().time - samples.front().time) / static_cast<double>(samples.size() - 1);
   if (interval > kUnitsApart * time.step || interval * kUnitsApart < time.step) {
-    warnings.push_back(fmt::format(
+    warn(fmt::format(
         "the stroke has a sample each {:.3g} ms, the run a step each {:.3g} ms: are times in seconds, and is "
         "time.step_s right?",
         1e3 * interval, 1e3 * time.step));
@@ -76,11 +80,11 @@ std::vector<std::string> stroke_warnings(const Stroke& stroke, const TimeFields&
 }
 
 /// What looks like one unit taken for another, before a run.
-std::vector<std::string> unit_warnings(const LoadedScenario& loaded, const ToolShape& tool,
-                                       const SceneFacts::Surface& surface) {
+std::vector<Warning> unit_warnings(const LoadedScenario& loaded, const ToolShape& tool,
+                                   const SceneFacts::Surface& surface) {
   const Scenario& scenario = loaded.scenario;
   if (surface.box.min == surface.box.max) return {};  // a single point has no size
-  std::vector<std::string> warnings;
+  std::vector<Warning> warnings;
   if (std::holds_alternative<RecordedPosition>(scenario.motion.position))
     warnings = stroke_warnings(*loaded.files.at(kMotionFile).stroke(), scenario.time, tool, surface.box);
   if (auto warning = start_warning(tool, surface)) warnings.insert(warnings.begin(), std::move(*warning));
@@ -89,7 +93,7 @@ std::vector<std::string> unit_warnings(const LoadedScenario& loaded, const ToolS
 }
 
 /// Says that a place of a tool is behind a surface by more than `least` [m], on the side away from its normals.
-std::optional<std::string> wrong_side_warning(const PointShell& shell, const Vec3& tip, double least) {
+std::optional<Warning> wrong_side_warning(const PointShell& shell, const Vec3& tip, double least) {
   std::size_t nearest = 0;
   double distance = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < shell.size(); ++i) {
@@ -100,10 +104,11 @@ std::optional<std::string> wrong_side_warning(const PointShell& shell, const Vec
   const SurfacePoint point = shell.point(nearest);
   const double behind = point.normal.dot(point.position - tip);
   if (behind <= least || behind < kBehind * distance) return std::nullopt;
-  return fmt::format(
-      "the tool starts {} behind the surface, on the side its normals point away from: does it start inside, or are the "
-      "normals of an open scan inverted (environment.flip_normals)?",
-      length_text(behind));
+  return Warning{
+      "wrong_side", "",
+      fmt::format("the tool starts {} behind the surface, on the side its normals point away from: does it start "
+                  "inside, or are the normals of an open scan inverted (environment.flip_normals)?",
+                  length_text(behind))};
 }
 
 /// An environment of files whose inside only its normals tell.
@@ -121,9 +126,9 @@ SceneFacts scene_facts(const LoadedScenario& loaded) {
   const double step = scenario.time.step;
   if (step > kUnitsApart * kUsualStep || kUnitsApart * step < kUsualStep)
     facts.warnings.push_back(
-        fmt::format("time.step_s is {:.3g} s; haptic loops step each 1 ms: is it in seconds?", step));
+        {"step", "/time/step_s", fmt::format("{:.3g} s; haptic loops step each 1 ms: is it in seconds?", step)});
   const ToolShape& tool = *(facts.tool = make_tool(scenario, loaded.files));
-  for (std::string& warning : tool_warnings(scenario.rendering, tool)) facts.warnings.push_back(std::move(warning));
+  for (Warning& warning : tool_warnings(scenario.rendering, tool)) facts.warnings.push_back(std::move(warning));
   const auto shell = make_shell(scenario, loaded.files);
   throw_if_stopped();  // that may have taken seconds
   if (!shell || shell->size() == 0) return facts;
@@ -143,7 +148,7 @@ SceneFacts scene_facts(const LoadedScenario& loaded) {
   const Gap gap = gap_between(tool, pose, *shell);
   surface.gap = gap.distance;
   surface.touching = gap.touching;
-  for (std::string& warning : unit_warnings(loaded, tool, surface)) facts.warnings.push_back(std::move(warning));
+  for (Warning& warning : unit_warnings(loaded, tool, surface)) facts.warnings.push_back(std::move(warning));
   // check_named_files has warned of an open scan.
   if (!is_open_scan(scenario, loaded.files)) {
     if (auto warning = wrong_side_warning(*shell, pose.position, tool.half_width())) facts.warnings.push_back(*warning);
@@ -151,7 +156,7 @@ SceneFacts scene_facts(const LoadedScenario& loaded) {
   return facts;
 }
 
-std::optional<std::string> inverted_scan_warning(const LoadedScenario& loaded) {
+std::optional<Warning> inverted_scan_warning(const LoadedScenario& loaded) {
   const Scenario& scenario = loaded.scenario;
   if (!is_open_scan(scenario, loaded.files)) return std::nullopt;
   SimulationParts parts;

@@ -24,8 +24,8 @@ struct SceneFacts {
   };
   std::optional<Surface> surface;
   std::shared_ptr<const ToolShape> tool;
-  std::optional<bool> is_closed;      ///< of a mesh
-  std::vector<std::string> warnings;  ///< about the tool, and the way of its drag, in this scene
+  std::optional<bool> is_closed;  ///< of a mesh
+  std::vector<Warning> warnings;  ///< about the tool, and the way of its drag, in this scene
 };
 
 /// Builds the environment and places the tool. Throws InputError when a named file cannot be used.
@@ -34,7 +34,7 @@ SceneFacts scene_facts(const LoadedScenario& loaded);
 /// Says that the tool starts with its core behind an open scan, a mesh or points, whose normals may be inverted. None
 /// for other environments, which cost nothing. One pass over the points of the shell, some 4 ns each; the shell is the
 /// run's, made once in a process. Throws InputError when a named file cannot be used.
-std::optional<std::string> inverted_scan_warning(const LoadedScenario& loaded);
+std::optional<Warning> inverted_scan_warning(const LoadedScenario& loaded);
 
 // ---- Who moves the tool. ----
 

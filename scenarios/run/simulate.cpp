@@ -110,7 +110,7 @@ RunWork work_of(const Simulation& simulation, std::uint64_t allocations) {
 /// The warnings of the first trial that has some, and how many trials have.
 class TrialWarnings {
  public:
-  void add(std::vector<std::string> warnings) {
+  void add(std::vector<Warning> warnings) {
     ++trials_;
     if (!warnings.empty() && with_some_++ == 0) {
       first_ = trials_;
@@ -118,16 +118,17 @@ class TrialWarnings {
     }
   }
   /// The warnings; with several trials, each says how many trials had some.
-  std::vector<std::string> all() const {
-    std::vector<std::string> all = warnings_;
+  std::vector<Warning> all() const {
+    std::vector<Warning> all = warnings_;
     if (trials_ == 1) return all;
-    for (std::string& warning : all)
-      warning = fmt::format("in {} of {} trials, first in number {}: {}", with_some_, trials_, first_, warning);
+    for (Warning& warning : all)
+      warning.text =
+          fmt::format("in {} of {} trials, first in number {}: {}", with_some_, trials_, first_, warning.text);
     return all;
   }
 
  private:
-  std::vector<std::string> warnings_;
+  std::vector<Warning> warnings_;
   std::size_t trials_ = 0, with_some_ = 0, first_ = 0;
 };
 
@@ -225,9 +226,9 @@ SimulationResult Run::step_to_end(Simulation& simulation) {
 
 void Run::end_trial(EncounterObservers& seen, const std::optional<OpenEdgeObserver>& open_edges,
                     SimulationResult result) {
-  std::vector<std::string> warnings;
+  std::vector<Warning> warnings;
   seen.judge(metrics_->trial(), result.outcome, warnings);
-  if (open_edges && open_edges->warning()) warnings.push_back(*open_edges->warning());
+  if (auto warning = open_edges ? open_edges->warning() : std::nullopt) warnings.push_back(std::move(*warning));
   warnings_.add(std::move(warnings));
   if (const InsideDepths* depths = seen.depths()) {
     if (inside_)
@@ -262,8 +263,8 @@ Simulated Run::finish(const RunTiming& timing) {
   sections_.tell(result);
   result.state_hash = metrics_->state_hash();
   result.work = work_;
-  result.warnings = warnings_.all();
-  for (const auto& more : {force_warnings(*metrics_), tool_warnings(scenario_.rendering, *tool_)})
+  result.warnings = named_file_warnings(loaded_);
+  for (const auto& more : {warnings_.all(), force_warnings(*metrics_), tool_warnings(scenario_.rendering, *tool_)})
     result.warnings.insert(result.warnings.end(), more.begin(), more.end());
   // The fields of a cylinder say all.
   if (!std::holds_alternative<CylinderFields>(scenario_.tool))

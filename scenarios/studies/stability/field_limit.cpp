@@ -310,11 +310,11 @@ LimitQuestion limit_question(const ScenarioText& scenario, const std::vector<std
     range = Range{allowed_end(value, -1, allowed), allowed_end(value, 1, allowed)};
   }
   load(range->from);
-  const std::vector<std::string> warnings = load(range->to).warnings;
+  const LoadedScenario last = load(range->to);
   range->logarithmic = range->from > 0.0;
   LimitQuestion question;
   question.path = path;
-  question.warnings = warnings;
+  question.warnings = with_files(last, last.warnings);
   question.range = *range;
   if (own.is_number() && own.get<double>() >= range->from && own.get<double>() <= range->to) {
     question.own = own.get<double>();

@@ -13,6 +13,7 @@
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/program/command.hpp"
 #include "scenarios/program/program.hpp"
+#include "scenarios/program/run_table.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/run_scenario.hpp"
 
@@ -70,10 +71,12 @@ py::dict run(const std::string& scenario, const std::vector<std::string>& overri
   const bool shown = progress.ptr() != Py_False;
   supervise(progress, [&] {
     const LoadedScenario loaded = load_scenario(find_scenario(scenario), overrides);
-    warnings = loaded.warnings;
-    for (std::string& warning : check_named_files(loaded)) warnings.push_back(std::move(warning));
+    std::vector<Warning> before = check_named_files(loaded);
+    before.insert(before.begin(), loaded.warnings.begin(), loaded.warnings.end());
+    warnings = with_files(loaded, before);
     effective = json_text(effective_scenario(loaded.scenario, std::filesystem::current_path()));
     report = run_scenario(loaded, std::nullopt, shown, &tables);
+    for (std::string& warning : run_warnings({&report, 1})) warnings.push_back(std::move(warning));
   });
   py::dict result;
   result["summary"] = summary_text(report);

@@ -45,8 +45,7 @@ def run(scenario: Scenario, overrides: Overrides = None, *, record: Iterable[str
     with _Scratch() as scratch:
         found = scratch.call(_hapbench.run, scratch.file_of(scenario), _words(overrides), progress)
     summary = json.loads(found["summary"])
-    said = found["warnings"]  # of files, with the scenario's name in front; the summary has them without
-    for warning in said + [w for w in summary["warnings"] if not any(s.endswith(w) for s in said)]:
+    for warning in found["warnings"]:
         warnings.warn(warning, ScenarioWarning, stacklevel=2)
     trials = [_tables(trial) for trial in found["trials"]]
     only = dict(trials[0]) if len(trials) == 1 else {}

@@ -31,7 +31,7 @@ Result example() {
   run.end.outcome = Outcome::leaves_hole;
   run.end.rows = 400;
   run.expected = true;
-  run.warnings = {"touched the mesh near an edge"};
+  run.warnings = {{"open_edge", "", "touched the mesh near an edge"}};
   run.duration = 0.2;
   run.metrics = {{"force_max_N", "N", "largest ||f|| of a row", 1.5},
                  {"steps_in_contact", "1", "rows with a colliding point", std::uint64_t{300}},

@@ -79,7 +79,8 @@ TEST(SweepPlan, GivesEachWarningOnceInTheOrderOfRuns) {
   // An algorithm that fixes its depth model overrides the one given.
   Json scenario = minimal_scenario("plane");
   scenario["rendering"] = {{"algorithm", "normal_projection"}, {"depth_model", "shortest_distance"}};
-  const std::vector<std::string> alone = load_scenario(ScenarioText{"sweep.json", scenario}, {}).warnings;
+  const LoadedScenario loaded = load_scenario(ScenarioText{"sweep.json", scenario}, {});
+  const std::vector<std::string> alone = with_files(loaded, loaded.warnings);
   ASSERT_FALSE(alone.empty());
   const SweepPlan plan = plan_of(scenario, {"time.steps=1:50:50"}, "sweep.json");
   EXPECT_EQ(plan.warnings, alone);

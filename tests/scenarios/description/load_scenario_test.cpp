@@ -99,7 +99,7 @@ TEST_F(Extends, RelativePathsStartFromTheFileThatHasThem) {
   write("between/middle.json", R"({"extends": "../there/base.json", "seed": 2})");
   const LoadedScenario loaded = load_scenario(write("mine.json", R"({"extends": "between/middle.json", "seed": 3})"));
   EXPECT_EQ(loaded.scenario.seed, 3);
-  EXPECT_EQ(check_named_files(loaded), std::vector<std::string>{});
+  EXPECT_TRUE(check_named_files(loaded).empty());
   // The effective scenario names it from where it stands, and extends nothing.
   const Json effective = effective_scenario(loaded.scenario, directory_.path());
   EXPECT_EQ(effective["environment"]["file"], "there/data/cube.obj");
@@ -236,7 +236,7 @@ TEST_F(Override, ThatEndsTheRunBeforeALegOfItsScriptBeginsIsWarnedOf) {
   EXPECT_TRUE(load_scenario(file_, std::vector<std::string>{hand}).warnings.empty());
   const auto warnings = load_scenario(file_, std::vector<std::string>{hand, "time.steps=10"}).warnings;
   ASSERT_EQ(warnings.size(), 1u);
-  EXPECT_NE(warnings[0].find("/hand/x_N: the script's last waypoint is at 0.02 s, but the run ends at 0.005 s"),
+  EXPECT_NE(warnings[0].told().find("/hand/x_N: the script's last waypoint is at 0.02 s, but the run ends at 0.005 s"),
             std::string::npos);
 }
 
@@ -280,8 +280,8 @@ TEST_F(Override, NestedDeeplyIsRefused) {
 /// The warnings about a bundled scenario with these overrides, without the file in front.
 std::vector<std::string> warnings_with(std::vector<std::string> overrides) {
   std::vector<std::string> warnings;
-  for (const std::string& warning : load_scenario(find_scenario("poke_plane"), overrides).warnings)
-    warnings.push_back(warning.substr(warning.find(": /") + 2));
+  for (const Warning& warning : load_scenario(find_scenario("poke_plane"), overrides).warnings)
+    warnings.push_back(warning.told());
   return warnings;
 }
 

@@ -170,10 +170,11 @@ TEST(Object, IsReadWhenItsDescriptionIsToldSo) {
 
 TEST(Object, KeepsWarningsForWhoeverAsks) {
   const Json json = Json::object();
-  std::vector<std::string> warnings;
+  std::vector<Warning> warnings;
   Reader listening(json, "", &warnings), deaf(json, "");
-  for (Reader* reader : {&listening, &deaf}) reader->warn("odd");
-  EXPECT_EQ(warnings, std::vector<std::string>{"odd"});
+  for (Reader* reader : {&listening, &deaf}) reader->warn({"odd", "/mass_kg", "is odd"});
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_EQ(warnings[0].told(), "/mass_kg: is odd");
 }
 
 TEST(Object, IsWrittenWithAllFieldsThatHaveAValue) {

@@ -130,12 +130,12 @@ TEST(Diagnosis, BlamesTheStepWhereThatIsTooLong) {
   ASSERT_NE(finding(leaps, "lost"), nullptr);
   EXPECT_NE(finding(leaps, "lost")->attempt.find("a shorter time.step_s"), std::string::npos);
   ASSERT_FALSE(leaps.warnings.empty());
-  EXPECT_NE(leaps.warnings[0].find("is time.step_s too long?"), std::string::npos) << leaps.warnings[0];
+  EXPECT_NE(leaps.warnings[0].text.find("is time.step_s too long?"), std::string::npos) << leaps.warnings[0].text;
 
   const Result far = run({"mesh_molar", {"initial.position_m=[0,0,0.1]", "hand.z_N=1.5"}});
   ASSERT_NE(finding(far, "lost"), nullptr);
   EXPECT_NE(finding(far, "lost")->attempt.find("initial.position_m"), std::string::npos);
-  EXPECT_EQ(far.warnings[0].find("time.step_s"), std::string::npos) << far.warnings[0];
+  EXPECT_EQ(far.warnings[0].text.find("time.step_s"), std::string::npos) << far.warnings[0].text;
 }
 
 /// Two sides of a hole push at once; a drag over a tooth has one side.

@@ -37,7 +37,7 @@ Result run_of(const char* patch) {
 TEST(Encounter, CompletesWhereTheToolTouchesAndStaysNear) {
   const Result run = run_of("{}");
   EXPECT_EQ(run.end.outcome, Outcome::completes);
-  EXPECT_TRUE(run.warnings.empty()) << run.warnings[0];
+  EXPECT_TRUE(run.warnings.empty()) << run.warnings[0].text;
 }
 
 TEST(Encounter, LostContactWhenTheToolEndedFarAway) {
@@ -46,10 +46,10 @@ TEST(Encounter, LostContactWhenTheToolEndedFarAway) {
   const Result run = run_of(pushed);
   EXPECT_EQ(run.end.outcome, Outcome::lost_contact);
   ASSERT_EQ(run.warnings.size(), 1u);
-  EXPECT_TRUE(run.warnings[0].ends_with(
+  EXPECT_TRUE(run.warnings[0].text.ends_with(
       " away from the environment (10 x 10 x 0 mm: x -5 ... 5, y -5 ... 5, z 0 ... 0 mm); a hand of constant force "
       "goes on pushing where there is no surface"))
-      << run.warnings[0];
+      << run.warnings[0].text;
 }
 
 TEST(Encounter, AScriptMayLeadTheToolAway) {
@@ -68,9 +68,9 @@ TEST(Encounter, NoContactIsMeasuredToTheSurface) {
   EXPECT_EQ(run.end.outcome, Outcome::no_contact);
   ASSERT_EQ(run.warnings.size(), 1u);
   const std::string begin = "never in contact: the tool came as close as ";
-  ASSERT_TRUE(run.warnings[0].starts_with(begin)) << run.warnings[0];
-  EXPECT_NEAR(std::stod(run.warnings[0].substr(begin.size())), 1.0 - 0.3, 0.01) << run.warnings[0];
-  EXPECT_TRUE(run.warnings[0].ends_with("; nothing pushes the tool: is hand missing?")) << run.warnings[0];
+  ASSERT_TRUE(run.warnings[0].text.starts_with(begin)) << run.warnings[0].text;
+  EXPECT_NEAR(std::stod(run.warnings[0].text.substr(begin.size())), 1.0 - 0.3, 0.01) << run.warnings[0].text;
+  EXPECT_TRUE(run.warnings[0].text.ends_with("; nothing pushes the tool: is hand missing?")) << run.warnings[0].text;
 }
 
 TEST(Encounter, NoContactTellsTheLikelyCause) {
@@ -89,7 +89,7 @@ TEST(Encounter, NoContactTellsTheLikelyCause) {
     const Result run = run_of(patch);
     EXPECT_EQ(run.end.outcome, Outcome::no_contact) << cause;
     ASSERT_FALSE(run.warnings.empty()) << cause;
-    EXPECT_TRUE(run.warnings[0].ends_with(cause)) << run.warnings[0];
+    EXPECT_TRUE(run.warnings[0].text.ends_with(cause)) << run.warnings[0].text;
   }
 }
 
@@ -186,7 +186,8 @@ TEST_F(OpenEdges, NearThemTheFirstTouchIsTold) {
   touch(9);
   touch(2);
   touch(0);
-  EXPECT_EQ(observer_.warning(),
+  ASSERT_TRUE(observer_.warning());
+  EXPECT_EQ(observer_.warning()->text,
             "touched the mesh within 2 mm of where it is open in 2 rows, first at 0.5 s near (2, 0, 0) mm: beyond the "
             "edge there is no surface");
 }
@@ -265,7 +266,7 @@ TEST(Drag, OverAMeshKeepsContactAndAllocatesNothing) {
 
 std::string warnings_of(const Result& report) {
   std::string text;
-  for (const std::string& warning : report.warnings) text += warning + "\n";
+  for (const Warning& warning : report.warnings) text += warning.told() + "\n";
   return text;
 }
 
@@ -295,9 +296,9 @@ TEST(Drag, WithoutAWayIsNotDraggedAndToldOfBeforeItRuns) {
   for (const auto& [scenario, remedy] :
        {std::pair(json, "hand.smoothing_m"), {to_and_fro, "let its points lie on it"}}) {
     const LoadedScenario loaded = read_scenario(scenario, "");
-    const std::vector<std::string> before = scene_facts(loaded).warnings;
+    const std::vector<Warning> before = scene_facts(loaded).warnings;
     ASSERT_EQ(before.size(), 1u) << remedy;
-    EXPECT_NE(before[0].find(remedy), std::string::npos) << before[0];
+    EXPECT_NE(before[0].text.find(remedy), std::string::npos) << before[0].text;
     const Result report = run_scenario(loaded, std::nullopt, false);
     EXPECT_EQ(report.end.outcome, Outcome::not_dragged);
     EXPECT_EQ(report.unmet.size(), 1u);

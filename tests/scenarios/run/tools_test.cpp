@@ -132,9 +132,8 @@ TEST(ScenarioTool, WarnsThatTheProxyHasNoGuaranteeWhereItIsNotConvex) {
   for (const auto& [fields, algorithm, warnings] :
        {std::tuple{kHourglass, "proxy", 1}, std::tuple{kHourglass, "mean", 0}, std::tuple{kCube, "proxy", 0}}) {
     const Result report = run_scenario(loaded(scene(fields, algorithm)), std::nullopt, false);
-    const auto about_that = [](const std::string& warning) { return warning.find("the tool is not convex") == 0; };
-    const auto& all = report.warnings;
-    EXPECT_EQ(std::count_if(all.begin(), all.end(), about_that), warnings) << fields << " " << algorithm;
+    EXPECT_EQ(std::ranges::count(report.warnings, "not_convex", &Warning::kind), warnings)
+        << fields << " " << algorithm;
   }
 }
 
@@ -144,9 +143,8 @@ TEST(ScenarioTool, OfAMeshAsksForItsScaleWhereItIsOutOfProportion) {
     json["tool"]["scale"] = Json::parse(scale);
     json["tool"]["grid_m"] = nullptr;
     const Result report = run_scenario(loaded(json), std::nullopt, false);
-    const auto asks = [](const std::string& warning) {
-      return warning.starts_with("the tool is ") &&
-             warning.ends_with("are tool.scale and the environment's size right?");
+    const auto asks = [](const Warning& warning) {
+      return warning.kind == "scale" && warning.text.ends_with("are tool.scale and the environment's size right?");
     };
     EXPECT_EQ(std::count_if(report.warnings.begin(), report.warnings.end(), asks), warnings) << scale;
   }
