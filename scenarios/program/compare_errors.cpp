@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <numeric>
 #include <optional>
@@ -14,6 +15,27 @@
 
 namespace hapbench {
 namespace {
+
+/// The numbers of a metric, by algorithm, in JSON.
+struct ComparedNumber {
+  std::string algorithm;
+  NumberWithError number;
+  KnownError known;
+};
+
+Columns<ComparedNumber> number_columns() {
+  Columns<ComparedNumber> columns;
+  columns.add("algorithm", "", "force algorithm", &ComparedNumber::algorithm);
+  const auto add = [&columns](const char* name, const char* meaning, auto get) {
+    columns.add(name, "by metric", meaning, get);
+  };
+  add("value", "mean over the seeds; null where one failed", [](const ComparedNumber& n) { return n.number.value; });
+  add("error_estimate", "by how much it may be wrong in all", [](const ComparedNumber& n) { return n.number.error; });
+  add("error_of_step", "by the time step", [](const ComparedNumber& n) { return n.known.step; });
+  add("error_of_spacing", "by the distance of the shell's points",
+      [](const ComparedNumber& n) { return n.known.spacing; });
+  return columns;
+}
 
 /// A table of the numbers of a scenario with their errors, and a sentence on each metric.
 class ScenarioErrors {
@@ -59,14 +81,8 @@ class ScenarioErrors {
     for (std::size_t m = 0; m < league_.metrics.size(); ++m) {
       const std::vector<NumberWithError>& found = numbers_[m];
       Json numbers = Json::array();
-      for (std::size_t a = 0; a < found.size(); ++a) {
-        const KnownError& known = known_[m][a];
-        numbers.push_back({{"algorithm", league_.algorithms[a]},
-                           {"value", or_null(found[a].value)},
-                           {"error_estimate", or_null(found[a].error)},
-                           {"error_of_step", or_null(known.step)},
-                           {"error_of_spacing", or_null(known.spacing)}});
-      }
+      for (std::size_t a = 0; a < found.size(); ++a)
+        numbers.push_back(number_columns().json({league_.algorithms[a], found[a], known_[m][a]}));
       Json order = Json::array();
       for (const auto& group : held_order(found, kSameRank).groups) {
         Json names = Json::array();
@@ -112,10 +128,11 @@ class ScenarioErrors {
 ComparedErrors errors_of(const Comparison& comparison, std::span<const Result> reports,
                          const std::vector<std::string>& metrics, const JobOptions& jobs) {
   const League league = league_of(comparison, reports, metrics);
-  const FinerRuns finer(comparison, reports, jobs);
+  const auto finer = std::make_shared<const FinerRuns>(comparison, reports, jobs);
   ComparedErrors errors;
+  errors.of_run = [finer](std::size_t run, const char* metric) { return finer->known_error(run, metric).sum(); };
   for (std::size_t s = 0; s < comparison.scenes.size(); ++s) {
-    const ScenarioErrors scenario(league, finer, s);
+    const ScenarioErrors scenario(league, *finer, s);
     errors.text += scenario.text();
     scenario.add_json(errors.json);
   }

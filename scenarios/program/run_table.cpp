@@ -25,11 +25,13 @@ std::string cell(std::optional<double> value, int digits = 3) {
   return significant(value.value_or(std::numeric_limits<double>::quiet_NaN()) + 0.0, digits);
 }
 
-/// The metric of that name with the digits that its tolerance leaves it; `factor`: to the unit that is shown.
-std::string metric_cell(const MetricList& metrics, std::string_view name, double factor) {
+/// The metric of that name with the digits that its tolerance and the error leave it; `factor`: to the unit that is
+/// shown.
+std::string metric_cell(const MetricList& metrics, std::string_view name, double factor,
+                        const std::optional<double>& error) {
   const Metric* metric = find_metric(metrics, name);
   const auto value = metric == nullptr ? std::nullopt : number_of(metric->value);
-  return value ? cell(factor * *value, deserved_digits(*value, metric->tolerance(), 3)) : "-";
+  return value ? cell(factor * *value, deserved_digits(*value, std::max(metric->tolerance(), error), 3)) : "-";
 }
 
 /// A time in microseconds of at most four characters, so that tables are as wide on a slow machine as on a fast one:
@@ -48,12 +50,6 @@ std::string time_text(double seconds) {
   return text.ends_with('s') ? text : text + " us";
 }
 
-/// A warning without its numbers: equal for warnings that say the same of different runs.
-std::string without_numbers(std::string text) {
-  std::erase_if(text, [](char c) { return std::string_view("0123456789.+-e").find(c) != std::string_view::npos; });
-  return text;
-}
-
 /// Runs of one scenario are told apart by their algorithms.
 std::string distinct_name(const Result& report, std::span<const Result> reports) {
   const bool one_scenario = reports.front().name == reports.back().name;
@@ -62,20 +58,24 @@ std::string distinct_name(const Result& report, std::span<const Result> reports)
 
 using ListedRun = std::reference_wrapper<const Result>;
 
-void add_metrics(Columns<ListedRun>& columns, std::span<const RunHeading> headings) {
+/// `error` of these runs, none of which was left out or moved.
+void add_metrics(Columns<ListedRun>& columns, std::span<const RunHeading> headings, std::span<const Result> reports,
+                 const MetricError& error) {
   for (const RunHeading& heading : headings) {
-    columns.print(heading.title, "1", heading.metric, [&heading](const ListedRun& r) {
-      return metric_cell(r.get().metrics, heading.metric, heading.factor);
+    columns.print(heading.title, "1", heading.metric, [&heading, &error, reports](const ListedRun& r) {
+      const auto run = static_cast<std::size_t>(&r.get() - reports.data());
+      return metric_cell(r.get().metrics, heading.metric, heading.factor,
+                         error ? error(run, heading.metric) : std::nullopt);
     });
   }
 }
 
-Columns<ListedRun> run_columns(bool of_scenes) {
+Columns<ListedRun> run_columns(bool of_scenes, std::span<const Result> reports, const MetricError& error) {
   Columns<ListedRun> columns;
   if (of_scenes) columns.print("scenario", "", "", [](const ListedRun& r) { return r.get().name; });
   columns.print("algorithm", "", "", [](const ListedRun& r) { return r.get().algorithm; });
   columns.print("outcome", "", "outcome", [](const ListedRun& r) { return outcome_name(r.get().end.outcome); });
-  add_metrics(columns, kRunHeadings);
+  add_metrics(columns, kRunHeadings, reports, error);
   columns.print("ratio", "", "ratio_min", [](const ListedRun& r) {
     const auto least = number_of(r.get().metrics, "ratio_min"), most = number_of(r.get().metrics, "ratio_max");
     return least && most ? fmt::format("{}..{}", cell(least, 2), cell(most, 2)) : "-";
@@ -98,13 +98,13 @@ constexpr RunHeading kFidelityHeadings[] = {
 
 }  // namespace
 
-std::string run_table(std::span<const Result> reports, bool of_scenes) {
+std::string run_table(std::span<const Result> reports, bool of_scenes, const MetricError& error) {
   constexpr std::size_t kNarrowGap = 1;  // the names of all algorithms fit into kTableWidth with it
   const std::vector<ListedRun> runs(reports.begin(), reports.end());
-  return run_columns(of_scenes).table(runs, kNarrowGap).text();
+  return run_columns(of_scenes, reports, error).table(runs, kNarrowGap).text();
 }
 
-std::string fidelity_text(std::span<const Result> reports) {
+std::string fidelity_text(std::span<const Result> reports, const MetricError& error) {
   std::vector<ListedRun> with_reference;
   for (const Result& report : reports)
     if (report.has_section("fidelity")) with_reference.emplace_back(report);
@@ -113,21 +113,21 @@ std::string fidelity_text(std::span<const Result> reports) {
   const bool one_scenario = reports.front().name == reports.back().name;
   columns.print(one_scenario ? "algorithm" : "scenario", "", "",
                 [&](const ListedRun& r) { return distinct_name(r.get(), reports); });
-  add_metrics(columns, kFidelityHeadings);
+  add_metrics(columns, kFidelityHeadings, reports, error);
   return fmt::format("\nrendered force against the reference, measured or ideal\n\n{}",
                      columns.table(with_reference).text());
 }
 
 std::vector<std::string> run_warnings(std::span<const Result> reports) {
-  struct Warning {
+  struct Told {
     std::string kind, text;
     std::vector<std::string> algorithms;
   };
-  std::vector<Warning> warnings;  // in the order of their first appearance
+  std::vector<Told> warnings;  // in the order of their first appearance
   for (const Result& report : reports) {
-    for (const std::string& text : report.warnings) {
-      const std::string kind = without_numbers(text);
-      auto known = std::find_if(warnings.begin(), warnings.end(), [&](const Warning& w) { return w.kind == kind; });
+    for (const auto& [kind, pointer, text] : report.warnings) {
+      if (!pointer.empty()) continue;  // told before the run
+      auto known = std::ranges::find(warnings, kind, &Told::kind);
       if (known == warnings.end()) known = warnings.insert(known, {kind, report.name + ": " + text, {}});
       auto& algorithms = known->algorithms;
       // The seeds of an algorithm follow each other.
@@ -260,8 +260,9 @@ Columns<LatencyRow> latency_columns() {
 }
 
 std::vector<DescribedTable> run_tables() {
-  Columns<ListedRun> runs = run_columns(true);
-  add_metrics(runs, kFidelityHeadings);
+  const MetricError unknown;
+  Columns<ListedRun> runs = run_columns(true, {}, unknown);
+  add_metrics(runs, kFidelityHeadings, {}, unknown);
   runs.print("ratio", "", "ratio_max", [](const ListedRun&) { return Cell(); });
   return {comparison_columns().described("comparison.csv", "of compare: one line per algorithm"), runs.described(),
           place_columns().described(), latency_columns().described()};
