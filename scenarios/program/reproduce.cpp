@@ -212,7 +212,7 @@ int reproduce(const ReproduceOptions& options) {
   const std::vector<Claim> claims = chosen_claims(options.only);
   const Choices choices(reference / "choices.json");
   const PublishedNumbers published =
-      choices.with_numbers(PublishedNumbers(reference / "published"), choices.values_on_record());
+      choices.with_numbers(PublishedNumbers(reference / "published.json"), choices.values_on_record());
   Readings readings{choices, published, {}, {}};
   if (!options.readings.empty()) readings.values = read_readings(options.readings, choices);
   require_writable_directory(options.out);

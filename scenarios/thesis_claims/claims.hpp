@@ -10,7 +10,7 @@
 
 /// The claims of the thesis, and how each is judged. All of a claim stands together in the file of its chapter: its
 /// text, what is measured, the thresholds and the rule. A new claim is an entry there, with its published numbers in
-/// results/reference/published.
+/// results/reference/published.json.
 namespace hapbench {
 
 /// The outcome of testing a published statement.

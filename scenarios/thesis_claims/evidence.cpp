@@ -32,18 +32,13 @@ PublishedNumber number_of(const Json& value) {
 
 }  // namespace
 
-PublishedNumbers::PublishedNumbers(const fs::path& directory) {
-  std::error_code error;
-  for (const auto& entry : fs::directory_iterator(directory, error)) {
-    if (entry.path().extension() != ".json") continue;
-    try {
-      const Json file = parse_json(read_text_file(entry.path(), kLargestJsonFile));
-      for (const Json& value : file.at("values")) numbers_[value.at("id")] = number_of(value);
-    } catch (const Json::exception& problem) {
-      throw InputError(fmt::format("{}: is no file of published numbers: {}", entry.path().string(), problem.what()));
-    }
+PublishedNumbers::PublishedNumbers(const fs::path& file) {
+  try {
+    const Json json = parse_json(read_text_file(file, kLargestJsonFile));
+    for (const Json& value : json.at("values")) numbers_[value.at("id")] = number_of(value);
+  } catch (const Json::exception& problem) {
+    throw InputError(fmt::format("{}: is no file of published numbers: {}", file.string(), problem.what()));
   }
-  if (error) throw InputError(fmt::format("{}: cannot be read: {}", directory.string(), error.message()));
 }
 
 const PublishedNumber& PublishedNumbers::operator[](const std::string& id) const {

@@ -13,7 +13,7 @@
 
 namespace hapbench {
 
-/// One number of results/reference/published. Parts that are not published have these values.
+/// One number of results/reference/published.json. Parts that are not published have these values.
 struct PublishedNumber {
   double mean = std::numeric_limits<double>::quiet_NaN();
   double spread = 0.0;  ///< standard deviation or standard error, whichever is published
@@ -26,8 +26,8 @@ class PublishedNumbers {
  public:
   /// None.
   PublishedNumbers() = default;
-  /// Reads every .json file of the directory. Throws InputError for files that are not such.
-  explicit PublishedNumbers(const std::filesystem::path& directory);
+  /// Reads the file. Throws InputError.
+  explicit PublishedNumbers(const std::filesystem::path& file);
   /// Throws InputError for an id that is not there.
   const PublishedNumber& operator[](const std::string& id) const;
   /// The text with the numbers that it names by id: <T2.raw> becomes "37.8 ± 17.7", <T3.reduced.bound.at_most> "15".

@@ -1,21 +1,15 @@
-"""The numbers that the thesis publishes, from results/reference/published (see results/reference/published.schema.json)."""
+"""The numbers that the thesis publishes, from results/reference/published.json (see published.schema.json beside it)."""
 import json
 from functools import lru_cache
 from pathlib import Path
 
-DIRECTORY = Path(__file__).resolve().parents[3] / "results" / "reference" / "published"
+FILE = Path(__file__).resolve().parents[3] / "results" / "reference" / "published.json"
 
 
 @lru_cache(maxsize=None)
 def entries():
     """Every entry by its id."""
-    found = {}
-    for file in sorted(DIRECTORY.glob("*.json")):
-        for entry in json.loads(file.read_text(encoding="utf-8"))["values"]:
-            if entry["id"] in found:
-                raise ValueError(f"{file}: id {entry['id']} appears twice")
-            found[entry["id"]] = entry
-    return found
+    return {entry["id"]: entry for entry in json.loads(FILE.read_text(encoding="utf-8"))["values"]}
 
 
 def value(id_):

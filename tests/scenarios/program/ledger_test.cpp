@@ -97,7 +97,7 @@ Verdicts verdicts_on_record() {
 /// The verdicts on these claims under a reading: the last one of a file, or that on record.
 Verdicts verdicts_under(const std::optional<fs::path>& file) {
   const Choices choices(kReference / "choices.json");
-  Readings readings{choices, PublishedNumbers(kReference / "published"), {}, {choices.values_on_record()}};
+  Readings readings{choices, PublishedNumbers(kReference / "published.json"), {}, {choices.values_on_record()}};
   if (file) readings.values = read_readings(*file, choices);
   for (const Claim& claim : all_claims())
     if (!claim.timing && !claim.costly) readings.claims.push_back({claim, {}});

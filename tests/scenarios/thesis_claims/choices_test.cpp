@@ -212,7 +212,7 @@ TEST_F(ChoicesFile, WithoutFieldsAreNumbersThatRulesRead) {
   number["id"] = "rule.easily";
   number.erase("fields");
   const Choices choices = read(file({number, option()}));
-  const PublishedNumbers published(kReference / "published");
+  const PublishedNumbers published(kReference / "published.json");
   EXPECT_EQ(choices.with_numbers(published, Texts{"1.5", "a"})["rule.easily"].mean, 1.5);
   const Texts task = {"task2_a"}, other = {"task3"};
   EXPECT_EQ(choices.reach(other, "at least <T2.raw> times"), "");

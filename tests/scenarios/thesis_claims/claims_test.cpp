@@ -25,7 +25,7 @@ const PublishedNumbers& published() {
   static const std::filesystem::path reference = HAPBENCH_SCENARIOS "/../results/reference";
   static const Choices choices(reference / "choices.json");
   static const PublishedNumbers numbers =
-      choices.with_numbers(PublishedNumbers(reference / "published"), choices.values_on_record());
+      choices.with_numbers(PublishedNumbers(reference / "published.json"), choices.values_on_record());
   return numbers;
 }
 
