@@ -23,8 +23,7 @@ namespace fs = std::filesystem;
 PublishedNumber number_of(const Json& value) {
   PublishedNumber number;
   for (const char* key : {"mean", "value"}) number.mean = value.value(key, number.mean);
-  for (const char* key : {"std", "standard_deviation", "standard_error"})
-    number.spread = value.value(key, number.spread);
+  for (const char* key : {"std", "standard_error"}) number.spread = value.value(key, number.spread);
   number.at_least = value.value("at_least", number.at_least);
   number.at_most = value.value("at_most", number.at_most);
   return number;
