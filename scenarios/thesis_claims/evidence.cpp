@@ -35,6 +35,8 @@ PublishedNumbers::PublishedNumbers(const fs::path& file) {
   try {
     const Json json = parse_json(read_text_file(file, kLargestJsonFile));
     for (const Json& value : json.at("values")) numbers_[value.at("id")] = number_of(value);
+  } catch (const InputError& error) {
+    rethrow_with_file(error, file);
   } catch (const Json::exception& problem) {
     throw InputError(fmt::format("{}: is no file of published numbers: {}", file.string(), problem.what()));
   }

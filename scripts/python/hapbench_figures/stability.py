@@ -21,7 +21,7 @@ LIMIT, LIMIT_RUNS = "limit.csv", "limit_runs.csv"
 PANEL = 2.6  # [inch]
 LEGEND = 0.3  # [inch]
 STEP = 0.16  # of a row, between algorithms
-SPRING = published.DIRECTORY.parents[2] / "scenarios" / "limits" / "single_spring.json"
+SPRING = published.FILE.parents[2] / "scenarios" / "limits" / "single_spring.json"
 
 
 def spaced(number):

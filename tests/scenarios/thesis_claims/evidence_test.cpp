@@ -64,7 +64,7 @@ TEST(PublishedNumbers, FillTextsThatNameThem) {
   const test::TemporaryDirectory directory;
   test::write_plainly(directory / "some.json", R"({"values": [
     {"id": "A.raw", "mean": 37.8, "std": 17.7}, {"id": "B", "value": 0.00025, "at_most": 15}]})");
-  const PublishedNumbers numbers(directory.path());
+  const PublishedNumbers numbers(directory / "some.json");
   EXPECT_EQ(numbers.fill("raw <A.raw>, <B*1000 mm"), "raw 37.8 ± 17.7, <B*1000 mm");
   EXPECT_EQ(numbers.fill("<B.mean*1000> mm, <B.at_most>"), "0.25 mm, 15");
   EXPECT_EQ(numbers.fill("<A.raw.spread:.2f>"), "17.70");
