@@ -59,21 +59,17 @@ Cases cases_of(const ComparisonQuestion& question, const fs::path& file, std::ve
   const ScenarioText text = read_scenario_text(file);
   std::vector<Axis> axes = {{"rendering.algorithm", question.algorithms}};
   const Cases alone({text}, question.overrides, axes);
-  std::vector<Warning> common;
-  for (std::size_t a = 0; a < alone.size(); ++a) {
-    const LoadedScenario loaded = alone.load(a);
-    if (a == 0) {  // the files are those of the scenario
-      check_seeds_and_jitter(question, loaded);
-      append_new(warnings, with_files(loaded, check_named_files(loaded)));
-      common = loaded.warnings;
-      if (question.seeds > 1 || question.jitter != 0.0)
-        axes.push_back(seed_axis(loaded.scenario, question.seeds, question.jitter));
-    }
-    std::erase_if(common, [&loaded](const Warning& warning) {
-      return std::ranges::find(loaded.warnings, warning) == loaded.warnings.end();
-    });
+  const LoadedScenario first = alone.load(0);  // the files are those of the scenario, whatever the algorithm
+  check_seeds_and_jitter(question, first);
+  append_new(warnings, with_files(first, check_named_files(first)));
+  if (question.seeds > 1 || question.jitter != 0.0)
+    axes.push_back(seed_axis(first.scenario, question.seeds, question.jitter));
+  std::vector<Warning> common = first.warnings;
+  for (std::size_t a = 1; a < alone.size(); ++a) {
+    const std::vector<Warning> of_this = alone.load(a).warnings;
+    std::erase_if(common, [&](const Warning& w) { return std::ranges::find(of_this, w) == of_this.end(); });
   }
-  append_new(warnings, with_files(alone.load(0), common));
+  append_new(warnings, with_files(first, common));
   return {{text}, question.overrides, std::move(axes)};
 }
 

@@ -157,7 +157,11 @@ const std::string& NamedFile::hash() {
   }
   // Kept under the stamp of before the reading, which a file that changed meanwhile never has again.
   const auto known = shared_cache().get<std::string>(
-      *stamp, [this] { return read(), std::make_shared<const std::string>(hash_); },
+      *stamp,
+      [this] {
+        read();
+        return std::make_shared<const std::string>(hash_);
+      },
       [](const std::string& hash) { return hash.size(); });
   return hash_ = *known;
 }

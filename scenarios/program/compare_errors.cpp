@@ -78,11 +78,12 @@ class ScenarioErrors {
   }
 
   void add_json(Json& rows) const {
+    const Columns<ComparedNumber> columns = number_columns();
     for (std::size_t m = 0; m < league_.metrics.size(); ++m) {
       const std::vector<NumberWithError>& found = numbers_[m];
       Json numbers = Json::array();
       for (std::size_t a = 0; a < found.size(); ++a)
-        numbers.push_back(number_columns().json({league_.algorithms[a], found[a], known_[m][a]}));
+        numbers.push_back(columns.json({league_.algorithms[a], found[a], known_[m][a]}));
       Json order = Json::array();
       for (const auto& group : held_order(found, kSameRank).groups) {
         Json names = Json::array();

@@ -13,7 +13,8 @@ namespace hapbench {
 /// inverted_scan_warning. Throws InputError.
 std::vector<Warning> check_named_files(const LoadedScenario& loaded, bool looks_at_scan = true);
 
-/// What is odd in the files that the scenario names. Precondition: they can be used.
+/// Warnings about the files that the scenario names: a mesh that is open or was mended, a stroke outside the time of
+/// the run. Precondition: the files can be used.
 std::vector<Warning> named_file_warnings(const LoadedScenario& loaded);
 
 /// The numbers of the run: steps, start, integrator, bounds.
