@@ -155,6 +155,7 @@ def handle_on_spring(bench):
         ("hand_J", hand, "push times way", held, "with the measured speed a row late", total(push * shown_v[:-1] * dt)),
         ("actuator_J", motor, "held late force times way", held, "without the delay", work),
         ("spring_J", work, "row's force times the way to the next", held, "trapezoidal rule", total(0.5 * (spring[1:] + spring[:-1]) * way)),
+        ("integration_J", work + 0.5 * K * (x ** 2 - x[0] ** 2), "work of the held force less that of the spring", held, "none", zero),
         ("kinetic_J", zero, "there is no virtual mass", EXACT, "of the handle", kinetic)])
     bench.metrics(run, [
         ("energy.hand_J", hand[-1], "push times way", held, "with the force of the virtual tool", hand[-1] + work[-1]),

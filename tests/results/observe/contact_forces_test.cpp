@@ -7,9 +7,7 @@
 #include <limits>
 #include <vector>
 
-#include "results/allocations/allocations.hpp"
 #include "results/observe/metrics.hpp"
-#include "sim/core/random.hpp"
 #include "tests/results/rows.hpp"
 
 namespace hapbench::contact_forces_test {
@@ -32,11 +30,11 @@ std::string phases(const SettlingRule& rule, const std::string& contact) {
 }
 
 /// Through MetricsObserver, which tells the changes from row to row.
-MetricsObserver forces_of(const std::vector<Row>& rows, const SettlingRule& rule, double dt = kDt) {
+MetricsObserver forces_of(const std::vector<Row>& rows, const SettlingRule& rule) {
   const ContactBuffer none(1);
-  MetricsObserver observer(dt, {.settling = rule});
+  MetricsObserver observer(kDt, {.settling = rule});
   for (std::size_t k = 0; k < rows.size(); ++k) {
-    StepRecord r = test::row(k, dt * static_cast<double>(k), none);
+    StepRecord r = test::row(k, kDt * static_cast<double>(k), none);
     r.colliding = rows[k].in_contact ? 1 : 0;
     r.force.rendered = {rows[k].force, 0.0, 0.0};
     observer.on_step(r);
@@ -46,24 +44,16 @@ MetricsObserver forces_of(const std::vector<Row>& rows, const SettlingRule& rule
 
 constexpr SettlingRule kThreeRows = {.from = {}, .time = 0.03};
 
-/// The metrics that take settled contact.
-constexpr const char* kSettledMetrics[] = {"force_mean_in_contact_N", "settled_force_max_N",
-                                           "force_step_p99_N",        "settled_force_step_max_N",
-                                           "force_rms_above_30Hz_N",  "force_reversals_per_s"};
-
-bool has_any_settled(const MetricsObserver& observer) {
-  return std::ranges::any_of(kSettledMetrics, [&](const char* name) { return told(observer, name).has_value(); });
-}
-bool has_all_settled(const MetricsObserver& observer) {
-  return std::ranges::all_of(kSettledMetrics, [&](const char* name) { return told(observer, name).has_value(); });
+/// How many of the metrics that take settled contact have a value.
+std::ptrdiff_t settled_metrics(const MetricsObserver& observer) {
+  constexpr const char* kNames[] = {"force_mean_in_contact_N",  "settled_force_max_N",    "force_step_p99_N",
+                                    "settled_force_step_max_N", "force_rms_above_30Hz_N", "force_reversals_per_s"};
+  return std::ranges::count_if(kNames, [&](const char* name) { return told(observer, name).has_value(); });
 }
 
-TEST(SettlingRule, ALandingIsTheSettlingTimeAfterAFirstTouch) {
+TEST(SettlingRule, OnlyALongTimeAwayMakesTheNextTouchTheBeginningOfALanding) {
   EXPECT_EQ(phases(kThreeRows, "..#######"), "aalllssss");
   EXPECT_EQ(phases(kThreeRows, "#####"), "lllss") << "in contact since the start";
-}
-
-TEST(SettlingRule, OnlyAsLongATimeAwayMakesTheNextTouchAFirstOne) {
   EXPECT_EQ(phases(kThreeRows, "####..####"), "lllsaassss");
   EXPECT_EQ(phases(kThreeRows, "####...####"), "lllsaaallls");
   EXPECT_EQ(phases(kThreeRows, "#..#..#"), "lllsaas") << "a bounce belongs to the landing as long as that lasts";
@@ -80,38 +70,26 @@ TEST(SettlingRule, RoundsTimesToRows) {
   EXPECT_EQ(phases({.from = 0.0151, .time = 0.03}, "#####"), "llsss");
 }
 
-// All numbers are small whole ones or halves: exact.
-TEST(ContactForces, AreThoseOfLandingsAndOfSettledContactApart) {
-  const MetricsObserver f =
-      forces_of({{0, false}, {9}, {-3}, {1}, {1}, {3}, {-2}, {0, false}, {2}, {0, false}, {0, false}, {0, false}, {5}},
-                kThreeRows);
-  EXPECT_EQ(told(f, "landings"), 2.0);
-  EXPECT_EQ(told(f, "landing_force_max_N"), 9.0);
-  EXPECT_EQ(told(f, "landing_force_step_max_N"), 12.0);
-  // The rows with 1, 3, -2 and 2 N.
-  EXPECT_EQ(told(f, "settled_s"), 4 * kDt);
-  EXPECT_EQ(told(f, "force_mean_in_contact_N"), 8.0 / 4.0);
-  EXPECT_EQ(told(f, "settled_force_max_N"), 3.0);
-  EXPECT_EQ(told(f, "settled_force_step_max_N"), 5.0);
-  EXPECT_EQ(told(f, "force_reversals_per_s"), 1.0 / (4 * kDt));
-}
-
 TEST(ContactForces, HaveNoValueBelowAPeriodOfTheHighPass) {
   // Three rows are 0.03 s, four 0.04 s.
   std::vector<Row> rows = {{9}, {9}, {9}, {1}, {1}, {1}};
-  EXPECT_FALSE(has_any_settled(forces_of(rows, kThreeRows)));
+  EXPECT_EQ(settled_metrics(forces_of(rows, kThreeRows)), 0);
   rows.push_back({1});
-  EXPECT_TRUE(has_all_settled(forces_of(rows, kThreeRows)));
+  EXPECT_EQ(settled_metrics(forces_of(rows, kThreeRows)), 6);
 }
 
 TEST(ContactForces, HaveNoValueWithoutSuchRows) {
   const MetricsObserver away = forces_of({{0, false}, {0, false}}, kThreeRows);
   EXPECT_FALSE(told(away, "landing_force_max_N") || told(away, "landing_force_step_max_N"));
   const MetricsObserver landing = forces_of({{0, false}, {4}}, kThreeRows);
-  EXPECT_EQ(told(landing, "landing_force_max_N"), 4.0);
   EXPECT_EQ(told(landing, "landing_force_step_max_N"), 4.0);
-  EXPECT_FALSE(has_any_settled(landing));
+  EXPECT_EQ(settled_metrics(landing), 0);
   EXPECT_EQ(told(landing, "settled_s"), 0.0);
+}
+
+TEST(ContactForces, HaveNoVibrationAtASamplingRateOfSixtyHertz) {
+  EXPECT_FALSE(vibration_filter(1.0 / 60.0));
+  EXPECT_TRUE(vibration_filter(1.0 / 61.0));
 }
 
 TEST(ContactForces, TheP99IsNeverAboveTheLargestStep) {
@@ -121,18 +99,6 @@ TEST(ContactForces, TheP99IsNeverAboveTheLargestStep) {
     EXPECT_LE(p99, told(f, "settled_force_step_max_N").value());
     EXPECT_NEAR(p99, step, MagnitudeHistogram::kRelativeError * step);
   }
-}
-
-TEST(ContactForces, TheBlowOfALandingDoesNotRingOnInTheVibration) {
-  std::vector<Row> rows = {{0, false}, {1000}, {-200}, {30}};
-  rows.insert(rows.end(), 50, {2.0});
-  EXPECT_EQ(told(forces_of(rows, kThreeRows), "force_rms_above_30Hz_N"), 0.0);
-  rows.insert(rows.end(), 5, {0.0, false});
-  rows.insert(rows.end(), {{500}, {-200}, {7}});
-  rows.insert(rows.end(), 50, {1.0});
-  const MetricsObserver f = forces_of(rows, kThreeRows);
-  EXPECT_EQ(told(f, "landings"), 2.0);
-  EXPECT_EQ(told(f, "force_rms_above_30Hz_N"), 0.0);
 }
 
 TEST(ContactForces, AShortBreakOfContactVibratesAndALongOneStartsFromRest) {
@@ -165,41 +131,11 @@ TEST(ContactForces, OfSeveralTrialsAddUp) {
   EXPECT_EQ(number_of(list, "force_rms_above_30Hz_N"), 0.0);
 }
 
-TEST(ContactForces, AreObservedWithoutAllocating) {
-  const std::size_t before = heap_allocations();
-  ContactForces observer(kDt, kThreeRows);
-  for (int k = 0; k < 1000; ++k) observer.add({1.0, 0.0, 0.1 * k}, {0.01, false}, k % 7 != 0);
-  EXPECT_EQ(heap_allocations(), before);
-  EXPECT_TRUE(observer.has_settled());
-}
-
-MagnitudeHistogram histogram_of(const std::vector<double>& numbers) {
+/// The number as a histogram of nothing else has it.
+double counted(double number) {
   MagnitudeHistogram histogram;
-  for (const double number : numbers) histogram.add_square(number * number);
-  return histogram;
-}
-
-/// Numbers spread evenly over the exponents from 1e-8 to 1e5.
-std::vector<double> many_numbers() {
-  Random random(5);
-  std::vector<double> numbers(20'000);
-  for (double& number : numbers) number = std::pow(10.0, random.uniform(-8.0, 5.0));
-  return numbers;
-}
-
-TEST(MagnitudeHistogram, GivesNearestRankQuantilesWithinItsError) {
-  std::vector<double> numbers = many_numbers();
-  const MagnitudeHistogram histogram = histogram_of(numbers);
-  std::sort(numbers.begin(), numbers.end());
-  double largest = 0.0;
-  for (const double p : {0.001, 0.1, 0.25, 0.5, 0.9, 0.99, 0.9999, 1.0}) {
-    const auto rank = static_cast<std::size_t>(std::ceil(p * static_cast<double>(numbers.size())));
-    const double exact = numbers[rank - 1];
-    const double error = std::abs(histogram.quantile(p) / exact - 1.0);
-    EXPECT_LE(error, MagnitudeHistogram::kRelativeError) << p;
-    largest = std::max(largest, error);
-  }
-  EXPECT_GT(largest, 0.1 * MagnitudeHistogram::kRelativeError) << "the stated error is not far too large";
+  histogram.add_square(number * number);
+  return histogram.quantile(1.0);
 }
 
 // Every bin, at its lower edge and just below: the numbers that are furthest from its middle.
@@ -208,7 +144,7 @@ TEST(MagnitudeHistogram, ErrorOfEveryBinIsTheStatedOne) {
   for (double edge = MagnitudeHistogram::kLeast; edge < MagnitudeHistogram::kMost; edge *= std::sqrt(33.0 / 32.0)) {
     for (const double number : {edge, std::nextafter(edge, 0.0) * (1.0 - 1e-12)}) {
       if (number < MagnitudeHistogram::kLeast) continue;
-      largest = std::max(largest, std::abs(histogram_of({number}).quantile(1.0) / number - 1.0));
+      largest = std::max(largest, std::abs(counted(number) / number - 1.0));
     }
   }
   EXPECT_LE(largest, MagnitudeHistogram::kRelativeError);
@@ -216,12 +152,10 @@ TEST(MagnitudeHistogram, ErrorOfEveryBinIsTheStatedOne) {
 }
 
 TEST(MagnitudeHistogram, TakesNumbersBeyondItsEndsAsZeroAndInfinity) {
-  EXPECT_EQ(histogram_of({0.0}).quantile(1.0), 0.0);
-  EXPECT_EQ(histogram_of({0.9 * MagnitudeHistogram::kLeast}).quantile(1.0), 0.0);
-  EXPECT_NEAR(histogram_of({MagnitudeHistogram::kLeast}).quantile(1.0), MagnitudeHistogram::kLeast,
-              MagnitudeHistogram::kRelativeError * MagnitudeHistogram::kLeast);
-  EXPECT_EQ(histogram_of({MagnitudeHistogram::kMost}).quantile(1.0), std::numeric_limits<double>::infinity());
-  EXPECT_EQ(histogram_of({1e300}).quantile(1.0), std::numeric_limits<double>::infinity());
+  EXPECT_EQ(counted(0.0), 0.0);
+  EXPECT_EQ(counted(0.9 * MagnitudeHistogram::kLeast), 0.0);
+  EXPECT_EQ(counted(MagnitudeHistogram::kMost), std::numeric_limits<double>::infinity());
+  EXPECT_EQ(counted(1e300), std::numeric_limits<double>::infinity());
 }
 
 }  // namespace

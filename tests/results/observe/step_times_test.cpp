@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <numeric>
 #include <thread>
 #include <vector>
 
@@ -128,26 +127,7 @@ TEST(StepLatency, PercentilesAreThoseOfNearestRank) {
   EXPECT_EQ(seven.p50, 4u);
   EXPECT_EQ(seven.p95, 7u);
   EXPECT_EQ(seven.p99_9, 7u);
-  const StepLatency one = step_latency(Times{42}, 0);
-  EXPECT_EQ(one.p50, 42u);
-  EXPECT_EQ(one.p99_9, 42u);
-}
-
-// By definition: at least p percent of the steps are as short as the percentile, and fewer are shorter.
-TEST(StepLatency, PercentilesSplitTheStepsAsDefined) {
-  for (std::uint64_t n = 1; n < 300; ++n) {
-    Times times = scrambled(n);
-    for (std::uint64_t& time : times) time = time * time / 7;  // with repetitions
-    const StepLatency latency = step_latency(times, 0);
-    const std::pair<double, std::uint64_t> percentiles[] = {
-        {0.5, latency.p50}, {0.95, latency.p95}, {0.99, latency.p99}, {0.999, latency.p99_9}};
-    for (const auto& [p, value] : percentiles) {
-      const auto up_to = std::count_if(times.begin(), times.end(), [v = value](auto time) { return time <= v; });
-      const auto below = std::count_if(times.begin(), times.end(), [v = value](auto time) { return time < v; });
-      EXPECT_GE(static_cast<double>(up_to), p * static_cast<double>(n) - 1e-9) << n;
-      EXPECT_LT(static_cast<double>(below), p * static_cast<double>(n) + 1e-9) << n;
-    }
-  }
+  EXPECT_EQ(step_latency(Times{42}, 0).p99_9, 42u);
 }
 
 TEST(StepLatency, AStepThatTakesExactlyTheDeadlineDoesNotMissIt) {
@@ -161,12 +141,12 @@ TEST(StepLatency, HistogramHoldsEveryStepOnceBetweenPowersOfTwo) {
   Times times = scrambled(5000);
   times.push_back(5'000'000'000);  // more than 32 bits hold
   const StepLatency latency = step_latency(times, 0);
-  std::uint64_t steps = 0;
-  for (std::size_t i = 0; i < latency.histogram.size(); ++i) {
-    const StepLatency::Bin& bin = latency.histogram[i];
-    EXPECT_EQ(bin.steps, static_cast<std::uint64_t>(std::count_if(
-                             times.begin(), times.end(), [&](auto t) { return t >= bin.from && t < bin.to; })));
-    EXPECT_EQ(bin.from, i > 0 ? latency.histogram[i - 1].to : bin.from);
+  std::uint64_t steps = 0, end = latency.histogram.front().from;
+  for (const StepLatency::Bin& bin : latency.histogram) {
+    EXPECT_EQ(static_cast<std::ptrdiff_t>(bin.steps),
+              std::ranges::count_if(times, [&](auto t) { return t >= bin.from && t < bin.to; }));
+    EXPECT_EQ(bin.from, end);
+    end = bin.to;
     steps += bin.steps;
   }
   EXPECT_EQ(steps, times.size());
@@ -181,6 +161,7 @@ TEST(StepLatency, WithoutStepsThereAreNoPercentiles) {
   for (const char* key : {"p50_s", "p95_s", "p99_s", "p99_9_s", "max_s"}) EXPECT_TRUE(json[key].is_null()) << key;
   EXPECT_TRUE(json["histogram"].empty());
   for (const auto& miss : json["deadline_misses"]) EXPECT_EQ(miss["steps"], 0);
+  EXPECT_TRUE(timing_json({}, {}, {})["step_mean_s"].is_null());
 }
 
 TEST(StepLatency, JsonIsInSeconds) {
@@ -204,13 +185,6 @@ TEST(StepLatency, GivesMediansOverTheRun) {
   EXPECT_TRUE(step_latency({}, 0).over_time.empty());
 }
 
-const Provenance kProvenance = {.version = "1.2.3",
-                                .commit = "abc",
-                                .compiler = "GNU 12.2.0",
-                                .build_type = "Release",
-                                .flags = "-O3",
-                                .cpu = "Some CPU"};
-
 TEST(Timing, TextHoldsMeanTimeInstructionSetAndCpu) {
   EXPECT_EQ(timing_text({.shell = 0.25,
                          .loop = 0.5,
@@ -219,7 +193,13 @@ TEST(Timing, TextHoldsMeanTimeInstructionSetAndCpu) {
                          .step_p50 = 0.5e-6,
                          .step_p99 = 2e-6,
                          .preemptions = 3},
-                        {.march = "native", .widest = "avx2", .simd = true}, kProvenance),
+                        {.march = "native", .widest = "avx2", .simd = true},
+                        {.version = "1.2.3",
+                         .commit = "abc",
+                         .compiler = "GNU 12.2.0",
+                         .build_type = "Release",
+                         .flags = "-O3",
+                         .cpu = "Some CPU"}),
             R"({
   "shell_s": 0.25,
   "loop_s": 0.5,
@@ -241,10 +221,6 @@ TEST(Timing, TextHoldsMeanTimeInstructionSetAndCpu) {
   "cpu": "Some CPU"
 }
 )");
-}
-
-TEST(Timing, OfNoStepsHasNoMean) {
-  EXPECT_TRUE(timing_json({}, {}, kProvenance)["step_mean_s"].is_null());
 }
 
 // On x86-64 every build has at least SSE2.
