@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -7,31 +8,11 @@
 #include "device_model/hands/drag_hand.hpp"
 #include "device_model/hands/scripted_hands.hpp"
 #include "device_model/hands/tracking_hand.hpp"
+#include "sim/core/random.hpp"
 #include "sim/geometry/analytic_shells.hpp"
 
 namespace hapbench::hands_test {
 namespace {
-
-TEST(NoHand, NeverPushes) {
-  NoHand hand;
-  EXPECT_EQ(hand.force(0.0, {}), Vec3(0, 0, 0));
-  EXPECT_EQ(hand.force(9.0, {{{1, 2, 3}, {4, 5, 6}}, {}, {7, 8, 9}}), Vec3(0, 0, 0));
-}
-
-TEST(ForceHand, PushesWithItsProfilesWhateverTheHandleDoes) {
-  ForceHand hand({Profile::Shape(Profile::Ramp{1.0, 2.0}), -3.0, Profile::Shape(Profile::Ramp{0.0, -1.0})});
-  EXPECT_EQ(hand.force(0.0, {}), Vec3(1, -3, 0));
-  EXPECT_EQ(hand.force(2.0, {}), Vec3(5, -3, -2));
-  EXPECT_EQ(hand.force(2.0, {{{1, 2, 3}, {4, 5, 6}}, {}, {7, 8, 9}}), Vec3(5, -3, -2));
-  hand.reset();
-  EXPECT_EQ(hand.force(0.0, {}), Vec3(1, -3, 0));
-}
-
-TEST(PushHand, PushesAlongItsDirectionWithItsProfile) {
-  PushHand hand(Profile::Shape(Profile::Ramp{1.0, 2.0}), {0.0, 0.6, -0.8});
-  EXPECT_EQ(hand.force(0.0, {}), Vec3(0.0, 0.6, -0.8));
-  EXPECT_EQ(hand.force(2.0, {{{1, 2, 3}, {4, 5, 6}}, {}, {7, 8, 9}}), 5.0 * Vec3(0.0, 0.6, -0.8));
-}
 
 TEST(PushDirection, LeansFromStraightDownTowardsItsAzimuth) {
   EXPECT_EQ(push_direction(0.0, 1.0), Vec3(0, 0, -1));
@@ -86,6 +67,64 @@ TEST(Tremor, MovesTheTargetOfAHandAsItsSeedSays) {
 }
 
 constexpr double kSmoothing = 0.0005;
+
+/// Points spread evenly over a sphere about the origin, on a spiral of golden angles.
+std::vector<SurfacePoint> sphere(double radius, int count) {
+  std::vector<SurfacePoint> points;
+  for (int i = 0; i < count; ++i) {
+    const double z = 1.0 - (2.0 * i + 1.0) / count, turn = i * std::numbers::pi * (3.0 - std::sqrt(5.0));
+    const double rho = std::sqrt(1.0 - z * z);
+    const Vec3 normal(rho * std::cos(turn), rho * std::sin(turn), z);
+    points.push_back({radius * normal, normal});
+  }
+  return points;
+}
+
+TEST(SmoothedSurface, OfAPlaneIsThePlane) {
+  const PointShell shell(surface_points(Plane{0.004, 0.0001}), 0.0001);
+  const SmoothedSurface surface(shell, kSmoothing);
+  Random random(3);
+  for (int i = 0; i < 100; ++i) {
+    const Vec3 at = 0.002 * random.direction();
+    const SurfacePoint place = surface.nearest(at);
+    // All points have z = 0 and one normal, so the averages are exact but for the division of equal sums.
+    EXPECT_LT((place.normal - Vec3(0, 0, 1)).norm(), 1e-15);
+    EXPECT_LT((place.position - Vec3(at.x(), at.y(), 0)).norm(), 1e-18) << at.transpose();
+  }
+}
+
+TEST(SmoothedSurface, OfASphereFollowsIt) {
+  constexpr double kRadius = 0.005;
+  const PointShell shell(sphere(kRadius, 20'000), 0.0);
+  const SmoothedSurface surface(shell, kSmoothing);
+  Random random(4);
+  for (int i = 0; i < 200; ++i) {
+    const Vec3 radial = random.direction();
+    const SurfacePoint place = surface.nearest((kRadius + 0.001 * random.uniform()) * radial);
+    // Neighbours lie within R of a place near the sphere, so no normal among them, and no mean of them, is further
+    // off than the angle 2 asin(R / 2r); and their centre is no deeper than the sagitta of R.
+    EXPECT_LT(std::acos(std::min(1.0, place.normal.dot(radial))), 2.0 * std::asin(kSmoothing / (2.0 * kRadius)));
+    EXPECT_NEAR(place.position.norm(), kRadius, kSmoothing * kSmoothing / (2.0 * kRadius));
+  }
+}
+
+TEST(SmoothedSurface, DoesNotSeeTheFarSideOfAThinWall) {
+  std::vector<SurfacePoint> points = surface_points(Plane{0.004, 0.0001});
+  for (std::size_t i = 0, n = points.size(); i < n; ++i)
+    points.push_back({points[i].position - Vec3(0, 0, 0.0001), {0, 0, -1}});
+  const PointShell shell(points, 0.0001);
+  const SurfacePoint place = SmoothedSurface(shell, kSmoothing).nearest({0.0003, 0.0002, 0.0001});
+  EXPECT_LT((place.normal - Vec3(0, 0, 1)).norm(), 1e-15);
+  EXPECT_LT(std::abs(place.position.z()), 1e-18);
+}
+
+TEST(SmoothedSurface, EndsWithTheShell) {
+  const PointShell shell(surface_points(Plane{0.004, 0.0001}), 0.0001);
+  const SmoothedSurface surface(shell, kSmoothing);
+  EXPECT_LT((surface.nearest({0.9, 0, 0.3}).position - Vec3(0.002, 0, 0)).norm(), 1e-15);
+  // Within the radius the last points are the plane's neighbours still.
+  EXPECT_LT((surface.nearest({0.0024, 0, 0.0001}).position - Vec3(0.0024, 0, 0)).norm(), 1e-15);
+}
 
 /// A plane and paths over it.
 class DragOnPlane : public testing::Test {
@@ -176,13 +215,7 @@ TEST_F(DragOnPlane, AxisLeansFromTheNormalTowardsTheTravel) {
 
 TEST(DragHand, PushesAlongTheNormalOfASphereWhereTheHandleIs) {
   constexpr double kRadius = 0.005;
-  std::vector<SurfacePoint> points;
-  for (int i = 0; i < 20'000; ++i) {  // evenly distributed, on a spiral of golden angles
-    const double z = 1.0 - (2.0 * i + 1.0) / 20'000, rho = std::sqrt(1.0 - z * z), turn = 2.399963229728653 * i;
-    const Vec3 normal(rho * std::cos(turn), rho * std::sin(turn), z);
-    points.push_back({kRadius * normal, normal});
-  }
-  const PointShell shell(points, 0.0);
+  const PointShell shell(sphere(kRadius, 20'000), 0.0);
   const SmoothedSurface surface(shell, kSmoothing);
   DragHand hand({.force = 1.0, .stiffness = 0.0, .damping = 0.0},
                 std::make_shared<const SurfacePath>(SurfacePath::along(surface, {-0.004, 0, 0.003}, {1, 0, 0}, 0.02)));
