@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "results/observe/ideal_trajectory.hpp"
 #include "results/observe/inside.hpp"
@@ -19,34 +18,9 @@ struct Scene {
   const Cylinder tool = make_cylinder(task.loaded.scenario.tool);
 };
 
-/// Compares the depth with that of the deepest of places distributed over the tip and side of the tool, which is at
-/// most the true depth and differs by at most the distance from the deepest place to the nearest of them.
-bool is_deepest(const Scene& scene, const ToolPose& pose, double depth) {
-  constexpr int kRound = 512, kAlong = 256;
-  const Vec3 across = pose.axis.unitOrthogonal(), other = pose.axis.cross(across);
-  const double along = scene.tool.length() / kAlong, round = 2.0 * std::numbers::pi / kRound;
-  double deepest = 0.0;
-  for (int i = 0; i < kRound; ++i) {
-    const Vec3 out = std::cos(i * round) * across + std::sin(i * round) * other;
-    for (int k = 0; k <= kAlong; ++k) {
-      const Vec3 place = pose.position + scene.tool.radius() * out - k * along * pose.axis;
-      deepest = std::max(deepest, -signed_distance(scene.block, place));
-    }
-  }
-  // The depth is exact to 1e-11 m (ideal_trajectory.hpp).
-  return deepest <= depth + 1e-11 && depth <= deepest + (along + scene.tool.radius() * round) / 2 + 1e-11;
-}
-
 void row(benchmark::State& state) {
   const Scene scene;
   const auto& poses = scene.task.poses;
-  const auto wrong = [&]() -> std::string {
-    for (std::size_t k = 0; k < poses.size(); k += 1024) {
-      if (!is_deepest(scene, poses[k], interpenetration(scene.block, scene.tool, poses[k]))) return "not the deepest";
-    }
-    return "";
-  };
-  if (!proved(state, "ideal_trajectory", wrong)) return;
   while (state.KeepRunningBatch(static_cast<benchmark::IterationCount>(poses.size() / kPosesApart))) {
     for (std::size_t k = 0; k < poses.size(); k += kPosesApart) {
       benchmark::DoNotOptimize(ideal_place(scene.block, scene.tool.radius(), std::acos(-poses[k].axis.z())));
@@ -54,10 +28,6 @@ void row(benchmark::State& state) {
     }
   }
 }
-
-}  // namespace
-
-namespace {
 
 /// A row of the observer of how deep the tool is, while the tip slides to and fro at this height over the block.
 void inside_row(benchmark::State& state, double height) {

@@ -20,12 +20,10 @@ bool take_full(int& argc, char** argv) {
 }
 
 void add_benchmarks(bool full) {
-  for (const auto register_group : {register_search, register_shaping, register_reduction, register_laws,
-                                    register_proxy, register_steps, register_latencies, register_ideal_trajectory,
-                                    register_shells, register_skips, register_growth_over_contacts}) {
-    register_group();
-  }
-  register_growth_over_points(full);
+  register_laws();
+  register_steps();
+  register_ideal_trajectory();
+  register_searches(full);
 }
 
 int run(int argc, char** argv) {

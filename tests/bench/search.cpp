@@ -13,39 +13,13 @@
 #include "tests/bench/bench.hpp"
 #include "tests/bench/task_scene.hpp"
 #include "tests/support/searches.hpp"
-#include "tests/support/tool_kinds.hpp"
 
 /// The searches for contacts and the shells that they search, also as the grid of the block gets finer.
 namespace hapbench::bench {
 namespace {
+
 /// The searches that are compared.
 constexpr const char* kSearches[] = {"brute_force", "grid", "neighbour_list"};
-
-/// Brute force takes 30 us per pose, so it is called at every 16th pose only. The answer of other searches may depend
-/// on earlier poses, so they are called at all poses and compared at every 16th.
-constexpr std::size_t kBruteForceEvery = 16;
-
-/// The definition in long double takes 30 ms per pose.
-constexpr std::size_t kDefinitionEvery = 4096;
-
-std::string wrong_by_definition(const TaskScene& scene) {
-  ShellQuery query(*scene.shell, *scene.tool);
-  ContactBuffer contacts(query.capacity());
-  const Cylinder tool = make_cylinder(scene.loaded.scenario.tool);
-  for (std::size_t k = 0; k < scene.poses.size(); k += kDefinitionEvery) {
-    query.contacts_at(scene.poses[k], contacts);
-    std::size_t next = 0;
-    for (std::size_t i = 0; i < scene.shell->size(); ++i) {
-      const bool found = next < contacts.size() && contacts.index[next] == i;
-      if (found) ++next;
-      const Vec3 point = scene.shell->point(i).position;
-      const long double slack = test::slack(tool, scene.poses[k], point.cast<long double>());
-      // Slacks within the rounding of coordinates of 1 cm are not compared.
-      if (std::abs(slack) > 1e-16L && found != (slack > 0.0L)) return fmt::format("pose {}, point {}", k, i);
-    }
-  }
-  return "";
-}
 
 std::unique_ptr<ContactQuery> make_search(const std::string& search, const PointShell& shell, const ToolShape& tool) {
   if (search == "brute_force") return std::make_unique<ShellQuery>(shell, tool);
@@ -53,67 +27,70 @@ std::unique_ptr<ContactQuery> make_search(const std::string& search, const Point
   return std::make_unique<NeighbourListQuery>(shell, tool);
 }
 
-/// Says what the search answers wrongly along the poses of the scene; empty if nothing. Brute force is compared with
-/// the definition of the tool's body, the others with brute force.
-std::string wrong_answers(const std::string& search, const TaskScene& scene) {
-  if (search == "brute_force") return wrong_by_definition(scene);
-  const auto query = make_search(search, *scene.shell, *scene.tool);
-  ShellQuery brute(*scene.shell, *scene.tool);
-  ContactBuffer found(query->capacity()), all(brute.capacity());
-  for (std::size_t k = 0; k < scene.poses.size(); ++k) {
-    query->contacts_at(scene.poses[k], found);
-    if (k % kBruteForceEvery != 0) continue;
-    brute.contacts_at(scene.poses[k], all);
-    if (!test::same_contacts(found, all)) return fmt::format("not brute force's contacts at pose {}", k);
-  }
-  return "";
-}
+/// A search over a shell at the poses of a task. The answer of a search may depend on earlier poses, so it is called at
+/// all of them, but is compared with brute force, and that is timed, at every so many only.
+struct Search {
+  std::string name;  ///< one of kSearches
+  std::shared_ptr<const PointShell> shell;
+  const TaskScene& scene;
+  std::size_t brute_force_every;
 
-void search_benchmark(benchmark::State& state, const std::string& search, const std::string& task) {
-  const TaskScene& scene = task_scene(task);
-  if (!proved(state, search + task, [&] { return wrong_answers(search, scene); })) return;
-  const auto query = make_search(search, *scene.shell, *scene.tool);
+  std::unique_ptr<ContactQuery> make() const { return make_search(name, *shell, *scene.tool); }
+  /// Says where it does not find what brute force finds; empty if nowhere.
+  std::string wrong() const {
+    const auto query = make(), brute = make_search("brute_force", *shell, *scene.tool);
+    ContactBuffer found(query->capacity()), all(brute->capacity());
+    for (std::size_t k = 0; k < scene.poses.size(); ++k) {
+      query->contacts_at(scene.poses[k], found);
+      if (k % brute_force_every != 0) continue;
+      brute->contacts_at(scene.poses[k], all);
+      if (!test::same_contacts(found, all)) return fmt::format("not brute force's contacts at pose {}", k);
+    }
+    return "";
+  }
+};
+
+void time_search(benchmark::State& state, const Search& search) {
+  const auto& poses = search.scene.poses;
+  const bool is_brute = search.name == "brute_force";
+  const std::string what =
+      fmt::format("{} {} {}", search.name, search.scene.loaded.scenario.name, search.shell->size());
+  if (!is_brute && !proved(state, what, [&] { return search.wrong(); })) return;
+  const auto query = search.make();
   ContactBuffer contacts(query->capacity());
-  const std::size_t every = search == "brute_force" ? kBruteForceEvery : 1;
-  const auto batch = static_cast<benchmark::IterationCount>((scene.poses.size() - 1) / every);
+  const std::size_t every = is_brute ? search.brute_force_every : 1;
+  const auto batch = static_cast<benchmark::IterationCount>((poses.size() - 1) / every);
   std::uint64_t found = 0, queries = 0, tested = 0;
   while (state.KeepRunningBatch(batch)) {
     state.PauseTiming();  // back to the first pose, with a warm list
     tested += query->work().points_tested;
     query->reset();
-    query->contacts_at(scene.poses[0], contacts);
+    query->contacts_at(poses[0], contacts);
     state.ResumeTiming();
     for (benchmark::IterationCount k = 1; k <= batch; ++k) {
-      query->contacts_at(scene.poses[static_cast<std::size_t>(k) * every], contacts);
+      query->contacts_at(poses[static_cast<std::size_t>(k) * every], contacts);
       found += contacts.size();
     }
     queries += static_cast<std::uint64_t>(batch);
   }
   tested += query->work().points_tested;
+  state.counters["points"] = static_cast<double>(search.shell->size());
   state.counters["contacts"] = static_cast<double>(found) / static_cast<double>(queries);
   state.counters["points_tested"] = static_cast<double>(tested) / static_cast<double>(queries);
 }
 
-}  // namespace
+void search_in_task(benchmark::State& state, const std::string& search, const std::string& task) {
+  const TaskScene& scene = task_scene(task);
+  time_search(state, {search, scene.shell, scene, 16});
+}
 
-void register_search() {
+void add_searches() {
   for (const char* search : kSearches) {
     for (const char* task : kTasks) {
-      benchmark::RegisterBenchmark(fmt::format("search/{}/{}", search, task).c_str(), search_benchmark,
+      benchmark::RegisterBenchmark(fmt::format("search/{}/{}", search, task).c_str(), search_in_task,
                                    std::string(search), std::string(task));
     }
   }
-}
-
-namespace {
-
-bool same_points(const PointShell& a, const PointShell& b) {
-  if (a.size() != b.size()) return false;
-  for (const auto column :
-       {&PointShell::x, &PointShell::y, &PointShell::z, &PointShell::nx, &PointShell::ny, &PointShell::nz}) {
-    if (!std::equal((a.*column)(), (a.*column)() + a.size(), (b.*column)())) return false;
-  }
-  return true;
 }
 
 /// A line of /proc/self/status [bytes]; 0 if there is none.
@@ -131,43 +108,27 @@ double memory_of_building(const Scenario& scenario) {
   malloc_trim(0);                               // returns free memory to the system
   std::ofstream("/proc/self/clear_refs") << 5;  // resets the peak
   const double before = memory("VmRSS");
-  benchmark::DoNotOptimize(built_shell(scenario));
+  benchmark::DoNotOptimize(make_shell(scenario));
   return memory("VmHWM") - before;
 }
 
-/// Times the construction of the scenario's shell, after comparing it with the exact surface of the block and with
-/// `again`, the same shell built before. Counters: points, and bytes_per_point, the peak growth of the process.
-void build_shells(benchmark::State& state, const Scenario& scenario, const PointShell& again) {
-  // A vertex lies on an edge that crosses the surface, so its distance from the surface is at most the length of the
-  // edge. Marching cubes has a test of its own.
-  const auto& block = std::get<BlockEnvironment>(scenario.environment);
-  for (std::size_t i = 0; i < again.size(); ++i) {
-    if (std::abs(signed_distance(block.block, again.point(i).position)) > block.grid) {
-      return refute(state, "off the surface");
-    }
-  }
+/// Times the construction of the scenario's shell. Counters: points, and bytes_per_point, the peak growth of the
+/// process.
+void build_shells(benchmark::State& state, const Scenario& scenario) {
   const double bytes = memory_of_building(scenario);
   std::shared_ptr<const PointShell> shell;
   for (auto _ : state) {
     shell.reset();
-    shell = built_shell(scenario);
+    shell = make_shell(scenario);
   }
-  if (!same_points(*shell, again)) return refute(state, "another shell the second time");
   state.counters["points"] = static_cast<double>(shell->size());
   state.counters["bytes_per_point"] = bytes / static_cast<double>(shell->size());
 }
 
-void build_block(benchmark::State& state) {
-  build_shells(state, step_scenario("T1").scenario, *block_shell());
+void add_shell() {
+  benchmark::RegisterBenchmark("shell/build", build_shells, step_scenario("T1").scenario)
+      ->Unit(benchmark::kMillisecond);
 }
-
-}  // namespace
-
-void register_shells() {
-  benchmark::RegisterBenchmark("shell/build", build_block)->Unit(benchmark::kMillisecond);
-}
-
-namespace {
 
 constexpr std::size_t kPoints[] = {10'000, 30'000, 100'000, 300'000};
 constexpr std::size_t kManyPoints[] = {1'000'000, 3'000'000, 7'000'000};
@@ -187,51 +148,18 @@ std::shared_ptr<const PointShell> shell_of(std::size_t points) {
   static std::shared_ptr<const PointShell> shell;
   if (kept != points) {
     shell.reset();
-    shell = built_shell(block_of(points));
+    shell = make_shell(block_of(points));
     kept = points;
   }
   return shell;
 }
 
 void build(benchmark::State& state, std::size_t points) {
-  const Scenario scenario = block_of(points);
-  build_shells(state, scenario, *shell_of(points));
+  build_shells(state, block_of(points));
 }
 
-/// Poses of T2 between calls of brute force.
-constexpr std::size_t kProofEvery = 1024;
-
-std::string wrong_search(ContactQuery& query, const PointShell& shell) {
-  const TaskScene& scene = task_scene("T2");
-  ShellQuery brute(shell, *scene.tool);
-  ContactBuffer found(query.capacity()), all(brute.capacity());
-  for (std::size_t k = 0; k < scene.poses.size(); k += kProofEvery) {
-    query.contacts_at(scene.poses[k], found);
-    brute.contacts_at(scene.poses[k], all);
-    if (!test::same_contacts(found, all)) return fmt::format("not brute force's contacts at pose {}", k);
-  }
-  return "";
-}
-
-void search(benchmark::State& state, const std::string& name, std::size_t points) {
-  const auto shell = shell_of(points);
-  const TaskScene& scene = task_scene("T2");
-  const auto query = make_search(name, *shell, *scene.tool);
-  if (!proved(state, fmt::format("growth/{}/{}", name, points), [&] { return wrong_search(*query, *shell); })) return;
-  ContactBuffer contacts(query->capacity());
-  const std::size_t every = name == "brute_force" ? kProofEvery : 1;
-  const auto batch = static_cast<benchmark::IterationCount>(scene.poses.size() / every);
-  double found = 0.0;
-  query->contacts_at(scene.poses.back(), contacts);
-  while (state.KeepRunningBatch(batch)) {
-    found = 0.0;
-    for (std::size_t k = 0; k < scene.poses.size(); k += every) {
-      query->contacts_at(scene.poses[k], contacts);
-      found += static_cast<double>(contacts.size());
-    }
-  }
-  state.counters["points"] = static_cast<double>(shell->size());
-  state.counters["contacts"] = found / static_cast<double>(batch);
+void search_among(benchmark::State& state, const std::string& search, std::size_t points) {
+  time_search(state, {search, shell_of(points), task_scene("T2"), 1024});
 }
 
 /// Poses of all tasks. In T1 the tool comes down from free air, where building a list takes longest.
@@ -275,22 +203,24 @@ void list_rebuild(benchmark::State& state, std::size_t points) {
   state.counters["longest_s"] = longest;
 }
 
-void register_size(std::size_t points) {
+void add_size(std::size_t points) {
   benchmark::RegisterBenchmark(fmt::format("growth/shell/{}", points).c_str(), build, points)
       ->Unit(benchmark::kMillisecond);
   for (const char* name : kSearches) {
-    benchmark::RegisterBenchmark(fmt::format("growth/search/{}/{}", name, points).c_str(), search, std::string(name),
-                                 points);
+    benchmark::RegisterBenchmark(fmt::format("growth/search/{}/{}", name, points).c_str(), search_among,
+                                 std::string(name), points);
   }
   benchmark::RegisterBenchmark(fmt::format("growth/list_rebuild/{}", points).c_str(), list_rebuild, points);
 }
 
 }  // namespace
 
-void register_growth_over_points(bool full) {
-  for (const std::size_t points : kPoints) register_size(points);
+void register_searches(bool full) {
+  add_searches();
+  add_shell();
+  for (const std::size_t points : kPoints) add_size(points);
   if (!full) return;
-  for (const std::size_t points : kManyPoints) register_size(points);
+  for (const std::size_t points : kManyPoints) add_size(points);
 }
 
 }  // namespace hapbench::bench

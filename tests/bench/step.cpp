@@ -19,11 +19,12 @@
 #include "sim/tool/revolved.hpp"
 #include "tests/bench/bench.hpp"
 #include "tests/bench/task_scene.hpp"
-#include "tests/support/bits.hpp"
 #include "tests/support/meshes.hpp"
 
 /// Whole steps: their mean time, single steps, growth with the number of contacts, and what each skip saves.
 namespace hapbench::bench {
+namespace {
+
 /// The runs whose steps are timed.
 constexpr const char* kSteps[] = {"T1",
                                   "T2",
@@ -45,61 +46,6 @@ constexpr const char* kSteps[] = {"T1",
 
 /// Steps before the first timed one. By then T1 has touched the block, and every buffer has been used.
 constexpr std::uint64_t kWarmUp = 1024;
-
-/// A run of one of kSteps as `hapbench run` makes it, with its metrics and a recorder that keeps the numbers of
-/// trajectory.csv in memory. In `_revolved` the drill is a solid of revolution whose side is cut into eight lines, the
-/// same body; in `_grooved` it has grooves of 0.1 um, so that it is not convex but meets nearly the same points.
-class TimedRun {
- public:
-  explicit TimedRun(const std::string& name, Skips skips = Skips::on);
-  ~TimedRun();
-
-  /// Back to the state after kWarmUp steps.
-  void rewind() noexcept;
-  /// The rest of the run after rewinding.
-  std::uint64_t steps_left() const { return steps_ - kWarmUp; }
-  /// Whether every step has been taken.
-  bool at_end() const { return simulation_->next_row() == steps_; }
-  Simulation& simulation() { return *simulation_; }
-  const MetricsObserver& metrics() const { return *metrics_; }
-
- private:
-  class MemoryRecorder;
-
-  std::uint64_t steps_ = 0;
-  std::unique_ptr<MetricsObserver> metrics_;
-  std::unique_ptr<PassivityObserver> passivity_;
-  std::unique_ptr<MemoryRecorder> recorder_;
-  std::unique_ptr<Simulation> simulation_;
-};
-
-/// Writes the numbers of a row of trajectory.csv into preallocated memory.
-class TimedRun::MemoryRecorder final : public Observer {
- public:
-  explicit MemoryRecorder(std::size_t rows) : rows_(rows) {}
-
-  bool wants_ratio() const noexcept override { return true; }
-  void on_step(const StepRecord& r) noexcept override {
-    rows_[r.step] = {r.time,   r.tool.pose, r.tool.velocity,    r.force.rendered,  r.force.spring, r.hand,
-                     r.handle, r.colliding, r.rendered->size(), r.force.depth_max, r.ratio};
-  }
-
- private:
-  struct Row {
-    double time = 0.0;
-    ToolPose pose;
-    Vec3 velocity;
-    Vec3 rendered, spring;
-    MeasuredForce hand;
-    HandleState handle;
-    std::size_t colliding = 0, kept = 0;
-    double depth_max = 0.0;
-    RatioRange ratio;
-  };
-  std::vector<Row> rows_;
-};
-
-namespace {
 
 /// The mesh of the drill of all tasks, 128 sides and some 128^3 nodes.
 std::shared_ptr<const SignedDistanceGrid> drill_grid(const Cylinder& drill) {
@@ -141,28 +87,84 @@ SimulationParts parts_of(const Scenario& scenario, const std::string& name) {
   return parts;
 }
 
-}  // namespace
+/// Writes the numbers of a row of trajectory.csv into preallocated memory.
+class MemoryRecorder final : public Observer {
+ public:
+  explicit MemoryRecorder(std::size_t rows) : rows_(rows) {}
 
-TimedRun::TimedRun(const std::string& name, Skips skips) {
+  bool wants_ratio() const noexcept override { return true; }
+  void on_step(const StepRecord& r) noexcept override {
+    rows_[r.step] = {r.time,   r.tool.pose, r.tool.velocity,    r.force.rendered,  r.force.spring, r.hand,
+                     r.handle, r.colliding, r.rendered->size(), r.force.depth_max, r.ratio};
+  }
+
+ private:
+  struct Row {
+    double time = 0.0;
+    ToolPose pose;
+    Vec3 velocity;
+    Vec3 rendered, spring;
+    MeasuredForce hand;
+    HandleState handle;
+    std::size_t colliding = 0, kept = 0;
+    double depth_max = 0.0;
+    RatioRange ratio;
+  };
+  std::vector<Row> rows_;
+};
+
+/// A simulation with the observers of every `hapbench run`, and perhaps a recorder.
+struct WatchedRun {
+  MetricsObserver metrics;
+  PassivityObserver passivity;
+  Simulation simulation;
+
+  WatchedRun(const SimulationConfig& config, SimulationParts parts, Observer* recorder)
+      : metrics(config.dt), passivity(config.dt), simulation(config, std::move(parts), observers(recorder)) {}
+
+ private:
+  std::vector<Observer*> observers(Observer* recorder) {
+    if (recorder == nullptr) return {&metrics, &passivity};
+    return {&metrics, &passivity, recorder};
+  }
+};
+
+/// The scenario of one of kSteps. In `_revolved` the drill is a solid of revolution whose side is cut into eight lines,
+/// the same body; in `_grooved` it has grooves of 0.1 um, so that it is not convex but meets nearly the same points.
+Scenario scenario_of(const std::string& name, Skips skips) {
   Scenario scenario = step_scenario(name.substr(0, name.find("_revolved")).substr(0, name.find("_grooved"))).scenario;
   scenario.rendering.skips = skips;
-  const SimulationConfig config = simulation_config(scenario);
-  steps_ = config.steps;
-  metrics_ = std::make_unique<MetricsObserver>(config.dt);
-  passivity_ = std::make_unique<PassivityObserver>(config.dt);
-  recorder_ = std::make_unique<MemoryRecorder>(steps_);
-  simulation_ = std::make_unique<Simulation>(config, parts_of(scenario, name),
-                                             std::vector<Observer*>{metrics_.get(), passivity_.get(), recorder_.get()});
+  return scenario;
 }
 
-TimedRun::~TimedRun() = default;
+/// A run of one of kSteps as `hapbench run` makes it, with a recorder that keeps the numbers of trajectory.csv in
+/// memory.
+class TimedRun {
+ public:
+  explicit TimedRun(const std::string& name, Skips skips = Skips::on) : TimedRun(name, scenario_of(name, skips)) {}
 
-void TimedRun::rewind() noexcept {
-  simulation_->reset();
-  for (std::uint64_t k = 0; k < kWarmUp; ++k) simulation_->step();
-}
+  /// Back to the state after kWarmUp steps.
+  void rewind() noexcept {
+    simulation().reset();
+    for (std::uint64_t k = 0; k < kWarmUp; ++k) simulation().step();
+  }
+  /// The rest of the run after rewinding.
+  std::uint64_t steps_left() const { return steps_ - kWarmUp; }
+  /// Whether every step has been taken.
+  bool at_end() const { return run_.simulation.next_row() == steps_; }
+  Simulation& simulation() { return run_.simulation; }
+  const MetricsObserver& metrics() const { return run_.metrics; }
 
-namespace {
+ private:
+  TimedRun(const std::string& name, const Scenario& scenario)
+      : steps_(simulation_config(scenario).steps),
+        recorder_(steps_),
+        run_(simulation_config(scenario), parts_of(scenario, name), &recorder_) {}
+
+  std::uint64_t steps_;
+  MemoryRecorder recorder_;
+  WatchedRun run_;
+};
 
 /// Says what is wrong with the first second of the run; empty if nothing. The reference is the run without skips (brute
 /// force, everything computed); position, velocity and force of every row must be identical.
@@ -192,15 +194,11 @@ void step_benchmark(benchmark::State& state, const std::string& name) {
   state.counters["points_tested"] = static_cast<double>(work.points_tested) / static_cast<double>(work.queries);
 }
 
-}  // namespace
-
-void register_steps() {
+void add_steps() {
   for (const char* name : kSteps) {
     benchmark::RegisterBenchmark(fmt::format("step/{}", name).c_str(), step_benchmark, std::string(name));
   }
 }
-
-namespace {
 
 /// Runs for the latencies. All take the same steps, so the shortest time of each step excludes disturbances by the
 /// machine.
@@ -228,17 +226,13 @@ void latency(benchmark::State& state, const std::string& name) {
   state.counters["late"] = static_cast<double>(repeatable.misses[1]);
 }
 
-}  // namespace
-
-void register_latencies() {
+void add_latencies() {
   for (const char* name : {"T1", "T2", "T2_proxy", "T3", "unreduced_1000", "upright_proxy"}) {
     benchmark::RegisterBenchmark(fmt::format("latency/{}", name).c_str(), latency, std::string(name))
         ->Iterations(kRuns)
         ->Unit(benchmark::kMillisecond);
   }
 }
-
-namespace {
 
 constexpr std::uint64_t kStepsAtATime = 64;
 
@@ -257,88 +251,63 @@ std::shared_ptr<const PointShell> wall(std::size_t n, const Cylinder& tool) {
 }
 
 /// The drill at rest in that hole, held by its contacts, without a hand.
-class FilledHole {
- public:
-  FilledHole(std::size_t n, Skips skips) {
-    static const LoadedScenario loaded =
-        load_unrecorded("round_the_wall", {"rendering.reduction=null", "hand={\"type\":\"none\"}",
-                                           "device={\"type\":\"ideal\"}", "initial.position_m=[0,0,-0.0005]"});
-    Scenario scenario = loaded.scenario;
-    scenario.rendering.skips = skips;
-    SimulationConfig config = simulation_config(scenario);
-    config.steps = 1'000'000'000;  // more than are timed
-    metrics_ = std::make_unique<MetricsObserver>(config.dt);
-    passivity_ = std::make_unique<PassivityObserver>(config.dt);
-    simulation_ = std::make_unique<Simulation>(config, assemble(scenario, wall(n, make_cylinder(scenario.tool)), {}),
-                                               std::vector<Observer*>{metrics_.get(), passivity_.get()});
-    take(kStepsAtATime);
-  }
-  void take(std::uint64_t steps) { simulation_->advance(steps); }
-  const MetricsObserver& metrics() const { return *metrics_; }
-
- private:
-  std::unique_ptr<MetricsObserver> metrics_;
-  std::unique_ptr<PassivityObserver> passivity_;
-  std::unique_ptr<Simulation> simulation_;
-};
+std::unique_ptr<WatchedRun> filled_hole(std::size_t n, Skips skips) {
+  static const LoadedScenario loaded =
+      load_unrecorded("round_the_wall", {"rendering.reduction=null", "hand={\"type\":\"none\"}",
+                                         "device={\"type\":\"ideal\"}", "initial.position_m=[0,0,-0.0005]"});
+  Scenario scenario = loaded.scenario;
+  scenario.rendering.skips = skips;
+  SimulationConfig config = simulation_config(scenario);
+  config.steps = 1'000'000'000;  // more than are timed
+  auto run =
+      std::make_unique<WatchedRun>(config, assemble(scenario, wall(n, make_cylinder(scenario.tool)), {}), nullptr);
+  run->simulation.advance(kStepsAtATime);
+  return run;
+}
 
 void step(benchmark::State& state, std::size_t n) {
   const auto wrong = [n]() -> std::string {
-    const FilledHole run(n, Skips::on), reference(n, Skips::off);
-    if (told(run.metrics(), "colliding_mean") != static_cast<double>(n)) return "not every point is a contact";
-    return run.metrics().state_hash() == reference.metrics().state_hash() ? "" : "not the run without skips";
+    const auto run = filled_hole(n, Skips::on), reference = filled_hole(n, Skips::off);
+    if (told(run->metrics, "colliding_mean") != static_cast<double>(n)) return "not every point is a contact";
+    return run->metrics.state_hash() == reference->metrics.state_hash() ? "" : "not the run without skips";
   };
   if (!proved(state, fmt::format("growth/step/{}", n), wrong)) return;
-  FilledHole run(n, Skips::on);
-  while (state.KeepRunningBatch(kStepsAtATime)) run.take(kStepsAtATime);
-  state.counters["contacts"] = told(run.metrics(), "colliding_mean").value_or(0.0);
+  const auto run = filled_hole(n, Skips::on);
+  while (state.KeepRunningBatch(kStepsAtATime)) run->simulation.advance(kStepsAtATime);
+  state.counters["contacts"] = told(run->metrics, "colliding_mean").value_or(0.0);
 }
 
-}  // namespace
-
-void register_growth_over_contacts() {
+void add_growth() {
   for (const std::size_t n : kGrowthContacts) {
     benchmark::RegisterBenchmark(fmt::format("growth/step/{}", n).c_str(), step, n);
   }
 }
 
-namespace {
-
-std::uint64_t bits_of(const RenderedForce& force) {
-  test::Hash hash;
-  hash.add(force.rendered);
-  hash.add(force.spring);
-  return hash.value();
-}
-
 /// One force algorithm on fixed contacts.
-class Rendering {
- public:
-  Rendering(RenderingConfig config, Skips skips, std::size_t contacts)
-      : all_(task_contacts(std::max<std::size_t>(contacts, 1))), contacts_(all_) {
-    config.skips = skips;
-    algorithm_ = make_algorithm(config);
-    algorithm_->prepare({.capacity = all_.capacity()});
-    algorithm_->reset();
-    if (contacts == 0) contacts_.clear();
-  }
-  const RenderedForce& compute() {
-    algorithm_->compute({{}, {0.001, -0.002, 0.003}}, contacts_, force_);
-    return force_;
-  }
-
- private:
-  ContactBuffer all_, contacts_;
-  std::unique_ptr<ForceAlgorithm> algorithm_;
-  RenderedForce force_;
-};
-
-void rendering_benchmark(benchmark::State& state, const RenderingConfig& config, std::size_t contacts, Skips skips) {
-  Rendering rendering(config, skips, contacts), other(config, skips == Skips::off ? Skips::on : Skips::off, contacts);
-  if (bits_of(rendering.compute()) != bits_of(other.compute())) {
+void rendering_benchmark(benchmark::State& state, RenderingConfig config, std::size_t contacts, Skips skips) {
+  const std::size_t capacity = std::max<std::size_t>(contacts, 1);
+  const auto made = [&](Skips s) {
+    config.skips = s;
+    auto algorithm = make_algorithm(config);
+    algorithm->prepare({.capacity = capacity});
+    algorithm->reset();
+    return algorithm;
+  };
+  const auto rendering = made(skips), other = made(skips == Skips::off ? Skips::on : Skips::off);
+  ContactBuffer buffer = task_contacts(capacity);
+  if (contacts == 0) buffer.clear();
+  const ToolState tool{{}, {0.001, -0.002, 0.003}};
+  ContactBuffer others = buffer;
+  RenderedForce force, expected;
+  rendering->compute(tool, buffer, force);
+  other->compute(tool, others, expected);
+  if (force.rendered != expected.rendered || force.spring != expected.spring) {
     return refute(state, "the skip changes the force");
   }
-  for (auto _ : state) benchmark::DoNotOptimize(rendering.compute());
+  for (auto _ : state) {
+    rendering->compute(tool, buffer, force);
+    benchmark::DoNotOptimize(force);
+  }
   state.counters["contacts"] = static_cast<double>(contacts);
 }
 
@@ -389,9 +358,7 @@ RenderingConfig task_rendering() {
   return config;
 }
 
-}  // namespace
-
-void register_skips() {
+void add_skips() {
   RenderingConfig plain = task_rendering();
   plain.reduction.reset();
   plain.mu_s = plain.mu_f = 0.0;
@@ -406,6 +373,15 @@ void register_skips() {
     add("no_friction", rendering_benchmark, plain, std::size_t{1});
     add("unwanted_records", records_benchmark);
   }
+}
+
+}  // namespace
+
+void register_steps() {
+  add_steps();
+  add_latencies();
+  add_growth();
+  add_skips();
 }
 
 }  // namespace hapbench::bench

@@ -98,12 +98,8 @@ const TaskScene& task_scene(const std::string& task) {
   return found != scenes.end() ? found->second : scenes.emplace(task, make_task_scene(task)).first->second;
 }
 
-std::shared_ptr<const PointShell> built_shell(const Scenario& scenario) {
-  return make_shell(scenario);
-}
-
 std::shared_ptr<const PointShell> block_shell() {
-  static const auto shell = built_shell(step_scenario("T1").scenario);
+  static const auto shell = make_shell(step_scenario("T1").scenario);
   return shell;
 }
 

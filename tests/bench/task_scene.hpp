@@ -34,8 +34,6 @@ const LoadedScenario& step_scenario(const std::string& name);
 /// A bundled scenario with overrides as for `--set`, without records.
 LoadedScenario load_unrecorded(const char* bundled, std::vector<std::string> overrides);
 
-/// The shell of a scenario as the program builds it, ready for the search.
-std::shared_ptr<const PointShell> built_shell(const Scenario& scenario);
 /// The shell of all these scenes, which have the same block; built once.
 std::shared_ptr<const PointShell> block_shell();
 

@@ -123,15 +123,7 @@ TEST(Events, OfTheReferenceAreNotMadeBySampling) {
 
 TEST(Work, IsWhatTheSettingIsOf) {
   const Panel panel = accuracy::integrators(bundled("springs_oscillation"));
-  const accuracy::Work work = panel[1].work();
-  EXPECT_EQ(work.count, 2 * panel[0].work().count) << "half the step, twice the steps";
-  work.prepare();
-  work.run();
-  const Panel forces = accuracy::shaping(drill());
-  const accuracy::Work call = forces.back().work();
-  EXPECT_GT(call.count, 1u);
-  call.prepare();
-  call.run();
+  EXPECT_EQ(panel[1].work().count, 2 * panel[0].work().count) << "half the step, twice the steps";
 }
 
 }  // namespace

@@ -7,28 +7,20 @@
 
 /// Bullet in double precision: its cylinder against a quantised tree of boxes over static triangles, in millimetres
 /// because its margins and thresholds are made for lengths of about 1. Each triangle that the cylinder meets is a
-/// contact. Depth and direction are those that its GJK and EPA find for the pair.
+/// contact. Its depth is that which GJK and EPA find for the pair.
 namespace hapbench::bench {
 namespace {
 
 constexpr double kMillimetres = 1e3;
 
-/// Collects the contacts of one pair.
+/// Collects the depths of one pair.
 class Taker final : public btCollisionWorld::ContactResultCallback {
  public:
-  Taker(std::span<PeerContact> room, const btCollisionObject& tool) : room_(room), tool_(&tool) {}
+  explicit Taker(std::span<PeerContact> room) : room_(room) {}
 
-  btScalar addSingleResult(btManifoldPoint& point, const btCollisionObjectWrapper* a, int, int index_a,
-                           const btCollisionObjectWrapper*, int, int index_b) override {
-    if (point.getDistance() > 0.0 || found == room_.size()) return 0.0;
-    // The normal points from the second object to the first.
-    const bool tool_is_first = a->getCollisionObject() == tool_;
-    const btVector3 u = tool_is_first ? -point.m_normalWorldOnB : point.m_normalWorldOnB;
-    const btVector3 at = (tool_is_first ? point.m_positionWorldOnB : point.m_positionWorldOnA) / kMillimetres;
-    room_[found++] = {.index = static_cast<std::uint32_t>(tool_is_first ? index_b : index_a),
-                      .point = {at.x(), at.y(), at.z()},
-                      .gradient = {u.x(), u.y(), u.z()},
-                      .depth = -point.getDistance() / kMillimetres};
+  btScalar addSingleResult(btManifoldPoint& point, const btCollisionObjectWrapper*, int, int,
+                           const btCollisionObjectWrapper*, int, int) override {
+    if (point.getDistance() <= 0.0 && found < room_.size()) room_[found++].depth = -point.getDistance() / kMillimetres;
     return 0.0;
   }
 
@@ -36,7 +28,6 @@ class Taker final : public btCollisionWorld::ContactResultCallback {
 
  private:
   std::span<PeerContact> room_;
-  const btCollisionObject* tool_;
 };
 
 class Bullet final : public Peer {
@@ -61,7 +52,7 @@ class Bullet final : public Peer {
     const btMatrix3x3 rotation(r[0], r[1], r[2], r[3], r[4], r[5], r[6], r[7], r[8]);
     const btVector3 centre(pose.centre[0], pose.centre[1], pose.centre[2]);
     tool_.setWorldTransform(btTransform(rotation, centre * kMillimetres));
-    Taker taker(room, tool_);
+    Taker taker(room);
     world_.contactPairTest(&surface_, &tool_, taker);
     return taker.found;
   }

@@ -12,10 +12,8 @@
 namespace hapbench::bench {
 
 struct PeerContact {
-  std::uint32_t index;  ///< of the triangle or the vertex
-  double point[3];      ///< [m]
-  double gradient[3];   ///< unit vector along which the tool gets deeper
-  double depth;         ///< [m]
+  std::uint32_t index;  ///< of the point, where points are asked for
+  double depth;         ///< [m], of libraries that have one
 };
 
 /// A library with its structure over a surface.

@@ -5,8 +5,8 @@
 #include "tests/bench/peers/contact_library.hpp"
 
 /// FCL: its cylinder against triangles in a tree of oriented boxes with rectangle swept spheres, its default for
-/// meshes. Each triangle that the cylinder meets is a contact. Depth and direction are those of the shortest
-/// translation that separates the two, as libccd approximates it (EPA).
+/// meshes. Each triangle that the cylinder meets is a contact. Its depth is that of the shortest translation that
+/// separates the two, as libccd approximates it (EPA).
 namespace hapbench::bench {
 namespace {
 
@@ -38,14 +38,7 @@ class Fcl final : public Peer {
     fcl::CollisionResultd result;
     fcl::collide(surface_.get(), tool_.get(), request, result);
     const std::size_t found = std::min(result.numContacts(), room.size());
-    for (std::size_t i = 0; i < found; ++i) {
-      const fcl::Contactd& c = result.getContact(i);
-      // The normal points from the first object, the surface, to the second.
-      room[i] = {.index = static_cast<std::uint32_t>(c.b1),
-                 .point = {c.pos.x(), c.pos.y(), c.pos.z()},
-                 .gradient = {-c.normal.x(), -c.normal.y(), -c.normal.z()},
-                 .depth = c.penetration_depth};
-    }
+    for (std::size_t i = 0; i < found; ++i) room[i].depth = result.getContact(i).penetration_depth;
     return found;
   }
 
