@@ -1,7 +1,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
 #include <string>
+#include <vector>
 
 #include "algorithms/depth/depth_model.hpp"
 #include "sim/contact/contact_source.hpp"

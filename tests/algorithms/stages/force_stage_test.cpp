@@ -7,7 +7,6 @@
 #include <functional>
 #include <limits>
 
-#include "algorithms/stages/passivity_controller.hpp"
 #include "sim/core/random.hpp"
 #include "tests/support/fakes.hpp"
 #include "tests/support/scenes.hpp"
