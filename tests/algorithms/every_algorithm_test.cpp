@@ -354,18 +354,21 @@ TEST_P(Run, IsTheSameToTheBitAfterResetAndInAnotherObject) {
   EXPECT_EQ(hash.value(), first);
 }
 
-TEST_P(Run, WithReductionAndLocalAverageIsTheSameToTheBitAfterReset) {
+TEST_P(Run, WithEveryStageIsTheSameToTheBitAfterReset) {
   config.reduction = ReductionConfig{0.995, 3, 42};
   config.local_average = !setting.springs;
+  config.passivity_controller = true;
   test::HashingObserver hash;
   Simulation simulation(test::free_run_config(setting, config, kSteps), test::free_run(setting, config), {&hash});
   simulation.run();
-  const std::uint64_t first = hash.value(), dropped = simulation.algorithm().work().points_dropped;
+  const std::uint64_t first = hash.value();
+  const AlgorithmWork work = simulation.algorithm().work();
   hash.clear();
   simulation.reset();
   simulation.run();
   EXPECT_EQ(hash.value(), first);
-  EXPECT_EQ(simulation.algorithm().work().points_dropped, dropped);
+  EXPECT_EQ(simulation.algorithm().work().points_dropped, work.points_dropped);
+  EXPECT_EQ(simulation.algorithm().work().steps_controlled, work.steps_controlled);
 }
 
 }  // namespace

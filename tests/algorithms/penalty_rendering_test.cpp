@@ -28,25 +28,6 @@ test::Setting three_springs() {
   return setting;
 }
 
-TEST(PenaltyRendering, WithoutContactsRendersNothingNotEvenFriction) {
-  RenderingConfig config;
-  config.mu_s = 5.0;
-  test::Probe probe(pressed_plane(), config);
-  const RenderedForce force = probe.force_at({{0, 0, 1}, {0, 0, -1}}, {1, 1, 1});
-  EXPECT_EQ(force.spring, Vec3(0, 0, 0));
-  EXPECT_EQ(force.rendered, Vec3(0, 0, 0));
-  EXPECT_EQ(force.S, Mat3::Zero());
-  EXPECT_EQ(force.depth_max, 0.0);
-}
-
-TEST(PenaltyRendering, NothingOfAStepIsLeftForTheNext) {
-  test::Probe probe(pressed_plane(), {});
-  const Vec3 first = probe.force_at(pressed_plane().pose).rendered;
-  EXPECT_NE(first, Vec3(0, 0, 0));
-  EXPECT_EQ(probe.force_at({{0, 0, 1}, {0, 0, -1}}).rendered, Vec3(0, 0, 0));
-  EXPECT_EQ(probe.force_at(pressed_plane().pose).rendered, first);
-}
-
 TEST(PenaltyRendering, DepthMaxIsTheDeepestCollidingPointBeforeAnyStage) {
   // The deepest point is merged with shallower ones of its cell, and the reduction keeps a single point.
   RenderingConfig config;
@@ -87,21 +68,6 @@ TEST(PenaltyRendering, SpringsBringTheirOwnDepths) {
     EXPECT_LE((force - Vec3(-40.0, 40.0, 0.0)).norm(), 1e-13);
     EXPECT_EQ(probe.contacts().depth[1], -0.001);
   }
-}
-
-TEST(PenaltyRendering, DepthMaxOfStretchedSpringsIsTheLargestSignedDepth) {
-  test::Probe probe(three_springs(), {});
-  EXPECT_EQ(probe.force_at(three_springs().pose).depth_max, 0.002);
-}
-
-TEST(PenaltyRendering, RendersDampingOfTheLawsTensor) {
-  RenderingConfig config;
-  config.algorithm = "summation";
-  config.damping = 10.0;
-  test::Probe probe(three_springs(), config);
-  const RenderedForce force = probe.force_at(three_springs().pose, {1.0, 1.0, 1.0});
-  // S = diag(2, 1, 0).
-  EXPECT_LE((force.rendered - (force.spring - Vec3(20.0, 10.0, 0.0))).norm(), 1e-13);
 }
 
 TEST(PenaltyRendering, WantsTheAngularVelocityForAngularDampingOnly) {

@@ -22,13 +22,6 @@ std::size_t random_size(Random& random, std::size_t largest);
 /// A uniformly distributed rotation.
 Mat3 random_rotation(Random& random);
 
-/// `items` in a random order.
-template <class T>
-std::vector<T> shuffled(std::vector<T> items, Random& random) {
-  random.shuffle(items);
-  return items;
-}
-
 /// A way to draw n unit gradients that stresses a law in one particular way.
 struct GradientFamily {
   const char* name;

@@ -35,10 +35,6 @@ Eigen::VectorXd shaped_weights(const Eigen::MatrixXd& A, int m);
 /// Beta_i over sigma_E of thesis F.2; zeros when sigma_E <= 1e-12.
 Eigen::VectorXd tandpasta_weights(const Dense& contacts);
 
-/// argmin |A c - b|^2 over c >= 0 by the active-set method of Lawson and Hanson (Solving Least Squares Problems, 1974,
-/// chapter 23), each unconstrained problem by Householder QR. For small dense problems; A has full column rank.
-Eigen::VectorXd nonnegative_least_squares(const Eigen::MatrixXd& A, const Eigen::VectorXd& b);
-
 /// How well the weights in a buffer solve the problem that defines exact_shaping,
 ///   min ½|S - I|²_F + (eps/2)|c|², c >= 0,
 /// judged in long double from gradients and weights alone.
@@ -60,10 +56,5 @@ ShapingOptimality shaping_optimality(const ContactBuffer& contacts, double eps);
 /// partial sums of n/8 terms that make up S round by at most (n/8 + 8) eps tr S = 6e-14, and c_i = a_i . w, w up to
 /// sqrt 3 / eps, by 1e-15 in eps c_i.
 inline constexpr double kShapingRounding = 1e-13;
-
-/// Largest change that a violation r of the optimality condition allows: for a strongly convex problem of modulus eps,
-/// |c - c'| <= |r| / eps and |S - S'| <= |r| / (2 sqrt eps), where |r|^2 sums over contacts.
-double tensor_tolerance(std::size_t contacts, double violation, double eps);
-double weight_tolerance(std::size_t contacts, double violation, double eps);
 
 }  // namespace hapbench::test

@@ -42,9 +42,4 @@ ToolPose next_pose(const ToolPose& pose, Random& random, double size, double ste
   return next;
 }
 
-std::shared_ptr<const ToolShape> random_drill(Random& random, double size) {
-  const double radius = size * random.uniform(0.02, 0.5), length = size * random.uniform(0.05, 3.0);
-  return std::make_shared<Cylinder>(radius, length, random.below(2) == 0 ? Tip::flat : Tip::round);
-}
-
 }  // namespace hapbench::test

@@ -81,7 +81,4 @@ void expect_agreement_with_brute_force(Random random, const MakeTool& make_tool,
   EXPECT_GE(totals.poses, cases(2000) * 500);
 }
 
-/// A drill whose size suits a shell of `size` metres.
-std::shared_ptr<const ToolShape> random_drill(Random& random, double size);
-
 }  // namespace hapbench::test

@@ -6,7 +6,6 @@
 #include "device_model/hands/scripted_hands.hpp"
 #include "device_model/ideal_device.hpp"
 #include "sim/contact/contact_source.hpp"
-#include "tests/support/contact_sets.hpp"
 
 namespace hapbench::test {
 namespace {
@@ -46,8 +45,8 @@ Setting scaled(Setting setting, double s) {
 }
 
 Setting permuted(Setting setting, Random& random) {
-  setting.points = shuffled(std::move(setting.points), random);
-  if (setting.springs) setting.springs->gradients = shuffled(std::move(setting.springs->gradients), random);
+  random.shuffle(setting.points);
+  if (setting.springs) random.shuffle(setting.springs->gradients);
   return setting;
 }
 

@@ -196,15 +196,6 @@ long double slack(const Cylinder& tool, const ToolPose& pose, const Vec3L& point
   return tool.tip() == Tip::round ? std::min(side, bottom) : std::min({side, -s, bottom});
 }
 
-long double exit_along(const Cylinder& tool, const ToolPose& pose, const Vec3L& point, const Vec3L& direction) {
-  long double inside = 0.0L, outside = 2.0L * (tool.length() + 4.0L * tool.radius());
-  for (int i = 0; i < 100; ++i) {
-    const long double middle = 0.5L * (inside + outside);
-    (slack(tool, pose, point + middle * direction) >= 0.0L ? inside : outside) = middle;
-  }
-  return inside;
-}
-
 Vec3 random_point_near(const Cylinder& tool, const ToolPose& pose, Random& random) {
   const Frame frame(pose.axis);
   const Vec3 disc = random.direction_in_plane() * (1.2 * tool.radius() * std::sqrt(random.uniform()));

@@ -20,9 +20,6 @@ using Vec3L = Eigen::Matrix<long double, 3, 1>;
 /// outside. Concave in the point, because the body is convex.
 long double slack(const Cylinder& tool, const ToolPose& pose, const Vec3L& point);
 
-/// The largest d with point + d * direction in the tool, by bisection; `point` lies in the tool.
-long double exit_along(const Cylinder& tool, const ToolPose& pose, const Vec3L& point, const Vec3L& direction);
-
 /// A point uniform in the bounding cylinder of the body, made 20 % larger on every side.
 Vec3 random_point_near(const Cylinder& tool, const ToolPose& pose, Random& random);
 

@@ -1,13 +1,10 @@
 // Prints a hash of every bit of what the engine and the algorithms compute, one line per case. Built once with each
 // variant of the libraries; their outputs must be the same text.
-#include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <iomanip>
 #include <iostream>
 #include <string>
 
-#include "algorithms/laws/shaped_stiffness.hpp"
 #include "device_model/hands/scripted_hands.hpp"
 #include "sim/contact/contact_source.hpp"
 #include "sim/contact/neighbour_list_query.hpp"
@@ -117,36 +114,6 @@ void print_integrators(const AlgorithmEntry& algorithm) {
   }
 }
 
-/// The depth models on points everywhere in and on the tool.
-void print_depths(const DepthModelEntry& model) {
-  for (const Tip tip : {Tip::flat, Tip::round}) {
-    Random random(2);
-    Hash hash;
-    for (int i = 0; i < 200; ++i) {
-      Setting setting;
-      setting.tool = random_tool(random, tip);
-      setting.pose = random_pose(random);
-      for (int k = 0; k < 50; ++k) {
-        setting.points.push_back({random_point_near(setting.tool, setting.pose, random), random.direction()});
-        setting.points.push_back({random_point_on(setting.tool, setting.pose, random), random.direction()});
-      }
-      RenderingConfig config = config_of("summation");
-      config.depth_model = model.info->name;
-      Probe probe(setting, config);
-      hash.add(probe.force_at(setting.pose));
-      hash.add(probe.contacts());
-
-      // Probes search by neighbour lists; brute force has its own loop.
-      const PointShell shell(setting.points, setting.cell_size);
-      ShellQuery brute_force(shell, setting.tool);
-      ContactBuffer contacts(brute_force.capacity());
-      brute_force.contacts_at(setting.pose, contacts);
-      hash.add(contacts);
-    }
-    print(std::string(model.info->name) + (tip == Tip::flat ? " flat" : " round"), hash.value());
-  }
-}
-
 /// All that a mesh tool answers, among points in and around a cup.
 void print_mesh_tool() {
   const MeshTool tool(grid_of(cup(20), 0.1));
@@ -188,7 +155,10 @@ void print_tools(const ToolKind& kind) {
     }
     const PointShell shell(points, 0.0);
     NeighbourListQuery query(shell, *tool.shape);
-    ContactBuffer contacts(std::max<std::size_t>(query.capacity(), 1));
+    ContactBuffer contacts(points.size());
+    ShellQuery brute_force(shell, *tool.shape);  // which has its own loop
+    brute_force.contacts_at(pose, contacts);
+    hash.add(contacts);
     query.contacts_at(pose, contacts);
     tool.shape->shortest_depths(pose, contacts);
     tool.shape->shortest_gradients(pose, contacts);
@@ -208,29 +178,12 @@ void print_tools(const ToolKind& kind) {
   print(std::string("tool ") + kind.name, hash.value());
 }
 
-/// The two iterations that could amplify a difference in the last bit, on the sets that stress them.
-void print_shaping(const GradientFamily& family) {
-  Random random(3);
-  Hash exact, iterated;
-  for (int i = 0; i < 200; ++i) {
-    ContactBuffer contacts = contacts_of(family.draw(random, random_size(random, 1000)));
-    exact.add(static_cast<std::uint64_t>(solve_exact_shaping(contacts)));
-    exact.add(contacts);
-    iterated.add(shape_weights(contacts, 30));
-    iterated.add(contacts);
-  }
-  print(std::string("exact ") + family.name, exact.value());
-  print(std::string("iterated ") + family.name, iterated.value());
-}
-
 }  // namespace
 }  // namespace hapbench::test
 
 int main() {
   using namespace hapbench;
   using namespace hapbench::test;
-  for (const GradientFamily& family : gradient_families()) print_shaping(family);
-  for (const DepthModelEntry& model : depth_models()) print_depths(model);
   print_mesh_tool();
   for (const ToolKind& kind : tool_kinds()) print_tools(kind);
   for (const AlgorithmEntry& algorithm : algorithms()) {

@@ -1,110 +1,110 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "algorithms/laws/shaped_stiffness.hpp"
 #include "algorithms/registry.hpp"
+#include "sim/contact/stiffness_tensor.hpp"
 #include "tests/support/contact_sets.hpp"
 #include "tests/support/dense_laws.hpp"
 #include "tests/support/scale.hpp"
 
+/// exact_shaping by the conditions of optimality, which have one solution, and merged_shaping.
 namespace hapbench::exact_shaping_test {
 namespace {
 
-constexpr double kShapingEps = kExactShapingEpsilon;
+constexpr std::size_t kSetsOfAFamily = 25000;
+constexpr std::size_t kLargestSet = 1000;
 
-// Closed forms of small symmetric sets: the solver leaves a residual of 1e-14 in S.
-constexpr double kRounding = 2e-14;
+// A violation r of the condition moves tr S - |S|^2 by at most r tr S, tr S <= 3/2 + sqrt(3)/2 < 2.4, and the bound on
+// lambda_max that follows from it by less than that.
+constexpr double kTraceRounding = 2.4 * test::kShapingRounding;
 
-Mat3 solve(ContactBuffer& contacts) {
-  solve_exact_shaping(contacts);
-  return stiffness_tensor(contacts);
+/// Everything that holds at the optimum, with the tolerance of double rounding.
+void expect_optimal(const test::GradientFamily& family, ContactBuffer& contacts) {
+  const int steps = solve_exact_shaping(contacts);
+  // Typical are one to five, see TakesAboutTwoNewtonSteps. Clusters at several scales beside many duplicates,
+  // which only the mixtures have, make the active set change contact by contact: 135 steps were the worst of 1e6.
+  ASSERT_LT(steps, std::string(family.name) == "mixture" ? 200 : 60);
+  const auto optimality = test::shaping_optimality(contacts, kExactShapingEpsilon);
+  // Written so that NaN fails, too.
+  ASSERT_TRUE(optimality.smallest_weight >= 0.0 && optimality.largest_weight <= 1.0);
+  ASSERT_LE(optimality.violation, test::kShapingRounding);
+  ASSERT_GE(optimality.ratio_margin, -test::kShapingRounding);
+  ASSERT_LE(optimality.trace_identity, kTraceRounding);
+  const double bound = family.planar ? (1 + std::sqrt(2.0)) / 2 : (1 + std::sqrt(3.0)) / 2;
+  ASSERT_LE(lambda_max(stiffness_tensor(contacts)), bound + kTraceRounding);
 }
 
-/// n gradients in a ring around z, each with z-component `height`.
-std::vector<Vec3> ring(int n, double height) {
-  std::vector<Vec3> gradients;
-  for (int i = 0; i < n; ++i) {
-    const double a = 2 * std::numbers::pi * i / n, r = std::sqrt(1 - height * height);
-    gradients.push_back({r * std::cos(a), r * std::sin(a), height});
+class ExactShapingOnFamily : public testing::TestWithParam<test::GradientFamily> {};
+INSTANTIATE_TEST_SUITE_P(Families, ExactShapingOnFamily,
+                         testing::ValuesIn(test::gradient_families().begin(), test::gradient_families().end()),
+                         [](const auto& family) { return std::string(family.param.name); });
+
+TEST_P(ExactShapingOnFamily, IsOptimalAndWithinTheBounds) {
+  Random random(1);
+  for (std::size_t i = 0; i < test::cases(kSetsOfAFamily); ++i) {
+    ContactBuffer contacts = test::contacts_of(GetParam().draw(random, test::random_size(random, kLargestSet)));
+    expect_optimal(GetParam(), contacts);
+    if (HasFatalFailure()) FAIL() << "set " << i << " of " << contacts.size() << " contacts";
   }
-  return gradients;
 }
 
-TEST(ExactShaping, OneContactKeepsItsSpring) {
-  ContactBuffer contacts = test::contacts_of({Vec3(0.6, 0.64, 0.48)});
-  solve_exact_shaping(contacts);
-  EXPECT_NEAR(contacts.weight[0], 1 / (1 + kShapingEps), kRounding);
+/// Sets that once defeated the solver, by the seeds with which the search drew their size and gradients.
+const std::pair<const char*, std::vector<std::uint64_t>> kHardSets[] = {
+    // The slope of the dual is lost in rounding: a line search that makes no step stops 1e-4 from the optimum.
+    {"clusters", {573042, 883808, 1649647, 2506946}},
+    {"nearly_parallel", {342823, 523566}},
+    {"nearly_parallel_planar", {1565149, 1653106, 1905696}},
+    // The active set changes in the last correction: clipping what that makes negative, and no more, stops 1e-9 away.
+    {"nearly_parallel", {10976, 534807, 863432}},
+    {"clusters", {2020649}},
+    // The rounding of a_i . w is small if |w| is: a tolerance for |w| = 1/eps takes gradients for it and stops 0.1
+    // away.
+    {"mixture", {1943, 3501, 90246, 118655, 184124, 189569}},
+    // Contacts leave one by one.
+    {"clusters", {166086, 1300902, 2093822}},
+    {"mixture", {265578, 701896}},
+};
+
+TEST(ExactShaping, IsOptimalOnSetsThatOnceDefeatedTheSolver) {
+  for (const auto& [name, seeds] : kHardSets) {
+    const auto families = test::gradient_families();
+    const auto family = std::find_if(families.begin(), families.end(),
+                                     [name = std::string(name)](const auto& f) { return f.name == name; });
+    ASSERT_NE(family, families.end());
+    for (const std::uint64_t seed : seeds) {
+      Random random(seed);
+      ContactBuffer contacts = test::contacts_of(family->draw(random, test::random_size(random, kLargestSet)));
+      expect_optimal(*family, contacts);
+      ASSERT_FALSE(HasFatalFailure()) << name << ", seed " << seed;
+    }
+  }
 }
 
-TEST(ExactShaping, ParallelAndOppositeContactsShareOneSpringEqually) {
-  for (const std::size_t n : {2u, 7u, 8u, 9u, 1000u}) {
-    std::vector<Vec3> gradients(n, Vec3::UnitY());
-    for (std::size_t i = 0; i < n; i += 3) gradients[i] = -Vec3::UnitY();
+TEST(ExactShaping, TakesAboutTwoNewtonStepsWhereGradientsAreSpread) {
+  Random random(5);
+  int steps = 0;
+  const int sets = 200;
+  for (int i = 0; i < sets; ++i) {
+    std::vector<Vec3> gradients(test::random_size(random, kLargestSet));
+    for (Vec3& u : gradients) u = random.direction();
     ContactBuffer contacts = test::contacts_of(gradients);
-    solve_exact_shaping(contacts);
-    for (std::size_t i = 0; i < n; ++i) {
-      EXPECT_NEAR(contacts.weight[i], 1 / (static_cast<double>(n) + kShapingEps), kRounding);
-    }
+    steps += solve_exact_shaping(contacts);
   }
-}
-
-TEST(ExactShaping, OrthogonalContactsKeepTheirSprings) {
-  ContactBuffer contacts = test::contacts_of({{1, 0, 0}, {0, -1, 0}, {0, 0, 1}});
-  EXPECT_LE((solve(contacts) - Mat3::Identity() / (1 + kShapingEps)).norm(), kRounding);
-}
-
-TEST(ExactShaping, AWedgeIsShapedToItsClosedForm) {
-  // Two faces with <u_1, u_2>^2 = q: c (1 + q + eps) = 1.
-  for (const double degrees : {1.0, 30.0, 60.0, 89.0, 135.0, 179.0}) {
-    const double a = degrees * std::numbers::pi / 180, q = std::cos(a) * std::cos(a);
-    ContactBuffer contacts = test::contacts_of({{1, 0, 0}, {std::cos(a), std::sin(a), 0}});
-    solve_exact_shaping(contacts);
-    EXPECT_NEAR(contacts.weight[0], 1 / (1 + q + kShapingEps), 1e-9) << degrees;
-    EXPECT_NEAR(contacts.weight[1], contacts.weight[0], 1e-9) << degrees;
-    EXPECT_NEAR(contacts.weight[0] + contacts.weight[1], 2 / (1 + q + kShapingEps), 4 * kRounding) << degrees;
-  }
-}
-
-TEST(ExactShaping, AContactThatMakesAnotherRedundantTakesItsWeight) {
-  // The middle one of three within 45 degrees already has ratio above 1 by the outer two: weight zero.
-  const double r = std::sqrt(0.5);
-  ContactBuffer contacts = test::contacts_of({{1, 0, 0}, {std::cos(0.7), std::sin(0.7), 0}, {r, r, 0}});
-  solve_exact_shaping(contacts);
-  EXPECT_EQ(contacts.weight[1], 0.0);
-  EXPECT_NEAR(contacts.weight[0], 1 / (1.5 + kShapingEps), 1e-9);
-}
-
-TEST(ExactShaping, ARingIsShapedToItsClosedForm) {
-  // By symmetry equal weights t / n with t (s^4 / 2 + z^4 + eps / n) = 1, s^2 = 1 - z^2: S = diag(t s^2/2, t s^2/2, t
-  // z^2).
-  for (const double height : {0.0, 0.2, 0.5, 0.9, 0.999}) {
-    for (const int n : {3, 8, 101}) {
-      ContactBuffer contacts = test::contacts_of(ring(n, height));
-      const double z2 = height * height, s2 = 1 - z2;
-      const double t = 1 / (s2 * s2 / 2 + z2 * z2 + kShapingEps / n);
-      const Mat3 expected = Vec3(t * s2 / 2, t * s2 / 2, t * z2).asDiagonal();
-      EXPECT_LE((solve(contacts) - expected).norm(), 2 * kRounding) << "z = " << height << ", n = " << n;
-    }
-  }
-}
-
-TEST(ExactShaping, TheBoundOnLambdaMaxIsAttained) {
-  // The ring with z^2 = 1/sqrt 3 in 3-D, the wedge with cos^2 = 1/sqrt 2 in the plane: no smaller bound holds.
-  ContactBuffer space = test::contacts_of(ring(12, std::pow(3.0, -0.25)));
-  EXPECT_NEAR(lambda_max(solve(space)), (1 + std::sqrt(3.0)) / 2, 2 * kShapingEps);
-  const double x = std::pow(2.0, -0.25), y = std::sqrt(1 - x * x);
-  ContactBuffer plane = test::contacts_of({{x, y, 0}, {x, -y, 0}});
-  EXPECT_NEAR(lambda_max(solve(plane)), (1 + std::sqrt(2.0)) / 2, 2 * kShapingEps);
+  EXPECT_LT(steps, 2 * sets);
 }
 
 TEST(ExactShaping, AZeroGradientGetsNoWeight) {
   ContactBuffer contacts = test::contacts_of({{1, 0, 0}, {0, 0, 0}, {0, 1, 0}});
   solve_exact_shaping(contacts);
   EXPECT_EQ(contacts.weight[1], 0.0);
-  EXPECT_NEAR(contacts.weight[0], 1 / (1 + kShapingEps), kRounding);
+  EXPECT_NEAR(contacts.weight[0], 1 / (1 + kExactShapingEpsilon), 2e-14);
 }
 
 TEST(ExactShaping, ANonFiniteGradientDoesNotHang) {
@@ -124,6 +124,8 @@ TEST(ExactShaping, ForceIsThatOfItsWeightsAndNewtonStepsAreCounted) {
     std::vector<Vec3> gradients(50);
     for (Vec3& u : gradients) u = random.direction();
     ContactBuffer contacts = test::contacts_of(gradients, test::random_depths(random, 50)), same = contacts;
+    for (double& c : same.weight) c = 1e6;  // those of an earlier step
+    same.pad();
     const LawForce force = law->evaluate(contacts);
     steps += static_cast<std::uint64_t>(solve_exact_shaping(same));
     EXPECT_EQ(test::weights(contacts), test::weights(same));
@@ -137,112 +139,6 @@ TEST(ExactShaping, ForceIsThatOfItsWeightsAndNewtonStepsAreCounted) {
   EXPECT_EQ(law->iterations(), steps);
   law->reset();
   EXPECT_EQ(law->iterations(), 0u);
-}
-
-TEST(ExactShaping, DoesNotRememberEarlierWeights) {
-  Random random(2);
-  std::vector<Vec3> gradients(50);
-  for (Vec3& u : gradients) u = random.direction();
-  ContactBuffer contacts = test::contacts_of(gradients);
-  solve_exact_shaping(contacts);
-  const Eigen::VectorXd first = test::weights(contacts);
-  for (double& c : contacts.weight) c = 1e6;
-  contacts.pad();
-  solve_exact_shaping(contacts);
-  EXPECT_EQ(test::weights(contacts), first);
-}
-
-/// The defining problem as nonnegative least squares: minimise |[U; sqrt(eps) I] c - [I; 0]|, U's columns the nine
-/// entries of u u^T.
-Eigen::VectorXd weights_by_least_squares(const test::Dense& contacts) {
-  const Eigen::Index n = contacts.n();
-  Eigen::MatrixXd A = Eigen::MatrixXd::Zero(9 + n, n);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    const Mat3 tensor = contacts.U.col(i) * contacts.U.col(i).transpose();
-    A.col(i).head<9>() = tensor.reshaped();
-    A(9 + i, i) = std::sqrt(kShapingEps);
-  }
-  Eigen::VectorXd b = Eigen::VectorXd::Zero(9 + n);
-  b.head<9>() = Mat3::Identity().reshaped();
-  return test::nonnegative_least_squares(A, b);
-}
-
-TEST(ExactShaping, EqualsAnIndependentNonnegativeLeastSquaresSolution) {
-  Random random(1);
-  for (const auto& family : test::gradient_families()) {
-    for (std::size_t i = 0; i < test::cases(100); ++i) {
-      ContactBuffer contacts = test::contacts_of(family.draw(random, test::random_size(random, 40)));
-      const test::Dense dense(contacts);
-      const Eigen::VectorXd reference = weights_by_least_squares(dense);
-
-      // The reference is certified on its own before it is believed.
-      ContactBuffer certified = contacts;
-      for (std::size_t k = 0; k < contacts.size(); ++k) certified.weight[k] = reference[static_cast<Eigen::Index>(k)];
-      ASSERT_GE(reference.minCoeff(), 0.0);
-      ASSERT_LE(test::shaping_optimality(certified, kShapingEps).violation, test::kShapingRounding) << family.name;
-
-      solve_exact_shaping(contacts);
-      const double violation = 2 * test::kShapingRounding;
-      ASSERT_LE((stiffness_tensor(contacts) - dense.S(reference)).norm(),
-                test::tensor_tolerance(contacts.size(), violation, kShapingEps))
-          << family.name << ", set " << i;
-      ASSERT_LE((test::weights(contacts) - reference).norm(),
-                test::weight_tolerance(contacts.size(), violation, kShapingEps))
-          << family.name << ", set " << i;
-    }
-  }
-}
-
-/// f(c) = c^T A c / 2 - 1^T c = |S|^2 / 2 - tr S, what the iteration minimises.
-double objective(const Mat3& S) {
-  return 0.5 * S.squaredNorm() - S.trace();
-}
-
-TEST(ExactShaping, IsWhatTheShapingIterationTendsTo) {
-  // The update minimises the auxiliary function of Sha et al. (2007); with it and log rho <= rho - 1 one finds for any
-  // weights c* that  f(c_m) - f(c*) <= (D(c*) + 2 (f(c_0) - f(c_m))) / m,  D(c*) = sum c* log c* - c* + 1: the
-  // iteration approaches the optimum at least like 1/m. And by the optimality of c* for eps,
-  // |S_m - S*|^2 / 2 <= f(c_m) - f(c*) + eps <c*, c_m>.
-  Random random(2);
-  for (const auto& family : test::gradient_families()) {
-    for (std::size_t i = 0; i < test::cases(10); ++i) {
-      ContactBuffer contacts = test::contacts_of(family.draw(random, test::random_size(random, 50)));
-      solve_exact_shaping(contacts);
-      const Mat3 exact = stiffness_tensor(contacts);
-      const Eigen::VectorXd c = test::weights(contacts);
-      double divergence = 0.0;
-      for (const double ci : c) divergence += (ci > 0.0 ? ci * std::log(ci) : 0.0) - ci + 1.0;
-
-      Mat3 S = shape_weights(contacts, 0);
-      const double start = objective(S);
-      int m = 0;
-      for (const int iterations : {1, 10, 100, 1000, 10000}) {
-        for (; m < iterations; ++m) S = update_shaped_weights(contacts, S);
-        // Rounding of the objective, numbers of at most n^2.
-        const double rounding = 1e-12 * (1.0 + std::abs(start));
-        const double bound = (divergence + 2 * (start - objective(S))) / m + rounding;
-        ASSERT_LE(objective(S) - objective(exact), bound) << family.name << ", m = " << m;
-        ASSERT_LE(0.5 * (S - exact).squaredNorm(), bound + kShapingEps * c.dot(test::weights(contacts)))
-            << family.name << ", m = " << m;
-      }
-    }
-  }
-}
-
-TEST(ExactShaping, IsCloseToManyIterationsOnGenericSets) {
-  // The bound above is worst case; sets without near-degeneracy come much closer: three digits after 10000 iterations.
-  Random random(3);
-  for (std::size_t i = 0; i < test::cases(30); ++i) {
-    std::vector<Vec3> gradients(3 + random.below(30));
-    for (Vec3& u : gradients) u = random.direction();
-    ContactBuffer exact = test::contacts_of(gradients), iterated = exact;
-    solve_exact_shaping(exact);
-    const Mat3 S = stiffness_tensor(exact);
-    const double after_3 = (shape_weights(iterated, 3) - S).norm();
-    const double after_10000 = (shape_weights(iterated, 10000) - S).norm();
-    EXPECT_LE(after_10000, 1e-3);
-    EXPECT_LE(after_10000, after_3);
-  }
 }
 
 constexpr double kK = 20'000.0;
@@ -259,95 +155,35 @@ LawForce evaluate(ContactBuffer& contacts) {
   return law->evaluate(contacts);
 }
 
-template <class Check>
-void for_random_contacts(Check check) {
-  Random random(1);
-  for (const test::GradientFamily& family : test::gradient_families()) {
-    for (std::size_t i = 0; i < test::cases(200); ++i) {
-      const std::vector<Vec3> gradients = family.draw(random, test::random_size(random, 300));
-      check(gradients, test::random_depths(random, gradients.size()), family.name);
-    }
-  }
-}
-
-TEST(MergedShaping, KeepsTheTensorsAndDepthVectorsOfAllContacts) {
-  for_random_contacts([](const auto& gradients, const auto& depths, const char* family) {
-    ContactBuffer contacts = test::contacts_of(gradients, depths);
+TEST(MergedShaping, IsOptimalForTheTensorsOfItsGroups) {
+  test::for_random_contacts([](ContactBuffer contacts, const char* family) {
+    const std::size_t given = contacts.size();
     const LawForce force = evaluate(contacts);
-    ASSERT_EQ(contacts.size(), gradients.size()) << family;  // none is dropped
-    Mat3 S = Mat3::Zero();
-    Vec3 g = Vec3::Zero();
-    for (std::size_t i = 0; i < gradients.size(); ++i) {
-      ASSERT_GE(contacts.weight[i], 0.0) << family;
-      S += contacts.weight[i] * gradients[i] * gradients[i].transpose();
-      g += contacts.weight[i] * depths[i] * gradients[i];
-    }
-    const double rounding = 4 * kEps * static_cast<double>(gradients.size() + 8);
+    ASSERT_EQ(contacts.size(), given) << family;  // none is dropped
+    const test::Dense dense(contacts);
+    const Eigen::VectorXd c = test::weights(contacts);
+    ASSERT_GE(c.minCoeff(), 0.0) << family;
+    const Mat3 S = dense.S(c);
+    const double rounding = 4 * kEps * static_cast<double>(given + 8);
     ASSERT_LE((force.S - S).norm(), rounding * (1 + S.norm())) << family;
-    ASSERT_LE((force.spring + kK * g).norm(), rounding * kK * 0.001 * 3) << family;  // sum c <= 3
-  });
-}
-
-TEST(MergedShaping, SharesOneWeightAmongContactsOfTheSameDirection) {
-  for_random_contacts([](const auto& gradients, const auto& depths, const char* family) {
-    ContactBuffer contacts = test::contacts_of(gradients, depths);
-    evaluate(contacts);
-    for (std::size_t i = 1; i < gradients.size(); ++i) {
-      if (gradients[i] == gradients[0]) {
-        ASSERT_EQ(contacts.weight[i], contacts.weight[0]) << family;
-      }
-    }
-  });
-}
-
-/// The bound of exact_shaping, whose proof needs tensors of trace 1 only: tr S >= |S|^2.
-TEST(MergedShaping, IsNeverStifferThanTheProvenBound) {
-  for_random_contacts([](const auto& gradients, const auto& depths, const char* family) {
-    ContactBuffer contacts = test::contacts_of(gradients, depths);
-    const Mat3 S = evaluate(contacts).S;
-    const double rounding = 1e-12;  // of the optimality, 1e-14 a tensor
-    ASSERT_GE(S.trace() + rounding, S.squaredNorm()) << family;
-    ASSERT_LE(lambda_max(S), (1 + std::sqrt(3.0)) / 2 + rounding) << family;
-  });
-}
-
-TEST(MergedShaping, RegulatesTheMeanRatioOfEveryGroupWithWeight) {
-  for_random_contacts([](const auto& gradients, const auto& depths, const char* family) {
-    ContactBuffer contacts = test::contacts_of(gradients, depths);
-    const Mat3 S = evaluate(contacts).S;
-    // Contacts of one weight > 0 are of one group, or of groups that happen to have the same; either way their mean is
-    // 1 but for epsilon C <= 3e-6.
-    for (std::size_t i = 0; i < gradients.size(); ++i) {
-      if (!(contacts.weight[i] > 0.0)) continue;
+    ASSERT_LE((force.spring - dense.spring(kK, c)).norm(), rounding * kK * 0.001 * 3) << family;  // sum c <= 3
+    // The bound of exact_shaping, whose proof needs tensors of trace 1 only; the optimality of a tensor is 1e-14.
+    ASSERT_GE(S.trace() + 1e-12, S.squaredNorm()) << family;
+    ASSERT_LE(lambda_max(S), (1 + std::sqrt(3.0)) / 2 + 1e-12) << family;
+    bool same_weight = true;  // in the same direction
+    for (Eigen::Index i = 0; i < c.size(); ++i) {
       double ratios = 0.0, members = 0.0;
-      for (std::size_t j = 0; j < gradients.size(); ++j) {
-        if (contacts.weight[j] != contacts.weight[i]) continue;
-        ratios += gradients[j].dot(S * gradients[j]);
+      for (Eigen::Index j = 0; j < c.size(); ++j) {
+        same_weight = same_weight && (c[j] == c[i] || dense.U.col(j) != dense.U.col(i));
+        if (c[j] != c[i]) continue;
+        ratios += dense.U.col(j).dot(S * dense.U.col(j));
         members += 1.0;
       }
-      ASSERT_NEAR(ratios / members, 1.0, 3.1e-6) << family;
+      // Contacts of one weight > 0 are of one group, or of groups that happen to have the same; either way the mean of
+      // their ratios is 1 but for epsilon C <= 3e-6.
+      ASSERT_TRUE(c[i] == 0.0 || std::abs(ratios / members - 1.0) <= 3.1e-6) << family << ' ' << ratios / members;
     }
-  });
-}
-
-TEST(MergedShaping, DoesNotDependOnTheOrderOfTheContacts) {
-  Random random(2);
-  for_random_contacts([&](const auto& gradients, const auto& depths, const char* family) {
-    std::vector<std::size_t> order(gradients.size());
-    for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
-    order = test::shuffled(order, random);
-    std::vector<Vec3> other_gradients;
-    std::vector<double> other_depths;
-    for (const std::size_t i : order) {
-      other_gradients.push_back(gradients[i]);
-      other_depths.push_back(depths[i]);
-    }
-    ContactBuffer contacts = test::contacts_of(gradients, depths);
-    ContactBuffer other = test::contacts_of(other_gradients, other_depths);
-    const LawForce a = evaluate(contacts), b = evaluate(other);
-    // Sums in another order; the solver knows single weights to rounding over epsilon.
-    ASSERT_LE((a.S - b.S).norm(), 1e-9) << family;
-    ASSERT_LE((a.spring - b.spring).norm(), 1e-9 * kK * 0.001 * static_cast<double>(gradients.size())) << family;
+    ASSERT_TRUE(same_weight) << family;
   });
 }
 

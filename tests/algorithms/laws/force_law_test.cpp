@@ -8,8 +8,7 @@
 #include "tests/support/contact_sets.hpp"
 #include "tests/support/dense_laws.hpp"
 
-/// The velocity that a turning tool adds (ForceLaw::turning_velocity), and shells that list every vertex once for each
-/// of its four cells.
+/// The velocity that a turning tool adds (ForceLaw::turning_velocity).
 namespace hapbench::force_law_test {
 namespace {
 
@@ -118,78 +117,6 @@ TEST(MeanArm, IsWeighedAndZeroWithoutWeights) {
   EXPECT_EQ(mean_arm(contacts, {1.0, 0.0, 0.0}), Vec3(2.0, 0.0, 0.0));
   set_weights(contacts, 0.0);
   EXPECT_EQ(mean_arm(contacts, {1.0, 0.0, 0.0}), Vec3(0.0, 0.0, 0.0));
-}
-
-constexpr std::size_t kCopies = 4;
-
-struct Forces {
-  LawForce once, four_times;
-  double scale;      ///< K times the sum of depths, which bounds every force here but that of original_averaging [N]
-  double gradients;  ///< |sum u_i| / n
-};
-
-/// Calls f(forces, family) on random sets of all families, evaluated with one and with four copies of each contact.
-template <class F>
-void for_contacts_and_copies(const char* name, F f) {
-  Random random(1);
-  const RenderingConfig config;
-  for (const auto& family : test::gradient_families()) {
-    for (int i = 0; i < 20; ++i) {
-      const auto gradients = family.draw(random, test::random_size(random, 100));
-      const auto depths = test::random_depths(random, gradients.size());
-      std::vector<Vec3> many_gradients;
-      std::vector<double> many_depths;
-      Vec3 sum = Vec3::Zero();
-      double depth_sum = 0.0;
-      for (std::size_t k = 0; k < gradients.size(); ++k) {
-        many_gradients.insert(many_gradients.end(), kCopies, gradients[k]);
-        many_depths.insert(many_depths.end(), kCopies, depths[k]);
-        sum += gradients[k];
-        depth_sum += depths[k];
-      }
-      ContactBuffer once = test::contacts_of(gradients, depths);
-      ContactBuffer many = test::contacts_of(many_gradients, many_depths);
-      const Forces forces{make_law(name, config)->evaluate(once), make_law(name, config)->evaluate(many),
-                          config.stiffness * depth_sum, sum.norm() / static_cast<double>(gradients.size())};
-      f(forces, family.name);
-    }
-  }
-}
-
-// Sums of at most 400 products, and for shaping three iterations of them.
-constexpr double kRounding = 8 * 400 * std::numeric_limits<double>::epsilon();
-
-TEST(Multiplicity, IsNotSeenByTheMean) {
-  for_contacts_and_copies("mean", [](const Forces& forces, const char* family) {
-    ASSERT_LE((forces.once.spring - forces.four_times.spring).norm(), kRounding * forces.scale) << family;
-    ASSERT_LE((forces.once.S - forces.four_times.S).norm(), kRounding) << family;
-  });
-}
-
-TEST(Multiplicity, IsNotSeenByShapedStiffness) {
-  for_contacts_and_copies("shaped_stiffness", [](const Forces& forces, const char* family) {
-    ASSERT_LE((forces.once.spring - forces.four_times.spring).norm(), kRounding * forces.scale) << family;
-    ASSERT_LE((forces.once.S - forces.four_times.S).norm(), kRounding) << family;
-  });
-}
-
-TEST(Multiplicity, IsNotSeenByTheOriginalAlgorithm) {
-  std::size_t compared = 0;
-  for_contacts_and_copies("original_averaging", [&compared](const Forces& forces, const char* family) {
-    // Depth and direction divide by |sum u_i|, which amplifies rounding. Sets that cancel are not compared.
-    if (forces.gradients < 1e-6) return;
-    ++compared;
-    const double cancelled = forces.gradients * forces.gradients;
-    ASSERT_LE((forces.once.spring - forces.four_times.spring).norm(), kRounding * forces.scale / cancelled) << family;
-    ASSERT_LE((forces.once.S - forces.four_times.S).norm(), kRounding / forces.gradients) << family;
-  });
-  EXPECT_GT(compared, 100u);
-}
-
-TEST(Multiplicity, StiffensTheSumFourfold) {
-  for_contacts_and_copies("summation", [](const Forces& forces, const char* family) {
-    ASSERT_LE((kCopies * forces.once.spring - forces.four_times.spring).norm(), kRounding * forces.scale) << family;
-  });
 }
 
 }  // namespace

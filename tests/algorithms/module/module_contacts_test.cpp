@@ -1,6 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <cstdio>
 #include <limits>
 #include <stdexcept>
 
@@ -44,33 +43,17 @@ int step(void*, const HapbenchPose* pose, HapbenchContacts* contacts, HapbenchFo
   return 0;
 }
 
-std::unique_ptr<ModuleContacts> source_of(Script what, decltype(HapbenchModule::create) create = nullptr) {
+std::unique_ptr<ModuleContacts> source_of(Script what) {
   script = std::move(what);
   auto table = std::make_shared<HapbenchModule>();
   table->version = HAPBENCH_MODULE_VERSION;
   table->kind = HAPBENCH_CONTACTS;
   table->name = "fake";
-  table->create = create;
   table->step = step;
   HapbenchRun run = {};
   run.capacity = 10;
   run.tool_length = kLength;
   return std::make_unique<ModuleContacts>(Module{table, "file.so"}, "{}", run);
-}
-
-TEST(ModuleContacts, TakesPointDepthAndDirectionAsTheyAre) {
-  const auto source = source_of({{{7, {1, 2, 3}, {0, 0, -1}, 0.5}, {8, {4, 5, 6}, {1, 0, 0}, 0.0}}});
-  ContactBuffer contacts(source->capacity());
-  source->contacts_at({}, contacts);
-  ASSERT_EQ(contacts.size(), 2u);
-  EXPECT_EQ(contacts.index[0], 7u);
-  EXPECT_EQ(contacts.point(0), Vec3(1, 2, 3));
-  EXPECT_EQ(contacts.gradient(0), Vec3(0, 0, -1));
-  EXPECT_EQ(contacts.normal(0), Vec3(0, 0, 1));
-  EXPECT_EQ(contacts.depth[0], 0.5);
-  EXPECT_EQ(contacts.largest_depth(), 0.5);
-  EXPECT_EQ(source->work().queries, 1u);
-  EXPECT_EQ(source->fault(), nullptr);
 }
 
 TEST(ModuleContacts, AsksAboutTheMiddleOfTheDrillWithItsShankAlongZ) {
@@ -82,19 +65,6 @@ TEST(ModuleContacts, AsksAboutTheMiddleOfTheDrillWithItsShankAlongZ) {
   EXPECT_EQ(Vec3::Map(tip), Vec3(0.1, 0.2, 0.3));
   EXPECT_TRUE(Vec3(centre[0], centre[1], centre[2]).isApprox(Vec3(0.1, 0.2, 0.3) - 0.5 * kLength * axis, 1e-15));
   EXPECT_TRUE(Vec3(r[2], r[5], r[8]).isApprox(-axis, 1e-15));
-}
-
-TEST(ModuleContacts, SayWhyTheyCannotBeMade) {
-  const auto nothing_there = [](const double*, const char*, const HapbenchRun* run, char* fault) -> void* {
-    std::snprintf(fault, HAPBENCH_FAULT_SIZE, "%zu triangles", run->triangle_count);
-    return nullptr;
-  };
-  try {
-    source_of({}, nothing_there);
-    FAIL();
-  } catch (const std::runtime_error& error) {
-    EXPECT_STREQ(error.what(), "fake (file.so) fails in create: 0 triangles");
-  }
 }
 
 TEST(ModuleContacts, ThatCannotBeUsedAreRefused) {

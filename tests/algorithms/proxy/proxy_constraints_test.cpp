@@ -83,41 +83,6 @@ TEST(NearestAllowed, HoldsTheSpanOfTheActiveContacts) {
   });
 }
 
-TEST(NearestAllowed, GoesWhereNothingIsInTheWay) {
-  ContactBuffer none = test::contacts_of({});
-  const Vec3 wanted(1e-4, -2e-4, 3e-4);
-  EXPECT_EQ(nearest_allowed(wanted, none).move, wanted);
-  ContactBuffer far = test::contacts_of({Vec3::UnitX()}, {-1e-3});
-  const AllowedMove allowed = nearest_allowed(wanted, far);
-  EXPECT_EQ(allowed.move, wanted);
-  EXPECT_EQ(allowed.iterations, 0);
-  EXPECT_EQ(allowed.held, Mat3(Mat3::Zero()));
-}
-
-TEST(NearestAllowed, SlidesAlongAFaceAndStopsInACorner) {
-  ContactBuffer corner = test::contacts_of({Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()}, {-1e-4, -2e-4, -3e-4});
-  EXPECT_LE((nearest_allowed({2e-4, 1e-4, 1e-4}, corner).move - Vec3(1e-4, 1e-4, 1e-4)).norm(), 1e-18);
-  EXPECT_LE((nearest_allowed({1, 1, 1}, corner).move - Vec3(1e-4, 2e-4, 3e-4)).norm(), 1e-15);
-}
-
-TEST(NearestAllowed, DoesNotDependOnTheOrderOfTheContacts) {
-  Random random(3);
-  for_feasible_problems([&](Problem problem, const char* family) {
-    std::vector<std::size_t> order(problem.contacts.size());
-    for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
-    ContactBuffer other(std::max<std::size_t>(1, order.size()));
-    for (const std::size_t i : test::shuffled(order, random)) other.push_copy_of(problem.contacts, i);
-    other.pad();
-    const Vec3 a = nearest_allowed(problem.wanted, problem.contacts).move,
-               b = nearest_allowed(problem.wanted, other).move;
-    // The optimum is unique; where gradients are nearly dependent, which of them hold it is not, and each of the two is
-    // as far off it as contacts may be violated, over the sine of their angle: at worst the length of a move.
-    const double rounding = 4e-4 * kViolationTolerance + 1e-12 * (held(problem.contacts).lambdas + held(other).lambdas);
-    EXPECT_LE((a - problem.wanted).norm() - (b - problem.wanted).norm(), rounding) << family;
-    EXPECT_LE((b - problem.wanted).norm() - (a - problem.wanted).norm(), rounding) << family;
-  });
-}
-
 /// n faces against x with depth a, m against -x with depth b, a + b > 0: no room.
 TEST(NearestAllowed, SharesWhatOppositeWallsLackInEqualSquares) {
   for (const auto& [n, m] : {std::pair<std::size_t, std::size_t>{1, 1}, {3, 1}, {100, 250}}) {

@@ -7,7 +7,6 @@
 #include <functional>
 #include <limits>
 
-#include "algorithms/stages/passivity_controller.hpp"
 #include "sim/core/random.hpp"
 #include "tests/support/fakes.hpp"
 #include "tests/support/scenes.hpp"
@@ -136,16 +135,6 @@ TEST(ActuatorLimitedPassivity, DissipatesWhatActuatorsAllowAndOwesTheRest) {
   EXPECT_TRUE(across_once);
 }
 
-TEST(ActuatorLimitedPassivity, RendersNothingInFreeAirWhateverIsOwed) {
-  ActuatorLimitedPassivity stage({});
-  Foreseen rows(stage);
-  rows.energy = -1.0;
-  EXPECT_EQ(rows.answer(Vec3::Zero(), Vec3(0.1, 0, 0)), Vec3(Vec3::Zero()));
-  // In contact it damps, by no more than stops the tool in a step.
-  const Vec3 given = rows.answer(Vec3(1e-9, 0, 0), Vec3(-0.1, 0, 0));
-  EXPECT_NEAR(given.x(), kMass / kDt * 0.1, 1e-8);
-}
-
 /// A stage made of a function.
 class FakeStage final : public ForceStage {
  public:
@@ -228,20 +217,6 @@ TEST(StagedRendering, TellsTheRowAndCutsTheAnswerToTheForceLimit) {
   EXPECT_EQ(row.force.spring, damped_spring(row.tool));
   EXPECT_EQ(last.force, damped_spring(row.tool));
   EXPECT_EQ(last.velocity, row.tool.velocity);
-}
-
-/// Behind a stage that pushes in free air, too, the passivity controller keeps its word.
-TEST(StagedRendering, IsHeldPassiveByTheControllerAroundIt) {
-  const auto pushes = [](const StageStep& s) -> Vec3 { return 5.0 * s.velocity; };
-  RenderingConfig config;
-  SimulationParts parts = staged(test::fake_parts(test::weightless), pushes, config);
-  test::Recorder free, held;
-  Simulation(test::thrown(400), staged(test::fake_parts(test::weightless), pushes, config), {&free}).run();
-  EXPECT_GT(free.rows.back().tool.velocity.norm(), 1.5 * free.rows.front().tool.velocity.norm());
-  parts.algorithm = std::make_unique<PassivityController>(std::move(parts.algorithm), config);
-  Simulation(test::thrown(400), std::move(parts), {&held}).run();
-  // 400 roundings of the speed.
-  EXPECT_LE(held.rows.back().tool.velocity.norm(), held.rows.front().tool.velocity.norm() * (1.0 + 1000 * kEpsilon));
 }
 
 }  // namespace

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <deque>
 #include <limits>
 #include <vector>
 
@@ -58,36 +57,6 @@ Ran run(const SimulationConfig& config, SimulationParts parts) {
 SimulationParts controlled(SimulationParts parts, const RenderingConfig& config = {}) {
   parts.algorithm = std::make_unique<PassivityController>(std::move(parts.algorithm), config);
   return parts;
-}
-
-Vec3 negative_spring(const ToolState& tool) {
-  return 500.0 * tool.pose.position;
-}
-
-/// A spring that answers where the tool was some rows ago.
-test::FakeAlgorithm::Law late_spring(std::size_t rows) {
-  return [rows, last = std::deque<Vec3>()](const ToolState& tool) mutable -> Vec3 {
-    last.push_back(-3000.0 * tool.pose.position);
-    if (last.size() > rows) last.pop_front();
-    return last.front();
-  };
-}
-
-TEST(PassivityController, ActiveLawsAreActiveWithoutItAndPassiveWithIt) {
-  const std::pair<const char*, test::FakeAlgorithm::Law> laws[] = {{"negative spring", negative_spring},
-                                                                   {"late spring", late_spring(10)}};
-  for (const auto& [name, law] : laws) {
-    SCOPED_TRACE(name);
-    const SimulationConfig config = test::thrown(2000);
-    const Ran free = run(config, test::fake_parts(law));
-    const Ran held = run(config, controlled(test::fake_parts(law)));
-    EXPECT_LT(free.watch.least, -1e-3);
-    EXPECT_GE(held.watch.least, -held.watch.rounding());
-    EXPECT_GT(held.controlled, 0u);
-    // Alone with a passive rendering, the tool never has more than it began with.
-    const double given = 0.5 * config.mass * config.velocity.squaredNorm();
-    EXPECT_LE(0.5 * config.mass * held.tool.velocity.squaredNorm(), given + held.watch.rounding());
-  }
 }
 
 /// Forces that know nothing of the tool, of all sizes, under a hand that does what it likes: whatever the law, the
@@ -182,24 +151,6 @@ TEST(PassivityController, KeepsAnyMomentOfATremblingHandPassive) {
   EXPECT_LT(least_without, -1e-3);
 }
 
-/// A damped spring takes in more than it gives, so there is nothing to control: K dt/2 = 5 N s/m of damping make up for
-/// the lag of sampling, and it has 88.
-TEST(PassivityController, LeavesAPassiveSpringAndDamperAlone) {
-  test::Setting setting;
-  setting.springs = SpringSet{{Vec3::UnitX(), Vec3::UnitY()}, true};
-  setting.pose.position = {0.003, -0.001, 0};
-  RenderingConfig config;
-  config.algorithm = "summation";
-  SimulationConfig run_config = test::free_run_config(setting, config, 2000);
-  run_config.velocity = {-0.1, 0.2, 0};
-  const Ran plain = run(run_config, test::free_run(setting, config));
-  config.passivity_controller = true;
-  const Ran held = run(run_config, test::free_run(setting, config));
-  EXPECT_EQ(held.controlled, 0u);
-  EXPECT_EQ(held.tool.pose.position, plain.tool.pose.position);
-  EXPECT_EQ(held.tool.velocity, plain.tool.velocity);
-}
-
 /// The controller foresees the observed energy of the next row exactly, so with a held axis it changes a run if and
 /// only if the run would create energy.
 TEST(PassivityController, ChangesARunOnlyIfItWouldCreateEnergy) {
@@ -249,20 +200,6 @@ TEST(PassivityController, WithNothingToGiveItStopsTheToolAtMost) {
   // The force along the velocity may give nothing: the speed stays. s^2 |u|^2 = |w|^2 to a few roundings.
   EXPECT_NEAR(after.norm(), before.norm(), 10 * kEpsilon * before.norm());
   EXPECT_GT(after.dot(before), 0.0);
-}
-
-TEST(PassivityController, ResetRepeatsTheRunBitForBit) {
-  const SimulationConfig config = test::thrown(300);
-  Simulation simulation(config, controlled(test::fake_parts(negative_spring)), {});
-  simulation.run();
-  const ToolState first = simulation.tool();
-  const std::uint64_t steps = simulation.algorithm().work().steps_controlled;
-  simulation.reset();
-  EXPECT_EQ(simulation.algorithm().work().steps_controlled, 0u);
-  simulation.run();
-  EXPECT_EQ(simulation.tool().pose.position, first.pose.position);
-  EXPECT_EQ(simulation.tool().velocity, first.velocity);
-  EXPECT_EQ(simulation.algorithm().work().steps_controlled, steps);
 }
 
 /// The Jacobian of f_render = s f - alpha w is s times that of f plus the damping alpha; here s = 0.

@@ -1,14 +1,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <numbers>
-#include <set>
-#include <stdexcept>
+#include <optional>
 
 #include "algorithms/stages/point_stage.hpp"
 #include "sim/contact/contact_source.hpp"
-#include "tests/support/bits.hpp"
 #include "tests/support/contact_sets.hpp"
 #include "tests/support/fakes.hpp"
 
@@ -74,6 +73,7 @@ TEST(GradientReduction, IsTheAlgorithmOfTheThesisOnRandomSets) {
         ASSERT_EQ(actual.gradient(k), contacts.gradient(expected.kept[k]));
       }
       ASSERT_EQ(stage->dropped(), expected.dropped) << family.name;
+      for (std::size_t k = actual.size(); k < actual.padded_size(); ++k) ASSERT_EQ(actual.depth[k], 0.0);
     }
   }
 }
@@ -105,26 +105,6 @@ TEST(GradientReduction, ContactsBeyondMaxPointsAreDroppedAndCountedUntilReset) {
   EXPECT_EQ(stage->dropped(), 0u);
 }
 
-TEST(GradientReduction, LeavesASingleContactAndNoneAlone) {
-  ContactBuffer one = test::contacts_of({Vec3::UnitX()}, {2.0});
-  const std::uint64_t before = test::hash_of(one);
-  const auto stage = reduction({}, 1);
-  stage->process(one);
-  EXPECT_EQ(test::hash_of(one), before);
-  ContactBuffer none = test::contacts_of({});
-  stage->process(none);
-  EXPECT_TRUE(none.empty());
-}
-
-TEST(GradientReduction, PadsTheKeptContacts) {
-  const ContactBuffer contacts = reduced({}, test::contacts_of(std::vector<Vec3>(8, Vec3::UnitX())));
-  ASSERT_EQ(contacts.size(), 1u);
-  for (std::size_t i = 1; i < 8; ++i) {
-    EXPECT_EQ(contacts.depth[i], 0.0);
-    EXPECT_EQ(contacts.gradient(i), Vec3(0, 0, 0));
-  }
-}
-
 /// Gradients no two of which are similar, so that the reduction keeps all of them in its visiting order.
 ContactBuffer dissimilar(std::size_t n) {
   std::vector<Vec3> gradients;
@@ -140,49 +120,34 @@ std::vector<std::uint32_t> visiting_order(std::uint64_t seed, std::size_t n) {
   return indices(reduced(config, dissimilar(n)));
 }
 
-TEST(GradientReduction, AShuffleVisitsEveryPointInAnOrderFixedByItsSeed) {
-  const auto order = visiting_order(7, 100);
-  EXPECT_EQ(std::set<std::uint32_t>(order.begin(), order.end()).size(), 100u);
-  EXPECT_FALSE(std::is_sorted(order.begin(), order.end()));
-  EXPECT_EQ(order, visiting_order(7, 100));
-  EXPECT_NE(order, visiting_order(8, 100));
-}
-
-TEST(GradientReduction, AShuffledOrderIsOneOfTheShellsPointsNotOfTheStepsContacts) {
-  // The order of two points does not depend on other contacts.
-  const auto order = visiting_order(7, 100);
-  const ContactBuffer all = dissimilar(100);
-  const auto stage = reduction({0.9999999, 100, 7}, 100);
-  Random random(2);
-  for (int step = 0; step < 50; ++step) {
-    ContactBuffer some(100);
-    for (std::size_t i = 0; i < 100; ++i) {
-      if (random.uniform() < 0.3) some.push_copy_of(all, i);
-    }
-    some.pad();
-    std::vector<std::uint32_t> expected;
-    for (const std::uint32_t i : order) {
-      const auto present = indices(some);
-      if (std::find(present.begin(), present.end(), i) != present.end()) expected.push_back(i);
-    }
-    stage->process(some);
-    ASSERT_EQ(indices(some), expected);
-  }
-}
-
-TEST(GradientReduction, AShuffledReductionIsTheAlgorithmInTheShuffledOrder) {
+TEST(GradientReduction, AShuffledReductionVisitsTheShellsPointsInAnOrderOfItsSeed) {
   Random random(3);
-  const auto order = visiting_order(11, 200);
+  constexpr std::size_t n = 200;
+  const auto order = visiting_order(11, n);
+  EXPECT_NE(order, visiting_order(12, n));
   for (int i = 0; i < 30; ++i) {
-    std::vector<Vec3> gradients(200);
-    for (Vec3& u : gradients) u = random.direction();
-    const ContactBuffer contacts = test::contacts_of(gradients, test::random_depths(random, 200));
+    // Some of the points collide; their order does not depend on the others.
+    ContactBuffer contacts(n);
+    std::vector<std::optional<std::size_t>> place(n);
+    for (std::uint32_t k = 0; k < n; ++k) {
+      if (random.uniform() < 0.3) continue;
+      place[k] = contacts.size();
+      contacts.push(k, Vec3::Zero(), Vec3::UnitZ());
+      contacts.set_gradient(*place[k], random.direction());
+      contacts.depth[*place[k]] = random.uniform();
+    }
+    contacts.pad();
+    std::vector<std::size_t> visited;
+    for (const std::uint32_t k : order) {
+      if (place[k]) visited.push_back(*place[k]);
+    }
     const ReductionConfig config{0.9, 30, 11};
-    const Reference expected(config, contacts, {order.begin(), order.end()});
-    const ContactBuffer actual = reduced(config, contacts);
+    const Reference expected(config, contacts, visited);
+    ContactBuffer actual = contacts;
+    reduction(config, n)->process(actual);
     ASSERT_EQ(actual.size(), expected.kept.size());
     for (std::size_t k = 0; k < actual.size(); ++k) {
-      ASSERT_EQ(actual.index[k], expected.kept[k]);
+      ASSERT_EQ(actual.index[k], contacts.index[expected.kept[k]]);
       ASSERT_EQ(actual.depth[k], contacts.depth[expected.kept[k]]);
     }
   }
@@ -200,11 +165,6 @@ struct Contact {
 /// The contacts of a shell of these points after the stage.
 class LocalAverage : public testing::Test {
  protected:
-  ContactBuffer averaged(const std::vector<Contact>& all, const std::vector<std::uint32_t>& colliding) {
-    prepare(all);
-    return process(all, colliding);
-  }
-
   void prepare(const std::vector<Contact>& all) {
     std::vector<SurfacePoint> points;
     for (const Contact& c : all) points.push_back({{c.x * kCell, 0, 0}, -c.gradient});
@@ -233,31 +193,13 @@ class LocalAverage : public testing::Test {
 // One rounding of a product, a sum, a division and a norm.
 constexpr double kRounding = 4 * std::numeric_limits<double>::epsilon();
 
-TEST_F(LocalAverage, KeepsIndexPointAndNormalOfTheCellsFirstContact) {
-  const std::vector<Contact> all = {{1.0, 1.0, {0, 0, 1}}, {0.1, 2.0, {1, 0, 0}}, {0.2, 4.0, {0, 1, 0}}};
-  const ContactBuffer contacts = averaged(all, {0, 1, 2});
-  ASSERT_EQ(contacts.size(), 2u);
-  EXPECT_EQ(contacts.index[1], 1u);
-  EXPECT_EQ(contacts.point(1), Vec3(0.1 * kCell, 0, 0));
-  EXPECT_EQ(contacts.normal(1), Vec3(-1, 0, 0));
-}
-
 TEST_F(LocalAverage, DropsACellWhoseDepthVectorsCancel) {
   const std::vector<Contact> all = {
       {0.0, 2.0, {1, 0, 0}}, {0.1, 2.0, {-1, 0, 0}}, {1.0, 5.0, {0, 0, 1}}, {2.0, 0.0, {0, 1, 0}}};
-  const ContactBuffer contacts = averaged(all, {0, 1, 2, 3});
+  prepare(all);
+  const ContactBuffer contacts = process(all, {0, 1, 2, 3});
   ASSERT_EQ(contacts.size(), 1u);
   EXPECT_EQ(contacts.index[0], 2u);
-}
-
-TEST_F(LocalAverage, PadsTheMergedContacts) {
-  const std::vector<Contact> all(8, {0.0, 3.0, {1, 0, 0}});
-  const ContactBuffer contacts = averaged(all, {0, 1, 2, 3, 4, 5, 6, 7});
-  ASSERT_EQ(contacts.size(), 1u);
-  for (std::size_t i = 1; i < 8; ++i) {
-    EXPECT_EQ(contacts.depth[i], 0.0);
-    EXPECT_EQ(contacts.gradient(i), Vec3(0, 0, 0));
-  }
 }
 
 TEST_F(LocalAverage, EqualsAStraightforwardMeanOnRandomContactsStepAfterStep) {
@@ -280,18 +222,21 @@ TEST_F(LocalAverage, EqualsAStraightforwardMeanOnRandomContactsStepAfterStep) {
     std::map<std::uint32_t, std::pair<Vec3, double>> sums;
     std::vector<std::uint32_t> order;
     for (const std::uint32_t i : colliding) {
-      if (!sums.contains(cell[i])) order.push_back(cell[i]);
+      if (!sums.contains(cell[i])) order.push_back(i);
       auto& [sum, count] = sums.try_emplace(cell[i], Vec3::Zero(), 0.0).first->second;
       sum += all[i].depth * all[i].gradient;
       count += 1.0;
     }
     ASSERT_EQ(contacts.size(), sums.size());
     for (std::size_t k = 0; k < contacts.size(); ++k) {
-      EXPECT_EQ(cell[contacts.index[k]], order[k]) << "cells keep the order of their first contact";
-      const auto& [sum, count] = sums.at(order[k]);
+      EXPECT_EQ(contacts.index[k], order[k]) << "that of the cell's first contact, in this order";
+      EXPECT_EQ(contacts.point(k), shell_->point(order[k]).position);
+      EXPECT_EQ(contacts.normal(k), shell_->point(order[k]).normal);
+      const auto& [sum, count] = sums.at(cell[order[k]]);
       EXPECT_LE((contacts.depth[k] * contacts.gradient(k) - sum / count).norm(), 4 * kRounding);
       EXPECT_NEAR(contacts.gradient(k).norm(), 1.0, kRounding);
     }
+    for (std::size_t k = contacts.size(); k < contacts.padded_size(); ++k) EXPECT_EQ(contacts.depth[k], 0.0);
   }
 }
 
@@ -314,13 +259,6 @@ TEST_F(LocalAverage, MergesTheCellsThatAShellWasListedBy) {
   ASSERT_EQ(one_each.size(), 2u);
   EXPECT_EQ(one_each.depth[0], 4.0);
   EXPECT_EQ(one_each.depth[1], 3.0);
-}
-
-TEST_F(LocalAverage, RefusesScenesWithoutAGrid) {
-  const auto stage = make_local_average();
-  EXPECT_THROW(stage->prepare({}), std::invalid_argument);
-  const PointShell without_grid({}, 0.0);
-  EXPECT_THROW(stage->prepare({.shell = &without_grid}), std::invalid_argument);
 }
 
 }  // namespace

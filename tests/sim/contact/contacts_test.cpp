@@ -58,14 +58,6 @@ TEST(ContactBuffer, PadZeroesWhatSumsReadBeyondTheLastContact) {
   EXPECT_NE(contacts.weight[8], 0.0);
 }
 
-TEST(ContactBuffer, ShrinkKeepsTheFirstContacts) {
-  const ContactBuffer all = random_contacts(12);
-  ContactBuffer contacts = all;
-  contacts.shrink(5);
-  ASSERT_EQ(contacts.size(), 5u);
-  for (std::size_t i = 0; i < 5; ++i) EXPECT_EQ(contacts.index[i], all.index[i]);
-}
-
 TEST(ContactBuffer, PushCopyOfTakesEveryColumnFromTheOtherBuffer) {
   const ContactBuffer from = random_contacts(6);
   ContactBuffer to(6);
@@ -83,8 +75,8 @@ TEST(ContactBuffer, AssignTakesAllContactsInPlaceOfItsOwn) {
 
 constexpr double kEps = std::numeric_limits<double>::epsilon();
 
-// An entry of S adds n / 8 <= 13 products in each of eight partial sums, and u^T S u a few more: 20 roundings of
-// numbers below n = 100, 2e-13, in a ratio that is at least its own weight, 1/2. The dense sums round as much again.
+// An entry of S adds n / 8 <= 13 products in each of eight partial sums: 20 roundings of numbers below n = 100, 2e-13.
+// The dense sums round as much again.
 constexpr double kTolerance = 1e-12;
 
 /// A random set with random weights in [1/2, 1).
@@ -109,26 +101,6 @@ TEST(StiffnessTensor, IsTheWeightedSumOfOuterProducts) {
   }
 }
 
-TEST(StiffnessTensor, RatiosEqualThoseOfTheMatrixOfSquaredInnerProducts) {
-  Random random(2);
-  for (const auto& family : test::gradient_families()) {
-    for (std::size_t i = 0; i < test::cases(100); ++i) {
-      const ContactBuffer contacts = weighted_contacts(family, random);
-      const Eigen::VectorXd rho = test::Dense(contacts).A() * test::weights(contacts);
-      const RatioRange range = ratio_range(contacts, stiffness_tensor(contacts));
-      EXPECT_NEAR(range.min, rho.minCoeff(), kTolerance * rho.minCoeff()) << family.name;
-      EXPECT_NEAR(range.max, rho.maxCoeff(), kTolerance * rho.maxCoeff()) << family.name;
-    }
-  }
-}
-
-TEST(StiffnessTensor, RatioRangeCoversEveryContact) {
-  const ContactBuffer contacts = test::contacts_of({{1, 0, 0}, {0, 1, 0}, {0, 0, 1}});
-  const RatioRange range = ratio_range(contacts, Vec3(2.0, 0.5, 3.0).asDiagonal());
-  EXPECT_EQ(range.min, 0.5);
-  EXPECT_EQ(range.max, 3.0);
-}
-
 TEST(WeightedDepth, IsTheSumOfWeightedDepthVectors) {
   Random random(3);
   for (const auto& family : test::gradient_families()) {
@@ -143,19 +115,11 @@ TEST(LambdaMax, IsTheLargestEigenvalue) {
   Random random(4);
   for (std::size_t i = 0; i < test::cases(10000); ++i) {
     const Mat3 Q = test::random_rotation(random);
-    const Vec3 eigenvalues(random.uniform(-1.0, 2.0), random.uniform(-1.0, 2.0), random.uniform(-1.0, 2.0));
+    Vec3 eigenvalues(random.uniform(-1.0, 2.0), random.uniform(-1.0, 2.0), random.uniform(-1.0, 2.0));
+    if (i % 2 == 0) eigenvalues = {1.0, 1.0, random.uniform()};  // the largest is double
     const Mat3 S = Q * eigenvalues.asDiagonal() * Q.transpose();
     // Building S and the iteration each move eigenvalues by a few roundings of the norm.
     EXPECT_NEAR(lambda_max(S), eigenvalues.maxCoeff(), 32 * kEps * eigenvalues.cwiseAbs().maxCoeff());
-  }
-}
-
-TEST(LambdaMax, KeepsItsDigitsWhenTheLargestEigenvalueIsDouble) {
-  Random random(5);
-  for (std::size_t i = 0; i < test::cases(10000); ++i) {
-    const Mat3 Q = test::random_rotation(random);
-    const Mat3 S = Q * Vec3(1.0, 1.0, random.uniform()).asDiagonal() * Q.transpose();
-    EXPECT_NEAR(lambda_max(S), 1.0, 32 * kEps);
   }
 }
 

@@ -8,7 +8,6 @@
 
 #include "sim/contact/neighbour_list_query.hpp"
 #include "sim/geometry/analytic_shells.hpp"
-#include "sim/mesh/marching_cubes.hpp"
 #include "tests/support/searches.hpp"
 #include "tests/support/tool_kinds.hpp"
 
@@ -34,41 +33,16 @@ struct QueryName {
 using GridSearches = testing::Types<GridQuery, NeighbourListQuery>;
 TYPED_TEST_SUITE(GridSearch, GridSearches, QueryName);
 
-TYPED_TEST(GridSearch, FindsWhatBruteForceFindsAtPosesOfDrills) {
-  test::WalkTotals totals;
-  test::expect_agreement_with_brute_force<TypeParam>(Random(3), test::random_drill, totals);
-  // The walks touch something, and lists are used more than once.
-  EXPECT_GT(totals.contacts, totals.poses);
-  EXPECT_LT(totals.lists_rebuilt, totals.poses / 2);
-}
-
 TYPED_TEST(GridSearch, FindsWhatBruteForceFindsAtPosesOfEveryKindOfTool) {
   for (const test::ToolKind& kind : test::tool_kinds()) {
     SCOPED_TRACE(kind.name);
     const auto make_tool = [&](Random& random, double size) { return kind.make(random, 0.5 * size).shape; };
     test::WalkTotals totals;
     test::expect_agreement_with_brute_force<TypeParam>(Random(13), make_tool, totals);
+    // The walks touch something, and lists are used more than once.
     EXPECT_GT(totals.contacts, totals.poses / 2);
+    EXPECT_LT(totals.lists_rebuilt, totals.poses / 2);
   }
-}
-
-// Points that lie exactly on the tool's surface are in the box around it, whatever the rounding of either.
-TYPED_TEST(GridSearch, AgreesOnTheAnalyticShells) {
-  Random random(5);
-  const Cylinder round{0.0005, 0.005, Tip::round};
-  using Pair = test::SearchPair<TypeParam>;
-  Pair hole(surface_points(Hole2d{}), 0.0001, round);
-  Pair plane(surface_points(Plane{0.004, 0.0001}), 0.0001, kDrill);
-  Pair slot(surface_points(Slot{0.001, 0.003, 0.004, 0.0001}), 0.0001, kDrill);
-  ToolPose pose{{0, -0.004, 0}, {0, -1, 0}}, pose_3d{{0, 0, 0}, {0, 0, -1}};
-  for (std::size_t k = 0; k < cases(20'000); ++k) {
-    ASSERT_TRUE(hole.agree_at(pose));
-    ASSERT_TRUE(plane.agree_at(pose_3d));
-    ASSERT_TRUE(slot.agree_at(pose_3d));
-    pose = next_pose(pose, random, 0.004, 0.00005);
-    pose_3d = next_pose(pose_3d, random, 0.002, 0.00005);
-  }
-  EXPECT_GT(hole.contacts() + plane.contacts() + slot.contacts(), 1000u);
 }
 
 TYPED_TEST(GridSearch, SurvivesAnEmptyShellAndPosesThatAreNotFinite) {
@@ -118,36 +92,19 @@ TEST(NeighbourListQuery, TestsNothingInFreeAir) {
   EXPECT_EQ(pair.work().skipped, 1000u);
 }
 
-TEST(NeighbourListQuery, AfterResetDoesTheSameWorkAgain) {
-  ListPair pair(surface_points(Plane{0.004, 0.0001}), 0.0001, kDrill);
-  const auto walk = [&pair] {
-    for (int k = 0; k < 100; ++k) EXPECT_TRUE(pair.agree_at({{1e-5 * k, 0, 0.0003 - 1e-5 * k}, {0, 0, -1}}));
-    return pair.work();
-  };
-  const SearchWork first = walk();
-  pair.reset();
-  const SearchWork second = walk();
-  EXPECT_EQ(first.points_tested, second.points_tested);
-  EXPECT_EQ(first.lists_rebuilt, second.lists_rebuilt);
-  EXPECT_GT(first.lists_rebuilt, 0u);
-}
-
 std::vector<SurfacePoint> at(const std::vector<Vec3>& positions) {
   std::vector<SurfacePoint> points;
   for (const Vec3& position : positions) points.push_back({position, Vec3::UnitZ()});
   return points;
 }
 
-ContactBuffer brute_force(const PointShell& shell, const Cylinder& tool, const ToolPose& pose) {
+/// Whether a shell of the one point reports it.
+bool collides(const Cylinder& tool, const ToolPose& pose, const Vec3& position) {
+  const PointShell shell(at({position}), 0.0);
   ShellQuery query(shell, tool);
   ContactBuffer contacts(query.capacity());
   query.contacts_at(pose, contacts);
-  return contacts;
-}
-
-/// Whether a shell of the one point reports it.
-bool collides(const Cylinder& tool, const ToolPose& pose, const Vec3& position) {
-  return brute_force(PointShell(at({position}), 0.0), tool, pose).size() == 1;
+  return contacts.size() == 1;
 }
 
 class ShellQueryForTip : public testing::TestWithParam<Tip> {};
@@ -193,21 +150,6 @@ TEST_P(ShellQueryForTip, FindsPointsExactlyOnTheSurfaceAndNoneJustOutside) {
     expect(kOffBoth, false);
     expect(GetParam() == Tip::round ? kOnRound : std::vector<Vec3>{}, true);
     expect(GetParam() == Tip::round ? kOffRound : kOffFlat, false);
-  }
-}
-
-TEST_P(ShellQueryForTip, ReportsPointsInAscendingOrderAsTheShellHasThem) {
-  Random random(2);
-  const Cylinder tool = test::random_tool(random, GetParam());
-  const ToolPose pose = test::random_pose(random);
-  std::vector<SurfacePoint> points(1000);
-  for (SurfacePoint& p : points) p = {test::random_point_near(tool, pose, random), random.direction()};
-  const ContactBuffer contacts = brute_force(PointShell(points, 0.0), tool, pose);
-  ASSERT_GT(contacts.size(), 100u);
-  for (std::size_t k = 0; k < contacts.size(); ++k) {
-    ASSERT_TRUE(k == 0 || contacts.index[k - 1] < contacts.index[k]);
-    EXPECT_EQ(contacts.point(k), points[contacts.index[k]].position);
-    EXPECT_EQ(contacts.normal(k), points[contacts.index[k]].normal);
   }
 }
 
@@ -272,17 +214,6 @@ TEST(MostPoints, BoundWhatAnyToolHasNearItAnywhere) {
   }
   // The walks come close to the bound; the thirtieth of them that a sanitized build makes need not.
   EXPECT_TRUE(tightest > 0.5 || HAPBENCH_TEST_SANITIZED != 0) << tightest;
-}
-
-TEST(MostPoints, AreFewOfTheThesissBlockAndNoneOfAnEmptyShell) {
-  const std::vector<SurfacePoint> points =
-      marching_cubes(density_field(BlockWithHole(), 0.0001, Density::signed_distance)).vertices;
-  const PointShell shell(points, 0.0001);
-  // 440 in the hole, 1000 along a wall; eight balls and the hole's 2 000 points in a cube around each.
-  const std::size_t bound = most_points_in(shell, Cylinder().cover(0.0));
-  EXPECT_GT(bound, 1000u);
-  EXPECT_LT(bound, shell.size() / 4);
-  EXPECT_EQ(most_points_in(PointShell({}, 0.1), Cylinder().cover(0.0)), 0u);
 }
 
 }  // namespace

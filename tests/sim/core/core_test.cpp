@@ -132,19 +132,6 @@ TEST(Profile, HasTheValuesOfItsShape) {
   }
 }
 
-TEST(Profile, SineHasItsMeanAmplitudePeriodAndPhase) {
-  const Profile profile = Profile::Shape(Profile::Sine{1.0, 3.0, 0.5, 0.0});
-  // One rounding in 2 pi t / T times a slope of at most the amplitude, one in the sine, one in the sum.
-  const double tolerance = 16 * std::numeric_limits<double>::epsilon();
-  EXPECT_NEAR(profile(0.125), 4.0, tolerance);
-  EXPECT_NEAR(profile(0.25), 1.0, tolerance);
-  EXPECT_NEAR(profile(0.375), -2.0, tolerance);
-  EXPECT_NEAR(profile(0.5 + 0.1), profile(0.1), 4 * tolerance);
-  const Profile shifted = Profile::Shape(Profile::Sine{1.0, 3.0, 0.5, std::numbers::pi / 2});
-  EXPECT_NEAR(shifted(0.0), 4.0, tolerance);
-  EXPECT_NEAR(shifted(0.125), 1.0, tolerance);
-}
-
 TEST(Profile, CosineWaypointsFollowHalfACosineOnEachLeg) {
   const Profile profile = Profile::Shape(Waypoints{{{2.0, 1.0}, {4.0, 5.0}}, kCosine});
   for (int k = 0; k <= 20; ++k) {

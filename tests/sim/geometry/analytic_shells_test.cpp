@@ -48,13 +48,6 @@ TEST(AnalyticShells, PointCountIsTheNumberOfPointsAndNormalsAreUnit) {
   }
 }
 
-TEST(AnalyticShells, DefaultSizesAreMultiplesOfTheSpacing) {
-  // 30 + 50 + 10 + 50 + 30 intervals; 101 x 101 points; two faces of 101 x 51 points.
-  EXPECT_EQ(point_count(Hole2d{}), 171);
-  EXPECT_EQ(point_count(Plane{}), 10201);
-  EXPECT_EQ(point_count(Slot{}), 10302);
-}
-
 TEST(AnalyticShells, AMultipleOfTheSpacingButForRoundingIsDividedIntoThatMany) {
   ASSERT_GT(0.0015 / 0.0003, 5.0) << "in doubles";
   EXPECT_EQ(point_count(Plane{0.0015, 0.0003}), 6 * 6);
@@ -122,24 +115,6 @@ TEST(Hole2dShell, EveryCornerCarriesAPointWithThe45DegreeNormalOfItsFaces) {
   EXPECT_EQ(found, corners.size());
 }
 
-TEST(Hole2dShell, LiesInThePlane) {
-  for (const SurfacePoint& point : surface_points(Hole2d{})) {
-    EXPECT_EQ(point.position.z(), 0.0);
-    EXPECT_EQ(point.normal.z(), 0.0);
-  }
-}
-
-TEST(Hole2dShell, IsItsOwnMirrorImage) {
-  const auto points = surface_points(Hole2d{});
-  for (std::size_t k = 0; k < points.size(); ++k) {
-    const SurfacePoint& mirror = points[points.size() - 1 - k];
-    // Left and right corners are exact negatives, points between are interpolated from opposite ends.
-    EXPECT_NEAR(points[k].position.x(), -mirror.position.x(), 4 * kEps * 0.004);
-    EXPECT_NEAR(points[k].position.y(), mirror.position.y(), 4 * kEps * 0.005);
-    EXPECT_EQ(points[k].normal, Vec3(-mirror.normal.x(), mirror.normal.y(), 0));
-  }
-}
-
 TEST(PlaneShell, IsASquareGridWithYFastestAndUpwardNormals) {
   Random random(4);
   for (int i = 0; i < 20; ++i) {
@@ -186,21 +161,6 @@ TEST(ConicalHoleShell, LiesOnTheConeAndIsItsOwnQuarterTurn) {
   }
 }
 
-TEST(ConicalHoleShell, NeighboursOfARingAreNoFartherApartThanTheSpacing) {
-  const ConicalHole cone;
-  const auto points = surface_points(cone);
-  const double wall = cone.depth / std::cos(cone.half_angle);
-  EXPECT_EQ(points.back().position.z(), 0.0);
-  // Each point has one on its own ring and one on the ring below within the spacing: none is further than its diagonal.
-  for (const SurfacePoint& point : points) {
-    double nearest = wall;
-    for (const SurfacePoint& other : points) {
-      if (&other != &point) nearest = std::min(nearest, (other.position - point.position).norm());
-    }
-    EXPECT_LE(nearest, longest(cone.spacing));
-  }
-}
-
 TEST(SlotShell, IsTwoFacesThatLookAtEachOther) {
   Random random(5);
   for (int i = 0; i < 20; ++i) {
@@ -243,23 +203,6 @@ using test::cases;
 
 Vec3 random_point(Random& random) {
   return {random.uniform(-0.01, 0.01), random.uniform(-0.01, 0.01), random.uniform(-0.012, 0.002)};
-}
-
-TEST(BlockWithHole, DistanceIsKnownAtPlacesThatShowEveryPieceOfTheSurface) {
-  const BlockWithHole block;
-  // Exact but for the rounding of one square root of numbers near 0.01.
-  constexpr double tolerance = 1e-17;
-  EXPECT_NEAR(signed_distance(block, {0.0, 0.0, -0.0025}), 0.001, tolerance);   // hole: to the wall
-  EXPECT_NEAR(signed_distance(block, {0.0, 0.0, -0.0049}), 0.0001, tolerance);  // hole: to its bottom
-  EXPECT_NEAR(signed_distance(block, {0.0, 0.0, 0.0}), 0.001, tolerance);       // mouth: to the rim
-  EXPECT_NEAR(signed_distance(block, {0.0, 0.0, 0.002}), std::hypot(0.002, 0.001), tolerance);
-  EXPECT_NEAR(signed_distance(block, {0.004, 0.0, 0.0003}), 0.0003, tolerance);    // above the top face
-  EXPECT_NEAR(signed_distance(block, {0.004, 0.0, -0.0003}), -0.0003, tolerance);  // below it, in the material
-  EXPECT_NEAR(signed_distance(block, {0.0012, 0.0, -0.002}), -0.0002, tolerance);  // behind the wall
-  EXPECT_NEAR(signed_distance(block, {0.0, 0.0, -0.0052}), -0.0002, tolerance);    // under the hole
-  EXPECT_NEAR(signed_distance(block, {0.0085, 0.0, -0.005}), 0.001, tolerance);    // beside the block
-  EXPECT_NEAR(signed_distance(block, {0.0105, 0.0, 0.004}), std::hypot(0.003, 0.004), tolerance);  // off an edge
-  EXPECT_NEAR(signed_distance(block, {0.0, 0.0, -0.012}), 0.002, tolerance);                       // under the block
 }
 
 TEST(BlockWithHole, DistanceChangesNoFasterThanThePointMoves) {

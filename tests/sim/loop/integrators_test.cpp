@@ -1,15 +1,17 @@
 #include <gtest/gtest.h>
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
-#include <complex>
 #include <limits>
 #include <numbers>
-#include <unsupported/Eigen/MatrixFunctions>
+#include <set>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include "sim/core/random.hpp"
+#include "sim/loop/integrators/spring_damper.hpp"
 #include "sim/loop/integrators/table.hpp"
 #include "tests/support/fakes.hpp"
 
@@ -17,6 +19,87 @@ namespace hapbench::integrators_test {
 namespace {
 
 constexpr double kEps = std::numeric_limits<double>::epsilon();
+
+TEST(IntegratorTable, HasUniqueNamesAndDocumentsEveryRow) {
+  std::set<std::string> names;
+  for (const IntegratorEntry* entry : kIntegrators) {
+    const ModelInfo& info = entry->info;
+    for (const char* text : {info.name, info.summary, info.formula, info.source, info.known_failure}) {
+      ASSERT_NE(text, nullptr);
+      EXPECT_FALSE(std::string(text).empty()) << info.name;
+    }
+    EXPECT_TRUE(names.insert(info.name).second) << info.name;
+  }
+}
+
+/// Calls check(system) with random spring-dampers on either side of the stability limits.
+template <class Check>
+void for_random_systems(const IntegratorEntry* integrator, Check check) {
+  Random random(1);
+  for (int i = 0; i < 1000; ++i) {
+    SpringDamper system{random.uniform(0.0, 4e6), random.uniform(0.0, 1e3), 0.1, 0.0005, random.uniform(0.5, 2.0)};
+    if (i % 5 == 0) system.B = 0.0;
+    if (i % 5 == 1) system.K = 0.0;
+    system.integrator = integrator;
+    check(system);
+  }
+}
+
+/// The matrix of (x, dt v) over a step of M x'' = -lambda (K x + B x'), as the headers of the integrators say.
+Eigen::Matrix2d step_of(const SpringDamper& s) {
+  using Matrix = Eigen::Matrix2d;
+  const double k = s.lambda * s.K * s.dt * s.dt / s.M, b = s.lambda * s.B * s.dt / s.M, c = 1.0 - 0.5 * b;
+  const Matrix I = Matrix::Identity(), G = (Matrix() << 0.0, 1.0, -k, -b).finished(), G2 = G * G;
+  if (s.integrator == &kLeapfrog) return (Matrix() << 1.0 - k, 1.0 - b, -k, 1.0 - b).finished();
+  if (s.integrator == &kVelocityVerlet) {
+    const Matrix kick = (Matrix() << 1.0, 0.0, -0.5 * k, c).finished(),
+                 drift = (Matrix() << 1.0, 1.0, 0.0, 1.0).finished();
+    return kick * drift * kick;
+  }
+  if (s.integrator == &kImplicitEuler) return (I - G).inverse();
+  if (s.integrator == &kImplicitMidpoint) return (I - 0.5 * G).inverse() * (I + 0.5 * G);
+  return I + G + G2 / 2.0 + G2 * G / 6.0 + G2 * G2 / 24.0;  // rk4, and event where contacts stay
+}
+
+TEST(IntegratorTable, AStepIsTheMatrixOfItsFormula) {
+  for (const IntegratorEntry* entry : kIntegrators) {
+    IntegratorEntry stepped = *entry;
+    stepped.step_matrix = nullptr;  // the matrix is then built from the integrator
+    for_random_systems(entry, [&](SpringDamper system) {
+      const Eigen::Matrix2d expected = step_of(system), scale = Eigen::Vector2d(1.0, system.dt).asDiagonal();
+      for (const IntegratorEntry* way : {entry, static_cast<const IntegratorEntry*>(&stepped)}) {
+        system.integrator = way;
+        // A few roundings of terms up to the fourth power of 30.
+        EXPECT_LE((scale * system.step_matrix() * scale.inverse() - expected).norm(), 1e-12 * expected.norm())
+            << entry->info.name << ' ' << system.K << ' ' << system.B;
+      }
+    });
+  }
+}
+
+TEST(IntegratorTable, MarginsArePositiveExactlyWhereAStepIsStable) {
+  for (const IntegratorEntry* entry : kIntegrators) {
+    if (entry->stability_margin == nullptr) continue;
+    for_random_systems(entry, [&](const SpringDamper& system) {
+      if (std::abs(*system.margin()) < 1e-9) return;  // on the limit itself, to rounding
+      EXPECT_EQ(*system.margin() > 0.0, system.is_stable()) << entry->info.name << " " << system.K << " " << system.B;
+    });
+  }
+}
+
+/// A step a little below a limit is stable, a little above it is not; without a limit every step is stable.
+TEST(IntegratorTable, DampersAloneAreStableUpToTheirLimits) {
+  constexpr double kMargin = 1e-6;
+  for (const IntegratorEntry* entry : kIntegrators) {
+    SCOPED_TRACE(entry->info.name);
+    const double limit = std::min(entry->damper_limit, 1e9);
+    const auto at = [&](double beta) { return SpringDamper{0.0, beta * 0.1 / 0.0005, 0.1, 0.0005, 1.0, entry}; };
+    EXPECT_TRUE(at(limit * (1.0 - kMargin)).is_stable());
+    EXPECT_EQ(at(limit * (1.0 + kMargin)).is_stable(), std::isinf(entry->damper_limit));
+    if (std::isinf(entry->damper_limit))
+      for_random_systems(entry, [](const SpringDamper& system) { EXPECT_TRUE(system.is_stable()); });
+  }
+}
 
 /// A mass on a linear spring-damper, the same in every direction.
 class SpringField final : public ForceField {
@@ -34,66 +117,10 @@ class SpringField final : public ForceField {
 
 constexpr double kMass = 0.2;
 
-ToolState displaced() {
-  return {{Vec3(0.001, 0.0, -0.002), -Vec3::UnitZ()}, Vec3(0.3, -0.1, 0.0)};
-}
-
-ToolState run(const IntegratorEntry* integrator, SpringField field, double dt, int steps) {
-  ToolState tool = displaced();
-  const auto stepper = integrator->make({});
-  for (int i = 0; i < steps; ++i) {
-    const Vec3 force = -field.K * tool.pose.position - field.B * tool.velocity;
-    stepper->step(tool, force, kMass, dt, field);
-  }
-  return tool;
-}
-
-double energy(const ToolState& tool, double K) {
-  return 0.5 * (kMass * tool.velocity.squaredNorm() + K * tool.pose.position.squaredNorm());
-}
-
-/// The exact state after the time t, from the matrix exponential of (w x, v), w^2 = K / M, which is well scaled.
-ToolState exact(const SpringField& field, double t) {
-  Eigen::Matrix2d A;
-  const double w = std::sqrt(field.K / kMass);
-  A << 0.0, w, -w, -field.B / kMass;
-  const Eigen::Matrix2d advance = (A * t).exp();
-  ToolState tool = displaced();
-  const Vec3 p = tool.pose.position, v = tool.velocity;
-  tool.pose.position = advance(0, 0) * p + advance(0, 1) / w * v;
-  tool.velocity = advance(1, 0) * w * p + advance(1, 1) * v;
-  return tool;
-}
-
-/// Distance of two states as the root of an energy, which does not pass through zero as an error in position does.
-double error(const ToolState& a, const ToolState& b, double K) {
-  ToolState difference = a;
-  difference.pose.position -= b.pose.position;
-  difference.velocity -= b.velocity;
-  return std::sqrt(energy(difference, K));
-}
-
-TEST(Integrators, ConvergeWithTheirOrders) {
-  constexpr double kEnd = 0.0173;
-  for (const IntegratorEntry* integrator : kIntegrators) {
-    for (const double B : {0.0, 20.0}) {
-      const SpringField field(20000.0, B);
-      const auto error_of = [&](int steps) {
-        return error(run(integrator, field, kEnd / steps, steps), exact(field, kEnd), field.K);
-      };
-      const double order = std::log2(error_of(400) / error_of(800));
-      // error = C h^p (1 + D h + ...): w h = 0.014 at the coarser step, and D is of the order of w times the 5 radians
-      // of the run, so that the ratio is 2^p to within some 3.5 %, log2 of which is 0.05.
-      EXPECT_NEAR(order, B == 0.0 ? integrator->order : integrator->damped_order, 0.05)
-          << integrator->info.name << " B = " << B;
-    }
-  }
-}
-
 TEST(Integrators, AskForTheForceAsOftenAsTheySay) {
   for (const IntegratorEntry* integrator : kIntegrators) {
     SpringField field(20000.0, 5.0);
-    ToolState tool = displaced();
+    ToolState tool{{Vec3(0.001, 0.0, -0.002), -Vec3::UnitZ()}, Vec3(0.3, -0.1, 0.0)};
     integrator->make({})->step(tool, Vec3::UnitX(), kMass, 0.0005, field);
     EXPECT_EQ(field.calls, integrator->forces - 1) << integrator->info.name << " beside the row's";
     EXPECT_EQ(tool.pose.axis, Vec3(-Vec3::UnitZ()));
@@ -158,65 +185,6 @@ TEST(Event, FindsContactOnAndOffWithinAStep) {
   EXPECT_GT(std::abs(bounce(kRk4, 1e-4, 1e-12).first), 1e-7) << "blind for the events";
   // Where it may be late by a step, it is Runge-Kutta.
   EXPECT_EQ(bounce(kEvent, 1e-4, 1e-4), bounce(kRk4, 1e-4, 1e-4));
-}
-
-TEST(ImplicitMidpoint, IsTheTrapezoidalRuleOnASpringDamper) {
-  // (I - h/2 A) y' = (I + h/2 A) y, solved by hand.
-  for (const double K : {0.0, 20000.0, 1e9}) {
-    for (const double B : {0.0, 50.0, 2e4}) {
-      const SpringField field(K, B);
-      const double dt = 0.0005, k = K * dt * dt / kMass, b = B * dt / kMass;
-      const ToolState start = displaced(), moved = run(&kImplicitMidpoint, field, dt, 1);
-      const double D = 1.0 + 0.5 * b + 0.25 * k;
-      const Vec3 p = ((1.0 + 0.5 * b - 0.25 * k) * start.pose.position + dt * start.velocity) / D;
-      const Vec3 v = ((1.0 - 0.5 * b - 0.25 * k) * start.velocity - k / dt * start.pose.position) / D;
-      // A dozen roundings of the terms, of which the largest is k p / dt over D, at most 4 p / dt.
-      const double size = start.velocity.norm() + 4.0 * start.pose.position.norm() / dt;
-      EXPECT_LE((moved.velocity - v).norm(), 12 * kEps * size) << K << " " << B;
-      EXPECT_LE((moved.pose.position - p).norm(), 12 * kEps * dt * size) << K << " " << B;
-    }
-  }
-}
-
-TEST(ImplicitMidpoint, KeepsTheEnergyOfUndampedSpringsHoweverStiff) {
-  for (const double K : {20000.0, 1e6, 1e9}) {
-    const double start = energy(displaced(), K);
-    constexpr int kSteps = 10'000;
-    // Each step rounds position and velocity, some ten times.
-    EXPECT_NEAR(energy(run(&kImplicitMidpoint, {K, 0.0}, 0.0005, kSteps), K), start, 10 * kSteps * kEps * start) << K;
-  }
-}
-
-TEST(ImplicitEuler, TakesItsShareOfTheEnergyInEveryStep) {
-  for (const double K : {20000.0, 1e6, 1e9}) {
-    const double k = K * 0.0005 * 0.0005 / kMass;
-    double before = energy(displaced(), K);
-    for (int steps = 1; steps <= 5; ++steps) {
-      const double now = energy(run(&kImplicitEuler, {K, 0.0}, 0.0005, steps), K);
-      // The map is normal in the norm of the energy, with eigenvalues of modulus 1 / sqrt(1 + k). Stiff springs lose
-      // digits of what is left to what was there: the force is known to eps, and k of it cancels.
-      EXPECT_NEAR(now / before, 1.0 / (1.0 + k), 100 * kEps * (1.0 + k)) << K << " step " << steps;
-      before = now;
-    }
-  }
-}
-
-TEST(VelocityVerlet, SwingsAboutItsEnergyWithoutDrift) {
-  // M v^2 / 2 + (1 - k/4) K x^2 / 2 is kept, so the energy stays between it and it / (1 - k/4).
-  const double K = 20000.0, k = K * 0.0005 * 0.0005 / kMass;
-  const SpringField field(K, 0.0);
-  const auto kept = [&](const ToolState& tool) {
-    return energy(tool, K) - 0.125 * k * K * tool.pose.position.squaredNorm();
-  };
-  const ToolState tool = run(&kVelocityVerlet, field, 0.0005, 100'000);
-  EXPECT_NEAR(kept(tool), kept(displaced()), 1e6 * kEps * kept(displaced()));
-}
-
-TEST(RungeKutta, DissipatesAsItsAmplificationSays) {
-  const double K = 20000.0, k = K * 0.0005 * 0.0005 / kMass;
-  const double factor = 1.0 - k * k * k / 72.0 + k * k * k * k / 576.0;  // |1 + z + ... + z^4 / 24|^2, z = i sqrt(k)
-  const double end = energy(run(&kRk4, {K, 0.0}, 0.0005, 1000), K);
-  EXPECT_NEAR(end / energy(displaced(), K), std::pow(factor, 1000), 1000 * 20 * kEps);
 }
 
 /// Holds a Jacobian that no step asks to be evaluated elsewhere.
@@ -418,76 +386,6 @@ TEST(IntegratorInTheLoop, LeavesAPrescribedPositionAlone) {
       EXPECT_EQ(recorder.rows[k].tool.pose.position, leapfrog_rows[k].tool.pose.position);
       EXPECT_EQ(recorder.rows[k].tool.velocity, leapfrog_rows[k].tool.velocity);
     }
-  }
-}
-
-using test::leapfrog;
-
-/// A mass on a spring-damper along x.
-struct Oscillator {
-  double B = 0.0, K = 20000.0, M = 0.2, dt = 0.0005;
-  ToolState tool = {{{0.001, 0, 0}}, {0.3, 0, 0}};
-
-  void step() { leapfrog(tool, {-K * x() - B * v(), 0, 0}, M, dt); }
-  double x() const { return tool.pose.position.x(); }
-  double v() const { return tool.velocity.x(); }
-  double energy() const { return 0.5 * M * v() * v() + 0.5 * K * x() * x(); }
-};
-
-TEST(Leapfrog, VelocityIsUpdatedBeforePosition) {
-  // Dyadic numbers: exact.
-  ToolState tool;
-  tool.pose.position = {1, 2, 3};
-  tool.velocity = {0.5, 0.0, -1.0};
-  leapfrog(tool, {2, 4, -8}, 4.0, 0.25);
-  EXPECT_EQ(tool.velocity, Vec3(0.625, 0.25, -1.5));
-  EXPECT_EQ(tool.pose.position, Vec3(1.15625, 2.0625, 2.625));
-}
-
-TEST(Leapfrog, FollowsTheClosedFormOfItsRecurrence) {
-  // With b = B dt/M and k = K dt^2/M the positions obey x_{j+1} = (2 - b - k) x_j - (1 - b) x_{j-1}: powers of the
-  // roots of z^2 - (2 - b - k) z + (1 - b), from x_0 and x_1.
-  for (const double B : {0.0, 5.0, 88.5}) {
-    Oscillator o{B};
-    const double b = o.B * o.dt / o.M, k = o.K * o.dt * o.dt / o.M;
-    using Complex = std::complex<double>;
-    const Complex root = std::sqrt(Complex((2 - b - k) * (2 - b - k) - 4 * (1 - b)));
-    const Complex z1 = 0.5 * (2 - b - k + root), z2 = 0.5 * (2 - b - k - root);
-    const double x0 = o.x();
-    o.step();
-    const double x1 = o.x();
-    const Complex c1 = (x1 - z2 * x0) / (z1 - z2), c2 = (z1 * x0 - x1) / (z1 - z2);
-    const double amplitude = std::abs(c1) + std::abs(c2);
-    constexpr int steps = 1000;
-    // Each step rounds its three terms, and a disturbance of the recurrence echoes with the amplitude 2 / |z1 - z2|.
-    const double tolerance = steps * 8 * kEps * amplitude * 2.0 / std::abs(z1 - z2);
-    ASSERT_LT(tolerance, 1e-9 * amplitude);
-    for (int j = 2; j <= steps; ++j) {
-      o.step();
-      const double exact = (c1 * std::pow(z1, j) + c2 * std::pow(z2, j)).real();
-      ASSERT_NEAR(o.x(), exact, tolerance) << "B = " << B << ", step " << j;
-    }
-  }
-}
-
-TEST(Leapfrog, ConservesItsModifiedEnergy) {
-  Oscillator o;
-  const auto modified = [&o] { return o.energy() - 0.5 * o.K * o.dt * o.x() * o.v(); };
-  const double start = modified();
-  constexpr int steps = 100000;
-  for (int j = 0; j < steps; ++j) {
-    o.step();
-    ASSERT_NEAR(modified(), start, steps * 8 * kEps * start);
-  }
-}
-
-TEST(Leapfrog, ConstantForceGivesTheDiscreteParabola) {
-  // v_j = j a dt and x_j = a dt^2 j (j + 1) / 2: exact in dyadic numbers.
-  ToolState tool;
-  for (int j = 1; j <= 1000; ++j) {
-    leapfrog(tool, {0, 0, -2}, 0.5, 0x1p-10);
-    EXPECT_EQ(tool.velocity.z(), -4 * 0x1p-10 * j);
-    EXPECT_EQ(tool.pose.position.z(), -4 * 0x1p-20 * j * (j + 1) / 2);
   }
 }
 

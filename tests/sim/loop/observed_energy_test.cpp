@@ -26,45 +26,12 @@ ToolState run_spring(ObservedEnergy& observed, double damping, double position, 
   return tool;
 }
 
-/// Summing f_k (v_k + v_(k+1))/2 dt of an undamped spring telescopes to
-///   E_n = K/2 x_n^2 - K/2 dt x_n v_n + K/2 dt x_0 v_0:
-/// what the spring stores, but for half a step of lag.
-TEST(ObservedEnergy, OfOneSpringHasAClosedForm) {
-  for (const double v0 : {0.0, 0.4}) {
-    for (const int rows : {1, 2, 17, 1000}) {
-      ObservedEnergy observed(kDt);
-      const double x0 = 0.003;
-      const ToolState end = run_spring(observed, 0.0, x0, v0, rows);
-      const double x = end.pose.position.x(), v = end.velocity.x();
-      const double turnover = 0.5 * kK * x0 * x0 + 0.5 * kMass * v0 * v0;
-      // A handful of roundings of the energy that moves in every row.
-      EXPECT_NEAR(observed.energy(), 0.5 * kK * (x * x - kDt * x * v + kDt * x0 * v0), rows * 10 * kEpsilon * turnover);
-    }
-  }
-}
-
 /// Work is what the force adds to the kinetic energy, so E_n - E_0 is what the tool has lost.
 TEST(ObservedEnergy, IsWhatALoneToolHasLost) {
   ObservedEnergy observed(kDt);
   const ToolState end = run_spring(observed, 20.0, 0.003, 0.4, 300);
   const double given = 0.5 * kK * 0.003 * 0.003 + 0.5 * kMass * 0.4 * 0.4;
   EXPECT_NEAR(observed.energy(), given - 0.5 * kMass * end.velocity.squaredNorm(), 300 * 10 * kEpsilon * given);
-}
-
-TEST(ObservedEnergy, TheRotationPutsInWhatItDoesAgainstTheMoment) {
-  ObservedEnergy observed(kDt);
-  const Vec3 moment{0, -3, 0};
-  for (int k = 0; k <= 10; ++k) {
-    const double angle = 0.05 * k;
-    ToolState tool;
-    tool.pose.axis = {std::sin(angle), 0, -std::cos(angle)};  // turns about -y, along the moment
-    observed.move(tool);
-    if (k == 0) {
-      EXPECT_TRUE(observed.first());
-    }
-    observed.answer(tool, Vec3::Zero(), {2.0, moment});
-  }
-  EXPECT_NEAR(observed.energy(), 2.0 - 3.0 * 0.5, 1e-14);  // ten turns, each rounded to 1e-16
 }
 
 /// Half of a turn belongs to the row before, half to the row after: the trapezoidal rule.

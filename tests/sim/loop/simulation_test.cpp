@@ -70,24 +70,6 @@ TEST(Simulation, TheLimitedHandForceDrivesTheTool) {
   EXPECT_EQ(recorder.rows[1].tool.velocity, tool.velocity);
 }
 
-TEST(Simulation, TheHandFeelsTheHandleOfTheSameRow) {
-  struct Spring final : Hand {
-    void reset() noexcept override {}
-    Vec3 force(double t, const HandView& view) noexcept override {
-      return t * view.handle.position + view.handle.velocity;
-    }
-  };
-  SimulationParts parts = fake_parts(test::weightless);
-  parts.hand = std::make_unique<Spring>();
-  Recorder recorder;
-  Simulation(config_of(10), std::move(parts), {&recorder}).run();
-  for (const StepRecord& row : recorder.rows) {
-    EXPECT_EQ(row.handle.position, row.tool.pose.position);
-    EXPECT_EQ(row.handle.velocity, row.tool.velocity);
-    EXPECT_EQ(row.hand.measured, Vec3(row.time * row.handle.position + row.handle.velocity));
-  }
-}
-
 TEST(Simulation, TheHandSeesTheToolOfItsRowAndTheForceOfTheRowBefore) {
   struct Viewer final : Hand {
     void reset() noexcept override {}
@@ -167,15 +149,6 @@ TEST(Simulation, TheRatioIsComputedExactlyWhenAnObserverWantsIt) {
       EXPECT_EQ(recorder->rows[1].ratio.max, wanted ? 2.0 : 0.0);
     }
   }
-}
-
-TEST(Simulation, RowsTellCollidingAndRenderedContacts) {
-  SimulationParts parts = fake_parts(test::weightless);
-  parts.source = std::make_unique<test::FakeSource>(3);
-  Recorder recorder;
-  Simulation(config_of(1), std::move(parts), {&recorder}).run();
-  EXPECT_EQ(recorder.rows[0].colliding, 3u);
-  EXPECT_EQ(recorder.rendered[0], 3u);
 }
 
 TEST(Simulation, PreparesItsAlgorithmOnceAndComputesOncePerRow) {
@@ -262,16 +235,6 @@ TEST(PrescribedMotion, PutsToolAndHandleWhereTheScriptSaysWithTheBackwardDiffere
     EXPECT_EQ(rows[k].tool.velocity, Vec3(moved / SimulationConfig{}.dt));
     EXPECT_EQ(rows[k].handle.position, position);
     EXPECT_EQ(rows[k].handle.velocity, rows[k].tool.velocity);
-  }
-}
-
-TEST(PrescribedMotion, ForcesAreComputedButDoNotMoveTheTool) {
-  const auto free = run_along(some_path(), test::weightless);
-  const auto pushed = run_along(some_path(), [](const ToolState&) { return Vec3(1e6, -1e6, 1e6); });
-  for (std::size_t k = 0; k < free.size(); ++k) {
-    EXPECT_EQ(pushed[k].force.rendered, Vec3(1e6, -1e6, 1e6));
-    EXPECT_EQ(pushed[k].tool.pose.position, free[k].tool.pose.position);
-    EXPECT_EQ(pushed[k].tool.velocity, free[k].tool.velocity);
   }
 }
 

@@ -190,13 +190,6 @@ TEST(MeshFromTriangles, RefusesSurfacesWithOneSide) {
   EXPECT_NE(refusal_of(shuffled(test::moebius_band(12), random)).find("is not orientable"), std::string::npos);
 }
 
-TEST(MeshFromTriangles, AcceptsHandles) {
-  const auto [mesh, found] = mesh_from_triangles(test::torus(12, 7));
-  EXPECT_EQ(found.open_edges.size(), 0u);
-  EXPECT_EQ(euler_characteristic(mesh), 0);
-  EXPECT_GT(enclosed_volume(mesh), 0.0);
-}
-
 TEST(MeshFromTriangles, GivesEachFanAtAPointItsOwnVertex) {
   // Two cubes that touch in a corner.
   const auto [mesh, found] = mesh_from_triangles(together(cube(), cube(1.0, {2, 2, 2})));
@@ -318,13 +311,6 @@ TEST(Refine, LeavesNoLongerEdgeAndTheSameSurface) {
   // Sums of some 1e5 terms, each rounded when it is added: relative 1e5 * 2^-53.
   EXPECT_NEAR(surface_area(mesh) / area, 1.0, 3e-11);
   EXPECT_NEAR(enclosed_volume(mesh) / volume, 1.0, 3e-11);
-}
-
-TEST(Refine, LeavesAFineMeshAlone) {
-  HalfEdgeMesh mesh = mesh_from_triangles(test::sphere(1.0, 3)).mesh;
-  const std::size_t faces = mesh.n_faces();
-  refine(mesh, 2.0);
-  EXPECT_EQ(mesh.n_faces(), faces);
 }
 
 TEST(RefinedFaceCount, IsExactlyWhatRefineLeaves) {

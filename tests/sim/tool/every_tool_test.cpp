@@ -1,9 +1,7 @@
 #include <gtest/gtest.h>
 
-#include <Eigen/Geometry>
 #include <cmath>
 
-#include "tests/support/contact_sets.hpp"
 #include "tests/support/scale.hpp"
 #include "tests/support/tool_kinds.hpp"
 
@@ -282,29 +280,6 @@ TEST_P(EveryTool, TwiceAsLargeHasAnswersTwiceAsLarge) {
     const std::size_t indices = colliding(tool, pose, contacts).index.size();
     for (std::size_t k = 0; k < once.size(); ++k) ASSERT_EQ(all[k], (k < indices ? 1.0 : 2.0) * once[k]) << k;
   }
-}
-
-TEST_P(EveryTool, AnswersTheSameWhereverItIs) {
-  for_tools(1000, [&](const DefinedTool& tool, const ToolPose& pose, Random& random) {
-    const Mat3 R = test::random_rotation(random);
-    const Vec3 t = random.direction();
-    const ToolPose moved{R * pose.position + t, (R * pose.axis).normalized(), random.uniform(-3.0, 3.0)};
-    ContactBuffer here(16);
-    for (std::uint32_t i = 0; i < 16;) {
-      const Vec3 point = tool.near_point(pose, random);
-      if (std::abs(slack_at(tool, pose, point)) > 2 * kRounding) here.push(i++, point, random.direction());
-    }
-    ContactBuffer there = here;
-    for (std::size_t i = 0; i < here.size(); ++i) {
-      const Vec3 p = R * here.point(i) + t;
-      there.x[i] = p.x(), there.y[i] = p.y(), there.z[i] = p.z();
-    }
-    ASSERT_EQ(inside(*tool.shape, pose, here), inside(*tool.shape, moved, there));
-    ContactBuffer a = here, b = there;
-    tool.shape->surface_constraints(pose, Vec3::Zero(), 0.0, a);
-    tool.shape->surface_constraints(moved, Vec3::Zero(), 0.0, b);
-    for (std::size_t i = 0; i < a.size(); ++i) ASSERT_NEAR(a.depth[i], b.depth[i], kRounding);
-  });
 }
 
 }  // namespace

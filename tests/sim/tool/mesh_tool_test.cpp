@@ -9,7 +9,6 @@
 
 #include "sim/contact/neighbour_list_query.hpp"
 #include "sim/core/random.hpp"
-#include "sim/tool/cylinder.hpp"
 #include "sim/tool/signed_distance_grid.hpp"
 #include "tests/support/meshes.hpp"
 #include "tests/support/scale.hpp"
@@ -432,32 +431,6 @@ TEST_P(MeshToolOf, KeepsPointsOutOfConvexBodiesByItsConstraints) {
     // And it is no further away than it seems.
     ASSERT_LE(-depth, field(tool_, pose, x) + 1e-12);
   }
-}
-
-TEST(MeshTool, EqualsTheCylinderOfItsMeshUpToChordsAndRoundedEdges) {
-  const int sides = 128;
-  const double radius = 0.0005, length = 0.01, spacing = 0.00002;
-  const MeshTool tool(grid_of(test::cylinder_mesh(radius, length, sides), spacing));
-  const Cylinder cylinder(radius, length, Tip::flat);
-  Random random(9);
-  const double chord = radius * (1.0 - std::cos(3.14159265358979 / sides));
-  for (std::size_t i = 0; i < cases(5000); ++i) {
-    const ToolPose pose = random_pose(random);
-    const Vec3 x = random_place(tool.grid(), random, 0.0);
-    const double rho = x.head<2>().norm();
-    if (rho > radius || x.z() < 0.0 || x.z() > length) continue;
-    ContactBuffer a = contacts_at({to_world(pose, x)}), b = a;
-    tool.shortest_depths(pose, a);
-    cylinder.shortest_depths(pose, b);
-    // Edges, where the nearest place changes from side to end, are rounded within the bound, other places by curvature.
-    const double to_side = radius - rho, to_end = std::min(x.z(), length - x.z());
-    const bool smooth = std::abs(to_side - to_end) > 4.0 * spacing && rho > 4.0 * spacing;
-    // The largest curvature of the distance in the stencil is that at its innermost node.
-    const double curved = to_side < to_end && smooth ? spacing * spacing / 8.0 / (rho - 3.0 * spacing) : 0.0;
-    ASSERT_LE(std::abs(a.depth[0] - b.depth[0]), smooth ? chord + curved + 1e-15 : tool.grid().error_bound() + chord);
-  }
-  EXPECT_NEAR(tool.half_width(), cylinder.half_width(), spacing);
-  EXPECT_NEAR(tool.reach(), cylinder.reach(), 2.0 * spacing);
 }
 
 }  // namespace

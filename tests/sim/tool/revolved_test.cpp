@@ -7,98 +7,17 @@
 #include <stdexcept>
 #include <string>
 
+#include "sim/contact/contact_buffer.hpp"
 #include "sim/tool/bur.hpp"
-#include "tests/support/scale.hpp"
-#include "tests/support/tool_kinds.hpp"
 
 namespace hapbench::revolved_test {
 namespace {
-
-using test::cases;
-
-class RevolvedCylinder : public testing::TestWithParam<Tip> {};
-INSTANTIATE_TEST_SUITE_P(BothTips, RevolvedCylinder, testing::Values(Tip::flat, Tip::round),
-                         [](const auto& tip) { return tip.param == Tip::flat ? "flat" : "round"; });
-
-constexpr double kRounding = 4e-15;
-
-Revolved revolved(const Cylinder& tool) {
-  return Revolved({{-tool.length(), tool.radius()}, {0.0, tool.radius()}}, tool.tip());
-}
-
-/// A tool no shorter than its radius: see Revolved.
-Cylinder random_tool(Random& random, Tip tip) {
-  const double radius = random.uniform(1e-4, 1e-3);
-  return {radius, radius + random.uniform(0.0, 1e-2), tip};
-}
 
 std::uint8_t inside(const ToolShape& tool, const ToolPose& pose, const ContactBuffer& contacts) {
   const PackRange one{0, 1};
   std::uint8_t marks = 0;
   tool.mark_inside(pose, {contacts.x.data(), contacts.y.data(), contacts.z.data()}, {&one, 1}, &marks);
   return marks;
-}
-
-TEST_P(RevolvedCylinder, EqualsTheCylinder) {
-  Random random(1);
-  std::size_t in = 0;
-  for (std::size_t i = 0; i < cases(20'000); ++i) {
-    const Cylinder tool = random_tool(random, GetParam());
-    const Revolved turned = revolved(tool);
-    const ToolPose pose = test::random_pose(random), other = test::random_pose(random);
-    ContactBuffer contacts(8);
-    for (std::uint32_t k = 0; k < 8; ++k)
-      contacts.push(k, test::random_point_near(tool, pose, random), random.direction());
-    const std::uint8_t marks = inside(tool, pose, contacts);
-    ASSERT_EQ(inside(turned, pose, contacts), marks);
-    ContactBuffer a(8), b(8);
-    for (std::size_t k = 0; k < 8; ++k) {
-      if (marks >> k & 1) a.push_copy_of(contacts, k), b.push_copy_of(contacts, k);
-    }
-    in += a.size();
-    std::array<double, 8> exits_a{}, exits_b{};
-    tool.shortest_depths(pose, a);
-    turned.shortest_depths(pose, b);
-    tool.shortest_gradients(pose, a);
-    turned.shortest_gradients(pose, b);
-    for (std::size_t k = 0; k < a.size(); ++k) {
-      ASSERT_NEAR(a.depth[k], b.depth[k], kRounding);
-      ASSERT_LE((a.gradient(k) - b.gradient(k)).norm(), 1e-9);  // near the axis as uncertain as rounding over radius
-      a.set_gradient(k, -a.normal(k));
-      b.set_gradient(k, -b.normal(k));
-    }
-    tool.exit_distances(pose, a, exits_a.data());
-    turned.exit_distances(pose, b, exits_b.data());
-    // A ray that almost touches the side leaves it with the rounding over its slope.
-    for (std::size_t k = 0; k < a.size(); ++k) ASSERT_NEAR(exits_a[k], exits_b[k], 1e-6 * tool.radius());
-
-    const Vec3 move = 1e-3 * random.direction();
-    a.assign(contacts);
-    b.assign(contacts);
-    tool.surface_constraints(pose, move, 1e-5, a);
-    turned.surface_constraints(pose, move, 1e-5, b);
-    alignas(64) double ax[8], ay[8], az[8], bx[8], by[8], bz[8];
-    tool.foremost_places(pose, a, {ax, ay, az});
-    turned.foremost_places(pose, b, {bx, by, bz});
-    for (std::size_t k = 0; k < 8; ++k) {
-      ASSERT_NEAR(a.depth[k], b.depth[k], kRounding);
-      ASSERT_LE((a.gradient(k) - b.gradient(k)).norm(), 1e-8);
-      ASSERT_LE((Vec3(ax[k], ay[k], az[k]) - Vec3(bx[k], by[k], bz[k])).norm(), kRounding);
-    }
-
-    const double margin = tool.radius() * random.uniform();
-    const Box bounds{contacts.point(0).cwiseMin(contacts.point(1)), contacts.point(0).cwiseMax(contacts.point(1))};
-    const Box box_a = tool.box_near(pose, margin, bounds), box_b = turned.box_near(pose, margin, bounds);
-    ASSERT_LE((box_a.min - box_b.min).norm() + (box_a.max - box_b.max).norm(), kRounding);
-    ASSERT_EQ(turned.cover(margin).balls, tool.cover(margin).balls);
-    ASSERT_NEAR(turned.cover(margin).radius, tool.cover(margin).radius, kRounding);
-    ASSERT_EQ(turned.moved_at_most(pose, other), tool.moved_at_most(pose, other));
-    const ToolShape::Grown grown_a = tool.grown(margin), grown_b = turned.grown(margin);
-    ASSERT_EQ(grown_a.forward, grown_b.forward);
-    ASSERT_NEAR(grown_a.shape->half_width(), grown_b.shape->half_width(), kRounding);
-    ASSERT_NEAR(grown_a.shape->reach(), grown_b.shape->reach(), kRounding);
-  }
-  EXPECT_GT(in, cases(20'000));
 }
 
 TEST(Revolved, PointsOnItsSurfaceCollideWithDepthZero) {
