@@ -42,27 +42,11 @@ std::optional<Warning> short_path_warning(const DragHandFields& hand, double pat
                                      "initial.position_m, a larger hand.smoothing_m or hand.path_m leads further")};
 }
 
-DragCourseObserver::DragCourseObserver(const DragHand& hand, const DragHandFields& fields, double half_width)
-    : hand_(hand), fields_(fields), width_(2.0 * half_width) {}
-
 void DragCourseObserver::on_step(const StepRecord& record) noexcept {
-  constexpr double kComes = 0.1;  // of the point's way, at least, where the tool does not stand
-  const SurfacePath& path = hand_.path();
   time_ = record.time;
-  asked_ = std::min(hand_.drag().speed * record.time, path.length());
   way_ = std::max(way_, hand_.nearest());
   place_ = record.tool.pose.position;
-  force_ = record.force.rendered.norm();
   if (record.colliding > 0) last_contact_ = record.time;
-  if (asked_ < static_cast<double>(stand_) * width_ / kStands) return;
-  const Stand now{record.time, asked_, way_}, before = stands_[stand_ % kStands];
-  stands_[stand_ % kStands] = now;
-  if (stand_++ < kStands) return;
-  if (now.way - before.way >= kComes * (now.asked - before.asked)) {
-    stuck_.reset();
-  } else if (!stuck_) {
-    stuck_ = before;
-  }
 }
 
 void StuckObserver::on_step(const StepRecord& record) noexcept {
@@ -95,11 +79,6 @@ void StuckObserver::on_step(const StepRecord& record) noexcept {
 
 std::optional<Stuck> StuckObserver::stuck() const {
   return stuck_.target_way > width_ && across_ > width_ ? std::optional(stuck_) : std::nullopt;
-}
-
-std::optional<Stuck> DragCourseObserver::stuck() const {
-  if (!stuck_) return std::nullopt;
-  return Stuck{stuck_->time, way_ - stuck_->way, asked_ - stuck_->asked, place_, force_};
 }
 
 std::optional<double> DragCourseObserver::lost() const {
@@ -243,79 +222,76 @@ double closest_target(const ImpedanceHandFields& hand, const TimeFields& time, c
 
 }  // namespace
 
-EncounterObservers::EncounterObservers(const Scenario& scenario, const NamedFiles& files, const SimulationParts& parts,
-                                       const MetricsObserver* metrics)
+EncounterObserver::EncounterObserver(const Scenario& scenario, const NamedFiles& files, const SimulationParts& parts,
+                                     const MetricsObserver* metrics)
     : scenario_(scenario), tool_(parts.tool) {
+  const auto steps = static_cast<std::uint64_t>(scenario.time.steps);
   if (auto solid = make_solid(scenario, files)) {
     const std::int64_t every = scenario.record.inside ? scenario.record.every : 0;
-    inside_.emplace(parts.tool, std::move(solid), metrics, static_cast<std::uint64_t>(every),
-                    static_cast<std::uint64_t>(scenario.time.steps));
+    inside_.emplace(parts.tool, std::move(solid), metrics, static_cast<std::uint64_t>(every), steps);
   }
-  if (parts.shell && parts.shell->size() > 0)
-    approach_.emplace(parts.shell, static_cast<std::uint64_t>(scenario.time.steps));
-  if (const auto* hand = dynamic_cast<const DragHand*>(parts.hand.get()))
-    drag_.emplace(*hand, std::get<DragHandFields>(scenario.hand), parts.tool->half_width());
-  const bool is_free = position_is_free(scenario.motion);
+  if (parts.shell && parts.shell->size() > 0) approach_.emplace(parts.shell, steps);
   const double width = 2.0 * parts.tool->half_width();
-  if (const ImpedanceHandFields* hand = spring_of(scenario.hand); hand != nullptr && is_free)
+  if (const auto* hand = dynamic_cast<const DragHand*>(parts.hand.get())) {
+    drag_.emplace(*hand, std::get<DragHandFields>(scenario.hand), parts.tool->half_width());
+    stuck_.emplace([hand](double time) { return hand->path().at(hand->drag().speed * time).position; }, width);
+  }
+  if (const ImpedanceHandFields* hand = spring_of(scenario.hand);
+      hand != nullptr && position_is_free(scenario.motion))
     stuck_.emplace([hand](double time) { return target_at(*hand, time); }, width);
   if (const auto* hand = dynamic_cast<const TrackingHand*>(parts.hand.get()))
     stuck_.emplace([hand](double) { return hand->intended(); }, width);
 }
 
-std::vector<Observer*> EncounterObservers::all() {
-  std::vector<Observer*> observers;
-  if (inside_) observers.push_back(&*inside_);
-  if (approach_) observers.push_back(&*approach_);
-  if (drag_) observers.push_back(&*drag_);
-  if (stuck_) observers.push_back(&*stuck_);
-  return observers;
+void EncounterObserver::on_step(const StepRecord& record) noexcept {
+  if (inside_) inside_->on_step(record);
+  if (approach_) approach_->on_step(record);
+  if (drag_) drag_->on_step(record);
+  if (stuck_) stuck_->on_step(record);
 }
 
-const InsideDepths* EncounterObservers::depths() {
+const InsideDepths* EncounterObserver::depths() {
   if (inside_ && !depths_) depths_ = inside_->depths();
   return depths_ ? &*depths_ : nullptr;
 }
 
-double EncounterObservers::inside_max() {
+double EncounterObserver::inside_max() {
   const InsideDepths* inside = depths();
   return inside != nullptr ? inside->max.value_or(0.0) : 0.0;
 }
 
-std::optional<Stuck> EncounterObservers::stuck() const {
-  if (stuck_) return stuck_->stuck();
-  return drag_ ? drag_->stuck() : std::nullopt;
-}
-
-Outcome EncounterObservers::outcome(const TrialContact& contact, Outcome outcome) {
+Outcome EncounterObserver::outcome(Outcome outcome) {
   if (!approach_ || outcome != Outcome::completes) return outcome;
   if (inside_ && (inside_->passage().went_through() || inside_max() > tool_->half_width()))
     return Outcome::went_through;
-  if (contact.in_contact == 0) return Outcome::no_contact;
-  const bool is_free = position_is_free(scenario_.motion);
+  if (!approach_->touched()) return Outcome::no_contact;
   const StepWay& steps = approach_->steps();
-  if (is_free && steps.distance() > diagonal(steps.environment()) + tool_->reach()) return Outcome::lost_contact;
+  const bool is_far = steps.distance() > diagonal(steps.environment()) + tool_->reach();
+  if (is_far && position_is_free(scenario_.motion)) return Outcome::lost_contact;
   if (drag_ && drag_->lost()) return Outcome::lost_contact;
   if (drag_ && drag_->not_dragged()) return Outcome::not_dragged;
-  return stuck() ? Outcome::stuck : Outcome::completes;
+  return stuck_ && stuck_->stuck() ? Outcome::stuck : Outcome::completes;
 }
 
-void EncounterObservers::judge(const TrialContact& contact, Outcome& outcome, std::vector<Warning>& warnings) {
+std::vector<Warning> EncounterObserver::warnings(Outcome outcome, const TrialContact& contact) {
+  std::vector<Warning> warnings;
+  const auto add = [&warnings](std::optional<Warning> warning) {
+    if (warning) warnings.push_back(std::move(*warning));
+  };
   if (const InsideDepths* inside = depths(); inside != nullptr && inside->at_most) {
-    warnings.push_back(
-        {"inside_bound", "",
-         fmt::format("inside_max_m, {}, may be too low: no row is deeper than {}; record.inside=true looks "
-                     "at every row",
-                     length_text(inside_max()), length_text(*inside->at_most))});
+    add(Warning{"inside_bound", "",
+                fmt::format("inside_max_m, {}, may be too low: no row is deeper than {}; record.inside=true looks "
+                            "at every row",
+                            length_text(inside_max()), length_text(*inside->at_most))});
   }
-  if (!approach_) return;
-  outcome = this->outcome(contact, outcome);
-  if (auto warning = warning_about(outcome, contact)) warnings.push_back(*warning);
+  if (!approach_) return warnings;
+  add(warning_about(outcome, contact));
   if (drag_) {
-    for (Warning& warning : drag_->warnings(outcome)) warnings.push_back(std::move(warning));
+    for (Warning& warning : drag_->warnings(outcome)) add(std::move(warning));
   }
-  if (!std::holds_alternative<MeshToolFields>(scenario_.tool)) return;
-  if (auto warning = scale_warning(scenario_, *tool_, approach_->steps().environment())) warnings.push_back(*warning);
+  if (std::holds_alternative<MeshToolFields>(scenario_.tool))
+    add(scale_warning(scenario_, *tool_, approach_->steps().environment()));
+  return warnings;
 }
 
 std::optional<Warning> scale_warning(const Scenario& scenario, const ToolShape& tool, const Box& environment) {
@@ -354,7 +330,8 @@ std::string passage_text(const Passage& p, double half_width, double inside_max,
 
 }  // namespace
 
-EncounterObservers::Cause EncounterObservers::likely_cause(Outcome outcome, const TrialContact& contact) const {
+std::pair<const char*, std::string> EncounterObserver::likely_cause(Outcome outcome,
+                                                                    const TrialContact& contact) const {
   const StepWay& steps = approach_->steps();
   const double size = diagonal(steps.environment());
   if (out_of_proportion(*tool_, steps.environment())) return {"scale", scale_question(scenario_)};
@@ -386,7 +363,7 @@ EncounterObservers::Cause EncounterObservers::likely_cause(Outcome outcome, cons
   return {"start", is_free ? "is initial.position_m right?" : "is motion.position right?"};
 }
 
-std::optional<Warning> EncounterObservers::warning_about(Outcome outcome, const TrialContact& contact) {
+std::optional<Warning> EncounterObserver::warning_about(Outcome outcome, const TrialContact& contact) {
   const StepWay& steps = approach_->steps();
   const std::string kind(outcome_name(outcome));
   if (outcome == Outcome::went_through) {
@@ -394,32 +371,34 @@ std::optional<Warning> EncounterObservers::warning_about(Outcome outcome, const 
     const std::string cause = out_of_proportion(*tool_, steps.environment()) ? "; " + scale_question(scenario_) : "";
     return Warning{kind, "", passage_text(inside_->passage(), tool_->half_width(), inside_max(), is_led) + cause};
   }
-  if (const auto s = stuck(); s && (outcome == Outcome::stuck || outcome == Outcome::not_dragged)) {
+  const auto stuck = stuck_ ? stuck_->stuck() : std::nullopt;
+  if (stuck && (outcome == Outcome::stuck || outcome == Outcome::not_dragged)) {
     return Warning{
         kind, "",
         fmt::format("the tool stood still since {:.4g} s, coming {} further while its target went on by {}; it "
                     "was at {} under a force of {:.3g} N in the end",
-                    s->since, length_text(s->way), length_text(s->target_way), millimetres(s->place), s->force)};
+                    stuck->since, length_text(stuck->way), length_text(stuck->target_way), millimetres(stuck->place),
+                    stuck->force)};
   }
   const std::string environment =
       fmt::format("{}: {}", size_text(steps.environment()), place_text(steps.environment()));
   if (outcome == Outcome::no_contact) {
     const auto closest = approach_->closest_to_surface(*tool_);
-    const Cause cause = likely_cause(outcome, contact);
-    return Warning{fmt::format("{} {}", kind, cause.kind), "",
+    const auto [cause, question] = likely_cause(outcome, contact);
+    return Warning{fmt::format("{} {}", kind, cause), "",
                    fmt::format("never in contact: the tool came as close as {} (at {:.4g} s) to the surface of the "
                                "environment ({}); {}",
-                               length_text(closest.distance), closest.time, environment, cause.text)};
+                               length_text(closest.distance), closest.time, environment, question)};
   }
   // The course of the drag tells of a tool that lost the surface within the box.
   if (outcome != Outcome::lost_contact || (drag_ && drag_->lost() && steps.distance() == 0.0)) return std::nullopt;
   const double share = static_cast<double>(contact.in_contact) / static_cast<double>(contact.rows);
-  const Cause cause = likely_cause(outcome, contact);
+  const auto [cause, question] = likely_cause(outcome, contact);
   return Warning{
-      fmt::format("{} {}", kind, cause.kind), "",
+      fmt::format("{} {}", kind, cause), "",
       fmt::format("in contact for {:.3g} % of the run, last at {:.4g} s; ended {} away from the environment "
                   "({}); {}",
-                  100.0 * share, contact.last.value_or(0.0), length_text(steps.distance()), environment, cause.text)};
+                  100.0 * share, contact.last.value_or(0.0), length_text(steps.distance()), environment, question)};
 }
 
 namespace {

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <functional>
@@ -58,6 +57,7 @@ class ApproachObserver final : public Observer {
 
   void on_step(const StepRecord& record) noexcept override;
 
+  bool touched() const { return touched_; }        ///< in any row
   const StepWay& steps() const { return steps_; }  ///< of the tip centre
   /// Of the tip centre to the environment's box before the first contact; 0 within it [m].
   double closest_to_box() const;
@@ -98,17 +98,15 @@ struct Stuck {
   double force = 0.0;                  ///< size of the rendered force in the last row [N]
 };
 
-/// Follows a dragged tool on the path along which it is led; a few look-ups in the path's table, no allocation.
+/// Follows a dragged tool on the path along which it is led; a look-up in the path's table, no allocation.
 class DragCourseObserver final : public Observer {
  public:
   /// The hand and its fields must outlive the observer. `half_width`: the tool's [m].
-  DragCourseObserver(const DragHand& hand, const DragHandFields& fields, double half_width);
+  DragCourseObserver(const DragHand& hand, const DragHandFields& fields, double half_width)
+      : hand_(hand), fields_(fields), width_(2.0 * half_width) {}
 
   void on_step(const StepRecord& record) noexcept override;
 
-  /// From when on the tool came less than a tenth of the way of the point that leads it, over every width of its own
-  /// that the point went on.
-  std::optional<Stuck> stuck() const;
   /// Time of the last contact, if the tool had no contact for the default settling time before the end although the
   /// hand pressed: after that long the next touch would be a landing.
   std::optional<double> lost() const;
@@ -121,26 +119,17 @@ class DragCourseObserver final : public Observer {
  private:
   const DragHand& hand_;
   const DragHandFields& fields_;
-  /// The point's and the tool's way at a time.
-  struct Stand {
-    double time = 0.0, asked = 0.0, way = 0.0;
-  };
-  static constexpr std::size_t kStands = 4;
-  std::array<Stand, kStands> stands_{};  ///< a quarter of the tool's width of the point's way apart
-  std::size_t stand_ = 0;                ///< how many there were
-  std::optional<Stand> stuck_;           ///< where it came to stand for good
-  double width_;                         ///< the tool's [m]
-  double asked_ = 0.0, way_ = 0.0;       ///< furthest that the point and the tool came on the path [m]
-  double time_ = 0.0;                    ///< of the last row
-  Vec3 place_ = Vec3::Zero();            ///< of the tip in the last row [m]
-  double force_ = 0.0;                   ///< rendered in the last row [N]
+  double width_;              ///< the tool's [m]
+  double way_ = 0.0;          ///< furthest that the tool came on the path [m]
+  double time_ = 0.0;         ///< of the last row
+  Vec3 place_ = Vec3::Zero();  ///< of the tip in the last row [m]
   std::optional<double> last_contact_;
 };
 
 /// Finds a tool that a hand's spring cannot move, that of a subject at a display, too: its target is the intended
-/// position. A spring whose target goes into the surface presses the tool on it,
-/// which is no sticking: so the tool is stuck only where the target came away from it by more than its width across the
-/// direction in which the springs of the contacts push. No allocation; about 30 ns a row.
+/// position; that of a hand that drags is the point that leads the tool. A spring whose target goes into the surface
+/// presses the tool on it, which is no sticking: so the tool is stuck only where the target came away from it by more
+/// than its width across the direction in which the springs of the contacts push. No allocation; about 30 ns a row.
 class StuckObserver final : public Observer {
  public:
   /// `target`: of the spring, at the time of the row that was the last [s]. `width`: the tool's [m].
@@ -183,13 +172,14 @@ class OpenEdgeObserver final : public Observer {
 };
 
 /// Watches a run with a point shell for all that decides its outcome.
-class EncounterObservers {
+class EncounterObserver final : public Observer {
  public:
-  /// Scenario and parts must outlive them; `metrics`, if given, observes before.
-  EncounterObservers(const Scenario& scenario, const NamedFiles& files, const SimulationParts& parts,
-                     const MetricsObserver* metrics = nullptr);
+  /// Scenario and parts must outlive it; `metrics`, if given, observes before.
+  EncounterObserver(const Scenario& scenario, const NamedFiles& files, const SimulationParts& parts,
+                    const MetricsObserver* metrics = nullptr);
 
-  std::vector<Observer*> all();
+  void on_step(const StepRecord& record) noexcept override;
+
   /// Null without a solid.
   const InsideObserver* inside() const { return inside_ ? &*inside_ : nullptr; }
 
@@ -197,12 +187,12 @@ class EncounterObservers {
   /// when the tool passed the surface (Passage), by itself or led by a script, or a part of it was deeper than its half
   /// width; `no_contact` when no row had a colliding point; `lost_contact` when a tool that moves freely ended further
   /// from the environment's box than the box is wide and the tool reaches together, as one does that was thrown out or
-  /// pushed past, or when a dragged tool lost the surface; `not_dragged` when one came nowhere (DragCourse): it was
-  /// pressed, and its calm numbers tell nothing of a drag; `stuck` when it came to stand while the target of its hand
-  /// went on.
-  Outcome outcome(const TrialContact& contact, Outcome outcome);
-  /// After the run: finds its outcome and adds warnings about it.
-  void judge(const TrialContact& contact, Outcome& outcome, std::vector<Warning>& warnings);
+  /// pushed past, or when a dragged tool lost the surface; `not_dragged` when one came nowhere (DragCourseObserver): it
+  /// was pressed, and its calm numbers tell nothing of a drag; `stuck` when it came to stand while the target of its
+  /// hand went on.
+  Outcome outcome(Outcome outcome);
+  /// After the run: warnings about its outcome.
+  std::vector<Warning> warnings(Outcome outcome, const TrialContact& contact);
   /// The longest way of the tip in a step near the environment; 0 without points [m].
   double longest_step() const { return approach_ ? approach_->steps().longest() : 0.0; }
   /// After the run: how deep the tool was, which is looked for at the first call. Null without a solid.
@@ -212,13 +202,8 @@ class EncounterObservers {
   /// What happened and what the likely cause is; none for other outcomes, and none for a dragged tool that lost the
   /// surface within the environment's box.
   std::optional<Warning> warning_about(Outcome outcome, const TrialContact& contact);
-  /// A likely cause, or where to look when none suggests itself.
-  struct Cause {
-    const char* kind;
-    std::string text;  ///< the end of a sentence
-  };
-  Cause likely_cause(Outcome outcome, const TrialContact& contact) const;
-  std::optional<Stuck> stuck() const;
+  /// A likely cause, or where to look when none suggests itself: its kind, and the end of a sentence.
+  std::pair<const char*, std::string> likely_cause(Outcome outcome, const TrialContact& contact) const;
   /// How deep any part of the tool was in any row; 0 without a solid [m].
   double inside_max();
 

@@ -53,8 +53,8 @@ std::span<const Column> columns_of(const RecorderEntry& entry, const RecordField
 
 }  // namespace
 
-std::vector<std::unique_ptr<Recorder>> make_recorders(const RecordedTrial& trial, const RecordTarget& target) {
-  std::vector<std::unique_ptr<Recorder>> recorders;
+Recorders make_recorders(const RecordedTrial& trial, const RecordTarget& target) {
+  Recorders recorders;
   for (const RecorderEntry& entry : kRecorders) {
     if (!entry.is_wanted(trial.fields)) continue;
     RowSource rows = entry.rows(trial);

@@ -30,8 +30,10 @@ using RecordedTables = std::map<std::string, MemoryTable>;
 /// outlive the recorders).
 using RecordTarget = std::variant<std::filesystem::path, RecordedTables*>;
 
+using Recorders = std::vector<std::unique_ptr<Recorder>>;
+
 /// Recorders for what the scenario asks for. Throws IoError.
-std::vector<std::unique_ptr<Recorder>> make_recorders(const RecordedTrial& trial, const RecordTarget& target);
+Recorders make_recorders(const RecordedTrial& trial, const RecordTarget& target);
 
 /// The tables of all recorders there are.
 std::vector<ResultTable> record_tables();

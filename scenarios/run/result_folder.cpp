@@ -9,6 +9,7 @@
 
 #include "results/io/columns.hpp"
 #include "results/io/json_text.hpp"
+#include "results/record/recorder.hpp"
 
 namespace hapbench {
 namespace {
@@ -69,12 +70,12 @@ fs::path ResultFolder::of_trial(Trial trial, std::size_t trials) {
   return directory;
 }
 
-void ResultFolder::write(const RecordFields& record, const WrittenScenario& scenario, const Simulated& run) {
-  const Result& result = run.result;
+void ResultFolder::write(const RecordFields& record, const WrittenScenario& scenario, const Result& result,
+                         const Recorders& recorders) {
   std::vector<ResultTable> tables = record_tables(record);
   FileSet files;
   remove_earlier_run(directory_, files);
-  for (const auto& recorder : run.recorders) recorder->finish(&files);
+  for (const auto& recorder : recorders) recorder->finish(&files);
   if (result.has_section("targets")) {
     tables.push_back(kTargetTable);
     write_target_table(directory_ / kTargetTable.file, result.targets, &files);

@@ -3,8 +3,10 @@
 #include <filesystem>
 
 #include "results/io/atomic_file.hpp"
+#include "results/summary/summary.hpp"
+#include "scenarios/description/load_scenario.hpp"
 #include "scenarios/description/parts.hpp"
-#include "scenarios/run/simulate.hpp"
+#include "scenarios/run/recorders.hpp"
 
 namespace hapbench {
 
@@ -25,7 +27,8 @@ class ResultFolder {
 
   /// Writes the results in place of those of an earlier run: each file appears complete or not at all, the summary
   /// last. Throws IoError.
-  void write(const RecordFields& record, const WrittenScenario& scenario, const Simulated& run);
+  void write(const RecordFields& record, const WrittenScenario& scenario, const Result& result,
+             const Recorders& recorders);
 
  private:
   std::filesystem::path directory_;

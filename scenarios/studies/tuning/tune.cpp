@@ -104,7 +104,7 @@ class Tuner {
     return judged_run(loaded, shell_, rule);
   }
   TuneMetrics metrics_of(const LoadedScenario& loaded) const {
-    const Result summary = run_with_shell(loaded, shell_, std::nullopt, false);
+    const Result summary = run_with_shell(loaded, shell_);
     TuneMetrics metrics;
     const auto add = [&](const std::string& name) {
       if (const auto value = number_of(summary.metrics, name)) metrics[name] = *value;
