@@ -3,8 +3,11 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <utility>
 
+#include "device_model/hands/drag_hand.hpp"
 #include "device_model/hands/tracking_hand.hpp"
 #include "results/observe/contact_forces.hpp"
 #include "results/summary/outcome_names.hpp"
@@ -40,109 +43,6 @@ std::optional<Warning> short_path_warning(const DragHandFields& hand, double pat
                  ends + (hand.path ? "hand.path_m leads no further over the surface; let its points lie on it"
                                    : "beyond, the surface ends or turns against hand.direction; another "
                                      "initial.position_m, a larger hand.smoothing_m or hand.path_m leads further")};
-}
-
-void DragCourseObserver::on_step(const StepRecord& record) noexcept {
-  time_ = record.time;
-  way_ = std::max(way_, hand_.nearest());
-  place_ = record.tool.pose.position;
-  if (record.colliding > 0) last_contact_ = record.time;
-}
-
-void StuckObserver::on_step(const StepRecord& record) noexcept {
-  constexpr double kComes = 0.1;      // of the target's way, at least, where the tool does not stand
-  constexpr double kRows = 1 / 32.0;  // of a mean over some rows, which chatter does not turn
-  const Vec3& place = record.tool.pose.position;
-  const Vec3 target = target_(record.time);
-  // Before the first touch nothing tells the direction of the push: how far away the target was then does not count.
-  if (push_.isZero(0.0)) across_ = 0.0;
-  push_ += kRows * (record.force.spring - push_);
-  stuck_.place = place;
-  stuck_.force = record.force.rendered.norm();
-  const auto extend = [](Box& box, const Vec3& p) {
-    box = {box.min.cwiseMin(p), box.max.cwiseMax(p)};
-    return (box.max - box.min).norm();
-  };
-  stuck_.way = extend(ways_, place);
-  stuck_.target_way = extend(target_ways_, target);
-  if (!began_ || stuck_.way > kComes * std::max(width_, stuck_.target_way)) {
-    began_ = true;
-    ways_ = {place, place};
-    target_ways_ = {target, target};
-    across_ = stuck_.way = stuck_.target_way = 0.0;
-    stuck_.since = record.time;
-  }
-  Vec3 across = target - place;
-  if (const double push2 = push_.squaredNorm(); push2 > 0.0) across -= across.dot(push_) / push2 * push_;
-  across_ = std::max(across_, across.norm());
-}
-
-std::optional<Stuck> StuckObserver::stuck() const {
-  return stuck_.target_way > width_ && across_ > width_ ? std::optional(stuck_) : std::nullopt;
-}
-
-std::optional<double> DragCourseObserver::lost() const {
-  const bool presses = hand_.drag().force(time_) > 0.0;
-  const bool is_lost = presses && last_contact_ && time_ - *last_contact_ >= SettlingRule().time;
-  return is_lost ? last_contact_ : std::nullopt;
-}
-
-bool DragCourseObserver::not_dragged() const {
-  return way_ < width_ && way_to_cover(fields_, time_) > 2.0 * width_;
-}
-
-std::vector<Warning> DragCourseObserver::warnings(Outcome outcome) const {
-  std::vector<Warning> warnings;
-  if (const auto since = lost(); since && outcome != Outcome::went_through) {
-    const SurfacePoint foot = hand_.path().at(hand_.nearest());
-    const double height = foot.normal.dot(place_ - foot.position);
-    warnings.push_back(
-        {"drag_lost", "",
-         fmt::format("the dragged tool lost the surface at {:.4g} s and ended {} {}", *since,
-                     length_text(std::abs(height)), height < 0.0 ? "below it, past an edge" : "above it")});
-  }
-  if (auto ends = short_path_warning(fields_, hand_.path().length(), way_to_cover(fields_, time_), width_)) {
-    ends->text +=
-        fmt::format("; the tool was at [{:.4g}, {:.4g}, {:.4g}] m in the end", place_.x(), place_.y(), place_.z());
-    warnings.push_back(std::move(*ends));
-  }
-  return warnings;
-}
-
-ApproachObserver::ApproachObserver(std::shared_ptr<const PointShell> shell, std::uint64_t steps)
-    : shell_(std::move(shell)), steps_(shell_->bounds()), every_(steps / kLooks + 1) {
-  looks_.reserve(kLooks);
-}
-
-void ApproachObserver::on_step(const StepRecord& record) noexcept {
-  steps_.add(record.tool.pose.position);
-  touched_ = touched_ || record.colliding > 0;
-  if (touched_) return;
-  const Look look{record.time, steps_.distance(), record.tool.pose};
-  if (record.step % every_ == 0) {
-    looks_.push_back(look);
-  } else if (look.from_box <= looks_.back().from_box) {
-    looks_.back() = look;
-  }
-}
-
-double ApproachObserver::closest_to_box() const {
-  return std::ranges::min(looks_, {}, &Look::from_box).from_box;
-}
-
-ApproachObserver::Closest ApproachObserver::closest_to_surface(const ToolShape& tool) const {
-  constexpr double kWithin = 0.99;
-  Closest closest{std::numeric_limits<double>::infinity(), 0.0};
-  const Look* before = nullptr;
-  double gap = 0.0;
-  for (const Look& look : looks_) {
-    // No point of the tool comes closer than it moves.
-    if (before != nullptr && gap - tool.moved_at_most(before->pose, look.pose) > kWithin * closest.distance) continue;
-    before = &look;
-    gap = gap_between(tool, look.pose, *shell_).distance;
-    if (gap < closest.distance) closest = {gap, look.time};
-  }
-  return closest;
 }
 
 OpenEdgeObserver::OpenEdgeObserver(const PointShell& shell, const std::vector<Vec3>& edges, double reach)
@@ -205,6 +105,19 @@ std::string scale_question(const Scenario& scenario) {
   return "are the sizes of environment in metres?";
 }
 
+}  // namespace
+
+std::optional<Warning> scale_warning(const Scenario& scenario, const ToolShape& tool, const Box& environment) {
+  if (!out_of_proportion(tool, environment)) return std::nullopt;
+  const bool is_mesh = std::holds_alternative<MeshToolFields>(scenario.tool);
+  return Warning{"scale", "",
+                 fmt::format("the tool is {} thick and reaches {}, the environment is {}: {}{}",
+                             length_text(2.0 * tool.half_width()), length_text(tool.reach()), size_text(environment),
+                             is_mesh ? "" : "are the tool's lengths in metres, or ", scale_question(scenario))};
+}
+
+namespace {
+
 Vec3 target_at(const ImpedanceHandFields& hand, double time) {
   return {hand.target[0](time), hand.target[1](time), hand.target[2](time)};
 }
@@ -220,90 +133,176 @@ double closest_target(const ImpedanceHandFields& hand, const TimeFields& time, c
   return closest;
 }
 
-}  // namespace
-
-EncounterObserver::EncounterObserver(const Scenario& scenario, const NamedFiles& files, const SimulationParts& parts,
-                                     const MetricsObserver* metrics)
-    : scenario_(scenario), tool_(parts.tool) {
-  const auto steps = static_cast<std::uint64_t>(scenario.time.steps);
-  if (auto solid = make_solid(scenario, files)) {
-    const std::int64_t every = scenario.record.inside ? scenario.record.every : 0;
-    inside_.emplace(parts.tool, std::move(solid), metrics, static_cast<std::uint64_t>(every), steps);
+/// How close a tool came that touches nothing. A row costs some nanoseconds; the distances from the surface itself are
+/// looked up after the run.
+class Approach {
+ public:
+  /// The shell has points; the run has at most so many steps.
+  Approach(std::shared_ptr<const PointShell> shell, std::uint64_t steps)
+      : shell_(std::move(shell)), steps_(shell_->bounds()), every_(steps / kLooks + 1) {
+    looks_.reserve(kLooks);
   }
-  if (parts.shell && parts.shell->size() > 0) approach_.emplace(parts.shell, steps);
-  const double width = 2.0 * parts.tool->half_width();
-  if (const auto* hand = dynamic_cast<const DragHand*>(parts.hand.get())) {
-    drag_.emplace(*hand, std::get<DragHandFields>(scenario.hand), parts.tool->half_width());
-    stuck_.emplace([hand](double time) { return hand->path().at(hand->drag().speed * time).position; }, width);
+
+  void add(const StepRecord& record) noexcept {
+    steps_.add(record.tool.pose.position);
+    touched_ = touched_ || record.colliding > 0;
+    if (touched_) return;
+    const Look look{record.time, steps_.distance(), record.tool.pose};
+    if (record.step % every_ == 0) {
+      looks_.push_back(look);
+    } else if (look.from_box <= looks_.back().from_box) {
+      looks_.back() = look;
+    }
   }
-  if (const ImpedanceHandFields* hand = spring_of(scenario.hand);
-      hand != nullptr && position_is_free(scenario.motion))
-    stuck_.emplace([hand](double time) { return target_at(*hand, time); }, width);
-  if (const auto* hand = dynamic_cast<const TrackingHand*>(parts.hand.get()))
-    stuck_.emplace([hand](double) { return hand->intended(); }, width);
-}
 
-void EncounterObserver::on_step(const StepRecord& record) noexcept {
-  if (inside_) inside_->on_step(record);
-  if (approach_) approach_->on_step(record);
-  if (drag_) drag_->on_step(record);
-  if (stuck_) stuck_->on_step(record);
-}
+  bool touched() const { return touched_; }        ///< in any row
+  const StepWay& steps() const { return steps_; }  ///< of the tip centre
+  /// Of the tip centre to the environment's box before the first contact; 0 within it [m].
+  double closest_to_box() const { return std::ranges::min(looks_, {}, &Look::from_box).from_box; }
 
-const InsideDepths* EncounterObserver::depths() {
-  if (inside_ && !depths_) depths_ = inside_->depths();
-  return depths_ ? &*depths_ : nullptr;
-}
-
-double EncounterObserver::inside_max() {
-  const InsideDepths* inside = depths();
-  return inside != nullptr ? inside->max.value_or(0.0) : 0.0;
-}
-
-Outcome EncounterObserver::outcome(Outcome outcome) {
-  if (!approach_ || outcome != Outcome::completes) return outcome;
-  if (inside_ && (inside_->passage().went_through() || inside_max() > tool_->half_width()))
-    return Outcome::went_through;
-  if (!approach_->touched()) return Outcome::no_contact;
-  const StepWay& steps = approach_->steps();
-  const bool is_far = steps.distance() > diagonal(steps.environment()) + tool_->reach();
-  if (is_far && position_is_free(scenario_.motion)) return Outcome::lost_contact;
-  if (drag_ && drag_->lost()) return Outcome::lost_contact;
-  if (drag_ && drag_->not_dragged()) return Outcome::not_dragged;
-  return stuck_ && stuck_->stuck() ? Outcome::stuck : Outcome::completes;
-}
-
-std::vector<Warning> EncounterObserver::warnings(Outcome outcome, const TrialContact& contact) {
-  std::vector<Warning> warnings;
-  const auto add = [&warnings](std::optional<Warning> warning) {
-    if (warning) warnings.push_back(std::move(*warning));
+  struct Closest {
+    double distance, time;  ///< of the tool from the nearest point [m], and when [s]
   };
-  if (const InsideDepths* inside = depths(); inside != nullptr && inside->at_most) {
-    add(Warning{"inside_bound", "",
-                fmt::format("inside_max_m, {}, may be too low: no row is deeper than {}; record.inside=true looks "
-                            "at every row",
-                            length_text(inside_max()), length_text(*inside->at_most))});
+  /// In up to 256 rows before the first contact, of as many parts of the run those closest to the environment's box;
+  /// within a hundredth of the distance in these.
+  Closest closest_to_surface(const ToolShape& tool) const {
+    constexpr double kWithin = 0.99;
+    Closest closest{std::numeric_limits<double>::infinity(), 0.0};
+    const Look* before = nullptr;
+    double gap = 0.0;
+    for (const Look& look : looks_) {
+      // No point of the tool comes closer than it moves.
+      if (before != nullptr && gap - tool.moved_at_most(before->pose, look.pose) > kWithin * closest.distance) continue;
+      before = &look;
+      gap = gap_between(tool, look.pose, *shell_).distance;
+      if (gap < closest.distance) closest = {gap, look.time};
+    }
+    return closest;
   }
-  if (!approach_) return warnings;
-  add(warning_about(outcome, contact));
-  if (drag_) {
-    for (Warning& warning : drag_->warnings(outcome)) add(std::move(warning));
+
+ private:
+  static constexpr std::size_t kLooks = 256;
+  struct Look {
+    double time, from_box;
+    ToolPose pose;
+  };
+  std::shared_ptr<const PointShell> shell_;
+  StepWay steps_;
+  std::uint64_t every_;
+  std::vector<Look> looks_;
+  bool touched_ = false;
+};
+
+/// Follows a dragged tool on the path along which it is led.
+class DragCourse {
+ public:
+  /// The hand and its fields must outlive it. `width`: the tool's [m].
+  DragCourse(const DragHand& hand, const DragHandFields& fields, double width)
+      : hand_(hand), fields_(fields), width_(width) {}
+
+  void add(const StepRecord& record) noexcept {
+    time_ = record.time;
+    way_ = std::max(way_, hand_.nearest());
+    place_ = record.tool.pose.position;
+    if (record.colliding > 0) last_contact_ = record.time;
   }
-  if (std::holds_alternative<MeshToolFields>(scenario_.tool))
-    add(scale_warning(scenario_, *tool_, approach_->steps().environment()));
-  return warnings;
-}
 
-std::optional<Warning> scale_warning(const Scenario& scenario, const ToolShape& tool, const Box& environment) {
-  if (!out_of_proportion(tool, environment)) return std::nullopt;
-  const bool is_mesh = std::holds_alternative<MeshToolFields>(scenario.tool);
-  return Warning{"scale", "",
-                 fmt::format("the tool is {} thick and reaches {}, the environment is {}: {}{}",
-                             length_text(2.0 * tool.half_width()), length_text(tool.reach()), size_text(environment),
-                             is_mesh ? "" : "are the tool's lengths in metres, or ", scale_question(scenario))};
-}
+  /// Time of the last contact, if the tool had none for so long that the next touch would be a landing.
+  std::optional<double> lost() const {
+    const bool presses = hand_.drag().force(time_) > 0.0;
+    const bool is_lost = presses && last_contact_ && time_ - *last_contact_ >= SettlingRule().time;
+    return is_lost ? last_contact_ : std::nullopt;
+  }
+  /// The spring that leads a tool which follows lags by less.
+  bool not_dragged() const { return way_ < width_ && way_to_cover(fields_, time_) > 2.0 * width_; }
 
-namespace {
+  std::optional<Warning> lost_warning() const {
+    const auto since = lost();
+    if (!since) return std::nullopt;
+    const SurfacePoint foot = hand_.path().at(hand_.nearest());
+    const double height = foot.normal.dot(place_ - foot.position);
+    return Warning{"drag_lost", "",
+                   fmt::format("the dragged tool lost the surface at {:.4g} s and ended {} {}", *since,
+                               length_text(std::abs(height)), height < 0.0 ? "below it, past an edge" : "above it")};
+  }
+  /// Of a path that ends early.
+  std::optional<Warning> short_warning() const {
+    auto ends = short_path_warning(fields_, hand_.path().length(), way_to_cover(fields_, time_), width_);
+    if (ends)
+      ends->text +=
+          fmt::format("; the tool was at [{:.4g}, {:.4g}, {:.4g}] m in the end", place_.x(), place_.y(), place_.z());
+    return ends;
+  }
+
+ private:
+  const DragHand& hand_;
+  const DragHandFields& fields_;
+  double width_;
+  double way_ = 0.0;           ///< furthest that the tool came on the path [m]
+  double time_ = 0.0;          ///< of the last row
+  Vec3 place_ = Vec3::Zero();  ///< of the tip in the last row [m]
+  std::optional<double> last_contact_;
+};
+
+/// A tool that stood still to the end while the target of its hand went on.
+struct Stuck {
+  double since = 0.0;                  ///< [s]
+  double way = 0.0, target_way = 0.0;  ///< of tool and target from then on [m]
+  Vec3 place = Vec3::Zero();           ///< of the tip, in the last row [m]
+  double force = 0.0;                  ///< size of the rendered force in the last row [N]
+};
+
+/// Finds a tool that a hand's spring cannot move, that of a subject at a display, too: its target is the intended
+/// position; that of a hand that drags is the point that leads the tool. A spring whose target goes into the surface
+/// presses the tool on it, which is no sticking: so the tool is stuck only where the target came away from it by more
+/// than its width across the direction in which the springs of the contacts push.
+class Standstill {
+ public:
+  /// `target`: of the spring, at the time of the row that was the last [s]. `width`: the tool's [m].
+  Standstill(std::function<Vec3(double)> target, double width) : target_(std::move(target)), width_(width) {}
+
+  void add(const StepRecord& record) noexcept {
+    constexpr double kComes = 0.1;      // of the target's way, at least, where the tool does not stand
+    constexpr double kRows = 1 / 32.0;  // of a mean over some rows, which chatter does not turn
+    const Vec3& place = record.tool.pose.position;
+    const Vec3 target = target_(record.time);
+    // Before the first touch nothing tells the direction of the push: how far away the target was then does not count.
+    if (push_.isZero(0.0)) across_ = 0.0;
+    push_ += kRows * (record.force.spring - push_);
+    stuck_.place = place;
+    stuck_.force = record.force.rendered.norm();
+    const auto extend = [](Box& box, const Vec3& p) {
+      box = {box.min.cwiseMin(p), box.max.cwiseMax(p)};
+      return diagonal(box);
+    };
+    stuck_.way = extend(ways_, place);
+    stuck_.target_way = extend(target_ways_, target);
+    if (!began_ || stuck_.way > kComes * std::max(width_, stuck_.target_way)) {
+      began_ = true;
+      ways_ = {place, place};
+      target_ways_ = {target, target};
+      across_ = stuck_.way = stuck_.target_way = 0.0;
+      stuck_.since = record.time;
+    }
+    Vec3 across = target - place;
+    if (const double push2 = push_.squaredNorm(); push2 > 0.0) across -= across.dot(push_) / push2 * push_;
+    across_ = std::max(across_, across.norm());
+  }
+
+  /// None where the tool moves in the end, or its target does not.
+  std::optional<Stuck> stuck() const {
+    return stuck_.target_way > width_ && across_ > width_ ? std::optional(stuck_) : std::nullopt;
+  }
+
+ private:
+  std::function<Vec3(double)> target_;
+  double width_;
+  Vec3 push_ = Vec3::Zero();  ///< spring force, its mean over the last rows [N]
+  Box ways_, target_ways_;    ///< around the places of tool and target since it stands
+  double across_ = 0.0;       ///< furthest that the target was from the tool across the push since then [m]
+  bool began_ = false;
+  Stuck stuck_;
+};
 
 /// How a tool passed the surface, as one sentence.
 std::string passage_text(const Passage& p, double half_width, double inside_max, bool is_led) {
@@ -328,77 +327,171 @@ std::string passage_text(const Passage& p, double half_width, double inside_max,
                      begins, length_text(inside_max), length_text(half_width));
 }
 
+class Encounter final : public EncounterObserver {
+ public:
+  Encounter(const Scenario& scenario, const NamedFiles& files, const SimulationParts& parts,
+            const MetricsObserver* metrics)
+      : scenario_(scenario), tool_(parts.tool) {
+    const auto steps = static_cast<std::uint64_t>(scenario.time.steps);
+    if (auto solid = make_solid(scenario, files)) {
+      const std::int64_t every = scenario.record.inside ? scenario.record.every : 0;
+      inside_.emplace(parts.tool, std::move(solid), metrics, static_cast<std::uint64_t>(every), steps);
+    }
+    if (parts.shell && parts.shell->size() > 0) approach_.emplace(parts.shell, steps);
+    const double width = 2.0 * parts.tool->half_width();
+    if (const auto* hand = dynamic_cast<const DragHand*>(parts.hand.get())) {
+      drag_.emplace(*hand, std::get<DragHandFields>(scenario.hand), width);
+      standstill_.emplace([hand](double time) { return hand->path().at(hand->drag().speed * time).position; }, width);
+    }
+    if (const ImpedanceHandFields* hand = spring_of(scenario.hand);
+        hand != nullptr && position_is_free(scenario.motion))
+      standstill_.emplace([hand](double time) { return target_at(*hand, time); }, width);
+    if (const auto* hand = dynamic_cast<const TrackingHand*>(parts.hand.get()))
+      standstill_.emplace([hand](double) { return hand->intended(); }, width);
+  }
+
+  void on_step(const StepRecord& record) noexcept override {
+    if (inside_) inside_->on_step(record);
+    if (approach_) approach_->add(record);
+    if (drag_) drag_->add(record);
+    if (standstill_) standstill_->add(record);
+  }
+
+  Outcome outcome(Outcome outcome) override {
+    if (!approach_ || outcome != Outcome::completes) return outcome;
+    if (inside_ && (inside_->passage().went_through() || inside_max() > tool_->half_width()))
+      return Outcome::went_through;
+    if (!approach_->touched()) return Outcome::no_contact;
+    const StepWay& steps = approach_->steps();
+    const bool is_far = steps.distance() > diagonal(steps.environment()) + tool_->reach();
+    if (is_far && position_is_free(scenario_.motion)) return Outcome::lost_contact;
+    if (drag_ && drag_->lost()) return Outcome::lost_contact;
+    if (drag_ && drag_->not_dragged()) return Outcome::not_dragged;
+    return stuck() ? Outcome::stuck : Outcome::completes;
+  }
+
+  std::vector<Warning> warnings(Outcome outcome, const TrialContact& contact) override {
+    std::vector<Warning> warnings;
+    const auto add = [&warnings](std::optional<Warning> warning) {
+      if (warning) warnings.push_back(std::move(*warning));
+    };
+    if (const InsideDepths* inside = depths(); inside != nullptr && inside->at_most) {
+      add(Warning{"inside_bound", "",
+                  fmt::format("inside_max_m, {}, may be too low: no row is deeper than {}; record.inside=true looks "
+                              "at every row",
+                              length_text(inside_max()), length_text(*inside->at_most))});
+    }
+    if (!approach_) return warnings;
+    add(warning_about(outcome, contact));
+    if (drag_ && outcome != Outcome::went_through) add(drag_->lost_warning());
+    if (drag_) add(drag_->short_warning());
+    if (std::holds_alternative<MeshToolFields>(scenario_.tool))
+      add(scale_warning(scenario_, *tool_, approach_->steps().environment()));
+    return warnings;
+  }
+
+  double longest_step() const override { return approach_ ? approach_->steps().longest() : 0.0; }
+  const InsideObserver* inside() const override { return inside_ ? &*inside_ : nullptr; }
+  const InsideDepths* depths() override {
+    if (inside_ && !depths_) depths_ = inside_->depths();
+    return depths_ ? &*depths_ : nullptr;
+  }
+
+ private:
+  /// How deep any part of the tool was in any row; 0 without a solid [m].
+  double inside_max() {
+    const InsideDepths* inside = depths();
+    return inside != nullptr ? inside->max.value_or(0.0) : 0.0;
+  }
+
+  std::optional<Stuck> stuck() const { return standstill_ ? standstill_->stuck() : std::nullopt; }
+
+  /// A likely cause, or where to look when none suggests itself: its kind, and the end of a sentence.
+  std::pair<const char*, std::string> likely_cause(Outcome outcome, const TrialContact& contact) const {
+    const StepWay& steps = approach_->steps();
+    const double size = diagonal(steps.environment());
+    if (out_of_proportion(*tool_, steps.environment())) return {"scale", scale_question(scenario_)};
+    if (steps.longest() > tool_->half_width()) {
+      return {"step",
+              fmt::format("near it the tool moved {} in one step, more than its half width of {}: is time.step_s "
+                          "too long?",
+                          length_text(steps.longest()), length_text(tool_->half_width()))};
+    }
+    const auto* mesh = std::get_if<MeshEnvironment>(&scenario_.environment);
+    if (outcome == Outcome::no_contact && mesh != nullptr && !mesh->spacing && approach_->closest_to_box() == 0.0)
+      return {"spacing", "only the mesh's vertices can be touched: is environment.spacing_m missing?"};
+    const bool recorded = std::holds_alternative<RecordedPosition>(scenario_.motion.position);
+    if (recorded && outcome == Outcome::no_contact && approach_->closest_to_box() > kTooLarge * size)
+      return {"recording", "are the positions of motion.position.file in metres?"};
+    if (const ImpedanceHandFields* hand = spring_of(scenario_.hand)) {
+      const double closest = closest_target(*hand, scenario_.time, steps.environment());
+      if (closest > 0.0)
+        return {"target",
+                fmt::format("hand.target stays {} away from it: does it lead to the surface?", length_text(closest))};
+    }
+    const bool is_free = position_is_free(scenario_.motion);
+    if (is_free && std::holds_alternative<NoHandFields>(scenario_.hand) && outcome == Outcome::no_contact)
+      return {"no_hand", "nothing pushes the tool: is hand missing?"};
+    if (outcome == Outcome::lost_contact && (std::holds_alternative<ForceHandFields>(scenario_.hand) ||
+                                             std::holds_alternative<PushHandFields>(scenario_.hand)))
+      return {"constant_force", "a hand of constant force goes on pushing where there is no surface"};
+    if (outcome == Outcome::lost_contact)
+      return {"force", fmt::format("the largest force was {:.3g} N", std::sqrt(contact.force_max_squared))};
+    return {"start", is_free ? "is initial.position_m right?" : "is motion.position right?"};
+  }
+
+  /// What happened and what the likely cause is; none for other outcomes, and none for a dragged tool that lost the
+  /// surface within the environment's box.
+  std::optional<Warning> warning_about(Outcome outcome, const TrialContact& contact) {
+    const StepWay& steps = approach_->steps();
+    const std::string kind(outcome_name(outcome));
+    if (outcome == Outcome::went_through) {
+      const bool is_led = !position_is_free(scenario_.motion);
+      const std::string cause = out_of_proportion(*tool_, steps.environment()) ? "; " + scale_question(scenario_) : "";
+      return Warning{kind, "", passage_text(inside_->passage(), tool_->half_width(), inside_max(), is_led) + cause};
+    }
+    if (const auto s = stuck(); s && (outcome == Outcome::stuck || outcome == Outcome::not_dragged)) {
+      return Warning{
+          kind, "",
+          fmt::format("the tool stood still since {:.4g} s, coming {} further while its target went on by {}; it "
+                      "was at {} under a force of {:.3g} N in the end",
+                      s->since, length_text(s->way), length_text(s->target_way), millimetres(s->place), s->force)};
+    }
+    const std::string environment =
+        fmt::format("{}: {}", size_text(steps.environment()), place_text(steps.environment()));
+    if (outcome == Outcome::no_contact) {
+      const auto closest = approach_->closest_to_surface(*tool_);
+      const auto [cause, question] = likely_cause(outcome, contact);
+      return Warning{fmt::format("{} {}", kind, cause), "",
+                     fmt::format("never in contact: the tool came as close as {} (at {:.4g} s) to the surface of the "
+                                 "environment ({}); {}",
+                                 length_text(closest.distance), closest.time, environment, question)};
+    }
+    // The course of the drag tells of a tool that lost the surface within the box.
+    if (outcome != Outcome::lost_contact || (drag_ && drag_->lost() && steps.distance() == 0.0)) return std::nullopt;
+    const double share = static_cast<double>(contact.in_contact) / static_cast<double>(contact.rows);
+    const auto [cause, question] = likely_cause(outcome, contact);
+    return Warning{
+        fmt::format("{} {}", kind, cause), "",
+        fmt::format("in contact for {:.3g} % of the run, last at {:.4g} s; ended {} away from the environment "
+                    "({}); {}",
+                    100.0 * share, contact.last.value_or(0.0), length_text(steps.distance()), environment, question)};
+  }
+
+  const Scenario& scenario_;
+  std::shared_ptr<const ToolShape> tool_;
+  std::optional<InsideObserver> inside_;
+  std::optional<InsideDepths> depths_;
+  std::optional<Approach> approach_;
+  std::optional<DragCourse> drag_;
+  std::optional<Standstill> standstill_;
+};
+
 }  // namespace
 
-std::pair<const char*, std::string> EncounterObserver::likely_cause(Outcome outcome,
-                                                                    const TrialContact& contact) const {
-  const StepWay& steps = approach_->steps();
-  const double size = diagonal(steps.environment());
-  if (out_of_proportion(*tool_, steps.environment())) return {"scale", scale_question(scenario_)};
-  if (steps.longest() > tool_->half_width()) {
-    return {"step", fmt::format("near it the tool moved {} in one step, more than its half width of {}: is time.step_s "
-                                "too long?",
-                                length_text(steps.longest()), length_text(tool_->half_width()))};
-  }
-  const auto* mesh = std::get_if<MeshEnvironment>(&scenario_.environment);
-  if (outcome == Outcome::no_contact && mesh != nullptr && !mesh->spacing && approach_->closest_to_box() == 0.0)
-    return {"spacing", "only the mesh's vertices can be touched: is environment.spacing_m missing?"};
-  const bool recorded = std::holds_alternative<RecordedPosition>(scenario_.motion.position);
-  if (recorded && outcome == Outcome::no_contact && approach_->closest_to_box() > kTooLarge * size)
-    return {"recording", "are the positions of motion.position.file in metres?"};
-  if (const ImpedanceHandFields* hand = spring_of(scenario_.hand)) {
-    const double closest = closest_target(*hand, scenario_.time, steps.environment());
-    if (closest > 0.0)
-      return {"target",
-              fmt::format("hand.target stays {} away from it: does it lead to the surface?", length_text(closest))};
-  }
-  const bool is_free = position_is_free(scenario_.motion);
-  if (is_free && std::holds_alternative<NoHandFields>(scenario_.hand) && outcome == Outcome::no_contact)
-    return {"no_hand", "nothing pushes the tool: is hand missing?"};
-  if (outcome == Outcome::lost_contact && (std::holds_alternative<ForceHandFields>(scenario_.hand) ||
-                                           std::holds_alternative<PushHandFields>(scenario_.hand)))
-    return {"constant_force", "a hand of constant force goes on pushing where there is no surface"};
-  if (outcome == Outcome::lost_contact)
-    return {"force", fmt::format("the largest force was {:.3g} N", std::sqrt(contact.force_max_squared))};
-  return {"start", is_free ? "is initial.position_m right?" : "is motion.position right?"};
-}
-
-std::optional<Warning> EncounterObserver::warning_about(Outcome outcome, const TrialContact& contact) {
-  const StepWay& steps = approach_->steps();
-  const std::string kind(outcome_name(outcome));
-  if (outcome == Outcome::went_through) {
-    const bool is_led = !position_is_free(scenario_.motion);
-    const std::string cause = out_of_proportion(*tool_, steps.environment()) ? "; " + scale_question(scenario_) : "";
-    return Warning{kind, "", passage_text(inside_->passage(), tool_->half_width(), inside_max(), is_led) + cause};
-  }
-  const auto stuck = stuck_ ? stuck_->stuck() : std::nullopt;
-  if (stuck && (outcome == Outcome::stuck || outcome == Outcome::not_dragged)) {
-    return Warning{
-        kind, "",
-        fmt::format("the tool stood still since {:.4g} s, coming {} further while its target went on by {}; it "
-                    "was at {} under a force of {:.3g} N in the end",
-                    stuck->since, length_text(stuck->way), length_text(stuck->target_way), millimetres(stuck->place),
-                    stuck->force)};
-  }
-  const std::string environment =
-      fmt::format("{}: {}", size_text(steps.environment()), place_text(steps.environment()));
-  if (outcome == Outcome::no_contact) {
-    const auto closest = approach_->closest_to_surface(*tool_);
-    const auto [cause, question] = likely_cause(outcome, contact);
-    return Warning{fmt::format("{} {}", kind, cause), "",
-                   fmt::format("never in contact: the tool came as close as {} (at {:.4g} s) to the surface of the "
-                               "environment ({}); {}",
-                               length_text(closest.distance), closest.time, environment, question)};
-  }
-  // The course of the drag tells of a tool that lost the surface within the box.
-  if (outcome != Outcome::lost_contact || (drag_ && drag_->lost() && steps.distance() == 0.0)) return std::nullopt;
-  const double share = static_cast<double>(contact.in_contact) / static_cast<double>(contact.rows);
-  const auto [cause, question] = likely_cause(outcome, contact);
-  return Warning{
-      fmt::format("{} {}", kind, cause), "",
-      fmt::format("in contact for {:.3g} % of the run, last at {:.4g} s; ended {} away from the environment "
-                  "({}); {}",
-                  100.0 * share, contact.last.value_or(0.0), length_text(steps.distance()), environment, question)};
+std::unique_ptr<EncounterObserver> encounter_observer(const Scenario& scenario, const NamedFiles& files,
+                                                      const SimulationParts& parts, const MetricsObserver* metrics) {
+  return std::make_unique<Encounter>(scenario, files, parts, metrics);
 }
 
 namespace {

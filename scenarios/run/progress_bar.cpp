@@ -24,8 +24,13 @@ thread_local ProgressListener* thread_listener = nullptr;
 /// "95 s", "12 min", "30 h"
 void add_time(fmt::memory_buffer& line, double seconds) {
   const bool minutes = seconds >= 120.0, hours = seconds >= 7200.0;
-  fmt::format_to(fmt::appender(line), "{:.0f} {}", seconds / (hours ? 3600.0 : minutes ? 60.0 : 1.0),
-                 hours ? "h" : minutes ? "min" : "s");
+  fmt::format_to(fmt::appender(line), "{:.0f} {}",
+                 seconds / (hours     ? 3600.0
+                            : minutes ? 60.0
+                                      : 1.0),
+                 hours     ? "h"
+                 : minutes ? "min"
+                           : "s");
 }
 
 /// Columns of the terminal behind standard error; 80 when it does not say.

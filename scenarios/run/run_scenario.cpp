@@ -108,21 +108,140 @@ RunWork work_of(const Simulation& simulation, std::uint64_t allocations) {
   return work;
 }
 
+void add_step_times(const std::vector<std::uint64_t>& nanoseconds, RunTiming& timing) {
+  if (nanoseconds.empty()) return;
+  const StepLatency latency = step_latency(nanoseconds, 0);
+  timing.step_p50 = 1e-9 * static_cast<double>(latency.p50);
+  if (nanoseconds.size() >= 100) timing.step_p99 = 1e-9 * static_cast<double>(latency.p99);
+}
+
 /// A run between its trials: the observers that go on from trial to trial, and what the trials gave so far.
 class Run {
  public:
-  Run(const LoadedScenario& loaded, const std::shared_ptr<const PointShell>& shell, std::size_t trials, bool diagnose);
+  Run(const LoadedScenario& loaded, const std::shared_ptr<const PointShell>& shell, std::size_t trials, bool diagnose)
+      : loaded_(loaded),
+        scenario_(loaded.scenario),
+        shell_(shell),
+        reference_(reference_force(scenario_, loaded.files)),
+        sections_(scenario_, reference_ != nullptr) {
+    if (scenario_.record.timing) times_.emplace(static_cast<std::size_t>(scenario_.time.steps) * trials);
+    if (diagnose) diagnosis_.emplace(scenario_);
+  }
 
   /// Makes a trial, which records to `target`, if that is given. `label` is that of the progress bar; empty for none.
-  void make(Trial trial, const std::optional<RecordTarget>& target, const std::string& label);
+  void make(Trial trial, const std::optional<RecordTarget>& target, const std::string& label) {
+    SimulationParts parts = assemble(scenario_, loaded_.files, shell_, trial);
+    const SimulationConfig config = simulation_config(scenario_);
+    const TrialParts begun{config, parts, reference_.get(), trial.subject, trial.number};
+    const TimeFields& time = scenario_.time;
+    if (!metrics_) metrics_.emplace(time.step * static_cast<double>(time.stride), metrics_config(scenario_, parts));
+    metrics_->begin();
+    sections_.begin(begun);
+    if (diagnosis_) diagnosis_->begin();
+    tool_ = parts.tool;
+
+    StepSampler sampler(static_cast<std::uint64_t>(time.steps));
+    RowsApart metrics_rows(*metrics_, time.stride);
+    const auto seen = encounter_observer(scenario_, loaded_.files, parts, &*metrics_);
+    std::optional<OpenEdgeObserver> open_edges = open_edge_observer(scenario_, loaded_.files, parts);
+    ProgressBar bar(label, static_cast<std::uint64_t>(time.steps), !label.empty());
+    std::vector<Observer*> observers = {&sampler.first()};
+    observers.push_back(time.stride == 1 ? static_cast<Observer*>(&*metrics_) : &metrics_rows);
+    for (const auto& observer : sections_.all()) observers.push_back(observer.get());
+    observers.push_back(seen.get());
+    if (open_edges) observers.push_back(&*open_edges);
+    if (diagnosis_) observers.push_back(&*diagnosis_);
+    if (target) {
+      for (auto& recorder :
+           make_recorders({scenario_.record, parts.source->capacity(), sections_, seen->inside()}, *target)) {
+        observers.push_back(recorder.get());
+        recorders_.push_back(std::move(recorder));
+      }
+    }
+    observers.push_back(&sampler.last());
+
+    Simulation simulation(config, std::move(parts), std::move(observers));
+    const SimulationResult result = step_to_end(simulation, bar);
+    step_nanoseconds_.insert(step_nanoseconds_.end(), sampler.nanoseconds().begin(), sampler.nanoseconds().end());
+    end_trial(*seen, open_edges, result);
+  }
+
   /// After the trials.
-  Result result(const RunTiming& timing);
+  Result result(const RunTiming& timing) {
+    Result result;
+    result.name = scenario_.name;
+    result.algorithm = scenario_.rendering.algorithm;
+    result.end = *worst_;
+    result.duration = static_cast<double>(worst_->rows) * scenario_.time.step;
+    tell_common(*metrics_, inside_ ? &*inside_ : nullptr, result.metrics);
+    sections_.tell(result);
+    result.state_hash = metrics_->state_hash();
+    result.work = work_;
+    result.warnings = named_file_warnings(loaded_);
+    for (Warning& warning : warnings_) {
+      if (trials_ == 1) break;
+      warning.text = fmt::format("in {} of {} trials, first in number {}: {}", with_warnings_, trials_,
+                                 first_with_warnings_, warning.text);
+    }
+    for (const auto& more : {warnings_, force_warnings(*metrics_), tool_warnings(scenario_.rendering, *tool_)})
+      result.warnings.insert(result.warnings.end(), more.begin(), more.end());
+    // The fields of a cylinder say all.
+    if (!std::holds_alternative<CylinderFields>(scenario_.tool))
+      result.tool = ToolSummary{tool_->half_width(), tool_->reach(), tool_->convex(), tool_->outline()};
+    if (const auto* targets = sections_.find<TargetMetricsObserver>()) result.targets = targets->rows();
+    if (diagnosis_) result.diagnosis = diagnosis_->findings(loaded_, result, *tool_);
+    result.timing = timing;
+    result.timing.loop = loop_seconds_;
+    result.timing.steps = worst_->rows;
+    result.timing.preemptions = preemptions_;
+    add_step_times(step_nanoseconds_, result.timing);
+    if (times_) result.timing.latency = step_latency(times_->nanoseconds(), times_->overhead());
+    return result;
+  }
+
   /// Their files are complete but under temporary names until `finish`.
   const Recorders& recorders() const { return recorders_; }
 
  private:
-  SimulationResult step_to_end(Simulation& simulation, ProgressBar& bar);
-  void end_trial(EncounterObserver& seen, const std::optional<OpenEdgeObserver>& open_edges, SimulationResult result);
+  SimulationResult step_to_end(Simulation& simulation, ProgressBar& bar) {
+    const std::uint64_t allocations_before = heap_allocations();
+    const std::uint64_t preemptions_before = involuntary_context_switches();
+    const auto start = Clock::now();
+    if (times_) times_->start();
+    SimulationResult result = run_to_end(simulation, [&] {
+      bar.show(simulation.next_row());
+      return times_ ? advance_timed(simulation, *times_) : simulation.advance(kAskEvery);
+    });
+    loop_seconds_ += std::chrono::duration<double>(Clock::now() - start).count();
+    preemptions_ += involuntary_context_switches() - preemptions_before;
+    work_ += work_of(simulation, heap_allocations() - allocations_before);
+    return result;
+  }
+
+  void end_trial(EncounterObserver& seen, const std::optional<OpenEdgeObserver>& open_edges, SimulationResult result) {
+    result.outcome = seen.outcome(result.outcome);
+    std::vector<Warning> warnings = seen.warnings(result.outcome, metrics_->trial());
+    if (auto warning = open_edges ? open_edges->warning() : std::nullopt) warnings.push_back(std::move(*warning));
+    ++trials_;
+    if (!warnings.empty() && with_warnings_++ == 0) {
+      first_with_warnings_ = trials_;
+      warnings_ = std::move(warnings);
+    }
+    if (const InsideDepths* depths = seen.depths()) {
+      if (inside_)
+        inside_->add(*depths);
+      else
+        inside_ = *depths;
+    }
+    if (diagnosis_) diagnosis_->add_longest_step(seen.longest_step());
+    // A subject who loses the drill fails the rest of the targets.
+    if (result.outcome == Outcome::diverges) {
+      if (auto* targets = sections_.find<TargetMetricsObserver>()) targets->fail_rest();
+    }
+    const std::uint64_t rows = result.rows + (worst_ ? worst_->rows : 0);
+    if (!worst_ || result.outcome > worst_->outcome) worst_ = std::move(result);
+    worst_->rows = rows;
+  }
 
   const LoadedScenario& loaded_;
   const Scenario& scenario_;
@@ -143,134 +262,6 @@ class Run {
   std::uint64_t preemptions_ = 0;  ///< involuntary context switches in the loop
   Recorders recorders_;
 };
-
-Run::Run(const LoadedScenario& loaded, const std::shared_ptr<const PointShell>& shell, std::size_t trials,
-         bool diagnose)
-    : loaded_(loaded),
-      scenario_(loaded.scenario),
-      shell_(shell),
-      reference_(reference_force(scenario_, loaded.files)),
-      sections_(scenario_, reference_ != nullptr) {
-  if (scenario_.record.timing) times_.emplace(static_cast<std::size_t>(scenario_.time.steps) * trials);
-  if (diagnose) diagnosis_.emplace(scenario_);
-}
-
-void Run::make(Trial trial, const std::optional<RecordTarget>& target, const std::string& label) {
-  SimulationParts parts = assemble(scenario_, loaded_.files, shell_, trial);
-  const SimulationConfig config = simulation_config(scenario_);
-  const TrialParts begun{config, parts, reference_.get(), trial.subject, trial.number};
-  const TimeFields& time = scenario_.time;
-  if (!metrics_) metrics_.emplace(time.step * static_cast<double>(time.stride), metrics_config(scenario_, parts));
-  metrics_->begin();
-  sections_.begin(begun);
-  if (diagnosis_) diagnosis_->begin();
-  tool_ = parts.tool;
-
-  StepSampler sampler(static_cast<std::uint64_t>(time.steps));
-  RowsApart metrics_rows(*metrics_, time.stride);
-  EncounterObserver seen(scenario_, loaded_.files, parts, &*metrics_);
-  std::optional<OpenEdgeObserver> open_edges = open_edge_observer(scenario_, loaded_.files, parts);
-  ProgressBar bar(label, static_cast<std::uint64_t>(time.steps), !label.empty());
-  std::vector<Observer*> observers = {&sampler.first()};
-  observers.push_back(time.stride == 1 ? static_cast<Observer*>(&*metrics_) : &metrics_rows);
-  for (const auto& observer : sections_.all()) observers.push_back(observer.get());
-  observers.push_back(&seen);
-  if (open_edges) observers.push_back(&*open_edges);
-  if (diagnosis_) observers.push_back(&*diagnosis_);
-  if (target) {
-    for (auto& recorder :
-         make_recorders({scenario_.record, parts.source->capacity(), sections_, seen.inside()}, *target)) {
-      observers.push_back(recorder.get());
-      recorders_.push_back(std::move(recorder));
-    }
-  }
-  observers.push_back(&sampler.last());
-
-  Simulation simulation(config, std::move(parts), std::move(observers));
-  const SimulationResult result = step_to_end(simulation, bar);
-  step_nanoseconds_.insert(step_nanoseconds_.end(), sampler.nanoseconds().begin(), sampler.nanoseconds().end());
-  end_trial(seen, open_edges, result);
-}
-
-SimulationResult Run::step_to_end(Simulation& simulation, ProgressBar& bar) {
-  const std::uint64_t allocations_before = heap_allocations();
-  const std::uint64_t preemptions_before = involuntary_context_switches();
-  const auto start = Clock::now();
-  if (times_) times_->start();
-  SimulationResult result = run_to_end(simulation, [&] {
-    bar.show(simulation.next_row());
-    return times_ ? advance_timed(simulation, *times_) : simulation.advance(kAskEvery);
-  });
-  loop_seconds_ += std::chrono::duration<double>(Clock::now() - start).count();
-  preemptions_ += involuntary_context_switches() - preemptions_before;
-  work_ += work_of(simulation, heap_allocations() - allocations_before);
-  return result;
-}
-
-void Run::end_trial(EncounterObserver& seen, const std::optional<OpenEdgeObserver>& open_edges,
-                    SimulationResult result) {
-  result.outcome = seen.outcome(result.outcome);
-  std::vector<Warning> warnings = seen.warnings(result.outcome, metrics_->trial());
-  if (auto warning = open_edges ? open_edges->warning() : std::nullopt) warnings.push_back(std::move(*warning));
-  ++trials_;
-  if (!warnings.empty() && with_warnings_++ == 0) {
-    first_with_warnings_ = trials_;
-    warnings_ = std::move(warnings);
-  }
-  if (const InsideDepths* depths = seen.depths()) {
-    if (inside_)
-      inside_->add(*depths);
-    else
-      inside_ = *depths;
-  }
-  if (diagnosis_) diagnosis_->add_longest_step(seen.longest_step());
-  // A subject who loses the drill fails the rest of the targets.
-  if (result.outcome == Outcome::diverges) {
-    if (auto* targets = sections_.find<TargetMetricsObserver>()) targets->fail_rest();
-  }
-  const std::uint64_t rows = result.rows + (worst_ ? worst_->rows : 0);
-  if (!worst_ || result.outcome > worst_->outcome) worst_ = std::move(result);
-  worst_->rows = rows;
-}
-
-void add_step_times(const std::vector<std::uint64_t>& nanoseconds, RunTiming& timing) {
-  if (nanoseconds.empty()) return;
-  const StepLatency latency = step_latency(nanoseconds, 0);
-  timing.step_p50 = 1e-9 * static_cast<double>(latency.p50);
-  if (nanoseconds.size() >= 100) timing.step_p99 = 1e-9 * static_cast<double>(latency.p99);
-}
-
-Result Run::result(const RunTiming& timing) {
-  Result result;
-  result.name = scenario_.name;
-  result.algorithm = scenario_.rendering.algorithm;
-  result.end = *worst_;
-  result.duration = static_cast<double>(worst_->rows) * scenario_.time.step;
-  tell_common(*metrics_, inside_ ? &*inside_ : nullptr, result.metrics);
-  sections_.tell(result);
-  result.state_hash = metrics_->state_hash();
-  result.work = work_;
-  result.warnings = named_file_warnings(loaded_);
-  for (Warning& warning : warnings_) {
-    if (trials_ == 1) break;
-    warning.text = fmt::format("in {} of {} trials, first in number {}: {}", with_warnings_, trials_,
-                               first_with_warnings_, warning.text);
-  }
-  for (const auto& more : {warnings_, force_warnings(*metrics_), tool_warnings(scenario_.rendering, *tool_)})
-    result.warnings.insert(result.warnings.end(), more.begin(), more.end());
-  // The fields of a cylinder say all.
-  if (!std::holds_alternative<CylinderFields>(scenario_.tool))
-    result.tool = ToolSummary{tool_->half_width(), tool_->reach(), tool_->convex(), tool_->outline()};
-  if (const auto* targets = sections_.find<TargetMetricsObserver>()) result.targets = targets->rows();
-  if (diagnosis_) result.diagnosis = diagnosis_->findings(loaded_, result, *tool_);
-  result.timing = timing;
-  result.timing.loop = loop_seconds_;
-  result.timing.steps = worst_->rows;
-  result.timing.preemptions = preemptions_;
-  add_step_times(step_nanoseconds_, result.timing);
-  if (times_) result.timing.latency = step_latency(times_->nanoseconds(), times_->overhead());
-  return result;
-}
 
 /// The trials of a scenario, subject by subject; most scenarios have one.
 std::vector<Trial> trials_of(const Scenario& scenario) {
@@ -322,8 +313,7 @@ Result run_trials(const LoadedScenario& loaded, const std::shared_ptr<const Poin
     return result;
   }
   for (const auto& recorder : run.recorders()) recorder->finish();
-  if (result.has_section("targets"))
-    write_target_table(&tables->targets.emplace(kTargetTable.columns), result.targets);
+  if (result.has_section("targets")) write_target_table(&tables->targets.emplace(kTargetTable.columns), result.targets);
   return result;
 }
 

@@ -115,7 +115,8 @@ SceneFacts scene_facts(const LoadedScenario& loaded) {
   };
   const double step = scenario.time.step;
   if (step > kUnitsApart * kUsualStep || kUnitsApart * step < kUsualStep)
-    warn(Warning{"step", "/time/step_s", fmt::format("{:.3g} s; haptic loops step each 1 ms: is it in seconds?", step)});
+    warn(
+        Warning{"step", "/time/step_s", fmt::format("{:.3g} s; haptic loops step each 1 ms: is it in seconds?", step)});
   const ToolShape& tool = *(facts.tool = make_tool(scenario, loaded.files));
   for (Warning& warning : tool_warnings(scenario.rendering, tool)) warn(std::move(warning));
   const auto shell = make_shell(scenario, loaded.files);
@@ -136,8 +137,7 @@ SceneFacts scene_facts(const LoadedScenario& loaded) {
     warn(scale_warning(scenario, tool, surface.box));
     warn(start_warning(tool, surface));
     if (std::holds_alternative<RecordedPosition>(scenario.motion.position)) {
-      for (Warning& warning :
-           stroke_warnings(*loaded.files.at(kMotionFile).stroke(), scenario.time, tool, surface.box))
+      for (Warning& warning : stroke_warnings(*loaded.files.at(kMotionFile).stroke(), scenario.time, tool, surface.box))
         warn(std::move(warning));
     }
   }
@@ -186,8 +186,7 @@ double moves_until(const HandFields& hand) {
 double script_moves_until(const Scenario& scenario) {
   const auto& orientation = scenario.motion.orientation;
   if (!orientation) return kAlways;
-  return std::max(
-      {moves_until(orientation->tilt), moves_until(orientation->azimuth), moves_until(scenario.hand)});
+  return std::max({moves_until(orientation->tilt), moves_until(orientation->azimuth), moves_until(scenario.hand)});
 }
 
 const TremorConfig* tremor_of(const Scenario& scenario) {

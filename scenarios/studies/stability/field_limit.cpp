@@ -9,6 +9,7 @@
 #include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "algorithms/stages/damping_and_limits.hpp"
 #include "device_model/theory/linear_loops.hpp"
@@ -110,10 +111,10 @@ class Search {
   /// The edges of what is stable without a run, along the whole way.
   class Theory {
    public:
-    using Predicate = bool (*)(const Scenario&);
+    using Predicate = std::function<bool(const Scenario&)>;
     /// Empty unless it `applies` to the scene at both ends.
-    Theory(const Search& search, Predicate applies, Predicate stable, int intervals)
-        : search_(search), stable_(stable) {
+    Theory(const Search& search, const Predicate& applies, Predicate stable, int intervals)
+        : search_(search), stable_(std::move(stable)) {
       for (const double end : {0.0, 1.0}) {
         if (!applies(search.at(search.question_.value_at(end)).scenario)) return;
       }
@@ -172,17 +173,14 @@ class Search {
 
   /// FieldLimit::linear
   std::optional<double> linear_edge(double lambda) const {
-    for (const double end : {0.0, 1.0}) {
-      const Scenario scenario = at(question_.value_at(end)).scenario;
-      if (!has_device(scenario) || contact_step(scenario, lambda).size() == 0) return std::nullopt;
-    }
-    const auto stable = [&](double part) {
-      return std::ranges::all_of(contact_loops(at(question_.value_at(part)).scenario, lambda, false),
+    const auto applies = [lambda](const Scenario& scenario) {
+      return has_device(scenario) && contact_step(scenario, lambda).size() != 0;
+    };
+    const auto stable = [lambda](const Scenario& scenario) {
+      return std::ranges::all_of(contact_loops(scenario, lambda, false),
                                  [](const auto& loop) { return is_stable_step(loop.second); });
     };
-    const FoundEdge edge = find_edge(question_, scanned(2 * kEdgeIntervals, stable), stable, kTheoryResolution, false);
-    if (!edge.stable) return std::nullopt;
-    return edge.beyond ? question_.value_at(*edge.stable) : std::numeric_limits<double>::infinity();
+    return Theory(*this, applies, stable, 2 * kEdgeIntervals).edge();
   }
 
   /// True for springs that stay in contact, with a tool that is alone or a device whose loop is linear.
@@ -217,18 +215,9 @@ class Search {
 
 Json own_value(const Scenario& scenario, const std::string& path) {
   const Json effective = effective_scenario(scenario, scenario.directory);
-  const Json* node = &effective;
-  for (const std::string_view key : parts_of(path, '.')) {
-    const auto index = whole_number(key);
-    if (node->is_array() && index && *index < node->size()) {
-      node = &(*node)[*index];
-    } else if (node->is_object() && node->contains(std::string(key))) {
-      node = &(*node)[std::string(key)];
-    } else {
-      return nullptr;
-    }
-  }
-  return *node;
+  Json::json_pointer at;
+  for (const std::string_view key : parts_of(path, '.')) at /= std::string(key);
+  return effective.contains(at) ? effective.at(at) : Json();
 }
 
 namespace {

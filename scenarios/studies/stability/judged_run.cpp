@@ -156,8 +156,8 @@ class LastRows final : public Observer {
     S_sum_ += record.force.S;
   }
 
-  bool touched() const { return touched_; }              ///< in any row
-  std::uint64_t way() const { return way_.value(); }     ///< JudgedRun::way
+  bool touched() const { return touched_; }           ///< in any row
+  std::uint64_t way() const { return way_.value(); }  ///< JudgedRun::way
   bool has_left(const PointShell& shell, double reach) const {
     const Box bounds = shell.bounds();
     const Vec3 beyond = (bounds.min - place_).cwiseMax(place_ - bounds.max);
@@ -281,13 +281,13 @@ static JudgedRun judged_once(const LoadedScenario& loaded, const std::shared_ptr
   LastRows last(scenario.time);
   SimulationParts parts = assemble(scenario, loaded.files, shell, {});
   const std::shared_ptr<const ToolShape> tool = parts.tool;
-  EncounterObserver seen(scenario, loaded.files, parts);
-  Simulation simulation(simulation_config(scenario), std::move(parts), {&classifier, &last, &seen});
+  const auto seen = encounter_observer(scenario, loaded.files, parts);
+  Simulation simulation(simulation_config(scenario), std::move(parts), {&classifier, &last, seen.get()});
   const MotionClass motion = classify(simulation, classifier);
   SettledState settled = last.state();
   // A run that was cut short there would tell the vibration of an earlier quarter.
   if (classifier.at_rest() && settled.vibration) settled.vibration = 0.0;
-  const Outcome outcome = seen.outcome(simulation.result().outcome);
+  const Outcome outcome = seen->outcome(simulation.result().outcome);
   const auto verdict = [&] {
     if (motion == MotionClass::diverged) return RunVerdict::diverged;
     if (outcome == Outcome::went_through) return RunVerdict::went_through;

@@ -18,8 +18,8 @@
 #include "sim/loop/observer.hpp"
 #include "sim/loop/simulation.hpp"
 
-/// Judges whether a run is stable: first by its motion alone, without eigenvalues, tensors or knowledge of the law, then
-/// also by where its tool ends.
+/// Judges whether a run is stable: first by its motion alone, without eigenvalues, tensors or knowledge of the law,
+/// then also by where its tool ends.
 ///
 /// The run is cut into quarters. The amplitude of a quarter is the largest speed of the tool in it (of the handle where
 /// the handle moves the tool, because an encoder turns its motion into jumps that nobody feels); a turn is a change of
