@@ -55,7 +55,6 @@ class DiagnosisObserver final : public Observer {
   /// The scenario must outlive the observer.
   explicit DiagnosisObserver(const Scenario& scenario);
 
-  void begin() noexcept;  ///< a trial
   void on_step(const StepRecord& record) noexcept override;
 
   /// After a trial: its EncounterObserver::longest_step [m].

@@ -137,7 +137,6 @@ class Run {
     if (!metrics_) metrics_.emplace(time.step * static_cast<double>(time.stride), metrics_config(scenario_, parts));
     metrics_->begin();
     sections_.begin(begun);
-    if (diagnosis_) diagnosis_->begin();
     tool_ = parts.tool;
 
     StepSampler sampler(static_cast<std::uint64_t>(time.steps));

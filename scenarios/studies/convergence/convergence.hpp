@@ -8,11 +8,29 @@
 #include <vector>
 
 #include "results/summary/summary.hpp"
-#include "scenarios/studies/convergence/level_sweep.hpp"
+#include "scenarios/batch/axis.hpp"
+#include "scenarios/description/load_scenario.hpp"
 
-/// How far a number is from converged: observed order, Richardson's value and grid convergence index (Roache 1994; ASME
-/// V&V 20) of a metric at levels h, h/r, h/r^2, … of one field; or why no order can be stated.
+/// A scene sampled more and more finely, in its step or in any field, and how far a number is from converged then:
+/// observed order, Richardson's value and grid convergence index (Roache 1994; ASME V&V 20) of a metric at levels h,
+/// h/r, h/r^2, … of one field; or why no order can be stated.
 namespace hapbench {
+
+inline constexpr const char* kStepPath = "time.step_s";
+
+/// The levels of a scene's field, from the scenario's own value to finer ones.
+struct LevelSweep {
+  Axis axis;                  ///< the field's values, with what has to change along with them
+  double ratio = 2.0;         ///< of each value to the next
+  double formal_order = 2.0;  ///< of the integrator, or of whatever a distance between points or of a grid approximates
+  std::string no_order;       ///< why no metric of this scene can have an order; empty otherwise
+};
+
+/// The levels of a field. With shorter steps the run lasts as long, delays of devices keep their length, and metrics of
+/// motion, force and contact are taken at the times of the coarsest rows. A mesh without a spacing begins with the mean
+/// distance of its vertices. Throws InputError when the field is no number > 0 or an integer, and for a ratio of steps
+/// that is not whole.
+LevelSweep level_sweep(const LoadedScenario& loaded, const std::string& path, std::size_t levels, double ratio);
 
 /// What a run at one level gave.
 struct LevelResult {

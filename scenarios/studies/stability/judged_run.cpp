@@ -297,7 +297,7 @@ static JudgedRun judged_once(const LoadedScenario& loaded, const std::shared_ptr
     if (const auto known = verdict_of(outcome)) return *known;
     return verdict_of(motion, settled, rule.most_vibration);
   };
-  JudgedRun run{verdict(), settled, last.way(), classifier.at_rest()};
+  JudgedRun run{verdict(), settled, last.way()};
   run.undecided = is_stable(run.verdict) && classifier.is_undecided();
   return run;
 }

@@ -167,7 +167,6 @@ struct JudgedRun {
   RunVerdict verdict = RunVerdict::stable;
   SettledState settled;
   std::uint64_t way = 0;  ///< a hash of all positions of the handle: runs that differ in it moved differently
-  bool at_rest = false;   ///< MotionClassifier::at_rest
   /// Neither at rest nor long enough for an oscillation, after it was made four times as long up to three times.
   bool undecided = false;
 };
