@@ -133,9 +133,7 @@ int validate(const ValidateOptions& options) {
         continue;
       }
       const LoadedScenario loaded = load_scenario(file, options.overrides);
-      const std::vector<Warning> of_files = check_named_files(loaded);
-      print_warnings(loaded, loaded.warnings);
-      print_warnings(loaded, of_files);
+      print_warnings(loaded, warnings_before_run(loaded));
       const SceneFacts facts = scene_facts(loaded);
       print_warnings(loaded, facts.warnings);
       text += fmt::format("{}: valid\n{}", argument, facts_text(loaded, facts));
