@@ -19,7 +19,7 @@
 #include "scenarios/program/report.hpp"
 #include "scenarios/program/run_table.hpp"
 #include "scenarios/run/encounter.hpp"
-#include "scenarios/run/recorders.hpp"
+#include "scenarios/run/result_folder.hpp"
 #include "scenarios/run/stop_signal.hpp"
 
 namespace hapbench {

@@ -11,7 +11,7 @@
 #include "scenarios/batch/league.hpp"
 #include "scenarios/program/command.hpp"
 #include "scenarios/program/run_table.hpp"
-#include "scenarios/studies/convergence/known_error.hpp"
+#include "scenarios/studies/convergence/convergence.hpp"
 
 namespace hapbench {
 namespace {

@@ -13,7 +13,7 @@
 #include "scenarios/program/limit_cases.hpp"
 #include "scenarios/program/run_table.hpp"
 #include "scenarios/program/table.hpp"
-#include "scenarios/run/recorders.hpp"
+#include "scenarios/run/result_folder.hpp"
 #include "scenarios/studies/stability/judged_run.hpp"
 #include "scenarios/thesis_claims/claims.hpp"
 

@@ -9,7 +9,7 @@
 #include "scenarios/program/command.hpp"
 #include "scenarios/program/run_table.hpp"
 #include "scenarios/run/assemble.hpp"
-#include "scenarios/run/recorders.hpp"
+#include "scenarios/run/result_folder.hpp"
 
 namespace hapbench {
 namespace {

@@ -14,7 +14,7 @@
 #include "scenarios/program/command.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/progress_bar.hpp"
-#include "scenarios/run/recorders.hpp"
+#include "scenarios/run/result_folder.hpp"
 #include "scenarios/run/scene_facts.hpp"
 #include "scenarios/run/stop_signal.hpp"
 #include "scenarios/studies/stability/scene_devices.hpp"

@@ -8,14 +8,12 @@
 #include "algorithms/registry.hpp"
 #include "results/allocations/allocations.hpp"
 #include "results/observe/step_times.hpp"
-#include "results/record/recorder.hpp"
 #include "scenarios/description/metric_sections.hpp"
 #include "scenarios/description/parts.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/diagnosis.hpp"
 #include "scenarios/run/encounter.hpp"
 #include "scenarios/run/progress_bar.hpp"
-#include "scenarios/run/result_folder.hpp"
 #include "scenarios/run/stop_signal.hpp"
 
 namespace hapbench {

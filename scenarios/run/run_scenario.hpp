@@ -8,7 +8,7 @@
 #include "results/io/table_writer.hpp"
 #include "results/summary/summary.hpp"
 #include "scenarios/description/load_scenario.hpp"
-#include "scenarios/run/recorders.hpp"
+#include "scenarios/run/result_folder.hpp"
 #include "sim/geometry/point_shell.hpp"
 
 namespace hapbench {

@@ -7,7 +7,6 @@
 #include "device_model/theory/linear_loops.hpp"
 #include "scenarios/batch/comparison.hpp"
 #include "scenarios/input/json_file.hpp"
-#include "scenarios/studies/stability/field_limit.hpp"
 #include "scenarios/studies/tuning/tune.hpp"
 #include "sim/core/math.hpp"
 

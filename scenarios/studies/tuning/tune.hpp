@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "scenarios/description/load_scenario.hpp"
-#include "scenarios/studies/stability/edge_search.hpp"
+#include "scenarios/studies/stability/field_limit.hpp"
 
 /// Which stiffness and damping to use: for a force law in a scene the largest K, over damping ratio and, on request or
 /// on an admittance device, velocity filter and virtual mass, at which the worst run of a family is settled with a gain
