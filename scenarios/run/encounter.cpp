@@ -143,10 +143,10 @@ class Approach {
     looks_.reserve(kLooks);
   }
 
-  void add(const StepRecord& record) noexcept {
+  /// `looks`: the tool has touched nothing yet.
+  void add(const StepRecord& record, bool looks) noexcept {
     steps_.add(record.tool.pose.position);
-    touched_ = touched_ || record.colliding > 0;
-    if (touched_) return;
+    if (!looks) return;
     const Look look{record.time, steps_.distance(), record.tool.pose};
     if (record.step % every_ == 0) {
       looks_.push_back(look);
@@ -155,7 +155,6 @@ class Approach {
     }
   }
 
-  bool touched() const { return touched_; }        ///< in any row
   const StepWay& steps() const { return steps_; }  ///< of the tip centre
   /// Of the tip centre to the environment's box before the first contact; 0 within it [m].
   double closest_to_box() const { return std::ranges::min(looks_, {}, &Look::from_box).from_box; }
@@ -190,66 +189,12 @@ class Approach {
   StepWay steps_;
   std::uint64_t every_;
   std::vector<Look> looks_;
-  bool touched_ = false;
-};
-
-/// Follows a dragged tool on the path along which it is led.
-class DragCourse {
- public:
-  /// The hand and its fields must outlive it. `width`: the tool's [m].
-  DragCourse(const DragHand& hand, const DragHandFields& fields, double width)
-      : hand_(hand), fields_(fields), width_(width) {}
-
-  void add(const StepRecord& record) noexcept {
-    time_ = record.time;
-    way_ = std::max(way_, hand_.nearest());
-    place_ = record.tool.pose.position;
-    if (record.colliding > 0) last_contact_ = record.time;
-  }
-
-  /// Time of the last contact, if the tool had none for so long that the next touch would be a landing.
-  std::optional<double> lost() const {
-    const bool presses = hand_.drag().force(time_) > 0.0;
-    const bool is_lost = presses && last_contact_ && time_ - *last_contact_ >= SettlingRule().time;
-    return is_lost ? last_contact_ : std::nullopt;
-  }
-  /// The spring that leads a tool which follows lags by less.
-  bool not_dragged() const { return way_ < width_ && way_to_cover(fields_, time_) > 2.0 * width_; }
-
-  std::optional<Warning> lost_warning() const {
-    const auto since = lost();
-    if (!since) return std::nullopt;
-    const SurfacePoint foot = hand_.path().at(hand_.nearest());
-    const double height = foot.normal.dot(place_ - foot.position);
-    return Warning{"drag_lost", "",
-                   fmt::format("the dragged tool lost the surface at {:.4g} s and ended {} {}", *since,
-                               length_text(std::abs(height)), height < 0.0 ? "below it, past an edge" : "above it")};
-  }
-  /// Of a path that ends early.
-  std::optional<Warning> short_warning() const {
-    auto ends = short_path_warning(fields_, hand_.path().length(), way_to_cover(fields_, time_), width_);
-    if (ends)
-      ends->text +=
-          fmt::format("; the tool was at [{:.4g}, {:.4g}, {:.4g}] m in the end", place_.x(), place_.y(), place_.z());
-    return ends;
-  }
-
- private:
-  const DragHand& hand_;
-  const DragHandFields& fields_;
-  double width_;
-  double way_ = 0.0;           ///< furthest that the tool came on the path [m]
-  double time_ = 0.0;          ///< of the last row
-  Vec3 place_ = Vec3::Zero();  ///< of the tip in the last row [m]
-  std::optional<double> last_contact_;
 };
 
 /// A tool that stood still to the end while the target of its hand went on.
 struct Stuck {
   double since = 0.0;                  ///< [s]
   double way = 0.0, target_way = 0.0;  ///< of tool and target from then on [m]
-  Vec3 place = Vec3::Zero();           ///< of the tip, in the last row [m]
-  double force = 0.0;                  ///< size of the rendered force in the last row [N]
 };
 
 /// Finds a tool that a hand's spring cannot move, that of a subject at a display, too: its target is the intended
@@ -269,8 +214,6 @@ class Standstill {
     // Before the first touch nothing tells the direction of the push: how far away the target was then does not count.
     if (push_.isZero(0.0)) across_ = 0.0;
     push_ += kRows * (record.force.spring - push_);
-    stuck_.place = place;
-    stuck_.force = record.force.rendered.norm();
     const auto extend = [](Box& box, const Vec3& p) {
       box = {box.min.cwiseMin(p), box.max.cwiseMax(p)};
       return diagonal(box);
@@ -331,18 +274,16 @@ class Encounter final : public EncounterObserver {
  public:
   Encounter(const Scenario& scenario, const NamedFiles& files, const SimulationParts& parts,
             const MetricsObserver* metrics)
-      : scenario_(scenario), tool_(parts.tool) {
+      : scenario_(scenario), tool_(parts.tool), drag_(dynamic_cast<const DragHand*>(parts.hand.get())) {
     const auto steps = static_cast<std::uint64_t>(scenario.time.steps);
     if (auto solid = make_solid(scenario, files)) {
       const std::int64_t every = scenario.record.inside ? scenario.record.every : 0;
       inside_.emplace(parts.tool, std::move(solid), metrics, static_cast<std::uint64_t>(every), steps);
     }
     if (parts.shell && parts.shell->size() > 0) approach_.emplace(parts.shell, steps);
-    const double width = 2.0 * parts.tool->half_width();
-    if (const auto* hand = dynamic_cast<const DragHand*>(parts.hand.get())) {
-      drag_.emplace(*hand, std::get<DragHandFields>(scenario.hand), width);
-      standstill_.emplace([hand](double time) { return hand->path().at(hand->drag().speed * time).position; }, width);
-    }
+    const double width = 2.0 * tool_->half_width();
+    if (drag_ != nullptr)
+      standstill_.emplace([this](double time) { return drag_->path().at(drag_->drag().speed * time).position; }, width);
     if (const ImpedanceHandFields* hand = spring_of(scenario.hand);
         hand != nullptr && position_is_free(scenario.motion))
       standstill_.emplace([hand](double time) { return target_at(*hand, time); }, width);
@@ -351,9 +292,13 @@ class Encounter final : public EncounterObserver {
   }
 
   void on_step(const StepRecord& record) noexcept override {
+    time_ = record.time;
+    place_ = record.tool.pose.position;
+    force_ = record.force.rendered;
+    if (record.colliding > 0) last_contact_ = record.time;
     if (inside_) inside_->on_step(record);
-    if (approach_) approach_->add(record);
-    if (drag_) drag_->add(record);
+    if (approach_) approach_->add(record, !last_contact_);
+    if (drag_ != nullptr) drag_way_ = std::max(drag_way_, drag_->nearest());
     if (standstill_) standstill_->add(record);
   }
 
@@ -361,12 +306,14 @@ class Encounter final : public EncounterObserver {
     if (!approach_ || outcome != Outcome::completes) return outcome;
     if (inside_ && (inside_->passage().went_through() || inside_max() > tool_->half_width()))
       return Outcome::went_through;
-    if (!approach_->touched()) return Outcome::no_contact;
+    if (!last_contact_) return Outcome::no_contact;
     const StepWay& steps = approach_->steps();
     const bool is_far = steps.distance() > diagonal(steps.environment()) + tool_->reach();
     if (is_far && position_is_free(scenario_.motion)) return Outcome::lost_contact;
-    if (drag_ && drag_->lost()) return Outcome::lost_contact;
-    if (drag_ && drag_->not_dragged()) return Outcome::not_dragged;
+    if (drag_lost()) return Outcome::lost_contact;
+    // The spring that leads a tool which follows lags by less.
+    const double width = 2.0 * tool_->half_width();
+    if (drag_ != nullptr && drag_way_ < width && drag_way_asked() > 2.0 * width) return Outcome::not_dragged;
     return stuck() ? Outcome::stuck : Outcome::completes;
   }
 
@@ -383,8 +330,8 @@ class Encounter final : public EncounterObserver {
     }
     if (!approach_) return warnings;
     add(warning_about(outcome, contact));
-    if (drag_ && outcome != Outcome::went_through) add(drag_->lost_warning());
-    if (drag_) add(drag_->short_warning());
+    if (drag_lost() && outcome != Outcome::went_through) add(drag_lost_warning());
+    if (drag_ != nullptr) add(drag_short_warning());
     if (std::holds_alternative<MeshToolFields>(scenario_.tool))
       add(scale_warning(scenario_, *tool_, approach_->steps().environment()));
     return warnings;
@@ -402,6 +349,30 @@ class Encounter final : public EncounterObserver {
   double inside_max() {
     const InsideDepths* inside = depths();
     return inside != nullptr ? inside->max.value_or(0.0) : 0.0;
+  }
+
+  /// The way along which the hand has led the tool by the last row [m].
+  double drag_way_asked() const { return way_to_cover(std::get<DragHandFields>(scenario_.hand), time_); }
+  /// True when a dragged tool had no contact in the end for so long that the next touch would be a landing.
+  bool drag_lost() const {
+    return drag_ != nullptr && drag_->drag().force(time_) > 0.0 && last_contact_ &&
+           time_ - *last_contact_ >= SettlingRule().time;
+  }
+  Warning drag_lost_warning() const {
+    const SurfacePoint foot = drag_->path().at(drag_->nearest());
+    const double height = foot.normal.dot(place_ - foot.position);
+    return {"drag_lost", "",
+            fmt::format("the dragged tool lost the surface at {:.4g} s and ended {} {}", *last_contact_,
+                        length_text(std::abs(height)), height < 0.0 ? "below it, past an edge" : "above it")};
+  }
+  /// Of a path that ends early.
+  std::optional<Warning> drag_short_warning() const {
+    auto ends = short_path_warning(std::get<DragHandFields>(scenario_.hand), drag_->path().length(), drag_way_asked(),
+                                   2.0 * tool_->half_width());
+    if (ends)
+      ends->text +=
+          fmt::format("; the tool was at [{:.4g}, {:.4g}, {:.4g}] m in the end", place_.x(), place_.y(), place_.z());
+    return ends;
   }
 
   std::optional<Stuck> stuck() const { return standstill_ ? standstill_->stuck() : std::nullopt; }
@@ -455,7 +426,7 @@ class Encounter final : public EncounterObserver {
           kind, "",
           fmt::format("the tool stood still since {:.4g} s, coming {} further while its target went on by {}; it "
                       "was at {} under a force of {:.3g} N in the end",
-                      s->since, length_text(s->way), length_text(s->target_way), millimetres(s->place), s->force)};
+                      s->since, length_text(s->way), length_text(s->target_way), millimetres(place_), force_.norm())};
     }
     const std::string environment =
         fmt::format("{}: {}", size_text(steps.environment()), place_text(steps.environment()));
@@ -468,7 +439,7 @@ class Encounter final : public EncounterObserver {
                                  length_text(closest.distance), closest.time, environment, question)};
     }
     // The course of the drag tells of a tool that lost the surface within the box.
-    if (outcome != Outcome::lost_contact || (drag_ && drag_->lost() && steps.distance() == 0.0)) return std::nullopt;
+    if (outcome != Outcome::lost_contact || (drag_lost() && steps.distance() == 0.0)) return std::nullopt;
     const double share = static_cast<double>(contact.in_contact) / static_cast<double>(contact.rows);
     const auto [cause, question] = likely_cause(outcome, contact);
     return Warning{
@@ -483,8 +454,13 @@ class Encounter final : public EncounterObserver {
   std::optional<InsideObserver> inside_;
   std::optional<InsideDepths> depths_;
   std::optional<Approach> approach_;
-  std::optional<DragCourse> drag_;
   std::optional<Standstill> standstill_;
+  const DragHand* drag_;   ///< null unless one drags the tool
+  double drag_way_ = 0.0;  ///< furthest that the tool came on its path [m]
+  // In the last row.
+  double time_ = 0.0;
+  Vec3 place_ = Vec3::Zero(), force_ = Vec3::Zero();  ///< of the tip [m]; rendered [N]
+  std::optional<double> last_contact_;                ///< time of the last row with a colliding point
 };
 
 }  // namespace
