@@ -39,20 +39,23 @@ std::size_t columns() {
   return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
 }
 
-}  // namespace
-
-void report_progress_to(ProgressListener* listener) noexcept {
-  thread_listener = listener;
-}
-
+/// Shows a line on standard error in place of the one shown before, cut to the terminal's width: a broken line could
+/// not be taken back. Precondition: standard error is a terminal.
 void show_status(std::string_view line) {
   const auto length = static_cast<int>(std::min(line.size(), columns() - 1));
   std::fprintf(stderr, "\r%.*s\033[K", length, line.data());
   std::fflush(stderr);
 }
 
+/// Takes the line back.
 void hide_status() {
   std::fprintf(stderr, "\r\033[K");
+}
+
+}  // namespace
+
+void report_progress_to(ProgressListener* listener) noexcept {
+  thread_listener = listener;
 }
 
 ProgressBar::ProgressBar(std::string label, std::uint64_t total, bool enabled)

@@ -8,12 +8,6 @@
 
 namespace hapbench {
 
-/// Shows a line on standard error in place of the one shown before, cut to the terminal's width: a broken line could
-/// not be taken back. Precondition: standard error is a terminal.
-void show_status(std::string_view line);
-/// Takes the line back.
-void hide_status();
-
 /// Hears of progress in place of the terminal.
 class ProgressListener {
  public:

@@ -220,7 +220,10 @@ StressCounts counts_of(const ContactSet& set, const RenderingConfig& config, std
                        const Answer& answer) {
   const RenderedForce& force = answer.force;
   const auto bound_of = find_algorithm(config.algorithm)->theory.force_bound;
-  StressCounts counts{.sets = 1, .in_contact = answer.colliding > 0, .points_dropped = answer.dropped};
+  StressCounts counts;
+  counts.sets = 1;
+  counts.in_contact = answer.colliding > 0;
+  counts.points_dropped = answer.dropped;
   double bound = std::numeric_limits<double>::infinity();
   if (bound_of != nullptr) bound = config.stiffness * bound_of(config, set.tool, answer.rendered, force.depth_max);
   counts.non_finite = !finite(force);
