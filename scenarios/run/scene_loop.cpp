@@ -116,6 +116,11 @@ double delay_of(const Scenario& scenario) {
   return admittance != nullptr ? static_cast<double>(admittance->servo.delay) : 0.0;
 }
 
+const char* delay_path(const Scenario& scenario) {
+  const bool has_servo = std::holds_alternative<AdmittanceDeviceConfig>(scenario.device);
+  return has_servo ? "device.servo.delay_samples" : "device.delay_samples";
+}
+
 std::string unknown_to_theory(const Scenario& scenario) {
   // With the parts of the device, so that only fields of theirs can differ.
   DeviceFields plain = AdmittanceDeviceConfig{};

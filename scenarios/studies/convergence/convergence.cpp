@@ -15,6 +15,7 @@
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/scene_facts.hpp"
+#include "scenarios/run/scene_loop.hpp"
 #include "scenarios/studies/stability/field_limit.hpp"
 #include "sim/core/math.hpp"
 #include "sim/loop/integrators/table.hpp"
@@ -25,7 +26,7 @@ namespace {
 /// Of the step. A device samples: between its samples the force is held, which is of the first order.
 double order_in_step(const Scenario& scenario) {
   const IntegratorEntry& integrator = *scenario.integrator.type;
-  if (!std::holds_alternative<IdealDeviceFields>(scenario.device)) return 1.0;
+  if (has_device(scenario)) return 1.0;
   const RenderingConfig& r = scenario.rendering;
   return normal_damping(r) > 0.0 || r.has_friction() ? integrator.damped_order : integrator.order;
 }
@@ -38,19 +39,6 @@ std::string noise_reason(const Scenario& scenario) {
   return source == nullptr ? "" : fmt::format("the noise of the {} is drawn anew in every step", source);
 }
 
-/// Delays of devices keep their length.
-std::vector<std::string> kept_delays(const Scenario& scenario, std::int64_t times) {
-  std::vector<std::string> overrides;
-  const auto keep = [&overrides, times](const char* field, auto steps) {
-    if (steps > 0) overrides.push_back(fmt::format("{}={}", field, static_cast<decltype(steps)>(times) * steps));
-  };
-  if (const auto* device = std::get_if<ImpedanceDeviceConfig>(&scenario.device))
-    keep("device.delay_samples", device->delay_samples);
-  if (const auto* device = std::get_if<AdmittanceDeviceConfig>(&scenario.device))
-    keep("device.servo.delay_samples", device->servo.delay);
-  return overrides;
-}
-
 LevelSweep step_levels(const Scenario& scenario, std::size_t levels, double ratio) {
   if (ratio != std::round(ratio)) {
     throw InputError(fmt::format(
@@ -59,8 +47,9 @@ LevelSweep step_levels(const Scenario& scenario, std::size_t levels, double rati
   LevelSweep sweep{.axis = {kStepPath}, .formal_order = order_in_step(scenario), .no_order = noise_reason(scenario)};
   std::int64_t times = 1;
   for (std::size_t i = 0; i < levels; ++i, times *= static_cast<std::int64_t>(ratio)) {
-    std::vector<std::string> overrides = kept_delays(scenario, times);
-    overrides.insert(overrides.begin(), fmt::format("time.steps={}", times * scenario.time.steps));
+    std::vector<std::string> overrides = {fmt::format("time.steps={}", times * scenario.time.steps)};
+    if (const double delay = delay_of(scenario); delay > 0.0)  // which keeps its length
+      overrides.push_back(fmt::format("{}={}", delay_path(scenario), static_cast<double>(times) * delay));
     sweep.axis.values.push_back(fmt::format("{}", scenario.time.step / static_cast<double>(times)));
     sweep.axis.along.push_back({std::move(overrides), times});
   }
