@@ -22,21 +22,16 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-/// The spring force beyond which the explicit step of friction is unstable [N]. Nothing where the position is
-/// prescribed or a handle moves the tool, since no integrator does.
-std::optional<double> friction_limit(const Scenario& scenario, const Motion& motion) {
-  if (!motion.position_is_free() || handle_moves_tool(scenario.device)) return std::nullopt;
-  const RenderingConfig& rendering = scenario.rendering;
-  return explicit_friction_limit(*scenario.integrator.type, rendering.mass, scenario.time.step, rendering.mu_s,
-                                 rendering.mu_f);
-}
-
 MetricsConfig metrics_config(const Scenario& scenario, const SimulationParts& parts) {
+  const RenderingConfig& rendering = scenario.rendering;
   MetricsConfig config;
-  config.friction_limit = friction_limit(scenario, *parts.motion);
+  // Where the position is prescribed, or a handle moves the tool, no integrator steps the friction.
+  if (parts.motion->position_is_free() && !handle_moves_tool(scenario.device))
+    config.friction_limit = explicit_friction_limit(*scenario.integrator.type, rendering.mass, scenario.time.step,
+                                                    rendering.mu_s, rendering.mu_f);
   config.settling = scenario.metrics;
   config.steps = static_cast<std::uint64_t>(scenario.time.steps / scenario.time.stride);
-  if (scenario.rendering.reduction) config.most_reduced = parts.source->capacity();
+  if (rendering.reduction) config.most_reduced = parts.source->capacity();
   return config;
 }
 

@@ -27,18 +27,15 @@ ToolPose first_pose(const Scenario& scenario, const SimulationParts& parts) {
 constexpr double kUnitsApart = 100.0;
 constexpr double kUsualStep = 0.001;  ///< of haptic loops [s]
 
-std::string times_text(double factor) {
-  return fmt::format("{:.0f} times", factor);
-}
-
 /// Where the tool starts, against its own size and the environment's.
 std::optional<Warning> start_warning(const ToolShape& tool, const SceneFacts::Surface& surface) {
   const double least = std::min((surface.box.max - surface.box.min).norm(), tool.reach());
   if (surface.gap > kUnitsApart * least) {
-    return Warning{"start", "",
-                   fmt::format("the tool starts {} from the environment, {} the size of {}: is its place in metres?",
-                               length_text(surface.gap), times_text(surface.gap / least),
-                               least == tool.reach() ? "the tool" : "the environment")};
+    return Warning{
+        "start", "",
+        fmt::format("the tool starts {} from the environment, {:.0f} times the size of {}: is its place in metres?",
+                    length_text(surface.gap), surface.gap / least,
+                    least == tool.reach() ? "the tool" : "the environment")};
   }
   return std::nullopt;
 }
@@ -60,14 +57,14 @@ std::vector<Warning> stroke_warnings(const Stroke& stroke, const TimeFields& tim
     warnings.push_back({"stroke", std::string(kMotionFile), std::move(text)});
   };
   if (way > kUnitsApart * size) {
-    warn(fmt::format("{}, {} the environment's size: are they in metres?", of, times_text(way / size)));
+    warn(fmt::format("{}, {:.0f} times the environment's size: are they in metres?", of, way / size));
   } else if (way > 0.0 && kUnitsApart * way < tool.half_width()) {
     warn(fmt::format("{}, a hundredth of the tool's half width, {}: are they in metres?", of,
                      length_text(tool.half_width())));
   }
   if (closest > kUnitsApart * size)
-    warn(fmt::format("the stroke stays {} away from the environment, {} its size: are places in metres?",
-                     length_text(closest), times_text(closest / size)));
+    warn(fmt::format("the stroke stays {} away from the environment, {:.0f} times its size: are places in metres?",
+                     length_text(closest), closest / size));
   if (samples.size() < 2) return warnings;
   const double interval = (samples.back().time - samples.front().time) / static_cast<double>(samples.size() - 1);
   if (interval > kUnitsApart * time.step || interval * kUnitsApart < time.step) {
