@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -197,8 +198,49 @@ struct Stuck {
   double way = 0.0, target_way = 0.0;  ///< of tool and target from then on [m]
 };
 
+/// Follows a dragged tool on the path along which it is led.
+class DragCourse {
+ public:
+  /// The hand must outlive it. `width`: the tool's [m].
+  DragCourse(const DragHand& hand, double width) : hand_(hand), width_(width) {}
+
+  void add(double time) noexcept {
+    constexpr double kComes = 0.1;  // of the point's way, at least, where the tool does not stand
+    now_ = {time, std::min(hand_.drag().speed * time, hand_.path().length()), std::max(now_.way, hand_.nearest())};
+    if (now_.asked < static_cast<double>(stand_) * width_ / kStands) return;
+    const Stand before = std::exchange(stands_[stand_ % kStands], now_);
+    if (stand_++ < kStands) return;
+    if (now_.way - before.way >= kComes * (now_.asked - before.asked)) {
+      stuck_.reset();
+    } else if (!stuck_) {
+      stuck_ = before;
+    }
+  }
+
+  /// From when on the tool came less than a tenth of the way of the point that leads it, over every width of its own
+  /// that the point went on.
+  std::optional<Stuck> stuck() const {
+    if (!stuck_) return std::nullopt;
+    return Stuck{stuck_->time, now_.way - stuck_->way, now_.asked - stuck_->asked};
+  }
+  double way() const { return now_.way; }  ///< furthest that the tool came on the path [m]
+
+ private:
+  /// The point's and the tool's way at a time.
+  struct Stand {
+    double time = 0.0, asked = 0.0, way = 0.0;
+  };
+  static constexpr std::size_t kStands = 4;
+  const DragHand& hand_;
+  double width_;
+  Stand now_;
+  std::array<Stand, kStands> stands_{};  ///< a quarter of the tool's width of the point's way apart
+  std::size_t stand_ = 0;                ///< how many there were
+  std::optional<Stand> stuck_;           ///< where it came to stand for good
+};
+
 /// Finds a tool that a hand's spring cannot move, that of a subject at a display, too: its target is the intended
-/// position; that of a hand that drags is the point that leads the tool. A spring whose target goes into the surface
+/// position. A spring whose target goes into the surface
 /// presses the tool on it, which is no sticking: so the tool is stuck only where the target came away from it by more
 /// than its width across the direction in which the springs of the contacts push.
 class Standstill {
@@ -282,8 +324,7 @@ class Encounter final : public EncounterObserver {
     }
     if (parts.shell && parts.shell->size() > 0) approach_.emplace(parts.shell, steps);
     const double width = 2.0 * tool_->half_width();
-    if (drag_ != nullptr)
-      standstill_.emplace([this](double time) { return drag_->path().at(drag_->drag().speed * time).position; }, width);
+    if (drag_ != nullptr) course_.emplace(*drag_, width);
     if (const ImpedanceHandFields* hand = spring_of(scenario.hand);
         hand != nullptr && position_is_free(scenario.motion))
       standstill_.emplace([hand](double time) { return target_at(*hand, time); }, width);
@@ -298,7 +339,7 @@ class Encounter final : public EncounterObserver {
     if (record.colliding > 0) last_contact_ = record.time;
     if (inside_) inside_->on_step(record);
     if (approach_) approach_->add(record, !last_contact_);
-    if (drag_ != nullptr) drag_way_ = std::max(drag_way_, drag_->nearest());
+    if (course_) course_->add(record.time);
     if (standstill_) standstill_->add(record);
   }
 
@@ -313,7 +354,7 @@ class Encounter final : public EncounterObserver {
     if (drag_lost()) return Outcome::lost_contact;
     // The spring that leads a tool which follows lags by less.
     const double width = 2.0 * tool_->half_width();
-    if (drag_ != nullptr && drag_way_ < width && drag_way_asked() > 2.0 * width) return Outcome::not_dragged;
+    if (course_ && course_->way() < width && drag_way_asked() > 2.0 * width) return Outcome::not_dragged;
     return stuck() ? Outcome::stuck : Outcome::completes;
   }
 
@@ -375,7 +416,10 @@ class Encounter final : public EncounterObserver {
     return ends;
   }
 
-  std::optional<Stuck> stuck() const { return standstill_ ? standstill_->stuck() : std::nullopt; }
+  std::optional<Stuck> stuck() const {
+    if (course_) return course_->stuck();
+    return standstill_ ? standstill_->stuck() : std::nullopt;
+  }
 
   /// A likely cause, or where to look when none suggests itself: its kind, and the end of a sentence.
   std::pair<const char*, std::string> likely_cause(Outcome outcome, const TrialContact& contact) const {
@@ -455,8 +499,8 @@ class Encounter final : public EncounterObserver {
   std::optional<InsideDepths> depths_;
   std::optional<Approach> approach_;
   std::optional<Standstill> standstill_;
-  const DragHand* drag_;   ///< null unless one drags the tool
-  double drag_way_ = 0.0;  ///< furthest that the tool came on its path [m]
+  const DragHand* drag_;              ///< null unless one drags the tool
+  std::optional<DragCourse> course_;  ///< of that
   // In the last row.
   double time_ = 0.0;
   Vec3 place_ = Vec3::Zero(), force_ = Vec3::Zero();  ///< of the tip [m]; rendered [N]
