@@ -19,7 +19,7 @@
 #include "scenarios/program/report.hpp"
 #include "scenarios/program/run_table.hpp"
 #include "scenarios/run/encounter.hpp"
-#include "scenarios/run/recorders.hpp"
+#include "scenarios/run/result_folder.hpp"
 #include "scenarios/run/stop_signal.hpp"
 
 namespace hapbench {
@@ -120,10 +120,18 @@ Answer answer_to(const Asked& asked) {
   }
 }
 
+/// Widens the tolerances of the runs' metrics to what is known of their errors.
+void widen_tolerances(std::vector<Result>& reports, const ComparedErrors& errors) {
+  for (std::size_t i = 0; i < reports.size(); ++i) {
+    for (Metric& metric : reports[i].metrics)
+      if (const auto error = errors.of_run(i, metric.name)) metric.within(0.0, *error);
+  }
+}
+
 /// The tables of one scenario's runs.
-std::string comparison_text(std::span<const Result> reports, const MetricError& error) {
-  return fmt::format("{}\n\n{}{}{}{}", reports.front().name, run_table(reports, false, error),
-                     fidelity_text(reports, error), unsettled_text(reports), step_time_text(reports));
+std::string comparison_text(std::span<const Result> reports) {
+  return fmt::format("{}\n\n{}{}{}{}", reports.front().name, run_table(reports, false), fidelity_text(reports),
+                     unsettled_text(reports), step_time_text(reports));
 }
 
 /// Names the algorithms of a single scenario whose definition fixes a depth model, if others use another one. Each of
@@ -194,8 +202,8 @@ int compare(const CompareOptions& options) {
     report.json() = {{"runs", std::move(report.json())}};
     report.json().update(league_json(league));
   } else {
-    report.say(comparison_text(reports, errors ? errors->of_run : MetricError()) +
-               own_depth_models_text(asked.comparison));
+    if (errors) widen_tolerances(reports, *errors);
+    report.say(comparison_text(reports) + own_depth_models_text(asked.comparison));
     if (errors) report.json() = {{"runs", std::move(report.json())}};
   }
   if (errors) {

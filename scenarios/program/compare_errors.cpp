@@ -11,7 +11,7 @@
 #include "scenarios/batch/league.hpp"
 #include "scenarios/program/command.hpp"
 #include "scenarios/program/run_table.hpp"
-#include "scenarios/studies/convergence/known_error.hpp"
+#include "scenarios/studies/convergence/convergence.hpp"
 
 namespace hapbench {
 namespace {
@@ -131,7 +131,7 @@ ComparedErrors errors_of(const Comparison& comparison, std::span<const Result> r
   const League league = league_of(comparison, reports, metrics);
   const auto finer = std::make_shared<const FinerRuns>(comparison, reports, jobs);
   ComparedErrors errors;
-  errors.of_run = [finer](std::size_t run, const char* metric) { return finer->known_error(run, metric).sum(); };
+  errors.of_run = [finer](std::size_t run, const std::string& metric) { return finer->known_error(run, metric).sum(); };
   for (std::size_t s = 0; s < comparison.scenes.size(); ++s) {
     const ScenarioErrors scenario(league, *finer, s);
     errors.text += scenario.text();

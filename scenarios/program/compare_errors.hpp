@@ -1,19 +1,22 @@
 #pragma once
 
+#include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "scenarios/batch/comparison.hpp"
 #include "scenarios/input/json_file.hpp"
-#include "scenarios/program/run_table.hpp"
 
 /// `compare --errors`: which numbers of a comparison are how sure, and which order of laws is larger than that.
 namespace hapbench {
 
 /// The errors of a comparison's numbers, in words and as JSON.
 struct ComparedErrors {
-  MetricError of_run;         ///< valid as long as what errors_of was given
+  /// By how much a metric of the run with that number may be wrong; none where it is not known. Valid as long as what
+  /// errors_of was given.
+  std::function<std::optional<double>(std::size_t run, const std::string& metric)> of_run;
   std::string text;           ///< for each scenario a table and a sentence on each metric
   Json json = Json::array();  ///< an object for each scenario and metric
 };

@@ -220,7 +220,7 @@ LevelRun run_of(const LoadedScenario& loaded) {
   LevelRun run;
   for (int i = 0; i == 0 || (i < 5 && run.seconds < kShort); ++i) {
     const double before = processor_seconds();
-    run.result = run_with_shell(loaded, shell, std::nullopt, false);
+    run.result = run_with_shell(loaded, shell);
     const double seconds = processor_seconds() - before;
     run.seconds = i == 0 ? seconds : std::min(run.seconds, seconds);
   }

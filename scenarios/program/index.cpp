@@ -157,8 +157,8 @@ Description describe_stability() {
                "A run is judged by its motion, quarter by quarter; the amplitude is the largest speed. One that is too "
                "short to tell is made up to 64 times as long.") +
            "\n";
-  for (auto motion = kMotionClasses.rbegin(); motion != kMotionClasses.rend(); ++motion)  // "all else" last
-    d.text += entry(motion_class_name(*motion), text_of(*motion).rule, 2, 13);
+  for (std::size_t i = kMotionClasses; i-- > 0;)  // "all else" last
+    d.text += entry(run_verdict_texts()[i].name, run_verdict_texts()[i].rule, 2, 13);
   for (
       const char* paragraph :
       {"Limits count stable and dying out as stable: the tool comes to rest if the run goes on. A run that goes through "

@@ -13,7 +13,7 @@
 #include "scenarios/program/limit_cases.hpp"
 #include "scenarios/program/run_table.hpp"
 #include "scenarios/program/table.hpp"
-#include "scenarios/run/recorders.hpp"
+#include "scenarios/run/result_folder.hpp"
 #include "scenarios/studies/stability/judged_run.hpp"
 #include "scenarios/thesis_claims/claims.hpp"
 
@@ -146,8 +146,7 @@ Description describe_word(const Word& word) {
 std::vector<Word> all_words() {
   std::vector<Word> all(std::begin(kWords), std::end(kWords));
   for (const OutcomeInfo& outcome : outcome_infos()) all.push_back({outcome.name, kOutcome, outcome.meaning});
-  for (const RunVerdict verdict : kRunVerdicts)
-    all.push_back({run_verdict_name(verdict), kMotion, run_verdict_meaning(verdict)});
+  for (const RunVerdictText& verdict : run_verdict_texts()) all.push_back({verdict.name, kMotion, verdict.meaning});
   for (const Verdict verdict : kVerdicts) all.push_back({verdict_name(verdict), kVerdict, text_of(verdict).meaning});
   return all;
 }

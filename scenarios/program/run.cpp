@@ -9,7 +9,7 @@
 #include "scenarios/program/command.hpp"
 #include "scenarios/program/run_table.hpp"
 #include "scenarios/run/assemble.hpp"
-#include "scenarios/run/recorders.hpp"
+#include "scenarios/run/result_folder.hpp"
 
 namespace hapbench {
 namespace {
@@ -44,11 +44,7 @@ int run(const RunOptions& options) {
     scenarios.back().scenario.rendering.skips = options.skips;
   }
   const std::vector<fs::path> directories = output_directories(options.out, scenarios, "", "one of each name in a run");
-  for (const LoadedScenario& scenario : scenarios) {
-    const std::vector<Warning> of_files = check_named_files(scenario);
-    print_warnings(scenario, scenario.warnings);
-    print_warnings(scenario, of_files);
-  }
+  for (const LoadedScenario& scenario : scenarios) print_warnings(scenario, warnings_before_run(scenario));
   for (const fs::path& directory : directories) require_writable_directory(directory);
   if (options.out.empty() && !options.overrides.empty()) {
     for (std::size_t i = 0; i < scenarios.size(); ++i) note_replaced_run(scenarios[i], directories[i]);

@@ -25,13 +25,11 @@ std::string cell(std::optional<double> value, int digits = 3) {
   return significant(value.value_or(std::numeric_limits<double>::quiet_NaN()) + 0.0, digits);
 }
 
-/// The metric of that name with the digits that its tolerance and the error leave it; `factor`: to the unit that is
-/// shown.
-std::string metric_cell(const MetricList& metrics, std::string_view name, double factor,
-                        const std::optional<double>& error) {
+/// The metric of that name with the digits that its tolerance leaves it; `factor`: to the unit that is shown.
+std::string metric_cell(const MetricList& metrics, std::string_view name, double factor) {
   const Metric* metric = find_metric(metrics, name);
   const auto value = metric == nullptr ? std::nullopt : number_of(metric->value);
-  return value ? cell(factor * *value, deserved_digits(*value, std::max(metric->tolerance(), error), 3)) : "-";
+  return value ? cell(factor * *value, deserved_digits(*value, metric->tolerance(), 3)) : "-";
 }
 
 /// A time in microseconds of at most four characters, so that tables are as wide on a slow machine as on a fast one:
@@ -58,24 +56,20 @@ std::string distinct_name(const Result& report, std::span<const Result> reports)
 
 using ListedRun = std::reference_wrapper<const Result>;
 
-/// `error` of these runs, none of which was left out or moved.
-void add_metrics(Columns<ListedRun>& columns, std::span<const RunHeading> headings, std::span<const Result> reports,
-                 const MetricError& error) {
+void add_metrics(Columns<ListedRun>& columns, std::span<const RunHeading> headings) {
   for (const RunHeading& heading : headings) {
-    columns.print(heading.title, "1", heading.metric, [&heading, &error, reports](const ListedRun& r) {
-      const auto run = static_cast<std::size_t>(&r.get() - reports.data());
-      return metric_cell(r.get().metrics, heading.metric, heading.factor,
-                         error ? error(run, heading.metric) : std::nullopt);
+    columns.print(heading.title, "1", heading.metric, [&heading](const ListedRun& r) {
+      return metric_cell(r.get().metrics, heading.metric, heading.factor);
     });
   }
 }
 
-Columns<ListedRun> run_columns(bool of_scenes, std::span<const Result> reports, const MetricError& error) {
+Columns<ListedRun> run_columns(bool of_scenes) {
   Columns<ListedRun> columns;
   if (of_scenes) columns.print("scenario", "", "", [](const ListedRun& r) { return r.get().name; });
   columns.print("algorithm", "", "", [](const ListedRun& r) { return r.get().algorithm; });
   columns.print("outcome", "", "outcome", [](const ListedRun& r) { return outcome_name(r.get().end.outcome); });
-  add_metrics(columns, kRunHeadings, reports, error);
+  add_metrics(columns, kRunHeadings);
   columns.print("ratio", "", "ratio_min", [](const ListedRun& r) {
     const auto least = number_of(r.get().metrics, "ratio_min"), most = number_of(r.get().metrics, "ratio_max");
     return least && most ? fmt::format("{}..{}", cell(least, 2), cell(most, 2)) : "-";
@@ -98,13 +92,13 @@ constexpr RunHeading kFidelityHeadings[] = {
 
 }  // namespace
 
-std::string run_table(std::span<const Result> reports, bool of_scenes, const MetricError& error) {
+std::string run_table(std::span<const Result> reports, bool of_scenes) {
   constexpr std::size_t kNarrowGap = 1;  // the names of all algorithms fit into kTableWidth with it
   const std::vector<ListedRun> runs(reports.begin(), reports.end());
-  return run_columns(of_scenes, reports, error).table(runs, kNarrowGap).text();
+  return run_columns(of_scenes).table(runs, kNarrowGap).text();
 }
 
-std::string fidelity_text(std::span<const Result> reports, const MetricError& error) {
+std::string fidelity_text(std::span<const Result> reports) {
   std::vector<ListedRun> with_reference;
   for (const Result& report : reports)
     if (report.has_section("fidelity")) with_reference.emplace_back(report);
@@ -113,7 +107,7 @@ std::string fidelity_text(std::span<const Result> reports, const MetricError& er
   const bool one_scenario = reports.front().name == reports.back().name;
   columns.print(one_scenario ? "algorithm" : "scenario", "", "",
                 [&](const ListedRun& r) { return distinct_name(r.get(), reports); });
-  add_metrics(columns, kFidelityHeadings, reports, error);
+  add_metrics(columns, kFidelityHeadings);
   return fmt::format("\nrendered force against the reference, measured or ideal\n\n{}",
                      columns.table(with_reference).text());
 }
@@ -260,9 +254,8 @@ Columns<LatencyRow> latency_columns() {
 }
 
 std::vector<DescribedTable> run_tables() {
-  const MetricError unknown;
-  Columns<ListedRun> runs = run_columns(true, {}, unknown);
-  add_metrics(runs, kFidelityHeadings, {}, unknown);
+  Columns<ListedRun> runs = run_columns(true);
+  add_metrics(runs, kFidelityHeadings);
   runs.print("ratio", "", "ratio_max", [](const ListedRun&) { return Cell(); });
   return {comparison_columns().described("comparison.csv", "of compare: one line per algorithm"), runs.described(),
           place_columns().described(), latency_columns().described()};

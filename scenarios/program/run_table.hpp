@@ -1,6 +1,5 @@
 #pragma once
 
-#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -30,13 +29,10 @@ inline constexpr RunHeading kRunHeadings[] = {{"con\n%", "contact_share", 100.0}
                                               {"rev.\n1/s", "force_reversals_per_s", 1.0},
                                               {"depth\nmm", "inside_max_m", 1e3}};
 
-/// By how much a metric of the run with that number may be wrong, in its unit; none where it is not known.
-using MetricError = std::function<std::optional<double>(std::size_t run, const char* metric)>;
-
 /// The printed table of runs: outcome, kRunHeadings, the range of ratios, and what half of the steps take at most.
-/// `of_scenes`: of several, told apart by name. Metrics have the digits that `error`, if given, and their own tolerance
-/// leave them. Its width does not depend on the times in it.
-std::string run_table(std::span<const Result> reports, bool of_scenes, const MetricError& error = {});
+/// `of_scenes`: of several, told apart by name. Metrics have the digits that their tolerance leaves them. Its width
+/// does not depend on the times in it.
+std::string run_table(std::span<const Result> reports, bool of_scenes);
 
 /// A paragraph on what 99 % of the steps take at most, in the quickest and the slowest of the runs; empty when no run
 /// was long enough to tell. Precondition: there is a report.
@@ -54,7 +50,7 @@ std::string diagnosis_text(std::span<const Result> reports);
 std::string targets_text(const Result& report);
 
 /// A table of the rendered force against the reference, for the reports that have one; empty without any.
-std::string fidelity_text(std::span<const Result> reports, const MetricError& error = {});
+std::string fidelity_text(std::span<const Result> reports);
 
 /// The warnings about runs that were made side by side, but for those that were known before. Warnings of one kind
 /// appear once, in the words of the first run and with the names of the other algorithms.

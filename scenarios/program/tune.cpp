@@ -360,8 +360,7 @@ int tune(const TuneOptions& options) {
   const std::vector<std::string> algorithms =
       options.algorithms.empty() ? std::vector<std::string>{loaded.scenario.rendering.algorithm}
                                  : chosen_names("--algorithms: got", options.algorithms, algorithm_names());
-  print_warnings(loaded, loaded.warnings);
-  print_warnings(loaded, check_named_files(loaded));
+  print_warnings(loaded, warnings_before_run(loaded));
   tuning.scene = loaded.scenario.name + device;
   tuning.ranges = with_file(loaded, [&] { return tune_ranges(tuning.question, algorithms.front()); });
   const fs::path out = results_directory(options.out, "tune_" + file.stem().string());

@@ -14,9 +14,8 @@
 #include "scenarios/program/command.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/progress_bar.hpp"
-#include "scenarios/run/recorders.hpp"
+#include "scenarios/run/result_folder.hpp"
 #include "scenarios/run/scene_facts.hpp"
-#include "scenarios/run/simulate.hpp"
 #include "scenarios/run/stop_signal.hpp"
 #include "scenarios/studies/stability/scene_devices.hpp"
 #include "sim/tool/mesh_tool.hpp"
@@ -73,7 +72,7 @@ std::string facts_text(const LoadedScenario& loaded, const SceneFacts& facts) {
   const double duration = scenario.time.step * static_cast<double>(scenario.time.steps);
   text += fmt::format("  run          {} steps of {:.4g} ms = {:.4g} s", scenario.time.steps, 1e3 * scenario.time.step,
                       duration);
-  if (const std::size_t trials = trials_of(scenario).size(); trials > 1) text += fmt::format(", {} trials", trials);
+  if (const double trials = trial_count(scenario.hand); trials > 1.0) text += fmt::format(", {:.0f} trials", trials);
   return text + fmt::format("\n  writes       about {}\n", bytes_text(expected_output_bytes(scenario)));
 }
 
@@ -85,7 +84,7 @@ Json facts_json(const LoadedScenario& loaded, const SceneFacts& facts) {
   const Scenario& scenario = loaded.scenario;
   Json json = {{"steps", scenario.time.steps},
                {"duration_s", scenario.time.step * static_cast<double>(scenario.time.steps)},
-               {"trials", trials_of(scenario).size()},
+               {"trials", static_cast<std::size_t>(trial_count(scenario.hand))},
                {"expected_output_bytes", expected_output_bytes(scenario)}};
   json["tool"] = {{"type", tool_names()[scenario.tool.index()]},
                   {"half_width_m", facts.tool->half_width()},
@@ -134,9 +133,7 @@ int validate(const ValidateOptions& options) {
         continue;
       }
       const LoadedScenario loaded = load_scenario(file, options.overrides);
-      const std::vector<Warning> of_files = check_named_files(loaded);
-      print_warnings(loaded, loaded.warnings);
-      print_warnings(loaded, of_files);
+      print_warnings(loaded, warnings_before_run(loaded));
       const SceneFacts facts = scene_facts(loaded);
       print_warnings(loaded, facts.warnings);
       text += fmt::format("{}: valid\n{}", argument, facts_text(loaded, facts));

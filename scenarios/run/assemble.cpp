@@ -138,6 +138,12 @@ std::vector<Warning> check_named_files(const LoadedScenario& loaded, bool looks_
   return warnings;
 }
 
+std::vector<Warning> warnings_before_run(const LoadedScenario& loaded) {
+  std::vector<Warning> warnings = loaded.warnings;
+  for (Warning& warning : check_named_files(loaded)) warnings.push_back(std::move(warning));
+  return warnings;
+}
+
 SimulationConfig simulation_config(const Scenario& scenario) {
   SimulationConfig config;
   config.skips = scenario.rendering.skips;

@@ -13,6 +13,9 @@ namespace hapbench {
 /// inverted_scan_warning. Throws InputError.
 std::vector<Warning> check_named_files(const LoadedScenario& loaded, bool looks_at_scan = true);
 
+/// Those of loading, then those of check_named_files: all that is known before a run.
+std::vector<Warning> warnings_before_run(const LoadedScenario& loaded);
+
 /// Warnings about the files that the scenario names: a mesh that is open or was mended, a stroke outside the time of
 /// the run. Precondition: the files can be used.
 std::vector<Warning> named_file_warnings(const LoadedScenario& loaded);

@@ -44,13 +44,12 @@ DiagnosisObserver::DiagnosisObserver(const Scenario& scenario)
       input_limit_(input_force_limit(scenario.device)),
       high_pass_(vibration_filter(scenario.time.step)) {}
 
-void DiagnosisObserver::begin() noexcept {
-  touched_ = false;
-  high_.setZero();
-}
-
 void DiagnosisObserver::on_step(const StepRecord& record) noexcept {
-  if (record.step == 0 && high_pass_) high_pass_->settle_at(record.force.rendered);
+  if (record.step == 0) {
+    touched_ = false;
+    high_.setZero();
+    if (high_pass_) high_pass_->settle_at(record.force.rendered);
+  }
   if (record.colliding > 0) add_contact(record);
   add_to_quarter(record);
   touched_ = record.colliding > 0;

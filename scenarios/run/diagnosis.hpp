@@ -55,10 +55,9 @@ class DiagnosisObserver final : public Observer {
   /// The scenario must outlive the observer.
   explicit DiagnosisObserver(const Scenario& scenario);
 
-  void begin() noexcept;  ///< a trial
   void on_step(const StepRecord& record) noexcept override;
 
-  /// After a trial: its EncounterObservers::longest_step [m].
+  /// After a trial: its EncounterObserver::longest_step [m].
   void add_longest_step(double way) noexcept { seen_.longest_step = std::max(seen_.longest_step, way); }
 
   /// What is wrong with the run that gave this result, in the order of the rules. Some ms where a loop is solved.

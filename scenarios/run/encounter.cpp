@@ -2,9 +2,13 @@
 
 #include <fmt/format.h>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <utility>
 
+#include "device_model/hands/drag_hand.hpp"
 #include "device_model/hands/tracking_hand.hpp"
 #include "results/observe/contact_forces.hpp"
 #include "results/summary/outcome_names.hpp"
@@ -40,130 +44,6 @@ std::optional<Warning> short_path_warning(const DragHandFields& hand, double pat
                  ends + (hand.path ? "hand.path_m leads no further over the surface; let its points lie on it"
                                    : "beyond, the surface ends or turns against hand.direction; another "
                                      "initial.position_m, a larger hand.smoothing_m or hand.path_m leads further")};
-}
-
-DragCourseObserver::DragCourseObserver(const DragHand& hand, const DragHandFields& fields, double half_width)
-    : hand_(hand), fields_(fields), width_(2.0 * half_width) {}
-
-void DragCourseObserver::on_step(const StepRecord& record) noexcept {
-  constexpr double kComes = 0.1;  // of the point's way, at least, where the tool does not stand
-  const SurfacePath& path = hand_.path();
-  time_ = record.time;
-  asked_ = std::min(hand_.drag().speed * record.time, path.length());
-  way_ = std::max(way_, hand_.nearest());
-  place_ = record.tool.pose.position;
-  force_ = record.force.rendered.norm();
-  if (record.colliding > 0) last_contact_ = record.time;
-  if (asked_ < static_cast<double>(stand_) * width_ / kStands) return;
-  const Stand now{record.time, asked_, way_}, before = stands_[stand_ % kStands];
-  stands_[stand_ % kStands] = now;
-  if (stand_++ < kStands) return;
-  if (now.way - before.way >= kComes * (now.asked - before.asked)) {
-    stuck_.reset();
-  } else if (!stuck_) {
-    stuck_ = before;
-  }
-}
-
-void StuckObserver::on_step(const StepRecord& record) noexcept {
-  constexpr double kComes = 0.1;      // of the target's way, at least, where the tool does not stand
-  constexpr double kRows = 1 / 32.0;  // of a mean over some rows, which chatter does not turn
-  const Vec3& place = record.tool.pose.position;
-  const Vec3 target = target_(record.time);
-  // Before the first touch nothing tells the direction of the push: how far away the target was then does not count.
-  if (push_.isZero(0.0)) across_ = 0.0;
-  push_ += kRows * (record.force.spring - push_);
-  stuck_.place = place;
-  stuck_.force = record.force.rendered.norm();
-  const auto extend = [](Box& box, const Vec3& p) {
-    box = {box.min.cwiseMin(p), box.max.cwiseMax(p)};
-    return (box.max - box.min).norm();
-  };
-  stuck_.way = extend(ways_, place);
-  stuck_.target_way = extend(target_ways_, target);
-  if (!began_ || stuck_.way > kComes * std::max(width_, stuck_.target_way)) {
-    began_ = true;
-    ways_ = {place, place};
-    target_ways_ = {target, target};
-    across_ = stuck_.way = stuck_.target_way = 0.0;
-    stuck_.since = record.time;
-  }
-  Vec3 across = target - place;
-  if (const double push2 = push_.squaredNorm(); push2 > 0.0) across -= across.dot(push_) / push2 * push_;
-  across_ = std::max(across_, across.norm());
-}
-
-std::optional<Stuck> StuckObserver::stuck() const {
-  return stuck_.target_way > width_ && across_ > width_ ? std::optional(stuck_) : std::nullopt;
-}
-
-std::optional<Stuck> DragCourseObserver::stuck() const {
-  if (!stuck_) return std::nullopt;
-  return Stuck{stuck_->time, way_ - stuck_->way, asked_ - stuck_->asked, place_, force_};
-}
-
-std::optional<double> DragCourseObserver::lost() const {
-  const bool presses = hand_.drag().force(time_) > 0.0;
-  const bool is_lost = presses && last_contact_ && time_ - *last_contact_ >= SettlingRule().time;
-  return is_lost ? last_contact_ : std::nullopt;
-}
-
-bool DragCourseObserver::not_dragged() const {
-  return way_ < width_ && way_to_cover(fields_, time_) > 2.0 * width_;
-}
-
-std::vector<Warning> DragCourseObserver::warnings(Outcome outcome) const {
-  std::vector<Warning> warnings;
-  if (const auto since = lost(); since && outcome != Outcome::went_through) {
-    const SurfacePoint foot = hand_.path().at(hand_.nearest());
-    const double height = foot.normal.dot(place_ - foot.position);
-    warnings.push_back(
-        {"drag_lost", "",
-         fmt::format("the dragged tool lost the surface at {:.4g} s and ended {} {}", *since,
-                     length_text(std::abs(height)), height < 0.0 ? "below it, past an edge" : "above it")});
-  }
-  if (auto ends = short_path_warning(fields_, hand_.path().length(), way_to_cover(fields_, time_), width_)) {
-    ends->text +=
-        fmt::format("; the tool was at [{:.4g}, {:.4g}, {:.4g}] m in the end", place_.x(), place_.y(), place_.z());
-    warnings.push_back(std::move(*ends));
-  }
-  return warnings;
-}
-
-ApproachObserver::ApproachObserver(std::shared_ptr<const PointShell> shell, std::uint64_t steps)
-    : shell_(std::move(shell)), steps_(shell_->bounds()), every_(steps / kLooks + 1) {
-  looks_.reserve(kLooks);
-}
-
-void ApproachObserver::on_step(const StepRecord& record) noexcept {
-  steps_.add(record.tool.pose.position);
-  touched_ = touched_ || record.colliding > 0;
-  if (touched_) return;
-  const Look look{record.time, steps_.distance(), record.tool.pose};
-  if (record.step % every_ == 0) {
-    looks_.push_back(look);
-  } else if (look.from_box <= looks_.back().from_box) {
-    looks_.back() = look;
-  }
-}
-
-double ApproachObserver::closest_to_box() const {
-  return std::ranges::min(looks_, {}, &Look::from_box).from_box;
-}
-
-ApproachObserver::Closest ApproachObserver::closest_to_surface(const ToolShape& tool) const {
-  constexpr double kWithin = 0.99;
-  Closest closest{std::numeric_limits<double>::infinity(), 0.0};
-  const Look* before = nullptr;
-  double gap = 0.0;
-  for (const Look& look : looks_) {
-    // No point of the tool comes closer than it moves.
-    if (before != nullptr && gap - tool.moved_at_most(before->pose, look.pose) > kWithin * closest.distance) continue;
-    before = &look;
-    gap = gap_between(tool, look.pose, *shell_).distance;
-    if (gap < closest.distance) closest = {gap, look.time};
-  }
-  return closest;
 }
 
 OpenEdgeObserver::OpenEdgeObserver(const PointShell& shell, const std::vector<Vec3>& edges, double reach)
@@ -226,6 +106,19 @@ std::string scale_question(const Scenario& scenario) {
   return "are the sizes of environment in metres?";
 }
 
+}  // namespace
+
+std::optional<Warning> scale_warning(const Scenario& scenario, const ToolShape& tool, const Box& environment) {
+  if (!out_of_proportion(tool, environment)) return std::nullopt;
+  const bool is_mesh = std::holds_alternative<MeshToolFields>(scenario.tool);
+  return Warning{"scale", "",
+                 fmt::format("the tool is {} thick and reaches {}, the environment is {}: {}{}",
+                             length_text(2.0 * tool.half_width()), length_text(tool.reach()), size_text(environment),
+                             is_mesh ? "" : "are the tool's lengths in metres, or ", scale_question(scenario))};
+}
+
+namespace {
+
 Vec3 target_at(const ImpedanceHandFields& hand, double time) {
   return {hand.target[0](time), hand.target[1](time), hand.target[2](time)};
 }
@@ -241,93 +134,160 @@ double closest_target(const ImpedanceHandFields& hand, const TimeFields& time, c
   return closest;
 }
 
-}  // namespace
-
-EncounterObservers::EncounterObservers(const Scenario& scenario, const NamedFiles& files, const SimulationParts& parts,
-                                       const MetricsObserver* metrics)
-    : scenario_(scenario), tool_(parts.tool) {
-  if (auto solid = make_solid(scenario, files)) {
-    const std::int64_t every = scenario.record.inside ? scenario.record.every : 0;
-    inside_.emplace(parts.tool, std::move(solid), metrics, static_cast<std::uint64_t>(every),
-                    static_cast<std::uint64_t>(scenario.time.steps));
+/// How close a tool came that touches nothing. A row costs some nanoseconds; the distances from the surface itself are
+/// looked up after the run.
+class Approach {
+ public:
+  /// The shell has points; the run has at most so many steps.
+  Approach(std::shared_ptr<const PointShell> shell, std::uint64_t steps)
+      : shell_(std::move(shell)), steps_(shell_->bounds()), every_(steps / kLooks + 1) {
+    looks_.reserve(kLooks);
   }
-  if (parts.shell && parts.shell->size() > 0)
-    approach_.emplace(parts.shell, static_cast<std::uint64_t>(scenario.time.steps));
-  if (const auto* hand = dynamic_cast<const DragHand*>(parts.hand.get()))
-    drag_.emplace(*hand, std::get<DragHandFields>(scenario.hand), parts.tool->half_width());
-  const bool is_free = position_is_free(scenario.motion);
-  const double width = 2.0 * parts.tool->half_width();
-  if (const ImpedanceHandFields* hand = spring_of(scenario.hand); hand != nullptr && is_free)
-    stuck_.emplace([hand](double time) { return target_at(*hand, time); }, width);
-  if (const auto* hand = dynamic_cast<const TrackingHand*>(parts.hand.get()))
-    stuck_.emplace([hand](double) { return hand->intended(); }, width);
-}
 
-std::vector<Observer*> EncounterObservers::all() {
-  std::vector<Observer*> observers;
-  if (inside_) observers.push_back(&*inside_);
-  if (approach_) observers.push_back(&*approach_);
-  if (drag_) observers.push_back(&*drag_);
-  if (stuck_) observers.push_back(&*stuck_);
-  return observers;
-}
-
-const InsideDepths* EncounterObservers::depths() {
-  if (inside_ && !depths_) depths_ = inside_->depths();
-  return depths_ ? &*depths_ : nullptr;
-}
-
-double EncounterObservers::inside_max() {
-  const InsideDepths* inside = depths();
-  return inside != nullptr ? inside->max.value_or(0.0) : 0.0;
-}
-
-std::optional<Stuck> EncounterObservers::stuck() const {
-  if (stuck_) return stuck_->stuck();
-  return drag_ ? drag_->stuck() : std::nullopt;
-}
-
-Outcome EncounterObservers::outcome(const TrialContact& contact, Outcome outcome) {
-  if (!approach_ || outcome != Outcome::completes) return outcome;
-  if (inside_ && (inside_->passage().went_through() || inside_max() > tool_->half_width()))
-    return Outcome::went_through;
-  if (contact.in_contact == 0) return Outcome::no_contact;
-  const bool is_free = position_is_free(scenario_.motion);
-  const StepWay& steps = approach_->steps();
-  if (is_free && steps.distance() > diagonal(steps.environment()) + tool_->reach()) return Outcome::lost_contact;
-  if (drag_ && drag_->lost()) return Outcome::lost_contact;
-  if (drag_ && drag_->not_dragged()) return Outcome::not_dragged;
-  return stuck() ? Outcome::stuck : Outcome::completes;
-}
-
-void EncounterObservers::judge(const TrialContact& contact, Outcome& outcome, std::vector<Warning>& warnings) {
-  if (const InsideDepths* inside = depths(); inside != nullptr && inside->at_most) {
-    warnings.push_back(
-        {"inside_bound", "",
-         fmt::format("inside_max_m, {}, may be too low: no row is deeper than {}; record.inside=true looks "
-                     "at every row",
-                     length_text(inside_max()), length_text(*inside->at_most))});
+  /// `looks`: the tool has touched nothing yet.
+  void add(const StepRecord& record, bool looks) noexcept {
+    steps_.add(record.tool.pose.position);
+    if (!looks) return;
+    const Look look{record.time, steps_.distance(), record.tool.pose};
+    if (record.step % every_ == 0) {
+      looks_.push_back(look);
+    } else if (look.from_box <= looks_.back().from_box) {
+      looks_.back() = look;
+    }
   }
-  if (!approach_) return;
-  outcome = this->outcome(contact, outcome);
-  if (auto warning = warning_about(outcome, contact)) warnings.push_back(*warning);
-  if (drag_) {
-    for (Warning& warning : drag_->warnings(outcome)) warnings.push_back(std::move(warning));
+
+  const StepWay& steps() const { return steps_; }  ///< of the tip centre
+  /// Of the tip centre to the environment's box before the first contact; 0 within it [m].
+  double closest_to_box() const { return std::ranges::min(looks_, {}, &Look::from_box).from_box; }
+
+  struct Closest {
+    double distance, time;  ///< of the tool from the nearest point [m], and when [s]
+  };
+  /// In up to 256 rows before the first contact, of as many parts of the run those closest to the environment's box;
+  /// within a hundredth of the distance in these.
+  Closest closest_to_surface(const ToolShape& tool) const {
+    constexpr double kWithin = 0.99;
+    Closest closest{std::numeric_limits<double>::infinity(), 0.0};
+    const Look* before = nullptr;
+    double gap = 0.0;
+    for (const Look& look : looks_) {
+      // No point of the tool comes closer than it moves.
+      if (before != nullptr && gap - tool.moved_at_most(before->pose, look.pose) > kWithin * closest.distance) continue;
+      before = &look;
+      gap = gap_between(tool, look.pose, *shell_).distance;
+      if (gap < closest.distance) closest = {gap, look.time};
+    }
+    return closest;
   }
-  if (!std::holds_alternative<MeshToolFields>(scenario_.tool)) return;
-  if (auto warning = scale_warning(scenario_, *tool_, approach_->steps().environment())) warnings.push_back(*warning);
-}
 
-std::optional<Warning> scale_warning(const Scenario& scenario, const ToolShape& tool, const Box& environment) {
-  if (!out_of_proportion(tool, environment)) return std::nullopt;
-  const bool is_mesh = std::holds_alternative<MeshToolFields>(scenario.tool);
-  return Warning{"scale", "",
-                 fmt::format("the tool is {} thick and reaches {}, the environment is {}: {}{}",
-                             length_text(2.0 * tool.half_width()), length_text(tool.reach()), size_text(environment),
-                             is_mesh ? "" : "are the tool's lengths in metres, or ", scale_question(scenario))};
-}
+ private:
+  static constexpr std::size_t kLooks = 256;
+  struct Look {
+    double time, from_box;
+    ToolPose pose;
+  };
+  std::shared_ptr<const PointShell> shell_;
+  StepWay steps_;
+  std::uint64_t every_;
+  std::vector<Look> looks_;
+};
 
-namespace {
+/// A tool that stood still to the end while the target of its hand went on.
+struct Stuck {
+  double since = 0.0;                  ///< [s]
+  double way = 0.0, target_way = 0.0;  ///< of tool and target from then on [m]
+};
+
+/// Follows a dragged tool on the path along which it is led.
+class DragCourse {
+ public:
+  /// The hand must outlive it. `width`: the tool's [m].
+  DragCourse(const DragHand& hand, double width) : hand_(hand), width_(width) {}
+
+  void add(double time) noexcept {
+    constexpr double kComes = 0.1;  // of the point's way, at least, where the tool does not stand
+    now_ = {time, std::min(hand_.drag().speed * time, hand_.path().length()), std::max(now_.way, hand_.nearest())};
+    if (now_.asked < static_cast<double>(stand_) * width_ / kStands) return;
+    const Stand before = std::exchange(stands_[stand_ % kStands], now_);
+    if (stand_++ < kStands) return;
+    if (now_.way - before.way >= kComes * (now_.asked - before.asked)) {
+      stuck_.reset();
+    } else if (!stuck_) {
+      stuck_ = before;
+    }
+  }
+
+  /// From when on the tool came less than a tenth of the way of the point that leads it, over every width of its own
+  /// that the point went on.
+  std::optional<Stuck> stuck() const {
+    if (!stuck_) return std::nullopt;
+    return Stuck{stuck_->time, now_.way - stuck_->way, now_.asked - stuck_->asked};
+  }
+  double way() const { return now_.way; }  ///< furthest that the tool came on the path [m]
+
+ private:
+  /// The point's and the tool's way at a time.
+  struct Stand {
+    double time = 0.0, asked = 0.0, way = 0.0;
+  };
+  static constexpr std::size_t kStands = 4;
+  const DragHand& hand_;
+  double width_;
+  Stand now_;
+  std::array<Stand, kStands> stands_{};  ///< a quarter of the tool's width of the point's way apart
+  std::size_t stand_ = 0;                ///< how many there were
+  std::optional<Stand> stuck_;           ///< where it came to stand for good
+};
+
+/// Finds a tool that a hand's spring cannot move, that of a subject at a display, too: its target is the intended
+/// position. A spring whose target goes into the surface
+/// presses the tool on it, which is no sticking: so the tool is stuck only where the target came away from it by more
+/// than its width across the direction in which the springs of the contacts push.
+class Standstill {
+ public:
+  /// `target`: of the spring, at the time of the row that was the last [s]. `width`: the tool's [m].
+  Standstill(std::function<Vec3(double)> target, double width) : target_(std::move(target)), width_(width) {}
+
+  void add(const StepRecord& record) noexcept {
+    constexpr double kComes = 0.1;      // of the target's way, at least, where the tool does not stand
+    constexpr double kRows = 1 / 32.0;  // of a mean over some rows, which chatter does not turn
+    const Vec3& place = record.tool.pose.position;
+    const Vec3 target = target_(record.time);
+    // Before the first touch nothing tells the direction of the push: how far away the target was then does not count.
+    if (push_.isZero(0.0)) across_ = 0.0;
+    push_ += kRows * (record.force.spring - push_);
+    const auto extend = [](Box& box, const Vec3& p) {
+      box = {box.min.cwiseMin(p), box.max.cwiseMax(p)};
+      return diagonal(box);
+    };
+    stuck_.way = extend(ways_, place);
+    stuck_.target_way = extend(target_ways_, target);
+    if (!began_ || stuck_.way > kComes * std::max(width_, stuck_.target_way)) {
+      began_ = true;
+      ways_ = {place, place};
+      target_ways_ = {target, target};
+      across_ = stuck_.way = stuck_.target_way = 0.0;
+      stuck_.since = record.time;
+    }
+    Vec3 across = target - place;
+    if (const double push2 = push_.squaredNorm(); push2 > 0.0) across -= across.dot(push_) / push2 * push_;
+    across_ = std::max(across_, across.norm());
+  }
+
+  /// None where the tool moves in the end, or its target does not.
+  std::optional<Stuck> stuck() const {
+    return stuck_.target_way > width_ && across_ > width_ ? std::optional(stuck_) : std::nullopt;
+  }
+
+ private:
+  std::function<Vec3(double)> target_;
+  double width_;
+  Vec3 push_ = Vec3::Zero();  ///< spring force, its mean over the last rows [N]
+  Box ways_, target_ways_;    ///< around the places of tool and target since it stands
+  double across_ = 0.0;       ///< furthest that the target was from the tool across the push since then [m]
+  bool began_ = false;
+  Stuck stuck_;
+};
 
 /// How a tool passed the surface, as one sentence.
 std::string passage_text(const Passage& p, double half_width, double inside_max, bool is_led) {
@@ -352,74 +312,206 @@ std::string passage_text(const Passage& p, double half_width, double inside_max,
                      begins, length_text(inside_max), length_text(half_width));
 }
 
+class Encounter final : public EncounterObserver {
+ public:
+  Encounter(const Scenario& scenario, const NamedFiles& files, const SimulationParts& parts,
+            const MetricsObserver* metrics)
+      : scenario_(scenario), tool_(parts.tool), drag_(dynamic_cast<const DragHand*>(parts.hand.get())) {
+    const auto steps = static_cast<std::uint64_t>(scenario.time.steps);
+    if (auto solid = make_solid(scenario, files)) {
+      const std::int64_t every = scenario.record.inside ? scenario.record.every : 0;
+      inside_.emplace(parts.tool, std::move(solid), metrics, static_cast<std::uint64_t>(every), steps);
+    }
+    if (parts.shell && parts.shell->size() > 0) approach_.emplace(parts.shell, steps);
+    const double width = 2.0 * tool_->half_width();
+    if (drag_ != nullptr) course_.emplace(*drag_, width);
+    if (const ImpedanceHandFields* hand = spring_of(scenario.hand);
+        hand != nullptr && position_is_free(scenario.motion))
+      standstill_.emplace([hand](double time) { return target_at(*hand, time); }, width);
+    if (const auto* hand = dynamic_cast<const TrackingHand*>(parts.hand.get()))
+      standstill_.emplace([hand](double) { return hand->intended(); }, width);
+  }
+
+  void on_step(const StepRecord& record) noexcept override {
+    time_ = record.time;
+    place_ = record.tool.pose.position;
+    force_ = record.force.rendered;
+    if (record.colliding > 0) last_contact_ = record.time;
+    if (inside_) inside_->on_step(record);
+    if (approach_) approach_->add(record, !last_contact_);
+    if (course_) course_->add(record.time);
+    if (standstill_) standstill_->add(record);
+  }
+
+  Outcome outcome(Outcome outcome) override {
+    if (!approach_ || outcome != Outcome::completes) return outcome;
+    if (inside_ && (inside_->passage().went_through() || inside_max() > tool_->half_width()))
+      return Outcome::went_through;
+    if (!last_contact_) return Outcome::no_contact;
+    const StepWay& steps = approach_->steps();
+    const bool is_far = steps.distance() > diagonal(steps.environment()) + tool_->reach();
+    if (is_far && position_is_free(scenario_.motion)) return Outcome::lost_contact;
+    if (drag_lost()) return Outcome::lost_contact;
+    // The spring that leads a tool which follows lags by less.
+    const double width = 2.0 * tool_->half_width();
+    if (course_ && course_->way() < width && drag_way_asked() > 2.0 * width) return Outcome::not_dragged;
+    return stuck() ? Outcome::stuck : Outcome::completes;
+  }
+
+  std::vector<Warning> warnings(Outcome outcome, const TrialContact& contact) override {
+    std::vector<Warning> warnings;
+    const auto add = [&warnings](std::optional<Warning> warning) {
+      if (warning) warnings.push_back(std::move(*warning));
+    };
+    if (const InsideDepths* inside = depths(); inside != nullptr && inside->at_most) {
+      add(Warning{"inside_bound", "",
+                  fmt::format("inside_max_m, {}, may be too low: no row is deeper than {}; record.inside=true looks "
+                              "at every row",
+                              length_text(inside_max()), length_text(*inside->at_most))});
+    }
+    if (!approach_) return warnings;
+    add(warning_about(outcome, contact));
+    if (drag_lost() && outcome != Outcome::went_through) add(drag_lost_warning());
+    if (drag_ != nullptr) add(drag_short_warning());
+    if (std::holds_alternative<MeshToolFields>(scenario_.tool))
+      add(scale_warning(scenario_, *tool_, approach_->steps().environment()));
+    return warnings;
+  }
+
+  double longest_step() const override { return approach_ ? approach_->steps().longest() : 0.0; }
+  const InsideObserver* inside() const override { return inside_ ? &*inside_ : nullptr; }
+  const InsideDepths* depths() override {
+    if (inside_ && !depths_) depths_ = inside_->depths();
+    return depths_ ? &*depths_ : nullptr;
+  }
+
+ private:
+  /// How deep any part of the tool was in any row; 0 without a solid [m].
+  double inside_max() {
+    const InsideDepths* inside = depths();
+    return inside != nullptr ? inside->max.value_or(0.0) : 0.0;
+  }
+
+  /// The way along which the hand has led the tool by the last row [m].
+  double drag_way_asked() const { return way_to_cover(std::get<DragHandFields>(scenario_.hand), time_); }
+  /// True when a dragged tool had no contact in the end for so long that the next touch would be a landing.
+  bool drag_lost() const {
+    return drag_ != nullptr && drag_->drag().force(time_) > 0.0 && last_contact_ &&
+           time_ - *last_contact_ >= SettlingRule().time;
+  }
+  Warning drag_lost_warning() const {
+    const SurfacePoint foot = drag_->path().at(drag_->nearest());
+    const double height = foot.normal.dot(place_ - foot.position);
+    return {"drag_lost", "",
+            fmt::format("the dragged tool lost the surface at {:.4g} s and ended {} {}", *last_contact_,
+                        length_text(std::abs(height)), height < 0.0 ? "below it, past an edge" : "above it")};
+  }
+  /// Of a path that ends early.
+  std::optional<Warning> drag_short_warning() const {
+    auto ends = short_path_warning(std::get<DragHandFields>(scenario_.hand), drag_->path().length(), drag_way_asked(),
+                                   2.0 * tool_->half_width());
+    if (ends)
+      ends->text +=
+          fmt::format("; the tool was at [{:.4g}, {:.4g}, {:.4g}] m in the end", place_.x(), place_.y(), place_.z());
+    return ends;
+  }
+
+  std::optional<Stuck> stuck() const {
+    if (course_) return course_->stuck();
+    return standstill_ ? standstill_->stuck() : std::nullopt;
+  }
+
+  /// A likely cause, or where to look when none suggests itself: its kind, and the end of a sentence.
+  std::pair<const char*, std::string> likely_cause(Outcome outcome, const TrialContact& contact) const {
+    const StepWay& steps = approach_->steps();
+    const double size = diagonal(steps.environment());
+    if (out_of_proportion(*tool_, steps.environment())) return {"scale", scale_question(scenario_)};
+    if (steps.longest() > tool_->half_width()) {
+      return {"step",
+              fmt::format("near it the tool moved {} in one step, more than its half width of {}: is time.step_s "
+                          "too long?",
+                          length_text(steps.longest()), length_text(tool_->half_width()))};
+    }
+    const auto* mesh = std::get_if<MeshEnvironment>(&scenario_.environment);
+    if (outcome == Outcome::no_contact && mesh != nullptr && !mesh->spacing && approach_->closest_to_box() == 0.0)
+      return {"spacing", "only the mesh's vertices can be touched: is environment.spacing_m missing?"};
+    const bool recorded = std::holds_alternative<RecordedPosition>(scenario_.motion.position);
+    if (recorded && outcome == Outcome::no_contact && approach_->closest_to_box() > kTooLarge * size)
+      return {"recording", "are the positions of motion.position.file in metres?"};
+    if (const ImpedanceHandFields* hand = spring_of(scenario_.hand)) {
+      const double closest = closest_target(*hand, scenario_.time, steps.environment());
+      if (closest > 0.0)
+        return {"target",
+                fmt::format("hand.target stays {} away from it: does it lead to the surface?", length_text(closest))};
+    }
+    const bool is_free = position_is_free(scenario_.motion);
+    if (is_free && std::holds_alternative<NoHandFields>(scenario_.hand) && outcome == Outcome::no_contact)
+      return {"no_hand", "nothing pushes the tool: is hand missing?"};
+    if (outcome == Outcome::lost_contact && (std::holds_alternative<ForceHandFields>(scenario_.hand) ||
+                                             std::holds_alternative<PushHandFields>(scenario_.hand)))
+      return {"constant_force", "a hand of constant force goes on pushing where there is no surface"};
+    if (outcome == Outcome::lost_contact)
+      return {"force", fmt::format("the largest force was {:.3g} N", std::sqrt(contact.force_max_squared))};
+    return {"start", is_free ? "is initial.position_m right?" : "is motion.position right?"};
+  }
+
+  /// What happened and what the likely cause is; none for other outcomes, and none for a dragged tool that lost the
+  /// surface within the environment's box.
+  std::optional<Warning> warning_about(Outcome outcome, const TrialContact& contact) {
+    const StepWay& steps = approach_->steps();
+    const std::string kind(outcome_name(outcome));
+    if (outcome == Outcome::went_through) {
+      const bool is_led = !position_is_free(scenario_.motion);
+      const std::string cause = out_of_proportion(*tool_, steps.environment()) ? "; " + scale_question(scenario_) : "";
+      return Warning{kind, "", passage_text(inside_->passage(), tool_->half_width(), inside_max(), is_led) + cause};
+    }
+    if (const auto s = stuck(); s && (outcome == Outcome::stuck || outcome == Outcome::not_dragged)) {
+      return Warning{
+          kind, "",
+          fmt::format("the tool stood still since {:.4g} s, coming {} further while its target went on by {}; it "
+                      "was at {} under a force of {:.3g} N in the end",
+                      s->since, length_text(s->way), length_text(s->target_way), millimetres(place_), force_.norm())};
+    }
+    const std::string environment =
+        fmt::format("{}: {}", size_text(steps.environment()), place_text(steps.environment()));
+    if (outcome == Outcome::no_contact) {
+      const auto closest = approach_->closest_to_surface(*tool_);
+      const auto [cause, question] = likely_cause(outcome, contact);
+      return Warning{fmt::format("{} {}", kind, cause), "",
+                     fmt::format("never in contact: the tool came as close as {} (at {:.4g} s) to the surface of the "
+                                 "environment ({}); {}",
+                                 length_text(closest.distance), closest.time, environment, question)};
+    }
+    // The course of the drag tells of a tool that lost the surface within the box.
+    if (outcome != Outcome::lost_contact || (drag_lost() && steps.distance() == 0.0)) return std::nullopt;
+    const double share = static_cast<double>(contact.in_contact) / static_cast<double>(contact.rows);
+    const auto [cause, question] = likely_cause(outcome, contact);
+    return Warning{
+        fmt::format("{} {}", kind, cause), "",
+        fmt::format("in contact for {:.3g} % of the run, last at {:.4g} s; ended {} away from the environment "
+                    "({}); {}",
+                    100.0 * share, contact.last.value_or(0.0), length_text(steps.distance()), environment, question)};
+  }
+
+  const Scenario& scenario_;
+  std::shared_ptr<const ToolShape> tool_;
+  std::optional<InsideObserver> inside_;
+  std::optional<InsideDepths> depths_;
+  std::optional<Approach> approach_;
+  std::optional<Standstill> standstill_;
+  const DragHand* drag_;              ///< null unless one drags the tool
+  std::optional<DragCourse> course_;  ///< of that
+  // In the last row.
+  double time_ = 0.0;
+  Vec3 place_ = Vec3::Zero(), force_ = Vec3::Zero();  ///< of the tip [m]; rendered [N]
+  std::optional<double> last_contact_;                ///< time of the last row with a colliding point
+};
+
 }  // namespace
 
-EncounterObservers::Cause EncounterObservers::likely_cause(Outcome outcome, const TrialContact& contact) const {
-  const StepWay& steps = approach_->steps();
-  const double size = diagonal(steps.environment());
-  if (out_of_proportion(*tool_, steps.environment())) return {"scale", scale_question(scenario_)};
-  if (steps.longest() > tool_->half_width()) {
-    return {"step", fmt::format("near it the tool moved {} in one step, more than its half width of {}: is time.step_s "
-                                "too long?",
-                                length_text(steps.longest()), length_text(tool_->half_width()))};
-  }
-  const auto* mesh = std::get_if<MeshEnvironment>(&scenario_.environment);
-  if (outcome == Outcome::no_contact && mesh != nullptr && !mesh->spacing && approach_->closest_to_box() == 0.0)
-    return {"spacing", "only the mesh's vertices can be touched: is environment.spacing_m missing?"};
-  const bool recorded = std::holds_alternative<RecordedPosition>(scenario_.motion.position);
-  if (recorded && outcome == Outcome::no_contact && approach_->closest_to_box() > kTooLarge * size)
-    return {"recording", "are the positions of motion.position.file in metres?"};
-  if (const ImpedanceHandFields* hand = spring_of(scenario_.hand)) {
-    const double closest = closest_target(*hand, scenario_.time, steps.environment());
-    if (closest > 0.0)
-      return {"target",
-              fmt::format("hand.target stays {} away from it: does it lead to the surface?", length_text(closest))};
-  }
-  const bool is_free = position_is_free(scenario_.motion);
-  if (is_free && std::holds_alternative<NoHandFields>(scenario_.hand) && outcome == Outcome::no_contact)
-    return {"no_hand", "nothing pushes the tool: is hand missing?"};
-  if (outcome == Outcome::lost_contact && (std::holds_alternative<ForceHandFields>(scenario_.hand) ||
-                                           std::holds_alternative<PushHandFields>(scenario_.hand)))
-    return {"constant_force", "a hand of constant force goes on pushing where there is no surface"};
-  if (outcome == Outcome::lost_contact)
-    return {"force", fmt::format("the largest force was {:.3g} N", std::sqrt(contact.force_max_squared))};
-  return {"start", is_free ? "is initial.position_m right?" : "is motion.position right?"};
-}
-
-std::optional<Warning> EncounterObservers::warning_about(Outcome outcome, const TrialContact& contact) {
-  const StepWay& steps = approach_->steps();
-  const std::string kind(outcome_name(outcome));
-  if (outcome == Outcome::went_through) {
-    const bool is_led = !position_is_free(scenario_.motion);
-    const std::string cause = out_of_proportion(*tool_, steps.environment()) ? "; " + scale_question(scenario_) : "";
-    return Warning{kind, "", passage_text(inside_->passage(), tool_->half_width(), inside_max(), is_led) + cause};
-  }
-  if (const auto s = stuck(); s && (outcome == Outcome::stuck || outcome == Outcome::not_dragged)) {
-    return Warning{
-        kind, "",
-        fmt::format("the tool stood still since {:.4g} s, coming {} further while its target went on by {}; it "
-                    "was at {} under a force of {:.3g} N in the end",
-                    s->since, length_text(s->way), length_text(s->target_way), millimetres(s->place), s->force)};
-  }
-  const std::string environment =
-      fmt::format("{}: {}", size_text(steps.environment()), place_text(steps.environment()));
-  if (outcome == Outcome::no_contact) {
-    const auto closest = approach_->closest_to_surface(*tool_);
-    const Cause cause = likely_cause(outcome, contact);
-    return Warning{fmt::format("{} {}", kind, cause.kind), "",
-                   fmt::format("never in contact: the tool came as close as {} (at {:.4g} s) to the surface of the "
-                               "environment ({}); {}",
-                               length_text(closest.distance), closest.time, environment, cause.text)};
-  }
-  // The course of the drag tells of a tool that lost the surface within the box.
-  if (outcome != Outcome::lost_contact || (drag_ && drag_->lost() && steps.distance() == 0.0)) return std::nullopt;
-  const double share = static_cast<double>(contact.in_contact) / static_cast<double>(contact.rows);
-  const Cause cause = likely_cause(outcome, contact);
-  return Warning{
-      fmt::format("{} {}", kind, cause.kind), "",
-      fmt::format("in contact for {:.3g} % of the run, last at {:.4g} s; ended {} away from the environment "
-                  "({}); {}",
-                  100.0 * share, contact.last.value_or(0.0), length_text(steps.distance()), environment, cause.text)};
+std::unique_ptr<EncounterObserver> encounter_observer(const Scenario& scenario, const NamedFiles& files,
+                                                      const SimulationParts& parts, const MetricsObserver* metrics) {
+  return std::make_unique<Encounter>(scenario, files, parts, metrics);
 }
 
 namespace {

@@ -1,19 +1,15 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
-#include <functional>
 #include <limits>
 #include <memory>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "algorithms/rendering_config.hpp"
-#include "device_model/hands/drag_hand.hpp"
 #include "results/observe/inside.hpp"
 #include "results/observe/metrics.hpp"
 #include "results/summary/summary.hpp"
@@ -49,39 +45,6 @@ class StepWay {
   double distance_ = std::numeric_limits<double>::infinity(), longest_ = 0.0;
 };
 
-/// How close a tool came that touches nothing. A row costs some nanoseconds; the distances from the surface itself are
-/// looked up after the run.
-class ApproachObserver final : public Observer {
- public:
-  /// The shell has points; the run has at most so many steps.
-  ApproachObserver(std::shared_ptr<const PointShell> shell, std::uint64_t steps);
-
-  void on_step(const StepRecord& record) noexcept override;
-
-  const StepWay& steps() const { return steps_; }  ///< of the tip centre
-  /// Of the tip centre to the environment's box before the first contact; 0 within it [m].
-  double closest_to_box() const;
-
-  struct Closest {
-    double distance, time;  ///< of the tool from the nearest point [m], and when [s]
-  };
-  /// In up to 256 rows before the first contact, of as many parts of the run those closest to the environment's box;
-  /// within a hundredth of the distance in these.
-  Closest closest_to_surface(const ToolShape& tool) const;
-
- private:
-  static constexpr std::size_t kLooks = 256;
-  struct Look {
-    double time, from_box;
-    ToolPose pose;
-  };
-  std::shared_ptr<const PointShell> shell_;
-  StepWay steps_;
-  std::uint64_t every_;
-  std::vector<Look> looks_;
-  bool touched_ = false;
-};
-
 /// The length of the way on which a scenario has the tool dragged in `duration` [s]: along a direction as far as the
 /// time allows, along points at most to the last one [m].
 double way_to_cover(const DragHandFields& hand, double duration);
@@ -89,77 +52,6 @@ double way_to_cover(const DragHandFields& hand, double duration);
 /// A warning for a path over the surface that falls short of the way `to_cover` [m] by more than the tool's `width`
 /// [m]: how long it is and what to change. It is known before the run.
 std::optional<Warning> short_path_warning(const DragHandFields& hand, double path, double to_cover, double width);
-
-/// A tool that stood still to the end while the target of its hand went on.
-struct Stuck {
-  double since = 0.0;                  ///< [s]
-  double way = 0.0, target_way = 0.0;  ///< of tool and target from then on [m]
-  Vec3 place = Vec3::Zero();           ///< of the tip, in the last row [m]
-  double force = 0.0;                  ///< size of the rendered force in the last row [N]
-};
-
-/// Follows a dragged tool on the path along which it is led; a few look-ups in the path's table, no allocation.
-class DragCourseObserver final : public Observer {
- public:
-  /// The hand and its fields must outlive the observer. `half_width`: the tool's [m].
-  DragCourseObserver(const DragHand& hand, const DragHandFields& fields, double half_width);
-
-  void on_step(const StepRecord& record) noexcept override;
-
-  /// From when on the tool came less than a tenth of the way of the point that leads it, over every width of its own
-  /// that the point went on.
-  std::optional<Stuck> stuck() const;
-  /// Time of the last contact, if the tool had no contact for the default settling time before the end although the
-  /// hand pressed: after that long the next touch would be a landing.
-  std::optional<double> lost() const;
-  /// True when the tool came less than its width along a way of more than two widths: the spring that leads it lags by
-  /// less.
-  bool not_dragged() const;
-  /// Warnings that the tool lost the surface, and of a path that ends early.
-  std::vector<Warning> warnings(Outcome outcome) const;
-
- private:
-  const DragHand& hand_;
-  const DragHandFields& fields_;
-  /// The point's and the tool's way at a time.
-  struct Stand {
-    double time = 0.0, asked = 0.0, way = 0.0;
-  };
-  static constexpr std::size_t kStands = 4;
-  std::array<Stand, kStands> stands_{};  ///< a quarter of the tool's width of the point's way apart
-  std::size_t stand_ = 0;                ///< how many there were
-  std::optional<Stand> stuck_;           ///< where it came to stand for good
-  double width_;                         ///< the tool's [m]
-  double asked_ = 0.0, way_ = 0.0;       ///< furthest that the point and the tool came on the path [m]
-  double time_ = 0.0;                    ///< of the last row
-  Vec3 place_ = Vec3::Zero();            ///< of the tip in the last row [m]
-  double force_ = 0.0;                   ///< rendered in the last row [N]
-  std::optional<double> last_contact_;
-};
-
-/// Finds a tool that a hand's spring cannot move, that of a subject at a display, too: its target is the intended
-/// position. A spring whose target goes into the surface presses the tool on it,
-/// which is no sticking: so the tool is stuck only where the target came away from it by more than its width across the
-/// direction in which the springs of the contacts push. No allocation; about 30 ns a row.
-class StuckObserver final : public Observer {
- public:
-  /// `target`: of the spring, at the time of the row that was the last [s]. `width`: the tool's [m].
-  StuckObserver(std::function<Vec3(double)> target, double width) : target_(std::move(target)), width_(width) {}
-
-  void on_step(const StepRecord& record) noexcept override;
-
-  /// None where the tool moves in the end, or its target does not.
-  std::optional<Stuck> stuck() const;
-
- private:
-  std::function<Vec3(double)> target_;
-  double width_;
-  Vec3 push_ = Vec3::Zero();  ///< spring force, its mean over the last rows [N]
-  Box ways_, target_ways_;    ///< around the places of tool and target since it stands
-  double across_ = 0.0;       ///< furthest that the target was from the tool across the push since then [m]
-  bool began_ = false;
-  Stuck stuck_;
-};
 
 /// Notes when the tool touches an open mesh where it ends. Beyond such an edge there is nothing to touch, and a tool
 /// that reaches past it is held by too few points or by none.
@@ -182,54 +74,32 @@ class OpenEdgeObserver final : public Observer {
   Vec3 first_place_ = Vec3::Zero();
 };
 
-/// Watches a run with a point shell for all that decides its outcome.
-class EncounterObservers {
+/// Watches a run for all that decides its outcome; some 40 ns a row, no allocation.
+class EncounterObserver : public Observer {
  public:
-  /// Scenario and parts must outlive them; `metrics`, if given, observes before.
-  EncounterObservers(const Scenario& scenario, const NamedFiles& files, const SimulationParts& parts,
-                     const MetricsObserver* metrics = nullptr);
-
-  std::vector<Observer*> all();
-  /// Null without a solid.
-  const InsideObserver* inside() const { return inside_ ? &*inside_ : nullptr; }
-
-  /// The outcome of a run that ended with `outcome`, which stays unless it is `completes`. That becomes `went_through`
-  /// when the tool passed the surface (Passage), by itself or led by a script, or a part of it was deeper than its half
-  /// width; `no_contact` when no row had a colliding point; `lost_contact` when a tool that moves freely ended further
-  /// from the environment's box than the box is wide and the tool reaches together, as one does that was thrown out or
-  /// pushed past, or when a dragged tool lost the surface; `not_dragged` when one came nowhere (DragCourse): it was
-  /// pressed, and its calm numbers tell nothing of a drag; `stuck` when it came to stand while the target of its hand
-  /// went on.
-  Outcome outcome(const TrialContact& contact, Outcome outcome);
-  /// After the run: finds its outcome and adds warnings about it.
-  void judge(const TrialContact& contact, Outcome& outcome, std::vector<Warning>& warnings);
+  /// The outcome of a run with a point shell that ended with `outcome`, which stays unless it is `completes`. That
+  /// becomes `went_through` when the tool passed the surface (Passage), by itself or led by a script, or a part of it
+  /// was deeper than its half width; `no_contact` when no row had a colliding point; `lost_contact` when a tool that
+  /// moves freely ended further from the environment's box than the box is wide and the tool reaches together, as one
+  /// does that was thrown out or pushed past, or when a dragged tool had no contact for the default settling time
+  /// before the end although the hand pressed; `not_dragged` when one came less than its width along a way of more than
+  /// two widths: it was pressed, and its calm numbers tell nothing of a drag; `stuck` when it came to stand while the
+  /// target of its hand went on.
+  virtual Outcome outcome(Outcome outcome) = 0;
+  /// After the run: warnings about its outcome.
+  virtual std::vector<Warning> warnings(Outcome outcome, const TrialContact& contact) = 0;
   /// The longest way of the tip in a step near the environment; 0 without points [m].
-  double longest_step() const { return approach_ ? approach_->steps().longest() : 0.0; }
+  virtual double longest_step() const = 0;
+  /// Null without a solid.
+  virtual const InsideObserver* inside() const = 0;
   /// After the run: how deep the tool was, which is looked for at the first call. Null without a solid.
-  const InsideDepths* depths();
-
- private:
-  /// What happened and what the likely cause is; none for other outcomes, and none for a dragged tool that lost the
-  /// surface within the environment's box.
-  std::optional<Warning> warning_about(Outcome outcome, const TrialContact& contact);
-  /// A likely cause, or where to look when none suggests itself.
-  struct Cause {
-    const char* kind;
-    std::string text;  ///< the end of a sentence
-  };
-  Cause likely_cause(Outcome outcome, const TrialContact& contact) const;
-  std::optional<Stuck> stuck() const;
-  /// How deep any part of the tool was in any row; 0 without a solid [m].
-  double inside_max();
-
-  const Scenario& scenario_;
-  std::shared_ptr<const ToolShape> tool_;
-  std::optional<InsideObserver> inside_;
-  std::optional<InsideDepths> depths_;
-  std::optional<ApproachObserver> approach_;
-  std::optional<DragCourseObserver> drag_;
-  std::optional<StuckObserver> stuck_;
+  virtual const InsideDepths* depths() = 0;
 };
+
+/// Scenario and parts must outlive the observer; `metrics`, if given, observes before.
+std::unique_ptr<EncounterObserver> encounter_observer(const Scenario& scenario, const NamedFiles& files,
+                                                      const SimulationParts& parts,
+                                                      const MetricsObserver* metrics = nullptr);
 
 /// For a tool whose size is out of proportion with the environment's, a question about scales.
 std::optional<Warning> scale_warning(const Scenario& scenario, const ToolShape& tool, const Box& environment);

@@ -31,15 +31,8 @@ constexpr int kApart = RTLD_NOW | RTLD_LOCAL;
 constexpr int kApart = RTLD_NOW | RTLD_LOCAL | RTLD_DEEPBIND;
 #endif
 
-std::vector<LoadedLaw>& laws() {
-  static std::vector<LoadedLaw> all;
-  return all;
-}
-
-std::function<std::shared_ptr<void>()>& loading_guard() {
-  static std::function<std::shared_ptr<void>()> guard = [] { return nullptr; };
-  return guard;
-}
+std::vector<LoadedLaw> laws;
+std::function<std::shared_ptr<void>()> guard_of_loading;
 
 /// Restores the floating-point environment. Loading a library that was linked with -ffast-math switches off subnormal
 /// numbers for the whole program, which would change the results of every algorithm.
@@ -173,20 +166,20 @@ const HapbenchModule& contacts_table(const fs::path& file) {
 
 void load_law(const fs::path& given) {
   const fs::path file = found_file(given, HAPBENCH_LAW);
-  if (std::ranges::find(laws(), file, &LoadedLaw::file) != laws().end()) return;
-  const std::shared_ptr<void> guarded = loading_guard()();
+  if (std::ranges::find(laws, file, &LoadedLaw::file) != laws.end()) return;
+  const std::shared_ptr<void> guarded = guard_of_loading ? guard_of_loading() : nullptr;
   std::string hash = hash_of_file(file);
   const HapbenchModule& table = opened(file, HAPBENCH_LAW);
   try {
     AlgorithmEntry entry = law_entry(module_of(table, file), std::move(hash));
     require_printable(entry);
     const std::string name = entry.info->name;
-    for (const LoadedLaw& other : laws()) {
+    for (const LoadedLaw& other : laws) {
       if (other.algorithm == name)
         throw std::invalid_argument(fmt::format("\"{}\" is the name of the law in {}", name, other.file.string()));
     }
     add_algorithm(std::move(entry));
-    laws().push_back({file, name});
+    laws.push_back({file, name});
   } catch (const std::invalid_argument& problem) {
     fail_in_file(file, fmt::format("is no law that can be used: {}", problem.what()));
   }
@@ -209,11 +202,11 @@ void load_laws_in(const std::string& what, const std::string& folders) {
 }
 
 void guard_loading(std::function<std::shared_ptr<void>()> guard) {
-  loading_guard() = std::move(guard);
+  guard_of_loading = std::move(guard);
 }
 
 const std::vector<LoadedLaw>& loaded_laws() {
-  return laws();
+  return laws;
 }
 
 void require_contacts_in(const fs::path& file) {

@@ -4,10 +4,12 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 #include <algorithm>
-#include <array>
-#include <chrono>
+#include <cmath>
+#include <condition_variable>
 #include <csignal>
 #include <cstdio>
+#include <mutex>
+#include <utility>
 
 namespace hapbench {
 
@@ -19,26 +21,17 @@ constexpr std::size_t kWidth = 40;
 
 thread_local ProgressListener* thread_listener = nullptr;
 
-/// A line being made, without the heap: the bar is drawn within steps, which allocate nothing.
-class Line {
- public:
-  template <class... Arguments>
-  void add(fmt::format_string<Arguments...> format, Arguments&&... arguments) {
-    const auto end =
-        fmt::format_to_n(text_.data() + size_, text_.size() - size_, format, std::forward<Arguments>(arguments)...);
-    size_ = std::min(size_ + end.size, text_.size());
-  }
-  /// "95 s", "12 min", "30 h"
-  void add_time(double seconds) {
-    const bool minutes = seconds >= 120.0, hours = seconds >= 7200.0;
-    add("{:.0f} {}", seconds / (hours ? 3600.0 : minutes ? 60.0 : 1.0), hours ? "h" : minutes ? "min" : "s");
-  }
-  std::string_view text() const { return {text_.data(), size_}; }
-
- private:
-  std::array<char, 512> text_;
-  std::size_t size_ = 0;
-};
+/// "95 s", "12 min", "30 h"
+void add_time(fmt::memory_buffer& line, double seconds) {
+  const bool minutes = seconds >= 120.0, hours = seconds >= 7200.0;
+  fmt::format_to(fmt::appender(line), "{:.0f} {}",
+                 seconds / (hours     ? 3600.0
+                            : minutes ? 60.0
+                                      : 1.0),
+                 hours     ? "h"
+                 : minutes ? "min"
+                           : "s");
+}
 
 /// Columns of the terminal behind standard error; 80 when it does not say.
 std::size_t columns() {
@@ -46,20 +39,23 @@ std::size_t columns() {
   return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
 }
 
-}  // namespace
-
-void report_progress_to(ProgressListener* listener) noexcept {
-  thread_listener = listener;
-}
-
+/// Shows a line on standard error in place of the one shown before, cut to the terminal's width: a broken line could
+/// not be taken back. Precondition: standard error is a terminal.
 void show_status(std::string_view line) {
   const auto length = static_cast<int>(std::min(line.size(), columns() - 1));
   std::fprintf(stderr, "\r%.*s\033[K", length, line.data());
   std::fflush(stderr);
 }
 
+/// Takes the line back.
 void hide_status() {
   std::fprintf(stderr, "\r\033[K");
+}
+
+}  // namespace
+
+void report_progress_to(ProgressListener* listener) noexcept {
+  thread_listener = listener;
 }
 
 ProgressBar::ProgressBar(std::string label, std::uint64_t total, bool enabled)
@@ -85,57 +81,51 @@ void ProgressBar::show(std::uint64_t done, bool counts) noexcept {
   next_ = now + kRedraw;
   drawn_ = true;
   const double part = static_cast<double>(done) / static_cast<double>(total_);
-  Line numbers;
-  numbers.add("{:3.0f} %", 100.0 * part);
-  if (counts) {
-    numbers.add(", {}/{}", done, total_);
-    if (done > first_) {
-      const double each = std::chrono::duration<double>(now - start_).count() / static_cast<double>(done - first_);
-      numbers.add(", ");
-      numbers.add_time(each * static_cast<double>(total_ - done));
-      numbers.add(" left");
-    }
+  // A buffer on the stack for as long a line as any: the bar is drawn between steps, which allocate nothing.
+  fmt::memory_buffer numbers, line;
+  fmt::format_to(fmt::appender(numbers), "{:3.0f} %", 100.0 * part);
+  if (counts) fmt::format_to(fmt::appender(numbers), ", {}/{}", done, total_);
+  if (counts && done > first_) {
+    const double each = std::chrono::duration<double>(now - start_).count() / static_cast<double>(done - first_);
+    fmt::format_to(fmt::appender(numbers), ", ");
+    add_time(numbers, each * static_cast<double>(total_ - done));
+    fmt::format_to(fmt::appender(numbers), " left");
   }
   // The bar is what gives way to a narrow terminal.
-  const std::size_t others = label_.size() + numbers.text().size() + 5;
+  const std::size_t others = label_.size() + numbers.size() + 5;
   const std::size_t width = std::clamp<std::size_t>(columns() - std::min(columns(), others), 10, kWidth);
-  Line line;
-  line.add("{} [", std::string_view(label_));
-  for (std::size_t i = 0; i < width; ++i)
-    line.add("{}", static_cast<double>(i) < part * static_cast<double>(width) ? '#' : '.');
-  line.add("] {}", numbers.text());
-  show_status(line.text());
+  const auto filled = static_cast<std::size_t>(std::ceil(part * static_cast<double>(width)));
+  fmt::format_to(fmt::appender(line), "{} [{:#>{}}{:.>{}}] {}", label_, "", filled, "", width - filled,
+                 std::string_view(numbers.data(), numbers.size()));
+  show_status({line.data(), line.size()});
 }
 
-WaitNotice::WaitNotice(std::string what, bool enabled) : what_(std::move(what)) {
+namespace {
+
+void show_seconds(const std::string& what, const std::stop_token& ends) {
+  std::mutex mutex;
+  std::condition_variable_any ended;
+  std::unique_lock lock(mutex);
+  bool shown = false;
+  const auto has_ended = [&ends] { return ends.stop_requested(); };
+  for (int seconds = 1; !ended.wait_for(lock, ends, std::chrono::seconds(1), has_ended); ++seconds) {
+    if (std::chrono::seconds(seconds) < kSilence) continue;
+    show_status(fmt::format("{} ... {} s", what, seconds));
+    shown = true;
+  }
+  if (shown) hide_status();
+}
+
+}  // namespace
+
+WaitNotice::WaitNotice(std::string what, bool enabled) {
   if (!enabled || isatty(STDERR_FILENO) != 1) return;
   // Signals stay with the threads that wait for them.
   sigset_t all, before;
   sigfillset(&all);
   pthread_sigmask(SIG_SETMASK, &all, &before);
-  thread_ = std::thread([this] { show(); });
+  thread_ = std::jthread([what = std::move(what)](const std::stop_token& ends) { show_seconds(what, ends); });
   pthread_sigmask(SIG_SETMASK, &before, nullptr);
-}
-
-WaitNotice::~WaitNotice() {
-  if (!thread_.joinable()) return;
-  {
-    const std::lock_guard lock(mutex_);
-    done_ = true;
-  }
-  ended_.notify_one();
-  thread_.join();
-}
-
-void WaitNotice::show() {
-  std::unique_lock lock(mutex_);
-  bool shown = false;
-  for (int seconds = 1; !ended_.wait_for(lock, std::chrono::seconds(1), [this] { return done_; }); ++seconds) {
-    if (std::chrono::seconds(seconds) < kSilence) continue;
-    show_status(fmt::format("{} ... {} s", what_, seconds));
-    shown = true;
-  }
-  if (shown) hide_status();
 }
 
 }  // namespace hapbench

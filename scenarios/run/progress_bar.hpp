@@ -1,22 +1,12 @@
 #pragma once
 
 #include <chrono>
-#include <condition_variable>
 #include <cstdint>
-#include <mutex>
 #include <string>
 #include <string_view>
 #include <thread>
 
-#include "sim/loop/observer.hpp"
-
 namespace hapbench {
-
-/// Shows a line on standard error in place of the one shown before, cut to the terminal's width: a broken line could
-/// not be taken back. Precondition: standard error is a terminal.
-void show_status(std::string_view line);
-/// Takes the line back.
-void hide_status();
 
 /// Hears of progress in place of the terminal.
 class ProgressListener {
@@ -40,8 +30,6 @@ class ProgressBar {
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
 
-  /// False when nothing will ever be shown.
-  bool is_on() const noexcept { return enabled_; }
   /// Shows how much is done, now and then. With `counts` also the numbers and the time that is left, if the rest takes
   /// as long for each as what was done since the bar was made.
   void show(std::uint64_t done, bool counts = false) noexcept;
@@ -61,42 +49,15 @@ class ProgressBar {
   Clock::time_point next_;
 };
 
-/// The progress bar of one run.
-class Progress final : public Observer {
- public:
-  /// `label` stands before the bar; `steps` is the whole. `enabled` false silences it (--quiet).
-  Progress(std::string label, std::uint64_t steps, bool enabled) : bar_(std::move(label), steps, enabled) {}
-
-  void on_step(const StepRecord& record) noexcept override {
-    // Looking at the clock takes longer than some steps.
-    if (bar_.is_on() && record.step % kLookEvery == 0) bar_.show(record.step);
-  }
-
- private:
-  static constexpr std::uint64_t kLookEvery = 1024;  // steps
-
-  ProgressBar bar_;
-};
-
 /// A line on standard error that says what takes so long, with the seconds, for work of unknown length that takes
 /// longer than two of them; silent otherwise, and when standard error is no terminal.
 class WaitNotice {
  public:
   /// `enabled` false silences it (--quiet).
   WaitNotice(std::string what, bool enabled);
-  /// Removes the line.
-  ~WaitNotice();
-  WaitNotice(const WaitNotice&) = delete;
-  WaitNotice& operator=(const WaitNotice&) = delete;
 
  private:
-  void show();
-
-  std::string what_;
-  bool done_ = false;
-  std::mutex mutex_;
-  std::condition_variable ended_;
-  std::thread thread_;
+  std::jthread thread_;  ///< shows the line, and removes it when this object goes
 };
 
 }  // namespace hapbench

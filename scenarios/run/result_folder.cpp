@@ -5,15 +5,111 @@
 #include <sys/file.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
+#include <string_view>
 
-#include "results/io/columns.hpp"
+#include "algorithms/laws/shaped_stiffness.hpp"
 #include "results/io/json_text.hpp"
 
 namespace hapbench {
 namespace {
 
 namespace fs = std::filesystem;
+
+Mat3 start_shaping(ContactBuffer& contacts) noexcept {
+  return shape_weights(contacts, 0);
+}
+
+RowSource ratios(const RecordedTrial& t) {
+  const auto& asked = t.fields.ratio_iterations;
+  return ratio_rows({asked.begin(), asked.end()}, {start_shaping, update_shaped_weights}, t.contact_capacity);
+}
+
+struct RecorderEntry {
+  const ResultTable& table;
+  bool (*is_wanted)(const RecordFields& fields);
+  RowSource (*rows)(const RecordedTrial& trial);
+  bool has_every_row = false;  ///< which rows there are, says the source
+};
+
+// The observers that a table is made from are there: the same fields ask for them, and check_named_files has refused a
+// reference that is not measured.
+const RecorderEntry kRecorders[] = {
+    {kTrajectoryTable, [](const RecordFields& f) { return f.trajectory; },
+     [](const RecordedTrial& t) { return trajectory_rows(t.fields, t.inside); }},
+    {kContactTable, [](const RecordFields& f) { return f.contacts; },
+     [](const RecordedTrial&) { return contact_rows(); }},
+    {kContactTraceTable, [](const RecordFields& f) { return f.contacts; },
+     [](const RecordedTrial&) { return contact_trace_rows(); }},
+    {kStiffnessTable, [](const RecordFields& f) { return f.stiffness_tensor; },
+     [](const RecordedTrial&) { return stiffness_rows(); }},
+    {kRatioTable, [](const RecordFields& f) { return !f.ratio_iterations.empty(); }, ratios},
+    {kEnergyTable, [](const RecordFields& f) { return f.energy; },
+     [](const RecordedTrial& t) { return energy_rows(*t.sections.find<EnergyLedger>()); }},
+    {kIdealTrajectoryTable, [](const RecordFields& f) { return f.ideal_trajectory; },
+     [](const RecordedTrial& t) { return ideal_trajectory_rows(*t.sections.find<IdealTrajectoryObserver>()); }, true},
+    {kForceReferenceTable, [](const RecordFields& f) { return f.force_reference; },
+     [](const RecordedTrial& t) { return force_reference_rows(*t.sections.find<ForceFidelityObserver>()); }}};
+
+std::span<const Column> columns_of(const RecorderEntry& entry, const RecordFields& fields) {
+  return &entry.table == &kTrajectoryTable ? trajectory_rows(fields).columns : entry.table.columns;
+}
+
+}  // namespace
+
+Recorders make_recorders(const RecordedTrial& trial, const RecordTarget& target) {
+  Recorders recorders;
+  for (const RecorderEntry& entry : kRecorders) {
+    if (!entry.is_wanted(trial.fields)) continue;
+    RowSource rows = entry.rows(trial);
+    const auto place = [&]() -> TableTarget {
+      if (const auto* directory = std::get_if<fs::path>(&target)) return *directory / entry.table.file;
+      return &std::get<RecordedTables*>(target)->try_emplace(entry.table.file, rows.columns).first->second;
+    }();
+    const auto every = static_cast<std::uint64_t>(entry.has_every_row ? 1 : trial.fields.every);
+    recorders.push_back(std::make_unique<Recorder>(place, std::move(rows), every));
+  }
+  return recorders;
+}
+
+std::vector<ResultTable> record_tables() {
+  std::vector<ResultTable> tables;
+  for (const RecorderEntry& entry : kRecorders) tables.push_back(entry.table);
+  return tables;
+}
+
+std::vector<ResultTable> record_tables(const RecordFields& fields) {
+  std::vector<ResultTable> tables;
+  for (const RecorderEntry& entry : kRecorders) {
+    if (entry.is_wanted(fields)) tables.push_back({entry.table.file, entry.table.holds, columns_of(entry, fields)});
+  }
+  return tables;
+}
+
+namespace {
+
+constexpr double kBytesOfANumber = 12.0;  // between a zero and seventeen digits
+constexpr double kContactsOfARow = 30.0;
+
+double lines_a_row(const ResultTable& table, const RecordFields& record) {
+  const std::string_view file = table.file;
+  if (file == "contacts.csv" || file == "contact_trace.csv") return kContactsOfARow;
+  return file == "ratios.csv" ? static_cast<double>(record.ratio_iterations.size()) : 1.0;
+}
+
+}  // namespace
+
+double expected_output_bytes(const Scenario& scenario) {
+  const RecordFields& record = scenario.record;
+  double row = 0.0;
+  for (const ResultTable& table : record_tables(record))
+    row += lines_a_row(table, record) * kBytesOfANumber * static_cast<double>(table.columns.size());
+  const double rows = std::ceil(static_cast<double>(scenario.time.steps) / static_cast<double>(record.every));
+  return trial_count(scenario.hand) * rows * row;
+}
+
+namespace {
 
 constexpr const char* kTrialDirectory = "subject_";
 
@@ -69,12 +165,12 @@ fs::path ResultFolder::of_trial(Trial trial, std::size_t trials) {
   return directory;
 }
 
-void ResultFolder::write(const RecordFields& record, const WrittenScenario& scenario, const Simulated& run) {
-  const Result& result = run.result;
+void ResultFolder::write(const RecordFields& record, const WrittenScenario& scenario, const Result& result,
+                         const Recorders& recorders) {
   std::vector<ResultTable> tables = record_tables(record);
   FileSet files;
   remove_earlier_run(directory_, files);
-  for (const auto& recorder : run.recorders) recorder->finish(&files);
+  for (const auto& recorder : recorders) recorder->finish(&files);
   if (result.has_section("targets")) {
     tables.push_back(kTargetTable);
     write_target_table(directory_ / kTargetTable.file, result.targets, &files);

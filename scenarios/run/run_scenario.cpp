@@ -1,17 +1,272 @@
 #include "scenarios/run/run_scenario.hpp"
 
+#include <fmt/format.h>
+#include <sys/resource.h>
+
 #include <chrono>
 
 #include "algorithms/registry.hpp"
+#include "results/allocations/allocations.hpp"
+#include "results/observe/step_times.hpp"
+#include "scenarios/description/metric_sections.hpp"
+#include "scenarios/description/parts.hpp"
 #include "scenarios/run/assemble.hpp"
+#include "scenarios/run/diagnosis.hpp"
 #include "scenarios/run/encounter.hpp"
 #include "scenarios/run/progress_bar.hpp"
-#include "scenarios/run/result_folder.hpp"
+#include "scenarios/run/stop_signal.hpp"
 
 namespace hapbench {
 namespace {
 
 namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+MetricsConfig metrics_config(const Scenario& scenario, const SimulationParts& parts) {
+  const RenderingConfig& rendering = scenario.rendering;
+  MetricsConfig config;
+  // Where the position is prescribed, or a handle moves the tool, no integrator steps the friction.
+  if (parts.motion->position_is_free() && !handle_moves_tool(scenario.device))
+    config.friction_limit = explicit_friction_limit(*scenario.integrator.type, rendering.mass, scenario.time.step,
+                                                    rendering.mu_s, rendering.mu_f);
+  config.settling = scenario.metrics;
+  config.steps = static_cast<std::uint64_t>(scenario.time.steps / scenario.time.stride);
+  if (rendering.reduction) config.most_reduced = parts.source->capacity();
+  return config;
+}
+
+/// The force that the rendered one is compared with: ideal, or measured with a stroke; null without.
+std::shared_ptr<const ReferenceForce> reference_force(const Scenario& scenario, const NamedFiles& files) {
+  if (scenario.reference_force) return std::make_shared<const ReferenceForce>(scenario.reference_force->force);
+  if (!std::holds_alternative<RecordedPosition>(scenario.motion.position)) return nullptr;
+  const auto stroke = files.at(kMotionFile).stroke();
+  if (stroke->force) return {stroke, &*stroke->force};
+  if (scenario.record.force_reference)
+    throw InputError("/record/force_reference: got true; allowed: false, because the stroke has no measured force");
+  return nullptr;
+}
+
+/// Forwards every `stride`-th row, renumbered as if the step were that much longer.
+class RowsApart final : public Observer {
+ public:
+  RowsApart(Observer& observer, std::int64_t stride)
+      : observer_(observer), stride_(static_cast<std::uint64_t>(stride)) {}
+
+  bool wants_ratio() const noexcept override { return observer_.wants_ratio(); }
+  void on_step(const StepRecord& record) noexcept override {
+    if (record.step % stride_ != 0) return;
+    StepRecord row = record;
+    row.step /= stride_;
+    observer_.on_step(row);
+  }
+
+ private:
+  Observer& observer_;
+  std::uint64_t stride_;
+};
+
+/// Watches for contacts beyond the edges of an open mesh; nothing where there are none, or where contacts are not
+/// numbered as the points of the shell.
+std::optional<OpenEdgeObserver> open_edge_observer(const Scenario& scenario, const NamedFiles& files,
+                                                   const SimulationParts& parts) {
+  if (!parts.shell || parts.shell->size() == 0 || !std::holds_alternative<MeshEnvironment>(scenario.environment) ||
+      scenario.rendering.contact_source != kOwnContacts)
+    return std::nullopt;
+  const std::vector<Vec3>& edges = files.at(kEnvironmentFile).mesh().open_edges();
+  if (edges.empty()) return std::nullopt;
+  return OpenEdgeObserver(*parts.shell, edges, parts.tool->half_width());
+}
+
+/// Takes kAskEvery steps and times each; returns false once the run has ended.
+bool advance_timed(Simulation& simulation, StepTimes& times) {
+  bool more = true;
+  for (std::uint64_t i = 0; i < kAskEvery && (more = simulation.step()); ++i) times.lap();
+  return more;
+}
+
+/// Number of involuntary context switches of this process so far.
+std::uint64_t involuntary_context_switches() {
+  rusage usage{};
+  ::getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::uint64_t>(usage.ru_nivcsw);
+}
+
+RunWork work_of(const Simulation& simulation, std::uint64_t allocations) {
+  RunWork work;
+  work.allocations = allocations;
+  work.search = simulation.source().work();
+  work.steps_skipped = work.search.skipped;
+  work.algorithm = simulation.algorithm().work();
+  work.search += work.algorithm.search;
+  return work;
+}
+
+void add_step_times(const std::vector<std::uint64_t>& nanoseconds, RunTiming& timing) {
+  if (nanoseconds.empty()) return;
+  const StepLatency latency = step_latency(nanoseconds, 0);
+  timing.step_p50 = 1e-9 * static_cast<double>(latency.p50);
+  if (nanoseconds.size() >= 100) timing.step_p99 = 1e-9 * static_cast<double>(latency.p99);
+}
+
+/// A run between its trials: the observers that go on from trial to trial, and what the trials gave so far.
+class Run {
+ public:
+  Run(const LoadedScenario& loaded, const std::shared_ptr<const PointShell>& shell, std::size_t trials, bool diagnose)
+      : loaded_(loaded),
+        scenario_(loaded.scenario),
+        shell_(shell),
+        reference_(reference_force(scenario_, loaded.files)),
+        sections_(scenario_, reference_ != nullptr) {
+    if (scenario_.record.timing) times_.emplace(static_cast<std::size_t>(scenario_.time.steps) * trials);
+    if (diagnose) diagnosis_.emplace(scenario_);
+  }
+
+  /// Makes a trial, which records to `target`, if that is given. `label` is that of the progress bar; empty for none.
+  void make(Trial trial, const std::optional<RecordTarget>& target, const std::string& label) {
+    SimulationParts parts = assemble(scenario_, loaded_.files, shell_, trial);
+    const SimulationConfig config = simulation_config(scenario_);
+    const TrialParts begun{config, parts, reference_.get(), trial.subject, trial.number};
+    const TimeFields& time = scenario_.time;
+    if (!metrics_) metrics_.emplace(time.step * static_cast<double>(time.stride), metrics_config(scenario_, parts));
+    metrics_->begin();
+    sections_.begin(begun);
+    tool_ = parts.tool;
+
+    StepSampler sampler(static_cast<std::uint64_t>(time.steps));
+    RowsApart metrics_rows(*metrics_, time.stride);
+    const auto seen = encounter_observer(scenario_, loaded_.files, parts, &*metrics_);
+    std::optional<OpenEdgeObserver> open_edges = open_edge_observer(scenario_, loaded_.files, parts);
+    ProgressBar bar(label, static_cast<std::uint64_t>(time.steps), !label.empty());
+    std::vector<Observer*> observers = {&sampler.first()};
+    observers.push_back(time.stride == 1 ? static_cast<Observer*>(&*metrics_) : &metrics_rows);
+    for (const auto& observer : sections_.all()) observers.push_back(observer.get());
+    observers.push_back(seen.get());
+    if (open_edges) observers.push_back(&*open_edges);
+    if (diagnosis_) observers.push_back(&*diagnosis_);
+    if (target) {
+      for (auto& recorder :
+           make_recorders({scenario_.record, parts.source->capacity(), sections_, seen->inside()}, *target)) {
+        observers.push_back(recorder.get());
+        recorders_.push_back(std::move(recorder));
+      }
+    }
+    observers.push_back(&sampler.last());
+
+    Simulation simulation(config, std::move(parts), std::move(observers));
+    const SimulationResult result = step_to_end(simulation, bar);
+    step_nanoseconds_.insert(step_nanoseconds_.end(), sampler.nanoseconds().begin(), sampler.nanoseconds().end());
+    end_trial(*seen, open_edges, result);
+  }
+
+  /// After the trials.
+  Result result(const RunTiming& timing) {
+    Result result;
+    result.name = scenario_.name;
+    result.algorithm = scenario_.rendering.algorithm;
+    result.end = *worst_;
+    result.duration = static_cast<double>(worst_->rows) * scenario_.time.step;
+    tell_common(*metrics_, inside_ ? &*inside_ : nullptr, result.metrics);
+    sections_.tell(result);
+    result.state_hash = metrics_->state_hash();
+    result.work = work_;
+    result.warnings = named_file_warnings(loaded_);
+    for (Warning& warning : warnings_) {
+      if (trials_ == 1) break;
+      warning.text = fmt::format("in {} of {} trials, first in number {}: {}", with_warnings_, trials_,
+                                 first_with_warnings_, warning.text);
+    }
+    for (const auto& more : {warnings_, force_warnings(*metrics_), tool_warnings(scenario_.rendering, *tool_)})
+      result.warnings.insert(result.warnings.end(), more.begin(), more.end());
+    // The fields of a cylinder say all.
+    if (!std::holds_alternative<CylinderFields>(scenario_.tool))
+      result.tool = ToolSummary{tool_->half_width(), tool_->reach(), tool_->convex(), tool_->outline()};
+    if (const auto* targets = sections_.find<TargetMetricsObserver>()) result.targets = targets->rows();
+    if (diagnosis_) result.diagnosis = diagnosis_->findings(loaded_, result, *tool_);
+    result.timing = timing;
+    result.timing.loop = loop_seconds_;
+    result.timing.steps = worst_->rows;
+    result.timing.preemptions = preemptions_;
+    add_step_times(step_nanoseconds_, result.timing);
+    if (times_) result.timing.latency = step_latency(times_->nanoseconds(), times_->overhead());
+    return result;
+  }
+
+  /// Their files are complete but under temporary names until `finish`.
+  const Recorders& recorders() const { return recorders_; }
+
+ private:
+  SimulationResult step_to_end(Simulation& simulation, ProgressBar& bar) {
+    const std::uint64_t allocations_before = heap_allocations();
+    const std::uint64_t preemptions_before = involuntary_context_switches();
+    const auto start = Clock::now();
+    if (times_) times_->start();
+    SimulationResult result = run_to_end(simulation, [&] {
+      bar.show(simulation.next_row());
+      return times_ ? advance_timed(simulation, *times_) : simulation.advance(kAskEvery);
+    });
+    loop_seconds_ += std::chrono::duration<double>(Clock::now() - start).count();
+    preemptions_ += involuntary_context_switches() - preemptions_before;
+    work_ += work_of(simulation, heap_allocations() - allocations_before);
+    return result;
+  }
+
+  void end_trial(EncounterObserver& seen, const std::optional<OpenEdgeObserver>& open_edges, SimulationResult result) {
+    result.outcome = seen.outcome(result.outcome);
+    std::vector<Warning> warnings = seen.warnings(result.outcome, metrics_->trial());
+    if (auto warning = open_edges ? open_edges->warning() : std::nullopt) warnings.push_back(std::move(*warning));
+    ++trials_;
+    if (!warnings.empty() && with_warnings_++ == 0) {
+      first_with_warnings_ = trials_;
+      warnings_ = std::move(warnings);
+    }
+    if (const InsideDepths* depths = seen.depths()) {
+      if (inside_)
+        inside_->add(*depths);
+      else
+        inside_ = *depths;
+    }
+    if (diagnosis_) diagnosis_->add_longest_step(seen.longest_step());
+    // A subject who loses the drill fails the rest of the targets.
+    if (result.outcome == Outcome::diverges) {
+      if (auto* targets = sections_.find<TargetMetricsObserver>()) targets->fail_rest();
+    }
+    const std::uint64_t rows = result.rows + (worst_ ? worst_->rows : 0);
+    if (!worst_ || result.outcome > worst_->outcome) worst_ = std::move(result);
+    worst_->rows = rows;
+  }
+
+  const LoadedScenario& loaded_;
+  const Scenario& scenario_;
+  const std::shared_ptr<const PointShell>& shell_;
+  std::shared_ptr<const ReferenceForce> reference_;
+  std::shared_ptr<const ToolShape> tool_;
+  std::optional<MetricsObserver> metrics_;  ///< made from the parts of the first trial
+  SectionObservers sections_;
+  std::optional<DiagnosisObserver> diagnosis_;  ///< if it is wanted
+  std::optional<InsideDepths> inside_;
+  std::optional<StepTimes> times_;               ///< of every step, if they are wanted
+  std::vector<std::uint64_t> step_nanoseconds_;  ///< samples of the time of single steps (StepSampler)
+  std::optional<SimulationResult> worst_;
+  std::vector<Warning> warnings_;  ///< of the first trial that has some
+  std::size_t trials_ = 0, with_warnings_ = 0, first_with_warnings_ = 0;
+  RunWork work_;
+  double loop_seconds_ = 0.0;      ///< wall time of the step loop
+  std::uint64_t preemptions_ = 0;  ///< involuntary context switches in the loop
+  Recorders recorders_;
+};
+
+/// The trials of a scenario, subject by subject; most scenarios have one.
+std::vector<Trial> trials_of(const Scenario& scenario) {
+  const auto* hand = std::get_if<TrackingHandFields>(&scenario.hand);
+  if (hand == nullptr) return {Trial{}};
+  std::vector<Trial> trials;
+  for (std::size_t subject = 0; subject < hand->subjects.size(); ++subject) {
+    for (std::size_t number = 0; number < static_cast<std::size_t>(hand->trials); ++number) {
+      trials.push_back({subject, number});
+    }
+  }
+  return trials;
+}
 
 /// Says what made the results.
 void add_provenance(Result& result) {
@@ -21,10 +276,37 @@ void add_provenance(Result& result) {
   result.provenance.plugin_hash = origin.hash;
 }
 
-void finish_tables(const Simulated& run, RunTables& tables) {
-  for (const auto& recorder : run.recorders) recorder->finish();
-  if (run.result.has_section("targets"))
-    write_target_table(&tables.targets.emplace(kTargetTable.columns), run.result.targets);
+/// `tables`, if given, only without `output`.
+Result run_trials(const LoadedScenario& loaded, const std::shared_ptr<const PointShell>& shell, const RunTiming& timing,
+                  const std::optional<fs::path>& output, bool progress, RunTables* tables, bool diagnose) {
+  const Scenario& scenario = loaded.scenario;
+  const std::vector<Trial> trials = trials_of(scenario);
+  std::optional<ResultFolder> folder;
+  if (output) folder.emplace(*output);
+  if (tables != nullptr) tables->trials.reserve(trials.size());  // the recorders point into it
+  Run run(loaded, shell, trials.size(), diagnose);
+  for (std::size_t i = 0; i < trials.size(); ++i) {
+    std::optional<RecordTarget> target;
+    if (folder && records_rows(scenario.record)) target = folder->of_trial(trials[i], trials.size());
+    if (tables != nullptr) target = &tables->trials.emplace_back();
+    std::string label = progress ? scenario.name : "";
+    if (progress && trials.size() > 1) label += fmt::format(" {}/{}", i + 1, trials.size());
+    run.make(trials[i], target, label);
+  }
+  Result result = run.result(timing);
+  result.unmet = unmet_expectations(scenario.expect, result);
+  result.expected = result.unmet.empty();
+  if (!folder && tables == nullptr) return result;
+  const WrittenScenario written(scenario);
+  add_provenance(result);
+  result.scenario_hash = written.hash(loaded.files);
+  if (folder) {
+    folder->write(scenario.record, written, result, run.recorders());
+    return result;
+  }
+  for (const auto& recorder : run.recorders()) recorder->finish();
+  if (result.has_section("targets")) write_target_table(&tables->targets.emplace(kTargetTable.columns), result.targets);
+  return result;
 }
 
 }  // namespace
@@ -34,41 +316,16 @@ Result run_scenario(const LoadedScenario& loaded, const std::optional<fs::path>&
   RunTiming timing;
   const auto shell = [&] {
     const WaitNotice notice(loaded.scenario.name + ": building the shell", progress);
-    const auto start = std::chrono::steady_clock::now();
+    const auto start = Clock::now();
     auto made = make_shell(loaded.scenario, loaded.files);
-    timing.shell = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    timing.shell = std::chrono::duration<double>(Clock::now() - start).count();
     return made;
   }();
-  return run_with_shell(loaded, shell, output, progress, timing, tables, diagnose);
+  return run_trials(loaded, shell, timing, output, progress, output ? nullptr : tables, diagnose);
 }
 
-Result run_with_shell(const LoadedScenario& loaded, const std::shared_ptr<const PointShell>& shell,
-                      const std::optional<fs::path>& output, bool progress, const RunTiming& timing, RunTables* tables,
-                      bool diagnose) {
-  const Scenario& scenario = loaded.scenario;
-  const std::size_t trials = trials_of(scenario).size();
-  std::optional<ResultFolder> folder;
-  if (output) folder.emplace(*output);
-  if (tables != nullptr) tables->trials.reserve(trials);  // the recorders point into it
-  const auto target_of = [&](Trial trial) -> std::optional<RecordTarget> {
-    if (folder && records_rows(scenario.record)) return folder->of_trial(trial, trials);
-    if (!folder && tables != nullptr) return &tables->trials.emplace_back();
-    return std::nullopt;
-  };
-  Simulated run = simulate(loaded, shell, target_of, progress, timing, diagnose);
-  Result& result = run.result;
-  result.unmet = unmet_expectations(scenario.expect, result);
-  result.expected = result.unmet.empty();
-  if (!folder && tables == nullptr) return std::move(result);
-  const WrittenScenario written(scenario);
-  add_provenance(result);
-  result.scenario_hash = written.hash(loaded.files);
-  if (folder) {
-    folder->write(scenario.record, written, run);
-  } else {
-    finish_tables(run, *tables);
-  }
-  return std::move(result);
+Result run_with_shell(const LoadedScenario& loaded, const std::shared_ptr<const PointShell>& shell) {
+  return run_trials(loaded, shell, {}, {}, false, nullptr, false);
 }
 
 }  // namespace hapbench

@@ -27,18 +27,15 @@ ToolPose first_pose(const Scenario& scenario, const SimulationParts& parts) {
 constexpr double kUnitsApart = 100.0;
 constexpr double kUsualStep = 0.001;  ///< of haptic loops [s]
 
-std::string times_text(double factor) {
-  return fmt::format("{:.0f} times", factor);
-}
-
 /// Where the tool starts, against its own size and the environment's.
 std::optional<Warning> start_warning(const ToolShape& tool, const SceneFacts::Surface& surface) {
   const double least = std::min((surface.box.max - surface.box.min).norm(), tool.reach());
   if (surface.gap > kUnitsApart * least) {
-    return Warning{"start", "",
-                   fmt::format("the tool starts {} from the environment, {} the size of {}: is its place in metres?",
-                               length_text(surface.gap), times_text(surface.gap / least),
-                               least == tool.reach() ? "the tool" : "the environment")};
+    return Warning{
+        "start", "",
+        fmt::format("the tool starts {} from the environment, {:.0f} times the size of {}: is its place in metres?",
+                    length_text(surface.gap), surface.gap / least,
+                    least == tool.reach() ? "the tool" : "the environment")};
   }
   return std::nullopt;
 }
@@ -60,14 +57,14 @@ std::vector<Warning> stroke_warnings(const Stroke& stroke, const TimeFields& tim
     warnings.push_back({"stroke", std::string(kMotionFile), std::move(text)});
   };
   if (way > kUnitsApart * size) {
-    warn(fmt::format("{}, {} the environment's size: are they in metres?", of, times_text(way / size)));
+    warn(fmt::format("{}, {:.0f} times the environment's size: are they in metres?", of, way / size));
   } else if (way > 0.0 && kUnitsApart * way < tool.half_width()) {
     warn(fmt::format("{}, a hundredth of the tool's half width, {}: are they in metres?", of,
                      length_text(tool.half_width())));
   }
   if (closest > kUnitsApart * size)
-    warn(fmt::format("the stroke stays {} away from the environment, {} its size: are places in metres?",
-                     length_text(closest), times_text(closest / size)));
+    warn(fmt::format("the stroke stays {} away from the environment, {:.0f} times its size: are places in metres?",
+                     length_text(closest), closest / size));
   if (samples.size() < 2) return warnings;
   const double interval = (samples.back().time - samples.front().time) / static_cast<double>(samples.size() - 1);
   if (interval > kUnitsApart * time.step || interval * kUnitsApart < time.step) {
@@ -76,19 +73,6 @@ std::vector<Warning> stroke_warnings(const Stroke& stroke, const TimeFields& tim
         "time.step_s right?",
         1e3 * interval, 1e3 * time.step));
   }
-  return warnings;
-}
-
-/// What looks like one unit taken for another, before a run.
-std::vector<Warning> unit_warnings(const LoadedScenario& loaded, const ToolShape& tool,
-                                   const SceneFacts::Surface& surface) {
-  const Scenario& scenario = loaded.scenario;
-  if (surface.box.min == surface.box.max) return {};  // a single point has no size
-  std::vector<Warning> warnings;
-  if (std::holds_alternative<RecordedPosition>(scenario.motion.position))
-    warnings = stroke_warnings(*loaded.files.at(kMotionFile).stroke(), scenario.time, tool, surface.box);
-  if (auto warning = start_warning(tool, surface)) warnings.insert(warnings.begin(), std::move(*warning));
-  if (auto warning = scale_warning(scenario, tool, surface.box)) warnings.insert(warnings.begin(), std::move(*warning));
   return warnings;
 }
 
@@ -123,36 +107,39 @@ bool is_open_scan(const Scenario& scenario, const NamedFiles& files) {
 SceneFacts scene_facts(const LoadedScenario& loaded) {
   const Scenario& scenario = loaded.scenario;
   SceneFacts facts;
+  const auto warn = [&facts](std::optional<Warning> warning) {
+    if (warning) facts.warnings.push_back(std::move(*warning));
+  };
   const double step = scenario.time.step;
   if (step > kUnitsApart * kUsualStep || kUnitsApart * step < kUsualStep)
-    facts.warnings.push_back(
-        {"step", "/time/step_s", fmt::format("{:.3g} s; haptic loops step each 1 ms: is it in seconds?", step)});
+    warn(
+        Warning{"step", "/time/step_s", fmt::format("{:.3g} s; haptic loops step each 1 ms: is it in seconds?", step)});
   const ToolShape& tool = *(facts.tool = make_tool(scenario, loaded.files));
-  for (Warning& warning : tool_warnings(scenario.rendering, tool)) facts.warnings.push_back(std::move(warning));
+  for (Warning& warning : tool_warnings(scenario.rendering, tool)) warn(std::move(warning));
   const auto shell = make_shell(scenario, loaded.files);
   throw_if_stopped();  // that may have taken seconds
   if (!shell || shell->size() == 0) return facts;
   if (std::holds_alternative<MeshEnvironment>(scenario.environment))
     facts.is_closed = loaded.files.at(kEnvironmentFile).mesh().open_edges().empty();
   const SimulationParts parts = assemble(scenario, loaded.files, shell, {});
-  SceneFacts::Surface& surface = facts.surface.emplace(SceneFacts::Surface{});
-  surface.box = shell->bounds();
-  surface.points = shell->size();
   if (const auto* hand = dynamic_cast<const DragHand*>(parts.hand.get())) {
     const auto& fields = std::get<DragHandFields>(scenario.hand);
-    const double way = way_to_cover(fields, scenario.time.step * static_cast<double>(scenario.time.steps));
-    if (auto warning = short_path_warning(fields, hand->path().length(), way, 2.0 * tool.half_width()))
-      facts.warnings.push_back(*warning);
+    const double way = way_to_cover(fields, step * static_cast<double>(scenario.time.steps));
+    warn(short_path_warning(fields, hand->path().length(), way, 2.0 * tool.half_width()));
   }
   const ToolPose pose = first_pose(scenario, parts);
-  const Gap gap = gap_between(tool, pose, *shell);
-  surface.gap = gap.distance;
-  surface.touching = gap.touching;
-  for (Warning& warning : unit_warnings(loaded, tool, surface)) facts.warnings.push_back(std::move(warning));
-  // check_named_files has warned of an open scan.
-  if (!is_open_scan(scenario, loaded.files)) {
-    if (auto warning = wrong_side_warning(*shell, pose.position, tool.half_width())) facts.warnings.push_back(*warning);
+  const auto [gap, touching] = gap_between(tool, pose, *shell);
+  const auto& surface = facts.surface.emplace(SceneFacts::Surface{shell->bounds(), shell->size(), gap, touching});
+  if (surface.box.min != surface.box.max) {  // a single point has no size
+    warn(scale_warning(scenario, tool, surface.box));
+    warn(start_warning(tool, surface));
+    if (std::holds_alternative<RecordedPosition>(scenario.motion.position)) {
+      for (Warning& warning : stroke_warnings(*loaded.files.at(kMotionFile).stroke(), scenario.time, tool, surface.box))
+        warn(std::move(warning));
+    }
   }
+  // check_named_files has warned of an open scan.
+  if (!is_open_scan(scenario, loaded.files)) warn(wrong_side_warning(*shell, pose.position, tool.half_width()));
   return facts;
 }
 
@@ -183,25 +170,20 @@ double any_moves_until(const std::array<Profile, 3>& profiles) {
   return std::max({moves_until(profiles[0]), moves_until(profiles[1]), moves_until(profiles[2])});
 }
 
-struct HandMovesUntil {
-  double operator()(const NoHandFields&) const { return 0.0; }
-  double operator()(const ForceHandFields& hand) const { return any_moves_until(hand.force); }
-  double operator()(const PushHandFields& hand) const { return moves_until(hand.force); }
-  double operator()(const ImpedanceHandFields& hand) const { return any_moves_until(hand.target); }
-  double operator()(const MassSpringDamperHandFields& hand) const { return any_moves_until(hand.spring.target); }
-  template <class Other>
-  double operator()(const Other&) const {
-    return kAlways;
-  }
-};
+double moves_until(const HandFields& hand) {
+  if (std::holds_alternative<NoHandFields>(hand)) return 0.0;
+  if (const auto* force = std::get_if<ForceHandFields>(&hand)) return any_moves_until(force->force);
+  if (const auto* push = std::get_if<PushHandFields>(&hand)) return moves_until(push->force);
+  const ImpedanceHandFields* spring = spring_of(hand);
+  return spring != nullptr ? any_moves_until(spring->target) : kAlways;
+}
 
 }  // namespace
 
 double script_moves_until(const Scenario& scenario) {
   const auto& orientation = scenario.motion.orientation;
   if (!orientation) return kAlways;
-  return std::max(
-      {moves_until(orientation->tilt), moves_until(orientation->azimuth), std::visit(HandMovesUntil{}, scenario.hand)});
+  return std::max({moves_until(orientation->tilt), moves_until(orientation->azimuth), moves_until(scenario.hand)});
 }
 
 const TremorConfig* tremor_of(const Scenario& scenario) {
@@ -215,38 +197,35 @@ bool is_moved(const Scenario& scenario) {
 
 namespace {
 
-struct PointDistanceOf {
-  const NamedFiles& files;
-
-  std::optional<PointDistance> operator()(const SpringsEnvironment&) const { return std::nullopt; }
-  std::optional<PointDistance> operator()(const PointShellEnvironment&) const { return std::nullopt; }
-  std::optional<PointDistance> operator()(const BlockEnvironment& block) const {
-    return {{"environment.grid_m", block.grid}};
+/// The mean distance of a mesh's vertices [m].
+double vertex_distance(const TriangleSoup& soup) {
+  double area = 0.0;
+  for (const auto& [a, b, c] : soup.triangles) {
+    const Vec3& corner = soup.vertices[a];
+    area += 0.5 * (soup.vertices[b] - corner).cross(soup.vertices[c] - corner).norm();
   }
-  std::optional<PointDistance> operator()(const MeshEnvironment& mesh) const {
-    if (mesh.spacing) return {{"environment.spacing_m", *mesh.spacing}};
-    const TriangleSoup soup = files.at(kEnvironmentFile).mesh().triangles();
-    double area = 0.0;
-    for (const auto& [a, b, c] : soup.triangles) {
-      const Vec3& corner = soup.vertices[a];
-      area += 0.5 * (soup.vertices[b] - corner).cross(soup.vertices[c] - corner).norm();
-    }
-    return {{"environment.spacing_m", std::sqrt(area / static_cast<double>(soup.vertices.size())), false}};
-  }
-  template <class Analytic>
-  std::optional<PointDistance> operator()(const Analytic& shape) const {
-    if constexpr (requires { shape.spacing; }) {
-      return {{"environment.spacing_m", shape.spacing}};
-    } else {
-      return std::nullopt;
-    }
-  }
-};
+  return std::sqrt(area / static_cast<double>(soup.vertices.size()));
+}
 
 }  // namespace
 
 std::optional<PointDistance> point_distance(const LoadedScenario& loaded) {
-  return std::visit(PointDistanceOf{loaded.files}, loaded.scenario.environment);
+  const Environment& environment = loaded.scenario.environment;
+  constexpr const char* kSpacing = "environment.spacing_m";
+  if (const auto* block = std::get_if<BlockEnvironment>(&environment))
+    return PointDistance{"environment.grid_m", block->grid};
+  const auto* mesh = std::get_if<MeshEnvironment>(&environment);
+  if (mesh != nullptr && !mesh->spacing) {
+    const double distance = vertex_distance(loaded.files.at(kEnvironmentFile).mesh().triangles());
+    return PointDistance{kSpacing, distance, false};
+  }
+  return std::visit(
+      [](const auto& shape) -> std::optional<PointDistance> {
+        if constexpr (requires { shape.spacing; })
+          return PointDistance{kSpacing, std::optional<double>(shape.spacing).value()};
+        return std::nullopt;
+      },
+      environment);
 }
 
 Gap gap_between(const ToolShape& tool, const ToolPose& pose, const PointShell& shell) {

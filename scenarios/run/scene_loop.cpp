@@ -57,6 +57,20 @@ DeviceLoop admittance_loop(const Scenario& scenario, const AdmittanceDeviceConfi
   return result;
 }
 
+/// The scenario along a surface on which dry friction holds its tool: with the bristle in place of the springs. The
+/// bristle adds up the device's velocity, and so sees the position through the velocity's filter.
+Scenario stuck_scene(Scenario scenario) {
+  RenderingConfig& r = scenario.rendering;
+  const SpringDamper bristle = bristle_of(*r.dry_friction, r, scenario.time.step);
+  r.stiffness = bristle.K;
+  r.damping = bristle.B;
+  if (auto* device = std::get_if<ImpedanceDeviceConfig>(&scenario.device)) {
+    const auto* filter = std::get_if<LowPassFilter>(&device->velocity_filter);
+    device->position_filter = filter != nullptr ? std::optional(*filter) : std::nullopt;
+  }
+  return scenario;
+}
+
 /// The fields of devices that their loops have, that SampledLoop::nonlinearity names, or that do nothing while nothing
 /// saturates, with a blank before and after each. Any other that is not at its default leaves no theory.
 constexpr std::string_view kKnownToTheory =
@@ -96,22 +110,15 @@ SpringDamper tool_on_spring(const Scenario& scenario, double lambda) {
   return {r.stiffness, normal_damping(r), r.mass, scenario.time.step, lambda, scenario.integrator.type};
 }
 
-Scenario stuck_scene(Scenario scenario) {
-  RenderingConfig& r = scenario.rendering;
-  const SpringDamper bristle = bristle_of(*r.dry_friction, r, scenario.time.step);
-  r.stiffness = bristle.K;
-  r.damping = bristle.B;
-  if (auto* device = std::get_if<ImpedanceDeviceConfig>(&scenario.device)) {
-    const auto* filter = std::get_if<LowPassFilter>(&device->velocity_filter);
-    device->position_filter = filter != nullptr ? std::optional(*filter) : std::nullopt;
-  }
-  return scenario;
-}
-
 double delay_of(const Scenario& scenario) {
   if (const auto* impedance = std::get_if<ImpedanceDeviceConfig>(&scenario.device)) return impedance->delay_samples;
   const auto* admittance = std::get_if<AdmittanceDeviceConfig>(&scenario.device);
   return admittance != nullptr ? static_cast<double>(admittance->servo.delay) : 0.0;
+}
+
+const char* delay_path(const Scenario& scenario) {
+  const bool has_servo = std::holds_alternative<AdmittanceDeviceConfig>(scenario.device);
+  return has_servo ? "device.servo.delay_samples" : "device.delay_samples";
 }
 
 std::string unknown_to_theory(const Scenario& scenario) {

@@ -28,10 +28,6 @@ Vec3 stiffness_eigenvalues(Scenario scenario);
 /// The tool along a direction in which the stiffness of the scenario's springs is lambda K, without a device.
 SpringDamper tool_on_spring(const Scenario& scenario, double lambda);
 
-/// The scenario along a surface on which dry friction holds its tool: with the bristle in place of the springs. The
-/// bristle adds up the device's velocity, and so sees the position through the velocity's filter.
-Scenario stuck_scene(Scenario scenario);
-
 /// The loop along a direction in which the springs' tensor has the eigenvalue lambda: the wall is lambda K, lambda B.
 /// Precondition: has_device.
 DeviceLoop device_loop(const Scenario& scenario, double lambda);
@@ -40,8 +36,9 @@ DeviceLoop device_loop(const Scenario& scenario, double lambda);
 /// empty when there are none. Precondition: has_device.
 std::string unknown_to_theory(const Scenario& scenario);
 
-/// The delay of the device's force, or of its servo [samples].
+/// The delay of the device's force, or of its servo [samples], and the field that sets it.
 double delay_of(const Scenario& scenario);
+const char* delay_path(const Scenario& scenario);
 
 /// The map of a step of the tool at a wall of lambda K and lambda B: by the device's loop, of an ideal device by the
 /// integrator alone. Empty for a loop that is too large to solve, and for a device with fields that are
@@ -50,7 +47,7 @@ Eigen::MatrixXd contact_step(const Scenario& scenario, double lambda);
 
 /// The maps of a step of the loop of device, hand and a wall of lambda K (contact_step), by the name of the hand, which
 /// is empty for the scene's own: with `over_hands`, on an impedance device that a hand holds, each of hand_family(),
-/// too. With dry friction also that of the tool which it holds (stuck_scene). None where there is no contact_step.
+/// too. With dry friction also that of the tool which it holds. None where there is no contact_step.
 std::vector<std::pair<std::string, Eigen::MatrixXd>> contact_loops(const Scenario& scenario, double lambda,
                                                                    bool over_hands);
 

@@ -81,12 +81,4 @@ void throw_if_stopped() {
   if (const int signal = StopSignal::received(); signal != 0) throw Stopped{signal};
 }
 
-SimulationResult run_to_end(Simulation& simulation) {
-  do {
-    throw_if_stopped();
-  } while (simulation.advance(kAskEvery));
-  throw_if_stopped();  // a force law may have ended the run by a force that is none, because the work is to stop
-  return simulation.result();
-}
-
 }  // namespace hapbench

@@ -41,8 +41,19 @@ void throw_if_stopped();
 /// Steps from one question whether to stop to the next: some milliseconds of the slowest there are.
 inline constexpr std::uint64_t kAskEvery = 512;
 
-/// Steps a simulation to its end. Asks every kAskEvery steps whether a signal wants the program to stop, and then
-/// throws Stopped (stop_signal.hpp). Allocates nothing.
-SimulationResult run_to_end(Simulation& simulation);
+/// Steps a simulation to its end by calls of `advance()`, each of which takes kAskEvery steps at most and returns false
+/// once the run has ended. Asks before each whether a signal wants the program to stop, and then throws Stopped.
+template <class Advance>
+SimulationResult run_to_end(Simulation& simulation, Advance advance) {
+  do {
+    throw_if_stopped();
+  } while (advance());
+  throw_if_stopped();  // a force law may have ended the run by a force that is none, because the work is to stop
+  return simulation.result();
+}
+/// The same by the simulation alone. Allocates nothing.
+inline SimulationResult run_to_end(Simulation& simulation) {
+  return run_to_end(simulation, [&simulation] { return simulation.advance(kAskEvery); });
+}
 
 }  // namespace hapbench

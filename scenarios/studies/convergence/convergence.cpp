@@ -1,15 +1,91 @@
 #include "scenarios/studies/convergence/convergence.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <nlohmann/json.hpp>
 
+#include "algorithms/stages/damping_and_limits.hpp"
+#include "results/io/json_text.hpp"
 #include "results/summary/outcome_names.hpp"
 #include "scenarios/description/metric_sections.hpp"
+#include "scenarios/input/input_error.hpp"
+#include "scenarios/run/assemble.hpp"
+#include "scenarios/run/scene_facts.hpp"
+#include "scenarios/run/scene_loop.hpp"
+#include "scenarios/studies/stability/field_limit.hpp"
 #include "sim/core/math.hpp"
+#include "sim/loop/integrators/table.hpp"
 
 namespace hapbench {
+namespace {
+
+/// Of the step. A device samples: between its samples the force is held, which is of the first order.
+double order_in_step(const Scenario& scenario) {
+  const IntegratorEntry& integrator = *scenario.integrator.type;
+  if (has_device(scenario)) return 1.0;
+  const RenderingConfig& r = scenario.rendering;
+  return normal_damping(r) > 0.0 || r.has_friction() ? integrator.damped_order : integrator.order;
+}
+
+std::string noise_reason(const Scenario& scenario) {
+  const auto* admittance = std::get_if<AdmittanceDeviceConfig>(&scenario.device);
+  const char* source = std::holds_alternative<TrackingHandFields>(scenario.hand) ? "hand"
+                       : admittance != nullptr && admittance->sensor.noise > 0.0 ? "force sensor"
+                                                                                 : nullptr;
+  return source == nullptr ? "" : fmt::format("the noise of the {} is drawn anew in every step", source);
+}
+
+LevelSweep step_levels(const Scenario& scenario, std::size_t levels, double ratio) {
+  if (ratio != std::round(ratio)) {
+    throw InputError(fmt::format(
+        "--ratio: got {}; allowed for {}: whole numbers, so that the rows of all levels coincide", ratio, kStepPath));
+  }
+  LevelSweep sweep{.axis = {kStepPath}, .formal_order = order_in_step(scenario), .no_order = noise_reason(scenario)};
+  std::int64_t times = 1;
+  for (std::size_t i = 0; i < levels; ++i, times *= static_cast<std::int64_t>(ratio)) {
+    std::vector<std::string> overrides = {fmt::format("time.steps={}", times * scenario.time.steps)};
+    if (const double delay = delay_of(scenario); delay > 0.0)  // which keeps its length
+      overrides.push_back(fmt::format("{}={}", delay_path(scenario), static_cast<double>(times) * delay));
+    sweep.axis.values.push_back(fmt::format("{}", scenario.time.step / static_cast<double>(times)));
+    sweep.axis.along.push_back({std::move(overrides), times});
+  }
+  return sweep;
+}
+
+/// The field's value in the scenario.
+double coarsest_value(const LoadedScenario& loaded, const std::string& path) {
+  const Json own = own_value(loaded.scenario, path);
+  if (own.is_number_float() && own.get<double>() > 0.0) return own.get<double>();
+  if (own.is_null()) {
+    const auto distance = point_distance(loaded);
+    if (distance && path == distance->path) return distance->metres;
+  }
+  throw InputError(
+      fmt::format("--vary: got {}, which is {} in the scenario; allowed: a field that is a number > 0 and no "
+                  "integer, such as {}, environment.grid_m, environment.spacing_m or tool.grid_m",
+                  path, own.is_null() ? "not given" : own.dump(), kStepPath));
+}
+
+}  // namespace
+
+LevelSweep level_sweep(const LoadedScenario& loaded, const std::string& path, std::size_t levels, double ratio) {
+  LevelSweep sweep;
+  if (path == kStepPath) {
+    sweep = step_levels(loaded.scenario, levels, ratio);
+  } else {
+    sweep.axis = {path};
+    double value = coarsest_value(loaded, path);
+    for (std::size_t i = 0; i < levels; ++i, value /= ratio)
+      sweep.axis.values.emplace_back(std::string_view(NumberText(value)));
+  }
+  sweep.ratio = ratio;
+  return sweep;
+}
+
 namespace {
 
 /// Smaller differences, relative to the results, are rounding errors of as many as 10^6 steps and say nothing about the
@@ -147,6 +223,193 @@ Convergence convergence_of(const LevelSweep& levels, std::span<const LevelResult
                         alike
                             ? fmt::format("{} has no effect here: all runs are the same, bit for bit", levels.axis.path)
                             : levels.no_order);
+}
+
+namespace {
+
+constexpr std::size_t kErrorLevels = 3;
+constexpr double kErrorRatio = 2.0;
+
+LevelSweep spacing_levels(const LoadedScenario& loaded, const PointDistance& distance) {
+  LevelSweep levels = level_sweep(loaded, distance.path, kErrorLevels, kErrorRatio);
+  if (!distance.is_given) {
+    levels.no_order = "the mesh's own points are not as far apart everywhere as those of the other levels";
+    levels.axis.values.front() = "the mesh's own";
+  }
+  return levels;
+}
+
+/// The runs of a scene's finer levels. Throws InputError where one of them cannot be run.
+Cases finer_cases(const LevelSweep& levels, const Cases& cases) {
+  Axis axis = levels.axis;
+  axis.values.erase(axis.values.begin());
+  if (!axis.along.empty()) axis.along.erase(axis.along.begin());
+  std::vector<Axis> axes = cases.axes();
+  axes.insert(axes.begin(), axis);
+  Cases finer(cases.scenes(), cases.sets(), std::move(axes));
+  for (std::size_t i = 0; i < axis.values.size(); ++i) {
+    try {
+      check_named_files(finer.load(i * cases.size()));
+    } catch (const InputError& error) {
+      throw InputError(fmt::format("{} = {}: {}", axis.path, axis.values[i], error.problem()));
+    }
+  }
+  return finer;
+}
+
+}  // namespace
+
+std::optional<double> KnownError::sum() const {
+  if (!step || (has_points && !spacing)) return std::nullopt;
+  return *step + spacing.value_or(0.0) + tolerance;
+}
+
+FinerRuns::FinerRuns(const Comparison& comparison, std::span<const Result> reports, const JobOptions& jobs)
+    : comparison_(comparison), reports_(reports) {
+  std::vector<Cases> finer;
+  std::size_t runs = 0;
+  const auto add = [&](Part& part, const Cases& cases) {
+    try {
+      finer.push_back(finer_cases(part.levels, cases));
+      part.first = runs;
+      runs += finer.back().size();
+    } catch (const InputError& error) {
+      part.why_not = error.what();
+    }
+  };
+  for (const Cases& cases : comparison.scenes) {
+    const LoadedScenario loaded = cases.load(0);
+    Parts& parts = parts_.emplace_back();
+    parts.step.levels = level_sweep(loaded, kStepPath, kErrorLevels, kErrorRatio);
+    add(parts.step, cases);
+    parts.has_points = !std::holds_alternative<SpringsEnvironment>(loaded.scenario.environment);
+    if (const auto distance = point_distance(loaded)) {
+      parts.spacing.levels = spacing_levels(loaded, *distance);
+      add(parts.spacing, cases);
+    } else {
+      parts.spacing.why_not = parts.has_points
+                                  ? "no field sets the distance of the points; only a finer file could tell"
+                                  : "springs have no points";
+    }
+  }
+  finer_ = run_all(finer, jobs);
+}
+
+std::optional<double> FinerRuns::error_by(const Part& part, std::size_t run, const std::string& metric) const {
+  if (!part.why_not.empty()) return std::nullopt;
+  const std::size_t each = comparison_.each();
+  std::vector<LevelResult> results = {level_result(part.levels, 0, reports_[run], metric)};
+  for (std::size_t i = 1; i < kErrorLevels; ++i) {
+    const Result& level = finer_[part.first + (i - 1) * each + run % each];
+    results.push_back(level_result(part.levels, i, level, metric));
+  }
+  return convergence_of(part.levels, results).errors.front();
+}
+
+KnownError FinerRuns::known_error(std::size_t run, const std::string& metric) const {
+  const Parts& parts = parts_[comparison_.scene(run)];
+  KnownError known{.step = error_by(parts.step, run, metric),
+                   .spacing = error_by(parts.spacing, run, metric),
+                   .has_points = parts.has_points};
+  const MetricList& metrics = reports_[run].metrics;
+  if (const Metric* found = find_metric(metrics, metric)) known.tolerance = found->tolerance().value_or(0.0);
+  return known;
+}
+
+std::string FinerRuns::refined(std::size_t scene) const {
+  const auto text = [](const Part& part) {
+    if (!part.why_not.empty()) return part.why_not;
+    return fmt::format("{} {}", part.levels.axis.path, fmt::join(part.levels.axis.values, ", "));
+  };
+  return fmt::format("{}; {}", text(parts_[scene].step), text(parts_[scene].spacing));
+}
+
+namespace {
+
+/// Whether the first of two numbers is less by more than both errors and by more than rounding.
+using IsLess = std::function<bool(std::size_t, std::size_t)>;
+
+/// Cuts a sorted order wherever all to the left are less than all to the right.
+std::vector<std::vector<std::size_t>> cut(std::span<const std::size_t> order, const IsLess& is_less) {
+  std::vector<std::vector<std::size_t>> groups;
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    const bool is_cut = std::ranges::all_of(order.first(k), [&](std::size_t a) {
+      return std::ranges::all_of(order.subspan(k), [&](std::size_t b) { return is_less(a, b); });
+    });
+    if (is_cut) groups.emplace_back();
+    groups.back().push_back(order[k]);
+  }
+  return groups;
+}
+
+/// The member of a group that is apart from the fewest others, of several the one with the largest error; none where
+/// no two are apart.
+std::optional<std::size_t> least_sure(const std::vector<std::size_t>& group, std::span<const NumberWithError> numbers,
+                                      const IsLess& is_less) {
+  std::optional<std::size_t> found;
+  std::ptrdiff_t fewest = 0, all = 0;
+  for (const std::size_t a : group) {
+    const auto apart = std::ranges::count_if(group, [&](std::size_t b) { return is_less(a, b) || is_less(b, a); });
+    all += apart;
+    if (found && (apart > fewest || (apart == fewest && *numbers[a].error <= *numbers[*found].error))) continue;
+    found = a;
+    fewest = apart;
+  }
+  return all > 0 ? found : std::nullopt;
+}
+
+std::string joined(std::span<const std::size_t> places, std::span<const std::string> names, const char* between) {
+  std::vector<std::string> found;
+  for (const std::size_t i : places) found.push_back(names[i]);
+  return fmt::format("{}", fmt::join(found, between));
+}
+
+}  // namespace
+
+HeldOrder held_order(std::span<const NumberWithError> numbers, double rounding) {
+  const IsLess is_less = [&](std::size_t a, std::size_t b) {
+    const double apart = *numbers[b].value - *numbers[a].value;
+    return apart > *numbers[a].error + *numbers[b].error &&
+           apart > rounding * std::max(std::abs(*numbers[a].value), std::abs(*numbers[b].value));
+  };
+  std::vector<std::size_t> sorted;
+  for (std::size_t i = 0; i < numbers.size(); ++i)
+    if (numbers[i].value && numbers[i].error) sorted.push_back(i);
+  std::ranges::stable_sort(sorted, {}, [&](std::size_t i) { return *numbers[i].value; });
+  HeldOrder held;
+  for (bool again = true; again;) {
+    again = false;
+    held.groups = cut(sorted, is_less);
+    for (const std::vector<std::size_t>& group : held.groups) {
+      const auto unsure = least_sure(group, numbers, is_less);
+      if (!unsure) continue;
+      held.unplaced.push_back(*unsure);
+      std::erase(sorted, *unsure);
+      again = true;
+    }
+  }
+  return held;
+}
+
+std::string held_text(std::span<const NumberWithError> numbers, std::span<const std::string> names, double rounding) {
+  const auto [groups, unplaced] = held_order(numbers, rounding);
+  std::vector<std::string> parts;
+  std::size_t placed = 0;
+  for (const std::vector<std::size_t>& group : groups) {
+    parts.push_back(joined(group, names, " ~ "));
+    placed += group.size();
+  }
+  std::vector<std::size_t> unknown;
+  for (std::size_t i = 0; i < numbers.size(); ++i)
+    if (numbers[i].value && !numbers[i].error) unknown.push_back(i);
+  const char* says = placed < 2                                    ? "there is nothing to compare"
+                     : groups.size() == 1                          ? "no order holds: "
+                     : groups.size() == placed && unplaced.empty() ? "the order holds: "
+                                                                   : "what holds is <: ";
+  std::string text = says + (placed < 2 ? "" : fmt::format("{}", fmt::join(parts, " < ")));
+  if (!unplaced.empty()) text += "; too uncertain for a place: " + joined(unplaced, names, ", ");
+  if (!unknown.empty()) text += "; no error is known of " + joined(unknown, names, ", ");
+  return text;
 }
 
 }  // namespace hapbench

@@ -9,6 +9,7 @@
 #include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "algorithms/stages/damping_and_limits.hpp"
 #include "device_model/theory/linear_loops.hpp"
@@ -23,6 +24,84 @@
 #include "sim/core/math.hpp"
 
 namespace hapbench {
+namespace {
+
+constexpr int kBeside = 3;  // values tried on either side of the edge, up to an interval away
+constexpr int kRounds = 6;  // of bisection, each towards an edge that values beside the last one showed
+
+}  // namespace
+
+double SearchWay::value_at(double part) const {
+  const double value = range.value_at(smallest ? 1.0 - part : part);
+  return whole ? std::round(value) : value;
+}
+
+std::optional<double> SearchWay::own_part() const {
+  if (!own) return std::nullopt;
+  const auto [from, to, logarithmic] = range;
+  const double part = logarithmic ? math::log(*own / from) / math::log(to / from) : (*own - from) / (to - from);
+  return smallest ? 1.0 - part : part;
+}
+
+bool SearchWay::apart(double a, double b, double resolution_asked) const {
+  const double low = std::min(value_at(a), value_at(b)), high = std::max(value_at(a), value_at(b));
+  if (whole) return high - low > 1.0;
+  if (range.logarithmic) return high > (1.0 + resolution_asked) * low;
+  return high - low > resolution_asked * (range.to - range.from);
+}
+
+std::map<double, bool> scanned(int intervals, const std::function<bool(double)>& stable) {
+  std::map<double, bool> tried;
+  for (int i = 0; i <= intervals; ++i) {
+    const double part = static_cast<double>(i) / intervals;
+    tried[part] = stable(part);
+  }
+  return tried;
+}
+
+FoundEdge find_edge(const SearchWay& way, std::map<double, bool> tried, const std::function<bool(double)>& stable,
+                    double resolution, bool beside) {
+  const auto holds = [&](double part) { return tried[part] = stable(part); };
+  const std::optional<double> own = way.own_part();
+  const double start = own && holds(*own) ? *own : 0.0;
+  const auto middle = [](double a, double b) { return 0.5 * (a + b); };
+  const auto apart = [&](double a, double b) { return way.apart(a, b, resolution); };
+  const auto with_other_end = [&](FoundEdge edge) {
+    if (!beside) return edge;
+    auto first = tried.find(*edge.stable);
+    while (first != tried.begin() && std::prev(first)->second) --first;
+    double high = first->first;
+    edge.first = high;
+    if (first == tried.begin()) return edge;
+    double low = std::prev(first)->first;
+    bisect(high, low, holds, middle, [&](double a, double b) { return apart(b, a); });
+    edge.first = high;
+    edge.before = low;
+    return edge;
+  };
+  FoundEdge edge;
+  for (int round = 0; round < kRounds; ++round) {
+    const auto is = [](bool wanted) { return [wanted](const auto& value) { return value.second == wanted; }; };
+    const auto first = std::find_if(tried.lower_bound(start), tried.end(), is(true));
+    if (first == tried.end()) return {};
+    const auto end = std::find_if(first, tried.end(), is(false));
+    if (end == tried.end()) return with_other_end({tried.rbegin()->first, {}, {}, {}});
+    double low = std::prev(end)->first, high = end->first;
+    if (edge.stable == low) return with_other_end(edge);
+    bisect(low, high, holds, middle, apart);
+    edge = {low, high, {}, {}};
+    if (!beside) return edge;
+    const double before = std::max(first->first, low - 1.0 / kEdgeIntervals),
+                 behind = std::min(1.0, high + 1.0 / kEdgeIntervals);
+    for (int i = 1; i <= kBeside; ++i) {
+      const double share = static_cast<double>(i) / (kBeside + 1);
+      holds(before + share * (low - before));
+      holds(high + share * (behind - high));
+    }
+  }
+  return with_other_end(edge);
+}
+
 namespace {
 
 constexpr int kDoublings = 10;  // from the scenario's value to either end of a range that nobody gave
@@ -110,10 +189,10 @@ class Search {
   /// The edges of what is stable without a run, along the whole way.
   class Theory {
    public:
-    using Predicate = bool (*)(const Scenario&);
+    using Predicate = std::function<bool(const Scenario&)>;
     /// Empty unless it `applies` to the scene at both ends.
-    Theory(const Search& search, Predicate applies, Predicate stable, int intervals)
-        : search_(search), stable_(stable) {
+    Theory(const Search& search, const Predicate& applies, Predicate stable, int intervals)
+        : search_(search), stable_(std::move(stable)) {
       for (const double end : {0.0, 1.0}) {
         if (!applies(search.at(search.question_.value_at(end)).scenario)) return;
       }
@@ -172,17 +251,14 @@ class Search {
 
   /// FieldLimit::linear
   std::optional<double> linear_edge(double lambda) const {
-    for (const double end : {0.0, 1.0}) {
-      const Scenario scenario = at(question_.value_at(end)).scenario;
-      if (!has_device(scenario) || contact_step(scenario, lambda).size() == 0) return std::nullopt;
-    }
-    const auto stable = [&](double part) {
-      return std::ranges::all_of(contact_loops(at(question_.value_at(part)).scenario, lambda, false),
+    const auto applies = [lambda](const Scenario& scenario) {
+      return has_device(scenario) && contact_step(scenario, lambda).size() != 0;
+    };
+    const auto stable = [lambda](const Scenario& scenario) {
+      return std::ranges::all_of(contact_loops(scenario, lambda, false),
                                  [](const auto& loop) { return is_stable_step(loop.second); });
     };
-    const FoundEdge edge = find_edge(question_, scanned(2 * kEdgeIntervals, stable), stable, kTheoryResolution, false);
-    if (!edge.stable) return std::nullopt;
-    return edge.beyond ? question_.value_at(*edge.stable) : std::numeric_limits<double>::infinity();
+    return Theory(*this, applies, stable, 2 * kEdgeIntervals).edge();
   }
 
   /// True for springs that stay in contact, with a tool that is alone or a device whose loop is linear.
@@ -217,18 +293,9 @@ class Search {
 
 Json own_value(const Scenario& scenario, const std::string& path) {
   const Json effective = effective_scenario(scenario, scenario.directory);
-  const Json* node = &effective;
-  for (const std::string_view key : parts_of(path, '.')) {
-    const auto index = whole_number(key);
-    if (node->is_array() && index && *index < node->size()) {
-      node = &(*node)[*index];
-    } else if (node->is_object() && node->contains(std::string(key))) {
-      node = &(*node)[std::string(key)];
-    } else {
-      return nullptr;
-    }
-  }
-  return *node;
+  Json::json_pointer at;
+  for (const std::string_view key : parts_of(path, '.')) at /= std::string(key);
+  return effective.contains(at) ? effective.at(at) : Json();
 }
 
 namespace {

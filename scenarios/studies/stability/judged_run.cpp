@@ -28,11 +28,16 @@ constexpr std::uint64_t kTurns = 2;
 constexpr double kRest = 1e-12;
 constexpr double kFelt = 1e-3;  // [m/s]
 
+RunVerdictText of_outcome(Outcome outcome) {
+  const OutcomeInfo& info = outcome_infos()[static_cast<std::size_t>(outcome)];
+  return {info.name, info.meaning};
+}
+
 }  // namespace
 
-const MotionClassText& text_of(MotionClass motion) noexcept {
+std::span<const RunVerdictText> run_verdict_texts() noexcept {
   // In the order of the enumeration.
-  static constexpr MotionClassText kTexts[] = {
+  static const RunVerdictText kTexts[] = {
       {"stable", "at rest, died out or creeping", "all else: at rest, died out, creeping"},
       {"dying_out", "still oscillates, but comes to rest if the run goes on",
        "oscillates as much, but loses a tenth of its amplitude from the second quarter to the third and again to the "
@@ -40,8 +45,16 @@ const MotionClassText& text_of(MotionClass motion) noexcept {
       {"vibrating", "oscillates and does not decay",
        "does not decay: oscillates in the last quarter with at least 1 % of the first quarter's amplitude"},
       {"diverged", "left its bounds, or oscillates with a growing amplitude",
-       "left its bounds, or oscillates with an amplitude that grows by 1 % from each quarter to the next"}};
-  return kTexts[static_cast<std::size_t>(motion)];
+       "left its bounds, or oscillates with an amplitude that grows by 1 % from each quarter to the next"},
+      {"thrown_out",
+       "the tool left the hole, or ended without contact beyond the environment's box by more than it reaches"},
+      {"no_contact", "the tool touched nothing in any row"},
+      of_outcome(Outcome::lost_contact),
+      of_outcome(Outcome::went_through),
+      of_outcome(Outcome::not_dragged),
+      of_outcome(Outcome::stuck),
+      {"beyond_bound", "stable but for a metric that a --bound does not allow"}};
+  return kTexts;
 }
 
 MotionClassifier MotionClassifier::of_moved_tool(std::uint64_t steps, double time_step, double still,
@@ -104,45 +117,30 @@ MotionClass MotionClassifier::Stretch::motion_class(double felt) const noexcept 
   return decays ? MotionClass::dying_out : MotionClass::vibrating;
 }
 
-MotionClass classify(Simulation& simulation, const MotionClassifier& classifier) {
-  for (bool more = true; more;) {
-    throw_if_stopped();
-    for (std::uint64_t i = 0; i < kAskEvery && more; ++i) more = !classifier.at_rest() && simulation.step();
-  }
-  throw_if_stopped();
-  return classifier.motion_class(simulation.result().outcome);
-}
-
 namespace {
 
-/// Whether the tool ever touched, where it was last, and a hash of where it was.
-class LastPlace final : public Observer {
- public:
-  void on_step(const StepRecord& record) noexcept override {
-    touches = record.colliding > 0;
-    touched = touched || touches;
-    position = record.tool.pose.position;
-    for (const double coordinate : record.handle.position) way.real(coordinate);
-  }
-  Hash64 way;
-  bool touched = false, touches = false;
-  Vec3 position = Vec3::Zero();
-};
-
-bool has_left(const LastPlace& last, const PointShell& shell, double reach) {
-  const Box bounds = shell.bounds();
-  const bool inside =
-      ((last.position - bounds.min).array() >= -reach).all() && ((last.position - bounds.max).array() <= reach).all();
-  return !last.touches && !inside;
+/// Steps the simulation, which `classifier` observes, until it ends or comes to rest.
+MotionClass classify(Simulation& simulation, const MotionClassifier& classifier) {
+  const SimulationResult result = run_to_end(simulation, [&] {
+    bool more = true;
+    for (std::uint64_t i = 0; i < kAskEvery && more; ++i) more = !classifier.at_rest() && simulation.step();
+    return more;
+  });
+  return classifier.motion_class(result.outcome);
 }
 
-/// Sums over the quarter that was begun last: the last one, unless the run was cut short because it came to rest.
-class LastQuarter final : public Observer {
+/// The end of a run: where the tool is and whether it touches, and sums over the quarter that was begun last, which is
+/// the last one unless the run was cut short because it came to rest.
+class LastRows final : public Observer {
  public:
-  explicit LastQuarter(const TimeFields& time)
+  explicit LastRows(const TimeFields& time)
       : steps_(static_cast<std::uint64_t>(time.steps)), vibration_(steps_, time.step) {}
 
   void on_step(const StepRecord& record) noexcept override {
+    touches_ = record.colliding > 0;
+    touched_ = touched_ || touches_;
+    place_ = record.tool.pose.position;
+    for (const double coordinate : record.handle.position) way_.real(coordinate);
     if (const std::uint64_t quarter = record.step * 4 / steps_; quarter != quarter_) {
       quarter_ = quarter;
       rows_in_contact_ = contacts_ = 0;
@@ -158,6 +156,13 @@ class LastQuarter final : public Observer {
     S_sum_ += record.force.S;
   }
 
+  bool touched() const { return touched_; }           ///< in any row
+  std::uint64_t way() const { return way_.value(); }  ///< JudgedRun::way
+  bool has_left(const PointShell& shell, double reach) const {
+    const Box bounds = shell.bounds();
+    const Vec3 beyond = (bounds.min - place_).cwiseMax(place_ - bounds.max);
+    return !touches_ && beyond.maxCoeff() > reach;
+  }
   SettledState state() const {
     SettledState state;
     state.vibration = vibration_.value();
@@ -171,6 +176,9 @@ class LastQuarter final : public Observer {
   }
 
  private:
+  bool touched_ = false, touches_ = false;
+  Vec3 place_ = Vec3::Zero();  ///< of the tip centre [m]
+  Hash64 way_;
   std::uint64_t steps_;
   LastQuarterVibration vibration_;
   std::uint64_t quarter_ = 0, rows_in_contact_ = 0, contacts_ = 0;
@@ -187,50 +195,19 @@ MotionClassifier classifier_of(const Scenario& scenario, const TremorSpeeds& tre
 }
 
 RunVerdict verdict_of(MotionClass motion, const SettledState& settled, std::optional<double> most_vibration) {
-  // Both enumerations begin with the same classes.
-  if (!most_vibration || motion == MotionClass::diverged) return static_cast<RunVerdict>(motion);
+  if (!most_vibration || motion == MotionClass::diverged) return motion;
   return settled.vibration && *settled.vibration <= *most_vibration ? RunVerdict::stable : RunVerdict::vibrating;
 }
-static_assert(static_cast<int>(RunVerdict::diverged) == static_cast<int>(MotionClass::diverged));
 
-}  // namespace
-
-namespace {
-
-/// The outcome after which a verdict is named, if it is one.
-std::optional<Outcome> outcome_of(RunVerdict verdict) {
-  switch (verdict) {
-    case RunVerdict::lost_contact:
-      return Outcome::lost_contact;
-    case RunVerdict::went_through:
-      return Outcome::went_through;
-    case RunVerdict::not_dragged:
-      return Outcome::not_dragged;
-    case RunVerdict::stuck:
-      return Outcome::stuck;
-    default:
-      return std::nullopt;
-  }
+/// The verdict with the name of an outcome; nothing when only the motion can tell.
+std::optional<RunVerdict> verdict_of(Outcome outcome) {
+  const auto texts = run_verdict_texts();
+  const auto found = std::ranges::find(texts, outcome_name(outcome), &RunVerdictText::name);
+  if (found == texts.end()) return std::nullopt;
+  return static_cast<RunVerdict>(found - texts.begin());
 }
 
 }  // namespace
-
-std::string_view run_verdict_name(RunVerdict verdict) noexcept {
-  if (const auto outcome = outcome_of(verdict)) return outcome_name(*outcome);
-  if (verdict == RunVerdict::thrown_out) return "thrown_out";
-  if (verdict == RunVerdict::no_contact) return "no_contact";
-  if (verdict == RunVerdict::beyond_bound) return "beyond_bound";
-  return motion_class_name(static_cast<MotionClass>(verdict));
-}
-
-const char* run_verdict_meaning(RunVerdict verdict) noexcept {
-  if (const auto outcome = outcome_of(verdict)) return outcome_infos()[static_cast<std::size_t>(*outcome)].meaning;
-  if (verdict == RunVerdict::thrown_out)
-    return "the tool left the hole, or ended without contact beyond the environment's box by more than it reaches";
-  if (verdict == RunVerdict::no_contact) return "the tool touched nothing in any row";
-  if (verdict == RunVerdict::beyond_bound) return "stable but for a metric that a --bound does not allow";
-  return text_of(static_cast<MotionClass>(verdict)).meaning;
-}
 
 std::string rule_text(const StabilityRule& rule, bool moved) {
   std::string text =
@@ -254,7 +231,8 @@ std::string rule_text(const StabilityRule& rule, bool moved) {
     if (bound.max) text += fmt::format(", {} <= {}", metric, *bound.max);
   }
   std::vector<std::string_view> others;
-  for (const RunVerdict verdict : kRunVerdicts) {
+  for (std::size_t i = 0; i < run_verdict_texts().size(); ++i) {
+    const auto verdict = static_cast<RunVerdict>(i);
     const bool of_bounds = verdict == RunVerdict::beyond_bound;
     if (!rule.holds(verdict) && (!of_bounds || !rule.bounds.empty())) others.push_back(run_verdict_name(verdict));
   }
@@ -287,20 +265,11 @@ namespace {
 /// True when the run, made once more to its end, keeps all bounds.
 bool keeps(const LoadedScenario& loaded, const std::shared_ptr<const PointShell>& shell,
            const std::map<std::string, MetricBound>& bounds) {
-  const Result report = run_with_shell(loaded, shell, std::nullopt, false);
+  const Result report = run_with_shell(loaded, shell);
   ExpectFields expect;
   expect.outcomes = {report.end.outcome};
   expect.metrics = bounds;
   return unmet_expectations(expect, report).empty();
-}
-
-/// The verdict of a run that did all its steps in view of what it touched; nothing when only its motion can tell.
-std::optional<RunVerdict> verdict_of(Outcome outcome) {
-  if (outcome == Outcome::no_contact) return RunVerdict::no_contact;
-  for (const RunVerdict verdict : kRunVerdicts) {
-    if (outcome_of(verdict) == outcome) return verdict;
-  }
-  return std::nullopt;
 }
 
 }  // namespace
@@ -309,31 +278,26 @@ static JudgedRun judged_once(const LoadedScenario& loaded, const std::shared_ptr
                              const StabilityRule& rule) {
   const Scenario& scenario = loaded.scenario;
   MotionClassifier classifier = classifier_of(scenario, rule.tremor ? *rule.tremor : tremor_speeds(loaded));
-  LastPlace last;
-  LastQuarter quarter(scenario.time);
+  LastRows last(scenario.time);
   SimulationParts parts = assemble(scenario, loaded.files, shell, {});
   const std::shared_ptr<const ToolShape> tool = parts.tool;
-  EncounterObservers seen(scenario, loaded.files, parts);
-  std::vector<Observer*> observers = {&classifier, &last, &quarter};
-  for (Observer* observer : seen.all()) observers.push_back(observer);
-  Simulation simulation(simulation_config(scenario), std::move(parts), observers);
+  const auto seen = encounter_observer(scenario, loaded.files, parts);
+  Simulation simulation(simulation_config(scenario), std::move(parts), {&classifier, &last, seen.get()});
   const MotionClass motion = classify(simulation, classifier);
-  SettledState settled = quarter.state();
+  SettledState settled = last.state();
   // A run that was cut short there would tell the vibration of an earlier quarter.
   if (classifier.at_rest() && settled.vibration) settled.vibration = 0.0;
-  TrialContact touched;
-  touched.in_contact = last.touched ? 1 : 0;
-  const Outcome outcome = seen.outcome(touched, simulation.result().outcome);
+  const Outcome outcome = seen->outcome(simulation.result().outcome);
   const auto verdict = [&] {
     if (motion == MotionClass::diverged) return RunVerdict::diverged;
     if (outcome == Outcome::went_through) return RunVerdict::went_through;
-    if (!last.touched) return RunVerdict::no_contact;
-    if (outcome == Outcome::leaves_hole || (shell && has_left(last, *shell, tool->reach())))
+    if (!last.touched()) return RunVerdict::no_contact;
+    if (outcome == Outcome::leaves_hole || (shell && last.has_left(*shell, tool->reach())))
       return RunVerdict::thrown_out;
     if (const auto known = verdict_of(outcome)) return *known;
     return verdict_of(motion, settled, rule.most_vibration);
   };
-  JudgedRun run{verdict(), settled, last.way.value(), classifier.at_rest()};
+  JudgedRun run{verdict(), settled, last.way()};
   run.undecided = is_stable(run.verdict) && classifier.is_undecided();
   return run;
 }
@@ -362,9 +326,9 @@ bool unstable_without_contact(const LoadedScenario& loaded, std::optional<double
   Scenario scenario = loaded.scenario;
   if (auto* device = std::get_if<ImpedanceDeviceConfig>(&scenario.device)) device->coulomb = 0.0;
   MotionClassifier classifier = classifier_of(scenario, tremor_speeds(loaded));
-  LastQuarter quarter(scenario.time);
-  const MotionClass motion = classify_alone(scenario, loaded.files, classifier, {&classifier, &quarter});
-  return !is_stable(verdict_of(motion, quarter.state(), most_vibration));
+  LastRows last(scenario.time);
+  const MotionClass motion = classify_alone(scenario, loaded.files, classifier, {&classifier, &last});
+  return !is_stable(verdict_of(motion, last.state(), most_vibration));
 }
 
 }  // namespace hapbench

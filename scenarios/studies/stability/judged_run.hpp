@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -16,21 +18,14 @@
 #include "sim/loop/observer.hpp"
 #include "sim/loop/simulation.hpp"
 
-/// Judges whether a run is stable: first by its motion alone, without eigenvalues, tensors or knowledge of the law
-/// (MotionClass), then also by where its tool ends (RunVerdict).
+/// Judges whether a run is stable: first by its motion alone, without eigenvalues, tensors or knowledge of the law,
+/// then also by where its tool ends.
 ///
 /// The run is cut into quarters. The amplitude of a quarter is the largest speed of the tool in it (of the handle where
 /// the handle moves the tool, because an encoder turns its motion into jumps that nobody feels); a turn is a change of
 /// sign of a component of the velocity, two for each period of an oscillation, whether or not dry friction holds a
-/// handle at the turns.
-///
-///   diverged   the run left its bounds, or it oscillates and its amplitude has grown by more than 1 % from each
-///              quarter to the next
-///   vibrating  not diverged, and it does not decay: in the last quarter it oscillates (two turns or more of one
-///              component) with at least 1 % of the first quarter's amplitude, that is 1e-4 of its energy
-///   dying_out  oscillates so, but loses more than a tenth of its amplitude from the second quarter to the third and
-///              from the third to the last; an irregular vibration may lose it once, by chance
-///   stable     all else: at rest, died out, creeping without a turn
+/// handle at the turns. A quarter oscillates with two turns or more of one component. The rules of the classes are
+/// those of run_verdict_texts(); an irregular vibration may lose a tenth of its amplitude once, by chance.
 ///
 /// Both stable and dying_out come to rest if the run goes on long enough, so both count as stable where a limit is
 /// looked for. A damped oscillation dies out to 1 % within three quarters of n steps when it loses more than 6.1 / n of
@@ -38,20 +33,37 @@
 /// of a damped linear system, all that is stable of an undamped one, and the limit cycles of a nonlinear one.
 namespace hapbench {
 
-enum class MotionClass { stable, dying_out, vibrating, diverged };
-inline constexpr std::array kMotionClasses = {MotionClass::stable, MotionClass::dying_out, MotionClass::vibrating,
-                                              MotionClass::diverged};
+/// The classes of motion, ends of a run that no motion tells, most of them outcomes of the same name, and a bound that
+/// is not kept.
+enum class RunVerdict {
+  stable,
+  dying_out,
+  vibrating,
+  diverged,
+  thrown_out,
+  no_contact,
+  lost_contact,
+  went_through,
+  not_dragged,
+  stuck,
+  beyond_bound
+};
+/// One of the first four.
+using MotionClass = RunVerdict;
+inline constexpr std::size_t kMotionClasses = 4;
 
-/// A class of motion for people.
-struct MotionClassText {
+/// A verdict for people.
+struct RunVerdictText {
   std::string_view name;  ///< also in result files
   const char* meaning;
-  const char* rule;  ///< by which a run belongs to it: see above
+  const char* rule = "";  ///< by which a run belongs to a class of motion
 };
-const MotionClassText& text_of(MotionClass motion) noexcept;
+/// Those of all verdicts, in the order of the enumeration.
+std::span<const RunVerdictText> run_verdict_texts() noexcept;
 
-inline std::string_view motion_class_name(MotionClass motion) noexcept {
-  return text_of(motion).name;
+/// "stable", "dying_out", ...
+inline std::string_view run_verdict_name(RunVerdict verdict) noexcept {
+  return run_verdict_texts()[static_cast<std::size_t>(verdict)].name;
 }
 
 /// The largest speeds that the tremor of a hand causes without any wall; zeros without a tremor.
@@ -113,33 +125,6 @@ class MotionClassifier final : public Observer {
   int rows_at_rest_ = 0;
 };
 
-/// Steps the simulation, which `classifier` observes, until it ends or comes to rest. Throws Stopped (stop_signal.hpp).
-MotionClass classify(Simulation& simulation, const MotionClassifier& classifier);
-
-/// The classes of motion, ends of a run that no motion tells, most of them outcomes of the same name, and a bound that
-/// is not kept. run_verdict_meaning() explains each.
-enum class RunVerdict {
-  stable,
-  dying_out,
-  vibrating,
-  diverged,
-  thrown_out,
-  no_contact,
-  lost_contact,
-  went_through,
-  not_dragged,
-  stuck,
-  beyond_bound
-};
-inline constexpr std::array kRunVerdicts = {RunVerdict::stable,       RunVerdict::dying_out,    RunVerdict::vibrating,
-                                            RunVerdict::diverged,     RunVerdict::thrown_out,   RunVerdict::no_contact,
-                                            RunVerdict::lost_contact, RunVerdict::went_through, RunVerdict::not_dragged,
-                                            RunVerdict::stuck,        RunVerdict::beyond_bound};
-
-/// "stable", "dying_out", ...
-std::string_view run_verdict_name(RunVerdict verdict) noexcept;
-const char* run_verdict_meaning(RunVerdict verdict) noexcept;
-
 /// True for runs that come to rest in contact: stable and dying_out.
 inline bool is_stable(RunVerdict verdict) noexcept {
   return verdict == RunVerdict::stable || verdict == RunVerdict::dying_out;
@@ -182,7 +167,6 @@ struct JudgedRun {
   RunVerdict verdict = RunVerdict::stable;
   SettledState settled;
   std::uint64_t way = 0;  ///< a hash of all positions of the handle: runs that differ in it moved differently
-  bool at_rest = false;   ///< MotionClassifier::at_rest
   /// Neither at rest nor long enough for an oscillation, after it was made four times as long up to three times.
   bool undecided = false;
 };

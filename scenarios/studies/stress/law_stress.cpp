@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
+#include <limits>
+#include <memory>
 #include <mutex>
 
 #include "algorithms/depth/depth_model.hpp"
@@ -11,6 +14,7 @@
 #include "sim/contact/contact_source.hpp"
 #include "sim/contact/stiffness_tensor.hpp"
 #include "sim/core/math.hpp"
+#include "sim/core/random.hpp"
 
 namespace hapbench {
 namespace {
@@ -68,16 +72,20 @@ Points fill(std::size_t n, Position position, Normal normal) {
   return points;
 }
 
-Points random_points(Random& random, const ContactSet& set, std::size_t n) {
+/// The same anywhere in the tool.
+template <class Normal>
+Points fill_tool(Random& random, const ContactSet& set, std::size_t n, Normal normal) {
   return fill(
-      n, [&] { return in_tool(random, set); }, [&] { return random.direction(); });
+      n, [&] { return in_tool(random, set); }, normal);
+}
+
+Points random_points(Random& random, const ContactSet& set, std::size_t n) {
+  return fill_tool(random, set, n, [&] { return random.direction(); });
 }
 
 Points zero_normals(Random& random, const ContactSet& set, std::size_t n) {
   const double share = random.uniform() < 0.3 ? 1.0 : 0.5;
-  return fill(
-      n, [&] { return in_tool(random, set); },
-      [&]() -> Vec3 { return chance(random, share) ? Vec3::Zero() : random.direction(); });
+  return fill_tool(random, set, n, [&]() -> Vec3 { return chance(random, share) ? Vec3::Zero() : random.direction(); });
 }
 
 Points coincident(Random& random, const ContactSet& set, std::size_t n) {
@@ -97,20 +105,17 @@ Points on_the_axis(Random& random, const ContactSet& set, std::size_t n) {
 Points opposite(Random& random, const ContactSet& set, std::size_t n) {
   const Vec3 u = random.direction();
   std::size_t i = 0;
-  return fill(
-      n, [&] { return in_tool(random, set); }, [&] { return i++ % 2 == 0 ? u : Vec3(-u); });
+  return fill_tool(random, set, n, [&] { return i++ % 2 == 0 ? u : Vec3(-u); });
 }
 
 Points nearly_opposite(Random& random, const ContactSet& set, std::size_t n) {
   const Vec3 u = random.direction();
-  return fill(
-      n, [&] { return in_tool(random, set); }, [&] { return sign_of(random, nearly(random, u)); });
+  return fill_tool(random, set, n, [&] { return sign_of(random, nearly(random, u)); });
 }
 
 Points nearly_parallel(Random& random, const ContactSet& set, std::size_t n) {
   const Vec3 u = random.direction();
-  return fill(
-      n, [&] { return in_tool(random, set); }, [&] { return nearly(random, u); });
+  return fill_tool(random, set, n, [&] { return nearly(random, u); });
 }
 
 /// Points on the side, in the tip plane, on its rim. Their depth is 0 up to rounding; the search drops those outside.
@@ -148,12 +153,6 @@ constexpr Family kFamilies[] = {
     {"across_the_axis", across_the_axis},
 };
 
-constexpr auto kFamilyNames = [] {
-  std::array<const char*, std::size(kFamilies)> names{};
-  for (std::size_t i = 0; i < names.size(); ++i) names[i] = kFamilies[i].name;
-  return names;
-}();
-
 void draw_tool(Random& random, ContactSet& set) {
   // A fifth of the scenes at each end of the scale, the others in between.
   const double which = random.uniform();
@@ -172,27 +171,6 @@ void draw_rendering(Random& random, RenderingConfig& config) {
   // n_ext far below the number of contacts overflows.
   if (chance(random, 0.5)) config.reduction = ReductionConfig{0.995, chance(random, 0.5) ? 3u : 100u, std::nullopt};
 }
-
-}  // namespace
-
-std::span<const char* const> contact_set_families() {
-  return kFamilyNames;
-}
-
-ContactSet draw_contact_set(Random& random) {
-  ContactSet set;
-  draw_tool(random, set);
-  draw_rendering(random, set.rendering);
-  const Family& family = kFamilies[random.below(std::size(kFamilies))];
-  set.family = family.name;
-  // Every fifth set has one point. The other sizes are log-uniform, so that small sets, which are degenerate most
-  // often, are common.
-  const double n = chance(random, 0.2) ? 1.0 : log_uniform(random, 1.0, static_cast<double>(kMostContacts));
-  set.points = family.draw(random, set, static_cast<std::size_t>(n));
-  return set;
-}
-
-namespace {
 
 /// Relative rounding error allowed in sums over at most kMostContacts contacts and in exact_shaping's weights, which
 /// its epsilon of 1e-6 makes sensitive.
@@ -237,29 +215,26 @@ bool damping_in_bound(const ContactSet& set, const RenderedForce& force) {
   return force.rendered.norm() <= (1.0 + kForceRounding) * bound;
 }
 
-void count_answer(const ContactSet& set, const RenderingConfig& config, std::uint64_t number, const Answer& answer,
-                  StressCounts& counts) {
-  ++counts.sets;
-  counts.in_contact += answer.colliding > 0;
-  counts.points_dropped += answer.dropped;
+/// The counts of one set.
+StressCounts counts_of(const ContactSet& set, const RenderingConfig& config, std::uint64_t number,
+                       const Answer& answer) {
   const RenderedForce& force = answer.force;
-  const bool bad = counts.non_finite + counts.out_of_bound > 0;
-  const double unit = config.stiffness * force.depth_max;
   const auto bound_of = find_algorithm(config.algorithm)->theory.force_bound;
-  const std::optional<double> bound =
-      bound_of == nullptr
-          ? std::nullopt
-          : std::optional(config.stiffness * bound_of(config, set.tool, answer.rendered, force.depth_max));
-  if (!finite(force)) {
-    ++counts.non_finite;
-  } else if ((bound && force.spring.norm() > (1.0 + kForceRounding) * *bound) ||
-             !depth_in_bound(set.tool, force.depth_max) || !damping_in_bound(set, force)) {
-    ++counts.out_of_bound;
-  }
-  if (!bad && counts.non_finite + counts.out_of_bound > 0) counts.first_bad = number;
-  if (!(unit > 0.0)) return;
-  counts.largest_force = std::max(counts.largest_force, force.spring.norm() / unit);
-  if (bound && *bound > 0.0) counts.largest_share = std::max(*counts.largest_share, force.spring.norm() / *bound);
+  StressCounts counts;
+  counts.sets = 1;
+  counts.in_contact = answer.colliding > 0;
+  counts.points_dropped = answer.dropped;
+  double bound = std::numeric_limits<double>::infinity();
+  if (bound_of != nullptr) bound = config.stiffness * bound_of(config, set.tool, answer.rendered, force.depth_max);
+  counts.non_finite = !finite(force);
+  counts.out_of_bound = finite(force) && (force.spring.norm() > (1.0 + kForceRounding) * bound ||
+                                          !depth_in_bound(set.tool, force.depth_max) || !damping_in_bound(set, force));
+  counts.first_bad = number;
+  const double unit = config.stiffness * force.depth_max;
+  if (!(unit > 0.0)) return counts;
+  counts.largest_force = force.spring.norm() / unit;
+  if (bound_of != nullptr && bound > 0.0) counts.largest_share = force.spring.norm() / bound;
+  return counts;
 }
 
 std::vector<StressCounts> no_counts() {
@@ -282,14 +257,23 @@ void add(const StressCounts& other, StressCounts& all) {
   all.out_of_bound += other.out_of_bound;
   all.points_dropped += other.points_dropped;
   all.largest_force = std::max(all.largest_force, other.largest_force);
-  if (all.largest_share) all.largest_share = std::max(*all.largest_share, *other.largest_share);
+  all.largest_share = std::max(all.largest_share, other.largest_share);
 }
 
 }  // namespace
 
 ContactSet stress_set(std::uint64_t seed, std::uint64_t i) {
   Random random(Random::derive(seed + 1, i));
-  return draw_contact_set(random);
+  ContactSet set;
+  draw_tool(random, set);
+  draw_rendering(random, set.rendering);
+  const Family& family = kFamilies[random.below(std::size(kFamilies))];
+  set.family = family.name;
+  // Every fifth set has one point. The other sizes are log-uniform, so that small sets, which are degenerate most
+  // often, are common.
+  const double n = chance(random, 0.2) ? 1.0 : log_uniform(random, 1.0, static_cast<double>(kMostContacts));
+  set.points = family.draw(random, set, static_cast<std::size_t>(n));
+  return set;
 }
 
 std::vector<StressCounts> stress_laws(std::uint64_t count, std::uint64_t seed, const JobOptions& options) {
@@ -304,7 +288,7 @@ std::vector<StressCounts> stress_laws(std::uint64_t count, std::uint64_t seed, c
       for (StressCounts& counts : part) {
         RenderingConfig config = set.rendering;
         config.algorithm = counts.algorithm;
-        count_answer(set, config, i, answer(set, config, shell), counts);
+        add(counts_of(set, config, i, answer(set, config, shell)), counts);
       }
     }
     const std::lock_guard lock(mutex);

@@ -2,13 +2,11 @@
 
 #include <cstdint>
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
 #include "algorithms/rendering_config.hpp"
 #include "scenarios/batch/parallel_for.hpp"
-#include "sim/core/random.hpp"
 #include "sim/geometry/point_shell.hpp"
 #include "sim/tool/cylinder.hpp"
 
@@ -29,14 +27,10 @@ struct ContactSet {
 /// Most points of a set; the reduction of some keeps fewer (n_ext).
 inline constexpr std::size_t kMostContacts = 200;
 
-/// Names of the families: points on the axis, on the surface, coincident; normals that are zero, equal, opposite,
-/// nearly so, or more different ones than n_ext; scenes of 1e-12 m and of 1e3 m.
-std::span<const char* const> contact_set_families();
-
-/// One set of a family drawn at random. The same random numbers give the same set.
-ContactSet draw_contact_set(Random& random);
-
-/// Sends random contact sets through every law and counts the answers that no law may give.
+/// Set number `i` of the seed, by the numbers that the counts name, of a family drawn at random: points on the axis, on
+/// the surface, coincident; normals that are zero, equal, opposite, nearly so, or more different ones than n_ext;
+/// scenes of 1e-12 m and of 1e3 m.
+ContactSet stress_set(std::uint64_t seed, std::uint64_t i);
 
 /// The counts of one algorithm over all sets.
 struct StressCounts {
@@ -51,9 +45,6 @@ struct StressCounts {
   std::optional<double> largest_share;
   std::uint64_t first_bad = 0;  ///< number of the first set that was counted as bad; meaningful when there is one
 };
-
-/// Set number `i` of the seed, by the numbers that the counts name.
-ContactSet stress_set(std::uint64_t seed, std::uint64_t i);
 
 /// Sends sets 0 … count - 1 of the seed through every algorithm of the registry; one entry each, in its order. The same
 /// counts whatever the number of threads. About 2.5 us a set and algorithm.

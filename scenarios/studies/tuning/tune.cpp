@@ -8,10 +8,13 @@
 #include <functional>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <span>
 
 #include "device_model/theory/linear_loops.hpp"
+#include "scenarios/batch/comparison.hpp"
 #include "scenarios/batch/parallel_for.hpp"
 #include "scenarios/batch/statistics.hpp"
+#include "scenarios/input/json_file.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/run/scene_loop.hpp"
@@ -19,6 +22,140 @@
 #include "sim/core/math.hpp"
 
 namespace hapbench {
+namespace {
+
+constexpr const char* kTunedField = "rendering.stiffness_N_per_m";
+constexpr const char* kFilters[] = {R"({"type":"difference"})", R"({"type":"low_pass","cutoff_Hz":50})",
+                                    R"({"type":"low_pass","cutoff_Hz":100})", R"({"type":"low_pass","cutoff_Hz":200})",
+                                    R"({"type":"adaptive_window"})"};
+
+const ImpedanceDeviceConfig* impedance_of(const Scenario& scenario) {
+  return std::get_if<ImpedanceDeviceConfig>(&scenario.device);
+}
+
+}  // namespace
+
+std::string setting_text(const TuneSetting& setting) {
+  std::string text;
+  if (setting.damping_ratio) text += fmt::format(", zeta = {:.3g}", *setting.damping_ratio);
+  if (setting.mass) text += fmt::format(", {:.3g} kg", *setting.mass);
+  return setting.filter.empty() ? text : text + ", " + setting.filter;
+}
+
+TuneRanges tune_ranges(const TuneQuestion& question, const std::string& algorithm) {
+  std::vector<std::string> overrides = question.overrides;
+  overrides.push_back("rendering.algorithm=" + algorithm);
+  TuneRanges ranges;
+  ranges.stiffness = limit_question(question.scenario, overrides, kTunedField, {}).range;
+  const Scenario own = load_scenario(question.scenario, overrides).scenario;
+  if (!own.rendering.hunt_crossley) {
+    ranges.damping_ratio = question.damping_ratio;
+    ranges.damping_ratio->logarithmic = true;
+    // zeta is that of the virtual mass; what moves is the handle.
+    if (const auto* device = impedance_of(own)) {
+      const double scale = std::sqrt(device->handle_mass / own.rendering.mass);
+      ranges.damping_ratio->from *= scale;
+      ranges.damping_ratio->to *= scale;
+    }
+  }
+  if (std::holds_alternative<AdmittanceDeviceConfig>(own.device))
+    ranges.mass = question.mass.value_or(Range{0.5 * own.rendering.mass, 2.0 * own.rendering.mass, true});
+  return ranges;
+}
+
+namespace {
+
+/// The settings to begin with, the scene's own first: with equal K it stays.
+std::vector<TuneSetting> settings_of(const TuneQuestion& question, const TuneRanges& ranges, const Scenario& own) {
+  std::vector<std::optional<double>> ratios = {std::nullopt};
+  if (ranges.damping_ratio) {
+    const auto [from, to, logarithmic] = *ranges.damping_ratio;
+    ratios = {std::clamp(own.rendering.damping_ratio, from, to)};
+    const int parts = std::max(1, static_cast<int>(std::round(4.0 * math::log(to / from) / math::log(10.0))));
+    for (int i = 0; i <= parts; ++i)
+      ratios.emplace_back(ranges.damping_ratio->value_at(static_cast<double>(i) / parts));
+  }
+  std::vector<std::optional<double>> masses = {std::nullopt};
+  if (ranges.mass) {
+    const auto [from, to, logarithmic] = *ranges.mass;
+    masses = {std::clamp(own.rendering.mass, from, to), from, to};
+  }
+  std::vector<std::string> filters = {""};
+  if (question.filters && impedance_of(own) != nullptr)
+    filters.insert(filters.end(), std::begin(kFilters), std::end(kFilters));
+  std::vector<TuneSetting> settings;
+  for (const std::string& filter : filters)
+    for (const auto& mass : masses)
+      for (const auto& ratio : ratios) settings.push_back({ratio, mass, filter});
+  return settings;
+}
+
+std::vector<FamilyMember> hands_of(const Scenario& scenario) {
+  const bool has_mass = std::holds_alternative<MassSpringDamperHandFields>(scenario.hand);
+  if (!has_mass && spring_of(scenario.hand) == nullptr && !std::holds_alternative<DragHandFields>(scenario.hand))
+    return {};
+  const auto family = hand_family().subspan(1);  // the first is no hand
+  const auto [soft, stiff] = std::ranges::minmax(family, {}, &AttachedHand::stiffness);
+  const auto [light, heavy] = std::ranges::minmax(family, {}, &AttachedHand::mass);
+  std::vector<FamilyMember> hands;
+  for (const double k : {soft.stiffness, stiff.stiffness}) {
+    const std::string spring = fmt::format("hand.stiffness_N_per_m={}", k);
+    if (!has_mass) hands.push_back({fmt::format("a hand of {} N/m", k), {spring}});
+    for (const double m : {light.mass, heavy.mass}) {
+      if (has_mass)
+        hands.push_back({fmt::format("a hand of {} kg and {} N/m", m, k), {spring, fmt::format("hand.mass_kg={}", m)}});
+    }
+  }
+  return hands;
+}
+
+std::vector<FamilyMember> seeds_of(const LoadedScenario& loaded) {
+  const Axis axis = seed_axis(loaded.scenario, kSeeds, kSeedShift);
+  std::vector<FamilyMember> seeds;
+  for (std::size_t k = 1; k < kSeeds; ++k)
+    seeds.push_back({"seed " + axis.values[k], {"seed=" + axis.values[k], axis.along[k].overrides.front()}});
+  return seeds;
+}
+
+/// Makes everything in the JSON of a hand or a motion so many times as fast.
+void hasten(Json& json, double times) {
+  if (!json.is_structured()) return;
+  for (auto& [key, value] : json.items()) {
+    if (value.is_number() && (key == "speed_m_per_s" || key == "rate_per_s")) value = value.get<double>() * times;
+    if (value.is_number() && key == "period_s") value = value.get<double>() / times;
+    if (key == "points" && value.is_array()) {
+      for (Json& point : value) point[0] = point[0].get<double>() / times;
+    } else {
+      hasten(value, times);
+    }
+  }
+}
+
+std::vector<FamilyMember> speeds_of(const LoadedScenario& loaded) {
+  std::vector<FamilyMember> speeds;
+  const Json own = effective_scenario(loaded.scenario, loaded.scenario.directory);
+  for (const double times : {0.5, 2.0}) {
+    FamilyMember member{times < 1.0 ? "half the speed" : "twice the speed"};
+    for (const char* section : {"hand", "motion"}) {
+      Json json = own.value(section, Json());
+      hasten(json, times);
+      if (json != own.value(section, Json())) member.overrides.push_back(fmt::format("{}={}", section, json.dump()));
+    }
+    if (member.overrides.empty()) return {};
+    member.overrides.push_back(
+        fmt::format("time.steps={:.0f}", static_cast<double>(loaded.scenario.time.steps) / times));
+    speeds.push_back(std::move(member));
+  }
+  return speeds;
+}
+
+}  // namespace
+
+std::vector<FamilyMember> family_of(const LoadedScenario& loaded, FamilyOver over) {
+  if (over == FamilyOver::hands) return hands_of(loaded.scenario);
+  return over == FamilyOver::seeds ? seeds_of(loaded) : speeds_of(loaded);
+}
+
 namespace {
 
 constexpr double kResolution = 5e-3;  // of K
@@ -59,7 +196,7 @@ class Tuner {
       best_.reset();
     }
     if (best_) {
-      if (best_->metrics.empty()) best_->metrics = metrics_of(*best_, 1)[0];
+      if (best_->metrics.empty()) best_->metrics = own_metrics_of(*best_);
       law.choice = best_;
       law.binding = !beyond_.binding.empty() ? beyond_.binding : cap_.empty() ? "range" : "margin";
       law.why = !beyond_.why.empty() ? beyond_.why : cap_.empty() ? "the end of the range that was searched" : cap_;
@@ -81,8 +218,13 @@ class Tuner {
   std::vector<std::string> overrides(const TuneSetting& setting, double stiffness) const {
     std::vector<std::string> all = question_.overrides;
     all.push_back("rendering.algorithm=" + algorithm_);
-    const std::vector<std::string> more = overrides_of(setting, stiffness);
-    all.insert(all.end(), more.begin(), more.end());
+    if (setting.damping_ratio) {
+      all.push_back("rendering.damping_N_s_per_m=null");
+      all.push_back(fmt::format("rendering.damping_ratio={}", *setting.damping_ratio));
+    }
+    if (setting.mass) all.push_back(fmt::format("rendering.mass_kg={}", *setting.mass));
+    if (!setting.filter.empty()) all.push_back("device.velocity_filter=" + setting.filter);
+    all.push_back(fmt::format("{}={}", kTunedField, stiffness));
     return all;
   }
   LoadedScenario at(const TuneSetting& setting, double stiffness, const FamilyMember& member,
@@ -104,7 +246,7 @@ class Tuner {
     return judged_run(loaded, shell_, rule);
   }
   TuneMetrics metrics_of(const LoadedScenario& loaded) const {
-    const Result summary = run_with_shell(loaded, shell_, std::nullopt, false);
+    const Result summary = run_with_shell(loaded, shell_);
     TuneMetrics metrics;
     const auto add = [&](const std::string& name) {
       if (const auto value = number_of(summary.metrics, name)) metrics[name] = *value;
@@ -113,12 +255,13 @@ class Tuner {
     for (const auto& [name, bound] : question_.limits) add(name);
     return metrics;
   }
-  /// The metrics of the first members.
-  std::vector<TuneMetrics> metrics_of(const TuneTrial& trial, std::size_t members) {
-    std::vector<TuneMetrics> metrics(members);
-    in_parallel(members, [&](std::size_t i) { metrics[i] = metrics_of(at(trial, trial.stiffness, family_[i])); });
+  std::vector<TuneMetrics> metrics_of(const TuneTrial& trial, std::span<const FamilyMember> members) {
+    std::vector<TuneMetrics> metrics(members.size());
+    in_parallel(members.size(),
+                [&](std::size_t i) { metrics[i] = metrics_of(at(trial, trial.stiffness, members[i])); });
     return metrics;
   }
+  TuneMetrics own_metrics_of(const TuneTrial& trial) { return metrics_of(trial, std::span(family_).first(1))[0]; }
 
   // ---- The loop in contact
 
@@ -179,7 +322,7 @@ class Tuner {
   /// Finds the first limit that a member does not keep, and the worst of each metric.
   void judge_limits(TuneTrial& trial) {
     if (question_.limits.empty()) return;
-    const std::vector<TuneMetrics> metrics = metrics_of(trial, family_.size());
+    const std::vector<TuneMetrics> metrics = metrics_of(trial, family_);
     trial.metrics = metrics[0];
     for (const auto& [name, bound] : question_.limits) {
       for (std::size_t i = 0; i < metrics.size(); ++i) {
@@ -322,13 +465,12 @@ class Tuner {
       margins.gain = last_of(gains, [&](double gain) { return settled(choice, gain); });
     }
     const Scenario scenario = at(choice, choice.stiffness, family_[0]).scenario;
-    if (!std::holds_alternative<IdealDeviceFields>(scenario.device)) {
-      const bool impedance = std::holds_alternative<ImpedanceDeviceConfig>(scenario.device);
-      const double own = delay_of(scenario);
-      const char* path = impedance ? "device.delay_samples" : "device.servo.delay_samples";
-      const SearchWay delays{.range = {0.0, kMostDelay}, .whole = !impedance, .resolution = 0.02 / kMostDelay};
-      margins.delay_samples =
-          last_of(delays, [&](double more) { return settled(choice, 1.0, fmt::format("{}={}", path, own + more)); });
+    if (has_device(scenario)) {
+      const bool whole = std::holds_alternative<AdmittanceDeviceConfig>(scenario.device);
+      const SearchWay delays{.range = {0.0, kMostDelay}, .whole = whole, .resolution = 0.02 / kMostDelay};
+      margins.delay_samples = last_of(delays, [&](double more) {
+        return settled(choice, 1.0, fmt::format("{}={}", delay_path(scenario), delay_of(scenario) + more));
+      });
     }
     const double lambda = springs_lambda_.value_or(choice.lambda_max);
     if (!(lambda > 0.0)) return margins;
@@ -345,9 +487,8 @@ class Tuner {
 
   TuneMetrics spread(const TuneTrial& choice) {
     const LoadedScenario own = at(choice, choice.stiffness, family_[0]);
-    const std::vector<FamilyMember> seeds = family_of(own, FamilyOver::seeds);
-    std::vector<TuneMetrics> all(seeds.size() + 1, choice.metrics);
-    in_parallel(seeds.size(), [&](std::size_t i) { all[i] = metrics_of(at(choice, choice.stiffness, seeds[i])); });
+    std::vector<TuneMetrics> all = metrics_of(choice, family_of(own, FamilyOver::seeds));
+    all.push_back(choice.metrics);
     TuneMetrics spread;
     for (const auto& [name, value] : choice.metrics) {
       std::vector<double> values;
@@ -367,7 +508,7 @@ class Tuner {
       if (!(K > ranges_.stiffness.from && K < ranges_.stiffness.to / question_.margin)) continue;
       tried(setting, K);
       TuneTrial& trial = trials_.at({setting, K});
-      if (trial.settled && trial.metrics.empty()) trial.metrics = metrics_of(trial, 1)[0];
+      if (trial.settled && trial.metrics.empty()) trial.metrics = own_metrics_of(trial);
     }
   }
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "scenarios/description/load_scenario.hpp"
-#include "scenarios/studies/stability/edge_search.hpp"
+#include "scenarios/studies/stability/field_limit.hpp"
 
 /// Which stiffness and damping to use: for a force law in a scene the largest K, over damping ratio and, on request or
 /// on an admittance device, velocity filter and virtual mass, at which the worst run of a family is settled with a gain
@@ -62,8 +62,6 @@ struct TuneSetting {
   auto operator<=>(const TuneSetting&) const = default;
 };
 
-/// The overrides that give the scene a setting and K [N/m].
-std::vector<std::string> overrides_of(const TuneSetting& setting, double stiffness);
 /// ", zeta = 0.3, 0.2 kg", for what was chosen.
 std::string setting_text(const TuneSetting& setting);
 
@@ -118,8 +116,6 @@ struct TuneRanges {
   std::optional<Range> damping_ratio, mass;
 };
 TuneRanges tune_ranges(const TuneQuestion& question, const std::string& algorithm);
-/// The settings to begin with, the scene's own first: with equal K it stays.
-std::vector<TuneSetting> settings_of(const TuneQuestion& question, const TuneRanges& ranges, const Scenario& own);
 
 /// Tunes one law. Deterministic whatever the number of threads.
 ///

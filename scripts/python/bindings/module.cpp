@@ -71,9 +71,7 @@ py::dict run(const std::string& scenario, const std::vector<std::string>& overri
   const bool shown = progress.ptr() != Py_False;
   supervise(progress, [&] {
     const LoadedScenario loaded = load_scenario(find_scenario(scenario), overrides);
-    std::vector<Warning> before = check_named_files(loaded);
-    before.insert(before.begin(), loaded.warnings.begin(), loaded.warnings.end());
-    warnings = with_files(loaded, before);
+    warnings = with_files(loaded, warnings_before_run(loaded));
     effective = json_text(effective_scenario(loaded.scenario, std::filesystem::current_path()));
     report = run_scenario(loaded, std::nullopt, shown, &tables);
     for (std::string& warning : run_warnings({&report, 1})) warnings.push_back(std::move(warning));

@@ -157,7 +157,7 @@ TEST_F(SlowSweepPromises, LittleMoreTimeThanTheSimulationsInWhicheverOrderTheAxe
       const LoadedScenario loaded = plan.cases.load(run);
       const auto shell = make_shell(loaded.scenario, loaded.files);
       const double before = processor_seconds();
-      run_with_shell(loaded, shell, std::nullopt, false);
+      run_with_shell(loaded, shell);
       simulations += processor_seconds() - before;
     }
     EXPECT_LT(sweep, 1.3 * simulations) << axes.front();

@@ -221,8 +221,7 @@ TEST(DescribeCommand, ExplainsEveryField) {
 TEST(DescribeCommand, ExplainsTheWordsAndHeadingsThatResultsHave) {
   std::vector<std::string> words = {"reproduced in kind"};
   for (const OutcomeInfo& outcome : outcome_infos()) words.emplace_back(outcome.name);
-  for (const MotionClass motion : kMotionClasses) words.emplace_back(motion_class_name(motion));
-  for (const RunVerdict verdict : kRunVerdicts) words.emplace_back(run_verdict_name(verdict));
+  for (const RunVerdictText& verdict : run_verdict_texts()) words.emplace_back(verdict.name);
   for (const std::string& word : words) EXPECT_EQ(hapbench_here({"describe", word}).status, 0) << word;
   for (const RunHeading& heading : kRunHeadings)
     EXPECT_EQ(hapbench_here({"describe", heading.title}).status, 0) << heading.title;

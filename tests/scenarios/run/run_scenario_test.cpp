@@ -9,7 +9,7 @@
 #include "scenarios/batch/parallel_for.hpp"
 #include "scenarios/description/load_scenario.hpp"
 #include "scenarios/run/assemble.hpp"
-#include "scenarios/run/recorders.hpp"
+#include "scenarios/run/result_folder.hpp"
 #include "scenarios/run/stop_signal.hpp"
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/scenarios.hpp"

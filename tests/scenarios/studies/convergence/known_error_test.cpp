@@ -1,4 +1,4 @@
-#include "scenarios/studies/convergence/known_error.hpp"
+#include "scenarios/studies/convergence/convergence.hpp"
 
 #include <gtest/gtest.h>
 

@@ -26,10 +26,10 @@ MotionClass class_of(const std::function<double(double)>& velocity, Outcome outc
 }
 
 TEST(MotionClassifier, NamesItsClasses) {
-  EXPECT_EQ(motion_class_name(MotionClass::stable), "stable");
-  EXPECT_EQ(motion_class_name(MotionClass::dying_out), "dying_out");
-  EXPECT_EQ(motion_class_name(MotionClass::vibrating), "vibrating");
-  EXPECT_EQ(motion_class_name(MotionClass::diverged), "diverged");
+  EXPECT_EQ(run_verdict_name(MotionClass::stable), "stable");
+  EXPECT_EQ(run_verdict_name(MotionClass::dying_out), "dying_out");
+  EXPECT_EQ(run_verdict_name(MotionClass::vibrating), "vibrating");
+  EXPECT_EQ(run_verdict_name(MotionClass::diverged), "diverged");
 }
 
 TEST(MotionClassifier, OfNoMotionAndOfCreepingIsStable) {

@@ -90,7 +90,9 @@ TEST_F(ContactSets, HoldTheDegenerateCasesOfTheirNames) {
       if (contacts.normal(k) == -contacts.normal(k - 1) && contacts.normal(k) != Vec3::Zero()) ++seen["opposite"];
     }
   }
-  for (const char* family : contact_set_families()) EXPECT_GT(seen[family], test::cases(1000)) << family;
+  for (const char* family : {"random", "zero_normals", "coincident", "on_the_axis", "opposite", "nearly_opposite",
+                             "nearly_parallel", "on_the_surface", "across_the_axis"})
+    EXPECT_GT(seen[family], test::cases(1000)) << family;
   for (const char* what : {"one point", "tiny", "huge", "overflow", "zero normal", "tip centre", "on the axis",
                            "coincident", "opposite"}) {
     EXPECT_GT(seen[what], test::cases(100)) << what;
