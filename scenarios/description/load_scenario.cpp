@@ -222,8 +222,8 @@ void rethrow_with_file(const InputError& error, const LoadedScenario& loaded) {
 LoadedScenario read_scenario(const Json& json, const fs::path& directory) {
   LoadedScenario loaded;
   loaded.scenario.directory = directory;
-  Reader reader(json, "", &loaded.warnings);
-  reader.object(loaded.scenario);
+  read_value(
+      json, "", [&](Fields& f) { f.object(loaded.scenario); }, &loaded.warnings);
   for (Warning& warning : relation_warnings(loaded.scenario, json)) loaded.warnings.push_back(std::move(warning));
   loaded.files = NamedFiles(loaded.scenario);
   return loaded;

@@ -171,8 +171,14 @@ TEST(Object, IsReadWhenItsDescriptionIsToldSo) {
 TEST(Object, KeepsWarningsForWhoeverAsks) {
   const Json json = Json::object();
   std::vector<Warning> warnings;
-  Reader listening(json, "", &warnings), deaf(json, "");
-  for (Reader* reader : {&listening, &deaf}) reader->warn({"odd", "/mass_kg", "is odd"});
+  std::vector<Warning>* const nobody = nullptr;
+  for (std::vector<Warning>* kept : {&warnings, nobody})
+    read_value(
+        json, "",
+        [](Fields& f) {
+          f.warn({"odd", "/mass_kg", "is odd"});
+        },
+        kept);
   ASSERT_EQ(warnings.size(), 1u);
   EXPECT_EQ(warnings[0].told(), "/mass_kg: is odd");
 }
@@ -281,9 +287,11 @@ TEST(TaggedObject, IsWrittenAsTypeAndFields) {
 }
 
 TEST(TaggedObject, IsNotWrittenWithoutAnAlternative) {
-  Writer writer;
   const TypeName names[] = {"ball"};
-  EXPECT_THROW(writer.alternatives("solid", names, Untyped::refused, 1, [](Fields&, std::size_t) {}), std::logic_error);
+  const auto describe = [&](Fields& f) {
+    f.alternatives("solid", names, Untyped::refused, 1, [](Fields&, std::size_t) {});
+  };
+  EXPECT_THROW(json_of(describe), std::logic_error);
 }
 
 TEST(TaggedObject, HasAnAlternativeForEachTagInItsSchema) {
