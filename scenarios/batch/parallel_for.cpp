@@ -2,86 +2,48 @@
 
 #include <oneapi/tbb/global_control.h>
 #include <oneapi/tbb/info.h>
-#include <oneapi/tbb/parallel_pipeline.h>
-#include <oneapi/tbb/task_arena.h>
 
 #include <algorithm>
 #include <atomic>
 #include <exception>
+#include <mutex>
+#include <system_error>
+#include <thread>
+#include <vector>
 
 #include "scenarios/run/progress_bar.hpp"
 #include "scenarios/run/stop_signal.hpp"
 
-#ifdef __SANITIZE_THREAD__
-#include <sanitizer/tsan_interface.h>
-#endif
-
 namespace hapbench {
-namespace {
-
-/// Tells ThreadSanitizer that what was done before `give` is visible after `take`. It cannot see that oneTBB, which is
-/// not instrumented, hands work from one thread to another. Does nothing in other builds.
-class HandOver {
- public:
-#ifdef __SANITIZE_THREAD__
-  void give() {
-    __tsan_release(this);
-  }
-  void take() {
-    __tsan_acquire(this);
-  }
-#else
-  void give() {}
-  void take() {}
-#endif
-};
-
-}  // namespace
 
 void parallel_for(const NextRun& next, std::size_t jobs, const std::function<Delivery(std::size_t)>& work) {
-  HandOver started, finished;
-  // An exception that leaves a stage of the pipeline would leak the deliveries of the runs that are under way.
+  std::mutex mutex;  // locked but while there is work to do
   std::exception_ptr failure;
-  std::atomic<bool> has_failed = false;
-  started.give();
-  const auto start = [&](tbb::flow_control& control) -> std::size_t {
-    started.take();
-    const auto run = has_failed ? std::nullopt : next();
-    started.give();
-    if (!run) control.stop();
-    return run.value_or(0);
-  };
-  const auto compute = [&](std::size_t run) {
-    started.take();
-    Delivery delivery;
+  const auto work_on = [&] {
+    std::unique_lock lock(mutex);
     try {
-      delivery = work(run);
+      while (const auto run = failure ? std::nullopt : next()) {
+        lock.unlock();
+        const Delivery delivery = work(*run);
+        lock.lock();
+        if (delivery && !failure) delivery();
+      }
     } catch (...) {
-      delivery = [caught = std::current_exception()] { std::rethrow_exception(caught); };
+      if (!lock) lock.lock();
+      if (!failure) failure = std::current_exception();
     }
-    finished.give();
-    return delivery;
   };
-  const auto deliver = [&](const Delivery& delivery) {
-    finished.take();
+  // What runs do in parallel by themselves takes no more threads than they.
+  const tbb::global_control within(tbb::global_control::max_allowed_parallelism, std::min(jobs, available_threads()));
+  {
+    std::vector<std::jthread> others;
     try {
-      if (delivery && !failure) delivery();
-    } catch (...) {
-      failure = std::current_exception();
-      has_failed = true;
+      while (others.size() + 1 < jobs) others.emplace_back(work_on);
+    } catch (const std::system_error&) {
+      // As many as the system gives.
     }
-    finished.give();
-  };
-  using tbb::filter_mode;
-  const auto pipeline = tbb::make_filter<void, std::size_t>(filter_mode::serial_in_order, start) &
-                        tbb::make_filter<std::size_t, Delivery>(filter_mode::parallel, compute) &
-                        tbb::make_filter<Delivery, void>(filter_mode::serial_out_of_order, deliver);
-  // Without this an arena has at most as many threads as the machine.
-  const tbb::global_control threads(tbb::global_control::max_allowed_parallelism, jobs);
-  tbb::task_arena arena(static_cast<int>(jobs));
-  arena.execute([&] { tbb::parallel_pipeline(jobs, pipeline); });
-  started.take();
-  finished.take();
+    work_on();
+  }
   if (failure) std::rethrow_exception(failure);
 }
 
@@ -110,7 +72,7 @@ void for_each_job(std::size_t count, const JobOptions& options, const std::funct
     }
     return [&] { bar.show(++done); };
   };
-  parallel_for(next, std::max<std::size_t>(1, options.threads), work);
+  parallel_for(next, std::clamp<std::size_t>(options.threads, 1, std::max<std::size_t>(count, 1)), work);
   if (error) std::rethrow_exception(error);
   if (done < count) throw_if_stopped();
 }

@@ -14,11 +14,11 @@ using Delivery = std::function<void()>;
 /// Returns the next run to start, or none when no further run is to start; called by one thread at a time.
 using NextRun = std::function<std::optional<std::size_t>()>;
 
-/// Calls `work` on up to `jobs` threads for the runs that `next` returns, and then the deliveries that `work` returns,
-/// one at a time, in the order in which runs finish. Runs start in the order of `next`, and at most `jobs` runs are
-/// started and not yet delivered. Results depend on `jobs` only if `work` or the deliveries depend on their order. An
-/// exception from any of them stops the loop and is rethrown. Threads are those of oneTBB. Overhead: some microseconds
-/// for each run.
+/// Calls `work` on `jobs` threads for the runs that `next` returns, and then the deliveries that `work` returns, in the
+/// order in which runs finish; of `next` and the deliveries one at a time. Runs start in the order of `next`, and at
+/// most `jobs` runs are started and not yet delivered. Results depend on `jobs` only if `work` or the deliveries depend
+/// on their order. An exception from any of them stops the loop and is rethrown. Overhead: some microseconds for each
+/// run, some tens for each thread.
 void parallel_for(const NextRun& next, std::size_t jobs, const std::function<Delivery(std::size_t run)>& work);
 /// Number of threads that this process may use at once.
 std::size_t available_threads();

@@ -88,7 +88,7 @@ SweepReport run_sweep(const SweepPlan& plan, const SweepOptions& options) {
            (!options.keep_runs || fs::exists(run_folder(options, run) / "summary.json"));
   };
   TableFile table(
-      {table_of(options), fmt::format("{}", fmt::join(columns, ",")), plan.description(part), plan.cases.size(), true},
+      {table_of(options), fmt::format("{}", fmt::join(columns, ",")), plan.description(part), plan.cases.size()},
       options.resume ? TableFile::Keep(keep) : nullptr);
   report.resumed = table.count();
   const std::size_t size = part.size(plan.cases.size());

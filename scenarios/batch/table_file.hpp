@@ -27,7 +27,6 @@ struct TableTitle {
   std::string header;     ///< line without its end; the first column is the number of the case
   Json about;             ///< written beside the table as NAME.json
   std::size_t cases = 0;  ///< rows have numbers below
-  bool stays = true;      ///< as it is when its object goes, to be resumed; otherwise it goes, too, unless finished
 };
 
 /// A table with a row for each case. It grows as FILE.part, with its JSON beside it, a row at a time and in any order,
@@ -41,9 +40,6 @@ class TableFile {
   /// Begins a table, over one that was under way. With `keep`, goes on with it, or with a finished one: a torn last
   /// line is dropped. Throws InputError when that is another table or damaged, and IoError.
   explicit TableFile(TableTitle title, const Keep& keep = {});
-  ~TableFile();
-  TableFile(const TableFile&) = delete;
-  TableFile& operator=(const TableFile&) = delete;
 
   /// Whether a table that is under way, or else the finished one, is of this definition.
   static bool is_of(const std::filesystem::path& file, const std::string& definition);
@@ -61,10 +57,9 @@ class TableFile {
  private:
   void resume(const Keep& keep);
   void append(const std::string& text);
-  void remove_parts() noexcept;
 
   TableTitle title_;
-  std::filesystem::path part_, about_, about_part_;
+  std::filesystem::path part_, about_part_;
   std::unique_ptr<std::FILE, int (*)(std::FILE*)> out_;
   std::vector<bool> has_;
   std::size_t count_ = 0;

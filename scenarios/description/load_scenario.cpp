@@ -180,7 +180,7 @@ std::string last_name(const std::string& path, char separator) {
 /// The hint for a field whose name resembles no field of its object: fields elsewhere with the nearest name.
 std::string hint_elsewhere(const std::string& place) {
   const std::string field = last_name(place, '/');
-  const std::vector<std::string>& paths = scenario_field_paths();
+  const std::vector<std::string> paths = scenario_field_paths();
   std::vector<std::string> names, found;
   for (const std::string& path : paths) names.push_back(last_name(path, '.'));
   const std::string nearest = nearest_name(field, names);
@@ -208,9 +208,9 @@ InputError in_file(const InputError& fault, const fs::path& file) {
 }  // namespace
 
 void rethrow_with_file(const InputError& error, const fs::path& file) {
-  std::vector<InputError> faults;
-  for (const InputError& fault : error.faults()) faults.push_back(in_file(fault, file));
-  throw InputError::all(faults);
+  LoadedScenario place;
+  place.file = file;
+  rethrow_with_file(error, place);
 }
 
 void rethrow_with_file(const InputError& error, const LoadedScenario& loaded) {

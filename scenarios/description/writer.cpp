@@ -293,31 +293,22 @@ void add_paths(std::vector<std::string>& paths, const std::string& prefix, const
   }
 }
 
-/// The guide to a scenario and the paths of its fields, valid as long as additions() has this value.
-struct KnownFields {
-  explicit KnownFields(std::size_t count) : additions(count) { add_paths(paths, "", guide); }
-
-  std::size_t additions;
-  ValueGuide guide = full_scenario(nullptr);
-  std::vector<std::string> paths;
-};
-
-const KnownFields& known_fields() {
-  static std::mutex mutex;
-  static std::deque<KnownFields> built;
-  const std::lock_guard lock(mutex);
-  if (built.empty() || built.back().additions != additions()) built.emplace_back(additions());
-  return built.back();
-}
-
 }  // namespace
 
 const ValueGuide& scenario_guide() {
-  return known_fields().guide;
+  static std::mutex mutex;
+  static std::deque<ValueGuide> built;
+  static std::size_t known = 0;  // additions() when the last one was built
+  const std::lock_guard lock(mutex);
+  if (built.empty() || known != additions()) built.push_back(full_scenario(nullptr));
+  known = additions();
+  return built.back();
 }
 
-const std::vector<std::string>& scenario_field_paths() {
-  return known_fields().paths;
+std::vector<std::string> scenario_field_paths() {
+  std::vector<std::string> paths;
+  add_paths(paths, "", scenario_guide());
+  return paths;
 }
 
 Json scenario_schema() {

@@ -67,6 +67,6 @@ Json scenario_schema();
 const ValueGuide& scenario_guide();
 
 /// The dotted paths of all fields of objects, as "rendering.limits.max_force_N"; those of list entries aside.
-const std::vector<std::string>& scenario_field_paths();
+std::vector<std::string> scenario_field_paths();
 
 }  // namespace hapbench

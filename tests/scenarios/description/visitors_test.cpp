@@ -171,14 +171,10 @@ TEST(Object, IsReadWhenItsDescriptionIsToldSo) {
 TEST(Object, KeepsWarningsForWhoeverAsks) {
   const Json json = Json::object();
   std::vector<Warning> warnings;
-  std::vector<Warning>* const nobody = nullptr;
-  for (std::vector<Warning>* kept : {&warnings, nobody})
-    read_value(
-        json, "",
-        [](Fields& f) {
-          f.warn({"odd", "/mass_kg", "is odd"});
-        },
-        kept);
+  const Warning odd = {"odd", "/mass_kg", "is odd"};
+  const auto warn = [&odd](Fields& f) { f.warn(odd); };
+  read_value(json, "", warn, &warnings);
+  read_value(json, "", warn);
   ASSERT_EQ(warnings.size(), 1u);
   EXPECT_EQ(warnings[0].told(), "/mass_kg: is odd");
 }
