@@ -16,18 +16,6 @@ CsvWriter::CsvWriter(std::filesystem::path file, std::string_view header)
   file_.append("\n");
 }
 
-void CsvWriter::put(std::string_view text) noexcept {
-  std::string& to = cell();
-  if (text.find_first_of(",\"\r\n") == std::string_view::npos) {
-    to += text;
-    return;
-  }
-  // Quoted, with quotes inside doubled.
-  to += '"';
-  for (const char c : text) to += c == '"' ? std::string_view("\"\"") : std::string_view(&c, 1);
-  to += '"';
-}
-
 void CsvWriter::cells(std::span<const Cell> cells) {
   for (const Cell& held : cells) {
     if (const auto* count = std::get_if<std::uint64_t>(&held)) put(*count);

@@ -51,7 +51,7 @@ class CsvWriter {
   void put(double value) noexcept { cell() += NumberText(value); }
   void put(std::uint64_t value) noexcept { cell() += NumberText(value); }
   void put(const std::optional<double>& value) noexcept { value ? put(*value) : static_cast<void>(cell()); }
-  void put(std::string_view text) noexcept;
+  void put(std::string_view text) noexcept { cell() += csv_cell(text); }
   template <class Values>
   requires(requires(const Values& v) { v.begin(); } &&
            !std::convertible_to<Values, std::string_view>) void put(const Values& values) noexcept {

@@ -7,6 +7,7 @@
 #include <exception>
 
 #include "results/io/atomic_file.hpp"
+#include "results/io/columns.hpp"
 #include "results/summary/outcome_names.hpp"
 #include "scenarios/batch/sweep_table.hpp"
 #include "scenarios/batch/table_file.hpp"

@@ -16,8 +16,6 @@
 
 namespace hapbench {
 
-/// A cell of comma-separated values, in quotes where it has a comma or a quote (RFC 4180).
-std::string csv_cell(std::string_view text);
 /// The cells of a line, without their quotes and a carriage return at its end.
 std::vector<std::string> csv_cells(std::string_view line);
 
