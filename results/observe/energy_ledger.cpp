@@ -52,13 +52,11 @@ void EnergyLedger::on_step(const StepRecord& record) noexcept {
 }
 
 EnergyLedger::Works EnergyLedger::works(const Vec3& spring, const Vec3& rendered, const Vec3& way) const noexcept {
-  Works w;
-  w.input = last_.input.dot(way);
-  w.hand = last_.hand.dot(way);
-  w.actuator = (last_.input - last_.hand).dot(way);
-  w.spring = spring.dot(way);
-  w.damping = (rendered - spring).dot(way);
-  return w;
+  return {.input = last_.input.dot(way),
+          .hand = last_.hand.dot(way),
+          .actuator = (last_.input - last_.hand).dot(way),
+          .spring = spring.dot(way),
+          .damping = (rendered - spring).dot(way)};
 }
 
 EnergyLedger::Works EnergyLedger::works_until(const StepRecord& now) const noexcept {
@@ -114,17 +112,15 @@ double EnergyLedger::created_in_step(const StepRecord& now, double spring_work) 
 }
 
 void EnergyLedger::note_event(const StepRecord& now, double created) noexcept {
-  EnergyEvent event;
-  event.step = now.step;
-  event.time = now.time;
-  event.created = created;
-  event.colliding_before = last_.colliding;
-  event.colliding_after = now.colliding;
-  event.rendered_before = last_.rendered.size();
-  event.rendered_after = rendered_.size();
-  event.appeared = missing(rendered_, last_.rendered);
-  event.vanished = missing(last_.rendered, rendered_);
-  events_.back() = event;
+  events_.back() = {.step = now.step,
+                    .time = now.time,
+                    .created = created,
+                    .colliding_before = last_.colliding,
+                    .colliding_after = now.colliding,
+                    .rendered_before = last_.rendered.size(),
+                    .rendered_after = rendered_.size(),
+                    .appeared = missing(rendered_, last_.rendered),
+                    .vanished = missing(last_.rendered, rendered_)};
   for (std::size_t i = events_.size() - 1; i > 0 && events_[i].created > events_[i - 1].created; --i) {
     std::swap(events_[i], events_[i - 1]);
   }

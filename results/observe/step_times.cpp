@@ -40,7 +40,7 @@ void StepSampler::start(std::uint64_t step) noexcept {
   times_.start();
 }
 
-void StepSampler::stop() noexcept {
+void StepSampler::stop(std::uint64_t) noexcept {
   if (!runs_) return;
   runs_ = false;
   times_.lap();

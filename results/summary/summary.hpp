@@ -118,8 +118,6 @@ nlohmann::ordered_json step_latency_json(const StepLatency& latency);
 /// timing.json, separate from summary.json because no two runs take the same time. It names the build's instruction set
 /// and the CPU: times are comparable only for equal ones. The mean is null without steps, the latency when steps were
 /// not timed.
-nlohmann::ordered_json timing_json(const RunTiming& timing, const InstructionSet& instructions,
-                                   const Provenance& provenance);
 std::string timing_text(const RunTiming& timing, const InstructionSet& instructions, const Provenance& provenance);
 
 }  // namespace hapbench

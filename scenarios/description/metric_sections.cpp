@@ -5,7 +5,6 @@
 
 #include "results/observe/contact_metrics.hpp"
 #include "results/observe/energy_ledger.hpp"
-#include "results/observe/force_stages.hpp"
 #include "results/observe/ideal_trajectory.hpp"
 #include "results/observe/passivity_observer.hpp"
 #include "results/observe/target_metrics.hpp"
