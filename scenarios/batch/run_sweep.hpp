@@ -9,7 +9,7 @@
 
 #include "scenarios/batch/cases.hpp"
 
-/// Sweeps: cases that are checked first (sweep_plan.cpp), then run. sweep_table.hpp reads what they leave.
+/// Sweeps: cases that are checked first, then run. sweep_table.hpp reads what they leave.
 namespace hapbench {
 
 /// Cases to run, checked before the first run.

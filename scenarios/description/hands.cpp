@@ -108,7 +108,7 @@ static void describe(Fields& f, TargetRules& task) {
   f.choice("display", task.display, kDisplays, "display",
            "panel: x and y count, the orientation is scripted; height: z counts, the hand turns the tool");
   f.list(
-      "places_m", task.places, {1, 100}, "where targets appear",
+      "places_m", task.places, {1, TrackingHandFields::kMostPlaces}, "where targets appear",
       [](Fields& p, Vec3& place) { p.vector3(place, kCoordinate); }, Presence::required);
   f.integer("targets_per_place", task.targets_per_place, {1, 1000}, "in one trial");
   f.number("tolerance_m", task.tolerance, {0.0, 1.0, "m", true}, "the tip is on the target within this distance");

@@ -166,6 +166,7 @@ struct DragHandFields {
 };
 /// The man-machine experiments: every subject does every trial from the initial state.
 struct TrackingHandFields {
+  static constexpr std::size_t kMostPlaces = 100;  ///< of targets
   TargetRules task;
   std::vector<Subject> subjects = {Subject{}};
   std::int64_t trials = 1;
