@@ -20,6 +20,7 @@
 #include "scenarios/batch/parallel_for.hpp"
 #include "scenarios/batch/sweep_table.hpp"
 #include "scenarios/batch/table_file.hpp"
+#include "scenarios/description/descriptions.hpp"
 #include "scenarios/description/metric_sections.hpp"
 #include "scenarios/description/writer.hpp"
 #include "scenarios/input/input_error.hpp"
