@@ -129,18 +129,16 @@ constexpr Rule kRules[] = {
      "got true; allowed: false with device \"impedance\": the controller looks ahead by the virtual mass, which is "
      "not there",
      [](const Scenario& s) { return handle_moves_tool(s.device) && s.rendering.passivity_controller; }},
+    {"/rendering/force_stage/max_damping_N_s_per_m",
+     "got null; allowed with device \"impedance\" or a prescribed position: a number, because there is no virtual mass "
+     "to take it from",
+     [](const Scenario& s) {
+       const bool has_mass = is<FreePosition>(s.motion.position) && !handle_moves_tool(s.device);
+       if (has_mass || !s.rendering.force_stage) return false;
+       const auto* limited = std::get_if<ActuatorLimitedPassivityConfig>(&*s.rendering.force_stage);
+       return limited != nullptr && !limited->max_damping;
+     }},
 };
-
-void check_force_stage(const Scenario& scenario) {
-  const auto& stage = scenario.rendering.force_stage;
-  if (!stage) return;
-  const auto* limited = std::get_if<ActuatorLimitedPassivityConfig>(&*stage);
-  const bool has_mass = is<FreePosition>(scenario.motion.position) && !handle_moves_tool(scenario.device);
-  if (limited != nullptr && !limited->max_damping && !has_mass)
-    fail("/rendering/force_stage/max_damping_N_s_per_m",
-         "got null; allowed with device \"impedance\" or a prescribed position: a number, because there is no virtual "
-         "mass to take it from");
-}
 
 /// The contacts of a trace belong to its motion, and neither they nor those of a library are points of our shell.
 void check_contact_source(const Scenario& scenario) {
@@ -302,7 +300,6 @@ void check_relations(const Scenario& scenario, double steps) {
     if (rule.is_broken(scenario)) fail(rule.at, rule.problem);
   }
   check_contact_source(scenario);
-  check_force_stage(scenario);
   check_drag_hand(scenario, steps);
   check_tracking_hand(scenario, steps);
 }
@@ -457,8 +454,7 @@ static void describe(Fields& f, MetricBound& bound) {
 }
 
 static void describe(Fields& f, ReferenceForceFields& reference) {
-  constexpr const char* kNames[] = {"x_N", "y_N", "z_N"};
-  for (std::size_t i = 0; i < 3; ++i) profile(f, kNames[i], reference.force[i], "N", "force on the tool over time");
+  profiles(f, {"x_N", "y_N", "z_N"}, reference.force, "N", "force on the tool over time");
 }
 
 static void describe(Fields& f, ExpectFields& expect) {

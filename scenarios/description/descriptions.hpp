@@ -30,6 +30,10 @@ void describe(Fields& f, ToolFields& tool);
 void profile(Fields& f, std::string_view name, Profile& profile, const char* unit, const char* doc,
              Presence presence = Presence::has_default);
 
+/// Three of them, which are x, y and z.
+void profiles(Fields& f, const char* const (&names)[3], std::array<Profile, 3>& profiles, const char* unit,
+              const char* doc, Presence presence = Presence::has_default);
+
 /// The types of tools, in the variant's order.
 std::vector<std::string> tool_names();
 

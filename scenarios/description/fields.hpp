@@ -184,6 +184,12 @@ class Fields {
     if (reads()) value = choices[index].value;
   }
 
+  void name(std::string& value, const std::vector<std::string>& names, const char* what) {
+    auto index = static_cast<std::size_t>(std::find(names.begin(), names.end(), value) - names.begin());
+    name(index, names, what);
+    if (reads()) value = names[index];
+  }
+
   /// `each(Fields&, T&)` describes an entry.
   template <class T, class Each>
   void list(std::vector<T>& values, ListSize size, Each each) {
@@ -250,11 +256,7 @@ class Fields {
   }
   void name(std::string_view name, std::string& value, const std::vector<std::string>& names, const char* what,
             const char* doc, Presence presence = Presence::has_default) {
-    field(name, doc, presence, [&](Fields& f) {
-      auto index = static_cast<std::size_t>(std::find(names.begin(), names.end(), value) - names.begin());
-      f.name(index, names, what);
-      if (f.reads()) value = names[index];
-    });
+    field(name, doc, presence, [&](Fields& f) { f.name(value, names, what); });
   }
   template <class Integer>
   void integer(std::string_view name, Integer& value, IntegerRange range, const char* doc,

@@ -19,8 +19,7 @@ constexpr Choice<PressForce> kPressForces[] = {{"rendered", PressForce::rendered
 static void describe(Fields&, NoHandFields&) {}
 
 static void describe(Fields& f, ForceHandFields& hand) {
-  constexpr const char* kNames[] = {"x_N", "y_N", "z_N"};
-  for (std::size_t i = 0; i < 3; ++i) profile(f, kNames[i], hand.force[i], "N", "force on the handle over time");
+  profiles(f, {"x_N", "y_N", "z_N"}, hand.force, "N", "force on the handle over time");
 }
 
 static void describe(Fields& f, PushHandFields& hand) {
@@ -45,11 +44,8 @@ static void describe_spring(Fields& f, ImpedanceHandFields& hand) {
   f.number("damping_N_s_per_m", hand.damping, {0.0, 1e9, "N s/m"}, "of the damper beside it");
   f.group(
       "target", "where the hand wants the handle",
-      [&hand](Fields& target) {
-        constexpr const char* kNames[] = {"x_m", "y_m", "z_m"};
-        for (std::size_t i = 0; i < 3; ++i) {
-          profile(target, kNames[i], hand.target[i], "m", "over time", Presence::required);
-        }
+      [&hand](Fields& t) {
+        profiles(t, {"x_m", "y_m", "z_m"}, hand.target, "m", "over time", Presence::required);
       },
       Presence::required);
   f.object_if_any("tremor", hand.tremor,
