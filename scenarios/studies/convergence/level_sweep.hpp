@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "scenarios/batch/axis.hpp"
+#include "scenarios/batch/cases.hpp"
 #include "scenarios/description/load_scenario.hpp"
 
 /// A scene sampled more and more finely, in its step or in any field.

@@ -4,7 +4,7 @@
 #include <map>
 #include <optional>
 
-#include "scenarios/batch/axis.hpp"
+#include "scenarios/batch/cases.hpp"
 
 /// The search for the edge of the stable values of a field, whatever makes a value stable.
 namespace hapbench {
