@@ -108,10 +108,6 @@ void AtomicFile::discard() noexcept {
   file_.reset();
 }
 
-void FileSet::write(const fs::path& target, std::string_view contents) {
-  files_.emplace_back(target).append(contents);
-}
-
 void FileSet::commit() {
   for (AtomicFile& file : files_) file.complete();
   for (const fs::path& name : removed_) {

@@ -88,7 +88,9 @@ class FileSet {
   /// The file gets its final name with the others.
   void take(AtomicFile file) { files_.push_back(std::move(file)); }
   /// The whole contents of a file. Throws IoError.
-  void write(const std::filesystem::path& target, std::string_view contents);
+  void write(const std::filesystem::path& target, std::string_view contents) {
+    files_.emplace_back(target).append(contents);
+  }
   /// The file, if there is one, goes when the others are complete and before any comes, which come in the order in
   /// which they were taken.
   void remove(std::filesystem::path file) { removed_.push_back(std::move(file)); }

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cassert>
-#include <new>
 
 namespace hapbench {
 
@@ -35,12 +34,6 @@ void CsvWriter::end_row() noexcept {
   row_.clear();
 }
 
-namespace {
-
-constexpr std::size_t kFirstNumbers = std::size_t{1} << 15;
-
-}  // namespace
-
 MemoryTable::~MemoryTable() {
   if (data_ != nullptr) ::munmap(data_, capacity_ * sizeof(double));
 }
@@ -48,6 +41,7 @@ MemoryTable::~MemoryTable() {
 /// Doubles the capacity. mremap moves pages in the address space without copying them.
 bool MemoryTable::reserve(std::size_t more) noexcept {
   if (size_ + more <= capacity_) return complete_;
+  constexpr std::size_t kFirstNumbers = std::size_t{1} << 15;
   const std::size_t capacity = capacity_ == 0 ? kFirstNumbers : 2 * capacity_;
   void* pages =
       data_ == nullptr
@@ -57,10 +51,6 @@ bool MemoryTable::reserve(std::size_t more) noexcept {
   data_ = static_cast<double*>(pages);
   capacity_ = capacity;
   return complete_;
-}
-
-void MemoryTable::require_complete() const {
-  if (!complete_) throw std::bad_alloc();
 }
 
 }  // namespace hapbench

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <limits>
+#include <new>
 #include <optional>
 #include <span>
 #include <string>
@@ -86,7 +87,9 @@ class MemoryTable {
   }
 
   /// Throws std::bad_alloc when a row was lost.
-  void require_complete() const;
+  void require_complete() const {
+    if (!complete_) throw std::bad_alloc();
+  }
 
   std::span<const Column> columns() const { return columns_; }
   std::size_t rows() const { return size_ / columns_.size(); }

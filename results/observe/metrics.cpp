@@ -37,10 +37,6 @@ void ReductionJumps::add(const ContactBuffer& kept, double step_squared, bool se
   if (!same) last_.assign(now.begin(), now.end());
 }
 
-std::optional<double> ReductionJumps::step_max() const noexcept {
-  return step_max_squared_ ? std::optional(std::sqrt(*step_max_squared_)) : std::nullopt;
-}
-
 bool ReductionJumps::stand_out() const noexcept {
   constexpr double kFarMore = 3.0;
   return step_max().value_or(0.0) > kFarMore * step_max_elsewhere();

@@ -47,7 +47,9 @@ class ReductionJumps {
   /// Rows whose set of kept points is another than the row before's.
   std::uint64_t changes() const noexcept { return changes_; }
   /// Largest force step of such rows in settled contact [N]; none without any.
-  std::optional<double> step_max() const noexcept;
+  std::optional<double> step_max() const noexcept {
+    return step_max_squared_ ? std::optional(std::sqrt(*step_max_squared_)) : std::nullopt;
+  }
   /// The same over the other rows in settled contact [N], without the row after each change: there, the damping
   /// responds to the jump of the velocity.
   double step_max_elsewhere() const noexcept { return std::sqrt(step_max_squared_elsewhere_); }

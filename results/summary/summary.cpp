@@ -137,10 +137,6 @@ ordered_json summary_json(const Result& run) {
   return json;
 }
 
-bool Result::has_section(std::string_view section) const {
-  return std::ranges::find(sections, section, &MetricSection::name) != sections.end();
-}
-
 std::string summary_text(const Result& run) {
   return json_text(summary_json(run));
 }

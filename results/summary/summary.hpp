@@ -1,8 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <nlohmann/json.hpp>
-#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -102,7 +102,9 @@ struct Result {
   Provenance provenance;
   std::string scenario_hash;  ///< of the effective scenario
 
-  bool has_section(std::string_view section) const;
+  bool has_section(std::string_view section) const {
+    return std::ranges::find(sections, section, &MetricSection::name) != sections.end();
+  }
 };
 
 /// summary.json. The same run gives the same bytes: no time stamps, no timings, no instruction set. Numbers that do not
