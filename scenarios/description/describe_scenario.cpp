@@ -27,24 +27,20 @@ namespace {
 constexpr double kMostDelaySamples = 1e6;  ///< longest reaction delay of a simulated subject [time steps]
 constexpr double kLongestDrag = 1e6;       ///< entries of the table of a path over a surface
 
-[[noreturn]] void fail(const std::string& at, const std::string& problem) {
-  throw InputError(InputError::Kind::relation, at, problem);
-}
-
 void check_sizes(const Scenario& scenario, double steps) {
   if (!(steps >= 1.0 && steps <= kMostSteps)) {
-    fail("/time/duration_s",
-         fmt::format("got {:.3g} steps (duration_s / step_s); allowed: 1 ... {:.0g}", steps, kMostSteps));
+    fail_at("/time/duration_s",
+            fmt::format("got {:.3g} steps (duration_s / step_s); allowed: 1 ... {:.0g}", steps, kMostSteps));
   }
   const double rows = steps / static_cast<double>(scenario.record.every);
   if (records_rows(scenario.record) && rows > kMostRows) {
-    fail("/record/every",
-         fmt::format("got {:.3g} recorded rows; allowed: at most {:.0g}, record less often or less", rows, kMostRows));
+    fail_at("/record/every", fmt::format("got {:.3g} recorded rows; allowed: at most {:.0g}, record less often or less",
+                                         rows, kMostRows));
   }
   // Every step of every trial has its time in memory.
   const double timed = steps * trial_count(scenario.hand);
   if (scenario.record.timing && timed > kMostRows) {
-    fail("/record/timing", fmt::format("got {:.3g} timed steps; allowed: at most {:.0g}", timed, kMostRows));
+    fail_at("/record/timing", fmt::format("got {:.3g} timed steps; allowed: at most {:.0g}", timed, kMostRows));
   }
 }
 
@@ -55,8 +51,8 @@ void check_orientation(const MotionFields& motion) {
   if (up.norm() >= kShortestDirection && lean.norm() >= kShortestDirection &&
       std::abs(up.dot(lean)) <= 1e-9 * up.norm() * lean.norm())
     return;
-  fail("/motion/orientation",
-       fmt::format("got up {} and lean {}; allowed: two perpendicular directions, not zero", shown(up), shown(lean)));
+  fail_at("/motion/orientation", fmt::format("got up {} and lean {}; allowed: two perpendicular directions, not zero",
+                                             shown(up), shown(lean)));
 }
 
 template <class Type, class Variant>
@@ -154,8 +150,8 @@ void check_contact_source(const Scenario& scenario) {
                             ? "with reduction.shuffle_seed, which orders shell points"
                             : nullptr;
   if (problem == nullptr) return;
-  fail("/rendering/contact_source",
-       fmt::format("got \"{}\"; allowed: \"{}\", {}", rendering.contact_source, kOwnContacts, problem));
+  fail_at("/rendering/contact_source",
+          fmt::format("got \"{}\"; allowed: \"{}\", {}", rendering.contact_source, kOwnContacts, problem));
 }
 
 double drag_length(const DragHandFields& hand, double duration) {
@@ -171,8 +167,8 @@ void check_drag_hand(const Scenario& scenario, double steps) {
   if (hand->direction) require_direction(*hand->direction, "/hand/direction");
   const double entries = drag_length(*hand, steps * scenario.time.step) / SurfacePath::spacing(hand->smoothing);
   if (entries <= kLongestDrag) return;
-  fail("/hand/smoothing_m",
-       fmt::format("got a path of {:.3g} times the tenth of it; allowed: at most {:.0g}", entries, kLongestDrag));
+  fail_at("/hand/smoothing_m",
+          fmt::format("got a path of {:.3g} times the tenth of it; allowed: at most {:.0g}", entries, kLongestDrag));
 }
 
 void check_tracking_hand(const Scenario& scenario, double steps) {
@@ -181,12 +177,13 @@ void check_tracking_hand(const Scenario& scenario, double steps) {
   for (std::size_t i = 0; i < hand->subjects.size(); ++i) {
     const double samples = hand->subjects[i].reaction_delay / scenario.time.step;
     if (samples <= kMostDelaySamples) continue;
-    fail(fmt::format("/hand/subjects/{}/reaction_delay_s", i),
-         fmt::format("got {:.3g} time steps; allowed: at most {:.0g}", samples, kMostDelaySamples));
+    fail_at(fmt::format("/hand/subjects/{}/reaction_delay_s", i),
+            fmt::format("got {:.3g} time steps; allowed: at most {:.0g}", samples, kMostDelaySamples));
   }
   const double all_steps = trial_count(scenario.hand) * steps;
   if (all_steps <= kMostSteps) return;
-  fail("/hand/trials", fmt::format("got {:.3g} steps in all trials; allowed: at most {:.0g}", all_steps, kMostSteps));
+  fail_at("/hand/trials",
+          fmt::format("got {:.3g} steps in all trials; allowed: at most {:.0g}", all_steps, kMostSteps));
 }
 
 constexpr const char* kNoEffect = "no_effect";  ///< of warnings: a given value that nothing reads
@@ -289,15 +286,15 @@ std::optional<Warning> first_unplayed(const Json& json, const std::string& at, d
 
 void require_direction(const Vec3& direction, const std::string& at) {
   if (direction.norm() >= kShortestDirection) return;
-  fail(at, fmt::format("got [{}, {}, {}]; allowed: a direction that is not zero, length at least {}", direction.x(),
-                       direction.y(), direction.z(), kShortestDirection));
+  fail_at(at, fmt::format("got [{}, {}, {}]; allowed: a direction that is not zero, length at least {}", direction.x(),
+                          direction.y(), direction.z(), kShortestDirection));
 }
 
 void check_relations(const Scenario& scenario, double steps) {
   check_sizes(scenario, steps);
   check_orientation(scenario.motion);
   for (const Rule& rule : kRules) {
-    if (rule.is_broken(scenario)) fail(rule.at, rule.problem);
+    if (rule.is_broken(scenario)) fail_at(rule.at, rule.problem);
   }
   check_contact_source(scenario);
   check_drag_hand(scenario, steps);
@@ -449,8 +446,7 @@ static void describe(Fields& f, MetricBound& bound) {
   f.if_any("min", bound.min, "smallest value allowed", number);
   f.if_any("max", bound.max, "largest value allowed", number);
   if (!f.reads() || !bound.min || !bound.max || !(*bound.min > *bound.max)) return;
-  throw InputError(InputError::Kind::relation, f.at(),
-                   fmt::format("got min {} above max {}; allowed: min <= max", *bound.min, *bound.max));
+  fail_at(f.at(), fmt::format("got min {} above max {}; allowed: min <= max", *bound.min, *bound.max));
 }
 
 static void describe(Fields& f, ReferenceForceFields& reference) {
@@ -483,7 +479,7 @@ static void describe_extends(Fields& f) {
          "null replaces; so does an object of another type",
          Presence::left_out);
   if (!f.reads() || !f.given(kExtends)) return;
-  throw InputError(InputError::Kind::relation, member(f.at(), kExtends), "got it in no file; allowed: in files");
+  fail_at(member(f.at(), kExtends), "got it in no file; allowed: in files");
 }
 
 void describe(Fields& f, Scenario& scenario) {

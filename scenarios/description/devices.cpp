@@ -85,8 +85,7 @@ static void describe_preset(Fields& f, ImpedanceDeviceConfig& device) {
   if (preset) {
     device = config_of(*find_device_preset(*preset));
   } else if (!f.given("preset") && !f.given("handle_mass_kg")) {
-    throw InputError(InputError::Kind::relation, f.at(),
-                     "missing field; allowed: handle_mass_kg, or a preset, which has one");
+    fail_at(f.at(), "missing field; allowed: handle_mass_kg, or a preset, which has one");
   }
 }
 

@@ -42,8 +42,7 @@ constexpr Choice<Density> kDensities[] = {{"signed_distance", Density::signed_di
 
 void refuse_too_many(double count, const std::string& at, const char* what) {
   if (count <= kMostPoints) return;
-  throw InputError(InputError::Kind::relation, at,
-                   fmt::format("got {:.3g} {}; allowed: at most {:.0g}", count, what, kMostPoints));
+  fail_at(at, fmt::format("got {:.3g} {}; allowed: at most {:.0g}", count, what, kMostPoints));
 }
 
 template <class Shell>
@@ -59,8 +58,7 @@ void check_springs(const SpringsEnvironment& springs, const std::string& at) {
   }
   refuse_too_many(count, at, "springs");
   if (springs.bilateral || springs.signed_depths) return;
-  throw InputError(InputError::Kind::relation, at + "/signed",
-                   "got false; allowed: true with \"bilateral\": false, whose depths are positive as they are");
+  fail_at(at + "/signed", "got false; allowed: true with \"bilateral\": false, whose depths are positive as they are");
 }
 
 double expected_points(const BlockEnvironment& block) {
@@ -76,9 +74,7 @@ void check_block(const BlockEnvironment& environment, const std::string& at) {
   const Vec3& size = block.size;
   // Cells smaller than this cannot be numbered; thinner walls have no nodes on both sides.
   const double longest = 1e5 * grid, thinnest = 3.0 * grid;
-  const auto fail = [&at](const char* field, const std::string& problem) {
-    throw InputError(InputError::Kind::relation, at + "/" + field, problem);
-  };
+  const auto fail = [&at](const char* field, const std::string& problem) { fail_at(at + "/" + field, problem); };
   if (size.maxCoeff() > longest) fail("grid_m", fmt::format("got {}; allowed: at least size_m / 1e5", grid));
   refuse_too_many(expected_points(environment), at, "shell points (from size_m, grid_m and vertices)");
   if (block.hole_diameter > std::min(size.x(), size.y()) - 2.0 * thinnest || block.hole_diameter < thinnest) {

@@ -35,8 +35,7 @@ static void describe(Fields& f, TremorConfig& tremor) {
       "et al. 2000)");
   f.number("low_Hz", tremor.low, {0.0, 1000.0, "Hz"}, "lower end of its band (Novak and Newell 2017)");
   f.number("high_Hz", tremor.high, {0.0, 1000.0, "Hz"}, "upper end of its band");
-  if (f.reads() && tremor.low > tremor.high)
-    throw InputError(InputError::Kind::relation, f.at() + "/high_Hz", "allowed: low_Hz or more");
+  if (f.reads() && tremor.low > tremor.high) fail_at(f.at() + "/high_Hz", "allowed: low_Hz or more");
 }
 
 static void describe_spring(Fields& f, ImpedanceHandFields& hand) {

@@ -63,8 +63,8 @@ void check_chain(const std::vector<ScenarioLayer>& layers, const fs::path& next)
     again = again || fs::equivalent(layer.file, next, ignored);
   }
   if (!again) return;
-  throw InputError(InputError::Kind::relation, fmt::format("/{}", kExtends),
-                   fmt::format("got a circle, {}{}; allowed: a chain that ends", chain, next.string()));
+  fail_at(fmt::format("/{}", kExtends),
+          fmt::format("got a circle, {}{}; allowed: a chain that ends", chain, next.string()));
 }
 
 /// The file that `json`, read from `file`, extends.
@@ -79,7 +79,7 @@ fs::path base_file(const Json& json, const fs::path& file, const std::vector<Sce
   try {
     base = find_scenario(name.get<std::string>(), file.parent_path());
   } catch (const InputError& error) {
-    throw InputError(InputError::Kind::relation, at, error.problem());
+    fail_at(at, error.problem());
   }
   check_chain(layers, base);
   return base;

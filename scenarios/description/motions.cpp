@@ -17,9 +17,8 @@ void check_times(const Profile::Waypoints& waypoints, const std::string& at) {
   const auto& points = waypoints.points;
   for (std::size_t i = 1; i < points.size(); ++i) {
     if (points[i - 1].first < points[i].first) continue;
-    throw InputError(InputError::Kind::relation, element(at + "/points", i),
-                     "got time " + shown(points[i].first) + " after " + shown(points[i - 1].first) +
-                         "; allowed: strictly increasing times");
+    fail_at(element(at + "/points", i), "got time " + shown(points[i].first) + " after " + shown(points[i - 1].first) +
+                                            "; allowed: strictly increasing times");
   }
 }
 
@@ -140,8 +139,8 @@ void describe(Fields& f, MotionFields& motion) {
   f.value("position", motion.position, "free: integrated; prescribed or file: forces are computed, not integrated");
   if (!f.reads() || !std::holds_alternative<RecordedPosition>(motion.position)) return;
   if (f.given("orientation")) {
-    throw InputError(InputError::Kind::relation, f.at() + "/orientation",
-                     "contradicts position type \"file\", whose columns give the orientation; allowed: one of the two");
+    fail_at(f.at() + "/orientation",
+            "contradicts position type \"file\", whose columns give the orientation; allowed: one of the two");
   }
   motion.orientation.reset();
 }

@@ -40,7 +40,7 @@ void check_shape(const std::string& at, const char* allowed, const Make& make) {
   try {
     make();
   } catch (const std::invalid_argument& error) {
-    throw InputError(InputError::Kind::relation, at, fmt::format("{}; allowed: {}", error.what(), allowed));
+    fail_at(at, fmt::format("{}; allowed: {}", error.what(), allowed));
   }
 }
 
@@ -175,8 +175,7 @@ std::shared_ptr<const ToolShape> make_tool(const Scenario& scenario) {
 Cylinder make_cylinder(const ToolFields& fields) {
   if (const auto* f = std::get_if<CylinderFields>(&fields)) return {f->diameter / 2.0, f->length, f->tip};
   const std::vector<std::string> names = tool_names();
-  throw InputError(InputError::Kind::relation, "/tool/type",
-                   fmt::format("got \"{}\"; allowed here: \"{}\"", names[fields.index()], names.front()));
+  fail_at("/tool/type", fmt::format("got \"{}\"; allowed here: \"{}\"", names[fields.index()], names.front()));
 }
 
 }  // namespace hapbench

@@ -176,10 +176,6 @@ void MeshLines::add_face(std::size_t index, std::size_t first, TriangleSoup& sou
   add_polygon(vertices, soup);
 }
 
-void MeshLines::fail(const std::string& problem) const {
-  fail_in_line(file_, lines_.line(), problem);
-}
-
 TriangleSoup read_obj(std::string_view text, const std::filesystem::path& file) {
   TriangleSoup soup;
   std::vector<std::uint32_t> corners;

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "scenarios/input/input_error.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "sim/geometry/point_shell.hpp"
 #include "sim/mesh/triangle_soup.hpp"
@@ -64,7 +65,7 @@ class MeshLines {
   /// Adds face `index` of the file, described by the words from `first` on: the number of corners, then their vertices.
   void add_face(std::size_t index, std::size_t first, TriangleSoup& soup) const;
 
-  [[noreturn]] void fail(const std::string& problem) const;
+  [[noreturn]] void fail(const std::string& problem) const { fail_in_line(file_, lines_.line(), problem); }
 
  private:
   LineReader lines_;
