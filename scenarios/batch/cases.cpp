@@ -123,6 +123,13 @@ bool begins_json(std::string_view text) {
   return text.starts_with('{') || text.starts_with('[') || text.starts_with('"');
 }
 
+/// A value in the spelling that axes have. Throws InputError for text that begins as JSON and is none, and for no text.
+std::string axis_value(std::string_view text) {
+  if (text.empty()) throw InputError("got an empty value");
+  if (const auto number = finite_number(text)) return number_text(*number);
+  return begins_json(text) ? parse_json(std::string(text)).dump() : std::string(text);
+}
+
 std::vector<std::string> listed_values(const std::string& text, std::string_view list) {
   const Words words = listed_words(list);
   if (words.size() > kMostRuns)
@@ -189,12 +196,6 @@ Axis parse_axis(const std::string& text, bool sampled) {
   if (axis.values == std::vector<std::string>{"all"} && guide->schema.contains("enum"))
     axis.values = guide->schema["enum"].get<std::vector<std::string>>();
   return axis;
-}
-
-std::string axis_value(std::string_view text) {
-  if (text.empty()) throw InputError("got an empty value");
-  if (const auto number = finite_number(text)) return number_text(*number);
-  return begins_json(text) ? parse_json(std::string(text)).dump() : std::string(text);
 }
 
 std::string Axis::value(std::size_t i) const {

@@ -59,10 +59,6 @@ struct Axis {
 /// aside, has integers. Throws InputError. Whether a scenario has such a field and accepts the values is not checked.
 Axis parse_axis(const std::string& text, bool sampled = false);
 
-/// A value in the spelling that axes have: numbers as shortest decimals, JSON compact. Throws InputError for text that
-/// begins as JSON and is none, and for no text.
-std::string axis_value(std::string_view text);
-
 /// Appends the texts, such as warnings of cases, that are not in the list yet.
 void append_new(std::vector<std::string>& texts, const std::vector<std::string>& more);
 

@@ -33,6 +33,11 @@ bool lies_in_the_plane(const Environment& environment) {
                      [](const SpringGroup& group) { return group.direction.z() == 0.0; });
 }
 
+Vec3 start_shift(const Scenario& scenario, double length) {
+  Random random(Random::derive(kJitterStream, static_cast<std::uint64_t>(scenario.seed)));
+  return length * (lies_in_the_plane(scenario.environment) ? random.direction_in_plane() : random.direction());
+}
+
 void check_seeds_and_jitter(const ComparisonQuestion& question, const LoadedScenario& loaded) {
   const Scenario& scenario = loaded.scenario;
   const std::int64_t most = kMostSeed - static_cast<std::int64_t>(question.seeds - 1);
@@ -80,11 +85,6 @@ Cases cases_of(const ComparisonQuestion& question, const fs::path& file, std::ve
 }
 
 }  // namespace
-
-Vec3 start_shift(const Scenario& scenario, double length) {
-  Random random(Random::derive(kJitterStream, static_cast<std::uint64_t>(scenario.seed)));
-  return length * (lies_in_the_plane(scenario.environment) ? random.direction_in_plane() : random.direction());
-}
 
 Axis seed_axis(const Scenario& scenario, std::size_t seeds, double jitter) {
   Axis axis{"seed"};

@@ -14,11 +14,9 @@
 /// Scenes, each under the same laws and with the same number of seeds.
 namespace hapbench {
 
-/// A shift of the start [m] whose direction depends only on the scenario's seed, so that all algorithms start from the
-/// same places. Directions are uniform on the sphere, in planar scenes on the circle z = 0.
-Vec3 start_shift(const Scenario& scenario, double length);
-
-/// The scenario's seed and those after it, each with its start_shift along with it unless `jitter` [m] is 0.
+/// The scenario's seed and those after it. Unless `jitter` [m] is 0, a shift of the start by that length goes along
+/// with each, whose direction depends only on the seed, so that all algorithms start from the same places: uniform on
+/// the sphere, in planar scenes on the circle z = 0.
 Axis seed_axis(const Scenario& scenario, std::size_t seeds, double jitter);
 
 /// The question of `compare`.

@@ -26,6 +26,8 @@ namespace {
 
 constexpr double kMostDelaySamples = 1e6;  ///< longest reaction delay of a simulated subject [time steps]
 constexpr double kLongestDrag = 1e6;       ///< entries of the table of a path over a surface
+/// Shortest length of a direction: the square of a much shorter one would lose digits.
+constexpr double kShortestDirection = 1e-12;
 
 void check_sizes(const Scenario& scenario, double steps) {
   if (!(steps >= 1.0 && steps <= kMostSteps)) {
@@ -62,6 +64,13 @@ bool is(const Variant& value) {
 
 bool is_zero(const Profile& profile) {
   return profile.is_constant() && profile(0.0) == 0.0;
+}
+
+/// True when the ideal trajectory and the exact depth in the hole are known (results/observe/ideal_trajectory.hpp).
+bool has_ideal_trajectory(const Scenario& scenario) {
+  const auto* cylinder = std::get_if<CylinderFields>(&scenario.tool);
+  return std::holds_alternative<BlockEnvironment>(scenario.environment) && cylinder != nullptr &&
+         cylinder->tip == Tip::flat;
 }
 
 /// A combination of fields that is refused.
@@ -186,6 +195,19 @@ void check_tracking_hand(const Scenario& scenario, double steps) {
           fmt::format("got {:.3g} steps in all trials; allowed: at most {:.0g}", all_steps, kMostSteps));
 }
 
+/// Throws InputError for fields that contradict each other. `steps` is their number, which may be more than a scenario
+/// can hold.
+void check_relations(const Scenario& scenario, double steps) {
+  check_sizes(scenario, steps);
+  check_orientation(scenario.motion);
+  for (const Rule& rule : kRules) {
+    if (rule.is_broken(scenario)) fail_at(rule.at, rule.problem);
+  }
+  check_contact_source(scenario);
+  check_drag_hand(scenario, steps);
+  check_tracking_hand(scenario, steps);
+}
+
 constexpr const char* kNoEffect = "no_effect";  ///< of warnings: a given value that nothing reads
 
 /// A warning about an admittance device whose servo or mechanics differ from the usual ones under a hand that does not
@@ -290,17 +312,6 @@ void require_direction(const Vec3& direction, const std::string& at) {
                           direction.y(), direction.z(), kShortestDirection));
 }
 
-void check_relations(const Scenario& scenario, double steps) {
-  check_sizes(scenario, steps);
-  check_orientation(scenario.motion);
-  for (const Rule& rule : kRules) {
-    if (rule.is_broken(scenario)) fail_at(rule.at, rule.problem);
-  }
-  check_contact_source(scenario);
-  check_drag_hand(scenario, steps);
-  check_tracking_hand(scenario, steps);
-}
-
 std::vector<Warning> relation_warnings(const Scenario& scenario, const Json& json) {
   std::vector<Warning> warnings;
   warn_of_idle_device(scenario, warnings);
@@ -352,6 +363,21 @@ void describe_outcomes(Fields& f, std::vector<Outcome>& outcomes) {
       [&](Fields& several) {
         several.list(outcomes, {1, outcome_infos().size()}, outcome);
       });
+}
+
+/// Puts the thesis's parameters of the scene (Tables A.1, A.2, B.1) in place of those of springs, which the structs
+/// have.
+void set_scene_defaults(Scenario& scenario) {
+  if (std::holds_alternative<SpringsEnvironment>(scenario.environment)) return;
+  RenderingConfig& rendering = scenario.rendering;
+  rendering.mu_s = 5.0;
+  rendering.mu_f = 10.0;
+  if (std::holds_alternative<Hole2d>(scenario.environment)) {
+    scenario.tool = CylinderFields{.length = 0.005, .tip = Tip::round};
+  } else {
+    scenario.motion.orientation->up = {0.0, 0.0, 1.0};
+    rendering.mass = 0.1;
+  }
 }
 
 /// Overwrites the settings that the algorithm's definition fixes, with a warning where the scenario has others.

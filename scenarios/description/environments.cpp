@@ -6,9 +6,9 @@
 #include <utility>
 
 #include "scenarios/description/descriptions.hpp"
-#include "scenarios/description/load_scenario.hpp"
 #include "scenarios/description/named_files.hpp"
 #include "scenarios/description/parts.hpp"
+#include "scenarios/description/writer.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "sim/contact/grid_index.hpp"
 #include "sim/core/random.hpp"
@@ -173,6 +173,18 @@ void describe(Fields& f, Environment& environment) {
 }
 
 namespace {
+
+/// The environment with every default filled in, with hashes of the contents of named files in place of their paths:
+/// equal for equal point shells. Throws InputError.
+Json environment_content(const Scenario& scenario, const NamedFiles& files) {
+  constexpr std::string_view kEnvironment = "/environment";
+  Json json = written(scenario.environment);
+  for (const auto& file : files.all()) {
+    if (file->pointer().starts_with(kEnvironment))
+      json.at(Json::json_pointer(file->pointer().substr(kEnvironment.size()))) = file->hash();
+  }
+  return json;
+}
 
 /// Builds the shell of each type of environment.
 struct Build {

@@ -313,14 +313,4 @@ std::string scenario_hash(const Scenario& scenario, const NamedFiles& files) {
   return WrittenScenario(scenario).hash(files);
 }
 
-Json environment_content(const Scenario& scenario, const NamedFiles& files) {
-  constexpr std::string_view kEnvironment = "/environment";
-  Json json = written(scenario.environment);
-  for (const auto& file : files.all()) {
-    if (file->pointer().starts_with(kEnvironment))
-      json.at(Json::json_pointer(file->pointer().substr(kEnvironment.size()))) = file->hash();
-  }
-  return json;
-}
-
 }  // namespace hapbench

@@ -115,10 +115,6 @@ class WrittenScenario {
 /// start from `directory`.
 Json effective_scenario(const Scenario& scenario, const std::filesystem::path& directory);
 
-/// The environment with every default filled in, with hashes of the contents of named files in place of their paths:
-/// equal for equal point shells. Throws InputError.
-Json environment_content(const Scenario& scenario, const NamedFiles& files);
-
 /// Identifies what is simulated: FNV-1a over the effective scenario, with the contents of named files in place of their
 /// paths, as 16 hexadecimal digits. Throws InputError.
 std::string scenario_hash(const Scenario& scenario, const NamedFiles& files);

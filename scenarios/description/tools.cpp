@@ -44,6 +44,12 @@ void check_shape(const std::string& at, const char* allowed, const Make& make) {
   }
 }
 
+/// Throws std::invalid_argument when there is none.
+BurProfile profile_of(const BurFields& bur) {
+  return bur_profile(bur.family, bur.diameter, bur.length.value_or(bur.diameter),
+                     bur.shank_diameter.value_or(BurFields::kShankShare * bur.diameter));
+}
+
 }  // namespace
 
 static void describe(Fields& f, ProfilePoint& point) {
