@@ -61,15 +61,6 @@ Point examine(const SweepPlan& plan, std::size_t run) {
   return point;
 }
 
-/// Examines the runs on several threads. Throws the error of the first run that has one.
-std::vector<Point> examine_all(const SweepPlan& plan, const std::vector<std::size_t>& runs, std::size_t jobs,
-                               bool progress) {
-  std::vector<Point> points(runs.size());
-  for_each_job(runs.size(), {static_cast<unsigned>(jobs), progress ? "checking" : ""},
-               [&](std::size_t i) { points[i] = examine(plan, runs[i]); });
-  return points;
-}
-
 using Names = std::set<std::string>;
 
 void add_names(Names& names, const MetricList& metrics) {
@@ -78,7 +69,7 @@ void add_names(Names& names, const MetricList& metrics) {
 
 /// Reads the files that the scenarios of these runs name, adds their warnings to the plan and the metrics of what they
 /// measured, and returns their hashes.
-Json check_files(SweepPlan& plan, const std::set<std::size_t>& runs, Names& metrics) {
+Json check_files(SweepPlan& plan, const std::vector<std::size_t>& runs, Names& metrics) {
   constexpr std::size_t kMostScans = 8;  // whose shells are made before the runs
   Json hashes = Json::array();
   for (const std::size_t run : runs) {
@@ -189,16 +180,18 @@ SweepPlan plan_sweep(Cases cases, std::size_t jobs, bool progress) {
   const std::vector<std::size_t> runs = runs_to_check(plan.cases);
   Names metrics;
   std::map<std::string, std::string> plugins;
-  std::map<std::string, std::size_t> first_runs;  // of each combination of files
-  for (std::size_t i = 0; const Point& point : examine_all(plan, runs, jobs, progress)) {
+  std::vector<Point> points(runs.size());
+  for_each_job(runs.size(), {static_cast<unsigned>(jobs), progress ? "checking" : ""},
+               [&](std::size_t i) { points[i] = examine(plan, runs[i]); });
+  Names files;                               // combinations of them
+  std::vector<std::size_t> runs_with_files;  // the first one of each
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    const Point& point = points[i];
     add_names(metrics, point.metrics);
     append_new(plan.warnings, point.warnings);
     if (!point.origin.file.empty()) plugins.emplace(point.origin.file, point.origin.hash);
-    if (!point.files.empty()) first_runs.emplace(point.files, runs[i]);
-    ++i;
+    if (!point.files.empty() && files.insert(point.files).second) runs_with_files.push_back(runs[i]);
   }
-  std::set<std::size_t> runs_with_files;
-  for (const auto& [files, run] : first_runs) runs_with_files.insert(run);
   const Json hashes = check_files(plan, runs_with_files, metrics);
   for (const Metric& metric : metrics_without_values(TrackingHandFields::kMostPlaces)) {
     if (!metrics.contains(metric.name)) continue;

@@ -165,14 +165,6 @@ void expect_less(Json& expect) {
   expect["outcome"] = std::move(outcomes);
 }
 
-/// The absolute path with symlinks resolved first, because a lexical ".." is wrong behind a symlink.
-fs::path without_links(const fs::path& path) {
-  const auto absolute = fs::current_path() / path;  // fs::absolute refuses the empty path
-  std::error_code error;
-  const auto canonical = fs::weakly_canonical(absolute, error);
-  return error ? absolute.lexically_normal() : canonical;
-}
-
 std::string last_name(const std::string& path, char separator) {
   return path.substr(path.rfind(separator) + 1);
 }
@@ -289,13 +281,16 @@ LoadedScenario load_scenario(const fs::path& file, std::span<const std::string> 
 
 WrittenScenario::WrittenScenario(Scenario scenario) : json_(written_object(scenario)) {
   for (const FileReference& file : files_named_in(scenario))
-    files_.push_back({Json::json_pointer(file.pointer), without_links(resolve_path(scenario, *file.path))});
+    files_.push_back({Json::json_pointer(file.pointer), fs::current_path() / resolve_path(scenario, *file.path)});
 }
 
 Json WrittenScenario::effective(const fs::path& directory) const {
   Json json = json_;
-  for (const auto& [field, path] : files_)
-    json.at(field) = path.lexically_proximate(without_links(directory)).generic_string();
+  for (const auto& [field, path] : files_) {
+    std::error_code error;
+    const fs::path near = fs::proximate(path, fs::current_path() / directory, error);
+    json.at(field) = (error ? path : near).generic_string();
+  }
   return json;
 }
 
