@@ -7,6 +7,7 @@
 #include <cerrno>
 #include <fstream>
 #include <map>
+#include <mutex>
 #include <utility>
 
 #include "results/io/atomic_file.hpp"
@@ -288,26 +289,20 @@ bool join_shards(const fs::path& folder) {
 
 void for_each(const Cases& cases, const Shard& shard, std::size_t jobs, TableFile& table,
               const std::function<TableRow(std::size_t)>& work) {
-  std::size_t place = shard.index;
-  const auto next = [&]() -> std::optional<std::size_t> {
-    for (; place < cases.size() && StopSignal::received() == 0; place += shard.count) {
-      if (const std::size_t i = cases.at(place); !table.rows()[i]) {
-        place += shard.count;
-        return i;
-      }
-    }
-    return std::nullopt;
-  };
-  parallel_for(next, std::min(jobs, cases.size()), [&](std::size_t i) -> Delivery {
-    try {
-      return [&, i, row = work(i)] {
-        table.add(i, row.text);
-        if (row.added) row.added();
-      };
-    } catch (const Stopped&) {
-      return {};  // it can be resumed
-    }
-  });
+  std::vector<std::size_t> left;
+  for (std::size_t place = shard.index; place < cases.size(); place += shard.count)
+    if (const std::size_t i = cases.at(place); !table.rows()[i]) left.push_back(i);
+  std::mutex mutex;  // of the table
+  try {
+    for_each_job(left.size(), {static_cast<unsigned>(jobs), ""}, [&](std::size_t k) {
+      const TableRow row = work(left[k]);
+      const std::lock_guard lock(mutex);
+      table.add(left[k], row.text);
+      if (row.added) row.added();
+    });
+  } catch (const Stopped&) {
+    // It can be resumed.
+  }
 }
 
 }  // namespace hapbench

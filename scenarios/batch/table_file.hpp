@@ -29,7 +29,7 @@ struct TableTitle {
 
 /// A table with a row for each case. It grows as FILE.part, with its JSON beside it, a row at a time and in any order,
 /// so that a killed process loses only the cases that were under way. When it is whole its rows are put in order and
-/// both files get their names. Memory: 8 bytes a case while they are put in order, before that two bits.
+/// both files get their names. Memory: 8 bytes a case while they are put in order, before that a bit.
 class TableFile {
  public:
   /// Whether a row that was written before stays; one that does not is written again. May throw.
@@ -74,12 +74,12 @@ bool join_shards(const std::filesystem::path& folder);
 /// A row, and what is to be called when the table has it, one at a time.
 struct TableRow {
   std::string text;
-  Delivery added = {};
+  std::function<void()> added = {};
 };
 
 /// Calls work(i) for each case of the shard that the table has not, `jobs` at once, in the order of runs, and adds the
 /// rows that it returns as they come: none waits for a slower one. After SIGINT or SIGTERM no further one starts, and
-/// one that throws Stopped has no row. Any other exception ends the loop.
+/// one that throws Stopped has no row. Any other exception ends the loop and is passed on. Memory: 8 bytes a case.
 void for_each(const Cases& cases, const Shard& shard, std::size_t jobs, TableFile& table,
               const std::function<TableRow(std::size_t i)>& work);
 
