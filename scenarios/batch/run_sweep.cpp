@@ -7,6 +7,7 @@
 #include <exception>
 #include <fstream>
 #include <map>
+#include <mutex>
 #include <nlohmann/json.hpp>
 #include <numeric>
 #include <set>
@@ -253,6 +254,24 @@ std::string computed_row(const SweepPlan& plan, const SweepOptions& options, std
   return finished_row(plan, run, run_scenario(plan.cases.load(run), output, false));
 }
 
+/// Whether the row of an earlier sweep stays. Throws InputError when it has not so many cells.
+bool stays(const SweepPlan& plan, const SweepOptions& options, std::size_t run, std::string_view row,
+           std::size_t columns) {
+  const std::vector<std::string> cells = csv_cells(row);
+  if (cells.size() != columns)
+    throw InputError(fmt::format("got the row \"{}\"; allowed: rows of this sweep", row.substr(0, 60)));
+  return cells[1 + plan.cases.axes().size()] != kErrorOutcome &&
+         (!options.keep_runs || fs::exists(run_folder(options, run) / "summary.json"));
+}
+
+/// The runs of the shard that the table has not, in the order of runs.
+std::vector<std::size_t> runs_left(const Cases& cases, const Shard& part, const TableFile& table) {
+  std::vector<std::size_t> left;
+  for (std::size_t place = part.index; place < cases.size(); place += part.count)
+    if (const std::size_t run = cases.at(place); !table.rows()[run]) left.push_back(run);
+  return left;
+}
+
 }  // namespace
 
 fs::path table_of(const SweepOptions& options) {
@@ -264,11 +283,7 @@ SweepReport run_sweep(const SweepPlan& plan, const SweepOptions& options) {
   SweepReport report;
   const std::vector<std::string> columns = plan.columns();
   const auto keep = [&](std::size_t run, std::string_view text) {
-    const std::vector<std::string> cells = csv_cells(text);
-    if (cells.size() != columns.size())
-      throw InputError(fmt::format("got the row \"{}\"; allowed: rows of this sweep", text.substr(0, 60)));
-    return cells[1 + plan.cases.axes().size()] != kErrorOutcome &&
-           (!options.keep_runs || fs::exists(run_folder(options, run) / "summary.json"));
+    return stays(plan, options, run, text, columns.size());
   };
   TableFile table(
       {table_of(options), fmt::format("{}", fmt::join(columns, ",")), plan.description(part), plan.cases.size()},
@@ -277,21 +292,34 @@ SweepReport run_sweep(const SweepPlan& plan, const SweepOptions& options) {
   const std::size_t size = part.size(plan.cases.size());
   ProgressBar bar("sweep", size, options.progress);
   bar.start_at(report.resumed);
-  const auto work = [&](std::size_t run) -> TableRow {
+  const std::vector<std::size_t> left = runs_left(plan.cases, part, table);
+  std::mutex mutex;  // of table and report
+  const auto work = [&](std::size_t k) {
+    const std::size_t run = left[k];
+    std::string row;
+    std::optional<FailedRun> failed;
     try {
-      return {computed_row(plan, options, run), [&] {
-                if (options.added) options.added();
-                bar.show(table.count(), true);
-              }};
+      row = computed_row(plan, options, run);
     } catch (const IoError&) {
       throw;  // further runs could not be kept either; --resume goes on
     } catch (const std::exception& error) {
-      return {error_row(plan, run), [&, run, problem = std::string(error.what())] {
-                if (!report.failed || run < report.failed->run) report.failed = FailedRun{run, problem};
-              }};
+      row = error_row(plan, run);
+      failed = FailedRun{run, error.what()};
+    }
+    const std::lock_guard lock(mutex);
+    table.add(run, row);
+    if (!failed) {
+      if (options.added) options.added();
+      bar.show(table.count(), true);
+    } else if (!report.failed || run < report.failed->run) {
+      report.failed = failed;
     }
   };
-  for_each(plan.cases, part, options.jobs, table, work);
+  try {
+    for_each_job(left.size(), {static_cast<unsigned>(options.jobs), ""}, work);
+  } catch (const Stopped&) {
+    // It can be resumed.
+  }
   report.done = table.count();
   if (report.done < size)
     report.signal = StopSignal::received();

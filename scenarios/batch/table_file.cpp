@@ -7,7 +7,6 @@
 #include <cerrno>
 #include <fstream>
 #include <map>
-#include <mutex>
 #include <utility>
 
 #include "results/io/atomic_file.hpp"
@@ -15,7 +14,6 @@
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/json_file.hpp"
 #include "scenarios/input/text_lines.hpp"
-#include "scenarios/run/stop_signal.hpp"
 
 namespace hapbench {
 namespace {
@@ -285,24 +283,6 @@ bool join_shards(const fs::path& folder) {
                                  title.cases));
   }
   return true;
-}
-
-void for_each(const Cases& cases, const Shard& shard, std::size_t jobs, TableFile& table,
-              const std::function<TableRow(std::size_t)>& work) {
-  std::vector<std::size_t> left;
-  for (std::size_t place = shard.index; place < cases.size(); place += shard.count)
-    if (const std::size_t i = cases.at(place); !table.rows()[i]) left.push_back(i);
-  std::mutex mutex;  // of the table
-  try {
-    for_each_job(left.size(), {static_cast<unsigned>(jobs), ""}, [&](std::size_t k) {
-      const TableRow row = work(left[k]);
-      const std::lock_guard lock(mutex);
-      table.add(left[k], row.text);
-      if (row.added) row.added();
-    });
-  } catch (const Stopped&) {
-    // It can be resumed.
-  }
 }
 
 }  // namespace hapbench

@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "scenarios/batch/cases.hpp"
-#include "scenarios/batch/parallel_for.hpp"
 
 namespace hapbench {
 
@@ -70,17 +69,5 @@ std::string table_name(const std::optional<Shard>& shard);
 /// are none, or not all beside a whole table. Throws InputError for tables that are damaged, incomplete or not of one
 /// definition, and IoError.
 bool join_shards(const std::filesystem::path& folder);
-
-/// A row, and what is to be called when the table has it, one at a time.
-struct TableRow {
-  std::string text;
-  std::function<void()> added = {};
-};
-
-/// Calls work(i) for each case of the shard that the table has not, `jobs` at once, in the order of runs, and adds the
-/// rows that it returns as they come: none waits for a slower one. After SIGINT or SIGTERM no further one starts, and
-/// one that throws Stopped has no row. Any other exception ends the loop and is passed on. Memory: 8 bytes a case.
-void for_each(const Cases& cases, const Shard& shard, std::size_t jobs, TableFile& table,
-              const std::function<TableRow(std::size_t i)>& work);
 
 }  // namespace hapbench
