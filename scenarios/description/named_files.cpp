@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <ctime>
 #include <mutex>
+#include <optional>
 #include <thread>
 
 #include "scenarios/description/descriptions.hpp"
@@ -190,15 +191,15 @@ void NamedFile::check_extension() const {
 NamedFile::Contents NamedFile::parsed() {
   switch (content_.kind) {
     case FileContent::Kind::point_shell:
-      return {.points = point_shell_in(bytes_, path_)};
+      return point_shell_in(bytes_, path_);
     case FileContent::Kind::mesh:
-      return {.mesh = MeshFile(bytes_, path_, content_.sampling)};
+      return MeshFile(bytes_, path_, content_.sampling);
     case FileContent::Kind::stroke:
-      return {.stroke = stroke_in(bytes_, path_)};
+      return stroke_in(bytes_, path_);
     case FileContent::Kind::trace:
-      return {.trace = trace_in(bytes_, path_)};
+      return trace_in(bytes_, path_);
     case FileContent::Kind::library:
-      return {};
+      break;
   }
   return {};
 }

@@ -6,9 +6,9 @@
 #include <list>
 #include <memory>
 #include <mutex>
-#include <optional>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 #include "results/observe/force_fidelity.hpp"
@@ -106,26 +106,21 @@ class NamedFile {
   std::vector<Warning> warnings();
 
   /// The points with normals. Precondition, here and below: the content is of that kind.
-  const std::vector<SurfacePoint>& points() { return contents().points; }
-  const MeshFile& mesh() { return *contents().mesh; }
-  /// It may be kept longer than the file.
-  std::shared_ptr<const Stroke> stroke() {
-    const Stroke& stroke = *contents().stroke;
-    return {contents_, &stroke};
-  }
-  std::shared_ptr<const ContactTrace> trace() {
-    const ContactTrace& trace = *contents().trace;
-    return {contents_, &trace};
-  }
+  const std::vector<SurfacePoint>& points() { return std::get<std::vector<SurfacePoint>>(contents()); }
+  const MeshFile& mesh() { return std::get<MeshFile>(contents()); }
+  // These may be kept longer than the file.
+  std::shared_ptr<const Stroke> stroke() { return kept<Stroke>(); }
+  std::shared_ptr<const ContactTrace> trace() { return kept<ContactTrace>(); }
 
  private:
-  struct Contents {
-    std::vector<SurfacePoint> points = {};
-    std::optional<MeshFile> mesh = {};
-    std::optional<Stroke> stroke = {};
-    std::optional<ContactTrace> trace = {};
-  };
+  /// Nothing of a library, whose code is loaded elsewhere.
+  using Contents = std::variant<std::monostate, std::vector<SurfacePoint>, MeshFile, Stroke, ContactTrace>;
 
+  template <class Kind>
+  std::shared_ptr<const Kind> kept() {
+    const Kind& kind = std::get<Kind>(contents());
+    return {contents_, &kind};
+  }
   void check_extension() const;
   void read();
   const Contents& contents();
