@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "sim/loop/observer.hpp"
@@ -69,8 +70,14 @@ class StepSampler {
     void (StepSampler::*does)(std::uint64_t step) noexcept;
   };
 
-  void start(std::uint64_t step) noexcept;
-  void stop(std::uint64_t step) noexcept;
+  void start(std::uint64_t step) noexcept {
+    if (step % every_ != 0) return;
+    runs_ = true;
+    times_.start();
+  }
+  void stop(std::uint64_t) noexcept {
+    if (std::exchange(runs_, false)) times_.lap();
+  }
 
   std::uint64_t every_;
   StepTimes times_;

@@ -55,11 +55,6 @@ void SharedCache::drop_oldest() {
   }
 }
 
-std::size_t SharedCache::made() const {
-  const std::lock_guard lock(mutex_);
-  return made_;
-}
-
 SharedCache& shared_cache() {
   static SharedCache cache;
   return cache;

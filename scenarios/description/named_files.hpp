@@ -42,7 +42,10 @@ class SharedCache {
   }
 
   /// Number of values made so far.
-  std::size_t made() const;
+  std::size_t made() const {
+    const std::lock_guard lock(mutex_);
+    return made_;
+  }
 
  private:
   struct Made {
