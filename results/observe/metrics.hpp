@@ -6,7 +6,6 @@
 #include <optional>
 #include <vector>
 
-#include "results/observe/butterworth.hpp"
 #include "results/observe/contact_forces.hpp"
 #include "results/observe/metric_observer.hpp"
 #include "sim/contact/contact_buffer.hpp"
