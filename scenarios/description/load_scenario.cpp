@@ -8,7 +8,6 @@
 #include "results/summary/outcome_names.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/description/descriptions.hpp"
-#include "scenarios/description/reader.hpp"
 #include "scenarios/description/writer.hpp"
 #include "scenarios/input/json_file.hpp"
 #include "sim/core/hash.hpp"

@@ -1,11 +1,11 @@
-#include "scenarios/description/reader.hpp"
-
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
 
+#include "results/summary/summary.hpp"
+#include "scenarios/description/fields.hpp"
 #include "scenarios/description/writer.hpp"
 #include "scenarios/input/input_error.hpp"
 

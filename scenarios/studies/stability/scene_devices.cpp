@@ -7,7 +7,6 @@
 
 #include "device_model/device_presets.hpp"
 #include "scenarios/description/descriptions.hpp"
-#include "scenarios/description/reader.hpp"
 #include "scenarios/description/writer.hpp"
 #include "scenarios/run/scene_loop.hpp"
 

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "scenarios/description/reader.hpp"
+#include "scenarios/description/fields.hpp"
 #include "scenarios/description/writer.hpp"
 #include "tests/scenarios/support/errors.hpp"
 
