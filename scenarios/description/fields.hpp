@@ -19,7 +19,7 @@
 
 /// The format of scenario files, described once. A function `describe(Fields&, T&)` for each struct names its fields
 /// with meaning, unit and range. Visitors use that to read files (read_value), to write them (json_of), to write the
-/// schema and explain the fields (guide_to) and to find the files that a scenario names (files_named_in). So the
+/// schema and explain the fields (guide_to) and to find the files that a scenario names (NamedFiles). So the
 /// program, the files it writes, the schema and the documentation cannot disagree.
 namespace hapbench {
 

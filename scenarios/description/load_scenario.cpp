@@ -278,33 +278,32 @@ LoadedScenario load_scenario(const fs::path& file, std::span<const std::string> 
   return load_scenario(read_scenario_text(file), overrides);
 }
 
-WrittenScenario::WrittenScenario(Scenario scenario) : json_(written_object(scenario)) {
-  for (const FileReference& file : files_named_in(scenario))
-    files_.push_back({Json::json_pointer(file.pointer), fs::current_path() / resolve_path(scenario, *file.path)});
-}
+WrittenScenario::WrittenScenario(const Scenario& scenario, NamedFiles files)
+    : json_(written_object(scenario)), files_(std::move(files)) {}
 
 Json WrittenScenario::effective(const fs::path& directory) const {
   Json json = json_;
-  for (const auto& [field, path] : files_) {
+  for (const auto& file : files_.all()) {
+    const fs::path path = fs::current_path() / file->path();
     std::error_code error;
     const fs::path near = fs::proximate(path, fs::current_path() / directory, error);
-    json.at(field) = (error ? path : near).generic_string();
+    json.at(Json::json_pointer(file->pointer())) = (error ? path : near).generic_string();
   }
   return json;
 }
 
-std::string WrittenScenario::hash(const NamedFiles& files) const {
+std::string WrittenScenario::hash() const {
   Json json = json_;
-  for (const File& file : files_) json.at(file.field) = files.at(file.field.to_string()).hash();
+  for (const auto& file : files_.all()) json.at(Json::json_pointer(file->pointer())) = file->hash();
   return hash_text(hash_of(json_text(json)));
 }
 
 Json effective_scenario(const Scenario& scenario, const fs::path& directory) {
-  return WrittenScenario(scenario).effective(directory);
+  return WrittenScenario(scenario, NamedFiles(scenario)).effective(directory);
 }
 
 std::string scenario_hash(const Scenario& scenario, const NamedFiles& files) {
-  return WrittenScenario(scenario).hash(files);
+  return WrittenScenario(scenario, files).hash();
 }
 
 }  // namespace hapbench

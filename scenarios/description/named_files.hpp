@@ -73,17 +73,6 @@ class SharedCache {
 /// The one of this process.
 SharedCache& shared_cache();
 
-/// A field of a scenario that names a file.
-struct FileReference {
-  std::string pointer;  ///< JSON pointer of the field
-  std::string* path;    ///< the field's value, within the scenario that was asked
-  FileContent content;
-};
-
-/// Every file that the scenario names, in the order of its fields. This is the one list of them: what loads, checks,
-/// hashes or rewrites the files of a scenario goes through it.
-std::vector<FileReference> files_named_in(Scenario& scenario);
-
 // Pointers of the files that have a use of their own.
 inline constexpr std::string_view kEnvironmentFile = "/environment/file";
 inline constexpr std::string_view kToolFile = "/tool/file";
@@ -137,7 +126,9 @@ class NamedFile {
   std::shared_ptr<const Contents> contents_;
 };
 
-/// The files that a scenario names. Copies share what was read, and must not be used by two threads at once.
+/// Every file that a scenario names, in the order of its fields. This is the one list of them: what loads, checks,
+/// hashes or rewrites the files of a scenario goes through it. Copies share what was read, and must not be used by two
+/// threads at once.
 class NamedFiles {
  public:
   /// No files, for a scenario that names none.

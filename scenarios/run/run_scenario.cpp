@@ -60,9 +60,9 @@ Result run_with_shell(const LoadedScenario& loaded, const std::shared_ptr<const 
   result.unmet = unmet_expectations(scenario.expect, result);
   result.expected = result.unmet.empty();
   if (!folder && tables == nullptr) return std::move(result);
-  const WrittenScenario written(scenario);
+  const WrittenScenario written(scenario, loaded.files);
   add_provenance(result);
-  result.scenario_hash = written.hash(loaded.files);
+  result.scenario_hash = written.hash();
   if (folder) {
     folder->write(scenario.record, written, run);
   } else {

@@ -2,6 +2,7 @@
 
 #include <variant>
 
+#include "results/summary/summary.hpp"
 #include "tests/scenarios/support/visitors.hpp"
 
 /// Objects with named fields, and objects whose field "type" chooses the other fields, through all visitors.
