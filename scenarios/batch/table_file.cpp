@@ -62,17 +62,9 @@ class TableLines {
     if (row && *row < cases_) return *row;
     refuse();
   }
-  /// Calls `check` and puts the line in front of the message of an InputError.
-  template <class Check>
-  bool checked(Check check) const {
-    try {
-      return check();
-    } catch (const InputError& error) {
-      fail_in_line(file_, number_, error.problem());
-    }
-  }
+  [[noreturn]] void refuse(const std::string& problem) const { fail_in_line(file_, number_, problem); }
   [[noreturn]] void refuse() const {
-    fail_in_line(file_, number_, fmt::format("got the row \"{}\"; allowed: rows of this table", line_.substr(0, 60)));
+    refuse(fmt::format("got the row \"{}\"; allowed: rows of this table", line_.substr(0, 60)));
   }
 
  private:
@@ -206,10 +198,13 @@ void TableFile::resume(const Keep& keep) {
   if (lines.next() && lines.line() != title_.header) lines.refuse();
   while (lines.next()) {
     const std::size_t i = lines.row();
-    const bool stays = lines.checked([&] { return keep(i, lines.line()); });
-    count_ += static_cast<std::size_t>(stays) - static_cast<std::size_t>(has_[i]);
-    has_[i] = stays;
+    try {
+      has_[i] = keep(i, lines.line());
+    } catch (const InputError& error) {
+      lines.refuse(error.problem());
+    }
   }
+  count_ = static_cast<std::size_t>(std::count(has_.begin(), has_.end(), true));
   fs::resize_file(part_, lines.end(), error);
   if (error) throw IoError("write", part_, error);
 }
