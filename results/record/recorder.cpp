@@ -63,14 +63,6 @@ constexpr TrajectoryGroup kGroups[] = {
        *cells = inside != nullptr ? inside->depth() : std::nullopt;
      }}};
 
-}  // namespace
-
-std::span<const TrajectoryGroup> trajectory_groups() {
-  return kGroups;
-}
-
-namespace {
-
 /// Columns of trajectory.csv and what fills them in a row: a number, or a vector of as many.
 template <std::size_t n, class Cells>
 constexpr std::pair<std::array<Column, n>, Cells> filled(const Column (&columns)[n], Cells cells) {
@@ -252,6 +244,10 @@ constexpr Column kTargetColumns[] = {
     {"speed_m_per_s", "m/s", "mean speed of the handle in these rows; empty without any"}};
 
 }  // namespace
+
+std::span<const TrajectoryGroup> trajectory_groups() {
+  return kGroups;
+}
 
 const ResultTable kTrajectoryTable = whole_trajectory();
 constinit const ResultTable kContactTable = {

@@ -182,6 +182,35 @@ Axis read_axis(const std::string& text, bool sampled) {
   return axis;
 }
 
+/// By the method's number.
+constexpr std::string_view kMethodNames[] = {"lhs", "random", "points"};
+
+/// Largest coordinate, since rounding could move a point in the last stratum to 1.
+constexpr double kLast = 1.0 - 0x1.0p-53;
+
+std::vector<double> latin_hypercube(Random& random, std::size_t count) {
+  std::vector<std::size_t> strata(count);
+  std::iota(strata.begin(), strata.end(), std::size_t{0});
+  random.shuffle(strata);
+  std::vector<double> points(count);
+  for (std::size_t i = 0; i < count; ++i)
+    points[i] = std::min((static_cast<double>(strata[i]) + random.uniform()) / static_cast<double>(count), kLast);
+  return points;
+}
+
+/// How slowly an axis varies in the order of runs, the slowest first: what a shell depends on before all else.
+int speed(const Axis& axis) {
+  if (axis.path == kSceneAxis) return 0;
+  return axis.path == "environment" || axis.path.starts_with("environment.") ? 1 : 2;
+}
+
+std::vector<std::size_t> run_order(const std::vector<Axis>& axes) {
+  std::vector<std::size_t> order(axes.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, {}, [&axes](std::size_t a) { return speed(axes[a]); });
+  return order;
+}
+
 }  // namespace
 
 double Range::value_at(double part) const {
@@ -214,39 +243,6 @@ std::string Axis::value_at(double coordinate) const {
   const double value = range->value_at(coordinate);
   return number_text(whole ? std::round(value) : value);
 }
-
-namespace {
-
-/// By the method's number.
-constexpr std::string_view kMethodNames[] = {"lhs", "random", "points"};
-
-/// Largest coordinate, since rounding could move a point in the last stratum to 1.
-constexpr double kLast = 1.0 - 0x1.0p-53;
-
-std::vector<double> latin_hypercube(Random& random, std::size_t count) {
-  std::vector<std::size_t> strata(count);
-  std::iota(strata.begin(), strata.end(), std::size_t{0});
-  random.shuffle(strata);
-  std::vector<double> points(count);
-  for (std::size_t i = 0; i < count; ++i)
-    points[i] = std::min((static_cast<double>(strata[i]) + random.uniform()) / static_cast<double>(count), kLast);
-  return points;
-}
-
-/// How slowly an axis varies in the order of runs, the slowest first: what a shell depends on before all else.
-int speed(const Axis& axis) {
-  if (axis.path == kSceneAxis) return 0;
-  return axis.path == "environment" || axis.path.starts_with("environment.") ? 1 : 2;
-}
-
-std::vector<std::size_t> run_order(const std::vector<Axis>& axes) {
-  std::vector<std::size_t> order(axes.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::ranges::stable_sort(order, {}, [&axes](std::size_t a) { return speed(axes[a]); });
-  return order;
-}
-
-}  // namespace
 
 void append_new(std::vector<std::string>& texts, const std::vector<std::string>& more) {
   for (const std::string& text : more)

@@ -84,6 +84,46 @@ Cases cases_of(const ComparisonQuestion& question, const fs::path& file, std::ve
   return {{text}, question.overrides, std::move(axes)};
 }
 
+/// Returns true if a path stays below the directory when all links but its last part are followed.
+bool lies_below(const fs::path& directory, const fs::path& path) {
+  if (path.empty() || path.is_absolute()) return false;
+  std::error_code error;
+  const fs::path root = fs::canonical(directory, error);
+  if (error) return false;
+  const fs::path parent = fs::weakly_canonical(root / path.parent_path(), error);
+  if (error || path.filename() == ".." || path.filename() == "." || path.filename().empty()) return false;
+  return std::mismatch(root.begin(), root.end(), parent.begin(), parent.end()).first == root.end() &&
+         !fs::is_symlink(fs::symlink_status(root / path, error));
+}
+
+/// The paths that a command listed under a name, without those that lead elsewhere; none where the list cannot be read.
+std::vector<fs::path> listed(const fs::path& directory, const char* name) {
+  std::vector<fs::path> paths;
+  try {
+    const Json list = parse_json(read_text_file(directory / kResultListFile, kLargestJsonFile)).at(name);
+    if (!list.is_array()) return {};
+    for (const Json& path : list)
+      if (path.is_string() && lies_below(directory, path.get<std::string>()))
+        paths.emplace_back(path.get<std::string>());
+  } catch (const std::exception&) {
+    paths.clear();
+  }
+  return paths;
+}
+
+Json texts_of(const std::vector<fs::path>& paths) {
+  Json texts = Json::array();
+  for (const fs::path& path : paths) texts.push_back(path.generic_string());
+  return texts;
+}
+
+/// Removes the empty directories from `path` up to, but not including, `directory`.
+void remove_empty(const fs::path& directory, fs::path path) {
+  std::error_code error;
+  for (; !path.empty(); path = path.parent_path())
+    if (!fs::is_directory(directory / path, error) || !fs::remove(directory / path, error) || error) return;
+}
+
 }  // namespace
 
 Axis seed_axis(const Scenario& scenario, std::size_t seeds, double jitter) {
@@ -139,50 +179,6 @@ std::vector<Result> run_all(std::span<const Cases> all, const JobOptions& jobs,
   });
   return reports;
 }
-
-namespace {
-
-/// Returns true if a path stays below the directory when all links but its last part are followed.
-bool lies_below(const fs::path& directory, const fs::path& path) {
-  if (path.empty() || path.is_absolute()) return false;
-  std::error_code error;
-  const fs::path root = fs::canonical(directory, error);
-  if (error) return false;
-  const fs::path parent = fs::weakly_canonical(root / path.parent_path(), error);
-  if (error || path.filename() == ".." || path.filename() == "." || path.filename().empty()) return false;
-  return std::mismatch(root.begin(), root.end(), parent.begin(), parent.end()).first == root.end() &&
-         !fs::is_symlink(fs::symlink_status(root / path, error));
-}
-
-/// The paths that a command listed under a name, without those that lead elsewhere; none where the list cannot be read.
-std::vector<fs::path> listed(const fs::path& directory, const char* name) {
-  std::vector<fs::path> paths;
-  try {
-    const Json list = parse_json(read_text_file(directory / kResultListFile, kLargestJsonFile)).at(name);
-    if (!list.is_array()) return {};
-    for (const Json& path : list)
-      if (path.is_string() && lies_below(directory, path.get<std::string>()))
-        paths.emplace_back(path.get<std::string>());
-  } catch (const std::exception&) {
-    paths.clear();
-  }
-  return paths;
-}
-
-Json texts_of(const std::vector<fs::path>& paths) {
-  Json texts = Json::array();
-  for (const fs::path& path : paths) texts.push_back(path.generic_string());
-  return texts;
-}
-
-/// Removes the empty directories from `path` up to, but not including, `directory`.
-void remove_empty(const fs::path& directory, fs::path path) {
-  std::error_code error;
-  for (; !path.empty(); path = path.parent_path())
-    if (!fs::is_directory(directory / path, error) || !fs::remove(directory / path, error) || error) return;
-}
-
-}  // namespace
 
 void replace_earlier_results(const fs::path& directory, const ResultList& now) {
   for (const fs::path& run : listed(directory, "runs")) {

@@ -139,73 +139,6 @@ Json content_of(const SweepPlan& plan, const Json& files, const Json& plugins) {
   return content;
 }
 
-}  // namespace
-
-std::vector<std::string> SweepPlan::columns() const {
-  std::vector<std::string> columns = leading_columns(cases.axes());
-  columns.insert(columns.end(), metrics.begin(), metrics.end());
-  for (const std::string& metric : bounded) columns.push_back(std::string(kToleranceOf) + metric);
-  columns.emplace_back("state_hash");
-  return columns;
-}
-
-Json SweepPlan::description(const Shard& shard) const {
-  Json json = {{"definition", definition}, {"runs", cases.size()}, {"shard", shard_text(shard)}};
-  json.update(content);
-  return json;
-}
-
-std::vector<std::size_t> runs_to_check(const Cases& cases) {
-  if (cases.size() <= kMostChecked || cases.sampling()) {
-    std::vector<std::size_t> runs(std::min(cases.size(), kMostChecked));
-    std::iota(runs.begin(), runs.end(), std::size_t{0});
-    return runs;
-  }
-  std::set<std::size_t> runs;
-  std::size_t stride = 1;
-  for (std::size_t a = cases.axes().size(); a-- > 0;) {
-    const std::size_t size = cases.axes()[a].size(), count = std::min(size, kMostChecked);
-    for (std::size_t i = 0; i < count; ++i) {
-      const std::size_t place = count == 1 ? 0 : i * (size - 1) / (count - 1);
-      runs.insert(place * stride);
-      if (cases.axes().size() > 1) runs.insert(cases.size() - 1 - place * stride);
-    }
-    stride *= size;
-  }
-  return {runs.begin(), runs.end()};
-}
-
-SweepPlan plan_sweep(Cases cases, std::size_t jobs, bool progress) {
-  SweepPlan plan{
-      .cases = std::move(cases), .warnings = {}, .metrics = {}, .bounded = {}, .content = {}, .definition = ""};
-  const std::vector<std::size_t> runs = runs_to_check(plan.cases);
-  Names metrics;
-  std::map<std::string, std::string> plugins;
-  std::vector<Point> points(runs.size());
-  for_each_job(runs.size(), {static_cast<unsigned>(jobs), progress ? "checking" : ""},
-               [&](std::size_t i) { points[i] = examine(plan, runs[i]); });
-  Names files;                               // combinations of them
-  std::vector<std::size_t> runs_with_files;  // the first one of each
-  for (std::size_t i = 0; i < runs.size(); ++i) {
-    const Point& point = points[i];
-    add_names(metrics, point.metrics);
-    append_new(plan.warnings, point.warnings);
-    if (!point.origin.file.empty()) plugins.emplace(point.origin.file, point.origin.hash);
-    if (!point.files.empty() && files.insert(point.files).second) runs_with_files.push_back(runs[i]);
-  }
-  const Json hashes = check_files(plan, runs_with_files, metrics);
-  for (const Metric& metric : metrics_without_values(TrackingHandFields::kMostPlaces)) {
-    if (!metrics.contains(metric.name)) continue;
-    plan.metrics.push_back(metric.name);
-    if (metric.bounded) plan.bounded.push_back(metric.name);
-  }
-  plan.content = content_of(plan, hashes, plugins);
-  plan.definition = hash_text(hash_of(json_text(plan.content)));
-  return plan;
-}
-
-namespace {
-
 fs::path run_folder(const SweepOptions& options, std::size_t run) {
   return options.directory / "runs" / fmt::format("{:06}", run);
 }
@@ -271,64 +204,6 @@ std::vector<std::size_t> runs_left(const Cases& cases, const Shard& part, const 
     if (const std::size_t run = cases.at(place); !table.rows()[run]) left.push_back(run);
   return left;
 }
-
-}  // namespace
-
-fs::path table_of(const SweepOptions& options) {
-  return options.directory / table_name(options.shard);
-}
-
-SweepReport run_sweep(const SweepPlan& plan, const SweepOptions& options) {
-  const Shard part = options.part();
-  SweepReport report;
-  const std::vector<std::string> columns = plan.columns();
-  const auto keep = [&](std::size_t run, std::string_view text) {
-    return stays(plan, options, run, text, columns.size());
-  };
-  TableFile table(
-      {table_of(options), fmt::format("{}", fmt::join(columns, ",")), plan.description(part), plan.cases.size()},
-      options.resume ? TableFile::Keep(keep) : nullptr);
-  report.resumed = table.count();
-  const std::size_t size = part.size(plan.cases.size());
-  ProgressBar bar("sweep", size, options.progress);
-  bar.start_at(report.resumed);
-  const std::vector<std::size_t> left = runs_left(plan.cases, part, table);
-  std::mutex mutex;  // of table and report
-  const auto work = [&](std::size_t k) {
-    const std::size_t run = left[k];
-    std::string row;
-    std::optional<FailedRun> failed;
-    try {
-      row = computed_row(plan, options, run);
-    } catch (const IoError&) {
-      throw;  // further runs could not be kept either; --resume goes on
-    } catch (const std::exception& error) {
-      row = error_row(plan, run);
-      failed = FailedRun{run, error.what()};
-    }
-    const std::lock_guard lock(mutex);
-    table.add(run, row);
-    if (!failed) {
-      if (options.added) options.added();
-      bar.show(table.count(), true);
-    } else if (!report.failed || run < report.failed->run) {
-      report.failed = failed;
-    }
-  };
-  try {
-    for_each_job(left.size(), {static_cast<unsigned>(options.jobs), ""}, work);
-  } catch (const Stopped&) {
-    // It can be resumed.
-  }
-  report.done = table.count();
-  if (report.done < size)
-    report.signal = StopSignal::received();
-  else
-    table.finish();
-  return report;
-}
-
-namespace {
 
 struct Sign {
   std::string_view text;
@@ -413,6 +288,123 @@ bool has_columns_of_sweep(const SweepTable& table) {
 }
 
 }  // namespace
+
+std::vector<std::string> SweepPlan::columns() const {
+  std::vector<std::string> columns = leading_columns(cases.axes());
+  columns.insert(columns.end(), metrics.begin(), metrics.end());
+  for (const std::string& metric : bounded) columns.push_back(std::string(kToleranceOf) + metric);
+  columns.emplace_back("state_hash");
+  return columns;
+}
+
+Json SweepPlan::description(const Shard& shard) const {
+  Json json = {{"definition", definition}, {"runs", cases.size()}, {"shard", shard_text(shard)}};
+  json.update(content);
+  return json;
+}
+
+std::vector<std::size_t> runs_to_check(const Cases& cases) {
+  if (cases.size() <= kMostChecked || cases.sampling()) {
+    std::vector<std::size_t> runs(std::min(cases.size(), kMostChecked));
+    std::iota(runs.begin(), runs.end(), std::size_t{0});
+    return runs;
+  }
+  std::set<std::size_t> runs;
+  std::size_t stride = 1;
+  for (std::size_t a = cases.axes().size(); a-- > 0;) {
+    const std::size_t size = cases.axes()[a].size(), count = std::min(size, kMostChecked);
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::size_t place = count == 1 ? 0 : i * (size - 1) / (count - 1);
+      runs.insert(place * stride);
+      if (cases.axes().size() > 1) runs.insert(cases.size() - 1 - place * stride);
+    }
+    stride *= size;
+  }
+  return {runs.begin(), runs.end()};
+}
+
+SweepPlan plan_sweep(Cases cases, std::size_t jobs, bool progress) {
+  SweepPlan plan{
+      .cases = std::move(cases), .warnings = {}, .metrics = {}, .bounded = {}, .content = {}, .definition = ""};
+  const std::vector<std::size_t> runs = runs_to_check(plan.cases);
+  Names metrics;
+  std::map<std::string, std::string> plugins;
+  std::vector<Point> points(runs.size());
+  for_each_job(runs.size(), {static_cast<unsigned>(jobs), progress ? "checking" : ""},
+               [&](std::size_t i) { points[i] = examine(plan, runs[i]); });
+  Names files;                               // combinations of them
+  std::vector<std::size_t> runs_with_files;  // the first one of each
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    const Point& point = points[i];
+    add_names(metrics, point.metrics);
+    append_new(plan.warnings, point.warnings);
+    if (!point.origin.file.empty()) plugins.emplace(point.origin.file, point.origin.hash);
+    if (!point.files.empty() && files.insert(point.files).second) runs_with_files.push_back(runs[i]);
+  }
+  const Json hashes = check_files(plan, runs_with_files, metrics);
+  for (const Metric& metric : metrics_without_values(TrackingHandFields::kMostPlaces)) {
+    if (!metrics.contains(metric.name)) continue;
+    plan.metrics.push_back(metric.name);
+    if (metric.bounded) plan.bounded.push_back(metric.name);
+  }
+  plan.content = content_of(plan, hashes, plugins);
+  plan.definition = hash_text(hash_of(json_text(plan.content)));
+  return plan;
+}
+
+fs::path table_of(const SweepOptions& options) {
+  return options.directory / table_name(options.shard);
+}
+
+SweepReport run_sweep(const SweepPlan& plan, const SweepOptions& options) {
+  const Shard part = options.part();
+  SweepReport report;
+  const std::vector<std::string> columns = plan.columns();
+  const auto keep = [&](std::size_t run, std::string_view text) {
+    return stays(plan, options, run, text, columns.size());
+  };
+  TableFile table(
+      {table_of(options), fmt::format("{}", fmt::join(columns, ",")), plan.description(part), plan.cases.size()},
+      options.resume ? TableFile::Keep(keep) : nullptr);
+  report.resumed = table.count();
+  const std::size_t size = part.size(plan.cases.size());
+  ProgressBar bar("sweep", size, options.progress);
+  bar.start_at(report.resumed);
+  const std::vector<std::size_t> left = runs_left(plan.cases, part, table);
+  std::mutex mutex;  // of table and report
+  const auto work = [&](std::size_t k) {
+    const std::size_t run = left[k];
+    std::string row;
+    std::optional<FailedRun> failed;
+    try {
+      row = computed_row(plan, options, run);
+    } catch (const IoError&) {
+      throw;  // further runs could not be kept either; --resume goes on
+    } catch (const std::exception& error) {
+      row = error_row(plan, run);
+      failed = FailedRun{run, error.what()};
+    }
+    const std::lock_guard lock(mutex);
+    table.add(run, row);
+    if (!failed) {
+      if (options.added) options.added();
+      bar.show(table.count(), true);
+    } else if (!report.failed || run < report.failed->run) {
+      report.failed = failed;
+    }
+  };
+  try {
+    for_each_job(left.size(), {static_cast<unsigned>(options.jobs), ""}, work);
+  } catch (const Stopped&) {
+    // It can be resumed.
+  }
+  report.done = table.count();
+  if (report.done < size)
+    report.signal = StopSignal::received();
+  else
+    table.finish();
+  return report;
+}
 
 std::vector<std::string> leading_columns(const std::vector<Axis>& axes) {
   std::vector<std::string> columns = {"index"};

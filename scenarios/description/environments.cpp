@@ -216,22 +216,6 @@ struct Build {
   }
 };
 
-}  // namespace
-
-Shell make_shell(const Scenario& scenario, const NamedFiles& files) {
-  if (std::holds_alternative<SpringsEnvironment>(scenario.environment)) return nullptr;
-  const auto bytes = [](const PointShell& shell) { return 100 * shell.size(); };
-  return shared_cache().get<PointShell>(
-      "shell " + environment_content(scenario, files).dump(),
-      [&] { return std::visit(Build{files}, scenario.environment); }, bytes);
-}
-
-Shell make_shell(const Scenario& scenario) {
-  return make_shell(scenario, NamedFiles(scenario));
-}
-
-namespace {
-
 /// The inside of each type of environment. One that has none says so here; one that says nothing does not compile.
 struct BuildSolid {
   const NamedFiles& files;
@@ -253,6 +237,18 @@ struct BuildSolid {
 };
 
 }  // namespace
+
+Shell make_shell(const Scenario& scenario, const NamedFiles& files) {
+  if (std::holds_alternative<SpringsEnvironment>(scenario.environment)) return nullptr;
+  const auto bytes = [](const PointShell& shell) { return 100 * shell.size(); };
+  return shared_cache().get<PointShell>(
+      "shell " + environment_content(scenario, files).dump(),
+      [&] { return std::visit(Build{files}, scenario.environment); }, bytes);
+}
+
+Shell make_shell(const Scenario& scenario) {
+  return make_shell(scenario, NamedFiles(scenario));
+}
 
 std::shared_ptr<const Solid> make_solid(const Scenario& scenario, const NamedFiles& files) {
   const auto make = [&] { return std::visit(BuildSolid{files}, scenario.environment); };

@@ -38,6 +38,11 @@ Eigen::Quaterniond orientation_of(std::span<const double> cells, const std::file
        fmt::format("got a quaternion qw,qx,qy,qz of norm {}; allowed: 1 within {}", norm, kLargestNormError));
 }
 
+constexpr std::size_t kMostContacts = 20'000'000, kMostAtOnce = 100'000;
+constexpr double kLargestLengthError = 1e-3;  ///< of a gradient: three decimals suffice
+constexpr double kRounding = 1e-12;           ///< of the length of a gradient in double precision
+constexpr std::string_view kTraceHeader = "time_s,x_m,y_m,z_m,ux,uy,uz,depth_m";
+
 }  // namespace
 
 Stroke stroke_in(std::string_view text, const std::filesystem::path& file) {
@@ -67,15 +72,6 @@ Stroke stroke_in(std::string_view text, const std::filesystem::path& file) {
   if (has_force) stroke.force.emplace(std::move(forces));
   return stroke;
 }
-
-namespace {
-
-constexpr std::size_t kMostContacts = 20'000'000, kMostAtOnce = 100'000;
-constexpr double kLargestLengthError = 1e-3;  ///< of a gradient: three decimals suffice
-constexpr double kRounding = 1e-12;           ///< of the length of a gradient in double precision
-constexpr std::string_view kTraceHeader = "time_s,x_m,y_m,z_m,ux,uy,uz,depth_m";
-
-}  // namespace
 
 ContactTrace trace_in(std::string_view text, const std::filesystem::path& file) {
   const NumberTable table = number_table_in(text, file, kTraceHeader, kMostContacts);
