@@ -204,13 +204,6 @@ int speed(const Axis& axis) {
   return axis.path == "environment" || axis.path.starts_with("environment.") ? 1 : 2;
 }
 
-std::vector<std::size_t> run_order(const std::vector<Axis>& axes) {
-  std::vector<std::size_t> order(axes.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::ranges::stable_sort(order, {}, [&axes](std::size_t a) { return speed(axes[a]); });
-  return order;
-}
-
 }  // namespace
 
 double Range::value_at(double part) const {
@@ -323,16 +316,12 @@ std::string shard_text(const Shard& shard) {
 
 Cases::Cases(std::vector<ScenarioText> scenes, std::vector<std::string> sets, std::vector<Axis> axes,
              std::optional<Sampling> sampling)
-    : scenes_(std::move(scenes)),
-      sets_(std::move(sets)),
-      axes_(std::move(axes)),
-      sampling_(sampling),
-      order_(run_order(axes_)) {
+    : scenes_(std::move(scenes)), sets_(std::move(sets)), axes_(std::move(axes)), sampling_(sampling) {
   check_paths();
   if (sampling_) {
     size_ = sampling_->count;
     for (std::size_t a = 0; a < axes_.size(); ++a) unit_.push_back(unit_sample(*sampling_, a));
-    sort_sample();
+    sort_runs();
     return;
   }
   double size = 1.0;  // a double, because the product may overflow integers
@@ -341,6 +330,7 @@ Cases::Cases(std::vector<ScenarioText> scenes, std::vector<std::string> sets, st
     throw InputError(fmt::format("--vary: got a grid of {:.7g} runs; allowed: at most {}", size, kMostRuns));
   strides_.resize(axes_.size());
   for (std::size_t a = axes_.size(); a-- > 0; size_ *= axes_[a].size()) strides_[a] = size_;
+  sort_runs();
 }
 
 Cases::Cases(std::vector<ScenarioText> scenes, std::vector<std::string> sets, PointTable points)
@@ -349,10 +339,9 @@ Cases::Cases(std::vector<ScenarioText> scenes, std::vector<std::string> sets, Po
       axes_(std::move(points.axes)),
       sampling_(Sampling{SamplingMethod::points, points.places[0].size()}),
       places_(std::move(points.places)),
-      order_(run_order(axes_)),
       size_(sampling_->count) {
   check_paths();
-  sort_sample();
+  sort_runs();
 }
 
 void Cases::check_paths() const {
@@ -364,10 +353,11 @@ void Cases::check_paths() const {
 }
 
 /// Each point of a sampled range has a value of its own, which no other case shares.
-void Cases::sort_sample() {
+void Cases::sort_runs() {
   std::vector<std::size_t> slow;
-  for (const std::size_t a : order_)
-    if (speed(axes_[a]) < 2 && axes_[a].size() > 0) slow.push_back(a);
+  for (const int slowest : {0, 1})
+    for (std::size_t a = 0; a < axes_.size(); ++a)
+      if (speed(axes_[a]) == slowest && axes_[a].size() > 0) slow.push_back(a);
   if (slow.empty()) return;
   sorted_.resize(size_);
   std::iota(sorted_.begin(), sorted_.end(), std::size_t{0});
@@ -420,14 +410,6 @@ LoadedScenario Cases::load(std::size_t i) const {
   for (std::size_t a = 0; a < axes_.size(); ++a)
     if (!axes_[a].along.empty()) loaded.scenario.time.stride *= axes_[a].along[place(i, a)].stride;
   return loaded;
-}
-
-std::size_t Cases::at(std::size_t place) const {
-  if (sampling_) return sorted_.empty() ? place : sorted_[place];
-  std::size_t i = 0;
-  for (std::size_t k = order_.size(); k-- > 0; place /= axes_[order_[k]].size())
-    i += place % axes_[order_[k]].size() * strides_[order_[k]];
-  return i;
 }
 
 }  // namespace hapbench

@@ -115,8 +115,8 @@ Shard parse_shard(const std::string& text);
 std::string shard_text(const Shard& shard);
 
 /// Scenes with overrides, of which fields vary: all combinations of the values of the axes, the last one fastest, or a
-/// sample of them. Numbered from 0. Its size does not depend on their number, except for samples (8 bytes a case and
-/// axis) and the rows of a file.
+/// sample of them. Numbered from 0. Memory: 8 bytes a case and axis of a sample, 8 bytes a case where scenes or fields
+/// of the environment vary, and the rows of a file.
 class Cases {
  public:
   /// A grid, or a sample of the box that the axes span. `scenes` has one, or one for each value of the axis kSceneAxis.
@@ -149,11 +149,11 @@ class Cases {
   LoadedScenario load(std::size_t i) const;
   /// The case that runs at a place of the order of runs. Scenes, then fields of the environment vary slowest there, so
   /// that neighbours share a shell; apart from that cases are in order.
-  std::size_t at(std::size_t place) const;
+  std::size_t at(std::size_t place) const { return sorted_.empty() ? place : sorted_[place]; }
 
  private:
   void check_paths() const;
-  void sort_sample();
+  void sort_runs();
   std::string value(std::size_t i, std::size_t axis) const;
 
   std::vector<ScenarioText> scenes_;
@@ -163,8 +163,7 @@ class Cases {
   std::vector<std::vector<double>> unit_;           ///< by axis: the coordinates of a random sample
   std::vector<std::vector<std::uint32_t>> places_;  ///< by axis: of the points of a file
   std::vector<std::size_t> strides_;  ///< of a grid: distance of cases with neighbouring values of an axis
-  std::vector<std::size_t> order_;    ///< the axes, those that vary slowest first
-  std::vector<std::size_t> sorted_;   ///< the order of a sample's runs; empty: as they are numbered
+  std::vector<std::size_t> sorted_;   ///< in the order of runs; empty: as they are numbered
   std::size_t size_ = 1;
 };
 
