@@ -120,8 +120,6 @@ std::vector<std::string> tool_names() {
 
 namespace {
 
-using Grid = std::shared_ptr<const SignedDistanceGrid>;
-
 /// The mesh in the tool's own frame: tip centre at the origin, axis along -z.
 TriangleSoup tool_surface(const MeshToolFields& fields, const NamedFiles& files) {
   TriangleSoup surface = files.at(kToolFile).mesh().triangles();
@@ -130,20 +128,15 @@ TriangleSoup tool_surface(const MeshToolFields& fields, const NamedFiles& files)
   return surface;
 }
 
-/// Calls `of` with the surface of the tool and the spacing of its grid. Turns std::invalid_argument, which the grid
-/// throws, into an InputError that names the file.
-template <class Of>
-auto with_grid(const MeshToolFields& fields, const NamedFiles& files, const Of& of) {
+/// The signed distances from the surface. Throws InputError that names the file when there is no grid of them.
+std::shared_ptr<const SignedDistanceGrid> make_grid(const MeshToolFields& fields, const NamedFiles& files) {
   const TriangleSoup surface = tool_surface(fields, files);
   try {
-    return of(surface, fields.grid.value_or(SignedDistanceGrid::suggested_spacing(surface.vertices)));
+    const double spacing = fields.grid.value_or(SignedDistanceGrid::suggested_spacing(surface.vertices));
+    return std::make_shared<const SignedDistanceGrid>(surface.vertices, surface.triangles, spacing);
   } catch (const std::invalid_argument& error) {
     throw InputError(fmt::format("{}: {}", files.at(kToolFile).path().string(), error.what()));
   }
-}
-
-Grid make_grid(const TriangleSoup& surface, double spacing) {
-  return std::make_shared<const SignedDistanceGrid>(surface.vertices, surface.triangles, spacing);
 }
 
 struct Make {
@@ -164,7 +157,7 @@ struct Make {
                                             f.grid.value_or(0.0), fmt::join(f.tip, " "), fmt::join(f.tip_axis, " "));
     const auto bytes = [](const SignedDistanceGrid& grid) { return sizeof(double) * grid.nodes().size(); };
     return std::make_shared<MeshTool>(shared_cache().get<SignedDistanceGrid>(
-        content, [&] { return with_grid(f, files, make_grid); }, bytes));
+        content, [&] { return make_grid(f, files); }, bytes));
   }
 };
 
