@@ -200,8 +200,8 @@ void TableFile::resume(const Keep& keep) {
     const std::size_t i = lines.row();
     try {
       has_[i] = keep(i, lines.line());
-    } catch (const InputError& error) {
-      lines.refuse(error.problem());
+    } catch (const InputError& refusal) {
+      lines.refuse(refusal.problem());
     }
   }
   count_ = static_cast<std::size_t>(std::count(has_.begin(), has_.end(), true));
