@@ -244,7 +244,7 @@ TEST(Timing, TextHoldsMeanTimeInstructionSetAndCpu) {
 }
 
 TEST(Timing, OfNoStepsHasNoMean) {
-  EXPECT_TRUE(timing_json({}, {}, kProvenance)["step_mean_s"].is_null());
+  EXPECT_NE(timing_text({}, {}, kProvenance).find("\"step_mean_s\": null,"), std::string::npos);
 }
 
 // On x86-64 every build has at least SSE2.
