@@ -1,12 +1,13 @@
 #include "scenarios/batch/parallel_for.hpp"
 
+#include <fmt/format.h>
 #include <oneapi/tbb/global_control.h>
 #include <oneapi/tbb/info.h>
 
 #include <algorithm>
 #include <exception>
 #include <mutex>
-#include <system_error>
+#include <stdexcept>
 #include <thread>
 #include <vector>
 
@@ -48,15 +49,17 @@ void for_each_job(std::size_t count, const JobOptions& options, const std::funct
   // What jobs do in parallel by themselves takes no more threads than they.
   const tbb::global_control within(tbb::global_control::max_allowed_parallelism,
                                    std::min(threads, available_threads()));
-  {
-    std::vector<std::jthread> others;
-    try {
-      while (others.size() + 1 < std::min(threads, count)) others.emplace_back(work);
-    } catch (const std::system_error&) {
-      // As many as the system gives.
-    }
-    work();
+  std::unique_lock starting(mutex);  // no job begins before all threads are there
+  std::vector<std::jthread> others;
+  try {
+    while (others.size() + 1 < std::min(threads, count)) others.emplace_back(work);
+  } catch (const std::exception& reason) {
+    const std::string text = fmt::format("{}; if threads or memory ran short: fewer --jobs", reason.what());
+    error = std::make_exception_ptr(std::runtime_error(text));
   }
+  starting.unlock();
+  work();
+  others.clear();
   if (error) std::rethrow_exception(error);
   if (done < count) throw_if_stopped();
 }

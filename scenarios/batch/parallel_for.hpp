@@ -19,7 +19,8 @@ struct JobOptions {
 /// Calls job(0) … job(count - 1), each once, on several threads. Jobs begin in this order and at most `threads` of them
 /// are under way. They must be independent: each writes to its own place, so that the result does not depend on the
 /// number of threads. After an exception no further job starts, and the exception of the lowest job is rethrown. A
-/// signal (stop_signal.hpp) ends the loop the same way. Overhead: some microseconds a job, some tens a thread.
+/// signal (stop_signal.hpp) ends the loop the same way. Throws std::runtime_error before any job begins when there are
+/// not so many threads to be had. Overhead: some microseconds a job, some tens a thread.
 void for_each_job(std::size_t count, const JobOptions& options, const std::function<void(std::size_t)>& job);
 
 }  // namespace hapbench
