@@ -7,7 +7,6 @@
 
 #include <cassert>
 #include <cerrno>
-#include <cstring>
 #include <utility>
 
 namespace hapbench {
@@ -44,63 +43,36 @@ AtomicFile::AtomicFile(fs::path target)
   if (std::error_code unknown; fs::exists(target_, unknown) && !fs::is_regular_file(target_, unknown))
     throw IoError("write", target_, std::make_error_code(std::errc::not_supported));
   // Another writer may rename the file between its opening and its locking; then there is none by this name any more.
+  int descriptor = -1;
   do {
-    if (descriptor_ >= 0) ::close(descriptor_);
-    descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
-    if (descriptor_ < 0) throw IoError("create", target_, last_error());
-    if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
-      ::close(descriptor_);
+    descriptor = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
+    file_.reset(descriptor < 0 ? nullptr : ::fdopen(descriptor, "w"));
+    if (!file_) throw IoError("create", target_, last_error());
+    if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+      file_.reset();
       throw IoError("write, because it is being written,", target_,
                     std::make_error_code(std::errc::device_or_resource_busy));
     }
-  } while (!leads_to(temporary_, descriptor_));
-  if (::ftruncate(descriptor_, 0) != 0) error_ = last_error();  // what a killed process left
+  } while (!leads_to(temporary_, descriptor));
+  std::setvbuf(file_.get(), buffer_.get(), _IOFBF, kBufferSize);
+  if (::ftruncate(descriptor, 0) != 0) error_ = last_error();  // what a killed process left
 }
 
-AtomicFile::AtomicFile(AtomicFile&& other) noexcept
-    : target_(std::move(other.target_)),
-      temporary_(std::move(other.temporary_)),
-      buffer_(std::move(other.buffer_)),
-      used_(other.used_),
-      descriptor_(std::exchange(other.descriptor_, -1)),
-      error_(other.error_) {}
-
 AtomicFile::~AtomicFile() {
-  if (descriptor_ >= 0) discard();
+  if (file_) discard();
 }
 
 void AtomicFile::append(std::string_view bytes) noexcept {
-  assert(descriptor_ >= 0);
-  while (!bytes.empty() && !error_) {
-    if (used_ == kBufferSize) flush();
-    const std::size_t n = bytes.size() < kBufferSize - used_ ? bytes.size() : kBufferSize - used_;
-    std::memcpy(buffer_.get() + used_, bytes.data(), n);
-    used_ += n;
-    bytes.remove_prefix(n);
-  }
-}
-
-void AtomicFile::flush() noexcept {
-  const char* from = buffer_.get();
-  std::size_t left = used_;
-  used_ = 0;
-  while (left > 0 && !error_) {
-    const ::ssize_t written = ::write(descriptor_, from, left);
-    if (written < 0) {
-      if (errno != EINTR) error_ = last_error();
-      continue;
-    }
-    from += written;
-    left -= static_cast<std::size_t>(written);
-  }
+  assert(file_);
+  if (!error_ && ::fwrite_unlocked(bytes.data(), 1, bytes.size(), file_.get()) != bytes.size()) error_ = last_error();
 }
 
 void AtomicFile::complete() {
-  assert(descriptor_ >= 0);
-  flush();
+  assert(file_);
+  if (!error_ && std::fflush(file_.get()) != 0) error_ = last_error();
   // Network file systems report late errors on close; closing a duplicate asks for them and keeps the lock.
   if (!error_) {
-    const int duplicate = ::dup(descriptor_);
+    const int duplicate = ::dup(::fileno(file_.get()));
     if (duplicate < 0 || ::close(duplicate) != 0) error_ = last_error();
   }
   throw_error();
@@ -109,7 +81,7 @@ void AtomicFile::complete() {
 void AtomicFile::rename() {
   if (::rename(temporary_.c_str(), target_.c_str()) != 0) error_ = last_error();
   throw_error();
-  ::close(std::exchange(descriptor_, -1));
+  file_.reset();
 }
 
 void AtomicFile::commit() {
@@ -133,11 +105,7 @@ void AtomicFile::throw_error() {
 
 void AtomicFile::discard() noexcept {
   ::unlink(temporary_.c_str());
-  ::close(std::exchange(descriptor_, -1));
-}
-
-void FileSet::write(const fs::path& target, std::string_view contents) {
-  files_.emplace_back(target).append(contents);
+  file_.reset();
 }
 
 void FileSet::commit() {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <cstddef>
+#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <stdexcept>
@@ -45,7 +45,7 @@ class AtomicFile {
   explicit AtomicFile(std::filesystem::path target);
   /// Without `commit`: removes the temporary, leaves what is at the target.
   ~AtomicFile();
-  AtomicFile(AtomicFile&& other) noexcept;
+  AtomicFile(AtomicFile&& other) = default;
   AtomicFile& operator=(AtomicFile&&) = delete;
 
   /// Adds bytes through a buffer of fixed size. Allocates nothing. The first error is kept for `commit`; bytes after it
@@ -69,16 +69,14 @@ class AtomicFile {
  private:
   friend FileSet;
 
-  void flush() noexcept;
   void throw_error();
   void rename();
   void discard() noexcept;
 
   std::filesystem::path target_;
   std::filesystem::path temporary_;
-  std::unique_ptr<char[]> buffer_;
-  std::size_t used_ = 0;
-  int descriptor_ = -1;
+  std::unique_ptr<char[]> buffer_;  ///< of the file
+  std::unique_ptr<std::FILE, int (*)(std::FILE*)> file_{nullptr, std::fclose};
   std::error_code error_;
 };
 
@@ -90,7 +88,9 @@ class FileSet {
   /// The file gets its final name with the others.
   void take(AtomicFile file) { files_.push_back(std::move(file)); }
   /// The whole contents of a file. Throws IoError.
-  void write(const std::filesystem::path& target, std::string_view contents);
+  void write(const std::filesystem::path& target, std::string_view contents) {
+    files_.emplace_back(target).append(contents);
+  }
   /// The file, if there is one, goes when the others are complete and before any comes, which come in the order in
   /// which they were taken.
   void remove(std::filesystem::path file) { removed_.push_back(std::move(file)); }

@@ -69,6 +69,13 @@ std::string cell_text(const Metric::Value& value) {
   return number != nullptr ? std::string(NumberText(*number)) : "";
 }
 
+std::string csv_cell(std::string_view text) {
+  if (text.find_first_of(",\"\r\n") == std::string_view::npos) return std::string(text);
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + "\"";
+}
+
 ordered_json columns_json(std::span<const Column> columns) {
   return entries_json(columns);
 }

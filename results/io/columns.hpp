@@ -110,6 +110,8 @@ std::optional<double> number_of(const Metric::Value& value);
 std::optional<double> number_of(const MetricList& list, std::string_view name);
 /// A value as a cell of a CSV file; empty for none.
 std::string cell_text(const Metric::Value& value);
+/// A text as a cell of a CSV file: in quotes where it has a comma, a quote or an end of a line (RFC 4180).
+std::string csv_cell(std::string_view text);
 
 /// columns.json, for other programs: for each file its columns, and for summary.json its metrics, each with name, unit
 /// and meaning.

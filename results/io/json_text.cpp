@@ -9,8 +9,6 @@ namespace {
 
 using nlohmann::ordered_json;
 
-void write(std::string& out, const ordered_json& value, std::size_t indent);
-
 /// Writes strings, integers, booleans and null as nlohmann does; bytes that are not UTF-8 become U+FFFD.
 void write_plain(std::string& out, const ordered_json& value) {
   if (!value.is_number_float()) {
@@ -22,48 +20,26 @@ void write_plain(std::string& out, const ordered_json& value) {
   }
 }
 
-void new_line(std::string& out, std::size_t indent) {
-  out += '\n';
-  out.append(indent, ' ');
-}
-
-void write_object(std::string& out, const ordered_json& object, std::size_t indent) {
-  out += '{';
+void write(std::string& out, const ordered_json& value, std::size_t indent) {
+  if (!value.is_structured() || value.empty()) return write_plain(out, value);
+  const bool is_object = value.is_object();
+  const auto is_plain = [](const ordered_json& item) { return item.is_primitive(); };
+  const bool one_line = !is_object && std::all_of(value.begin(), value.end(), is_plain);
+  const std::string end_of_line = one_line ? "" : "\n" + std::string(indent, ' ');
+  out += is_object ? '{' : '[';
   const char* separator = "";
-  for (const auto& [key, value] : object.items()) {
+  for (const auto& [key, item] : value.items()) {
     out += separator;
-    new_line(out, indent + 2);
-    write_plain(out, key);
-    out += ": ";
-    write(out, value, indent + 2);
-    separator = ",";
-  }
-  new_line(out, indent);
-  out += '}';
-}
-
-void write_array(std::string& out, const ordered_json& array, std::size_t indent) {
-  const bool one_line = std::all_of(array.begin(), array.end(), [](const auto& value) { return value.is_primitive(); });
-  out += '[';
-  const char* separator = "";
-  for (const ordered_json& value : array) {
-    out += separator;
-    if (!one_line) new_line(out, indent + 2);
-    write(out, value, indent + 2);
+    if (!one_line) out += end_of_line + "  ";
+    if (is_object) {
+      write_plain(out, key);
+      out += ": ";
+    }
+    write(out, item, indent + 2);
     separator = one_line ? ", " : ",";
   }
-  if (!one_line) new_line(out, indent);
-  out += ']';
-}
-
-void write(std::string& out, const ordered_json& value, std::size_t indent) {
-  if (value.is_object() && !value.empty()) {
-    write_object(out, value, indent);
-  } else if (value.is_array() && !value.empty()) {
-    write_array(out, value, indent);
-  } else {
-    write_plain(out, value);
-  }
+  out += end_of_line;
+  out += is_object ? '}' : ']';
 }
 
 }  // namespace

@@ -5,8 +5,10 @@
 #include <cstdint>
 #include <filesystem>
 #include <limits>
+#include <new>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 #include <utility>
 #include <variant>
@@ -14,6 +16,7 @@
 
 #include "results/io/atomic_file.hpp"
 #include "results/io/columns.hpp"
+#include "results/io/json_text.hpp"
 #include "sim/core/types.hpp"
 
 namespace hapbench {
@@ -34,7 +37,6 @@ class CsvWriter {
   /// Precondition: as many cells as the header has columns. Errors are kept for `finish`.
   template <class... Cells>
   void row(const Cells&... cells) noexcept {
-    cells_ = 0;
     (put(cells), ...);
     end_row();
   }
@@ -47,21 +49,23 @@ class CsvWriter {
   void finish(FileSet* together = nullptr) { file_.commit(together); }
 
  private:
-  void put(double value) noexcept;
-  void put(std::uint64_t value) noexcept;
-  void put(const std::optional<double>& value) noexcept;
-  void put(std::string_view text) noexcept;
+  void put(double value) noexcept { cell() += NumberText(value); }
+  void put(std::uint64_t value) noexcept { cell() += NumberText(value); }
+  void put(const std::optional<double>& value) noexcept { value ? put(*value) : static_cast<void>(cell()); }
+  void put(std::string_view text) noexcept { cell() += csv_cell(text); }
   template <class Values>
   requires(requires(const Values& v) { v.begin(); } &&
            !std::convertible_to<Values, std::string_view>) void put(const Values& values) noexcept {
     for (const auto& value : values) put(value);
   }
-  void begin_cell() noexcept;
+  /// Begins the next cell of the row; what is added to it is the cell.
+  std::string& cell() noexcept { return cells_++ > 0 ? row_ += ',' : row_; }
   void end_row() noexcept;
 
   AtomicFile file_;
   std::size_t columns_;
   std::size_t cells_ = 0;  ///< of the row being written
+  std::string row_;        ///< so far
 };
 
 /// A table of numbers in memory with the same rows as the CSV file; an empty cell is NaN. It grows by memory pages of
@@ -83,7 +87,9 @@ class MemoryTable {
   }
 
   /// Throws std::bad_alloc when a row was lost.
-  void require_complete() const;
+  void require_complete() const {
+    if (!complete_) throw std::bad_alloc();
+  }
 
   std::span<const Column> columns() const { return columns_; }
   std::size_t rows() const { return size_ / columns_.size(); }

@@ -26,7 +26,7 @@ std::size_t missing(const std::vector<std::uint32_t>& a, const std::vector<std::
 EnergyLedger::EnergyLedger(double mass, double dt, bool position_is_free, std::size_t capacity,
                            const IntegratorEntry& integrator)
     : mass_(mass), dt_(dt), free_(position_is_free), row_force_moves_(integrator.holds_force) {
-  last_.rendered.reserve(capacity);
+  last_rendered_.reserve(capacity);
   rendered_.reserve(capacity);
 }
 
@@ -48,17 +48,17 @@ void EnergyLedger::on_step(const StepRecord& record) noexcept {
     kinetic_at_start_ = balance_.kinetic;
     balance_.device = record.device;
   }
-  keep(record);
+  has_row_ = true;
+  last_ = record;
+  std::swap(last_rendered_, rendered_);
 }
 
 EnergyLedger::Works EnergyLedger::works(const Vec3& spring, const Vec3& rendered, const Vec3& way) const noexcept {
-  Works w;
-  w.input = last_.input.dot(way);
-  w.hand = last_.hand.dot(way);
-  w.actuator = (last_.input - last_.hand).dot(way);
-  w.spring = spring.dot(way);
-  w.damping = (rendered - spring).dot(way);
-  return w;
+  return {.input = last_.hand.input.dot(way),
+          .hand = last_.hand_force.dot(way),
+          .actuator = (last_.hand.input - last_.hand_force).dot(way),
+          .spring = spring.dot(way),
+          .damping = (rendered - spring).dot(way)};
 }
 
 EnergyLedger::Works EnergyLedger::works_until(const StepRecord& now) const noexcept {
@@ -114,31 +114,18 @@ double EnergyLedger::created_in_step(const StepRecord& now, double spring_work) 
 }
 
 void EnergyLedger::note_event(const StepRecord& now, double created) noexcept {
-  EnergyEvent event;
-  event.step = now.step;
-  event.time = now.time;
-  event.created = created;
-  event.colliding_before = last_.colliding;
-  event.colliding_after = now.colliding;
-  event.rendered_before = last_.rendered.size();
-  event.rendered_after = rendered_.size();
-  event.appeared = missing(rendered_, last_.rendered);
-  event.vanished = missing(last_.rendered, rendered_);
-  events_.back() = event;
+  events_.back() = {.step = now.step,
+                    .time = now.time,
+                    .created = created,
+                    .colliding_before = last_.colliding,
+                    .colliding_after = now.colliding,
+                    .rendered_before = last_rendered_.size(),
+                    .rendered_after = rendered_.size(),
+                    .appeared = missing(rendered_, last_rendered_),
+                    .vanished = missing(last_rendered_, rendered_)};
   for (std::size_t i = events_.size() - 1; i > 0 && events_[i].created > events_[i - 1].created; --i) {
     std::swap(events_[i], events_[i - 1]);
   }
-}
-
-void EnergyLedger::keep(const StepRecord& record) noexcept {
-  has_row_ = true;
-  last_.tool = record.tool;
-  last_.force = record.force;
-  last_.input = record.hand.input;
-  last_.hand = record.hand_force;
-  last_.springs = record.springs;
-  last_.colliding = record.colliding;
-  std::swap(last_.rendered, rendered_);
 }
 
 std::span<const EnergyEvent> EnergyLedger::events() const noexcept {

@@ -87,17 +87,6 @@ class EnergyLedger final : public MetricObserver {
   std::span<const EnergyEvent> events() const noexcept;
 
  private:
-  /// The part of a row that the next step needs.
-  struct Row {
-    ToolState tool;
-    RenderedForce force;
-    Vec3 input = Vec3::Zero();
-    Vec3 hand = Vec3::Zero();
-    SpringState springs;
-    std::size_t colliding = 0;
-    std::vector<std::uint32_t> rendered;  ///< sorted shell indices
-  };
-
   /// Work of each force over the step before a row [J].
   struct Works {
     double input = 0.0, hand = 0.0, actuator = 0.0;
@@ -110,15 +99,14 @@ class EnergyLedger final : public MetricObserver {
   void add_step(const StepRecord& now) noexcept;
   double created_in_step(const StepRecord& now, double spring_work) noexcept;
   void note_event(const StepRecord& now, double created) noexcept;
-  void keep(const StepRecord& record) noexcept;
 
   double mass_;
   double dt_;
   bool free_;
   bool row_force_moves_;  ///< the row's force acts during the whole step
   bool has_row_ = false;
-  Row last_;
-  std::vector<std::uint32_t> rendered_;  ///< sorted shell indices of this row
+  StepRecord last_;                                      ///< the row before, but for its contacts
+  std::vector<std::uint32_t> rendered_, last_rendered_;  ///< sorted shell indices of this row and of that
   EnergyBalance balance_;
   double kinetic_at_start_ = 0.0;
   double left_ = 0.0;  ///< sum of Works::left

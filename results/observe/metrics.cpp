@@ -4,6 +4,7 @@
 #include <cassert>
 #include <cmath>
 #include <span>
+#include <utility>
 
 #include "sim/loop/integrators/table.hpp"
 
@@ -16,12 +17,6 @@ std::optional<double> explicit_friction_limit(const IntegratorEntry& integrator,
   if (mu_s >= largest) return 0.0;
   return mu_f > 0.0 ? std::optional((largest - mu_s) / mu_f) : std::nullopt;
 }
-
-namespace {
-
-constexpr double kFarMore = 3.0;
-
-}  // namespace
 
 void ReductionJumps::begin() noexcept {
   last_.clear();
@@ -42,16 +37,15 @@ void ReductionJumps::add(const ContactBuffer& kept, double step_squared, bool se
   if (!same) last_.assign(now.begin(), now.end());
 }
 
-std::optional<double> ReductionJumps::step_max() const noexcept {
-  return step_max_squared_ ? std::optional(std::sqrt(*step_max_squared_)) : std::nullopt;
-}
-
-double ReductionJumps::step_max_elsewhere() const noexcept {
-  return std::sqrt(step_max_squared_elsewhere_);
-}
-
 bool ReductionJumps::stand_out() const noexcept {
+  constexpr double kFarMore = 3.0;
   return step_max().value_or(0.0) > kFarMore * step_max_elsewhere();
+}
+
+TrialContact TrialContact::operator+(const TrialContact& other) const noexcept {
+  // An empty optional is less than any number.
+  return {rows + other.rows, in_contact + other.in_contact, std::max(last, other.last),
+          std::max(force_max_squared, other.force_max_squared)};
 }
 
 namespace {
@@ -77,11 +71,7 @@ MetricsObserver::MetricsObserver(double dt, const MetricsConfig& config)
 void MetricsObserver::begin() noexcept {
   if (trials_++ > 0) hashes_before_.word(hash_.value());
   hash_ = {};
-  rows_before_ += now_.rows;
-  in_contact_before_ += now_.in_contact;
-  last_contact_before_ = std::max(last_contact_before_, now_.last);
-  force_max_squared_before_ = std::max(force_max_squared_before_, now_.force_max_squared);
-  now_ = {};
+  before_ = before_ + std::exchange(now_, {});
   settled_ = false;
   last_force_ = Vec3::Zero();
   last_quarter_.begin();
@@ -171,8 +161,7 @@ void MetricsObserver::tell(Section& s) const {
 }
 
 void MetricsObserver::tell_motion_and_force(Section& s) const {
-  s.metric("force_max_N", "N", "largest ||f|| of a row",
-           std::sqrt(std::max(force_max_squared_before_, now_.force_max_squared)), Better::less);
+  s.metric("force_max_N", "N", "largest ||f|| of a row", std::sqrt((before_ + now_).force_max_squared), Better::less);
   s.metric("force_step_max_N", "N", "largest force step ||f_k - f_(k-1)||, landings included",
            std::sqrt(force_step_max_squared_), Better::less);
   s.metric("velocity_total_variation_m_per_s", "m/s",
@@ -193,7 +182,7 @@ void MetricsObserver::tell_contacts(Section& s) const {
   const RatioRange ratio = ratio_.value_or(RatioRange{});
   const bool any = rows() > 0;
   const auto share = [this](std::uint64_t sum) { return static_cast<double>(sum) / static_cast<double>(rows()); };
-  const std::uint64_t in_contact = in_contact_before_ + now_.in_contact;
+  const TrialContact all = before_ + now_;
   s.metric("ratio_min", "1",
            "smallest stiffness ratio rho = u^T S u of a rendered contact: the combined stiffness along it, in units "
            "of K",
@@ -206,11 +195,9 @@ void MetricsObserver::tell_contacts(Section& s) const {
            "points that the force law saw (after local average and reduction) per row, rows without contact included",
            if_any(any, share(rendered_sum_)));
   s.metric("rendered_max", "1", "most points that the force law saw in a row", rendered_max_);
-  s.metric("steps_in_contact", "1", "rows with a colliding point", in_contact);
-  s.metric("contact_share", "1", "steps_in_contact / steps", if_any(any, share(in_contact)));
-  // An empty optional is less than any number.
-  s.metric("last_contact_s", "s", "time of the last row with a colliding point",
-           std::max(last_contact_before_, now_.last));
+  s.metric("steps_in_contact", "1", "rows with a colliding point", all.in_contact);
+  s.metric("contact_share", "1", "steps_in_contact / steps", if_any(any, share(all.in_contact)));
+  s.metric("last_contact_s", "s", "time of the last row with a colliding point", all.last);
 }
 
 void MetricsObserver::tell_friction(Section& s) const {

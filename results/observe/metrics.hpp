@@ -1,11 +1,11 @@
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <optional>
 #include <vector>
 
-#include "results/observe/butterworth.hpp"
 #include "results/observe/contact_forces.hpp"
 #include "results/observe/metric_observer.hpp"
 #include "sim/contact/contact_buffer.hpp"
@@ -46,10 +46,12 @@ class ReductionJumps {
   /// Rows whose set of kept points is another than the row before's.
   std::uint64_t changes() const noexcept { return changes_; }
   /// Largest force step of such rows in settled contact [N]; none without any.
-  std::optional<double> step_max() const noexcept;
+  std::optional<double> step_max() const noexcept {
+    return step_max_squared_ ? std::optional(std::sqrt(*step_max_squared_)) : std::nullopt;
+  }
   /// The same over the other rows in settled contact [N], without the row after each change: there, the damping
   /// responds to the jump of the velocity.
-  double step_max_elsewhere() const noexcept;
+  double step_max_elsewhere() const noexcept { return std::sqrt(step_max_squared_elsewhere_); }
   /// True when the force steps more than three times as far where the points change as it does elsewhere.
   bool stand_out() const noexcept;
 
@@ -67,6 +69,9 @@ struct TrialContact {
   std::uint64_t in_contact = 0;     ///< of these, with a colliding point
   std::optional<double> last = {};  ///< time of the last of those [s]
   double force_max_squared = 0.0;   ///< largest ||f||^2 of a row [N^2]
+
+  /// That of both trials.
+  TrialContact operator+(const TrialContact& other) const noexcept;
 };
 
 /// Settings of the metrics.
@@ -98,7 +103,7 @@ class MetricsObserver final : public MetricObserver {
   bool in_settled_contact() const noexcept { return settled_; }
   /// True when settled contact was long enough for its metrics.
   bool has_settled() const noexcept { return contact_forces_.has_settled(); }
-  std::uint64_t rows() const noexcept { return rows_before_ + now_.rows; }
+  std::uint64_t rows() const noexcept { return before_.rows + now_.rows; }
   /// The contact of the current trial: the one after the last `begin`.
   const TrialContact& trial() const noexcept { return now_; }
   /// Nothing where friction cannot become unstable.
@@ -128,9 +133,7 @@ class MetricsObserver final : public MetricObserver {
   Vec3 position_ = Vec3::Zero();  ///< in the last row [m]
 
   // Sums and extremes over all trials; "before": over the trials before the current one.
-  std::uint64_t rows_before_ = 0, in_contact_before_ = 0;
-  double force_max_squared_before_ = 0.0;
-  std::optional<double> last_contact_before_;
+  TrialContact before_;
   Hash64 hashes_before_;
   double velocity_variation_ = 0.0, speed_max_squared_ = 0.0, vibration_sum_ = 0.0;
   LastQuarterVibration last_quarter_;

@@ -34,18 +34,6 @@ void StepTimes::lap() noexcept {
 StepSampler::StepSampler(std::uint64_t steps)
     : every_(steps / kMostSamples + 1), times_(static_cast<std::size_t>(steps / every_) + 1) {}
 
-void StepSampler::start(std::uint64_t step) noexcept {
-  if (step % every_ != 0) return;
-  runs_ = true;
-  times_.start();
-}
-
-void StepSampler::stop() noexcept {
-  if (!runs_) return;
-  runs_ = false;
-  times_.lap();
-}
-
 namespace {
 
 using Times = std::vector<std::uint64_t>;

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "sim/loop/observer.hpp"
@@ -60,31 +61,28 @@ class StepSampler {
   std::span<const std::uint64_t> nanoseconds() const { return times_.nanoseconds(); }
 
  private:
-  class First final : public Observer {
-   public:
-    explicit First(StepSampler& sampler) : sampler_(sampler) {}
-    void on_step(const StepRecord&) noexcept override { sampler_.stop(); }
+  /// The end of a sample or the begin of the next.
+  struct End final : Observer {
+    End(StepSampler& sampler, void (StepSampler::*work)(std::uint64_t) noexcept) : of(sampler), does(work) {}
+    void on_step(const StepRecord& record) noexcept override { (of.*does)(record.step); }
 
-   private:
-    StepSampler& sampler_;
-  };
-  class Last final : public Observer {
-   public:
-    explicit Last(StepSampler& sampler) : sampler_(sampler) {}
-    void on_step(const StepRecord& record) noexcept override { sampler_.start(record.step); }
-
-   private:
-    StepSampler& sampler_;
+    StepSampler& of;
+    void (StepSampler::*does)(std::uint64_t step) noexcept;
   };
 
-  void start(std::uint64_t step) noexcept;
-  void stop() noexcept;
+  void start(std::uint64_t step) noexcept {
+    if (step % every_ != 0) return;
+    runs_ = true;
+    times_.start();
+  }
+  void stop(std::uint64_t) noexcept {
+    if (std::exchange(runs_, false)) times_.lap();
+  }
 
   std::uint64_t every_;
   StepTimes times_;
   bool runs_ = false;
-  First first_{*this};
-  Last last_{*this};
+  End first_{*this, &StepSampler::stop}, last_{*this, &StepSampler::start};
 };
 
 /// Deadlines of a haptic loop [s]: the thesis's simulations step at 2 kHz, its device at 2048 Hz.

@@ -79,6 +79,24 @@ SubjectMean over_subjects(const std::map<std::size_t, SubjectAtPlace>& subjects,
   return result;
 }
 
+void tell_mean(Section s, const SubjectMean& m, const char* unit, const char* meaning, Better better = Better::none) {
+  const bool any = m.subjects > 0;
+  s.metric("mean", unit, meaning, if_any(any, m.mean), better);
+  s.metric("standard_error", unit, "standard error of that mean, over subjects", if_any(any, m.standard_error));
+  s.metric("subjects", "1", "subjects that have a value", m.subjects);
+}
+
+void tell_place(Section s, const PlaceMetrics& place) {
+  tell_mean(s.part("success_rate"), place.success_rate, "1",
+            "share of the targets at this place that were removed, mean over subjects", Better::more);
+  tell_mean(s.part("completion_time_s"), place.completion_time, "s",
+            "time until a target at this place was removed or the limit was reached, mean over subjects", Better::less);
+  tell_mean(s.part("model_force_N"), place.model_force, "N",
+            "mean ||f|| of the rows logged at a target of this place, mean over subjects");
+  tell_mean(s.part("speed_m_per_s"), place.speed, "m/s",
+            "mean speed of the handle in the rows logged at a target of this place, mean over subjects");
+}
+
 }  // namespace
 
 std::vector<PlaceMetrics> place_metrics(const std::vector<TargetRow>& rows) {
@@ -99,28 +117,6 @@ std::vector<PlaceMetrics> place_metrics(const std::vector<TargetRow>& rows) {
   }
   return metrics;
 }
-
-namespace {
-
-void tell_mean(Section s, const SubjectMean& m, const char* unit, const char* meaning, Better better = Better::none) {
-  const bool any = m.subjects > 0;
-  s.metric("mean", unit, meaning, if_any(any, m.mean), better);
-  s.metric("standard_error", unit, "standard error of that mean, over subjects", if_any(any, m.standard_error));
-  s.metric("subjects", "1", "subjects that have a value", m.subjects);
-}
-
-void tell_place(Section s, const PlaceMetrics& place) {
-  tell_mean(s.part("success_rate"), place.success_rate, "1",
-            "share of the targets at this place that were removed, mean over subjects", Better::more);
-  tell_mean(s.part("completion_time_s"), place.completion_time, "s",
-            "time until a target at this place was removed or the limit was reached, mean over subjects", Better::less);
-  tell_mean(s.part("model_force_N"), place.model_force, "N",
-            "mean ||f|| of the rows logged at a target of this place, mean over subjects");
-  tell_mean(s.part("speed_m_per_s"), place.speed, "m/s",
-            "mean speed of the handle in the rows logged at a target of this place, mean over subjects");
-}
-
-}  // namespace
 
 void TargetMetricsObserver::tell(Section& s) const {
   std::vector<PlaceMetrics> places = place_metrics(rows_);

@@ -38,7 +38,9 @@ class Recorder final : public Observer {
   bool wants_roll() const noexcept override { return source_.wants_roll; }
   bool wants_springs() const noexcept override { return source_.wants_springs; }
   bool wants_found() const noexcept override { return source_.wants_found; }
-  void on_step(const StepRecord& record) noexcept override;
+  void on_step(const StepRecord& record) noexcept override {
+    if (record.step % every_ == 0) source_.write(record, writer_);
+  }
 
   /// After the run: puts the file under its final name, or leaves that to a set of files. Throws IoError, also for the
   /// errors of earlier rows.

@@ -1,8 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <nlohmann/json.hpp>
-#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -102,7 +102,9 @@ struct Result {
   Provenance provenance;
   std::string scenario_hash;  ///< of the effective scenario
 
-  bool has_section(std::string_view section) const;
+  bool has_section(std::string_view section) const {
+    return std::ranges::find(sections, section, &MetricSection::name) != sections.end();
+  }
 };
 
 /// summary.json. The same run gives the same bytes: no time stamps, no timings, no instruction set. Numbers that do not
@@ -118,8 +120,6 @@ nlohmann::ordered_json step_latency_json(const StepLatency& latency);
 /// timing.json, separate from summary.json because no two runs take the same time. It names the build's instruction set
 /// and the CPU: times are comparable only for equal ones. The mean is null without steps, the latency when steps were
 /// not timed.
-nlohmann::ordered_json timing_json(const RunTiming& timing, const InstructionSet& instructions,
-                                   const Provenance& provenance);
 std::string timing_text(const RunTiming& timing, const InstructionSet& instructions, const Provenance& provenance);
 
 }  // namespace hapbench

@@ -8,10 +8,56 @@
 #include <string_view>
 #include <vector>
 
-#include "scenarios/batch/axis.hpp"
 #include "scenarios/description/load_scenario.hpp"
 
+/// Cases: scenes with overrides, of which fields vary.
 namespace hapbench {
+
+/// Maximum number of cases, and of the values of an axis.
+inline constexpr std::size_t kMostRuns = 1'000'000;
+
+/// An interval to sample, or to divide into equal steps or ratios.
+struct Range {
+  double from = 0.0;
+  double to = 0.0;
+  bool logarithmic = false;
+
+  /// The value at a fraction of the interval in [0, 1], measured in the logarithm if the range is logarithmic. Returns
+  /// both ends exactly and never a value outside.
+  double value_at(double part) const;
+};
+
+/// A field and its values: as in --set, numbers as shortest decimals, objects and lists as compact JSON.
+struct Axis {
+  std::string path;                      ///< dotted, as in --set
+  std::vector<std::string> values = {};  ///< listed values, unless there is a range
+  std::optional<Range> range = {};       ///< replaces listed values
+  std::size_t steps = 0;                 ///< number of values of a range on a grid
+  bool whole = false;                    ///< numbers of the range are rounded to integers
+
+  /// Changes that go with a value of the axis: further overrides, and the TimeFields::stride of its runs.
+  struct Along {
+    std::vector<std::string> overrides;
+    std::int64_t stride = 1;
+  };
+  std::vector<Along> along = {};  ///< of each listed value; empty: nothing
+
+  /// Number of values; 0 for the range of a sample.
+  std::size_t size() const { return range ? steps : values.size(); }
+  /// Precondition: i < size().
+  std::string value(std::size_t i) const;
+  /// Index of the listed value at a coordinate in [0, 1): each has an equal share of the interval. Precondition: the
+  /// axis has listed values.
+  std::size_t place_at(double coordinate) const;
+  /// The value at a coordinate in [0, 1): of a range the value at that fraction, of a list the value at place_at().
+  std::string value_at(double coordinate) const;
+};
+
+/// Reads "path=a:b:n" (n numbers from a to b, both exactly, in equal steps), "path=a:b:n:log" (in equal ratios) or
+/// "path=v,w,…" (numbers, names, JSON objects and lists); with `sampled`, "path=a:b" or "path=a:b:log" in place of the
+/// first two. "path=all" stands for all names that the field takes. The range of a field of integers, entries of lists
+/// aside, has integers. Throws InputError. Whether a scenario has such a field and accepts the values is not checked.
+Axis parse_axis(const std::string& text, bool sampled = false);
 
 /// Appends the texts, such as warnings of cases, that are not in the list yet.
 void append_new(std::vector<std::string>& texts, const std::vector<std::string>& more);
@@ -69,8 +115,8 @@ Shard parse_shard(const std::string& text);
 std::string shard_text(const Shard& shard);
 
 /// Scenes with overrides, of which fields vary: all combinations of the values of the axes, the last one fastest, or a
-/// sample of them. Numbered from 0. Its size does not depend on their number, except for samples (8 bytes a case and
-/// axis) and the rows of a file.
+/// sample of them. Numbered from 0. Memory: 8 bytes a case and axis of a sample, 8 bytes a case where scenes or fields
+/// of the environment vary, and the rows of a file.
 class Cases {
  public:
   /// A grid, or a sample of the box that the axes span. `scenes` has one, or one for each value of the axis kSceneAxis.
@@ -103,11 +149,11 @@ class Cases {
   LoadedScenario load(std::size_t i) const;
   /// The case that runs at a place of the order of runs. Scenes, then fields of the environment vary slowest there, so
   /// that neighbours share a shell; apart from that cases are in order.
-  std::size_t at(std::size_t place) const;
+  std::size_t at(std::size_t place) const { return sorted_.empty() ? place : sorted_[place]; }
 
  private:
   void check_paths() const;
-  void sort_sample();
+  void sort_runs();
   std::string value(std::size_t i, std::size_t axis) const;
 
   std::vector<ScenarioText> scenes_;
@@ -117,8 +163,7 @@ class Cases {
   std::vector<std::vector<double>> unit_;           ///< by axis: the coordinates of a random sample
   std::vector<std::vector<std::uint32_t>> places_;  ///< by axis: of the points of a file
   std::vector<std::size_t> strides_;  ///< of a grid: distance of cases with neighbouring values of an axis
-  std::vector<std::size_t> order_;    ///< the axes, those that vary slowest first
-  std::vector<std::size_t> sorted_;   ///< the order of a sample's runs; empty: as they are numbered
+  std::vector<std::size_t> sorted_;   ///< in the order of runs; empty: as they are numbered
   std::size_t size_ = 1;
 };
 

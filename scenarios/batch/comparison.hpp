@@ -14,11 +14,9 @@
 /// Scenes, each under the same laws and with the same number of seeds.
 namespace hapbench {
 
-/// A shift of the start [m] whose direction depends only on the scenario's seed, so that all algorithms start from the
-/// same places. Directions are uniform on the sphere, in planar scenes on the circle z = 0.
-Vec3 start_shift(const Scenario& scenario, double length);
-
-/// The scenario's seed and those after it, each with its start_shift along with it unless `jitter` [m] is 0.
+/// The scenario's seed and those after it. Unless `jitter` [m] is 0, a shift of the start by that length goes along
+/// with each, whose direction depends only on the seed, so that all algorithms start from the same places: uniform on
+/// the sphere, in planar scenes on the circle z = 0.
 Axis seed_axis(const Scenario& scenario, std::size_t seeds, double jitter);
 
 /// The question of `compare`.
@@ -64,5 +62,24 @@ Comparison planned(const ComparisonQuestion& question);
 /// when something cannot be written, and Stopped after SIGINT or SIGTERM.
 std::vector<Result> run_all(std::span<const Cases> cases, const JobOptions& jobs,
                             const std::function<std::filesystem::path(std::size_t run)>& folder = {});
+
+/// The files that a command with several runs writes into a directory, by relative paths.
+struct ResultList {
+  std::vector<std::filesystem::path> runs;    ///< directories of runs
+  std::vector<std::filesystem::path> tables;  ///< other files
+};
+
+/// The file in which a command keeps its list.
+inline constexpr const char* kResultListFile = "hapbench_results.json";
+
+/// Removes from `directory` the results of an earlier command, which are listed in kResultListFile, and replaces that
+/// list by `now`. Call it before the first run. Removes all listed tables, and the listed runs that `now` does not
+/// name: their result files (remove_run), and their directories if these are empty afterwards. Ignores entries that
+/// lead out of `directory`, by ".." or a link, and a list that cannot be read. Throws IoError when the new list cannot
+/// be written.
+void replace_earlier_results(const std::filesystem::path& directory, const ResultList& now);
+
+/// Removes the list if none of the files it names exists, for instance after a command was stopped in its first run.
+void forget_results_if_none(const std::filesystem::path& directory);
 
 }  // namespace hapbench

@@ -7,7 +7,6 @@
 #include <cerrno>
 #include <fstream>
 #include <map>
-#include <random>
 #include <utility>
 
 #include "results/io/atomic_file.hpp"
@@ -15,7 +14,6 @@
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/json_file.hpp"
 #include "scenarios/input/text_lines.hpp"
-#include "scenarios/run/stop_signal.hpp"
 
 namespace hapbench {
 namespace {
@@ -28,11 +26,6 @@ fs::path with_ending(fs::path file, const std::string& ending) {
 
 fs::path beside(fs::path table) {
   return table.replace_extension(".json");
-}
-
-/// Behind the names of a table's files while it grows. Several processes may write one that does not stay.
-std::string ending_of(const TableTitle& title) {
-  return title.stays ? ".part" : fmt::format(".{:08x}.part", std::random_device()());
 }
 
 /// The definition in the JSON beside a table; empty when there is none to be read.
@@ -69,17 +62,9 @@ class TableLines {
     if (row && *row < cases_) return *row;
     refuse();
   }
-  /// Calls `check` and puts the line in front of the message of an InputError.
-  template <class Check>
-  bool checked(Check check) const {
-    try {
-      return check();
-    } catch (const InputError& error) {
-      fail_in_line(file_, number_, error.problem());
-    }
-  }
+  [[noreturn]] void refuse(const std::string& problem) const { fail_in_line(file_, number_, problem); }
   [[noreturn]] void refuse() const {
-    fail_in_line(file_, number_, fmt::format("got the row \"{}\"; allowed: rows of this table", line_.substr(0, 60)));
+    refuse(fmt::format("got the row \"{}\"; allowed: rows of this table", line_.substr(0, 60)));
   }
 
  private:
@@ -90,6 +75,40 @@ class TableLines {
   std::uintmax_t begin_ = 0, end_ = 0;
   std::size_t number_ = 0;
 };
+
+/// Gives the table its rows, those of these files in the order of their numbers, of two of one case the later, and its
+/// JSON. Returns their number; when it is not `rows`, writes nothing. Throws InputError for other tables, and IoError.
+std::size_t put_in_order(const TableTitle& title, const std::vector<fs::path>& parts, std::size_t rows) {
+  // Places as if one file followed the other; 0, where a header stands: no row.
+  std::vector<std::uintmax_t> places(title.cases), begins = {0};
+  for (const fs::path& part : parts) {
+    TableLines lines(part, title.cases);
+    if (lines.next() && lines.line() != title.header) lines.refuse();
+    while (lines.next()) places[lines.row()] = begins.back() + lines.begin();
+    begins.push_back(begins.back() + lines.end());
+  }
+  const std::size_t found = places.size() - static_cast<std::size_t>(std::ranges::count(places, 0u));
+  if (found != rows) return found;
+  AtomicFile table(title.file);
+  table.append(title.header + "\n");
+  std::ifstream in;
+  std::size_t opened = parts.size();
+  std::string line;
+  for (const std::uintmax_t place : places) {
+    if (place == 0) continue;
+    const auto file = static_cast<std::size_t>(std::ranges::upper_bound(begins, place) - begins.begin()) - 1;
+    const auto offset = static_cast<std::streamoff>(place - begins[file]);
+    if (std::exchange(opened, file) != file) in = std::ifstream(parts[file], std::ios::binary);
+    if (in.tellg() != offset) in.seekg(offset);
+    if (!std::getline(in, line)) throw IoError("read", parts[file], std::make_error_code(std::errc::io_error));
+    table.append(line + "\n");
+  }
+  FileSet together;
+  together.write(beside(title.file), json_text(title.about));
+  together.take(std::move(table));
+  together.commit();
+  return found;
+}
 
 /// The tables of shards in a folder, by their index. Throws InputError when they are not of one number of shards.
 std::map<std::size_t, fs::path> shards_in(const fs::path& folder, std::size_t& count) {
@@ -122,13 +141,6 @@ void require_all(const fs::path& folder, const std::map<std::size_t, fs::path>& 
 
 }  // namespace
 
-std::string csv_cell(std::string_view text) {
-  if (text.find_first_of(",\"") == std::string_view::npos) return std::string(text);
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + "\"";
-}
-
 std::vector<std::string> csv_cells(std::string_view line) {
   if (line.ends_with('\r')) line.remove_suffix(1);
   std::vector<std::string> cells(1);
@@ -149,9 +161,8 @@ std::vector<std::string> csv_cells(std::string_view line) {
 
 TableFile::TableFile(TableTitle title, const Keep& keep)
     : title_(std::move(title)),
-      part_(with_ending(title_.file, ending_of(title_))),
-      about_(beside(title_.file)),
-      about_part_(with_ending(about_, part_.string().substr(title_.file.string().size()))),
+      part_(with_ending(title_.file, ".part")),
+      about_part_(with_ending(beside(title_.file), ".part")),
       out_(nullptr, std::fclose),
       has_(title_.cases) {
   if (keep) resume(keep);
@@ -163,17 +174,8 @@ TableFile::TableFile(TableTitle title, const Keep& keep)
   }
   out_.reset(std::fopen(part_.c_str(), is_new ? "wbe" : "abe"));
   if (!out_) throw IoError("write", part_, {errno, std::generic_category()});
-  std::setvbuf(out_.get(), nullptr, _IOFBF, std::size_t{1} << 16);  // so that a line is written at once
+  std::setvbuf(out_.get(), nullptr, _IONBF, 0);  // so that a line is written at once
   if (is_new) append(title_.header + "\n");
-}
-
-TableFile::~TableFile() {
-  if (!title_.stays) remove_parts();
-}
-
-void TableFile::remove_parts() noexcept {
-  std::error_code ignored;
-  for (const fs::path& part : {part_, about_part_}) fs::remove(part, ignored);
 }
 
 /// Finds the rows that are there, and leaves the part without its last line if that is torn.
@@ -196,10 +198,13 @@ void TableFile::resume(const Keep& keep) {
   if (lines.next() && lines.line() != title_.header) lines.refuse();
   while (lines.next()) {
     const std::size_t i = lines.row();
-    const bool stays = lines.checked([&] { return keep(i, lines.line()); });
-    count_ += static_cast<std::size_t>(stays) - static_cast<std::size_t>(has_[i]);
-    has_[i] = stays;
+    try {
+      has_[i] = keep(i, lines.line());
+    } catch (const InputError& refusal) {
+      lines.refuse(refusal.problem());
+    }
   }
+  count_ = static_cast<std::size_t>(std::count(has_.begin(), has_.end(), true));
   fs::resize_file(part_, lines.end(), error);
   if (error) throw IoError("write", part_, error);
 }
@@ -217,7 +222,7 @@ std::size_t TableFile::rows_under_way(const fs::path& file) {
 }
 
 void TableFile::append(const std::string& text) {
-  if (std::fwrite(text.data(), 1, text.size(), out_.get()) != text.size() || std::fflush(out_.get()) != 0)
+  if (std::fwrite(text.data(), 1, text.size(), out_.get()) != text.size())
     throw IoError("write", part_, {errno, std::generic_category()});
 }
 
@@ -229,27 +234,10 @@ void TableFile::add(std::size_t i, std::string_view row) {
 
 void TableFile::finish() {
   out_.reset();
-  std::vector<std::uintmax_t> places(title_.cases);  // 0, where the header stands: no row
-  TableLines lines(part_, title_.cases);
-  for (lines.next(); lines.next();) places[lines.row()] = lines.begin();
-  if (places.size() - static_cast<std::size_t>(std::ranges::count(places, 0u)) != count_)
-    throw IoError("read", part_, std::make_error_code(std::errc::io_error));  // another process has begun it anew
-  AtomicFile table(title_.file);
-  table.append(title_.header + "\n");
-  std::ifstream in(part_, std::ios::binary);
-  std::string line;
-  for (const std::uintmax_t place : places) {
-    if (place == 0) continue;
-    const auto offset = static_cast<std::streamoff>(place);
-    if (in.tellg() != offset) in.seekg(offset);
-    if (!std::getline(in, line)) throw IoError("read", part_, std::make_error_code(std::errc::io_error));
-    table.append(line + "\n");
-  }
-  FileSet files;
-  files.write(about_, json_text(title_.about));
-  files.take(std::move(table));
-  files.commit();
-  remove_parts();
+  if (put_in_order(title_, {part_}, count_) != count_)  // another process has begun it anew
+    throw IoError("read", part_, std::make_error_code(std::errc::io_error));
+  std::error_code ignored;
+  for (const fs::path& part : {part_, about_part_}) fs::remove(part, ignored);
 }
 
 std::string table_name(const std::optional<Shard>& shard) {
@@ -265,7 +253,7 @@ bool join_shards(const fs::path& folder) {
   const bool is_there = fs::exists(whole, ignored);
   if (shards.size() < count && is_there) return false;
   require_all(folder, shards, count);
-  TableTitle title{whole, "", parse_json(read_text_file(beside(first), kLargestJsonFile)), 0, false};
+  TableTitle title{whole, "", parse_json(read_text_file(beside(first), kLargestJsonFile))};
   const std::string definition = title.about.value("definition", "");
   const auto is_older = [&](const auto& shard) {
     return fs::last_write_time(shard.second) <= fs::last_write_time(whole);
@@ -276,48 +264,20 @@ bool join_shards(const fs::path& folder) {
   TableLines header(first, 0);
   header.next();
   title.header = header.line();
-  TableFile table(title);
+  std::vector<fs::path> parts;
   for (const auto& [index, file] : shards) {
+    parts.push_back(file);
     if (const std::string other = definition_in(beside(file)); other != definition) {
       fail_in_file(file,
                    fmt::format("is of another sweep than {}: definition {}, there {}; allowed: shards of one sweep",
                                first.string(), other, definition));
     }
-    TableLines lines(file, title.cases);
-    if (!lines.next() || lines.line() != title.header) lines.refuse();
-    while (lines.next()) table.add(lines.row(), lines.line());
   }
-  if (table.count() < title.cases) {
-    throw InputError(fmt::format("{}: the shards have {} of {} rows; allowed: complete tables", folder.string(),
-                                 table.count(), title.cases));
+  if (const std::size_t found = put_in_order(title, parts, title.cases); found != title.cases) {
+    throw InputError(fmt::format("{}: the shards have {} of {} rows; allowed: complete tables", folder.string(), found,
+                                 title.cases));
   }
-  table.finish();
   return true;
-}
-
-void for_each(const Cases& cases, const Shard& shard, std::size_t jobs, TableFile& table,
-              const std::function<TableRow(std::size_t)>& work) {
-  const std::vector<bool> done = table.rows();  // a copy: `next` runs beside the deliveries
-  std::size_t place = shard.index;
-  const auto next = [&]() -> std::optional<std::size_t> {
-    for (; place < cases.size() && StopSignal::received() == 0; place += shard.count) {
-      if (const std::size_t i = cases.at(place); !done[i]) {
-        place += shard.count;
-        return i;
-      }
-    }
-    return std::nullopt;
-  };
-  parallel_for(next, jobs, [&](std::size_t i) -> Delivery {
-    try {
-      return [&, i, row = work(i)] {
-        table.add(i, row.text);
-        if (row.added) row.added();
-      };
-    } catch (const Stopped&) {
-      return {};  // it can be resumed
-    }
-  });
 }
 
 }  // namespace hapbench

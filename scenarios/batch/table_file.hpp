@@ -12,12 +12,9 @@
 #include <vector>
 
 #include "scenarios/batch/cases.hpp"
-#include "scenarios/batch/parallel_for.hpp"
 
 namespace hapbench {
 
-/// A cell of comma-separated values, in quotes where it has a comma or a quote (RFC 4180).
-std::string csv_cell(std::string_view text);
 /// The cells of a line, without their quotes and a carriage return at its end.
 std::vector<std::string> csv_cells(std::string_view line);
 
@@ -27,12 +24,11 @@ struct TableTitle {
   std::string header;     ///< line without its end; the first column is the number of the case
   Json about;             ///< written beside the table as NAME.json
   std::size_t cases = 0;  ///< rows have numbers below
-  bool stays = true;      ///< as it is when its object goes, to be resumed; otherwise it goes, too, unless finished
 };
 
 /// A table with a row for each case. It grows as FILE.part, with its JSON beside it, a row at a time and in any order,
 /// so that a killed process loses only the cases that were under way. When it is whole its rows are put in order and
-/// both files get their names. Memory: 8 bytes a case while they are put in order, before that two bits.
+/// both files get their names. Memory: 8 bytes a case while they are put in order, before that a bit.
 class TableFile {
  public:
   /// Whether a row that was written before stays; one that does not is written again. May throw.
@@ -41,9 +37,6 @@ class TableFile {
   /// Begins a table, over one that was under way. With `keep`, goes on with it, or with a finished one: a torn last
   /// line is dropped. Throws InputError when that is another table or damaged, and IoError.
   explicit TableFile(TableTitle title, const Keep& keep = {});
-  ~TableFile();
-  TableFile(const TableFile&) = delete;
-  TableFile& operator=(const TableFile&) = delete;
 
   /// Whether a table that is under way, or else the finished one, is of this definition.
   static bool is_of(const std::filesystem::path& file, const std::string& definition);
@@ -61,10 +54,9 @@ class TableFile {
  private:
   void resume(const Keep& keep);
   void append(const std::string& text);
-  void remove_parts() noexcept;
 
   TableTitle title_;
-  std::filesystem::path part_, about_, about_part_;
+  std::filesystem::path part_, about_part_;
   std::unique_ptr<std::FILE, int (*)(std::FILE*)> out_;
   std::vector<bool> has_;
   std::size_t count_ = 0;
@@ -77,17 +69,5 @@ std::string table_name(const std::optional<Shard>& shard);
 /// are none, or not all beside a whole table. Throws InputError for tables that are damaged, incomplete or not of one
 /// definition, and IoError.
 bool join_shards(const std::filesystem::path& folder);
-
-/// A row, and what is to be called when the table has it, one at a time.
-struct TableRow {
-  std::string text;
-  Delivery added = {};
-};
-
-/// Calls work(i) for each case of the shard that the table has not, `jobs` at once, in the order of runs, and adds the
-/// rows that it returns as they come: none waits for a slower one. After SIGINT or SIGTERM no further one starts, and
-/// one that throws Stopped has no row. Any other exception ends the loop.
-void for_each(const Cases& cases, const Shard& shard, std::size_t jobs, TableFile& table,
-              const std::function<TableRow(std::size_t i)>& work);
 
 }  // namespace hapbench

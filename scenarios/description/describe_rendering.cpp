@@ -23,11 +23,21 @@ IntegerRange integers(const Parameter& parameter) {
   return {static_cast<std::int64_t>(parameter.range.min), static_cast<std::int64_t>(parameter.range.max)};
 }
 
-/// A number, or a number or null.
+/// A number, a number or null, or an integer.
 template <class Number>
 void number(Fields& f, const Parameter& parameter, Number& value, const char* doc,
             Presence presence = Presence::has_default) {
-  f.number(key(parameter), value, parameter.range, doc, presence);
+  if constexpr (std::is_integral_v<Number>)
+    f.integer(key(parameter), value, integers(parameter), doc, presence);
+  else
+    f.number(key(parameter), value, parameter.range, doc, presence);
+}
+
+/// null, or what `each(Fields&, T&)` describes; left out of written scenarios that have none.
+template <class T, class Each>
+void if_not_null(Fields& f, std::string_view name, std::optional<T>& value, const char* doc, Each each) {
+  f.field(name, doc, value ? Presence::no_default : Presence::left_out,
+          [&](Fields& held) { held.nullable(value, each); });
 }
 
 void own_parameters(Fields& f, RenderingConfig& rendering, const AlgorithmEntry& entry) {
@@ -67,8 +77,7 @@ void own_parameters(Fields& f, RenderingConfig& rendering) {
 
 static void describe(Fields& f, ReductionConfig& reduction) {
   number(f, parameter::kThreshold, reduction.threshold, "alpha_TH: gradients with a larger inner product are similar");
-  f.integer(key(parameter::kMaxPoints), reduction.max_points, integers(parameter::kMaxPoints),
-            "n_ext: most points kept");
+  number(f, parameter::kMaxPoints, reduction.max_points, "n_ext: most points kept");
   f.field(key(parameter::kShuffleSeed), "visit the points in a fixed random order; null: ascending index",
           Presence::has_default, [&reduction](Fields& seed) {
             seed.nullable(reduction.shuffle_seed,
@@ -113,10 +122,8 @@ static void describe_hunt_crossley(Fields& f, double& chi) {
 
 static void describe(Fields& f, Lateness& late) {
   constexpr Choice<bool> kBetween[] = {{"hold", false}, {"linear", true}};
-  f.integer(key(parameter::kEvery), late.every, integers(parameter::kEvery),
-            "contacts are found in every so manieth row, from row 0 on");
-  f.integer(key(parameter::kDelay), late.delay, integers(parameter::kDelay),
-            "rows from when contacts are found until they serve");
+  number(f, parameter::kEvery, late.every, "contacts are found in every so manieth row, from row 0 on");
+  number(f, parameter::kDelay, late.delay, "rows from when contacts are found until they serve");
   f.choice("between", late.linear, kBetween, "kind of contacts between queries",
            "hold: depths as found; linear: depths follow the tool's motion along the gradients");
   number(f, parameter::kDropout, late.dropout, "probability that a query after the first is lost, by the seed");
@@ -177,18 +184,16 @@ void describe(Fields& f, RenderingConfig& rendering) {
   f.name("algorithm", rendering.algorithm, algorithm_names(), "algorithm", "force algorithm");
   // The stages that the algorithm fixes are the defaults of the fields below.
   if (f.reads()) rendering = with_fixed_stages(rendering);
-  f.integer(key(parameter::kIterations), rendering.iterations, integers(parameter::kIterations),
-            "m of the shaping iteration");
+  number(f, parameter::kIterations, rendering.iterations, "m of the shaping iteration");
   f.name("depth_model", rendering.depth_model, kDepthModels, "depth model",
          "default surface_normal, or what the algorithm's definition fixes", Presence::no_default);
   f.field(
       "contact_source",
       "own: our search, with the depth model; else whose contacts, depths and directions are taken instead: of a file",
       Presence::has_default, [&rendering](Fields& source) { describe_contact_source(source, rendering); });
-  f.field("contacts", "contacts that a slower loop finds (multi-rate rendering); null: every row has its own",
-          rendering.late ? Presence::no_default : Presence::left_out, [&rendering](Fields& contacts) {
-            contacts.nullable(rendering.late, [](Fields& late, Lateness& value) { late.object(value); });
-          });
+  if_not_null(f, "contacts", rendering.late,
+              "contacts that a slower loop finds (multi-rate rendering); null: every row has its own",
+              [](Fields& late, Lateness& value) { late.object(value); });
   f.boolean(key(parameter::kLocalAverage), rendering.local_average,
             "merge colliding points that share a grid cell of the shell");
   f.object("reduction", rendering.reduction, "gradient-based reduction, whose kept points change in jumps; null: off");
@@ -201,9 +206,8 @@ void describe(Fields& f, RenderingConfig& rendering) {
          "first-order low-pass of the angular velocity that angular_damping sees; null: none");
   number(f, parameter::kMass, rendering.mass, "M of the virtual tool; default 0.2 in planar scenes, else 0.1",
          Presence::no_default);
-  f.field("damping", "damping that grows with depth, in place of damping_ratio; null: off",
-          rendering.hunt_crossley ? Presence::no_default : Presence::left_out,
-          [&rendering](Fields& damping) { damping.nullable(rendering.hunt_crossley, describe_hunt_crossley); });
+  if_not_null(f, "damping", rendering.hunt_crossley,
+              "damping that grows with depth, in place of damping_ratio; null: off", describe_hunt_crossley);
   f.field("friction", "friction along the surface", Presence::has_default,
           [&rendering](Fields& friction) { describe_friction(friction, rendering); });
   f.group("limits", "optional limits", [&rendering](Fields& limits) {
@@ -212,12 +216,11 @@ void describe(Fields& f, RenderingConfig& rendering) {
   });
   number(f, parameter::kVirtualCoupling, rendering.virtual_coupling, "K_vc of algorithm virtual_coupling; null: K");
   number(f, parameter::kRegularisation, rendering.regularisation, "eps of algorithm least_squares");
-  f.field("force_stage",
-          "a controller behind the algorithm: sees its force with damping, friction and limits, and answers the one to "
-          "render; null: off",
-          rendering.force_stage ? Presence::no_default : Presence::left_out, [&rendering](Fields& stage) {
-            stage.nullable(rendering.force_stage, [](Fields& held, ForceStageConfig& value) { describe(held, value); });
-          });
+  if_not_null(
+      f, "force_stage", rendering.force_stage,
+      "a controller behind the algorithm: sees its force with damping, friction and limits, and answers the one to "
+      "render; null: off",
+      [](Fields& held, ForceStageConfig& value) { describe(held, value); });
   f.boolean(key(parameter::kPassivityController), rendering.passivity_controller,
             "adaptive damping that lets the algorithm create no energy");
   own_parameters(f, rendering);

@@ -26,25 +26,23 @@ namespace {
 
 constexpr double kMostDelaySamples = 1e6;  ///< longest reaction delay of a simulated subject [time steps]
 constexpr double kLongestDrag = 1e6;       ///< entries of the table of a path over a surface
-
-[[noreturn]] void fail(const std::string& at, const std::string& problem) {
-  throw InputError(InputError::Kind::relation, at, problem);
-}
+/// Shortest length of a direction: the square of a much shorter one would lose digits.
+constexpr double kShortestDirection = 1e-12;
 
 void check_sizes(const Scenario& scenario, double steps) {
   if (!(steps >= 1.0 && steps <= kMostSteps)) {
-    fail("/time/duration_s",
-         fmt::format("got {:.3g} steps (duration_s / step_s); allowed: 1 ... {:.0g}", steps, kMostSteps));
+    fail_at("/time/duration_s",
+            fmt::format("got {:.3g} steps (duration_s / step_s); allowed: 1 ... {:.0g}", steps, kMostSteps));
   }
   const double rows = steps / static_cast<double>(scenario.record.every);
   if (records_rows(scenario.record) && rows > kMostRows) {
-    fail("/record/every",
-         fmt::format("got {:.3g} recorded rows; allowed: at most {:.0g}, record less often or less", rows, kMostRows));
+    fail_at("/record/every", fmt::format("got {:.3g} recorded rows; allowed: at most {:.0g}, record less often or less",
+                                         rows, kMostRows));
   }
   // Every step of every trial has its time in memory.
   const double timed = steps * trial_count(scenario.hand);
   if (scenario.record.timing && timed > kMostRows) {
-    fail("/record/timing", fmt::format("got {:.3g} timed steps; allowed: at most {:.0g}", timed, kMostRows));
+    fail_at("/record/timing", fmt::format("got {:.3g} timed steps; allowed: at most {:.0g}", timed, kMostRows));
   }
 }
 
@@ -55,8 +53,8 @@ void check_orientation(const MotionFields& motion) {
   if (up.norm() >= kShortestDirection && lean.norm() >= kShortestDirection &&
       std::abs(up.dot(lean)) <= 1e-9 * up.norm() * lean.norm())
     return;
-  fail("/motion/orientation",
-       fmt::format("got up {} and lean {}; allowed: two perpendicular directions, not zero", shown(up), shown(lean)));
+  fail_at("/motion/orientation", fmt::format("got up {} and lean {}; allowed: two perpendicular directions, not zero",
+                                             shown(up), shown(lean)));
 }
 
 template <class Type, class Variant>
@@ -66,6 +64,13 @@ bool is(const Variant& value) {
 
 bool is_zero(const Profile& profile) {
   return profile.is_constant() && profile(0.0) == 0.0;
+}
+
+/// True when the ideal trajectory and the exact depth in the hole are known (results/observe/ideal_trajectory.hpp).
+bool has_ideal_trajectory(const Scenario& scenario) {
+  const auto* cylinder = std::get_if<CylinderFields>(&scenario.tool);
+  return std::holds_alternative<BlockEnvironment>(scenario.environment) && cylinder != nullptr &&
+         cylinder->tip == Tip::flat;
 }
 
 /// A combination of fields that is refused.
@@ -129,18 +134,16 @@ constexpr Rule kRules[] = {
      "got true; allowed: false with device \"impedance\": the controller looks ahead by the virtual mass, which is "
      "not there",
      [](const Scenario& s) { return handle_moves_tool(s.device) && s.rendering.passivity_controller; }},
+    {"/rendering/force_stage/max_damping_N_s_per_m",
+     "got null; allowed with device \"impedance\" or a prescribed position: a number, because there is no virtual mass "
+     "to take it from",
+     [](const Scenario& s) {
+       const bool has_mass = is<FreePosition>(s.motion.position) && !handle_moves_tool(s.device);
+       if (has_mass || !s.rendering.force_stage) return false;
+       const auto* limited = std::get_if<ActuatorLimitedPassivityConfig>(&*s.rendering.force_stage);
+       return limited != nullptr && !limited->max_damping;
+     }},
 };
-
-void check_force_stage(const Scenario& scenario) {
-  const auto& stage = scenario.rendering.force_stage;
-  if (!stage) return;
-  const auto* limited = std::get_if<ActuatorLimitedPassivityConfig>(&*stage);
-  const bool has_mass = is<FreePosition>(scenario.motion.position) && !handle_moves_tool(scenario.device);
-  if (limited != nullptr && !limited->max_damping && !has_mass)
-    fail("/rendering/force_stage/max_damping_N_s_per_m",
-         "got null; allowed with device \"impedance\" or a prescribed position: a number, because there is no virtual "
-         "mass to take it from");
-}
 
 /// The contacts of a trace belong to its motion, and neither they nor those of a library are points of our shell.
 void check_contact_source(const Scenario& scenario) {
@@ -156,8 +159,8 @@ void check_contact_source(const Scenario& scenario) {
                             ? "with reduction.shuffle_seed, which orders shell points"
                             : nullptr;
   if (problem == nullptr) return;
-  fail("/rendering/contact_source",
-       fmt::format("got \"{}\"; allowed: \"{}\", {}", rendering.contact_source, kOwnContacts, problem));
+  fail_at("/rendering/contact_source",
+          fmt::format("got \"{}\"; allowed: \"{}\", {}", rendering.contact_source, kOwnContacts, problem));
 }
 
 double drag_length(const DragHandFields& hand, double duration) {
@@ -173,8 +176,8 @@ void check_drag_hand(const Scenario& scenario, double steps) {
   if (hand->direction) require_direction(*hand->direction, "/hand/direction");
   const double entries = drag_length(*hand, steps * scenario.time.step) / SurfacePath::spacing(hand->smoothing);
   if (entries <= kLongestDrag) return;
-  fail("/hand/smoothing_m",
-       fmt::format("got a path of {:.3g} times the tenth of it; allowed: at most {:.0g}", entries, kLongestDrag));
+  fail_at("/hand/smoothing_m",
+          fmt::format("got a path of {:.3g} times the tenth of it; allowed: at most {:.0g}", entries, kLongestDrag));
 }
 
 void check_tracking_hand(const Scenario& scenario, double steps) {
@@ -183,12 +186,26 @@ void check_tracking_hand(const Scenario& scenario, double steps) {
   for (std::size_t i = 0; i < hand->subjects.size(); ++i) {
     const double samples = hand->subjects[i].reaction_delay / scenario.time.step;
     if (samples <= kMostDelaySamples) continue;
-    fail(fmt::format("/hand/subjects/{}/reaction_delay_s", i),
-         fmt::format("got {:.3g} time steps; allowed: at most {:.0g}", samples, kMostDelaySamples));
+    fail_at(fmt::format("/hand/subjects/{}/reaction_delay_s", i),
+            fmt::format("got {:.3g} time steps; allowed: at most {:.0g}", samples, kMostDelaySamples));
   }
   const double all_steps = trial_count(scenario.hand) * steps;
   if (all_steps <= kMostSteps) return;
-  fail("/hand/trials", fmt::format("got {:.3g} steps in all trials; allowed: at most {:.0g}", all_steps, kMostSteps));
+  fail_at("/hand/trials",
+          fmt::format("got {:.3g} steps in all trials; allowed: at most {:.0g}", all_steps, kMostSteps));
+}
+
+/// Throws InputError for fields that contradict each other. `steps` is their number, which may be more than a scenario
+/// can hold.
+void check_relations(const Scenario& scenario, double steps) {
+  check_sizes(scenario, steps);
+  check_orientation(scenario.motion);
+  for (const Rule& rule : kRules) {
+    if (rule.is_broken(scenario)) fail_at(rule.at, rule.problem);
+  }
+  check_contact_source(scenario);
+  check_drag_hand(scenario, steps);
+  check_tracking_hand(scenario, steps);
 }
 
 constexpr const char* kNoEffect = "no_effect";  ///< of warnings: a given value that nothing reads
@@ -291,20 +308,8 @@ std::optional<Warning> first_unplayed(const Json& json, const std::string& at, d
 
 void require_direction(const Vec3& direction, const std::string& at) {
   if (direction.norm() >= kShortestDirection) return;
-  fail(at, fmt::format("got [{}, {}, {}]; allowed: a direction that is not zero, length at least {}", direction.x(),
-                       direction.y(), direction.z(), kShortestDirection));
-}
-
-void check_relations(const Scenario& scenario, double steps) {
-  check_sizes(scenario, steps);
-  check_orientation(scenario.motion);
-  for (const Rule& rule : kRules) {
-    if (rule.is_broken(scenario)) fail(rule.at, rule.problem);
-  }
-  check_contact_source(scenario);
-  check_force_stage(scenario);
-  check_drag_hand(scenario, steps);
-  check_tracking_hand(scenario, steps);
+  fail_at(at, fmt::format("got [{}, {}, {}]; allowed: a direction that is not zero, length at least {}", direction.x(),
+                          direction.y(), direction.z(), kShortestDirection));
 }
 
 std::vector<Warning> relation_warnings(const Scenario& scenario, const Json& json) {
@@ -358,6 +363,21 @@ void describe_outcomes(Fields& f, std::vector<Outcome>& outcomes) {
       [&](Fields& several) {
         several.list(outcomes, {1, outcome_infos().size()}, outcome);
       });
+}
+
+/// Puts the thesis's parameters of the scene (Tables A.1, A.2, B.1) in place of those of springs, which the structs
+/// have.
+void set_scene_defaults(Scenario& scenario) {
+  if (std::holds_alternative<SpringsEnvironment>(scenario.environment)) return;
+  RenderingConfig& rendering = scenario.rendering;
+  rendering.mu_s = 5.0;
+  rendering.mu_f = 10.0;
+  if (std::holds_alternative<Hole2d>(scenario.environment)) {
+    scenario.tool = CylinderFields{.length = 0.005, .tip = Tip::round};
+  } else {
+    scenario.motion.orientation->up = {0.0, 0.0, 1.0};
+    rendering.mass = 0.1;
+  }
 }
 
 /// Overwrites the settings that the algorithm's definition fixes, with a warning where the scenario has others.
@@ -452,13 +472,11 @@ static void describe(Fields& f, MetricBound& bound) {
   f.if_any("min", bound.min, "smallest value allowed", number);
   f.if_any("max", bound.max, "largest value allowed", number);
   if (!f.reads() || !bound.min || !bound.max || !(*bound.min > *bound.max)) return;
-  throw InputError(InputError::Kind::relation, f.at(),
-                   fmt::format("got min {} above max {}; allowed: min <= max", *bound.min, *bound.max));
+  fail_at(f.at(), fmt::format("got min {} above max {}; allowed: min <= max", *bound.min, *bound.max));
 }
 
 static void describe(Fields& f, ReferenceForceFields& reference) {
-  constexpr const char* kNames[] = {"x_N", "y_N", "z_N"};
-  for (std::size_t i = 0; i < 3; ++i) profile(f, kNames[i], reference.force[i], "N", "force on the tool over time");
+  profiles(f, {"x_N", "y_N", "z_N"}, reference.force, "N", "force on the tool over time");
 }
 
 static void describe(Fields& f, ExpectFields& expect) {
@@ -487,7 +505,7 @@ static void describe_extends(Fields& f) {
          "null replaces; so does an object of another type",
          Presence::left_out);
   if (!f.reads() || !f.given(kExtends)) return;
-  throw InputError(InputError::Kind::relation, member(f.at(), kExtends), "got it in no file; allowed: in files");
+  fail_at(member(f.at(), kExtends), "got it in no file; allowed: in files");
 }
 
 void describe(Fields& f, Scenario& scenario) {

@@ -9,9 +9,7 @@ namespace hapbench {
 
 /// Range of the lengths in a scene.
 inline constexpr NumberRange kLength = {0.0, 1000.0, "m", true};
-/// Shortest length of a direction: the square of a much shorter one would lose digits.
-inline constexpr double kShortestDirection = 1e-12;
-/// Throws InputError at `at` when the direction is shorter than kShortestDirection.
+/// Throws InputError at `at` when the direction is shorter than 1e-12.
 void require_direction(const Vec3& direction, const std::string& at);
 
 // Objects.
@@ -30,15 +28,12 @@ void describe(Fields& f, ToolFields& tool);
 void profile(Fields& f, std::string_view name, Profile& profile, const char* unit, const char* doc,
              Presence presence = Presence::has_default);
 
+/// Three of them, which are x, y and z.
+void profiles(Fields& f, const char* const (&names)[3], std::array<Profile, 3>& profiles, const char* unit,
+              const char* doc, Presence presence = Presence::has_default);
+
 /// The types of tools, in the variant's order.
 std::vector<std::string> tool_names();
-
-/// Puts the thesis's parameters of the scene (Tables A.1, A.2, B.1) in place of those of springs.
-void set_scene_defaults(Scenario& scenario);
-
-/// Throws InputError for fields of a scenario that contradict each other. `steps` is their number, which may be more
-/// than a scenario can hold.
-void check_relations(const Scenario& scenario, double steps);
 
 /// Warnings, each beginning with a JSON pointer, about values without effect in `json`, from which the scenario was
 /// read: a device's loop that no hand feels, and the first script of waypoints of hand and motion whose last leg begins

@@ -1,5 +1,3 @@
-#include <algorithm>
-
 #include "device_model/admittance_device.hpp"
 #include "device_model/device_presets.hpp"
 #include "device_model/ideal_device.hpp"
@@ -82,17 +80,12 @@ static void describe_preset(Fields& f, ImpedanceDeviceConfig& device) {
   for (const DevicePreset& known : device_presets()) names.emplace_back(known.name);
   f.if_any("preset", preset,
            "a published device, whose numbers hold where the file gives none; \"hapbench list presets\" shows them",
-           [&names](Fields& n, std::string& name) {
-             auto index = static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
-             n.name(index, names, "preset");
-             if (n.reads()) name = names[index];
-           });
+           [&names](Fields& n, std::string& name) { n.name(name, names, "preset"); });
   if (!f.reads()) return;
   if (preset) {
     device = config_of(*find_device_preset(*preset));
   } else if (!f.given("preset") && !f.given("handle_mass_kg")) {
-    throw InputError(InputError::Kind::relation, f.at(),
-                     "missing field; allowed: handle_mass_kg, or a preset, which has one");
+    fail_at(f.at(), "missing field; allowed: handle_mass_kg, or a preset, which has one");
   }
 }
 

@@ -6,9 +6,9 @@
 #include <utility>
 
 #include "scenarios/description/descriptions.hpp"
-#include "scenarios/description/load_scenario.hpp"
 #include "scenarios/description/named_files.hpp"
 #include "scenarios/description/parts.hpp"
+#include "scenarios/description/writer.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "sim/contact/grid_index.hpp"
 #include "sim/core/random.hpp"
@@ -42,8 +42,7 @@ constexpr Choice<Density> kDensities[] = {{"signed_distance", Density::signed_di
 
 void refuse_too_many(double count, const std::string& at, const char* what) {
   if (count <= kMostPoints) return;
-  throw InputError(InputError::Kind::relation, at,
-                   fmt::format("got {:.3g} {}; allowed: at most {:.0g}", count, what, kMostPoints));
+  fail_at(at, fmt::format("got {:.3g} {}; allowed: at most {:.0g}", count, what, kMostPoints));
 }
 
 template <class Shell>
@@ -59,8 +58,7 @@ void check_springs(const SpringsEnvironment& springs, const std::string& at) {
   }
   refuse_too_many(count, at, "springs");
   if (springs.bilateral || springs.signed_depths) return;
-  throw InputError(InputError::Kind::relation, at + "/signed",
-                   "got false; allowed: true with \"bilateral\": false, whose depths are positive as they are");
+  fail_at(at + "/signed", "got false; allowed: true with \"bilateral\": false, whose depths are positive as they are");
 }
 
 double expected_points(const BlockEnvironment& block) {
@@ -76,9 +74,7 @@ void check_block(const BlockEnvironment& environment, const std::string& at) {
   const Vec3& size = block.size;
   // Cells smaller than this cannot be numbered; thinner walls have no nodes on both sides.
   const double longest = 1e5 * grid, thinnest = 3.0 * grid;
-  const auto fail = [&at](const char* field, const std::string& problem) {
-    throw InputError(InputError::Kind::relation, at + "/" + field, problem);
-  };
+  const auto fail = [&at](const char* field, const std::string& problem) { fail_at(at + "/" + field, problem); };
   if (size.maxCoeff() > longest) fail("grid_m", fmt::format("got {}; allowed: at least size_m / 1e5", grid));
   refuse_too_many(expected_points(environment), at, "shell points (from size_m, grid_m and vertices)");
   if (block.hole_diameter > std::min(size.x(), size.y()) - 2.0 * thinnest || block.hole_diameter < thinnest) {
@@ -178,6 +174,18 @@ void describe(Fields& f, Environment& environment) {
 
 namespace {
 
+/// The environment with every default filled in, with hashes of the contents of named files in place of their paths:
+/// equal for equal point shells. Throws InputError.
+Json environment_content(const Scenario& scenario, const NamedFiles& files) {
+  constexpr std::string_view kEnvironment = "/environment";
+  Json json = written(scenario.environment);
+  for (const auto& file : files.all()) {
+    if (file->pointer().starts_with(kEnvironment))
+      json.at(Json::json_pointer(file->pointer().substr(kEnvironment.size()))) = file->hash();
+  }
+  return json;
+}
+
 /// Builds the shell of each type of environment.
 struct Build {
   const NamedFiles& files;
@@ -208,22 +216,6 @@ struct Build {
   }
 };
 
-}  // namespace
-
-Shell make_shell(const Scenario& scenario, const NamedFiles& files) {
-  if (std::holds_alternative<SpringsEnvironment>(scenario.environment)) return nullptr;
-  const auto bytes = [](const PointShell& shell) { return 100 * shell.size(); };
-  return shared_cache().get<PointShell>(
-      "shell " + environment_content(scenario, files).dump(),
-      [&] { return std::visit(Build{files}, scenario.environment); }, bytes);
-}
-
-Shell make_shell(const Scenario& scenario) {
-  return make_shell(scenario, NamedFiles(scenario));
-}
-
-namespace {
-
 /// The inside of each type of environment. One that has none says so here; one that says nothing does not compile.
 struct BuildSolid {
   const NamedFiles& files;
@@ -245,6 +237,18 @@ struct BuildSolid {
 };
 
 }  // namespace
+
+Shell make_shell(const Scenario& scenario, const NamedFiles& files) {
+  if (std::holds_alternative<SpringsEnvironment>(scenario.environment)) return nullptr;
+  const auto bytes = [](const PointShell& shell) { return 100 * shell.size(); };
+  return shared_cache().get<PointShell>(
+      "shell " + environment_content(scenario, files).dump(),
+      [&] { return std::visit(Build{files}, scenario.environment); }, bytes);
+}
+
+Shell make_shell(const Scenario& scenario) {
+  return make_shell(scenario, NamedFiles(scenario));
+}
 
 std::shared_ptr<const Solid> make_solid(const Scenario& scenario, const NamedFiles& files) {
   const auto make = [&] { return std::visit(BuildSolid{files}, scenario.environment); };

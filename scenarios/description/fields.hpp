@@ -12,14 +12,15 @@
 #include <variant>
 #include <vector>
 
+#include "scenarios/input/json_file.hpp"
 #include "scenarios/input/mesh_file.hpp"
 #include "sim/core/model_info.hpp"
 #include "sim/core/types.hpp"
 
 /// The format of scenario files, described once. A function `describe(Fields&, T&)` for each struct names its fields
-/// with meaning, unit and range. Visitors use that to read files (Reader), to write them (Writer), to write the schema
-/// and explain the fields (SchemaWriter) and to find the files that a scenario names (files_named_in). So the program,
-/// the files it writes, the schema and the documentation cannot disagree.
+/// with meaning, unit and range. Visitors use that to read files (read_value), to write them (json_of), to write the
+/// schema and explain the fields (guide_to) and to find the files that a scenario names (NamedFiles). So the
+/// program, the files it writes, the schema and the documentation cannot disagree.
 namespace hapbench {
 
 struct Warning;
@@ -184,6 +185,12 @@ class Fields {
     if (reads()) value = choices[index].value;
   }
 
+  void name(std::string& value, const std::vector<std::string>& names, const char* what) {
+    auto index = static_cast<std::size_t>(std::find(names.begin(), names.end(), value) - names.begin());
+    name(index, names, what);
+    if (reads()) value = names[index];
+  }
+
   /// `each(Fields&, T&)` describes an entry.
   template <class T, class Each>
   void list(std::vector<T>& values, ListSize size, Each each) {
@@ -250,11 +257,7 @@ class Fields {
   }
   void name(std::string_view name, std::string& value, const std::vector<std::string>& names, const char* what,
             const char* doc, Presence presence = Presence::has_default) {
-    field(name, doc, presence, [&](Fields& f) {
-      auto index = static_cast<std::size_t>(std::find(names.begin(), names.end(), value) - names.begin());
-      f.name(index, names, what);
-      if (f.reads()) value = names[index];
-    });
+    field(name, doc, presence, [&](Fields& f) { f.name(value, names, what); });
   }
   template <class Integer>
   void integer(std::string_view name, Integer& value, IntegerRange range, const char* doc,
@@ -320,5 +323,11 @@ class Fields {
     ((index == I ? static_cast<void>(value.template emplace<I>()) : void()), ...);
   }
 };
+
+/// Reads and checks a JSON value, found at the JSON pointer `at`, into what `value` describes. Fields that the file
+/// does not have leave their members as they are. Adds warnings to `warnings`, if any. Throws InputError, of kind shape
+/// for what the schema refuses too, that names the place, the value and what is allowed. After a fault the remaining
+/// fields and entries are still read, so that one error reports the faults of all.
+void read_value(const Json& json, const std::string& at, Fields::Body value, std::vector<Warning>* warnings = nullptr);
 
 }  // namespace hapbench

@@ -19,8 +19,7 @@ constexpr Choice<PressForce> kPressForces[] = {{"rendered", PressForce::rendered
 static void describe(Fields&, NoHandFields&) {}
 
 static void describe(Fields& f, ForceHandFields& hand) {
-  constexpr const char* kNames[] = {"x_N", "y_N", "z_N"};
-  for (std::size_t i = 0; i < 3; ++i) profile(f, kNames[i], hand.force[i], "N", "force on the handle over time");
+  profiles(f, {"x_N", "y_N", "z_N"}, hand.force, "N", "force on the handle over time");
 }
 
 static void describe(Fields& f, PushHandFields& hand) {
@@ -36,8 +35,7 @@ static void describe(Fields& f, TremorConfig& tremor) {
       "et al. 2000)");
   f.number("low_Hz", tremor.low, {0.0, 1000.0, "Hz"}, "lower end of its band (Novak and Newell 2017)");
   f.number("high_Hz", tremor.high, {0.0, 1000.0, "Hz"}, "upper end of its band");
-  if (f.reads() && tremor.low > tremor.high)
-    throw InputError(InputError::Kind::relation, f.at() + "/high_Hz", "allowed: low_Hz or more");
+  if (f.reads() && tremor.low > tremor.high) fail_at(f.at() + "/high_Hz", "allowed: low_Hz or more");
 }
 
 static void describe_spring(Fields& f, ImpedanceHandFields& hand) {
@@ -45,11 +43,8 @@ static void describe_spring(Fields& f, ImpedanceHandFields& hand) {
   f.number("damping_N_s_per_m", hand.damping, {0.0, 1e9, "N s/m"}, "of the damper beside it");
   f.group(
       "target", "where the hand wants the handle",
-      [&hand](Fields& target) {
-        constexpr const char* kNames[] = {"x_m", "y_m", "z_m"};
-        for (std::size_t i = 0; i < 3; ++i) {
-          profile(target, kNames[i], hand.target[i], "m", "over time", Presence::required);
-        }
+      [&hand](Fields& t) {
+        profiles(t, {"x_m", "y_m", "z_m"}, hand.target, "m", "over time", Presence::required);
       },
       Presence::required);
   f.object_if_any("tremor", hand.tremor,
@@ -108,7 +103,7 @@ static void describe(Fields& f, TargetRules& task) {
   f.choice("display", task.display, kDisplays, "display",
            "panel: x and y count, the orientation is scripted; height: z counts, the hand turns the tool");
   f.list(
-      "places_m", task.places, {1, 100}, "where targets appear",
+      "places_m", task.places, {1, TrackingHandFields::kMostPlaces}, "where targets appear",
       [](Fields& p, Vec3& place) { p.vector3(place, kCoordinate); }, Presence::required);
   f.integer("targets_per_place", task.targets_per_place, {1, 1000}, "in one trial");
   f.number("tolerance_m", task.tolerance, {0.0, 1.0, "m", true}, "the tip is on the target within this distance");

@@ -8,7 +8,6 @@
 #include "results/summary/outcome_names.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/description/descriptions.hpp"
-#include "scenarios/description/reader.hpp"
 #include "scenarios/description/writer.hpp"
 #include "scenarios/input/json_file.hpp"
 #include "sim/core/hash.hpp"
@@ -63,8 +62,8 @@ void check_chain(const std::vector<ScenarioLayer>& layers, const fs::path& next)
     again = again || fs::equivalent(layer.file, next, ignored);
   }
   if (!again) return;
-  throw InputError(InputError::Kind::relation, fmt::format("/{}", kExtends),
-                   fmt::format("got a circle, {}{}; allowed: a chain that ends", chain, next.string()));
+  fail_at(fmt::format("/{}", kExtends),
+          fmt::format("got a circle, {}{}; allowed: a chain that ends", chain, next.string()));
 }
 
 /// The file that `json`, read from `file`, extends.
@@ -79,7 +78,7 @@ fs::path base_file(const Json& json, const fs::path& file, const std::vector<Sce
   try {
     base = find_scenario(name.get<std::string>(), file.parent_path());
   } catch (const InputError& error) {
-    throw InputError(InputError::Kind::relation, at, error.problem());
+    fail_at(at, error.problem());
   }
   check_chain(layers, base);
   return base;
@@ -165,14 +164,6 @@ void expect_less(Json& expect) {
   expect["outcome"] = std::move(outcomes);
 }
 
-/// The absolute path with symlinks resolved first, because a lexical ".." is wrong behind a symlink.
-fs::path without_links(const fs::path& path) {
-  const auto absolute = fs::current_path() / path;  // fs::absolute refuses the empty path
-  std::error_code error;
-  const auto canonical = fs::weakly_canonical(absolute, error);
-  return error ? absolute.lexically_normal() : canonical;
-}
-
 std::string last_name(const std::string& path, char separator) {
   return path.substr(path.rfind(separator) + 1);
 }
@@ -180,7 +171,7 @@ std::string last_name(const std::string& path, char separator) {
 /// The hint for a field whose name resembles no field of its object: fields elsewhere with the nearest name.
 std::string hint_elsewhere(const std::string& place) {
   const std::string field = last_name(place, '/');
-  const std::vector<std::string>& paths = scenario_field_paths();
+  const std::vector<std::string> paths = scenario_field_paths();
   std::vector<std::string> names, found;
   for (const std::string& path : paths) names.push_back(last_name(path, '.'));
   const std::string nearest = nearest_name(field, names);
@@ -208,9 +199,9 @@ InputError in_file(const InputError& fault, const fs::path& file) {
 }  // namespace
 
 void rethrow_with_file(const InputError& error, const fs::path& file) {
-  std::vector<InputError> faults;
-  for (const InputError& fault : error.faults()) faults.push_back(in_file(fault, file));
-  throw InputError::all(faults);
+  LoadedScenario place;
+  place.file = file;
+  rethrow_with_file(error, place);
 }
 
 void rethrow_with_file(const InputError& error, const LoadedScenario& loaded) {
@@ -222,8 +213,8 @@ void rethrow_with_file(const InputError& error, const LoadedScenario& loaded) {
 LoadedScenario read_scenario(const Json& json, const fs::path& directory) {
   LoadedScenario loaded;
   loaded.scenario.directory = directory;
-  Reader reader(json, "", &loaded.warnings);
-  reader.object(loaded.scenario);
+  read_value(
+      json, "", [&](Fields& f) { f.object(loaded.scenario); }, &loaded.warnings);
   for (Warning& warning : relation_warnings(loaded.scenario, json)) loaded.warnings.push_back(std::move(warning));
   loaded.files = NamedFiles(loaded.scenario);
   return loaded;
@@ -287,40 +278,32 @@ LoadedScenario load_scenario(const fs::path& file, std::span<const std::string> 
   return load_scenario(read_scenario_text(file), overrides);
 }
 
-WrittenScenario::WrittenScenario(Scenario scenario) : json_(written_object(scenario)) {
-  for (const FileReference& file : files_named_in(scenario))
-    files_.push_back({Json::json_pointer(file.pointer), without_links(resolve_path(scenario, *file.path))});
-}
+WrittenScenario::WrittenScenario(const Scenario& scenario, NamedFiles files)
+    : json_(written_object(scenario)), files_(std::move(files)) {}
 
 Json WrittenScenario::effective(const fs::path& directory) const {
   Json json = json_;
-  for (const auto& [field, path] : files_)
-    json.at(field) = path.lexically_proximate(without_links(directory)).generic_string();
+  for (const auto& file : files_.all()) {
+    const fs::path path = fs::current_path() / file->path();
+    std::error_code error;
+    const fs::path near = fs::proximate(path, fs::current_path() / directory, error);
+    json.at(Json::json_pointer(file->pointer())) = (error ? path : near).generic_string();
+  }
   return json;
 }
 
-std::string WrittenScenario::hash(const NamedFiles& files) const {
+std::string WrittenScenario::hash() const {
   Json json = json_;
-  for (const File& file : files_) json.at(file.field) = files.at(file.field.to_string()).hash();
+  for (const auto& file : files_.all()) json.at(Json::json_pointer(file->pointer())) = file->hash();
   return hash_text(hash_of(json_text(json)));
 }
 
 Json effective_scenario(const Scenario& scenario, const fs::path& directory) {
-  return WrittenScenario(scenario).effective(directory);
+  return WrittenScenario(scenario, NamedFiles(scenario)).effective(directory);
 }
 
 std::string scenario_hash(const Scenario& scenario, const NamedFiles& files) {
-  return WrittenScenario(scenario).hash(files);
-}
-
-Json environment_content(const Scenario& scenario, const NamedFiles& files) {
-  constexpr std::string_view kEnvironment = "/environment";
-  Json json = written(scenario.environment);
-  for (const auto& file : files.all()) {
-    if (file->pointer().starts_with(kEnvironment))
-      json.at(Json::json_pointer(file->pointer().substr(kEnvironment.size()))) = file->hash();
-  }
-  return json;
+  return WrittenScenario(scenario, files).hash();
 }
 
 }  // namespace hapbench

@@ -95,29 +95,21 @@ auto with_file(const LoadedScenario& loaded, Work work) {
 /// this text with other names of files.
 class WrittenScenario {
  public:
-  explicit WrittenScenario(Scenario scenario);
+  WrittenScenario(const Scenario& scenario, NamedFiles files);
 
   /// effective_scenario
   Json effective(const std::filesystem::path& directory) const;
   /// scenario_hash
-  std::string hash(const NamedFiles& files) const;
+  std::string hash() const;
 
  private:
-  struct File {
-    Json::json_pointer field;
-    std::filesystem::path path;
-  };
   Json json_;
-  std::vector<File> files_;
+  NamedFiles files_;
 };
 
 /// The scenario with every default filled in, as JSON: reading it again gives the same run. File paths are rewritten to
 /// start from `directory`.
 Json effective_scenario(const Scenario& scenario, const std::filesystem::path& directory);
-
-/// The environment with every default filled in, with hashes of the contents of named files in place of their paths:
-/// equal for equal point shells. Throws InputError.
-Json environment_content(const Scenario& scenario, const NamedFiles& files);
 
 /// Identifies what is simulated: FNV-1a over the effective scenario, with the contents of named files in place of their
 /// paths, as 16 hexadecimal digits. Throws InputError.

@@ -1,11 +1,9 @@
 #include "scenarios/description/metric_sections.hpp"
 
-#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "results/observe/contact_metrics.hpp"
 #include "results/observe/energy_ledger.hpp"
-#include "results/observe/force_stages.hpp"
 #include "results/observe/ideal_trajectory.hpp"
 #include "results/observe/passivity_observer.hpp"
 #include "results/observe/target_metrics.hpp"
@@ -66,7 +64,7 @@ MetricList list_without_values(const Parts& parts) {
   MetricList metrics;
   tell_common(MetricsObserver(1.0), nullptr, metrics);
   for (const SectionKind& kind : kSections) {
-    const std::size_t count = parts(kind.name);
+    const std::size_t count = parts(kind);
     if (count == 0) continue;
     Section section(metrics, kind.name);
     kind.observe(nullptr, count)->tell(section);
@@ -77,37 +75,21 @@ MetricList list_without_values(const Parts& parts) {
 
 }  // namespace
 
-SectionParts sections_of(const Scenario& scenario, bool has_reference_force) {
-  SectionParts sections;
-  for (const SectionKind& kind : kSections) {
-    const std::size_t parts = kind.parts(scenario, has_reference_force);
-    if (parts > 0 && (kind.merges || trial_count(scenario.hand) == 1.0)) sections.emplace(kind.name, parts);
-  }
-  return sections;
-}
-
-void add_sections(SectionParts& sections, const SectionParts& more) {
-  for (const auto& [name, parts] : more) {
-    std::size_t& known = sections[name];
-    known = std::max(known, parts);
-  }
-}
-
-MetricList metrics_without_values(const SectionParts& sections) {
-  return list_without_values([&sections](const char* name) {
-    const auto section = sections.find(std::string_view(name));
-    return section == sections.end() ? 0 : section->second;
+MetricList metrics_without_values(const Scenario& scenario, bool has_reference_force) {
+  const bool is_one_trial = trial_count(scenario.hand) == 1.0;
+  return list_without_values([&](const SectionKind& kind) {
+    return is_one_trial || kind.merges ? kind.parts(scenario, has_reference_force) : 0;
   });
+}
+
+MetricList metrics_without_values(std::size_t places) {
+  return list_without_values([places](const SectionKind&) { return places; });
 }
 
 std::vector<std::string> metric_names() {
   std::vector<std::string> names;
   for (Metric& metric : metrics_without_values()) names.push_back(std::move(metric.name));
   return names;
-}
-
-MetricList metrics_without_values(std::size_t places) {
-  return list_without_values([places](const char*) { return places; });
 }
 
 SectionObservers::SectionObservers(const Scenario& scenario, bool has_reference_force) {

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -16,21 +15,14 @@
 /// sweeps, `expect` and `describe` follow from it.
 namespace hapbench {
 
-/// The sections that a run has: name -> number of target places, 1 for sections without places.
-using SectionParts = std::map<std::string, std::size_t, std::less<>>;
-
-/// The sections of a run of the scenario. `has_reference_force`: the scenario gives a reference force or its stroke has
-/// a measured one.
-SectionParts sections_of(const Scenario& scenario, bool has_reference_force);
-/// Adds the sections that another run has.
-void add_sections(SectionParts& sections, const SectionParts& more);
-
-/// The metrics of runs with these sections, in the order of the summary, with unit and meaning, without values.
-MetricList metrics_without_values(const SectionParts& sections);
-/// The metrics of all sections: those that `expect` may bound. Tasks have two places, as those of the thesis.
-std::vector<std::string> metric_names();
-/// The same with unit and meaning, without values.
+/// The metrics of a run of the scenario, in the order of the summary, with unit and meaning, without values.
+/// `has_reference_force`: the scenario gives a reference force or its stroke has a measured one.
+MetricList metrics_without_values(const Scenario& scenario, bool has_reference_force);
+/// The metrics of all sections: those that `expect` may bound. By default tasks have two places, as those of the
+/// thesis.
 MetricList metrics_without_values(std::size_t places = 2);
+/// The same by their names.
+std::vector<std::string> metric_names();
 
 /// The observers of a run for the sections that its scenario asks for.
 class SectionObservers {

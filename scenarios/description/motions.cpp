@@ -17,9 +17,8 @@ void check_times(const Profile::Waypoints& waypoints, const std::string& at) {
   const auto& points = waypoints.points;
   for (std::size_t i = 1; i < points.size(); ++i) {
     if (points[i - 1].first < points[i].first) continue;
-    throw InputError(InputError::Kind::relation, element(at + "/points", i),
-                     "got time " + shown(points[i].first) + " after " + shown(points[i - 1].first) +
-                         "; allowed: strictly increasing times");
+    fail_at(element(at + "/points", i), "got time " + shown(points[i].first) + " after " + shown(points[i - 1].first) +
+                                            "; allowed: strictly increasing times");
   }
 }
 
@@ -98,6 +97,11 @@ void profile(Fields& f, std::string_view name, Profile& profile, const char* uni
   f.field(name, doc, presence, [&](Fields& value) { value.shared("profile", describe_profile); });
 }
 
+void profiles(Fields& f, const char* const (&names)[3], std::array<Profile, 3>& profiles, const char* unit,
+              const char* doc, Presence presence) {
+  for (std::size_t i = 0; i < 3; ++i) profile(f, names[i], profiles[i], unit, doc, presence);
+}
+
 static void describe(Fields& f, OrientationFields& orientation) {
   constexpr NumberRange kDirection = {-1e9, 1e9, "1"};
   f.vector3("up", orientation.up, kDirection, "against gravity; default [0,1,0] in planar scenes, else [0,0,1]",
@@ -113,10 +117,7 @@ static void describe(Fields& f, OrientationFields& orientation) {
 static void describe(Fields&, FreePosition&) {}
 
 static void describe(Fields& f, PrescribedPosition& position) {
-  constexpr const char* kNames[] = {"x_m", "y_m", "z_m"};
-  for (std::size_t i = 0; i < 3; ++i) {
-    profile(f, kNames[i], position.coordinates[i], "m", "tip centre over time", Presence::required);
-  }
+  profiles(f, {"x_m", "y_m", "z_m"}, position.coordinates, "m", "tip centre over time", Presence::required);
 }
 
 static void describe(Fields& f, RecordedPosition& position) {
@@ -138,8 +139,8 @@ void describe(Fields& f, MotionFields& motion) {
   f.value("position", motion.position, "free: integrated; prescribed or file: forces are computed, not integrated");
   if (!f.reads() || !std::holds_alternative<RecordedPosition>(motion.position)) return;
   if (f.given("orientation")) {
-    throw InputError(InputError::Kind::relation, f.at() + "/orientation",
-                     "contradicts position type \"file\", whose columns give the orientation; allowed: one of the two");
+    fail_at(f.at() + "/orientation",
+            "contradicts position type \"file\", whose columns give the orientation; allowed: one of the two");
   }
   motion.orientation.reset();
 }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <ctime>
 #include <mutex>
+#include <optional>
 #include <thread>
 
 #include "scenarios/description/descriptions.hpp"
@@ -54,11 +55,6 @@ void SharedCache::drop_oldest() {
   }
 }
 
-std::size_t SharedCache::made() const {
-  const std::lock_guard lock(mutex_);
-  return made_;
-}
-
 SharedCache& shared_cache() {
   static SharedCache cache;
   return cache;
@@ -66,12 +62,16 @@ SharedCache& shared_cache() {
 
 namespace {
 
-/// Walks through the values that an object holds and collects the names of files.
+/// Walks through the values that a scenario holds and collects the files that they name.
 class FileFinder final : public Fields {
  public:
-  std::vector<FileReference> found;
+  explicit FileFinder(Scenario& scenario) : scenario_(scenario) { object(scenario); }
 
-  void file(std::string& path, const FileContent& content) override { found.push_back({at_, &path, content}); }
+  std::vector<std::shared_ptr<NamedFile>> found;
+
+  void file(std::string& path, const FileContent& content) override {
+    found.push_back(std::make_shared<NamedFile>(at_, resolve_path(scenario_, path), content));
+  }
 
   void number(double&, NumberRange) override {}
   void integer(std::int64_t&, IntegerRange) override {}
@@ -114,18 +114,9 @@ class FileFinder final : public Fields {
     at_.resize(length);
   }
 
+  const Scenario& scenario_;
   std::string at_;  ///< JSON pointer of the value that is visited
 };
-
-}  // namespace
-
-std::vector<FileReference> files_named_in(Scenario& scenario) {
-  FileFinder finder;
-  finder.object(scenario);
-  return std::move(finder.found);
-}
-
-namespace {
 
 /// A text that differs after a change of the file, so that a file whose text is known need not be read again. Nothing
 /// for a file that is not regular, and for one that changed so recently that the clock of the file system might not
@@ -190,15 +181,15 @@ void NamedFile::check_extension() const {
 NamedFile::Contents NamedFile::parsed() {
   switch (content_.kind) {
     case FileContent::Kind::point_shell:
-      return {.points = point_shell_in(bytes_, path_)};
+      return point_shell_in(bytes_, path_);
     case FileContent::Kind::mesh:
-      return {.mesh = MeshFile(bytes_, path_, content_.sampling)};
+      return MeshFile(bytes_, path_, content_.sampling);
     case FileContent::Kind::stroke:
-      return {.stroke = stroke_in(bytes_, path_)};
+      return stroke_in(bytes_, path_);
     case FileContent::Kind::trace:
-      return {.trace = trace_in(bytes_, path_)};
+      return trace_in(bytes_, path_);
     case FileContent::Kind::library:
-      return {};
+      break;
   }
   return {};
 }
@@ -210,10 +201,7 @@ std::vector<Warning> NamedFile::warnings() {
   return warnings;
 }
 
-NamedFiles::NamedFiles(Scenario scenario) {
-  for (const auto& [pointer, path, content] : files_named_in(scenario))
-    files_.push_back(std::make_shared<NamedFile>(pointer, resolve_path(scenario, *path), content));
-}
+NamedFiles::NamedFiles(Scenario scenario) : files_(std::move(FileFinder(scenario).found)) {}
 
 NamedFile* NamedFiles::find(std::string_view pointer) const {
   const auto found =

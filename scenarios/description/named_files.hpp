@@ -6,9 +6,9 @@
 #include <list>
 #include <memory>
 #include <mutex>
-#include <optional>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 #include "results/observe/force_fidelity.hpp"
@@ -42,7 +42,10 @@ class SharedCache {
   }
 
   /// Number of values made so far.
-  std::size_t made() const;
+  std::size_t made() const {
+    const std::lock_guard lock(mutex_);
+    return made_;
+  }
 
  private:
   struct Made {
@@ -70,17 +73,6 @@ class SharedCache {
 /// The one of this process.
 SharedCache& shared_cache();
 
-/// A field of a scenario that names a file.
-struct FileReference {
-  std::string pointer;  ///< JSON pointer of the field
-  std::string* path;    ///< the field's value, within the scenario that was asked
-  FileContent content;
-};
-
-/// Every file that the scenario names, in the order of its fields. This is the one list of them: what loads, checks,
-/// hashes or rewrites the files of a scenario goes through it.
-std::vector<FileReference> files_named_in(Scenario& scenario);
-
 // Pointers of the files that have a use of their own.
 inline constexpr std::string_view kEnvironmentFile = "/environment/file";
 inline constexpr std::string_view kToolFile = "/tool/file";
@@ -106,26 +98,21 @@ class NamedFile {
   std::vector<Warning> warnings();
 
   /// The points with normals. Precondition, here and below: the content is of that kind.
-  const std::vector<SurfacePoint>& points() { return contents().points; }
-  const MeshFile& mesh() { return *contents().mesh; }
-  /// It may be kept longer than the file.
-  std::shared_ptr<const Stroke> stroke() {
-    const Stroke& stroke = *contents().stroke;
-    return {contents_, &stroke};
-  }
-  std::shared_ptr<const ContactTrace> trace() {
-    const ContactTrace& trace = *contents().trace;
-    return {contents_, &trace};
-  }
+  const std::vector<SurfacePoint>& points() { return std::get<std::vector<SurfacePoint>>(contents()); }
+  const MeshFile& mesh() { return std::get<MeshFile>(contents()); }
+  // These may be kept longer than the file.
+  std::shared_ptr<const Stroke> stroke() { return kept<Stroke>(); }
+  std::shared_ptr<const ContactTrace> trace() { return kept<ContactTrace>(); }
 
  private:
-  struct Contents {
-    std::vector<SurfacePoint> points = {};
-    std::optional<MeshFile> mesh = {};
-    std::optional<Stroke> stroke = {};
-    std::optional<ContactTrace> trace = {};
-  };
+  /// Nothing of a library, whose code is loaded elsewhere.
+  using Contents = std::variant<std::monostate, std::vector<SurfacePoint>, MeshFile, Stroke, ContactTrace>;
 
+  template <class Kind>
+  std::shared_ptr<const Kind> kept() {
+    const Kind& kind = std::get<Kind>(contents());
+    return {contents_, &kind};
+  }
   void check_extension() const;
   void read();
   const Contents& contents();
@@ -139,7 +126,9 @@ class NamedFile {
   std::shared_ptr<const Contents> contents_;
 };
 
-/// The files that a scenario names. Copies share what was read, and must not be used by two threads at once.
+/// Every file that a scenario names, in the order of its fields. This is the one list of them: what loads, checks,
+/// hashes or rewrites the files of a scenario goes through it. Copies share what was read, and must not be used by two
+/// threads at once.
 class NamedFiles {
  public:
   /// No files, for a scenario that names none.

@@ -1,7 +1,6 @@
 #include "scenarios/description/scenario.hpp"
 
 #include "algorithms/registry.hpp"
-#include "scenarios/description/descriptions.hpp"
 #include "scenarios/description/parts.hpp"
 #include "sim/core/random.hpp"
 
@@ -10,12 +9,6 @@ namespace hapbench {
 bool records_rows(const RecordFields& record) {
   return record.trajectory || !record.ratio_iterations.empty() || record.contacts || record.stiffness_tensor ||
          record.energy || record.ideal_trajectory || record.force_reference;
-}
-
-bool has_ideal_trajectory(const Scenario& scenario) {
-  const auto* cylinder = std::get_if<CylinderFields>(&scenario.tool);
-  return std::holds_alternative<BlockEnvironment>(scenario.environment) && cylinder != nullptr &&
-         cylinder->tip == Tip::flat;
 }
 
 double trial_count(const HandFields& hand) {
@@ -43,11 +36,6 @@ std::optional<double> input_force_limit(const DeviceFields& device) {
   return admittance != nullptr ? admittance->force_limit : std::nullopt;
 }
 
-BurProfile profile_of(const BurFields& bur) {
-  return bur_profile(bur.family, bur.diameter, bur.length.value_or(bur.diameter),
-                     bur.shank_diameter.value_or(BurFields::kShankShare * bur.diameter));
-}
-
 std::filesystem::path resolve_path(const Scenario& scenario, const std::string& file) {
   return scenario.directory / file;  // an absolute `file` replaces the directory
 }
@@ -65,20 +53,6 @@ Scenario with_algorithm(Scenario scenario, std::string_view algorithm) {
   scenario.rendering.algorithm = algorithm;
   scenario.rendering = with_fixed_stages(scenario.rendering);
   return scenario;
-}
-
-void set_scene_defaults(Scenario& scenario) {
-  // The structs hold the defaults of springs.
-  if (std::holds_alternative<SpringsEnvironment>(scenario.environment)) return;
-  RenderingConfig& rendering = scenario.rendering;
-  rendering.mu_s = 5.0;
-  rendering.mu_f = 10.0;
-  if (std::holds_alternative<Hole2d>(scenario.environment)) {
-    scenario.tool = CylinderFields{.length = 0.005, .tip = Tip::round};
-  } else {
-    scenario.motion.orientation->up = {0.0, 0.0, 1.0};
-    rendering.mass = 0.1;
-  }
 }
 
 }  // namespace hapbench

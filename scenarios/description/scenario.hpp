@@ -102,8 +102,6 @@ struct BurFields {
   std::optional<double> shank_diameter;  ///< [m]; none: kShankShare of the head's
   static constexpr double kShankShare = 0.6;
 };
-/// The profile that the fields mean. Throws std::invalid_argument when there is none.
-BurProfile profile_of(const BurFields& bur);
 struct MeshToolFields {
   std::string file;            ///< OBJ, PLY, STL or OFF, relative to the scenario file
   double scale = 1.0;          ///< [m] for each unit of the file
@@ -166,6 +164,7 @@ struct DragHandFields {
 };
 /// The man-machine experiments: every subject does every trial from the initial state.
 struct TrackingHandFields {
+  static constexpr std::size_t kMostPlaces = 100;  ///< of targets
   TargetRules task;
   std::vector<Subject> subjects = {Subject{}};
   std::int64_t trials = 1;
@@ -243,10 +242,6 @@ struct Scenario {
 
   std::filesystem::path directory;  ///< of the scenario file: what relative paths start from
 };
-
-/// True when the ideal trajectory and the exact depth in the hole are known (results/observe/ideal_trajectory.hpp): of
-/// a flat-tipped cylinder in a block_with_hole.
-bool has_ideal_trajectory(const Scenario& scenario);
 
 /// The number of runs of the scenario: one for each subject and trial of a tracking hand. A double, because a scenario
 /// may ask for more than any integer holds.

@@ -40,8 +40,14 @@ void check_shape(const std::string& at, const char* allowed, const Make& make) {
   try {
     make();
   } catch (const std::invalid_argument& error) {
-    throw InputError(InputError::Kind::relation, at, fmt::format("{}; allowed: {}", error.what(), allowed));
+    fail_at(at, fmt::format("{}; allowed: {}", error.what(), allowed));
   }
+}
+
+/// Throws std::invalid_argument when there is none.
+BurProfile profile_of(const BurFields& bur) {
+  return bur_profile(bur.family, bur.diameter, bur.length.value_or(bur.diameter),
+                     bur.shank_diameter.value_or(BurFields::kShankShare * bur.diameter));
 }
 
 }  // namespace
@@ -114,8 +120,6 @@ std::vector<std::string> tool_names() {
 
 namespace {
 
-using Grid = std::shared_ptr<const SignedDistanceGrid>;
-
 /// The mesh in the tool's own frame: tip centre at the origin, axis along -z.
 TriangleSoup tool_surface(const MeshToolFields& fields, const NamedFiles& files) {
   TriangleSoup surface = files.at(kToolFile).mesh().triangles();
@@ -124,20 +128,15 @@ TriangleSoup tool_surface(const MeshToolFields& fields, const NamedFiles& files)
   return surface;
 }
 
-/// Calls `of` with the surface of the tool and the spacing of its grid. Turns std::invalid_argument, which the grid
-/// throws, into an InputError that names the file.
-template <class Of>
-auto with_grid(const MeshToolFields& fields, const NamedFiles& files, const Of& of) {
+/// The signed distances from the surface. Throws InputError that names the file when there is no grid of them.
+std::shared_ptr<const SignedDistanceGrid> make_grid(const MeshToolFields& fields, const NamedFiles& files) {
   const TriangleSoup surface = tool_surface(fields, files);
   try {
-    return of(surface, fields.grid.value_or(SignedDistanceGrid::suggested_spacing(surface.vertices)));
+    const double spacing = fields.grid.value_or(SignedDistanceGrid::suggested_spacing(surface.vertices));
+    return std::make_shared<const SignedDistanceGrid>(surface.vertices, surface.triangles, spacing);
   } catch (const std::invalid_argument& error) {
     throw InputError(fmt::format("{}: {}", files.at(kToolFile).path().string(), error.what()));
   }
-}
-
-Grid make_grid(const TriangleSoup& surface, double spacing) {
-  return std::make_shared<const SignedDistanceGrid>(surface.vertices, surface.triangles, spacing);
 }
 
 struct Make {
@@ -158,7 +157,7 @@ struct Make {
                                             f.grid.value_or(0.0), fmt::join(f.tip, " "), fmt::join(f.tip_axis, " "));
     const auto bytes = [](const SignedDistanceGrid& grid) { return sizeof(double) * grid.nodes().size(); };
     return std::make_shared<MeshTool>(shared_cache().get<SignedDistanceGrid>(
-        content, [&] { return with_grid(f, files, make_grid); }, bytes));
+        content, [&] { return make_grid(f, files); }, bytes));
   }
 };
 
@@ -175,8 +174,7 @@ std::shared_ptr<const ToolShape> make_tool(const Scenario& scenario) {
 Cylinder make_cylinder(const ToolFields& fields) {
   if (const auto* f = std::get_if<CylinderFields>(&fields)) return {f->diameter / 2.0, f->length, f->tip};
   const std::vector<std::string> names = tool_names();
-  throw InputError(InputError::Kind::relation, "/tool/type",
-                   fmt::format("got \"{}\"; allowed here: \"{}\"", names[fields.index()], names.front()));
+  fail_at("/tool/type", fmt::format("got \"{}\"; allowed here: \"{}\"", names[fields.index()], names.front()));
 }
 
 }  // namespace hapbench

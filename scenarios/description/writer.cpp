@@ -13,87 +13,6 @@
 
 namespace hapbench {
 
-Json Writer::written(Body value) const {
-  Writer writer(which_);
-  value(writer);
-  return std::move(writer.json_);
-}
-
-void Writer::number(double& value, NumberRange) {
-  json_ = value;
-}
-
-void Writer::integer(std::int64_t& value, IntegerRange) {
-  json_ = value;
-}
-
-void Writer::boolean(bool& value) {
-  json_ = value;
-}
-
-void Writer::text(std::string& value, std::size_t) {
-  json_ = value;
-}
-
-void Writer::name(std::size_t& index, const std::vector<std::string>& names, const char* what) {
-  if (index >= names.size()) throw std::logic_error(std::string("a value without a name: ") + what);
-  json_ = names[index];
-}
-
-void Writer::vector3(Vec3& value, NumberRange) {
-  json_ = {value.x(), value.y(), value.z()};
-}
-
-void Writer::pair(const char*, Body first, Body second) {
-  json_ = Json::array({written(first), written(second)});
-}
-
-void Writer::entries(std::size_t length, ListSize, FunctionRef<std::size_t>, FunctionRef<Fields&, std::size_t> entry) {
-  json_ = Json::array();
-  for (std::size_t i = 0; i < length; ++i) {
-    json_.push_back(written([&entry, i](Fields& f) { entry(f, i); }));
-  }
-}
-
-void Writer::or_null(bool is_null, FunctionRef<>, Body value) {
-  if (!is_null) value(*this);
-}
-
-void Writer::plain_or_object(bool is_object, Body plain, Body object) {
-  (is_object ? object : plain)(*this);
-}
-
-void Writer::any_object(std::string& json) {
-  json_ = Json::parse(json);
-}
-
-void Writer::one_or_list(bool is_list, Body one, Body list) {
-  (is_list ? list : one)(*this);
-}
-
-void Writer::alternatives(const char*, std::span<const TypeName> types, Untyped untyped, std::size_t held,
-                          FunctionRef<Fields&, std::size_t> fields) {
-  if (held >= types.size()) throw std::logic_error("a variant without a value");
-  json_ = Json::object();
-  if (untyped == Untyped::refused || held > 0) json_[kTypeField] = types[held].name;
-  fields(*this, held);
-}
-
-void Writer::fields(Body body) {
-  json_ = Json::object();
-  body(*this);
-}
-
-void Writer::field(std::string_view name, const char*, Presence presence, Body value) {
-  if (presence == Presence::left_out) return;
-  if (presence == Presence::no_default && which_ == Which::with_default) return;
-  json_[std::string(name)] = written(value);
-}
-
-void Writer::ignored(std::string_view, const char*) {}
-
-void Writer::exactly_one_of(const char*, const char*) {}
-
 std::vector<std::string> names_of(std::span<const TypeName> types) {
   std::vector<std::string> names;
   for (const TypeName& type : types) names.emplace_back(type.name);
@@ -109,155 +28,223 @@ Json FieldGuide::schema() const {
   return entry;
 }
 
-ValueGuide SchemaWriter::guide_of(Body value) const {
-  SchemaWriter writer(definitions_, extent_);
-  value(writer);
-  return std::move(writer.guide_);
-}
+namespace {
 
-void SchemaWriter::number(double&, NumberRange range) {
-  guide_.schema = {
-      {"type", "number"}, {range.above_min ? "exclusiveMinimum" : "minimum", range.min}, {"maximum", range.max}};
-  const std::string unit = *range.unit == '\0' ? "" : fmt::format(" [{}]", range.unit);
-  guide_.allowed = fmt::format("a number {} {} and <= {}{}", range.above_min ? ">" : ">=", range.min, range.max, unit);
-}
+/// Selects the fields to write: all that have a value, or only those whose default holds for every scenario.
+enum class Which { all, with_default };
 
-void SchemaWriter::integer(std::int64_t&, IntegerRange range) {
-  guide_.schema = {{"type", "integer"}, {"minimum", range.min}, {"maximum", range.max}};
-  guide_.allowed = fmt::format("an integer {} ... {}", range.min, range.max);
-}
+/// Writes a value as JSON.
+class Writer final : public Fields {
+ public:
+  Writer(Which which, Body value) : which_(which) { value(*this); }
 
-void SchemaWriter::boolean(bool&) {
-  guide_.schema = {{"type", "boolean"}};
-  guide_.allowed = "true or false";
-}
+  Json json() && { return std::move(json_); }
 
-void SchemaWriter::text(std::string&, std::size_t max_length) {
-  guide_.schema = {{"type", "string"}, {"maxLength", max_length}};
-  guide_.allowed = fmt::format("a text of at most {} characters", max_length);
-}
-
-void SchemaWriter::name(std::size_t&, const std::vector<std::string>& names, const char* what) {
-  guide_.schema = {{"type", "string"}, {"enum", names}};
-  guide_.allowed = fmt::format("{}: one of {}", what, quoted_list(names));
-}
-
-void SchemaWriter::vector3(Vec3& value, NumberRange component) {
-  const ValueGuide item = guide_of([&](Fields& f) { f.number(value.x(), component); });
-  guide_.schema = {{"type", "array"}, {"items", item.schema}, {"minItems", 3}, {"maxItems", 3}};
-  guide_.allowed = "three numbers [x, y, z], each " + item.allowed;
-}
-
-void SchemaWriter::pair(const char* allowed, Body first, Body second) {
-  const Json items = {guide_of(first).schema, guide_of(second).schema};
-  guide_.schema = {{"type", "array"}, {"items", items}, {"minItems", 2}, {"maxItems", 2}};
-  guide_.allowed = allowed;
-}
-
-void SchemaWriter::entries(std::size_t length, ListSize size, FunctionRef<std::size_t>,
-                           FunctionRef<Fields&, std::size_t> entry) {
-  const ValueGuide item = guide_of([&](Fields& f) { entry(f, length); });
-  guide_.schema = {{"type", "array"}, {"items", item.schema}, {"minItems", size.min}, {"maxItems", size.max}};
-  guide_.allowed = fmt::format("a list of {} ... {} entries, each {}", size.min, size.max, item.allowed);
-}
-
-void SchemaWriter::or_null(bool, FunctionRef<>, Body value) {
-  guide_ = guide_of(value);
-  guide_.schema = {{"anyOf", {{{"type", "null"}}, guide_.schema}}};
-  guide_.allowed = "null or " + guide_.allowed;
-}
-
-/// One of two values, of which the second may be an object.
-void SchemaWriter::any_of(ValueGuide first, ValueGuide second) {
-  guide_ = std::move(second);
-  guide_.schema = {{"anyOf", {first.schema, guide_.schema}}};
-  guide_.allowed = first.allowed + ", or " + guide_.allowed;
-}
-
-void SchemaWriter::plain_or_object(bool, Body plain, Body object) {
-  any_of(guide_of(plain), guide_of(object));
-}
-
-void SchemaWriter::any_object(std::string&) {
-  guide_.schema = {{"type", "object"}};
-  guide_.allowed = "an object";
-}
-
-void SchemaWriter::one_or_list(bool, Body one, Body list) {
-  any_of(guide_of(one), guide_of(list));
-}
-
-void SchemaWriter::alternatives(const char*, std::span<const TypeName> types, Untyped untyped, std::size_t,
-                                FunctionRef<Fields&, std::size_t> fields) {
-  guide_.allowed = fmt::format("an object whose \"{}\" is one of {}", kTypeField, quoted_list(names_of(types)));
-  if (extent_ == Extent::words) return;
-  Json schemas = Json::array();
-  for (std::size_t i = 0; i < types.size(); ++i) {
-    SchemaWriter choice(definitions_);
-    choice.guide_.type = types[i].name;
-    choice.guide_.summary = types[i].summary;
-    choice.guide_.may_be_untyped = untyped == Untyped::first && i == 0;
-    choice.fields([&](Fields& f) { fields(f, i); });
-    schemas.push_back(choice.guide_.schema);
-    guide_.choices.push_back(std::move(choice.guide_));
+  void number(double& value, NumberRange) override { json_ = value; }
+  void integer(std::int64_t& value, IntegerRange) override { json_ = value; }
+  void boolean(bool& value) override { json_ = value; }
+  void text(std::string& value, std::size_t) override { json_ = value; }
+  void any_object(std::string& json) override { json_ = Json::parse(json); }
+  void vector3(Vec3& value, NumberRange) override { json_ = {value.x(), value.y(), value.z()}; }
+  void name(std::size_t& index, const std::vector<std::string>& names, const char* what) override {
+    if (index >= names.size()) throw std::logic_error(std::string("a value without a name: ") + what);
+    json_ = names[index];
   }
-  guide_.schema = {{"oneOf", std::move(schemas)}};
-}
-
-void SchemaWriter::fields(Body body) {
-  guide_.schema = {
-      {"type", "object"}, {"properties", Json::object()}, {"additionalProperties", false}, {"required", Json::array()}};
-  if (!guide_.type.empty()) {
-    guide_.schema["properties"][kTypeField] = {{"const", guide_.type}};
-    if (!guide_.may_be_untyped) guide_.schema["required"].push_back(kTypeField);
+  void pair(const char*, Body first, Body second) override { json_ = Json::array({written(first), written(second)}); }
+  void entries(std::size_t length, ListSize, FunctionRef<std::size_t>,
+               FunctionRef<Fields&, std::size_t> entry) override {
+    json_ = Json::array();
+    for (std::size_t i = 0; i < length; ++i) json_.push_back(written([&entry, i](Fields& f) { entry(f, i); }));
   }
-  body(*this);
-  if (guide_.schema["required"].empty()) guide_.schema.erase("required");
-  std::vector<std::string> names;
-  for (const FieldGuide& field : guide_.fields) names.push_back(field.name);
-  guide_.allowed = "an object with the fields " + quoted_list(names);
-}
+  void or_null(bool is_null, FunctionRef<>, Body value) override {
+    if (!is_null) value(*this);
+  }
+  void plain_or_object(bool is_object, Body plain, Body object) override { (is_object ? object : plain)(*this); }
+  void one_or_list(bool is_list, Body one, Body list) override { (is_list ? list : one)(*this); }
+  void alternatives(const char*, std::span<const TypeName> types, Untyped untyped, std::size_t held,
+                    FunctionRef<Fields&, std::size_t> fields) override {
+    if (held >= types.size()) throw std::logic_error("a variant without a value");
+    json_ = Json::object();
+    if (untyped == Untyped::refused || held > 0) json_[kTypeField] = types[held].name;
+    fields(*this, held);
+  }
+  void fields(Body body) override {
+    json_ = Json::object();
+    body(*this);
+  }
+  void field(std::string_view name, const char*, Presence presence, Body value) override {
+    if (presence == Presence::left_out) return;
+    if (presence == Presence::no_default && which_ == Which::with_default) return;
+    json_[std::string(name)] = written(value);
+  }
+  void ignored(std::string_view, const char*) override {}
+  void exactly_one_of(const char*, const char*) override {}
 
-void SchemaWriter::shared(const char* name, Body value) {
-  guide_ = guide_of(value);
-  if (definitions_ == nullptr) return;
-  (*definitions_)[name] = std::move(guide_.schema);
-  guide_.schema = {{"$ref", std::string("#/definitions/") + name}};
-}
+ private:
+  Json written(Body value) const { return Writer(which_, value).json(); }
 
-void SchemaWriter::field(std::string_view name, const char* doc, Presence presence, Body value) {
-  if (extent_ == Extent::words) return ignored(name, doc);
-  FieldGuide field{
-      .name = std::string(name), .meaning = doc, .presence = presence, .initial = {}, .value = guide_of(value)};
-  if (presence == Presence::has_default) {
-    Writer writer(Writer::Which::with_default);
+  Which which_;
+  Json json_;
+};
+
+/// Of the value itself what is allowed, and nothing of the fields of an object; or all.
+enum class Extent { words, whole };
+
+/// Describes which values are allowed (guide_to).
+class SchemaWriter final : public Fields {
+ public:
+  SchemaWriter(Json* definitions, Extent extent) : definitions_(definitions), extent_(extent) {}
+
+  ValueGuide guide() && { return std::move(guide_); }
+
+  void number(double&, NumberRange range) override {
+    guide_.schema = {
+        {"type", "number"}, {range.above_min ? "exclusiveMinimum" : "minimum", range.min}, {"maximum", range.max}};
+    const std::string unit = *range.unit == '\0' ? "" : fmt::format(" [{}]", range.unit);
+    guide_.allowed =
+        fmt::format("a number {} {} and <= {}{}", range.above_min ? ">" : ">=", range.min, range.max, unit);
+  }
+  void integer(std::int64_t&, IntegerRange range) override {
+    guide_.schema = {{"type", "integer"}, {"minimum", range.min}, {"maximum", range.max}};
+    guide_.allowed = fmt::format("an integer {} ... {}", range.min, range.max);
+  }
+  void boolean(bool&) override {
+    guide_.schema = {{"type", "boolean"}};
+    guide_.allowed = "true or false";
+  }
+  void text(std::string&, std::size_t max_length) override {
+    guide_.schema = {{"type", "string"}, {"maxLength", max_length}};
+    guide_.allowed = fmt::format("a text of at most {} characters", max_length);
+  }
+  void any_object(std::string&) override {
+    guide_.schema = {{"type", "object"}};
+    guide_.allowed = "an object";
+  }
+  void name(std::size_t&, const std::vector<std::string>& names, const char* what) override {
+    guide_.schema = {{"type", "string"}, {"enum", names}};
+    guide_.allowed = fmt::format("{}: one of {}", what, quoted_list(names));
+  }
+  void vector3(Vec3& value, NumberRange component) override {
+    const ValueGuide item = guide_of([&](Fields& f) { f.number(value.x(), component); });
+    guide_.schema = {{"type", "array"}, {"items", item.schema}, {"minItems", 3}, {"maxItems", 3}};
+    guide_.allowed = "three numbers [x, y, z], each " + item.allowed;
+  }
+  void pair(const char* allowed, Body first, Body second) override {
+    const Json items = {guide_of(first).schema, guide_of(second).schema};
+    guide_.schema = {{"type", "array"}, {"items", items}, {"minItems", 2}, {"maxItems", 2}};
+    guide_.allowed = allowed;
+  }
+  void entries(std::size_t length, ListSize size, FunctionRef<std::size_t>,
+               FunctionRef<Fields&, std::size_t> entry) override {
+    const ValueGuide item = guide_of([&](Fields& f) { entry(f, length); });
+    guide_.schema = {{"type", "array"}, {"items", item.schema}, {"minItems", size.min}, {"maxItems", size.max}};
+    guide_.allowed = fmt::format("a list of {} ... {} entries, each {}", size.min, size.max, item.allowed);
+  }
+  void or_null(bool, FunctionRef<>, Body value) override {
+    guide_ = guide_of(value);
+    guide_.schema = {{"anyOf", {{{"type", "null"}}, guide_.schema}}};
+    guide_.allowed = "null or " + guide_.allowed;
+  }
+  void plain_or_object(bool, Body plain, Body object) override { any_of(guide_of(plain), guide_of(object)); }
+  void one_or_list(bool, Body one, Body list) override { any_of(guide_of(one), guide_of(list)); }
+  void alternatives(const char*, std::span<const TypeName> types, Untyped untyped, std::size_t,
+                    FunctionRef<Fields&, std::size_t> fields) override {
+    guide_.allowed = fmt::format("an object whose \"{}\" is one of {}", kTypeField, quoted_list(names_of(types)));
+    if (extent_ == Extent::words) return;
+    Json schemas = Json::array();
+    for (std::size_t i = 0; i < types.size(); ++i) {
+      SchemaWriter choice(definitions_, extent_);
+      choice.guide_.type = types[i].name;
+      choice.guide_.summary = types[i].summary;
+      choice.guide_.may_be_untyped = untyped == Untyped::first && i == 0;
+      choice.fields([&](Fields& f) { fields(f, i); });
+      schemas.push_back(choice.guide_.schema);
+      guide_.choices.push_back(std::move(choice.guide_));
+    }
+    guide_.schema = {{"oneOf", std::move(schemas)}};
+  }
+  void fields(Body body) override {
+    guide_.schema = {{"type", "object"},
+                     {"properties", Json::object()},
+                     {"additionalProperties", false},
+                     {"required", Json::array()}};
+    if (!guide_.type.empty()) {
+      guide_.schema["properties"][kTypeField] = {{"const", guide_.type}};
+      if (!guide_.may_be_untyped) guide_.schema["required"].push_back(kTypeField);
+    }
+    body(*this);
+    if (guide_.schema["required"].empty()) guide_.schema.erase("required");
+    std::vector<std::string> names;
+    for (const FieldGuide& field : guide_.fields) names.push_back(field.name);
+    guide_.allowed = "an object with the fields " + quoted_list(names);
+  }
+  void shared(const char* name, Body value) override {
+    guide_ = guide_of(value);
+    if (definitions_ == nullptr) return;
+    (*definitions_)[name] = std::move(guide_.schema);
+    guide_.schema = {{"$ref", std::string("#/definitions/") + name}};
+  }
+  void field(std::string_view name, const char* doc, Presence presence, Body value) override {
+    if (extent_ == Extent::words) return ignored(name, doc);
+    FieldGuide field{
+        .name = std::string(name), .meaning = doc, .presence = presence, .initial = {}, .value = guide_of(value)};
+    if (presence == Presence::has_default) field.initial = Writer(Which::with_default, value).json();
+    guide_.schema["properties"][field.name] = field.schema();
+    if (presence == Presence::required) guide_.schema["required"].push_back(field.name);
+    guide_.fields.push_back(std::move(field));
+  }
+  void ignored(std::string_view name, const char* doc) override {
+    guide_.schema["properties"][std::string(name)] = {{"description", doc}};
+    guide_.fields.push_back(
+        {.name = std::string(name), .meaning = doc, .presence = Presence::left_out, .initial = {}, .value = {}});
+  }
+  void exactly_one_of(const char* a, const char* b) override {
+    Json& schema = guide_.schema;
+    if (schema.contains("oneOf")) throw std::logic_error("exactly_one_of twice in one object");
+    schema["oneOf"] = Json::array({Json{{"required", {a}}}, Json{{"required", {b}}}});
+  }
+
+ private:
+  ValueGuide guide_of(Body value) const {
+    SchemaWriter writer(definitions_, extent_);
     value(writer);
-    field.initial = writer.json();
+    return std::move(writer).guide();
   }
-  guide_.schema["properties"][field.name] = field.schema();
-  if (presence == Presence::required) guide_.schema["required"].push_back(field.name);
-  guide_.fields.push_back(std::move(field));
+  /// One of two values, of which the second may be an object.
+  void any_of(ValueGuide first, ValueGuide second) {
+    guide_ = std::move(second);
+    guide_.schema = {{"anyOf", {first.schema, guide_.schema}}};
+    guide_.allowed = first.allowed + ", or " + guide_.allowed;
+  }
+
+  Json* definitions_;
+  Extent extent_;
+  ValueGuide guide_;
+};
+
+}  // namespace
+
+Json json_of(Fields::Body value) {
+  return Writer(Which::all, value).json();
 }
 
-void SchemaWriter::ignored(std::string_view name, const char* doc) {
-  guide_.schema["properties"][std::string(name)] = {{"description", doc}};
-  guide_.fields.push_back(
-      {.name = std::string(name), .meaning = doc, .presence = Presence::left_out, .initial = {}, .value = {}});
+ValueGuide guide_to(Fields::Body value, Json* definitions) {
+  SchemaWriter writer(definitions, Extent::whole);
+  value(writer);
+  return std::move(writer).guide();
 }
 
-void SchemaWriter::exactly_one_of(const char* a, const char* b) {
-  Json& schema = guide_.schema;
-  if (schema.contains("oneOf")) throw std::logic_error("exactly_one_of twice in one object");
-  schema["oneOf"] = Json::array({Json{{"required", {a}}}, Json{{"required", {b}}}});
+std::string allowed_by(Fields::Body value) {
+  SchemaWriter writer(nullptr, Extent::words);
+  value(writer);
+  return std::move(writer).guide().allowed;
 }
 
 namespace {
 
 ValueGuide full_scenario(Json* definitions) {
   Scenario defaults;
-  SchemaWriter writer(definitions);
-  writer.object(defaults);
-  ValueGuide guide = writer.guide();
+  ValueGuide guide = guide_to([&defaults](Fields& f) { f.object(defaults); }, definitions);
   Json schema = {{"description", "SI units; every key carries its own. A profile is a scalar function of time."}};
   schema.update(guide.schema);
   guide.schema = std::move(schema);
@@ -306,31 +293,22 @@ void add_paths(std::vector<std::string>& paths, const std::string& prefix, const
   }
 }
 
-/// The guide to a scenario and the paths of its fields, valid as long as additions() has this value.
-struct KnownFields {
-  explicit KnownFields(std::size_t count) : additions(count) { add_paths(paths, "", guide); }
-
-  std::size_t additions;
-  ValueGuide guide = full_scenario(nullptr);
-  std::vector<std::string> paths;
-};
-
-const KnownFields& known_fields() {
-  static std::mutex mutex;
-  static std::deque<KnownFields> built;
-  const std::lock_guard lock(mutex);
-  if (built.empty() || built.back().additions != additions()) built.emplace_back(additions());
-  return built.back();
-}
-
 }  // namespace
 
 const ValueGuide& scenario_guide() {
-  return known_fields().guide;
+  static std::mutex mutex;
+  static std::deque<ValueGuide> built;
+  static std::size_t known = 0;  // additions() when the last one was built
+  const std::lock_guard lock(mutex);
+  if (built.empty() || known != additions()) built.push_back(full_scenario(nullptr));
+  known = additions();
+  return built.back();
 }
 
-const std::vector<std::string>& scenario_field_paths() {
-  return known_fields().paths;
+std::vector<std::string> scenario_field_paths() {
+  std::vector<std::string> paths;
+  add_paths(paths, "", scenario_guide());
+  return paths;
 }
 
 Json scenario_schema() {

@@ -12,30 +12,25 @@ namespace hapbench {
 namespace {
 
 /// Number of letters to replace, remove, insert or swap with a neighbour to turn `a` into `b`. If that is less, one
-/// more than the number for a part of `b` that ends before an underscore. `limit` if it is not less than that.
-std::size_t edit_distance(std::string_view a, std::string_view b, std::size_t limit) {
+/// more than the number for a part of `b` that ends before an underscore.
+std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> row(b.size() + 1), before(row), before_that(row);  // for the first letters of `a`
   std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 1, least_before = 0; i <= a.size(); ++i) {
+  for (std::size_t i = 1; i <= a.size(); ++i) {
     before_that.swap(before);
     before.swap(row);
-    std::ranges::fill(row, limit);  // nothing less lies `limit` or further from the diagonal
-    std::size_t least = row[0] = i;
-    for (std::size_t j = i < limit ? 1 : i - limit + 1; j <= std::min(b.size(), i + limit - 1); ++j) {
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
       const std::size_t replaced = before[j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1);
       row[j] = std::min({replaced, before[j] + 1, row[j - 1] + 1});
       if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
         row[j] = std::min(row[j], before_that[j - 2] + 1);
-      least = std::min(least, row[j]);
     }
-    // Later rows come from these two and hold nothing less.
-    if (std::min(least, least_before) >= limit) return limit;
-    least_before = least;
   }
   std::size_t least = row.back();
   for (std::size_t j = 1; j < b.size(); ++j)
     if (b[j] == '_') least = std::min(least, row[j] + 1);
-  return std::min(least, limit);
+  return least;
 }
 
 }  // namespace
@@ -65,12 +60,16 @@ std::vector<InputError> InputError::faults() const {
   return faults;
 }
 
+void fail_at(const std::string& place, const std::string& problem) {
+  throw InputError(InputError::Kind::relation, place, problem);
+}
+
 void fail_in_file(const std::filesystem::path& file, const std::string& problem) {
-  throw InputError(InputError::Kind::relation, file.string(), problem);
+  fail_at(file.string(), problem);
 }
 
 void fail_in_line(const std::filesystem::path& file, std::size_t line, const std::string& problem) {
-  throw InputError(InputError::Kind::relation, fmt::format("{}, line {}", file.string(), line), problem);
+  fail_at(fmt::format("{}, line {}", file.string(), line), problem);
 }
 
 std::string nearest_name(std::string_view given, std::span<const std::string> valid) {
@@ -82,7 +81,7 @@ std::string nearest_name(std::string_view given, std::span<const std::string> va
     // Letters to remove alone are too many. A hostile name may be megabytes long.
     if (given.size() >= name.size() + best_distance) continue;
     const bool contains = given.size() >= 3 && name.find(given) != std::string::npos;
-    const std::size_t distance = contains ? 1 : edit_distance(lower, lower_case(name), best_distance);
+    const std::size_t distance = contains ? 1 : edit_distance(lower, lower_case(name));
     if (distance < best_distance) {
       best_distance = distance;
       best = name;

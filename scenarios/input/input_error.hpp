@@ -55,7 +55,8 @@ class InputError : public std::runtime_error {
   std::vector<InputError> more_;  ///< all faults but the first
 };
 
-/// Throws an InputError (a relation) about a file, or about a line of it.
+/// Throws an InputError (a relation) about a place, about a file, or about a line of it.
+[[noreturn]] void fail_at(const std::string& place, const std::string& problem);
 [[noreturn]] void fail_in_file(const std::filesystem::path& file, const std::string& problem);
 [[noreturn]] void fail_in_line(const std::filesystem::path& file, std::size_t line, const std::string& problem);
 

@@ -3,7 +3,7 @@
 #include <dlfcn.h>
 #include <fmt/format.h>
 
-#include <optional>
+#include <vector>
 
 #include "scenarios/input/input_error.hpp"
 
@@ -19,25 +19,6 @@ namespace {
 /// An address in this shared object or program, for dladdr.
 constexpr char kHere = 0;
 
-/// The path is canonical, so that messages name a folder of the source tree instead of the build tree's link to it.
-std::optional<fs::path> folder_at(const fs::path& path) {
-  std::error_code error;
-  const fs::path found = fs::canonical(path, error);
-  if (error || !fs::is_directory(found, error)) return std::nullopt;
-  return found;
-}
-
-std::optional<fs::path> folder_above_shared_object(const fs::path& program, const fs::path& wanted) {
-  Dl_info object;
-  if (dladdr(&kHere, &object) == 0) return std::nullopt;
-  std::error_code error;
-  const fs::path file = fs::canonical(object.dli_fname, error);
-  if (error || file == program) return std::nullopt;
-  for (fs::path above = file.parent_path(); above != above.root_path(); above = above.parent_path())
-    if (auto found = folder_at(above / wanted)) return found;
-  return std::nullopt;
-}
-
 /// The share folder that the build defines; may be empty.
 fs::path share_of_build() {
 #ifdef HAPBENCH_SHARE
@@ -47,23 +28,35 @@ fs::path share_of_build() {
 #endif
 }
 
+/// Where the folder may be.
+std::vector<fs::path> places_of(const std::string& name) {
+  std::error_code error;
+  const fs::path program = fs::read_symlink("/proc/self/exe", error), wanted = fs::path("share") / "hapbench" / name;
+  Dl_info object;
+  const fs::path library = dladdr(&kHere, &object) != 0 ? fs::canonical(object.dli_fname, error) : program;
+  std::vector<fs::path> places;
+  // A library knows its own: the interpreter that loads it may lie beside another version's.
+  if (library != program)
+    for (fs::path above = library.parent_path(); above != above.root_path(); above = above.parent_path())
+      places.push_back(above / wanted);
+  places.push_back(program.parent_path().parent_path() / wanted);
+  if (const fs::path share = share_of_build(); !share.empty()) places.push_back(share / name);
+  return places;
+}
+
 }  // namespace
 
 fs::path installed_folder(const std::string& name) {
-  std::error_code error;
-  const fs::path program = fs::read_symlink("/proc/self/exe", error);
-  const fs::path wanted = fs::path("share") / "hapbench" / name;
-  const fs::path beside = program.parent_path().parent_path() / wanted;
-  // A library knows its own: the interpreter that loads it may lie beside another version's.
-  if (auto found = folder_above_shared_object(program, wanted)) return *found;
-  if (auto found = folder_at(beside)) return *found;
-  const fs::path share = share_of_build();
-  if (!share.empty()) {
-    if (auto found = folder_at(share / name)) return *found;
+  const std::vector<fs::path> places = places_of(name);
+  for (const fs::path& place : places) {
+    std::error_code error;
+    // Canonical, so that messages name a folder of the source tree instead of the build tree's link to it.
+    const fs::path found = fs::canonical(place, error);
+    if (!error && fs::is_directory(found, error)) return found;
   }
   throw InputError(
       fmt::format("{}: is missing; allowed: the program where it was built or installed, with its folders beside it",
-                  (share.empty() ? beside : share / name).string()));
+                  places.back().string()));
 }
 
 }  // namespace hapbench

@@ -65,31 +65,29 @@ CheckedMesh connect(const TriangleSoup& soup, const fs::path& file) {
 /// where the file lies.
 std::vector<std::string> warnings_about(const MeshFindings& found, const fs::path& file) {
   std::vector<std::string> warnings;
-  const auto warn = [&](std::size_t count, const char* text) {
-    if (count > 0)
-      warnings.push_back(one_line(file.filename().string() + ": " + fmt::format(fmt::runtime(text), count)));
+  const auto warn = [&](const std::string& text) {
+    warnings.push_back(one_line(file.filename().string() + ": " + text));
   };
   if (!found.open_edges.empty()) {
     Box box{found.open_edges[0], found.open_edges[0]};
     for (const Vec3& p : found.open_edges) box = {box.min.cwiseMin(p), box.max.cwiseMax(p)};
     const Vec3 a = 1e3 * box.min, b = 1e3 * box.max;
-    warn(found.open_edges.size(),
-         fmt::format("the mesh is open: {{}} boundary edges, within x {:.3g} ... {:.3g}, y {:.3g} ... {:.3g}, z {:.3g} "
-                     "... {:.3g} mm; beyond them there is nothing to touch",
-                     a.x(), b.x(), a.y(), b.y(), a.z(), b.z())
-             .c_str());
+    warn(fmt::format(
+        "the mesh is open: {} boundary edges, within x {:.3g} ... {:.3g}, y {:.3g} ... {:.3g}, z {:.3g} ... {:.3g} mm; "
+        "beyond them there is nothing to touch",
+        found.open_edges.size(), a.x(), b.x(), a.y(), b.y(), a.z(), b.z()));
   }
   if (!found.crowded_edges.empty()) {
     const Vec3 p = 1e3 * found.crowded_edges[0];
-    warn(found.crowded_edges.size(),
-         fmt::format("the surface is cut along edges with more than two faces: {{}}, the first at ({:.3g}, {:.3g}, "
-                     "{:.3g}) mm",
-                     p.x(), p.y(), p.z())
-             .c_str());
+    warn(fmt::format(
+        "the surface is cut along edges with more than two faces: {}, the first at ({:.3g}, {:.3g}, {:.3g}) mm",
+        found.crowded_edges.size(), p.x(), p.y(), p.z()));
   }
-  warn(found.degenerate_triangles, "faces left out, two of their corners being the same: {}");
-  warn(found.rewound_triangles, "faces turned, which were wound against their neighbours: {}");
-  warn(found.inside_out_parts, "closed parts turned, which were inside out: {}");
+  for (const auto& [count, text] :
+       {std::pair{found.degenerate_triangles, "faces left out, two of their corners being the same"},
+        {found.rewound_triangles, "faces turned, which were wound against their neighbours"},
+        {found.inside_out_parts, "closed parts turned, which were inside out"}})
+    if (count > 0) warn(fmt::format("{}: {}", text, count));
   return warnings;
 }
 

@@ -1,15 +1,21 @@
 #pragma once
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
+#include <limits>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "scenarios/input/input_error.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "sim/geometry/point_shell.hpp"
 #include "sim/mesh/triangle_soup.hpp"
@@ -50,21 +56,52 @@ class MeshLines {
   MeshLines(LineReader lines, const std::filesystem::path& file) : lines_(lines), file_(file) {}
 
   /// Goes to the next line that has words; false at the end of the text.
-  bool next();
+  bool next() {
+    while (const auto line = lines_.next()) {
+      words_ = words_of(line->substr(0, line->find('#')));
+      if (!words_.empty()) return true;
+    }
+    words_.clear();
+    return false;
+  }
   const Words& words() const { return words_; }
   /// The text after the current line.
   std::string_view rest() const { return lines_.rest(); }
 
   /// The word as a finite number. Precondition: there is such a word.
-  double number(std::size_t word) const;
+  double number(std::size_t word) const {
+    std::string_view text = words_[word];
+    if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);
+    const auto value = finite_number(text);
+    if (!value) fail("got " + quoted_word(text) + "; allowed: a finite number");
+    return *value;
+  }
   /// Three coordinates from that word on.
-  Vec3 position(std::size_t first) const;
+  Vec3 position(std::size_t first) const {
+    if (words_.size() < first + 3) fail(fmt::format("got {} coordinates; allowed: 3", words_.size() - first));
+    const double x = number(first), y = number(first + 1), z = number(first + 2);
+    return {x, y, z};
+  }
   /// The word as a count or an index, within 31 bits; `what` it counts is for the message.
-  std::size_t count(std::size_t word, const char* what) const;
+  std::size_t count(std::size_t word, const char* what) const {
+    const auto number = word < words_.size() ? whole_number(words_[word]) : std::nullopt;
+    if (number && *number <= std::numeric_limits<std::int32_t>::max()) return *number;
+    fail(fmt::format("got {} {}; allowed: an integer from 0", word < words_.size() ? quoted_word(words_[word]) : "no",
+                     what));
+  }
   /// Adds face `index` of the file, described by the words from `first` on: the number of corners, then their vertices.
-  void add_face(std::size_t index, std::size_t first, TriangleSoup& soup) const;
+  void add_face(std::size_t index, std::size_t first, TriangleSoup& soup) const {
+    const std::size_t corners = count(first, "corners");
+    if (corners < 3 || words_.size() <= first + corners)
+      fail(fmt::format("face {}: got {} corners; allowed: at least 3, and as many vertices", index, corners));
+    std::vector<std::uint32_t> vertices;
+    vertices.reserve(corners);
+    for (std::size_t k = 1; k <= corners; ++k)
+      vertices.push_back(static_cast<std::uint32_t>(count(first + k, "as a vertex")));
+    add_polygon(vertices, soup);
+  }
 
-  [[noreturn]] void fail(const std::string& problem) const;
+  [[noreturn]] void fail(const std::string& problem) const { fail_in_line(file_, lines_.line(), problem); }
 
  private:
   LineReader lines_;

@@ -113,10 +113,17 @@ PlyHeader read_ply_header(LineReader& lines, const fs::path& file) {
   return header;
 }
 
-// ---- Surfaces
+// ---- Elements
 
 /// The use of a property.
-enum class Role { x, y, z, corners, nothing };
+enum class Role : std::size_t { x, y, z, nx, ny, nz, corners, nothing };
+/// The names of those of a vertex.
+constexpr std::array<std::string_view, 6> kOfVertex = {"x", "y", "z", "nx", "ny", "nz"};
+
+Role role_in_vertex(std::string_view name) {
+  const auto found = std::find(kOfVertex.begin(), kOfVertex.end(), name);
+  return found == kOfVertex.end() ? Role::nothing : static_cast<Role>(found - kOfVertex.begin());
+}
 
 struct Property {
   std::optional<PlyType> count;  ///< type of a list's length; none for a scalar
@@ -131,22 +138,23 @@ struct Element {
 
   bool is_vertex() const { return name == "vertex"; }
   bool is_face() const { return name == "face"; }
-  bool has_once(Role role) const {
-    return std::count_if(properties.begin(), properties.end(), [role](const Property& p) { return p.role == role; }) ==
-           1;
+  auto count(Role role) const {
+    return std::count_if(properties.begin(), properties.end(), [role](const Property& p) { return p.role == role; });
   }
 };
+
+// ---- Surfaces
 
 Property scalar(const PlyHeader::Declaration& declaration, bool of_vertex, const fs::path& file) {
   const Words& words = declaration.words;
   const auto type = words.size() == 3 ? ply_type(words[1]) : std::nullopt;
   if (!type)
     fail_in_line(file, declaration.line, "allowed: \"property TYPE NAME\" or \"property list COUNT TYPE NAME\"");
-  const bool coordinate = of_vertex && (words[2] == "x" || words[2] == "y" || words[2] == "z");
-  if (!coordinate) return {{}, *type};
+  const Role role = role_in_vertex(words[2]);
+  if (!of_vertex || role > Role::z) return {{}, *type};
   if (type->kind != PlyType::Kind::real)
     fail_in_line(file, declaration.line, "allowed for a coordinate: float or double");
-  return {{}, *type, static_cast<Role>(words[2][0] - 'x')};
+  return {{}, *type, role};
 }
 
 Property list(const PlyHeader::Declaration& declaration, bool of_face, const fs::path& file) {
@@ -176,12 +184,12 @@ std::vector<Element> elements_of(const PlyHeader& header, const fs::path& file) 
       element.properties.push_back(is_list ? list(p, element.is_face(), file) : scalar(p, element.is_vertex(), file));
     }
     if (element.is_vertex()) {
-      const bool has_all = element.has_once(Role::x) && element.has_once(Role::y) && element.has_once(Role::z);
+      const bool has_all = element.count(Role::x) == 1 && element.count(Role::y) == 1 && element.count(Role::z) == 1;
       positions = has_all && !positions;  // a second element of that name is refused too
     }
     elements.push_back(std::move(element));
     if (!elements.back().is_face()) continue;
-    if (!elements.back().has_once(Role::corners))
+    if (elements.back().count(Role::corners) != 1)
       fail_in_line(file, declared.line, "allowed for a face: one \"property list COUNT INDEX vertex_indices\"");
     if (!positions) fail_in_line(file, declared.line, "allowed before the faces: vertices with one each of x, y and z");
     return elements;
@@ -288,26 +296,16 @@ class BinaryEntries {
 
 // ---- Points with normals
 
-constexpr std::array<std::string_view, 6> kWanted = {"x", "y", "z", "nx", "ny", "nz"};
-using Values = std::array<double, kWanted.size()>;
+using Values = std::array<double, kOfVertex.size()>;
 
-struct VertexProperty : PlyType {
-  std::optional<std::size_t> wanted;  ///< its place in kWanted
-};
-
-/// How a file stores its vertices.
-struct VertexLayout {
-  std::size_t count = 0;
-  std::vector<VertexProperty> properties;
-
-  /// Smallest size of the vertices, for refusing a count that the file cannot hold before memory is allocated [bytes].
-  std::size_t least_bytes(PlyFormat format) const {
-    if (format == PlyFormat::ascii) return count * 2 * properties.size() - (count == 0 ? 0 : 1);
-    std::size_t bytes = 0;
-    for (const VertexProperty& p : properties) bytes += p.size;
-    return count * bytes;
-  }
-};
+/// Smallest size of the vertices, for refusing a count that the file cannot hold before memory is allocated [bytes].
+std::size_t least_bytes(const Element& vertices, PlyFormat format) {
+  const std::size_t numbers = vertices.properties.size();
+  if (format == PlyFormat::ascii) return vertices.entries * 2 * numbers - (vertices.entries == 0 ? 0 : 1);
+  std::size_t bytes = 0;
+  for (const Property& p : vertices.properties) bytes += p.type.size;
+  return vertices.entries * bytes;
+}
 
 std::size_t vertex_count(const PlyHeader::Element& element, const fs::path& file) {
   const Words& words = element.words;
@@ -322,40 +320,33 @@ std::size_t vertex_count(const PlyHeader::Element& element, const fs::path& file
   return *count;
 }
 
-VertexProperty vertex_property(const PlyHeader::Declaration& declaration, const fs::path& file) {
-  const Words& words = declaration.words;
-  const auto type = words.size() == 3 ? ply_type(words[1]) : std::nullopt;
-  if (!type) {
-    fail_in_line(file, declaration.line,
-                 "allowed for a vertex: \"property TYPE NAME\" with a type char, uchar, short, ushort, int, uint, "
-                 "float or double");
-  }
-  const auto wanted = std::find(kWanted.begin(), kWanted.end(), words[2]);
-  if (wanted == kWanted.end()) return {*type, std::nullopt};
-  return {*type, static_cast<std::size_t>(wanted - kWanted.begin())};
-}
-
-VertexLayout vertex_layout(const PlyHeader& header, const fs::path& file) {
+Element vertices_of(const PlyHeader& header, const fs::path& file) {
   if (header.elements.empty()) fail_in_line(file, header.last_line, "allowed: a header with \"element vertex\"");
-  VertexLayout layout{vertex_count(header.elements[0], file), {}};
-  for (const auto& declaration : header.elements[0].properties)
-    layout.properties.push_back(vertex_property(declaration, file));
-  for (std::size_t w = 0; w < kWanted.size(); ++w) {
-    const auto count = std::count_if(layout.properties.begin(), layout.properties.end(),
-                                     [w](const VertexProperty& p) { return p.wanted == w; });
-    if (count == 1) continue;
-    fail_in_line(
-        file, header.last_line,
-        fmt::format("got {} vertex properties \"{}\"; allowed: one each of x, y, z, nx, ny, nz", count, kWanted[w]));
+  Element vertices{"vertex", vertex_count(header.elements[0], file), {}};
+  for (const auto& [line, words] : header.elements[0].properties) {
+    const auto type = words.size() == 3 ? ply_type(words[1]) : std::nullopt;
+    if (!type) {
+      fail_in_line(file, line,
+                   "allowed for a vertex: \"property TYPE NAME\" with a type char, uchar, short, ushort, int, uint, "
+                   "float or double");
+    }
+    vertices.properties.push_back({{}, *type, role_in_vertex(words[2])});
   }
-  return layout;
+  for (const std::string_view name : kOfVertex) {
+    const auto count = vertices.count(role_in_vertex(name));
+    if (count == 1) continue;
+    fail_in_line(file, header.last_line,
+                 fmt::format("got {} vertex properties \"{}\"; allowed: one each of x, y, z, nx, ny, nz", count, name));
+  }
+  return vertices;
 }
 
-Values text_vertex(LineReader& lines, const VertexLayout& layout, std::size_t index, const fs::path& file) {
+Values text_vertex(LineReader& lines, const Element& vertices, std::size_t index, const fs::path& file) {
   const Words words = words_of(lines.next().value_or(""));
-  if (words.size() != layout.properties.size()) {
-    fail_in_line(file, lines.line(),
-                 fmt::format("vertex {}: got {} numbers; allowed: {}", index, words.size(), layout.properties.size()));
+  if (words.size() != vertices.properties.size()) {
+    fail_in_line(
+        file, lines.line(),
+        fmt::format("vertex {}: got {} numbers; allowed: {}", index, words.size(), vertices.properties.size()));
   }
   Values values{};
   for (std::size_t p = 0; p < words.size(); ++p) {
@@ -364,16 +355,17 @@ Values text_vertex(LineReader& lines, const VertexLayout& layout, std::size_t in
       fail_in_line(file, lines.line(),
                    fmt::format("vertex {}: got {}; allowed: a finite number", index, quoted_word(words[p])));
     }
-    if (const auto wanted = layout.properties[p].wanted) values[*wanted] = *value;
+    if (const Role role = vertices.properties[p].role; role != Role::nothing)
+      values[static_cast<std::size_t>(role)] = *value;
   }
   return values;
 }
 
-Values binary_vertex(ByteReader& reader, const VertexLayout& layout, std::size_t index, const fs::path& file) {
+Values binary_vertex(ByteReader& reader, const Element& vertices, std::size_t index, const fs::path& file) {
   Values values{};
-  for (const VertexProperty& property : layout.properties) {
-    const double value = take_ply_number(reader, property);
-    if (property.wanted) values[*property.wanted] = value;
+  for (const Property& property : vertices.properties) {
+    const double value = take_ply_number(reader, property.type);
+    if (property.role != Role::nothing) values[static_cast<std::size_t>(property.role)] = value;
   }
   for (const double value : values)
     if (!std::isfinite(value))
@@ -394,17 +386,17 @@ TriangleSoup read_ply(std::string_view text, const fs::path& file) {
 std::vector<SurfacePoint> ply_points_in(std::string_view text, const fs::path& file) {
   LineReader lines(text);
   const PlyHeader header = read_ply_header(lines, file);
-  const VertexLayout layout = vertex_layout(header, file);
-  if (lines.rest().size() < layout.least_bytes(header.format)) {
+  const Element vertices = vertices_of(header, file);
+  if (lines.rest().size() < least_bytes(vertices, header.format)) {
     fail_in_line(file, lines.line(),
-                 fmt::format("the file ends before its {} vertices; allowed: a complete file", layout.count));
+                 fmt::format("the file ends before its {} vertices; allowed: a complete file", vertices.entries));
   }
   ByteReader bytes(lines.rest(), byte_order(header.format));
   std::vector<SurfacePoint> points;
-  points.reserve(layout.count);
-  for (std::size_t i = 0; i < layout.count; ++i) {
-    const Values v =
-        header.format == PlyFormat::ascii ? text_vertex(lines, layout, i, file) : binary_vertex(bytes, layout, i, file);
+  points.reserve(vertices.entries);
+  for (std::size_t i = 0; i < vertices.entries; ++i) {
+    const Values v = header.format == PlyFormat::ascii ? text_vertex(lines, vertices, i, file)
+                                                       : binary_vertex(bytes, vertices, i, file);
     points.push_back({{v[0], v[1], v[2]}, {v[3], v[4], v[5]}});
   }
   return points;

@@ -20,7 +20,7 @@ constexpr std::size_t kForceColumns = 3;
 constexpr std::size_t kAxisPose = 7;  ///< columns of time, position and axis; a quaternion has one more
 
 [[noreturn]] void fail(const std::filesystem::path& file, std::size_t row, const std::string& problem) {
-  throw InputError(InputError::Kind::relation, fmt::format("{}, sample {}", file.string(), row + 1), problem);
+  fail_at(fmt::format("{}, sample {}", file.string(), row + 1), problem);
 }
 
 Vec3 axis_of(std::span<const double> cells, const std::filesystem::path& file, std::size_t row) {
@@ -37,6 +37,11 @@ Eigen::Quaterniond orientation_of(std::span<const double> cells, const std::file
   fail(file, row,
        fmt::format("got a quaternion qw,qx,qy,qz of norm {}; allowed: 1 within {}", norm, kLargestNormError));
 }
+
+constexpr std::size_t kMostContacts = 20'000'000, kMostAtOnce = 100'000;
+constexpr double kLargestLengthError = 1e-3;  ///< of a gradient: three decimals suffice
+constexpr double kRounding = 1e-12;           ///< of the length of a gradient in double precision
+constexpr std::string_view kTraceHeader = "time_s,x_m,y_m,z_m,ux,uy,uz,depth_m";
 
 }  // namespace
 
@@ -68,15 +73,6 @@ Stroke stroke_in(std::string_view text, const std::filesystem::path& file) {
   return stroke;
 }
 
-namespace {
-
-constexpr std::size_t kMostContacts = 20'000'000, kMostAtOnce = 100'000;
-constexpr double kLargestLengthError = 1e-3;  ///< of a gradient: three decimals suffice
-constexpr double kRounding = 1e-12;           ///< of the length of a gradient in double precision
-constexpr std::string_view kTraceHeader = "time_s,x_m,y_m,z_m,ux,uy,uz,depth_m";
-
-}  // namespace
-
 ContactTrace trace_in(std::string_view text, const std::filesystem::path& file) {
   const NumberTable table = number_table_in(text, file, kTraceHeader, kMostContacts);
   ContactTrace trace;
@@ -84,7 +80,7 @@ ContactTrace trace_in(std::string_view text, const std::filesystem::path& file) 
   for (std::size_t i = 0; i < table.rows(); ++i) {
     const auto row = table.row(i);
     const auto refuse = [&](const std::string& problem) {
-      throw InputError(InputError::Kind::relation, fmt::format("{}, contact {}", file.string(), i + 1), problem);
+      fail_at(fmt::format("{}, contact {}", file.string(), i + 1), problem);
     };
     if (trace.times.empty() || trace.times.back().time < row[0])
       trace.times.push_back({row[0], i});

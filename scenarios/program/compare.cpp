@@ -8,8 +8,8 @@
 
 #include "algorithms/registry.hpp"
 #include "results/summary/outcome_names.hpp"
+#include "scenarios/batch/comparison.hpp"
 #include "scenarios/batch/league.hpp"
-#include "scenarios/batch/result_folders.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/description/metric_sections.hpp"
 #include "scenarios/input/text_lines.hpp"

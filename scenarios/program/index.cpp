@@ -227,7 +227,7 @@ Index program_index() {
   index.push_back({"section", "algorithm", "", describe_algorithms});
   add_results(index, tables);
   for (const std::string& path : scenario_field_paths())
-    index.push_back({"field", path, "", [&path] { return describe_field(path); }});
+    index.push_back({"field", path, "", [path] { return describe_field(path); }});
   add_sections(index);
   add_types(index);
   add_words(index);

@@ -3,7 +3,6 @@
 #include <string>
 
 #include "scenarios/batch/run_sweep.hpp"
-#include "scenarios/batch/sweep_table.hpp"
 #include "scenarios/input/json_file.hpp"
 
 /// The parts of `hapbench sweep` that other sources use: what it prints of a table, and what it resumes.

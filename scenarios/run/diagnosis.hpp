@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "results/observe/butterworth.hpp"
+#include "results/observe/contact_forces.hpp"
 #include "results/summary/summary.hpp"
 #include "scenarios/description/load_scenario.hpp"
 #include "sim/loop/observer.hpp"

@@ -297,9 +297,9 @@ Result run_trials(const LoadedScenario& loaded, const std::shared_ptr<const Poin
   result.unmet = unmet_expectations(scenario.expect, result);
   result.expected = result.unmet.empty();
   if (!folder && tables == nullptr) return result;
-  const WrittenScenario written(scenario);
+  const WrittenScenario written(scenario, loaded.files);
   add_provenance(result);
-  result.scenario_hash = written.hash(loaded.files);
+  result.scenario_hash = written.hash();
   if (folder) {
     folder->write(scenario.record, written, result, run.recorders());
     return result;

@@ -129,7 +129,7 @@ void read_table(std::string_view text) {
   fs::rename(file_with(text), file);
   std::ofstream(folder / (name.string() + ".json")) << R"({"definition": "fuzz"})";
   std::size_t rows = 0;
-  const TableFile table({file, "index,a", {{"definition", "fuzz"}}, 100, true},
+  const TableFile table({file, "index,a", {{"definition", "fuzz"}}, 100},
                         [&rows](std::size_t, std::string_view row) { return csv_cells(row).size() > ++rows % 2; });
   require(table.count() <= rows, "a row that was not told");
   fs::remove(part);

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/batch/axis.hpp"
+#include "scenarios/batch/cases.hpp"
 #include "scenarios/batch/parallel_for.hpp"
 #include "scenarios/description/load_scenario.hpp"
 #include "scenarios/studies/stability/judged_run.hpp"

@@ -11,7 +11,7 @@
 #include <string>
 #include <string_view>
 
-#include "results/observe/butterworth.hpp"
+#include "results/observe/contact_forces.hpp"
 #include "scenarios/description/load_scenario.hpp"
 #include "scenarios/run/scene_facts.hpp"
 #include "sim/geometry/point_shell.hpp"

@@ -7,7 +7,6 @@
 
 #include "device_model/device_presets.hpp"
 #include "scenarios/description/descriptions.hpp"
-#include "scenarios/description/reader.hpp"
 #include "scenarios/description/writer.hpp"
 #include "scenarios/run/scene_loop.hpp"
 
@@ -22,8 +21,8 @@ DeviceFields read_device(const Json& file) {
         R"(got no device; allowed: an object such as {"type": "impedance", "handle_mass_kg": 0.1}, or a scenario with "device")");
   }
   DeviceFields device;
-  Reader reader(is_scenario ? file["device"] : file, is_scenario ? "/device" : "");
-  describe(reader, device);
+  read_value(is_scenario ? file["device"] : file, is_scenario ? "/device" : "",
+             [&device](Fields& f) { describe(f, device); });
   return device;
 }
 

@@ -42,7 +42,7 @@ def sound(columns):
 
 
 def high_passed(samples, rate):
-    """Butterworth of fourth order, as in results/observe/butterworth.hpp, at rest at the first sample."""
+    """Butterworth of fourth order, as in results/observe/contact_forces.hpp, at rest at the first sample."""
     k = math.tan(math.pi * CUTOFF_HZ / rate)
     for i, angle in enumerate((math.pi / 8, 3 * math.pi / 8)):
         k_over_q = k * 2 * math.cos(angle)

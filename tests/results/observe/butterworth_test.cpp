@@ -1,4 +1,4 @@
-#include "results/observe/butterworth.hpp"
+#include "results/observe/contact_forces.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "scenarios/batch/result_folders.hpp"
+#include "scenarios/batch/comparison.hpp"
 
 #include <gtest/gtest.h>
 

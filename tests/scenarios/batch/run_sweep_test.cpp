@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <set>
 
-#include "scenarios/batch/sweep_table.hpp"
 #include "scenarios/batch/table_file.hpp"
 #include "scenarios/description/metric_sections.hpp"
 #include "scenarios/run/run_scenario.hpp"

@@ -7,7 +7,6 @@
 #include <fstream>
 
 #include "scenarios/batch/run_sweep.hpp"
-#include "scenarios/batch/sweep_table.hpp"
 #include "scenarios/batch/table_file.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/run_scenario.hpp"

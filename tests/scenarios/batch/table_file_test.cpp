@@ -20,7 +20,7 @@ using Rows = std::vector<std::string>;
 class TableFiles : public testing::Test {
  protected:
   TableTitle title(const std::string& definition = "mine") const {
-    return {file_, "index,a", {{"definition", definition}}, 9, true};
+    return {file_, "index,a", {{"definition", definition}}, 9};
   }
   /// The rows that a table keeps when it goes on.
   Rows resumed(const std::string& definition = "mine") const {

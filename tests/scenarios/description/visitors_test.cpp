@@ -2,6 +2,7 @@
 
 #include <variant>
 
+#include "results/summary/summary.hpp"
 #include "tests/scenarios/support/visitors.hpp"
 
 /// Objects with named fields, and objects whose field "type" chooses the other fields, through all visitors.
@@ -171,8 +172,10 @@ TEST(Object, IsReadWhenItsDescriptionIsToldSo) {
 TEST(Object, KeepsWarningsForWhoeverAsks) {
   const Json json = Json::object();
   std::vector<Warning> warnings;
-  Reader listening(json, "", &warnings), deaf(json, "");
-  for (Reader* reader : {&listening, &deaf}) reader->warn({"odd", "/mass_kg", "is odd"});
+  const Warning odd = {"odd", "/mass_kg", "is odd"};
+  const auto warn = [&odd](Fields& f) { f.warn(odd); };
+  read_value(json, "", warn, &warnings);
+  read_value(json, "", warn);
   ASSERT_EQ(warnings.size(), 1u);
   EXPECT_EQ(warnings[0].told(), "/mass_kg: is odd");
 }
@@ -281,9 +284,11 @@ TEST(TaggedObject, IsWrittenAsTypeAndFields) {
 }
 
 TEST(TaggedObject, IsNotWrittenWithoutAnAlternative) {
-  Writer writer;
   const TypeName names[] = {"ball"};
-  EXPECT_THROW(writer.alternatives("solid", names, Untyped::refused, 1, [](Fields&, std::size_t) {}), std::logic_error);
+  const auto describe = [&](Fields& f) {
+    f.alternatives("solid", names, Untyped::refused, 1, [](Fields&, std::size_t) {});
+  };
+  EXPECT_THROW(json_of(describe), std::logic_error);
 }
 
 TEST(TaggedObject, HasAnAlternativeForEachTagInItsSchema) {

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "scenarios/description/reader.hpp"
+#include "scenarios/description/fields.hpp"
 #include "scenarios/description/writer.hpp"
 #include "tests/scenarios/support/errors.hpp"
 
@@ -14,8 +14,7 @@ namespace hapbench::test {
 /// Reads a JSON text, found at `at`, into `value`.
 template <class T, class Describe>
 void read_json(const Json& json, const std::string& at, T& value, Describe describe) {
-  Reader reader(json, at);
-  describe(static_cast<Fields&>(reader), value);
+  read_value(json, at, [&](Fields& f) { describe(f, value); });
 }
 
 /// The message with which a JSON text, found at "/v", is refused for its shape.
@@ -30,16 +29,12 @@ std::string refusal_of(const std::string& text, T value, Describe describe) {
 
 template <class T, class Describe>
 Json written_by(Describe describe, T value) {
-  Writer writer;
-  describe(static_cast<Fields&>(writer), value);
-  return writer.json();
+  return json_of([&](Fields& f) { describe(f, value); });
 }
 
 template <class T, class Describe>
 Json schema_of(Describe describe, T value) {
-  SchemaWriter writer;
-  describe(static_cast<Fields&>(writer), value);
-  return writer.schema();
+  return guide_to([&](Fields& f) { describe(f, value); }).schema;
 }
 
 }  // namespace hapbench::test
