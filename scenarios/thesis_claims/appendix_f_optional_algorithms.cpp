@@ -47,10 +47,9 @@ constexpr double kBoostTilts[] = {0.08, 0.12, 0.2, 0.4};
 
 /// The ratio furthest from 1 among the contact sets that give a force.
 double tandpasta_energy_ratio(const Evidence& e) {
-  const Scenario scenario = drill_in_hole(e.load("task2_rotate_signed_distance").scenario);
   const auto law = make_law("tandpasta", {});
   double ratio = 1.0;
-  for (ContactBuffer& set : contact_sets(scenario, 64)) {
+  for (ContactBuffer& set : contact_sets(e.load("task2_rotate_signed_distance").scenario, 64)) {
     law->prepare(set.capacity());
     law->evaluate(set);
     double weighed = 0.0, unweighed = 0.0;
@@ -116,7 +115,7 @@ Finding judge_tandpasta(const Measured& measured, const PublishedNumbers& p) {
 
 Measured measure_tandpasta_cost(const Evidence& e) {
   const Scenario scenario = e.load("task2_rotate_signed_distance").scenario;
-  const ContactBuffer most = largest_of(contact_sets(drill_in_hole(scenario), 64));
+  const ContactBuffer most = largest_of(contact_sets(scenario, 64));
   MeasuredCase m{"", {{"points", {static_cast<double>(most.size())}}}};
   ContactBuffer work(most.size());
   for (const char* name : {"tandpasta", kProposedLaw}) {
@@ -141,35 +140,11 @@ Finding judge_tandpasta_cost(const Measured& measured, const PublishedNumbers& p
 
 }  // namespace
 
-std::vector<Claim> appendix_f_optional_algorithms() {
+std::vector<Rule> appendix_f_optional_algorithms() {
   return {
-      {.id = "F1",
-       .place = "F.1, Fig. F.4",
-       .claim = "the normal projection does not saturate on a flat, and jumps at a corner",
-       .rule =
-           "reproduced: <rule.jumps> times the force step, a depth that follows the press to <rule.proportional.mean*100> % "
-           "where the shortest distance ends below <rule.saturated> of it; in kind: the first",
-       .measure = measure_normal_projection,
-       .judge = judge_normal_projection},
-      {.id = "F2",
-       .place = "F.2, Fig. F.5",
-       .claim = "tandpasta keeps the elastic energy and boosts the force that pushes the tool out",
-       .rule = fmt::format(
-           "reproduced: energy unchanged to {}, at least <rule.boosted> times the outward force of the plain springs at every "
-           "tilt looked at; in kind: more at every tilt",
-           plain(kEnergyKept)),
-       .measure = measure_tandpasta,
-       .judge = judge_tandpasta},
-      {.id = "F3",
-       .place = "F.2",
-       .claim = "tandpasta consumes considerable computational energy, which limits it on a real-time system",
-       .published = "considerable",
-       .rule =
-           "reproduced: for the most contacts of a turn in the hole it takes <rule.considerable.mean*100> % of the step; in "
-           "kind: more than stiffness shaping through the tensor",
-       .measure = measure_tandpasta_cost,
-       .judge = judge_tandpasta_cost,
-       .timing = true},
+      {"F1", measure_normal_projection, judge_normal_projection},
+      {"F2", measure_tandpasta, judge_tandpasta},
+      {"F3", measure_tandpasta_cost, judge_tandpasta_cost},
   };
 }
 

@@ -72,10 +72,6 @@ Finding judge_sinking(const Measured& m, const PublishedNumbers& p) {
                              : "less than with stiffness shaping at some tilt")};
 }
 
-const char* const kSinkingRule =
-    "reproduced: pressed by the hand of task 2, with all points, at every tilt at least <rule.easily> times as deep as with "
-    "stiffness shaping; in kind: deeper at every tilt";
-
 Measured measure_averaging(const Evidence& e) {
   return {pressed_shaped(e),
           pressed(e, "mean", "press_towards_rim", {"rendering.algorithm=mean", "rendering.reduction=null"}),
@@ -138,51 +134,19 @@ Finding judge_summation(const Measured& m, const PublishedNumbers& p) {
 
 }  // namespace
 
-std::vector<Claim> chapter_1_penetration() {
+std::vector<Rule> chapter_1_penetration() {
   return {
-      {.id = "V1",
-       .place = "1.1.2, 1.2, Fig. 2c",
-       .claim = "averaging lets the drill easily penetrate in the hole",
-       .published = "easily",
-       .rule = kSinkingRule,
-       .measure = measure_averaging,
-       .judge = judge_sinking},
-      {.id = "V2",
-       .place = "1.1.2, 1.2, C.4, Fig. 2d",
-       .claim = "so does virtual coupling",
-       .published = "easily",
-       .rule = kSinkingRule,
-       .measure = [](const Evidence& e) -> Measured {
+      {"V1", measure_averaging, judge_sinking},
+      {"V2",
+       [](const Evidence& e) -> Measured {
          return {pressed_shaped(e), pressed(e, "virtual coupling", "press_coupled", {})};
        },
-       .judge = judge_sinking},
-      {.id = "V2b",
-       .place = "1.2, Fig. 2d",
-       .claim = "the stiffer a virtual coupling, the less the drill sinks in",
-       .rule = "holds: at every tilt",
-       .measure = measure_couplings,
-       .judge = judge_couplings,
-       .ours = true},
-      {.id = "S1",
-       .place = "1.1.2, 1.2, Fig. 2b, C.4",
-       .claim = "the sum of all points' forces becomes unstable",
-       .published = "instability",
-       .rule =
-           "reproduced: in the planar peg (Table A.1) and in task 2 it diverges, or its velocity varies <rule.vibrates> "
-           "times as much as with stiffness shaping, with the square of it times the power above 30 Hz; in kind: in one",
-       .measure =
-           [](const Evidence& e) {
-             return vibrations_beside_shaping(e, "summation", "task2_held", {"metrics.from_s=0"});
-           },
-       .judge = judge_summation},
-      {.id = "B1b",
-       .place = "B.3.1",
-       .claim = "with the original algorithm the drill easily penetrates, as opposite walls cancel",
-       .published = "high penetration depth",
-       .rule =
-           "reproduced: turned in the hole, at least <rule.easily> times as deep as with stiffness shaping; in kind: deeper",
-       .measure = measure_original,
-       .judge = judge_original},
+       judge_sinking},
+      {"V2b", measure_couplings, judge_couplings},
+      {"S1",
+       [](const Evidence& e) { return vibrations_beside_shaping(e, "summation", "task2_held", {"metrics.from_s=0"}); },
+       judge_summation},
+      {"B1b", measure_original, judge_original},
   };
 }
 

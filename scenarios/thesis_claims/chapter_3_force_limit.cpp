@@ -180,37 +180,11 @@ Finding judge_shaking(const Measured& measured, const PublishedNumbers& publishe
 
 }  // namespace
 
-std::vector<Claim> chapter_3_force_limit() {
+std::vector<Rule> chapter_3_force_limit() {
   return {
-      {.id = "L1",
-       .place = "3.5, Fig. 6",
-       .claim = "displacement is proportional to the force without the limit and constant with it",
-       .published = "constant beyond <L1.threshold.mean:.1f> N of the hand, <L1.measured> N measured",
-       .rule =
-           "reproduced: off the line (force - weight) / K by at most <rule.proportional.mean*100> % of the largest "
-           "displacement, rms; with the limit constant to as much, from within <rule.onset> N of the published force on; "
-           "in kind: all but that force",
-       .measure = measure_force_limit,
-       .judge = judge_force_limit},
-      {.id = "L2",
-       .place = "2.7, C.4.4",
-       .claim = "once the input force is limited, the tool moves only where the reaction decreases",
-       .published = "no velocity along the gradient of the reaction",
-       .rule =
-           "reproduced: not uphill in <rule.nearly_all.mean*100> % of the rows in contact with limited input; in kind: of "
-           "those of them whose reaction has reached the limit",
-       .measure = measure_saturated_motion,
-       .judge = judge_saturated_motion},
-      {.id = "L3",
-       .place = "4.5, C.4.4",
-       .claim = "in free air the limit is felt as inertia when the tool is shaken violently, and not normally",
-       .published = "normal shaking stays below <L1.threshold> N",
-       .rule = fmt::format(
-           "reproduced: <rule.heavier> times the apparent mass at some frequency up to {} Hz; at {} Hz less than <L1.threshold> N "
-           "and the same mass within <rule.same_mass.mean*100> %; in kind: the first",
-           plain(*std::max_element(std::begin(kFrequencies), std::end(kFrequencies))), plain(kNormalShaking)),
-       .measure = measure_shaking,
-       .judge = judge_shaking},
+      {"L1", measure_force_limit, judge_force_limit},
+      {"L2", measure_saturated_motion, judge_saturated_motion},
+      {"L3", measure_shaking, judge_shaking},
   };
 }
 

@@ -99,11 +99,6 @@ Finding judge_reduced_points(const Measured& counts, const PublishedNumbers& pub
   return {decide(all == counts.size(), means > 0), counts_text(counts), why};
 }
 
-const char* const kCountsRule =
-    "reproduced: at both densities mean and spread of the raw counts (calibrated) and of the reduced ones as near to those "
-    "of 3.3 or C.3 as these are to each other, and no row keeps <T3.reduced.bound.at_most> or more; in kind: the means of one "
-    "density, with its raw spread";
-
 // ---- T2b: the raw counts of task 2 over the force of a constant hand.
 
 constexpr double kHeldForces[] = {0.2, 0.5, 1.0, 1.8};  ///< [N]; the last one is about that of appendix D
@@ -111,14 +106,11 @@ constexpr double kHeldForces[] = {0.2, 0.5, 1.0, 1.8};  ///< [N]; the last one i
 Measured measure_hands(const Evidence& e) {
   Measured measured;
   for (const double force : kHeldForces) {
-    double rows = 0.0, raw = 0.0, kept = 0.0;
-    for_each_row(e.load("task2_held", {fmt::format("hand.force_N={}", force)}), [&](const StepRecord& row) {
-      if (row.colliding == 0) return;
-      rows += 1.0;
-      raw += static_cast<double>(row.colliding);
-      kept = std::max(kept, static_cast<double>(row.rendered->size()));
-    });
-    measured.push_back({fmt::format("{} N", force), {{"raw", {raw / rows}}, {"kept", {kept}}}});
+    const Result run = e.run("task2_held", {fmt::format("hand.force_N={}", force)});
+    const auto number = [&run](const char* metric) { return number_of(run.metrics, metric).value_or(0.0); };
+    measured.push_back({fmt::format("{} N", force),
+                        {{"raw", {number("colliding_mean") / number("contact_share")}},
+                         {"kept", {number("rendered_max")}}}});
   }
   return measured;
 }
@@ -134,40 +126,14 @@ Finding judge_hands(const Measured& measured, const PublishedNumbers& p) {
 
 }  // namespace
 
-std::vector<Claim> chapter_3_reduction() {
+std::vector<Rule> chapter_3_reduction() {
   return {
-      {.id = "T1",
-       .place = "3.3, Fig. 4, C.2a",
-       .claim = "on a flat the reduction always leaves one point",
-       .published = "raw <T1.raw>, reduced <T1.reduced>",
-       .rule = "reproduced: never more than one",
-       .measure = [](const Evidence& e) { return measure_counts(e, "task1_flat"); },
-       .judge = judge_flat_reduction},
-      {.id = "T2",
-       .place = "3.3, 3.4, Fig. 4, C.2b",
-       .claim = "turning in the hole, the reduction leaves a few points, fewer than 15",
-       .published =
-           "raw <T2.raw>, reduced <T2.reduced> (C.3: <T2.raw.C3>, <T2.reduced.C3>), below <T3.reduced.bound.at_most>",
-       .rule = kCountsRule,
-       .measure = [](const Evidence& e) { return measure_counts(e, "task2_rotate"); },
-       .judge = [](const Measured& m, const PublishedNumbers& p) { return judge_reduced_points(m, p, "T2"); }},
-      {.id = "T2b",
-       .place = "3.3, D.4",
-       .claim = "task 2's raw counts are those of a hand much gentler than the subjects of appendix D",
-       .published = "raw <T2.raw>; forces about 1.8 N",
-       .rule =
-           "holds: the gentlest hand's raw mean lies within a spread of the published one, the firmest one's beyond it",
-       .measure = measure_hands,
-       .judge = judge_hands,
-       .ours = true},
-      {.id = "T3",
-       .place = "3.3, 3.4, Fig. 4, C.2c",
-       .claim = "spinning in the hole, fewer than 15 points are left",
-       .published =
-           "raw <T3.raw>, reduced <T3.reduced> (C.3: <T3.raw.C3>, <T3.reduced.C3>), below <T3.reduced.bound.at_most>",
-       .rule = kCountsRule,
-       .measure = [](const Evidence& e) { return measure_counts(e, "task3_spin"); },
-       .judge = [](const Measured& m, const PublishedNumbers& p) { return judge_reduced_points(m, p, "T3"); }},
+      {"T1", [](const Evidence& e) { return measure_counts(e, "task1_flat"); }, judge_flat_reduction},
+      {"T2", [](const Evidence& e) { return measure_counts(e, "task2_rotate"); },
+       [](const Measured& m, const PublishedNumbers& p) { return judge_reduced_points(m, p, "T2"); }},
+      {"T2b", measure_hands, judge_hands},
+      {"T3", [](const Evidence& e) { return measure_counts(e, "task3_spin"); },
+       [](const Measured& m, const PublishedNumbers& p) { return judge_reduced_points(m, p, "T3"); }},
   };
 }
 

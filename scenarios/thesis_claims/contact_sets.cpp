@@ -16,17 +16,22 @@ Scenario drill_in_hole(Scenario scenario) {
   return scenario;
 }
 
+ContactBuffer copy_of(const ContactBuffer& contacts) {
+  ContactBuffer copy(contacts.size());
+  copy.assign(contacts);
+  return copy;
+}
+
 std::vector<ContactBuffer> contact_sets(const Scenario& scenario, std::uint64_t stride, Points points) {
   LoadedScenario loaded;
-  loaded.scenario = scenario;
+  loaded.scenario = drill_in_hole(scenario);
   if (points == Points::colliding) {
     loaded.scenario.rendering.reduction.reset();
     loaded.scenario.rendering.local_average = false;
   }
   std::vector<ContactBuffer> sets;
   for_each_row(loaded, [&](const StepRecord& row) {
-    const ContactBuffer& seen = *row.rendered;
-    if (row.step % stride == 0 && !seen.empty()) sets.emplace_back(seen.size()).assign(seen);
+    if (row.step % stride == 0 && !row.rendered->empty()) sets.push_back(copy_of(*row.rendered));
   });
   return sets;
 }

@@ -34,7 +34,11 @@ Scenario drill_in_hole(Scenario scenario);
 /// Before or after the scenario's point stages.
 enum class Points { colliding, rendered };
 
-/// The points of every `stride`-th row of a scenario, with depth and gradient; rows without contact are left out.
+/// A buffer of just the size of these contacts.
+ContactBuffer copy_of(const ContactBuffer& contacts);
+
+/// The points of every `stride`-th row of drill_in_hole(scenario), with depth and gradient; rows without contact are
+/// left out.
 std::vector<ContactBuffer> contact_sets(const Scenario& scenario, std::uint64_t stride,
                                         Points points = Points::colliding);
 

@@ -43,9 +43,6 @@ bool vibrates_much_more(const MeasuredCase& a, const MeasuredCase& b, const Publ
 /// True if `a` has more of both.
 bool vibrates_more(const MeasuredCase& a, const MeasuredCase& b);
 
-/// The beginning of a rule that compares vibrations.
-inline constexpr const char* kVibrationRule =
-    "reproduced: <rule.vibrates> times the total variation of velocity, and the square of it times the power above 30 Hz,";
 std::string vibrations_text(const Measured& cases);
 
 /// The damping ratio of a swing about zero [m], a value for each row, from the ratio q of successive extremes,

@@ -167,8 +167,7 @@ ReadingVerdicts judge_reading(const Readings& readings, std::size_t reading, con
       continue;
     }
     try {
-      const Finding finding = j.claim.judge(j.claim.measure(evidence), evidence.published);
-      judged.verdicts.emplace_back(verdict_name(finding.verdict));
+      judged.verdicts.emplace_back(verdict_name(j.claim.finding(evidence).verdict));
     } catch (const IoError&) {
       throw;  // a full disk says nothing about a claim
     } catch (const std::exception& error) {
