@@ -108,9 +108,9 @@ Measured measure_hands(const Evidence& e) {
   for (const double force : kHeldForces) {
     const Result run = e.run("task2_held", {fmt::format("hand.force_N={}", force)});
     const auto number = [&run](const char* metric) { return number_of(run.metrics, metric).value_or(0.0); };
-    measured.push_back({fmt::format("{} N", force),
-                        {{"raw", {number("colliding_mean") / number("contact_share")}},
-                         {"kept", {number("rendered_max")}}}});
+    measured.push_back(
+        {fmt::format("{} N", force),
+         {{"raw", {number("colliding_mean") / number("contact_share")}}, {"kept", {number("rendered_max")}}}});
   }
   return measured;
 }

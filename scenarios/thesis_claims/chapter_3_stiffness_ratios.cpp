@@ -113,36 +113,19 @@ struct WeightedDirection {
 };
 using Directions = std::vector<WeightedDirection>;
 
-/// The stiffness tensor after some iterations from the given weights.
-Mat3 shaped_tensor(const Directions& contacts, int iterations) {
-  std::vector<double> c;
-  for (const WeightedDirection& contact : contacts) c.push_back(contact.weight);
-  const auto tensor = [&] {
-    Mat3 S = Mat3::Zero();
-    for (std::size_t i = 0; i < c.size(); ++i) S += c[i] * contacts[i].direction * contacts[i].direction.transpose();
-    return S;
-  };
-  Mat3 S = tensor();
-  for (int iteration = 0; iteration < iterations; ++iteration) {
-    for (std::size_t i = 0; i < c.size(); ++i) {
-      const double ratio = contacts[i].direction.dot(S * contacts[i].direction);
-      c[i] = ratio > 0.0 ? c[i] / ratio : 0.0;
-    }
-    S = tensor();
-  }
-  return S;
-}
-
-/// The limit of the iteration; it does not depend on the weights.
-Mat3 limit_tensor(const Directions& contacts) {
-  ContactBuffer buffer(contacts.size());
-  for (const WeightedDirection& contact : contacts) {
-    buffer.push(0, Vec3::Zero(), -contact.direction);
-    buffer.set_gradient(buffer.size() - 1, contact.direction);
+/// The stiffness tensor after some iterations from the given weights; in the limit it does not depend on them.
+Mat3 shaped_tensor(const Directions& contacts, int iterations, ContactBuffer& buffer) {
+  buffer.clear();
+  for (const auto& [direction, weight] : contacts) {
+    buffer.push(0, Vec3::Zero(), -direction);
+    buffer.set_gradient(buffer.size() - 1, direction);
+    buffer.weight[buffer.size() - 1] = weight;
   }
   buffer.pad();
-  solve_exact_shaping(buffer);
-  return stiffness_tensor(buffer);
+  if (iterations == kExactLimit) solve_exact_shaping(buffer);
+  Mat3 S = stiffness_tensor(buffer);
+  for (int iteration = 0; iteration < iterations; ++iteration) S = update_shaped_weights(buffer, S);
+  return S;
 }
 
 Directions random_directions(Random& random) {
@@ -168,8 +151,9 @@ Directions neighbour(Directions contacts, double step, Random& random) {
 /// random sets of up to eight weighted directions find. The weights before the first iteration stand for many contacts
 /// in one direction. About half a second.
 double stiffest_contacts(int iterations) {
-  const auto stiffness = [iterations](const Directions& contacts) {
-    return lambda_max(iterations == kExactLimit ? limit_tensor(contacts) : shaped_tensor(contacts, iterations));
+  ContactBuffer buffer(kMostDirections);
+  const auto stiffness = [&](const Directions& contacts) {
+    return lambda_max(shaped_tensor(contacts, iterations, buffer));
   };
   double stiffest = 0.0;
   Random random(1);
