@@ -6,7 +6,6 @@
 #include "algorithms/registry.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/thesis_claims/claims.hpp"
-#include "scenarios/thesis_claims/contact_sets.hpp"
 #include "scenarios/thesis_claims/measurements.hpp"
 
 /// Claims of appendix C: what the proposed algorithm does to point density and damping.

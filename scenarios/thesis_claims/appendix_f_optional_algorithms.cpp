@@ -5,7 +5,7 @@
 
 #include "algorithms/registry.hpp"
 #include "scenarios/thesis_claims/claims.hpp"
-#include "scenarios/thesis_claims/contact_sets.hpp"
+#include "scenarios/thesis_claims/measurements.hpp"
 #include "sim/core/math.hpp"
 
 /// Claims of appendix F: the thesis's optional algorithms.

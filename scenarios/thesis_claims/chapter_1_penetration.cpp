@@ -84,7 +84,7 @@ Measured measure_original(const Evidence& e) {
   Measured measured;
   for (const std::string law : {kProposedLaw, "original_averaging"}) {
     const Result run = e.run("task2_held", {"rendering.algorithm=" + law});
-    const auto depth = ideal_trajectory_metric(run, "gentle.interpenetration_max_m");
+    const auto depth = number_of(run.metrics, "ideal_trajectory.gentle.interpenetration_max_m");
     measured.push_back({law, {{"depth", {depth.value_or(0.0)}}}});
   }
   return measured;

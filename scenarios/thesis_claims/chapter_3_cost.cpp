@@ -7,7 +7,7 @@
 #include "algorithms/stages/point_stage.hpp"
 #include "scenarios/batch/statistics.hpp"
 #include "scenarios/thesis_claims/claims.hpp"
-#include "scenarios/thesis_claims/contact_sets.hpp"
+#include "scenarios/thesis_claims/measurements.hpp"
 
 /// Claims of 2.8 and 3.4: what the points cost. Times of this machine, so no two ledgers agree in digits.
 namespace hapbench {

@@ -26,7 +26,7 @@ Measured measure_ideal_trajectory(const Evidence& e) {
     const Result run = e.run("task2_held", {fmt::format("hand.force_N={}", force)});
     const std::string hand = force < kGentleForce ? "gentle." : "firm.";
     const auto number = [&](const char* key) -> std::vector<double> {
-      return {ideal_trajectory_metric(run, hand + key).value_or(std::nan(""))};
+      return {number_of(run.metrics, "ideal_trajectory." + hand + key).value_or(std::nan(""))};
     };
     measured.push_back({fmt::format("{} N", force),
                         {{"force", {force}},

@@ -5,7 +5,7 @@
 
 #include "algorithms/laws/shaped_stiffness.hpp"
 #include "scenarios/thesis_claims/claims.hpp"
-#include "scenarios/thesis_claims/contact_sets.hpp"
+#include "scenarios/thesis_claims/measurements.hpp"
 #include "sim/contact/stiffness_tensor.hpp"
 #include "sim/core/math.hpp"
 #include "sim/core/random.hpp"

@@ -7,7 +7,6 @@
 #include "scenarios/batch/statistics.hpp"
 #include "scenarios/description/parts.hpp"
 #include "scenarios/thesis_claims/claims.hpp"
-#include "scenarios/thesis_claims/contact_sets.hpp"
 #include "scenarios/thesis_claims/measurements.hpp"
 
 /// Claims of chapter 4: the thesis's two depth models (4.2), and what else it discusses as limits.
