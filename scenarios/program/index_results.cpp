@@ -148,7 +148,7 @@ std::vector<Word> all_words() {
   for (const OutcomeInfo& outcome : outcome_infos()) all.push_back({outcome.name, kOutcome, outcome.meaning});
   for (const RunVerdict verdict : kRunVerdicts)
     all.push_back({run_verdict_name(verdict), kMotion, run_verdict_meaning(verdict)});
-  for (const Verdict verdict : kVerdicts) all.push_back({verdict_name(verdict), kVerdict, text_of(verdict).meaning});
+  for (const auto& [name, meaning] : kVerdicts) all.push_back({name, kVerdict, meaning});
   return all;
 }
 

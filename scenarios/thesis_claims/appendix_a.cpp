@@ -136,13 +136,11 @@ Finding judge_springs_unlimited(const Measured& measured, const PublishedNumbers
     append_item(text, fmt::format("{}, depths {}: {}", run.second, run.first ? "signed" : "≥ 0",
                                   pairs.empty() ? "none" : pairs));
   }
-  const auto all_with = [&](bool published_pairs) {
-    return std::any_of(all_smooth.begin(), all_smooth.end(), [&](const auto& entry) {
-      return entry.second && (entry.first.second == static_cast<double>(kPairs)) == published_pairs;
-    });
-  };
+  bool published = false, fewer = false;
+  for (const auto& [run, all] : all_smooth)
+    if (all) (run.second == static_cast<double>(kPairs) ? published : fewer) = true;
   return {
-      decide(all_with(true), all_with(false)), "pairs with which the way is smooth: " + text,
+      decide(published, fewer), "pairs with which the way is smooth: " + text,
       "100 pairs of 88.5 N s/m are 17 700 N s/m, 22 times the 2 M / Δt = 800 N s/m that A.3 allows, so the plain sum "
       "must diverge there"};
 }

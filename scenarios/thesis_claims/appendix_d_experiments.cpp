@@ -35,16 +35,14 @@ using TargetTable = std::map<std::string, std::vector<double>>;
 
 /// Mean of a column over each subject's targets at a place; subjects without a value are left out.
 std::map<double, double> subject_means(const TargetTable& targets, const char* column, double place) {
-  std::map<double, std::pair<double, double>> sums;
+  std::map<double, std::vector<double>> values;
   for (std::size_t i = 0; i < targets.at("place").size(); ++i) {
     const double value = targets.at(column)[i];
     if (targets.at("place")[i] != place || std::isnan(value)) continue;
-    auto& [sum, count] = sums[targets.at("subject")[i]];
-    sum += value;
-    count += 1.0;
+    values[targets.at("subject")[i]].push_back(value);
   }
   std::map<double, double> means;
-  for (const auto& [subject, sum] : sums) means[subject] = sum.first / sum.second;
+  for (const auto& [subject, all] : values) means[subject] = mean_of(all);
   return means;
 }
 

@@ -115,17 +115,14 @@ Finding judge_tandpasta(const Measured& measured, const PublishedNumbers& p) {
 
 Measured measure_tandpasta_cost(const Evidence& e) {
   const Scenario scenario = e.load("task2_rotate_signed_distance").scenario;
-  const ContactBuffer most = largest_of(contact_sets(scenario, 64));
-  MeasuredCase m{"", {{"points", {static_cast<double>(most.size())}}}};
-  ContactBuffer work(most.size());
+  const std::vector<ContactBuffer> most = {largest_of(contact_sets(scenario, 64))};
+  const std::size_t points = most.front().size();
+  MeasuredCase m{"", {{"points", {static_cast<double>(points)}}}};
   for (const char* name : {"tandpasta", kProposedLaw}) {
     const auto law = make_law(name, scenario.rendering);
-    law->prepare(most.size());
-    const double seconds = seconds_per_call(1, 100, [&] {
-      work.assign(most);
-      law->evaluate(work);
-    });
-    m.values[name] = {seconds / scenario.time.step};
+    law->prepare(points);
+    m.values[name] = {seconds_with(most, 100, [&](ContactBuffer& contacts) { law->evaluate(contacts); }) /
+                      scenario.time.step};
   }
   return {m};
 }

@@ -71,9 +71,9 @@ Measured measure_deadline(const Evidence& e) {
   reduction->prepare({});
   return {{"",
            {{"points", {static_cast<double>(all.size())}},
-            {"matrix", {seconds_per_call(1, kRepetitions, [&] { dense.shape(contacts, kIterations); })}},
-            {"tensor", {seconds_per_call(1, kRepetitions, [&] { shape_weights(contacts, kIterations); })}},
-            {"reduced", {seconds_per_call(1, kRepetitions, [&] {
+            {"matrix", {seconds_of(kRepetitions, [&] { dense.shape(contacts, kIterations); })}},
+            {"tensor", {seconds_of(kRepetitions, [&] { shape_weights(contacts, kIterations); })}},
+            {"reduced", {seconds_of(kRepetitions, [&] {
                contacts = all;
                reduction->process(contacts);
                dense.shape(contacts, kIterations);
@@ -116,24 +116,22 @@ Measured measure_loop_load(const Evidence& e) {
   DenseShaping dense(largest);
   const auto reduction = make_gradient_reduction({});
   reduction->prepare({});
-  ContactBuffer work(largest);
-  const auto load = [&](auto shape, bool reduce) {
-    const double seconds = seconds_per_call(sets.size(), kRepetitions, [&] {
-      for (const ContactBuffer& set : sets) {
-        work.assign(set);
-        if (reduce) reduction->process(work);
-        shape();
-      }
+  const auto load = [&](auto shape, bool reduce) -> std::vector<double> {
+    const double seconds = seconds_with(sets, kRepetitions, [&](ContactBuffer& contacts) {
+      if (reduce) reduction->process(contacts);
+      shape(contacts);
     });
-    return std::vector<double>{seconds / task.scenario.time.step};
+    return {seconds / static_cast<double>(sets.size()) / task.scenario.time.step};
   };
+  const auto by_matrix = [&dense](int n) { return [&dense, n](ContactBuffer& contacts) { dense.shape(contacts, n); }; };
+  const auto by_tensor = [](ContactBuffer& contacts) { shape_weights(contacts, kIterations); };
   return {{"",
            {{"points", {static_cast<double>(largest)}},
-            {"reduced_0", load([&] { dense.shape(work, 0); }, true)},
-            {"reduced_3", load([&] { dense.shape(work, kIterations); }, true)},
-            {"unreduced_3", load([&] { dense.shape(work, kIterations); }, false)},
-            {"tensor_reduced_3", load([&] { shape_weights(work, kIterations); }, true)},
-            {"tensor_unreduced_3", load([&] { shape_weights(work, kIterations); }, false)}}}};
+            {"reduced_0", load(by_matrix(0), true)},
+            {"reduced_3", load(by_matrix(kIterations), true)},
+            {"unreduced_3", load(by_matrix(kIterations), false)},
+            {"tensor_reduced_3", load(by_tensor, true)},
+            {"tensor_unreduced_3", load(by_tensor, false)}}}};
 }
 
 Finding judge_loop_load(const Measured& measured, const PublishedNumbers& p) {

@@ -116,19 +116,12 @@ Measured measure_depth_cost(const Evidence& e) {
       contact_sets(e.load("task2_rotate_signed_distance").scenario, kRowsBetweenSamples);
   double contacts = 0.0;
   for (const ContactBuffer& set : sets) contacts += static_cast<double>(set.size());
-  ContactBuffer work(largest_size(sets));
-  const auto seconds = [&](auto evaluate) {
-    return seconds_per_call(1, kRepetitions, [&] {
-      for (const ContactBuffer& set : sets) {
-        work.assign(set);
-        evaluate();
-      }
-    });
-  };
-  const double copying = seconds([] {});
+  const double copying = seconds_with(sets, kRepetitions, [](ContactBuffer&) {});
   const auto of_contact = [&](const char* model) -> std::vector<double> {
     const auto depth = find_depth_model(model)->make();
-    return {std::max(0.0, seconds([&] { depth->evaluate(kDrill, kUpright, work); }) - copying) / contacts};
+    const double seconds =
+        seconds_with(sets, kRepetitions, [&](ContactBuffer& set) { depth->evaluate(kDrill, kUpright, set); });
+    return {std::max(0.0, seconds - copying) / contacts};
   };
   return {
       {"", {{"normal_projection", of_contact("normal_projection")}, {"surface_normal", of_contact("surface_normal")}}}};

@@ -15,19 +15,6 @@
 
 namespace hapbench {
 
-const VerdictText& text_of(Verdict verdict) {
-  // In the order of the enumeration.
-  static constexpr VerdictText kTexts[] = {
-      {"reproduced", "the rule of the claim holds with the published numbers"},
-      {"reproduced in kind", "direction or mechanism are the published ones, the numbers are not"},
-      {"not reproduced", "neither, in this model of the device and the hand"},
-      {"refuted", "it contradicts an exact result"},
-      {"not reproducible", "no simulation can show it: people or the trainer are needed"},
-      {"holds", "a finding of ours that the measurement shows"},
-      {"does not hold", "a finding of ours that the measurement does not show"}};
-  return kTexts[static_cast<std::size_t>(verdict)];
-}
-
 Verdict decide(bool reproduced, bool in_kind) {
   return reproduced ? Verdict::reproduced : in_kind ? Verdict::in_kind : Verdict::not_reproduced;
 }

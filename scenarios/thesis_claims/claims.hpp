@@ -1,6 +1,6 @@
 #pragma once
 
-#include <array>
+#include <cstddef>
 #include <map>
 #include <string>
 #include <string_view>
@@ -15,18 +15,23 @@ namespace hapbench {
 /// The outcome of testing a published statement.
 /// The last two are those of findings of ours.
 enum class Verdict { reproduced, in_kind, not_reproduced, refuted, not_reproducible, holds, does_not_hold };
-inline constexpr std::array kVerdicts = {Verdict::reproduced,   Verdict::in_kind,          Verdict::not_reproduced,
-                                         Verdict::refuted,      Verdict::not_reproducible, Verdict::holds,
-                                         Verdict::does_not_hold};
 
 /// A verdict in words.
 struct VerdictText {
   std::string_view name;  ///< also in the ledger
   const char* meaning;
 };
-const VerdictText& text_of(Verdict verdict);
-inline std::string_view verdict_name(Verdict verdict) {
-  return text_of(verdict).name;
+/// In the order of the enumeration.
+inline constexpr VerdictText kVerdicts[] = {
+    {"reproduced", "the rule of the claim holds with the published numbers"},
+    {"reproduced in kind", "direction or mechanism are the published ones, the numbers are not"},
+    {"not reproduced", "neither, in this model of the device and the hand"},
+    {"refuted", "it contradicts an exact result"},
+    {"not reproducible", "no simulation can show it: people or the trainer are needed"},
+    {"holds", "a finding of ours that the measurement shows"},
+    {"does not hold", "a finding of ours that the measurement does not show"}};
+inline constexpr std::string_view verdict_name(Verdict verdict) {
+  return kVerdicts[static_cast<std::size_t>(verdict)].name;
 }
 
 /// The verdict of a rule for "reproduced" and a weaker one for "reproduced in kind".

@@ -31,9 +31,9 @@ inline ContactBuffer wall_point(double beyond, const char* depth_model) {
 
 // The contacts that a drill has in a hole, set by set, and how long a force law takes over them.
 
-/// Seconds per call of `work`, which makes `calls` calls; the least of `repetitions`, or of as many as a second allows.
+/// Seconds of a call of `work`: the least of `repetitions`, or of as many as a second allows.
 template <class Work>
-double seconds_per_call(std::size_t calls, int repetitions, Work work) {
+double seconds_of(int repetitions, Work work) {
   using Clock = std::chrono::steady_clock;
   double least = 0.0, all = 0.0;
   for (int i = 0; i < repetitions && all < 1.0; ++i) {
@@ -43,7 +43,7 @@ double seconds_per_call(std::size_t calls, int repetitions, Work work) {
     if (i == 0 || seconds < least) least = seconds;
     all += seconds;
   }
-  return least / static_cast<double>(calls);
+  return least;
 }
 
 /// Prepares a scenario in which a hand presses a drill into the block's hole to be measured: its device becomes an
@@ -65,6 +65,18 @@ std::vector<ContactBuffer> contact_sets(const Scenario& scenario, std::uint64_t 
 /// The largest set, and its size.
 ContactBuffer largest_of(const std::vector<ContactBuffer>& sets);
 std::size_t largest_size(const std::vector<ContactBuffer>& sets);
+
+/// Seconds of `work` with a copy of each set, one after the other, and of copying them.
+template <class Work>
+double seconds_with(const std::vector<ContactBuffer>& sets, int repetitions, Work work) {
+  ContactBuffer copy(largest_size(sets));
+  return seconds_of(repetitions, [&] {
+    for (const ContactBuffer& set : sets) {
+      copy.assign(set);
+      work(copy);
+    }
+  });
+}
 
 /// Total variation of the velocity [m/s], power of the velocity above 30 Hz [m^2/s^2] and reversals of the force.
 MeasuredCase vibration(const std::string& name, const Result& run);
