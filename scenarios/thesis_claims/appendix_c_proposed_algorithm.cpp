@@ -16,34 +16,6 @@ namespace {
 constexpr const char* kLaws[] = {"shaped_stiffness", "original_averaging", "summation", "mean",
                                  "virtual_coupling", "least_squares"};
 
-/// The spring force of an algorithm for contacts with depths and gradients, under a tool at rest.
-Vec3 answer(ForceAlgorithm& algorithm, ContactBuffer contacts) {
-  ToolState tool;
-  tool.pose = kUpright;
-  RenderedForce force;
-  algorithm.compute(tool, contacts, force);
-  return force.spring;
-}
-
-/// How much the second spring force of the same contacts differs from the first, rms over rms.
-template <class First, class Second>
-double change_of_force(const std::vector<ContactBuffer>& sets, First first, Second second) {
-  double difference = 0.0, force = 0.0;
-  for (const ContactBuffer& contacts : sets) {
-    const Vec3 before = first(contacts);
-    difference += (second(contacts) - before).squaredNorm();
-    force += before.squaredNorm();
-  }
-  return std::sqrt(difference / force);
-}
-
-const MeasuredCase& proposed(const Measured& measured) {
-  return *std::find_if(measured.begin(), measured.end(), [](const MeasuredCase& m) { return m.name == kProposedLaw; });
-}
-
-// ---- P1: how much the spring force of contacts of task 2 changes, rms over rms, if every point of the wall is there
-// many times: with all points, and after the reduction. A case for each law.
-
 constexpr std::size_t kWallDensities[] = {4, 40};
 /// Gradients less steep than this belong to the wall.
 constexpr double kWall = 0.5;
@@ -63,6 +35,41 @@ ContactBuffer crowded(const ContactBuffer& contacts, std::size_t times) {
   return more;
 }
 
+/// The spring forces of an algorithm for sets of contacts with depths and gradients, of which each point of the wall is
+/// there so many times, under a tool at rest.
+std::vector<Vec3> forces_of(const RenderingConfig& config, const Scene& scene, const std::vector<ContactBuffer>& sets,
+                            std::size_t times = 1) {
+  const auto algorithm = make_algorithm(config);
+  algorithm->prepare(scene);
+  ToolState tool;
+  tool.pose = kUpright;
+  std::vector<Vec3> forces;
+  for (const ContactBuffer& set : sets) {
+    ContactBuffer contacts = times == 1 ? set : crowded(set, times);
+    RenderedForce force;
+    algorithm->compute(tool, contacts, force);
+    forces.push_back(force.spring);
+  }
+  return forces;
+}
+
+/// How much the second spring forces differ from the first, rms over rms.
+double change_of_force(const std::vector<Vec3>& first, const std::vector<Vec3>& second) {
+  double difference = 0.0, force = 0.0;
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    difference += (second[i] - first[i]).squaredNorm();
+    force += first[i].squaredNorm();
+  }
+  return std::sqrt(difference / force);
+}
+
+const MeasuredCase& proposed(const Measured& measured) {
+  return *std::find_if(measured.begin(), measured.end(), [](const MeasuredCase& m) { return m.name == kProposedLaw; });
+}
+
+// ---- P1: how much the spring force of contacts of task 2 changes, rms over rms, if every point of the wall is there
+// many times: with all points, and after the reduction. A case for each law.
+
 Measured measure_density(const Evidence& e) {
   const LoadedScenario loaded = e.load("task2_rotate_signed_distance");
   const std::vector<ContactBuffer> sets = contact_sets(loaded.scenario, 256);
@@ -74,13 +81,10 @@ Measured measure_density(const Evidence& e) {
     for (const bool reduced : {false, true}) {
       RenderingConfig config = with_algorithm(loaded.scenario, law).rendering;
       if (!reduced) config.reduction.reset();
-      const auto algorithm = make_algorithm(config);
-      algorithm->prepare(scene);
+      const std::vector<Vec3> once = forces_of(config, scene, sets);
       for (const std::size_t times : kWallDensities) {
-        const auto crowded_by = [&](std::size_t n) {
-          return [&, n](const ContactBuffer& contacts) { return answer(*algorithm, crowded(contacts, n)); };
-        };
-        m.values[reduced ? "reduced" : "all"].push_back(change_of_force(sets, crowded_by(1), crowded_by(times)));
+        const double change = change_of_force(once, forces_of(config, scene, sets, times));
+        m.values[reduced ? "reduced" : "all"].push_back(change);
       }
     }
   }
@@ -118,14 +122,9 @@ Measured measure_local_average(const Evidence& e) {
   Measured measured;
   for (const char* law : kLaws) {
     RenderingConfig config = with_algorithm(loaded.scenario, law).rendering;
-    const auto without = make_algorithm(config);
+    const std::vector<Vec3> without = forces_of(config, scene, sets);
     config.local_average = true;
-    const auto with = make_algorithm(config);
-    without->prepare(scene);
-    with->prepare(scene);
-    const double change = change_of_force(
-        sets, [&](const ContactBuffer& contacts) { return answer(*without, contacts); },
-        [&](const ContactBuffer& contacts) { return answer(*with, contacts); });
+    const double change = change_of_force(without, forces_of(config, scene, sets));
     measured.push_back({law, {{"change", {change}}}});
   }
   return measured;

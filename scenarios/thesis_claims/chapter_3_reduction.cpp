@@ -56,21 +56,15 @@ bool is_near(double value, double published, double other) {
   return std::abs(value - published) <= std::abs(published - other);
 }
 
-/// The density's counts beside one recording: whether the raw ones are near, which are calibrated, and the reduced
-/// ones.
 struct Nearness {
-  bool raw, mean, spread;
+  bool mean, spread;
 };
 
-/// `one` and `other` end the ids of the recordings' counts.
-Nearness nearness(const MeasuredCase& c, const PublishedNumbers& p, const std::string& task, const char* one,
-                  const char* other) {
-  const std::string raws = task + ".raw", reduceds = task + ".reduced";
-  const PublishedNumber &raw = p[raws + one], &raw_2 = p[raws + other], &reduced = p[reduceds + one],
-                        &reduced_2 = p[reduceds + other];
-  return {is_near(c["raw_mean"], raw.mean, raw_2.mean) && is_near(c["raw_deviation"], raw.spread, raw_2.spread),
-          is_near(c["reduced_mean"], reduced.mean, reduced_2.mean),
-          is_near(c["reduced_deviation"], reduced.spread, reduced_2.spread)};
+/// Whether some counts of a density are near those of one recording.
+Nearness nearness(const MeasuredCase& c, const std::string& counts, const PublishedNumber& one,
+                  const PublishedNumber& other) {
+  return {is_near(c[counts + "_mean"], one.mean, other.mean),
+          is_near(c[counts + "_deviation"], one.spread, other.spread)};
 }
 
 /// The appendix gives other counts than 3.3.
@@ -81,10 +75,14 @@ Finding judge_reduced_points(const Measured& counts, const PublishedNumbers& pub
   for (const MeasuredCase& c : counts) {
     const bool bounded = c["reduced_max"] < bound;
     bool whole = false, mean = false, raw = false;
-    for (const Nearness& near : {nearness(c, published, task, "", ".C3"), nearness(c, published, task, ".C3", "")}) {
-      raw = raw || near.raw;
-      mean = mean || (near.raw && near.mean);
-      whole = whole || (near.raw && near.mean && near.spread && bounded);
+    for (const auto& [one, other] : {std::pair("", ".C3"), std::pair(".C3", "")}) {
+      const Nearness calibrated = nearness(c, "raw", published[task + ".raw" + one], published[task + ".raw" + other]);
+      const Nearness left =
+          nearness(c, "reduced", published[task + ".reduced" + one], published[task + ".reduced" + other]);
+      if (!calibrated.mean || !calibrated.spread) continue;
+      raw = true;
+      mean = mean || left.mean;
+      whole = whole || (left.mean && left.spread && bounded);
     }
     if (whole) ++all;
     if (mean) ++means;
