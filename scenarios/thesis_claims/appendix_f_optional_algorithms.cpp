@@ -78,18 +78,14 @@ std::vector<double> outward_boosts(const Evidence& e) {
   return boosts;
 }
 
-double leaving_time(const Evidence& e, const std::string& algorithm) {
-  return e
-      .run("peg_in_hole_2d_" + algorithm,
-           {"time.step_s=5e-6", "time.steps=200000", "rendering.friction.mu_s_N_s_per_m=0",
-            "rendering.friction.mu_f_s_per_m=0", "record.ratio_iterations=[]"})
-      .duration;
-}
-
 Measured measure_tandpasta(const Evidence& e) {
   MeasuredCase m{"", {{"energy_ratio", {tandpasta_energy_ratio(e)}}, {"boosts", outward_boosts(e)}}};
-  for (const char* algorithm : {"tandpasta", "summation", "shaped_stiffness"})
-    m.values[algorithm] = {leaving_time(e, algorithm)};
+  for (const std::string algorithm : {"tandpasta", "summation", kProposedLaw}) {
+    const std::vector<std::string> converged = {"time.step_s=5e-6", "time.steps=200000",
+                                                "rendering.friction.mu_s_N_s_per_m=0",
+                                                "rendering.friction.mu_f_s_per_m=0", "record.ratio_iterations=[]"};
+    m.values[algorithm] = {e.run("peg_in_hole_2d_" + algorithm, converged).duration};
+  }
   return {m};
 }
 

@@ -56,10 +56,8 @@ std::string depths_text(const Measured& measured) {
 
 /// True if at every tilt `a` is at least `factor` times as deep as `b`.
 bool deeper(const MeasuredCase& a, const MeasuredCase& b, double factor) {
-  for (std::size_t i = 0; i < std::size(kPressedTilts); ++i) {
-    if (!(a.all("depth")[i] >= factor * b.all("depth")[i])) return false;
-  }
-  return true;
+  return std::equal(a.all("depth").begin(), a.all("depth").end(), b.all("depth").begin(),
+                    [factor](double deep, double other) { return deep >= factor * other; });
 }
 
 /// Whether the drill sinks in easily with the second case's law, beside shaping, the first one.

@@ -127,7 +127,7 @@ inline double threshold(const PublishedNumbers& numbers, const std::string& name
 /// The algorithm that the thesis proposes.
 inline constexpr const char* kProposedLaw = "shaped_stiffness";
 
-/// How a claim of rules.json is measured and judged.
+/// How a claim of rules.json is measured and judged. A constant that is no choice stands in the claim's text, too.
 struct Rule {
   const char* id;
   Measure measure;

@@ -70,10 +70,14 @@ class Session final : public Observer {
 
   void on_step(const StepRecord& row) noexcept override {
     last_ = row.force.S;
+    Vec3 vibration = Vec3::Zero();  // the force above the cutoff; none where the sampling rate is too low for that
+    if (high_pass_) {
+      if (row.step == 0) high_pass_->settle_at(row.force.rendered);
+      vibration = high_pass_->filter(row.force.rendered);
+    }
     contacts_->assign(*row.rendered);
     rows_.push_back(row.time);
-    for (const Vec3& v : {row.tool.pose.position, row.tool.pose.axis, row.force.rendered, row.force.spring,
-                          vibration(row.force.rendered, row.step == 0)})
+    for (const Vec3& v : {row.tool.pose.position, row.tool.pose.axis, row.force.rendered, row.force.spring, vibration})
       rows_.insert(rows_.end(), {v.x(), v.y(), v.z()});
     rows_.insert(rows_.end(), {row.force.depth_max, static_cast<double>(row.rendered->size())});
   }
@@ -151,13 +155,6 @@ class Session final : public Observer {
   const PointShell* shell() const { return shell_.get(); }
 
  private:
-  /// The force above the cutoff; zero where the sampling rate is too low for that.
-  Vec3 vibration(const Vec3& force, bool is_first) noexcept {
-    if (!high_pass_) return Vec3::Zero();
-    if (is_first) high_pass_->settle_at(force);
-    return high_pass_->filter(force);
-  }
-
   void put_on_pointer() {
     const Scenario& scenario = loaded_.scenario;
     if (!std::holds_alternative<ImpedanceHandFields>(scenario.hand))

@@ -128,21 +128,19 @@ class PythonSimulation {
 
 }  // namespace
 
+/// hapbench.Simulation says what they do.
 void bind_simulation(py::module_& module) {
-  py::class_<PythonSimulation>(module, "Simulation",
-                               "One run of a scenario, step by step. hapbench.Simulation is made of it.")
+  py::class_<PythonSimulation>(module, "Simulation")
       .def(py::init<const std::string&, const std::vector<std::string>&>(), py::arg("scenario"), py::arg("overrides"))
-      .def("step", &PythonSimulation::step, "Compute the next row. False, and nothing done, once the run has ended.")
-      .def("advance", &PythonSimulation::advance, py::arg("steps"),
-           "Compute up to so many rows without the interpreter; returns how many.")
-      .def("reset", &PythonSimulation::reset, "Back to the start, bit for bit.")
-      .def_property_readonly("state", &PythonSimulation::state, "The last row: copies.")
-      .def_property_readonly("contacts", &PythonSimulation::contacts, "Its rendered contacts: copies.")
-      .def_property_readonly("rows", &PythonSimulation::rows, "Rows computed so far.")
-      .def_property_readonly("time_step_s", &PythonSimulation::step_size, "The time from row to row [s].")
-      .def_property_readonly("steps", &PythonSimulation::steps, "Rows of the whole run.")
-      .def_property_readonly("outcome", &PythonSimulation::outcome,
-                             "How the run ended; \"completes\" while it goes on.");
+      .def("step", &PythonSimulation::step)
+      .def("advance", &PythonSimulation::advance, py::arg("steps"))
+      .def("reset", &PythonSimulation::reset)
+      .def_property_readonly("state", &PythonSimulation::state)
+      .def_property_readonly("contacts", &PythonSimulation::contacts)
+      .def_property_readonly("rows", &PythonSimulation::rows)
+      .def_property_readonly("time_step_s", &PythonSimulation::step_size)
+      .def_property_readonly("steps", &PythonSimulation::steps)
+      .def_property_readonly("outcome", &PythonSimulation::outcome);
 }
 
 }  // namespace hapbench
