@@ -258,7 +258,7 @@ Finding judge_damping_at_limit(const Measured& measured, const PublishedNumbers&
 
 }  // namespace
 
-std::vector<Rule> appendix_a() {
+std::vector<ClaimRule> appendix_a() {
   return {
       {"A1", measure_peg_motion, judge_peg_motion},
       {"A2", measure_springs_unlimited, judge_springs_unlimited},

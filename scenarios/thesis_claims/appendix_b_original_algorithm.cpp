@@ -127,7 +127,7 @@ Finding judge_added_points(const Measured& measured, const PublishedNumbers&) {
 
 }  // namespace
 
-std::vector<Rule> appendix_b_original_algorithm() {
+std::vector<ClaimRule> appendix_b_original_algorithm() {
   return {
       {"B1", measure_flipped_gradient, judge_flipped_gradient},
       {"B2", measure_groove, judge_groove},

@@ -186,7 +186,7 @@ Finding judge_relative_damping(const Measured& measured, const PublishedNumbers&
 
 }  // namespace
 
-std::vector<Rule> appendix_c_proposed_algorithm() {
+std::vector<ClaimRule> appendix_c_proposed_algorithm() {
   return {
       {"P1", measure_density, judge_density},
       {"C5", measure_local_average, judge_local_average},

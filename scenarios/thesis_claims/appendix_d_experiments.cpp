@@ -227,7 +227,7 @@ Finding judge_pilots(const Measured& measured, const PublishedNumbers& published
 
 }  // namespace
 
-std::vector<Rule> appendix_d_experiments() {
+std::vector<ClaimRule> appendix_d_experiments() {
   return {
       {"D1", measure_side_target, judge_side_target},
       {"D2", [](const Evidence& e) { return measure(e, kVertical, 0.0); },

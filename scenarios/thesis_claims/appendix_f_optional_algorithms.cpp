@@ -133,7 +133,7 @@ Finding judge_tandpasta_cost(const Measured& measured, const PublishedNumbers& p
 
 }  // namespace
 
-std::vector<Rule> appendix_f_optional_algorithms() {
+std::vector<ClaimRule> appendix_f_optional_algorithms() {
   return {
       {"F1", measure_normal_projection, judge_normal_projection},
       {"F2", measure_tandpasta, judge_tandpasta},

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "results/io/columns.hpp"
 #include "results/observe/ideal_trajectory.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/thesis_claims/claims.hpp"
@@ -132,7 +133,7 @@ Finding judge_summation(const Measured& m, const PublishedNumbers& p) {
 
 }  // namespace
 
-std::vector<Rule> chapter_1_penetration() {
+std::vector<ClaimRule> chapter_1_penetration() {
   return {
       {"V1", measure_averaging, judge_sinking},
       {"V2",

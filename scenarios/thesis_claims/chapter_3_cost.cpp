@@ -152,7 +152,7 @@ Finding judge_loop_load(const Measured& measured, const PublishedNumbers& p) {
 
 }  // namespace
 
-std::vector<Rule> chapter_3_cost() {
+std::vector<ClaimRule> chapter_3_cost() {
   return {
       {"T4", measure_deadline, judge_dense_deadline},
       {"T4b", measure_deadline, judge_tensor_deadline},

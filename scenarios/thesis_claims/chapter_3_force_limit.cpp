@@ -179,7 +179,7 @@ Finding judge_shaking(const Measured& measured, const PublishedNumbers& publishe
 
 }  // namespace
 
-std::vector<Rule> chapter_3_force_limit() {
+std::vector<ClaimRule> chapter_3_force_limit() {
   return {
       {"L1", measure_force_limit, judge_force_limit},
       {"L2", measure_saturated_motion, judge_saturated_motion},

@@ -4,9 +4,10 @@
 #include <cmath>
 #include <numbers>
 
+#include "results/io/columns.hpp"
 #include "results/observe/ideal_trajectory.hpp"
 #include "scenarios/description/parts.hpp"
-#include "scenarios/thesis_claims/measurements.hpp"
+#include "scenarios/thesis_claims/claims.hpp"
 
 /// Claims of 3.6: the drill turned in the hole against the ideal trajectory.
 namespace hapbench {
@@ -83,7 +84,7 @@ Finding judge_end_of_contact(const Measured& measured, const PublishedNumbers& p
 
 }  // namespace
 
-std::vector<Rule> chapter_3_ideal_trajectory() {
+std::vector<ClaimRule> chapter_3_ideal_trajectory() {
   return {
       {"J1", measure_ideal_trajectory, judge_ideal_trajectory},
       {"J2", measure_end_of_contact, judge_end_of_contact},

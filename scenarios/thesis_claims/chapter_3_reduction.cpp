@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include "results/io/columns.hpp"
 #include "scenarios/batch/statistics.hpp"
 #include "scenarios/thesis_claims/claims.hpp"
 
@@ -124,7 +126,7 @@ Finding judge_hands(const Measured& measured, const PublishedNumbers& p) {
 
 }  // namespace
 
-std::vector<Rule> chapter_3_reduction() {
+std::vector<ClaimRule> chapter_3_reduction() {
   return {
       {"T1", [](const Evidence& e) { return measure_counts(e, "task1_flat"); }, judge_flat_reduction},
       {"T2", [](const Evidence& e) { return measure_counts(e, "task2_rotate"); },

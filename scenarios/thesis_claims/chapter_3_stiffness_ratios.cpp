@@ -213,7 +213,7 @@ Finding judge_guarantee(const Measured& measured, const PublishedNumbers& publis
 
 }  // namespace
 
-std::vector<Rule> chapter_3_stiffness_ratios() {
+std::vector<ClaimRule> chapter_3_stiffness_ratios() {
   return {
       {"R1", [](const Evidence& e) { return measure_ratios(e, e.published["ratios.one_iteration"].mean); },
        judge_ratios},

@@ -227,7 +227,7 @@ Finding judge_parallel_faces(const Measured& measured, const PublishedNumbers& p
 
 }  // namespace
 
-std::vector<Rule> chapter_4() {
+std::vector<ClaimRule> chapter_4() {
   return {
       {"G1", measure_median_line, judge_median_line},
       {"G1b", measure_underestimation, judge_underestimation},

@@ -128,24 +128,24 @@ inline double threshold(const PublishedNumbers& numbers, const std::string& name
 inline constexpr const char* kProposedLaw = "shaped_stiffness";
 
 /// How a claim of rules.json is measured and judged. A constant that is no choice stands in the claim's text, too.
-struct Rule {
+struct ClaimRule {
   const char* id;
   Measure measure;
   Judge judge;
 };
 
 // By chapter.
-std::vector<Rule> chapter_1_penetration();           ///< V, S1, B1b
-std::vector<Rule> chapter_3_reduction();             ///< T1 to T3
-std::vector<Rule> chapter_3_cost();                  ///< T4, T5
-std::vector<Rule> chapter_3_stiffness_ratios();      ///< R
-std::vector<Rule> chapter_3_force_limit();           ///< L
-std::vector<Rule> chapter_3_ideal_trajectory();      ///< J
-std::vector<Rule> chapter_4();                       ///< G, B4, C1 to C3, C7
-std::vector<Rule> appendix_a();                      ///< A
-std::vector<Rule> appendix_b_original_algorithm();   ///< B1 to B3
-std::vector<Rule> appendix_c_proposed_algorithm();   ///< P, C5, C6
-std::vector<Rule> appendix_d_experiments();          ///< D
-std::vector<Rule> appendix_f_optional_algorithms();  ///< F
+std::vector<ClaimRule> chapter_1_penetration();           ///< V, S1, B1b
+std::vector<ClaimRule> chapter_3_reduction();             ///< T1 to T3
+std::vector<ClaimRule> chapter_3_cost();                  ///< T4, T5
+std::vector<ClaimRule> chapter_3_stiffness_ratios();      ///< R
+std::vector<ClaimRule> chapter_3_force_limit();           ///< L
+std::vector<ClaimRule> chapter_3_ideal_trajectory();      ///< J
+std::vector<ClaimRule> chapter_4();                       ///< G, B4, C1 to C3, C7
+std::vector<ClaimRule> appendix_a();                      ///< A
+std::vector<ClaimRule> appendix_b_original_algorithm();   ///< B1 to B3
+std::vector<ClaimRule> appendix_c_proposed_algorithm();   ///< P, C5, C6
+std::vector<ClaimRule> appendix_d_experiments();          ///< D
+std::vector<ClaimRule> appendix_f_optional_algorithms();  ///< F
 
 }  // namespace hapbench

@@ -7,7 +7,6 @@
 #include <numbers>
 
 #include "results/io/columns.hpp"
-#include "scenarios/run/assemble.hpp"
 #include "sim/core/math.hpp"
 
 namespace hapbench {
