@@ -5,7 +5,6 @@
 
 #include "algorithms/laws/shaped_stiffness.hpp"
 #include "algorithms/stages/point_stage.hpp"
-#include "scenarios/batch/statistics.hpp"
 #include "scenarios/thesis_claims/claims.hpp"
 #include "scenarios/thesis_claims/measurements.hpp"
 

@@ -6,7 +6,6 @@
 #include <numbers>
 
 #include "scenarios/thesis_claims/claims.hpp"
-#include "scenarios/thesis_claims/measurements.hpp"
 #include "sim/core/math.hpp"
 
 /// Claims of 2.7, 3.5 and 4.5: the limit of the input force.
