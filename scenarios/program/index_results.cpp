@@ -147,7 +147,7 @@ std::vector<Word> all_words() {
   std::vector<Word> all(std::begin(kWords), std::end(kWords));
   for (const OutcomeInfo& outcome : outcome_infos()) all.push_back({outcome.name, kOutcome, outcome.meaning});
   for (const RunVerdictText& verdict : run_verdict_texts()) all.push_back({verdict.name, kMotion, verdict.meaning});
-  for (const Verdict verdict : kVerdicts) all.push_back({verdict_name(verdict), kVerdict, text_of(verdict).meaning});
+  for (const auto& [name, meaning] : kVerdicts) all.push_back({name, kVerdict, meaning});
   return all;
 }
 

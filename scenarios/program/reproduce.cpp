@@ -125,7 +125,7 @@ std::vector<JudgedClaim> judge(const std::vector<Claim>& claims, const Published
   for (const Claim& claim : claims) {
     bar.show(judged.size());
     used.clear();
-    Finding finding = claim.judge(claim.measure(evidence), published);
+    Finding finding = claim.finding(evidence);
     const std::vector<std::string> scenarios(used.begin(), used.end());
     judged.push_back({claim, std::move(finding), scenarios, choices.reach(scenarios, claim.rule)});
   }

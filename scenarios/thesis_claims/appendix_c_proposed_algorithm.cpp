@@ -6,7 +6,6 @@
 #include "algorithms/registry.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/thesis_claims/claims.hpp"
-#include "scenarios/thesis_claims/contact_sets.hpp"
 #include "scenarios/thesis_claims/measurements.hpp"
 
 /// Claims of appendix C: what the proposed algorithm does to point density and damping.
@@ -16,34 +15,6 @@ namespace {
 /// The laws that the claims compare; ours is last.
 constexpr const char* kLaws[] = {"shaped_stiffness", "original_averaging", "summation", "mean",
                                  "virtual_coupling", "least_squares"};
-
-/// The spring force of an algorithm for contacts with depths and gradients, under a tool at rest.
-Vec3 answer(ForceAlgorithm& algorithm, ContactBuffer contacts) {
-  ToolState tool;
-  tool.pose = kUpright;
-  RenderedForce force;
-  algorithm.compute(tool, contacts, force);
-  return force.spring;
-}
-
-/// How much the second spring force of the same contacts differs from the first, rms over rms.
-template <class First, class Second>
-double change_of_force(const std::vector<ContactBuffer>& sets, First first, Second second) {
-  double difference = 0.0, force = 0.0;
-  for (const ContactBuffer& contacts : sets) {
-    const Vec3 before = first(contacts);
-    difference += (second(contacts) - before).squaredNorm();
-    force += before.squaredNorm();
-  }
-  return std::sqrt(difference / force);
-}
-
-const MeasuredCase& proposed(const Measured& measured) {
-  return *std::find_if(measured.begin(), measured.end(), [](const MeasuredCase& m) { return m.name == kProposedLaw; });
-}
-
-// ---- P1: how much the spring force of contacts of task 2 changes, rms over rms, if every point of the wall is there
-// many times: with all points, and after the reduction. A case for each law.
 
 constexpr std::size_t kWallDensities[] = {4, 40};
 /// Gradients less steep than this belong to the wall.
@@ -64,9 +35,44 @@ ContactBuffer crowded(const ContactBuffer& contacts, std::size_t times) {
   return more;
 }
 
+/// The spring forces of an algorithm for sets of contacts with depths and gradients, of which each point of the wall is
+/// there so many times, under a tool at rest.
+std::vector<Vec3> forces_of(const RenderingConfig& config, const Scene& scene, const std::vector<ContactBuffer>& sets,
+                            std::size_t times = 1) {
+  const auto algorithm = make_algorithm(config);
+  algorithm->prepare(scene);
+  ToolState tool;
+  tool.pose = kUpright;
+  std::vector<Vec3> forces;
+  for (const ContactBuffer& set : sets) {
+    ContactBuffer contacts = times == 1 ? set : crowded(set, times);
+    RenderedForce force;
+    algorithm->compute(tool, contacts, force);
+    forces.push_back(force.spring);
+  }
+  return forces;
+}
+
+/// How much the second spring forces differ from the first, rms over rms.
+double change_of_force(const std::vector<Vec3>& first, const std::vector<Vec3>& second) {
+  double difference = 0.0, force = 0.0;
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    difference += (second[i] - first[i]).squaredNorm();
+    force += first[i].squaredNorm();
+  }
+  return std::sqrt(difference / force);
+}
+
+const MeasuredCase& proposed(const Measured& measured) {
+  return *std::find_if(measured.begin(), measured.end(), [](const MeasuredCase& m) { return m.name == kProposedLaw; });
+}
+
+// ---- P1: how much the spring force of contacts of task 2 changes, rms over rms, if every point of the wall is there
+// many times: with all points, and after the reduction. A case for each law.
+
 Measured measure_density(const Evidence& e) {
   const LoadedScenario loaded = e.load("task2_rotate_signed_distance");
-  const std::vector<ContactBuffer> sets = contact_sets(drill_in_hole(loaded.scenario), 256);
+  const std::vector<ContactBuffer> sets = contact_sets(loaded.scenario, 256);
   Scene scene;
   scene.capacity = largest_size(sets) * kWallDensities[std::size(kWallDensities) - 1];
   Measured measured;
@@ -75,13 +81,10 @@ Measured measure_density(const Evidence& e) {
     for (const bool reduced : {false, true}) {
       RenderingConfig config = with_algorithm(loaded.scenario, law).rendering;
       if (!reduced) config.reduction.reset();
-      const auto algorithm = make_algorithm(config);
-      algorithm->prepare(scene);
+      const std::vector<Vec3> once = forces_of(config, scene, sets);
       for (const std::size_t times : kWallDensities) {
-        const auto crowded_by = [&](std::size_t n) {
-          return [&, n](const ContactBuffer& contacts) { return answer(*algorithm, crowded(contacts, n)); };
-        };
-        m.values[reduced ? "reduced" : "all"].push_back(change_of_force(sets, crowded_by(1), crowded_by(times)));
+        const double change = change_of_force(once, forces_of(config, scene, sets, times));
+        m.values[reduced ? "reduced" : "all"].push_back(change);
       }
     }
   }
@@ -115,18 +118,13 @@ Measured measure_local_average(const Evidence& e) {
   Scene scene;
   scene.capacity = shell->size();
   scene.shell = shell.get();
-  const std::vector<ContactBuffer> sets = contact_sets(drill_in_hole(loaded.scenario), 128);
+  const std::vector<ContactBuffer> sets = contact_sets(loaded.scenario, 128);
   Measured measured;
   for (const char* law : kLaws) {
     RenderingConfig config = with_algorithm(loaded.scenario, law).rendering;
-    const auto without = make_algorithm(config);
+    const std::vector<Vec3> without = forces_of(config, scene, sets);
     config.local_average = true;
-    const auto with = make_algorithm(config);
-    without->prepare(scene);
-    with->prepare(scene);
-    const double change = change_of_force(
-        sets, [&](const ContactBuffer& contacts) { return answer(*without, contacts); },
-        [&](const ContactBuffer& contacts) { return answer(*with, contacts); });
+    const double change = change_of_force(without, forces_of(config, scene, sets));
     measured.push_back({law, {{"change", {change}}}});
   }
   return measured;
@@ -188,31 +186,11 @@ Finding judge_relative_damping(const Measured& measured, const PublishedNumbers&
 
 }  // namespace
 
-std::vector<Claim> appendix_c_proposed_algorithm() {
+std::vector<ClaimRule> appendix_c_proposed_algorithm() {
   return {
-      {.id = "P1",
-       .place = "abstract, 1.2, C.2, C.4, 5",
-       .claim = "stiffness shaping decouples the force from the density of points",
-       .rule = fmt::format(
-           "reproduced: with all points the force in task 2 changes by at most <rule.negligible.mean*100> %, rms, "
-           "if each point of the wall is there {} times; in kind: after the reduction",
-           kWallDensities[1]),
-       .measure = measure_density,
-       .judge = judge_density},
-      {.id = "C5",
-       .place = "C.2",
-       .claim = "once stiffness is shaped, the local average is unnecessary",
-       .rule = "reproduced: it changes the spring force of stiffness shaping in task 2 by at most "
-               "<rule.negligible.mean*100> %, rms; in kind: by less than that of any other law of the thesis",
-       .measure = measure_local_average,
-       .judge = judge_local_average},
-      {.id = "C6",
-       .place = "C.4.3",
-       .claim = "the relative damping of combined contacts grows with the root of the stiffness ratio",
-       .published = "√ρ",
-       .rule = "reproduced: √ρ times the damping ratio of one spring, within <rule.same_damping.mean*100> %",
-       .measure = measure_relative_damping,
-       .judge = judge_relative_damping},
+      {"P1", measure_density, judge_density},
+      {"C5", measure_local_average, judge_local_average},
+      {"C6", measure_relative_damping, judge_relative_damping},
   };
 }
 

@@ -29,26 +29,20 @@ constexpr MeasuredColumn kMeasures[] = {{kSuccessRate, "removed", "success"},
 /// difference; half a unit of the last published digit is added.
 constexpr double kStandardErrors = 2.0;  // in words in the rule
 
-std::string percent(double share) {
-  return plain(100.0 * share) + " %";
-}
-
 /// The columns of targets.csv that count here: place, subject, removed, time_s, model_force_N, speed_m_per_s; NaN where
 /// there is no value.
 using TargetTable = std::map<std::string, std::vector<double>>;
 
 /// Mean of a column over each subject's targets at a place; subjects without a value are left out.
 std::map<double, double> subject_means(const TargetTable& targets, const char* column, double place) {
-  std::map<double, std::pair<double, double>> sums;
+  std::map<double, std::vector<double>> values;
   for (std::size_t i = 0; i < targets.at("place").size(); ++i) {
     const double value = targets.at(column)[i];
     if (targets.at("place")[i] != place || std::isnan(value)) continue;
-    auto& [sum, count] = sums[targets.at("subject")[i]];
-    sum += value;
-    count += 1.0;
+    values[targets.at("subject")[i]].push_back(value);
   }
   std::map<double, double> means;
-  for (const auto& [subject, sum] : sums) means[subject] = sum.first / sum.second;
+  for (const auto& [subject, all] : values) means[subject] = mean_of(all);
   return means;
 }
 
@@ -144,23 +138,6 @@ Finding judge_experiment(const Measured& measured, const PublishedNumbers& publi
                           farthest, most)};
 }
 
-/// The published measures of an experiment; `of_speed` is the part of a speed's id that names what is printed of it.
-std::string published_measures(const std::string& id, const std::string& of_speed = "") {
-  return fmt::format(
-      "success <{0}.success.original_averaging> vs <{0}.success.shaped_stiffness>; time <{0}.time.original_averaging> "
-      "vs <{0}.time.shaped_stiffness> s; force <{0}.force.original_averaging> vs <{0}.force.shaped_stiffness> N; speed "
-      "<{0}.speed.original_averaging{1}> vs <{0}.speed.shaped_stiffness{1}> m/s",
-      id, of_speed);
-}
-
-std::string rule() {
-  return fmt::format(
-      "reproduced: every measure significant or not (paired t, {}) as published, in its direction, means that would be "
-      "printed alike counting as no difference, and success rates and completion times within two standard errors of the "
-      "difference and half a printed digit; in kind: the success rate is significant or not as published",
-      percent(kSignificance));
-}
-
 constexpr const char *kVertical = "vertical_peg_in_hole", *kRotational = "rotational_peg_in_hole";
 
 /// The side target, with how far the tip must go to reach it and how far it can go before the drill meets the wall [m].
@@ -250,68 +227,16 @@ Finding judge_pilots(const Measured& measured, const PublishedNumbers& published
 
 }  // namespace
 
-std::vector<Claim> appendix_d_experiments() {
+std::vector<ClaimRule> appendix_d_experiments() {
   return {
-      {.id = "D1",
-       .place = "D.4.2, Table A.1, Fig. D.7",
-       .claim = "vertical task, side target: stiffness shaping does better in every measure",
-       .published = published_measures("D1"),
-       .rule = rule(),
-       .measure = measure_side_target,
-       .judge = judge_side_target,
-       .costly = true},
-      {.id = "D2",
-       .place = "D.4.2, Table A.2, Fig. D.7",
-       .claim = "vertical task, central target: no significant difference",
-       .published = published_measures("D2", ".mean"),
-       .rule = rule(),
-       .measure = [](const Evidence& e) { return measure(e, kVertical, 0.0); },
-       .judge = [](const Measured& m, const PublishedNumbers& p) { return judge_experiment(m, p, "D2", false); },
-       .costly = true},
-      {.id = "D3",
-       .place = "D.4.3, Table A.3, Fig. D.8",
-       .claim = "rotational task, 3 mm: stiffness shaping does better in every measure",
-       .published =  // With the zeros that are printed.
-       "success <D3.success.original_averaging> (printed 0.004 ± 0.004) vs <D3.success.shaped_stiffness.mean:.1f>; "
-       "time <D3.time.original_averaging.mean> ± <D3.time.original_averaging.spread:.2f> vs "
-       "<D3.time.shaped_stiffness.mean:.2f> ± <D3.time.shaped_stiffness.spread> s; force <D3.force.original_averaging> "
-       "vs <D3.force.shaped_stiffness> N; speed <D3.speed.original_averaging> vs <D3.speed.shaped_stiffness> m/s",
-       .rule = rule(),
-       .measure = [](const Evidence& e) { return measure(e, kRotational, 0.0); },
-       .judge = [](const Measured& m, const PublishedNumbers& p) { return judge_experiment(m, p, "D3", true); },
-       .costly = true},
-      {.id = "D4",
-       .place = "D.4.3, Table A.4, Fig. D.8",
-       .claim = "rotational task, 4 mm: stiffness shaping does better in every measure",
-       .published = published_measures("D4"),
-       .rule = rule(),
-       .measure = [](const Evidence& e) { return measure(e, kRotational, 1.0); },
-       .judge = [](const Measured& m, const PublishedNumbers& p) { return judge_experiment(m, p, "D4", true); },
-       .costly = true},
-      {.id = "D5",
-       .place = "D.4.1, Fig. D.6",
-       .claim = "subjects find the proposed algorithm less laborious (questionnaires)",
-       .published = "NASA-TLX <D5.effort.vertical.original_averaging> against <D5.effort.vertical.shaped_stiffness> "
-                    "(t <D5.effort.vertical.t>); <D5.effort.rotational.original_averaging> against "
-                    "<D5.effort.rotational.shaped_stiffness> (t <D5.effort.rotational.t>)",
-       .rule = "needs people",
-       .measure = [](const Evidence&) { return Measured(); },
-       .judge = [](const Measured&, const PublishedNumbers&) -> Finding {
-         return {Verdict::not_reproducible, "", "simulated subjects feel nothing and fill in no forms"};
-       }},
-      {.id = "D6",
-       .place = "D.2.1, D.3.1",
-       .claim =
-           "with the original algorithm hardly any target further out than 0.52 mm, or lower than 3 mm, can be removed",
-       .published = "<D6.offset.at_most*1000> mm, <D6.height.at_least*1000> mm (pilot experiments)",
-       .rule = fmt::format(
-           "reproduced: success of the original algorithm at most {0} beyond, and at least {1} at the easiest place, for "
-           "offset and height; in kind: somewhere at most {0} where stiffness shaping has at least {1}, for offset or "
-           "height",
-           percent(kHardlyAny), percent(kMostTrials)),
-       .measure = measure_pilots,
-       .judge = judge_pilots,
-       .costly = true},
+      {"D1", measure_side_target, judge_side_target},
+      {"D2", [](const Evidence& e) { return measure(e, kVertical, 0.0); },
+       [](const Measured& m, const PublishedNumbers& p) { return judge_experiment(m, p, "D2", false); }},
+      {"D3", [](const Evidence& e) { return measure(e, kRotational, 0.0); },
+       [](const Measured& m, const PublishedNumbers& p) { return judge_experiment(m, p, "D3", true); }},
+      {"D4", [](const Evidence& e) { return measure(e, kRotational, 1.0); },
+       [](const Measured& m, const PublishedNumbers& p) { return judge_experiment(m, p, "D4", true); }},
+      {"D6", measure_pilots, judge_pilots},
   };
 }
 

@@ -5,7 +5,7 @@
 
 #include "algorithms/registry.hpp"
 #include "scenarios/thesis_claims/claims.hpp"
-#include "scenarios/thesis_claims/contact_sets.hpp"
+#include "scenarios/thesis_claims/measurements.hpp"
 #include "sim/core/math.hpp"
 
 /// Claims of appendix F: the thesis's optional algorithms.
@@ -47,10 +47,9 @@ constexpr double kBoostTilts[] = {0.08, 0.12, 0.2, 0.4};
 
 /// The ratio furthest from 1 among the contact sets that give a force.
 double tandpasta_energy_ratio(const Evidence& e) {
-  const Scenario scenario = drill_in_hole(e.load("task2_rotate_signed_distance").scenario);
   const auto law = make_law("tandpasta", {});
   double ratio = 1.0;
-  for (ContactBuffer& set : contact_sets(scenario, 64)) {
+  for (ContactBuffer& set : contact_sets(e.load("task2_rotate_signed_distance").scenario, 64)) {
     law->prepare(set.capacity());
     law->evaluate(set);
     double weighed = 0.0, unweighed = 0.0;
@@ -79,18 +78,14 @@ std::vector<double> outward_boosts(const Evidence& e) {
   return boosts;
 }
 
-double leaving_time(const Evidence& e, const std::string& algorithm) {
-  return e
-      .run("peg_in_hole_2d_" + algorithm,
-           {"time.step_s=5e-6", "time.steps=200000", "rendering.friction.mu_s_N_s_per_m=0",
-            "rendering.friction.mu_f_s_per_m=0", "record.ratio_iterations=[]"})
-      .duration;
-}
-
 Measured measure_tandpasta(const Evidence& e) {
   MeasuredCase m{"", {{"energy_ratio", {tandpasta_energy_ratio(e)}}, {"boosts", outward_boosts(e)}}};
-  for (const char* algorithm : {"tandpasta", "summation", "shaped_stiffness"})
-    m.values[algorithm] = {leaving_time(e, algorithm)};
+  for (const std::string algorithm : {"tandpasta", "summation", kProposedLaw}) {
+    const std::vector<std::string> converged = {"time.step_s=5e-6", "time.steps=200000",
+                                                "rendering.friction.mu_s_N_s_per_m=0",
+                                                "rendering.friction.mu_f_s_per_m=0", "record.ratio_iterations=[]"};
+    m.values[algorithm] = {e.run("peg_in_hole_2d_" + algorithm, converged).duration};
+  }
   return {m};
 }
 
@@ -116,17 +111,14 @@ Finding judge_tandpasta(const Measured& measured, const PublishedNumbers& p) {
 
 Measured measure_tandpasta_cost(const Evidence& e) {
   const Scenario scenario = e.load("task2_rotate_signed_distance").scenario;
-  const ContactBuffer most = largest_of(contact_sets(drill_in_hole(scenario), 64));
-  MeasuredCase m{"", {{"points", {static_cast<double>(most.size())}}}};
-  ContactBuffer work(most.size());
+  const std::vector<ContactBuffer> most = {largest_of(contact_sets(scenario, 64))};
+  const std::size_t points = most.front().size();
+  MeasuredCase m{"", {{"points", {static_cast<double>(points)}}}};
   for (const char* name : {"tandpasta", kProposedLaw}) {
     const auto law = make_law(name, scenario.rendering);
-    law->prepare(most.size());
-    const double seconds = seconds_per_call(1, 100, [&] {
-      work.assign(most);
-      law->evaluate(work);
-    });
-    m.values[name] = {seconds / scenario.time.step};
+    law->prepare(points);
+    m.values[name] = {seconds_with(most, 100, [&](ContactBuffer& contacts) { law->evaluate(contacts); }) /
+                      scenario.time.step};
   }
   return {m};
 }
@@ -141,35 +133,11 @@ Finding judge_tandpasta_cost(const Measured& measured, const PublishedNumbers& p
 
 }  // namespace
 
-std::vector<Claim> appendix_f_optional_algorithms() {
+std::vector<ClaimRule> appendix_f_optional_algorithms() {
   return {
-      {.id = "F1",
-       .place = "F.1, Fig. F.4",
-       .claim = "the normal projection does not saturate on a flat, and jumps at a corner",
-       .rule =
-           "reproduced: <rule.jumps> times the force step, a depth that follows the press to <rule.proportional.mean*100> % "
-           "where the shortest distance ends below <rule.saturated> of it; in kind: the first",
-       .measure = measure_normal_projection,
-       .judge = judge_normal_projection},
-      {.id = "F2",
-       .place = "F.2, Fig. F.5",
-       .claim = "tandpasta keeps the elastic energy and boosts the force that pushes the tool out",
-       .rule = fmt::format(
-           "reproduced: energy unchanged to {}, at least <rule.boosted> times the outward force of the plain springs at every "
-           "tilt looked at; in kind: more at every tilt",
-           plain(kEnergyKept)),
-       .measure = measure_tandpasta,
-       .judge = judge_tandpasta},
-      {.id = "F3",
-       .place = "F.2",
-       .claim = "tandpasta consumes considerable computational energy, which limits it on a real-time system",
-       .published = "considerable",
-       .rule =
-           "reproduced: for the most contacts of a turn in the hole it takes <rule.considerable.mean*100> % of the step; in "
-           "kind: more than stiffness shaping through the tensor",
-       .measure = measure_tandpasta_cost,
-       .judge = judge_tandpasta_cost,
-       .timing = true},
+      {"F1", measure_normal_projection, judge_normal_projection},
+      {"F2", measure_tandpasta, judge_tandpasta},
+      {"F3", measure_tandpasta_cost, judge_tandpasta_cost},
   };
 }
 

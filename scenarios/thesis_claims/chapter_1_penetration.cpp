@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "results/io/columns.hpp"
 #include "results/observe/ideal_trajectory.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/thesis_claims/claims.hpp"
@@ -56,10 +57,8 @@ std::string depths_text(const Measured& measured) {
 
 /// True if at every tilt `a` is at least `factor` times as deep as `b`.
 bool deeper(const MeasuredCase& a, const MeasuredCase& b, double factor) {
-  for (std::size_t i = 0; i < std::size(kPressedTilts); ++i) {
-    if (!(a.all("depth")[i] >= factor * b.all("depth")[i])) return false;
-  }
-  return true;
+  return std::equal(a.all("depth").begin(), a.all("depth").end(), b.all("depth").begin(),
+                    [factor](double deep, double other) { return deep >= factor * other; });
 }
 
 /// Whether the drill sinks in easily with the second case's law, beside shaping, the first one.
@@ -71,10 +70,6 @@ Finding judge_sinking(const Measured& m, const PublishedNumbers& p) {
                       : more ? "further than with stiffness shaping, not easily"
                              : "less than with stiffness shaping at some tilt")};
 }
-
-const char* const kSinkingRule =
-    "reproduced: pressed by the hand of task 2, with all points, at every tilt at least <rule.easily> times as deep as with "
-    "stiffness shaping; in kind: deeper at every tilt";
 
 Measured measure_averaging(const Evidence& e) {
   return {pressed_shaped(e),
@@ -88,7 +83,7 @@ Measured measure_original(const Evidence& e) {
   Measured measured;
   for (const std::string law : {kProposedLaw, "original_averaging"}) {
     const Result run = e.run("task2_held", {"rendering.algorithm=" + law});
-    const auto depth = ideal_trajectory_metric(run, "gentle.interpenetration_max_m");
+    const auto depth = number_of(run.metrics, "ideal_trajectory.gentle.interpenetration_max_m");
     measured.push_back({law, {{"depth", {depth.value_or(0.0)}}}});
   }
   return measured;
@@ -138,51 +133,19 @@ Finding judge_summation(const Measured& m, const PublishedNumbers& p) {
 
 }  // namespace
 
-std::vector<Claim> chapter_1_penetration() {
+std::vector<ClaimRule> chapter_1_penetration() {
   return {
-      {.id = "V1",
-       .place = "1.1.2, 1.2, Fig. 2c",
-       .claim = "averaging lets the drill easily penetrate in the hole",
-       .published = "easily",
-       .rule = kSinkingRule,
-       .measure = measure_averaging,
-       .judge = judge_sinking},
-      {.id = "V2",
-       .place = "1.1.2, 1.2, C.4, Fig. 2d",
-       .claim = "so does virtual coupling",
-       .published = "easily",
-       .rule = kSinkingRule,
-       .measure = [](const Evidence& e) -> Measured {
+      {"V1", measure_averaging, judge_sinking},
+      {"V2",
+       [](const Evidence& e) -> Measured {
          return {pressed_shaped(e), pressed(e, "virtual coupling", "press_coupled", {})};
        },
-       .judge = judge_sinking},
-      {.id = "V2b",
-       .place = "1.2, Fig. 2d",
-       .claim = "the stiffer a virtual coupling, the less the drill sinks in",
-       .rule = "holds: at every tilt",
-       .measure = measure_couplings,
-       .judge = judge_couplings,
-       .ours = true},
-      {.id = "S1",
-       .place = "1.1.2, 1.2, Fig. 2b, C.4",
-       .claim = "the sum of all points' forces becomes unstable",
-       .published = "instability",
-       .rule =
-           "reproduced: in the planar peg (Table A.1) and in task 2 it diverges, or its velocity varies <rule.vibrates> "
-           "times as much as with stiffness shaping, with the square of it times the power above 30 Hz; in kind: in one",
-       .measure =
-           [](const Evidence& e) {
-             return vibrations_beside_shaping(e, "summation", "task2_held", {"metrics.from_s=0"});
-           },
-       .judge = judge_summation},
-      {.id = "B1b",
-       .place = "B.3.1",
-       .claim = "with the original algorithm the drill easily penetrates, as opposite walls cancel",
-       .published = "high penetration depth",
-       .rule =
-           "reproduced: turned in the hole, at least <rule.easily> times as deep as with stiffness shaping; in kind: deeper",
-       .measure = measure_original,
-       .judge = judge_original},
+       judge_sinking},
+      {"V2b", measure_couplings, judge_couplings},
+      {"S1",
+       [](const Evidence& e) { return vibrations_beside_shaping(e, "summation", "task2_held", {"metrics.from_s=0"}); },
+       judge_summation},
+      {"B1b", measure_original, judge_original},
   };
 }
 

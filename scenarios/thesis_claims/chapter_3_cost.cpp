@@ -5,9 +5,8 @@
 
 #include "algorithms/laws/shaped_stiffness.hpp"
 #include "algorithms/stages/point_stage.hpp"
-#include "scenarios/batch/statistics.hpp"
 #include "scenarios/thesis_claims/claims.hpp"
-#include "scenarios/thesis_claims/contact_sets.hpp"
+#include "scenarios/thesis_claims/measurements.hpp"
 
 /// Claims of 2.8 and 3.4: what the points cost. Times of this machine, so no two ledgers agree in digits.
 namespace hapbench {
@@ -60,7 +59,7 @@ ContactBuffer extreme_contacts(const Evidence& e) {
   const LoadedScenario loaded =
       e.load("task3_spin_signed_distance",
              {"motion.orientation.tilt_rad=0", "hand.target.x_m.amplitude=0.002", "hand.target.y_m.amplitude=0.002"});
-  return largest_of(contact_sets(drill_in_hole(loaded.scenario), 64));
+  return largest_of(contact_sets(loaded.scenario, 64));
 }
 
 Measured measure_deadline(const Evidence& e) {
@@ -71,9 +70,9 @@ Measured measure_deadline(const Evidence& e) {
   reduction->prepare({});
   return {{"",
            {{"points", {static_cast<double>(all.size())}},
-            {"matrix", {seconds_per_call(1, kRepetitions, [&] { dense.shape(contacts, kIterations); })}},
-            {"tensor", {seconds_per_call(1, kRepetitions, [&] { shape_weights(contacts, kIterations); })}},
-            {"reduced", {seconds_per_call(1, kRepetitions, [&] {
+            {"matrix", {seconds_of(kRepetitions, [&] { dense.shape(contacts, kIterations); })}},
+            {"tensor", {seconds_of(kRepetitions, [&] { shape_weights(contacts, kIterations); })}},
+            {"reduced", {seconds_of(kRepetitions, [&] {
                contacts = all;
                reduction->process(contacts);
                dense.shape(contacts, kIterations);
@@ -111,29 +110,27 @@ Finding judge_tensor_deadline(const Measured& measured, const PublishedNumbers& 
 
 Measured measure_loop_load(const Evidence& e) {
   const LoadedScenario task = e.load("task3_spin_signed_distance");
-  std::vector<ContactBuffer> sets = contact_sets(drill_in_hole(task.scenario), 128);
+  std::vector<ContactBuffer> sets = contact_sets(task.scenario, 128);
   const std::size_t largest = largest_size(sets);
   DenseShaping dense(largest);
   const auto reduction = make_gradient_reduction({});
   reduction->prepare({});
-  ContactBuffer work(largest);
-  const auto load = [&](auto shape, bool reduce) {
-    const double seconds = seconds_per_call(sets.size(), kRepetitions, [&] {
-      for (const ContactBuffer& set : sets) {
-        work.assign(set);
-        if (reduce) reduction->process(work);
-        shape();
-      }
+  const auto load = [&](auto shape, bool reduce) -> std::vector<double> {
+    const double seconds = seconds_with(sets, kRepetitions, [&](ContactBuffer& contacts) {
+      if (reduce) reduction->process(contacts);
+      shape(contacts);
     });
-    return std::vector<double>{seconds / task.scenario.time.step};
+    return {seconds / static_cast<double>(sets.size()) / task.scenario.time.step};
   };
+  const auto by_matrix = [&dense](int n) { return [&dense, n](ContactBuffer& contacts) { dense.shape(contacts, n); }; };
+  const auto by_tensor = [](ContactBuffer& contacts) { shape_weights(contacts, kIterations); };
   return {{"",
            {{"points", {static_cast<double>(largest)}},
-            {"reduced_0", load([&] { dense.shape(work, 0); }, true)},
-            {"reduced_3", load([&] { dense.shape(work, kIterations); }, true)},
-            {"unreduced_3", load([&] { dense.shape(work, kIterations); }, false)},
-            {"tensor_reduced_3", load([&] { shape_weights(work, kIterations); }, true)},
-            {"tensor_unreduced_3", load([&] { shape_weights(work, kIterations); }, false)}}}};
+            {"reduced_0", load(by_matrix(0), true)},
+            {"reduced_3", load(by_matrix(kIterations), true)},
+            {"unreduced_3", load(by_matrix(kIterations), false)},
+            {"tensor_reduced_3", load(by_tensor, true)},
+            {"tensor_unreduced_3", load(by_tensor, false)}}}};
 }
 
 Finding judge_loop_load(const Measured& measured, const PublishedNumbers& p) {
@@ -154,37 +151,11 @@ Finding judge_loop_load(const Measured& measured, const PublishedNumbers& p) {
 
 }  // namespace
 
-std::vector<Claim> chapter_3_cost() {
+std::vector<ClaimRule> chapter_3_cost() {
   return {
-      {.id = "T4",
-       .place = "2.8, 3.1",
-       .claim =
-           "in the thesis's dense form almost a thousand points cannot be rendered in 0.5 ms without the reduction, and can with it",
-       .published = "<T4.step.mean*1000> ms",
-       .rule = "reproduced: the n × n matrix misses the deadline, the reduction before it meets it",
-       .measure = measure_deadline,
-       .judge = judge_dense_deadline,
-       .timing = true},
-      {.id = "T4b",
-       .place = "2.8, 3.1",
-       .claim = "through the 3 × 3 stiffness tensor so many points are shaped in time without a reduction",
-       .published = "<T4.step.mean*1000> ms",
-       .rule = "holds: the tensor form meets the deadline",
-       .measure = measure_deadline,
-       .judge = judge_tensor_deadline,
-       .timing = true,
-       .ours = true},
-      {.id = "T5",
-       .place = "3.4, Fig. 4",
-       .claim = "the iterations hardly load the loop, the reduction relieves it",
-       .published = "small impact",
-       .rule = fmt::format(
-           "reproduced: in the dense form {} iterations take at most <rule.small_load.mean*100> % of the period and the reduction "
-           "lowers the load; in kind: one of the two",
-           kIterations),
-       .measure = measure_loop_load,
-       .judge = judge_loop_load,
-       .timing = true},
+      {"T4", measure_deadline, judge_dense_deadline},
+      {"T4b", measure_deadline, judge_tensor_deadline},
+      {"T5", measure_loop_load, judge_loop_load},
   };
 }
 

@@ -6,7 +6,6 @@
 #include <numbers>
 
 #include "scenarios/thesis_claims/claims.hpp"
-#include "scenarios/thesis_claims/measurements.hpp"
 #include "sim/core/math.hpp"
 
 /// Claims of 2.7, 3.5 and 4.5: the limit of the input force.
@@ -17,44 +16,43 @@ namespace {
 // ideal line of Fig. 6, (measured force - weight) / K, rms over the largest one; onset: measured force from which the
 // displacement stays [N]; plateau_spread: (max - min) / mean beyond it.
 
-/// Returns the displacement in each row with contact [m] and appends the measured force of these rows [N].
-std::vector<double> displacement(const Evidence& e, const char* scenario, std::vector<double>& force) {
+/// Displacement into the flat [m] and measured force [N] of a row with contact.
+struct FlatRow {
+  double depth, force;
+};
+
+std::vector<FlatRow> rows_on_flat(const Evidence& e, const char* scenario) {
   const auto table = e.table(scenario, "trajectory.csv");
-  std::vector<double> depth;
+  std::vector<FlatRow> rows;
   for (std::size_t i = 0; i < table.at("pz_m").size(); ++i) {
-    if (table.at("colliding")[i] == 0.0) continue;
-    force.push_back(-table.at("fmeas_z_N")[i]);
-    depth.push_back(-table.at("pz_m")[i]);
+    if (table.at("colliding")[i] != 0.0) rows.push_back({-table.at("pz_m")[i], -table.at("fmeas_z_N")[i]});
   }
-  return depth;
+  return rows;
 }
 
 Measured measure_force_limit(const Evidence& e) {
-  std::vector<double> force_off, force_on;
-  const std::vector<double> off = displacement(e, "force_limit_off", force_off);
-  const std::vector<double> on = displacement(e, "force_limit_on", force_on);
+  const std::vector<FlatRow> off = rows_on_flat(e, "force_limit_off"), on = rows_on_flat(e, "force_limit_on");
   // The plateau is that of the last quarter; the onset where the displacement first reaches 99 % of it.
-  double plateau = 0.0;
+  double plateau = 0.0, onset = std::numeric_limits<double>::infinity();
   const std::size_t last = on.size() / 4;
-  for (std::size_t i = on.size() - last; i < on.size(); ++i) plateau += on[i] / static_cast<double>(last);
-  double onset = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < on.size(); ++i) {
-    if (on[i] >= 0.99 * plateau) onset = std::min(onset, force_on[i]);
-  }
+  for (std::size_t i = on.size() - last; i < on.size(); ++i) plateau += on[i].depth / static_cast<double>(last);
+  for (const auto& [depth, force] : on)
+    if (depth >= 0.99 * plateau) onset = std::min(onset, force);
   double low = plateau, high = plateau;
-  for (std::size_t i = 0; i < on.size(); ++i) {
-    if (force_on[i] < onset + 0.2) continue;
-    low = std::min(low, on[i]);
-    high = std::max(high, on[i]);
+  for (const auto& [depth, force] : on) {
+    if (force < onset + 0.2) continue;
+    low = std::min(low, depth);
+    high = std::max(high, depth);
   }
   const double stiffness = e.load("force_limit_off").scenario.rendering.stiffness;
-  double squares = 0.0;
-  for (std::size_t i = 0; i < off.size(); ++i) {
-    const double apart = off[i] - (force_off[i] - e.published["L1.offset"].mean) / stiffness;
+  double squares = 0.0, deepest = 0.0;
+  for (const auto& [depth, force] : off) {
+    const double apart = depth - (force - e.published["L1.offset"].mean) / stiffness;
     squares += apart * apart / static_cast<double>(off.size());
+    deepest = std::max(deepest, depth);
   }
   return {{"",
-           {{"deviation", {std::sqrt(squares) / *std::max_element(off.begin(), off.end())}},
+           {{"deviation", {std::sqrt(squares) / deepest}},
             {"onset", {onset}},
             {"plateau_spread", {(high - low) / plateau}}}}};
 }
@@ -180,37 +178,11 @@ Finding judge_shaking(const Measured& measured, const PublishedNumbers& publishe
 
 }  // namespace
 
-std::vector<Claim> chapter_3_force_limit() {
+std::vector<ClaimRule> chapter_3_force_limit() {
   return {
-      {.id = "L1",
-       .place = "3.5, Fig. 6",
-       .claim = "displacement is proportional to the force without the limit and constant with it",
-       .published = "constant beyond <L1.threshold.mean:.1f> N of the hand, <L1.measured> N measured",
-       .rule =
-           "reproduced: off the line (force - weight) / K by at most <rule.proportional.mean*100> % of the largest "
-           "displacement, rms; with the limit constant to as much, from within <rule.onset> N of the published force on; "
-           "in kind: all but that force",
-       .measure = measure_force_limit,
-       .judge = judge_force_limit},
-      {.id = "L2",
-       .place = "2.7, C.4.4",
-       .claim = "once the input force is limited, the tool moves only where the reaction decreases",
-       .published = "no velocity along the gradient of the reaction",
-       .rule =
-           "reproduced: not uphill in <rule.nearly_all.mean*100> % of the rows in contact with limited input; in kind: of "
-           "those of them whose reaction has reached the limit",
-       .measure = measure_saturated_motion,
-       .judge = judge_saturated_motion},
-      {.id = "L3",
-       .place = "4.5, C.4.4",
-       .claim = "in free air the limit is felt as inertia when the tool is shaken violently, and not normally",
-       .published = "normal shaking stays below <L1.threshold> N",
-       .rule = fmt::format(
-           "reproduced: <rule.heavier> times the apparent mass at some frequency up to {} Hz; at {} Hz less than <L1.threshold> N "
-           "and the same mass within <rule.same_mass.mean*100> %; in kind: the first",
-           plain(*std::max_element(std::begin(kFrequencies), std::end(kFrequencies))), plain(kNormalShaking)),
-       .measure = measure_shaking,
-       .judge = judge_shaking},
+      {"L1", measure_force_limit, judge_force_limit},
+      {"L2", measure_saturated_motion, judge_saturated_motion},
+      {"L3", measure_shaking, judge_shaking},
   };
 }
 

@@ -4,9 +4,10 @@
 #include <cmath>
 #include <numbers>
 
+#include "results/io/columns.hpp"
 #include "results/observe/ideal_trajectory.hpp"
 #include "scenarios/description/parts.hpp"
-#include "scenarios/thesis_claims/measurements.hpp"
+#include "scenarios/thesis_claims/claims.hpp"
 
 /// Claims of 3.6: the drill turned in the hole against the ideal trajectory.
 namespace hapbench {
@@ -26,7 +27,7 @@ Measured measure_ideal_trajectory(const Evidence& e) {
     const Result run = e.run("task2_held", {fmt::format("hand.force_N={}", force)});
     const std::string hand = force < kGentleForce ? "gentle." : "firm.";
     const auto number = [&](const char* key) -> std::vector<double> {
-      return {ideal_trajectory_metric(run, hand + key).value_or(std::nan(""))};
+      return {number_of(run.metrics, "ideal_trajectory." + hand + key).value_or(std::nan(""))};
     };
     measured.push_back({fmt::format("{} N", force),
                         {{"force", {force}},
@@ -83,28 +84,10 @@ Finding judge_end_of_contact(const Measured& measured, const PublishedNumbers& p
 
 }  // namespace
 
-std::vector<Claim> chapter_3_ideal_trajectory() {
+std::vector<ClaimRule> chapter_3_ideal_trajectory() {
   return {
-      {.id = "J1",
-       .place = "3.6, Fig. 7",
-       .claim =
-           "below 2 N the tip follows the ideal trajectory; above, its height is off, but hardly its distance to the "
-           "hole's axis, and it sinks in a little",
-       .published =
-           "lateral error around <J1.lateral.mean*1000> mm, penetration at most around <J1.depth.mean*1000> mm; no number for the height",
-       .rule =
-           "at most in kind, since hand and forces are not published: the gentlest hand off in height and inside by at most "
-           "<rule.around> times <J1.depth.mean*1000> mm, those above <J1.split> N further off in height than it, and every "
-           "hand's distance to the axis off by at most <rule.around> times <J1.lateral.mean*1000> mm",
-       .measure = measure_ideal_trajectory,
-       .judge = judge_ideal_trajectory},
-      {.id = "J2",
-       .place = "3.6, Fig. 7",
-       .claim = "the drill touches the side wall up to a tilt of 1.047 rad",
-       .published = "<J1.tilt.at_most> rad",
-       .rule = "reproduced: the printed digits",
-       .measure = measure_end_of_contact,
-       .judge = judge_end_of_contact},
+      {"J1", measure_ideal_trajectory, judge_ideal_trajectory},
+      {"J2", measure_end_of_contact, judge_end_of_contact},
   };
 }
 

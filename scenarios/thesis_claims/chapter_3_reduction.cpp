@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include "results/io/columns.hpp"
 #include "scenarios/batch/statistics.hpp"
 #include "scenarios/thesis_claims/claims.hpp"
 
@@ -56,21 +58,15 @@ bool is_near(double value, double published, double other) {
   return std::abs(value - published) <= std::abs(published - other);
 }
 
-/// The density's counts beside one recording: whether the raw ones are near, which are calibrated, and the reduced
-/// ones.
 struct Nearness {
-  bool raw, mean, spread;
+  bool mean, spread;
 };
 
-/// `one` and `other` end the ids of the recordings' counts.
-Nearness nearness(const MeasuredCase& c, const PublishedNumbers& p, const std::string& task, const char* one,
-                  const char* other) {
-  const std::string raws = task + ".raw", reduceds = task + ".reduced";
-  const PublishedNumber &raw = p[raws + one], &raw_2 = p[raws + other], &reduced = p[reduceds + one],
-                        &reduced_2 = p[reduceds + other];
-  return {is_near(c["raw_mean"], raw.mean, raw_2.mean) && is_near(c["raw_deviation"], raw.spread, raw_2.spread),
-          is_near(c["reduced_mean"], reduced.mean, reduced_2.mean),
-          is_near(c["reduced_deviation"], reduced.spread, reduced_2.spread)};
+/// Whether some counts of a density are near those of one recording.
+Nearness nearness(const MeasuredCase& c, const std::string& counts, const PublishedNumber& one,
+                  const PublishedNumber& other) {
+  return {is_near(c[counts + "_mean"], one.mean, other.mean),
+          is_near(c[counts + "_deviation"], one.spread, other.spread)};
 }
 
 /// The appendix gives other counts than 3.3.
@@ -81,10 +77,14 @@ Finding judge_reduced_points(const Measured& counts, const PublishedNumbers& pub
   for (const MeasuredCase& c : counts) {
     const bool bounded = c["reduced_max"] < bound;
     bool whole = false, mean = false, raw = false;
-    for (const Nearness& near : {nearness(c, published, task, "", ".C3"), nearness(c, published, task, ".C3", "")}) {
-      raw = raw || near.raw;
-      mean = mean || (near.raw && near.mean);
-      whole = whole || (near.raw && near.mean && near.spread && bounded);
+    for (const auto& [one, other] : {std::pair("", ".C3"), std::pair(".C3", "")}) {
+      const Nearness calibrated = nearness(c, "raw", published[task + ".raw" + one], published[task + ".raw" + other]);
+      const Nearness left =
+          nearness(c, "reduced", published[task + ".reduced" + one], published[task + ".reduced" + other]);
+      if (!calibrated.mean || !calibrated.spread) continue;
+      raw = true;
+      mean = mean || left.mean;
+      whole = whole || (left.mean && left.spread && bounded);
     }
     if (whole) ++all;
     if (mean) ++means;
@@ -99,11 +99,6 @@ Finding judge_reduced_points(const Measured& counts, const PublishedNumbers& pub
   return {decide(all == counts.size(), means > 0), counts_text(counts), why};
 }
 
-const char* const kCountsRule =
-    "reproduced: at both densities mean and spread of the raw counts (calibrated) and of the reduced ones as near to those "
-    "of 3.3 or C.3 as these are to each other, and no row keeps <T3.reduced.bound.at_most> or more; in kind: the means of one "
-    "density, with its raw spread";
-
 // ---- T2b: the raw counts of task 2 over the force of a constant hand.
 
 constexpr double kHeldForces[] = {0.2, 0.5, 1.0, 1.8};  ///< [N]; the last one is about that of appendix D
@@ -111,14 +106,11 @@ constexpr double kHeldForces[] = {0.2, 0.5, 1.0, 1.8};  ///< [N]; the last one i
 Measured measure_hands(const Evidence& e) {
   Measured measured;
   for (const double force : kHeldForces) {
-    double rows = 0.0, raw = 0.0, kept = 0.0;
-    for_each_row(e.load("task2_held", {fmt::format("hand.force_N={}", force)}), [&](const StepRecord& row) {
-      if (row.colliding == 0) return;
-      rows += 1.0;
-      raw += static_cast<double>(row.colliding);
-      kept = std::max(kept, static_cast<double>(row.rendered->size()));
-    });
-    measured.push_back({fmt::format("{} N", force), {{"raw", {raw / rows}}, {"kept", {kept}}}});
+    const Result run = e.run("task2_held", {fmt::format("hand.force_N={}", force)});
+    const auto number = [&run](const char* metric) { return number_of(run.metrics, metric).value_or(0.0); };
+    measured.push_back(
+        {fmt::format("{} N", force),
+         {{"raw", {number("colliding_mean") / number("contact_share")}}, {"kept", {number("rendered_max")}}}});
   }
   return measured;
 }
@@ -134,40 +126,14 @@ Finding judge_hands(const Measured& measured, const PublishedNumbers& p) {
 
 }  // namespace
 
-std::vector<Claim> chapter_3_reduction() {
+std::vector<ClaimRule> chapter_3_reduction() {
   return {
-      {.id = "T1",
-       .place = "3.3, Fig. 4, C.2a",
-       .claim = "on a flat the reduction always leaves one point",
-       .published = "raw <T1.raw>, reduced <T1.reduced>",
-       .rule = "reproduced: never more than one",
-       .measure = [](const Evidence& e) { return measure_counts(e, "task1_flat"); },
-       .judge = judge_flat_reduction},
-      {.id = "T2",
-       .place = "3.3, 3.4, Fig. 4, C.2b",
-       .claim = "turning in the hole, the reduction leaves a few points, fewer than 15",
-       .published =
-           "raw <T2.raw>, reduced <T2.reduced> (C.3: <T2.raw.C3>, <T2.reduced.C3>), below <T3.reduced.bound.at_most>",
-       .rule = kCountsRule,
-       .measure = [](const Evidence& e) { return measure_counts(e, "task2_rotate"); },
-       .judge = [](const Measured& m, const PublishedNumbers& p) { return judge_reduced_points(m, p, "T2"); }},
-      {.id = "T2b",
-       .place = "3.3, D.4",
-       .claim = "task 2's raw counts are those of a hand much gentler than the subjects of appendix D",
-       .published = "raw <T2.raw>; forces about 1.8 N",
-       .rule =
-           "holds: the gentlest hand's raw mean lies within a spread of the published one, the firmest one's beyond it",
-       .measure = measure_hands,
-       .judge = judge_hands,
-       .ours = true},
-      {.id = "T3",
-       .place = "3.3, 3.4, Fig. 4, C.2c",
-       .claim = "spinning in the hole, fewer than 15 points are left",
-       .published =
-           "raw <T3.raw>, reduced <T3.reduced> (C.3: <T3.raw.C3>, <T3.reduced.C3>), below <T3.reduced.bound.at_most>",
-       .rule = kCountsRule,
-       .measure = [](const Evidence& e) { return measure_counts(e, "task3_spin"); },
-       .judge = [](const Measured& m, const PublishedNumbers& p) { return judge_reduced_points(m, p, "T3"); }},
+      {"T1", [](const Evidence& e) { return measure_counts(e, "task1_flat"); }, judge_flat_reduction},
+      {"T2", [](const Evidence& e) { return measure_counts(e, "task2_rotate"); },
+       [](const Measured& m, const PublishedNumbers& p) { return judge_reduced_points(m, p, "T2"); }},
+      {"T2b", measure_hands, judge_hands},
+      {"T3", [](const Evidence& e) { return measure_counts(e, "task3_spin"); },
+       [](const Measured& m, const PublishedNumbers& p) { return judge_reduced_points(m, p, "T3"); }},
   };
 }
 

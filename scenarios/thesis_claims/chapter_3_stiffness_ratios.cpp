@@ -5,7 +5,7 @@
 
 #include "algorithms/laws/shaped_stiffness.hpp"
 #include "scenarios/thesis_claims/claims.hpp"
-#include "scenarios/thesis_claims/contact_sets.hpp"
+#include "scenarios/thesis_claims/measurements.hpp"
 #include "sim/contact/stiffness_tensor.hpp"
 #include "sim/core/math.hpp"
 #include "sim/core/random.hpp"
@@ -62,10 +62,6 @@ Finding judge_ratios(const Measured& measured, const PublishedNumbers& published
                       bounded ? "below" : "not below", never_above, 100.0 * inside)};
 }
 
-const char* const kRatiosRule =
-    "reproduced: in both tasks, at both densities <rule.nearly_all.mean*100> % of the rows within <R1.once.at_least> to "
-    "<R1.once.at_most> and none above <R1.bound.at_most> after any update; in kind: <rule.most.mean*100> % of the rows";
-
 // ---- R1b: the largest ratio after 160 iterations and at the exact limit, the projection of the identity on the cone
 // of contact tensors.
 
@@ -77,7 +73,7 @@ Measured measure_convergence(const Evidence& e) {
       const double ratio = table.at("ratio_max")[i];
       if (table.at("iteration")[i] == 160.0 && ratio > last_max) last_max = ratio;
     }
-    for (ContactBuffer& set : contact_sets(drill_in_hole(e.load(task).scenario), 64, Points::rendered)) {
+    for (ContactBuffer& set : contact_sets(e.load(task).scenario, 64, Points::rendered)) {
       solve_exact_shaping(set);
       limit_max = std::max(limit_max, ratio_range(set, stiffness_tensor(set)).max);
     }
@@ -117,36 +113,19 @@ struct WeightedDirection {
 };
 using Directions = std::vector<WeightedDirection>;
 
-/// The stiffness tensor after some iterations from the given weights.
-Mat3 shaped_tensor(const Directions& contacts, int iterations) {
-  std::vector<double> c;
-  for (const WeightedDirection& contact : contacts) c.push_back(contact.weight);
-  const auto tensor = [&] {
-    Mat3 S = Mat3::Zero();
-    for (std::size_t i = 0; i < c.size(); ++i) S += c[i] * contacts[i].direction * contacts[i].direction.transpose();
-    return S;
-  };
-  Mat3 S = tensor();
-  for (int iteration = 0; iteration < iterations; ++iteration) {
-    for (std::size_t i = 0; i < c.size(); ++i) {
-      const double ratio = contacts[i].direction.dot(S * contacts[i].direction);
-      c[i] = ratio > 0.0 ? c[i] / ratio : 0.0;
-    }
-    S = tensor();
-  }
-  return S;
-}
-
-/// The limit of the iteration; it does not depend on the weights.
-Mat3 limit_tensor(const Directions& contacts) {
-  ContactBuffer buffer(contacts.size());
-  for (const WeightedDirection& contact : contacts) {
-    buffer.push(0, Vec3::Zero(), -contact.direction);
-    buffer.set_gradient(buffer.size() - 1, contact.direction);
+/// The stiffness tensor after some iterations from the given weights; in the limit it does not depend on them.
+Mat3 shaped_tensor(const Directions& contacts, int iterations, ContactBuffer& buffer) {
+  buffer.clear();
+  for (const auto& [direction, weight] : contacts) {
+    buffer.push(0, Vec3::Zero(), -direction);
+    buffer.set_gradient(buffer.size() - 1, direction);
+    buffer.weight[buffer.size() - 1] = weight;
   }
   buffer.pad();
-  solve_exact_shaping(buffer);
-  return stiffness_tensor(buffer);
+  if (iterations == kExactLimit) solve_exact_shaping(buffer);
+  Mat3 S = stiffness_tensor(buffer);
+  for (int iteration = 0; iteration < iterations; ++iteration) S = update_shaped_weights(buffer, S);
+  return S;
 }
 
 Directions random_directions(Random& random) {
@@ -172,8 +151,9 @@ Directions neighbour(Directions contacts, double step, Random& random) {
 /// random sets of up to eight weighted directions find. The weights before the first iteration stand for many contacts
 /// in one direction. About half a second.
 double stiffest_contacts(int iterations) {
-  const auto stiffness = [iterations](const Directions& contacts) {
-    return lambda_max(iterations == kExactLimit ? limit_tensor(contacts) : shaped_tensor(contacts, iterations));
+  ContactBuffer buffer(kMostDirections);
+  const auto stiffness = [&](const Directions& contacts) {
+    return lambda_max(shaped_tensor(contacts, iterations, buffer));
   };
   double stiffest = 0.0;
   Random random(1);
@@ -233,36 +213,13 @@ Finding judge_guarantee(const Measured& measured, const PublishedNumbers& publis
 
 }  // namespace
 
-std::vector<Claim> chapter_3_stiffness_ratios() {
+std::vector<ClaimRule> chapter_3_stiffness_ratios() {
   return {
-      {.id = "R1",
-       .place = "3.4, 4.3, Fig. 5, C.4.2, E.3, E.4",
-       .claim = "after one iteration the ratios are near 1 and never above 1.5",
-       .published = "<R1.once.at_least> to <R1.once.at_most> after one iteration, never above <R1.bound.at_most>",
-       .rule = std::string(kRatiosRule) + "; one iteration is <ratios.one_iteration> update",
-       .measure = [](const Evidence& e) { return measure_ratios(e, e.published["ratios.one_iteration"].mean); },
-       .judge = judge_ratios},
-      {.id = "R3",
-       .place = "3.4, Fig. 5, 4.3, C.4.2",
-       .claim = "the default of three iterations keeps the ratios near 1: they converge quickly",
-       .published = "<R1.iterations> iterations; the range after one, <R1.once.at_least> to <R1.once.at_most>, shrinks",
-       .rule = kRatiosRule,
-       .measure = [](const Evidence& e) { return measure_ratios(e, e.published["R1.iterations"].mean); },
-       .judge = judge_ratios},
-      {.id = "R1b",
-       .place = "2.4, 3.4, C.4.2",
-       .claim = "the ratios converge to 1",
-       .published = "<R1.limit>",
-       .rule = "reproduced: within <rule.converged.mean*100> % of 1 at the exact limit; else refuted",
-       .measure = measure_convergence,
-       .judge = judge_convergence},
-      {.id = "R2",
-       .place = "A.3, 5",
-       .claim = "the combined stiffness is guaranteed not to exceed 1.5 times the stiffness of a contact",
-       .published = "<R2.bound.at_most>",
-       .rule = "reproduced: no direction stiffer than <R2.bound.at_most> in the stiffest sets of contacts found",
-       .measure = measure_guarantee,
-       .judge = judge_guarantee},
+      {"R1", [](const Evidence& e) { return measure_ratios(e, e.published["ratios.one_iteration"].mean); },
+       judge_ratios},
+      {"R3", [](const Evidence& e) { return measure_ratios(e, e.published["R1.iterations"].mean); }, judge_ratios},
+      {"R1b", measure_convergence, judge_convergence},
+      {"R2", measure_guarantee, judge_guarantee},
   };
 }
 

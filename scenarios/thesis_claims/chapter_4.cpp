@@ -6,14 +6,10 @@
 #include "algorithms/registry.hpp"
 #include "scenarios/batch/statistics.hpp"
 #include "scenarios/description/parts.hpp"
-#include "scenarios/run/assemble.hpp"
 #include "scenarios/thesis_claims/claims.hpp"
-#include "scenarios/thesis_claims/contact_sets.hpp"
 #include "scenarios/thesis_claims/measurements.hpp"
-#include "sim/contact/contact_source.hpp"
 
-/// Claims of 4.2: the depths and gradients of the thesis's two depth models, and what they cost.
-/// Claims of chapter 4: what the thesis discusses as limits.
+/// Claims of chapter 4: the thesis's two depth models (4.2), and what else it discusses as limits.
 namespace hapbench {
 namespace {
 
@@ -51,33 +47,29 @@ constexpr std::uint64_t kRowsBetweenSamples = 64;
 Measured measure_underestimation(const Evidence& e) {
   const double shallow = e.published["G1.negligible"].at_most;
   const LoadedScenario loaded = e.load("task2_rotate_signed_distance");
-  const auto shell = make_shell(loaded.scenario, loaded.files);
   const Cylinder tool = make_cylinder(loaded.scenario.tool);
-  ShellQuery query(*shell, tool);
-  const auto shortest = find_depth_model("surface_normal")->make(),
-             exact = find_depth_model("normal_projection")->make();
   const auto law = make_law(kProposedLaw, loaded.scenario.rendering);
-  law->prepare(shell->size());
-  ContactBuffer contacts(shell->size());
   std::vector<double> error, share;
   std::vector<Vec3> way;
   double apart = 0.0, force = 0.0;
   for_each_row(loaded, [&](const StepRecord& row) {
     if (row.step % kRowsBetweenSamples != 0) return;
     way.push_back(row.tool.pose.position);
-    query.contacts_at(row.tool.pose, contacts);
-    exact->evaluate(tool, row.tool.pose, contacts);
-    contacts.pad();
-    const std::vector<double> truth(contacts.depth.begin(),
-                                    contacts.depth.begin() + static_cast<long>(contacts.size()));
-    if (truth.empty() || *std::max_element(truth.begin(), truth.end()) > shallow) return;
-    const Vec3 right = law->evaluate(contacts).spring;
-    shortest->evaluate(tool, row.tool.pose, contacts);
-    apart += (law->evaluate(contacts).spring - right).squaredNorm();
+    const auto with_depths = [&](const char* model) {
+      ContactBuffer contacts = copy_of(*row.found);
+      find_depth_model(model)->make()->evaluate(tool, row.tool.pose, contacts);
+      contacts.pad();
+      return contacts;
+    };
+    ContactBuffer exact = with_depths("normal_projection"), shortest = with_depths("surface_normal");
+    if (exact.empty() || exact.largest_depth() > shallow) return;
+    law->prepare(exact.size());
+    const Vec3 right = law->evaluate(exact).spring;
+    apart += (law->evaluate(shortest).spring - right).squaredNorm();
     force += right.squaredNorm();
-    for (std::size_t i = 0; i < truth.size(); ++i) {
-      error.push_back(truth[i] - contacts.depth[i]);
-      if (truth[i] > 0.0) share.push_back(error.back() / truth[i]);
+    for (std::size_t i = 0; i < exact.size(); ++i) {
+      error.push_back(exact.depth[i] - shortest.depth[i]);
+      if (exact.depth[i] > 0.0) share.push_back(error.back() / exact.depth[i]);
     }
   });
   std::sort(error.begin(), error.end());
@@ -121,22 +113,15 @@ constexpr int kRepetitions = 20;
 
 Measured measure_depth_cost(const Evidence& e) {
   const std::vector<ContactBuffer> sets =
-      contact_sets(drill_in_hole(e.load("task2_rotate_signed_distance").scenario), kRowsBetweenSamples);
+      contact_sets(e.load("task2_rotate_signed_distance").scenario, kRowsBetweenSamples);
   double contacts = 0.0;
   for (const ContactBuffer& set : sets) contacts += static_cast<double>(set.size());
-  ContactBuffer work(largest_size(sets));
-  const auto seconds = [&](auto evaluate) {
-    return seconds_per_call(1, kRepetitions, [&] {
-      for (const ContactBuffer& set : sets) {
-        work.assign(set);
-        evaluate();
-      }
-    });
-  };
-  const double copying = seconds([] {});
+  const double copying = seconds_with(sets, kRepetitions, [](ContactBuffer&) {});
   const auto of_contact = [&](const char* model) -> std::vector<double> {
     const auto depth = find_depth_model(model)->make();
-    return {std::max(0.0, seconds([&] { depth->evaluate(kDrill, kUpright, work); }) - copying) / contacts};
+    const double seconds =
+        seconds_with(sets, kRepetitions, [&](ContactBuffer& set) { depth->evaluate(kDrill, kUpright, set); });
+    return {std::max(0.0, seconds - copying) / contacts};
   };
   return {
       {"", {{"normal_projection", of_contact("normal_projection")}, {"surface_normal", of_contact("surface_normal")}}}};
@@ -151,39 +136,6 @@ Finding judge_depth_cost(const Measured& measured, const PublishedNumbers& p) {
           fmt::format("{:.2g} times as much, for a cylinder; a mesh, which the thesis means besides, is not looked at",
                       times)};
 }
-
-}  // namespace
-
-std::vector<Claim> chapter_4_depths() {
-  return {
-      {.id = "G1",
-       .place = "4.2, Fig. 8, C.1",
-       .claim = "the gradient of the shortest distance flips across the median line, the surface normal's cannot",
-       .rule = "reproduced: one turns round, the other does not; in kind: the first",
-       .measure = measure_median_line,
-       .judge = judge_median_line},
-      {.id = "G1b",
-       .place = "4.2, F.1",
-       .claim = "depths are underestimated, negligibly when they are small",
-       .published = "negligible below <G1.negligible.at_most*1000> mm",
-       .rule =
-           "reproduced: in task 2 the force of contacts up to <G1.negligible.at_most*1000> mm deep is off by at most "
-           "<rule.negligible.mean*100> % rms, and the way by as much of that depth; in kind: one of the two, or for 95 % of "
-           "the contacts the depth itself",
-       .measure = measure_underestimation,
-       .judge = judge_underestimation},
-      {.id = "G2",
-       .place = "4.2, F.1",
-       .claim = "the depth along the normal consumes a huge amount of computational power",
-       .published = "huge",
-       .rule = "reproduced: <rule.huge> times the time of the shortest distance; in kind: more",
-       .measure = measure_depth_cost,
-       .judge = judge_depth_cost,
-       .timing = true},
-  };
-}
-
-namespace {
 
 // ---- B4: the highest depth along the averaged direction, against stiffness shaping, in the planar peg and in the turn
 // of task 2.
@@ -275,67 +227,25 @@ Finding judge_parallel_faces(const Measured& measured, const PublishedNumbers& p
 
 }  // namespace
 
-std::vector<Claim> chapter_4_discussion() {
+std::vector<ClaimRule> chapter_4() {
   return {
-      {.id = "B4",
-       .place = "4.1",
-       .claim = "taking the highest depth along the averaged direction vibrates in the hole",
-       .published = "serious vibration",
-       .rule = std::string(kVibrationRule) +
-               " as with stiffness shaping in the planar peg or in task 2; in kind: more of both in both",
-       .measure =
-           [](const Evidence& e) {
-             // One rotation to and fro says as much as five.
-             return vibrations_beside_shaping(e, "highest_depth", "task2_rotate_signed_distance",
-                                              {"time.duration_s=6", "record.ideal_trajectory=false"});
-           },
-       .judge = judge_highest_depth},
-      {.id = "C1",
-       .place = "4.1",
-       .claim = "dense points with gradually changing normals collapse to one",
-       .published = "one point left",
-       .rule = "reproduced: one of at least ten is left and the force changes by at least "
-               "<rule.over_reduced.mean*100> %; in kind: the first",
-       .measure = measure_over_reduction,
-       .judge = judge_over_reduction},
-      {.id = "C2",
-       .place = "4.4",
-       .claim = "turning the tool into a wall is under-damped, since the damping sees the tip's velocity only",
-       .rule =
-           "reproduced: the velocity of a tool held in place varies <rule.turn> times as much as with damping that sees the "
-           "turn, and the force reverses more often; in kind: it varies more",
-       .measure = [](const Evidence& e) { return measure_turn_into_wall(e, {}); },
-       .judge = judge_turn_into_wall},
-      {.id = "C7",
-       .place = "4.4",
-       .claim = "a slow turn as in the tasks shows no under-damping",
-       .published = "not observed",
-       .rule =
-           "reproduced: turned in the time of task 2, its velocity varies less than <rule.turn> times as much as with damping "
-           "that sees the turn, and the force reverses no more often; in kind: one of the two",
-       .measure =
-           [](const Evidence& e) {
-             return measure_turn_into_wall(e, {"motion.orientation.tilt_rad.period_s=6", "time.duration_s=6"});
-           },
-       .judge = judge_slow_turn},
-      {.id = "C3",
-       .place = "4.6",
-       .claim = "between two parallel faces rotation meets no force",
-       .rule =
-           "reproduced: sinks in by <rule.sinks_in> of the radius, net force below <rule.no_force.mean*100> % of one wall's; "
-           "in kind: the second",
-       .measure = measure_parallel_faces,
-       .judge = judge_parallel_faces},
-      {.id = "C4",
-       .place = "4.3, C.4.2",
-       .claim = "stiffness beyond some value saturates the actuators",
-       .published = "about <C4.stiffness.mean*1e-3> 000 or <C4.stiffness.C42.mean*1e-3> 000 N/m",
-       .rule = "needs the trainer",
-       .measure = [](const Evidence&) { return Measured(); },
-       .judge = [](const Measured&, const PublishedNumbers&) -> Finding {
-         return {Verdict::not_reproducible, "",
-                 "which stiffness saturates the actuators depends on the trainer's mechanics, which are not published"};
-       }},
+      {"G1", measure_median_line, judge_median_line},
+      {"G1b", measure_underestimation, judge_underestimation},
+      {"G2", measure_depth_cost, judge_depth_cost},
+      {"B4",
+       [](const Evidence& e) {
+         return vibrations_beside_shaping(e, "highest_depth", "task2_rotate_signed_distance",
+                                          {"time.duration_s=6", "record.ideal_trajectory=false"});
+       },
+       judge_highest_depth},
+      {"C1", measure_over_reduction, judge_over_reduction},
+      {"C2", [](const Evidence& e) { return measure_turn_into_wall(e, {}); }, judge_turn_into_wall},
+      {"C7",
+       [](const Evidence& e) {
+         return measure_turn_into_wall(e, {"motion.orientation.tilt_rad.period_s=6", "time.duration_s=6"});
+       },
+       judge_slow_turn},
+      {"C3", measure_parallel_faces, judge_parallel_faces},
   };
 }
 

@@ -41,63 +41,37 @@ bool concerns(const ChosenField& field, const std::string& scenario) {
                      [&scenario](const std::string& pattern) { return names_scenario(pattern, scenario); });
 }
 
-/// Changes fields of a scenario and records the changes.
-class Changes {
- public:
-  Changes(Json scenario, std::string name) : scenario_(std::move(scenario)), name_(std::move(name)) {}
+using Place = std::pair<std::string, Json*>;  ///< a dotted path, and the value there
 
-  void apply(const OpenChoice& choice, const ChosenField& field, const std::string& value) {
-    const Words keys = parts_of(field.path, '.');
-    visit(
-        scenario_, "", keys,
-        [&](Json& node, const std::string& path) {
-          std::string text = value;
-          if (field.times) {
-            if (!node.is_number()) fail(choice, path, "is no number, which a factor needs");
-            text = number_text(finite_number(value).value_or(1.0) * node.get<double>());
-          }
-          node = Json::accept(text) ? parse_json(text) : Json(text);
-          values_[path] = text;
-        },
-        choice);
-  }
-
-  std::vector<std::string> overrides() const {
-    std::vector<std::string> texts;
-    for (const auto& [path, value] : values_.items()) texts.push_back(path + "=" + value.get<std::string>());
-    return texts;
-  }
-
- private:
-  template <class Work>
-  void visit(Json& node, const std::string& path, std::span<const std::string_view> keys, const Work& work,
-             const OpenChoice& choice) {
-    if (keys.empty()) return work(node, path);
-    const std::string key(keys.front());
-    const auto below = [&](Json& child, const std::string& name) {
-      visit(child, path.empty() ? name : path + "." + name, keys.subspan(1), work, choice);
-    };
-    if (node.is_array()) {
-      const auto index = whole_number(key);
-      if (key != "*" && (!index || *index >= node.size())) fail(choice, path, fmt::format("has no entry \"{}\"", key));
-      for (std::size_t i = 0; i < node.size(); ++i) {
-        if (key == "*" || i == *index) below(node[i], std::to_string(i));
+/// The places that a dotted path stands for. Throws InputError.
+std::vector<Place> places_of(Json& scenario, const std::string& path) {
+  std::vector<Place> places = {{"", &scenario}};
+  for (const std::string_view key : parts_of(path, '.')) {
+    std::vector<Place> below;
+    for (const auto& [at, node] : places) {
+      const bool every = key == "*" && node->is_array();
+      bool found = every;
+      for (auto& [name, value] : node->items()) {
+        if (!every && name != key) continue;
+        below.emplace_back(at.empty() ? name : at + "." + name, &value);
+        found = true;
       }
-    } else {
-      if (!node.is_object() || !node.contains(key)) fail(choice, path, fmt::format("has no field \"{}\"", key));
-      below(node[key], key);
+      if (!found)
+        throw InputError(fmt::format("{} has no {} \"{}\"", at.empty() ? "the scenario" : '"' + at + '"',
+                                     node->is_array() ? "entry" : "field", key));
     }
+    places = std::move(below);
   }
+  return places;
+}
 
-  [[noreturn]] void fail(const OpenChoice& choice, const std::string& path, const std::string& problem) const {
-    throw InputError(fmt::format("choice \"{}\": in scenario {}, {} {}", choice.id, name_,
-                                 path.empty() ? "the scenario" : fmt::format("\"{}\"", path), problem));
-  }
-
-  Json scenario_;  ///< with every default, so that every field exists
-  std::string name_;
-  Json values_ = Json::object();  ///< texts by path, in the order of their first change
-};
+/// The text of a choice's value at a place. Throws InputError.
+std::string chosen_text(const Place& place, const ChosenField& field, const std::string& value) {
+  if (!field.times) return value;
+  if (!place.second->is_number())
+    throw InputError(fmt::format("\"{}\" is no number, which a factor needs", place.first));
+  return number_text(finite_number(value).value_or(1.0) * place.second->get<double>());
+}
 
 std::string fields_text(const OpenChoice& choice) {
   if (choice.fields.empty()) return "read by rules";
@@ -143,13 +117,25 @@ std::vector<std::string> Choices::values_on_record() const {
 }
 
 std::vector<std::string> Choices::overrides(const Scenario& scenario, std::span<const std::string> values) const {
-  Changes changes(effective_scenario(scenario, scenario.directory), scenario.name);
+  Json changed = effective_scenario(scenario, scenario.directory);  // with every default, so that every field exists
+  Json texts = Json::object();                                      // by path, in the order of their first change
   for (std::size_t i = 0; i < all_.size(); ++i) {
     for (const ChosenField& field : all_[i].fields) {
-      if (concerns(field, scenario.name)) changes.apply(all_[i], field, values[i]);
+      if (!concerns(field, scenario.name)) continue;
+      try {
+        for (const Place& place : places_of(changed, field.path)) {
+          const std::string text = chosen_text(place, field, values[i]);
+          *place.second = Json::accept(text) ? parse_json(text) : Json(text);
+          texts[place.first] = text;
+        }
+      } catch (const InputError& error) {
+        throw InputError(fmt::format("choice \"{}\": in scenario {}, {}", all_[i].id, scenario.name, error.what()));
+      }
     }
   }
-  return changes.overrides();
+  std::vector<std::string> overrides;
+  for (const auto& [path, text] : texts.items()) overrides.push_back(path + "=" + text.get<std::string>());
+  return overrides;
 }
 
 PublishedNumbers Choices::with_numbers(PublishedNumbers published, std::span<const std::string> values) const {

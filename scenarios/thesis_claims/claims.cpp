@@ -1,21 +1,19 @@
 #include "scenarios/thesis_claims/claims.hpp"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <exception>
+#include <filesystem>
+#include <map>
+#include <tuple>
+#include <utility>
+
+#include "scenarios/input/input_error.hpp"
+#include "scenarios/input/installed_folder.hpp"
+#include "scenarios/input/json_file.hpp"
 
 namespace hapbench {
-
-const VerdictText& text_of(Verdict verdict) {
-  // In the order of the enumeration.
-  static constexpr VerdictText kTexts[] = {
-      {"reproduced", "the rule of the claim holds with the published numbers"},
-      {"reproduced in kind", "direction or mechanism are the published ones, the numbers are not"},
-      {"not reproduced", "neither, in this model of the device and the hand"},
-      {"refuted", "it contradicts an exact result"},
-      {"not reproducible", "no simulation can show it: people or the trainer are needed"},
-      {"holds", "a finding of ours that the measurement shows"},
-      {"does not hold", "a finding of ours that the measurement does not show"}};
-  return kTexts[static_cast<std::size_t>(verdict)];
-}
 
 Verdict decide(bool reproduced, bool in_kind) {
   return reproduced ? Verdict::reproduced : in_kind ? Verdict::in_kind : Verdict::not_reproduced;
@@ -34,13 +32,38 @@ std::string plain(double number) {
   return text;
 }
 
+Finding Claim::finding(const Evidence& evidence) const {
+  if (judge == nullptr) return {Verdict::not_reproducible, "", why};
+  return judge(measure(evidence), evidence.published);
+}
+
 std::vector<Claim> all_claims() {
-  std::vector<Claim> claims;
+  std::map<std::string, std::pair<Measure, Judge>> rules;
   for (const auto chapter :
-       {chapter_3_reduction, chapter_3_cost, chapter_3_stiffness_ratios, chapter_3_force_limit,
-        chapter_3_ideal_trajectory, appendix_a, chapter_4_depths, appendix_b_original_algorithm, chapter_4_discussion,
-        appendix_c_proposed_algorithm, chapter_1_penetration, appendix_f_optional_algorithms, appendix_d_experiments}) {
-    for (Claim& claim : chapter()) claims.push_back(std::move(claim));
+       {chapter_1_penetration, chapter_3_reduction, chapter_3_cost, chapter_3_stiffness_ratios, chapter_3_force_limit,
+        chapter_3_ideal_trajectory, chapter_4, appendix_a, appendix_b_original_algorithm, appendix_c_proposed_algorithm,
+        appendix_d_experiments, appendix_f_optional_algorithms}) {
+    for (const auto& [id, measure, judge] : chapter()) rules[id] = {measure, judge};
+  }
+  const std::filesystem::path file = installed_folder("results/reference") / "rules.json";
+  std::vector<Claim> claims;
+  try {
+    const Json json = parse_json(read_text_file(file, kLargestJsonFile));
+    for (const Json& row : json.at("claims")) {
+      claims.push_back({.id = row.at("id"),
+                        .place = row.at("place"),
+                        .claim = row.at("claim"),
+                        .published = row.value("published", ""),
+                        .rule = row.at("rule"),
+                        .why = row.value("why", ""),
+                        .timing = row.value("timing", false),
+                        .ours = row.value("ours", false),
+                        .costly = row.value("costly", false)});
+      Claim& claim = claims.back();
+      if (claim.why.empty()) std::tie(claim.measure, claim.judge) = rules.at(claim.id);
+    }
+  } catch (const std::exception& problem) {
+    fail_in_file(file, fmt::format("is no file of claims, after {} of them: {}", claims.size(), problem.what()));
   }
   return claims;
 }

@@ -115,6 +115,7 @@ void for_each_row(const LoadedScenario& loaded, const std::function<void(const S
   class RowObserver final : public Observer {
    public:
     explicit RowObserver(const std::function<void(const StepRecord&)>& row_of) : row_(row_of) {}
+    bool wants_found() const noexcept override { return true; }
     void on_step(const StepRecord& record) noexcept override { row_(record); }
 
    private:

@@ -67,7 +67,8 @@ struct Evidence {
   Result run(const std::string& name, const std::vector<std::string>& more = {}) const;
 };
 
-/// Runs a scenario in memory and calls `row` for each row. Throws InputError.
+/// Runs a scenario in memory and calls `row` for each row, which has the contacts as they were found. Throws
+/// InputError.
 void for_each_row(const LoadedScenario& loaded, const std::function<void(const StepRecord&)>& row);
 
 }  // namespace hapbench

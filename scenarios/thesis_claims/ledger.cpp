@@ -15,6 +15,13 @@ std::string text_at(const Json& claim, const char* key) {
   return claim.at(key).get<std::string>();
 }
 
+/// The verdict of most samples, if it is not the one on record.
+std::optional<std::string> other_majority(const Json& claim) {
+  const Json& majority = claim.at("majority");
+  if (majority.is_null() || majority == claim.at("verdict")) return std::nullopt;
+  return majority.get<std::string>();
+}
+
 }  // namespace
 
 Json robustness_on_record(const Json& record, const JudgedClaim& judged) {
@@ -57,17 +64,6 @@ Json ledger_json(const std::vector<JudgedClaim>& judged, const PublishedNumbers&
   return {{"headline", ledger_headline(claims)}, {"claims", std::move(claims)}};
 }
 
-namespace {
-
-/// The verdict of most samples, if it is not the one on record.
-std::optional<std::string> other_majority(const Json& claim) {
-  const Json& majority = claim.at("majority");
-  if (majority.is_null() || majority == claim.at("verdict")) return std::nullopt;
-  return majority.get<std::string>();
-}
-
-}  // namespace
-
 std::string verdicts_text(const Json& claim) {
   const std::string verdict = text_at(claim, "verdict");
   const std::optional<std::string> majority = other_majority(claim);
@@ -98,24 +94,20 @@ std::string robustness_text(const Json& claim) {
 }
 
 std::string ledger_headline(const Json& claims) {
-  std::size_t all = 0, survive = 0, changes = 0;
-  std::map<std::string, std::size_t> not_sampled;  // by what robustness_text says
+  std::size_t all = 0;
+  std::map<std::string, std::size_t> count;
   std::string changed;
   for (const Json& claim : claims) {
     if (claim.at("ours").get<bool>()) continue;
+    const auto majority = other_majority(claim);
+    ++count[majority ? "changes" : claim.at("robustness").is_null() ? robustness_text(claim) : "survives"];
     ++all;
-    if (const auto majority = other_majority(claim)) {
-      ++changes;
-      append_item(changed, fmt::format("{} (most samples: {}; recorded: {})", text_at(claim, "id"), *majority,
-                                       text_at(claim, "verdict")));
-    } else if (claim.at("robustness").is_null()) {
-      ++not_sampled[robustness_text(claim)];
-    } else {
-      ++survive;
-    }
+    if (!majority) continue;
+    append_item(changed, fmt::format("{} (most samples: {}; recorded: {})", text_at(claim, "id"), *majority,
+                                     text_at(claim, "verdict")));
   }
-  const std::size_t waiting = not_sampled[kWaiting], untouched = not_sampled[kUntouched],
-                    other = all - survive - changes - waiting - untouched;
+  const std::size_t survive = count["survives"], changes = count["changes"], waiting = count[kWaiting],
+                    untouched = count[kUntouched], other = all - survive - changes - waiting - untouched;
   std::string text = fmt::format(
       "Of {} verdicts on claims of the thesis, {} of the {} sampled would survive another reasonable reading: most samples "
       "of the choices on record have them, too. ",

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -10,16 +11,50 @@
 
 namespace hapbench {
 
+Scenario drill_in_hole(Scenario scenario) {
+  scenario.device = IdealDeviceFields{input_force_limit(scenario.device)};
+  constexpr double kPeriod = 6.0;  // [s], of the tilt of task 2
+  const auto rows = static_cast<std::int64_t>(std::llround(kPeriod / scenario.time.step));
+  scenario.time.steps = std::min(scenario.time.steps, rows);
+  scenario.record = {};
+  return scenario;
+}
+
+ContactBuffer copy_of(const ContactBuffer& contacts) {
+  ContactBuffer copy(contacts.size());
+  copy.assign(contacts);
+  return copy;
+}
+
+std::vector<ContactBuffer> contact_sets(const Scenario& scenario, std::uint64_t stride, Points points) {
+  LoadedScenario loaded;
+  loaded.scenario = drill_in_hole(scenario);
+  if (points == Points::colliding) {
+    loaded.scenario.rendering.reduction.reset();
+    loaded.scenario.rendering.local_average = false;
+  }
+  std::vector<ContactBuffer> sets;
+  for_each_row(loaded, [&](const StepRecord& row) {
+    if (row.step % stride == 0 && !row.rendered->empty()) sets.push_back(copy_of(*row.rendered));
+  });
+  return sets;
+}
+
+ContactBuffer largest_of(const std::vector<ContactBuffer>& sets) {
+  return *std::max_element(sets.begin(), sets.end(),
+                           [](const ContactBuffer& a, const ContactBuffer& b) { return a.size() < b.size(); });
+}
+
+std::size_t largest_size(const std::vector<ContactBuffer>& sets) {
+  return sets.empty() ? 0 : largest_of(sets).size();
+}
+
 MeasuredCase vibration(const std::string& name, const Result& run) {
   const auto number = [&](const char* metric) { return number_of(run.metrics, metric).value_or(0.0); };
   return {name,
           {{"velocity_variation", {number("velocity_total_variation_m_per_s")}},
            {"vibration_power", {number("vibration_power_above_30Hz_m2_per_s2")}},
            {"force_reversals", {number("force_reversals")}}}};
-}
-
-std::optional<double> ideal_trajectory_metric(const Result& run, const std::string& key) {
-  return number_of(run.metrics, "ideal_trajectory." + key);
 }
 
 Measured vibrations_beside_shaping(const Evidence& e, const std::string& law, const std::string& task,

@@ -10,6 +10,7 @@
 #include "results/observe/passivity_observer.hpp"
 #include "results/summary/outcome_names.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
+#include "scenarios/input/text_lines.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "sim/core/hash.hpp"
 #include "sim/loop/simulation.hpp"
@@ -40,40 +41,9 @@ class Pointer {
   std::array<Profile::Waypoints, kLed> led_;
 };
 
-class PointerHand final : public Hand {
- public:
-  explicit PointerHand(const ImpedanceHandFields& fields) : fields_(fields), hand_(0.0, 0.0, {}) {}
-
-  void follow(const Pointer& pointer) { hand_ = ImpedanceHand(fields_.stiffness, fields_.damping, pointer.place()); }
-  void reset() noexcept override {}
-  Vec3 force(double t, const HandView& view) noexcept override { return hand_.force(t, view); }
-
- private:
-  ImpedanceHandFields fields_;
-  ImpedanceHand hand_;
-};
-
-/// Turns the tool by the pointer's angles in place of the scenario's.
-class PointerMotion final : public Motion {
- public:
-  explicit PointerMotion(const OrientationFields& fields)
-      : orientation_(make_orientation(fields)), motion_(orientation_, std::nullopt) {}
-
-  void follow(const Pointer& pointer) {
-    orientation_.tilt = pointer.profile(3);
-    orientation_.azimuth = pointer.profile(4);
-    motion_ = ScriptedMotion(orientation_, std::nullopt);
-  }
-  Vec3 axis_at(double t) const noexcept override { return motion_.axis_at(t); }
-  double roll_at(double t) const noexcept override { return motion_.roll_at(t); }
-  bool scripts_roll() const noexcept override { return motion_.scripts_roll(); }
-  bool position_is_free() const noexcept override { return true; }
-  Vec3 position_at(double) const noexcept override { return Vec3::Zero(); }
-
- private:
-  Orientation orientation_;
-  ScriptedMotion motion_;
-};
+nlohmann::json list(const Vec3& v) {
+  return {v.x(), v.y(), v.z()};
+}
 
 /// Each row is sent to the page as so many numbers: time, five vectors, depth and number of contacts. ROW in
 /// page/engine.js has their places.
@@ -100,10 +70,14 @@ class Session final : public Observer {
 
   void on_step(const StepRecord& row) noexcept override {
     last_ = row.force.S;
+    Vec3 vibration = Vec3::Zero();  // the force above the cutoff; none where the sampling rate is too low for that
+    if (high_pass_) {
+      if (row.step == 0) high_pass_->settle_at(row.force.rendered);
+      vibration = high_pass_->filter(row.force.rendered);
+    }
     contacts_->assign(*row.rendered);
     rows_.push_back(row.time);
-    for (const Vec3& v : {row.tool.pose.position, row.tool.pose.axis, row.force.rendered, row.force.spring,
-                          vibration(row.force.rendered, row.step == 0)})
+    for (const Vec3& v : {row.tool.pose.position, row.tool.pose.axis, row.force.rendered, row.force.spring, vibration})
       rows_.insert(rows_.end(), {v.x(), v.y(), v.z()});
     rows_.insert(rows_.end(), {row.force.depth_max, static_cast<double>(row.rendered->size())});
   }
@@ -112,8 +86,13 @@ class Session final : public Observer {
   void aim(double t, const std::array<double, Pointer::kLed>& values) {
     const std::uint64_t row = simulation_ ? simulation_->next_row() : 0;
     pointer_.add(t, values, static_cast<double>(row) * loaded_.scenario.time.step);
-    hand_->follow(pointer_);
-    motion_->follow(pointer_);
+    const Scenario& scenario = loaded_.scenario;
+    const auto& hand = std::get<ImpedanceHandFields>(scenario.hand);
+    *hand_ = ImpedanceHand(hand.stiffness, hand.damping, pointer_.place());
+    Orientation led = make_orientation(*scenario.motion.orientation);
+    led.tilt = pointer_.profile(3);
+    led.azimuth = pointer_.profile(4);
+    *motion_ = ScriptedMotion(led, std::nullopt);
     if (!simulation_) begin();
   }
 
@@ -139,7 +118,6 @@ class Session final : public Observer {
     }
     const OrientationFields turned = scenario.motion.orientation.value_or(OrientationFields());
     const Box box = shell_ ? shell_->bounds() : Box{};
-    const auto list = [](const Vec3& v) { return nlohmann::json{v.x(), v.y(), v.z()}; };
     return text({{"step_s", scenario.time.step},
                  {"stiffness_N_per_m", scenario.rendering.stiffness},
                  {"algorithm", scenario.rendering.algorithm},
@@ -162,7 +140,7 @@ class Session final : public Observer {
       contacts.push_back({p.x(), p.y(), p.z(), u.x(), u.y(), u.z(), contacts_->depth[i], contacts_->weight[i]});
     }
     nlohmann::json tensor = nlohmann::json::array();
-    for (Eigen::Index i = 0; i < 3; ++i) tensor.push_back({last_(i, 0), last_(i, 1), last_(i, 2)});
+    for (Eigen::Index i = 0; i < 3; ++i) tensor.push_back(list(last_.row(i).transpose()));
     const SimulationResult& result = simulation_->result();
     const bool diverged = result.outcome == Outcome::diverges;
     return text({{"rows", result.rows},
@@ -177,25 +155,15 @@ class Session final : public Observer {
   const PointShell* shell() const { return shell_.get(); }
 
  private:
-  /// The force above the cutoff; zero where the sampling rate is too low for that.
-  Vec3 vibration(const Vec3& force, bool is_first) noexcept {
-    if (!high_pass_) return Vec3::Zero();
-    if (is_first) high_pass_->settle_at(force);
-    return high_pass_->filter(force);
-  }
-
   void put_on_pointer() {
     const Scenario& scenario = loaded_.scenario;
-    const auto* hand = std::get_if<ImpedanceHandFields>(&scenario.hand);
-    if (hand == nullptr) throw InputError("/hand/type: allowed: \"impedance\", whose target the pointer leads");
+    if (!std::holds_alternative<ImpedanceHandFields>(scenario.hand))
+      throw InputError("/hand/type: allowed: \"impedance\", whose target the pointer leads");
     if (!scenario.motion.orientation || !position_is_free(scenario.motion))
       throw InputError("/motion/position/type: allowed: \"free\", because the pointer leads the tool");
-    auto led_hand = std::make_unique<PointerHand>(*hand);
-    hand_ = led_hand.get();
-    parts_.hand = std::move(led_hand);
-    auto led_motion = std::make_unique<PointerMotion>(*scenario.motion.orientation);
-    motion_ = led_motion.get();
-    parts_.motion = std::move(led_motion);
+    // What is assembled of these fields.
+    hand_ = static_cast<ImpedanceHand*>(parts_.hand.get());
+    motion_ = static_cast<ScriptedMotion*>(parts_.motion.get());
   }
 
   void begin() {
@@ -207,8 +175,8 @@ class Session final : public Observer {
   SimulationParts parts_;
   std::shared_ptr<const PointShell> shell_;
   std::shared_ptr<const ToolShape> tool_;
-  PointerHand* hand_ = nullptr;      ///< the simulation's
-  PointerMotion* motion_ = nullptr;  ///< the simulation's
+  ImpedanceHand* hand_ = nullptr;     ///< the simulation's
+  ScriptedMotion* motion_ = nullptr;  ///< the simulation's
   Pointer pointer_;
   std::optional<MetricsObserver> metrics_;
   std::optional<PassivityObserver> passivity_;
@@ -234,11 +202,8 @@ EXPORTED(allocate) void* page_allocate(std::uint32_t size) {
 /// "path=value" as for --set.
 EXPORTED(load) void page_load(const char* name, const char* overrides, std::uint32_t is_led) {
   std::vector<std::string> given;
-  for (std::string_view rest = overrides; !rest.empty();) {
-    const std::size_t end = rest.find('\n');
-    given.emplace_back(rest.substr(0, end));
-    rest = end == std::string_view::npos ? std::string_view() : rest.substr(end + 1);
-  }
+  LineReader lines(overrides);
+  while (const auto line = lines.next()) given.emplace_back(*line);
   session.emplace(load_scenario(find_scenario(name), given), is_led != 0);
 }
 

@@ -1,12 +1,49 @@
 #pragma once
 
-#include <pybind11/pybind11.h>
+#include <pybind11/numpy.h>
 
+#include <array>
+#include <cstddef>
 #include <exception>
 #include <functional>
+#include <limits>
+#include <vector>
 
 /// The parts of the compiled module.
 namespace hapbench {
+
+/// A numpy array with `width` numbers for each contact, of which Python gets a view of the first rows. Precondition of
+/// everything: the interpreter is held.
+class ContactArray {
+ public:
+  using Columns = std::array<const double*, 3>;  ///< the first `width` of them count
+
+  ContactArray(std::size_t capacity, pybind11::ssize_t width) : width_(width), numbers_(shape(capacity)) {}
+
+  /// The view of the first n rows, filled from the columns; reused while n stays the same.
+  const pybind11::object& filled(std::size_t n, const Columns& columns) {
+    double* out = numbers_.mutable_data();
+    for (std::size_t i = 0; i < n; ++i) {
+      for (std::size_t j = 0; j < static_cast<std::size_t>(width_); ++j) *out++ = columns[j][i];
+    }
+    if (n != rows_) {
+      view_ = pybind11::array_t<double>(shape(n), numbers_.data(), numbers_);
+      rows_ = n;
+    }
+    return view_;
+  }
+
+ private:
+  std::vector<pybind11::ssize_t> shape(std::size_t rows) const {
+    const auto n = static_cast<pybind11::ssize_t>(rows);
+    return width_ == 1 ? std::vector{n} : std::vector{n, width_};
+  }
+
+  pybind11::ssize_t width_;
+  pybind11::array_t<double> numbers_;
+  pybind11::object view_;
+  std::size_t rows_ = std::numeric_limits<std::size_t>::max();
+};
 
 /// Counts a call that computes. An error of Python in one of them ends all of them; the end of the last one lets work
 /// begin again. Precondition of both ends: the interpreter is held.

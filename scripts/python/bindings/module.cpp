@@ -23,44 +23,27 @@ namespace {
 
 namespace py = pybind11;
 
-void raise(const InputError& error) {
-  py::list faults;
-  for (const InputError& fault : error.faults()) faults.append(py::make_tuple(fault.place(), fault.problem()));
-  const py::object type = py::module_::import("hapbench.errors").attr("ScenarioError");
-  PyErr_SetObject(type.ptr(), type(faults).ptr());
-}
-
 /// Raises InputError and IoError as hapbench.ScenarioError and OSError.
 void translate_errors() {
   py::register_exception_translator([](std::exception_ptr pointer) {
     try {
       if (pointer) std::rethrow_exception(pointer);
     } catch (const InputError& error) {
-      raise(error);
+      py::list faults;
+      for (const InputError& fault : error.faults()) faults.append(py::make_tuple(fault.place(), fault.problem()));
+      const py::object type = py::module_::import("hapbench.errors").attr("ScenarioError");
+      PyErr_SetObject(type.ptr(), type(faults).ptr());
     } catch (const IoError& error) {
       PyErr_SetString(PyExc_OSError, error.what());
     }
   });
 }
 
-/// Name, unit and meaning of each column, and the numbers as an array of columns x rows.
+/// Name, unit and meaning of each column, and the numbers as an array of rows x columns.
 py::tuple table_of(const MemoryTable& table) {
   py::list columns;
   for (const Column& column : table.columns()) columns.append(py::make_tuple(column.name, column.unit, column.meaning));
-  const std::size_t width = table.columns().size(), rows = table.rows();
-  py::array_t<double> numbers({width, rows});
-  double* out = numbers.mutable_data();
-  const double* in = table.numbers().data();
-  for (std::size_t row = 0; row < rows; ++row) {
-    for (std::size_t i = 0; i < width; ++i) out[i * rows + row] = in[row * width + i];
-  }
-  return py::make_tuple(columns, numbers);
-}
-
-py::dict tables_of(const RecordedTables& tables) {
-  py::dict all;
-  for (const auto& [file, table] : tables) all[py::str(std::filesystem::path(file).stem().string())] = table_of(table);
-  return all;
+  return py::make_tuple(columns, py::array_t<double>({table.rows(), table.columns().size()}, table.numbers().data()));
 }
 
 py::dict run(const std::string& scenario, const std::vector<std::string>& overrides, const py::object& progress) {
@@ -83,7 +66,12 @@ py::dict run(const std::string& scenario, const std::vector<std::string>& overri
   result["warnings"] = warnings;
   result["unmet"] = report.unmet;
   py::list trials;
-  for (const RecordedTables& trial : tables.trials) trials.append(tables_of(trial));
+  for (const RecordedTables& trial : tables.trials) {
+    py::dict recorded;
+    for (const auto& [file, table] : trial)
+      recorded[py::str(std::filesystem::path(file).stem().string())] = table_of(table);
+    trials.append(recorded);
+  }
   result["trials"] = trials;
   result["targets"] = tables.targets ? py::object(table_of(*tables.targets)) : py::object(py::none());
   return result;

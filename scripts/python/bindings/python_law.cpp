@@ -1,14 +1,17 @@
-#include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <limits>
+#include <iterator>
 #include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
 #include <thread>
-#include <utility>
+#include <tuple>
+#include <vector>
 
 #include "algorithms/module/module.hpp"
 #include "algorithms/registry.hpp"
@@ -21,8 +24,14 @@ namespace {
 
 namespace py = pybind11;
 
-/// The arguments of a law, by their names; `own` stands for the law's own parameters.
-enum class Argument { depths, gradients, points, normals, stiffness, own };
+/// The arguments of a law that show its contacts.
+constexpr std::string_view kShown[] = {"depths", "gradients", "points", "normals"};
+
+/// What one of them shows.
+ContactArray::Columns columns_of(std::size_t shown, const HapbenchContacts& c) {
+  const ContactArray::Columns all[] = {{c.depth}, {c.gx, c.gy, c.gz}, {c.x, c.y, c.z}, {c.nx, c.ny, c.nz}};
+  return all[shown];
+}
 
 /// Name, default, minimum, maximum, unit, meaning.
 using GivenParameter = std::tuple<std::string, double, double, double, std::string, std::string>;
@@ -33,11 +42,15 @@ struct Definition {
   py::object callable;
   bool is_class = false;
   std::vector<GivenParameter> given;
-  std::array<std::string, 4> texts;  ///< summary, formula, source, known failure
-  /// The function's arguments in their order; for an own parameter its index in the table.
-  std::vector<std::pair<Argument, std::size_t>> arguments;
+  std::array<std::string, 4> texts;    ///< summary, formula, source, known failure
+  std::vector<std::string> arguments;  ///< names: of kShown, "stiffness" or of its own parameters
   std::vector<HapbenchParameter> parameters;
   HapbenchModule table = {};
+
+  std::size_t place_of(const std::string& parameter) const {
+    const auto same = [&](const GivenParameter& p) { return std::get<0>(p) == parameter; };
+    return static_cast<std::size_t>(std::find_if(given.begin(), given.end(), same) - given.begin());
+  }
 };
 
 /// The interpreter's state of a thread that Python has not made, for as long as a law lives: making one takes longer
@@ -61,45 +74,18 @@ class KeptThread {
   PyThreadState* state_ = nullptr;
 };
 
-/// A numpy array with `width` numbers for each contact, of which laws get a view of the first rows.
-class ContactArray {
- public:
-  ContactArray(std::size_t capacity, py::ssize_t width) : width_(width), numbers_(shape(capacity)) {}
-
-  /// The view of the first n rows, filled from one array for each column; reused while n stays the same.
-  const py::object& filled(std::size_t n, std::initializer_list<const double*> columns) {
-    double* out = numbers_.mutable_data();
-    for (std::size_t i = 0; i < n; ++i) {
-      for (const double* column : columns) *out++ = column[i];
-    }
-    if (n != rows_) {
-      view_ = py::array_t<double>(shape(n), numbers_.data(), numbers_);
-      rows_ = n;
-    }
-    return view_;
-  }
-
- private:
-  std::vector<py::ssize_t> shape(std::size_t rows) const {
-    const auto n = static_cast<py::ssize_t>(rows);
-    return width_ == 1 ? std::vector{n} : std::vector{n, width_};
-  }
-
-  py::ssize_t width_;
-  py::array_t<double> numbers_;
-  py::object view_;
-  std::size_t rows_ = std::numeric_limits<std::size_t>::max();
-};
-
 /// A law for one run. Precondition of everything: the interpreter is held.
 class PythonLaw {
  public:
-  PythonLaw(const Definition& definition, const double* values, const HapbenchRun& run)
-      : definition_(&definition), stiffness_(run.stiffness) {
-    for (std::size_t i = 0; i < definition.given.size(); ++i) own_.emplace_back(values[i]);
-    for (const auto& [argument, place] : definition.arguments) {
-      if (argument < Argument::stiffness)
-        columns_[static_cast<std::size_t>(argument)].emplace(run.capacity, argument == Argument::depths ? 1 : 3);
+  PythonLaw(const Definition& definition, const double* values, const HapbenchRun& run) : definition_(&definition) {
+    for (const std::string& name : definition.arguments) {
+      Argument& argument = arguments_.emplace_back();
+      argument.shown = static_cast<std::size_t>(std::ranges::find(kShown, name) - std::begin(kShown));
+      if (argument.shown < std::size(kShown)) {
+        argument.array.emplace(run.capacity, argument.shown == 0 ? 1 : 3);
+      } else {
+        argument.number = py::float_(name == "stiffness" ? run.stiffness : values[definition.place_of(name)]);
+      }
     }
     start();
   }
@@ -125,20 +111,13 @@ class PythonLaw {
   py::object call(const HapbenchContacts& contacts) {
     std::array<PyObject*, 64> arguments;
     std::size_t count = 0;
-    for (const auto& [which, place] : definition_->arguments)
-      arguments[count++] = argument(contacts, which, place).ptr();
+    for (Argument& a : arguments_) {
+      const py::object& shown = a.array ? a.array->filled(contacts.n, columns_of(a.shown, contacts)) : a.number;
+      arguments[count++] = shown.ptr();
+    }
     PyObject* result = PyObject_Vectorcall(callable_.ptr(), arguments.data(), count, nullptr);
     if (result == nullptr) throw py::error_already_set();
     return py::reinterpret_steal<py::object>(result);
-  }
-
-  const py::object& argument(const HapbenchContacts& c, Argument which, std::size_t place) {
-    if (which == Argument::stiffness) return stiffness_;
-    if (which == Argument::own) return own_[place];
-    ContactArray& array = *columns_[static_cast<std::size_t>(which)];
-    if (which == Argument::depths) return array.filled(c.n, {c.depth});
-    if (which == Argument::gradients) return array.filled(c.n, {c.gx, c.gy, c.gz});
-    return which == Argument::points ? array.filled(c.n, {c.x, c.y, c.z}) : array.filled(c.n, {c.nx, c.ny, c.nz});
   }
 
   void take_force(const py::object& answer, std::size_t n, HapbenchForce& to) const {
@@ -179,9 +158,13 @@ class PythonLaw {
 
   const Definition* definition_;
   py::object callable_;
-  std::vector<py::float_> own_;
-  py::float_ stiffness_;
-  std::array<std::optional<ContactArray>, 4> columns_;
+  /// An array of the contacts or a number.
+  struct Argument {
+    std::size_t shown = 0;
+    std::optional<ContactArray> array = {};
+    py::object number = {};
+  };
+  std::vector<Argument> arguments_;
 };
 
 struct State {
@@ -219,14 +202,6 @@ void destroy(void* given) {
   state->thread.give_back();
 }
 
-Argument argument_named(const std::string& name) {
-  if (name == "depths") return Argument::depths;
-  if (name == "gradients") return Argument::gradients;
-  if (name == "points") return Argument::points;
-  if (name == "normals") return Argument::normals;
-  return name == "stiffness" ? Argument::stiffness : Argument::own;
-}
-
 /// Any thread may release the last reference; it is destroyed only while there is an interpreter.
 void destroy_definition(Definition* definition) {
   if (!Py_IsInitialized()) return;
@@ -234,15 +209,9 @@ void destroy_definition(Definition* definition) {
   delete definition;
 }
 
-void fill_table(Definition& definition, const std::vector<std::string>& arguments) {
+void fill_table(Definition& definition) {
   for (const auto& [name, initial, least, greatest, unit, meaning] : definition.given)
     definition.parameters.push_back({name.c_str(), unit.c_str(), least, greatest, initial, meaning.c_str()});
-  for (const std::string& argument : arguments) {
-    const auto place = std::find_if(definition.given.begin(), definition.given.end(),
-                                    [&](const GivenParameter& p) { return std::get<0>(p) == argument; });
-    definition.arguments.emplace_back(argument_named(argument),
-                                      static_cast<std::size_t>(place - definition.given.begin()));
-  }
   const auto& [summary, formula, source, known_failure] = definition.texts;
   definition.table = {.version = HAPBENCH_MODULE_VERSION,
                       .kind = HAPBENCH_LAW,
@@ -268,9 +237,9 @@ void add_force_law(const std::string& name, const py::object& callable, bool is_
   const DepthModelEntry* fixed = depth_model.empty() ? nullptr : find_depth_model(depth_model);
   if (!depth_model.empty() && fixed == nullptr)
     throw std::invalid_argument("unknown depth model \"" + depth_model + "\"");
-  const std::shared_ptr<Definition> definition(new Definition{name, callable, is_class, parameters, texts, {}, {}},
-                                               destroy_definition);
-  fill_table(*definition, arguments);
+  const std::shared_ptr<Definition> definition(
+      new Definition{name, callable, is_class, parameters, texts, arguments, {}}, destroy_definition);
+  fill_table(*definition);
   AlgorithmEntry entry = law_entry({{definition, &definition->table}, file}, hash_text(hash_of(source)));
   if (fixed != nullptr) entry.fixed_depth_model = fixed->info->name;
   add_algorithm(std::move(entry));

@@ -1,4 +1,3 @@
-#include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
 #include <algorithm>
@@ -24,10 +23,6 @@ class LastRow final : public Observer {
     row = record;
     contacts.assign(*record.rendered);
   }
-  void reset() {
-    row = {};
-    contacts.clear();
-  }
 
   StepRecord row;
   ContactBuffer contacts;
@@ -35,18 +30,6 @@ class LastRow final : public Observer {
 
 py::array_t<double> array_of(const Vec3& v) {
   return py::array_t<double>(3, v.data());
-}
-
-/// An n x 3 array of the vectors at(i).
-template <class At>
-py::array_t<double> rows_of(std::size_t n, At at) {
-  py::array_t<double> rows({n, std::size_t{3}});
-  auto cells = rows.mutable_unchecked<2>();
-  for (std::size_t i = 0; i < n; ++i) {
-    const Vec3 v = at(i);
-    for (int j = 0; j < 3; ++j) cells(static_cast<py::ssize_t>(i), j) = v[j];
-  }
-  return rows;
 }
 
 /// A run, step by step.
@@ -91,7 +74,8 @@ class PythonSimulation {
   void reset() {
     const UnderWay counted;
     simulation_->reset();
-    last_->reset();
+    last_->row = {};
+    last_->contacts.clear();
     raise_python_error();
   }
 
@@ -120,11 +104,14 @@ class PythonSimulation {
     const std::size_t n = c.size();
     py::dict contacts;
     contacts["index"] = py::array_t<std::uint32_t>(static_cast<py::ssize_t>(n), c.index.data());
-    contacts["points_m"] = rows_of(n, [&](std::size_t i) { return c.point(i); });
-    contacts["normals"] = rows_of(n, [&](std::size_t i) { return c.normal(i); });
-    contacts["depths_m"] = py::array_t<double>(static_cast<py::ssize_t>(n), c.depth.data());
-    contacts["gradients"] = rows_of(n, [&](std::size_t i) { return c.gradient(i); });
-    contacts["weights"] = py::array_t<double>(static_cast<py::ssize_t>(n), c.weight.data());
+    const auto array = [n](const auto&... columns) -> py::object {
+      return ContactArray(n, sizeof...(columns)).filled(n, {columns.data()...});
+    };
+    contacts["points_m"] = array(c.x, c.y, c.z);
+    contacts["normals"] = array(c.nx, c.ny, c.nz);
+    contacts["depths_m"] = array(c.depth);
+    contacts["gradients"] = array(c.ux, c.uy, c.uz);
+    contacts["weights"] = array(c.weight);
     return contacts;
   }
 
@@ -141,21 +128,19 @@ class PythonSimulation {
 
 }  // namespace
 
+/// hapbench.Simulation says what they do.
 void bind_simulation(py::module_& module) {
-  py::class_<PythonSimulation>(module, "Simulation",
-                               "One run of a scenario, step by step. hapbench.Simulation is made of it.")
+  py::class_<PythonSimulation>(module, "Simulation")
       .def(py::init<const std::string&, const std::vector<std::string>&>(), py::arg("scenario"), py::arg("overrides"))
-      .def("step", &PythonSimulation::step, "Compute the next row. False, and nothing done, once the run has ended.")
-      .def("advance", &PythonSimulation::advance, py::arg("steps"),
-           "Compute up to so many rows without the interpreter; returns how many.")
-      .def("reset", &PythonSimulation::reset, "Back to the start, bit for bit.")
-      .def_property_readonly("state", &PythonSimulation::state, "The last row: copies.")
-      .def_property_readonly("contacts", &PythonSimulation::contacts, "Its rendered contacts: copies.")
-      .def_property_readonly("rows", &PythonSimulation::rows, "Rows computed so far.")
-      .def_property_readonly("time_step_s", &PythonSimulation::step_size, "The time from row to row [s].")
-      .def_property_readonly("steps", &PythonSimulation::steps, "Rows of the whole run.")
-      .def_property_readonly("outcome", &PythonSimulation::outcome,
-                             "How the run ended; \"completes\" while it goes on.");
+      .def("step", &PythonSimulation::step)
+      .def("advance", &PythonSimulation::advance, py::arg("steps"))
+      .def("reset", &PythonSimulation::reset)
+      .def_property_readonly("state", &PythonSimulation::state)
+      .def_property_readonly("contacts", &PythonSimulation::contacts)
+      .def_property_readonly("rows", &PythonSimulation::rows)
+      .def_property_readonly("time_step_s", &PythonSimulation::step_size)
+      .def_property_readonly("steps", &PythonSimulation::steps)
+      .def_property_readonly("outcome", &PythonSimulation::outcome);
 }
 
 }  // namespace hapbench

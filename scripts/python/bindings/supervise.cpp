@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 #include <thread>
+#include <tuple>
 
 #include "bindings/bindings.hpp"
 #include "scenarios/input/input_error.hpp"
@@ -30,32 +31,22 @@ constexpr auto kPatience = 2s;
 int under_way = 0;
 PyObject* python_error = nullptr;
 
-struct ProgressState {
-  std::string label;
-  std::uint64_t done = 0, total = 0;
-
-  bool operator==(const ProgressState&) const = default;
-};
+/// Label, done and total; the total is 0 before the first report.
+using ProgressState = std::tuple<std::string, std::uint64_t, std::uint64_t>;
 
 /// The last progress that the work reported.
 class ProgressBoard final : public ProgressListener {
  public:
-  ProgressBoard() { last_.label.reserve(kLongest); }
   void progress(std::string_view label, std::uint64_t done, std::uint64_t total) noexcept override {
     const std::lock_guard lock(mutex_);
-    last_.label.assign(label.substr(0, kLongest));
-    last_.done = done;
-    last_.total = total;
+    last_ = {std::string(label), done, total};
   }
-  /// Its total is 0 before the first report.
   ProgressState last() {
     const std::lock_guard lock(mutex_);
     return last_;
   }
 
  private:
-  static constexpr std::size_t kLongest = 256;
-
   std::mutex mutex_;
   ProgressState last_;
 };
@@ -103,12 +94,12 @@ void supervise(const py::object& progress, const std::function<void()>& work) {
       ProgressState last = board.last();
       if (!is_told || last == told) return;
       told = std::move(last);
-      progress(told.label, told.done, told.total);
+      std::apply(progress, told);
     });
   }
   raise_python_error();
   result.get();
-  if (const ProgressState last = board.last(); is_told && last.total > 0) progress(last.label, last.total, last.total);
+  if (const auto [label, done, total] = board.last(); is_told && total > 0) progress(label, total, total);
 }
 
 void stop_work_by(const py::error_already_set& error) {

@@ -280,7 +280,7 @@ def _plain(value):
 def _table(name, given):
     columns, numbers = given
     names = [column for column, _, _ in columns]
-    return Table(zip(names, numbers), {column: unit for column, unit, _ in columns},
+    return Table(zip(names, numbers.T.copy()), {column: unit for column, unit, _ in columns},
                  {column: meaning for column, _, meaning in columns}, name)
 
 

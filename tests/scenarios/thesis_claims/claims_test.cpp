@@ -307,7 +307,7 @@ TEST(ClaimRules, C3ParallelFaces) {
 
 TEST(ClaimRules, C4AndD5AreNotForASimulation) {
   for (const char* id : {"C4", "D5"}) {
-    const Finding finding = claim(id).judge({}, published());
+    const Finding finding = claim(id).finding({published(), {}, {}});
     EXPECT_EQ(finding.verdict, Verdict::not_reproducible) << id;
     EXPECT_FALSE(finding.why.empty()) << id;
   }
