@@ -32,6 +32,14 @@ struct OutputOptions {
   bool json = false;   ///< JSON instead of tables on standard output
 };
 
+/// Options that most commands have.
+struct CommonOptions {
+  std::vector<std::string> overrides;
+  unsigned jobs = 0;  ///< 0: as many as this process may use
+  std::string out;
+  OutputOptions output;
+};
+
 /// Adds --quiet, --json and --wide.
 void add_output_options(Command& command, OutputOptions& options);
 /// Adds --set, repeatable and completed by the fields of scenarios.
@@ -94,19 +102,12 @@ std::vector<std::string> chosen_names(std::string_view got, const std::vector<st
 
 /// `out`, or results/out/`name` when it is empty.
 std::filesystem::path results_directory(const std::string& out, const std::string& name);
-/// One directory per scenario: `out` itself for a single one, a subdirectory named after the file for several; without
-/// `out`, one of results/out, named after the file behind `prefix`. Throws InputError when two files have the same
-/// name; `allowed` is for its message.
-std::vector<std::filesystem::path> output_directories(const std::string& out,
-                                                      const std::vector<LoadedScenario>& scenarios,
-                                                      const std::string& prefix, const std::string& allowed);
+/// Throws InputError when two scenarios have the same name, after which results are named; `allowed` is for its message.
+void require_names_of_their_own(const std::vector<std::filesystem::path>& files, const std::string& allowed);
 
 /// Throws InputError unless results can be written to `directory`. Creates it, and removes it again if it is still
 /// empty when the program ends.
 void require_writable_directory(const std::filesystem::path& directory);
-/// Throws InputError unless a file can be written at the path given to --out; creates its directory likewise.
-void require_writable_file(const std::filesystem::path& file);
-
 /// `jobs` threads, or as many as this process may use when it is 0, and a progress bar behind `label` unless quiet.
 JobOptions job_options(unsigned jobs, const OutputOptions& output, const std::string& label);
 
@@ -117,8 +118,5 @@ std::string shell_line(const std::vector<std::string>& words);
 std::filesystem::path this_program();
 /// Sets the answer of this_program, for a host that is another program.
 void set_this_program(std::filesystem::path program);
-
-/// The options of a command line that load the plugins that this program has loaded.
-std::vector<std::string> plugin_words();
 
 }  // namespace hapbench

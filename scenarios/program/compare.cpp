@@ -214,20 +214,19 @@ void add_compare(CommandLine& line) {
       line.command("compare", "Run scenarios through several algorithms side by side; several scenarios give a league",
                    compare, "the folders of finished runs are kept, but no table is written");
   command.add("scenarios", options.scenarios, "scenario files, names of bundled scenarios, or of groups of them");
-  command.add("--algorithms", options.algorithms, "names, separated by commas, or all (default: all)")
-      .comma_separated();
-  command.add("--seeds", options.seeds, "run each K times, time k with the scenario's seed + k (default: 1)")
-      .range(1, 10'000);
+  command.add("--algorithms", options.algorithms, "names, separated by commas, or all (default: all)",
+              {.comma_separated = true});
+  command.add("--seeds", options.seeds, "run each K times, time k with the scenario's seed + k (default: 1)",
+              {.range = {{1, 10'000}}});
   command.add(
       "--jitter", options.jitter,
       "shift the start by a vector of this length [m] whose direction depends on the seed and is the same for all "
       "algorithms: gives a spread where nothing else is random");
-  command
-      .add("--by", options.metrics,
-           "metrics of the league, less is better: names of summary.json, separated by commas (default: " +
-               fmt::format("{}", fmt::join(kDefaultMetrics, ",")) +
-               "; fidelity where every scene has a reference force)")
-      .comma_separated();
+  command.add("--by", options.metrics,
+              "metrics of the league, less is better: names of summary.json, separated by commas (default: " +
+                  fmt::format("{}", fmt::join(kDefaultMetrics, ",")) +
+                  "; fidelity where every scene has a reference force)",
+              {.comma_separated = true});
   add_jobs(command, options.jobs, "runs at once (default: one per thread; 1 where the table shows times)");
   command.add(
       "--out", options.out,

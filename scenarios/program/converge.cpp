@@ -293,17 +293,16 @@ void add_converge(CommandLine& line) {
   auto [command, options] =
       line.command("converge", "Say how far metrics of a scene are from converged, in the step or any field", converge,
                    "no table is written");
-  command.add("scenario", options.scenario, "scenario file, or name of a bundled scenario").required();
-  command
-      .add("--metric", options.metrics,
-           fmt::format("names of summary.json, separated by commas (default: {})", kDefaultMetrics[0]))
-      .comma_separated();
+  command.add("scenario", options.scenario, "scenario file, or name of a bundled scenario", {.required = true});
+  command.add("--metric", options.metrics,
+              fmt::format("names of summary.json, separated by commas (default: {})", kDefaultMetrics[0]),
+              {.comma_separated = true});
   command.add(
       "--vary", options.field,
       "the field to refine: time.step_s (default), environment.grid_m, environment.spacing_m, tool.grid_m or any "
       "other number above 0 that gets better as it falls");
-  command.add("--levels", options.levels, "number of levels, the scenario's own value the coarsest (default: 5)")
-      .range(kFewestLevels, kMostLevels);
+  command.add("--levels", options.levels, "number of levels, the scenario's own value the coarsest (default: 5)",
+              {.range = {{kFewestLevels, kMostLevels}}});
   command.add("--ratio", options.ratio, "of each level to the next; whole for the step (default: 2)");
   command.add("--to", options.to, "also name the coarsest level with a smaller relative error, as 1%, and its cost");
   add_jobs(command, options.jobs, "runs at once; only times depend on it (default: one per thread)");

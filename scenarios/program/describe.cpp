@@ -117,14 +117,13 @@ void add_describe(CommandLine& line) {
       "Explain an algorithm, a depth model, an integrator, an environment, a field, a scenario, a metric, a column or "
       "file of the results, a word or heading that the program prints, a claim, a choice on record or a place of the thesis",
       describe);
-  command
-      .add(
-          "name", options.name,
-          "a name that \"list\" shows, a field such as rendering.limits, \"scenario\" (all fields), \"schema\", "
-          "\"choices_schema\", \"stability\", \"diagnosis\"; a metric or a column, \"metrics\" or \"columns\" for all of them, a "
-          "heading such as \">30Hz rms N\", or a file such as trajectory.csv; a claim such as C5, a choice such as "
-          "planar.first_tilt or a place such as \"Fig. A.2\"")
-      .required();
+  command.add(
+      "name", options.name,
+      "a name that \"list\" shows, a field such as rendering.limits, \"scenario\" (all fields), \"schema\", "
+      "\"choices_schema\", \"stability\", \"diagnosis\"; a metric or a column, \"metrics\" or \"columns\" for all of them, a "
+      "heading such as \">30Hz rms N\", or a file such as trajectory.csv; a claim such as C5, a choice such as "
+      "planar.first_tilt or a place such as \"Fig. A.2\"",
+      {.required = true});
   add_output_options(command, options.output);
 }
 

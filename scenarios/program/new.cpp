@@ -164,9 +164,10 @@ void add_new(CommandLine& line) {
   command.add("--from", options.from, "the file of the mesh, shell or stroke to start from");
   command.add("--on", options.on, "of a stroke: the mesh that it is played back over, in place of a plane");
   command.add("--scale", options.scale, "length of the mesh's unit [m], 0.001 for millimetres (default: guessed)");
-  command.add("--side", options.side, "from which the tool comes: x, y, z (default), or --side=-x, -y, -z")
-      .one_of({"x", "y", "z", "-x", "-y", "-z"});
-  command.add("--path", options.path, "X,Y,Z [m] of a point to drag over; give it for each, two or more").repeatable();
+  command.add("--side", options.side, "from which the tool comes: x, y, z (default), or --side=-x, -y, -z",
+              {.one_of = {"x", "y", "z", "-x", "-y", "-z"}});
+  command.add("--path", options.path, "X,Y,Z [m] of a point to drag over; give it for each, two or more",
+              {.several = true});
   command.add("--at", options.at, "X,Y,Z [m]: start over the place of the surface that is nearest to it");
   command.flag("--preview", options.preview, "run the scene and draw it: the surface, the tool on its way; FILE.svg");
   command.add("--out", options.out, "the file to write, which must not exist (default: [FROM_]KIND.json)");

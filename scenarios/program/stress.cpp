@@ -71,8 +71,8 @@ std::vector<DescribedTable> stress_tables() {
 void add_stress(CommandLine& line) {
   auto [command, options] = line.command(
       "stress", "Pass random degenerate contact sets through every algorithm, and count what no law may give", stress);
-  command.add("--count", options.count, "contact sets (default: 100000)").range(1, 1'000'000'000);
-  command.add("--seed", options.seed, "of the random numbers (default: 1)").range(0, std::int64_t{1} << 53);
+  command.add("--count", options.count, "contact sets (default: 100000)", {.range = {{1, 1'000'000'000}}});
+  command.add("--seed", options.seed, "of the random numbers (default: 1)", {.range = {{0, std::int64_t{1} << 53}}});
   add_jobs(command, options.jobs, "threads (default: as many as the machine has)");
   command.add("--out", options.out, "directory of the results (default: results/out/stress)");
   add_output_options(command, options.output);

@@ -218,10 +218,10 @@ void add_run_options(Command& command, SweepCommand& options) {
   command.flag("--resume", options.resume,
                "continue an interrupted sweep of the same definition, and try again what failed");
   command.flag("--keep-runs", options.keep_runs, "also write the files of each run, into runs/INDEX");
-  CommandOption row = command.add("--row", options.row, "index of the run for --print");
-  CommandOption print = command.flag("--print", options.print, "only print the command that repeats the run of --row");
-  row.needs(print);
-  print.needs(row);
+  command.add("--row", options.row, "index of the run for --print");
+  command.flag("--print", options.print, "only print the command that repeats the run of --row");
+  command.needs("--row", "--print");
+  command.needs("--print", "--row");
 }
 
 }  // namespace
@@ -232,29 +232,27 @@ void add_sweep(CommandLine& line) {
   command.add(
       "scenario", options.scenario,
       "scenario file, or name of a bundled scenario; or the folder of a finished sweep, which is printed again");
-  command
-      .add(
-          "--vary", options.vary,
-          "a field and its values: path=a:b:n (n numbers from a to b), path=a:b:n:log (in equal ratios) or path=v,w,... "
-          "(numbers, names or JSON; rendering.algorithm=all; scenario=v,w in place of SCENARIO). Several give all "
-          "combinations; the last one varies fastest. With --sample: path=a:b, path=a:b:log or path=v,w,...")
-      .repeatable();
-  const CommandOption sample = command.add(
-      "--sample", options.sample,
-      "run a sample of points instead of all combinations: lhs:N (Latin hypercube) or random:N; listed values "
-      "take equal shares");
+  command.add(
+      "--vary", options.vary,
+      "a field and its values: path=a:b:n (n numbers from a to b), path=a:b:n:log (in equal ratios) or path=v,w,... "
+      "(numbers, names or JSON; rendering.algorithm=all; scenario=v,w in place of SCENARIO). Several give all "
+      "combinations; the last one varies fastest. With --sample: path=a:b, path=a:b:log or path=v,w,...",
+      {.several = true});
+  command.add("--sample", options.sample,
+              "run a sample of points instead of all combinations: lhs:N (Latin hypercube) or random:N; listed values "
+              "take equal shares");
   command.add(
       "--points", options.points,
       "run the points of a CSV file instead: fields' paths in the first line, their values in each further one");
-  command.add("--seed", options.seed, "seed of the sample (default: 1)").needs(sample);
+  command.add("--seed", options.seed, "seed of the sample (default: 1)");
+  command.needs("--seed", "--sample");
   command.add("--metric", options.metric,
               "the column of sweep.csv that is shown, by which runs are ordered (default: " +
                   std::string(kDefaultMetrics[0]) + ")");
-  command
-      .add("--where", options.where,
-           "print only the runs with this: a column of sweep.csv, one of < <= > >= = !=, and a number or a text, as "
-           "'inside_max_m<3e-4'; several must all hold")
-      .repeatable();
+  command.add("--where", options.where,
+              "print only the runs with this: a column of sweep.csv, one of < <= > >= = !=, and a number or a text, as "
+              "'inside_max_m<3e-4'; several must all hold",
+              {.several = true});
   command.add("--out", options.out, "directory of sweep.csv (default: results/out/sweep_NAME)");
   add_overrides(command, options.overrides, "override a field of all runs: path=value");
   add_run_options(command, options);

@@ -403,18 +403,18 @@ std::vector<DescribedTable> tune_tables() {
 void add_tune(CommandLine& line) {
   auto [command, options] =
       line.command("tune", "Say which stiffness and damping to use, in a scene on a device", tune);
-  command.add("scenario", options.scenario, "scenario file, or name of a bundled scenario").required();
+  command.add("scenario", options.scenario, "scenario file, or name of a bundled scenario", {.required = true});
   command.add("--device", options.device, "a preset, ideal, admittance, or a file NAME.json (default: the scene's)");
-  command.add("--algorithms", options.algorithms, "names separated by commas, or all (default: the scene's own)")
-      .comma_separated();
+  command.add("--algorithms", options.algorithms, "names separated by commas, or all (default: the scene's own)",
+              {.comma_separated = true});
   command.add("--margin", options.margin, "settled up to so many times K (default: 2)");
   command.add("--max-inside", options.inside, "most that any point of the tool is inside [mm]: inside_max_m");
   command.add("--max-vibration", options.vibration, "most force above 30 Hz [N rms]: force_rms_above_30Hz_N");
   command.add("--max-step", options.step, "largest force step in settled contact [N]: settled_force_step_max_N");
   command.add("--bound", options.bounds, "a limit on any other metric: metric=most or metric=least:most; repeatable");
-  command
-      .add("--over", options.over, "families of runs that have to hold: hands, seeds, speeds, or all (default: hands)")
-      .comma_separated();
+  command.add("--over", options.over,
+              "families of runs that have to hold: hands, seeds, speeds, or all (default: hands)",
+              {.comma_separated = true});
   command.add("--damping-ratio", options.damping_ratio,
               "a:b, range of zeta; on an impedance device by the mass of its handle (default: 0.01:10)");
   command.add("--mass", options.mass,

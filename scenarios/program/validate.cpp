@@ -158,7 +158,7 @@ void add_validate(CommandLine& line) {
   auto [command, options] = line.command(
       "validate", "Check scenario files and the files they name, without running them, and say what is in them",
       validate);
-  command.add("files", options.files, "scenario files, or names of bundled scenarios").required();
+  command.add("files", options.files, "scenario files, or names of bundled scenarios", {.required = true});
   add_overrides(command, options.overrides, "override a field of all: path=value");
   add_output_options(command, options.output);
 }
@@ -197,8 +197,8 @@ int shell(const ShellOptions& options) {
 
 void add_shell(CommandLine& line) {
   auto [command, options] = line.command("shell", "Write the environment's point shell: positions and normals", shell);
-  command.add("scenario", options.scenario, "scenario file, or name of a bundled scenario").required();
-  command.add("--out", options.out, "FILE.csv (exact) or FILE.ply (single precision, for viewers)").required();
+  command.add("scenario", options.scenario, "scenario file, or name of a bundled scenario", {.required = true});
+  command.add("--out", options.out, "FILE.csv (exact) or FILE.ply (single precision, for viewers)", {.required = true});
   add_overrides(command, options.overrides);
   add_output_options(command, options.output);
 }
