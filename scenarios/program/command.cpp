@@ -11,6 +11,7 @@
 
 #include "results/io/atomic_file.hpp"
 #include "results/io/json_text.hpp"
+#include "scenarios/batch/league.hpp"
 #include "scenarios/batch/parallel_for.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/memory_limit.hpp"
@@ -114,6 +115,15 @@ std::vector<std::string> chosen_names(std::string_view got, const std::vector<st
   valid.insert(valid.begin(), "all");
   require_names(got, given, valid);
   return given;
+}
+
+std::string chosen_metric(const std::vector<std::string>& metrics, const std::string& asked_for) {
+  if (!asked_for.empty()) {
+    require_valid_name("--metric: got", asked_for, metrics);
+    return asked_for;
+  }
+  const auto has = [&](std::string_view name) { return std::ranges::find(metrics, name) != metrics.end(); };
+  return std::string(*std::find_if(std::begin(kDefaultMetrics), std::end(kDefaultMetrics) - 1, has));
 }
 
 fs::path results_directory(const std::string& out, const std::string& name) {

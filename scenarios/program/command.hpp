@@ -26,6 +26,14 @@ enum ExitStatus : int {
   kStopped = 128,          ///< plus the number of the signal, as shells do: 130 for Ctrl-C, 143 for SIGTERM
 };
 
+/// Runs the command that argv[1], argv[2], ... name and returns the program's exit status. Reports on standard error
+/// when a signal (stop_signal.hpp) stopped the work. Throws InputError, also for words that are no command, and
+/// IoError.
+int run_program(int argc, char** argv);
+
+/// Does the same, but reports exceptions on standard error: exit status 2 for InputError, 1 for all others.
+int run_program_to_exit(int argc, char** argv);
+
 /// Options every command understands.
 struct OutputOptions {
   bool quiet = false;  ///< nothing on standard output, no progress bar
@@ -99,6 +107,10 @@ void require_names(std::string_view got, const std::vector<std::string>& names, 
 /// Checks the same way and returns the names, where "all" alone stands for all of them.
 std::vector<std::string> chosen_names(std::string_view got, const std::vector<std::string>& given,
                                       const std::vector<std::string>& all);
+
+/// The metric that sweeps and levels show: the one asked for, or else the first of kDefaultMetrics that there is. Throws
+/// InputError when there is none of that name.
+std::string chosen_metric(const std::vector<std::string>& metrics, const std::string& asked_for);
 
 /// `out`, or results/out/`name` when it is empty.
 std::filesystem::path results_directory(const std::string& out, const std::string& name);

@@ -8,13 +8,13 @@
 
 #include "scenarios/batch/league.hpp"
 #include "scenarios/batch/parallel_for.hpp"
+#include "scenarios/batch/run_sweep.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/command.hpp"
 #include "scenarios/program/index.hpp"
 #include "scenarios/program/report.hpp"
 #include "scenarios/program/run_table.hpp"
-#include "scenarios/program/sweep.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/studies/convergence/convergence.hpp"
 #include "scenarios/studies/stability/field_limit.hpp"
@@ -30,17 +30,13 @@ constexpr const char *kOrders = "converge.csv", *kLevels = "converge_levels.csv"
 constexpr int kFewestLevels = 3, kMostLevels = 9;
 constexpr double kLargestRatio = 10.0;
 
-struct ConvergeOptions {
+struct ConvergeOptions : CommonOptions {
   std::string scenario;
   std::vector<std::string> metrics;
   std::string field = kStepPath;
   int levels = 5;
   double ratio = 2.0;
   std::string to;
-  unsigned jobs = 0;  ///< 0: one per thread of the machine
-  std::string out;
-  std::vector<std::string> overrides;
-  OutputOptions output;
 };
 
 /// The run of a level, and its time.

@@ -56,6 +56,8 @@ std::vector<DescribedTable> result_tables();
 // Those of single commands, from the columns that these write and print.
 std::vector<DescribedTable> claim_tables();
 std::vector<DescribedTable> converge_tables();
+std::vector<DescribedTable> league_tables();
+std::vector<DescribedTable> limit_tables();
 std::vector<DescribedTable> stress_tables();
 std::vector<DescribedTable> sweep_tables();
 std::vector<DescribedTable> tune_tables();

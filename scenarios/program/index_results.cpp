@@ -9,8 +9,6 @@
 #include "scenarios/description/metric_sections.hpp"
 #include "scenarios/description/scenario.hpp"
 #include "scenarios/program/index.hpp"
-#include "scenarios/program/league_text.hpp"
-#include "scenarios/program/limit_cases.hpp"
 #include "scenarios/program/run_table.hpp"
 #include "scenarios/program/table.hpp"
 #include "scenarios/run/recorders.hpp"

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "scenarios/program/index.hpp"
+
 namespace hapbench {
 namespace {
 
@@ -67,7 +69,7 @@ std::string standings_text(const League& league, std::size_t metric) {
                                         : standings_columns(scenarios, false).table(rows).text(prose_width());
 }
 
-Columns<LawStanding> law_columns() {
+Columns<LawStanding> mean_rank_columns() {
   Columns<LawStanding> columns;
   columns.print("algorithm", "", "", &LawStanding::algorithm);
   columns.print("mean rank", "1",
@@ -149,7 +151,7 @@ std::string league_text(const League& league) {
                     "\nall metrics and scenarios\n\n{}\n"
                     "Means closer than {} % share a rank. x: a run failed; it ranks behind all that did not, by the\n"
                     "number of failures; of the others those without such a number are last.\n{}",
-                    law_columns().table(league.laws).text(), 100.0 * kSameRank, spread_text(league));
+                    mean_rank_columns().table(league.laws).text(), 100.0 * kSameRank, spread_text(league));
 }
 
 Json league_json(const League& league) {
@@ -167,7 +169,7 @@ Json league_json(const League& league) {
 std::vector<DescribedTable> league_tables() {
   return {league_columns().described(
               "league.csv", "of compare with several scenarios or seeds: one line per scenario, algorithm and metric"),
-          standings_columns(26, false).described(), standings_columns(1, true).described(), law_columns().described()};
+          standings_columns(26, false).described(), standings_columns(1, true).described(), mean_rank_columns().described()};
 }
 
 }  // namespace hapbench

@@ -19,6 +19,4 @@ std::string league_text(const League& league);
 /// Their rows, null for missing values.
 Json league_json(const League& league);
 
-std::vector<DescribedTable> league_tables();
-
 }  // namespace hapbench

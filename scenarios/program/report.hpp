@@ -53,7 +53,16 @@ Cell cell_of(const Value& value) {
 }
 
 /// The cell of a number as it is printed: the digits that its tolerance leaves; "-" for nothing.
-std::string printed(const Cell& cell, const Shown& shown, const std::optional<double>& tolerance);
+inline std::string printed(const Cell& cell, const Shown& shown, const std::optional<double>& tolerance) {
+  if (const auto* number = std::get_if<double>(&cell)) {
+    return tolerance ? deserved(shown.factor * *number, shown.factor * *tolerance, shown.digits)
+                     : significant(shown.factor * *number, shown.digits);
+  }
+  if (const auto* count = std::get_if<std::uint64_t>(&cell)) return std::to_string(*count);
+  if (const auto* yes = std::get_if<bool>(&cell)) return *yes ? "yes" : "no";
+  if (const auto* text = std::get_if<std::string>(&cell)) return *text;
+  return "-";
+}
 
 /// A table that `describe` knows; without a file one that is only printed.
 struct DescribedTable {
@@ -166,9 +175,17 @@ class Report {
   FileSet& files() { return files_; }
   Json& json() { return json_; }
   /// A row that failed, or whose answer is bad: the text is printed as an error, and becomes the exit status.
-  void fault(const std::string& text, int status);
+  void fault(const std::string& text, int status) {
+    faults_.push_back(text);
+    status_ = status;
+  }
   /// The exit status. Throws IoError.
-  int finish();
+  int finish() {
+    files_.commit();
+    for (const std::string& fault : faults_) print_error(fault);
+    print(output_, text_, json_);
+    return status_;
+  }
 
  private:
   const OutputOptions& output_;

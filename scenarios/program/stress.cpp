@@ -8,12 +8,9 @@
 namespace hapbench {
 namespace {
 
-struct StressOptions {
+struct StressOptions : CommonOptions {
   std::uint64_t count = 100'000;
   std::uint64_t seed = 1;
-  unsigned jobs = 0;  ///< 0: as many as the machine has
-  std::string out;
-  OutputOptions output;
 };
 
 bool is_bad(const StressCounts& counts) {

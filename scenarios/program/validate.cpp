@@ -24,10 +24,8 @@
 namespace hapbench {
 namespace {
 
-struct ValidateOptions {
+struct ValidateOptions : CommonOptions {
   std::vector<std::string> files;
-  std::vector<std::string> overrides;
-  OutputOptions output;
 };
 
 std::string surface_text(const SceneFacts::Surface& surface, std::optional<bool> is_closed) {
@@ -165,11 +163,8 @@ void add_validate(CommandLine& line) {
 
 namespace {
 
-struct ShellOptions {
+struct ShellOptions : CommonOptions {
   std::string scenario;
-  std::string out;
-  std::vector<std::string> overrides;
-  OutputOptions output;
 };
 
 int shell(const ShellOptions& options) {
@@ -186,7 +181,10 @@ int shell(const ShellOptions& options) {
   }();
   const std::filesystem::path file = options.out;
   const std::string text = point_shell_text(points, file);
-  require_writable_file(file);
+  std::error_code ignored;
+  if (std::filesystem::is_directory(file, ignored))
+    throw InputError(fmt::format("--out {}: is a directory", file.string()));
+  require_writable_directory(file.has_parent_path() ? file.parent_path() : ".");
   write_file_atomically(file, text);
   print(options.output, fmt::format("{} points in {}\n", points.size(), file.string()),
         {{"points", points.size()}, {"file", file.string()}});
