@@ -33,17 +33,15 @@ struct Named {
   std::string summary;  ///< what a list says of it; empty for kinds that no list has
   std::function<Description()> describe;
   Json more = Json::object();  ///< what a list's JSON has besides: of a scenario its group, of a claim its verdict
-  /// Reads what a list says from the file of a scenario; empty for all other kinds. Throws nothing: a fault of the file
-  /// becomes its summary.
-  std::function<void(Named&)> read = {};
 };
 using Index = std::vector<Named>;
 
 /// What the program knows by itself, the meanings of a name in the order in which they are told: models, presets,
 /// results, fields, sections, types, words, headings.
 Index program_index();
-/// What the folders beside the program hold: scenarios, studies, claims and choices on record. Throws InputError.
-Index folder_index();
+/// What the folders beside the program hold: scenarios, studies, claims and choices on record. The files of scenarios
+/// are read unless `summaries` is false: a fault of one becomes its summary. Throws InputError.
+Index folder_index(bool summaries = true);
 
 // Parts of program_index, of results.
 void add_results(Index& index, const std::vector<DescribedTable>& tables);  ///< metrics, files, columns

@@ -31,15 +31,21 @@ void add_assignments(std::string& text, const std::string& path, const Json& val
   }
 }
 
-/// Reads what a list says of a scenario.
-void read_summary(const std::filesystem::path& file, Named& named) {
+Named named_scenario(const BundledScenario& bundled, bool summary) {
+  Named named{"scenario",
+              bundled.name,
+              "",
+              [file = bundled.file] { return describe_scenario(file); },
+              {{"group", bundled.group}, {"source", ""}}};
+  if (!summary) return named;
   try {
-    const Scenario scenario = load_scenario(file).scenario;
+    const Scenario scenario = load_scenario(bundled.file).scenario;
     named.summary = scenario.description;
     named.more["source"] = scenario.source;
   } catch (const InputError& error) {
     named.summary = error.what();
   }
+  return named;
 }
 
 /// The command that a study stands for, and its file as it is.
@@ -181,15 +187,9 @@ Description describe_scenario(const std::filesystem::path& file) {
   return {text, effective_scenario(scenario, scenario.directory)};
 }
 
-Index folder_index() {
+Index folder_index(bool summaries) {
   Index index;
-  for (const auto& [name, group, file] : bundled_scenarios())
-    index.push_back({"scenario",
-                     name,
-                     "",
-                     [file = file] { return describe_scenario(file); },
-                     {{"group", group}, {"source", ""}},
-                     [file = file](Named& named) { read_summary(file, named); }});
+  for (const BundledScenario& bundled : bundled_scenarios()) index.push_back(named_scenario(bundled, summaries));
   for (const BundledStudy& study : bundled_studies())
     index.push_back({"study", study.name, study.summary, [study] { return describe_study(study); }});
   for (const Json& claim : list_on_record("claims"))
@@ -210,8 +210,7 @@ std::optional<Description> describe_place(const std::string& name) {
   const std::string title = place->kind + (place->kind.empty() ? "" : " ") + place->number;
   std::string scenarios, claims;
   Json json = {{"kind", "place"}, {"name", title}, {"scenarios", Json::array()}, {"claims", Json::array()}};
-  for (Named& thing : folder_index()) {
-    if (thing.read) thing.read(thing);
+  for (const Named& thing : folder_index()) {
     const std::string source = thing.more.value("source", "");
     if (!names_place(source, *place)) continue;
     const bool is_claim = thing.kind == "claim";
