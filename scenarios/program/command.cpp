@@ -150,8 +150,9 @@ void require_writable_directory(const fs::path& directory) {
   }
 }
 
-JobOptions job_options(unsigned jobs, const OutputOptions& output, const std::string& label) {
-  return {jobs == 0 ? static_cast<unsigned>(available_threads()) : jobs, output.quiet ? "" : label};
+JobOptions job_options(const CommonOptions& options, const std::string& label) {
+  return {options.jobs == 0 ? static_cast<unsigned>(available_threads()) : options.jobs,
+          options.output.quiet ? "" : label};
 }
 
 std::string shell_line(const std::vector<std::string>& words) {

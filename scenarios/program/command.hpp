@@ -108,20 +108,21 @@ void require_names(std::string_view got, const std::vector<std::string>& names, 
 std::vector<std::string> chosen_names(std::string_view got, const std::vector<std::string>& given,
                                       const std::vector<std::string>& all);
 
-/// The metric that sweeps and levels show: the one asked for, or else the first of kDefaultMetrics that there is. Throws
-/// InputError when there is none of that name.
+/// The metric that sweeps and levels show: the one asked for, or else the first of kDefaultMetrics that there is.
+/// Throws InputError when there is none of that name.
 std::string chosen_metric(const std::vector<std::string>& metrics, const std::string& asked_for);
 
 /// `out`, or results/out/`name` when it is empty.
 std::filesystem::path results_directory(const std::string& out, const std::string& name);
-/// Throws InputError when two scenarios have the same name, after which results are named; `allowed` is for its message.
+/// Throws InputError when two scenarios have the same name, after which results are named; `allowed` is for its
+/// message.
 void require_names_of_their_own(const std::vector<std::filesystem::path>& files, const std::string& allowed);
 
 /// Throws InputError unless results can be written to `directory`. Creates it, and removes it again if it is still
 /// empty when the program ends.
 void require_writable_directory(const std::filesystem::path& directory);
-/// `jobs` threads, or as many as this process may use when it is 0, and a progress bar behind `label` unless quiet.
-JobOptions job_options(unsigned jobs, const OutputOptions& output, const std::string& label);
+/// The threads of --jobs, and a progress bar behind `label` unless quiet.
+JobOptions job_options(const CommonOptions& options, const std::string& label);
 
 /// Quotes words for a POSIX shell: those with anything but letters, digits and "_-./:=,+@%" in single quotes.
 std::string shell_line(const std::vector<std::string>& words);

@@ -39,96 +39,86 @@ struct ComparedErrors {
   Json json = Json::array();  ///< an object for each scenario and metric
 };
 
-/// A table of the numbers of a scenario with their errors, and a sentence on each metric.
-class ScenarioErrors {
- public:
-  ScenarioErrors(const League& league, const FinerRuns& finer, std::size_t scenario)
-      : league_(league), finer_(finer), scenario_(scenario) {
-    for (std::size_t m = 0; m < league.metrics.size(); ++m) {
-      known_.emplace_back();
-      numbers_.emplace_back();
-      for (std::size_t a = 0; a < league.algorithms.size(); ++a) {
-        const KnownError known = known_error(a, m);
-        const bool failed = league.failures(scenario, a) > 0;
-        known_.back().push_back(known);
-        numbers_.back().push_back({failed ? std::nullopt : league.at(scenario, a, m).mean, known.sum()});
-      }
-    }
-  }
-
-  std::string text() const {
-    Columns<std::size_t> columns;  // a row is the place of an algorithm
-    columns.print("algorithm", "", "", [this](std::size_t a) { return league_.algorithms[a]; });
-    std::string sentences;
-    for (std::size_t m = 0; m < league_.metrics.size(); ++m) {
-      const std::string& metric = league_.metrics[m];
-      const auto* heading = std::ranges::find(kRunHeadings, metric, &RunHeading::metric);
-      const bool known = heading != std::end(kRunHeadings);
-      const double factor = known ? heading->factor : 1.0;
-      columns.print(known ? heading->title : metric, "by name", "", [this, m, factor](std::size_t a) {
-        const auto& [value, error] = numbers_[m][a];
-        const auto scaled = error ? std::optional(factor * *error) : std::nullopt;
-        return value ? with_error_text(factor * *value, scaled) : "-";
-      });
-      sentences += wrapped(fmt::format("{}: {}", metric, held_text(numbers_[m], league_.algorithms, kSameRank)), 0);
-    }
-    std::vector<std::size_t> places(league_.algorithms.size());
-    std::iota(places.begin(), places.end(), std::size_t{0});
-    return fmt::format("\nhow sure: {}\n\n{}\n{}\n{}", league_.scenarios[scenario_],
-                       columns.table(places).text(prose_width()), sentences,
-                       wrapped(fmt::format("+-: {}", finer_.refined(scenario_)), 0));
-  }
-
-  void add_json(Json& rows) const {
-    for (std::size_t m = 0; m < league_.metrics.size(); ++m) {
-      const std::vector<NumberWithError>& found = numbers_[m];
-      Json numbers = Json::array();
-      for (std::size_t a = 0; a < found.size(); ++a) {
-        numbers.push_back({{"algorithm", league_.algorithms[a]},
-                           {"value", or_null(found[a].value)},
-                           {"error_estimate", or_null(found[a].error)},
-                           {"error_of_step", or_null(known_[m][a].step)},
-                           {"error_of_spacing", or_null(known_[m][a].spacing)}});
-      }
-      Json order = Json::array();
-      for (const auto& group : held_order(found, kSameRank).groups) {
-        Json names = Json::array();
-        for (const std::size_t a : group) names.push_back(league_.algorithms[a]);
-        order.push_back(std::move(names));
-      }
-      rows.push_back({{"scenario", league_.scenarios[scenario_]},
-                      {"metric", league_.metrics[m]},
-                      {"order", std::move(order)},
-                      {"numbers", std::move(numbers)},
-                      {"says", held_text(found, league_.algorithms, kSameRank)}});
-    }
-  }
-
- private:
-  /// The mean of the errors over the common seeds, which bounds the error of their mean.
-  KnownError known_error(std::size_t algorithm, std::size_t metric) const {
-    const std::vector<std::size_t>& seeds = league_.common[scenario_];
-    KnownError mean{.step = 0.0, .spacing = 0.0};
-    const auto add = [&seeds](std::optional<double>& sum, const std::optional<double>& error) {
-      sum = sum && error ? std::optional(*sum + *error / static_cast<double>(seeds.size())) : std::nullopt;
-    };
-    for (const std::size_t seed : seeds) {
-      const std::size_t run = (scenario_ * league_.algorithms.size() + algorithm) * league_.seeds + seed;
-      const KnownError known = finer_.known_error(run, league_.metrics[metric]);
-      add(mean.step, known.step);
-      add(mean.spacing, known.spacing);
-      mean.has_points = known.has_points;
-      mean.tolerance += known.tolerance / static_cast<double>(seeds.size());
-    }
-    return mean;
-  }
-
-  const League& league_;
-  const FinerRuns& finer_;
-  std::size_t scenario_;
-  std::vector<std::vector<KnownError>> known_;         ///< by metric and algorithm
-  std::vector<std::vector<NumberWithError>> numbers_;  ///< likewise: the means that are compared
+/// The means of a metric in a scenario, by algorithm, and what is known of their errors.
+struct MetricNumbers {
+  std::vector<NumberWithError> numbers = {};
+  std::vector<KnownError> known = {};
 };
+
+/// The mean of an algorithm's errors over the common seeds, which bounds the error of their mean.
+KnownError mean_error(const League& league, const FinerRuns& finer, std::size_t scenario, std::size_t algorithm,
+                      const std::string& metric) {
+  const std::vector<std::size_t>& seeds = league.common[scenario];
+  KnownError mean{.step = 0.0, .spacing = 0.0};
+  const auto add = [&seeds](std::optional<double>& sum, const std::optional<double>& error) {
+    sum = sum && error ? std::optional(*sum + *error / static_cast<double>(seeds.size())) : std::nullopt;
+  };
+  for (const std::size_t seed : seeds) {
+    const std::size_t run = (scenario * league.algorithms.size() + algorithm) * league.seeds + seed;
+    const KnownError known = finer.known_error(run, metric);
+    add(mean.step, known.step);
+    add(mean.spacing, known.spacing);
+    mean.has_points = known.has_points;
+    mean.tolerance += known.tolerance / static_cast<double>(seeds.size());
+  }
+  return mean;
+}
+
+MetricNumbers numbers_of(const League& league, const FinerRuns& finer, std::size_t scenario, std::size_t metric) {
+  MetricNumbers found;
+  for (std::size_t a = 0; a < league.algorithms.size(); ++a) {
+    const KnownError& known = found.known.emplace_back(mean_error(league, finer, scenario, a, league.metrics[metric]));
+    const bool failed = league.failures(scenario, a) > 0;
+    found.numbers.push_back({failed ? std::nullopt : league.at(scenario, a, metric).mean, known.sum()});
+  }
+  return found;
+}
+
+/// The JSON of a metric's numbers and of the order of laws that their errors leave.
+Json numbers_json(const MetricNumbers& found, const std::vector<std::string>& algorithms) {
+  Json numbers = Json::array(), order = Json::array();
+  for (std::size_t a = 0; a < algorithms.size(); ++a) {
+    numbers.push_back({{"algorithm", algorithms[a]},
+                       {"value", or_null(found.numbers[a].value)},
+                       {"error_estimate", or_null(found.numbers[a].error)},
+                       {"error_of_step", or_null(found.known[a].step)},
+                       {"error_of_spacing", or_null(found.known[a].spacing)}});
+  }
+  for (const auto& group : held_order(found.numbers, kSameRank).groups) {
+    Json& names = order.emplace_back(Json::array());
+    for (const std::size_t a : group) names.push_back(algorithms[a]);
+  }
+  return {{"order", std::move(order)}, {"numbers", std::move(numbers)}};
+}
+
+/// Adds a table of the numbers of a scenario with their errors, and a sentence on each metric.
+void add_errors(const League& league, const FinerRuns& finer, std::size_t scenario, ComparedErrors& errors) {
+  Columns<std::size_t> columns;  // a row is the place of an algorithm
+  columns.print("algorithm", "", "", [&league](std::size_t a) { return league.algorithms[a]; });
+  std::string sentences;
+  for (std::size_t m = 0; m < league.metrics.size(); ++m) {
+    const std::string& metric = league.metrics[m];
+    const MetricNumbers found = numbers_of(league, finer, scenario, m);
+    const auto* heading = std::ranges::find(kRunHeadings, metric, &RunHeading::metric);
+    const bool known = heading != std::end(kRunHeadings);
+    const double factor = known ? heading->factor : 1.0;
+    columns.print(known ? heading->title : metric, "by name", "", [numbers = found.numbers, factor](std::size_t a) {
+      const auto& [value, error] = numbers[a];
+      const auto scaled = error ? std::optional(factor * *error) : std::nullopt;
+      return value ? with_error_text(factor * *value, scaled) : "-";
+    });
+    const std::string says = held_text(found.numbers, league.algorithms, kSameRank);
+    sentences += wrapped(fmt::format("{}: {}", metric, says), 0);
+    Json& json = errors.json.emplace_back(Json{{"scenario", league.scenarios[scenario]}, {"metric", metric}});
+    json.update(numbers_json(found, league.algorithms));
+    json["says"] = says;
+  }
+  std::vector<std::size_t> places(league.algorithms.size());
+  std::iota(places.begin(), places.end(), std::size_t{0});
+  errors.text +=
+      fmt::format("\nhow sure: {}\n\n{}\n{}\n{}", league.scenarios[scenario], columns.table(places).text(prose_width()),
+                  sentences, wrapped(fmt::format("+-: {}", finer.refined(scenario)), 0));
+}
 
 /// Runs the comparison more finely. `metrics` as in league_of. What is given has to outlive the answer. Throws Stopped.
 ComparedErrors errors_of(const Comparison& comparison, std::span<const Result> reports,
@@ -137,11 +127,7 @@ ComparedErrors errors_of(const Comparison& comparison, std::span<const Result> r
   const auto finer = std::make_shared<const FinerRuns>(comparison, reports, jobs);
   ComparedErrors errors;
   errors.of_run = [finer](std::size_t run, const char* metric) { return finer->known_error(run, metric).sum(); };
-  for (std::size_t s = 0; s < comparison.scenes.size(); ++s) {
-    const ScenarioErrors scenario(league, *finer, s);
-    errors.text += scenario.text();
-    scenario.add_json(errors.json);
-  }
+  for (std::size_t s = 0; s < comparison.scenes.size(); ++s) add_errors(league, *finer, s, errors);
   errors.text +=
       "\n" +
       wrapped(
@@ -227,15 +213,14 @@ struct Answer {
 
 Answer answer_to(const Asked& asked) {
   const CompareOptions& options = asked.options;
+  const JobOptions jobs = job_options(options, "compare");
   // The table of a single comparison shows times, which concurrent runs would lengthen.
-  const unsigned jobs = options.jobs > 0 || asked.league ? options.jobs : 1;
+  const unsigned at_once = options.jobs > 0 || asked.league ? jobs.threads : 1;
   try {
-    Answer answer{run_all(asked.comparison.scenes, job_options(jobs, options.output, "compare"),
+    Answer answer{run_all(asked.comparison.scenes, {at_once, jobs.label},
                           [&asked](std::size_t run) { return asked.out / asked.comparison.folder(run); })};
-    if (options.errors) {
-      answer.errors = errors_of(asked.comparison, answer.reports, compared(asked, answer.reports),
-                                job_options(options.jobs, options.output, "compare"));
-    }
+    if (options.errors)
+      answer.errors = errors_of(asked.comparison, answer.reports, compared(asked, answer.reports), jobs);
     return answer;
   } catch (const Stopped&) {
     forget_results_if_none(asked.out);

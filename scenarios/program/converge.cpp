@@ -245,19 +245,16 @@ int converge(const ConvergeOptions& options) {
   const fs::path file = find_scenario(options.scenario);
   const ScenarioText scenario = read_scenario_text(file);
   const LevelSweep levels = levels_of(options, scenario);
-  const JobOptions jobs = job_options(options.jobs, options.output, "converge");
+  const JobOptions jobs = job_options(options, "converge");
   const SweepPlan plan =
       plan_sweep(Cases({scenario}, options.overrides, {levels.axis}), jobs.threads, !options.output.quiet);
   std::vector<std::string> metrics = options.metrics;
   if (metrics.empty()) metrics = {chosen_metric(plan.metrics, "")};
   require_names("--metric: got", metrics, plan.metrics);
   print_warnings(plan.warnings);
-  const fs::path out = results_directory(options.out, "converge_" + file.stem().string());
-  require_writable_directory(out);
-
+  Report report(options, "converge_" + file.stem().string());
   std::vector<LevelRun> runs(plan.cases.size());
   for_each_job(runs.size(), jobs, [&](std::size_t i) { runs[i] = run_of(plan.cases.load(i)); });
-  Report report(options.output, out);
   report.say(fmt::format("{}: {} from {} in ratios of {:g}, formal order {:g}\n\n", runs.front().result.name,
                          levels.axis.path, levels.axis.values.front(), levels.ratio, levels.formal_order));
   std::vector<ConvergeStudy> studies;
@@ -272,7 +269,7 @@ int converge(const ConvergeOptions& options) {
   report.write(kOrders, order_columns(), studies);
   report.write(kLevels, level_columns({}), rows);
   report.write(kTimes, time_columns(), studies.front().levels);
-  report.say(fmt::format("results in {0}\n\"hapbench plot {0}\" draws them\n", out.string()));
+  report.say(fmt::format("results in {0}\n\"hapbench plot {0}\" draws them\n", report.folder().string()));
   return report.finish();
 }
 

@@ -130,23 +130,6 @@ std::string place_kind(const std::string& word) {
   return lower == "section" ? "section" : "";
 }
 
-/// The places that a source names, as in "3.3, Fig. 4, C.2a": a kind holds until another word comes. Other numbers in
-/// the source are taken for places, too.
-std::vector<Place> places_in(const std::string& source) {
-  static const std::regex kParts(R"(([A-F]\.\d+|\d+)(\.\d+)*[a-d]?\b|[A-Za-z]+)");
-  std::vector<Place> places;
-  std::string kind = "section";
-  for (std::sregex_iterator word(source.begin(), source.end(), kParts), end; word != end; ++word) {
-    if ((*word)[1].matched) {
-      places.push_back({kind, word->str()});
-    } else if (word->str() != "and") {
-      const std::string announced = place_kind(word->str());
-      kind = announced.empty() ? "section" : announced;
-    }
-  }
-  return places;
-}
-
 /// Reads a place, of any kind where none is given, also from the name of a figure's file such as
 /// figure_A.4_springs.svg. None when the name is not a place's.
 std::optional<Place> asked_place(const std::string& name) {
@@ -162,14 +145,23 @@ std::optional<Place> asked_place(const std::string& name) {
   return place;
 }
 
+/// True for a source that names the place or a part of it, as "3.3, Fig. 4, C.2a" does: a kind holds until another word
+/// comes. Other numbers in the source are taken for places, too.
 bool names_place(const std::string& source, const Place& asked) {
-  const std::vector<Place> places = places_in(source);
-  return std::any_of(places.begin(), places.end(), [&asked](const Place& place) {
-    if (!asked.kind.empty() && place.kind != asked.kind) return false;
-    if (!place.number.starts_with(asked.number)) return false;
-    const std::string part = place.number.substr(asked.number.size());
-    return part.empty() || part[0] == '.' || std::isalpha(static_cast<unsigned char>(part[0]));
-  });
+  static const std::regex kParts(R"(([A-F]\.\d+|\d+)(\.\d+)*[a-d]?\b|[A-Za-z]+)");
+  std::string kind = "section";
+  for (std::sregex_iterator found(source.begin(), source.end(), kParts), end; found != end; ++found) {
+    const std::string word = found->str();
+    if (!(*found)[1].matched) {
+      const std::string announced = place_kind(word);
+      if (word != "and") kind = announced.empty() ? "section" : announced;
+      continue;
+    }
+    if ((!asked.kind.empty() && kind != asked.kind) || !word.starts_with(asked.number)) continue;
+    const std::string part = word.substr(asked.number.size());
+    if (part.empty() || part[0] == '.' || std::isalpha(static_cast<unsigned char>(part[0]))) return true;
+  }
+  return false;
 }
 
 }  // namespace

@@ -170,7 +170,8 @@ Description describe_heading(const Table::Column& heading) {
 std::vector<DescribedTable> result_tables() {
   std::vector<DescribedTable> tables;
   const auto add = [&tables](const char* file, const char* holds, std::span<const Column> columns) {
-    tables.push_back({file, holds, {columns.begin(), columns.end()}, {}});
+    DescribedTable& table = tables.emplace_back(DescribedTable{file, holds});
+    for (const auto& [name, unit, meaning] : columns) table.columns.push_back({name, unit, meaning});
   };
   for (const ResultTable& table : record_tables()) add(table.file, table.holds, table.columns);
   add(kTargetTable.file, kTargetTable.holds, kTargetTable.columns);

@@ -169,7 +169,8 @@ Json league_json(const League& league) {
 std::vector<DescribedTable> league_tables() {
   return {league_columns().described(
               "league.csv", "of compare with several scenarios or seeds: one line per scenario, algorithm and metric"),
-          standings_columns(26, false).described(), standings_columns(1, true).described(), mean_rank_columns().described()};
+          standings_columns(26, false).described(), standings_columns(1, true).described(),
+          mean_rank_columns().described()};
 }
 
 }  // namespace hapbench

@@ -256,14 +256,12 @@ void add_limits(LimitTable& table, std::vector<FieldLimit> limits) {
 int limit(const LimitOptions& options) {
   LimitTable table = limit_cases(options);
   const std::string name = options.scenarios.size() > 1 ? "limit" : "limit_" + table.first().scene;
-  const std::filesystem::path out = results_directory(options.out, name);
-  require_writable_directory(out);
+  Report report(options, name);
   std::vector<LimitCase> cases;
   for (const LimitRow& row : table.rows) cases.push_back(row.asked);
-  add_limits(table, field_limits(cases, job_options(options.jobs, options.output, "limit")));
-  Report report(options.output, out);
+  add_limits(table, field_limits(cases, job_options(options, "limit")));
   tell_limits(table, report);
-  report.say(fmt::format("\nresults in {}\n", out.string()));
+  report.say(fmt::format("\nresults in {}\n", report.folder().string()));
   return report.finish();
 }
 

@@ -34,14 +34,9 @@ struct NewOptions {
   OutputOptions output;
 };
 
-std::vector<std::string> kind_names() {
-  return names_of(start_kinds(), &StartKind::name);
-}
-
 const StartKind& kind_named(const std::string& name) {
-  const std::vector<std::string> names = kind_names();
-  require_valid_name("KIND: got", name, names);
-  return start_kinds()[static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin())];
+  require_valid_name("KIND: got", name, names_of(start_kinds(), &StartKind::name));
+  return *std::ranges::find(start_kinds(), name, &StartKind::name);
 }
 
 void check_source(const StartKind& kind, const std::string& from) {
@@ -140,19 +135,19 @@ int write_new(const NewOptions& options) {
 
   print_warnings(start.warnings);
   if (options.preview) draw_preview(out, picture, options.output.quiet || options.output.json);
-  const std::vector<FieldMeaning> meanings = field_meanings(json);
   std::string text = fmt::format("{}: {}\n", out.string(), kind.summary);
   for (const std::string& note : start.notes) text += note + "\n";
   if (options.preview) text += fmt::format("picture of a run in {}\n", picture.string());
   text += "\n";
-  for (const FieldMeaning& field : meanings) text += entry(field.path, field.meaning, 0, 34);
-  text += "\n";
-  text += fmt::format("\"hapbench describe scenario\" shows all fields; next: hapbench run {}\n", out.string());
   Json fields = Json::object();
-  for (const FieldMeaning& field : meanings) fields[field.path] = field.meaning;
-  Json json_text = {{"file", out.string()}, {"notes", start.notes}, {"fields", fields}};
-  if (options.preview) json_text["picture"] = picture.string();
-  print(options.output, text, json_text);
+  for (const auto& [path, meaning] : field_meanings(json)) {
+    text += entry(path, meaning, 0, 34);
+    fields[path] = meaning;
+  }
+  text += fmt::format("\n\"hapbench describe scenario\" shows all fields; next: hapbench run {}\n", out.string());
+  Json said = {{"file", out.string()}, {"notes", start.notes}, {"fields", fields}};
+  if (options.preview) said["picture"] = picture.string();
+  print(options.output, text, said);
   return kSuccess;
 }
 

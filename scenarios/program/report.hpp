@@ -28,9 +28,6 @@ struct Shown {
 };
 
 /// Columns that are not everywhere.
-inline Shown only_printed(std::string heading) {
-  return {false, false, std::move(heading)};
-}
 inline Shown only_json() {
   return {false, true};
 }
@@ -67,14 +64,11 @@ inline std::string printed(const Cell& cell, const Shown& shown, const std::opti
 /// A table that `describe` knows; without a file one that is only printed.
 struct DescribedTable {
   struct Entry {
-    Entry(std::string name_of, std::string unit_of, std::string meaning_of)
-        : name(std::move(name_of)), unit(std::move(unit_of)), meaning(std::move(meaning_of)) {}
-    Entry(const Column& column) : Entry(column.name, column.unit, column.meaning) {}  // NOLINT: it is one
     std::string name, unit, meaning;
   };
-  std::string file, holds;
-  std::vector<Entry> columns;           ///< of the CSV file
-  std::vector<Table::Column> headings;  ///< of the printed table
+  std::string file = {}, holds = {};
+  std::vector<Entry> columns = {};           ///< of the CSV file
+  std::vector<Table::Column> headings = {};  ///< of the printed table
 };
 
 /// The columns of a table with rows of type `Row`: those known when the program is written, and those that depend on
@@ -100,7 +94,7 @@ class Columns {
   /// A column that is in no file; `unit` is empty for text.
   template <class Get>
   void print(std::string heading, std::string unit, std::string meaning, Get get) {
-    add("", std::move(unit), std::move(meaning), std::move(get), only_printed(std::move(heading)));
+    add("", std::move(unit), std::move(meaning), std::move(get), {false, false, std::move(heading)});
   }
   void add(const Columns& more) { entries_.insert(entries_.end(), more.entries_.begin(), more.entries_.end()); }
 
@@ -166,7 +160,13 @@ class Columns {
 class Report {
  public:
   Report(const OutputOptions& output, std::filesystem::path folder) : output_(output), folder_(std::move(folder)) {}
+  /// Into the folder of --out, or results/out/`name`. Throws InputError unless it can be written to.
+  Report(const CommonOptions& options, const std::string& name)
+      : Report(options.output, results_directory(options.out, name)) {
+    require_writable_directory(folder_);
+  }
 
+  const std::filesystem::path& folder() const { return folder_; }
   void say(std::string_view text) { text_ += text; }
   template <class Row>
   void write(const char* file, const Columns<Row>& columns, const std::vector<Row>& rows) {

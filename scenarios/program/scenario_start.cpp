@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -175,16 +176,21 @@ double rounded(double value) {
   return std::stod(fmt::format("{:.2g}", value));
 }
 
-Box box_of(const std::vector<Vec3>& places) {
-  Box box{places.front(), places.front()};
-  for (const Vec3& place : places) box = {box.min.cwiseMin(place), box.max.cwiseMax(place)};
-  return box;
+/// Puts a text in the place of each @name@.
+void fill(std::string& text, const std::string& name, const std::string& with) {
+  const std::string mark = "@" + name + "@";
+  for (std::size_t at = 0; (at = text.find(mark, at)) != std::string::npos; at += with.size())
+    text.replace(at, mark.size(), with);
 }
 
-Box box_of(const std::vector<SurfacePoint>& points) {
-  std::vector<Vec3> places;
-  for (const SurfacePoint& point : points) places.push_back(point.position);
-  return box_of(places);
+/// The box of things at a place each.
+template <class Things, class Place = std::identity>
+Box box_of(const Things& things, Place place = {}) {
+  const Vec3 first = std::invoke(place, things.front());
+  Box box{first, first};
+  for (const auto& thing : things)
+    box = {box.min.cwiseMin(std::invoke(place, thing)), box.max.cwiseMax(std::invoke(place, thing))};
+  return box;
 }
 
 /// A unit that a file may have.
@@ -256,10 +262,6 @@ class Start {
     const Vec3 up = (options_.side.front() == '-' ? -1.0 : 1.0) * Vec3::Unit(axis);
     const Vec3 lean = Vec3::Unit(axis == 0 ? 1 : 0);
     to_world_ << lean, up.cross(lean), up;
-    const auto replace = [this](const std::string& mark, const std::string& with) {
-      if (const std::size_t at = sections_.find(mark); at != std::string::npos)
-        sections_.replace(at, mark.size(), with);
-    };
     std::vector<std::string> targets;
     for (const char name : {'x', 'y', 'z'}) {
       targets.push_back(name - 'x' != axis
@@ -268,8 +270,8 @@ class Start {
                                           "[0.5, @pressed@]], \"interpolation\": \"cosine\"}}",
                                           name));
     }
-    replace("@target@", fmt::format("{}", fmt::join(targets, ",\n      ")));
-    replace("@way@", options_.path.empty() ? "\"direction\": @direction@" : "\"path_m\": @path@");
+    fill(sections_, "target", fmt::format("{}", fmt::join(targets, ",\n      ")));
+    fill(sections_, "way", options_.path.empty() ? "\"direction\": @direction@" : "\"path_m\": @path@");
     if (options_.side != "z" && has("\"impedance\"")) {
       const auto list = [](const Vec3& v) {
         return fmt::format("[{}, {}, {}]", v.x() + 0.0, v.y() + 0.0, v.z() + 0.0);
@@ -283,12 +285,8 @@ class Start {
     std::string text = fmt::format("{{\n  \"description\": {},\n  \"time\": {{\"step_s\": {}, \"steps\": @steps@}},",
                                    Json(description_).dump(), kStep) +
                        sections_ + "}\n";
-    const auto fill = [&text](const std::string& mark, const std::string& with) {
-      for (std::size_t at = 0; (at = text.find(mark, at)) != std::string::npos; at += with.size())
-        text.replace(at, mark.size(), with);
-    };
-    fill("@flip@", flip_ ? ", \"flip_normals\": true" : "");
-    for (const auto& [name, value] : values_) fill("@" + name + "@", value.dump());
+    fill(text, "flip", flip_ ? ", \"flip_normals\": true" : "");
+    for (const auto& [name, value] : values_) fill(text, name, value.dump());
     return text;
   }
 
@@ -323,7 +321,7 @@ class Start {
   }
 
   void scale_environment() {
-    const Box box = box_of(points());
+    const Box box = box_of(points(), &SurfacePoint::position);
     const double scale = choose_scale(box, "mesh");
     values_["scale"] = scale;
     choose_tool((box.max - box.min).maxCoeff() / 0.001 * scale);
@@ -371,7 +369,7 @@ class Start {
   /// Turns the normals of an open mesh round that point away from the side, about its highest place.
   std::vector<SurfacePoint> facing_points() {
     std::vector<SurfacePoint> shell = points();
-    const Box box = box_of(shell);
+    const Box box = box_of(shell, &SurfacePoint::position);
     longest_ = (box.max - box.min).maxCoeff();
     choose_tool(longest_);
     const Vec3 top = middle_of_the_top(shell, box.max.z(), 0.1 * diameter_);
@@ -399,7 +397,7 @@ class Start {
     const std::vector<SurfacePoint> shell = facing_points();
     count_ = shell.size();
     const std::string count = has("@spacing@") ? "" : fmt::format("{} points; ", count_);
-    const Box box = box_of(shell);
+    const Box box = box_of(shell, &SurfacePoint::position);
     const Vec3 top = top_of(shell, box);
     values_["pressed"] = to_micrometres(side_sign() * (top.z() + 0.5 * diameter_ - kPressedBelow));
     if (has("\"drag\"")) {

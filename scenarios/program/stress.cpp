@@ -40,12 +40,9 @@ Columns<StressCounts> stress_columns() {
 }
 
 int stress(const StressOptions& options) {
-  const std::filesystem::path out = results_directory(options.out, "stress");
-  require_writable_directory(out);
-  const std::vector<StressCounts> all =
-      stress_laws(options.count, options.seed, job_options(options.jobs, options.output, "stress"));
+  Report report(options, "stress");
+  const std::vector<StressCounts> all = stress_laws(options.count, options.seed, job_options(options, "stress"));
   const Columns<StressCounts> columns = stress_columns();
-  Report report(options.output, out);
   report.write("stress.csv", columns, all);
   report.say(columns.table(all).text());
   report.json() = Json::array();

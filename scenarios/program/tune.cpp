@@ -340,7 +340,7 @@ TuneQuestion tune_question(const TuneOptions& options, const fs::path& file) {
       throw InputError("--damping-ratio and --mass: got a range that reaches 0; allowed: a:b with 0 < a < b");
   if (question.mass) question.mass->logarithmic = true;
   question.filters = options.filters;
-  question.threads = job_options(options.jobs, options.output, "").threads;
+  question.threads = job_options(options, "").threads;
   return question;
 }
 
@@ -357,8 +357,8 @@ int tune(const TuneOptions& options) {
   print_warnings(loaded, check_named_files(loaded));
   tuning.scene = loaded.scenario.name + device;
   tuning.ranges = with_file(loaded, [&] { return tune_ranges(tuning.question, algorithms.front()); });
-  const fs::path out = results_directory(options.out, "tune_" + file.stem().string());
-  require_writable_directory(out);
+  Report report(options, "tune_" + file.stem().string());
+  const fs::path& out = report.folder();
   tuning.laws.resize(algorithms.size());
   ProgressBar bar("tune", algorithms.size(), !options.output.quiet);
   for (std::size_t i = 0; i < algorithms.size(); ++i) {
@@ -366,7 +366,6 @@ int tune(const TuneOptions& options) {
     bar.show(i + 1);
   }
   tuning.ranking = ranking_of(tuning.laws);
-  Report report(options.output, out);
   report.write("tune.csv", law_columns(), tuning.laws);
   std::vector<TuneTrial> trials;
   for (const TunedLaw& law : tuning.laws) trials.insert(trials.end(), law.trials.begin(), law.trials.end());
