@@ -46,12 +46,6 @@ CapturedOutput* captured_output() noexcept {
   return captured;
 }
 
-void add_output_options(Command& command, OutputOptions& options) {
-  command.flag("--quiet", options.quiet, "print nothing on standard output, and no progress bar");
-  command.flag("--json", options.json, "print JSON instead of tables");
-  command.flag("--wide", output_in_full, "print tables at full width, however narrow the terminal is");
-}
-
 void add_overrides(Command& command, std::vector<std::string>& overrides, const std::string& help) {
   command.add("--set", overrides, help, {.several = true});
 }
@@ -90,6 +84,14 @@ void print_errors(const InputError& error) {
   const std::vector<InputError> faults = error.faults();
   for (const InputError& fault : faults) print_error(fault.what());
   if (faults.size() == kMostFaults) print_error(fmt::format("no more than {} are shown", kMostFaults));
+}
+
+std::vector<std::string> first_few(std::vector<std::string> texts, std::size_t most) {
+  if (texts.size() <= most) return texts;
+  const std::string rest = fmt::format("{} more like these", texts.size() - most);
+  texts.resize(most);
+  texts.push_back(rest);
+  return texts;
 }
 
 void announce_large_output(double bytes) {

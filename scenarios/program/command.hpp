@@ -34,12 +34,6 @@ int run_program(int argc, char** argv);
 /// Does the same, but reports exceptions on standard error: exit status 2 for InputError, 1 for all others.
 int run_program_to_exit(int argc, char** argv);
 
-/// Options every command understands.
-struct OutputOptions {
-  bool quiet = false;  ///< nothing on standard output, no progress bar
-  bool json = false;   ///< JSON instead of tables on standard output
-};
-
 /// Options that most commands have.
 struct CommonOptions {
   std::vector<std::string> overrides;
@@ -48,8 +42,6 @@ struct CommonOptions {
   OutputOptions output;
 };
 
-/// Adds --quiet, --json and --wide.
-void add_output_options(Command& command, OutputOptions& options);
 /// Adds --set, repeatable and completed by the fields of scenarios.
 void add_overrides(Command& command, std::vector<std::string>& overrides,
                    const std::string& help = "override a field: path=value");
@@ -68,6 +60,9 @@ void print_note(std::string_view text);
 void print_error(std::string_view text);
 /// Prints each fault of bad input as an error.
 void print_errors(const InputError& error);
+
+/// The first texts, and behind them how many more there are.
+std::vector<std::string> first_few(std::vector<std::string> texts, std::size_t most);
 
 /// The output of a command.
 struct CapturedOutput {

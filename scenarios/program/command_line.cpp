@@ -307,6 +307,11 @@ int CommandLine::run(std::vector<std::string> words) {
     const auto& action = passed_on_[words[0]];
     return action({words.begin() + 1, words.end()});
   }
+  for (auto& [command, output] : outputs_) {
+    command.flag("--quiet", output->quiet, "print nothing on standard output, and no progress bar");
+    command.flag("--json", output->json, "print JSON instead of tables");
+    command.flag("--wide", output_in_full, "print tables at full width, however narrow the terminal is");
+  }
   try {
     std::reverse(words.begin(), words.end());  // as CLI11 takes them
     app_->parse(std::move(words));

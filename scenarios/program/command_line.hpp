@@ -19,6 +19,12 @@ class Option;
 /// The command line: a thin front of CLI11, so that command_line.cpp alone compiles that header.
 namespace hapbench {
 
+/// --quiet, --json and --wide, options of every command.
+struct OutputOptions {
+  bool quiet = false;  ///< nothing on standard output, no progress bar
+  bool json = false;   ///< JSON instead of tables on standard output
+};
+
 /// The command that the user chose.
 struct ChosenCommand {
   std::function<int()> action;  ///< does its work; returns the exit status
@@ -76,13 +82,16 @@ class CommandLine {
   ~CommandLine();
 
   /// Adds a command and the options that `action` is called with when it is chosen; they live as long as the command
-  /// line. `when_stopped`: a note on its results for when Ctrl-C stops it.
+  /// line, and their `output` is what its last options write. `when_stopped`: a note on its results for when Ctrl-C
+  /// stops it.
   template <class Options>
   std::pair<Command, Options&> command(const std::string& name, const std::string& summary,
                                        int (*action)(const Options&),
                                        const std::string& when_stopped = "incomplete results are removed") {
     auto options = std::make_shared<Options>();
-    return {add(name, summary, {[options, action] { return action(*options); }, when_stopped}), *options};
+    const Command command = add(name, summary, {[options, action] { return action(*options); }, when_stopped});
+    outputs_.emplace_back(command, &options->output);
+    return {command, *options};
   }
   /// Adds a command whose words behind its name, options and --help included, all go to `action` as they are.
   void pass_on(const std::string& name, const std::string& summary,
@@ -101,6 +110,7 @@ class CommandLine {
 
   std::unique_ptr<CLI::App> app_;
   ChosenCommand chosen_;
+  std::vector<std::pair<Command, OutputOptions*>> outputs_;
   std::vector<std::string> plugins_;
   std::map<std::string, std::function<int(const std::vector<std::string>&)>> passed_on_;
 };

@@ -508,7 +508,6 @@ void add_compare(CommandLine& line) {
   command.flag("--errors", options.errors,
                "also run each at half and a quarter of the step and of the distance of the shell's points, and say of "
                "each metric how far that moves it and which laws' order holds");
-  add_output_options(command, options.output);
   command.footer(
       "Files go to OUT/[SCENARIO/]ALGORITHM[/seed_K], the parts in brackets where there are several, and "
       "comparison.csv of each scenario beside them. Several scenarios or seeds, or --by, give a league: rank, mean and "

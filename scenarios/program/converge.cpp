@@ -301,7 +301,6 @@ void add_converge(CommandLine& line) {
   add_jobs(command, options.jobs, "runs at once; only times depend on it (default: one per thread)");
   command.add("--out", options.out, "directory of the results (default: results/out/converge_NAME)");
   add_overrides(command, options.overrides, "override a field of all levels: path=value");
-  add_output_options(command, options.output);
   command.footer(
       "Observed order p, Richardson's value and grid convergence index of the three finest levels (Roache; ASME V&V 20; "
       "\"hapbench describe converge.csv\"). No order is stated, and the reason said, where contacts switch between them, "

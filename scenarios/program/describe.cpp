@@ -256,7 +256,6 @@ void add_list(CommandLine& line) {
       "one kind alone, such as algorithms, depth_models, hands, metrics or claims, or one group of scenarios, such "
       "as thesis");
   command.add("--grep", options.grep, "only things with this text in their name, description or source");
-  add_output_options(command, options.output);
 }
 
 void add_describe(CommandLine& line) {
@@ -272,7 +271,6 @@ void add_describe(CommandLine& line) {
       "heading such as \">30Hz rms N\", or a file such as trajectory.csv; a claim such as C5, a choice such as "
       "planar.first_tilt or a place such as \"Fig. A.2\"",
       {.required = true});
-  add_output_options(command, options.output);
 }
 
 }  // namespace hapbench

@@ -302,7 +302,6 @@ void add_limit(CommandLine& line) {
   add_jobs(command, options.jobs, "searches at once (default: as many as the machine has threads)");
   command.add("--out", options.out, "directory of the results (default: results/out/limit_NAME)");
   add_overrides(command, options.overrides, "override a field of all runs: path=value");
-  add_output_options(command, options.output);
   command.footer(
       "A run is stable when it comes to rest or dies out, the classes of \"hapbench describe stability\". It is not "
       "stable when it vibrates, diverges, goes through the surface, is thrown out (leaves the hole, or ends without contact "

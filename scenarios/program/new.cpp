@@ -260,7 +260,6 @@ void add_new(CommandLine& line) {
   command.add("--at", options.at, "X,Y,Z [m]: start over the place of the surface that is nearest to it");
   command.flag("--preview", options.preview, "run the scene and draw it: the surface, the tool on its way; FILE.svg");
   command.add("--out", options.out, "the file to write, which must not exist (default: [FROM_]KIND.json)");
-  add_output_options(command, options.output);
 }
 
 }  // namespace hapbench

@@ -23,8 +23,7 @@ struct Shown {
   bool csv = true, json = true;
   /// Above the printed column, in two lines at most; empty: it is not printed.
   std::string heading = {};
-  double factor = 1.0;  ///< from the column's unit to the heading's
-  int digits = 4;       ///< significant ones of a number without a tolerance
+  int digits = 4;  ///< significant ones of a number without a tolerance
 };
 
 /// Columns that are not everywhere.
@@ -51,10 +50,7 @@ Cell cell_of(const Value& value) {
 
 /// The cell of a number as it is printed: the digits that its tolerance leaves; "-" for nothing.
 inline std::string printed(const Cell& cell, const Shown& shown, const std::optional<double>& tolerance) {
-  if (const auto* number = std::get_if<double>(&cell)) {
-    return tolerance ? deserved(shown.factor * *number, shown.factor * *tolerance, shown.digits)
-                     : significant(shown.factor * *number, shown.digits);
-  }
+  if (const auto* number = std::get_if<double>(&cell)) return deserved(*number, tolerance, shown.digits);
   if (const auto* count = std::get_if<std::uint64_t>(&cell)) return std::to_string(*count);
   if (const auto* yes = std::get_if<bool>(&cell)) return *yes ? "yes" : "no";
   if (const auto* text = std::get_if<std::string>(&cell)) return *text;

@@ -123,16 +123,6 @@ std::vector<JudgedClaim> judge(const std::vector<Claim>& claims, const Published
   return judged;
 }
 
-/// Prints the first few problems of the readings' runs.
-void print_problems(const std::vector<ReadingVerdicts>& judged) {
-  constexpr std::size_t kMost = 10;
-  std::size_t problems = 0;
-  for (const ReadingVerdicts& reading : judged)
-    for (const std::string& problem : reading.problems)
-      if (++problems <= kMost) print_error("not measured: " + one_line(problem));
-  if (problems > kMost) print_error(fmt::format("{} more like these", problems - kMost));
-}
-
 /// The content of robustness.json; an empty record when there is no such file.
 Json read_record(const fs::path& file) {
   if (!fs::exists(file)) return {{"claims", Json::array()}};
@@ -149,7 +139,10 @@ Json judge_readings(const ReproduceOptions& options, const Readings& readings,
                [&](std::size_t i) { judged[i] = judge_reading(readings, i, scratch / std::to_string(i)); });
   std::error_code ignored;
   fs::remove(scratch, ignored);
-  print_problems(judged);
+  std::vector<std::string> problems;
+  for (const ReadingVerdicts& reading : judged)
+    for (const std::string& problem : reading.problems) problems.push_back("not measured: " + one_line(problem));
+  for (const std::string& problem : first_few(problems, 10)) print_error(problem);
   // Readings of single claims leave those of the others as they are.
   const bool some = directory && !options.only.empty() && fs::exists(*directory / "robustness.json");
   const Json record =
@@ -262,7 +255,6 @@ void add_reproduce(CommandLine& line) {
       "column for each choice that it reads otherwise than on record, as results/reference/readings.csv; writes "
       "robustness.csv and .json beside the ledger, if there is one; with --only, .json keeps what it has of other "
       "claims");
-  add_output_options(command, options.output);
   command.footer(
       "choices.md beside the ledger lists what the thesis leaves open (results/reference/choices.json); "
       "scripts/readings.py draws readings of it.\n"

@@ -112,7 +112,6 @@ void add_run(CommandLine& line) {
   command.flag(
       "--no-skip", [&skips = options.skips] { skips = Skips::off; },
       "compute everything by brute force, even what cannot change the results");
-  add_output_options(command, options.output);
 }
 
 }  // namespace hapbench

@@ -253,17 +253,6 @@ SweepOptions sweep_options(const SweepCommand& command, const fs::path& scenario
   return options;
 }
 
-/// Prints the first warnings: a sweep may give as many as it has runs.
-void print_some_warnings(std::vector<std::string> warnings) {
-  constexpr std::size_t kMost = 20;
-  const std::size_t count = warnings.size();
-  if (count > kMost) {
-    warnings.resize(kMost);
-    warnings.push_back(fmt::format("{} more like these", count - kMost));
-  }
-  print_warnings(warnings);
-}
-
 std::string run_text(const SweepPlan& plan, std::size_t run) {
   return fmt::format("run {} ({})", run, fmt::join(plan.cases.changes(run), ", "));
 }
@@ -361,8 +350,8 @@ int sweep(const SweepCommand& command) {
   if (command.print) return print_row(command, cases);
   const SweepOptions options = sweep_options(command, cases.scenes().front().file);
   const SweepPlan plan = plan_sweep(std::move(cases), options.jobs, options.progress);
-  chosen_metric(plan.metrics, command.metric);  // throws if there is none of that name
-  print_some_warnings(plan.warnings);
+  chosen_metric(plan.metrics, command.metric);   // throws if there is none of that name
+  print_warnings(first_few(plan.warnings, 20));  // there may be as many as runs
   require_writable_directory(options.directory);
   check_table_under_way(plan, options);
 
@@ -433,7 +422,6 @@ void add_sweep(CommandLine& line) {
   add_overrides(command, options.overrides, "override a field of all runs: path=value");
   add_run_options(command, options);
   command.add("--shard", options.shard, "i/n with 0 <= i < n: do only every n-th run, from the i-th on");
-  add_output_options(command, options.output);
   command.footer(
       "sweep.csv has a row for each run: index, the varied fields, outcome (\"error\" when it could not be computed), "
       "expected, steps, every metric, state_hash. \"hapbench sweep FOLDER\" prints it again, without a run. Shards write "

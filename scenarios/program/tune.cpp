@@ -415,7 +415,6 @@ void add_tune(CommandLine& line) {
   add_jobs(command, options.jobs, "runs at once; no result depends on it (default: one per thread)");
   command.add("--out", options.out, "directory of the results (default: results/out/tune_NAME)");
   add_overrides(command, options.overrides, "override a field of all runs: path=value");
-  add_output_options(command, options.output);
   command.footer(fmt::format(
       "For each law the largest K, over zeta (and virtual mass on an admittance device), at which the scene's own run and each of the "
       "family is settled (stable or dying out, \"hapbench describe stability\"; where a script moves the tool, no more than 1 mm/s rms above 30 Hz at the handle) at K and at margin x K, the loop of "

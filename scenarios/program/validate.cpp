@@ -158,7 +158,6 @@ void add_validate(CommandLine& line) {
       validate);
   command.add("files", options.files, "scenario files, or names of bundled scenarios", {.required = true});
   add_overrides(command, options.overrides, "override a field of all: path=value");
-  add_output_options(command, options.output);
 }
 
 namespace {
@@ -198,7 +197,6 @@ void add_shell(CommandLine& line) {
   command.add("scenario", options.scenario, "scenario file, or name of a bundled scenario", {.required = true});
   command.add("--out", options.out, "FILE.csv (exact) or FILE.ply (single precision, for viewers)", {.required = true});
   add_overrides(command, options.overrides);
-  add_output_options(command, options.output);
 }
 
 }  // namespace hapbench
