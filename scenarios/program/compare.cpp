@@ -11,12 +11,10 @@
 #include <span>
 
 #include "algorithms/registry.hpp"
-#include "results/summary/outcome_names.hpp"
 #include "scenarios/batch/league.hpp"
 #include "scenarios/batch/result_folders.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/description/metric_sections.hpp"
-#include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/command.hpp"
 #include "scenarios/program/index.hpp"
 #include "scenarios/program/report.hpp"

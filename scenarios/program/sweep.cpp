@@ -7,7 +7,6 @@
 #include <optional>
 #include <utility>
 
-#include "results/summary/outcome_names.hpp"
 #include "scenarios/batch/league.hpp"
 #include "scenarios/batch/parallel_for.hpp"
 #include "scenarios/batch/run_sweep.hpp"
