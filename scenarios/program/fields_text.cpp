@@ -81,13 +81,13 @@ const ValueGuide* object_of(const Json& value, const ValueGuide& guide) {
   return nullptr;
 }
 
-void add_meanings(std::vector<FieldMeaning>& meanings, const std::string& prefix, const Json& value,
-                  const ValueGuide& object) {
+using FieldMeanings = std::vector<std::pair<std::string, std::string>>;
+
+void add_meanings(FieldMeanings& meanings, const std::string& prefix, const Json& value, const ValueGuide& object) {
   for (const auto& entry : value.items()) {
-    const auto named = [&entry](const FieldGuide& field) { return field.name == entry.key(); };
-    const auto field = std::find_if(object.fields.begin(), object.fields.end(), named);
+    const auto field = std::ranges::find(object.fields, entry.key(), &FieldGuide::name);
     if (field == object.fields.end()) continue;  // the type
-    meanings.push_back({prefix + entry.key(), field->meaning});
+    meanings.emplace_back(prefix + entry.key(), field->meaning);
     if (const ValueGuide* nested = object_of(entry.value(), field->value))
       add_meanings(meanings, prefix + entry.key() + ".", entry.value(), *nested);
   }
@@ -176,8 +176,8 @@ std::string types_text(const std::string& type_field) {
                      bold(stdout, type_field), field, field, text);
 }
 
-std::vector<FieldMeaning> field_meanings(const Json& scenario) {
-  std::vector<FieldMeaning> meanings;
+FieldMeanings field_meanings(const Json& scenario) {
+  FieldMeanings meanings;
   add_meanings(meanings, "", scenario, scenario_guide());
   return meanings;
 }

@@ -38,17 +38,16 @@ std::string beyond_text(const FieldLimit& limit) {
   if (limit.beyond) return std::string(run_verdict_name(limit.beyond->verdict));
   return limit.value ? "end of the range" : std::string(run_verdict_name(limit.runs.front().verdict));
 }
-/// The low and the high end of the interval of stable values.
-struct Ends {
-  const std::optional<double>&low, &high;
-  const std::optional<JudgedValue>&below, &above;
-  std::optional<double> low_tolerance, high_tolerance;
+/// An end of the interval of stable values, and the run beyond it.
+struct IntervalEnd {
+  const std::optional<double>& value;
+  const std::optional<JudgedValue>& beyond;
+  std::optional<double> tolerance;
 };
-Ends ends_of(const LimitRow& r) {
+IntervalEnd end_of(const LimitRow& r, bool low) {
   const FieldLimit& l = r.found;
-  if (r.asked.question.smallest)
-    return {l.value, l.other_value, l.beyond, l.other_beyond, l.tolerance(), l.other_tolerance()};
-  return {l.other_value, l.value, l.other_beyond, l.beyond, l.other_tolerance(), l.tolerance()};
+  if (low == r.asked.question.smallest) return {l.value, l.beyond, l.tolerance()};
+  return {l.other_value, l.other_beyond, l.other_tolerance()};
 }
 
 /// A line of limit_runs.csv.
@@ -88,10 +87,19 @@ Columns<Row> place_columns(const LimitTable* table) {
 /// The edge that was asked for and the ends of the interval that it ends. Printed is the end on the other side, too.
 void add_ends(Columns<LimitRow>& columns, const LimitTable* table) {
   const bool smallest = table != nullptr && table->first().asked.question.smallest;
-  const auto printed_if = [](bool shown, const char* heading) {
+  const auto printed_if = [](bool shown, const std::string& heading) {
     return Shown{.heading = shown ? heading : "", .digits = 6};
   };
-  const bool low = table == nullptr || !smallest, high = table == nullptr || smallest;
+  const auto add_end = [&](bool low, const std::string& end, const char* meaning, const std::string& outside,
+                           const char* first, bool shown) {
+    columns.add(
+        end, "by field", meaning, [low](const LimitRow& r) { return end_of(r, low).value; },
+        printed_if(shown, end + " end"), [low](const LimitRow& r) { return end_of(r, low).tolerance; });
+    columns.add(outside, "by field", first, [low](const LimitRow& r) { return value_cell(end_of(r, low).beyond); });
+    columns.add(
+        "class_" + outside, "", "what became of the run there",
+        [low](const LimitRow& r) { return verdict_cell(end_of(r, low).beyond); }, printed_if(shown, outside + " it"));
+  };
   columns.add(
       "field", "", "path of the field", [](const LimitRow& r) { return r.asked.question.path; }, only_csv());
   columns.add(
@@ -105,24 +113,13 @@ void add_ends(Columns<LimitRow>& columns, const LimitTable* table) {
               [](const LimitRow& r) { return value_cell(r.found.beyond); });
   columns.add("class_beyond", "", "what became of the run there (describe stability), or \"end of the range\"",
               of_answer(beyond_text), printed_if(true, "beyond it"));
-  columns.add(
-      "low", "by field",
+  add_end(
+      true, "low",
       "the low end of the interval of stable values that the limit ends: its smallest stable value, to the resolution",
-      [](const LimitRow& r) { return ends_of(r).low; }, printed_if(low, "low end"),
-      [](const LimitRow& r) { return ends_of(r).low_tolerance; });
-  columns.add("below", "by field", "the first value below that is not stable; empty when the range begins stable",
-              [](const LimitRow& r) { return value_cell(ends_of(r).below); });
-  columns.add(
-      "class_below", "", "what became of the run there",
-      [](const LimitRow& r) { return verdict_cell(ends_of(r).below); }, printed_if(low, "below it"));
-  columns.add(
-      "high", "by field", "the high end of this interval", [](const LimitRow& r) { return ends_of(r).high; },
-      printed_if(high, "high end"), [](const LimitRow& r) { return ends_of(r).high_tolerance; });
-  columns.add("above", "by field", "the first value above that is not stable; empty when the range ends stable",
-              [](const LimitRow& r) { return value_cell(ends_of(r).above); });
-  columns.add(
-      "class_above", "", "what became of the run there",
-      [](const LimitRow& r) { return verdict_cell(ends_of(r).above); }, printed_if(high, "above it"));
+      "below", "the first value below that is not stable; empty when the range begins stable",
+      table == nullptr || !smallest);
+  add_end(false, "high", "the high end of this interval", "above",
+          "the first value above that is not stable; empty when the range ends stable", table == nullptr || smallest);
 }
 
 void add_theory(Columns<LimitRow>& columns, bool with_inequality) {
@@ -172,10 +169,10 @@ void add_search(Columns<LimitRow>& columns) {
               of_answer(&FieldLimit::tolerance), only_json());
   columns.add(
       "low_tolerance", "by field", "the same of the low end",
-      [](const LimitRow& r) { return ends_of(r).low_tolerance; }, only_json());
+      [](const LimitRow& r) { return end_of(r, true).tolerance; }, only_json());
   columns.add(
       "high_tolerance", "by field", "the same of the high end",
-      [](const LimitRow& r) { return ends_of(r).high_tolerance; }, only_json());
+      [](const LimitRow& r) { return end_of(r, false).tolerance; }, only_json());
   columns.add("undecided", "1", "runs that were too short to tell slow motion from rest, though lengthened",
               of_answer(&FieldLimit::undecided));
   columns.add("unstable_without_contact", "", "true when hand and device alone are unstable beyond the edge",

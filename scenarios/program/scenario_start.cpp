@@ -177,7 +177,7 @@ double rounded(double value) {
 }
 
 /// Puts a text in the place of each @name@.
-void fill(std::string& text, const std::string& name, const std::string& with) {
+void fill_mark(std::string& text, const std::string& name, const std::string& with) {
   const std::string mark = "@" + name + "@";
   for (std::size_t at = 0; (at = text.find(mark, at)) != std::string::npos; at += with.size())
     text.replace(at, mark.size(), with);
@@ -270,8 +270,8 @@ class Start {
                                           "[0.5, @pressed@]], \"interpolation\": \"cosine\"}}",
                                           name));
     }
-    fill(sections_, "target", fmt::format("{}", fmt::join(targets, ",\n      ")));
-    fill(sections_, "way", options_.path.empty() ? "\"direction\": @direction@" : "\"path_m\": @path@");
+    fill_mark(sections_, "target", fmt::format("{}", fmt::join(targets, ",\n      ")));
+    fill_mark(sections_, "way", options_.path.empty() ? "\"direction\": @direction@" : "\"path_m\": @path@");
     if (options_.side != "z" && has("\"impedance\"")) {
       const auto list = [](const Vec3& v) {
         return fmt::format("[{}, {}, {}]", v.x() + 0.0, v.y() + 0.0, v.z() + 0.0);
@@ -285,8 +285,8 @@ class Start {
     std::string text = fmt::format("{{\n  \"description\": {},\n  \"time\": {{\"step_s\": {}, \"steps\": @steps@}},",
                                    Json(description_).dump(), kStep) +
                        sections_ + "}\n";
-    fill(text, "flip", flip_ ? ", \"flip_normals\": true" : "");
-    for (const auto& [name, value] : values_) fill(text, name, value.dump());
+    fill_mark(text, "flip", flip_ ? ", \"flip_normals\": true" : "");
+    for (const auto& [name, value] : values_) fill_mark(text, name, value.dump());
     return text;
   }
 
