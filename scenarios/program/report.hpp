@@ -92,7 +92,6 @@ class Columns {
   void print(std::string heading, std::string unit, std::string meaning, Get get) {
     add("", std::move(unit), std::move(meaning), std::move(get), {false, false, std::move(heading)});
   }
-  void add(const Columns& more) { entries_.insert(entries_.end(), more.entries_.begin(), more.entries_.end()); }
 
   void write(const std::filesystem::path& file, std::span<const Row> rows, FileSet& files) const {
     std::string header;
