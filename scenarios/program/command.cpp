@@ -12,14 +12,11 @@
 #include "results/io/atomic_file.hpp"
 #include "results/io/json_text.hpp"
 #include "scenarios/batch/cases.hpp"
+#include "scenarios/batch/league.hpp"
 #include "scenarios/batch/parallel_for.hpp"
-#include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/memory_limit.hpp"
-#include "scenarios/program/fields_text.hpp"
 #include "scenarios/program/table.hpp"
-#include "scenarios/run/load_module.hpp"
-#include "scenarios/run/scene_facts.hpp"
 
 namespace hapbench {
 
@@ -28,14 +25,16 @@ namespace fs = std::filesystem;
 namespace {
 
 thread_local CapturedOutput* captured = nullptr;
-std::filesystem::path given_program;
+fs::path given_program;
 
-std::string shell_word(std::string_view word) {
-  constexpr std::string_view kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./:=,+@%";
-  if (!word.empty() && word.find_first_not_of(kPlain) == std::string_view::npos) return std::string(word);
-  std::string quoted = "'";
-  for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return quoted + "'";
+/// Prints a line on standard error, or adds it to what the host collects of that kind.
+void tell(std::vector<std::string> CapturedOutput::*kind, std::string_view head, std::string_view text) {
+  if (captured != nullptr) {
+    (captured->*kind).emplace_back(text);
+    return;
+  }
+  std::fflush(stdout);  // keeps the order of printing where both streams go to one pipe
+  fmt::print(stderr, "{} {}\n", head, text);
 }
 
 }  // namespace
@@ -48,18 +47,12 @@ CapturedOutput* captured_output() noexcept {
   return captured;
 }
 
-void add_output_options(Command& command, OutputOptions& options) {
-  command.flag("--quiet", options.quiet, "print nothing on standard output, and no progress bar");
-  command.flag("--json", options.json, "print JSON instead of tables");
-  command.flag("--wide", output_in_full, "print tables at full width, however narrow the terminal is");
-}
-
 void add_overrides(Command& command, std::vector<std::string>& overrides, const std::string& help) {
-  command.add("--set", overrides, help).repeatable();
+  command.add("--set", overrides, help, {.several = true});
 }
 
 void add_jobs(Command& command, unsigned& jobs, const std::string& help) {
-  command.add("--jobs", jobs, help).range(1, 1024);
+  command.add("--jobs", jobs, help, {.range = {{1, 1024}}});
 }
 
 void print(const OutputOptions& options, const std::string& text, const Json& json) {
@@ -73,12 +66,7 @@ void print(const OutputOptions& options, const std::string& text, const Json& js
 }
 
 void print_warnings(const std::vector<std::string>& warnings) {
-  if (captured != nullptr) {
-    captured->warnings.insert(captured->warnings.end(), warnings.begin(), warnings.end());
-    return;
-  }
-  std::fflush(stdout);  // keeps the order of printing where both streams go to one pipe
-  for (const std::string& warning : warnings) fmt::print(stderr, "hapbench: warning: {}\n", warning);
+  for (const std::string& warning : warnings) tell(&CapturedOutput::warnings, "hapbench: warning:", warning);
 }
 
 void print_warnings(const LoadedScenario& loaded, const std::vector<Warning>& warnings) {
@@ -86,27 +74,25 @@ void print_warnings(const LoadedScenario& loaded, const std::vector<Warning>& wa
 }
 
 void print_note(std::string_view text) {
-  if (captured != nullptr) {
-    captured->warnings.emplace_back(text);
-    return;
-  }
-  std::fflush(stdout);
-  fmt::print(stderr, "hapbench: {}\n", text);
+  tell(&CapturedOutput::warnings, "hapbench:", text);
 }
 
 void print_error(std::string_view text) {
-  if (captured != nullptr) {
-    captured->errors.emplace_back(text);
-    return;
-  }
-  std::fflush(stdout);
-  fmt::print(stderr, "{} {}\n", bold(stderr, "hapbench: error:"), text);
+  tell(&CapturedOutput::errors, bold(stderr, "hapbench: error:"), text);
 }
 
 void print_errors(const InputError& error) {
   const std::vector<InputError> faults = error.faults();
   for (const InputError& fault : faults) print_error(fault.what());
   if (faults.size() == kMostFaults) print_error(fmt::format("no more than {} are shown", kMostFaults));
+}
+
+std::vector<std::string> first_few(std::vector<std::string> texts, std::size_t most) {
+  if (texts.size() <= most) return texts;
+  const std::string rest = fmt::format("{} more like these", texts.size() - most);
+  texts.resize(most);
+  texts.push_back(rest);
+  return texts;
 }
 
 void announce_large_output(double bytes) {
@@ -134,24 +120,26 @@ std::vector<std::string> chosen_names(std::string_view got, const std::vector<st
   return given;
 }
 
+std::string chosen_metric(const std::vector<std::string>& metrics, const std::string& asked_for) {
+  if (!asked_for.empty()) {
+    require_valid_name("--metric: got", asked_for, metrics);
+    return asked_for;
+  }
+  const auto has = [&](std::string_view name) { return std::ranges::find(metrics, name) != metrics.end(); };
+  return std::string(*std::find_if(std::begin(kDefaultMetrics), std::end(kDefaultMetrics) - 1, has));
+}
+
 fs::path results_directory(const std::string& out, const std::string& name) {
   return out.empty() ? fs::path("results") / "out" / name : fs::path(out);
 }
 
-std::vector<fs::path> output_directories(const std::string& out, const std::vector<LoadedScenario>& scenarios,
-                                         const std::string& prefix, const std::string& allowed) {
-  std::vector<fs::path> directories;
-  std::set<std::string> stems;
-  for (const LoadedScenario& scenario : scenarios) {
-    const std::string stem = scenario.file.stem().string();
-    if (!stems.insert(stem).second) {
-      throw InputError(
-          fmt::format("{}: a second scenario named \"{}\"; allowed: {}", scenario.file.string(), stem, allowed));
-    }
-    const fs::path directory = results_directory(out, prefix + stem);
-    directories.push_back(out.empty() || scenarios.size() == 1 ? directory : directory / stem);
+void require_names_of_their_own(const std::vector<fs::path>& files, const std::string& allowed) {
+  std::set<fs::path> names;
+  for (const fs::path& file : files) {
+    if (names.insert(file.stem()).second) continue;
+    throw InputError(
+        fmt::format("{}: a second scenario named \"{}\"; allowed: {}", file.string(), file.stem().string(), allowed));
   }
-  return directories;
 }
 
 void require_writable_directory(const fs::path& directory) {
@@ -165,34 +153,30 @@ void require_writable_directory(const fs::path& directory) {
   }
 }
 
-void require_writable_file(const fs::path& file) {
-  std::error_code ignored;
-  if (fs::is_directory(file, ignored)) throw InputError(fmt::format("--out {}: is a directory", file.string()));
-  require_writable_directory(file.has_parent_path() ? file.parent_path() : ".");
-}
-
-JobOptions job_options(unsigned jobs, const OutputOptions& output, const std::string& label) {
-  return {jobs == 0 ? static_cast<unsigned>(available_threads()) : jobs, output.quiet ? "" : label};
+JobOptions job_options(const CommonOptions& options, const std::string& label) {
+  return {options.jobs == 0 ? static_cast<unsigned>(available_threads()) : options.jobs,
+          options.output.quiet ? "" : label};
 }
 
 std::string shell_line(const std::vector<std::string>& words) {
+  constexpr std::string_view kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./:=,+@%";
   std::string line;
-  for (const std::string& word : words) line += (line.empty() ? "" : " ") + shell_word(word);
+  for (const std::string& word : words) {
+    if (!line.empty()) line += ' ';
+    const bool is_plain = !word.empty() && word.find_first_not_of(kPlain) == std::string::npos;
+    if (!is_plain) line += '\'';
+    for (const char c : word) line += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    if (!is_plain) line += '\'';
+  }
   return line;
 }
 
-std::filesystem::path this_program() {
+fs::path this_program() {
   std::error_code ignored;
-  return given_program.empty() ? std::filesystem::read_symlink("/proc/self/exe", ignored) : given_program;
+  return given_program.empty() ? fs::read_symlink("/proc/self/exe", ignored) : given_program;
 }
 
-std::vector<std::string> plugin_words() {
-  std::vector<std::string> words;
-  for (const LoadedLaw& law : loaded_laws()) words.insert(words.end(), {"--plugin", law.file.string()});
-  return words;
-}
-
-void set_this_program(std::filesystem::path program) {
+void set_this_program(fs::path program) {
   given_program = std::move(program);
 }
 

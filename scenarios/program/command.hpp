@@ -26,14 +26,22 @@ enum ExitStatus : int {
   kStopped = 128,          ///< plus the number of the signal, as shells do: 130 for Ctrl-C, 143 for SIGTERM
 };
 
-/// Options every command understands.
-struct OutputOptions {
-  bool quiet = false;  ///< nothing on standard output, no progress bar
-  bool json = false;   ///< JSON instead of tables on standard output
+/// Runs the command that argv[1], argv[2], ... name and returns the program's exit status. Reports on standard error
+/// when a signal (stop_signal.hpp) stopped the work. Throws InputError, also for words that are no command, and
+/// IoError.
+int run_program(int argc, char** argv);
+
+/// Does the same, but reports exceptions on standard error: exit status 2 for InputError, 1 for all others.
+int run_program_to_exit(int argc, char** argv);
+
+/// Options that most commands have.
+struct CommonOptions {
+  std::vector<std::string> overrides;
+  unsigned jobs = 0;  ///< 0: as many as this process may use
+  std::string out;
+  OutputOptions output;
 };
 
-/// Adds --quiet, --json and --wide.
-void add_output_options(Command& command, OutputOptions& options);
 /// Adds --set, repeatable and completed by the fields of scenarios.
 void add_overrides(Command& command, std::vector<std::string>& overrides,
                    const std::string& help = "override a field: path=value");
@@ -52,6 +60,9 @@ void print_note(std::string_view text);
 void print_error(std::string_view text);
 /// Prints each fault of bad input as an error.
 void print_errors(const InputError& error);
+
+/// The first texts, and behind them how many more there are.
+std::vector<std::string> first_few(std::vector<std::string> texts, std::size_t most);
 
 /// The output of a command.
 struct CapturedOutput {
@@ -92,23 +103,21 @@ void require_names(std::string_view got, const std::vector<std::string>& names, 
 std::vector<std::string> chosen_names(std::string_view got, const std::vector<std::string>& given,
                                       const std::vector<std::string>& all);
 
+/// The metric that sweeps and levels show: the one asked for, or else the first of kDefaultMetrics that there is.
+/// Throws InputError when there is none of that name.
+std::string chosen_metric(const std::vector<std::string>& metrics, const std::string& asked_for);
+
 /// `out`, or results/out/`name` when it is empty.
 std::filesystem::path results_directory(const std::string& out, const std::string& name);
-/// One directory per scenario: `out` itself for a single one, a subdirectory named after the file for several; without
-/// `out`, one of results/out, named after the file behind `prefix`. Throws InputError when two files have the same
-/// name; `allowed` is for its message.
-std::vector<std::filesystem::path> output_directories(const std::string& out,
-                                                      const std::vector<LoadedScenario>& scenarios,
-                                                      const std::string& prefix, const std::string& allowed);
+/// Throws InputError when two scenarios have the same name, after which results are named; `allowed` is for its
+/// message.
+void require_names_of_their_own(const std::vector<std::filesystem::path>& files, const std::string& allowed);
 
 /// Throws InputError unless results can be written to `directory`. Creates it, and removes it again if it is still
 /// empty when the program ends.
 void require_writable_directory(const std::filesystem::path& directory);
-/// Throws InputError unless a file can be written at the path given to --out; creates its directory likewise.
-void require_writable_file(const std::filesystem::path& file);
-
-/// `jobs` threads, or as many as this process may use when it is 0, and a progress bar behind `label` unless quiet.
-JobOptions job_options(unsigned jobs, const OutputOptions& output, const std::string& label);
+/// The threads of --jobs, and a progress bar behind `label` unless quiet.
+JobOptions job_options(const CommonOptions& options, const std::string& label);
 
 /// Quotes words for a POSIX shell: those with anything but letters, digits and "_-./:=,+@%" in single quotes.
 std::string shell_line(const std::vector<std::string>& words);
@@ -117,8 +126,5 @@ std::string shell_line(const std::vector<std::string>& words);
 std::filesystem::path this_program();
 /// Sets the answer of this_program, for a host that is another program.
 void set_this_program(std::filesystem::path program);
-
-/// The options of a command line that load the plugins that this program has loaded.
-std::vector<std::string> plugin_words();
 
 }  // namespace hapbench

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
-#include <set>
 #include <string>
 #include <string_view>
 
@@ -16,74 +15,106 @@
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/command.hpp"
 #include "scenarios/program/study.hpp"
+#include "scenarios/program/table.hpp"
 #include "scenarios/run/load_module.hpp"
 
 namespace hapbench {
 
-CommandOption& CommandOption::required() {
-  option_->required();
-  return *this;
+namespace {
+
+constexpr const char* kProgramName = "hapbench";
+
+struct OldWords {
+  std::string_view command;  ///< of options; empty for commands, "*" for options of every command
+  std::string_view words;    ///< separated by blanks
+  std::string_view instead;
+};
+
+/// By command, so that what one command lost stands together.
+constexpr OldWords kOldWords[] = {
+    {"*", "--memory", "ulimit -d KILOBYTES before the command; without it three quarters of what is free"},
+    {"*", "--plugin", "the same without it: the command runs no law"},
+    {"", "complete completion", "scripts/completion, which prints a completion for bash"},
+    {"", "diff", "hapbench report A B --tolerance 0, which says what differs, with status 3"},
+    {"", "explain",
+     "hapbench run SCENE, which prints what is wrong and writes it to summary.json; hapbench describe diagnosis lists the rules"},
+    {"", "man", "hapbench --help, and --help of each command"},
+    {"", "merge", "hapbench sweep FOLDER, which joins the tables of the shards in it"},
+    {"", "precision",
+     "hapbench_accuracy, the benchmark of run time against error (tests/README.md), whose picture scripts/reproduce draws; "
+     "hapbench converge SCENE --metric NAME"},
+    {"", "stability",
+     "hapbench limit spring_stiffness, spring_damping or spring_time_step; for --map other studies (hapbench list studies), "
+     "for --stress hapbench stress, for --search hapbench sweep SCENE --sample lhs:400 --vary hand.x_N=-5:5"},
+    {"", "suite", "hapbench compare GROUP --algorithms all --seeds 5"},
+    {"compare", "--check --sure", "hapbench compare SCENE --errors, of one number hapbench converge SCENE"},
+    {"compare", "--devices --friction --resolution --vibration",
+     "hapbench limit tap_wall tap_corner tap_hole --device all"},
+    {"compare", "--html", "hapbench report FOLDER, of the comparison's folder"},
+    {"compare", "--no-skip", "hapbench run SCENE --no-skip"},
+    {"converge", "--resume", "the same without it: the runs are made again"},
+    {"plot", "--no-sketch", "the same without it: plot draws no sketches"},
+    {"reproduce", "--robustness",
+     "hapbench reproduce --choices results/reference/readings.csv, or of scripts/readings.py 256"},
+    {"reproduce", "--subjects",
+     "their record, in the manual of the thesis's claims (scenarios/thesis_claims/README.md)"},
+    {"run", "--sure", "hapbench converge SCENE, of the points with --vary environment.spacing_m"},
+    {"sweep", "--cpus --dry-run --partition --slurm --time",
+     "sbatch --array=0-99 scripts/sweep.sbatch SCENE --vary ... --out FOLDER"},
+    {"sweep", "--status", "squeue, and the tables sweep.I_of_N.csv that are in the folder"},
+};
+
+}  // namespace
+
+void refuse_old_word(const std::string& command, const std::string& word) {
+  const std::string name = word.substr(0, word.find('='));
+  for (const OldWords& old : kOldWords) {
+    const Words words = words_of(old.words);
+    if (std::ranges::find(words, name) == words.end() || (old.command != command && old.command != "*")) continue;
+    throw InputError(fmt::format("{}\"{}\" is no longer known; instead: {}", command.empty() ? "" : command + ": ",
+                                 name, old.instead));
+  }
 }
 
-CommandOption& CommandOption::repeatable() {
-  option_->allow_extra_args(false)->take_all();
-  return *this;
+void Command::add_variable(const std::string& name, Variable variable, const std::string& help, const Takes& takes) {
+  CLI::Option* option = std::visit([&](auto* value) { return app_->add_option(name, *value, help); }, variable);
+  option->required(takes.required);
+  if (takes.several) option->allow_extra_args(false)->take_all();
+  if (takes.comma_separated)
+    option->delimiter(',')->transform([](const std::string& word) { return CLI::detail::trim_copy(word); });
+  // CLI11's own checks word the errors differently, and show in the help.
+  if (takes.range) {
+    const auto problem = [range = *takes.range](const std::string& word) -> std::string {
+      const auto [least, greatest] = range;
+      std::int64_t number = 0;
+      if (CLI::detail::lexical_cast(word, number) && number >= least && number <= greatest) return "";
+      return fmt::format("got {}; allowed: {} ... {}", word, least, greatest);
+    };
+    option->check(CLI::Validator(problem, ""));
+  }
+  if (!takes.one_of.empty()) {
+    const auto problem = [words = takes.one_of](const std::string& word) -> std::string {
+      if (std::ranges::find(words, word) != words.end()) return "";
+      return fmt::format("got \"{}\"; allowed: {}{}", word, quoted_list(words), nearest_name_hint(word, words));
+    };
+    option->check(CLI::Validator(problem, ""));
+  }
 }
 
-CommandOption& CommandOption::comma_separated() {
-  option_->delimiter(',')->transform([](const std::string& word) { return CLI::detail::trim_copy(word); });
-  return *this;
+void Command::flag(const std::string& name, bool& value, const std::string& help) {
+  app_->add_flag(name, value, help);
 }
 
-CommandOption& CommandOption::range(std::int64_t least, std::int64_t greatest) {
-  // CLI11's own check words the error differently, and shows in the help.
-  const auto problem = [least, greatest](const std::string& word) -> std::string {
-    std::int64_t number = 0;
-    if (CLI::detail::lexical_cast(word, number) && number >= least && number <= greatest) return "";
-    return fmt::format("got {}; allowed: {} ... {}", word, least, greatest);
-  };
-  option_->check(CLI::Validator(problem, ""));
-  return *this;
+void Command::flag(const std::string& name, std::function<void()> when_given, const std::string& help) {
+  app_->add_flag_callback(name, std::move(when_given), help);
 }
 
-CommandOption& CommandOption::one_of(const std::vector<std::string>& words) {
-  const auto problem = [words](const std::string& word) -> std::string {
-    if (std::find(words.begin(), words.end(), word) != words.end()) return "";
-    return fmt::format("got \"{}\"; allowed: {}{}", word, quoted_list(words), nearest_name_hint(word, words));
-  };
-  option_->check(CLI::Validator(problem, ""));
-  return *this;
-}
-
-CommandOption& CommandOption::needs(const CommandOption& other) {
-  option_->needs(other.option_);
-  return *this;
-}
-
-CommandOption& CommandOption::excludes(const CommandOption& other) {
-  option_->excludes(other.option_);
-  return *this;
-}
-
-CommandOption Command::add_variable(const std::string& name, Variable variable, const std::string& help) {
-  return CommandOption(std::visit([&](auto* value) { return app_->add_option(name, *value, help); }, variable));
-}
-
-CommandOption Command::flag(const std::string& name, bool& value, const std::string& help) {
-  return CommandOption(app_->add_flag(name, value, help));
-}
-
-CommandOption Command::flag(const std::string& name, std::function<void()> when_given, const std::string& help) {
-  return CommandOption(app_->add_flag_callback(name, std::move(when_given), help));
+void Command::needs(const std::string& option, const std::string& other) {
+  app_->get_option(option)->needs(app_->get_option(other));
 }
 
 void Command::footer(const std::string& text) {
   app_->footer(text);
-}
-
-void Command::runs(Action action, std::string when_stopped) {
-  ChosenCommand command{std::move(action), std::move(when_stopped)};
-  app_->callback([&chosen = chosen_, command = std::move(command)] { chosen = command; });
 }
 
 CommandLine::CommandLine(const std::string& version, std::function<std::string()> version_json)
@@ -116,11 +147,12 @@ void CommandLine::add_common_options(CLI::App& app) {
       ->take_all();
 }
 
-Command CommandLine::command(const std::string& name, const std::string& summary) {
+Command CommandLine::add(const std::string& name, const std::string& summary, ChosenCommand command) {
   CLI::App* app = app_->add_subcommand(name, summary);
   app->get_option("--help")->description("print this help");
+  app->callback([this, command = std::move(command)] { chosen_ = command; });
   add_common_options(*app);
-  return Command(app, chosen_);
+  return Command(app);
 }
 
 void CommandLine::pass_on(const std::string& name, const std::string& summary,
@@ -131,31 +163,55 @@ void CommandLine::pass_on(const std::string& name, const std::string& summary,
 
 namespace {
 
-OptionText text_of(const CLI::Option& option) {
-  OptionText text{.name = option.get_name(option.get_positional(), true),
-                  .value = "",
-                  .help = option.get_description(),
-                  .is_argument = option.get_positional(),
-                  .is_required = option.get_required()};
-  if (option.get_type_size() != 0 && !option.get_type_name().empty()) {
-    text.value = option.get_type_name();
-    if (option.get_expected_min() == 0) text.value = "[" + text.value + "]";
-    if (option.get_expected_max() == CLI::detail::expected_max_vector_size)
-      text.value += option.get_delimiter() == ',' ? ",..." : " ...";
-  }
-  // CLI11 orders them by their addresses.
-  std::set<std::string> needed, excluded;
-  for (const CLI::Option* other : option.get_needs()) needed.insert(other->get_name());
-  for (const CLI::Option* other : option.get_excludes()) excluded.insert(other->get_name());
-  for (const std::string& name : needed) text.help += "; with " + name;
-  for (const std::string& name : excluded) text.help += "; not with " + name;
-  return text;
+std::string name_of(const CLI::Option& option) {
+  return option.get_name(option.get_positional(), true);
 }
 
-CommandText text_of(const CLI::App& app) {
-  CommandText text{app.get_name(), app.get_description(), app.get_footer(), {}};
-  for (const CLI::Option* option : app.get_options()) text.options.push_back(text_of(*option));
-  return text;
+/// The kind of value, as in "TEXT ..."; empty for a flag.
+std::string kind_of_value(const CLI::Option& option) {
+  if (option.get_type_size() == 0 || option.get_type_name().empty()) return "";
+  std::string kind = option.get_type_name();
+  if (option.get_expected_min() == 0) kind = "[" + kind + "]";
+  if (option.get_expected_max() == CLI::detail::expected_max_vector_size)
+    kind += option.get_delimiter() == ',' ? ",..." : " ...";
+  return kind;
+}
+
+std::string usage(const CLI::App& app) {
+  std::string words = app.get_parent() == nullptr ? fmt::format("{} [OPTIONS] COMMAND", kProgramName)
+                                                  : fmt::format("{} {} [OPTIONS]", kProgramName, app.get_name());
+  for (const CLI::Option* option : app.get_options()) {
+    if (!option->get_positional()) continue;
+    const std::string name = name_of(*option) + (kind_of_value(*option).ends_with("...") ? "..." : "");
+    words += option->get_required() ? " " + name : " [" + name + "]";
+  }
+  return "Usage: " + words + "\n";
+}
+
+std::string options_text(const CLI::App& app, bool arguments) {
+  std::string text;
+  for (const CLI::Option* option : app.get_options()) {
+    if (option->get_positional() != arguments) continue;
+    std::string name = name_of(*option), help = option->get_description();
+    if (const std::string kind = kind_of_value(*option); !arguments && !kind.empty()) name += " " + kind;
+    for (const CLI::Option* other : option->get_needs()) help += "; with " + other->get_name();
+    if (option->get_required() && !arguments) help += "; required";
+    text += entry(name, help);
+  }
+  return text.empty() ? "" : fmt::format("\n{}\n{}", bold(stdout, arguments ? "Arguments:" : "Options:"), text);
+}
+
+/// The help of a command, as wide as prose is; that of the program lists the others.
+std::string help_text(const CLI::App& app) {
+  const bool is_program = app.get_parent() == nullptr;
+  std::string text = wrapped((is_program ? std::string(kProgramName) + ": " : "") + app.get_description(), 0);
+  text += usage(app) + options_text(app, true) + options_text(app, false);
+  if (is_program) {
+    text += "\n" + bold(stdout, "Commands:") + "\n";
+    for (const CLI::App* command : app.get_subcommands({}))
+      text += entry(command->get_name(), command->get_description(), 2, 16);
+  }
+  return app.get_footer().empty() ? text : text + "\n" + wrapped(app.get_footer(), 0);
 }
 
 std::vector<std::string> option_names(const CLI::App& app) {
@@ -218,16 +274,6 @@ std::string problem_of(const CLI::ParseError& error, const CLI::App& program) {
   return one_line(name + error.what()) + help;
 }
 
-}  // namespace
-
-std::vector<CommandText> CommandLine::texts() const {
-  std::vector<CommandText> texts = {text_of(*app_)};
-  for (const CLI::App* command : app_->get_subcommands({})) texts.push_back(text_of(*command));
-  return texts;
-}
-
-namespace {
-
 void load_plugins(const std::vector<std::string>& files) {
   for (const std::string& file : files) load_law(file);
   if (const char* folders = std::getenv("HAPBENCH_PLUGIN_PATH")) load_laws_in("HAPBENCH_PLUGIN_PATH", folders);
@@ -261,13 +307,18 @@ int CommandLine::run(std::vector<std::string> words) {
     const auto& action = passed_on_[words[0]];
     return action({words.begin() + 1, words.end()});
   }
+  for (auto& [command, output] : outputs_) {
+    command.flag("--quiet", output->quiet, "print nothing on standard output, and no progress bar");
+    command.flag("--json", output->json, "print JSON instead of tables");
+    command.flag("--wide", output_in_full, "print tables at full width, however narrow the terminal is");
+  }
   try {
     std::reverse(words.begin(), words.end());  // as CLI11 takes them
     app_->parse(std::move(words));
   } catch (const CLI::CallForHelp&) {
     const std::vector<CLI::App*> chosen = app_->get_subcommands();
     refuse_old_words(*app_, nullptr);
-    fmt::print("{}", help_text(texts(), chosen.empty() ? kProgramName : chosen.front()->get_name()));
+    fmt::print("{}", help_text(chosen.empty() ? *app_ : *chosen.front()));
     return kSuccess;
   } catch (const CLI::CallForVersion& version) {
     fmt::print("{}\n", version.what());

@@ -8,13 +8,13 @@
 
 #include "scenarios/batch/league.hpp"
 #include "scenarios/batch/parallel_for.hpp"
+#include "scenarios/batch/run_sweep.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/command.hpp"
 #include "scenarios/program/index.hpp"
 #include "scenarios/program/report.hpp"
 #include "scenarios/program/run_table.hpp"
-#include "scenarios/program/sweep.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/studies/convergence/convergence.hpp"
 #include "scenarios/studies/stability/field_limit.hpp"
@@ -30,17 +30,13 @@ constexpr const char *kOrders = "converge.csv", *kLevels = "converge_levels.csv"
 constexpr int kFewestLevels = 3, kMostLevels = 9;
 constexpr double kLargestRatio = 10.0;
 
-struct ConvergeOptions {
+struct ConvergeOptions : CommonOptions {
   std::string scenario;
   std::vector<std::string> metrics;
   std::string field = kStepPath;
   int levels = 5;
   double ratio = 2.0;
   std::string to;
-  unsigned jobs = 0;  ///< 0: one per thread of the machine
-  std::string out;
-  std::vector<std::string> overrides;
-  OutputOptions output;
 };
 
 /// The run of a level, and its time.
@@ -249,19 +245,16 @@ int converge(const ConvergeOptions& options) {
   const fs::path file = find_scenario(options.scenario);
   const ScenarioText scenario = read_scenario_text(file);
   const LevelSweep levels = levels_of(options, scenario);
-  const JobOptions jobs = job_options(options.jobs, options.output, "converge");
+  const JobOptions jobs = job_options(options, "converge");
   const SweepPlan plan =
       plan_sweep(Cases({scenario}, options.overrides, {levels.axis}), jobs.threads, !options.output.quiet);
   std::vector<std::string> metrics = options.metrics;
   if (metrics.empty()) metrics = {chosen_metric(plan.metrics, "")};
   require_names("--metric: got", metrics, plan.metrics);
   print_warnings(plan.warnings);
-  const fs::path out = results_directory(options.out, "converge_" + file.stem().string());
-  require_writable_directory(out);
-
+  Report report(options, "converge_" + file.stem().string());
   std::vector<LevelRun> runs(plan.cases.size());
   for_each_job(runs.size(), jobs, [&](std::size_t i) { runs[i] = run_of(plan.cases.load(i)); });
-  Report report(options.output, out);
   report.say(fmt::format("{}: {} from {} in ratios of {:g}, formal order {:g}\n\n", runs.front().result.name,
                          levels.axis.path, levels.axis.values.front(), levels.ratio, levels.formal_order));
   std::vector<ConvergeStudy> studies;
@@ -276,7 +269,7 @@ int converge(const ConvergeOptions& options) {
   report.write(kOrders, order_columns(), studies);
   report.write(kLevels, level_columns({}), rows);
   report.write(kTimes, time_columns(), studies.front().levels);
-  report.say(fmt::format("results in {0}\n\"hapbench plot {0}\" draws them\n", out.string()));
+  report.say(fmt::format("results in {0}\n\"hapbench plot {0}\" draws them\n", report.folder().string()));
   return report.finish();
 }
 
@@ -293,23 +286,21 @@ void add_converge(CommandLine& line) {
   auto [command, options] =
       line.command("converge", "Say how far metrics of a scene are from converged, in the step or any field", converge,
                    "no table is written");
-  command.add("scenario", options.scenario, "scenario file, or name of a bundled scenario").required();
-  command
-      .add("--metric", options.metrics,
-           fmt::format("names of summary.json, separated by commas (default: {})", kDefaultMetrics[0]))
-      .comma_separated();
+  command.add("scenario", options.scenario, "scenario file, or name of a bundled scenario", {.required = true});
+  command.add("--metric", options.metrics,
+              fmt::format("names of summary.json, separated by commas (default: {})", kDefaultMetrics[0]),
+              {.comma_separated = true});
   command.add(
       "--vary", options.field,
       "the field to refine: time.step_s (default), environment.grid_m, environment.spacing_m, tool.grid_m or any "
       "other number above 0 that gets better as it falls");
-  command.add("--levels", options.levels, "number of levels, the scenario's own value the coarsest (default: 5)")
-      .range(kFewestLevels, kMostLevels);
+  command.add("--levels", options.levels, "number of levels, the scenario's own value the coarsest (default: 5)",
+              {.range = {{kFewestLevels, kMostLevels}}});
   command.add("--ratio", options.ratio, "of each level to the next; whole for the step (default: 2)");
   command.add("--to", options.to, "also name the coarsest level with a smaller relative error, as 1%, and its cost");
   add_jobs(command, options.jobs, "runs at once; only times depend on it (default: one per thread)");
   command.add("--out", options.out, "directory of the results (default: results/out/converge_NAME)");
   add_overrides(command, options.overrides, "override a field of all levels: path=value");
-  add_output_options(command, options.output);
   command.footer(
       "Observed order p, Richardson's value and grid convergence index of the three finest levels (Roache; ASME V&V 20; "
       "\"hapbench describe converge.csv\"). No order is stated, and the reason said, where contacts switch between them, "

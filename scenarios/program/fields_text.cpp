@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
 #include <nlohmann/json.hpp>
-#include <span>
 
 #include "scenarios/program/table.hpp"
 
@@ -18,38 +18,17 @@ std::string spaced(const Json& value) {
   return text;
 }
 
-/// `at` is the path of the object with a dot behind it, `types` what leads there.
-void find_fields(const ValueGuide& object, const std::string& at, const std::string& path, const std::string& types,
-                 std::vector<TypedField>& found) {
-  for (const ValueGuide& choice : object.choices) find_fields(choice, at, path, types, found);
-  const std::size_t dot = path.find('.');
-  const std::string key = path.substr(0, dot);
+using FieldVisit = std::function<void(const std::string& path, const std::string& types, const FieldGuide& field)>;
+
+/// Visits the fields of an object and of those in it. `at` is the path of the object with a dot behind it, `types` what
+/// leads there.
+void visit_fields(const ValueGuide& object, const std::string& at, const std::string& types, const FieldVisit& visit) {
+  for (const ValueGuide& choice : object.choices) visit_fields(choice, at, types, visit);
   const std::string type = object.type.empty() ? "" : fmt::format("{}type \"{}\"", at, object.type);
   const std::string all = types + (types.empty() || type.empty() ? "" : " and ") + type;
   for (const FieldGuide& field : object.fields) {
-    if (field.name != key) continue;
-    if (dot != std::string::npos) return find_fields(field.value, at + key + ".", path.substr(dot + 1), all, found);
-    const auto same = [&field](const TypedField& known) { return known.field->schema() == field.schema(); };
-    const auto known = std::find_if(found.begin(), found.end(), same);
-    if (known == found.end()) {
-      found.push_back({all, &field});
-    } else {
-      known->types += (all.empty() ? "" : ", ") + all;
-    }
-  }
-}
-
-/// `at` is the path of the object with a dot behind it.
-void find_types(const ValueGuide& object, const std::string& at, std::vector<FieldType>& found) {
-  for (const ValueGuide& choice : object.choices) find_types(choice, at, found);
-  for (const FieldGuide& field : object.fields) {
-    for (const ValueGuide& choice : field.value.choices) {
-      const auto same = [&choice](const FieldType& known) {
-        return known.type->type == choice.type && known.type->schema == choice.schema;
-      };
-      if (std::none_of(found.begin(), found.end(), same)) found.push_back({at + field.name, &choice});
-    }
-    find_types(field.value, at + field.name + ".", found);
+    visit(at + field.name, all, field);
+    visit_fields(field.value, at + field.name + ".", all, visit);
   }
 }
 
@@ -102,13 +81,13 @@ const ValueGuide* object_of(const Json& value, const ValueGuide& guide) {
   return nullptr;
 }
 
-void add_meanings(std::vector<FieldMeaning>& meanings, const std::string& prefix, const Json& value,
-                  const ValueGuide& object) {
+using FieldMeanings = std::vector<std::pair<std::string, std::string>>;
+
+void add_meanings(FieldMeanings& meanings, const std::string& prefix, const Json& value, const ValueGuide& object) {
   for (const auto& entry : value.items()) {
-    const auto named = [&entry](const FieldGuide& field) { return field.name == entry.key(); };
-    const auto field = std::find_if(object.fields.begin(), object.fields.end(), named);
+    const auto field = std::ranges::find(object.fields, entry.key(), &FieldGuide::name);
     if (field == object.fields.end()) continue;  // the type
-    meanings.push_back({prefix + entry.key(), field->meaning});
+    meanings.emplace_back(prefix + entry.key(), field->meaning);
     if (const ValueGuide* nested = object_of(entry.value(), field->value))
       add_meanings(meanings, prefix + entry.key() + ".", entry.value(), *nested);
   }
@@ -118,7 +97,16 @@ void add_meanings(std::vector<FieldMeaning>& meanings, const std::string& prefix
 
 std::vector<TypedField> typed_fields(const std::string& path) {
   std::vector<TypedField> found;
-  find_fields(scenario_guide(), "", path, "", found);
+  visit_fields(scenario_guide(), "", "", [&](const std::string& of, const std::string& types, const FieldGuide& field) {
+    if (of != path) return;
+    const auto same = [&field](const TypedField& known) { return known.field->schema() == field.schema(); };
+    const auto known = std::ranges::find_if(found, same);
+    if (known == found.end()) {
+      found.push_back({types, &field});
+    } else {
+      known->types += (types.empty() ? "" : ", ") + types;
+    }
+  });
   return found;
 }
 
@@ -127,25 +115,23 @@ const FieldGuide* find_field(const std::string& path) {
   return found.empty() ? nullptr : found.front().field;
 }
 
-namespace {
-
-/// The objects among which the "type" of a field chooses; none for other fields.
-std::span<const ValueGuide> types_of(const std::string& field) {
-  const FieldGuide* found = find_field(field);
-  return found == nullptr ? std::span<const ValueGuide>() : found->value.choices;
-}
-
-}  // namespace
-
 std::vector<std::string> type_names(const std::string& field) {
   std::vector<std::string> names;
-  for (const ValueGuide& type : types_of(field)) names.push_back(type.type);
+  if (const FieldGuide* found = find_field(field))
+    for (const ValueGuide& type : found->value.choices) names.push_back(type.type);
   return names;
 }
 
 std::vector<FieldType> all_types() {
   std::vector<FieldType> found;
-  find_types(scenario_guide(), "", found);
+  visit_fields(scenario_guide(), "", "", [&](const std::string& path, const std::string&, const FieldGuide& field) {
+    for (const ValueGuide& choice : field.value.choices) {
+      const auto same = [&choice](const FieldType& known) {
+        return known.type->type == choice.type && known.type->schema == choice.schema;
+      };
+      if (std::ranges::none_of(found, same)) found.push_back({path, &choice});
+    }
+  });
   return found;
 }
 
@@ -181,15 +167,17 @@ std::string types_text(const std::string& type_field) {
   const std::string end = std::string(".") + kTypeField;
   if (!type_field.ends_with(end)) return "";
   const std::string field = type_field.substr(0, type_field.size() - end.size());
+  const FieldGuide* found = find_field(field);
+  if (found == nullptr || found->value.choices.empty()) return "";
   std::string text;
-  for (const ValueGuide& type : types_of(field)) text += entry(fmt::format("\"{}\"", type.type), type.summary, 4, 24);
-  if (text.empty()) return "";
+  for (const ValueGuide& type : found->value.choices)
+    text += entry(fmt::format("\"{}\"", type.type), type.summary, 4, 24);
   return fmt::format("{}\n  chooses the fields of {}; \"hapbench describe {}\" shows those of each\n\n{}",
                      bold(stdout, type_field), field, field, text);
 }
 
-std::vector<FieldMeaning> field_meanings(const Json& scenario) {
-  std::vector<FieldMeaning> meanings;
+FieldMeanings field_meanings(const Json& scenario) {
+  FieldMeanings meanings;
   add_meanings(meanings, "", scenario, scenario_guide());
   return meanings;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "scenarios/description/writer.hpp"
@@ -52,13 +53,7 @@ std::string fields_text(const std::string& title, const FieldGuide& field, const
 /// The values of `type_field`, as "hand.type", with their meanings; empty for a field that chooses no type.
 std::string types_text(const std::string& type_field);
 
-/// A field of a scenario and its meaning.
-struct FieldMeaning {
-  std::string path;
-  std::string meaning;
-};
-
-/// The meaning of each field that a scenario's JSON has, objects before their fields.
-std::vector<FieldMeaning> field_meanings(const Json& scenario);
+/// The path and the meaning of each field that a scenario's JSON has, objects before their fields.
+std::vector<std::pair<std::string, std::string>> field_meanings(const Json& scenario);
 
 }  // namespace hapbench

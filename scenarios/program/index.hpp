@@ -33,40 +33,22 @@ struct Named {
   std::string summary;  ///< what a list says of it; empty for kinds that no list has
   std::function<Description()> describe;
   Json more = Json::object();  ///< what a list's JSON has besides: of a scenario its group, of a claim its verdict
-  /// Reads what a list says from the file of a scenario; empty for all other kinds. Throws nothing: a fault of the file
-  /// becomes its summary.
-  std::function<void(Named&)> read = {};
 };
 using Index = std::vector<Named>;
 
 /// What the program knows by itself, the meanings of a name in the order in which they are told: models, presets,
 /// results, fields, sections, types, words, headings.
 Index program_index();
-/// What the folders beside the program hold: scenarios, studies, claims and choices on record. Throws InputError.
-Index folder_index();
-
-// Parts of program_index, of results.
-void add_results(Index& index, const std::vector<DescribedTable>& tables);  ///< metrics, files, columns
-void add_words(Index& index);  ///< outcomes, classes of motion, verdicts and others that the program prints
-/// Headings of printed tables, whose `summary`, a name or a sentence, says what they mean.
-void add_headings(Index& index, const std::vector<DescribedTable>& tables);
-
 /// Every table among the results of this program, and those that are only printed, without a file.
 std::vector<DescribedTable> result_tables();
 // Those of single commands, from the columns that these write and print.
 std::vector<DescribedTable> claim_tables();
 std::vector<DescribedTable> converge_tables();
+std::vector<DescribedTable> league_tables();
+std::vector<DescribedTable> limit_tables();
 std::vector<DescribedTable> stress_tables();
 std::vector<DescribedTable> sweep_tables();
 std::vector<DescribedTable> tune_tables();
-
-/// A scenario: where its numbers come from, and what its file sets. Throws InputError.
-Description describe_scenario(const std::filesystem::path& file);
-
-/// The bundled scenarios and claims that name a place of the thesis, as "A.2", "Fig. A.2", "Table A.1" or
-/// "section 3.4"; a place includes its parts: 3.4 includes 3.4.1, Fig. 2 includes Fig. 2c. None when the name is no
-/// place's. Throws InputError for a place that nothing names.
-std::optional<Description> describe_place(const std::string& name);
 
 /// Lines of a title and a text, which begins in `column`; those without a text are left out.
 std::string facts_text(std::initializer_list<std::pair<const char*, std::string>> facts, std::size_t column);

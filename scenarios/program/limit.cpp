@@ -1,22 +1,267 @@
+#include "scenarios/program/limit.hpp"
+
 #include <fmt/format.h>
 
-#include "scenarios/program/command_line.hpp"
-#include "scenarios/program/limit_cases.hpp"
+#include <algorithm>
+#include <iterator>
+#include <set>
+
+#include "algorithms/registry.hpp"
+#include "scenarios/description/bundled_scenarios.hpp"
+#include "scenarios/description/metric_sections.hpp"
+#include "scenarios/input/input_error.hpp"
+#include "scenarios/input/text_lines.hpp"
+#include "scenarios/run/assemble.hpp"
 
 namespace hapbench {
 namespace {
 
+namespace fs = std::filesystem;
+
+struct LimitOptions : CommonOptions {
+  std::vector<std::string> scenarios;
+  std::string field = "rendering.stiffness_N_per_m";
+  std::string between, resolution, stable, vibration;
+  std::vector<std::string> bounds;
+  bool smallest = false;
+  std::vector<std::string> algorithms, devices, friction, over;
+};
+
+constexpr const char* kNoOthers = "none";      ///< for --friction
+constexpr const char* kPresets = "impedance";  ///< stands for all presets, which have that type
+
+bool is_file(const std::string& name) {
+  return name.ends_with(".json");
+}
+
+/// The devices of a name or a type that are none of files; none of an unknown name.
+std::vector<ComparedDevice> devices_named(const std::string& name) {
+  std::vector<ComparedDevice> found;
+  for (const ComparedDevice& device : compared_devices()) {
+    if (name == "all" || name == device.name || (name == kPresets && device.published_stiffness))
+      found.push_back(device);
+    for (const ComparedDevice& end : with_unpublished_numbers(device))
+      if (name == end.name) found.push_back(end);
+  }
+  return found;
+}
+
+/// The number that an option was given. Throws InputError unless it is one from `least` to `most`.
+double number_between(const char* option, const std::string& text, double least, double most) {
+  const auto number = finite_number(text);
+  if (number && *number >= least && *number <= most) return *number;
+  throw InputError(fmt::format("{}: got \"{}\"; allowed: {} ... {}", option, text, least, most));
+}
+
+/// The devices, those with what --set changes marked, each with what else nobody published of it: both ends, or its dry
+/// friction times the factors.
+std::vector<ComparedDevice> asked_devices(const LimitOptions& options) {
+  const bool none_other = options.friction == std::vector<std::string>{kNoOthers};
+  for (const std::string& override : options.overrides) {
+    const std::string_view path = overridden_path(override);
+    if (path == "device" || path == "device.type" || path == "device.preset") {
+      throw InputError(fmt::format(
+          "--set: got {} with --device; allowed: fields of the devices, such as device.delay_samples; a device "
+          "of your own goes into --device, as a file NAME.json",
+          path));
+    }
+    if (path == "device.coulomb_N" && !options.friction.empty() && !none_other)
+      throw InputError("--friction: got it beside --set device.coulomb_N; allowed: either");
+  }
+  std::vector<ComparedDevice> devices;
+  for (const ComparedDevice& chosen : chosen_devices(options.devices)) {
+    const ComparedDevice device = with_marked_name(chosen, options.overrides);
+    devices.push_back(device);
+    if (none_other) continue;
+    for (const std::string& factor : options.friction) {
+      if (const auto other = with_friction_times(device, number_between("--friction", factor, 0.0, 1e3)))
+        devices.push_back(*other);
+    }
+    if (!options.friction.empty() || chosen.name.ends_with(']')) continue;
+    for (const ComparedDevice& end : with_unpublished_numbers(device)) devices.push_back(end);
+  }
+  return devices;
+}
+
+std::vector<ScenarioText> asked_scenes(const std::vector<std::string>& given) {
+  const std::vector<fs::path> files = find_scenarios(given);
+  require_names_of_their_own(files, "each name once");
+  std::vector<ScenarioText> scenes;
+  for (const fs::path& file : files) scenes.push_back(read_scenario_text(file));
+  return scenes;
+}
+
+/// The error with the device's name, since the overrides hold for all devices.
+InputError on_device(const ComparedDevice& device, const InputError& error) {
+  std::vector<InputError> faults;
+  for (const InputError& fault : error.faults()) {
+    if (fault.place().empty()) return error;  // of an option
+    const bool is_of_type = fault.place().find("/device/") != std::string::npos && !device.has_place_for_mass;
+    faults.emplace_back(fault.kind(), fmt::format("--device {}: {}", device.name, fault.place()),
+                        fault.problem() + (is_of_type ? "; \"--device impedance\" leaves this one out" : ""));
+  }
+  return InputError::all(faults);
+}
+
+/// The rule by which a run is stable.
+void set_rule(const LimitOptions& options, LimitQuestion& question) {
+  question.bounded = options.stable == "bounded";
+  if (!options.vibration.empty()) {
+    if (!options.stable.empty() && options.stable != "still")
+      throw InputError(fmt::format("--vibration: got it beside --stable {}; allowed: with still", options.stable));
+    question.most_vibration = number_between("--vibration", options.vibration, 1e-9, 1e3);
+  } else if (options.stable == "still" || (options.stable.empty() && !options.devices.empty())) {
+    question.most_vibration = kMostVibration;
+  }
+  for (const std::string& bound : options.bounds) add_bound(bound, question.bounds);
+}
+
+LimitQuestion question_of(const LimitOptions& options, const ScenarioText& scene,
+                          const std::vector<std::string>& overrides) {
+  if (options.field.find('=') != std::string::npos) {
+    throw InputError(
+        fmt::format("--vary: got \"{}\"; allowed: a field alone, and its range as --between a:b", options.field));
+  }
+  LimitQuestion question = limit_question(scene, overrides, options.field, range_of("--between", options.between));
+  question.smallest = options.smallest;
+  if (!options.resolution.empty()) question.resolution = number_between("--resolution", options.resolution, 1e-6, 0.5);
+  set_rule(options, question);
+  return question;
+}
+
+/// Adds the cases of a scene with all algorithms. Warnings that are not among them yet are added.
+void add_cases(const LimitOptions& options, LimitRow row, const ScenarioText& scene, std::vector<std::string> overrides,
+               const std::vector<std::string>& algorithms, LimitTable& table, std::vector<std::string>& warnings) {
+  try {
+    if (row.device) overrides = overrides_on(*row.device, scene, overrides);
+    row.scene = scene.file.stem().string();
+    row.asked = {&scene, overrides, {}, question_of(options, scene, overrides)};
+    const LoadedScenario loaded = load_scenario(scene, overrides);
+    row.scenario = loaded.scenario;
+    append_new(warnings, row.asked.question.warnings);
+    append_new(warnings, with_files(loaded, check_named_files(loaded)));
+    // A field of the rendering changes nothing of hand and device.
+    if (row.asked.question.path.starts_with("rendering.")) row.asked.question.tremor = tremor_speeds(loaded);
+    const std::vector<std::string> own = {loaded.scenario.rendering.algorithm};
+    for (const std::string& algorithm : algorithms.empty() ? own : algorithms) {
+      row.asked.algorithm = algorithm;
+      table.rows.push_back(row);
+    }
+  } catch (const InputError& error) {
+    throw row.device ? on_device(*row.device, error) : error;
+  }
+}
+
+}  // namespace
+
+std::optional<Range> range_of(const char* option, const std::string& text) {
+  if (text.empty()) return std::nullopt;
+  const Words ends = parts_of(text, ':');
+  const auto from = finite_number(ends.front()), to = finite_number(ends.back());
+  if (ends.size() != 2 || !from || !to || !(*from < *to)) {
+    throw InputError(fmt::format("{}: got \"{}\"; allowed: a:b with numbers a < b", option, text));
+  }
+  return Range{*from, *to};
+}
+
+void add_bound(const std::string& text, std::map<std::string, MetricBound>& bounds) {
+  const Words parts = parts_of(text, '=');
+  if (parts.size() == 2) {
+    require_names("--bound: got", {std::string(parts[0])}, metric_names());
+    const Words ends = parts_of(parts[1], ':');
+    const auto least = finite_number(ends.front()), most = finite_number(ends.back());
+    if (ends.size() <= 2 && least && most && *least <= *most) {
+      MetricBound& bound = bounds[std::string(parts[0])];
+      bound.max = *most;
+      if (ends.size() == 2) bound.min = *least;
+      return;
+    }
+  }
+  throw InputError(
+      fmt::format("--bound: got \"{}\"; allowed: metric=most or metric=least:most, as inside_settled_m=3e-4", text));
+}
+
+std::vector<ComparedDevice> chosen_devices(const std::vector<std::string>& given) {
+  std::vector<std::string> unknown;
+  std::copy_if(given.begin(), given.end(), std::back_inserter(unknown),
+               [](const std::string& name) { return !is_file(name) && !name.ends_with(']'); });
+  if (!unknown.empty()) {
+    std::vector<std::string> names = names_of(compared_devices(), &ComparedDevice::name);
+    names.insert(names.begin(), kPresets);
+    chosen_names("--device: got", unknown, names);
+  }
+  std::vector<ComparedDevice> chosen;
+  for (const std::string& name : given) {
+    const std::vector<ComparedDevice> found =
+        is_file(name) ? std::vector<ComparedDevice>{device_of_file(name)} : devices_named(name);
+    if (found.empty())
+      throw InputError(fmt::format("--device: got \"{}\"; allowed: a preset with [soft] or [stiff] behind it", name));
+    chosen.insert(chosen.end(), found.begin(), found.end());
+  }
+  std::set<std::string> names;
+  for (const ComparedDevice& device : chosen) {
+    if (names.insert(device.name).second) continue;
+    throw InputError(
+        fmt::format("--device: got a second device named \"{}\"; allowed: each name once, and a file is "
+                    "named by what stands before .json",
+                    device.name));
+  }
+  return chosen;
+}
+
+namespace {
+
+/// Loads every case, and prints its warnings. Throws InputError.
+LimitTable limit_cases(const LimitOptions& options) {
+  if (options.devices.empty() && !options.friction.empty())
+    throw InputError("--friction: got factors; allowed: with --device");
+  LimitTable table{.scenes = asked_scenes(options.scenarios), .has_devices = !options.devices.empty()};
+  std::vector<std::optional<ComparedDevice>> devices = {std::nullopt};
+  if (table.has_devices) {
+    const std::vector<ComparedDevice> asked = asked_devices(options);
+    devices.assign(asked.begin(), asked.end());
+  }
+  std::vector<std::string> algorithms;
+  if (!options.algorithms.empty())
+    algorithms = chosen_names("--algorithms: got", options.algorithms, algorithm_names());
+  std::vector<Axis> axes;
+  for (const std::string& text : options.over) axes.push_back(parse_axis(text));
+  for (const Axis& axis : axes) table.over.push_back(axis.path);
+  const Cases over({}, options.overrides, std::move(axes));
+  table.columns = table.scenes.size() * std::max<std::size_t>(1, algorithms.size());
+  std::vector<std::string> warnings;
+  for (const std::optional<ComparedDevice>& device : devices) {
+    for (std::size_t point = 0; point < over.size(); ++point) {
+      for (const ScenarioText& scene : table.scenes)
+        add_cases(options, {device, over.values(point)}, scene, over.overrides(point), algorithms, table, warnings);
+    }
+  }
+  print_warnings(warnings);
+  return table;
+}
+
+/// Puts the limits of all cases, in their order, into the table.
+void add_limits(LimitTable& table, std::vector<FieldLimit> limits) {
+  for (std::size_t i = 0; i < table.rows.size(); ++i) {
+    LimitRow& row = table.rows[i];
+    row.found = std::move(limits[i]);
+    const FieldLimit& reference = table.rows[i - i % table.columns].found;
+    if (!row.found.value || !reference.value) continue;
+    row.stiffness_ratio = *row.found.value / *reference.value;
+    if (const double lambda = reference.settled.lambda_max; lambda > 0.0)
+      row.rendered_ratio = *row.stiffness_ratio * row.found.settled.lambda_max / lambda;
+  }
+}
+
 int limit(const LimitOptions& options) {
   LimitTable table = limit_cases(options);
   const std::string name = options.scenarios.size() > 1 ? "limit" : "limit_" + table.first().scene;
-  const std::filesystem::path out = results_directory(options.out, name);
-  require_writable_directory(out);
+  Report report(options, name);
   std::vector<LimitCase> cases;
   for (const LimitRow& row : table.rows) cases.push_back(row.asked);
-  add_limits(table, field_limits(cases, job_options(options.jobs, options.output, "limit")));
-  Report report(options.output, out);
+  add_limits(table, field_limits(cases, job_options(options, "limit")));
   tell_limits(table, report);
-  report.say(fmt::format("\nresults in {}\n", out.string()));
+  report.say(fmt::format("\nresults in {}\n", report.folder().string()));
   return report.finish();
 }
 
@@ -26,29 +271,27 @@ void add_limit(CommandLine& line) {
   auto [command, options] = line.command(
       "limit", "Find how far any field may go, on which device, with which algorithm, by bisection on runs", limit,
       "no limit is written");
-  command.add("scenarios", options.scenarios, "scenario files, or names of bundled scenarios").required();
+  command.add("scenarios", options.scenarios, "scenario files, or names of bundled scenarios", {.required = true});
   command.add("--vary", options.field, fmt::format("the field (default: {})", options.field));
   command.add("--between", options.between,
               "a:b, the range to search (default: a thousandth to a thousandfold of the scenario's value)");
   command.flag("--smallest", options.smallest, "find the smallest stable value instead, as of a mass");
-  command.add("--algorithms", options.algorithms, "names separated by commas, or all (default: each scenario's own)")
-      .comma_separated();
-  command
-      .add("--device", options.devices,
-           "in place of each scene's own: presets, ideal, admittance, files NAME.json, all, or impedance for all "
-           "presets, separated by commas; a preset also at both ends of what nobody published of it")
-      .comma_separated();
-  command
-      .add("--friction", options.friction,
-           "in place of these ends each device's dry friction times factors, such as 0,2; none: neither")
-      .comma_separated();
-  command.add("--over", options.over, "ask for each value of another field, too, as sweep --vary takes it; repeatable")
-      .repeatable();
-  command
-      .add("--stable", options.stable,
-           "what a run has to do: be settled (come to rest), bounded (vibrating counts, too) or still (a handle that "
-           "does not vibrate; default with --device)")
-      .one_of({"settled", "bounded", "still"});
+  command.add("--algorithms", options.algorithms, "names separated by commas, or all (default: each scenario's own)",
+              {.comma_separated = true});
+  command.add("--device", options.devices,
+              "in place of each scene's own: presets, ideal, admittance, files NAME.json, all, or impedance for all "
+              "presets, separated by commas; a preset also at both ends of what nobody published of it",
+              {.comma_separated = true});
+  command.add("--friction", options.friction,
+              "in place of these ends each device's dry friction times factors, such as 0,2; none: neither",
+              {.comma_separated = true});
+  command.add("--over", options.over, "ask for each value of another field, too, as sweep --vary takes it; repeatable",
+              {.several = true});
+  command.add(
+      "--stable", options.stable,
+      "what a run has to do: be settled (come to rest), bounded (vibrating counts, too) or still (a handle that "
+      "does not vibrate; default with --device)",
+      {.one_of = {"settled", "bounded", "still"}});
   command.add(
       "--vibration", options.vibration,
       fmt::format("of still: the largest vibration of the handle above 30 Hz [m/s rms] (default: {})", kMostVibration));
@@ -59,7 +302,6 @@ void add_limit(CommandLine& line) {
   add_jobs(command, options.jobs, "searches at once (default: as many as the machine has threads)");
   command.add("--out", options.out, "directory of the results (default: results/out/limit_NAME)");
   add_overrides(command, options.overrides, "override a field of all runs: path=value");
-  add_output_options(command, options.output);
   command.footer(
       "A run is stable when it comes to rest or dies out, the classes of \"hapbench describe stability\". It is not "
       "stable when it vibrates, diverges, goes through the surface, is thrown out (leaves the hole, or ends without contact "

@@ -3,16 +3,238 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <map>
+#include <nlohmann/json.hpp>
 
 #include "device_model/device_presets.hpp"
+#include "device_model/theory/stiffness_limits.hpp"
 #include "scenarios/input/text_lines.hpp"
-#include "scenarios/program/limit_cases.hpp"
+#include "scenarios/program/index.hpp"
+#include "scenarios/program/limit.hpp"
 #include "scenarios/studies/stability/judged_run.hpp"
 
+/// The tables of `limit` and what is printed of them.
 namespace hapbench {
 namespace {
+
+constexpr const char *kInconsistent = "inconsistent_runs", *kAstray = "astray";
+
+/// What a member of the answer is, or a function of it gives.
+template <class Get>
+auto of_answer(Get get) {
+  return [get](const LimitRow& r) { return cell_of(std::invoke(get, r.found)); };
+}
+Cell verdict_cell(const std::optional<JudgedValue>& run) {
+  return run ? cell_of(run_verdict_name(run->verdict)) : Cell();
+}
+Cell value_cell(const std::optional<JudgedValue>& run) {
+  return run ? Cell(run->value) : Cell();
+}
+
+/// The class of motion just beyond a limit, or "end of the range"; without a limit, the class at the range's low end.
+std::string beyond_text(const FieldLimit& limit) {
+  if (limit.beyond) return std::string(run_verdict_name(limit.beyond->verdict));
+  return limit.value ? "end of the range" : std::string(run_verdict_name(limit.runs.front().verdict));
+}
+/// An end of the interval of stable values, and the run beyond it.
+struct IntervalEnd {
+  const std::optional<double>& value;
+  const std::optional<JudgedValue>& beyond;
+  std::optional<double> tolerance;
+};
+IntervalEnd end_of(const LimitRow& r, bool low) {
+  const FieldLimit& l = r.found;
+  if (low == r.asked.question.smallest) return {l.value, l.beyond, l.tolerance()};
+  return {l.other_value, l.other_beyond, l.other_tolerance()};
+}
+
+/// A line of limit_runs.csv.
+struct LimitRunRow {
+  const LimitRow& limit;
+  JudgedValue run;
+
+  operator const LimitRow&() const { return limit; }  // NOLINT: what it has of the case
+};
+
+/// What tells the cases apart.
+template <class Row>
+Columns<Row> place_columns(const LimitTable* table) {
+  Columns<Row> columns;
+  if (table == nullptr || table->has_devices) {
+    columns.add(
+        "device", "",
+        "ideal, admittance, the preset of an impedance device (* with numbers of --set, [soft] and [stiff] at the "
+        "ends of what is not published), or a file's",
+        [](const LimitRow& r) { return r.device->name; });
+  }
+  if (table == nullptr || table->has_devices || table->scenes.size() > 1) {
+    columns.add("scenario", "", "name of the scene's file", [](const LimitRow& r) { return r.scene; },
+                {.heading = table == nullptr ? "" : "scenario"});
+  }
+  for (std::size_t i = 0; table != nullptr && i < table->over.size(); ++i) {
+    columns.add(table->over[i], "by name", "value of the field that varies besides", [i](const LimitRow& r) {
+      const std::string& value = r.values[i];
+      const auto number = finite_number(value);
+      return number ? Cell(*number) : Cell(value);
+    });
+  }
+  columns.add("algorithm", "", "force algorithm", of_answer(&FieldLimit::algorithm), {.heading = "algorithm"});
+  return columns;
+}
+
+/// The edge that was asked for and the ends of the interval that it ends. Printed is the end on the other side, too.
+void add_ends(Columns<LimitRow>& columns, const LimitTable* table) {
+  const bool smallest = table != nullptr && table->first().asked.question.smallest;
+  const auto printed_if = [](bool shown, const std::string& heading) {
+    return Shown{.heading = shown ? heading : "", .digits = 6};
+  };
+  const auto add_end = [&](bool low, const std::string& end, const char* meaning, const std::string& outside,
+                           const char* first, bool shown) {
+    columns.add(
+        end, "by field", meaning, [low](const LimitRow& r) { return end_of(r, low).value; },
+        printed_if(shown, end + " end"), [low](const LimitRow& r) { return end_of(r, low).tolerance; });
+    columns.add(outside, "by field", first, [low](const LimitRow& r) { return value_cell(end_of(r, low).beyond); });
+    columns.add(
+        "class_" + outside, "", "what became of the run there",
+        [low](const LimitRow& r) { return verdict_cell(end_of(r, low).beyond); }, printed_if(shown, outside + " it"));
+  };
+  columns.add(
+      "field", "", "path of the field", [](const LimitRow& r) { return r.asked.question.path; }, only_csv());
+  columns.add(
+      "side", "", "largest or smallest: the stable value that was asked for",
+      [](const LimitRow& r) { return r.asked.question.smallest ? "smallest" : "largest"; }, only_csv());
+  columns.add("limit", "by field",
+              "the last stable value before the first edge, by bisection on runs; empty when there is none",
+              of_answer(&FieldLimit::value), printed_if(true, "first edge"),
+              [](const LimitRow& r) { return r.found.tolerance(); });
+  columns.add("beyond", "by field", "the first unstable value beyond it; empty when the range ends stable",
+              [](const LimitRow& r) { return value_cell(r.found.beyond); });
+  columns.add("class_beyond", "", "what became of the run there (describe stability), or \"end of the range\"",
+              of_answer(beyond_text), printed_if(true, "beyond it"));
+  add_end(
+      true, "low",
+      "the low end of the interval of stable values that the limit ends: its smallest stable value, to the resolution",
+      "below", "the first value below that is not stable; empty when the range begins stable",
+      table == nullptr || !smallest);
+  add_end(false, "high", "the high end of this interval", "above",
+          "the first value above that is not stable; empty when the range ends stable", table == nullptr || smallest);
+}
+
+void add_theory(Columns<LimitRow>& columns, bool with_inequality) {
+  columns.add("theory", "by field", "the limit in theory; empty where there is none", of_answer(&FieldLimit::theory));
+  if (with_inequality) {
+    columns.add(
+        "closed_form", "by field",
+        "the same where the integrator's inequality ends, of leapfrog 4 - 2 lambda B dt / M - lambda K dt^2 / M >= 0 "
+        "with lambda = lambda_max(S) (A.3); empty where it has none",
+        of_answer(&FieldLimit::closed_form));
+  }
+  columns.add(
+      "linear", "by field",
+      "of a device at what only pushes: the largest value at which the loop of device, hand and surface is stable "
+      "while they touch, without dry friction and encoder, by its eigenvalues; a limit beyond it is held up by "
+      "bounces, dry friction or the end of the run; empty where there is a theory or no device",
+      of_answer(&FieldLimit::linear));
+  columns.print("theory", "by field", "theory", [](const LimitRow& r) {
+    const auto& value = r.found.theory;
+    return value && (std::isinf(*value) || *value == 0.0) ? "none" : significant(value, 6);
+  });
+  columns.print("off theory %", "%", "first edge / theory - 1, in percent", [](const LimitRow& r) -> std::string {
+    const auto difference = r.found.difference(), tolerance = r.found.tolerance();
+    if (!difference) return "-";
+    return deserved_difference(100.0 * *difference,
+                               tolerance ? std::optional(100.0 * *tolerance / std::abs(*r.found.value)) : std::nullopt);
+  });
+}
+
+/// What the literature says of a wall on an impedance device.
+void add_closed_forms(Columns<LimitRow>& columns) {
+  for (std::size_t i = 0; i < stiffness_limits().size(); ++i) {
+    const StiffnessLimit& known = stiffness_limits()[i];
+    columns.add(
+        known.name, "N/m", fmt::format("the K at which {}; for {} ({})", known.formula, known.applies, known.source),
+        [i](const LimitRow& r) { return r.found.closed_forms.empty() ? Cell() : cell_if(r.found.closed_forms[i]); });
+  }
+  columns.add("no_theory", "", "why the eigenvalues of the loop tell nothing; empty where they do",
+              of_answer(&FieldLimit::no_theory));
+  columns.add("worst_hand", "N/m",
+              "least edge over passive hands of 100 to 1000 N/m and 0.1 to 0.5 kg, and none, by eigenvalues",
+              of_answer(&FieldLimit::worst_hand));
+}
+
+void add_search(Columns<LimitRow>& columns) {
+  columns.add("limit_tolerance", "by field", "how far beyond the limit the edge may lie: beyond - limit",
+              of_answer(&FieldLimit::tolerance), only_json());
+  columns.add(
+      "low_tolerance", "by field", "the same of the low end",
+      [](const LimitRow& r) { return end_of(r, true).tolerance; }, only_json());
+  columns.add(
+      "high_tolerance", "by field", "the same of the high end",
+      [](const LimitRow& r) { return end_of(r, false).tolerance; }, only_json());
+  columns.add("undecided", "1", "runs that were too short to tell slow motion from rest, though lengthened",
+              of_answer(&FieldLimit::undecided));
+  columns.add("unstable_without_contact", "", "true when hand and device alone are unstable beyond the edge",
+              of_answer(&FieldLimit::unstable_alone), only_json());
+  columns.add("has_effect", "", "false when the field changes no run", of_answer(&FieldLimit::has_effect), only_json());
+}
+
+/// Numbers of the run at the limit, for cases to be compared by.
+void add_settled(Columns<LimitRow>& columns) {
+  const auto settled = [](const LimitRow& r, double value) { return r.found.value ? Cell(value) : Cell(); };
+  columns.add("vibration_m_per_s", "m/s",
+              "at the limit: rms of the handle's speed above 30 Hz in the last quarter of the run",
+              [](const LimitRow& r) { return r.found.value ? cell_if(r.found.settled.vibration) : Cell(); });
+  columns.add("contacts", "1", "at the limit: mean number of rendered contacts there",
+              [=](const LimitRow& r) { return settled(r, r.found.settled.contacts); });
+  columns.add("lambda_max", "1", "at the limit: largest eigenvalue of the mean S there",
+              [=](const LimitRow& r) { return settled(r, r.found.settled.lambda_max); });
+  columns.add("stiffness_ratio", "1", "limit over that of the first scene with the first algorithm, all else equal",
+              &LimitRow::stiffness_ratio);
+  columns.add("rendered_ratio", "1", "the same of K lambda_max", &LimitRow::rendered_ratio);
+}
+
+Columns<LimitRunRow> run_columns(const LimitTable* table) {
+  Columns<LimitRunRow> columns = place_columns<LimitRunRow>(table);
+  columns.add(table == nullptr ? "{field}" : table->first().asked.question.path, "by name", "value of the field",
+              [](const LimitRunRow& r) { return r.run.value; });
+  columns.add("class", "", "what became of the run (describe stability)",
+              [](const LimitRunRow& r) { return run_verdict_name(r.run.verdict); });
+  return columns;
+}
+
+Json row_json(const Columns<LimitRow>& columns, const LimitRow& row) {
+  Json json = columns.json(row);
+  Json inconsistent = Json::array();
+  for (const JudgedValue& run : row.found.inconsistent)
+    inconsistent.push_back({{"value", run.value}, {"class", run_verdict_name(run.verdict)}});
+  json[kInconsistent] = json[kAstray] = inconsistent;
+  return json;
+}
+
+/// The columns of limit.csv for this table; without one all that there may be, for `describe`.
+Columns<LimitRow> limit_columns(const LimitTable* table) {
+  Columns<LimitRow> columns = place_columns<LimitRow>(table);
+  add_ends(columns, table);
+  const auto has_inequality = [](const LimitRow& row) { return row.found.closed_form.has_value(); };
+  add_theory(columns, table == nullptr || std::ranges::any_of(table->rows, has_inequality));
+  add_search(columns);
+  if (table == nullptr || table->has_devices) {
+    columns.add("published_N_per_m", "N/m", "published largest stable stiffness of a wall on the device",
+                [](const LimitRow& r) { return r.device->published_stiffness; });
+  }
+  if (table == nullptr || table->is_grid()) add_settled(columns);
+  const auto has_closed_forms = [](const LimitRow& row) { return !row.found.closed_forms.empty(); };
+  if (table == nullptr || std::ranges::any_of(table->rows, has_closed_forms)) add_closed_forms(columns);
+  columns.add("runs", "1", "runs of the search", [](const LimitRow& r) { return r.found.runs.size(); },
+              {.heading = "runs"});
+  const auto inconsistent = [](const LimitRow& r) { return r.found.inconsistent.size(); };
+  columns.add(kInconsistent, "1", "runs that are unstable on the stable side of the limit, or stable beyond it",
+              inconsistent, {.heading = "inconsistent"});
+  columns.add(kAstray, "1", "the same as inconsistent_runs, by its former name", inconsistent);
+  return columns;
+}
 
 constexpr std::size_t kGridGap = 1;  // three scenes and two algorithms then fit into kTableWidth
 constexpr const char* kBeyondLinear =
@@ -51,8 +273,14 @@ std::string inconsistent_text(const FieldLimit& limit) {
                                                    : "\n");
 }
 
+bool is_beyond_linear(const LimitRow& row) {
+  return row.found.is_beyond_linear(row.asked.question.resolution);
+}
+
 /// Remarks on a limit that is not all of the answer.
-std::string remarks_text(const FieldLimit& limit, const LimitQuestion& question) {
+std::string remarks_text(const LimitRow& row) {
+  const FieldLimit& limit = row.found;
+  const LimitQuestion& question = row.asked.question;
   std::string text;
   const auto say = [&](const std::string& what) { text += fmt::format("{}: {}\n", limit.algorithm, what); };
   if (!limit.value) say(none_text(limit));
@@ -65,7 +293,7 @@ std::string remarks_text(const FieldLimit& limit, const LimitQuestion& question)
     say(fmt::format("by the eigenvalues of a step no value of the range is stable{}",
                     limit.value ? ": the runs are too short for its growth" : ""));
   }
-  if (limit.is_beyond_linear(question.resolution)) {
+  if (is_beyond_linear(row)) {
     say(fmt::format(
         "the loop of device, hand and surface, linear and in contact, is stable up to {} only: beyond it {}",
         significant(*limit.linear, 6), kBeyondLinear));
@@ -102,12 +330,13 @@ std::string value_text(double value, const std::optional<double>& tolerance = {}
 }
 
 /// "800", "120-800" where it is not stable below, "> 800" where the range ends stable.
-std::string edge_text(const FieldLimit& limit, double resolution) {
+std::string edge_text(const LimitRow& row) {
+  const FieldLimit& limit = row.found;
   if (!limit.value) return "none";
   return fmt::format("{}{}{}{}{}",
                      limit.other_beyond ? value_text(*limit.other_value, limit.other_tolerance()) + "-" : "",
                      limit.beyond ? "" : "> ", value_text(*limit.value, limit.tolerance()),
-                     limit.is_beyond_linear(resolution) ? "!" : "", limit.inconsistent.empty() ? "" : " ~");
+                     is_beyond_linear(row) ? "!" : "", limit.inconsistent.empty() ? "" : " ~");
 }
 
 /// The delay of each impedance device in the first scene, as "0 of touch; 1 (0.5 ms in steps of 0.5 ms) of mine"; empty
@@ -157,7 +386,7 @@ std::string detailed_text(const LimitTable& table) {
   for (std::size_t i = 0; i < table.rows.size(); ++i) {
     const LimitRow& row = table.rows[i];
     if (i == 0 || row.scene != table.rows[i - 1].scene) text += question_text(row.asked.question, row.scenario);
-    remarks += remarks_text(row.found, row.asked.question);
+    remarks += remarks_text(row);
   }
   const LimitRow& first = table.first();
   text += limit_columns(&table).table(table.rows).text() + "\n" +
@@ -166,31 +395,26 @@ std::string detailed_text(const LimitTable& table) {
   return text + (on_device && first.asked.question.path == "rendering.stiffness_N_per_m" ? kWhichStiffness : "");
 }
 
-Table grid(const LimitTable& table) {
-  std::vector<Table::Column> columns;
-  if (table.has_devices) columns = {{"device", false}};
-  for (const std::string& path : table.over) columns.push_back({path});
-  if (table.has_devices) columns.push_back({"pub-\nlished"});
-  for (std::size_t c = 0; c < table.columns; ++c)
-    columns.push_back({table.rows[c].scene + "\n" + table.rows[c].asked.algorithm});
-  Table shown(columns, kGridGap);
-  for (std::size_t i = 0; i < table.rows.size(); i += table.columns) {
-    const LimitRow& first = table.rows[i];
-    std::vector<std::string> cells;
-    if (table.has_devices) cells.push_back(first.device->name);
-    for (const std::string& value : first.values) {
-      const auto number = finite_number(value);
-      cells.push_back(number ? significant(*number) : value);
-    }
-    if (table.has_devices) {
-      const auto& published = first.device->published_stiffness;
-      cells.push_back(published ? value_text(*published) : "-");
-    }
-    for (std::size_t c = i; c < i + table.columns; ++c)
-      cells.push_back(edge_text(table.rows[c].found, table.rows[c].asked.question.resolution));
-    shown.add(std::move(cells));
+/// A row is the first of those with all else equal.
+Columns<const LimitRow*> grid_columns(const LimitTable& table) {
+  Columns<const LimitRow*> columns;
+  if (table.has_devices) columns.print("device", "", "", [](const LimitRow* r) { return r->device->name; });
+  for (std::size_t i = 0; i < table.over.size(); ++i) {
+    columns.print(table.over[i], "1", "", [i](const LimitRow* r) {
+      const auto number = finite_number(r->values[i]);
+      return number ? significant(*number) : r->values[i];
+    });
   }
-  return shown;
+  if (table.has_devices) {
+    columns.print("pub-\nlished", "1", "", [](const LimitRow* r) {
+      const auto& published = r->device->published_stiffness;
+      return published ? value_text(*published) : "-";
+    });
+  }
+  for (std::size_t c = 0; c < table.columns; ++c)
+    columns.print(table.rows[c].scene + "\n" + table.rows[c].asked.algorithm, "1", "",
+                  [c](const LimitRow* r) { return edge_text(r[c]); });
+  return columns;
 }
 
 /// What is to be known of devices.
@@ -214,25 +438,21 @@ std::string devices_text(const LimitTable& table) {
 
 /// What the signs in the grid mean.
 std::string notes_text(const LimitTable& table) {
-  const auto any = [&](auto holds) {
-    return std::ranges::any_of(table.rows, [&](const LimitRow& row) { return holds(row.found, row.asked.question); });
-  };
+  const auto any = [&](auto holds) { return std::ranges::any_of(table.rows, holds); };
   std::string text;
-  if (any([](const FieldLimit& limit, const LimitQuestion&) { return limit.other_beyond.has_value(); }))
+  if (any([](const LimitRow& row) { return row.found.other_beyond.has_value(); }))
     text += "a-b: stable from a on only; class_below in limit.csv says what becomes of the run below\n";
-  if (any([](const FieldLimit& limit, const LimitQuestion&) { return !limit.value; }))
+  if (any([](const LimitRow& row) { return !row.found.value; }))
     text += "none: no value tried is stable; limit_runs.csv says what becomes of each\n";
   if (table.has_devices) text += devices_text(table);
   text += approaches_text(table);
-  if (any([](const FieldLimit& limit, const LimitQuestion& asked) {
-        return limit.is_beyond_linear(asked.resolution);
-      })) {
+  if (any(is_beyond_linear)) {
     text += wrapped(fmt::format("!: beyond the edge of the loop of device, hand and surface, linear and in contact "
                                 "(linear in limit.csv): {}",
                                 kBeyondLinear),
                     0);
   }
-  if (any([](const FieldLimit& limit, const LimitQuestion&) { return !limit.inconsistent.empty(); }))
+  if (any([](const LimitRow& row) { return !row.found.inconsistent.empty(); }))
     text += "~: some values below it are unstable, or some beyond it are stable: limit_runs.csv\n";
   return text;
 }
@@ -250,14 +470,40 @@ std::string grid_text(const LimitTable& table) {
     append_new(rules, {fmt::format("{} steps of {} s; {}\n", scenario.time.steps, significant(scenario.time.step),
                                    damping_text(scenario.rendering))});
   }
-  return text + fmt::format("{}", fmt::join(rules, "")) + "\n" + grid(table).text() +
+  std::vector<const LimitRow*> firsts;
+  for (std::size_t i = 0; i < table.rows.size(); i += table.columns) firsts.push_back(&table.rows[i]);
+  return text + fmt::format("{}", fmt::join(rules, "")) + "\n" + grid_columns(table).table(firsts, kGridGap).text() +
          wrapped(rule_text(question, is_moved(table.first().scenario)), 0) + notes_text(table);
 }
 
 }  // namespace
 
-std::string limit_text(const LimitTable& table) {
-  return table.is_grid() ? grid_text(table) : detailed_text(table);
+std::vector<DescribedTable> limit_tables() {
+  DescribedTable limits = limit_columns(nullptr).described(
+      "limit.csv", "of limit: one line per device, values of --over, scene and algorithm");
+  limits.headings.push_back({"pub-\nlished", true, "published_N_per_m"});
+  return {limits, run_columns(nullptr).described("limit_runs.csv", "of limit: one line per run")};
+}
+
+void tell_limits(const LimitTable& table, Report& report) {
+  const LimitQuestion& question = table.first().asked.question;
+  const Columns<LimitRow> columns = limit_columns(&table);
+  std::vector<LimitRunRow> runs;
+  Json limits = Json::array();
+  for (const LimitRow& row : table.rows) {
+    limits.push_back(row_json(columns, row));
+    for (const JudgedValue& run : row.found.runs) runs.push_back({row, run});
+  }
+  report.write("limit.csv", columns, table.rows);
+  report.write("limit_runs.csv", run_columns(&table), runs);
+  report.say(table.is_grid() ? grid_text(table) : detailed_text(table));
+  report.json() = {{"field", question.path},
+                   {"side", question.smallest ? "smallest" : "largest"},
+                   {"from", question.range.from},
+                   {"to", question.range.to},
+                   {"resolution", question.resolution},
+                   {"rule", rule_text(question, is_moved(table.first().scenario))},
+                   {"limits", std::move(limits)}};
 }
 
 }  // namespace hapbench

@@ -13,7 +13,6 @@
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/memory_limit.hpp"
 #include "scenarios/program/command.hpp"
-#include "scenarios/program/program.hpp"
 #include "scenarios/run/stop_signal.hpp"
 
 namespace {

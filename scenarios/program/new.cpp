@@ -19,6 +19,100 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// ---- The kinds
+
+const std::string kPlane = R"(
+  "environment": {"type": "plane", "size_m": 0.01, "spacing_m": 0.0001},)";
+const std::string kMesh = R"(
+  "environment": {"type": "mesh", "file": @surface@, "scale": @scale@, "spacing_m": @spacing@@flip@},)";
+const std::string kShell = R"(
+  "environment": {"type": "point_shell", "file": @surface@},)";
+const std::string kBlock = R"(
+  "environment": {"type": "block_with_hole", "hole_diameter_m": 0.002, "hole_depth_m": 0.005, "grid_m": 0.0001},)";
+
+const std::string kAbove = R"(
+  "initial": {"position_m": [@x@, @y@, @z@]},
+  "tool": {"diameter_m": @diameter@, "length_m": @length@, "tip": "round"},)";
+const std::string kBurAbove = R"(
+  "initial": {"position_m": [@x@, @y@, @z@]},
+  "tool": {"type": "bur", "family": "ball", "diameter_m": @diameter@},)";
+const std::string kMeshToolAbove = R"(
+  "initial": {"position_m": [@x@, @y@, @z@]},
+  "tool": {"type": "mesh", "file": @file@, "scale": @tool_scale@, "tip_m": @tip@, "tip_axis": @tip_axis@,
+           "grid_m": null},)";
+const std::string kInHole = R"(
+  "initial": {"position_m": [0, 0, -0.0049]},
+  "tool": {"diameter_m": 0.001, "length_m": 0.01, "tip": "flat"},)";
+
+const std::string kPress = R"(
+  "hand": {
+    "type": "impedance", "stiffness_N_per_m": 300, "damping_N_s_per_m": 6,
+    "target": {
+      @target@
+    }
+  },)";
+const std::string kDrag = R"(
+  "hand": {
+    "type": "drag", "force_N": 1, @way@, "speed_m_per_s": @speed@, "tilt_rad": 0.3,
+    "smoothing_m": @smoothing@
+  },)";
+const std::string kTurn = R"(
+  "motion": {"orientation": {"tilt_rad": {"type": "sine", "mean": 0.2, "amplitude": 0.2, "period_s": 1}}},
+  "hand": {"type": "force", "z_N": -1},)";
+const std::string kStroke = R"(
+  "motion": {"position": {"type": "file", "file": @file@}},)";
+const std::string kTrack = R"(
+  "hand": {
+    "type": "tracking",
+    "task": {"places_m": [[0, 0, -0.005], [0.0005, 0, -0.005]], "targets_per_place": 1, "tolerance_m": 0.0002},
+    "subjects": [{"reaction_delay_s": 0.2, "press_N": 1.6}],
+    "trials": 1
+  },)";
+const std::string kSprings = R"(
+  "environment": {
+    "type": "springs",
+    "groups": [{"direction": [1, 0, 0], "count": 3}, {"direction": [0, 1, 0], "count": 1}]
+  },
+  "initial": {"position_m": [0.005, -0.005, 0]},)";
+
+const std::string kRendering = R"(
+  "rendering": {"algorithm": "shaped_stiffness", "stiffness_N_per_m": 20000, "damping_ratio": 0.7, "mass_kg": 0.1}
+)";
+
+}  // namespace
+
+const std::vector<StartKind>& start_kinds() {
+  using enum StartSource;
+  static const std::vector<StartKind> kinds = {
+      {"mesh", "a drill is pressed on a surface from a file: OBJ, PLY, STL or OFF", mesh, true,
+       kMesh + kAbove + kPress + kRendering},
+      {"shell", "a drill is pressed on points with normals from a file: CSV or PLY", shell, true,
+       kShell + kAbove + kPress + kRendering},
+      {"drag", "a drill is dragged over a surface with 1 N along its normal", mesh, false,
+       kPlane + kAbove + kDrag + kRendering},
+      {"bur", "a ball bur is dragged over a surface with 1 N along its normal", mesh, false,
+       kPlane + kBurAbove + kDrag + kRendering},
+      {"tool", "a tool from a mesh file is pressed on a plane: OBJ, PLY, STL or OFF, closed", mesh, true,
+       kPlane + kMeshToolAbove + kPress + kRendering},
+      {"plane", "a drill is pressed on a plane", none, false, kPlane + kAbove + kPress + kRendering},
+      {"hole", "a drill is turned to and fro in a drilled hole", none, false, kBlock + kInHole + kTurn + kRendering},
+      {"springs", "a point mass between springs", none, false, kSprings + kRendering},
+      {"stroke", "a recorded stroke is played back over a plane or, with --on, a mesh: CSV", stroke, true,
+       kPlane + kStroke + kRendering},
+      {"target", "a simulated subject leads a drill to targets in a hole", none, false,
+       kBlock + kInHole + kTrack + kRendering, 40'000},
+  };
+  return kinds;
+}
+
+std::string on_mesh(const StartKind& kind) {
+  return kMesh + kind.sections.substr(kPlane.size());
+}
+
+namespace {
+
+// ---- The command
+
 constexpr double kNotGiven = -1.0;
 
 struct NewOptions {
@@ -34,14 +128,9 @@ struct NewOptions {
   OutputOptions output;
 };
 
-std::vector<std::string> kind_names() {
-  return names_of(start_kinds(), &StartKind::name);
-}
-
 const StartKind& kind_named(const std::string& name) {
-  const std::vector<std::string> names = kind_names();
-  require_valid_name("KIND: got", name, names);
-  return start_kinds()[static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin())];
+  require_valid_name("KIND: got", name, names_of(start_kinds(), &StartKind::name));
+  return *std::ranges::find(start_kinds(), name, &StartKind::name);
 }
 
 void check_source(const StartKind& kind, const std::string& from) {
@@ -140,19 +229,19 @@ int write_new(const NewOptions& options) {
 
   print_warnings(start.warnings);
   if (options.preview) draw_preview(out, picture, options.output.quiet || options.output.json);
-  const std::vector<FieldMeaning> meanings = field_meanings(json);
   std::string text = fmt::format("{}: {}\n", out.string(), kind.summary);
   for (const std::string& note : start.notes) text += note + "\n";
   if (options.preview) text += fmt::format("picture of a run in {}\n", picture.string());
   text += "\n";
-  for (const FieldMeaning& field : meanings) text += entry(field.path, field.meaning, 0, 34);
-  text += "\n";
-  text += fmt::format("\"hapbench describe scenario\" shows all fields; next: hapbench run {}\n", out.string());
   Json fields = Json::object();
-  for (const FieldMeaning& field : meanings) fields[field.path] = field.meaning;
-  Json json_text = {{"file", out.string()}, {"notes", start.notes}, {"fields", fields}};
-  if (options.preview) json_text["picture"] = picture.string();
-  print(options.output, text, json_text);
+  for (const auto& [path, meaning] : field_meanings(json)) {
+    text += entry(path, meaning, 0, 34);
+    fields[path] = meaning;
+  }
+  text += fmt::format("\n\"hapbench describe scenario\" shows all fields; next: hapbench run {}\n", out.string());
+  Json said = {{"file", out.string()}, {"notes", start.notes}, {"fields", fields}};
+  if (options.preview) said["picture"] = picture.string();
+  print(options.output, text, said);
   return kSuccess;
 }
 
@@ -164,13 +253,13 @@ void add_new(CommandLine& line) {
   command.add("--from", options.from, "the file of the mesh, shell or stroke to start from");
   command.add("--on", options.on, "of a stroke: the mesh that it is played back over, in place of a plane");
   command.add("--scale", options.scale, "length of the mesh's unit [m], 0.001 for millimetres (default: guessed)");
-  command.add("--side", options.side, "from which the tool comes: x, y, z (default), or --side=-x, -y, -z")
-      .one_of({"x", "y", "z", "-x", "-y", "-z"});
-  command.add("--path", options.path, "X,Y,Z [m] of a point to drag over; give it for each, two or more").repeatable();
+  command.add("--side", options.side, "from which the tool comes: x, y, z (default), or --side=-x, -y, -z",
+              {.one_of = {"x", "y", "z", "-x", "-y", "-z"}});
+  command.add("--path", options.path, "X,Y,Z [m] of a point to drag over; give it for each, two or more",
+              {.several = true});
   command.add("--at", options.at, "X,Y,Z [m]: start over the place of the surface that is nearest to it");
   command.flag("--preview", options.preview, "run the scene and draw it: the surface, the tool on its way; FILE.svg");
   command.add("--out", options.out, "the file to write, which must not exist (default: [FROM_]KIND.json)");
-  add_output_options(command, options.output);
 }
 
 }  // namespace hapbench

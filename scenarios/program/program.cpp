@@ -1,5 +1,3 @@
-#include "scenarios/program/program.hpp"
-
 #include <fmt/format.h>
 
 #include <cerrno>

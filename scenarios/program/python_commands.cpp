@@ -1,5 +1,3 @@
-#include <fmt/format.h>
-#include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -38,85 +36,71 @@ const PythonCommand kPythonCommands[] = {
      "Write a page of runs: curves, replay with sound, metrics, scenario, commands",
      {"hapbench_pictures", "report"}}};
 
-/// A command line of the launcher, which finds a Python that has what the package needs.
-class Launch {
- public:
-  Launch(const ProgramWords& package, const ProgramWords& given)
-      : words_{(installed_folder("scripts/python") / "launch").string()} {
-    words_.insert(words_.end(), package.begin(), package.end());
-    words_.insert(words_.end(), given.begin(), given.end());
-    for (std::string& word : words_) pointers_.push_back(word.data());
-    pointers_.push_back(nullptr);
-    // The packages ask this very program, for the points of a scene.
-    setenv("HAPBENCH_PROGRAM", this_program().c_str(), 1);
-  }
-  Launch(const Launch&) = delete;
-  Launch& operator=(const Launch&) = delete;
+/// The line of a shell that becomes the launcher, which finds a Python that has what the package needs.
+std::string launch_line(const ProgramWords& package, const ProgramWords& given) {
+  ProgramWords words = {"exec", (installed_folder("scripts/python") / "launch").string()};
+  words.insert(words.end(), package.begin(), package.end());
+  words.insert(words.end(), given.begin(), given.end());
+  // The packages ask this very program, for the points of a scene.
+  setenv("HAPBENCH_PROGRAM", this_program().c_str(), 1);
+  return shell_line(words);
+}
 
-  /// This process becomes the launcher; returns only by an exception.
-  int become() {
-    ::execv(pointers_[0], pointers_.data());
-    fail(errno);
-  }
-  /// Starts it beside this process; returns its id.
-  pid_t start() {
-    std::fflush(stdout);
-    pid_t process = 0;
-    if (const int error = posix_spawn(&process, pointers_[0], nullptr, nullptr, pointers_.data(), environ)) fail(error);
-    return process;
-  }
-  /// Runs it for the host, which gets what it prints on standard output as text, and its other lines as what they are.
-  /// Returns its exit status. Throws an InputError for what it refuses.
-  int run_for(CapturedOutput& host) {
-    std::FILE* pipe = ::popen((shell_line(words_) + " 2>&1").c_str(), "r");
-    if (pipe == nullptr) fail(errno);
-    std::string text;
-    for (int c = 0; (c = std::fgetc(pipe)) != EOF;) text += static_cast<char>(c);
-    const int ended = ::pclose(pipe), status = WIFEXITED(ended) ? WEXITSTATUS(ended) : kStopped + WTERMSIG(ended);
-    constexpr std::string_view kError = "hapbench: error: ", kWarning = "hapbench: warning: ";
-    std::vector<InputError> faults;
-    LineReader lines(text);
-    while (const auto line = lines.next()) {
-      if (line->starts_with(kError)) {
-        faults.emplace_back(std::string(line->substr(kError.size())));
-      } else if (line->starts_with(kWarning)) {
-        host.warnings.emplace_back(line->substr(kWarning.size()));
-      } else {
-        host.text.append(*line).append("\n");
-      }
+[[noreturn]] void fail_to_launch() {
+  throw IoError("run the Python of hapbench's source tree,", "scripts/python/launch",
+                std::error_code(errno, std::generic_category()));
+}
+
+/// Runs the line beside this process, and takes what it prints on standard output where `output` is given. Returns its
+/// exit status.
+int run_beside(const std::string& line, std::string* output) {
+  std::fflush(stdout);
+  std::FILE* pipe = ::popen(line.c_str(), output != nullptr ? "r" : "w");
+  if (pipe == nullptr) fail_to_launch();
+  if (output != nullptr)
+    for (int c = 0; (c = std::fgetc(pipe)) != EOF;) *output += static_cast<char>(c);
+  const int ended = ::pclose(pipe);
+  return WIFEXITED(ended) ? WEXITSTATUS(ended) : kStopped + WTERMSIG(ended);
+}
+
+/// Runs it for the host, which gets what it prints on standard output as text, and its other lines as what they are.
+/// Returns its exit status. Throws an InputError for what it refuses.
+int run_for(CapturedOutput& host, const std::string& line) {
+  std::string text;
+  const int status = run_beside(line + " 2>&1", &text);
+  constexpr std::string_view kError = "hapbench: error: ", kWarning = "hapbench: warning: ";
+  std::vector<InputError> faults;
+  LineReader lines(text);
+  while (const auto said = lines.next()) {
+    if (said->starts_with(kError)) {
+      faults.emplace_back(std::string(said->substr(kError.size())));
+    } else if (said->starts_with(kWarning)) {
+      host.warnings.emplace_back(said->substr(kWarning.size()));
+    } else {
+      host.text.append(*said).append("\n");
     }
-    if (status == kBadInput && !faults.empty()) throw InputError::all(faults);
-    for (const InputError& fault : faults) host.errors.emplace_back(fault.what());
-    return status;
   }
+  if (status == kBadInput && !faults.empty()) throw InputError::all(faults);
+  for (const InputError& fault : faults) host.errors.emplace_back(fault.what());
+  return status;
+}
 
- private:
-  [[noreturn]] void fail(int error) const {
-    throw IoError("run the Python of hapbench's source tree,", words_[0],
-                  std::error_code(error, std::generic_category()));
-  }
-
-  ProgramWords words_;
-  std::vector<char*> pointers_;  ///< as exec takes them
-};
-
+/// At a terminal this process becomes the launcher.
 int run(const PythonCommand& command, const ProgramWords& given) {
   for (const std::string& word : given) refuse_old_word(command.name, word);
-  Launch launch(command.words, given);
-  CapturedOutput* host = captured_output();
-  return host == nullptr ? launch.become() : launch.run_for(*host);
+  const std::string line = launch_line(command.words, given);
+  if (CapturedOutput* host = captured_output()) return run_for(*host, line);
+  ::execl("/bin/sh", "sh", "-c", line.c_str(), nullptr);
+  fail_to_launch();
 }
 
 }  // namespace
 
 void write_way(const std::filesystem::path& folder, const std::filesystem::path& file, bool quiet) {
-  Launch launch({"hapbench_pictures", "plot"},
-                {"--quiet", "--y=path", "--out=" + file.string(), "--", folder.string()});
-  const pid_t process = launch.start();
+  const std::string line = launch_line({"hapbench_pictures", "plot"},
+                                       {"--quiet", "--y=path", "--out=" + file.string(), "--", folder.string()});
   const WaitNotice notice("drawing", !quiet);
-  int status = 0;
-  while (waitpid(process, &status, 0) < 0 && errno == EINTR) {
-  }
+  const int status = run_beside(line, nullptr);
   throw_if_stopped();
   if (status != 0) throw IoError("draw what is in", folder, std::make_error_code(std::errc::io_error));
 }

@@ -23,14 +23,10 @@ struct Shown {
   bool csv = true, json = true;
   /// Above the printed column, in two lines at most; empty: it is not printed.
   std::string heading = {};
-  double factor = 1.0;  ///< from the column's unit to the heading's
-  int digits = 4;       ///< significant ones of a number without a tolerance
+  int digits = 4;  ///< significant ones of a number without a tolerance
 };
 
 /// Columns that are not everywhere.
-inline Shown only_printed(std::string heading) {
-  return {false, false, std::move(heading)};
-}
 inline Shown only_json() {
   return {false, true};
 }
@@ -53,19 +49,22 @@ Cell cell_of(const Value& value) {
 }
 
 /// The cell of a number as it is printed: the digits that its tolerance leaves; "-" for nothing.
-std::string printed(const Cell& cell, const Shown& shown, const std::optional<double>& tolerance);
+inline std::string printed(const Cell& cell, const Shown& shown, const std::optional<double>& tolerance) {
+  if (const auto* number = std::get_if<double>(&cell)) return deserved(*number, tolerance, shown.digits);
+  if (const auto* count = std::get_if<std::uint64_t>(&cell)) return std::to_string(*count);
+  if (const auto* yes = std::get_if<bool>(&cell)) return *yes ? "yes" : "no";
+  if (const auto* text = std::get_if<std::string>(&cell)) return *text;
+  return "-";
+}
 
 /// A table that `describe` knows; without a file one that is only printed.
 struct DescribedTable {
   struct Entry {
-    Entry(std::string name_of, std::string unit_of, std::string meaning_of)
-        : name(std::move(name_of)), unit(std::move(unit_of)), meaning(std::move(meaning_of)) {}
-    Entry(const Column& column) : Entry(column.name, column.unit, column.meaning) {}  // NOLINT: it is one
     std::string name, unit, meaning;
   };
-  std::string file, holds;
-  std::vector<Entry> columns;           ///< of the CSV file
-  std::vector<Table::Column> headings;  ///< of the printed table
+  std::string file = {}, holds = {};
+  std::vector<Entry> columns = {};           ///< of the CSV file
+  std::vector<Table::Column> headings = {};  ///< of the printed table
 };
 
 /// The columns of a table with rows of type `Row`: those known when the program is written, and those that depend on
@@ -91,9 +90,8 @@ class Columns {
   /// A column that is in no file; `unit` is empty for text.
   template <class Get>
   void print(std::string heading, std::string unit, std::string meaning, Get get) {
-    add("", std::move(unit), std::move(meaning), std::move(get), only_printed(std::move(heading)));
+    add("", std::move(unit), std::move(meaning), std::move(get), {false, false, std::move(heading)});
   }
-  void add(const Columns& more) { entries_.insert(entries_.end(), more.entries_.begin(), more.entries_.end()); }
 
   void write(const std::filesystem::path& file, std::span<const Row> rows, FileSet& files) const {
     std::string header;
@@ -157,7 +155,13 @@ class Columns {
 class Report {
  public:
   Report(const OutputOptions& output, std::filesystem::path folder) : output_(output), folder_(std::move(folder)) {}
+  /// Into the folder of --out, or results/out/`name`. Throws InputError unless it can be written to.
+  Report(const CommonOptions& options, const std::string& name)
+      : Report(options.output, results_directory(options.out, name)) {
+    require_writable_directory(folder_);
+  }
 
+  const std::filesystem::path& folder() const { return folder_; }
   void say(std::string_view text) { text_ += text; }
   template <class Row>
   void write(const char* file, const Columns<Row>& columns, const std::vector<Row>& rows) {
@@ -166,9 +170,17 @@ class Report {
   FileSet& files() { return files_; }
   Json& json() { return json_; }
   /// A row that failed, or whose answer is bad: the text is printed as an error, and becomes the exit status.
-  void fault(const std::string& text, int status);
+  void fault(const std::string& text, int status) {
+    faults_.push_back(text);
+    status_ = status;
+  }
   /// The exit status. Throws IoError.
-  int finish();
+  int finish() {
+    files_.commit();
+    for (const std::string& fault : faults_) print_error(fault);
+    print(output_, text_, json_);
+    return status_;
+  }
 
  private:
   const OutputOptions& output_;

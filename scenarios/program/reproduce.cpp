@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <map>
 #include <optional>
 #include <set>
 
@@ -26,14 +27,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct ReproduceOptions {
+struct ReproduceOptions : CommonOptions {
   std::vector<std::string> only;
-  std::string out = (fs::path("results") / "out" / "reproduce").string();
   std::string ledger;
   bool anew = false;
   std::string readings;  ///< file; empty for none
-  unsigned jobs = static_cast<unsigned>(available_threads());
-  OutputOptions output;
+
+  fs::path folder() const { return results_directory(out, "reproduce"); }
 };
 
 std::vector<Claim> chosen_claims(const std::vector<std::string>& ids) {
@@ -42,8 +42,7 @@ std::vector<Claim> chosen_claims(const std::vector<std::string>& ids) {
   const std::vector<std::string> valid = names_of(claims, &Claim::id);
   std::set<std::string> chosen;
   for (const std::string& id : ids) {
-    const auto same = [&id](const std::string& other) { return lower_case(other) == lower_case(id); };
-    const auto found = std::find_if(valid.begin(), valid.end(), same);
+    const auto found = std::ranges::find(valid, lower_case(id), lower_case);
     if (found == valid.end()) require_valid_name("--only: got", id, valid);
     chosen.insert(*found);
   }
@@ -66,31 +65,28 @@ bool is_current(const fs::path& directory, const LoadedScenario& loaded) {
 /// Runs the thesis's scenarios into subdirectories, except those whose results are current.
 class ThesisRuns {
  public:
-  ThesisRuns(const ReproduceOptions& options) : directory_(fs::path(options.out) / "thesis"), anew_(options.anew) {
-    for (const BundledScenario& bundled : bundled_scenarios()) {
-      if (bundled.group == "thesis") scenarios_.push_back(bundled);
-    }
+  explicit ThesisRuns(const ReproduceOptions& options)
+      : directory_(options.folder() / "thesis"), anew_(options.anew), scenarios_(bundled_scenarios()) {
+    std::erase_if(scenarios_, [](const BundledScenario& bundled) { return bundled.group != "thesis"; });
   }
 
   const fs::path& directory() const { return directory_; }
 
   /// Runs all of them on several threads.
-  void run_all(unsigned jobs, bool progress) {
-    std::vector<std::vector<std::string>> problems(scenarios_.size());
-    for_each_job(scenarios_.size(), {jobs, progress ? "thesis" : ""},
-                 [&](std::size_t i) { problems[i] = run(scenarios_[i]); });
-    for (std::size_t i = 0; i < scenarios_.size(); ++i) note(scenarios_[i], problems[i]);
+  void run_all(const JobOptions& jobs) {
+    std::vector<std::vector<std::string>> unmet(scenarios_.size());
+    for_each_job(unmet.size(), jobs, [&](std::size_t i) { unmet[i] = run(scenarios_[i]); });
+    for (std::size_t i = 0; i < unmet.size(); ++i) unmet_[scenarios_[i].name] = unmet[i];
   }
 
   /// Runs one of them unless that has been done.
   void provide(const std::string& name) {
-    for (const BundledScenario& bundled : scenarios_) {
-      if (bundled.name == name && !done_.contains(name)) note(bundled, run(bundled));
-    }
+    const auto bundled = std::ranges::find(scenarios_, name, &BundledScenario::name);
+    if (bundled != scenarios_.end() && !unmet_.contains(name)) unmet_[name] = run(*bundled);
   }
 
-  /// What runs did otherwise than their scenarios expect.
-  const std::vector<std::string>& problems() const { return problems_; }
+  /// What runs did otherwise than their scenarios expect, by their names.
+  const std::map<std::string, std::vector<std::string>>& unmet() const { return unmet_; }
 
  private:
   std::vector<std::string> run(const BundledScenario& bundled) const {
@@ -98,16 +94,11 @@ class ThesisRuns {
     if (!anew_ && is_current(directory_ / bundled.name, loaded)) return {};
     return run_scenario(loaded, directory_ / bundled.name, false).unmet;
   }
-  void note(const BundledScenario& bundled, const std::vector<std::string>& problems) {
-    done_.insert(bundled.name);
-    for (const std::string& problem : problems) problems_.push_back(fmt::format("{}: {}", bundled.name, problem));
-  }
 
   fs::path directory_;
   bool anew_;
   std::vector<BundledScenario> scenarios_;
-  std::set<std::string> done_;
-  std::vector<std::string> problems_;
+  std::map<std::string, std::vector<std::string>> unmet_;
 };
 
 /// Judges the claims by the thesis's runs.
@@ -132,17 +123,6 @@ std::vector<JudgedClaim> judge(const std::vector<Claim>& claims, const Published
   return judged;
 }
 
-/// Prints the first few problems of the readings' runs.
-void print_problems(const std::vector<ReadingVerdicts>& judged) {
-  constexpr std::size_t kMost = 10;
-  std::size_t problems = 0;
-  for (const ReadingVerdicts& reading : judged) {
-    for (const std::string& problem : reading.problems)
-      if (++problems <= kMost) print_error("not measured: " + one_line(problem));
-  }
-  if (problems > kMost) print_error(fmt::format("{} more like these", problems - kMost));
-}
-
 /// The content of robustness.json; an empty record when there is no such file.
 Json read_record(const fs::path& file) {
   if (!fs::exists(file)) return {{"claims", Json::array()}};
@@ -153,13 +133,16 @@ Json read_record(const fs::path& file) {
 /// content of robustness.json.
 Json judge_readings(const ReproduceOptions& options, const Readings& readings,
                     const std::optional<fs::path>& directory) {
-  const fs::path scratch = fs::path(options.out) / "robustness";
+  const fs::path scratch = options.folder() / "robustness";
   std::vector<ReadingVerdicts> judged(readings.values.size());
-  for_each_job(judged.size(), {options.jobs, options.output.quiet ? "" : "robustness"},
+  for_each_job(judged.size(), job_options(options, "robustness"),
                [&](std::size_t i) { judged[i] = judge_reading(readings, i, scratch / std::to_string(i)); });
   std::error_code ignored;
   fs::remove(scratch, ignored);
-  print_problems(judged);
+  std::vector<std::string> problems;
+  for (const ReadingVerdicts& reading : judged)
+    for (const std::string& problem : reading.problems) problems.push_back("not measured: " + one_line(problem));
+  for (const std::string& problem : first_few(problems, 10)) print_error(problem);
   // Readings of single claims leave those of the others as they are.
   const bool some = directory && !options.only.empty() && fs::exists(*directory / "robustness.json");
   const Json record =
@@ -178,7 +161,7 @@ Json judge_readings(const ReproduceOptions& options, const Readings& readings,
 std::optional<fs::path> ledger_file(const ReproduceOptions& options) {
   if (!options.ledger.empty()) return options.ledger;
   if (!options.only.empty()) return {};
-  return fs::path(options.out) / "claims.json";
+  return options.folder() / "claims.json";
 }
 
 /// States each claim and the reason for its verdict.
@@ -215,10 +198,10 @@ int reproduce(const ReproduceOptions& options) {
       choices.with_numbers(PublishedNumbers(reference / "published.json"), choices.values_on_record());
   Readings readings{choices, published, {}, {}};
   if (!options.readings.empty()) readings.values = read_readings(options.readings, choices);
-  require_writable_directory(options.out);
+  Report report(options, "reproduce");
   ThesisRuns runs(options);
   // Single claims run only the scenarios they need.
-  if (options.only.empty()) runs.run_all(options.jobs, !options.output.quiet);
+  if (options.only.empty()) runs.run_all(job_options(options, "thesis"));
 
   const std::vector<JudgedClaim> judged = judge(claims, published, choices, runs, !options.output.quiet);
   const std::optional<fs::path> ledger = ledger_file(options);
@@ -229,7 +212,6 @@ int reproduce(const ReproduceOptions& options) {
     robustness = judge_readings(options, readings, ledger ? std::optional(ledger->parent_path()) : std::nullopt);
   }
 
-  Report report(options.output, options.out);
   report.json() = ledger_json(judged, published, robustness);
   const Json& json = report.json();
   if (options.only.empty()) report.say(wrapped(json.at("headline").get<std::string>()) + "\n\n");
@@ -243,7 +225,8 @@ int reproduce(const ReproduceOptions& options) {
   } else {
     report.say("\nno ledger is written of single claims without --ledger FILE\n");
   }
-  for (const std::string& problem : runs.problems()) report.fault(problem, kUnexpectedOutcome);
+  for (const auto& [scenario, unmet] : runs.unmet())
+    for (const std::string& problem : unmet) report.fault(fmt::format("{}: {}", scenario, problem), kUnexpectedOutcome);
   return report.finish();
 }
 
@@ -256,24 +239,22 @@ std::vector<DescribedTable> claim_tables() {
 void add_reproduce(CommandLine& line) {
   auto [command, options] = line.command("reproduce", "Run the thesis's experiments and judge its claims", reproduce,
                                          "finished runs are kept, and the same command continues from there");
-  command
-      .add(
-          "--only", options.only,
-          "ids of claims, separated by commas; \"hapbench list claims\" shows them, and scripts/reproduce --only draws their "
-          "figures, too")
-      .comma_separated();
+  command.add(
+      "--only", options.only,
+      "ids of claims, separated by commas; \"hapbench list claims\" shows them, and scripts/reproduce --only draws their "
+      "figures, too",
+      {.comma_separated = true});
   command.add("--out", options.out, "directory of the results (default: results/out/reproduce)");
   command.add("--ledger", options.ledger,
               "file of the ledger, JSON, with a Markdown table beside it (default: OUT/claims.json; with --only none)");
   command.flag("--anew", options.anew, "run every scenario again, even where results are current");
-  command.add("--jobs", options.jobs, "runs at once (default: one for each processor)").range(1, 1024);
+  add_jobs(command, options.jobs, "runs at once (default: one for each processor)");
   command.add(
       "--choices", options.readings,
       "judge every claim again under each reading of FILE.csv, appendix D in the first quarter of them: a row each, a "
       "column for each choice that it reads otherwise than on record, as results/reference/readings.csv; writes "
       "robustness.csv and .json beside the ledger, if there is one; with --only, .json keeps what it has of other "
       "claims");
-  add_output_options(command, options.output);
   command.footer(
       "choices.md beside the ledger lists what the thesis leaves open (results/reference/choices.json); "
       "scripts/readings.py draws readings of it.\n"

@@ -16,14 +16,23 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct RunOptions {
+struct RunOptions : CommonOptions {
   std::vector<std::string> scenarios;
-  std::string out;
-  std::vector<std::string> overrides;
   Skips skips = Skips::on;
   bool latency = false;
-  OutputOptions output;
 };
+
+/// One directory per scenario: that of --out for a single one, a subdirectory named after the file for several; without
+/// --out, one of results/out. Throws InputError when two files have the same name.
+std::vector<fs::path> output_directories(const std::string& out, const std::vector<fs::path>& files) {
+  require_names_of_their_own(files, "one of each name in a run");
+  std::vector<fs::path> directories;
+  for (const fs::path& file : files) {
+    const fs::path directory = results_directory(out, file.stem().string());
+    directories.push_back(out.empty() || files.size() == 1 ? directory : directory / file.stem());
+  }
+  return directories;
+}
 
 /// Tells users who try values of a field when the results of the previous value are about to be replaced.
 void note_replaced_run(const LoadedScenario& loaded, const fs::path& directory) {
@@ -39,11 +48,12 @@ int run(const RunOptions& options) {
   std::vector<std::string> overrides = options.overrides;
   if (options.latency) overrides.emplace_back("record.timing=true");
   std::vector<LoadedScenario> scenarios;
-  for (const fs::path& file : find_scenarios(options.scenarios)) {
+  const std::vector<fs::path> files = find_scenarios(options.scenarios);
+  for (const fs::path& file : files) {
     scenarios.push_back(load_scenario(file, overrides));
     scenarios.back().scenario.rendering.skips = options.skips;
   }
-  const std::vector<fs::path> directories = output_directories(options.out, scenarios, "", "one of each name in a run");
+  const std::vector<fs::path> directories = output_directories(options.out, files);
   for (const LoadedScenario& scenario : scenarios) print_warnings(scenario, warnings_before_run(scenario));
   for (const fs::path& directory : directories) require_writable_directory(directory);
   if (options.out.empty() && !options.overrides.empty()) {
@@ -88,8 +98,8 @@ int run(const RunOptions& options) {
 void add_run(CommandLine& line) {
   auto [command, options] = line.command("run", "Run scenarios, write their results and say what is wrong with them",
                                          run, "nothing of the unfinished run is written; finished runs are kept");
-  command.add("scenarios", options.scenarios, "scenario files, names of bundled scenarios, or of groups of them")
-      .required();
+  command.add("scenarios", options.scenarios, "scenario files, names of bundled scenarios, or of groups of them",
+              {.required = true});
   command.add("--out", options.out,
               "directory of the results; several scenarios get a subdirectory each (default: results/out/NAME)");
   add_overrides(command, options.overrides, "override a field: path=value, as in time.steps=100");
@@ -98,7 +108,6 @@ void add_run(CommandLine& line) {
   command.flag(
       "--no-skip", [&skips = options.skips] { skips = Skips::off; },
       "compute everything by brute force, even what cannot change the results");
-  add_output_options(command, options.output);
 }
 
 }  // namespace hapbench

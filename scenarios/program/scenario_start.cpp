@@ -3,17 +3,20 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <span>
 
+#include "device_model/hands/drag_hand.hpp"
 #include "scenarios/description/load_scenario.hpp"
 #include "scenarios/description/parts.hpp"
-#include "scenarios/program/mesh_guesses.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/encounter.hpp"
 #include "scenarios/run/scene_facts.hpp"
@@ -26,6 +29,139 @@ namespace hapbench {
 namespace {
 
 namespace fs = std::filesystem;
+
+// ---- Guesses from a mesh: the tip of a tool, and where a tool that comes along -z starts over it
+
+/// Mean and variance of a surface.
+struct Spread {
+  Vec3 middle;
+  Mat3 variance;  ///< about the middle [m^2]
+};
+
+Spread spread_of(const TriangleSoup& mesh) {
+  double area = 0.0;
+  Vec3 sum = Vec3::Zero();
+  Mat3 second = Mat3::Zero();
+  for (const auto& [a, b, c] : mesh.triangles) {
+    const Vec3 &p = mesh.vertices[a], &q = mesh.vertices[b], &r = mesh.vertices[c];
+    const double weight = (q - p).cross(r - p).norm();
+    // The mean of a quadratic over a triangle is its mean over the middles of the sides.
+    for (const Vec3& place : {Vec3(0.5 * (p + q)), Vec3(0.5 * (q + r)), Vec3(0.5 * (r + p))}) {
+      sum += weight / 3.0 * place;
+      second += weight / 3.0 * place * place.transpose();
+    }
+    area += weight;
+  }
+  const Vec3 middle = sum / area;
+  return {middle, second / area - middle * middle.transpose()};
+}
+
+/// The direction along which a surface is clearly longest; a coordinate axis when it is near one.
+std::optional<Vec3> longest_direction(const Mat3& variance) {
+  constexpr double kStandsOut = 2.0;  // ratio of variances
+  // Cosine of 6 degrees: tools are modelled along an axis, but are seldom exactly symmetric about it.
+  constexpr double kNearAxis = 0.995;
+  const Eigen::SelfAdjointEigenSolver<Mat3> principal(variance);
+  if (principal.eigenvalues()[2] < kStandsOut * principal.eigenvalues()[1]) return std::nullopt;
+  const Vec3 direction = principal.eigenvectors().col(2);
+  Eigen::Index nearest = 0;
+  return direction.cwiseAbs().maxCoeff(&nearest) > kNearAxis ? Vec3(-Vec3::Unit(nearest)) : direction;
+}
+
+/// The end of a mesh along a direction.
+struct End {
+  Vec3 place;        ///< the middle of the last hundredth's vertices, moved to the very end
+  double thickness;  ///< mean distance of the last tenth's vertices from the line through the mesh's middle
+};
+
+End end_along(const TriangleSoup& mesh, const Vec3& direction, const Vec3& middle) {
+  double least = std::numeric_limits<double>::infinity(), most = -least;
+  for (const Vec3& vertex : mesh.vertices) {
+    least = std::min(least, direction.dot(vertex - middle));
+    most = std::max(most, direction.dot(vertex - middle));
+  }
+  Vec3 aside = Vec3::Zero();
+  double thickness = 0.0, in_tenth = 0.0, in_hundredth = 0.0;
+  for (const Vec3& vertex : mesh.vertices) {
+    const double along = direction.dot(vertex - middle), from_end = (most - along) / (most - least);
+    const Vec3 across = vertex - middle - along * direction;
+    if (from_end <= 0.1) thickness += across.norm(), in_tenth += 1.0;
+    if (from_end <= 0.01) aside += across, in_hundredth += 1.0;
+  }
+  return {middle + most * direction + aside / in_hundredth, thickness / in_tenth};
+}
+
+/// The guessed tip of a tool's mesh.
+struct TipOfMesh {
+  Vec3 place;      ///< the end of its longest direction where it is thinner [m]
+  Vec3 direction;  ///< out of the tip, a unit vector
+};
+
+/// Guesses a tool's tip. A mesh without a longest direction has it at its lowest place, along -z. Precondition: it has
+/// triangles.
+TipOfMesh guess_tip(const TriangleSoup& mesh) {
+  const auto [middle, variance] = spread_of(mesh);
+  const std::optional<Vec3> longest = longest_direction(variance);
+  const Vec3 direction = longest.value_or(-Vec3::UnitZ());
+  const End end = end_along(mesh, direction, middle), other = end_along(mesh, -direction, middle);
+  if (longest && other.thickness < end.thickness) return {other.place, -direction};
+  return {end.place, direction};
+}
+
+/// The point nearest to the middle of those within `tolerance` of the top.
+Vec3 middle_of_the_top(const std::vector<SurfacePoint>& points, double top, double tolerance) {
+  std::vector<Vec3> high;
+  for (const SurfacePoint& point : points) {
+    if (point.position.z() >= top - tolerance) high.push_back(point.position);
+  }
+  Vec3 middle = Vec3::Zero();
+  for (const Vec3& place : high) middle += place;
+  middle /= static_cast<double>(high.size());
+  return *std::ranges::min_element(high, {}, [&middle](const Vec3& place) { return (place - middle).norm(); });
+}
+
+/// The highest of the points above or below the box's middle, to within `aside`; where there are none, as in a ring,
+/// the middle.
+Vec3 top_of_the_middle(const std::vector<SurfacePoint>& points, const Box& box, double aside) {
+  const Vec3 middle = 0.5 * (box.min + box.max);
+  Vec3 top(middle.x(), middle.y(), box.min.z());
+  for (const SurfacePoint& point : points) {
+    if ((point.position - middle).head<2>().norm() <= aside && point.position.z() > top.z()) top = point.position;
+  }
+  return top.z() > box.min.z() ? top : middle;
+}
+
+/// A way over a surface for a hand that drags.
+struct DragStart {
+  Vec3 position = Vec3::Zero();    ///< initial.position_m [m]
+  Vec3 direction = Vec3::UnitX();  ///< hand.direction
+  double smoothing = 0.0;          ///< hand.smoothing_m [m]
+  double room = 0.0;               ///< length of the way to where the surface ends or turns back [m]
+};
+
+/// Tries along x and y, forwards and back, from each of `positions`, then with twice and four times `smoothing`, until
+/// a way is at least `enough` long; else takes the longest. A later direction or place has to lead a tenth further, so
+/// that the choice does not depend on rounding. Makes a walk of some 10 ms for each combination. Preconditions: a point
+/// in the shell, a position.
+DragStart choose_drag(const PointShell& shell, std::span<const Vec3> positions, double smoothing, double enough) {
+  constexpr double kFurther = 1.1;
+  const Box box = shell.bounds();
+  const double furthest = (box.max - box.min).norm();
+  DragStart best{positions.front(), Vec3::UnitX(), smoothing, 0.0};
+  for (const double radius : {smoothing, 2.0 * smoothing, 4.0 * smoothing}) {
+    const SmoothedSurface surface(shell, radius);
+    for (const Vec3& position : positions) {
+      for (const Vec3& direction : {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(-1, 0, 0), Vec3(0, -1, 0)}) {
+        const double room = SurfacePath::along(surface, position, direction, furthest).length();
+        if (room > kFurther * best.room) best = {position, direction, radius, room};
+      }
+      if (best.room >= enough) return best;
+    }
+  }
+  return best;
+}
+
+// ---- A start
 
 constexpr double kStep = 0.0005;          ///< [s]
 constexpr double kClearance = 0.001;      ///< between tool and surface at the start [m]
@@ -40,16 +176,21 @@ double rounded(double value) {
   return std::stod(fmt::format("{:.2g}", value));
 }
 
-Box box_of(const std::vector<Vec3>& places) {
-  Box box{places.front(), places.front()};
-  for (const Vec3& place : places) box = {box.min.cwiseMin(place), box.max.cwiseMax(place)};
-  return box;
+/// Puts a text in the place of each @name@.
+void fill_mark(std::string& text, const std::string& name, const std::string& with) {
+  const std::string mark = "@" + name + "@";
+  for (std::size_t at = 0; (at = text.find(mark, at)) != std::string::npos; at += with.size())
+    text.replace(at, mark.size(), with);
 }
 
-Box box_of(const std::vector<SurfacePoint>& points) {
-  std::vector<Vec3> places;
-  for (const SurfacePoint& point : points) places.push_back(point.position);
-  return box_of(places);
+/// The box of things at a place each.
+template <class Things, class Place = std::identity>
+Box box_of(const Things& things, Place place = {}) {
+  const Vec3 first = std::invoke(place, things.front());
+  Box box{first, first};
+  for (const auto& thing : things)
+    box = {box.min.cwiseMin(std::invoke(place, thing)), box.max.cwiseMax(std::invoke(place, thing))};
+  return box;
 }
 
 /// A unit that a file may have.
@@ -121,10 +262,6 @@ class Start {
     const Vec3 up = (options_.side.front() == '-' ? -1.0 : 1.0) * Vec3::Unit(axis);
     const Vec3 lean = Vec3::Unit(axis == 0 ? 1 : 0);
     to_world_ << lean, up.cross(lean), up;
-    const auto replace = [this](const std::string& mark, const std::string& with) {
-      if (const std::size_t at = sections_.find(mark); at != std::string::npos)
-        sections_.replace(at, mark.size(), with);
-    };
     std::vector<std::string> targets;
     for (const char name : {'x', 'y', 'z'}) {
       targets.push_back(name - 'x' != axis
@@ -133,8 +270,8 @@ class Start {
                                           "[0.5, @pressed@]], \"interpolation\": \"cosine\"}}",
                                           name));
     }
-    replace("@target@", fmt::format("{}", fmt::join(targets, ",\n      ")));
-    replace("@way@", options_.path.empty() ? "\"direction\": @direction@" : "\"path_m\": @path@");
+    fill_mark(sections_, "target", fmt::format("{}", fmt::join(targets, ",\n      ")));
+    fill_mark(sections_, "way", options_.path.empty() ? "\"direction\": @direction@" : "\"path_m\": @path@");
     if (options_.side != "z" && has("\"impedance\"")) {
       const auto list = [](const Vec3& v) {
         return fmt::format("[{}, {}, {}]", v.x() + 0.0, v.y() + 0.0, v.z() + 0.0);
@@ -148,12 +285,8 @@ class Start {
     std::string text = fmt::format("{{\n  \"description\": {},\n  \"time\": {{\"step_s\": {}, \"steps\": @steps@}},",
                                    Json(description_).dump(), kStep) +
                        sections_ + "}\n";
-    const auto fill = [&text](const std::string& mark, const std::string& with) {
-      for (std::size_t at = 0; (at = text.find(mark, at)) != std::string::npos; at += with.size())
-        text.replace(at, mark.size(), with);
-    };
-    fill("@flip@", flip_ ? ", \"flip_normals\": true" : "");
-    for (const auto& [name, value] : values_) fill("@" + name + "@", value.dump());
+    fill_mark(text, "flip", flip_ ? ", \"flip_normals\": true" : "");
+    for (const auto& [name, value] : values_) fill_mark(text, name, value.dump());
     return text;
   }
 
@@ -188,7 +321,7 @@ class Start {
   }
 
   void scale_environment() {
-    const Box box = box_of(points());
+    const Box box = box_of(points(), &SurfacePoint::position);
     const double scale = choose_scale(box, "mesh");
     values_["scale"] = scale;
     choose_tool((box.max - box.min).maxCoeff() / 0.001 * scale);
@@ -236,7 +369,7 @@ class Start {
   /// Turns the normals of an open mesh round that point away from the side, about its highest place.
   std::vector<SurfacePoint> facing_points() {
     std::vector<SurfacePoint> shell = points();
-    const Box box = box_of(shell);
+    const Box box = box_of(shell, &SurfacePoint::position);
     longest_ = (box.max - box.min).maxCoeff();
     choose_tool(longest_);
     const Vec3 top = middle_of_the_top(shell, box.max.z(), 0.1 * diameter_);
@@ -264,7 +397,7 @@ class Start {
     const std::vector<SurfacePoint> shell = facing_points();
     count_ = shell.size();
     const std::string count = has("@spacing@") ? "" : fmt::format("{} points; ", count_);
-    const Box box = box_of(shell);
+    const Box box = box_of(shell, &SurfacePoint::position);
     const Vec3 top = top_of(shell, box);
     values_["pressed"] = to_micrometres(side_sign() * (top.z() + 0.5 * diameter_ - kPressedBelow));
     if (has("\"drag\"")) {

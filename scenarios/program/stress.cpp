@@ -8,12 +8,9 @@
 namespace hapbench {
 namespace {
 
-struct StressOptions {
+struct StressOptions : CommonOptions {
   std::uint64_t count = 100'000;
   std::uint64_t seed = 1;
-  unsigned jobs = 0;  ///< 0: as many as the machine has
-  std::string out;
-  OutputOptions output;
 };
 
 bool is_bad(const StressCounts& counts) {
@@ -43,12 +40,9 @@ Columns<StressCounts> stress_columns() {
 }
 
 int stress(const StressOptions& options) {
-  const std::filesystem::path out = results_directory(options.out, "stress");
-  require_writable_directory(out);
-  const std::vector<StressCounts> all =
-      stress_laws(options.count, options.seed, job_options(options.jobs, options.output, "stress"));
+  Report report(options, "stress");
+  const std::vector<StressCounts> all = stress_laws(options.count, options.seed, job_options(options, "stress"));
   const Columns<StressCounts> columns = stress_columns();
-  Report report(options.output, out);
   report.write("stress.csv", columns, all);
   report.say(columns.table(all).text());
   report.json() = Json::array();
@@ -71,11 +65,10 @@ std::vector<DescribedTable> stress_tables() {
 void add_stress(CommandLine& line) {
   auto [command, options] = line.command(
       "stress", "Pass random degenerate contact sets through every algorithm, and count what no law may give", stress);
-  command.add("--count", options.count, "contact sets (default: 100000)").range(1, 1'000'000'000);
-  command.add("--seed", options.seed, "of the random numbers (default: 1)").range(0, std::int64_t{1} << 53);
+  command.add("--count", options.count, "contact sets (default: 100000)", {.range = {{1, 1'000'000'000}}});
+  command.add("--seed", options.seed, "of the random numbers (default: 1)", {.range = {{0, std::int64_t{1} << 53}}});
   add_jobs(command, options.jobs, "threads (default: as many as the machine has)");
   command.add("--out", options.out, "directory of the results (default: results/out/stress)");
-  add_output_options(command, options.output);
 }
 
 }  // namespace hapbench

@@ -11,7 +11,7 @@
 #include "scenarios/description/metric_sections.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/index.hpp"
-#include "scenarios/program/limit_cases.hpp"
+#include "scenarios/program/limit.hpp"
 #include "scenarios/program/report.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/progress_bar.hpp"
@@ -23,7 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct TuneOptions {
+struct TuneOptions : CommonOptions {
   std::string scenario;
   std::string device;
   std::vector<std::string> algorithms;
@@ -33,10 +33,6 @@ struct TuneOptions {
   std::vector<std::string> over;
   std::string damping_ratio, mass;
   bool filters = false;
-  unsigned jobs = 0;  ///< 0: as many as the machine has
-  std::string out;
-  std::vector<std::string> overrides;
-  OutputOptions output;
 };
 
 /// All that the command found.
@@ -62,13 +58,15 @@ std::string stiffness_text(const TuneTrial& choice) {
   return deserved(choice.stiffness, 0.005 * choice.stiffness);
 }
 
+std::optional<double> value_in(const TuneMetrics& metrics, const char* name, double factor = 1.0) {
+  const auto found = metrics.find(name);
+  return found == metrics.end() ? std::nullopt : std::optional(factor * found->second);
+}
+
 /// A metric of the choice with the digits that its spread over the seeds leaves it, three where none is known.
 std::string metric_text(const TunedLaw& law, const char* name, double factor) {
-  if (!law.choice) return "-";
-  const auto value = law.choice->metrics.find(name), spread = law.spread.find(name);
-  if (value == law.choice->metrics.end()) return "-";
-  const auto error = spread == law.spread.end() ? std::nullopt : std::optional(factor * spread->second);
-  return significant(factor * value->second, deserved_digits(factor * value->second, error, 3));
+  const auto value = law.choice ? value_in(law.choice->metrics, name, factor) : std::nullopt;
+  return value ? significant(*value, deserved_digits(*value, value_in(law.spread, name, factor), 3)) : "-";
 }
 
 constexpr const char* kRatioColumn = "rendering.damping_ratio";
@@ -83,7 +81,7 @@ void add_choice(Columns<TunedLaw>& columns) {
   columns.add("stiffness_N_per_m", "N/m", "the largest K; empty when nothing is feasible",
               of_choice(&TuneTrial::stiffness));
   const auto text = [](const TunedLaw& l) { return l.choice ? stiffness_text(*l.choice) : "none"; };
-  columns.add("", "N/m", "of tune: the largest stiffness that keeps margin and limits [N/m]", text, only_printed("K"));
+  columns.print("K", "N/m", "of tune: the largest stiffness that keeps margin and limits [N/m]", text);
   columns.add(kRatioColumn, "1", "zeta with it; empty where it has no part", of_choice(&TuneTrial::damping_ratio),
               {.json = false, .heading = "zeta", .digits = 3});
   columns.add("damping_ratio", "1", "the same", of_choice(&TuneTrial::damping_ratio), only_json());
@@ -125,13 +123,12 @@ Columns<TunedLaw> law_columns() {
               &TunedLaw::verified);
   columns.add("runs", "1", "simulations in all", &TunedLaw::runs);
   const auto add_metric = [&](const char* name, double factor, const char* heading) {
-    columns.add(
-        "", "by name", name, [=](const TunedLaw& l) { return metric_text(l, name, factor); }, only_printed(heading));
+    columns.print(heading, "by name", name, [=](const TunedLaw& l) { return metric_text(l, name, factor); });
   };
   add_metric("inside_settled_m", 1e3, "inside mm");
   add_metric("force_rms_above_30Hz_N", 1.0, "vibration N");
   add_metric("settled_force_step_max_N", 1.0, "step N");
-  columns.add("", "", "of tune: what a larger K does not keep", &TunedLaw::binding, only_printed("binding"));
+  columns.print("binding", "", "of tune: what a larger K does not keep", &TunedLaw::binding);
   return columns;
 }
 
@@ -150,10 +147,8 @@ Columns<TuneTrial> trial_columns() {
   columns.add("why", "", "the same in words", &TuneTrial::why);
   for (const char* name : {kTuneMetrics[0], kTuneMetrics[1], kTuneMetrics[2]}) {
     columns.add(name, name == kTuneMetrics[0] ? "m" : "N",
-                "of the scene's own run at K; empty where it was not asked for", [name](const TuneTrial& trial) {
-                  const auto found = trial.metrics.find(name);
-                  return found == trial.metrics.end() ? Cell() : Cell(found->second);
-                });
+                "of the scene's own run at K; empty where it was not asked for",
+                [name](const TuneTrial& trial) { return value_in(trial.metrics, name); });
   }
   return columns;
 }
@@ -181,13 +176,13 @@ Json tuning_json(const Tuning& tuning, const fs::path& tuned) {
   Json laws = Json::array();
   for (const TunedLaw& law : tuning.laws) laws.push_back(law_json(law));
   const auto name_of = [&](std::size_t place) {
-    return place < tuning.ranking.size() ? Json(tuning.laws[tuning.ranking[place]].algorithm) : Json(nullptr);
+    return place < tuning.ranking.size() ? Json(tuning.laws[tuning.ranking[place]].algorithm) : Json();
   };
   return {{"algorithms", std::move(laws)},
           {"recommended", name_of(0)},
           {"runner_up", name_of(1)},
           {"limits", limits_json(tuning.question)},
-          {"scenario", tuned.empty() ? Json(nullptr) : Json(tuned.string())},
+          {"scenario", tuned.empty() ? Json() : Json(tuned.string())},
           {"runs", tuning.runs()}};
 }
 
@@ -253,12 +248,11 @@ std::string metrics_text(const TunedLaw& law) {
       {"mean force", "N", 1.0},      {"landing", "N", 1.0}};
   std::vector<std::string> texts;
   for (std::size_t i = 0; i < kTuneMetrics.size(); ++i) {
-    const auto value = law.choice->metrics.find(kTuneMetrics[i]), spread = law.spread.find(kTuneMetrics[i]);
-    if (value == law.choice->metrics.end()) continue;
     const auto& [name, unit, factor] = kTexts[i];
-    const bool known = spread != law.spread.end();
+    const auto spread = value_in(law.spread, kTuneMetrics[i], factor);
+    if (!law.choice->metrics.contains(kTuneMetrics[i])) continue;
     texts.push_back(fmt::format("{} {}{} {}", name, metric_text(law, kTuneMetrics[i], factor),
-                                known ? fmt::format(" +- {:.1g}", factor * spread->second) : "", unit));
+                                spread ? fmt::format(" +- {:.1g}", *spread) : "", unit));
   }
   return fmt::format("{}", fmt::join(texts, ", "));
 }
@@ -271,9 +265,8 @@ std::string cost_text(const TunedLaw& best, const TunedLaw& other) {
                                                             {"force_rms_above_30Hz_N", "the force above 30 Hz"},
                                                             {"settled_force_step_max_N", "the largest step"}};
   for (const auto& [name, what] : kCosts) {
-    const auto here = a.metrics.find(name), there = b.metrics.find(name);
-    if (here != a.metrics.end() && there != b.metrics.end() && here->second > 0.0)
-      texts.push_back(fmt::format("{:.2g} times {}", there->second / here->second, what));
+    const auto here = value_in(a.metrics, name), there = value_in(b.metrics, name);
+    if (here && there && *here > 0.0) texts.push_back(fmt::format("{:.2g} times {}", *there / *here, what));
   }
   if (a.lambda_max > 0.0)
     texts.push_back(
@@ -347,7 +340,7 @@ TuneQuestion tune_question(const TuneOptions& options, const fs::path& file) {
       throw InputError("--damping-ratio and --mass: got a range that reaches 0; allowed: a:b with 0 < a < b");
   if (question.mass) question.mass->logarithmic = true;
   question.filters = options.filters;
-  question.threads = options.jobs == 0 ? static_cast<unsigned>(available_threads()) : options.jobs;
+  question.threads = job_options(options, "").threads;
   return question;
 }
 
@@ -363,8 +356,8 @@ int tune(const TuneOptions& options) {
   print_warnings(loaded, warnings_before_run(loaded));
   tuning.scene = loaded.scenario.name + device;
   tuning.ranges = with_file(loaded, [&] { return tune_ranges(tuning.question, algorithms.front()); });
-  const fs::path out = results_directory(options.out, "tune_" + file.stem().string());
-  require_writable_directory(out);
+  Report report(options, "tune_" + file.stem().string());
+  const fs::path& out = report.folder();
   tuning.laws.resize(algorithms.size());
   ProgressBar bar("tune", algorithms.size(), !options.output.quiet);
   for (std::size_t i = 0; i < algorithms.size(); ++i) {
@@ -372,7 +365,6 @@ int tune(const TuneOptions& options) {
     bar.show(i + 1);
   }
   tuning.ranking = ranking_of(tuning.laws);
-  Report report(options.output, out);
   report.write("tune.csv", law_columns(), tuning.laws);
   std::vector<TuneTrial> trials;
   for (const TunedLaw& law : tuning.laws) trials.insert(trials.end(), law.trials.begin(), law.trials.end());
@@ -402,18 +394,18 @@ std::vector<DescribedTable> tune_tables() {
 void add_tune(CommandLine& line) {
   auto [command, options] =
       line.command("tune", "Say which stiffness and damping to use, in a scene on a device", tune);
-  command.add("scenario", options.scenario, "scenario file, or name of a bundled scenario").required();
+  command.add("scenario", options.scenario, "scenario file, or name of a bundled scenario", {.required = true});
   command.add("--device", options.device, "a preset, ideal, admittance, or a file NAME.json (default: the scene's)");
-  command.add("--algorithms", options.algorithms, "names separated by commas, or all (default: the scene's own)")
-      .comma_separated();
+  command.add("--algorithms", options.algorithms, "names separated by commas, or all (default: the scene's own)",
+              {.comma_separated = true});
   command.add("--margin", options.margin, "settled up to so many times K (default: 2)");
   command.add("--max-inside", options.inside, "most that any point of the tool is inside [mm]: inside_max_m");
   command.add("--max-vibration", options.vibration, "most force above 30 Hz [N rms]: force_rms_above_30Hz_N");
   command.add("--max-step", options.step, "largest force step in settled contact [N]: settled_force_step_max_N");
   command.add("--bound", options.bounds, "a limit on any other metric: metric=most or metric=least:most; repeatable");
-  command
-      .add("--over", options.over, "families of runs that have to hold: hands, seeds, speeds, or all (default: hands)")
-      .comma_separated();
+  command.add("--over", options.over,
+              "families of runs that have to hold: hands, seeds, speeds, or all (default: hands)",
+              {.comma_separated = true});
   command.add("--damping-ratio", options.damping_ratio,
               "a:b, range of zeta; on an impedance device by the mass of its handle (default: 0.01:10)");
   command.add("--mass", options.mass,
@@ -422,7 +414,6 @@ void add_tune(CommandLine& line) {
   add_jobs(command, options.jobs, "runs at once; no result depends on it (default: one per thread)");
   command.add("--out", options.out, "directory of the results (default: results/out/tune_NAME)");
   add_overrides(command, options.overrides, "override a field of all runs: path=value");
-  add_output_options(command, options.output);
   command.footer(fmt::format(
       "For each law the largest K, over zeta (and virtual mass on an admittance device), at which the scene's own run and each of the "
       "family is settled (stable or dying out, \"hapbench describe stability\"; where a script moves the tool, no more than 1 mm/s rms above 30 Hz at the handle) at K and at margin x K, the loop of "

@@ -23,10 +23,8 @@
 namespace hapbench {
 namespace {
 
-struct ValidateOptions {
+struct ValidateOptions : CommonOptions {
   std::vector<std::string> files;
-  std::vector<std::string> overrides;
-  OutputOptions output;
 };
 
 std::string surface_text(const SceneFacts::Surface& surface, std::optional<bool> is_closed) {
@@ -155,18 +153,14 @@ void add_validate(CommandLine& line) {
   auto [command, options] = line.command(
       "validate", "Check scenario files and the files they name, without running them, and say what is in them",
       validate);
-  command.add("files", options.files, "scenario files, or names of bundled scenarios").required();
+  command.add("files", options.files, "scenario files, or names of bundled scenarios", {.required = true});
   add_overrides(command, options.overrides, "override a field of all: path=value");
-  add_output_options(command, options.output);
 }
 
 namespace {
 
-struct ShellOptions {
+struct ShellOptions : CommonOptions {
   std::string scenario;
-  std::string out;
-  std::vector<std::string> overrides;
-  OutputOptions output;
 };
 
 int shell(const ShellOptions& options) {
@@ -183,7 +177,10 @@ int shell(const ShellOptions& options) {
   }();
   const std::filesystem::path file = options.out;
   const std::string text = point_shell_text(points, file);
-  require_writable_file(file);
+  std::error_code ignored;
+  if (std::filesystem::is_directory(file, ignored))
+    throw InputError(fmt::format("--out {}: is a directory", file.string()));
+  require_writable_directory(file.has_parent_path() ? file.parent_path() : ".");
   write_file_atomically(file, text);
   print(options.output, fmt::format("{} points in {}\n", points.size(), file.string()),
         {{"points", points.size()}, {"file", file.string()}});
@@ -194,10 +191,9 @@ int shell(const ShellOptions& options) {
 
 void add_shell(CommandLine& line) {
   auto [command, options] = line.command("shell", "Write the environment's point shell: positions and normals", shell);
-  command.add("scenario", options.scenario, "scenario file, or name of a bundled scenario").required();
-  command.add("--out", options.out, "FILE.csv (exact) or FILE.ply (single precision, for viewers)").required();
+  command.add("scenario", options.scenario, "scenario file, or name of a bundled scenario", {.required = true});
+  command.add("--out", options.out, "FILE.csv (exact) or FILE.ply (single precision, for viewers)", {.required = true});
   add_overrides(command, options.overrides);
-  add_output_options(command, options.output);
 }
 
 }  // namespace hapbench

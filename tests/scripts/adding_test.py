@@ -209,8 +209,7 @@ int twice(const TwiceOptions& options) {
 
 void add_twice(CommandLine& line) {
   auto [command, options] = line.command("twice", "Print a word two times", twice);
-  command.add("word", options.word, "what to print").required();
-  add_output_options(command, options.output);
+  command.add("word", options.word, "what to print", {.required = true});
 }
 
 }  // namespace hapbench

@@ -16,7 +16,6 @@
 #include <thread>
 
 #include "scenarios/program/command.hpp"
-#include "scenarios/program/program.hpp"
 #include "tests/scenarios/support/environment_variable.hpp"
 
 namespace hapbench::test {

@@ -11,34 +11,16 @@
 #include "scenarios/studies/stability/field_limit.hpp"
 #include "scenarios/studies/stability/scene_devices.hpp"
 
-/// What `limit` asks and finds, and options that other searches take, too.
+/// What `limit` finds, and options that other searches take, too.
 namespace hapbench {
 
 /// "a:b"; none for an empty text. Throws InputError that names the option.
 std::optional<Range> range_of(const char* option, const std::string& text);
 /// Adds "metric=most" or "metric=least:most", as given to --bound. Throws InputError.
 void add_bound(const std::string& text, std::map<std::string, MetricBound>& bounds);
-/// The number that an option was given. Throws InputError unless it is one from `least` to `most`.
-double number_between(const char* option, const std::string& text, double least, double most);
-
-/// The names that --device takes besides files: "all", "impedance" for every preset, and each device.
-std::vector<std::string> device_names();
 /// The devices of these names and files, each once; a preset's name with [soft] or [stiff] behind it is the preset at
 /// that end of what nobody published of it. Throws InputError.
 std::vector<ComparedDevice> chosen_devices(const std::vector<std::string>& given);
-
-struct LimitOptions {
-  std::vector<std::string> scenarios;
-  std::string field = "rendering.stiffness_N_per_m";
-  std::string between, resolution, stable, vibration;
-  std::vector<std::string> bounds;
-  bool smallest = false;
-  std::vector<std::string> algorithms, devices, friction, over;
-  unsigned jobs = 0;  ///< 0: as many as the machine has
-  std::string out;
-  std::vector<std::string> overrides;
-  OutputOptions output;
-};
 
 /// A case of the question and, once it is found, its answer: a line of limit.csv.
 struct LimitRow {
@@ -66,17 +48,6 @@ struct LimitTable {
   bool is_grid() const { return has_devices || !over.empty(); }
 };
 
-/// Loads every case, and prints its warnings. Throws InputError.
-LimitTable limit_cases(const LimitOptions& options);
-/// Puts the limits of all cases, in their order, into the table.
-void add_limits(LimitTable& table, std::vector<FieldLimit> limits);
-
-/// The columns of limit.csv for this table; without one all that there may be, for `describe`.
-Columns<LimitRow> limit_columns(const LimitTable* table);
-/// The tables of the command.
-std::vector<DescribedTable> limit_tables();
-/// What is printed of the limits.
-std::string limit_text(const LimitTable& table);
 /// Writes limit.csv and limit_runs.csv, and tells what was found.
 void tell_limits(const LimitTable& table, Report& report);
 
