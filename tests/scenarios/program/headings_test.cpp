@@ -44,7 +44,7 @@ std::set<std::pair<std::string, std::string>> titles_in(const std::string& text)
 }
 
 bool is_described(const std::string& name) {
-  return test::hapbench({"describe", name}).status == 0;
+  return test::hapbench_here({"describe", name}).status == 0;
 }
 
 /// A title of two lines is one name, or the name of a scene above that of an algorithm.
@@ -110,11 +110,8 @@ TEST(Headings, OfEveryListHaveAMeaning) {
 }
 
 TEST(Words, OfTheOutputsAreKnownToDescribe) {
-  for (const char* word : {"league.csv", "sweep.json", "sweep.0_of_2.csv", "quantum", "planar.first_tilt", "C5"})
+  for (const char* word : {"league.csv", "sweep.json", "sweep.0_of_2.csv", "quantum", "planar.first_tilt"})
     EXPECT_TRUE(is_described(word)) << word;
-  const std::string choice = test::hapbench({"describe", "planar.first_tilt"}).out;
-  EXPECT_NE(choice.find("0.02 ... 0.2"), std::string::npos) << choice;
-  EXPECT_NE(test::hapbench({"describe", "lost_contact"}).out.find("drag"), std::string::npos);
 }
 
 }  // namespace
