@@ -12,7 +12,8 @@
 #include "tests/scenarios/support/errors.hpp"
 #include "tests/scenarios/support/scenarios.hpp"
 
-/// "extends" and `--set path=value`.
+/// "extends" and `--set path=value`. What is refused of files that extend others is in
+/// tests/data/golden/refused_scenarios.txt.
 namespace hapbench::load_scenario_test {
 namespace {
 
@@ -37,10 +38,6 @@ class Extends : public testing::Test {
   Json merged(const std::string& text) const {
     write("base.json", kBase);
     return read_scenario_text(write("mine.json", text)).json;
-  }
-  std::string refusal(const fs::path& file, const std::vector<std::string>& overrides = {}) const {
-    const auto error = test::input_error_of([&] { check_named_files(load_scenario(file, overrides)); });
-    return error ? error->what() : "";
   }
 
   test::TemporaryDirectory directory_;
@@ -94,39 +91,6 @@ TEST_F(Extends, RelativePathsStartFromTheFileThatHasThem) {
   const Json effective = effective_scenario(loaded.scenario, directory_.path());
   EXPECT_EQ(effective["environment"]["file"], "there/data/cube.obj");
   EXPECT_FALSE(effective.contains("extends"));
-}
-
-TEST_F(Extends, ErrorsNameTheFileThatTheValueComesFrom) {
-  const fs::path base = write("base.json", R"({"time": {"step_s": 0.0005, "steps": 20},
-    "environment": {"type": "plane", "size_m": -1}, "rendering": {"mass_kg": 0.1}})");
-  const fs::path mine = write("mine.json", R"({"extends": "base.json", "rendering": {"stiffness_N_per_m": 5}})");
-  EXPECT_TRUE(refusal(mine).starts_with(base.string() + ": /environment/size_m: got -1")) << refusal(mine);
-  // A value from --set counts as one of the file that was given.
-  EXPECT_TRUE(refusal(mine, {"environment.size_m=-2"}).starts_with(mine.string() + ": /environment/size_m: got -2"));
-}
-
-TEST_F(Extends, ErrorsAboutNamedFilesNameTheFileThatNamesThem) {
-  const fs::path base = write("base.json", R"({"time": {"step_s": 0.0005, "steps": 20},
-    "environment": {"type": "mesh", "file": "none.obj", "scale": 0.001}})");
-  const fs::path mine = write("mine.json", R"({"extends": "base.json"})");
-  EXPECT_TRUE(refusal(mine).starts_with(base.string() + ": /environment/file: ")) << refusal(mine);
-  EXPECT_TRUE(refusal(mine, {"environment.file=other.obj"}).starts_with(mine.string() + ": /environment/file: "));
-}
-
-TEST_F(Extends, RefusesCirclesAndWhatItCannotExtend) {
-  const fs::path a = write("a.json", R"({"extends": "sub/b.json"})");
-  const fs::path b = write("sub/b.json", R"({"extends": "../a.json"})");
-  EXPECT_TRUE(refusal(a).starts_with(b.string() + ": /extends: got a circle, " + a.string() + " -> " + b.string()))
-      << refusal(a);
-  const fs::path own = write("own.json", R"({"extends": "own.json"})");
-  EXPECT_TRUE(refusal(own).starts_with(own.string() + ": /extends: got a circle")) << refusal(own);
-  const fs::path typo = write("typo.json", R"({"extends": "poke_plan"})");
-  EXPECT_NE(refusal(typo).find("nearest valid name: \"poke_plane\""), std::string::npos) << refusal(typo);
-  EXPECT_TRUE(refusal(typo).starts_with(typo.string() + ": /extends: ")) << refusal(typo);
-  const fs::path number = write("number.json", R"({"extends": 5})");
-  EXPECT_TRUE(refusal(number).starts_with(number.string() + ": /extends: got 5; allowed: ")) << refusal(number);
-  const fs::path list = write("list.json", "[1]");
-  EXPECT_TRUE(refusal(write("of_list.json", R"({"extends": "list.json"})")).starts_with(list.string() + ": got [1]"));
 }
 
 TEST_F(Extends, AcceptsItselfInNoJsonInMemory) {
