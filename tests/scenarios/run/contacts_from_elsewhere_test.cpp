@@ -150,25 +150,6 @@ TEST_F(Trace, OfARunGivesItsForcesBitForBit) {
   }
 }
 
-TEST_F(Trace, NeedsAMotionThatIsPrescribed) {
-  const auto said = [&](const std::string& scene, const std::string& more = "seed=1") -> std::string {
-    try {
-      loaded(scene, {R"(rendering.contact_source={"type":"trace","file":"t.csv"})", more});
-    } catch (const InputError& error) {
-      const std::string text = error.what();
-      return text.substr(text.find("/rendering"));
-    }
-    return "";
-  };
-  const std::string start = "/rendering/contact_source: got \"trace\"; allowed: \"own\", ";
-  EXPECT_EQ(said("drag_molar"),
-            start + "unless motion.position is prescribed, as it was when the contacts were recorded");
-  EXPECT_EQ(said("single_spring"), start + "with springs, which have no surface");
-  EXPECT_EQ(said("plane_wiped_round", "rendering.local_average=true"),
-            start + "with local_average, which merges shell points");
-  EXPECT_EQ(said("plane_wiped_round"), "");
-}
-
 // A library.
 
 TEST(ContactPlugin, OfASphereGivesTheForceOfASphere) {
