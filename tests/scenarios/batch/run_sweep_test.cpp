@@ -1,7 +1,5 @@
 #include "scenarios/batch/run_sweep.hpp"
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
