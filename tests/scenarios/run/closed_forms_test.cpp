@@ -6,15 +6,16 @@
 #include <limits>
 #include <numbers>
 
-#include "scenarios/description/bundled_scenarios.hpp"
-#include "scenarios/description/load_scenario.hpp"
-#include "scenarios/run/assemble.hpp"
 #include "scenarios/run/run_scenario.hpp"
+#include "tests/scenarios/support/bundled.hpp"
 
 /// Bundled scenarios against closed forms: bilateral springs against the linear recurrence that they are (one
 /// spring-damper under the integrator is (x, v) <- A (x, v) with the matrix A of Eq. A.2), and ten minutes in contact.
 namespace hapbench::closed_forms_test {
 namespace {
+
+using test::bundled;
+using test::rows_of;
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
@@ -27,23 +28,9 @@ State after_one_step(const State& s, double K, double B, double M, double dt) {
   return {(1.0 - K * dt * dt / M) * s.x + (dt - B * dt * dt / M) * s.v, -K * dt / M * s.x + (1.0 - B * dt / M) * s.v};
 }
 
-/// Rows of a run.
-class Rows final : public Observer {
- public:
-  void on_step(const StepRecord& record) noexcept override { rows.push_back(record); }
-  std::vector<StepRecord> rows;
-};
-
-std::vector<StepRecord> rows_of(const std::string& scenario, const std::vector<std::string>& overrides) {
-  const LoadedScenario loaded = load_scenario(find_scenario(scenario), overrides);
-  Rows rows;
-  Simulation(simulation_config(loaded.scenario), assemble(loaded.scenario), {&rows}).run();
-  return rows.rows;
-}
-
 TEST(OneSpringDamper, FollowsEquationA2ToRounding) {
   const double K = 20000.0, M = 0.1, dt = 0.0005, B = 2.0 * 0.7 * std::sqrt(K * M);
-  const auto rows = rows_of("single_spring", {"time.steps=2000", "initial.velocity_m_per_s=[0.5,0,0]"});
+  const auto rows = rows_of(bundled("single_spring", {"time.steps=2000", "initial.velocity_m_per_s=[0.5,0,0]"}));
   ASSERT_EQ(rows.size(), 2000u);
   State expected{1e-3, 0.5};
   // Each step either side makes a handful of roundings of the current state; with the modulus rho = sqrt(1 - B dt / M)
@@ -63,7 +50,7 @@ TEST(OneUndampedSpring, SwingsForEverAsTheClosedFormSays) {
   // x_(k+1) = (2 - kappa) x_k - x_(k-1) with x_1 = (1 - kappa) x_0: a sampled cosine of 2 cos theta = 2 - kappa.
   const double K = 1.59e6, M = 0.1, dt = 0.0005, kappa = K * dt * dt / M, x0 = 1e-3;
   const double cosine = 1.0 - kappa / 2.0, theta = std::acos(cosine), sine = std::sqrt(1.0 - cosine * cosine);
-  const auto rows = rows_of("single_spring_undamped", {});
+  const auto rows = rows_of(bundled("single_spring_undamped"));
   ASSERT_EQ(rows.size(), 2000u);
   const double amplitude = x0 * (1.0 + (1.0 - kappa - cosine) / sine);
   // Roundings of some eps of the amplitude a step add up over the steps and are amplified by 1 / sine; theta, known to
@@ -81,7 +68,7 @@ TEST(OneUndampedSpring, SwingsForEverAsTheClosedFormSays) {
 
 TEST(ShapedSpringsOfTableA3, ActAsOneSpringDamperAlongEachAxis) {
   const double K = 20000.0, M = 0.2, dt = 0.0005, B = 2.0 * 0.7 * std::sqrt(K * M);
-  const auto rows = rows_of("springs_unlimited_shaped_stiffness", {});
+  const auto rows = rows_of(bundled("springs_unlimited_shaped_stiffness"));
   ASSERT_EQ(rows.size(), 2000u);
   Mat3 identity_in_plane = Mat3::Zero();
   identity_in_plane.diagonal() << 1.0, 1.0, 0.0;
