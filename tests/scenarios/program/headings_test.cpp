@@ -10,7 +10,7 @@
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/program.hpp"
 
-/// What stands above the columns of printed tables is known to `describe`.
+/// What stands above the columns of printed tables is known to `describe`; tables are as wide as the terminal.
 namespace hapbench::headings_test {
 namespace {
 
@@ -58,10 +58,11 @@ bool is_described(const std::string& upper, const std::string& lower) {
          (is_described(upper) && is_described(lower));
 }
 
-TEST(Headings, OfEveryTableAreKnownToDescribe) {
+TEST(Headings, OfEveryTableAreKnownToDescribeAndFitATerminal) {
   const test::TemporaryDirectory directory;
   test::ProgramOptions options;
   options.directory = directory.path();
+  options.columns = 80;
   const std::vector<Words> commands = {
       {"run", "springs_limited_mean", "--latency", "--out", "a"},
       {"run", "springs_limited_mean", "--set", "rendering.stiffness_N_per_m=1e4", "--set", "expect={}", "--out", "b"},
@@ -92,6 +93,8 @@ TEST(Headings, OfEveryTableAreKnownToDescribe) {
     const auto found = titles_in(run.out);
     EXPECT_FALSE(found.empty()) << words[0] << " " << words[1] << " prints no table:\n" << run.out;
     titles.insert(found.begin(), found.end());
+    for (const std::string& line : test::lines_of(run.out))  // a path may be longer
+      EXPECT_TRUE(line.size() <= 80u || line.find(' ', 2) == std::string::npos) << words[0] << ": " << line;
   }
   for (const auto& file : std::filesystem::recursive_directory_iterator(directory.path())) {
     const std::string name = file.path().filename().string();

@@ -18,8 +18,8 @@
 #include "tests/scenarios/support/program.hpp"
 #include "tests/scenarios/support/scenarios.hpp"
 
-/// The program at a terminal: widths, lists, descriptions, completion; where results may go, and where the program
-/// finds its files.
+/// The program at a terminal: lists, descriptions, completion; where results may go, and where the program finds its
+/// files. How wide its tables are is in headings_test.cpp.
 namespace hapbench::terminal_test {
 namespace {
 
@@ -69,28 +69,6 @@ TEST(Terminal, HasListsAndCardsInItsWidth) {
   }
   EXPECT_LE(widest(in_terminal({"list"}, 80).out), 80u);
   EXPECT_LE(widest(in_terminal({"new"}, 80).out), 80u);
-}
-
-TEST(Terminal, HasTablesInItsWidthOrInFull) {
-  const test::TemporaryDirectory directory;
-  const std::string out = "--out=" + (directory / "out").string();
-  const std::vector<std::vector<std::string>> commands = {
-      {"run", "peg_in_hole_2d_mean", "single_spring"},
-      {"run", "peg_in_hole_2d_mean", "--latency"},
-      {"compare", "peg_in_hole_2d_mean"},
-      {"compare", "peg_in_hole_2d_mean", "single_spring"},
-      {"limit", "single_spring", "--vary=rendering.stiffness_N_per_m"},
-      {"sweep", "single_spring", "--vary=seed=1,2"},
-      {"reproduce", "--only=A2"},
-      {"validate", "peg_in_hole_2d_mean"}};
-  for (std::vector<std::string> words : commands) {
-    if (words[0] != "validate") words.push_back(out);
-    const ProgramRun narrow = in_terminal(words, 80);
-    EXPECT_EQ(narrow.status, 0) << words[0] << narrow.err;
-    for (const std::string& line : lines_of(narrow.out)) {
-      EXPECT_TRUE(line.size() <= 80u || line.find(' ', 2) == std::string::npos) << words[0] << ": " << line;
-    }
-  }
   const std::vector<std::string> list = {"list", "algorithms"}, wide = {"list", "algorithms", "--wide"};
   EXPECT_EQ(in_terminal(wide, 80).out, hapbench(list).out);
   EXPECT_NE(in_terminal(list, 80).out, hapbench(list).out);

@@ -7,7 +7,6 @@
 
 #include "scenarios/batch/comparison.hpp"
 #include "sim/loop/integrators/table.hpp"
-#include "tests/results/files.hpp"
 #include "tests/scenarios/support/scenarios.hpp"
 
 /// Observed orders of sequences whose order is known, and of such as have none; levels of scenes, and scenes that have
