@@ -75,12 +75,13 @@ TEST(Defaults, OfSpatialScenesAreThoseOfThePlatform) {
 }
 
 TEST(Defaults, GiveWayToWhatIsGiven) {
-  expect_fields(effective(patched("hole_2d", R"({"rendering": {"mass_kg": 1, "reduction": {"max_points": 5},
-                                                     "friction": {"mu_s_N_s_per_m": 1}}, "tool": {"tip": "flat"}})")),
+  expect_fields(effective(patched("hole_2d", R"({
+                  "rendering": {"mass_kg": 1, "reduction": {"max_points": 5}, "friction": {"mu_s_N_s_per_m": 1}},
+                  "tool": {"length_m": 1, "tip": "flat"}})")),
                 {{"/rendering/mass_kg", "1.0"},
                  {"/rendering/reduction", R"({"threshold": 0.995, "max_points": 5, "shuffle_seed": null})"},
                  {"/rendering/friction", R"({"mu_s_N_s_per_m": 1.0, "mu_f_s_per_m": 10.0})"},
-                 {"/tool", R"({"diameter_m": 0.001, "length_m": 0.005, "tip": "flat"})"}});
+                 {"/tool", R"({"diameter_m": 0.001, "length_m": 1.0, "tip": "flat"})"}});
 }
 
 TEST(Duration, BecomesARoundedNumberOfSteps) {
