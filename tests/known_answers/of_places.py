@@ -232,12 +232,11 @@ def one_subject(bench):
 @scene
 def verdicts(bench):
     """Verdicts on claims, by tests that give the rules of claims numbers beside their thresholds, for each verdict and for another."""
-    for word, test, said, refused in (
-            ("reproduced", "T1FlatReduction", "counts(40, 10, 1, 0, 1)}, Verdict::reproduced", "Verdict::not_reproduced"),
-            ("not reproduced", "T1FlatReduction", "counts(40, 10, 1.1, 0, 2)}, Verdict::not_reproduced", "Verdict::reproduced"),
-            ("reproduced in kind", "T2AndT3ReducedPoints", "Verdict::in_kind", "Verdict::reproduced"),
-            ("refuted", "R1bRatioLimit", '{"last_max", 1.3}, {"limit_max", 1.3}}, Verdict::refuted', "Verdict::reproduced"),
-            ("holds", "T2bHands", "hand(55), hand(56)}, Verdict::holds", "Verdict::does_not_hold"),
-            ("does not hold", "T2bHands", "hand(56), hand(57)}, Verdict::does_not_hold", "Verdict::holds"),
-            ("not reproducible", "C4AndD5AreNotForASimulation", "Verdict::not_reproducible", "")):
-        bench.proven(f"{word} (verdict on a claim)", "tests/scenarios/thesis_claims/claims_test.cpp", f"ClaimRules.{test}", said, refused)
+    for word, said, refused in (("reproduced", 'reduced_max=1 |",\n       {{"", reproduced}', "not_reproduced"),
+                                ("not reproduced", '"1.reduced_mean=1.1 1.reduced_max=2", not_reproduced', "reproduced"),
+                                ("reproduced in kind", '"1.reduced_max=15", in_kind', "reproduced"), ("refuted", '"last_max=1.3 limit_max=1.3", refuted', "reproduced"),
+                                ("holds", '{"T2b", "raw=55 kept=20 | raw=56", {{"", holds}', "does_not_hold"),
+                                ("does not hold", '"0.raw=56 1.raw=57", does_not_hold', "holds"),
+                                ("not reproducible", '{"C4 D5", "", {{"", not_reproducible}}}', "reproduced")):
+        bench.proven(f"{word} (verdict on a claim)", "tests/scenarios/thesis_claims/claims_test.cpp", "Claims.AreJudgedByTheirThresholds",
+                     said, refused)

@@ -3,13 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
 #include <set>
 
-#include "scenarios/input/text_lines.hpp"
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/errors.hpp"
 
+/// What is refused of axes, samples and shards is in tests/data/golden/refused_sweeps.txt.
 namespace hapbench::cases_test {
 namespace {
 
@@ -55,17 +54,6 @@ TEST(Axis, EndPointsAreExactAndValuesBetweenThemInOrder) {
   for (const double value : numbers("a=0.1:0.1:1000")) ASSERT_EQ(value, 0.1);
 }
 
-TEST(Axis, StepsAreEqualOrHaveEqualRatiosToRounding) {
-  const std::vector<double> linear = numbers("a=0.3:7.1:60"), logarithmic = numbers("a=0.3:7.1:60:log");
-  for (std::size_t i = 0; i < 60; ++i) {
-    const double part = static_cast<double>(i) / 59.0;
-    // Four roundings of at most half a unit of the largest value.
-    EXPECT_NEAR(linear[i], 0.3 + (7.1 - 0.3) * part, 4 * 1.2e-16 * 7.1);
-    // An error of some units of |log10| <= 1 is multiplied by ln 10 in the exponential function.
-    EXPECT_NEAR(logarithmic[i] / (0.3 * std::pow(7.1 / 0.3, part)), 1.0, 16 * 2.3e-16);
-  }
-}
-
 TEST(Axis, OfARangeKeepsNoneOfItsValues) {
   const Axis axis = parse_axis("a=0:999999:1000000");
   EXPECT_EQ(axis.size(), 1'000'000u);
@@ -98,20 +86,6 @@ TEST(Axis, OfAllNamesOfAField) {
   EXPECT_EQ(values_of("name=all"), Values{"all"});
 }
 
-TEST(Axis, RefusesWhatItCannotRead) {
-  const std::string_view bad =
-      "|=|a|a=|=1,2|a b=1,2|a,b=1,2|a=1,,2|a=,|a=1:2|a=1:2:3:4:5|a=1:2:1|a=1:2:0|a=1:2:-3|a=1:2:2.5|a=1:2:1000001|"
-      "a=1:2:99999999999999999999|a=x:2:3|a=1::3|a=nan:1:3|a=1:inf:3|a=1e301:2:3|a=0:1:5:log|a=-1:1:5:log|"
-      "a=1:2:5:lin|a=1:2:5:|a=\"x,y|a={x|a=[1,2]]|a=x\ny,z|a=x\r,z|a=\x7f";
-  for (const std::string_view word : parts_of(bad, '|')) {
-    const std::string text(word);
-    const auto error = test::input_error_of([&] { parse_axis(text); });
-    ASSERT_TRUE(error) << text;
-    EXPECT_NE(std::string(error->what()).find("--vary \""), std::string::npos) << error->what();
-    EXPECT_NE(std::string(error->what()).find("allowed: "), std::string::npos) << error->what();
-  }
-}
-
 // ---- Samples
 
 TEST(Sampling, HasItsPointsInTheUnitCubeAndMeansWhatItsSeedSays) {
@@ -140,12 +114,6 @@ TEST(Sampling, IsReadFromItsText) {
   EXPECT_EQ(sampling.method, SamplingMethod::random);
   EXPECT_EQ(sampling.count, 64u);
   EXPECT_EQ(sampling.seed, 9u);
-  for (const char* text : {"", "lhs", "lhs:", ":5", "lhs:0", "lhs:-1", "lhs:1.5", "lhs:1000001", "halton:5", "LHS:5",
-                           "lhs:5:6", "lhs: 5", "points:5"}) {
-    const auto error = test::input_error_of([&] { parse_sampling(text, 1); });
-    ASSERT_TRUE(error) << text;
-    EXPECT_NE(std::string(error->what()).find("allowed: lhs:N or random:N"), std::string::npos);
-  }
 }
 
 TEST(SampledAxis, IsARangeOrAList) {
@@ -238,17 +206,6 @@ TEST(Cases, OfASampleFollowEachOtherByTheListedFields) {
   const Numbers order = order_of(cases);
   EXPECT_EQ(std::set<std::size_t>(order.begin(), order.end()).size(), 40u);
   for (std::size_t i = 0; i < 40; ++i) EXPECT_EQ(cases.values(order[i])[0], i < 20 ? "x.stl" : "y.stl");
-}
-
-TEST(Shard, IsReadFromItsText) {
-  const Shard shard = parse_shard("2/7");
-  EXPECT_EQ(shard.index, 2u);
-  EXPECT_EQ(shard.count, 7u);
-  EXPECT_EQ(shard_text(shard), "2/7");
-  for (const char* text :
-       {"", "/", "1", "1/", "/2", "2/2", "0/0", "-1/2", "1/2/3", "a/b", "0/1000001", "0 /2", "1.5/2"}) {
-    EXPECT_TRUE(test::input_error_of([&] { parse_shard(text); })) << text;
-  }
 }
 
 TEST(Shard, SharesOutEveryRunOnce) {

@@ -68,12 +68,6 @@ TEST_F(TableFiles, CutShortAnywhereKeepTheWholeLinesAndGoOn) {
   }
 }
 
-TEST_F(TableFiles, AreBegunAnewWithoutResuming) {
-  left({"0,a", "2,b"});
-  left({"5,e"});
-  EXPECT_EQ(resumed(), Rows{"5,e"});
-}
-
 TEST_F(TableFiles, OfAnotherDefinitionAreRefusedAndLeftAlone) {
   const std::string whole = left({"0,a"});
   expect_refusal([&] { resumed("theirs"); }, "sweep.csv.part: is not the table of this sweep");

@@ -9,7 +9,6 @@
 #include "scenarios/run/run_scenario.hpp"
 #include "sim/core/hash.hpp"
 #include "tests/results/files.hpp"
-#include "tests/scenarios/support/errors.hpp"
 #include "tests/scenarios/support/scenarios.hpp"
 
 namespace hapbench::named_files_test {
@@ -63,14 +62,6 @@ TEST_F(NamedFilesOfAScenario, AreReadOnce) {
   }
 }
 
-TEST_F(NamedFilesOfAScenario, AreReadByTheFirstOfTheirCopies) {
-  const LoadedScenario loaded = load("mesh");
-  const NamedFiles copy = loaded.files;
-  const auto points = copy.at(kEnvironmentFile).mesh().points();
-  fs::remove(directory_ / "cube.obj");
-  EXPECT_EQ(loaded.files.at(kEnvironmentFile).mesh().points().size(), points.size());
-}
-
 // Laws side by side share the parsed mesh, the shell and the inside; a scale of its own keeps other tests' values away.
 TEST_F(NamedFilesOfAScenario, AreParsedOnceForAllLaws) {
   const std::size_t before = shared_cache().made();
@@ -81,16 +72,6 @@ TEST_F(NamedFilesOfAScenario, AreParsedOnceForAllLaws) {
     run_scenario(loaded, {}, false);
   }
   EXPECT_EQ(shared_cache().made() - before, 3u);
-}
-
-TEST_F(NamedFilesOfAScenario, AreRefusedEveryTime) {
-  test::write_plainly(directory_ / "cube.obj", "v 0 0 up\n");
-  const LoadedScenario loaded = load("mesh");
-  for (int i = 0; i < 2; ++i) {
-    const auto error = test::input_error_of([&] { loaded.files.at(kEnvironmentFile).mesh(); });
-    ASSERT_TRUE(error);
-    EXPECT_NE(std::string(error->what()).find("line 1: got \"up\"; allowed: a finite number"), std::string::npos);
-  }
 }
 
 }  // namespace

@@ -1,4 +1,3 @@
-#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "algorithms/registry.hpp"
@@ -40,45 +39,6 @@ Json patched(const std::string& environment, const char* patch) {
   return json;
 }
 
-TEST(Defaults, ThatHoldEverywhere) {
-  for (const test::NamedScenario& scenario : test::minimal_scenarios()) {
-    SCOPED_TRACE(scenario.name);
-    expect_fields(effective(scenario.json),
-                  {{"/seed", "1"},
-                   {"/time", R"({"step_s": 0.0005, "steps": 20, "stop_when": []})"},
-                   {"/initial", R"({"position_m": [0.0, 0.0, 0.0], "velocity_m_per_s": [0.0, 0.0, 0.0]})"},
-                   {"/tool/diameter_m", "0.001"},
-                   {"/motion/orientation/lean", "[1.0, 0.0, 0.0]"},
-                   {"/motion/orientation/tilt_rad", "0.0"},
-                   {"/motion/orientation/azimuth_rad", "0.0"},
-                   {"/motion/orientation/roll_rad", "0.0"},
-                   {"/motion/position", R"({"type": "free"})"},
-                   {"/hand", R"({"type": "none"})"},
-                   {"/device", R"({"type": "ideal", "force_limit_N": null})"},
-                   {"/rendering/algorithm", "\"shaped_stiffness\""},
-                   {"/rendering/iterations", "3"},
-                   {"/rendering/depth_model", "\"surface_normal\""},
-                   {"/rendering/local_average", "false"},
-                   {"/rendering/passivity_controller", "false"},
-                   {"/rendering/stiffness_N_per_m", "20000.0"},
-                   {"/rendering/damping_ratio", "0.7"},
-                   {"/rendering/damping_N_s_per_m", "null"},
-                   {"/rendering/angular_damping", "false"},
-                   {"/rendering/angular_velocity_cutoff_Hz", "20.0"},
-                   {"/rendering/limits", R"({"max_damping_N_s_per_m": null, "max_force_N": null})"},
-                   {"/rendering/virtual_coupling_N_per_m", "null"},
-                   {"/rendering/regularisation", "0.01"},
-                   {"/integrator", R"({"type": "leapfrog"})"},
-                   {"/record", R"({"trajectory": true, "every": 1, "ratio_iterations": [], "contacts": false,
-                                   "stiffness_tensor": false, "timing": false, "energy": false, "ideal_trajectory": false,
-                                   "force_reference": false, "pose": false, "torque": false,
-                                   "inside": false})"},
-                   {"/rendering/reduction", "null"},
-                   {"/metrics", R"({"from_s": null, "settling_s": 0.05})"},
-                   {"/expect/outcome", R"(["completes", "leaves_hole", "tool_horizontal"])"}});
-  }
-}
-
 TEST(Defaults, OfSpringsAreThoseOfA2) {
   expect_fields(effective(test::minimal_scenario("springs")),
                 {{"/rendering/mass_kg", "0.2"},
@@ -114,34 +74,14 @@ TEST(Defaults, OfSpatialScenesAreThoseOfThePlatform) {
   }
 }
 
-TEST(Defaults, OfTheBlockAreTheExperimentsPart) {
-  expect_fields(
-      effective(test::minimal_scenario("block_with_hole")),
-      {{"/environment", R"({"type": "block_with_hole", "size_m": [0.015, 0.015, 0.01], "hole_diameter_m": 0.002,
-                                      "hole_depth_m": 0.005, "grid_m": 0.0001, "density": "signed_distance",
-                                      "vertices": "shared"})"}});
-}
-
-TEST(Defaults, OfAPartlyGivenObjectFillTheRest) {
-  expect_fields(effective(patched("plane", R"({"rendering": {"reduction": {"max_points": 5}, "friction":
-                                               {"mu_s_N_s_per_m": 1}}, "tool": {"tip": "round"}})")),
-                {{"/rendering/reduction", R"({"threshold": 0.995, "max_points": 5, "shuffle_seed": null})"},
-                 {"/rendering/friction", R"({"mu_s_N_s_per_m": 1.0, "mu_f_s_per_m": 10.0})"},
-                 {"/tool", R"({"diameter_m": 0.001, "length_m": 0.01, "tip": "round"})"}});
-}
-
 TEST(Defaults, GiveWayToWhatIsGiven) {
-  expect_fields(effective(patched("hole_2d", R"({"rendering": {"mass_kg": 1, "reduction": {}, "depth_model":
-                             "normal_projection"}, "tool": {"length_m": 1, "tip": "flat"}})")),
+  expect_fields(effective(patched("hole_2d", R"({
+                  "rendering": {"mass_kg": 1, "reduction": {"max_points": 5}, "friction": {"mu_s_N_s_per_m": 1}},
+                  "tool": {"length_m": 1, "tip": "flat"}})")),
                 {{"/rendering/mass_kg", "1.0"},
-                 {"/rendering/reduction/threshold", "0.995"},
-                 {"/rendering/depth_model", "\"normal_projection\""},
-                 {"/tool/length_m", "1.0"},
-                 {"/tool/tip", "\"flat\""}});
-  // merge_patch deletes on null, so null is set by hand.
-  Json json = test::minimal_scenario("plane");
-  json["rendering"]["reduction"] = nullptr;
-  expect_fields(effective(json), {{"/rendering/reduction", "null"}});
+                 {"/rendering/reduction", R"({"threshold": 0.995, "max_points": 5, "shuffle_seed": null})"},
+                 {"/rendering/friction", R"({"mu_s_N_s_per_m": 1.0, "mu_f_s_per_m": 10.0})"},
+                 {"/tool", R"({"diameter_m": 0.001, "length_m": 1.0, "tip": "flat"})"}});
 }
 
 TEST(Duration, BecomesARoundedNumberOfSteps) {
@@ -152,35 +92,25 @@ TEST(Duration, BecomesARoundedNumberOfSteps) {
   EXPECT_EQ(effective(json)["time"]["steps"], 200);
 }
 
-TEST(FixedDepthModel, OverridesAnotherOneWithAWarning) {
-  for (const auto& [algorithm, fixed, other] : {std::tuple{"original_averaging", "shortest_distance", "surface_normal"},
-                                                {"normal_projection", "normal_projection", "shortest_distance"}}) {
+/// What the algorithm is defined with goes before what is given, with a warning.
+TEST(FixedByTheAlgorithm, OverridesWithAWarning) {
+  const auto expect_warning = [](const char* algorithm, const char* field, const Json& fixed, const Json& other,
+                                 const std::string& said) {
     Json json = test::minimal_scenario("plane");
     json["rendering"] = {{"algorithm", algorithm}};
+    EXPECT_EQ(effective(json)["rendering"][field], fixed);
+    json["rendering"][field] = fixed;
     EXPECT_TRUE(loaded(json).warnings.empty());
-    EXPECT_EQ(loaded(json).scenario.rendering.depth_model, fixed);
-    json["rendering"]["depth_model"] = fixed;
-    EXPECT_TRUE(loaded(json).warnings.empty());
-    json["rendering"]["depth_model"] = other;
-    EXPECT_EQ(loaded(json).scenario.rendering.depth_model, fixed);
+    json["rendering"][field] = other;
+    EXPECT_EQ(effective(json)["rendering"][field], fixed);
     ASSERT_EQ(loaded(json).warnings.size(), 1u);
-    EXPECT_EQ(loaded(json).warnings[0].told(),
-              fmt::format("/rendering/depth_model: \"{}\" is not used: algorithm \"{}\" is defined with \"{}\"", other,
-                          algorithm, fixed));
-  }
-}
-
-TEST(OriginalAveraging, RunsWithoutReductionAndWarnsAboutAGivenOne) {
-  Json json = test::minimal_scenario("plane");
-  json["rendering"] = {{"algorithm", "original_averaging"}};
-  EXPECT_EQ(effective(json)["rendering"]["reduction"], nullptr);
-  json["rendering"]["reduction"] = Json::object();
-  const LoadedScenario scenario = loaded(json);
-  EXPECT_EQ(effective(json)["rendering"]["reduction"], nullptr);
-  ASSERT_EQ(scenario.warnings.size(), 1u);
-  EXPECT_EQ(scenario.warnings[0].told().find("/rendering/reduction: not used"), 0u);
-  json["rendering"]["reduction"] = nullptr;
-  EXPECT_TRUE(loaded(json).warnings.empty());
+    EXPECT_EQ(loaded(json).warnings[0].told().find(said), 0u) << loaded(json).warnings[0].told();
+  };
+  expect_warning("original_averaging", "depth_model", "shortest_distance", "surface_normal",
+                 "/rendering/depth_model: \"surface_normal\" is not used: algorithm \"original_averaging\" is defined");
+  expect_warning("normal_projection", "depth_model", "normal_projection", "shortest_distance",
+                 "/rendering/depth_model: \"shortest_distance\" is not used: ");
+  expect_warning("original_averaging", "reduction", nullptr, Json::object(), "/rendering/reduction: not used");
 }
 
 TEST(AdmittanceDevice, WarnsUnderAHandThatDoesNotFeelTheHandle) {
@@ -218,15 +148,6 @@ TEST(ImpedanceDevice, WritesTheNumbersOfAPresetInFull) {
   EXPECT_EQ(effective_device(R"({"type": "impedance", "preset": "omega.3"})")["force_max_N"], 12.0);
 }
 
-TEST(ImpedanceDevice, WarnsOfAnIntegratorThatIsNotUsed) {
-  Json json = test::minimal_scenario("plane");
-  json["device"] = {{"type", "impedance"}, {"preset", "touch"}};
-  EXPECT_TRUE(loaded(json).warnings.empty());
-  json["integrator"] = {{"type", "rk4"}};
-  ASSERT_EQ(loaded(json).warnings.size(), 1u);
-  EXPECT_EQ(loaded(json).warnings[0].told().find("/integrator/type: \"rk4\" is not used"), 0u);
-}
-
 TEST(ScenarioInCode, IsThatOfSpringsWithoutAnyField) {
   Json springs = test::minimal_scenario("springs");
   springs["time"]["steps"] = 1;
@@ -242,48 +163,20 @@ TEST(ScenarioInCode, HasWhatAnotherAlgorithmFixes) {
   }
 }
 
-TEST(Orientation, IsThatOfARecordedMotionAlone) {
-  Json json = test::minimal_scenario("plane");
-  json["motion"]["position"] = {{"type", "file"}, {"file", "stroke.csv"}};
-  EXPECT_FALSE(loaded(json).scenario.motion.orientation);
-  json["motion"]["orientation"] = Json::object();
-  const auto error = test::input_error_of([&] { loaded(json); });
-  ASSERT_TRUE(error);
-  EXPECT_EQ(error->place(), "/motion/orientation");
-}
-
 TEST(Orientation, WantsPerpendicularDirections) {
+  Json json = test::minimal_scenario("plane");
   for (const char* orientation :
        {R"({"up": [0, 0, 1], "lean": [0, 0, 1]})", R"({"up": [0, 0, 0]})", R"({"lean": [0, 0, 0]})",
-        R"({"up": [1, 0, 0]})", R"({"up": [1e-200, 0, 0], "lean": [0, 1, 0]})", R"({"lean": [1, 0, 1e-8]})"}) {
-    Json json = test::minimal_scenario("plane");
+        R"({"up": [1e-200, 0, 0], "lean": [0, 1, 0]})", R"({"lean": [1, 0, 1e-8]})"}) {
     json["motion"]["orientation"] = Json::parse(orientation);
     const auto error = test::input_error_of([&] { loaded(json); });
     ASSERT_TRUE(error) << orientation;
     EXPECT_EQ(error->kind(), InputError::Kind::relation);
     EXPECT_EQ(error->place(), "/motion/orientation");
   }
-}
-
-TEST(Orientation, ForgivesTheRoundingOfNormalisedDirections) {
-  Json json = test::minimal_scenario("plane");
+  // Rounding of normalised directions is forgiven.
   json["motion"]["orientation"] = Json::parse(R"({"up": [0.6, 0, 0.8], "lean": [0.8, 0, -0.6000000000000001]})");
   EXPECT_NO_THROW(loaded(json));
-}
-
-TEST(LocalAverage, NeedsAGrid) {
-  Json springs = test::minimal_scenario("springs"), shell = test::minimal_scenario("point_shell");
-  Json mesh = test::minimal_scenario("mesh");
-  for (Json* json : {&springs, &shell, &mesh}) (*json)["rendering"]["local_average"] = true;
-  for (const Json& json : {springs, shell, mesh}) {
-    const auto error = test::input_error_of([&] { loaded(json); });
-    ASSERT_TRUE(error);
-    EXPECT_EQ(error->place(), "/rendering/local_average");
-  }
-  for (Json* json : {&shell, &mesh}) {
-    (*json)["environment"]["grid_m"] = 0.001;
-    EXPECT_NO_THROW(loaded(*json));
-  }
 }
 
 namespace fs = std::filesystem;
@@ -319,63 +212,26 @@ TEST(EffectiveScenario, OfEveryKindOfFieldIsAFixedPoint) {
   }
 }
 
-TEST(EffectiveScenario, KeepsGivenNumbersToTheLastBit) {
-  Json json = test::minimal_scenario("plane");
-  const double numbers[] = {0.1, 1.0 / 3.0, 1e-300, 123456789.123456789};
-  for (const double number : numbers) {
-    json["rendering"]["stiffness_N_per_m"] = number;
-    const Json effective = effective_scenario(read_scenario(json, "").scenario, "");
-    EXPECT_EQ(parse_json(json_text(effective))["rendering"]["stiffness_N_per_m"].get<double>(), number);
-  }
-}
-
-class EffectivePaths : public testing::Test {
- protected:
-  EffectivePaths() {
-    fs::create_directories(directory_ / "scenes here/data");
-    fs::create_directories(directory_ / "out/deep/er");
-    fs::copy_file(test::data_directory() / "shell.csv", shell_);
-    Json json = test::minimal_scenario("point_shell");
-    json["environment"]["file"] = "data/shell.csv";
-    test::write_plainly(scenario_, json.dump());
-  }
-  /// The file to which the path in the effective scenario of `output` leads.
-  fs::path file_from(const fs::path& output) const {
-    const Json effective = effective_scenario(load_scenario(scenario_).scenario, output);
-    return fs::canonical(output / effective["environment"]["file"].get<std::string>());
-  }
-
-  test::TemporaryDirectory directory_;
-  fs::path scenario_ = directory_ / "scenes here/scene.json";
-  fs::path shell_ = directory_ / "scenes here/data/shell.csv";
-};
-
-TEST_F(EffectivePaths, LeadFromTheOutputDirectoryToTheSameFile) {
-  for (const char* output : {"out", "out/deep/er", "scenes here", "scenes here/data", "."}) {
-    EXPECT_EQ(file_from(directory_ / output), fs::canonical(shell_)) << output;
-  }
-}
-
-TEST_F(EffectivePaths, LeadThereThroughLinksToo) {
-  fs::create_directory_symlink(directory_ / "out/deep/er", directory_ / "link");
-  EXPECT_EQ(file_from(directory_ / "link"), fs::canonical(shell_));
-  fs::create_directory_symlink(directory_ / "scenes here", directory_ / "out/scenes");
-  const Json effective =
-      effective_scenario(load_scenario(directory_ / "out/scenes/scene.json").scenario, directory_ / "link");
-  EXPECT_EQ(fs::canonical(directory_ / "link" / effective["environment"]["file"].get<std::string>()),
-            fs::canonical(shell_));
-}
-
-TEST_F(EffectivePaths, MayBeAbsolute) {
+TEST(EffectiveScenario, LeadsToItsFilesFromAnyOutputDirectoryAndThroughLinks) {
+  const test::TemporaryDirectory directory;
+  fs::create_directories(directory / "scenes here/data");
+  fs::create_directories(directory / "out/deep/er");
+  fs::create_directory_symlink(directory / "out/deep/er", directory / "link");
+  fs::create_directory_symlink(directory / "scenes here", directory / "out/scenes");
+  const fs::path shell = directory / "scenes here/data/shell.csv";
+  fs::copy_file(test::data_directory() / "shell.csv", shell);
   Json json = test::minimal_scenario("point_shell");
-  json["environment"]["file"] = shell_.string();
-  test::write_plainly(scenario_, json.dump());
-  EXPECT_EQ(file_from(directory_ / "out"), fs::canonical(shell_));
-}
-
-TEST_F(EffectivePaths, WorkForAScenarioOfTheCurrentDirectory) {
-  // Its directory is the empty path.
-  EXPECT_NO_THROW(effective_scenario(read_scenario(test::minimal_scenario("point_shell"), "").scenario, ""));
+  for (const std::string& named : {std::string("data/shell.csv"), shell.string()}) {
+    json["environment"]["file"] = named;
+    test::write_plainly(directory / "scenes here/scene.json", json.dump());
+    for (const char* scenes : {"scenes here", "out/scenes"}) {
+      const Scenario scenario = load_scenario(directory / scenes / "scene.json").scenario;
+      for (const char* output : {"out", "out/deep/er", "link", "scenes here", "scenes here/data", "."}) {
+        const std::string file = effective_scenario(scenario, directory / output)["environment"]["file"];
+        EXPECT_EQ(fs::canonical(directory / output / file), fs::canonical(shell)) << output;
+      }
+    }
+  }
 }
 
 TEST(ScenarioHash, FollowsTheContentsOfFilesNotTheirPaths) {

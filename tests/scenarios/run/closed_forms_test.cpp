@@ -6,16 +6,16 @@
 #include <limits>
 #include <numbers>
 
-#include "scenarios/description/bundled_scenarios.hpp"
-#include "scenarios/description/load_scenario.hpp"
-#include "scenarios/run/assemble.hpp"
 #include "scenarios/run/run_scenario.hpp"
+#include "tests/scenarios/support/bundled.hpp"
 
 /// Bundled scenarios against closed forms: bilateral springs against the linear recurrence that they are (one
-/// spring-damper under the integrator is (x, v) <- A (x, v) with the matrix A of Eq. A.2), ten minutes in contact, and
-/// the planar peg in its hole (thesis A.1, Fig. A.2).
+/// spring-damper under the integrator is (x, v) <- A (x, v) with the matrix A of Eq. A.2), and ten minutes in contact.
 namespace hapbench::closed_forms_test {
 namespace {
+
+using test::bundled;
+using test::rows_of;
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
@@ -28,23 +28,9 @@ State after_one_step(const State& s, double K, double B, double M, double dt) {
   return {(1.0 - K * dt * dt / M) * s.x + (dt - B * dt * dt / M) * s.v, -K * dt / M * s.x + (1.0 - B * dt / M) * s.v};
 }
 
-/// Rows of a run.
-class Rows final : public Observer {
- public:
-  void on_step(const StepRecord& record) noexcept override { rows.push_back(record); }
-  std::vector<StepRecord> rows;
-};
-
-std::vector<StepRecord> rows_of(const std::string& scenario, const std::vector<std::string>& overrides) {
-  const LoadedScenario loaded = load_scenario(find_scenario(scenario), overrides);
-  Rows rows;
-  Simulation(simulation_config(loaded.scenario), assemble(loaded.scenario), {&rows}).run();
-  return rows.rows;
-}
-
 TEST(OneSpringDamper, FollowsEquationA2ToRounding) {
   const double K = 20000.0, M = 0.1, dt = 0.0005, B = 2.0 * 0.7 * std::sqrt(K * M);
-  const auto rows = rows_of("single_spring", {"time.steps=2000", "initial.velocity_m_per_s=[0.5,0,0]"});
+  const auto rows = rows_of(bundled("single_spring", {"time.steps=2000", "initial.velocity_m_per_s=[0.5,0,0]"}));
   ASSERT_EQ(rows.size(), 2000u);
   State expected{1e-3, 0.5};
   // Each step either side makes a handful of roundings of the current state; with the modulus rho = sqrt(1 - B dt / M)
@@ -64,7 +50,7 @@ TEST(OneUndampedSpring, SwingsForEverAsTheClosedFormSays) {
   // x_(k+1) = (2 - kappa) x_k - x_(k-1) with x_1 = (1 - kappa) x_0: a sampled cosine of 2 cos theta = 2 - kappa.
   const double K = 1.59e6, M = 0.1, dt = 0.0005, kappa = K * dt * dt / M, x0 = 1e-3;
   const double cosine = 1.0 - kappa / 2.0, theta = std::acos(cosine), sine = std::sqrt(1.0 - cosine * cosine);
-  const auto rows = rows_of("single_spring_undamped", {});
+  const auto rows = rows_of(bundled("single_spring_undamped"));
   ASSERT_EQ(rows.size(), 2000u);
   const double amplitude = x0 * (1.0 + (1.0 - kappa - cosine) / sine);
   // Roundings of some eps of the amplitude a step add up over the steps and are amplified by 1 / sine; theta, known to
@@ -82,7 +68,7 @@ TEST(OneUndampedSpring, SwingsForEverAsTheClosedFormSays) {
 
 TEST(ShapedSpringsOfTableA3, ActAsOneSpringDamperAlongEachAxis) {
   const double K = 20000.0, M = 0.2, dt = 0.0005, B = 2.0 * 0.7 * std::sqrt(K * M);
-  const auto rows = rows_of("springs_unlimited_shaped_stiffness", {});
+  const auto rows = rows_of(bundled("springs_unlimited_shaped_stiffness"));
   ASSERT_EQ(rows.size(), 2000u);
   Mat3 identity_in_plane = Mat3::Zero();
   identity_in_plane.diagonal() << 1.0, 1.0, 0.0;
@@ -100,25 +86,6 @@ TEST(ShapedSpringsOfTableA3, ActAsOneSpringDamperAlongEachAxis) {
     x = after_one_step(x, K, B, M, dt);
     y = after_one_step(y, K, B, M, dt);
   }
-}
-
-TEST(UnsignedSpringsOfTableA3, ReachTheOriginUnderTheOriginalAlgorithmToo) {
-  // Thesis A.2: every algorithm arrives. With signed depths the gradients of opposite springs cancel and leave the ten
-  // upward ones, 100 times too soft along x: the tool stays where it was.
-  const auto x_at_end = [](const char* is_signed) {
-    const auto rows = rows_of("springs_unlimited_original_averaging", {std::string("environment.signed=") + is_signed});
-    return std::abs(rows.back().tool.pose.position.x());
-  };
-  EXPECT_EQ(x_at_end("true"), 0.005);
-  EXPECT_LT(x_at_end("false"), 0.0005);
-}
-
-TEST(SummedSpringsOfTableA3, AreTooStiffForTheTimeStep) {
-  // 200 springs along x: lambda K = 4e6 N/m and lambda B = 17.7e3 N s/m, far beyond 4 M / dt^2 = 3.2e6 and 2 M / dt =
-  // 800.
-  const LoadedScenario loaded = load_scenario(find_scenario("springs_unlimited_summation"));
-  Simulation simulation(simulation_config(loaded.scenario), assemble(loaded.scenario), {});
-  EXPECT_EQ(simulation.run().outcome, Outcome::diverges);
 }
 
 /// Steady response x_k of the integrator's spring-damper, (M/dt²)(x_(k+1) - 2 x_k + x_(k-1)) + (B/dt)(x_k - x_(k-1)) +
@@ -149,52 +116,6 @@ TEST(TenMinutesInContact, EndWhereTheClosedFormSaysAndMakeNoEnergy) {
 
   // Energy made in a step is the rounding of the ledger's sums of terms up to 3 mJ: 1e-18 J, 1.2 million times.
   EXPECT_LE(number_of(report.metrics, "energy.created_sum_J").value(), 1.2e-12);
-}
-
-Result report_of(const std::string& scenario) {
-  return run_scenario(load_scenario(find_scenario(scenario)), std::nullopt, false);
-}
-
-TEST(PegInHole, VibratesFiveTimesLessWithShapedStiffness) {
-  const Result original = report_of("peg_in_hole_2d_original_averaging");
-  for (const char* shaped : {"peg_in_hole_2d_shaped_stiffness", "peg_in_hole_2d_exact_shaping"}) {
-    const Result smooth = report_of(shaped);
-    // The original run is the shorter one, so that a step of it is rougher still.
-    EXPECT_LT(original.end.rows, smooth.end.rows) << shaped;
-    const auto expect_less = [&](const char* name, double times) {
-      EXPECT_GE(number_of(original.metrics, name).value(), times * number_of(smooth.metrics, name).value())
-          << shaped << " " << name;
-    };
-    expect_less("velocity_total_variation_m_per_s", 5.0);
-    expect_less("vibration_power_above_30Hz_m2_per_s2", 25.0);  // power goes with the square
-    expect_less("force_reversals", 5.0);
-  }
-}
-
-TEST(PegInHole, IsSteeredOutOfTheHoleByItsTilt) {
-  for (const char* scenario : {"peg_in_hole_2d_shaped_stiffness", "peg_in_hole_2d_exact_shaping"}) {
-    const Result run = report_of(scenario);
-    EXPECT_EQ(run.end.outcome, Outcome::leaves_hole) << scenario;
-    // 1.2 rad/s from 0.1 rad: horizontal, at pi / 2, only after 1.2 s.
-    EXPECT_LT(run.duration, 1.2) << scenario;
-    EXPECT_GT(number_of(run.metrics, "final_position_m.y").value(), 0.0) << scenario;
-  }
-}
-
-TEST(PegInHole, StaysInItsPlane) {
-  for (const BundledScenario& bundled : bundled_scenarios()) {
-    if (bundled.name.find("peg_in_hole_2d") != 0) continue;
-    EXPECT_EQ(number_of(report_of(bundled.name).metrics, "final_position_m.z"), 0.0) << bundled.name;
-  }
-}
-
-TEST(PegInHole, KeepsItsRatiosWithinTheProvenBoundUnderExactShaping) {
-  // The bounds of exact shaping: lambda_max(S) <= (1 + sqrt 2) / 2 in the plane, with it every ratio; a ratio is at
-  // least 1 - 1e-6 c_i, and c_i <= sum c = tr S <= sqrt 2 ||S||_F <= sqrt 2 ||I||_F = 2; half as much again for
-  // rounding.
-  const Result run = report_of("peg_in_hole_2d_exact_shaping");
-  EXPECT_LE(number_of(run.metrics, "ratio_max").value(), (1.0 + std::sqrt(2.0)) / 2.0);
-  EXPECT_GE(number_of(run.metrics, "ratio_min").value(), 1.0 - 3e-6);
 }
 
 }  // namespace

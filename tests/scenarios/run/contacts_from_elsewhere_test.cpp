@@ -5,7 +5,6 @@
 #include "algorithms/registry.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/run_scenario.hpp"
-#include "scenarios/run/stop_signal.hpp"
 #include "sim/contact/late_contacts.hpp"
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/bundled.hpp"
@@ -16,29 +15,14 @@ namespace {
 
 namespace fs = std::filesystem;
 using test::bundled;
+using test::rows_of;
+using Rows = std::vector<StepRecord>;
 
-struct Row {
-  Vec3 position, velocity, spring, rendered;
-};
-
-std::vector<Row> rows_of(const Scenario& scenario) {
-  class Rows final : public Observer {
-   public:
-    void on_step(const StepRecord& r) noexcept override {
-      rows.push_back({r.tool.pose.position, r.tool.velocity, r.force.spring, r.force.rendered});
-    }
-    std::vector<Row> rows;
-  } rows;
-  Simulation simulation(simulation_config(scenario), assemble(scenario), {&rows});
-  run_to_end(simulation);
-  return rows.rows;
-}
-
-void expect_same_bits(const std::vector<Row>& a, const std::vector<Row>& b) {
+void expect_same_bits(const Rows& a, const Rows& b) {
   ASSERT_EQ(a.size(), b.size());
   for (std::size_t k = 0; k < a.size(); ++k) {
-    ASSERT_EQ(a[k].position, b[k].position) << k;
-    ASSERT_EQ(a[k].rendered, b[k].rendered) << k;
+    ASSERT_EQ(a[k].tool.pose.position, b[k].tool.pose.position) << k;
+    ASSERT_EQ(a[k].force.rendered, b[k].force.rendered) << k;
   }
 }
 
@@ -69,10 +53,11 @@ TEST(LinearContacts, OfAPlaneAreFreshForEveryAlgorithm) {
         algorithm.fixed_depth_model.empty() || algorithm.fixed_depth_model == "normal_projection";
     for (std::size_t k = 0; k < fresh.size(); ++k) {
       if (k < 4) {
-        EXPECT_EQ(linear[k].spring, Vec3(Vec3::Zero()));
+        EXPECT_EQ(linear[k].force.spring, Vec3(Vec3::Zero()));
       } else if (k >= kInContact && depths_are_the_normals) {
         // Solvers of the laws stop at 1e-6 of the force and better.
-        ASSERT_NEAR((linear[k].spring - fresh[k].spring).norm(), 0.0, 1e-6 * fresh[k].spring.norm()) << k;
+        ASSERT_NEAR((linear[k].force.spring - fresh[k].force.spring).norm(), 0.0, 1e-6 * fresh[k].force.spring.norm())
+            << k;
       }
     }
   }
@@ -106,10 +91,10 @@ TEST(HeldContacts, HoldTheSpringForceOfEveryAlgorithm) {
     std::size_t held = 0, changes = 0;
     for (std::size_t k = 1; k < rows.size(); ++k) {
       if (k % 5 != 0) {
-        ASSERT_EQ(rows[k].spring, rows[k - 1].spring) << k;
-        held += static_cast<std::size_t>(rows[k].spring != Vec3(Vec3::Zero()));
+        ASSERT_EQ(rows[k].force.spring, rows[k - 1].force.spring) << k;
+        held += static_cast<std::size_t>(rows[k].force.spring != Vec3(Vec3::Zero()));
       } else {
-        changes += static_cast<std::size_t>(rows[k].spring != rows[k - 1].spring);
+        changes += static_cast<std::size_t>(rows[k].force.spring != rows[k - 1].force.spring);
       }
     }
     EXPECT_GT(held, 200u);
@@ -150,25 +135,6 @@ TEST_F(Trace, OfARunGivesItsForcesBitForBit) {
   }
 }
 
-TEST_F(Trace, NeedsAMotionThatIsPrescribed) {
-  const auto said = [&](const std::string& scene, const std::string& more = "seed=1") -> std::string {
-    try {
-      loaded(scene, {R"(rendering.contact_source={"type":"trace","file":"t.csv"})", more});
-    } catch (const InputError& error) {
-      const std::string text = error.what();
-      return text.substr(text.find("/rendering"));
-    }
-    return "";
-  };
-  const std::string start = "/rendering/contact_source: got \"trace\"; allowed: \"own\", ";
-  EXPECT_EQ(said("drag_molar"),
-            start + "unless motion.position is prescribed, as it was when the contacts were recorded");
-  EXPECT_EQ(said("single_spring"), start + "with springs, which have no surface");
-  EXPECT_EQ(said("plane_wiped_round", "rendering.local_average=true"),
-            start + "with local_average, which merges shell points");
-  EXPECT_EQ(said("plane_wiped_round"), "");
-}
-
 // A library.
 
 TEST(ContactPlugin, OfASphereGivesTheForceOfASphere) {
@@ -181,11 +147,12 @@ TEST(ContactPlugin, OfASphereGivesTheForceOfASphere) {
                R"("y_m":0,"z_m":0.0024})"});
   const auto rows = rows_of(scenario);
   std::size_t in_contact = 0;
-  for (const Row& row : rows) {
-    const double depth = std::max(0.0, 0.0025 - row.position.norm());
+  for (const StepRecord& row : rows) {
+    const double depth = std::max(0.0, 0.0025 - row.tool.pose.position.norm());
     in_contact += static_cast<std::size_t>(depth > 0.0);
-    const Vec3 force = 20000.0 * depth * row.position.normalized();
-    ASSERT_TRUE(row.rendered.isApprox(force, 1e-12) || (row.rendered - force).norm() < 1e-12) << row.position;
+    const Vec3 force = 20000.0 * depth * row.tool.pose.position.normalized();
+    ASSERT_TRUE(row.force.rendered.isApprox(force, 1e-12) || (row.force.rendered - force).norm() < 1e-12)
+        << row.tool.pose.position;
   }
   EXPECT_GT(in_contact, 500u);
 }

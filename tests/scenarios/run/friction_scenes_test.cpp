@@ -3,8 +3,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "scenarios/run/assemble.hpp"
-#include "scenarios/run/stop_signal.hpp"
 #include "tests/scenarios/support/bundled.hpp"
 
 /// Scenes of dry friction against their closed forms.
@@ -12,25 +10,7 @@ namespace hapbench::friction_scenes_test {
 namespace {
 
 using test::bundled;
-
-struct Row {
-  double time;
-  Vec3 position, velocity;
-  Friction friction;
-};
-
-std::vector<Row> rows_of(const Scenario& scenario) {
-  class Rows final : public Observer {
-   public:
-    void on_step(const StepRecord& r) noexcept override {
-      rows.push_back({r.time, r.tool.pose.position, r.tool.velocity, r.force.friction});
-    }
-    std::vector<Row> rows;
-  } rows;
-  Simulation simulation(simulation_config(scenario), assemble(scenario), {&rows});
-  EXPECT_EQ(run_to_end(simulation).outcome, Outcome::completes);
-  return rows.rows;
-}
+using test::rows_of;
 
 std::string number(const char* field, double value) {
   return std::string(field) + "=" + std::to_string(value);
@@ -52,19 +32,19 @@ TEST(PegThatJams, SlipsAtMuTimesTheLoadsOfBothWalls) {
           rows_of(bundled("peg_jams_dry", {number("environment.gap_m", gap), number("rendering.friction.mu", mu),
                                            number("time.duration_s", slips_at + 0.05)}));
       double slipped = 0.0;
-      for (const Row& row : rows) {
-        if (row.friction == Friction::slides && slipped == 0.0) slipped = row.time;
+      for (const StepRecord& row : rows) {
+        if (row.force.friction == Friction::slides && slipped == 0.0) slipped = row.time;
       }
       // The bristle's damper bears 0.6 N/s B_t / K_t, less than 1 mN, or 2 ms; with it and a row of the ramp:
       EXPECT_NEAR(slipped, slips_at, 0.003);
       // It creeps by what the bristle gives, mu N / K_t, and then goes.
       const double until = slips_at - 0.005;
-      for (const Row& row : rows) {
+      for (const StepRecord& row : rows) {
         if (row.time < until) {
-          ASSERT_GE(row.position.z(), -0.004 - mu * sum / n * 1.05) << row.time;
+          ASSERT_GE(row.tool.pose.position.z(), -0.004 - mu * sum / n * 1.05) << row.time;
         }
       }
-      EXPECT_LT(rows.back().position.z(), -0.004 - 1.1 * mu * sum / n);
+      EXPECT_LT(rows.back().tool.pose.position.z(), -0.004 - 1.1 * mu * sum / n);
     }
   }
 }
@@ -86,7 +66,7 @@ TEST(PegInATaper, LocksItselfFromTheClosedFormOn) {
            "initial.position_m=[0,0,0]", "rendering.algorithm=summation", "time.duration_s=1.5",
            number("rendering.friction.mu", factor * locks),
            R"(hand={"type":"force","z_N":{"type":"waypoints","points":[[0,0],[0.3,-5],[0.6,0]],"interpolation":"cosine"}})"}));
-      EXPECT_EQ(rows.back().position.z() < -1e-6, factor > 1.0) << rows.back().position.z();
+      EXPECT_EQ(rows.back().tool.pose.position.z() < -1e-6, factor > 1.0) << rows.back().tool.pose.position.z();
     }
   }
 }
@@ -105,8 +85,9 @@ TEST(StickSlip, HasThePeriodOfSpringAndMass) {
       const double slips_at = 0.3 * load / (k * V), period = 2.0 * std::numbers::pi * std::sqrt(mass / k);
       std::vector<double> stands;
       for (std::size_t i = 1; i + 1 < rows.size(); ++i) {
-        const double v = rows[i].velocity.x();
-        if (rows[i].time > slips_at + 0.3 * period && v <= rows[i - 1].velocity.x() && v < rows[i + 1].velocity.x())
+        const double v = rows[i].tool.velocity.x();
+        if (rows[i].time > slips_at + 0.3 * period && v <= rows[i - 1].tool.velocity.x() &&
+            v < rows[i + 1].tool.velocity.x())
           stands.push_back(rows[i].time);
         ASSERT_LE(v, 2.05 * V);
       }
@@ -115,9 +96,9 @@ TEST(StickSlip, HasThePeriodOfSpringAndMass) {
       EXPECT_NEAR(stands.front(), slips_at + period, 0.02 * slips_at + 0.001);
       EXPECT_NEAR((stands.back() - stands.front()) / static_cast<double>(stands.size() - 1), period,
                   0.001 / static_cast<double>(stands.size() - 1) + 1e-4 * period);
-      for (const Row& row : rows) {
+      for (const StepRecord& row : rows) {
         if (row.time < 0.98 * slips_at) {
-          ASSERT_NE(row.friction, Friction::slides) << row.time;
+          ASSERT_NE(row.force.friction, Friction::slides) << row.time;
         }
       }
     }

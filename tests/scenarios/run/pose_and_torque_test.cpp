@@ -4,7 +4,6 @@
 #include <algorithm>
 
 #include "algorithms/registry.hpp"
-#include "results/io/json_text.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/scenarios.hpp"
@@ -195,49 +194,6 @@ TEST(Pose, IsThatOfTheScript) {
     EXPECT_LE((q.toRotationMatrix() - expected).norm(), 1e-14) << k;
     EXPECT_LE((q * -Vec3::UnitZ() - rows.vector(k, {"axis_x", "axis_y", "axis_z"})).norm(), 1e-14) << k;
   }
-}
-
-/// A stroke with a sample for each row, in both layouts; the axes are those of the quaternions.
-TEST(Stroke, OfQuaternionsMovesACylinderAsThatOfTheirAxes) {
-  const TemporaryDirectory dir;
-  std::string quaternions = "time_s,px_m,py_m,pz_m,qw,qx,qy,qz\n",
-              axes = "time_s,px_m,py_m,pz_m,axis_x,axis_y,axis_z\n";
-  const auto cells = [](const auto& numbers) {
-    std::string text;
-    for (const double number : numbers) text += "," + std::string(std::string_view(NumberText(number)));
-    return text;
-  };
-  for (int k = 0; k < 40; ++k) {
-    const double t = 0.0005 * k;
-    const Eigen::Quaterniond q(Eigen::AngleAxisd(20 * t, Vec3::UnitZ()) *
-                               Eigen::AngleAxisd(0.1 + 5 * t, Vec3::UnitY()) *
-                               Eigen::AngleAxisd(100 * t, Vec3::UnitZ()));
-    const std::string row =
-        std::string(std::string_view(NumberText(t))) + ",0,0" + cells(std::array{0.0001 - 0.02 * t});
-    quaternions += row + cells(std::array{q.w(), q.x(), q.y(), q.z()}) + "\n";
-    axes += row + cells(Vec3(q * -Vec3::UnitZ())) + "\n";
-  }
-  test::write_plainly(dir / "quaternions.csv", quaternions);
-  test::write_plainly(dir / "axes.csv", axes);
-  const auto run = [&dir](const std::string& name) {
-    Json json = pressed_drill(kPlane, "shaped_stiffness");
-    json["motion"] = {{"position", {{"type", "file"}, {"file", name + ".csv"}}}};
-    run_scenario(read_scenario(json, dir.path()), dir / name, false);
-    return Table(dir / name / "trajectory.csv");
-  };
-  const Table of_quaternions = run("quaternions"), of_axes = run("axes");
-  ASSERT_EQ(of_quaternions.rows(), 40u);
-  double largest = 0.0;
-  for (std::size_t k = 0; k < 40; ++k) {
-    for (const std::array<const char*, 3>& names :
-         {std::array{"axis_x", "axis_y", "axis_z"}, std::array{"fx_N", "fy_N", "fz_N"},
-          std::array{"tx_Nm", "ty_Nm", "tz_Nm"}}) {
-      EXPECT_LE((of_quaternions.vector(k, names) - of_axes.vector(k, names)).norm(), 1e-9) << k << " " << names[0];
-    }
-    EXPECT_EQ(of_quaternions.number(k, "colliding"), of_axes.number(k, "colliding")) << k;
-    largest = std::max(largest, of_axes.vector(k, {"fx_N", "fy_N", "fz_N"}).norm());
-  }
-  EXPECT_GT(largest, 0.1);
 }
 
 }  // namespace

@@ -6,7 +6,6 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "scenarios/batch/parallel_for.hpp"
 #include "scenarios/description/load_scenario.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/result_folder.hpp"
@@ -32,40 +31,25 @@ LoadedScenario study(const char* record = R"({"trajectory": false})") {
   return read_scenario(json, ".");
 }
 
-TEST(Trials, EverySubjectDoesEveryTrialOnce) {
-  const Result report = run_scenario(study(), std::nullopt, false);
+TEST(Trials, EverySubjectDoesEveryTrialOnceAndDifferently) {
+  const Result report = run_scenario(study(R"({"trajectory": false, "timing": true})"), std::nullopt, false);
   ASSERT_EQ(report.targets.size(), 8u);
   std::set<std::pair<std::size_t, std::size_t>> trials;
-  for (const TargetRow& row : report.targets) trials.insert({row.subject, row.trial});
-  EXPECT_EQ(trials, (std::set<std::pair<std::size_t, std::size_t>>{{0, 0}, {0, 1}, {1, 0}, {1, 1}}));
-  const std::vector<PlaceMetrics> places = place_metrics(report.targets);
-  ASSERT_EQ(places.size(), 2u);
-  EXPECT_EQ(places[0].success_rate.subjects, 2u);
-  EXPECT_EQ(report.end.outcome, Outcome::completes);
-}
-
-TEST(Trials, EveryStepOfEveryTrialIsTimed) {
-  const Result report = run_scenario(study(R"({"trajectory": false, "timing": true})"), std::nullopt, false);
-  ASSERT_TRUE(report.timing.latency);
-  EXPECT_EQ(report.timing.latency->steps, report.end.rows);
-  EXPECT_FALSE(run_scenario(study(), std::nullopt, false).timing.latency);
-}
-
-TEST(Trials, TrialsDifferAndAnotherRunRepeatsThem) {
-  const Result first = run_scenario(study(), std::nullopt, false), again = run_scenario(study(), std::nullopt, false);
-  EXPECT_EQ(first.state_hash, again.state_hash);
   std::set<double> forces;
-  for (const TargetRow& row : first.targets) forces.insert(row.model_force);
-  EXPECT_EQ(forces.size(), first.targets.size()) << "no two targets were met alike";
-}
-
-TEST(Trials, AStepAllocatesNothing) {
-  EXPECT_EQ(run_scenario(study(R"({"trajectory": false, "energy": true})"), std::nullopt, false).work.allocations, 0u);
+  for (const TargetRow& row : report.targets) {
+    trials.insert({row.subject, row.trial});
+    forces.insert(row.model_force);
+  }
+  EXPECT_EQ(trials, (std::set<std::pair<std::size_t, std::size_t>>{{0, 0}, {0, 1}, {1, 0}, {1, 1}}));
+  EXPECT_EQ(forces.size(), 8u) << "no two targets were met alike";
+  EXPECT_EQ(report.end.outcome, Outcome::completes);
+  EXPECT_EQ(report.timing.latency->steps, report.end.rows);
+  EXPECT_EQ(report.state_hash, run_scenario(study(), std::nullopt, false).state_hash) << "another run repeats them";
 }
 
 TEST(Trials, RecordsOfSeveralTrialsLieInDirectoriesOfTheirOwn) {
   const TemporaryDirectory dir;
-  run_scenario(study(R"({"trajectory": true, "energy": true})"), dir / "out", false);
+  EXPECT_EQ(run_scenario(study(R"({"trajectory": true, "energy": true})"), dir / "out", false).work.allocations, 0u);
   for (const char* trial : {"subject_0_trial_0", "subject_0_trial_1", "subject_1_trial_0", "subject_1_trial_1"}) {
     EXPECT_TRUE(fs::exists(dir / "out" / trial / "trajectory.csv")) << trial;
     EXPECT_TRUE(fs::exists(dir / "out" / trial / "energy.csv")) << trial;
@@ -79,19 +63,18 @@ TEST(Trials, RecordsOfSeveralTrialsLieInDirectoriesOfTheirOwn) {
   EXPECT_TRUE(fs::exists(dir / "out" / "targets.csv"));
 }
 
-LoadedScenario springs(const char* record, int steps = 2000) {
+LoadedScenario springs(const char* record) {
   Json json = Json::parse(
       R"({"environment": {"type": "springs", "groups": [{"direction": [1, 2, 3], "count": 1}, {"direction": [1, 0, 0], "count": 2}]},
                               "initial": {"position_m": [0.001, 0.002, 0.0005]}})");
-  json["time"] = {{"step_s", 0.0005}, {"steps", steps}};
+  json["time"] = {{"step_s", 0.0005}, {"steps", 2000}};
   json["record"] = Json::parse(record);
   return read_scenario(json, ".");
 }
 
 TEST(ExpectedOutput, IsWithinAFactorOfTwoOfWhatIsWritten) {
   for (const char* record :
-       {R"({"trajectory": true})", R"({"trajectory": true, "every": 3})", R"({"trajectory": false, "energy": true})",
-        R"({"trajectory": false, "stiffness_tensor": true})",
+       {R"({"trajectory": true, "every": 3})", R"({"trajectory": false, "energy": true, "stiffness_tensor": true})",
         R"({"trajectory": false, "ratio_iterations": [0, 1, 3]})"}) {
     const test::TemporaryDirectory directory;
     const LoadedScenario loaded = springs(record);
@@ -104,14 +87,6 @@ TEST(ExpectedOutput, IsWithinAFactorOfTwoOfWhatIsWritten) {
     EXPECT_LT(expected, 2.0 * written) << record;
     EXPECT_GT(expected, 0.5 * written) << record;
   }
-}
-
-TEST(ExpectedOutput, CountsEveryTrialAndNothingThatIsNotRecorded) {
-  EXPECT_EQ(expected_output_bytes(springs(R"({"trajectory": false})").scenario), 0.0);
-  LoadedScenario loaded = springs(R"({"trajectory": true})");
-  const double one = expected_output_bytes(loaded.scenario);
-  loaded.scenario.hand = TrackingHandFields{{}, {Subject{}, Subject{}}, 3};
-  EXPECT_EQ(expected_output_bytes(loaded.scenario), 6.0 * one);
 }
 
 /// A hand whose damping is too much for the time step drives the handle, which is a body of its own, to infinity, while
@@ -172,18 +147,6 @@ TEST_F(StopSignals, EndARunOfWhichNothingIsLeft) {
   }
   run_scenario(loaded, directory / "out/below", false);
   EXPECT_TRUE(std::filesystem::exists(directory / "out/below/summary.json"));
-}
-
-TEST_F(StopSignals, EndJobsThatDoNotAskForIt) {
-  const StopSignal signals;
-  std::size_t begun = 0;
-  EXPECT_THROW(for_each_job(1000, {1, ""},
-                            [&](std::size_t i) {
-                              ++begun;
-                              if (i == 10) std::raise(SIGINT);
-                            }),
-               Stopped);
-  EXPECT_EQ(begun, 11u);
 }
 
 }  // namespace

@@ -3,18 +3,16 @@
 
 #include <cmath>
 
-#include "scenarios/description/bundled_scenarios.hpp"
-#include "scenarios/description/load_scenario.hpp"
-#include "scenarios/run/assemble.hpp"
 #include "scenarios/run/scene_loop.hpp"
 #include "sim/core/random.hpp"
+#include "tests/scenarios/support/bundled.hpp"
 
 /// The linear loops of scenarios against the simulation that they are run by.
 namespace hapbench::scene_loop_test {
 namespace {
 
 Scenario single_spring(const std::vector<std::string>& overrides = {}) {
-  return load_scenario(find_scenario("single_spring"), overrides).scenario;
+  return test::bundled("single_spring", overrides);
 }
 
 TEST(StiffnessEigenvalues, AreThoseOfTheSpringsUnderTheAlgorithm) {
@@ -47,23 +45,6 @@ TEST(SpringsStay, OnlyWhereTheyDo) {
     EXPECT_FALSE(springs_stay(single_spring({override}))) << override;
 }
 
-/// Keeps the places of tool and handle along x, row by row.
-class Places final : public Observer {
- public:
-  void on_step(const StepRecord& record) noexcept override {
-    tool.push_back(record.tool.pose.position.x());
-    handle.push_back(record.handle.position.x());
-    handle_velocity.push_back(record.handle.velocity.x());
-  }
-  std::vector<double> tool, handle, handle_velocity;
-};
-
-Places places_of(const Scenario& scenario) {
-  Places places;
-  Simulation(simulation_config(scenario), assemble(scenario), {&places}).run();
-  return places;
-}
-
 Scenario struck(Scenario scenario) {
   scenario.time.steps = 60;
   scenario.initial.velocity.x() = 0.02;
@@ -73,12 +54,12 @@ Scenario struck(Scenario scenario) {
 Scenario wall_on_handle(double delay, double K) {
   const std::vector<std::string> overrides = {fmt::format("device.delay_samples={}", delay),
                                               fmt::format("rendering.stiffness_N_per_m={}", K)};
-  return struck(load_scenario(find_scenario("wall_on_handle"), overrides).scenario);
+  return struck(test::bundled("wall_on_handle", overrides));
 }
 
 /// A hand on the admittance device, on a wall from both sides.
 Scenario admittance_on_wall(double delay) {
-  Scenario scenario = load_scenario(find_scenario("single_spring"), {}).scenario;
+  Scenario scenario = test::bundled("single_spring");
   ImpedanceHandFields hand;
   hand.stiffness = 2000.0;
   scenario.hand = hand;
@@ -96,13 +77,13 @@ void expect_same_motion(const Scenario& scenario) {
   const double T = scenario.time.step, x = scenario.initial.position.x();
   Eigen::VectorXd state = Eigen::VectorXd::Zero(A.rows());
   state.head(3) << x, T * scenario.initial.velocity.x(), x;  // and the filter at rest
-  const Places places = places_of(scenario);
+  const std::vector<StepRecord> rows = test::rows_of(scenario);
   double scale = state.norm();
-  for (std::size_t k = 0; k < places.tool.size(); ++k) {
+  for (std::size_t k = 0; k < rows.size(); ++k) {
     scale = std::max(scale, state.norm());
-    ASSERT_NEAR(places.tool[k], state[0], kRounding * scale) << k;
-    ASSERT_NEAR(places.handle[k], state[0], kRounding * scale) << k;
-    ASSERT_NEAR(places.handle_velocity[k] * T, state[1], kRounding * scale) << k;
+    ASSERT_NEAR(rows[k].tool.pose.position.x(), state[0], kRounding * scale) << k;
+    ASSERT_NEAR(rows[k].handle.position.x(), state[0], kRounding * scale) << k;
+    ASSERT_NEAR(rows[k].handle.velocity.x() * T, state[1], kRounding * scale) << k;
     state = A * state;
   }
 }
@@ -143,12 +124,12 @@ TEST(DeviceLoop, OfTheAdmittanceDeviceIsTheSimulationsLinearMap) {
       const double x = 1e-3, Tv = scenario.time.step * 0.02;
       Eigen::VectorXd state = Eigen::VectorXd::Zero(A.rows());
       state.head(6) << x, Tv, x, Tv, x, Tv;
-      const Places places = places_of(scenario);
+      const std::vector<StepRecord> rows = test::rows_of(scenario);
       double scale = state.norm();
-      for (std::size_t k = 0; k < places.tool.size(); ++k) {
+      for (std::size_t k = 0; k < rows.size(); ++k) {
         scale = std::max(scale, state.norm());
-        ASSERT_NEAR(places.tool[k], state[0], kRounding * scale) << integrator->info.name << " " << k;
-        ASSERT_NEAR(places.handle[k], state[4], kRounding * scale) << integrator->info.name << " " << k;
+        ASSERT_NEAR(rows[k].tool.pose.position.x(), state[0], kRounding * scale) << integrator->info.name << " " << k;
+        ASSERT_NEAR(rows[k].handle.position.x(), state[4], kRounding * scale) << integrator->info.name << " " << k;
         state = A * state;
       }
     }
@@ -172,7 +153,7 @@ TEST(DeviceLoop, SaysWhatIsNotLinear) {
 /// Of a virtual mass M with an undamped bristle, stable up to K_t = 4 M / dt^2.
 TEST(ContactLoops, HaveThatOfAToolHeldByFriction) {
   for (const double factor : {0.99, 1.01}) {
-    Scenario scenario = load_scenario(find_scenario("drag_molar_dry")).scenario;
+    Scenario scenario = test::bundled("drag_molar_dry");
     const double edge = 4.0 * scenario.rendering.mass / (scenario.time.step * scenario.time.step);
     scenario.rendering.dry_friction = DryFrictionConfig{0.3, factor * edge, 0.0};
     const auto loops = contact_loops(scenario, 1.0, false);

@@ -11,7 +11,6 @@
 #include "scenarios/run/run_scenario.hpp"
 #include "sim/mesh/marching_cubes.hpp"
 #include "sim/tool/mesh_tool.hpp"
-#include "tests/scenarios/support/errors.hpp"
 #include "tests/scenarios/support/scenarios.hpp"
 
 /// Tools and environments of every type, from the fields of a scenario.
@@ -50,24 +49,6 @@ TEST(ScenarioTool, WithoutATypeIsTheCylinderOfThatType) {
               Json::parse(R"({"diameter_m": 0.002, "length_m": 0.01, "tip": "round"})"));
     EXPECT_EQ(tool_of(fields)->half_width(), 0.001);
   }
-}
-
-TEST(ScenarioTool, OfEveryTypeKeepsItsFields) {
-  for (const std::string& fields :
-       {kCube, kHourglass, std::string(R"({"type": "bur", "family": "flame", "diameter_m": 0.001, "length_m": 0.004,
-                        "shank_diameter_m": 0.0005})")}) {
-    Json effective = effective_scenario(loaded(scene(fields)).scenario, test::data_directory());
-    EXPECT_EQ(effective["tool"], Json::parse(fields));
-  }
-}
-
-TEST(ScenarioTool, HasTheSizeItsFieldsSay) {
-  EXPECT_DOUBLE_EQ(tool_of(R"({"type": "bur", "family": "ball", "diameter_m": 0.001})")->half_width(), 0.0005);
-  EXPECT_DOUBLE_EQ(tool_of(kHourglass)->reach(), std::hypot(0.01, 0.002));
-  // A cube of 1 mm about the tip centre; the grid rounds its corners by no more than a spacing.
-  EXPECT_NEAR(tool_of(kCube)->half_width(), 0.0005, 0.00005);
-  EXPECT_TRUE(tool_of(kCube)->convex());
-  EXPECT_FALSE(tool_of(kHourglass)->convex());
 }
 
 /// The tool's frame at its tip, on whichever face of the cube that is; with it the box lies behind the tip centre.
@@ -113,19 +94,6 @@ TEST(ScenarioTool, HasAnOutlineFromTheFarEndToTheTipThatIsAsLargeAsItIs) {
     for (const ProfilePoint& point : outline) reach = std::max(reach, std::hypot(point.s, point.rho));
     EXPECT_NEAR(reach, tool->reach(), fields == kCube ? 0.00005 : 1e-12) << fields;
   }
-}
-
-TEST(ScenarioTool, OfAMeshSharesItsGridBetweenRuns) {
-  const LoadedScenario first = loaded(scene(kCube)), second = loaded(scene(kCube));
-  const auto a = make_tool(first.scenario, first.files), b = make_tool(second.scenario, second.files);
-  EXPECT_EQ(&dynamic_cast<const MeshTool&>(*a).grid(), &dynamic_cast<const MeshTool&>(*b).grid());
-}
-
-TEST(ScenarioTool, RefusesToBeTakenForACylinder) {
-  const Scenario scenario = loaded(scene(kHourglass)).scenario;
-  const auto error = test::input_error_of([&] { make_cylinder(scenario.tool); });
-  ASSERT_TRUE(error);
-  EXPECT_STREQ(error->what(), R"(/tool/type: got "revolved"; allowed here: "cylinder")");
 }
 
 TEST(ScenarioTool, WarnsThatTheProxyHasNoGuaranteeWhereItIsNotConvex) {

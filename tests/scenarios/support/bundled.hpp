@@ -1,16 +1,29 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/description/load_scenario.hpp"
+#include "scenarios/run/assemble.hpp"
 
 namespace hapbench::test {
 
 /// A scenario that comes with the program.
 inline Scenario bundled(const std::string& name, const std::vector<std::string>& overrides = {}) {
   return load_scenario(find_scenario(name), overrides).scenario;
+}
+
+/// The rows of a run, whose contacts are gone.
+inline std::vector<StepRecord> rows_of(const Scenario& scenario) {
+  class Rows final : public Observer {
+   public:
+    void on_step(const StepRecord& record) noexcept override { rows.push_back(record); }
+    std::vector<StepRecord> rows;
+  } rows;
+  Simulation(simulation_config(scenario), assemble(scenario), {&rows}).run();
+  return std::move(rows.rows);
 }
 
 }  // namespace hapbench::test

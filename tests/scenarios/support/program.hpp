@@ -18,18 +18,15 @@ struct ProgramRun {
   /// Standard output as JSON; fails the test when it is no JSON.
   Json json() const;
 
-  int status = -1;              ///< exit status; -1 when a signal ended it
-  int signal = 0;               ///< the signal that ended it, or 0
-  std::string out;              ///< standard output
-  std::string err;              ///< standard error
-  double cpu_seconds = 0.0;     ///< user and system time: unlike the wall's, the same on a busy machine
-  double wall_seconds = 0.0;    ///< from start to end, known to 0.3 ms
-  std::size_t peak_memory = 0;  ///< largest resident set [bytes]; no less than the calling process's at the start
+  int status = -1;           ///< exit status; -1 when a signal ended it
+  int signal = 0;            ///< the signal that ended it, or 0
+  std::string out;           ///< standard output
+  std::string err;           ///< standard error
+  double cpu_seconds = 0.0;  ///< user and system time: unlike the wall's, the same on a busy machine
 };
 
 struct ProgramOptions {
   std::filesystem::path directory = {};  ///< where it runs; empty: here
-  double patience_s = 1500.0;            ///< a process that takes longer is killed and counts as ended by SIGKILL
   bool as_root_may = true;       ///< false: root has no privileges either; status 126 when they cannot be dropped
   std::size_t file_limit = 0;    ///< of each file it writes [bytes]; 0: none
   std::size_t columns = 0;       ///< of the terminal it is told to have; 0: none

@@ -38,13 +38,10 @@ TEST_F(ResultFile, IsReadByColumn) {
 }
 
 TEST_F(ResultFile, WithARowThatIsCutOffIsRefusedAndNotPassedOver) {
-  for (const char* text : {"a,b\n1,2\n3\n", "a,b\n1,2\n3,4,5\n"}) {
-    const auto error = test::input_error_of([&] { table_of(text); });
-    ASSERT_TRUE(error);
-    EXPECT_NE(std::string(error->what()).find("trajectory.csv"), std::string::npos) << error->what();
-    EXPECT_NE(std::string(error->what()).find("line 3"), std::string::npos) << error->what();
-    EXPECT_NE(std::string(error->what()).find("allowed: 2"), std::string::npos) << error->what();
-  }
+  const auto error = test::input_error_of([&] { table_of("a,b\n1,2\n3\n"); });
+  ASSERT_TRUE(error);
+  EXPECT_NE(std::string(error->what()).find("trajectory.csv, line 3: "), std::string::npos) << error->what();
+  EXPECT_TRUE(test::input_error_of([&] { table_of(""); }));
 }
 
 TEST_F(ResultFile, GivesNumbersOfItsSummary) {
@@ -54,10 +51,6 @@ TEST_F(ResultFile, GivesNumbersOfItsSummary) {
   EXPECT_TRUE(std::isnan(e.number("scene", "metrics.b")));
   EXPECT_EQ(e.number("scene", "steps"), 7.0);
   EXPECT_EQ(asked_for_, "scene scene scene ");
-}
-
-TEST_F(ResultFile, ThatIsEmptyIsRefused) {
-  EXPECT_TRUE(test::input_error_of([&] { table_of(""); }));
 }
 
 TEST(PublishedNumbers, FillTextsThatNameThem) {

@@ -143,56 +143,6 @@ TEST_F(Robustness, GoesIntoTheLedgerWhileItIsAboutTheSameChoicesAndVerdict) {
   EXPECT_EQ(robustness_json(none, {}, record).at("claims"), record.at("claims"));
 }
 
-/// A claim as the ledger has it, with counts unless they are null.
-Json entry(const char* id, const char* verdict, Json counts, bool reached = true) {
-  Json claim = {{"id", id},
-                {"verdict", verdict},
-                {"majority", counts.is_null() ? Json() : counts.at("majority")},
-                {"robustness", std::move(counts)},
-                {"choices_reach_it", reached},
-                {"timing", false},
-                {"ours", false}};
-  claim["sureness"] = robustness_text(claim);
-  return claim;
-}
-
-Json counts(int holds, Json decided_by, const char* majority = "reproduced") {
-  return {{"judged", 100},
-          {"holds", holds},
-          {"majority", majority},
-          {"verdicts", {{"reproduced", holds}, {"refuted", 100 - holds}}},
-          {"decided_by", std::move(decided_by)}};
-}
-
-TEST(Sureness, SaysWhatDecidesAndWhatMostSamplesHave) {
-  const auto text = [](Json counts, bool reached = true) {
-    return robustness_text(entry("A", "reproduced", std::move(counts), reached));
-  };
-  EXPECT_EQ(text(counts(91, {{"choice", "hand"}, {"index", 0.434}})),
-            "this verdict in 91 of 100 samples; decided by hand (S = 0.43)");
-  EXPECT_EQ(text(counts(91, nullptr)), "this verdict in 91 of 100 samples; no single choice decides");
-  EXPECT_EQ(text(counts(9, nullptr, "refuted")),
-            "refuted in 91 of 100 samples, the recorded verdict in 9; no single choice decides");
-  EXPECT_EQ(text(nullptr), "not sampled yet");
-  EXPECT_EQ(text(nullptr, false), "depends on no recorded choice");
-  EXPECT_EQ(verdicts_text(entry("A", "reproduced", counts(9, nullptr, "refuted"))),
-            "most samples: refuted; recorded: reproduced");
-  EXPECT_EQ(verdicts_text(entry("A", "reproduced", counts(91, nullptr))), "reproduced");
-}
-
-TEST(LedgerHeadline, CountsVerdictsThatAnotherReadingLeaves) {
-  Json ours = entry("X", "holds", nullptr);
-  ours["ours"] = true;
-  const Json claims = {entry("A", "reproduced", counts(91, nullptr)),
-                       entry("B", "reproduced", counts(9, nullptr, "refuted")),
-                       entry("C", "reproduced", nullptr, false), entry("D", "reproduced", nullptr), ours};
-  EXPECT_EQ(
-      ledger_headline(claims),
-      "Of 4 verdicts on claims of the thesis, 1 of the 2 sampled would survive another reasonable reading: most samples of the choices "
-      "on record have them, too. 1 would not: B (most samples: refuted; recorded: reproduced). 1 "
-      "depend on no recorded choice; 0 are about times or cannot be simulated; 1 have not been sampled yet.");
-}
-
 using Bins = std::vector<std::size_t>;
 using Values = std::vector<double>;
 

@@ -6,10 +6,7 @@
 #include <functional>
 
 #include "scenarios/batch/comparison.hpp"
-#include "scenarios/description/bundled_scenarios.hpp"
 #include "sim/loop/integrators/table.hpp"
-#include "tests/results/files.hpp"
-#include "tests/scenarios/support/errors.hpp"
 #include "tests/scenarios/support/scenarios.hpp"
 
 /// Observed orders of sequences whose order is known, and of such as have none; levels of scenes, and scenes that have
@@ -69,16 +66,6 @@ TEST(ObservedOrder, FollowsTheFormulas) {
   // f_3 / f_2 = 1 / 1.1 is within 0.1 of 1.
   EXPECT_TRUE(c.asymptotic);
   EXPECT_FALSE(convergence_of(levels_with({1.6, 1.2, 1.0}), 2.0, 2.0).asymptotic) << "1 / 1.2 is not";
-}
-
-/// The order of the exact solution is bracketed: what is extrapolated is within the GCI of it.
-TEST(ObservedOrder, ItsIndexHoldsTheLimit) {
-  for (const double share : {-0.4, -0.1, 0.1, 1.0, 3.0}) {
-    const Convergence c =
-        convergence_of(levels_of([share](double h) { return 7.0 + 0.1 * (h + share * h * h); }), 2.0, 1.0);
-    ASSERT_TRUE(c.order) << share << ": " << c.reason;
-    EXPECT_LE(std::abs(*c.extrapolated - 7.0), *c.errors.back()) << share;
-  }
 }
 
 TEST(ObservedOrder, IsNotStatedWhereDifferencesChangeTheirSign) {
@@ -177,13 +164,11 @@ struct Study {
   Convergence of(const std::string& metric) const { return convergence_of(levels, levels_of(metric)); }
 };
 
-Study studied(const ScenarioText& scenario, const std::string& path = kStepPath, std::size_t count = 5) {
+Study studied(const Json& json, std::size_t count = 5, const std::string& path = kStepPath) {
+  const ScenarioText scenario{test::data_directory() / "converge.json", json};
   LevelSweep levels = level_sweep(load_scenario(scenario, {}), path, count, 2.0);
   const Cases cases({scenario}, {}, {levels.axis});
   return {std::move(levels), run_all({&cases, 1}, {})};
-}
-Study studied(const Json& scenario, const std::string& path = kStepPath, std::size_t count = 5) {
-  return studied(ScenarioText{test::data_directory() / "converge.json", scenario}, path, count);
 }
 
 constexpr double kStep = 1e-3, kStiffness = 1000.0, kMass = 0.1, kStart = 1e-3;
@@ -212,16 +197,6 @@ TEST(Converge, KnowsTheFormalOrderOfEveryIntegrator) {
           << integrator->info.name << " " << zeta;
     }
   }
-}
-
-TEST(Converge, PegWhoseContactsSwitchHasNoOrder) {
-  const Study study = studied(read_scenario_text(find_scenario("peg_in_hole_2d_shaped_stiffness")));
-  for (const char* metric : {"force_max_N", "force_rms_above_30Hz_N", "velocity_total_variation_m_per_s"}) {
-    const Convergence c = study.of(metric);
-    EXPECT_FALSE(c.order || c.extrapolated || c.gci) << metric;
-    EXPECT_TRUE(c.band) << metric;
-  }
-  EXPECT_NE(study.of("velocity_total_variation_m_per_s").reason.find("contacts switch"), std::string::npos);
 }
 
 /// All levels are measured at the same times: a prescribed motion gives the same force steps, whatever the step, and
@@ -268,26 +243,14 @@ TEST(Converge, HasNoNumberWhereARunHasNone) {
   const Convergence c = study.of("force_max_N");
   EXPECT_FALSE(c.errors[0] || c.errors[1]);
   EXPECT_TRUE(c.errors[2] && c.band);
-  const Convergence three = studied(scene, kStepPath, 4).of("force_max_N");
+  const Convergence three = studied(scene, 4).of("force_max_N");
   EXPECT_NE(three.reason.find("which leaves 2 levels"), std::string::npos) << three.reason;
 }
 
 TEST(Converge, SaysWhereAFieldHasNoEffect) {
-  const Convergence c = studied(spring(0.2, "leapfrog"), "tool.diameter_m", 3).of("force_max_N");
+  const Convergence c = studied(spring(0.2, "leapfrog"), 3, "tool.diameter_m").of("force_max_N");
   EXPECT_FALSE(c.order);
   EXPECT_EQ(c.reason, "tool.diameter_m has no effect here: all runs are the same, bit for bit");
-}
-
-TEST(Converge, RefusesFieldsThatAreNoLengths) {
-  const LoadedScenario loaded = load_scenario(ScenarioText{"x.json", spring(0.2, "leapfrog")}, {});
-  for (const char* path : {"time.steps", "rendering.algorithm", "environment.spacing_m", "environment.bilateral",
-                           "initial.position_m.1"}) {
-    const auto error = test::input_error_of([&] { level_sweep(loaded, path, 3, 2.0); });
-    ASSERT_TRUE(error) << path;
-    EXPECT_NE(std::string(error->what()).find("a number > 0 and no integer"), std::string::npos) << error->what();
-  }
-  EXPECT_TRUE(test::input_error_of([&] { level_sweep(loaded, kStepPath, 3, 1.5); }));
-  EXPECT_EQ(level_sweep(loaded, "tool.diameter_m", 3, 1.25).axis.values.size(), 3u);
 }
 
 TEST(Converge, BeginsAMeshWithItsOwnPoints) {

@@ -99,23 +99,5 @@ TEST_F(ContactSets, HoldTheDegenerateCasesOfTheirNames) {
   }
 }
 
-TEST_F(ContactSets, OfDepthZeroAreAmongThem) {
-  RenderingConfig config;
-  config.algorithm = "summation";
-  config.depth_model = "shortest_distance";
-  std::size_t without_depth = 0;
-  for (std::uint64_t i = 0; i < test::cases(5'000); ++i) {
-    const ContactSet set = stress_set(4, i);
-    const PointShell shell(set.points, 0.0);
-    ShellQuery query(shell, set.tool);
-    ContactBuffer contacts(query.capacity());
-    query.contacts_at(set.pose, contacts);
-    if (contacts.empty()) continue;
-    find_depth_model("shortest_distance")->make()->evaluate(set.tool, set.pose, contacts);
-    for (std::size_t k = 0; k < contacts.size(); ++k) without_depth += contacts.depth[k] == 0.0;
-  }
-  EXPECT_GT(without_depth, test::cases(100));
-}
-
 }  // namespace
 }  // namespace hapbench::law_stress_test
