@@ -58,8 +58,7 @@ TEST(ChoicesOnRecord, AreWhatTheScenariosHaveAndOthersChangeThem) {
         Texts values = on_record;
         values[c] = other[c];
         const Texts overrides = choices.overrides(scenario, values);
-        if (overrides != recorded && effective(bundled, overrides) != without)
-          changing.insert(choices.all()[c].id);
+        if (overrides != recorded && effective(bundled, overrides) != without) changing.insert(choices.all()[c].id);
       }
     }
   }
