@@ -95,7 +95,12 @@ TEST_F(CompareBatch, GivesTheSameBytesWhateverTheJobs) {
 
 TEST_F(CompareBatch, SpreadsWithJitter) {
   const Json json = compare("out", {"--seeds", "3", "--by", "force_max_N", "--jitter", "2e-5", "--json"}).json();
-  for (const Json& row : json["standings"]) EXPECT_GT(row["spread"], 0.0) << row;
+  for (const Json& row : json["standings"]) {
+    if (row["failed"] == 0)
+      EXPECT_GT(row["spread"], 0.0) << row;
+    else
+      EXPECT_TRUE(row["spread"].is_null()) << row;  // the sum of all springs throws the tool out
+  }
   EXPECT_EQ(json["runs"].size(), 18u);
 }
 
