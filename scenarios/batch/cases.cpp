@@ -10,7 +10,7 @@
 #include <set>
 #include <utility>
 
-#include "results/io/json_text.hpp"
+#include "results/io/columns.hpp"
 #include "scenarios/batch/table_file.hpp"
 #include "scenarios/description/writer.hpp"
 #include "scenarios/input/input_error.hpp"
@@ -30,10 +30,6 @@ constexpr double kLargestEnd = 1e300;
   constexpr std::size_t kLongest = 200;
   const std::string shown = text.size() > kLongest ? text.substr(0, kLongest) + "..." : text;
   throw InputError(fmt::format("--vary \"{}\": {}; allowed: {}", shown, problem, allowed));
-}
-
-std::string number_text(double value) {
-  return std::string(std::string_view(NumberText(value)));
 }
 
 double range_end(const std::string& text, std::string_view word) {
@@ -126,7 +122,7 @@ bool begins_json(std::string_view text) {
 /// A value in the spelling that axes have. Throws InputError for text that begins as JSON and is none, and for no text.
 std::string axis_value(std::string_view text) {
   if (text.empty()) throw InputError("got an empty value");
-  if (const auto number = finite_number(text)) return number_text(*number);
+  if (const auto number = finite_number(text)) return cell_text(*number);
   return begins_json(text) ? parse_json(std::string(text)).dump() : std::string(text);
 }
 
@@ -223,7 +219,7 @@ Axis parse_axis(const std::string& text, bool sampled) {
 std::string Axis::value(std::size_t i) const {
   if (!range) return values[i];
   const double value = value_between(*range, static_cast<double>(i), static_cast<double>(steps - 1));
-  return number_text(whole ? std::round(value) : value);
+  return cell_text(whole ? std::round(value) : value);
 }
 
 std::size_t Axis::place_at(double coordinate) const {
@@ -234,12 +230,21 @@ std::size_t Axis::place_at(double coordinate) const {
 std::string Axis::value_at(double coordinate) const {
   if (!range) return values[place_at(coordinate)];
   const double value = range->value_at(coordinate);
-  return number_text(whole ? std::round(value) : value);
+  return cell_text(whole ? std::round(value) : value);
 }
 
 void append_new(std::vector<std::string>& texts, const std::vector<std::string>& more) {
   for (const std::string& text : more)
     if (std::find(texts.begin(), texts.end(), text) == texts.end()) texts.push_back(text);
+}
+
+void require_names_of_their_own(const std::vector<std::filesystem::path>& files, const std::string& allowed) {
+  std::set<std::filesystem::path> names;
+  for (const std::filesystem::path& file : files) {
+    if (names.insert(file.stem()).second) continue;
+    throw InputError(
+        fmt::format("{}: a second scenario named \"{}\"; allowed: {}", file.string(), file.stem().string(), allowed));
+  }
 }
 
 std::string_view sampling_name(SamplingMethod method) {

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
-#include <set>
 
 #include "results/io/atomic_file.hpp"
 #include "results/io/json_text.hpp"
@@ -53,14 +52,9 @@ void check_seeds_and_jitter(const ComparisonQuestion& question, const LoadedScen
 }
 
 std::vector<std::string> names_of(const std::vector<fs::path>& files) {
+  require_names_of_their_own(files, "one of each name in a comparison");
   std::vector<std::string> names;
-  std::set<std::string> seen;
-  for (const fs::path& file : files) {
-    names.push_back(file.stem().string());
-    if (seen.insert(names.back()).second) continue;
-    throw InputError(fmt::format("{}: a second scenario named \"{}\"; allowed: one of each name in a comparison",
-                                 file.string(), names.back()));
-  }
+  for (const fs::path& file : files) names.push_back(file.stem().string());
   return names;
 }
 

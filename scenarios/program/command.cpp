@@ -133,15 +133,6 @@ fs::path results_directory(const std::string& out, const std::string& name) {
   return out.empty() ? fs::path("results") / "out" / name : fs::path(out);
 }
 
-void require_names_of_their_own(const std::vector<fs::path>& files, const std::string& allowed) {
-  std::set<fs::path> names;
-  for (const fs::path& file : files) {
-    if (names.insert(file.stem()).second) continue;
-    throw InputError(
-        fmt::format("{}: a second scenario named \"{}\"; allowed: {}", file.string(), file.stem().string(), allowed));
-  }
-}
-
 void require_writable_directory(const fs::path& directory) {
   static NewDirectories directories;  // lives until the program ends, which removes empty ones
   std::error_code error;

@@ -109,9 +109,6 @@ std::string chosen_metric(const std::vector<std::string>& metrics, const std::st
 
 /// `out`, or results/out/`name` when it is empty.
 std::filesystem::path results_directory(const std::string& out, const std::string& name);
-/// Throws InputError when two scenarios have the same name, after which results are named; `allowed` is for its
-/// message.
-void require_names_of_their_own(const std::vector<std::filesystem::path>& files, const std::string& allowed);
 
 /// Throws InputError unless results can be written to `directory`. Creates it, and removes it again if it is still
 /// empty when the program ends.

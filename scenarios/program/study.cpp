@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "results/io/json_text.hpp"
+#include "results/io/columns.hpp"
 #include "scenarios/input/installed_folder.hpp"
 #include "scenarios/input/json_file.hpp"
 
@@ -49,7 +49,7 @@ std::optional<StudyFile> find_study(const std::string& word) {
 
 std::string text_of(const Json& value) {
   if (value.is_string()) return value.get<std::string>();
-  if (value.is_number_float()) return std::string(std::string_view(NumberText(value.get<double>())));
+  if (value.is_number_float()) return cell_text(value.get<double>());
   return value.dump();
 }
 

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 
+#include "results/io/columns.hpp"
 #include "results/io/json_text.hpp"
 #include "scenarios/input/installed_folder.hpp"
 #include "scenarios/input/text_lines.hpp"
@@ -15,10 +16,6 @@
 namespace hapbench {
 namespace {
 
-std::string number_text(double number) {
-  return std::string(std::string_view(NumberText(number)));
-}
-
 OpenChoice choice_of(const Json& json) {
   OpenChoice choice;
   for (const auto& [name, text] :
@@ -26,7 +23,7 @@ OpenChoice choice_of(const Json& json) {
         std::pair{"why", &choice.why}, std::pair{"chosen", &choice.chosen}})
     json.at(name).get_to(*text);
   const Json& value = json.at("value");
-  choice.value = value.is_number() ? number_text(value.get<double>()) : value.get<std::string>();
+  choice.value = value.is_number() ? cell_text(value.get<double>()) : value.get<std::string>();
   choice.unit = json.value("unit", "");
   if (json.contains("range")) choice.range = json.at("range").get<std::pair<double, double>>();
   choice.options = json.value("options", choice.options);
@@ -70,7 +67,7 @@ std::string chosen_text(const Place& place, const ChosenField& field, const std:
   if (!field.times) return value;
   if (!place.second->is_number())
     throw InputError(fmt::format("\"{}\" is no number, which a factor needs", place.first));
-  return number_text(finite_number(value).value_or(1.0) * place.second->get<double>());
+  return cell_text(finite_number(value).value_or(1.0) * place.second->get<double>());
 }
 
 std::string fields_text(const OpenChoice& choice) {
