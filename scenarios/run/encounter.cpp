@@ -192,6 +192,9 @@ class Approach {
   std::vector<Look> looks_;
 };
 
+/// A tool stands while it comes less than this share of the way that its target goes.
+constexpr double kMovingShare = 0.1;
+
 /// A tool that stood still to the end while the target of its hand went on.
 struct Stuck {
   double since = 0.0;                  ///< [s]
@@ -205,12 +208,11 @@ class DragCourse {
   DragCourse(const DragHand& hand, double width) : hand_(hand), width_(width) {}
 
   void add(double time) noexcept {
-    constexpr double kComes = 0.1;  // of the point's way, at least, where the tool does not stand
     now_ = {time, std::min(hand_.drag().speed * time, hand_.path().length()), std::max(now_.way, hand_.nearest())};
     if (now_.asked < static_cast<double>(stand_) * width_ / kStands) return;
     const Stand before = std::exchange(stands_[stand_ % kStands], now_);
     if (stand_++ < kStands) return;
-    if (now_.way - before.way >= kComes * (now_.asked - before.asked)) {
+    if (now_.way - before.way >= kMovingShare * (now_.asked - before.asked)) {
       stuck_.reset();
     } else if (!stuck_) {
       stuck_ = before;
@@ -239,17 +241,15 @@ class DragCourse {
   std::optional<Stand> stuck_;           ///< where it came to stand for good
 };
 
-/// Finds a tool that a hand's spring cannot move, that of a subject at a display, too: its target is the intended
-/// position. A spring whose target goes into the surface
-/// presses the tool on it, which is no sticking: so the tool is stuck only where the target came away from it by more
-/// than its width across the direction in which the springs of the contacts push.
+/// Finds a tool that the spring of a hand, or of a subject that aims at an intended position, cannot move. A spring
+/// whose target goes into the surface only presses the tool on it. The tool is therefore stuck only if the target came
+/// away from it by more than its width across the direction in which the springs of the contacts push.
 class Standstill {
  public:
   /// `target`: of the spring, at the time of the row that was the last [s]. `width`: the tool's [m].
   Standstill(std::function<Vec3(double)> target, double width) : target_(std::move(target)), width_(width) {}
 
   void add(const StepRecord& record) noexcept {
-    constexpr double kComes = 0.1;      // of the target's way, at least, where the tool does not stand
     constexpr double kRows = 1 / 32.0;  // of a mean over some rows, which chatter does not turn
     const Vec3& place = record.tool.pose.position;
     const Vec3 target = target_(record.time);
@@ -262,7 +262,7 @@ class Standstill {
     };
     stuck_.way = extend(ways_, place);
     stuck_.target_way = extend(target_ways_, target);
-    if (!began_ || stuck_.way > kComes * std::max(width_, stuck_.target_way)) {
+    if (!began_ || stuck_.way > kMovingShare * std::max(width_, stuck_.target_way)) {
       began_ = true;
       ways_ = {place, place};
       target_ways_ = {target, target};
