@@ -22,7 +22,7 @@ std::size_t available_threads() {
 
 void for_each_job(std::size_t count, const JobOptions& options, const std::function<void(std::size_t)>& job) {
   ProgressBar bar(options.label, count, !options.label.empty());
-  std::mutex mutex;  // locked but while a job is done
+  std::mutex mutex;  // of all below; unlocked only while a job runs
   std::size_t begun = 0, done = 0, lowest = count;
   std::exception_ptr error;  // of the lowest job that failed
   const auto work = [&] {
@@ -46,7 +46,7 @@ void for_each_job(std::size_t count, const JobOptions& options, const std::funct
     }
   };
   const std::size_t threads = std::max(1u, options.threads);
-  // What jobs do in parallel by themselves takes no more threads than they.
+  // A job may itself use TBB: that gets no more threads than there are jobs at once.
   const tbb::global_control within(tbb::global_control::max_allowed_parallelism,
                                    std::min(threads, available_threads()));
   std::unique_lock starting(mutex);  // no job begins before all threads are there

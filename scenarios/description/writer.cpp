@@ -87,7 +87,7 @@ class Writer final : public Fields {
   Json json_;
 };
 
-/// Of the value itself what is allowed, and nothing of the fields of an object; or all.
+/// How much is described: which values are allowed in words, without the fields of objects, or everything.
 enum class Extent { words, whole };
 
 /// Describes which values are allowed (guide_to).

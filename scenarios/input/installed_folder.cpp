@@ -28,7 +28,7 @@ fs::path share_of_build() {
 #endif
 }
 
-/// Where the folder may be.
+/// The paths at which the folder is looked for, in this order.
 std::vector<fs::path> places_of(const std::string& name) {
   std::error_code error;
   const fs::path program = fs::read_symlink("/proc/self/exe", error), wanted = fs::path("share") / "hapbench" / name;

@@ -36,7 +36,7 @@ struct ChosenCommand {
 /// of an option; empty for a command.
 void refuse_old_word(const std::string& command, const std::string& word);
 
-/// What an option or an argument takes, beside the kind of its variable.
+/// How an option or an argument may be given; its variable says of what kind the value is.
 struct Takes {
   bool required = false;
   bool several = false;          ///< it may be given several times, each time with one value
@@ -63,7 +63,7 @@ class Command {
   void flag(const std::string& name, bool& value, const std::string& help);
   /// Calls `when_given` if the flag is.
   void flag(const std::string& name, std::function<void()> when_given, const std::string& help);
-  /// Refuses an option without another one. Precondition: both were added.
+  /// Refuses an option without another one, of which it has one at most. Precondition: both were added.
   void needs(const std::string& option, const std::string& other);
   /// Text below the list of options: paragraphs, which are wrapped.
   void footer(const std::string& text);
