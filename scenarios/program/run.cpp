@@ -4,6 +4,7 @@
 #include "results/io/atomic_file.hpp"
 #include "results/io/json_text.hpp"
 #include "results/summary/outcome_names.hpp"
+#include "scenarios/batch/cases.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/input/json_file.hpp"
 #include "scenarios/program/command.hpp"
