@@ -110,7 +110,7 @@ def check(mutants: list[dict], build: Build) -> list[str]:
 
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("build", type=Path, help="a build folder with all tests, such as build/unity")
+    parser.add_argument("build", type=Path, help="a build folder with all tests, such as build/release")
     parser.add_argument("names", nargs="*", metavar="NAME", help="mutants to try instead of all")
     options = parser.parse_args()
     signal.signal(signal.SIGTERM, signal.default_int_handler)  # restores the source

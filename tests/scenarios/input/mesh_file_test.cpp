@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "scenarios/input/input_error.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "sim/mesh/half_edge_mesh.hpp"
 #include "tests/results/files.hpp"
