@@ -31,39 +31,39 @@ bool is_pair(const LowPassMode& mode) {
   return mode.taken.imag() != 0.0;
 }
 
-/// The matrix M for which M (x, T v, T^2/m f) is (x, T v) after a share of the period under a constant force f.
-Eigen::Matrix<double, 2, 3> motion_over(const SampledLoop& loop, double share) {
+/// The matrix A of the motion dz/ds = A z over the share s of the period, with z = (x, T v, T^2/m f) and a constant
+/// force f. Here and below sizes are dynamic, so that the compiler meets the matrix exponential once.
+Eigen::MatrixXd motion_rate(const SampledLoop& loop) {
   const double m = loop.moving_mass(), T = loop.period;
-  Eigen::Matrix3d rate = Eigen::Matrix3d::Zero();
+  Eigen::MatrixXd rate = Eigen::MatrixXd::Zero(3, 3);
   rate(0, 1) = 1.0;
   rate.row(1) << -loop.hand.stiffness * T * T / m, -loop.total_damping() * T / m, 1.0;
-  return Eigen::Matrix3d((rate * share).exp()).topRows<2>();
+  return rate;
 }
 
-/// The same of (x, T v) of the motors and then of the handle, on a transmission.
-Eigen::Matrix<double, 4, 5> elastic_motion_over(const SampledLoop& loop, const Transmission& transmission,
-                                                double share) {
+/// The same with (x, T v) of the motors and then of the handle, on a transmission.
+Eigen::MatrixXd elastic_motion_rate(const SampledLoop& loop, const Transmission& transmission) {
   const double T = loop.period, motor = transmission.motor_share * loop.device.handle_mass,
                handle = loop.moving_mass() - motor, k = transmission.stiffness * T * T, d = transmission.damping * T;
-  Eigen::Matrix<double, 5, 5> rate = Eigen::Matrix<double, 5, 5>::Zero();
+  Eigen::MatrixXd rate = Eigen::MatrixXd::Zero(5, 5);
   rate(0, 1) = rate(2, 3) = 1.0;
   rate.row(1) << -k / motor, -(d + loop.device.viscous * T) / motor, k / motor, d / motor, loop.moving_mass() / motor;
   rate.row(3) << k / handle, d / handle, -(k + loop.hand.stiffness * T * T) / handle,
       -(d + loop.hand.damping * T) / handle, 0.0;
-  return Eigen::Matrix<double, 5, 5>((rate * share).exp()).topRows<4>();
+  return rate;
 }
 
-/// Puts the motion over a period into the rows and columns `body` of the map A, under the force `before` for a share of
-/// it and `after` for the rest.
-template <int N, class Motion>
-void add_motion(Eigen::MatrixXd& A, const Eigen::Matrix<Eigen::Index, N, 1>& body, double part, const Motion& motion,
+/// Puts the motion over a period into the rows and columns `body` of the map A, under the force `before` for a share
+/// `part` of it and `after` for the rest.
+void add_motion(Eigen::MatrixXd& A, const std::vector<Eigen::Index>& body, double part, const Eigen::MatrixXd& rate,
                 const Eigen::RowVectorXd& before, const Eigen::RowVectorXd& after) {
-  const Eigen::Matrix<double, N, N + 1> first = motion(part), second = motion(1.0 - part);
-  Eigen::MatrixXd moving = Eigen::MatrixXd::Zero(N, A.cols());
-  for (int i = 0; i < N; ++i) moving.col(body[i]) = first.col(i);
-  if (part > 0.0) moving += first.col(N) * before;
-  const Eigen::MatrixXd next = second.template leftCols<N>() * moving + second.col(N) * after;
-  for (int i = 0; i < N; ++i) A.row(body[i]) = next.row(i);
+  const auto n = static_cast<Eigen::Index>(body.size());
+  const Eigen::MatrixXd first = (rate * part).exp(), second = (rate * (1.0 - part)).exp();
+  Eigen::MatrixXd moving = Eigen::MatrixXd::Zero(n, A.cols());
+  for (Eigen::Index i = 0; i < n; ++i) moving.col(body[static_cast<std::size_t>(i)]) = first.col(i).head(n);
+  if (part > 0.0) moving += first.col(n).head(n) * before;
+  const Eigen::MatrixXd next = second.topLeftCorner(n, n) * moving + second.col(n).head(n) * after;
+  for (Eigen::Index i = 0; i < n; ++i) A.row(body[static_cast<std::size_t>(i)]) = next.row(i);
 }
 
 }  // namespace
@@ -130,14 +130,10 @@ Eigen::MatrixXd SampledLoop::state_matrix() const {
 
   const Eigen::RowVectorXd before = part > 0.0 ? force_of(whole + 1) : Eigen::RowVectorXd();
   if (device.transmission) {
-    add_motion<4>(
-        A, Eigen::Matrix<Eigen::Index, 4, 1>(kPosition, kVelocity, n - 2, n - 1), part,
-        [this](double share) { return elastic_motion_over(*this, *device.transmission, share); }, before,
-        force_of(whole));
+    add_motion(A, {kPosition, kVelocity, n - 2, n - 1}, part, elastic_motion_rate(*this, *device.transmission), before,
+               force_of(whole));
   } else {
-    add_motion<2>(
-        A, Eigen::Matrix<Eigen::Index, 2, 1>(kPosition, kVelocity), part,
-        [this](double share) { return motion_over(*this, share); }, before, force_of(whole));
+    add_motion(A, {kPosition, kVelocity}, part, motion_rate(*this), before, force_of(whole));
   }
   for (Eigen::Index age = 0; age < kept; ++age) A.row(forces + age) = force_of(age);
   return A;
@@ -173,19 +169,18 @@ enum { kTool, kToolVelocity, kCarriage, kCarriageVelocity, kHandle, kHandleVeloc
 
 /// Carriage and handle after a step of the implicit midpoint rule (HandleMechanics). The columns belong to
 /// (x_c, v_c, x_h, v_h) and to constant forces on carriage and handle.
-Eigen::Matrix<double, 4, 6> mechanics_step(const HandleMechanicsConfig& m, double dt) {
+Eigen::MatrixXd mechanics_step(const HandleMechanicsConfig& m, double dt) {
   const double k = m.structure_stiffness, c = m.structure_damping;
-  Eigen::Matrix4d rate;
+  Eigen::MatrixXd rate(4, 4);
   rate << 0, 1, 0, 0,                                                                                       //
       -k / m.carriage_mass, -(c + m.friction) / m.carriage_mass, k / m.carriage_mass, c / m.carriage_mass,  //
       0, 0, 0, 1,                                                                                           //
       k / m.handle_mass, c / m.handle_mass, -k / m.handle_mass, -c / m.handle_mass;
-  Eigen::Matrix<double, 4, 6> right;
-  right.leftCols<4>() = Eigen::Matrix4d::Identity() + 0.5 * dt * rate;
-  right.rightCols<2>().setZero();
+  Eigen::MatrixXd right = Eigen::MatrixXd::Zero(4, 6);
+  right.leftCols(4) = Eigen::MatrixXd::Identity(4, 4) + 0.5 * dt * rate;
   right(1, 4) = dt / m.carriage_mass;
   right(3, 5) = dt / m.handle_mass;
-  return (Eigen::Matrix4d::Identity() - 0.5 * dt * rate).partialPivLu().solve(right);
+  return (Eigen::MatrixXd::Identity(4, 4) - 0.5 * dt * rate).partialPivLu().solve(right);
 }
 
 }  // namespace
@@ -203,8 +198,8 @@ Eigen::MatrixXd AdmittanceLoop::state_matrix() const {
   const Eigen::RowVectorXd command = servo.stiffness * (A.row(kTool) - unit(kCarriage)) +
                                      servo.damping * (A.row(kToolVelocity) - unit(kCarriageVelocity));
   const Eigen::RowVectorXd actuator = delay == 0 ? command : unit(kCommands + delay - 1);
-  const auto mechanics_of = mechanics_step(mechanics, tool.dt);
-  A.block<4, 4>(kCarriage, kCarriage) = mechanics_of.leftCols<4>();
+  const Eigen::MatrixXd mechanics_of = mechanics_step(mechanics, tool.dt);
+  A.block<4, 4>(kCarriage, kCarriage) = mechanics_of.leftCols(4);
   A.middleRows<4>(kCarriage) += mechanics_of.col(4) * actuator + mechanics_of.col(5) * hand;
 
   for (Eigen::Index i = 0; i < delay; ++i) A.row(kCommands + i) = i == 0 ? command : unit(kCommands + i - 1);
