@@ -210,7 +210,9 @@ class MeshSolid final : public Solid {
     const std::uint32_t v = surface_.triangles[t][nearest.corners >> 1u];
     return {vertex_normals_[v], border_vertices_[v]};
   }
-  Feature edge(std::size_t t, std::size_t k) const { return {edge_normals_[t][k], ((at_border_[t] >> k) & 1u) != 0}; }
+  Feature edge(std::size_t t, std::size_t k) const {
+    return {edge_normals_[t][k], ((unsigned{at_border_[t]} >> k) & 1u) != 0};
+  }
 
   WeldedSurface surface_;
   TriangleTree tree_;
