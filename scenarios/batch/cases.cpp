@@ -238,13 +238,17 @@ void append_new(std::vector<std::string>& texts, const std::vector<std::string>&
     if (std::find(texts.begin(), texts.end(), text) == texts.end()) texts.push_back(text);
 }
 
-void require_names_of_their_own(const std::vector<std::filesystem::path>& files, const std::string& allowed) {
-  std::set<std::filesystem::path> names;
+std::vector<std::string> require_names_of_their_own(const std::vector<std::filesystem::path>& files,
+                                                    const std::string& allowed) {
+  std::vector<std::string> names;
   for (const std::filesystem::path& file : files) {
-    if (names.insert(file.stem()).second) continue;
+    const bool is_new = std::ranges::find(names, file.stem().string()) == names.end();
+    names.push_back(file.stem().string());
+    if (is_new) continue;
     throw InputError(
         fmt::format("{}: a second scenario named \"{}\"; allowed: {}", file.string(), file.stem().string(), allowed));
   }
+  return names;
 }
 
 std::string_view sampling_name(SamplingMethod method) {
@@ -405,8 +409,9 @@ const ScenarioText& Cases::scene(std::size_t i) const {
 
 std::vector<std::string> Cases::overrides(std::size_t i) const {
   std::vector<std::string> overrides = sets_;
-  for (std::string& change : changes(i))
-    if (overridden_path(change) != kSceneAxis) overrides.push_back(std::move(change));
+  const std::vector<std::string> all = changes(i);
+  for (std::size_t c = 0; c < all.size(); ++c)
+    if (c >= axes_.size() || !(axes_[c].named || axes_[c].path == kSceneAxis)) overrides.push_back(all[c]);
   return overrides;
 }
 

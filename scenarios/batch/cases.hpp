@@ -34,6 +34,7 @@ struct Axis {
   std::optional<Range> range = {};       ///< replaces listed values
   std::size_t steps = 0;                 ///< number of values of a range on a grid
   bool whole = false;                    ///< numbers of the range are rounded to integers
+  bool named = false;                    ///< values are names, for whoever asks, and no overrides
 
   /// Changes that go with a value of the axis: further overrides, and the TimeFields::stride of its runs.
   struct Along {
@@ -62,9 +63,10 @@ Axis parse_axis(const std::string& text, bool sampled = false);
 /// Appends the texts, such as warnings of cases, that are not in the list yet.
 void append_new(std::vector<std::string>& texts, const std::vector<std::string>& more);
 
-/// Throws InputError when two scenarios have the same name, after which results are named; `allowed` is for its
+/// The names of the files, after which results are named. Throws InputError when two are the same; `allowed` is for its
 /// message.
-void require_names_of_their_own(const std::vector<std::filesystem::path>& files, const std::string& allowed);
+std::vector<std::string> require_names_of_their_own(const std::vector<std::filesystem::path>& files,
+                                                    const std::string& allowed);
 
 /// The path of the axis whose values name scenes.
 inline constexpr const char* kSceneAxis = "scenario";
@@ -147,7 +149,7 @@ class Cases {
   /// The values as "path=value", then what goes along with them.
   std::vector<std::string> changes(std::size_t i) const;
   const ScenarioText& scene(std::size_t i) const;
-  /// The overrides of the scene: the sets, and the changes but for the scene's own.
+  /// The overrides of the scene: the sets, and the changes but for names.
   std::vector<std::string> overrides(std::size_t i) const;
   /// The scenario. Thread-safe. Throws InputError.
   LoadedScenario load(std::size_t i) const;

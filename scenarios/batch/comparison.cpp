@@ -51,13 +51,6 @@ void check_seeds_and_jitter(const ComparisonQuestion& question, const LoadedScen
   }
 }
 
-std::vector<std::string> names_of(const std::vector<fs::path>& files) {
-  require_names_of_their_own(files, "one of each name in a comparison");
-  std::vector<std::string> names;
-  for (const fs::path& file : files) names.push_back(file.stem().string());
-  return names;
-}
-
 /// The cases of a scene; adds its warnings, of those about its fields what all algorithms have: what only one of them
 /// reads has an effect here.
 Cases cases_of(const ComparisonQuestion& question, const fs::path& file, std::vector<std::string>& warnings) {
@@ -142,7 +135,10 @@ fs::path Comparison::folder(std::size_t run) const {
 }
 
 Comparison planned(const ComparisonQuestion& question) {
-  Comparison comparison{{}, names_of(question.scenarios), question.algorithms, question.seeds};
+  Comparison comparison{{},
+                        require_names_of_their_own(question.scenarios, "one of each name in a comparison"),
+                        question.algorithms,
+                        question.seeds};
   const std::size_t scenes = question.scenarios.size(), size = scenes * comparison.each();
   if (size > kMostRuns) {
     throw InputError(fmt::format("got {} scenarios x {} algorithms x {} seeds = {} runs; allowed: at most {}", scenes,

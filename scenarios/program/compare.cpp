@@ -4,8 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
-#include <memory>
 #include <numeric>
 #include <optional>
 #include <set>
@@ -192,9 +190,8 @@ Json league_json(const League& league) {
 
 /// The errors of a comparison's numbers, in words and as JSON.
 struct ComparedErrors {
-  /// By how much a metric of the run with that number may be wrong; none where it is not known.
-  std::function<std::optional<double>(std::size_t run, const std::string& metric)> of_run;
-  std::string text;           ///< for each scenario a table and a sentence on each metric
+  FinerRuns finer;
+  std::string text = {};      ///< for each scenario a table and a sentence on each metric
   Json json = Json::array();  ///< an object for each scenario and metric
 };
 
@@ -251,13 +248,13 @@ Json numbers_json(const MetricNumbers& found, const std::vector<std::string>& al
 }
 
 /// Adds a table of the numbers of a scenario with their errors, and a sentence on each metric.
-void add_errors(const League& league, const FinerRuns& finer, std::size_t scenario, ComparedErrors& errors) {
+void add_errors(const League& league, std::size_t scenario, ComparedErrors& errors) {
   Columns<std::size_t> columns;  // a row is the place of an algorithm
   columns.print("algorithm", "", "", [&league](std::size_t a) { return league.algorithms[a]; });
   std::string sentences;
   for (std::size_t m = 0; m < league.metrics.size(); ++m) {
     const std::string& metric = league.metrics[m];
-    const MetricNumbers found = numbers_of(league, finer, scenario, m);
+    const MetricNumbers found = numbers_of(league, errors.finer, scenario, m);
     const auto* heading = std::ranges::find(kRunHeadings, metric, &RunHeading::metric);
     const bool known = heading != std::end(kRunHeadings);
     const double factor = known ? heading->factor : 1.0;
@@ -276,17 +273,14 @@ void add_errors(const League& league, const FinerRuns& finer, std::size_t scenar
   std::iota(places.begin(), places.end(), std::size_t{0});
   errors.text +=
       fmt::format("\nhow sure: {}\n\n{}\n{}\n{}", league.scenarios[scenario], columns.table(places).text(prose_width()),
-                  sentences, wrapped(fmt::format("+-: {}", finer.refined(scenario)), 0));
+                  sentences, wrapped(fmt::format("+-: {}", errors.finer.refined(scenario)), 0));
 }
 
-/// Runs the comparison more finely. `metrics` as in league_of. What is given has to outlive the answer. Throws Stopped.
-ComparedErrors errors_of(const Comparison& comparison, std::span<const Result> reports,
-                         const std::vector<std::string>& metrics, const JobOptions& jobs) {
-  const League league = league_of(comparison, reports, metrics);
-  const auto finer = std::make_shared<const FinerRuns>(comparison, reports, jobs);
-  ComparedErrors errors;
-  errors.of_run = [finer](std::size_t run, const std::string& metric) { return finer->known_error(run, metric).sum(); };
-  for (std::size_t s = 0; s < comparison.scenes.size(); ++s) add_errors(league, *finer, s, errors);
+/// Runs the comparison more finely. Comparison and reports have to outlive the answer. Throws Stopped.
+ComparedErrors errors_of(const League& league, const Comparison& comparison, std::span<const Result> reports,
+                         const JobOptions& jobs) {
+  ComparedErrors errors{FinerRuns(comparison, reports, jobs)};
+  for (std::size_t s = 0; s < comparison.scenes.size(); ++s) add_errors(league, s, errors);
   errors.text +=
       "\n" +
       wrapped(
@@ -367,6 +361,7 @@ std::vector<std::string> compared(const Asked& asked, const std::vector<Result>&
 /// What the runs gave, and more finely, where that was asked for.
 struct Answer {
   std::vector<Result> reports;
+  League league = {};
   std::optional<ComparedErrors> errors = {};
 };
 
@@ -378,8 +373,8 @@ Answer answer_to(const Asked& asked) {
   try {
     Answer answer{run_all(asked.comparison.scenes, {at_once, jobs.label},
                           [&asked](std::size_t run) { return asked.out / asked.comparison.folder(run); })};
-    if (options.errors)
-      answer.errors = errors_of(asked.comparison, answer.reports, compared(asked, answer.reports), jobs);
+    answer.league = league_of(asked.comparison, answer.reports, compared(asked, answer.reports));
+    if (options.errors) answer.errors.emplace(errors_of(answer.league, asked.comparison, answer.reports, jobs));
     return answer;
   } catch (const Stopped&) {
     forget_results_if_none(asked.out);
@@ -391,7 +386,7 @@ Answer answer_to(const Asked& asked) {
 void widen_tolerances(std::vector<Result>& reports, const ComparedErrors& errors) {
   for (std::size_t i = 0; i < reports.size(); ++i) {
     for (Metric& metric : reports[i].metrics)
-      if (const auto error = errors.of_run(i, metric.name)) metric.within(0.0, *error);
+      if (const auto error = errors.finer.known_error(i, metric.name).sum()) metric.within(0.0, *error);
   }
 }
 
@@ -454,7 +449,7 @@ int compare(const CompareOptions& options) {
   const Asked asked{options};
   print_warnings(asked.comparison.warnings);
   prepare(asked);
-  auto [reports, errors] = answer_to(asked);
+  auto [reports, league, errors] = answer_to(asked);
   Report report(options.output, asked.out);
   for (std::size_t s = 0; s < asked.comparison.scenes.size(); ++s) {
     print_warnings(run_warnings(asked.of(s, reports)));
@@ -463,7 +458,6 @@ int compare(const CompareOptions& options) {
   }
   report.json() = summaries_json(asked, reports);
   if (asked.league) {
-    const League league = league_of(asked.comparison, reports, options.metrics);
     report.write("league.csv", league_columns(), league.standings);
     report.say(league_text(league));
     report.json() = {{"runs", std::move(report.json())}};

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "algorithms/registry.hpp"
+#include "scenarios/batch/parallel_for.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/description/metric_sections.hpp"
 #include "scenarios/input/input_error.hpp"
@@ -83,14 +84,6 @@ std::vector<ComparedDevice> asked_devices(const LimitOptions& options) {
   return devices;
 }
 
-std::vector<ScenarioText> asked_scenes(const std::vector<std::string>& given) {
-  const std::vector<fs::path> files = find_scenarios(given);
-  require_names_of_their_own(files, "each name once");
-  std::vector<ScenarioText> scenes;
-  for (const fs::path& file : files) scenes.push_back(read_scenario_text(file));
-  return scenes;
-}
-
 /// The error with the device's name, since the overrides hold for all devices.
 InputError on_device(const ComparedDevice& device, const InputError& error) {
   std::vector<InputError> faults;
@@ -127,29 +120,6 @@ LimitQuestion question_of(const LimitOptions& options, const ScenarioText& scene
   if (!options.resolution.empty()) question.resolution = number_between("--resolution", options.resolution, 1e-6, 0.5);
   set_rule(options, question);
   return question;
-}
-
-/// Adds the cases of a scene with all algorithms. Warnings that are not among them yet are added.
-void add_cases(const LimitOptions& options, LimitRow row, const ScenarioText& scene, std::vector<std::string> overrides,
-               const std::vector<std::string>& algorithms, LimitTable& table, std::vector<std::string>& warnings) {
-  try {
-    if (row.device) overrides = overrides_on(*row.device, scene, overrides);
-    row.scene = scene.file.stem().string();
-    row.asked = {&scene, overrides, {}, question_of(options, scene, overrides)};
-    const LoadedScenario loaded = load_scenario(scene, overrides);
-    row.scenario = loaded.scenario;
-    append_new(warnings, row.asked.question.warnings);
-    append_new(warnings, with_files(loaded, check_named_files(loaded)));
-    // A field of the rendering changes nothing of hand and device.
-    if (row.asked.question.path.starts_with("rendering.")) row.asked.question.tremor = tremor_speeds(loaded);
-    const std::vector<std::string> own = {loaded.scenario.rendering.algorithm};
-    for (const std::string& algorithm : algorithms.empty() ? own : algorithms) {
-      row.asked.algorithm = algorithm;
-      table.rows.push_back(row);
-    }
-  } catch (const InputError& error) {
-    throw row.device ? on_device(*row.device, error) : error;
-  }
 }
 
 }  // namespace
@@ -211,41 +181,67 @@ std::vector<ComparedDevice> chosen_devices(const std::vector<std::string>& given
 
 namespace {
 
-/// Loads every case, and prints its warnings. Throws InputError.
-LimitTable limit_cases(const LimitOptions& options) {
+LimitTable asked_table(const LimitOptions& options) {
   if (options.devices.empty() && !options.friction.empty())
     throw InputError("--friction: got factors; allowed: with --device");
-  LimitTable table{.scenes = asked_scenes(options.scenarios), .has_devices = !options.devices.empty()};
-  std::vector<std::optional<ComparedDevice>> devices = {std::nullopt};
-  if (table.has_devices) {
-    const std::vector<ComparedDevice> asked = asked_devices(options);
-    devices.assign(asked.begin(), asked.end());
-  }
-  std::vector<std::string> algorithms;
+  const std::vector<fs::path> files = find_scenarios(options.scenarios);
+  std::vector<ScenarioText> scenes;
+  Axis scene{.path = kSceneAxis, .values = require_names_of_their_own(files, "each name once")},
+      algorithm{.path = "rendering.algorithm", .values = {""}, .named = true};
+  for (const fs::path& file : files) scenes.push_back(read_scenario_text(file));
+  std::vector<ComparedDevice> devices;
+  if (!options.devices.empty()) devices = asked_devices(options);
+  std::vector<Axis> axes = {{.path = "device", .values = names_of(devices, &ComparedDevice::name), .named = true}};
+  if (devices.empty()) axes[0].values = {""};
   if (!options.algorithms.empty())
-    algorithms = chosen_names("--algorithms: got", options.algorithms, algorithm_names());
-  std::vector<Axis> axes;
+    algorithm.values = chosen_names("--algorithms: got", options.algorithms, algorithm_names());
   for (const std::string& text : options.over) axes.push_back(parse_axis(text));
-  for (const Axis& axis : axes) table.over.push_back(axis.path);
-  const Cases over({}, options.overrides, std::move(axes));
-  table.columns = table.scenes.size() * std::max<std::size_t>(1, algorithms.size());
+  axes.insert(axes.end(), {std::move(scene), std::move(algorithm)});
+  return {std::move(devices), Cases(std::move(scenes), options.overrides, std::move(axes))};
+}
+
+/// The case of that number with the scene's own algorithm. Warnings that are not among them yet are added.
+LimitRow asked_row(const LimitOptions& options, const LimitTable& table, std::size_t i,
+                   std::vector<std::string>& warnings) {
+  LimitRow row;
+  if (!table.devices.empty()) row.device = &table.devices[table.cases.place(i, 0)];
+  const ScenarioText& scene = table.cases.scene(i);
+  try {
+    std::vector<std::string> overrides = table.cases.overrides(i);
+    if (row.device != nullptr) overrides = overrides_on(*row.device, scene, overrides);
+    const LimitQuestion question = question_of(options, scene, overrides);
+    const LoadedScenario loaded = load_scenario(scene, overrides);
+    row.scenario = loaded.scenario;
+    row.asked = {&scene, std::move(overrides), loaded.scenario.rendering.algorithm, question};
+    append_new(warnings, question.warnings);
+    append_new(warnings, with_files(loaded, check_named_files(loaded)));
+    // A field of the rendering changes nothing of hand and device.
+    if (question.path.starts_with("rendering.")) row.asked.question.tremor = tremor_speeds(loaded);
+  } catch (const InputError& error) {
+    throw row.device != nullptr ? on_device(*row.device, error) : error;
+  }
+  return row;
+}
+
+/// Loads every case, and prints its warnings. Throws InputError.
+LimitTable limit_cases(const LimitOptions& options) {
+  LimitTable table = asked_table(options);
   std::vector<std::string> warnings;
-  for (const std::optional<ComparedDevice>& device : devices) {
-    for (std::size_t point = 0; point < over.size(); ++point) {
-      for (const ScenarioText& scene : table.scenes)
-        add_cases(options, {device, over.values(point)}, scene, over.overrides(point), algorithms, table, warnings);
-    }
+  for (std::size_t i = 0; i < table.cases.size(); ++i) {
+    const bool is_asked = table.cases.place(i, table.over() + 2) > 0;  // with another algorithm
+    LimitRow& row = table.rows.emplace_back(is_asked ? table.rows.back() : asked_row(options, table, i, warnings));
+    row.values = table.cases.values(i);
+    if (const std::string& algorithm = row.values.back(); !algorithm.empty()) row.asked.algorithm = algorithm;
   }
   print_warnings(warnings);
   return table;
 }
 
-/// Puts the limits of all cases, in their order, into the table.
-void add_limits(LimitTable& table, std::vector<FieldLimit> limits) {
+/// Compares the limits by those of the first scene and algorithm.
+void add_ratios(LimitTable& table) {
   for (std::size_t i = 0; i < table.rows.size(); ++i) {
     LimitRow& row = table.rows[i];
-    row.found = std::move(limits[i]);
-    const FieldLimit& reference = table.rows[i - i % table.columns].found;
+    const FieldLimit& reference = table.rows[i - i % table.columns()].found;
     if (!row.found.value || !reference.value) continue;
     row.stiffness_ratio = *row.found.value / *reference.value;
     if (const double lambda = reference.settled.lambda_max; lambda > 0.0)
@@ -255,11 +251,11 @@ void add_limits(LimitTable& table, std::vector<FieldLimit> limits) {
 
 int limit(const LimitOptions& options) {
   LimitTable table = limit_cases(options);
-  const std::string name = options.scenarios.size() > 1 ? "limit" : "limit_" + table.first().scene;
-  Report report(options, name);
-  std::vector<LimitCase> cases;
-  for (const LimitRow& row : table.rows) cases.push_back(row.asked);
-  add_limits(table, field_limits(cases, job_options(options, "limit")));
+  Report report(options, options.scenarios.size() > 1 ? "limit" : "limit_" + table.first().scene());
+  std::vector<LimitRow>& rows = table.rows;
+  for_each_job(rows.size(), job_options(options, "limit"),
+               [&](std::size_t i) { rows[i].found = field_limit(rows[i].asked); });
+  add_ratios(table);
   tell_limits(table, report);
   report.say(fmt::format("\nresults in {}\n", report.folder().string()));
   return report.finish();

@@ -24,28 +24,33 @@ std::vector<ComparedDevice> chosen_devices(const std::vector<std::string>& given
 
 /// A case of the question and, once it is found, its answer: a line of limit.csv.
 struct LimitRow {
-  std::optional<ComparedDevice> device = {};  ///< none: the scene's own
-  std::vector<std::string> values = {};       ///< of the fields that vary besides
-  std::string scene = {};                     ///< the name of its file
-  Scenario scenario = {};                     ///< as it is asked for, with its own value of the field
+  std::vector<std::string> values = {};    ///< of the axes of LimitTable::cases
+  const ComparedDevice* device = nullptr;  ///< none: the scene's own
+  Scenario scenario = {};                  ///< as it is asked for, with its own value of the field
   LimitCase asked = {};
   FieldLimit found = {};
   /// The limit over that of the first scene and algorithm, all else equal, and the same of K lambda_max(S), the
   /// stiffness that the hand meets; none where either has no limit.
   std::optional<double> stiffness_ratio = {}, rendered_ratio = {};
+
+  /// The name of the scene's file.
+  const std::string& scene() const { return values[values.size() - 2]; }
 };
 
-/// The devices, on each of them all values of --over, for each of these all scenes with all algorithms.
+/// A row for each case.
 struct LimitTable {
-  std::vector<ScenarioText> scenes = {};
-  bool has_devices = false;
-  std::vector<std::string> over = {};  ///< paths of the fields that vary besides
+  std::vector<ComparedDevice> devices;  ///< empty: each scene's own
+  /// The axes are the device, the fields of --over, the scene and the algorithm; all but the fields are named.
+  Cases cases;
   std::vector<LimitRow> rows = {};
-  std::size_t columns = 1;  ///< scenes times algorithms: as many rows follow each other with all else equal
 
   const LimitRow& first() const { return rows.front(); }
+  /// The fields of --over: axes 1 to this one.
+  std::size_t over() const { return cases.axes().size() - 3; }
+  /// Scenes times algorithms: as many rows follow each other with all else equal.
+  std::size_t columns() const { return cases.axes()[over() + 1].size() * cases.axes()[over() + 2].size(); }
   /// True where a table of rows and columns shows the limits, and not one of every number.
-  bool is_grid() const { return has_devices || !over.empty(); }
+  bool is_grid() const { return !devices.empty() || over() > 0; }
 };
 
 /// Writes limit.csv and limit_runs.csv, and tells what was found.

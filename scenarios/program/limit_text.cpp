@@ -7,6 +7,7 @@
 #include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <span>
 
 #include "device_model/device_presets.hpp"
 #include "device_model/theory/stiffness_limits.hpp"
@@ -38,16 +39,8 @@ std::string beyond_text(const FieldLimit& limit) {
   if (limit.beyond) return std::string(run_verdict_name(limit.beyond->verdict));
   return limit.value ? "end of the range" : std::string(run_verdict_name(limit.runs.front().verdict));
 }
-/// An end of the interval of stable values, and the run beyond it.
-struct IntervalEnd {
-  const std::optional<double>& value;
-  const std::optional<JudgedValue>& beyond;
-  std::optional<double> tolerance;
-};
-IntervalEnd end_of(const LimitRow& r, bool low) {
-  const FieldLimit& l = r.found;
-  if (low == r.asked.question.smallest) return {l.value, l.beyond, l.tolerance()};
-  return {l.other_value, l.other_beyond, l.other_tolerance()};
+const IntervalEnd& end_of(const LimitRow& r, bool low) {
+  return low == r.asked.question.smallest ? r.found : r.found.other;
 }
 
 /// A line of limit_runs.csv.
@@ -62,23 +55,24 @@ struct LimitRunRow {
 template <class Row>
 Columns<Row> place_columns(const LimitTable* table) {
   Columns<Row> columns;
-  if (table == nullptr || table->has_devices) {
+  if (table == nullptr || !table->devices.empty()) {
     columns.add(
         "device", "",
         "ideal, admittance, the preset of an impedance device (* with numbers of --set, [soft] and [stiff] at the "
         "ends of what is not published), or a file's",
         [](const LimitRow& r) { return r.device->name; });
   }
-  if (table == nullptr || table->has_devices || table->scenes.size() > 1) {
-    columns.add("scenario", "", "name of the scene's file", [](const LimitRow& r) { return r.scene; },
+  if (table == nullptr || !table->devices.empty() || table->cases.scenes().size() > 1) {
+    columns.add("scenario", "", "name of the scene's file", [](const LimitRow& r) { return r.scene(); },
                 {.heading = table == nullptr ? "" : "scenario"});
   }
-  for (std::size_t i = 0; table != nullptr && i < table->over.size(); ++i) {
-    columns.add(table->over[i], "by name", "value of the field that varies besides", [i](const LimitRow& r) {
-      const std::string& value = r.values[i];
-      const auto number = finite_number(value);
-      return number ? Cell(*number) : Cell(value);
-    });
+  for (std::size_t i = 1; table != nullptr && i <= table->over(); ++i) {
+    columns.add(table->cases.axes()[i].path, "by name", "value of the field that varies besides",
+                [i](const LimitRow& r) {
+                  const std::string& value = r.values[i];
+                  const auto number = finite_number(value);
+                  return number ? Cell(*number) : Cell(value);
+                });
   }
   columns.add("algorithm", "", "force algorithm", of_answer(&FieldLimit::algorithm), {.heading = "algorithm"});
   return columns;
@@ -94,7 +88,7 @@ void add_ends(Columns<LimitRow>& columns, const LimitTable* table) {
                            const char* first, bool shown) {
     columns.add(
         end, "by field", meaning, [low](const LimitRow& r) { return end_of(r, low).value; },
-        printed_if(shown, end + " end"), [low](const LimitRow& r) { return end_of(r, low).tolerance; });
+        printed_if(shown, end + " end"), [low](const LimitRow& r) { return end_of(r, low).tolerance(); });
     columns.add(outside, "by field", first, [low](const LimitRow& r) { return value_cell(end_of(r, low).beyond); });
     columns.add(
         "class_" + outside, "", "what became of the run there",
@@ -169,10 +163,10 @@ void add_search(Columns<LimitRow>& columns) {
               of_answer(&FieldLimit::tolerance), only_json());
   columns.add(
       "low_tolerance", "by field", "the same of the low end",
-      [](const LimitRow& r) { return end_of(r, true).tolerance; }, only_json());
+      [](const LimitRow& r) { return end_of(r, true).tolerance(); }, only_json());
   columns.add(
       "high_tolerance", "by field", "the same of the high end",
-      [](const LimitRow& r) { return end_of(r, false).tolerance; }, only_json());
+      [](const LimitRow& r) { return end_of(r, false).tolerance(); }, only_json());
   columns.add("undecided", "1", "runs that were too short to tell slow motion from rest, though lengthened",
               of_answer(&FieldLimit::undecided));
   columns.add("unstable_without_contact", "", "true when hand and device alone are unstable beyond the edge",
@@ -220,7 +214,7 @@ Columns<LimitRow> limit_columns(const LimitTable* table) {
   const auto has_inequality = [](const LimitRow& row) { return row.found.closed_form.has_value(); };
   add_theory(columns, table == nullptr || std::ranges::any_of(table->rows, has_inequality));
   add_search(columns);
-  if (table == nullptr || table->has_devices) {
+  if (table == nullptr || !table->devices.empty()) {
     columns.add("published_N_per_m", "N/m", "published largest stable stiffness of a wall on the device",
                 [](const LimitRow& r) { return r.device->published_stiffness; });
   }
@@ -334,7 +328,7 @@ std::string edge_text(const LimitRow& row) {
   const FieldLimit& limit = row.found;
   if (!limit.value) return "none";
   return fmt::format("{}{}{}{}{}",
-                     limit.other_beyond ? value_text(*limit.other_value, limit.other_tolerance()) + "-" : "",
+                     limit.other.beyond ? value_text(*limit.other.value, limit.other.tolerance()) + "-" : "",
                      limit.beyond ? "" : "> ", value_text(*limit.value, limit.tolerance()),
                      is_beyond_linear(row) ? "!" : "", limit.inconsistent.empty() ? "" : " ~");
 }
@@ -343,7 +337,7 @@ std::string edge_text(const LimitRow& row) {
 /// when none has one.
 std::string delays_text(const LimitTable& table) {
   std::map<std::string, std::vector<std::string>> names;
-  for (std::size_t i = 0; i < table.rows.size(); i += table.columns) {
+  for (std::size_t i = 0; i < table.rows.size(); i += table.columns()) {
     const LimitRow& row = table.rows[i];
     if (handle_moves_tool(row.scenario.device) && !row.device->name.ends_with(']'))
       append_new(names[delay_text(row.scenario)], {row.device->name});
@@ -385,7 +379,7 @@ std::string detailed_text(const LimitTable& table) {
   std::string text, remarks;
   for (std::size_t i = 0; i < table.rows.size(); ++i) {
     const LimitRow& row = table.rows[i];
-    if (i == 0 || row.scene != table.rows[i - 1].scene) text += question_text(row.asked.question, row.scenario);
+    if (i == 0 || row.scene() != table.rows[i - 1].scene()) text += question_text(row.asked.question, row.scenario);
     remarks += remarks_text(row);
   }
   const LimitRow& first = table.first();
@@ -398,21 +392,21 @@ std::string detailed_text(const LimitTable& table) {
 /// A row is the first of those with all else equal.
 Columns<const LimitRow*> grid_columns(const LimitTable& table) {
   Columns<const LimitRow*> columns;
-  if (table.has_devices) columns.print("device", "", "", [](const LimitRow* r) { return r->device->name; });
-  for (std::size_t i = 0; i < table.over.size(); ++i) {
-    columns.print(table.over[i], "1", "", [i](const LimitRow* r) {
+  if (!table.devices.empty()) columns.print("device", "", "", [](const LimitRow* r) { return r->device->name; });
+  for (std::size_t i = 1; i <= table.over(); ++i) {
+    columns.print(table.cases.axes()[i].path, "1", "", [i](const LimitRow* r) {
       const auto number = finite_number(r->values[i]);
       return number ? significant(*number) : r->values[i];
     });
   }
-  if (table.has_devices) {
+  if (!table.devices.empty()) {
     columns.print("pub-\nlished", "1", "", [](const LimitRow* r) {
       const auto& published = r->device->published_stiffness;
       return published ? value_text(*published) : "-";
     });
   }
-  for (std::size_t c = 0; c < table.columns; ++c)
-    columns.print(table.rows[c].scene + "\n" + table.rows[c].asked.algorithm, "1", "",
+  for (std::size_t c = 0; c < table.columns(); ++c)
+    columns.print(table.rows[c].scene() + "\n" + table.rows[c].asked.algorithm, "1", "",
                   [c](const LimitRow* r) { return edge_text(r[c]); });
   return columns;
 }
@@ -440,11 +434,11 @@ std::string devices_text(const LimitTable& table) {
 std::string notes_text(const LimitTable& table) {
   const auto any = [&](auto holds) { return std::ranges::any_of(table.rows, holds); };
   std::string text;
-  if (any([](const LimitRow& row) { return row.found.other_beyond.has_value(); }))
+  if (any([](const LimitRow& row) { return row.found.other.beyond.has_value(); }))
     text += "a-b: stable from a on only; class_below in limit.csv says what becomes of the run below\n";
   if (any([](const LimitRow& row) { return !row.found.value; }))
     text += "none: no value tried is stable; limit_runs.csv says what becomes of each\n";
-  if (table.has_devices) text += devices_text(table);
+  if (!table.devices.empty()) text += devices_text(table);
   text += approaches_text(table);
   if (any(is_beyond_linear)) {
     text += wrapped(fmt::format("!: beyond the edge of the loop of device, hand and surface, linear and in contact "
@@ -462,16 +456,17 @@ std::string grid_text(const LimitTable& table) {
   const LimitQuestion& question = table.first().asked.question;
   std::string text = fmt::format("{} stable {}, to {:.3g} %\n", question.smallest ? "smallest" : "largest",
                                  question.path, 100.0 * question.resolution);
+  const std::span over = std::span(table.cases.axes()).subspan(1, table.over());
   const bool as_in_first_row = std::ranges::none_of(
-      table.over, [](const auto& path) { return path.starts_with("rendering.") || path.starts_with("time."); });
+      over, [](const Axis& axis) { return axis.path.starts_with("rendering.") || axis.path.starts_with("time."); });
   std::vector<std::string> rules;
-  for (std::size_t c = 0; as_in_first_row && c < table.columns; ++c) {
+  for (std::size_t c = 0; as_in_first_row && c < table.columns(); ++c) {
     const Scenario& scenario = table.rows[c].scenario;
     append_new(rules, {fmt::format("{} steps of {} s; {}\n", scenario.time.steps, significant(scenario.time.step),
                                    damping_text(scenario.rendering))});
   }
   std::vector<const LimitRow*> firsts;
-  for (std::size_t i = 0; i < table.rows.size(); i += table.columns) firsts.push_back(&table.rows[i]);
+  for (std::size_t i = 0; i < table.rows.size(); i += table.columns()) firsts.push_back(&table.rows[i]);
   return text + fmt::format("{}", fmt::join(rules, "")) + "\n" + grid_columns(table).table(firsts, kGridGap).text() +
          wrapped(rule_text(question, is_moved(table.first().scenario)), 0) + notes_text(table);
 }

@@ -51,6 +51,21 @@ struct Tuning {
   }
 };
 
+/// The places of the laws with a choice, best first: the least settled depth, where the scene has none the largest K
+/// lambda_max.
+std::vector<std::size_t> ranking_of(const std::vector<TunedLaw>& laws) {
+  std::vector<std::size_t> order;
+  for (std::size_t i = 0; i < laws.size(); ++i)
+    if (laws[i].choice) order.push_back(i);
+  const auto key = [&](std::size_t i) {
+    const TuneTrial& choice = *laws[i].choice;
+    const auto depth = choice.metrics.find("inside_settled_m");
+    return depth != choice.metrics.end() ? depth->second : -choice.stiffness * choice.lambda_max;
+  };
+  std::ranges::stable_sort(order, {}, key);
+  return order;
+}
+
 // ---- Tables and JSON
 
 /// With the digits that the search leaves it.

@@ -143,8 +143,8 @@ class Search {
       limit.settled = runs.at(*limit.value).settled;
     }
     if (edge.beyond) limit.beyond = at_part(*edge.beyond);
-    if (edge.first) limit.other_value = question_.value_at(*edge.first);
-    if (edge.before) limit.other_beyond = at_part(*edge.before);
+    if (edge.first) limit.other.value = question_.value_at(*edge.first);
+    if (edge.before) limit.other.beyond = at_part(*edge.before);
     if (question_.own_part()) limit.own = at_part(*question_.own_part());
     for (const auto& [value, run] : runs) {
       limit.runs.push_back({value, run.verdict});
@@ -171,7 +171,7 @@ class Search {
   bool in_interval(double value, const FieldLimit& limit) const {
     const auto is_before = [this](double a, double b) { return question_.smallest ? a > b : a < b; };
     return (!limit.beyond || is_before(value, limit.beyond->value)) &&
-           (!limit.other_beyond || is_before(limit.other_beyond->value, value));
+           (!limit.other.beyond || is_before(limit.other.beyond->value, value));
   }
 
   JudgedRun judged(double value) const {
@@ -335,12 +335,8 @@ bool FieldLimit::is_beyond_linear(double resolution) const {
   return value && linear && *value > (1.0 + resolution) * *linear;
 }
 
-std::optional<double> FieldLimit::tolerance() const {
+std::optional<double> IntervalEnd::tolerance() const {
   return value && beyond ? std::optional(std::abs(beyond->value - *value)) : std::nullopt;
-}
-
-std::optional<double> FieldLimit::other_tolerance() const {
-  return other_value && other_beyond ? std::optional(std::abs(other_beyond->value - *other_value)) : std::nullopt;
 }
 
 std::optional<double> FieldLimit::difference() const {
@@ -393,12 +389,6 @@ LimitQuestion limit_question(const ScenarioText& scenario, const std::vector<std
 FieldLimit field_limit(const LimitCase& asked) {
   if (asked.question.most_vibration) check_sampling(load_scenario(*asked.scene, asked.overrides));
   return Search(asked).limit();
-}
-
-std::vector<FieldLimit> field_limits(std::span<const LimitCase> cases, const JobOptions& jobs) {
-  std::vector<FieldLimit> limits(cases.size());
-  for_each_job(cases.size(), jobs, [&](std::size_t i) { limits[i] = field_limit(cases[i]); });
-  return limits;
 }
 
 }  // namespace hapbench

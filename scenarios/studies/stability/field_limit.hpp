@@ -3,12 +3,10 @@
 #include <functional>
 #include <map>
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
 #include "scenarios/batch/cases.hpp"
-#include "scenarios/batch/parallel_for.hpp"
 #include "scenarios/description/load_scenario.hpp"
 #include "scenarios/studies/stability/judged_run.hpp"
 
@@ -64,14 +62,19 @@ struct JudgedValue {
   RunVerdict verdict = RunVerdict::stable;
 };
 
-/// The answer for one algorithm.
-struct FieldLimit {
-  std::string algorithm;
+/// An end of the interval of stable values around the place where the search began.
+struct IntervalEnd {
   std::optional<double> value;        ///< the last stable one; none when no run is stable
   std::optional<JudgedValue> beyond;  ///< the first one beyond it that is not; none when the range ends stable
-  /// The same at the other end of the interval of stable values around it, where the search began.
-  std::optional<double> other_value;
-  std::optional<JudgedValue> other_beyond;
+
+  /// How far the edge may lie beyond the value: from there to the next one that is not stable; none without one.
+  std::optional<double> tolerance() const;
+};
+
+/// The answer for one algorithm: the end that was asked for.
+struct FieldLimit : IntervalEnd {
+  std::string algorithm;
+  IntervalEnd other;
   /// The same by the eigenvalues of a step, where the springs stay in contact; infinite (smallest: 0) when the whole
   /// range is stable, none where there is no theory or nothing is stable.
   std::optional<double> theory;
@@ -104,9 +107,6 @@ struct FieldLimit {
   bool is_beyond_linear(double resolution) const;
   /// value / theory - 1; none without either.
   std::optional<double> difference() const;
-  /// How far the edge may lie beyond the value: from there to the next one that is not stable; none without one.
-  std::optional<double> tolerance() const;
-  std::optional<double> other_tolerance() const;
 };
 
 /// The scenario's own value at a path, or null.
@@ -134,8 +134,5 @@ struct LimitCase {
 /// InputError, with the file, for a scene without a free position or with fewer than 4 steps, and where vibration is
 /// asked for at a sampling rate of 60 Hz or less.
 FieldLimit field_limit(const LimitCase& asked);
-
-/// Answers for each case, the same whatever the number of threads.
-std::vector<FieldLimit> field_limits(std::span<const LimitCase> cases, const JobOptions& jobs);
 
 }  // namespace hapbench

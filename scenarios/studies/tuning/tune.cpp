@@ -29,10 +29,6 @@ constexpr const char* kFilters[] = {R"({"type":"difference"})", R"({"type":"low_
                                     R"({"type":"low_pass","cutoff_Hz":100})", R"({"type":"low_pass","cutoff_Hz":200})",
                                     R"({"type":"adaptive_window"})"};
 
-const ImpedanceDeviceConfig* impedance_of(const Scenario& scenario) {
-  return std::get_if<ImpedanceDeviceConfig>(&scenario.device);
-}
-
 }  // namespace
 
 std::string setting_text(const TuneSetting& setting) {
@@ -52,7 +48,7 @@ TuneRanges tune_ranges(const TuneQuestion& question, const std::string& algorith
     ranges.damping_ratio = question.damping_ratio;
     ranges.damping_ratio->logarithmic = true;
     // zeta is that of the virtual mass; what moves is the handle.
-    if (const auto* device = impedance_of(own)) {
+    if (const auto* device = std::get_if<ImpedanceDeviceConfig>(&own.device)) {
       const double scale = std::sqrt(device->handle_mass / own.rendering.mass);
       ranges.damping_ratio->from *= scale;
       ranges.damping_ratio->to *= scale;
@@ -81,7 +77,7 @@ std::vector<TuneSetting> settings_of(const TuneQuestion& question, const TuneRan
     masses = {std::clamp(own.rendering.mass, from, to), from, to};
   }
   std::vector<std::string> filters = {""};
-  if (question.filters && impedance_of(own) != nullptr)
+  if (question.filters && handle_moves_tool(own.device))
     filters.insert(filters.end(), std::begin(kFilters), std::end(kFilters));
   std::vector<TuneSetting> settings;
   for (const std::string& filter : filters)
@@ -101,10 +97,9 @@ std::vector<FamilyMember> hands_of(const Scenario& scenario) {
   for (const double k : {soft.stiffness, stiff.stiffness}) {
     const std::string spring = fmt::format("hand.stiffness_N_per_m={}", k);
     if (!has_mass) hands.push_back({fmt::format("a hand of {} N/m", k), {spring}});
-    for (const double m : {light.mass, heavy.mass}) {
+    for (const double m : {light.mass, heavy.mass})
       if (has_mass)
         hands.push_back({fmt::format("a hand of {} kg and {} N/m", m, k), {spring, fmt::format("hand.mass_kg={}", m)}});
-    }
   }
   return hands;
 }
@@ -170,10 +165,9 @@ class Tuner {
     shell_ = make_shell(own.scenario, own.files);
     settings_ = settings_of(question, ranges_, own.scenario);
     family_.push_back({"the scene's own run"});
-    for (const FamilyOver over : question.over) {
+    for (const FamilyOver over : question.over)
       for (FamilyMember& member : family_of(own, over)) family_.push_back(std::move(member));
-      over_hands_ = over_hands_ || over == FamilyOver::hands;
-    }
+    fail(end_, "range", "the end of the range that was searched");
     if (springs_stay(own.scenario)) springs_lambda_ = stiffness_eigenvalues(own.scenario)[2];
   }
 
@@ -182,24 +176,20 @@ class Tuner {
     law.algorithm = algorithm_;
     Range range = ranges_.stiffness;
     range.to /= question_.margin;
-    for (bool again = true; again;) {
+    do {
       search(range);
-      again = false;
-      if (!best_) break;
-      const auto failing = failing_gain(*best_, law.verified);
+      const auto failing = best_ ? failing_gain(*best_, law.verified) : std::nullopt;
       if (!failing) break;
       // Not settled at a gain within the margin: any K whose margin reaches there is out.
       range.to = best_->stiffness * *failing / question_.margin * (1.0 - kResolution);
-      again = range.to > range.from;
-      beyond_ = {};
-      cap_ = fmt::format("at {:.4g} N/m it is not settled", best_->stiffness * *failing);
+      fail(end_, "margin", fmt::format("at {:.4g} N/m it is not settled", best_->stiffness * *failing));
       best_.reset();
-    }
+    } while (range.to > range.from);
     if (best_) {
       if (best_->metrics.empty()) best_->metrics = own_metrics_of(*best_);
       law.choice = best_;
-      law.binding = !beyond_.binding.empty() ? beyond_.binding : cap_.empty() ? "range" : "margin";
-      law.why = !beyond_.why.empty() ? beyond_.why : cap_.empty() ? "the end of the range that was searched" : cap_;
+      law.binding = beyond_.binding;
+      law.why = beyond_.why;
       law.margins = margins(*best_);
       law.spread = spread(*best_);
       law.overrides = overrides(*best_, best_->stiffness);
@@ -265,15 +255,16 @@ class Tuner {
 
   // ---- The loop in contact
 
+  bool over_hands() const { return std::ranges::find(question_.over, FamilyOver::hands) != question_.over.end(); }
+
   /// The hand with which the loop is unstable somewhere from K to `gain` K; none where there is none.
   std::optional<std::string> unstable_loop(Scenario scenario, double lambda, double stiffness, double gain) const {
     if (!(lambda > 0.0)) return std::nullopt;
     constexpr double kStride = 1.1;
     for (double K = gain * stiffness; K * kStride > stiffness; K /= kStride) {
       scenario.rendering.stiffness = K;
-      for (const auto& [hand, step] : contact_loops(scenario, lambda, over_hands_)) {
+      for (const auto& [hand, step] : contact_loops(scenario, lambda, over_hands()))
         if (!is_stable_step(step)) return hand;
-      }
     }
     return std::nullopt;
   }
@@ -346,7 +337,7 @@ class Tuner {
     trial.binding = binding;
     trial.why = why;
   }
-  const TuneTrial& tried(const TuneSetting& setting, double stiffness) {
+  TuneTrial& tried(const TuneSetting& setting, double stiffness) {
     const auto [place, is_new] = trials_.try_emplace({setting, stiffness});
     TuneTrial& trial = place->second;
     if (!is_new) return trial;
@@ -370,19 +361,18 @@ class Tuner {
   void search(const Range& range) {
     for (const TuneSetting& setting : settings_) improve(setting, range);
     if (!best_) return;
-    const auto stepped = [](std::optional<double>& value, const std::optional<Range>& range_of, double ratio) {
-      if (!range_of) return false;
-      value = std::clamp(*value * ratio, range_of->from, range_of->to);
-      return true;
-    };
+    using Searched = std::pair<std::optional<double> TuneSetting::*, std::optional<Range>>;
+    const Searched all[] = {{&TuneSetting::damping_ratio, ranges_.damping_ratio}, {&TuneSetting::mass, ranges_.mass}};
     for (double ratio = math::pow(10.0, 0.125); ratio > kFinest; ratio = std::sqrt(ratio)) {
       for (bool better = true; better;) {
         better = false;
         for (const double step : {ratio, 1.0 / ratio}) {
-          TuneSetting next = *best_;
-          if (stepped(next.damping_ratio, ranges_.damping_ratio, step)) better = improve(next, range) || better;
-          next = *best_;
-          if (stepped(next.mass, ranges_.mass, step)) better = improve(next, range) || better;
+          for (const auto& [value, searched] : all) {
+            if (!searched) continue;
+            TuneSetting next = *best_;
+            next.*value = std::clamp(*(next.*value) * step, searched->from, searched->to);
+            better = improve(next, range) || better;
+          }
         }
       }
     }
@@ -406,7 +396,7 @@ class Tuner {
     const FoundEdge edge = find_edge(way, std::move(scan), holds, kResolution, false);
     if (!edge.stable) return false;
     best_ = tried(setting, way.value_at(*edge.stable));
-    beyond_ = edge.beyond ? tried(setting, way.value_at(*edge.beyond)) : TuneTrial();
+    beyond_ = edge.beyond ? tried(setting, way.value_at(*edge.beyond)) : end_;
     return true;
   }
 
@@ -474,7 +464,7 @@ class Tuner {
     }
     const double lambda = springs_lambda_.value_or(choice.lambda_max);
     if (!(lambda > 0.0)) return margins;
-    for (const auto& [hand, step] : contact_loops(scenario, lambda, over_hands_)) {
+    for (const auto& [hand, step] : contact_loops(scenario, lambda, over_hands())) {
       for (const std::complex<double>& z : eigenvalues(step)) {
         const double size = math::hypot(z.real(), z.imag());
         if (size < 1e-9) continue;  // a delay line
@@ -506,8 +496,7 @@ class Tuner {
     for (int i = 0; i <= kEdgeIntervals; ++i) {
       const double K = around.value_at(static_cast<double>(i) / kEdgeIntervals);
       if (!(K > ranges_.stiffness.from && K < ranges_.stiffness.to / question_.margin)) continue;
-      tried(setting, K);
-      TuneTrial& trial = trials_.at({setting, K});
+      TuneTrial& trial = tried(setting, K);
       if (trial.settled && trial.metrics.empty()) trial.metrics = own_metrics_of(trial);
     }
   }
@@ -530,9 +519,8 @@ class Tuner {
 
   void explain(TunedLaw& law) {
     const TuneTrial* nearest = nullptr;
-    for (const auto& [key, trial] : trials_) {
+    for (const auto& [key, trial] : trials_)
       if (trial.limits_alone && (nearest == nullptr || excess(trial) < excess(*nearest))) nearest = &trial;
-    }
     if (nearest != nullptr) {
       law.binding = nearest->binding;
       law.why = nearest->why;
@@ -582,12 +570,10 @@ class Tuner {
       }
       before = &trial;
     }
-    if (soft != nullptr) {
+    law.why = before != nullptr ? before->why : "nothing was tried";
+    if (soft != nullptr)
       law.why = fmt::format("up to {:.4g} N/m too soft, {}; from there on too stiff, {}", soft->stiffness, soft->why,
                             stiff->why);
-    } else {
-      law.why = before != nullptr ? before->why : "nothing was tried";
-    }
     law.relax = "no limit is to blame: a gentler hand, a wider tool or another device, or other runs with --over";
   }
   const TuneQuestion& question_;
@@ -595,33 +581,19 @@ class Tuner {
   TuneRanges ranges_;
   std::vector<TuneSetting> settings_;
   std::shared_ptr<const PointShell> shell_;
-  std::vector<FamilyMember> family_;  ///< the scene's own first
-  bool over_hands_ = false;
+  std::vector<FamilyMember> family_;      ///< the scene's own first
   std::optional<double> springs_lambda_;  ///< of springs, which their place does not change
   std::map<std::pair<TuneSetting, double>, TuneTrial> trials_;
   std::size_t runs_ = 0;
   std::optional<TuneTrial> best_;
   TuneTrial beyond_;  ///< just beyond the best
-  std::string cap_;   ///< why the range ends early
+  TuneTrial end_;     ///< beyond the range, of which only the reason counts
 };
 
 }  // namespace
 
 TunedLaw tuned_law(const TuneQuestion& question, const std::string& algorithm) {
   return Tuner(question, algorithm).tuned();
-}
-
-std::vector<std::size_t> ranking_of(const std::vector<TunedLaw>& laws) {
-  std::vector<std::size_t> order;
-  for (std::size_t i = 0; i < laws.size(); ++i)
-    if (laws[i].choice) order.push_back(i);
-  const auto key = [&](std::size_t i) {
-    const TuneTrial& choice = *laws[i].choice;
-    const auto depth = choice.metrics.find("inside_settled_m");
-    return depth != choice.metrics.end() ? depth->second : -choice.stiffness * choice.lambda_max;
-  };
-  std::ranges::stable_sort(order, {}, key);
-  return order;
 }
 
 }  // namespace hapbench

@@ -132,8 +132,4 @@ TuneRanges tune_ranges(const TuneQuestion& question, const std::string& algorith
 TunedLaw tuned_law(const TuneQuestion& question, const std::string& algorithm);
 inline constexpr int kVerifiedGains = 5;
 
-/// The places of the laws with a choice, best first: the least settled depth, where the scene has none the largest K
-/// lambda_max.
-std::vector<std::size_t> ranking_of(const std::vector<TunedLaw>& laws);
-
 }  // namespace hapbench

@@ -138,20 +138,20 @@ TEST(FieldLimit, HasTwoEnds) {
   const ScenarioText scenario = read_scenario_text(find_scenario("poke_plane"));
   LimitQuestion question = limit_question(scenario, pressed, "rendering.stiffness_N_per_m", {});
   const FieldLimit limit = field_limit({&scenario, pressed, "mean", question});
-  ASSERT_TRUE(limit.value && limit.other_value && limit.other_beyond);
-  EXPECT_EQ(limit.other_beyond->verdict, RunVerdict::went_through);
+  ASSERT_TRUE(limit.value && limit.other.value && limit.other.beyond);
+  EXPECT_EQ(limit.other.beyond->verdict, RunVerdict::went_through);
   // A force of 1 N presses the flat tip 1 / K deep, and its half width is 0.5 mm: the landing goes deeper.
-  EXPECT_GT(*limit.other_value, 1.0 / 0.0005);
-  EXPECT_LT(limit.other_beyond->value, *limit.other_value);
-  EXPECT_LT(*limit.other_value, 1.01 * limit.other_beyond->value);
+  EXPECT_GT(*limit.other.value, 1.0 / 0.0005);
+  EXPECT_LT(limit.other.beyond->value, *limit.other.value);
+  EXPECT_LT(*limit.other.value, 1.01 * limit.other.beyond->value);
   for (const JudgedValue& run : limit.inconsistent)
-    EXPECT_EQ(is_stable(run.verdict), run.value < limit.other_beyond->value || run.value > limit.value);
+    EXPECT_EQ(is_stable(run.verdict), run.value < limit.other.beyond->value || run.value > limit.value);
 
   // A bound on the settled depth moves the low end to where a run has that depth.
   question.bounds["inside_settled_m"].max = 1e-4;
   const FieldLimit bounded = field_limit({&scenario, pressed, "mean", question});
-  ASSERT_TRUE(bounded.other_value && bounded.other_beyond);
-  EXPECT_EQ(bounded.other_beyond->verdict, RunVerdict::beyond_bound);
+  ASSERT_TRUE(bounded.other.value && bounded.other.beyond);
+  EXPECT_EQ(bounded.other.beyond->verdict, RunVerdict::beyond_bound);
   const auto settled_at = [&](double stiffness) {
     Words at = pressed;
     at.emplace_back("rendering.algorithm=mean");
@@ -159,9 +159,9 @@ TEST(FieldLimit, HasTwoEnds) {
     return number_of(run_scenario(load_scenario(scenario, at), std::nullopt, false).metrics, "inside_settled_m")
         .value();
   };
-  EXPECT_LE(settled_at(*bounded.other_value), 1e-4);
-  EXPECT_GT(settled_at(bounded.other_beyond->value), 1e-4);
-  EXPECT_LT(*bounded.other_value, 1.01 * bounded.other_beyond->value);
+  EXPECT_LE(settled_at(*bounded.other.value), 1e-4);
+  EXPECT_GT(settled_at(bounded.other.beyond->value), 1e-4);
+  EXPECT_LT(*bounded.other.value, 1.01 * bounded.other.beyond->value);
   EXPECT_EQ(*bounded.value, *limit.value);
 }
 
