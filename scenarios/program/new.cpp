@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <string_view>
+#include <utility>
 
 #include "results/io/atomic_file.hpp"
 #include "scenarios/description/load_scenario.hpp"
@@ -113,13 +115,11 @@ namespace {
 
 // ---- The command
 
-constexpr double kNotGiven = -1.0;
-
 struct NewOptions {
   std::string kind;
   std::string from;
   std::string on;
-  double scale = kNotGiven;
+  std::string extent;
   std::string side = "z";
   std::vector<std::string> path;
   std::string at;
@@ -156,6 +156,33 @@ Vec3 place_in(const char* option, const std::string& text) {
   return place;
 }
 
+double length_in(const char* option, const std::string& text) {
+  constexpr std::pair<std::string_view, double> kUnits[] = {{"mm", 0.001}, {"cm", 0.01}, {"m", 1.0}, {"in", 0.0254}};
+  for (const auto& [unit, metres] : kUnits) {
+    if (!text.ends_with(unit)) continue;
+    const auto number = finite_number(std::string_view(text).substr(0, text.size() - unit.size()));
+    if (number && *number > 0.0) return *number * metres;
+  }
+  throw InputError(
+      fmt::format("{}: got \"{}\"; allowed: a length above 0 with its unit, mm, cm, m or in: 12mm", option, text));
+}
+
+/// The command as it was given, without --extent.
+std::string command_without_extent(const NewOptions& options) {
+  std::vector<std::string> words = {"hapbench", "new", options.kind};
+  const auto add = [&words](const char* name, const std::string& value) {
+    if (!value.empty()) words.insert(words.end(), {name, value});
+  };
+  add("--from", options.from);
+  add("--on", options.on);
+  if (options.side != "z") words.push_back("--side=" + options.side);
+  for (const std::string& point : options.path) add("--path", point);
+  add("--at", options.at);
+  if (options.preview) words.emplace_back("--preview");
+  add("--out", options.out);
+  return shell_line(words);
+}
+
 /// The options that say where the scene starts. Throws InputError for those that the kind has no use for.
 StartOptions start_options(const NewOptions& options, const StartKind& kind) {
   const std::string name = kind.name;
@@ -170,16 +197,17 @@ StartOptions start_options(const NewOptions& options, const StartKind& kind) {
   require(options.at.empty() || lands, "--at", "for mesh, shell, drag and bur");
   require(options.side == "z" || (lands && !options.from.empty()), "--side",
           "for mesh, shell, drag and bur with --from");
-  require(options.scale == kNotGiven || (has_mesh && options.scale > 0.0), "--scale", "above 0, of a mesh's file");
+  require(options.extent.empty() || has_mesh, "--extent", "with the file of a mesh");
   if (std::error_code ignored; !options.on.empty() && !fs::exists(options.on, ignored))
     throw InputError(fmt::format("--on {}: cannot be read: no such file", options.on));
   StartOptions start;
   if (!options.from.empty()) start.source = options.from;
   if (!options.on.empty()) start.on = options.on;
-  if (options.scale != kNotGiven) start.scale = options.scale;
+  if (!options.extent.empty()) start.extent = length_in("--extent", options.extent);
   start.side = options.side;
   for (const std::string& point : options.path) start.path.push_back(place_in("--path", point));
   if (!options.at.empty()) start.at = place_in("--at", options.at);
+  start.command = command_without_extent(options);
   return start;
 }
 
@@ -252,7 +280,10 @@ void add_new(CommandLine& line) {
   command.add("kind", options.kind, "the kind of scenario; without it, the kinds are listed");
   command.add("--from", options.from, "the file of the mesh, shell or stroke to start from");
   command.add("--on", options.on, "of a stroke: the mesh that it is played back over, in place of a plane");
-  command.add("--scale", options.scale, "length of the mesh's unit [m], 0.001 for millimetres (default: guessed)");
+  command.add(
+      "--extent", options.extent,
+      "size of the mesh, the longest edge of its box, with a unit: 12mm, 1.2cm, 0.012m, 0.5in (default: the file is "
+      "in metres)");
   command.add("--side", options.side, "from which the tool comes: x, y, z (default), or --side=-x, -y, -z",
               {.one_of = {"x", "y", "z", "-x", "-y", "-z"}});
   command.add("--path", options.path, "X,Y,Z [m] of a point to drag over; give it for each, two or more",

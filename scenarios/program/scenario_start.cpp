@@ -193,27 +193,8 @@ Box box_of(const Things& things, Place place = {}) {
   return box;
 }
 
-/// A unit that a file may have.
-struct MeshUnit {
-  double metres;
-  const char* name;
-};
-
-/// Objects are worked on by tools of a millimetre and more, which are a hundredth to a third of them.
-constexpr double kShortestObject = 0.003, kLongestObject = 0.3;  // [m]
-
-/// How far the length in that unit is from those of such objects: 0 within, else the logarithm of the ratio.
-double misfit(double length, const MeshUnit& unit) {
-  return std::max(
-      {0.0, math::log(kShortestObject / (length * unit.metres)), math::log(length * unit.metres / kLongestObject)});
-}
-
-/// The units in the order in which they are believed: by their misfit, then the usual ones first.
-std::array<MeshUnit, 3> likely_units(double length) {
-  std::array<MeshUnit, 3> units = {{{0.001, "mm"}, {1.0, "m"}, {0.01, "cm"}}};
-  std::ranges::stable_sort(units, {}, [length](const MeshUnit& unit) { return misfit(length, unit); });
-  return units;
-}
+/// The longest edges that a file of which no size is stated may have in metres [m].
+constexpr double kShortestObject = 0.001, kLongestObject = 1.0;
 
 /// Rounds to the micrometre, as people write places.
 double to_micrometres(double metres) {
@@ -234,7 +215,7 @@ class Start {
     if (options.source) values_["file"] = path_text(*options.source);
     if (options.on || options.source) values_["surface"] = path_text(options.on ? *options.on : *options.source);
     if (options.on) {
-      scale_to_stroke();
+      scale_below_stroke();
     } else if (has("@scale@")) {
       scale_environment();
     }
@@ -301,23 +282,22 @@ class Start {
     return points;
   }
 
-  /// The scale that was given, or that of the likeliest unit of an object that was first read as millimetres. Where
-  /// another unit is possible, too, both readings are said.
+  /// The scale that gives an object, which was first read as millimetres, its stated size. A file of which none is
+  /// stated is in metres. Throws InputError when it then is no object to be worked on.
   double choose_scale(const Box& box, const char* object) {
     const double longest = (box.max - box.min).maxCoeff() / 0.001;
-    const auto reading = [longest](double scale) { return length_text(longest * scale); };
-    std::string note = fmt::format("longest edge of the {}'s box: {:.4g}, ", object, longest);
-    if (options_.scale) {
-      notes_.push_back(note + fmt::format("with scale {} {}", *options_.scale, reading(*options_.scale)));
-      return *options_.scale;
+    if (!options_.extent && (longest < kShortestObject || longest > kLongestObject)) {
+      throw InputError(fmt::format(
+          "{}: the {} is {} long in metres, {} in millimetres; allowed: {} ... {}, or to state its size: \"{} --extent "
+          "{:.7g}mm\" or \"{} --extent {:.7g}m\"",
+          options_.on ? options_.on->string() : options_.source->string(), object, length_text(longest),
+          length_text(0.001 * longest), length_text(kShortestObject), length_text(kLongestObject), options_.command,
+          longest, options_.command, longest));
     }
-    const auto [unit, other, last] = likely_units(longest);
-    note += fmt::format("taken for {}: {}", unit.name, reading(unit.metres));
-    constexpr double kDoubt = 1.3;  // ln(3.7): 0.8 mm to 1.1 m
-    if (misfit(longest, other) < kDoubt)
-      note += fmt::format("; in {} it would be {}: --scale {}", other.name, reading(other.metres), other.metres);
-    notes_.push_back(note);
-    return unit.metres;
+    const double scale = options_.extent ? std::stod(fmt::format("{:.6g}", *options_.extent / longest)) : 1.0;
+    notes_.push_back(
+        fmt::format("longest edge of the {}'s box: {}, with scale {}", object, length_text(longest * scale), scale));
+    return scale;
   }
 
   void scale_environment() {
@@ -328,36 +308,22 @@ class Start {
     values_["spacing"] = rounded(diameter_ / 10.0);
   }
 
-  /// Takes the unit in which the stroke comes into the mesh's box, of several the one that makes both alike in size.
-  void scale_to_stroke() {
+  /// Scales the mesh that a stroke is played back over, and says where both lie.
+  void scale_below_stroke() {
     const LoadedScenario loaded = scenario();  // in millimetres
-    const Box box = box_of(loaded.files.at(kEnvironmentFile).mesh().triangles().vertices);
-    const auto stroke = loaded.files.at(kMotionFile).stroke();
-    std::vector<Vec3> places;
-    for (const auto& sample : stroke->motion.samples()) places.push_back(sample.position);
-    const Box way = box_of(places);
-    const double size = std::max((way.max - way.min).norm(), kShortestObject);
-    const auto gap_of = [&](double scale) {
-      const Box scaled{box.min * (scale / 0.001), box.max * (scale / 0.001)};
-      double gap = std::numeric_limits<double>::infinity();
-      for (const Vec3& place : places) gap = std::min(gap, distance_to(scaled, place));
-      return std::max(0.0, gap - 0.5 * diameter_);
-    };
-    const auto misfit_of = [&](double scale) {
-      return gap_of(scale) / size + 0.1 * std::abs(math::log((box.max - box.min).norm() * (scale / 0.001) / size));
-    };
-    // Not std::ranges::min, which clang 14 does not compile.
-    const double guessed =
-        std::min({0.001, 1.0, 0.01}, [&](double a, double b) { return misfit_of(a) < misfit_of(b); });
-    const double scale = options_.scale.value_or(guessed);
+    const Box read = box_of(loaded.files.at(kEnvironmentFile).mesh().triangles().vertices);
+    const double scale = choose_scale(read, "mesh");
     values_["scale"] = scale;
     values_["spacing"] = 0.1 * diameter_;
-    const Box scaled{box.min * (scale / 0.001), box.max * (scale / 0.001)};
-    notes_.push_back(fmt::format("the mesh with scale {}: {}; the stroke: {}{}", scale, place_text(scaled),
-                                 place_text(way),
-                                 options_.scale ? "" : "; if that does not fit, --scale, or --shift of import"));
-    if (const double gap = gap_of(scale); gap > 0.0)
-      warnings_.push_back(fmt::format("the stroke stays {} away from the mesh", length_text(gap)));
+    const Box box{read.min * (scale / 0.001), read.max * (scale / 0.001)};
+    const auto stroke = loaded.files.at(kMotionFile).stroke();
+    const auto place_of = [](const RecordedMotion::Sample& sample) { return sample.position; };
+    double gap = std::numeric_limits<double>::infinity();
+    for (const auto& sample : stroke->motion.samples()) gap = std::min(gap, distance_to(box, sample.position));
+    notes_.push_back(fmt::format("the mesh: {}; the stroke: {}; if that does not fit, --extent, or --shift of import",
+                                 place_text(box), place_text(box_of(stroke->motion.samples(), place_of))));
+    if (gap > 0.5 * diameter_)
+      warnings_.push_back(fmt::format("the stroke stays {} away from the mesh", length_text(gap - 0.5 * diameter_)));
   }
 
   void choose_tool(double longest) {
@@ -464,7 +430,7 @@ class Start {
                                  length_text(values_.at("spacing").get<double>())));
   }
 
-  /// Places the tool above the plane's middle, at a scale that makes it about as long as a tooth.
+  /// Places the tool above the plane's middle.
   void place_mesh_tool() {
     TriangleSoup surface = scenario().files.at(kToolFile).mesh().triangles();  // taken for millimetres
     const double scale = choose_scale(box_of(surface.vertices), "tool");
