@@ -1,34 +1,30 @@
 #pragma once
 
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "scenarios/input/json_file.hpp"
 #include "sim/core/types.hpp"
 
 /// Scenario files to start from: each scene runs at once and touches something, and has only the fields that a newcomer
 /// changes first.
 namespace hapbench {
 
-/// The file that a start may be made from.
-enum class StartSource { none, mesh, shell, stroke };
-
 /// A kind of start.
 struct StartKind {
-  const char* name;
-  const char* summary;
-  StartSource source;
-  bool needs_source;
-  std::string sections;  ///< of the scenario file, a text in which @name@ stands for a value to be determined
-  int steps = 2000;      ///< unless determined
+  std::string name;
+  std::string summary;
+  std::string source;  ///< what it is made from: "mesh", "shell" or "stroke"; empty for nothing
+  bool is_source_optional;
+  Json scene;  ///< with what does not depend on the source
 };
 
-/// All kinds, in the order in which they are shown.
+/// All kinds, those of scenarios/starts.json, in the order in which they are shown. Throws InputError without that
+/// file.
 const std::vector<StartKind>& start_kinds();
-
-/// The sections of a kind on a mesh in place of its plane.
-std::string on_mesh(const StartKind& kind);
 
 /// What a start is made from and where it starts, as far as it is said.
 struct StartOptions {
@@ -43,7 +39,7 @@ struct StartOptions {
 
 /// A start.
 struct ScenarioStart {
-  std::string text;                ///< of the scenario file
+  Json scene;                      ///< of the scenario file
   std::vector<std::string> notes;  ///< sizes, guesses and choices, a line each
   std::vector<std::string> warnings;
 };
