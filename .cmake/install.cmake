@@ -33,7 +33,8 @@ foreach(group thesis limits beyond quality examples library)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/scenarios/${group} DESTINATION ${share}/scenarios)
 endforeach()
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/scenarios/import/presets DESTINATION ${share}/scenarios/import)
-install(FILES ${PROJECT_SOURCE_DIR}/scenarios/scenario.schema.json DESTINATION ${share}/scenarios)
+install(FILES ${PROJECT_SOURCE_DIR}/scenarios/scenario.schema.json ${PROJECT_SOURCE_DIR}/scenarios/starts.json
+  DESTINATION ${share}/scenarios)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/scripts/python DESTINATION ${share}/scripts USE_SOURCE_PERMISSIONS
   PATTERN __pycache__ EXCLUDE)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/results/reference DESTINATION ${share}/results

@@ -159,7 +159,7 @@ static void describe(Fields& f, PointShellEnvironment& shell) {
 
 static void describe(Fields& f, MeshEnvironment& mesh) {
   f.file(mesh.file, {FileContent::Kind::mesh, {mesh.scale, mesh.spacing, mesh.flip}},
-         "surface as OBJ, PLY, STL or OFF, ASCII or binary; relative to the scenario file");
+         "surface as OBJ, OFF, PLY or STL, the last two also binary; relative to the scenario file");
   f.number("scale", mesh.scale, {0.0, 1e6, "m", true}, "length of the file's unit: 0.001 for millimetres",
            Presence::required);
   f.number("spacing_m", mesh.spacing, kLength,

@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "scenarios/description/descriptions.hpp"
+#include "scenarios/description/writer.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/mesh_file.hpp"
 #include "scenarios/input/recordings.hpp"
@@ -61,62 +62,6 @@ SharedCache& shared_cache() {
 }
 
 namespace {
-
-/// Walks through the values that a scenario holds and collects the files that they name.
-class FileFinder final : public Fields {
- public:
-  explicit FileFinder(Scenario& scenario) : scenario_(scenario) { object(scenario); }
-
-  std::vector<std::shared_ptr<NamedFile>> found;
-
-  void file(std::string& path, const FileContent& content) override {
-    found.push_back(std::make_shared<NamedFile>(at_, resolve_path(scenario_, path), content));
-  }
-
-  void number(double&, NumberRange) override {}
-  void integer(std::int64_t&, IntegerRange) override {}
-  void boolean(bool&) override {}
-  void text(std::string&, std::size_t) override {}
-  void any_object(std::string&) override {}
-  void name(std::size_t&, const std::vector<std::string>&, const char*) override {}
-  void vector3(Vec3&, NumberRange) override {}
-  void pair(const char*, Body first, Body second) override {
-    within("0", first);
-    within("1", second);
-  }
-  void entries(std::size_t length, ListSize, FunctionRef<std::size_t>,
-               FunctionRef<Fields&, std::size_t> entry) override {
-    for (std::size_t i = 0; i < length; ++i) within(std::to_string(i), [&](Fields& f) { entry(f, i); });
-  }
-  void or_null(bool is_null, FunctionRef<>, Body value) override {
-    if (!is_null) value(*this);
-  }
-  void plain_or_object(bool is_object, Body, Body object) override {
-    if (is_object) object(*this);
-  }
-  void one_or_list(bool is_list, Body one, Body list) override { (is_list ? list : one)(*this); }
-  void alternatives(const char*, std::span<const TypeName>, Untyped, std::size_t held,
-                    FunctionRef<Fields&, std::size_t> fields) override {
-    fields(*this, held);
-  }
-  void fields(Body body) override { body(*this); }
-  void field(std::string_view name, const char*, Presence presence, Body value) override {
-    if (presence != Presence::left_out) within(name, value);
-  }
-  void ignored(std::string_view, const char*) override {}
-  void exactly_one_of(const char*, const char*) override {}
-
- private:
-  void within(std::string_view name, Body value) {
-    const std::size_t length = at_.size();
-    at_.append("/").append(name);
-    value(*this);
-    at_.resize(length);
-  }
-
-  const Scenario& scenario_;
-  std::string at_;  ///< JSON pointer of the value that is visited
-};
 
 /// A text that differs after a change of the file, so that a file whose text is known need not be read again. Nothing
 /// for a file that is not regular, and for one that changed so recently that the clock of the file system might not
@@ -201,7 +146,12 @@ std::vector<Warning> NamedFile::warnings() {
   return warnings;
 }
 
-NamedFiles::NamedFiles(Scenario scenario) : files_(std::move(FileFinder(scenario).found)) {}
+NamedFiles::NamedFiles(Scenario scenario) {
+  std::vector<FoundFile> found;
+  json_of([&scenario](Fields& f) { f.object(scenario); }, &found);
+  for (const FoundFile& file : found)
+    files_.push_back(std::make_shared<NamedFile>(file.pointer, resolve_path(scenario, file.path), file.content));
+}
 
 NamedFile* NamedFiles::find(std::string_view pointer) const {
   const auto found =

@@ -33,10 +33,13 @@ namespace {
 /// Selects the fields to write: all that have a value, or only those whose default holds for every scenario.
 enum class Which { all, with_default };
 
-/// Writes a value as JSON.
+/// Writes a value as JSON, and notes the files that it names where they are asked for.
 class Writer final : public Fields {
  public:
-  Writer(Which which, Body value) : which_(which) { value(*this); }
+  Writer(Which which, Body value, std::vector<FoundFile>* files = nullptr, std::string at = "")
+      : which_(which), files_(files), at_(std::move(at)) {
+    value(*this);
+  }
 
   Json json() && { return std::move(json_); }
 
@@ -44,17 +47,24 @@ class Writer final : public Fields {
   void integer(std::int64_t& value, IntegerRange) override { json_ = value; }
   void boolean(bool& value) override { json_ = value; }
   void text(std::string& value, std::size_t) override { json_ = value; }
+  void file(std::string& path, const FileContent& content) override {
+    json_ = path;
+    if (files_ != nullptr) files_->push_back({at_, path, content});
+  }
   void any_object(std::string& json) override { json_ = Json::parse(json); }
   void vector3(Vec3& value, NumberRange) override { json_ = {value.x(), value.y(), value.z()}; }
   void name(std::size_t& index, const std::vector<std::string>& names, const char* what) override {
     if (index >= names.size()) throw std::logic_error(std::string("a value without a name: ") + what);
     json_ = names[index];
   }
-  void pair(const char*, Body first, Body second) override { json_ = Json::array({written(first), written(second)}); }
+  void pair(const char*, Body first, Body second) override {
+    json_ = Json::array({written("0", first), written("1", second)});
+  }
   void entries(std::size_t length, ListSize, FunctionRef<std::size_t>,
                FunctionRef<Fields&, std::size_t> entry) override {
     json_ = Json::array();
-    for (std::size_t i = 0; i < length; ++i) json_.push_back(written([&entry, i](Fields& f) { entry(f, i); }));
+    for (std::size_t i = 0; i < length; ++i)
+      json_.push_back(written(std::to_string(i), [&entry, i](Fields& f) { entry(f, i); }));
   }
   void or_null(bool is_null, FunctionRef<>, Body value) override {
     if (!is_null) value(*this);
@@ -75,15 +85,19 @@ class Writer final : public Fields {
   void field(std::string_view name, const char*, Presence presence, Body value) override {
     if (presence == Presence::left_out) return;
     if (presence == Presence::no_default && which_ == Which::with_default) return;
-    json_[std::string(name)] = written(value);
+    json_[std::string(name)] = written(name, value);
   }
   void ignored(std::string_view, const char*) override {}
   void exactly_one_of(const char*, const char*) override {}
 
  private:
-  Json written(Body value) const { return Writer(which_, value).json(); }
+  Json written(std::string_view name, Body value) const {
+    return Writer(which_, value, files_, files_ == nullptr ? "" : fmt::format("{}/{}", at_, name)).json();
+  }
 
   Which which_;
+  std::vector<FoundFile>* files_;
+  std::string at_;  ///< JSON pointer of the value, where files are asked for
   Json json_;
 };
 
@@ -224,8 +238,8 @@ class SchemaWriter final : public Fields {
 
 }  // namespace
 
-Json json_of(Fields::Body value) {
-  return Writer(Which::all, value).json();
+Json json_of(Fields::Body value, std::vector<FoundFile>* files) {
+  return Writer(Which::all, value, files).json();
 }
 
 ValueGuide guide_to(Fields::Body value, Json* definitions) {

@@ -7,8 +7,16 @@
 
 namespace hapbench {
 
-/// The JSON of what `value` describes. Throws std::logic_error for a value that has no name.
-Json json_of(Fields::Body value);
+/// A file that a value names.
+struct FoundFile {
+  std::string pointer;  ///< JSON pointer of the field
+  std::string path;     ///< as the field has it
+  FileContent content;
+};
+
+/// The JSON of what `value` describes, and the files that it names, in the order of its fields. Throws std::logic_error
+/// for a value that has no name.
+Json json_of(Fields::Body value, std::vector<FoundFile>* files = nullptr);
 
 /// The JSON of a value, by its `describe`, which says of what kind it is.
 template <class T>

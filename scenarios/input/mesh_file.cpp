@@ -136,10 +136,12 @@ std::vector<SurfacePoint> csv_points_in(std::string_view text, const fs::path& f
 
 void check_and_normalise(std::vector<SurfacePoint>& points, const fs::path& file) {
   if (points.empty()) fail_in_file(file, "has no points; allowed: at least one");
+  if (static_cast<double>(points.size()) > kMostPoints)
+    fail_in_file(file, fmt::format("has {} points; allowed: at most {:.0g}", points.size(), kMostPoints));
   for (std::size_t i = 0; i < points.size(); ++i) {
     SurfacePoint& point = points[i];
     const double largest = point.position.cwiseAbs().maxCoeff();
-    if (!(largest <= 1000.0))
+    if (!point.position.allFinite() || largest > kFarthest)
       fail_in_file(file, fmt::format("point {}: got coordinate {}; allowed: finite, at most 1000 m", i, largest));
     const double length = point.normal.norm();
     if (!(std::abs(length - 1.0) <= 1e-3))

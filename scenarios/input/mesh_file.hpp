@@ -27,7 +27,7 @@ bool is_mesh_name(const std::filesystem::path& file);
 /// The extension of a mesh file, in lower case. Throws InputError if the format is not supported.
 std::string mesh_extension(const std::filesystem::path& file);
 
-/// The surface in a mesh file (.obj, .ply, .stl, .off; text or binary). Copies share it.
+/// The surface in a mesh file (.obj, .ply, .stl, .off; PLY and STL also binary). Copies share it.
 class MeshFile {
  public:
   /// `bytes` are the contents of the file; its name tells the format. Does all checks. Throws InputError that names the

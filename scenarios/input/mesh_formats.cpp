@@ -48,35 +48,6 @@ TriangleSoup read_off_text(MeshLines& lines) {
   return soup;
 }
 
-/// Reads the counts, vertices and faces that follow the line "OFF BINARY".
-TriangleSoup read_off_binary(std::string_view bytes, const std::filesystem::path& file) {
-  ByteReader reader(bytes, std::endian::little);
-  const auto need = [&](std::size_t numbers, const char* what) {
-    if (reader.left() / 4 < numbers)
-      fail_in_file(file, fmt::format("ends before its {}; allowed: a complete, little endian file", what));
-  };
-  need(3, "faces");
-  const auto vertices = reader.take<std::uint32_t>(), faces = reader.take<std::uint32_t>();
-  reader.skip(4);  // the count of edges
-  need(3 * std::size_t{vertices}, "faces");
-  TriangleSoup soup;
-  for (std::uint32_t i = 0; i < vertices; ++i) {
-    const auto x = reader.take<float>(), y = reader.take<float>(), z = reader.take<float>();
-    soup.vertices.push_back(Vec3(x, y, z));
-  }
-  std::vector<std::uint32_t> corners;
-  for (std::uint32_t i = 0; i < faces; ++i) {
-    need(1, "faces");
-    const auto count = reader.take<std::uint32_t>();
-    if (count < 3) fail_in_file(file, fmt::format("face {}: got {} corners; allowed: at least 3", i, count));
-    need(count, i + 1 == faces ? "last face" : "faces");
-    corners.clear();
-    for (std::uint32_t k = 0; k < count; ++k) corners.push_back(reader.take<std::uint32_t>());
-    add_polygon(corners, soup);
-  }
-  return soup;
-}
-
 // ---- STL
 
 constexpr std::size_t kName = 80, kHeader = 84, kTriangle = 50;  // bytes of a binary file
@@ -158,9 +129,9 @@ TriangleSoup read_off(std::string_view text, const std::filesystem::path& file) 
   if (!lines.next() || std::find(kKinds.begin(), kKinds.end(), lines.words()[0]) == kKinds.end())
     lines.fail("is not an OFF file; allowed: \"OFF\" in the first line, perhaps with ST, C or N before it");
   const Words& header = lines.words();
-  if (header.size() == 1 || header[1] != "BINARY") return read_off_text(lines);
-  if (header[0] != "OFF") lines.fail("allowed for a binary file: no normals, colours or texture coordinates");
-  return read_off_binary(lines.rest(), file);
+  if (header.size() > 1 && header[1] == "BINARY")
+    lines.fail("is a binary OFF file; allowed: a text, or binary PLY or STL");
+  return read_off_text(lines);
 }
 
 TriangleSoup read_stl(std::string_view text, const std::filesystem::path& file) {

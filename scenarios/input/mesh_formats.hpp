@@ -31,8 +31,7 @@ namespace hapbench {
 /// Wavefront OBJ: the lines "v" and "f"; other lines are ignored.
 TriangleSoup read_obj(std::string_view text, const std::filesystem::path& file);
 
-/// OFF with or without normals, colours and texture coordinates. Also the binary form that OpenMesh writes: "OFF
-/// BINARY", 32-bit numbers, little endian.
+/// OFF as a text, with or without normals, colours and texture coordinates.
 TriangleSoup read_off(std::string_view text, const std::filesystem::path& file);
 
 /// STL, text or binary.
@@ -41,9 +40,8 @@ TriangleSoup read_stl(std::string_view text, const std::filesystem::path& file);
 /// PLY, text or binary of either byte order. Elements and properties that are not part of the surface are ignored.
 TriangleSoup read_ply(std::string_view text, const std::filesystem::path& file);
 
-/// The vertices of a PLY file, ASCII or binary of either byte order: `vertex` must be the first element and have the
-/// properties x, y, z [m], nx, ny, nz among its scalar ones; everything after the vertices, such as faces, is ignored.
-/// Throws InputError that names file and line or vertex.
+/// The vertices of a PLY file, which have the properties x, y, z [m], nx, ny, nz, of any type; everything after them,
+/// such as faces, is not read.
 std::vector<SurfacePoint> ply_points_in(std::string_view text, const std::filesystem::path& file);
 
 /// Cuts a polygon into a fan of triangles from its first corner.
@@ -65,8 +63,6 @@ class MeshLines {
     return false;
   }
   const Words& words() const { return words_; }
-  /// The text after the current line.
-  std::string_view rest() const { return lines_.rest(); }
 
   /// The word as a finite number. Precondition: there is such a word.
   double number(std::size_t word) const {

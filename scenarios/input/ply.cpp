@@ -1,13 +1,12 @@
 #include <fmt/format.h>
 
-#include <cmath>
 #include <cstdint>
 #include <optional>
 
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/mesh_formats.hpp"
 
-/// PLY files: the header, the triangles of a surface (read_ply), and points with normals (ply_points_in).
+/// PLY files: the triangles of a surface (read_ply), or points with normals (ply_points_in).
 namespace hapbench {
 namespace {
 
@@ -29,7 +28,7 @@ struct PlyType {
   std::size_t size;  ///< in a binary file [bytes]
 };
 
-/// The declarations of a PLY file, as words with the number of their line. The uses differ in what they allow in them.
+/// The declarations of a PLY file, as words with the number of their line.
 struct PlyHeader {
   struct Declaration {
     std::size_t line = 0;
@@ -143,16 +142,17 @@ struct Element {
   }
 };
 
-// ---- Surfaces
+/// What is read of a file: its faces, or points of which the vertices have the normals.
+enum class Wanted { faces, points };
 
-Property scalar(const PlyHeader::Declaration& declaration, bool of_vertex, const fs::path& file) {
+Property scalar(const PlyHeader::Declaration& declaration, bool of_vertex, Wanted wanted, const fs::path& file) {
   const Words& words = declaration.words;
   const auto type = words.size() == 3 ? ply_type(words[1]) : std::nullopt;
   if (!type)
     fail_in_line(file, declaration.line, "allowed: \"property TYPE NAME\" or \"property list COUNT TYPE NAME\"");
   const Role role = role_in_vertex(words[2]);
-  if (!of_vertex || role > Role::z) return {{}, *type};
-  if (type->kind != PlyType::Kind::real)
+  if (!of_vertex || role > (wanted == Wanted::points ? Role::nz : Role::z)) return {{}, *type};
+  if (wanted == Wanted::faces && type->kind != PlyType::Kind::real)
     fail_in_line(file, declaration.line, "allowed for a coordinate: float or double");
   return {{}, *type, role};
 }
@@ -171,8 +171,17 @@ Property list(const PlyHeader::Declaration& declaration, bool of_face, const fs:
   return {count, *type, corners ? Role::corners : Role::nothing};
 }
 
-/// The elements up to the faces. Later elements are not read.
-std::vector<Element> elements_of(const PlyHeader& header, const fs::path& file) {
+void require_points(const Element& vertices, const PlyHeader& header, const fs::path& file) {
+  for (const std::string_view name : kOfVertex) {
+    const auto count = vertices.count(role_in_vertex(name));
+    if (count == 1) continue;
+    fail_in_line(file, header.last_line,
+                 fmt::format("got {} vertex properties \"{}\"; allowed: one each of x, y, z, nx, ny, nz", count, name));
+  }
+}
+
+/// The elements up to those wanted. Later elements are not read.
+std::vector<Element> elements_of(const PlyHeader& header, Wanted wanted, const fs::path& file) {
   std::vector<Element> elements;
   bool positions = false;
   for (const PlyHeader::Element& declared : header.elements) {
@@ -181,42 +190,65 @@ std::vector<Element> elements_of(const PlyHeader& header, const fs::path& file) 
     Element element{declared.words[1], *entries, {}};
     for (const PlyHeader::Declaration& p : declared.properties) {
       const bool is_list = p.words.size() > 1 && p.words[1] == "list";
-      element.properties.push_back(is_list ? list(p, element.is_face(), file) : scalar(p, element.is_vertex(), file));
+      element.properties.push_back(is_list ? list(p, element.is_face(), file)
+                                           : scalar(p, element.is_vertex(), wanted, file));
     }
     if (element.is_vertex()) {
       const bool has_all = element.count(Role::x) == 1 && element.count(Role::y) == 1 && element.count(Role::z) == 1;
       positions = has_all && !positions;  // a second element of that name is refused too
     }
     elements.push_back(std::move(element));
+    if (wanted == Wanted::points) {
+      if (!elements.back().is_vertex()) continue;
+      require_points(elements.back(), header, file);
+      return elements;
+    }
     if (!elements.back().is_face()) continue;
     if (elements.back().count(Role::corners) != 1)
       fail_in_line(file, declared.line, "allowed for a face: one \"property list COUNT INDEX vertex_indices\"");
     if (!positions) fail_in_line(file, declared.line, "allowed before the faces: vertices with one each of x, y and z");
     return elements;
   }
-  fail_in_line(file, header.last_line, "has no faces; allowed: \"element face COUNT\"");
+  fail_in_line(file, header.last_line,
+               wanted == Wanted::points ? "has no vertices; allowed: \"element vertex COUNT\""
+                                        : "has no faces; allowed: \"element face COUNT\"");
 }
 
-/// Reads a text, in which each vertex and each face has a line. Values after the position or the corners are ignored.
-TriangleSoup read_ply_text(const std::vector<Element>& elements, MeshLines lines) {
+// ---- Entries
+
+/// The values of a vertex by their role; 0 for those that are not read.
+using Values = std::array<double, kOfVertex.size()>;
+
+struct Contents {
   TriangleSoup soup;
+  std::vector<Vec3> normals;  ///< of the vertices, where points are wanted
+
+  void add_vertex(const Values& v, Wanted wanted) {
+    soup.vertices.emplace_back(v[0], v[1], v[2]);
+    if (wanted == Wanted::points) normals.emplace_back(v[3], v[4], v[5]);
+  }
+};
+
+/// Reads a text, in which each vertex and each face has a line. Values after the position or the corners are ignored.
+Contents read_ply_text(const std::vector<Element>& elements, Wanted wanted, MeshLines lines) {
+  Contents contents;
   const auto add_vertex = [&](const Element& element) {
-    Vec3 position;
+    Values values{};
     std::size_t word = 0;
     for (const Property& p : element.properties) {
       const std::size_t length = p.count ? 1 + lines.count(word, "entries") : 1;
       if (lines.words().size() < word + length)
         lines.fail(
             fmt::format("got {} values; allowed: the {} of a vertex", lines.words().size(), element.properties.size()));
-      if (p.role != Role::nothing) position[static_cast<int>(p.role)] = lines.number(word);
+      if (p.role != Role::nothing) values[static_cast<std::size_t>(p.role)] = lines.number(word);
       word += length;
     }
-    soup.vertices.push_back(position);
+    contents.add_vertex(values, wanted);
   };
   const auto add_face = [&](const Element& element, std::size_t i) {
     std::size_t word = 0;
     for (const Property& p : element.properties) {
-      if (p.role == Role::corners) return lines.add_face(i, word, soup);
+      if (p.role == Role::corners) return lines.add_face(i, word, contents.soup);
       word += p.count ? 1 + lines.count(word, "entries") : 1;
     }
   };
@@ -230,23 +262,24 @@ TriangleSoup read_ply_text(const std::vector<Element>& elements, MeshLines lines
       if (element.is_face()) add_face(element, i);
     }
   }
-  return soup;
+  return contents;
 }
 
 /// Reads the elements of a binary file entry by entry.
 class BinaryEntries {
  public:
-  BinaryEntries(ByteReader reader, const fs::path& file) : reader_(reader), file_(file) {}
+  BinaryEntries(ByteReader reader, Wanted wanted, const fs::path& file)
+      : reader_(reader), wanted_(wanted), file_(file) {}
 
-  TriangleSoup read(const std::vector<Element>& elements) {
+  Contents read(const std::vector<Element>& elements) {
     for (const Element& element : elements)
       for (std::size_t i = 0; i < element.entries && !element.properties.empty(); ++i) read_entry(element, i);
-    return std::move(soup_);
+    return std::move(contents_);
   }
 
  private:
   void read_entry(const Element& element, std::size_t i) {
-    Vec3 position;
+    Values values{};
     for (const Property& p : element.properties) {
       const std::size_t length = p.count ? list_length(element, p, i) : 1;
       need(length, p.type, element);
@@ -255,9 +288,9 @@ class BinaryEntries {
       else if (p.role == Role::corners)
         add_face(length, p.type);
       else
-        position[static_cast<int>(p.role)] = take_ply_number(reader_, p.type);
+        values[static_cast<std::size_t>(p.role)] = take_ply_number(reader_, p.type);
     }
-    if (element.is_vertex()) soup_.vertices.push_back(position);
+    if (element.is_vertex()) contents_.add_vertex(values, wanted_);
   }
 
   std::size_t list_length(const Element& element, const Property& property, std::size_t i) {
@@ -279,7 +312,7 @@ class BinaryEntries {
       corners_.push_back(
           static_cast<std::uint32_t>(index));  // a negative index becomes too large and is refused as such
     }
-    add_polygon(corners_, soup_);
+    add_polygon(corners_, contents_.soup);
   }
 
   void need(std::size_t numbers, PlyType type, const Element& element) const {
@@ -289,116 +322,32 @@ class BinaryEntries {
   }
 
   ByteReader reader_;
+  Wanted wanted_;
   const fs::path& file_;
-  TriangleSoup soup_;
+  Contents contents_;
   std::vector<std::uint32_t> corners_;  ///< of the current face
 };
 
-// ---- Points with normals
-
-using Values = std::array<double, kOfVertex.size()>;
-
-/// Smallest size of the vertices, for refusing a count that the file cannot hold before memory is allocated [bytes].
-std::size_t least_bytes(const Element& vertices, PlyFormat format) {
-  const std::size_t numbers = vertices.properties.size();
-  if (format == PlyFormat::ascii) return vertices.entries * 2 * numbers - (vertices.entries == 0 ? 0 : 1);
-  std::size_t bytes = 0;
-  for (const Property& p : vertices.properties) bytes += p.type.size;
-  return vertices.entries * bytes;
-}
-
-std::size_t vertex_count(const PlyHeader::Element& element, const fs::path& file) {
-  const Words& words = element.words;
-  if (words.size() != 3 || words[1] != "vertex")
-    fail_in_line(file, element.line, "allowed: \"element vertex COUNT\" as the first element");
-  const auto count = whole_number(words[2]);
-  if (!count || static_cast<double>(*count) > kMostPoints) {
-    fail_in_line(
-        file, element.line,
-        fmt::format("got {} vertices; allowed: an integer, at most {:.0g}", quoted_word(words[2]), kMostPoints));
-  }
-  return *count;
-}
-
-Element vertices_of(const PlyHeader& header, const fs::path& file) {
-  if (header.elements.empty()) fail_in_line(file, header.last_line, "allowed: a header with \"element vertex\"");
-  Element vertices{"vertex", vertex_count(header.elements[0], file), {}};
-  for (const auto& [line, words] : header.elements[0].properties) {
-    const auto type = words.size() == 3 ? ply_type(words[1]) : std::nullopt;
-    if (!type) {
-      fail_in_line(file, line,
-                   "allowed for a vertex: \"property TYPE NAME\" with a type char, uchar, short, ushort, int, uint, "
-                   "float or double");
-    }
-    vertices.properties.push_back({{}, *type, role_in_vertex(words[2])});
-  }
-  for (const std::string_view name : kOfVertex) {
-    const auto count = vertices.count(role_in_vertex(name));
-    if (count == 1) continue;
-    fail_in_line(file, header.last_line,
-                 fmt::format("got {} vertex properties \"{}\"; allowed: one each of x, y, z, nx, ny, nz", count, name));
-  }
-  return vertices;
-}
-
-Values text_vertex(LineReader& lines, const Element& vertices, std::size_t index, const fs::path& file) {
-  const Words words = words_of(lines.next().value_or(""));
-  if (words.size() != vertices.properties.size()) {
-    fail_in_line(
-        file, lines.line(),
-        fmt::format("vertex {}: got {} numbers; allowed: {}", index, words.size(), vertices.properties.size()));
-  }
-  Values values{};
-  for (std::size_t p = 0; p < words.size(); ++p) {
-    const auto value = finite_number(words[p]);
-    if (!value) {
-      fail_in_line(file, lines.line(),
-                   fmt::format("vertex {}: got {}; allowed: a finite number", index, quoted_word(words[p])));
-    }
-    if (const Role role = vertices.properties[p].role; role != Role::nothing)
-      values[static_cast<std::size_t>(role)] = *value;
-  }
-  return values;
-}
-
-Values binary_vertex(ByteReader& reader, const Element& vertices, std::size_t index, const fs::path& file) {
-  Values values{};
-  for (const Property& property : vertices.properties) {
-    const double value = take_ply_number(reader, property.type);
-    if (property.role != Role::nothing) values[static_cast<std::size_t>(property.role)] = value;
-  }
-  for (const double value : values)
-    if (!std::isfinite(value))
-      fail_in_file(file, fmt::format("vertex {}: got {}; allowed: finite numbers", index, value));
-  return values;
+Contents contents_of(std::string_view text, Wanted wanted, const fs::path& file) {
+  LineReader lines(text);
+  const PlyHeader header = read_ply_header(lines, file);
+  const std::vector<Element> elements = elements_of(header, wanted, file);
+  if (header.format == PlyFormat::ascii) return read_ply_text(elements, wanted, MeshLines(lines, file));
+  return BinaryEntries(ByteReader(lines.rest(), byte_order(header.format)), wanted, file).read(elements);
 }
 
 }  // namespace
 
 TriangleSoup read_ply(std::string_view text, const fs::path& file) {
-  LineReader lines(text);
-  const PlyHeader header = read_ply_header(lines, file);
-  const std::vector<Element> elements = elements_of(header, file);
-  if (header.format == PlyFormat::ascii) return read_ply_text(elements, MeshLines(lines, file));
-  return BinaryEntries(ByteReader(lines.rest(), byte_order(header.format)), file).read(elements);
+  return contents_of(text, Wanted::faces, file).soup;
 }
 
 std::vector<SurfacePoint> ply_points_in(std::string_view text, const fs::path& file) {
-  LineReader lines(text);
-  const PlyHeader header = read_ply_header(lines, file);
-  const Element vertices = vertices_of(header, file);
-  if (lines.rest().size() < least_bytes(vertices, header.format)) {
-    fail_in_line(file, lines.line(),
-                 fmt::format("the file ends before its {} vertices; allowed: a complete file", vertices.entries));
-  }
-  ByteReader bytes(lines.rest(), byte_order(header.format));
+  const Contents contents = contents_of(text, Wanted::points, file);
   std::vector<SurfacePoint> points;
-  points.reserve(vertices.entries);
-  for (std::size_t i = 0; i < vertices.entries; ++i) {
-    const Values v = header.format == PlyFormat::ascii ? text_vertex(lines, vertices, i, file)
-                                                       : binary_vertex(bytes, vertices, i, file);
-    points.push_back({{v[0], v[1], v[2]}, {v[3], v[4], v[5]}});
-  }
+  points.reserve(contents.normals.size());
+  for (std::size_t i = 0; i < contents.normals.size(); ++i)
+    points.push_back({contents.soup.vertices[i], contents.normals[i]});
   return points;
 }
 

@@ -53,6 +53,7 @@ constexpr OldWords kOldWords[] = {
     {"compare", "--html", "hapbench report FOLDER, of the comparison's folder"},
     {"compare", "--no-skip", "hapbench run SCENE --no-skip"},
     {"converge", "--resume", "the same without it: the runs are made again"},
+    {"new", "--scale", "--extent SIZE, the longest edge of the mesh's box: 12mm, 1.2cm, 0.012m, 0.5in"},
     {"plot", "--no-sketch", "the same without it: plot draws no sketches"},
     {"reproduce", "--robustness",
      "hapbench reproduce --choices results/reference/readings.csv, or of scripts/readings.py 256"},

@@ -1,15 +1,12 @@
 #include "scenarios/program/scenario_start.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <functional>
 #include <limits>
-#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
@@ -17,6 +14,8 @@
 #include "device_model/hands/drag_hand.hpp"
 #include "scenarios/description/load_scenario.hpp"
 #include "scenarios/description/parts.hpp"
+#include "scenarios/input/installed_folder.hpp"
+#include "scenarios/input/text_lines.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/encounter.hpp"
 #include "scenarios/run/scene_facts.hpp"
@@ -166,21 +165,19 @@ DragStart choose_drag(const PointShell& shell, std::span<const Vec3> positions, 
 constexpr double kStep = 0.0005;          ///< [s]
 constexpr double kClearance = 0.001;      ///< between tool and surface at the start [m]
 constexpr double kDragSpeed = 5.0;        ///< in diameters of the tool [1/s]
-constexpr double kPressedBelow = 0.0035;  ///< the hand's target, 1 N below the surface with kPress [m]
-
-/// The values by their names @name@ in the templates.
-using Values = std::map<std::string, Json>;
+constexpr double kPressedBelow = 0.0035;  ///< the hand's target, 1 N below the surface with the spring of a press [m]
 
 /// Rounds to two significant digits, as people write lengths.
 double rounded(double value) {
   return std::stod(fmt::format("{:.2g}", value));
 }
 
-/// Puts a text in the place of each @name@.
-void fill_mark(std::string& text, const std::string& name, const std::string& with) {
-  const std::string mark = "@" + name + "@";
-  for (std::size_t at = 0; (at = text.find(mark, at)) != std::string::npos; at += with.size())
-    text.replace(at, mark.size(), with);
+Json list_of(const Vec3& v) {
+  return {v.x() + 0.0, v.y() + 0.0, v.z() + 0.0};  // never -0
+}
+
+const StartKind& kind_on_mesh() {
+  return *std::ranges::find(start_kinds(), "mesh", &StartKind::name);
 }
 
 /// The box of things at a place each.
@@ -193,27 +190,8 @@ Box box_of(const Things& things, Place place = {}) {
   return box;
 }
 
-/// A unit that a file may have.
-struct MeshUnit {
-  double metres;
-  const char* name;
-};
-
-/// Objects are worked on by tools of a millimetre and more, which are a hundredth to a third of them.
-constexpr double kShortestObject = 0.003, kLongestObject = 0.3;  // [m]
-
-/// How far the length in that unit is from those of such objects: 0 within, else the logarithm of the ratio.
-double misfit(double length, const MeshUnit& unit) {
-  return std::max(
-      {0.0, math::log(kShortestObject / (length * unit.metres)), math::log(length * unit.metres / kLongestObject)});
-}
-
-/// The units in the order in which they are believed: by their misfit, then the usual ones first.
-std::array<MeshUnit, 3> likely_units(double length) {
-  std::array<MeshUnit, 3> units = {{{0.001, "mm"}, {1.0, "m"}, {0.01, "cm"}}};
-  std::ranges::stable_sort(units, {}, [length](const MeshUnit& unit) { return misfit(length, unit); });
-  return units;
-}
+/// The longest edges that a file of which no size is stated may have in metres [m].
+constexpr double kShortestObject = 0.001, kLongestObject = 1.0;
 
 /// Rounds to the micrometre, as people write places.
 double to_micrometres(double metres) {
@@ -225,72 +203,52 @@ double to_micrometres(double metres) {
 class Start {
  public:
   Start(const StartKind& kind, const StartOptions& options, const fs::path& directory)
-      : description_(kind.summary), sections_(kind.sections), options_(options), directory_(directory) {
-    const bool is_on_mesh = options.on || (kind.source == StartSource::mesh && !kind.needs_source && options.source);
-    if (is_on_mesh) sections_ = on_mesh(kind);
+      : scene_(kind.scene), options_(options), directory_(directory) {
+    const bool is_on_mesh = options.on || (kind.source == "mesh" && kind.is_source_optional && options.source);
+    if (is_on_mesh) scene_["environment"] = kind_on_mesh().scene.at("environment");
     turn_to_side();
-    values_["steps"] = kind.steps;
-    for (const Vec3& point : options.path) values_["path"].push_back({point.x(), point.y(), point.z()});
-    if (options.source) values_["file"] = path_text(*options.source);
-    if (options.on || options.source) values_["surface"] = path_text(options.on ? *options.on : *options.source);
-    if (options.on) {
-      scale_to_stroke();
-    } else if (has("@scale@")) {
-      scale_environment();
-    }
-    if (has("@tool_scale@")) {
+    name_files();
+    const bool is_placed = scene_.contains("initial") && scene_["initial"]["position_m"].is_null();
+    if (is_placed) scene_["initial"]["position_m"] = {0, 0, 0};
+    if (has_type("environment", "mesh")) scale_environment();
+    if (has_type("tool", "mesh")) {
       place_mesh_tool();
-    } else if (has("@x@")) {
+    } else if (is_placed) {
       place_tool();
     }
-    if (kind.source == StartSource::stroke) choose_stroke_steps();
+    if (kind.source == "stroke") choose_stroke_steps();
     note_spacing();
   }
 
-  ScenarioStart result() const { return {text(), notes_, warnings_}; }
+  ScenarioStart result() const { return {scene_, notes_, warnings_}; }
 
  private:
-  bool has(const std::string& part) const { return sections_.find(part) != std::string::npos; }
+  bool has_type(const char* part, const char* type) const {
+    return scene_.contains(part) && scene_.at(part).value(kTypeField, "") == type;
+  }
 
-  std::string path_text(const fs::path& file) const {
-    return fs::proximate(file, directory_.empty() ? "." : directory_).generic_string();
+  /// Writes the names of the source and of the mesh below a stroke where they are used.
+  void name_files() {
+    const auto name = [this](Json& part, const fs::path& file) {
+      part["file"] = fs::proximate(file, directory_.empty() ? "." : directory_).generic_string();
+    };
+    if (scene_["environment"].contains("file"))
+      name(scene_["environment"], options_.on ? *options_.on : *options_.source);
+    if (has_type("tool", "mesh")) name(scene_["tool"], *options_.source);
+    if (scene_.contains("motion") && scene_["motion"].contains("position") && options_.source)
+      name(scene_["motion"]["position"], *options_.source);
   }
 
   /// Puts the side's axes in the place of x, y and z.
   void turn_to_side() {
     const auto axis = static_cast<Eigen::Index>(options_.side.back() - 'x');
-    const Vec3 up = (options_.side.front() == '-' ? -1.0 : 1.0) * Vec3::Unit(axis);
-    const Vec3 lean = Vec3::Unit(axis == 0 ? 1 : 0);
+    const Vec3 up = side_sign() * Vec3::Unit(axis), lean = Vec3::Unit(axis == 0 ? 1 : 0);
     to_world_ << lean, up.cross(lean), up;
-    std::vector<std::string> targets;
-    for (const char name : {'x', 'y', 'z'}) {
-      targets.push_back(name - 'x' != axis
-                            ? fmt::format("\"{0}_m\": @{0}@", name)
-                            : fmt::format("\"{0}_m\": {{\"type\": \"waypoints\", \"points\": [[0, @{0}@], "
-                                          "[0.5, @pressed@]], \"interpolation\": \"cosine\"}}",
-                                          name));
-    }
-    fill_mark(sections_, "target", fmt::format("{}", fmt::join(targets, ",\n      ")));
-    fill_mark(sections_, "way", options_.path.empty() ? "\"direction\": @direction@" : "\"path_m\": @path@");
-    if (options_.side != "z" && has("\"impedance\"")) {
-      const auto list = [](const Vec3& v) {
-        return fmt::format("[{}, {}, {}]", v.x() + 0.0, v.y() + 0.0, v.z() + 0.0);
-      };
-      sections_ +=
-          fmt::format(",\n  \"motion\": {{\"orientation\": {{\"up\": {}, \"lean\": {}}}}}\n", list(up), list(lean));
-    }
+    if (options_.side != "z" && has_type("hand", "impedance"))
+      scene_["motion"] = {{"orientation", {{"up", list_of(up)}, {"lean", list_of(lean)}}}};
   }
 
-  std::string text() const {
-    std::string text = fmt::format("{{\n  \"description\": {},\n  \"time\": {{\"step_s\": {}, \"steps\": @steps@}},",
-                                   Json(description_).dump(), kStep) +
-                       sections_ + "}\n";
-    fill_mark(text, "flip", flip_ ? ", \"flip_normals\": true" : "");
-    for (const auto& [name, value] : values_) fill_mark(text, name, value.dump());
-    return text;
-  }
-
-  LoadedScenario scenario() const { return read_scenario(parse_json(text()), directory_); }
+  LoadedScenario scenario() const { return read_scenario(scene_, directory_); }
 
   /// The points of the scene in the side's frame.
   std::vector<SurfacePoint> points() const {
@@ -301,69 +259,39 @@ class Start {
     return points;
   }
 
-  /// The scale that was given, or that of the likeliest unit of an object that was first read as millimetres. Where
-  /// another unit is possible, too, both readings are said.
+  /// The scale that gives an object, which was first read as millimetres, its stated size. A file of which none is
+  /// stated is in metres. Throws InputError when it then is no object to be worked on.
   double choose_scale(const Box& box, const char* object) {
     const double longest = (box.max - box.min).maxCoeff() / 0.001;
-    const auto reading = [longest](double scale) { return length_text(longest * scale); };
-    std::string note = fmt::format("longest edge of the {}'s box: {:.4g}, ", object, longest);
-    if (options_.scale) {
-      notes_.push_back(note + fmt::format("with scale {} {}", *options_.scale, reading(*options_.scale)));
-      return *options_.scale;
+    if (!options_.extent && (longest < kShortestObject || longest > kLongestObject)) {
+      throw InputError(fmt::format(
+          "{}: the {} is {} long in metres, {} in millimetres; allowed: {} ... {}, or to state its size: \"{} --extent "
+          "{:.7g}mm\" or \"{} --extent {:.7g}m\"",
+          options_.on ? options_.on->string() : options_.source->string(), object, length_text(longest),
+          length_text(0.001 * longest), length_text(kShortestObject), length_text(kLongestObject), options_.command,
+          longest, options_.command, longest));
     }
-    const auto [unit, other, last] = likely_units(longest);
-    note += fmt::format("taken for {}: {}", unit.name, reading(unit.metres));
-    constexpr double kDoubt = 1.3;  // ln(3.7): 0.8 mm to 1.1 m
-    if (misfit(longest, other) < kDoubt)
-      note += fmt::format("; in {} it would be {}: --scale {}", other.name, reading(other.metres), other.metres);
-    notes_.push_back(note);
-    return unit.metres;
+    const double scale = options_.extent ? std::stod(fmt::format("{:.6g}", *options_.extent / longest)) : 1.0;
+    notes_.push_back(
+        fmt::format("longest edge of the {}'s box: {}, with scale {}", object, length_text(longest * scale), scale));
+    return scale;
   }
 
+  /// The tool is sized by the mesh, but for one that a stroke leads.
   void scale_environment() {
     const Box box = box_of(points(), &SurfacePoint::position);
     const double scale = choose_scale(box, "mesh");
-    values_["scale"] = scale;
-    choose_tool((box.max - box.min).maxCoeff() / 0.001 * scale);
-    values_["spacing"] = rounded(diameter_ / 10.0);
-  }
-
-  /// Takes the unit in which the stroke comes into the mesh's box, of several the one that makes both alike in size.
-  void scale_to_stroke() {
-    const LoadedScenario loaded = scenario();  // in millimetres
-    const Box box = box_of(loaded.files.at(kEnvironmentFile).mesh().triangles().vertices);
-    const auto stroke = loaded.files.at(kMotionFile).stroke();
-    std::vector<Vec3> places;
-    for (const auto& sample : stroke->motion.samples()) places.push_back(sample.position);
-    const Box way = box_of(places);
-    const double size = std::max((way.max - way.min).norm(), kShortestObject);
-    const auto gap_of = [&](double scale) {
-      const Box scaled{box.min * (scale / 0.001), box.max * (scale / 0.001)};
-      double gap = std::numeric_limits<double>::infinity();
-      for (const Vec3& place : places) gap = std::min(gap, distance_to(scaled, place));
-      return std::max(0.0, gap - 0.5 * diameter_);
-    };
-    const auto misfit_of = [&](double scale) {
-      return gap_of(scale) / size + 0.1 * std::abs(math::log((box.max - box.min).norm() * (scale / 0.001) / size));
-    };
-    // Not std::ranges::min, which clang 14 does not compile.
-    const double guessed =
-        std::min({0.001, 1.0, 0.01}, [&](double a, double b) { return misfit_of(a) < misfit_of(b); });
-    const double scale = options_.scale.value_or(guessed);
-    values_["scale"] = scale;
-    values_["spacing"] = 0.1 * diameter_;
-    const Box scaled{box.min * (scale / 0.001), box.max * (scale / 0.001)};
-    notes_.push_back(fmt::format("the mesh with scale {}: {}; the stroke: {}{}", scale, place_text(scaled),
-                                 place_text(way),
-                                 options_.scale ? "" : "; if that does not fit, --scale, or --shift of import"));
-    if (const double gap = gap_of(scale); gap > 0.0)
-      warnings_.push_back(fmt::format("the stroke stays {} away from the mesh", length_text(gap)));
+    scene_["environment"]["scale"] = scale;
+    if (!options_.on) choose_tool((box.max - box.min).maxCoeff() / 0.001 * scale);
+    scene_["environment"]["spacing_m"] = rounded(diameter_ / 10.0);
+    if (options_.on)
+      notes_.push_back(fmt::format("the mesh: {}", place_text(Box{box.min / 0.001 * scale, box.max / 0.001 * scale})));
   }
 
   void choose_tool(double longest) {
     diameter_ = std::max(0.001, rounded(longest / 50.0));
-    values_["diameter"] = diameter_;
-    values_["length"] = 10.0 * diameter_;
+    if (scene_.contains("tool") && scene_["tool"].contains("diameter_m")) scene_["tool"]["diameter_m"] = diameter_;
+    if (scene_.contains("tool") && scene_["tool"].contains("length_m")) scene_["tool"]["length_m"] = 10.0 * diameter_;
   }
 
   /// Turns the normals of an open mesh round that point away from the side, about its highest place.
@@ -373,7 +301,8 @@ class Start {
     longest_ = (box.max - box.min).maxCoeff();
     choose_tool(longest_);
     const Vec3 top = middle_of_the_top(shell, box.max.z(), 0.1 * diameter_);
-    const bool is_open = !has("@flip@") || !scenario().files.at(kEnvironmentFile).mesh().open_edges().empty();
+    const bool is_open =
+        !has_type("environment", "mesh") || !scenario().files.at(kEnvironmentFile).mesh().open_edges().empty();
     double facing = 0.0;
     for (const SurfacePoint& point : shell) {
       const Vec3 from_top = point.position - top;
@@ -383,11 +312,11 @@ class Start {
     if (facing >= 0.0 || !is_open) return shell;
     const std::string side = options_.side.front() == '-' ? options_.side.substr(1) : "-" + options_.side;
     const std::string found = fmt::format("its normals point away from side {}", options_.side);
-    if (!has("@flip@")) {
+    if (!has_type("environment", "mesh")) {
       throw InputError(fmt::format("--from {}: {}; allowed: normals turned round, or --side={}",
-                                   values_.at("surface").get<std::string>(), found, side));
+                                   options_.source->generic_string(), found, side));
     }
-    flip_ = true;
+    scene_["environment"]["flip_normals"] = true;
     notes_.push_back(fmt::format(
         "{} and are turned round, environment.flip_normals; or press from the other side: --side={}", found, side));
     return points();
@@ -396,12 +325,13 @@ class Start {
   void place_tool() {
     const std::vector<SurfacePoint> shell = facing_points();
     count_ = shell.size();
-    const std::string count = has("@spacing@") ? "" : fmt::format("{} points; ", count_);
+    const bool is_mesh = has_type("environment", "mesh");
+    const std::string count = is_mesh ? "" : fmt::format("{} points; ", count_);
     const Box box = box_of(shell, &SurfacePoint::position);
     const Vec3 top = top_of(shell, box);
-    values_["pressed"] = to_micrometres(side_sign() * (top.z() + 0.5 * diameter_ - kPressedBelow));
-    if (has("\"drag\"")) {
-      if (!has("@spacing@")) notes_.push_back(fmt::format("{} points", count_));
+    pressed_ = to_micrometres(side_sign() * (top.z() + 0.5 * diameter_ - kPressedBelow));
+    if (has_type("hand", "drag")) {
+      if (!is_mesh) notes_.push_back(fmt::format("{} points", count_));
       if (!options_.path.empty()) return follow_path(top);
       const Vec3 middle = options_.at ? top : top_of_the_middle(shell, box, diameter_);
       return choose_way(shell, {start_above(top), start_above(middle)});
@@ -435,44 +365,52 @@ class Start {
   }
 
   void start_at(const Vec3& place) {
-    const Vec3 world = to_world_ * place;
-    values_["x"] = world.x() + 0.0;  // never -0
-    values_["y"] = world.y() + 0.0;
-    values_["z"] = world.z() + 0.0;
+    const Json world = list_of(to_world_ * place);
+    scene_["initial"]["position_m"] = world;
+    if (!has_type("hand", "impedance")) return;
+    Json& target = scene_["hand"]["target"];
+    target = {{"x_m", world[0]}, {"y_m", world[1]}, {"z_m", world[2]}};
+    Json& along = target[std::string(1, options_.side.back()) + "_m"];
+    along = {{kTypeField, "waypoints"},
+             {"points", Json::array({Json::array({0, along}), Json::array({0.5, pressed_})})},
+             {"interpolation", "cosine"}};
   }
 
   /// Leads the tool along the points of --path.
   void follow_path(const Vec3& first) {
     double way = 0.0;
+    Json& hand = scene_["hand"];
+    hand.erase("direction");
+    for (const Vec3& point : options_.path) hand["path_m"].push_back(list_of(point));
     for (std::size_t i = 1; i < options_.path.size(); ++i) way += (options_.path[i] - options_.path[i - 1]).norm();
     start_at(start_above(first));
     drag_for(way, kDragSpeed * diameter_);
-    values_["smoothing"] = 0.5 * diameter_;
+    hand["smoothing_m"] = 0.5 * diameter_;
     notes_.push_back(fmt::format("dragged over {}", length_text(way)));
   }
 
   void drag_for(double way, double speed) {
-    values_["speed"] = rounded(speed);
-    values_["steps"] = static_cast<std::int64_t>(std::ceil(rounded(way / speed) / kStep));
+    scene_["hand"]["speed_m_per_s"] = rounded(speed);
+    scene_["time"]["steps"] = static_cast<std::int64_t>(std::ceil(rounded(way / speed) / kStep));
   }
 
   /// Says how far apart a mesh's points are.
   void note_spacing() {
-    if (!has("@spacing@")) return;
+    if (!has_type("environment", "mesh")) return;
     notes_.push_back(fmt::format("{} points, {} apart: a tenth of the tool's diameter",
                                  count_ == 0 ? points().size() : count_,
-                                 length_text(values_.at("spacing").get<double>())));
+                                 length_text(scene_["environment"]["spacing_m"].get<double>())));
   }
 
-  /// Places the tool above the plane's middle, at a scale that makes it about as long as a tooth.
+  /// Places the tool above the plane's middle.
   void place_mesh_tool() {
     TriangleSoup surface = scenario().files.at(kToolFile).mesh().triangles();  // taken for millimetres
     const double scale = choose_scale(box_of(surface.vertices), "tool");
-    values_["tool_scale"] = scale;
+    scene_["tool"]["scale"] = scale;
     for (Vec3& vertex : surface.vertices) vertex *= scale / 0.001;
     const double touching = find_tip(surface);
-    values_["z"] = to_micrometres(touching + kClearance);
-    values_["pressed"] = to_micrometres(touching - kPressedBelow);
+    pressed_ = to_micrometres(touching - kPressedBelow);
+    start_at({0.0, 0.0, to_micrometres(touching + kClearance)});
   }
 
   /// Takes the file's origin for the tip centre and -z for the tip's direction unless the tool then lies oddly; then
@@ -492,13 +430,13 @@ class Start {
       for (const double x : v) json.push_back(std::round(digits * x) / digits + 0.0);  // never -0
       return json;
     };
-    values_["tip"] = rounded_to(1e6, place);
-    values_["tip_axis"] = rounded_to(1e4, direction);
+    scene_["tool"]["tip_m"] = rounded_to(1e6, place);
+    scene_["tool"]["tip_axis"] = rounded_to(1e4, direction);
     notes_.push_back(fmt::format("with the file's origin for tip centre and the tip along -z the tool {}", odd));
     notes_.push_back(fmt::format(
         "taken for its tip: its thinner end, x = {:.4g}, y = {:.4g}, z = {:.4g} mm, pointing along {}; if it is not, change "
         "tool.tip_m and tool.tip_axis",
-        1e3 * place.x(), 1e3 * place.y(), 1e3 * place.z(), values_["tip_axis"].dump()));
+        1e3 * place.x(), 1e3 * place.y(), 1e3 * place.z(), scene_["tool"]["tip_axis"].dump()));
     return 0.0;  // the place is on the plane that touches the tool
   }
 
@@ -511,8 +449,8 @@ class Start {
     const Vec3 direction = to_world_ * drag.direction, start = to_world_ * drag.position;
     Json along = Json::array();
     for (const double part : direction) along.push_back(static_cast<int>(part));
-    values_["direction"] = along;
-    values_["smoothing"] = drag.smoothing;
+    scene_["hand"]["direction"] = along;
+    scene_["hand"]["smoothing_m"] = drag.smoothing;
     drag_for(has_room ? way : 0.25 * longest_, speed);
     if (!has_room) {
       warnings_.push_back(
@@ -534,39 +472,39 @@ class Start {
     const auto lower = [](const auto& a, const auto& b) { return a.position.z() < b.position.z(); };
     const double lowest = std::min_element(samples.begin(), samples.end(), lower)->position.z();
     const double last = samples.back().time;
-    values_["steps"] = static_cast<std::int64_t>(std::max(1.0, std::ceil(last / kStep) + 1.0));
+    scene_["time"]["steps"] = static_cast<std::int64_t>(std::max(1.0, std::ceil(last / kStep) + 1.0));
     notes_.push_back(fmt::format("the stroke lasts from {:.4g} to {:.4g} s; its lowest tip is at z = {:.4g} mm{}",
                                  samples.front().time, last, 1e3 * lowest, options_.on ? "" : ", the plane at 0"));
   }
 
-  std::string description_;
-  std::string sections_;
+  Json scene_;
   StartOptions options_;
   fs::path directory_;
   Mat3 to_world_ = Mat3::Identity();  ///< from the side's frame
-  bool flip_ = false;                 ///< environment.flip_normals
   std::size_t count_ = 0;             ///< of the scene's points
   double diameter_ = 0.001;           ///< [m]
   double longest_ = 0.0;              ///< edge of the environment's box [m]
-  Values values_ = {{"x", 0.0},
-                    {"y", 0.0},
-                    {"z", 0.0},
-                    {"pressed", 0.0},
-                    {"scale", 0.001},
-                    {"tool_scale", 0.001},
-                    {"tip", {0, 0, 0}},
-                    {"tip_axis", {0, 0, -1}},
-                    {"spacing", nullptr},
-                    {"diameter", 0.001},
-                    {"length", 0.01},
-                    {"direction", {1, 0, 0}},
-                    {"path", Json::array()},
-                    {"speed", 0.005},
-                    {"smoothing", 0.0005}};
+  double pressed_ = 0.0;              ///< where a hand that presses leads the tool, along the side's axis [m]
   std::vector<std::string> notes_, warnings_;
 };
 
 }  // namespace
+
+const std::vector<StartKind>& start_kinds() {
+  static const std::vector<StartKind> kinds = [] {
+    const Json json = parse_json(read_named_file(installed_folder("scenarios") / "starts.json"));
+    std::vector<StartKind> all;
+    for (const Json& kind : json.at("kinds")) {
+      all.push_back({kind.at("kind"), kind.at("summary"), kind.value("from", ""), kind.value("optional", false), {}});
+      Json& scene = all.back().scene;
+      scene = {{"description", kind.at("summary")},
+               {"time", {{"step_s", kStep}, {"steps", kind.value("steps", 2000)}}}};
+      for (const Json& part : kind.at("parts")) scene.update(json.at("parts").at(part.get<std::string>()));
+    }
+    return all;
+  }();
+  return kinds;
+}
 
 ScenarioStart scenario_start(const StartKind& kind, const StartOptions& options, const fs::path& directory) {
   return Start(kind, options, directory).result();

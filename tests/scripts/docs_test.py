@@ -93,7 +93,7 @@ class Bench:
         shutil.copy(SOURCE / "scenarios/validation/epfl_paddle.json", folder)
         shutil.copy(SOURCE / "scenarios/library/studies/stability_delay.json", folder / "mine.json")
         compile_law(folder / "depth_weighted.so")
-        self.must("new", "mesh", "--from", "my.stl", "--out", "my.json")
+        self.must("new", "mesh", "--from", "my.stl", "--extent", "6mm", "--out", "my.json")
         for name in "abc":
             shutil.copy(folder / "my.json", folder / f"{name}.json")
         for shard in range(2):

@@ -1,7 +1,9 @@
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <regex>
+#include <utility>
 
 #include "scenarios/input/mesh_file.hpp"
 #include "sim/geometry/analytic_shells.hpp"
@@ -39,6 +41,7 @@ TEST_F(NewCommand, WritesScenariosOfEveryKindThatRunAtOnceAndTouch) {
                                                                 : "stroke.csv";
     if (kind == "mesh" || kind == "tool" || kind == "shell" || kind == "stroke")
       arguments.insert(arguments.end(), {"--from", data(source)});
+    if (source == "cube.obj") arguments.insert(arguments.end(), {"--extent", "10mm"});
     const ProgramRun written = hapbench(arguments);
     ASSERT_EQ(written.status, 0) << kind << ": " << written.err;
     for (const std::string& line : test::lines_of(written.out)) EXPECT_LE(line.size(), 160u) << line;
@@ -57,20 +60,39 @@ void write_rod(const fs::path& file, double length, double thickness) {
   test::write_plainly(file, test::obj_text(rod));
 }
 
-TEST_F(NewCommand, GuessesTheUnitOfAMesh) {
-  struct Reading {
-    double length, thickness, scale;
+TEST_F(NewCommand, GivesAMeshItsStatedSize) {
+  struct Size {
+    double length;
+    const char* extent;  ///< empty: the file is in metres
+    double scale;
   };
-  // 10, 1.2 and 0.012 are millimetres, centimetres and metres; a bone of 0.12 is one of 120 mm.
-  for (const auto& [length, thickness, scale] :
-       {Reading{10.0, 0.6, 0.001}, Reading{1.2, 0.06, 0.01}, Reading{0.012, 0.0006, 1.0}, Reading{0.12, 0.0003, 1.0},
-        Reading{2.0, 0.06, 0.01}}) {
-    write_rod(directory_ / "rod.obj", length, thickness);
+  for (const auto& [length, extent, scale] :
+       {Size{12.0, "12mm", 0.001}, Size{1.2, "1.2cm", 0.01}, Size{1.2, "0.0127m", 0.0105833}, Size{4.0, "2in", 0.0127},
+        Size{86.0, "86m", 1.0}, Size{0.012, "", 1.0}, Size{1.0, "", 1.0}}) {
+    write_rod(directory_ / "rod.obj", length, 0.05 * length);
     fs::remove(path("rod.json"));
-    EXPECT_EQ(hapbench({"new", "mesh", "--from", path("rod.obj"), "--out", path("rod.json")}).status, 0);
+    std::vector<std::string> words = {"new", "mesh", "--from", path("rod.obj"), "--out", path("rod.json")};
+    if (*extent != '\0') words.insert(words.end(), {"--extent", extent});
+    EXPECT_EQ(hapbench(words).status, 0) << length << extent;
     const Json json = Json::parse(test::read_file(directory_ / "rod.json"));
     EXPECT_EQ(json["environment"]["file"], "rod.obj") << "from where the scenario stands";
-    EXPECT_EQ(json["environment"]["scale"], scale) << length;
+    EXPECT_EQ(json["environment"]["scale"], scale) << length << extent;
+  }
+}
+
+TEST_F(NewCommand, RefusesAMeshThatIsNoObjectInMetres) {
+  for (const auto& [length, readings] : {std::pair{86.0, "is 86 m long in metres, 86 mm in millimetres"},
+                                         std::pair{0.0005, "is 0.5 mm long in metres, 0.5 um in millimetres"}}) {
+    write_rod(directory_ / "rod.obj", length, 0.05 * length);
+    const ProgramRun refused = hapbench({"new", "mesh", "--from", path("rod.obj"), "--out", path("rod.json")});
+    EXPECT_EQ(refused.status, 2);
+    EXPECT_NE(refused.err.find(readings), std::string::npos) << refused.err;
+    const std::string command = "\"hapbench new mesh --from " + path("rod.obj") + " --out " + path("rod.json");
+    for (const char* unit : {"mm", "m"}) {
+      const std::string whole = fmt::format("{} --extent {}{}\"", command, length, unit);
+      EXPECT_NE(refused.err.find(whole), std::string::npos) << refused.err << whole;
+    }
+    EXPECT_FALSE(fs::exists(path("rod.json")));
   }
 }
 
@@ -101,10 +123,10 @@ class NewOnASheet : public NewCommand {
 };
 
 TEST_F(NewOnASheet, TurnsNormalsThatPointAwayFromTheTool) {
-  const std::string as_it_is = made({"bur", "--from", path("up.obj")}).dump();
+  const std::string as_it_is = made({"bur", "--from", path("up.obj"), "--extent", "8mm"}).dump();
   EXPECT_EQ(as_it_is.find("flip_normals"), std::string::npos) << as_it_is;
   std::string said;
-  const Json turned = made({"bur", "--from", path("down.obj")}, &said);
+  const Json turned = made({"bur", "--from", path("down.obj"), "--extent", "8mm"}, &said);
   EXPECT_EQ(turned["environment"]["flip_normals"], true);
   EXPECT_NE(said.find("its normals point away from side z and are turned round"), std::string::npos) << said;
   // Without that the tool starts behind the surface.
@@ -142,7 +164,8 @@ TEST_F(NewOnASheet, TurnsNormalsThatPointAwayFromTheTool) {
 }
 
 TEST_F(NewOnASheet, StartsWhereItIsTold) {
-  const Json below = made({"mesh", "--from", path("down.obj"), "--side=-z", "--at", "0.002,-0.001,0.0006"});
+  const Json below =
+      made({"mesh", "--from", path("down.obj"), "--extent", "8mm", "--side=-z", "--at", "0.002,-0.001,0.0006"});
   EXPECT_FALSE(below["environment"].contains("flip_normals"));
   const Json start = below["initial"]["position_m"];
   // One point is kept in each cube of 0.1 mm: its diagonal.
@@ -150,7 +173,8 @@ TEST_F(NewOnASheet, StartsWhereItIsTold) {
   EXPECT_NEAR(start[1], -0.001, 1.8e-4);
   EXPECT_LT(start[2], -0.0005);
   EXPECT_EQ(below["motion"]["orientation"]["up"], (Json{0, 0, -1}));
-  const Json path_given = made({"drag", "--from", path("up.obj"), "--path", "-0.002,0,0", "--path", "0.002,0.001,0"});
+  const Json path_given =
+      made({"drag", "--from", path("up.obj"), "--extent", "8mm", "--path", "-0.002,0,0", "--path", "0.002,0.001,0"});
   EXPECT_EQ(path_given["hand"]["path_m"], (Json{{-0.002, 0, 0}, {0.002, 0.001, 0}}));
   EXPECT_FALSE(path_given["hand"].contains("direction"));
   EXPECT_NEAR(path_given["initial"]["position_m"][0], -0.002, 2e-4);
@@ -159,7 +183,7 @@ TEST_F(NewOnASheet, StartsWhereItIsTold) {
 TEST_F(NewOnASheet, ComesFromEverySideOfAClosedBody) {
   test::write_plainly(directory_ / "cube.obj", test::obj_text(test::cube(0.001)));
   const auto made_of_cube = [&](const std::string& kind, const std::string& side) {
-    return made({kind, "--from", path("cube.obj"), "--scale", "1", "--side=" + side});
+    return made({kind, "--from", path("cube.obj"), "--side=" + side});
   };
   for (const std::string side : {"y", "-z"}) {
     const Json json = made_of_cube("mesh", side);
@@ -175,7 +199,7 @@ TEST_F(NewOnASheet, PlaysAStrokeBackOverAMesh) {
   test::write_plainly(
       directory_ / "stroke.csv",
       "time_s,px_m,py_m,pz_m,axis_x,axis_y,axis_z\n0,-0.002,0,0.0009,0,0,-1\n1,0.002,0,0.0009,0,0,-1\n");
-  const Json json = made({"stroke", "--from", path("stroke.csv"), "--on", path("up.obj")});
+  const Json json = made({"stroke", "--from", path("stroke.csv"), "--on", path("up.obj"), "--extent", "8mm"});
   EXPECT_EQ(json["environment"]["type"], "mesh");
   EXPECT_EQ(json["environment"]["scale"], 0.001);
   EXPECT_EQ(json["motion"]["position"]["file"], "stroke.csv");

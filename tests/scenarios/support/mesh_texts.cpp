@@ -70,15 +70,6 @@ std::string ply_text(const TriangleSoup& soup) {
   return text;
 }
 
-std::string binary_off_text(const TriangleSoup& soup) {
-  std::string text = "OFF BINARY\n";
-  for (const std::size_t count : {soup.vertices.size(), soup.triangles.size(), std::size_t{0}})
-    text += bytes(static_cast<std::uint32_t>(count));
-  for (const Vec3& v : soup.vertices) text += bytes<float>(v);
-  for (const auto& t : soup.triangles) text += bytes(3u) + bytes(t[0]) + bytes(t[1]) + bytes(t[2]);
-  return text;
-}
-
 std::string binary_stl_text(const TriangleSoup& soup) {
   std::string text = "solid as some programs call it";
   text.resize(80);
@@ -112,7 +103,6 @@ std::vector<NamedText> mesh_texts(const TriangleSoup& soup) {
           {"text.off", off_text(soup)},
           {"text.stl", stl_text(soup)},
           {"text.ply", ply_text(soup)},
-          {"binary.off", binary_off_text(soup)},
           {"binary.stl", binary_stl_text(soup)},
           {"little_float.ply", binary_ply_text(soup, true, false)},
           {"little_double.ply", binary_ply_text(soup, true, true)},

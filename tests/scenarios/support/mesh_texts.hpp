@@ -14,7 +14,6 @@ std::string off_text(const TriangleSoup& soup);
 std::string stl_text(const TriangleSoup& soup);
 std::string ply_text(const TriangleSoup& soup);
 /// As OpenMesh writes it: little endian, no colours.
-std::string binary_off_text(const TriangleSoup& soup);
 std::string binary_stl_text(const TriangleSoup& soup);
 /// Coordinates as float or double, indices as int.
 std::string binary_ply_text(const TriangleSoup& soup, bool little_endian, bool doubles);
