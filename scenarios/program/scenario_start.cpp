@@ -17,7 +17,6 @@
 #include "scenarios/input/installed_folder.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/run/assemble.hpp"
-#include "scenarios/run/encounter.hpp"
 #include "scenarios/run/scene_facts.hpp"
 #include "sim/core/math.hpp"
 #include "sim/core/types.hpp"
