@@ -1,6 +1,7 @@
 #include "results/observe/core_passage.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <tuple>
@@ -19,8 +20,6 @@ constexpr double kLookFrom = 0.8;
 constexpr double kThinnest = 0.05;
 constexpr std::size_t kSamples = 256;  ///< of the tool's thickness
 constexpr double kMostSteps = 256.0;   ///< of the core's way in a row
-/// Faces look away from each other where their normals' product is less: those of a right angle do not.
-constexpr double kAway = -1e-3;
 
 }  // namespace
 
@@ -139,7 +138,7 @@ void CorePassage::compare(const Vec3& position, const Vec3& axis, Stretches& now
   for (std::size_t i = 0; i < now.count; ++i) {
     Stretch& next = now.of[i];
     const auto place = [&](double s) { return Vec3(position + s * axis); };
-    if (next.face_low && next.face_high && next.face_low->dot(*next.face_high) < kAway)
+    if (next.face_low && next.face_high && look_away(*next.face_low, *next.face_high))
       through(place(next.high), place(next.low), true);
     const Stretch* was = nullptr;
     for (std::size_t k = 0; k < inside_.count; ++k) {
@@ -158,8 +157,8 @@ void CorePassage::compare(const Vec3& position, const Vec3& axis, Stretches& now
     next.entered = was->entered;
     next.normal = was->normal;
     // What comes out by a face that looks away from the entry's has gone through, unless it had come in by that face.
-    const bool away_low = next.face_low && next.face_low->dot(next.normal) < kAway;
-    const bool away_high = next.face_high && next.face_high->dot(next.normal) < kAway;
+    const bool away_low = next.face_low && look_away(*next.face_low, next.normal);
+    const bool away_high = next.face_high && look_away(*next.face_high, next.normal);
     if (away_low && next.low > was->own_low) through(next.entered, place(next.low), false);
     if (away_high && next.high < was->own_high) through(next.entered, place(next.high), false);
     next.own_low = away_low ? std::max(was->own_low, next.low) : next.low;
@@ -171,7 +170,7 @@ void CorePassage::compare(const Vec3& position, const Vec3& axis, Stretches& now
     const Vec3 middle = position + 0.5 * (old.own_low + old.own_high) * axis;
     if (stays[k]) continue;
     const SurfaceDistance phi = solid_->at(middle);
-    if (phi.known && phi.value > 0.0 && normal_at(middle).dot(old.normal) < kAway) through(old.entered, middle, false);
+    if (phi.known && phi.value > 0.0 && look_away(normal_at(middle), old.normal)) through(old.entered, middle, false);
   }
 }
 

@@ -13,6 +13,11 @@ namespace hapbench {
 /// Distance from the tip centre back to the place half the tool's width within the body [m]; of a ball 0.
 double way_to_core(const ToolShape& tool);
 
+/// True for the normals of faces that look away from each other, by more than the rounding of a right angle.
+inline bool look_away(const Vec3& a, const Vec3& b) noexcept {
+  return a.dot(b) < -1e-3;
+}
+
 /// Finds a tool that goes through a wall, however thin: by its core, the part of its axis that is in its body, from the
 /// tip centre to the far end. The core has gone through when it crosses the solid from face to face at one time, the
 /// faces looking away from each other, or when a part of it comes out by a face that looks away from the one by which
@@ -74,9 +79,9 @@ class CorePassage {
 
   std::shared_ptr<const ToolShape> tool_;
   std::shared_ptr<const Solid> solid_;
-  double width_;     ///< half the tool's [m]
-  double far_;       ///< the core's far end on the axis [m]
-  double shallow_;   ///< where it begins while no contact is deep [m]
+  double width_;    ///< half the tool's [m]
+  double far_;      ///< the core's far end on the axis [m]
+  double shallow_;  ///< where it begins while no contact is deep [m]
   double looks_from_, looks_from_way_;
   std::size_t looks_ = 0;
 

@@ -174,7 +174,7 @@ void InsideObserver::note_core(const Vec3& place, const SurfaceDistance& phi, do
     if (!passage_.left) passage_.entered = place;
   }
   if (side_ == Side::outside && before == Side::inside && entry_normal_ &&
-      entry_normal_->dot(solid_->gradient(place, step)) < 0.0 && !passage_.left) {
+      look_away(*entry_normal_, solid_->gradient(place, step)) && !passage_.left) {
     passage_.left = {time, place};
   }
   if (side_ != Side::inside) entry_normal_.reset();

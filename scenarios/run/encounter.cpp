@@ -363,8 +363,8 @@ class Encounter final : public EncounterObserver {
 
   Outcome outcome(Outcome outcome) override {
     if (!approach_ || outcome != Outcome::completes) return outcome;
-    if (inside_ && (inside_->passage().went_through() || inside_->core_passage().event() ||
-                    inside_max() > tool_->half_width()))
+    if (inside_ &&
+        (inside_->passage().went_through() || inside_->core_passage().event() || inside_max() > tool_->half_width()))
       return Outcome::went_through;
     if (!last_contact_) return Outcome::no_contact;
     const StepWay& steps = approach_->steps();
@@ -492,10 +492,10 @@ class Encounter final : public EncounterObserver {
                       s->since, length_text(s->way), length_text(s->target_way), millimetres(place_), force_.norm())};
     }
     if (outcome == Outcome::stuck) {
-      return Warning{kind, "",
-                     fmt::format("the dragged tool ended {} behind where its hand led it, {} along the path, at {}",
-                                 length_text(*course_->left_behind()), length_text(course_->asked()),
-                                 millimetres(place_))};
+      return Warning{
+          kind, "",
+          fmt::format("the dragged tool ended {} behind where its hand led it, {} along the path, at {}",
+                      length_text(*course_->left_behind()), length_text(course_->asked()), millimetres(place_))};
     }
     const std::string environment =
         fmt::format("{}: {}", size_text(steps.environment()), place_text(steps.environment()));
