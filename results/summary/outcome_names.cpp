@@ -18,7 +18,8 @@ constexpr OutcomeInfo kOutcomes[] = {
      "all steps are done, but the tool stood still in the end while the target of its hand (drag, impedance, "
      "mass_spring_damper, or of tracking the intended position) went on by more than the tool's width: it came less than "
      "a tenth of that, and not because it pressed on the surface; or a tool that a hand of type drag was to lead ended "
-     "further behind than a tenth of its way and than its half width",
+     "further behind than a tenth of its way and than its half width, and not because it was half as far behind at half way, "
+     "as friction holds it",
      true},
     {"no_contact", "all steps are done, and the tool never touched the environment", true},
     {"lost_contact",
