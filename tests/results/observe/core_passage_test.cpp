@@ -2,15 +2,19 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <memory>
-#include <string>
+#include <utility>
 #include <vector>
 
 #include "results/observe/inside.hpp"
+#include "sim/geometry/solid.hpp"
 #include "sim/tool/bur.hpp"
 #include "sim/tool/cylinder.hpp"
+#include "sim/tool/mesh_tool.hpp"
+#include "sim/tool/revolved.hpp"
 #include "tests/results/rows.hpp"
 #include "tests/support/meshes.hpp"
 
@@ -145,7 +149,10 @@ TEST(ThroughAWall, FromOneFaceToTheOther) {
       const Way way = [](double u) { return upright(-0.0015 + 0.004 * u, -0.002); };
       EXPECT_TRUE(run(tool, solid, points, way, 200).through) << tool.name << " " << share;
       const Way back = [&way](double u) { return way(0.45 * (1.0 - std::abs(2.0 * u - 1.0))); };
-      EXPECT_FALSE(run(tool, solid, points, back, 200).through && share > 0.9) << tool.name << " " << share;
+      // Thicker than the tool's way into it.
+      if (share >= 1.0) {
+        EXPECT_FALSE(run(tool, solid, points, back, 200).through) << tool.name << " " << share;
+      }
     }
   }
 }
