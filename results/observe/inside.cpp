@@ -28,13 +28,6 @@ constexpr double kTogether = 0.1, kAlike = 0.01;
 
 }  // namespace
 
-double way_to_core(const ToolShape& tool) {
-  ContactBuffer tip(1);
-  tip.push(0, Vec3::Zero(), Vec3::UnitZ());
-  tool.surface_constraints(ToolPose{}, Vec3::Zero(), 0.0, tip);
-  return std::clamp(tool.half_width() - tip.depth[0], 0.0, tool.half_width());
-}
-
 void InsideDepths::add(const InsideDepths& trial) {
   const auto bound = [](const InsideDepths& m) {
     return (1.0 + InsideSearch::kTolerance) * m.max.value_or(0.0) + m.max_within;
@@ -97,6 +90,7 @@ InsideObserver::InsideObserver(std::shared_ptr<const ToolShape> tool, std::share
       every_(every),
       search_(*tool_, *solid_),
       back_(way_to_core(*tool_)),
+      core_passage_(tool_, solid_),
       deepest_(kParts, *tool_),
       settled_(kSettled, *tool_) {
   if (every_ > 0) depths_.settled.reserve(steps / every_ + 1);
@@ -112,6 +106,7 @@ void InsideObserver::on_step(const StepRecord& record) noexcept {
   }
   const Vec3 core = pose.position - back_ * pose.axis;
   const double length = (core - core_).norm();
+  core_passage_.add(pose, record.force.depth_max, began_ ? length : 0.0, record.time);
   if (free_way_ > length) {
     free_way_ -= length;
     core_ = core;
@@ -179,7 +174,7 @@ void InsideObserver::note_core(const Vec3& place, const SurfaceDistance& phi, do
     if (!passage_.left) passage_.entered = place;
   }
   if (side_ == Side::outside && before == Side::inside && entry_normal_ &&
-      entry_normal_->dot(solid_->gradient(place, step)) < 0.0 && !passage_.left) {
+      look_away(*entry_normal_, solid_->gradient(place, step)) && !passage_.left) {
     passage_.left = {time, place};
   }
   if (side_ != Side::inside) entry_normal_.reset();

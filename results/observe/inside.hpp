@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "results/observe/core_passage.hpp"
 #include "results/observe/metric_observer.hpp"
 #include "sim/contact/inside.hpp"
 
@@ -29,11 +30,9 @@ struct InsideDepths {
   void tell(Section& section, bool has_settled) const;
 };
 
-/// Distance from the tip centre back to the tool's core, the place half its width within the body [m].
-double way_to_core(const ToolShape& tool);
-
-/// How the tool passed the surface in a run: by its tip centre, and by its core, the place half the tool's width within
-/// the body behind its tip (of a ball the tip centre, of a flat tip half a width behind it).
+/// How the tool passed the surface in a run: by its tip centre, and by the foremost place of its core, half the tool's
+/// width within the body behind its tip (of a ball the tip centre, of a flat tip half a width behind it). By the rest
+/// of its core: CorePassage.
 struct Passage {
   struct Event {
     double time;  ///< [s]
@@ -42,9 +41,9 @@ struct Passage {
   std::optional<Event> deep;  ///< when the tip centre first was deeper than the half width
   double deepest = 0.0;       ///< of the tip centre in any row, within 2 % [m]
   double last_depth = 0.0;    ///< of the tip centre in the last row [m]; negative outside
-  bool ends_inside = false;   ///< the core, in the last row
-  bool began_inside = false;  ///< the core, in the first row
-  /// When the core first left the solid on another side than it came, and where it had entered: the surface faces the
+  bool ends_inside = false;   ///< that place, in the last row
+  bool began_inside = false;  ///< that place, in the first row
+  /// When that place first left the solid on another side than it came, and where it had entered: the surface faces the
   /// other way there, by more than a right angle.
   std::optional<Event> left;
   Vec3 entered = Vec3::Zero();  ///< [m]
@@ -103,6 +102,7 @@ class InsideObserver final : public Observer {
   /// How deep the tool was in the last row [m]; none where nobody knows and in rows that are not looked at.
   const std::optional<double>& depth() const noexcept { return depth_; }
   const Passage& passage() const noexcept { return passage_; }
+  const CorePassage& core_passage() const noexcept { return core_passage_; }
   /// After the run; looks for the deepest points.
   InsideDepths depths();
 
@@ -133,6 +133,7 @@ class InsideObserver final : public Observer {
   enum class Side { unknown, outside, inside } side_ = Side::unknown;
   Vec3 outside_ = Vec3::Zero();  ///< where the core was last seen outside
   std::optional<Vec3> entry_normal_;
+  CorePassage core_passage_;
   PoseSamples deepest_, settled_;
 };
 

@@ -17,7 +17,9 @@ constexpr OutcomeInfo kOutcomes[] = {
     {"stuck",
      "all steps are done, but the tool stood still in the end while the target of its hand (drag, impedance, "
      "mass_spring_damper, or of tracking the intended position) went on by more than the tool's width: it came less than "
-     "a tenth of that, and not because it pressed on the surface",
+     "a tenth of that, and not because it pressed on the surface; or a tool that a hand of type drag was to lead ended "
+     "further behind than a tenth of its way and than its half width, and not because it was half as far behind at half way, "
+     "as friction holds it",
      true},
     {"no_contact", "all steps are done, and the tool never touched the environment", true},
     {"lost_contact",
@@ -27,8 +29,9 @@ constexpr OutcomeInfo kOutcomes[] = {
      true},
     {"went_through",
      "all steps are done, but the tool passed the surface, by itself or led by a script: its tip centre came deeper than "
-     "its half width, or its core (half a width behind its tip) left the environment on another side than it had "
-     "entered, or ended inside, or another part of it, as its shank, came deeper than its half width",
+     "its half width, or its core (its axis, from half a width behind its tip to the far end) crossed the environment from "
+     "face to face or left it on another side than it had entered, however thin it is, or the foremost place of its core "
+     "ended inside, or another part of it, as its shank, came deeper than its half width",
      true},
     {"diverges", "a value stopped being finite or left its bound (describe bounds)", true}};
 static_assert(static_cast<std::size_t>(Outcome::diverges) == std::size(kOutcomes) - 1);

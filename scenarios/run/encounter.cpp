@@ -160,11 +160,14 @@ struct Stuck {
 /// Follows a dragged tool on the path along which it is led.
 class DragCourse {
  public:
-  /// The hand must outlive it. `width`: the tool's [m].
-  DragCourse(const DragHand& hand, double width) : hand_(hand), width_(width) {}
+  /// The hand must outlive it. `width`: the tool's [m]; `duration`: of the run [s].
+  DragCourse(const DragHand& hand, double width, double duration)
+      : hand_(hand), width_(width), half_way_(0.5 * std::min(hand.drag().speed * duration, hand.path().length())) {}
 
   void add(double time) noexcept {
     now_ = {time, std::min(hand_.drag().speed * time, hand_.path().length()), std::max(now_.way, hand_.nearest())};
+    behind_ = now_.asked - hand_.nearest();
+    if (now_.asked <= half_way_) behind_at_half_way_ = behind_;
     if (now_.asked < static_cast<double>(stand_) * width_ / kStands) return;
     const Stand before = std::exchange(stands_[stand_ % kStands], now_);
     if (stand_++ < kStands) return;
@@ -181,7 +184,15 @@ class DragCourse {
     if (!stuck_) return std::nullopt;
     return Stuck{stuck_->time, now_.way - stuck_->way, now_.asked - stuck_->asked};
   }
-  double way() const { return now_.way; }  ///< furthest that the tool came on the path [m]
+  double way() const { return now_.way; }      ///< furthest that the tool came on the path [m]
+  double asked() const { return now_.asked; }  ///< how far its hand led it [m]
+  /// How far the tool ended behind where its hand led it [m], if that is further than a tenth of the way and than the
+  /// tool's half width. None where it had been half as far behind at half way: friction holds a tool back by as much as
+  /// the hand's spring gives, and it comes along.
+  std::optional<double> left_behind() const {
+    const double most = std::max({kMovingShare * now_.asked, 0.5 * width_, 2.0 * behind_at_half_way_});
+    return behind_ > most ? std::optional(behind_) : std::nullopt;
+  }
 
  private:
   /// The point's and the tool's way at a time.
@@ -190,7 +201,8 @@ class DragCourse {
   };
   static constexpr std::size_t kStands = 4;
   const DragHand& hand_;
-  double width_;
+  double width_, half_way_;                         ///< [m]
+  double behind_ = 0.0, behind_at_half_way_ = 0.0;  ///< the point that leads it [m]
   Stand now_;
   std::array<Stand, kStands> stands_{};  ///< a quarter of the tool's width of the point's way apart
   std::size_t stand_ = 0;                ///< how many there were
@@ -246,7 +258,8 @@ class Standstill {
 };
 
 /// How a tool passed the surface, as one sentence.
-std::string passage_text(const Passage& p, double half_width, double inside_max, bool is_led) {
+std::string passage_text(const InsideObserver& inside, double half_width, double inside_max, bool is_led) {
+  const Passage& p = inside.passage();
   const char* const begins = p.began_inside ? "the tool began inside the environment"
                              : is_led       ? "the script led the tool through the surface"
                                             : "the tool went through the surface";
@@ -264,6 +277,11 @@ std::string passage_text(const Passage& p, double half_width, double inside_max,
                        millimetres(p.entered), p.left->time, millimetres(p.left->place));
   }
   if (p.ends_inside) return fmt::format("{}: its core ended inside, its tip centre {}", begins, end);
+  if (const auto& core = inside.core_passage().event(); core && inside_max <= half_width) {
+    return fmt::format("{}: its axis {} at {:.4g} s, from {} to {}", begins,
+                       core->at_once ? "crossed it from face to face" : "entered it and left on another side",
+                       core->time, millimetres(core->entered), millimetres(core->left));
+  }
   return fmt::format("{}: a part of it was {} inside, more than its half width of {}, though its tip centre was not",
                      begins, length_text(inside_max), length_text(half_width));
 }
@@ -288,7 +306,7 @@ class Encounter final : public EncounterObserver {
         open_edges_.emplace(*parts.shell, edges, tool_->half_width());
     }
     const double width = 2.0 * tool_->half_width();
-    if (drag_ != nullptr) course_.emplace(*drag_, width);
+    if (drag_ != nullptr) course_.emplace(*drag_, width, scenario.time.step * static_cast<double>(steps));
     if (const ImpedanceHandFields* hand = spring_of(scenario.hand);
         hand != nullptr && position_is_free(scenario.motion))
       standstill_.emplace([hand](double time) { return target_at(*hand, time); }, width);
@@ -310,7 +328,8 @@ class Encounter final : public EncounterObserver {
 
   Outcome outcome(Outcome outcome) override {
     if (!approach_ || outcome != Outcome::completes) return outcome;
-    if (inside_ && (inside_->passage().went_through() || inside_max() > tool_->half_width()))
+    if (inside_ &&
+        (inside_->passage().went_through() || inside_->core_passage().event() || inside_max() > tool_->half_width()))
       return Outcome::went_through;
     if (!last_contact_) return Outcome::no_contact;
     const StepWay& steps = approach_->steps();
@@ -320,7 +339,7 @@ class Encounter final : public EncounterObserver {
     // The spring that leads a tool which follows lags by less.
     const double width = 2.0 * tool_->half_width();
     if (course_ && course_->way() < width && drag_way_asked() > 2.0 * width) return Outcome::not_dragged;
-    return stuck() ? Outcome::stuck : Outcome::completes;
+    return stuck() || (course_ && course_->left_behind()) ? Outcome::stuck : Outcome::completes;
   }
 
   std::vector<Warning> warnings(Outcome outcome) override {
@@ -431,7 +450,7 @@ class Encounter final : public EncounterObserver {
       const bool is_led = !position_is_free(scenario_.motion);
       const std::string question = scale_question(scenario_, *tool_, steps.environment());
       return Warning{kind, "",
-                     passage_text(inside_->passage(), tool_->half_width(), inside_max(), is_led) +
+                     passage_text(*inside_, tool_->half_width(), inside_max(), is_led) +
                          (question.empty() ? "" : "; " + question)};
     }
     if (const auto s = stuck(); s && (outcome == Outcome::stuck || outcome == Outcome::not_dragged)) {
@@ -440,6 +459,12 @@ class Encounter final : public EncounterObserver {
           fmt::format("the tool stood still since {:.4g} s, coming {} further while its target went on by {}; it "
                       "was at {} under a force of {:.3g} N in the end",
                       s->since, length_text(s->way), length_text(s->target_way), millimetres(place_), force_.norm())};
+    }
+    if (outcome == Outcome::stuck) {
+      return Warning{
+          kind, "",
+          fmt::format("the dragged tool ended {} behind where its hand led it, {} along the path, at {}",
+                      length_text(*course_->left_behind()), length_text(course_->asked()), millimetres(place_))};
     }
     const std::string environment =
         fmt::format("{}: {}", size_text(steps.environment()), place_text(steps.environment()));

@@ -43,13 +43,13 @@ class StepWay {
 class EncounterObserver : public Observer {
  public:
   /// The outcome of a run with a point shell that ended with `outcome`, which stays unless it is `completes`. That
-  /// becomes `went_through` when the tool passed the surface (Passage), by itself or led by a script, or a part of it
-  /// was deeper than its half width; `no_contact` when no row had a colliding point; `lost_contact` when a tool that
-  /// moves freely ended further from the environment's box than the box is wide and the tool reaches together, as one
-  /// does that was thrown out or pushed past, or when a dragged tool had no contact for the default settling time
-  /// before the end although the hand pressed; `not_dragged` when one came less than its width along a way of more than
-  /// two widths: it was pressed, and its calm numbers tell nothing of a drag; `stuck` when it came to stand while the
-  /// target of its hand went on.
+  /// becomes `went_through` when the tool passed the surface (Passage, CorePassage), by itself or led by a script, or a
+  /// part of it was deeper than its half width; `no_contact` when no row had a colliding point; `lost_contact` when a
+  /// tool that moves freely ended further from the environment's box than the box is wide and the tool reaches
+  /// together, as one does that was thrown out or pushed past, or when a dragged tool had no contact for the default
+  /// settling time before the end although the hand pressed; `not_dragged` when one came less than its width along a
+  /// way of more than two widths: it was pressed, and its calm numbers tell nothing of a drag; `stuck` when it came to
+  /// stand while the target of its hand went on, or a dragged one fell behind in the second half of its way.
   virtual Outcome outcome(Outcome outcome) = 0;
   /// After the run: warnings about its outcome, and about contacts at the edges of an open mesh. Precondition: there
   /// are metrics.

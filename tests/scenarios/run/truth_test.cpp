@@ -233,6 +233,22 @@ std::vector<Case> cases() {
        {kCube, "initial.velocity_m_per_s=[0,0,-30]", R"(hand={"type":"none"})"},
        kThrough,
        nullptr},
+      {"led sideways through a plate, its tip below",
+       {kPlate, kFlat, "initial.position_m=[-0.006,0,-0.002]", "time.steps=1500",
+        R"(hand={"type":"impedance","stiffness_N_per_m":4000,"damping_N_s_per_m":40,"target":{"y_m":0,"z_m":-0.002,"x_m":{"type":"waypoints","points":[[0,-0.006],[0.75,0.006]]}}})"},
+       kThrough,
+       nullptr},
+      {"turned through a plate",
+       {kPlate, kFlat, kNoHand, R"(motion.position={"type":"prescribed","x_m":-0.0048,"y_m":0,"z_m":-0.001})",
+        R"(motion.orientation={"up":[0,0,1],"lean":[-1,0,0],"tilt_rad":{"type":"waypoints","points":[[0,0],[0.3,1.4]]}})"},
+       kThrough,
+       nullptr},
+      {"dragged into a gap",
+       {R"(environment={"type":"mesh","file":"gap.off","scale":1,"spacing_m":0.0001})",
+        R"(hand={"type":"drag","force_N":1,"path_m":[[-0.003,0,0],[0.004,0,0]],"speed_m_per_s":0.02,"normal_damping_N_s_per_m":50,"stiffness_N_per_m":300,"damping_N_s_per_m":6})",
+        "initial.position_m=[-0.003,0,0.0006]", "time.steps=700"},
+       {Outcome::stuck},
+       nullptr},
       {"past a cube",
        {kCube, "initial.position_m=[0.0047,0,0.0006]", "initial.velocity_m_per_s=[0,0,-8]"},
        kMissed,
@@ -286,6 +302,7 @@ class ScenesMadeToFool : public testing::Test {
     TriangleSoup plate = test::cube(1.0), cube = test::cube(0.004, {0.0, 0.0, -0.004});
     for (Vec3& v : plate.vertices) v = {0.004 * v.x(), 0.004 * v.y(), 0.0001 * v.z() - 0.0001};
     write("plate.off", plate);
+    write("gap.off", test::together(test::cube(0.002, {-0.003, 0.0, -0.002}), test::cube(0.002, {0.003, 0.0, -0.002})));
     write("cube.off", cube);
     const TriangleSoup flat = sheet();
     const auto [a, b, c] = flat.triangles[0];
