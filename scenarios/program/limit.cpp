@@ -181,17 +181,18 @@ std::vector<ComparedDevice> chosen_devices(const std::vector<std::string>& given
 
 namespace {
 
+/// The question without its rows. Axes with the name of an option leave the field itself to --over. Throws InputError.
 LimitTable asked_table(const LimitOptions& options) {
   if (options.devices.empty() && !options.friction.empty())
     throw InputError("--friction: got factors; allowed: with --device");
   const std::vector<fs::path> files = find_scenarios(options.scenarios);
   std::vector<ScenarioText> scenes;
   Axis scene{.path = kSceneAxis, .values = require_names_of_their_own(files, "each name once")},
-      algorithm{.path = "rendering.algorithm", .values = {""}, .named = true};
+      algorithm{.path = "--algorithms", .values = {""}, .named = true};
   for (const fs::path& file : files) scenes.push_back(read_scenario_text(file));
   std::vector<ComparedDevice> devices;
   if (!options.devices.empty()) devices = asked_devices(options);
-  std::vector<Axis> axes = {{.path = "device", .values = names_of(devices, &ComparedDevice::name), .named = true}};
+  std::vector<Axis> axes = {{.path = "--device", .values = names_of(devices, &ComparedDevice::name), .named = true}};
   if (devices.empty()) axes[0].values = {""};
   if (!options.algorithms.empty())
     algorithm.values = chosen_names("--algorithms: got", options.algorithms, algorithm_names());
