@@ -41,7 +41,7 @@ std::vector<NamedTool> tools() {
           {"ball on a thin neck", bur(BurFamily::ball, 0.3)},
           {"inverted cone", bur(BurFamily::inverted_cone, 0.5)},
           {"flame", bur(BurFamily::flame, 0.6)},
-          {"mesh", std::make_shared<const MeshTool>(test::grid_of(drill, 0.1 * kRadius))}};
+          {"mesh", std::make_shared<const MeshTool>(test::grid_of(drill, 0.2 * kRadius))}};
 }
 
 /// A box between two corners [m].
@@ -55,7 +55,7 @@ TriangleSoup box(const Vec3& low, const Vec3& high) {
 std::vector<Vec3> points_of(const Vec3& low, const Vec3& high) {
   std::vector<Vec3> points;
   const double spacing = 0.2 * kRadius;
-  for (double y = -0.0005; y <= 0.0005; y += spacing) {
+  for (double y = -0.0003; y <= 0.00031; y += spacing) {
     for (double x = low.x(); x <= high.x(); x += spacing)
       for (const double z : {low.z(), high.z()}) points.push_back({x, y, z});
     for (double z = low.z(); z <= high.z(); z += spacing)
