@@ -123,20 +123,4 @@ void write_file_atomically(const fs::path& target, std::string_view contents) {
   file.commit();
 }
 
-void NewDirectories::create(const fs::path& directory, std::error_code& error) {
-  std::vector<fs::path> missing;
-  std::error_code unknown;
-  for (fs::path path = directory; !path.empty() && path != path.root_path() && !fs::exists(path, unknown);
-       path = path.parent_path()) {
-    missing.push_back(path);
-  }
-  made_.insert(made_.end(), missing.rbegin(), missing.rend());
-  fs::create_directories(directory, error);
-}
-
-NewDirectories::~NewDirectories() {
-  std::error_code not_empty;
-  for (auto path = made_.rbegin(); path != made_.rend(); ++path) fs::remove(*path, not_empty);
-}
-
 }  // namespace hapbench

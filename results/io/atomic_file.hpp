@@ -105,20 +105,4 @@ class FileSet {
 /// The whole contents at once. Throws IoError.
 void write_file_atomically(const std::filesystem::path& target, std::string_view contents);
 
-/// Creates directories for results. Its destructor removes those that are still empty, so that failed or stopped work
-/// leaves none behind.
-class NewDirectories {
- public:
-  NewDirectories() = default;
-  ~NewDirectories();
-  NewDirectories(const NewDirectories&) = delete;
-  NewDirectories& operator=(const NewDirectories&) = delete;
-
-  /// Creates a directory and its missing parents; `error` as of std::filesystem::create_directories.
-  void create(const std::filesystem::path& directory, std::error_code& error);
-
- private:
-  std::vector<std::filesystem::path> made_;  ///< parents first
-};
-
 }  // namespace hapbench

@@ -10,7 +10,7 @@
 #include "results/summary/outcome_names.hpp"
 #include "scenarios/batch/statistics.hpp"
 #include "scenarios/description/metric_sections.hpp"
-#include "scenarios/run/encounter.hpp"
+#include "scenarios/run/run_scenario.hpp"
 
 namespace hapbench {
 namespace {

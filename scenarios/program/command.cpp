@@ -9,7 +9,6 @@
 #include <set>
 #include <utility>
 
-#include "results/io/atomic_file.hpp"
 #include "results/io/json_text.hpp"
 #include "scenarios/batch/cases.hpp"
 #include "scenarios/batch/league.hpp"
@@ -17,6 +16,7 @@
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/memory_limit.hpp"
 #include "scenarios/program/table.hpp"
+#include "scenarios/run/result_folder.hpp"
 
 namespace hapbench {
 

@@ -21,8 +21,8 @@
 #include "scenarios/program/index.hpp"
 #include "scenarios/program/report.hpp"
 #include "scenarios/program/run_table.hpp"
-#include "scenarios/run/encounter.hpp"
 #include "scenarios/run/result_folder.hpp"
+#include "scenarios/run/run_scenario.hpp"
 #include "scenarios/run/stop_signal.hpp"
 #include "scenarios/studies/convergence/convergence.hpp"
 

@@ -1,13 +1,12 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "results/io/atomic_file.hpp"
-#include "results/io/json_text.hpp"
 #include "results/summary/outcome_names.hpp"
 #include "scenarios/batch/cases.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/input/json_file.hpp"
 #include "scenarios/program/command.hpp"
+#include "scenarios/program/report.hpp"
 #include "scenarios/program/run_table.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/result_folder.hpp"
@@ -40,7 +39,9 @@ void note_replaced_run(const LoadedScenario& loaded, const fs::path& directory) 
   const fs::path earlier = directory / "scenario.effective.json";
   std::error_code ignored;
   if (!fs::is_regular_file(earlier, ignored)) return;
-  if (read_text_file(earlier, kLargestJsonFile) == json_text(effective_scenario(loaded.scenario, directory))) return;
+  // What is no JSON is not equal.
+  const Json before = Json::parse(read_text_file(earlier, kLargestJsonFile), nullptr, /*allow_exceptions=*/false);
+  if (before == effective_scenario(loaded.scenario, directory)) return;
   print_note(fmt::format("replaces the run of other fields in {}; --out DIRECTORY keeps both", directory.string()));
 }
 
@@ -56,41 +57,41 @@ int run(const RunOptions& options) {
   }
   const std::vector<fs::path> directories = output_directories(options.out, files);
   for (const LoadedScenario& scenario : scenarios) print_warnings(scenario, warnings_before_run(scenario));
-  for (const fs::path& directory : directories) require_writable_directory(directory);
   if (options.out.empty() && !options.overrides.empty()) {
     for (std::size_t i = 0; i < scenarios.size(); ++i) note_replaced_run(scenarios[i], directories[i]);
   }
+  for (const fs::path& directory : directories) require_writable_directory(directory);
   double bytes = 0.0;
   for (const LoadedScenario& loaded : scenarios) bytes += expected_output_bytes(loaded.scenario);
   announce_large_output(bytes);
 
+  const fs::path where = directories.size() == 1 ? directories[0] : directories[0].parent_path();
+  Report report(options.output, where);
+  report.json() = Json::array();
   std::vector<LatencyRow> latencies;
-  std::vector<Result> reports;
-  Json summaries = Json::array();
+  std::vector<Result> results;
   std::string targets;
   int status = kSuccess;
   for (std::size_t i = 0; i < scenarios.size(); ++i) {
-    const Result& report = reports.emplace_back(
+    const Result& result = results.emplace_back(
         run_scenario(scenarios[i], directories[i], !options.output.quiet, nullptr, /*diagnose=*/true));
-    targets += targets_text(report);
-    print_warnings(run_warnings({&report, 1}));
-    summaries.push_back(summary_json(report));
+    targets += targets_text(result);
+    print_warnings(run_warnings({&result, 1}));
+    Json& summary = report.json().emplace_back(summary_json(result));
     if (options.latency) {
-      latencies.push_back({report.name, *report.timing.latency});
-      summaries.back()["step_latency"] = step_latency_json(*report.timing.latency);
+      latencies.push_back({result.name, *result.timing.latency});
+      summary["step_latency"] = step_latency_json(*result.timing.latency);
     }
-    for (const std::string& unmet : report.unmet) {
+    for (const std::string& unmet : result.unmet) {
       print_error(fmt::format(R"({}: {} (field expect; --set expect={{"outcome":"{}"}} expects what came))",
-                              scenarios[i].file.string(), unmet, outcome_name(report.end.outcome)));
+                              scenarios[i].file.string(), unmet, outcome_name(result.end.outcome)));
       status = kUnexpectedOutcome;
     }
   }
-  const fs::path where = directories.size() == 1 ? directories[0] : directories[0].parent_path();
   const std::string latency_text = options.latency ? "\n" + latency_columns().table(latencies).text() : "";
-  print(options.output,
-        run_table(reports, true) + fidelity_text(reports) + unsettled_text(reports) + step_time_text(reports) +
-            targets + latency_text + diagnosis_text(reports) + fmt::format("\nresults in {}\n", where.string()),
-        summaries);
+  report.say(run_table(results, true) + fidelity_text(results) + unsettled_text(results) + step_time_text(results) +
+             targets + latency_text + diagnosis_text(results) + fmt::format("\nresults in {}\n", where.string()));
+  report.finish();
   return status;
 }
 

@@ -18,7 +18,6 @@
 #include "scenarios/description/load_scenario.hpp"
 #include "scenarios/description/parts.hpp"
 #include "scenarios/run/assemble.hpp"
-#include "scenarios/run/encounter.hpp"
 #include "scenarios/run/scene_facts.hpp"
 #include "sim/core/math.hpp"
 #include "sim/core/types.hpp"

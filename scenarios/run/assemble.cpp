@@ -188,10 +188,6 @@ SimulationParts assemble(const Scenario& scenario, const NamedFiles& files, std:
   return parts;
 }
 
-SimulationParts assemble(const Scenario& scenario, std::shared_ptr<const PointShell> shell, Trial trial) {
-  return assemble(scenario, NamedFiles(scenario), std::move(shell), trial);
-}
-
 SimulationParts assemble(const Scenario& scenario) {
   const NamedFiles files(scenario);
   return assemble(scenario, files, make_shell(scenario, files), {});

@@ -27,8 +27,6 @@ SimulationConfig simulation_config(const Scenario& scenario);
 /// file cannot be used. With skips off (RenderingConfig), every step compares every point with the tool.
 SimulationParts assemble(const Scenario& scenario, const NamedFiles& files, std::shared_ptr<const PointShell> shell,
                          Trial trial);
-/// The same, reading the scenario's files.
-SimulationParts assemble(const Scenario& scenario, std::shared_ptr<const PointShell> shell, Trial trial);
 /// The only or first run, with a shell of its own.
 SimulationParts assemble(const Scenario& scenario);
 

@@ -6,16 +6,16 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <optional>
+#include <string>
 #include <utility>
 
 #include "device_model/hands/drag_hand.hpp"
 #include "device_model/hands/tracking_hand.hpp"
 #include "results/observe/contact_forces.hpp"
 #include "results/summary/outcome_names.hpp"
-#include "scenarios/input/input_error.hpp"
 #include "scenarios/run/scene_facts.hpp"
 #include "sim/contact/grid_index.hpp"
-#include "sim/tool/mesh_tool.hpp"
 
 namespace hapbench {
 namespace {
@@ -26,25 +26,6 @@ std::string millimetres(const Vec3& place) {
 }
 
 }  // namespace
-
-double way_to_cover(const DragHandFields& hand, double duration) {
-  const double way = hand.drag.speed * duration;
-  if (!hand.path) return way;
-  double legs = 0.0;
-  for (std::size_t i = 1; i < hand.path->size(); ++i) legs += ((*hand.path)[i] - (*hand.path)[i - 1]).norm();
-  return std::min(way, legs);
-}
-
-std::optional<Warning> short_path_warning(const DragHandFields& hand, double path, double to_cover, double width) {
-  // By less than the tool is wide it is the edge that ends the way.
-  if (to_cover <= path + width) return std::nullopt;
-  const std::string ends =
-      fmt::format("the path of the drag ends after {} of {}: ", length_text(path), length_text(to_cover));
-  return Warning{"short_path", "",
-                 ends + (hand.path ? "hand.path_m leads no further over the surface; let its points lie on it"
-                                   : "beyond, the surface ends or turns against hand.direction; another "
-                                     "initial.position_m, a larger hand.smoothing_m or hand.path_m leads further")};
-}
 
 OpenEdgeObserver::OpenEdgeObserver(const PointShell& shell, const std::vector<Vec3>& edges, double reach)
     : reach_(reach), is_near_edge_(shell.size(), false) {
@@ -81,40 +62,6 @@ std::optional<Warning> OpenEdgeObserver::warning() const {
       fmt::format("touched the mesh within {} of where it is open in {} rows, first at {:.4g} s near {}: beyond "
                   "the edge there is no surface",
                   length_text(reach_), rows_, first_time_, millimetres(first_place_))};
-}
-
-namespace {
-
-/// An environment this much smaller than the tool is thick, or larger than it is long, is suspect: scenes are made of
-/// tools and places to work on, and millimetres taken for metres change either a thousandfold.
-constexpr double kTooSmall = 0.1, kTooLarge = 100.0;
-
-double diagonal(const Box& box) {
-  return (box.max - box.min).norm();
-}
-
-bool out_of_proportion(const ToolShape& tool, const Box& environment) {
-  const double size = diagonal(environment);
-  return size < kTooSmall * 2.0 * tool.half_width() || size > kTooLarge * tool.reach();
-}
-
-std::string scale_question(const Scenario& scenario) {
-  if (std::holds_alternative<MeshToolFields>(scenario.tool)) return "are tool.scale and the environment's size right?";
-  if (std::holds_alternative<MeshEnvironment>(scenario.environment)) return "is environment.scale right?";
-  if (std::holds_alternative<PointShellEnvironment>(scenario.environment))
-    return "are the points of environment.file in metres?";
-  return "are the sizes of environment in metres?";
-}
-
-}  // namespace
-
-std::optional<Warning> scale_warning(const Scenario& scenario, const ToolShape& tool, const Box& environment) {
-  if (!out_of_proportion(tool, environment)) return std::nullopt;
-  const bool is_mesh = std::holds_alternative<MeshToolFields>(scenario.tool);
-  return Warning{"scale", "",
-                 fmt::format("the tool is {} thick and reaches {}, the environment is {}: {}{}",
-                             length_text(2.0 * tool.half_width()), length_text(tool.reach()), size_text(environment),
-                             is_mesh ? "" : "are the tool's lengths in metres, or ", scale_question(scenario))};
 }
 
 namespace {
@@ -316,13 +263,21 @@ class Encounter final : public EncounterObserver {
  public:
   Encounter(const Scenario& scenario, const NamedFiles& files, const SimulationParts& parts,
             const MetricsObserver* metrics)
-      : scenario_(scenario), tool_(parts.tool), drag_(dynamic_cast<const DragHand*>(parts.hand.get())) {
+      : scenario_(scenario),
+        metrics_(metrics),
+        tool_(parts.tool),
+        drag_(dynamic_cast<const DragHand*>(parts.hand.get())) {
     const auto steps = static_cast<std::uint64_t>(scenario.time.steps);
     if (auto solid = make_solid(scenario, files)) {
       const std::int64_t every = scenario.record.inside ? scenario.record.every : 0;
       inside_.emplace(parts.tool, std::move(solid), metrics, static_cast<std::uint64_t>(every), steps);
     }
     if (parts.shell && parts.shell->size() > 0) approach_.emplace(parts.shell, steps);
+    if (metrics != nullptr && approach_ && std::holds_alternative<MeshEnvironment>(scenario.environment) &&
+        scenario.rendering.contact_source == kOwnContacts) {
+      if (const auto& edges = files.at(kEnvironmentFile).mesh().open_edges(); !edges.empty())
+        open_edges_.emplace(*parts.shell, edges, tool_->half_width());
+    }
     const double width = 2.0 * tool_->half_width();
     if (drag_ != nullptr) course_.emplace(*drag_, width);
     if (const ImpedanceHandFields* hand = spring_of(scenario.hand);
@@ -341,6 +296,7 @@ class Encounter final : public EncounterObserver {
     if (approach_) approach_->add(record, !last_contact_);
     if (course_) course_->add(record.time);
     if (standstill_) standstill_->add(record);
+    if (open_edges_) open_edges_->on_step(record);
   }
 
   Outcome outcome(Outcome outcome) override {
@@ -358,7 +314,7 @@ class Encounter final : public EncounterObserver {
     return stuck() ? Outcome::stuck : Outcome::completes;
   }
 
-  std::vector<Warning> warnings(Outcome outcome, const TrialContact& contact) override {
+  std::vector<Warning> warnings(Outcome outcome) override {
     std::vector<Warning> warnings;
     const auto add = [&warnings](std::optional<Warning> warning) {
       if (warning) warnings.push_back(std::move(*warning));
@@ -370,11 +326,12 @@ class Encounter final : public EncounterObserver {
                               length_text(inside_max()), length_text(*inside->at_most))});
     }
     if (!approach_) return warnings;
-    add(warning_about(outcome, contact));
+    add(warning_about(outcome));
     if (drag_lost() && outcome != Outcome::went_through) add(drag_lost_warning());
     if (drag_ != nullptr) add(drag_short_warning());
     if (std::holds_alternative<MeshToolFields>(scenario_.tool))
       add(scale_warning(scenario_, *tool_, approach_->steps().environment()));
+    if (open_edges_) add(open_edges_->warning());
     return warnings;
   }
 
@@ -422,10 +379,11 @@ class Encounter final : public EncounterObserver {
   }
 
   /// A likely cause, or where to look when none suggests itself: its kind, and the end of a sentence.
-  std::pair<const char*, std::string> likely_cause(Outcome outcome, const TrialContact& contact) const {
+  std::pair<const char*, std::string> likely_cause(Outcome outcome) const {
     const StepWay& steps = approach_->steps();
     const double size = diagonal(steps.environment());
-    if (out_of_proportion(*tool_, steps.environment())) return {"scale", scale_question(scenario_)};
+    if (std::string question = scale_question(scenario_, *tool_, steps.environment()); !question.empty())
+      return {"scale", std::move(question)};
     if (steps.longest() > tool_->half_width()) {
       return {"step",
               fmt::format("near it the tool moved {} in one step, more than its half width of {}: is time.step_s "
@@ -436,7 +394,7 @@ class Encounter final : public EncounterObserver {
     if (outcome == Outcome::no_contact && mesh != nullptr && !mesh->spacing && approach_->closest_to_box() == 0.0)
       return {"spacing", "only the mesh's vertices can be touched: is environment.spacing_m missing?"};
     const bool recorded = std::holds_alternative<RecordedPosition>(scenario_.motion.position);
-    if (recorded && outcome == Outcome::no_contact && approach_->closest_to_box() > kTooLarge * size)
+    if (recorded && outcome == Outcome::no_contact && approach_->closest_to_box() > kUnitsApart * size)
       return {"recording", "are the positions of motion.position.file in metres?"};
     if (const ImpedanceHandFields* hand = spring_of(scenario_.hand)) {
       const double closest = closest_target(*hand, scenario_.time, steps.environment());
@@ -451,19 +409,21 @@ class Encounter final : public EncounterObserver {
                                              std::holds_alternative<PushHandFields>(scenario_.hand)))
       return {"constant_force", "a hand of constant force goes on pushing where there is no surface"};
     if (outcome == Outcome::lost_contact)
-      return {"force", fmt::format("the largest force was {:.3g} N", std::sqrt(contact.force_max_squared))};
+      return {"force", fmt::format("the largest force was {:.3g} N", std::sqrt(metrics_->trial().force_max_squared))};
     return {"start", is_free ? "is initial.position_m right?" : "is motion.position right?"};
   }
 
   /// What happened and what the likely cause is; none for other outcomes, and none for a dragged tool that lost the
   /// surface within the environment's box.
-  std::optional<Warning> warning_about(Outcome outcome, const TrialContact& contact) {
+  std::optional<Warning> warning_about(Outcome outcome) {
     const StepWay& steps = approach_->steps();
     const std::string kind(outcome_name(outcome));
     if (outcome == Outcome::went_through) {
       const bool is_led = !position_is_free(scenario_.motion);
-      const std::string cause = out_of_proportion(*tool_, steps.environment()) ? "; " + scale_question(scenario_) : "";
-      return Warning{kind, "", passage_text(inside_->passage(), tool_->half_width(), inside_max(), is_led) + cause};
+      const std::string question = scale_question(scenario_, *tool_, steps.environment());
+      return Warning{kind, "",
+                     passage_text(inside_->passage(), tool_->half_width(), inside_max(), is_led) +
+                         (question.empty() ? "" : "; " + question)};
     }
     if (const auto s = stuck(); s && (outcome == Outcome::stuck || outcome == Outcome::not_dragged)) {
       return Warning{
@@ -476,7 +436,7 @@ class Encounter final : public EncounterObserver {
         fmt::format("{}: {}", size_text(steps.environment()), place_text(steps.environment()));
     if (outcome == Outcome::no_contact) {
       const auto closest = approach_->closest_to_surface(*tool_);
-      const auto [cause, question] = likely_cause(outcome, contact);
+      const auto [cause, question] = likely_cause(outcome);
       return Warning{fmt::format("{} {}", kind, cause), "",
                      fmt::format("never in contact: the tool came as close as {} (at {:.4g} s) to the surface of the "
                                  "environment ({}); {}",
@@ -484,8 +444,9 @@ class Encounter final : public EncounterObserver {
     }
     // The course of the drag tells of a tool that lost the surface within the box.
     if (outcome != Outcome::lost_contact || (drag_lost() && steps.distance() == 0.0)) return std::nullopt;
+    const TrialContact& contact = metrics_->trial();
     const double share = static_cast<double>(contact.in_contact) / static_cast<double>(contact.rows);
-    const auto [cause, question] = likely_cause(outcome, contact);
+    const auto [cause, question] = likely_cause(outcome);
     return Warning{
         fmt::format("{} {}", kind, cause), "",
         fmt::format("in contact for {:.3g} % of the run, last at {:.4g} s; ended {} away from the environment "
@@ -494,13 +455,15 @@ class Encounter final : public EncounterObserver {
   }
 
   const Scenario& scenario_;
+  const MetricsObserver* metrics_;
   std::shared_ptr<const ToolShape> tool_;
   std::optional<InsideObserver> inside_;
   std::optional<InsideDepths> depths_;
   std::optional<Approach> approach_;
   std::optional<Standstill> standstill_;
-  const DragHand* drag_;              ///< null unless one drags the tool
-  std::optional<DragCourse> course_;  ///< of that
+  std::optional<OpenEdgeObserver> open_edges_;  ///< where contacts are numbered as the points of an open mesh
+  const DragHand* drag_;                        ///< null unless one drags the tool
+  std::optional<DragCourse> course_;            ///< of that
   // In the last row.
   double time_ = 0.0;
   Vec3 place_ = Vec3::Zero(), force_ = Vec3::Zero();  ///< of the tip [m]; rendered [N]
@@ -512,98 +475,6 @@ class Encounter final : public EncounterObserver {
 std::unique_ptr<EncounterObserver> encounter_observer(const Scenario& scenario, const NamedFiles& files,
                                                       const SimulationParts& parts, const MetricsObserver* metrics) {
   return std::make_unique<Encounter>(scenario, files, parts, metrics);
-}
-
-namespace {
-
-std::string divergence_text(const SimulationResult& result) {
-  if (result.outcome != Outcome::diverges) return "";
-  const Divergence& d = result.divergence;
-  if (!d.fault.empty()) return fmt::format(" ({}, at step {})", d.fault, d.step);
-  return fmt::format(" ({} reached {:.4g} at step {}, beyond {:.4g})", d.quantity, d.magnitude, d.step, d.bound);
-}
-
-std::vector<std::string> names_of(const std::vector<Outcome>& outcomes) {
-  std::vector<std::string> names;
-  for (const Outcome outcome : outcomes) names.emplace_back(outcome_name(outcome));
-  return names;
-}
-
-}  // namespace
-
-bool outcome_is_expected(const ExpectFields& expect, Outcome outcome) {
-  return std::find(expect.outcomes.begin(), expect.outcomes.end(), outcome) != expect.outcomes.end();
-}
-
-std::vector<std::string> unmet_expectations(const ExpectFields& expect, const Result& run) {
-  std::vector<std::string> unmet;
-  if (!outcome_is_expected(expect, run.end.outcome)) {
-    unmet.push_back(fmt::format("outcome is \"{}\"{}; expected {}", outcome_name(run.end.outcome),
-                                divergence_text(run.end), quoted_list(names_of(expect.outcomes))));
-  }
-  for (const auto& [name, bound] : expect.metrics) {
-    const auto number = number_of(run.metrics, name);
-    if (!number) {
-      unmet.push_back(fmt::format("{} has no value; expected one", name));
-      continue;
-    }
-    if (bound.min && *number < *bound.min)
-      unmet.push_back(fmt::format("{} is {}; expected at least {}", name, *number, *bound.min));
-    if (bound.max && *number > *bound.max)
-      unmet.push_back(fmt::format("{} is {}; expected at most {}", name, *number, *bound.max));
-  }
-  return unmet;
-}
-
-std::vector<Warning> force_warnings(const MetricsObserver& metrics) {
-  std::vector<Warning> warnings;
-  if (const auto& friction = metrics.explicit_friction(); friction && friction->first_step) {
-    warnings.push_back(
-        {"friction", "",
-         fmt::format("beyond {:.3g} N of spring force, in {} of {} rows, first in step {}, the explicit "
-                     "step of friction is unstable; what follows is the integrator's doing, not the law's",
-                     friction->limit, friction->rows_beyond, metrics.rows(), *friction->first_step)});
-  }
-  if (const auto& jumps = metrics.reduction(); jumps && jumps->stand_out()) {
-    warnings.push_back(
-        {"reduction", "",
-         fmt::format("reduction: kept points change in {} of {} steps, force steps up to {:.2g} N there "
-                     "and {:.2g} N elsewhere; rendering.reduction=null keeps them all",
-                     jumps->changes(), metrics.rows(), jumps->step_max().value_or(0.0), jumps->step_max_elsewhere())});
-  }
-  return warnings;
-}
-
-std::string odd_frame(const Box& tool) {
-  constexpr double kOdd = 2.0;  // as far this way as the other, or further, is no accident
-  const Vec3 size = tool.max - tool.min;
-  const double gap = distance_to(tool, Vec3::Zero());
-  if (gap > 0.0) return fmt::format("lies {} away from its tip centre", length_text(gap));
-  const auto [short_side, long_side] = std::minmax(size.x(), size.y());
-  if (long_side > kOdd * std::max(short_side, size.z())) return "lies across its axis";
-  if (-tool.min.z() > kOdd * tool.max.z()) return "lies before its tip centre, not behind";
-  return "";
-}
-
-std::vector<Warning> tool_warnings(const RenderingConfig& rendering, const ToolShape& tool) {
-  std::vector<Warning> warnings;
-  if (rendering.algorithm == "proxy" && !tool.convex()) {
-    warnings.push_back(
-        {"not_convex", "",
-         "the tool is not convex: the proxy's guarantee that no point enters it is lost, points may enter "
-         "where it is concave, as at the neck of a bur; a convex tool, or another algorithm, has no such "
-         "gap"});
-  }
-  if (const auto* mesh = dynamic_cast<const MeshTool*>(&tool)) {
-    const Box box{mesh->grid().low(), mesh->grid().high()};
-    if (const std::string odd = odd_frame(box); !odd.empty()) {
-      warnings.push_back({"tool_frame", "",
-                          fmt::format("the tool {} (from there {}): are tool.tip_m and tool.tip_axis right? \"hapbench "
-                                      "new tool\" guesses them",
-                                      odd, place_text(box))});
-    }
-  }
-  return warnings;
 }
 
 }  // namespace hapbench

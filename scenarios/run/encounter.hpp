@@ -6,10 +6,8 @@
 #include <limits>
 #include <memory>
 #include <optional>
-#include <string>
 #include <vector>
 
-#include "algorithms/rendering_config.hpp"
 #include "results/observe/inside.hpp"
 #include "results/observe/metrics.hpp"
 #include "results/summary/summary.hpp"
@@ -18,9 +16,8 @@
 #include "sim/core/types.hpp"
 #include "sim/geometry/point_shell.hpp"
 #include "sim/loop/observer.hpp"
-#include "sim/tool/tool_shape.hpp"
 
-/// Outcomes of runs, whether they were expected, and warnings about runs whose numbers may mislead.
+/// Outcomes of runs, and warnings about them.
 namespace hapbench {
 
 /// The longest way of a place in one step near an environment: in one that began no further from the environment's box
@@ -44,14 +41,6 @@ class StepWay {
   Vec3 place_ = Vec3::Zero();
   double distance_ = std::numeric_limits<double>::infinity(), longest_ = 0.0;
 };
-
-/// The length of the way on which a scenario has the tool dragged in `duration` [s]: along a direction as far as the
-/// time allows, along points at most to the last one [m].
-double way_to_cover(const DragHandFields& hand, double duration);
-
-/// A warning for a path over the surface that falls short of the way `to_cover` [m] by more than the tool's `width`
-/// [m]: how long it is and what to change. It is known before the run.
-std::optional<Warning> short_path_warning(const DragHandFields& hand, double path, double to_cover, double width);
 
 /// Notes when the tool touches an open mesh where it ends. Beyond such an edge there is nothing to touch, and a tool
 /// that reaches past it is held by too few points or by none.
@@ -86,8 +75,9 @@ class EncounterObserver : public Observer {
   /// two widths: it was pressed, and its calm numbers tell nothing of a drag; `stuck` when it came to stand while the
   /// target of its hand went on.
   virtual Outcome outcome(Outcome outcome) = 0;
-  /// After the run: warnings about its outcome.
-  virtual std::vector<Warning> warnings(Outcome outcome, const TrialContact& contact) = 0;
+  /// After the run: warnings about its outcome, and about contacts at the edges of an open mesh. Precondition: there
+  /// are metrics.
+  virtual std::vector<Warning> warnings(Outcome outcome) = 0;
   /// The longest way of the tip in a step near the environment; 0 without points [m].
   virtual double longest_step() const = 0;
   /// Null without a solid.
@@ -96,30 +86,10 @@ class EncounterObserver : public Observer {
   virtual const InsideDepths* depths() = 0;
 };
 
-/// Scenario and parts must outlive the observer; `metrics`, if given, observes before.
+/// Scenario and parts must outlive the observer; `metrics` observes before. Without it, what only warnings need is not
+/// watched.
 std::unique_ptr<EncounterObserver> encounter_observer(const Scenario& scenario, const NamedFiles& files,
                                                       const SimulationParts& parts,
                                                       const MetricsObserver* metrics = nullptr);
-
-/// For a tool whose size is out of proportion with the environment's, a question about scales.
-std::optional<Warning> scale_warning(const Scenario& scenario, const ToolShape& tool, const Box& environment);
-
-/// The expectations of the scenario that the run does not meet, one sentence each.
-std::vector<std::string> unmet_expectations(const ExpectFields& expect, const Result& run);
-
-/// True when `outcome` is among those the scenario expects.
-bool outcome_is_expected(const ExpectFields& expect, Outcome outcome);
-
-/// Warnings about the forces of a run: it passed the limit of explicit friction, or the reduction makes its force jump
-/// (results/observe).
-std::vector<Warning> force_warnings(const MetricsObserver& metrics);
-
-/// The odd thing about the place of a tool that fills the box in its own frame, as the end of a sentence such as "lies
-/// across its axis"; empty when nothing is odd. Tools have their tip centre at the origin, and their tip points along
-/// -z.
-std::string odd_frame(const Box& tool);
-
-/// Warnings about a tool: a proxy keeps points out of convex tools only, and a mesh may lie oddly in its frame.
-std::vector<Warning> tool_warnings(const RenderingConfig& rendering, const ToolShape& tool);
 
 }  // namespace hapbench

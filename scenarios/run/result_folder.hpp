@@ -50,6 +50,22 @@ std::vector<ResultTable> record_tables(const RecordFields& fields);
 /// them. Sizes known beforehand are within a factor of two; that of contacts.csv is a guess. O(1).
 double expected_output_bytes(const Scenario& scenario);
 
+/// Creates directories for results. Its destructor removes those that are still empty, so that failed or stopped work
+/// leaves none behind.
+class NewDirectories {
+ public:
+  NewDirectories() = default;
+  ~NewDirectories();
+  NewDirectories(const NewDirectories&) = delete;
+  NewDirectories& operator=(const NewDirectories&) = delete;
+
+  /// Creates a directory and its missing parents; `error` as of std::filesystem::create_directories.
+  void create(const std::filesystem::path& directory, std::error_code& error);
+
+ private:
+  std::vector<std::filesystem::path> made_;  ///< parents first
+};
+
 /// The directory of a run's results. While one object holds it, another cannot be made, in any process, so that two
 /// runs do not write into one folder. File systems without locks are not guarded.
 class ResultFolder {

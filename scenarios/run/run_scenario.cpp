@@ -3,17 +3,21 @@
 #include <fmt/format.h>
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <chrono>
 
 #include "algorithms/registry.hpp"
 #include "results/allocations/allocations.hpp"
 #include "results/observe/step_times.hpp"
+#include "results/summary/outcome_names.hpp"
 #include "scenarios/description/metric_sections.hpp"
 #include "scenarios/description/parts.hpp"
+#include "scenarios/input/input_error.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/diagnosis.hpp"
 #include "scenarios/run/encounter.hpp"
 #include "scenarios/run/progress_bar.hpp"
+#include "scenarios/run/scene_facts.hpp"
 #include "scenarios/run/stop_signal.hpp"
 
 namespace hapbench {
@@ -65,16 +69,25 @@ class RowsApart final : public Observer {
   std::uint64_t stride_;
 };
 
-/// Watches for contacts beyond the edges of an open mesh; nothing where there are none, or where contacts are not
-/// numbered as the points of the shell.
-std::optional<OpenEdgeObserver> open_edge_observer(const Scenario& scenario, const NamedFiles& files,
-                                                   const SimulationParts& parts) {
-  if (!parts.shell || parts.shell->size() == 0 || !std::holds_alternative<MeshEnvironment>(scenario.environment) ||
-      scenario.rendering.contact_source != kOwnContacts)
-    return std::nullopt;
-  const std::vector<Vec3>& edges = files.at(kEnvironmentFile).mesh().open_edges();
-  if (edges.empty()) return std::nullopt;
-  return OpenEdgeObserver(*parts.shell, edges, parts.tool->half_width());
+/// Warnings about the forces of a run: it passed the limit of explicit friction, or the reduction makes its force jump
+/// (results/observe).
+std::vector<Warning> force_warnings(const MetricsObserver& metrics) {
+  std::vector<Warning> warnings;
+  if (const auto& friction = metrics.explicit_friction(); friction && friction->first_step) {
+    warnings.push_back(
+        {"friction", "",
+         fmt::format("beyond {:.3g} N of spring force, in {} of {} rows, first in step {}, the explicit "
+                     "step of friction is unstable; what follows is the integrator's doing, not the law's",
+                     friction->limit, friction->rows_beyond, metrics.rows(), *friction->first_step)});
+  }
+  if (const auto& jumps = metrics.reduction(); jumps && jumps->stand_out()) {
+    warnings.push_back(
+        {"reduction", "",
+         fmt::format("reduction: kept points change in {} of {} steps, force steps up to {:.2g} N there "
+                     "and {:.2g} N elsewhere; rendering.reduction=null keeps them all",
+                     jumps->changes(), metrics.rows(), jumps->step_max().value_or(0.0), jumps->step_max_elsewhere())});
+  }
+  return warnings;
 }
 
 /// Takes kAskEvery steps and times each; returns false once the run has ended.
@@ -135,13 +148,11 @@ class Run {
     StepSampler sampler(static_cast<std::uint64_t>(time.steps));
     RowsApart metrics_rows(*metrics_, time.stride);
     const auto seen = encounter_observer(scenario_, loaded_.files, parts, &*metrics_);
-    std::optional<OpenEdgeObserver> open_edges = open_edge_observer(scenario_, loaded_.files, parts);
     ProgressBar bar(label, static_cast<std::uint64_t>(time.steps), !label.empty());
     std::vector<Observer*> observers = {&sampler.first()};
     observers.push_back(time.stride == 1 ? static_cast<Observer*>(&*metrics_) : &metrics_rows);
     for (const auto& observer : sections_.all()) observers.push_back(observer.get());
     observers.push_back(seen.get());
-    if (open_edges) observers.push_back(&*open_edges);
     if (diagnosis_) observers.push_back(&*diagnosis_);
     if (target) {
       for (auto& recorder :
@@ -155,7 +166,7 @@ class Run {
     Simulation simulation(config, std::move(parts), std::move(observers));
     const SimulationResult result = step_to_end(simulation, bar);
     step_nanoseconds_.insert(step_nanoseconds_.end(), sampler.nanoseconds().begin(), sampler.nanoseconds().end());
-    end_trial(*seen, open_edges, result);
+    end_trial(*seen, result);
   }
 
   /// After the trials.
@@ -210,10 +221,9 @@ class Run {
     return result;
   }
 
-  void end_trial(EncounterObserver& seen, const std::optional<OpenEdgeObserver>& open_edges, SimulationResult result) {
+  void end_trial(EncounterObserver& seen, SimulationResult result) {
     result.outcome = seen.outcome(result.outcome);
-    std::vector<Warning> warnings = seen.warnings(result.outcome, metrics_->trial());
-    if (auto warning = open_edges ? open_edges->warning() : std::nullopt) warnings.push_back(std::move(*warning));
+    std::vector<Warning> warnings = seen.warnings(result.outcome);
     ++trials_;
     if (!warnings.empty() && with_warnings_++ == 0) {
       first_with_warnings_ = trials_;
@@ -326,6 +336,47 @@ Result run_scenario(const LoadedScenario& loaded, const std::optional<fs::path>&
 
 Result run_with_shell(const LoadedScenario& loaded, const std::shared_ptr<const PointShell>& shell) {
   return run_trials(loaded, shell, {}, {}, false, nullptr, false);
+}
+
+namespace {
+
+std::string divergence_text(const SimulationResult& result) {
+  if (result.outcome != Outcome::diverges) return "";
+  const Divergence& d = result.divergence;
+  if (!d.fault.empty()) return fmt::format(" ({}, at step {})", d.fault, d.step);
+  return fmt::format(" ({} reached {:.4g} at step {}, beyond {:.4g})", d.quantity, d.magnitude, d.step, d.bound);
+}
+
+std::vector<std::string> names_of(const std::vector<Outcome>& outcomes) {
+  std::vector<std::string> names;
+  for (const Outcome outcome : outcomes) names.emplace_back(outcome_name(outcome));
+  return names;
+}
+
+}  // namespace
+
+bool outcome_is_expected(const ExpectFields& expect, Outcome outcome) {
+  return std::ranges::find(expect.outcomes, outcome) != expect.outcomes.end();
+}
+
+std::vector<std::string> unmet_expectations(const ExpectFields& expect, const Result& run) {
+  std::vector<std::string> unmet;
+  if (!outcome_is_expected(expect, run.end.outcome)) {
+    unmet.push_back(fmt::format("outcome is \"{}\"{}; expected {}", outcome_name(run.end.outcome),
+                                divergence_text(run.end), quoted_list(names_of(expect.outcomes))));
+  }
+  for (const auto& [name, bound] : expect.metrics) {
+    const auto number = number_of(run.metrics, name);
+    if (!number) {
+      unmet.push_back(fmt::format("{} has no value; expected one", name));
+      continue;
+    }
+    if (bound.min && *number < *bound.min)
+      unmet.push_back(fmt::format("{} is {}; expected at least {}", name, *number, *bound.min));
+    if (bound.max && *number > *bound.max)
+      unmet.push_back(fmt::format("{} is {}; expected at most {}", name, *number, *bound.max));
+  }
+  return unmet;
 }
 
 }  // namespace hapbench

@@ -34,4 +34,10 @@ Result run_scenario(const LoadedScenario& loaded, const std::optional<std::files
 /// make_shell of the scenario.
 Result run_with_shell(const LoadedScenario& loaded, const std::shared_ptr<const PointShell>& shell);
 
+/// The expectations of the scenario that the run does not meet, one sentence each.
+std::vector<std::string> unmet_expectations(const ExpectFields& expect, const Result& run);
+
+/// True when `outcome` is among those the scenario expects.
+bool outcome_is_expected(const ExpectFields& expect, Outcome outcome);
+
 }  // namespace hapbench

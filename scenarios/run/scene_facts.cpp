@@ -6,11 +6,12 @@
 #include <cmath>
 #include <limits>
 
+#include "device_model/hands/drag_hand.hpp"
 #include "results/observe/inside.hpp"
 #include "scenarios/run/assemble.hpp"
-#include "scenarios/run/encounter.hpp"
 #include "scenarios/run/stop_signal.hpp"
 #include "sim/mesh/triangle_soup.hpp"
+#include "sim/tool/mesh_tool.hpp"
 
 namespace hapbench {
 namespace {
@@ -23,13 +24,11 @@ ToolPose first_pose(const Scenario& scenario, const SimulationParts& parts) {
           parts.motion->roll_at(0.0)};
 }
 
-/// Lengths and times this far apart are of different units: mm for m is a factor of 1000, cm for m one of 100.
-constexpr double kUnitsApart = 100.0;
 constexpr double kUsualStep = 0.001;  ///< of haptic loops [s]
 
 /// Where the tool starts, against its own size and the environment's.
 std::optional<Warning> start_warning(const ToolShape& tool, const SceneFacts::Surface& surface) {
-  const double least = std::min((surface.box.max - surface.box.min).norm(), tool.reach());
+  const double least = std::min(diagonal(surface.box), tool.reach());
   if (surface.gap > kUnitsApart * least) {
     return Warning{
         "start", "",
@@ -50,7 +49,7 @@ std::vector<Warning> stroke_warnings(const Stroke& stroke, const TimeFields& tim
     box = {box.min.cwiseMin(sample.position), box.max.cwiseMax(sample.position)};
     closest = std::min(closest, distance_to(environment, sample.position));
   }
-  const double size = (environment.max - environment.min).norm(), way = (box.max - box.min).norm();
+  const double size = diagonal(environment), way = diagonal(box);
   const std::string of = fmt::format("the stroke's places are within {}", size_text(box));
   std::vector<Warning> warnings;
   const auto warn = [&warnings](std::string text) {
@@ -103,6 +102,80 @@ bool is_open_scan(const Scenario& scenario, const NamedFiles& files) {
 }
 
 }  // namespace
+
+double way_to_cover(const DragHandFields& hand, double duration) {
+  const double way = hand.drag.speed * duration;
+  if (!hand.path) return way;
+  double legs = 0.0;
+  for (std::size_t i = 1; i < hand.path->size(); ++i) legs += ((*hand.path)[i] - (*hand.path)[i - 1]).norm();
+  return std::min(way, legs);
+}
+
+std::optional<Warning> short_path_warning(const DragHandFields& hand, double path, double to_cover, double width) {
+  // By less than the tool is wide it is the edge that ends the way.
+  if (to_cover <= path + width) return std::nullopt;
+  const std::string ends =
+      fmt::format("the path of the drag ends after {} of {}: ", length_text(path), length_text(to_cover));
+  return Warning{"short_path", "",
+                 ends + (hand.path ? "hand.path_m leads no further over the surface; let its points lie on it"
+                                   : "beyond, the surface ends or turns against hand.direction; another "
+                                     "initial.position_m, a larger hand.smoothing_m or hand.path_m leads further")};
+}
+
+std::string scale_question(const Scenario& scenario, const ToolShape& tool, const Box& environment) {
+  // Scenes are made of tools and places to work on. An environment this much smaller than the tool is thick, or larger
+  // than it is long, is suspect, and millimetres taken for metres change either a thousandfold.
+  constexpr double kTooSmall = 0.1, kTooLarge = 100.0;
+  const double size = diagonal(environment);
+  if (size >= kTooSmall * 2.0 * tool.half_width() && size <= kTooLarge * tool.reach()) return "";
+  if (std::holds_alternative<MeshToolFields>(scenario.tool)) return "are tool.scale and the environment's size right?";
+  if (std::holds_alternative<MeshEnvironment>(scenario.environment)) return "is environment.scale right?";
+  if (std::holds_alternative<PointShellEnvironment>(scenario.environment))
+    return "are the points of environment.file in metres?";
+  return "are the sizes of environment in metres?";
+}
+
+std::optional<Warning> scale_warning(const Scenario& scenario, const ToolShape& tool, const Box& environment) {
+  const std::string question = scale_question(scenario, tool, environment);
+  if (question.empty()) return std::nullopt;
+  const bool is_mesh = std::holds_alternative<MeshToolFields>(scenario.tool);
+  return Warning{"scale", "",
+                 fmt::format("the tool is {} thick and reaches {}, the environment is {}: {}{}",
+                             length_text(2.0 * tool.half_width()), length_text(tool.reach()), size_text(environment),
+                             is_mesh ? "" : "are the tool's lengths in metres, or ", question)};
+}
+
+std::string odd_frame(const Box& tool) {
+  constexpr double kOdd = 2.0;  // as far this way as the other, or further, is no accident
+  const Vec3 size = tool.max - tool.min;
+  const double gap = distance_to(tool, Vec3::Zero());
+  if (gap > 0.0) return fmt::format("lies {} away from its tip centre", length_text(gap));
+  const auto [short_side, long_side] = std::minmax(size.x(), size.y());
+  if (long_side > kOdd * std::max(short_side, size.z())) return "lies across its axis";
+  if (-tool.min.z() > kOdd * tool.max.z()) return "lies before its tip centre, not behind";
+  return "";
+}
+
+std::vector<Warning> tool_warnings(const RenderingConfig& rendering, const ToolShape& tool) {
+  std::vector<Warning> warnings;
+  if (rendering.algorithm == "proxy" && !tool.convex()) {
+    warnings.push_back(
+        {"not_convex", "",
+         "the tool is not convex: the proxy's guarantee that no point enters it is lost, points may enter "
+         "where it is concave, as at the neck of a bur; a convex tool, or another algorithm, has no such "
+         "gap"});
+  }
+  if (const auto* mesh = dynamic_cast<const MeshTool*>(&tool)) {
+    const Box box{mesh->grid().low(), mesh->grid().high()};
+    if (const std::string odd = odd_frame(box); !odd.empty()) {
+      warnings.push_back({"tool_frame", "",
+                          fmt::format("the tool {} (from there {}): are tool.tip_m and tool.tip_axis right? \"hapbench "
+                                      "new tool\" guesses them",
+                                      odd, place_text(box))});
+    }
+  }
+  return warnings;
+}
 
 SceneFacts scene_facts(const LoadedScenario& loaded) {
   const Scenario& scenario = loaded.scenario;
@@ -226,6 +299,10 @@ std::optional<PointDistance> point_distance(const LoadedScenario& loaded) {
         return std::nullopt;
       },
       environment);
+}
+
+double diagonal(const Box& box) {
+  return (box.max - box.min).norm();
 }
 
 Gap gap_between(const ToolShape& tool, const ToolPose& pose, const PointShell& shell) {

@@ -36,6 +36,33 @@ SceneFacts scene_facts(const LoadedScenario& loaded);
 /// run's, made once in a process. Throws InputError when a named file cannot be used.
 std::optional<Warning> inverted_scan_warning(const LoadedScenario& loaded);
 
+// ---- Warnings about a scene. ----
+
+/// Lengths and times this far apart are of different units: mm for m is a factor of 1000, cm for m one of 100.
+inline constexpr double kUnitsApart = 100.0;
+
+/// The length of the way on which a scenario has the tool dragged in `duration` [s]: along a direction as far as the
+/// time allows, along points at most to the last one [m].
+double way_to_cover(const DragHandFields& hand, double duration);
+
+/// A warning for a path over the surface that falls short of the way `to_cover` [m] by more than the tool's `width`
+/// [m]: how long it is and what to change. It is known before the run.
+std::optional<Warning> short_path_warning(const DragHandFields& hand, double path, double to_cover, double width);
+
+/// Whether the sizes of tool and environment are right, as a question about the likeliest field, where they are out of
+/// proportion; empty where they are not.
+std::string scale_question(const Scenario& scenario, const ToolShape& tool, const Box& environment);
+/// The warning with that question.
+std::optional<Warning> scale_warning(const Scenario& scenario, const ToolShape& tool, const Box& environment);
+
+/// The odd thing about the place of a tool that fills the box in its own frame, as the end of a sentence such as "lies
+/// across its axis"; empty when nothing is odd. Tools have their tip centre at the origin, and their tip points along
+/// -z.
+std::string odd_frame(const Box& tool);
+
+/// Warnings about a tool: a proxy keeps points out of convex tools only, and a mesh may lie oddly in its frame.
+std::vector<Warning> tool_warnings(const RenderingConfig& rendering, const ToolShape& tool);
+
 // ---- Who moves the tool. ----
 
 /// The time until which a script moves the hand or turns the tool [s]: 0 if it never does, infinite if it never stops.
@@ -73,6 +100,9 @@ struct Gap {
 };
 /// Looks at all points of the shell, which has some.
 Gap gap_between(const ToolShape& tool, const ToolPose& pose, const PointShell& shell);
+
+/// The length of a box from corner to corner [m].
+double diagonal(const Box& box);
 
 // ---- Quantities as people read them. ----
 

@@ -205,7 +205,7 @@ class Problems final : public Observer {
 
 std::vector<Problem> problems_of_task() {
   const Scenario& scenario = step_scenario("T2_proxy").scenario;
-  SimulationParts parts = assemble(scenario, block_shell(), {});
+  SimulationParts parts = assemble(scenario, NamedFiles(scenario), block_shell(), {});
   Problems problems(*block_shell(), *parts.tool, scenario.rendering.stiffness);
   Simulation(simulation_config(scenario), std::move(parts), {&problems}).run();
   return std::move(problems.problems);

@@ -76,7 +76,7 @@ std::shared_ptr<const ToolShape> other_shape(const Cylinder& drill, const std::s
 }
 
 SimulationParts parts_of(const Scenario& scenario, const std::string& name) {
-  SimulationParts parts = assemble(scenario, block_shell(), {});
+  SimulationParts parts = assemble(scenario, NamedFiles(scenario), block_shell(), {});
   const auto shape = other_shape(dynamic_cast<const Cylinder&>(*parts.tool), name);
   if (!shape) return parts;
   const RenderingConfig& rendering = scenario.rendering;
@@ -259,8 +259,8 @@ std::unique_ptr<WatchedRun> filled_hole(std::size_t n, Skips skips) {
   scenario.rendering.skips = skips;
   SimulationConfig config = simulation_config(scenario);
   config.steps = 1'000'000'000;  // more than are timed
-  auto run =
-      std::make_unique<WatchedRun>(config, assemble(scenario, wall(n, make_cylinder(scenario.tool)), {}), nullptr);
+  auto run = std::make_unique<WatchedRun>(
+      config, assemble(scenario, NamedFiles(scenario), wall(n, make_cylinder(scenario.tool)), {}), nullptr);
   run->simulation.advance(kStepsAtATime);
   return run;
 }
@@ -332,7 +332,7 @@ void records_benchmark(benchmark::State& state, Skips skips) {
   const auto run = [&scenario](Skips s) {
     SimulationConfig config = simulation_config(scenario);
     config.skips = s;
-    return Simulation(config, assemble(scenario, block_shell(), {}), {});
+    return Simulation(config, assemble(scenario, NamedFiles(scenario), block_shell(), {}), {});
   };
   Simulation simulation = run(skips), other = run(skips == Skips::off ? Skips::on : Skips::off);
   for (int k = 0; k < 2048; ++k) {

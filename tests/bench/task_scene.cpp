@@ -70,7 +70,7 @@ TaskScene make_task_scene(const std::string& task) {
   PoseRecorder recorder(window, scene.poses);
   SimulationConfig config = simulation_config(scene.loaded.scenario);
   config.steps = window.first + window.count;
-  SimulationParts parts = assemble(scene.loaded.scenario, scene.shell, {});
+  SimulationParts parts = assemble(scene.loaded.scenario, scene.loaded.files, scene.shell, {});
   scene.tool = parts.tool;
   Simulation(config, std::move(parts), {&recorder}).run();
   return scene;

@@ -37,14 +37,15 @@ SampledRun sampled_run(const Scenario& scenario, std::shared_ptr<const PointShel
   run.positions.reserve(config.steps / stride + 1);
   Sampler sampler(stride, run.positions);
   observers.push_back(&sampler);
-  Simulation simulation(config, assemble(scenario, std::move(shell), {}), std::move(observers));
+  Simulation simulation(config, assemble(scenario, NamedFiles(scenario), std::move(shell), {}), std::move(observers));
   run.result = run_to_end(simulation);
   return run;
 }
 
 Work bare_run(const Scenario& scenario, std::shared_ptr<const PointShell> shell) {
-  const auto simulation = std::make_shared<Simulation>(
-      simulation_config(scenario), assemble(scenario, std::move(shell), {}), std::vector<Observer*>{});
+  const auto simulation = std::make_shared<Simulation>(simulation_config(scenario),
+                                                       assemble(scenario, NamedFiles(scenario), std::move(shell), {}),
+                                                       std::vector<Observer*>{});
   const SimulationResult warm_up = run_to_end(*simulation);
   return {[simulation] { simulation->reset(); }, [simulation] { run_to_end(*simulation); },
           std::max<std::size_t>(1, warm_up.rows)};

@@ -88,7 +88,7 @@ const Ours& ours(const std::string& task) {
   if (found != known.end()) return found->second;
   const TaskScene& scene = task_scene(task);
   const Cylinder drill = make_cylinder(scene.loaded.scenario.tool);
-  SimulationParts parts = assemble(scene.loaded.scenario, scene.shell, {});
+  SimulationParts parts = assemble(scene.loaded.scenario, scene.loaded.files, scene.shell, {});
   ContactBuffer contacts(parts.source->capacity());
   Ours answers;
   for (std::size_t k = 0; k < scene.poses.size(); k += kEvery) {
@@ -158,7 +158,7 @@ void time_search(benchmark::State& state, const std::string& task) {
 
 void time_search_and_depths(benchmark::State& state, const std::string& task) {
   const TaskScene& scene = task_scene(task);
-  const SimulationParts parts = assemble(scene.loaded.scenario, scene.shell, {});
+  const SimulationParts parts = assemble(scene.loaded.scenario, scene.loaded.files, scene.shell, {});
   time_ours(state, *parts.source, scene.poses);
 }
 

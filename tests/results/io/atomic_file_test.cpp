@@ -145,24 +145,5 @@ TEST(FileSet, LeavesEverythingAsItWasOnAFullDisk) {
   EXPECT_FALSE(fs::exists(dir / "b"));
 }
 
-TEST(NewDirectories, RemovesWhatItMadeAndNobodyUsed) {
-  const TemporaryDirectory directory;
-  fs::create_directory(directory / "mine");
-  {
-    NewDirectories made;
-    std::error_code error;
-    for (const char* name : {"a/b/c", "a/used", "mine", "mine/below"}) {
-      made.create(directory / name, error);
-      EXPECT_FALSE(error) << name;
-      EXPECT_TRUE(fs::is_directory(directory / name)) << name;
-    }
-    write_plainly(directory / "a/used/file", "x");
-  }
-  EXPECT_TRUE(fs::exists(directory / "a/used/file"));
-  EXPECT_FALSE(fs::exists(directory / "a/b"));
-  EXPECT_TRUE(fs::exists(directory / "mine")) << "empty, but not its own";
-  EXPECT_FALSE(fs::exists(directory / "mine/below"));
-}
-
 }  // namespace
 }  // namespace hapbench::atomic_file_test

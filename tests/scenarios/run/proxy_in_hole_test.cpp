@@ -71,7 +71,7 @@ PointsInProxy watch(const char* name, std::int64_t steps) {
   Scenario scenario = with_algorithm(name, "proxy").scenario;
   scenario.time.steps = std::min(scenario.time.steps, steps);
   const auto shell = make_shell(scenario);
-  SimulationParts parts = assemble(scenario, shell, {});
+  SimulationParts parts = assemble(scenario, NamedFiles(scenario), shell, {});
   PointsInProxy points(*shell, parts, scenario.rendering.stiffness);
   points.algorithm_dt = scenario.time.step;
   Simulation simulation(simulation_config(scenario), std::move(parts), {&points});
