@@ -25,55 +25,46 @@ std::string millimetres(const Vec3& place) {
   return fmt::format("({:.3g}, {:.3g}, {:.3g}) mm", p.x(), p.y(), p.z());
 }
 
-/// Notes when the tool touches an open mesh where it ends. Beyond such an edge there is nothing to touch, and a tool
-/// that reaches past it is held by too few points or by none.
-class OpenEdges {
- public:
-  /// A point of the shell counts as near an edge if it lies within `reach` [m] of one of `edges`, the middles of the
-  /// boundary edges, along each coordinate. O(n) and the points near edges.
-  OpenEdges(const PointShell& shell, const std::vector<Vec3>& edges, double reach)
-      : reach_(reach), is_near_edge_(shell.size(), false) {
-    const GridIndex grid(shell);
-    const Vec3 half = Vec3::Constant(reach);
-    for (const Vec3& edge : edges) {
-      const Box box{edge - half, edge + half};
-      grid.for_each_run(box, [&](std::uint32_t first, std::uint32_t last) {
-        for (std::uint32_t i = first; i < last; ++i) {
-          const Vec3 point(grid.x()[i], grid.y()[i], grid.z()[i]);
-          if (distance_to(box, point) == 0.0) is_near_edge_[grid.shell_index(i)] = true;
-        }
-      });
-    }
-  }
+}  // namespace
 
-  void add(const StepRecord& record) noexcept {
-    const ContactBuffer& contacts = *record.rendered;
-    for (std::size_t i = 0; i < contacts.size(); ++i) {
-      if (!is_near_edge_[contacts.index[i]]) continue;
-      if (rows_++ > 0) return;
+OpenEdgeObserver::OpenEdgeObserver(const PointShell& shell, const std::vector<Vec3>& edges, double reach)
+    : reach_(reach), is_near_edge_(shell.size(), false) {
+  const GridIndex grid(shell);
+  const Vec3 half = Vec3::Constant(reach);
+  for (const Vec3& edge : edges) {
+    const Box box{edge - half, edge + half};
+    grid.for_each_run(box, [&](std::uint32_t first, std::uint32_t last) {
+      for (std::uint32_t i = first; i < last; ++i) {
+        const Vec3 point(grid.x()[i], grid.y()[i], grid.z()[i]);
+        if (distance_to(box, point) == 0.0) is_near_edge_[grid.shell_index(i)] = true;
+      }
+    });
+  }
+}
+
+void OpenEdgeObserver::on_step(const StepRecord& record) noexcept {
+  const ContactBuffer& contacts = *record.rendered;
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    if (!is_near_edge_[contacts.index[i]]) continue;
+    if (rows_ == 0) {
       first_time_ = record.time;
       first_place_ = contacts.point(i);
-      return;
     }
+    ++rows_;
+    return;
   }
+}
 
-  /// A warning with the first contact at such a point; nothing when there was none.
-  std::optional<Warning> warning() const {
-    if (rows_ == 0) return std::nullopt;
-    return Warning{
-        "open_edge", "",
-        fmt::format("touched the mesh within {} of where it is open in {} rows, first at {:.4g} s near {}: beyond "
-                    "the edge there is no surface",
-                    length_text(reach_), rows_, first_time_, millimetres(first_place_))};
-  }
+std::optional<Warning> OpenEdgeObserver::warning() const {
+  if (rows_ == 0) return std::nullopt;
+  return Warning{
+      "open_edge", "",
+      fmt::format("touched the mesh within {} of where it is open in {} rows, first at {:.4g} s near {}: beyond "
+                  "the edge there is no surface",
+                  length_text(reach_), rows_, first_time_, millimetres(first_place_))};
+}
 
- private:
-  double reach_;
-  std::vector<bool> is_near_edge_;  ///< of each point of the shell
-  std::uint64_t rows_ = 0;          ///< with such a contact
-  double first_time_ = 0.0;         ///< [s]
-  Vec3 first_place_ = Vec3::Zero();
-};
+namespace {
 
 Vec3 target_at(const ImpedanceHandFields& hand, double time) {
   return {hand.target[0](time), hand.target[1](time), hand.target[2](time)};
@@ -323,7 +314,7 @@ class Encounter final : public EncounterObserver {
     if (approach_) approach_->add(record, !last_contact_);
     if (course_) course_->add(record.time);
     if (standstill_) standstill_->add(record);
-    if (open_edges_) open_edges_->add(record);
+    if (open_edges_) open_edges_->on_step(record);
   }
 
   Outcome outcome(Outcome outcome) override {
@@ -495,9 +486,9 @@ class Encounter final : public EncounterObserver {
   std::optional<InsideDepths> depths_;
   std::optional<Approach> approach_;
   std::optional<Standstill> standstill_;
-  std::optional<OpenEdges> open_edges_;  ///< where contacts are numbered as the points of an open mesh
-  const DragHand* drag_;                 ///< null unless one drags the tool
-  std::optional<DragCourse> course_;     ///< of that
+  std::optional<OpenEdgeObserver> open_edges_;  ///< where contacts are numbered as the points of an open mesh
+  const DragHand* drag_;                        ///< null unless one drags the tool
+  std::optional<DragCourse> course_;            ///< of that
   // In the last row.
   double time_ = 0.0;
   Vec3 place_ = Vec3::Zero(), force_ = Vec3::Zero();  ///< of the tip [m]; rendered [N]

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "results/observe/inside.hpp"
@@ -12,6 +14,7 @@
 #include "scenarios/description/parts.hpp"
 #include "scenarios/description/scenario.hpp"
 #include "sim/core/types.hpp"
+#include "sim/geometry/point_shell.hpp"
 #include "sim/loop/observer.hpp"
 
 /// Outcomes of runs, and warnings about them.
@@ -37,6 +40,27 @@ class StepWay {
   Box environment_;
   Vec3 place_ = Vec3::Zero();
   double distance_ = std::numeric_limits<double>::infinity(), longest_ = 0.0;
+};
+
+/// Notes when the tool touches an open mesh where it ends. Beyond such an edge there is nothing to touch, and a tool
+/// that reaches past it is held by too few points or by none.
+class OpenEdgeObserver final : public Observer {
+ public:
+  /// A point of the shell counts as near an edge if it lies within `reach` [m] of one of `edges`, the middles of the
+  /// boundary edges, along each coordinate. O(n) and the points near edges.
+  OpenEdgeObserver(const PointShell& shell, const std::vector<Vec3>& edges, double reach);
+
+  void on_step(const StepRecord& record) noexcept override;
+
+  /// A warning with the first contact at such a point; nothing when there was none.
+  std::optional<Warning> warning() const;
+
+ private:
+  double reach_;
+  std::vector<bool> is_near_edge_;  ///< of each point of the shell
+  std::uint64_t rows_ = 0;          ///< with such a contact
+  double first_time_ = 0.0;         ///< [s]
+  Vec3 first_place_ = Vec3::Zero();
 };
 
 /// Watches a run for all that decides its outcome; some 40 ns a row, no allocation.
