@@ -25,10 +25,10 @@ positive in the direction of the position.
   hapbench identify --design chirp --force 2 --travel 0.08 --mass 0.1 --out chirp.csv
   hapbench identify log.csv --columns time=t,force=3,position=enc --scale time=1e-6,position=5.5e-5
   hapbench limit tap_wall --device log_device.json"""
-UNITS = {"handle_mass_kg": "kg", "viscous_N_s_per_m": "N s/m", "coulomb_N": "N", "delay_samples": "samples", "encoder_step_m": "m",
+UNITS = {"handle_mass_kg": "kg", "viscous_N_s_per_m": "N s/m", "coulomb_N": "N", "delay_s": "s", "delay_samples": "samples", "encoder_step_m": "m",
          "position_noise_m": "m", "offset_N": "N"}
 MOST_DRAWN = 6000  # samples, so that a picture of a long log is not megabytes
-IN_DEVICE = ("handle_mass_kg", "viscous_N_s_per_m", "coulomb_N", "delay_samples", "encoder_step_m", "position_noise_m")
+IN_DEVICE = ("handle_mass_kg", "viscous_N_s_per_m", "coulomb_N", "delay_s", "encoder_step_m", "position_noise_m")
 
 
 def command_line():
@@ -66,7 +66,7 @@ def identify(options, out):
     found = fit(log)
     told = {name: {"value": None if name in found.untold else value, "interval": ends}
             for name, value, ends in zip(NAMES, found.values.tolist(), found.intervals.tolist())}
-    late = told.pop("delay_s")
+    late = told["delay_s"]
     told["delay_samples"] = {"value": late["value"] if late["value"] is None else late["value"] / log.step,
                              "interval": [end / log.step for end in late["interval"]]}
     step = log.encoder_step
@@ -114,12 +114,8 @@ def shown_end(end):
 def warnings_of(told, found, log):
     warnings = []
     for name, why in found.untold.items():
-        name = "delay_samples" if name == "delay_s" else name
         if name in IN_DEVICE:
             warnings.append(f"{name}: the log cannot tell it: {why}; 95 % interval {' ... '.join(map(shown_end, told[name]['interval']))}")
-    if delay := told["delay_samples"]["value"]:
-        warnings.append(f"delay_samples counts samples of this log, of {1e3 * log.step:.4g} ms: {1e3 * delay * log.step:.3g} ms. A scene takes it "
-                        f"for time steps of its own: give it {delay * log.step:.4g} / time.step_s there, {2048 * delay * log.step:.4g} at 1/2048 s")
     if told["offset_N"]["value"] is not None:
         warnings.append(f"a constant force of {told['offset_N']['value']:.3g} N acts besides the commands (weight, a cable): no device file has it")
     if found.misfit:
