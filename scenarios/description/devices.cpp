@@ -112,8 +112,10 @@ static void describe(Fields& f, ImpedanceDeviceConfig& device) {
   f.number("coulomb_N", device.coulomb, {0.0, 1e9, "N"}, "dry friction of each axis, moving and at rest");
   f.number("encoder_step_m", device.encoder_step, {0.0, 1.0, "m"},
            "the measured position is the nearest multiple of it, halves away from zero; 0: exact");
+  // A device by itself, whose delay is in seconds, has no samples yet (resolve_delay).
   f.number("delay_samples", device.delay_samples, {0.0, kMostDelaySamples, "time steps"},
-           "from a sample to its force; a fraction changes the force within a time step");
+           "from a sample to its force; a fraction changes the force within a time step",
+           std::isnan(device.delay_samples) ? Presence::left_out : Presence::has_default);
   f.if_any(
       "delay_s", device.delay,
       "instead of delay_samples: delay_s / time.step_s of them, fractions too. An effective scenario has both, which "
