@@ -19,6 +19,8 @@ struct ImpedanceDeviceConfig {
   double coulomb = 0.0;        ///< friction c of each axis [N]
   double encoder_step = 0.0;   ///< q [m]; 0: exact
   double delay_samples = 0.0;  ///< d, from the sample to the force [periods], whole or fractional
+  /// The same [s] where it is known in seconds; who has the period makes delay_samples of it. Nothing here reads it.
+  std::optional<double> delay = {};
   VelocityFilterConfig velocity_filter = {};
   std::optional<double> force_max = {};               ///< norm at which the motors saturate [N]
   double force_step = 0.0;                            ///< resolution of each component [N]; 0: exact

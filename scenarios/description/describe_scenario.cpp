@@ -535,6 +535,7 @@ void describe(Fields& f, Scenario& scenario) {
   f.object("metrics", scenario.metrics, "where metrics of settled contact begin");
   f.object("expect", scenario.expect, "what the run must show; each scenario is its own regression test");
   if (!f.reads()) return;
+  resolve_delay(scenario);
   check_relations(scenario, steps);
   scenario.time.steps = static_cast<std::int64_t>(steps);
   fix_stages(f, scenario);

@@ -32,6 +32,10 @@ void profile(Fields& f, std::string_view name, Profile& profile, const char* uni
 void profiles(Fields& f, const char* const (&names)[3], std::array<Profile, 3>& profiles, const char* unit,
               const char* doc, Presence presence = Presence::has_default);
 
+/// Makes samples of a device's delay in seconds, once both device and time step are there. Throws InputError where the
+/// samples are given too and say something else.
+void resolve_delay(Scenario& scenario);
+
 /// The types of tools, in the variant's order.
 std::vector<std::string> tool_names();
 

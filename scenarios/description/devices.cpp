@@ -1,3 +1,9 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
 #include "device_model/admittance_device.hpp"
 #include "device_model/device_presets.hpp"
 #include "device_model/ideal_device.hpp"
@@ -7,6 +13,8 @@
 #include "scenarios/input/input_error.hpp"
 
 namespace hapbench {
+
+constexpr double kMostDelaySamples = 10'000.0;  ///< of an impedance device
 
 static void describe_force_limit(Fields& f, std::optional<double>& limit) {
   f.number("force_limit_N", limit, {0.0, 1e9, "N", true}, "input force limit f_th; null: off");
@@ -104,8 +112,19 @@ static void describe(Fields& f, ImpedanceDeviceConfig& device) {
   f.number("coulomb_N", device.coulomb, {0.0, 1e9, "N"}, "dry friction of each axis, moving and at rest");
   f.number("encoder_step_m", device.encoder_step, {0.0, 1.0, "m"},
            "the measured position is the nearest multiple of it, halves away from zero; 0: exact");
-  f.number("delay_samples", device.delay_samples, {0.0, 10'000.0, "time steps"},
-           "from a sample to its force; a fraction changes the force within a time step");
+  // A device by itself, whose delay is in seconds, has no samples yet (resolve_delay).
+  f.number("delay_samples", device.delay_samples, {0.0, kMostDelaySamples, "time steps"},
+           "from a sample to its force; a fraction changes the force within a time step",
+           std::isnan(device.delay_samples) ? Presence::left_out : Presence::has_default);
+  f.if_any(
+      "delay_s", device.delay,
+      "instead of delay_samples: delay_s / time.step_s of them, fractions too. An effective scenario has both, which "
+      "then say the same; --set of one of them replaces the other",
+      [](Fields& d, double& value) {
+        d.number(value, {0.0, 1e4, "s"});
+      });
+  if (f.reads() && device.delay && !f.given("delay_samples"))
+    device.delay_samples = std::numeric_limits<double>::quiet_NaN();  // resolve_delay knows the time step
   f.value("velocity_filter", device.velocity_filter, "makes the tool's velocity of measured positions");
   f.number("force_max_N", device.force_max, {0.0, 1e9, "N", true}, "the motors saturate at this norm; null: never");
   f.number("force_step_N", device.force_step, {0.0, 1e9, "N"},
@@ -127,6 +146,24 @@ void describe(Fields& f, DeviceFields& device) {
       {{"ideal", "measures and pushes without error"},
        {"admittance", "the thesis's device: force sensor, limiter and servo"},
        {"impedance", "measures positions and renders forces: a light handle with motors, as most desktop devices"}});
+}
+
+void resolve_delay(Scenario& scenario) {
+  auto* device = std::get_if<ImpedanceDeviceConfig>(&scenario.device);
+  if (device == nullptr || !device->delay) return;
+  const double delay = *device->delay, samples = delay / scenario.time.step, given = device->delay_samples;
+  if (samples > kMostDelaySamples) {
+    fail_at("/device/delay_s",
+            fmt::format("got {} s, {:.3g} time steps; allowed: at most {} of them", delay, samples, kMostDelaySamples));
+  }
+  // 1e-9 forgives the rounding of whoever wrote both.
+  if (std::abs(given - samples) > 1e-9 * std::max(1.0, samples)) {
+    fail_at("/device/delay_s",
+            fmt::format("got {} s beside delay_samples {}; allowed: one of the two, or both where they say the same: "
+                        "{} s are {:.6g} time steps of {} s",
+                        delay, given, delay, samples, scenario.time.step));
+  }
+  device->delay_samples = samples;
 }
 
 /// The passive hand that is fixed to the handle and moves with it between samples; without mass, spring and damper for

@@ -19,7 +19,8 @@ namespace fs = std::filesystem;
 
 /// Fields of which an object has one or the other.
 constexpr std::pair<std::string_view, const char*> kEitherOr[] = {
-    {"steps", "duration_s"}, {"duration_s", "steps"}, {"path_m", "direction"}, {"direction", "path_m"}};
+    {"steps", "duration_s"}, {"duration_s", "steps"},      {"path_m", "direction"},
+    {"direction", "path_m"}, {"delay_s", "delay_samples"}, {"delay_samples", "delay_s"}};
 
 /// Takes out of `object` the field that excludes the one of this name.
 void drop_alternative(Json& object, std::string_view field) {
@@ -137,6 +138,10 @@ void apply_override(Json& json, const std::string& text) {
   }
   const std::string value = text.substr(equals + 1);
   *node = Json::accept(value) ? parse_json(value) : Json(value);
+  // An effective scenario has the device's delay in seconds and in samples of the step that is no longer its own.
+  if (path == "time.step_s" && json.contains("device") && json["device"].is_object() &&
+      json["device"].contains("delay_s"))
+    json["device"].erase("delay_samples");
 }
 
 /// True when a run with this field overridden is still the run that the scenario's expectations were written for.

@@ -333,13 +333,14 @@ std::string edge_text(const LimitRow& row) {
                      is_beyond_linear(row) ? "!" : "", limit.inconsistent.empty() ? "" : " ~");
 }
 
-/// The delay of each impedance device in the first scene, as "0 of touch; 1 (0.5 ms in steps of 0.5 ms) of mine"; empty
-/// when none has one.
+/// The delay in samples of each impedance device in the first scene, as "0 of touch; 1 (0.5 ms in steps of 0.5 ms) of
+/// mine"; empty when none has one. One in seconds is the same in every scene.
 std::string delays_text(const LimitTable& table) {
   std::map<std::string, std::vector<std::string>> names;
   for (std::size_t i = 0; i < table.rows.size(); i += table.columns()) {
     const LimitRow& row = table.rows[i];
-    if (handle_moves_tool(row.scenario.device) && !row.device->name.ends_with(']'))
+    const auto* impedance = std::get_if<ImpedanceDeviceConfig>(&row.scenario.device);
+    if (impedance != nullptr && !impedance->delay && !row.device->name.ends_with(']'))
       append_new(names[delay_text(row.scenario)], {row.device->name});
   }
   std::vector<std::string> parts;

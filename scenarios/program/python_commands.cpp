@@ -1,14 +1,18 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
+#include <cstddef>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <system_error>
 #include <vector>
 
+#include "device_model/logged_handle.hpp"
 #include "results/io/atomic_file.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/installed_folder.hpp"
@@ -85,8 +89,33 @@ int run_for(CapturedOutput& host, const std::string& line) {
   return status;
 }
 
+/// What the identification asks this program for: the positions of a handle in a log, thousands of times. Standard
+/// input has, as numbers of this machine, the count of rows, their times and forces, and then requests: how many of the
+/// rows (0 ends it), and the fields of a LoggedHandle. The answers, positions, go to standard output.
+constexpr const char* kSimulateLog = "--simulate-log";
+
+int simulate_log_for_pipe() {
+  const auto read = [](double* values, std::size_t count) {
+    return std::fread(values, sizeof(double), count, stdin) == count;
+  };
+  double rows = 0.0;
+  if (!read(&rows, 1) || !(rows >= 0.0 && rows < 1e9)) return kBadInput;
+  std::vector<double> times(static_cast<std::size_t>(rows)), forces(times.size()), positions(times.size());
+  if (!read(times.data(), times.size()) || !read(forces.data(), forces.size())) return kBadInput;
+  std::array<double, 7> asked{};
+  while (read(asked.data(), asked.size()) && asked[0] > 0.0 && asked[0] <= rows) {
+    const auto count = static_cast<std::size_t>(asked[0]);
+    const LoggedHandle handle{asked[1], asked[2], asked[3], asked[4], asked[5], asked[6]};
+    simulate_log(handle, std::span(times).first(count), std::span(forces).first(count), positions);
+    if (std::fwrite(positions.data(), sizeof(double), count, stdout) != count || std::fflush(stdout) != 0) break;
+  }
+  return kSuccess;
+}
+
 /// At a terminal this process becomes the launcher.
 int run(const PythonCommand& command, const ProgramWords& given) {
+  if (given.size() == 1 && given[0] == kSimulateLog && command.words[0] == "hapbench_identify")
+    return simulate_log_for_pipe();
   for (const std::string& word : given) refuse_old_word(command.name, word);
   const std::string line = launch_line(command.words, given);
   if (CapturedOutput* host = captured_output()) return run_for(*host, line);

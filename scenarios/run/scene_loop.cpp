@@ -74,7 +74,7 @@ Scenario stuck_scene(Scenario scenario) {
 /// The fields of devices that their loops have, that SampledLoop::nonlinearity names, or that do nothing while nothing
 /// saturates, with a blank before and after each. Any other that is not at its default leaves no theory.
 constexpr std::string_view kKnownToTheory =
-    " /handle_mass_kg /viscous_N_s_per_m /coulomb_N /encoder_step_m /delay_samples /force_max_N /force_step_N "
+    " /handle_mass_kg /viscous_N_s_per_m /coulomb_N /encoder_step_m /delay_samples /delay_s /force_max_N /force_step_N "
     "/force_slew_N_per_s /position_noise_m /velocity_filter/noise_m /velocity_filter/cutoff_Hz /velocity_filter/order "
     "/position_filter/cutoff_Hz /position_filter/order /transmission/motor_share /transmission/stiffness_N_per_m "
     "/transmission/damping_N_s_per_m /force_limit_N /sensor/weight_offset_N /sensor/weight_compensated /sensor/noise_N "

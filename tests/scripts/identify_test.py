@@ -10,12 +10,14 @@ from pathlib import Path
 import numpy as np
 
 PROGRAM, SOURCE = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve()
-sys.path.insert(0, str(SOURCE / "scripts" / "python"))
+sys.path[:0] = [str(SOURCE / "scripts" / "python"), str(SOURCE / "tests" / "scripts")]
 sys.dont_write_bytecode = True
+os.environ["HAPBENCH_PROGRAM"] = str(PROGRAM)
 from hapbench_identify.design import KINDS, design, travel_of  # noqa: E402
-from hapbench_identify.fit import fit  # noqa: E402
+from hapbench_identify.fit import Cost, fit  # noqa: E402
 from hapbench_identify.log import log_of  # noqa: E402
-from hapbench_identify.model import NAMES, positions  # noqa: E402
+from hapbench_identify.model import NAMES, Simulator, positions  # noqa: E402
+from identify_logs import judged  # noqa: E402
 
 TRUE = {"handle_mass_kg": 0.12, "viscous_N_s_per_m": 0.8, "coulomb_N": 0.15, "delay_samples": 1.35, "encoder_step_m": 1e-5}
 
@@ -51,7 +53,7 @@ class Identify(unittest.TestCase):
         cls.root = Path(scratch.name)
         cls.time, cls.force = design("chirp", 1.5, 0.08, 1000.0, 2.0, 0.1)
         m, b, c, d, _ = TRUE.values()
-        cls.places = played(cls.time, cls.force, m, b, c, 1e-3 * d, 400)
+        cls.places = positions(cls.time, cls.force, (m, b, c, 1e-3 * d, 0.0, 0.0))
 
     def log(self, places, time=None, force=None, name="log.csv"):
         time, force = (self.time if time is None else time), (self.force if force is None else force)
@@ -72,7 +74,7 @@ class Identify(unittest.TestCase):
 
     def test_the_model_is_what_small_steps_tend_to(self):
         m, b, c, d, _ = TRUE.values()
-        exact = positions(self.time, self.force, (m, b, c, 1e-3 * d, 0.0, 0.0, 0.0))
+        exact = positions(self.time, self.force, (m, b, c, 1e-3 * d, 0.0, 0.0))
         errors = [np.abs(played(self.time[:500], self.force[:500], m, b, c, 1e-3 * d, n) - exact[:500]).max() for n in (20, 100, 400)]
         self.assertLess(errors[2], 1e-6)
         self.assertLess(errors[2], 0.4 * errors[0])
@@ -80,8 +82,7 @@ class Identify(unittest.TestCase):
     def test_a_log_in_steps_of_the_encoder_tells_the_device(self):
         q = TRUE["encoder_step_m"]
         told, warned = self.told(self.log(np.round(self.places / q) * q))
-        self.assertRegex(warned, r"samples of this log, of 1 ms: 1\.3\d ms\. .* 2\.[67]\d+ at 1/2048 s")
-        # What the small steps of this simulator leave is 3e-7 m, a tenth of the encoder's noise.
+        self.assertEqual(warned, "")
         self.assert_holds(told)
         for name, share in (("handle_mass_kg", 0.01), ("viscous_N_s_per_m", 0.05), ("coulomb_N", 0.05), ("delay_samples", 0.05)):
             self.assertAlmostEqual(told[name]["value"] / TRUE[name], 1.0, delta=share)
@@ -91,12 +92,18 @@ class Identify(unittest.TestCase):
         self.assertAlmostEqual(device["handle_mass_kg"], told["handle_mass_kg"]["value"], delta=1e-6)
         self.assertTrue((self.root / "device.svg").read_text().startswith("<?xml"))
         self.assertEqual(run("validate", self.root / "device.json").returncode, 0)
+        # A scene of other steps makes its own samples of the delay, which is in seconds.
+        self.assertAlmostEqual(device["delay_s"], 1e-3 * told["delay_samples"]["value"], delta=1e-8)
+        self.assertNotIn("delay_samples", device)
+        run("run", "tap_wall", "--set", f"device={json.dumps(device)}", "--set", "time.steps=2", "--out", self.root / "run")
+        effective = json.loads((self.root / "run" / "scenario.effective.json").read_text())
+        self.assertAlmostEqual(effective["device"]["delay_samples"], device["delay_s"] / effective["time"]["step_s"], delta=1e-9)
 
     def test_noise_missing_samples_jitter_and_units(self):
         random = np.random.default_rng(3)
         m, b, c, d, q = TRUE.values()
         time = self.time + np.concatenate([[0.0], 2e-4 * random.uniform(-1.0, 1.0, len(self.time) - 1)])
-        places = played(time, self.force, m, b, c, 1e-3 * d, 100)
+        places = positions(time, self.force, (m, b, c, 1e-3 * d, 0.0, 0.0))
         measured = np.round((places + 2e-5 * random.standard_normal(len(places))) / q) * q
         kept = random.random(len(time)) > 0.03
         kept[0] = True
@@ -120,23 +127,63 @@ class Identify(unittest.TestCase):
         # Of 6 intervals of 95 %, fewer than 4 hold once in 400 times.
         self.assertTrue(all(count >= 4 for count in held.values()), held)
 
+    def test_long_logs_end_in_the_global_minimum(self):
+        """Two that ended in a local one, or with intervals beside the truth."""
+        for kind, force, rate, duration, truth, encoder in (
+                ("steps", 1.0, 500.0, 30.0, (0.0802, 0.130, 0.105, 0.55 / 500.0, 0.0, 0.0), 4e-5),
+                ("chirp", 2.0, 1000.0, 20.0, (0.21, 1.4, 0.35, 2.3e-3, 0.0, 0.0), 1e-5)):
+            time, values = design(kind, force, 0.1, rate, duration, 0.08)
+            places = encoder * np.round(positions(time, values, truth) / encoder)
+            log = log_of(time, values, places)
+            found = fit(log)
+            with Simulator(time, values) as simulate:
+                self.assertLessEqual(found.rms, 1.002 * np.sqrt(np.mean(Cost(simulate, log)(np.array(truth))**2)), kind)
+            self.assertFalse(found.untold, kind)
+            for name, true, (low, high) in zip(NAMES[:4], truth, found.intervals):
+                self.assertTrue(low <= true <= high, f"{kind} {name}: {true} in {low} ... {high}")
+
+    def test_a_handful_of_the_study(self):
+        ones = [judged(seed) for seed in (0, 10, 11, 16, 25, 43)]
+        for one in ones:
+            self.assertLessEqual(one["over"], 1.002, one)
+            self.assertFalse(one["untold"], one)
+        held = [holds for one in ones for holds in one["holds"].values()]
+        self.assertGreaterEqual(sum(held), 27)  # of 30 at 95 %; fewer once in 16 times, and these seeds are fixed
+
     def test_what_the_log_cannot_tell_has_no_value(self):
-        m, _, _, _, q = TRUE.values()
-        places = played(self.time, self.force, m, 0.0, 0.0, 0.0, 100)
-        told, warned = self.told(self.log(np.round(places / 1e-4) * 1e-4))
-        for name in ("viscous_N_s_per_m", "coulomb_N", "delay_samples"):
-            if told[name]["value"] is None:
-                self.assertIn(f"{name}: the log cannot tell it from 0", warned)
-                self.assertNotIn(name, json.loads((self.root / "device.json").read_text()))
+        m, b, c, _, q = TRUE.values()
+        time = np.arange(2000) * 1e-3
+        force = np.where(time % 0.5 < 0.1, 1.0, 0.0)  # pushes one way: friction and a constant force do the same
+        told, warned = self.told(self.log(np.round(positions(time, force, (m, b, 0.0, 0.0, 0.0, 0.3)) / q) * q, time, force))
         self.assertIsNone(told["coulomb_N"]["value"])
+        self.assertRegex(warned, r"coulomb_N: the log cannot tell it: moved one way only \(at rest for \d+ % of the log, 1 strokes one way and 0")
+        self.assertNotIn("coulomb_N", json.loads((self.root / "device.json").read_text()))
         self.assertAlmostEqual(told["handle_mass_kg"]["value"] / m, 1.0, delta=0.02)
+        # At rest for most of the time, what moves it tells all the same.
+        rest = np.concatenate([self.force, np.zeros(4 * len(self.force))])
+        time = np.arange(len(rest)) * 1e-3
+        told, _ = self.told(self.log(np.round(positions(time, rest, (m, b, c, 1.35e-3, 0.0, 0.0)) / q) * q, time, rest))
+        self.assert_holds(told)
+        done = run("identify", self.log(1e-5 * np.round(5.0 * self.places / np.ptp(self.places)), name="still.csv"), "--out", self.root / "none.json")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("the handle hardly moves", done.stderr)
+
+    def test_units_that_are_unlikely_are_asked_about(self):
+        file = self.log(1e3 * np.round(self.places / 1e-5) * 1e-5, 1e3 * self.time)
+        done = run("identify", file, "--out", self.root / "none.json")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("are the units s, N, m?", done.stderr)
+        self.assertFalse((self.root / "none.json").exists())
+        told, _ = self.told(file, "--scale", "time=1e-3,position=1e-3")
+        self.assert_holds(told)
+        self.assertGreater(self.told(file, "--scale", "time=1")[0]["handle_mass_kg"]["value"], 100.0)
 
     def test_it_says_when_something_else_is_on_the_handle(self):
         m, b, c, d, q = TRUE.values()
-        for spring, why in ((2.0, "The device has something that this model has not"), (20.0, "Is a hand or a spring on the handle")):
+        for spring, why in ((2.0, "The device has something that this model has not"), (200.0, "The device has something|Is a hand or a spring")):
             places = played(self.time, self.force, m, b, c, 1e-3 * d, 50, spring)
             done = run("identify", self.log(np.round(places / q) * q), "--out", self.root / "device.json")
-            self.assertIn(why, done.stderr)
+            self.assertRegex(done.stderr, why)
 
     def test_refuses_what_is_no_log(self):
         for text, why in (("time_s,force_N\n" + "0,1\n" * 60, "columns: position: no"), ("time_s,force_N,position_m\n0,1,2\n", "at least 50"),
@@ -162,6 +209,16 @@ class Design(unittest.TestCase):
                 speed = np.concatenate([[0.0], np.cumsum(values[:-1])]) * 1e-3 / mass
                 place = np.concatenate([[0.0], np.cumsum(0.5 * (speed[1:] + speed[:-1]))]) * 1e-3
                 self.assertLessEqual(np.ptp(place), travel * (1 + 1e-9), kind)
+
+    def test_travel_that_limits_the_force_is_said(self):
+        with tempfile.TemporaryDirectory() as scratch:
+            file = Path(scratch) / "chirp.csv"
+            words = ("identify", "--design", "chirp", "--travel", "0.08", "--mass", "0.1", "--out", file)
+            done = run(*words, "--force", "2")
+            self.assertIn("the travel of 0.08 m limits the force to 0.72 N of 2 N: the log tells dry friction up to 0.432 N", done.stderr)
+            asked = done.stderr.split("--force ")[1].split()[0]
+            self.assertGreaterEqual(json.loads(run(*words, "--force", asked, "--json").stdout)["force_max_N"], 0.99 * 2.0)
+            self.assertNotIn("limits", run("identify", "--design", "multisine", "--travel", "0.08", "--force", "2", "--out", file).stderr)
 
     def test_each_signal_tells_the_device(self):
         m, b, c, d, q = TRUE.values()

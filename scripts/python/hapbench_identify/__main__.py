@@ -10,24 +10,25 @@ from hapbench_command import CommandLine, answer, exit_status, shell_line, table
 from hapbench_import.faults import fail, refuse_source
 from hapbench_import.stroke import number_text
 
-from .design import KINDS, design, travel_of
+from .design import FRICTION_TOLD, KINDS, design, force_to_ask, travel_of
 from .fit import fit
 from .log import read_log
 from .model import NAMES
 
 FOOTER = """\
 Fits m x'' = u(t - delay) + offset - b x' - c sign(x') to the positions by least squares, integrated exactly. The delay is found in \
-fractions of a sample. Intervals are of 95 %, wider where the residual is correlated; a parameter whose interval is wider than \
-itself cannot be told and is not written. The noise is what the residual has beyond the encoder's step. A constant force besides \
-the commands is told and not part of a device.
+fractions of a sample. Intervals are of 95 %, wider where the residual is correlated, as while the handle dwells in one step of \
+the encoder. What the log cannot tell is not written, and a warning says why. The noise is what the residual has beyond the \
+encoder's step. A constant force besides the commands is told and not part of a device.
 --columns: time, force and position, by default time_s, force_N and position_m. Forces are as commanded at the time of the row, \
 positive in the direction of the position.
   hapbench identify --design chirp --force 2 --travel 0.08 --mass 0.1 --out chirp.csv
   hapbench identify log.csv --columns time=t,force=3,position=enc --scale time=1e-6,position=5.5e-5
   hapbench limit tap_wall --device log_device.json"""
-UNITS = {"handle_mass_kg": "kg", "viscous_N_s_per_m": "N s/m", "coulomb_N": "N", "delay_samples": "samples", "encoder_step_m": "m",
+UNITS = {"handle_mass_kg": "kg", "viscous_N_s_per_m": "N s/m", "coulomb_N": "N", "delay_s": "s", "delay_samples": "samples", "encoder_step_m": "m",
          "position_noise_m": "m", "offset_N": "N"}
-IN_DEVICE = ("handle_mass_kg", "viscous_N_s_per_m", "coulomb_N", "delay_samples", "encoder_step_m", "position_noise_m")
+MOST_DRAWN = 6000  # samples, so that a picture of a long log is not megabytes
+IN_DEVICE = ("handle_mass_kg", "viscous_N_s_per_m", "coulomb_N", "delay_s", "encoder_step_m", "position_noise_m")
 
 
 def command_line():
@@ -63,18 +64,21 @@ def run(options):
 def identify(options, out):
     log = read_log(options)
     found = fit(log)
-    told = dict(zip(NAMES, zip(found.values.tolist(), found.intervals.tolist())))
-    delay, late = told.pop("delay_s")
-    told["delay_samples"] = (delay / log.step, [end / log.step for end in late])
+    told = {name: {"value": None if name in found.untold else value, "interval": ends}
+            for name, value, ends in zip(NAMES, found.values.tolist(), found.intervals.tolist())}
+    late = told["delay_s"]
+    told["delay_samples"] = {"value": late["value"] if late["value"] is None else late["value"] / log.step,
+                             "interval": [end / log.step for end in late["interval"]]}
     step = log.encoder_step
-    # Differences of positions are multiples of the step to 1e-9 of it (resolution_of).
-    told["encoder_step_m"] = (step, [step * (1.0 - 1e-9), step * (1.0 + 1e-9)])
+    told["encoder_step_m"] = {"value": step, "interval": [step * (1.0 - 1e-9), step * (1.0 + 1e-9)]}
     count = np.isfinite(found.residual).sum() / found.memory
     beyond = found.rms**2 - step**2 / 12.0
-    noise = math.sqrt(max(beyond, 0.0))
     spread = found.rms**2 * math.sqrt(2.0 / count) * 1.96
-    told["position_noise_m"] = (noise, [math.sqrt(max(beyond - spread, 0.0)), math.sqrt(max(beyond + spread, 0.0))])
-    told = {name: parameter(*told[name]) for name in UNITS}
+    told["position_noise_m"] = unless_wide(math.sqrt(max(beyond, 0.0)), [math.sqrt(max(beyond + way * spread, 0.0)) for way in (-1.0, 1.0)])
+    if told["offset_N"]["value"] is not None:
+        told["offset_N"] = unless_wide(*told["offset_N"].values())
+    told = {name: told[name] | {"interval": [end if math.isfinite(end) else None for end in told[name]["interval"]]} for name in UNITS}
+    require_likely_units(options, found.values[0], step)
     if told["handle_mass_kg"]["value"] is None:
         fail(f"the log cannot tell the mass: the simulated position misses by {found.rms:.3g} m. Is a hand or a spring on the handle, or is a "
              "sign or a unit wrong? hapbench identify --design makes a signal that tells", options.log)
@@ -89,11 +93,18 @@ def identify(options, out):
                           "device": out, "picture": str(picture), "warnings": warnings}
 
 
-def parameter(value, interval):
+def unless_wide(value, interval):
     """No value where the interval is wider than it; the interval then still says what it is not."""
     low, high = interval
-    return {"value": value if high - low <= abs(value) or low == high else None,
-            "interval": [end if math.isfinite(end) else None for end in interval]}
+    return {"value": value if high - low <= abs(value) or low == high else None, "interval": interval}
+
+
+def require_likely_units(options, mass, encoder_step):
+    """A log in milliseconds and millimetres fits as well as any, with a handle of tons."""
+    if options.scale or (1e-3 <= mass <= 20.0 and encoder_step <= 1e-3):
+        return
+    fail(f"a handle of {mass:.3g} kg, an encoder's step of {encoder_step:.3g} m: are the units s, N, m? For a log in ms and mm: --scale "
+         "time=1e-3,position=1e-3. If they are, --scale time=1 says so", options.log)
 
 
 def shown_end(end):
@@ -101,17 +112,16 @@ def shown_end(end):
 
 
 def warnings_of(told, found, log):
-    warnings = [f"{name}: the log cannot tell it from 0; 95 % interval {' ... '.join(map(shown_end, one['interval']))}"
-                for name, one in told.items() if one["value"] is None and name not in ("offset_N", "position_noise_m")]
-    if delay := told["delay_samples"]["value"]:
-        warnings.append(f"delay_samples counts samples of this log, of {1e3 * log.step:.4g} ms: {1e3 * delay * log.step:.3g} ms. A scene takes it "
-                        f"for time steps of its own: give it {delay * log.step:.4g} / time.step_s there, {2048 * delay * log.step:.4g} at 1/2048 s")
+    warnings = []
+    for name, why in found.untold.items():
+        if name in IN_DEVICE:
+            warnings.append(f"{name}: the log cannot tell it: {why}; 95 % interval {' ... '.join(map(shown_end, told[name]['interval']))}")
     if told["offset_N"]["value"] is not None:
         warnings.append(f"a constant force of {told['offset_N']['value']:.3g} N acts besides the commands (weight, a cable): no device file has it")
-    if found.memory > 10.0 and found.rms > 2.0 * max(log.encoder_step, 1e-12) / math.sqrt(12.0):
-        warnings.append(f"the residual, {found.rms:.3g} m, is no noise: {found.memory:.0f} samples of it count as one. The device has something that "
-                        "this model has not (a hand on it, elasticity, friction that depends on the place): look at the picture; the intervals "
-                        "allow for the correlation only")
+    if found.misfit:
+        warnings.append(f"the residual, {found.rms:.3g} m, is no noise. The device has something that this model has not (a hand on it, elasticity, "
+                        "friction that depends on the place): look at the picture. The parameters are those of pieces of 0.2 s, and the intervals "
+                        "those of leaving out one twelfth of the log after another")
     return warnings
 
 
@@ -119,13 +129,14 @@ def draw(file, log, found):
     from hapbench_style import AMBER, PETROL, SETTINGS, panels, picture, plt  # loads matplotlib, which --design does without
     plt.rcParams.update(SETTINGS)
     figure, ((above,), (below,)) = panels(2, 1, 4.0, sharex=True)
-    time = log.time - log.time[0]
-    above.plot(time, 1e3 * log.position, color=PETROL, label="measured")
-    above.plot(time, 1e3 * (log.position - found.residual), color=AMBER, ls="--", label="device identified")
+    every = max(1, len(log.time) // MOST_DRAWN)
+    time, position, residual = log.time[::every] - log.time[0], log.position[::every], found.residual[::every]
+    above.plot(time, 1e3 * position, color=PETROL, label="measured" if every == 1 else f"measured, one sample in {every}")
+    above.plot(time, 1e3 * (position - residual), color=AMBER, ls="--", label="device identified")
     above.set_ylabel("position [mm]")
     above.legend()
     unit, name = (log.encoder_step, "encoder steps") if log.encoder_step else (1e-6, "µm")
-    below.plot(time, found.residual / unit, ".", ms=1.5, color=PETROL)
+    below.plot(time, residual / unit, ".", ms=1.5, color=PETROL)
     below.set_ylabel(f"measured - simulated [{name}]")
     below.set_xlabel("time [s]")
     write(file, picture(figure, "svg"))
@@ -140,11 +151,22 @@ def play(options, out):
     time, force = design(kind, **numbers)
     rows = "\n".join(f"{number_text(t)},{number_text(f)}" for t, f in zip(time.tolist(), force.tolist()))
     write(Path(out), f"time_s,force_N\n{rows}\n")
-    travel = float(travel_of(time, force, numbers["mass"]))
-    table = [["signal", KINDS[kind], "", ""], ["samples", str(len(time)), "", ""], ["largest force [N]", f"{np.abs(force).max():.3g}", "", ""],
-             [f"way of {numbers['mass']:g} kg without friction [m]", f"{travel:.3g}", "", ""]]
-    return table, {"file": out, "design": kind, "samples": len(time), "force_max_N": float(np.abs(force).max()),
-                   "travel_m": travel, "warnings": []}
+    travel, peak = float(travel_of(time, force, numbers["mass"])), float(np.abs(force).max())
+    table = [["signal", KINDS[kind], "", ""], ["samples", str(len(time)), "", ""], ["largest force [N]", f"{peak:.3g}", "", ""],
+             ["tells dry friction up to [N]", f"{FRICTION_TOLD * peak:.3g}", "", ""], [f"way of {numbers['mass']:g} kg without friction [m]", f"{travel:.3g}", "", ""]]
+    return table, {"file": out, "design": kind, "samples": len(time), "force_max_N": peak,
+                   "travel_m": travel, "warnings": limited_by_travel(kind, numbers, peak)}
+
+
+def limited_by_travel(kind, numbers, peak):
+    force = numbers["force"]
+    if peak > 0.99 * force:
+        return []
+    said = (f"the travel of {numbers['travel']:g} m limits the force to {peak:.3g} N of {force:g} N: the log tells dry friction up to "
+            f"{FRICTION_TOLD * peak:.3g} N. ")
+    asked = force_to_ask(kind, numbers)
+    return [said + (f"--force {asked:.3g} begins at a higher frequency and reaches {force:g} N, which tells {FRICTION_TOLD * force:.3g} N" if asked
+                    else f"A device with more of it needs more --travel, or --mass of more than {numbers['mass']:g} kg if it is known to have it")]
 
 
 if __name__ == "__main__":

@@ -1,10 +1,11 @@
 """The signal of force to play for an identification."""
 import numpy as np
-from hapbench_import.faults import fail
+from hapbench_import.faults import Faults, fail
 
 from .model import positions
 
 KINDS = {"chirp": "a sine from slow to fast", "steps": "pushes to and fro, from short to long", "multisine": "thirty sines at once"}
+FRICTION_TOLD = 0.6  # of the largest force; more dry friction leaves too little motion
 HIGHEST = 100.0  # frequency [Hz]; more tells little of a handle's mass and friction
 
 
@@ -45,4 +46,20 @@ def _steps(steps, rate, slowest, fastest):
 
 def travel_of(time, force, mass):
     """The way between the ends of the motion [m] of a handle without friction, and with the friction that it moves in oil."""
-    return max(np.ptp(positions(time, force, (mass, rate * mass, 0.0, 0.0, 0.0, 0.0, 0.0))) for rate in (0.0, 1.0, 10.0))
+    return max(np.ptp(positions(time, force, (mass, rate * mass, 0.0, 0.0, 0.0, 0.0))) for rate in (0.0, 1.0, 10.0))
+
+
+def force_to_ask(kind, numbers):
+    """The --force with which the signal reaches numbers["force"] [N], rounded up to two digits, though travel limits it: a larger one begins
+    at a higher frequency. None where there is none."""
+    wanted = asked = numbers["force"]
+    try:
+        for _ in range(8):
+            peak = np.abs(design(kind, **(numbers | {"force": asked}))[1]).max()
+            if peak >= 0.99 * wanted:
+                return asked
+            digit = 10.0**(np.floor(np.log10(asked * wanted / peak)) - 1.0)
+            asked = float(digit * np.ceil(1.001 * asked * wanted / peak / digit))
+    except Faults:
+        pass
+    return None

@@ -1,16 +1,20 @@
 """Least squares on the simulated position, with intervals of 95 %."""
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from hapbench_import.faults import fail
-from scipy import signal
-from scipy.optimize import least_squares, lsq_linear
-from scipy.stats import norm
+from scipy.stats import norm, t
 
-from .model import NAMES, positions
+from .model import NAMES, Simulator
+from .starts import noise_of, starts_of
 
+MASS, VISCOUS, DRY, DELAY, OFFSET, SPEED = range(len(NAMES))
 TWO_SIDED = float(norm.ppf(0.975))
-DELAY, LONGEST = NAMES.index("delay_s"), 20.0  # the longest delay looked for [samples]
+SCORED, PIECE, SHORT_PIECE = 20.0, 0.5, 0.2  # how much of a log starts are scored on; pieces that have a mean of their own [s]
+KEPT, DISTINCT, BLOCKS = 8, 3, 12
+LONGEST = 20.0  # the longest delay looked for [samples]
+FEWEST_COUNTS = 10.0
+FROM_REST = 12.0  # sum of squares over the variance by which a first speed must be better than none
 
 
 @dataclass
@@ -18,127 +22,291 @@ class Fit:
     values: np.ndarray     # of NAMES
     intervals: np.ndarray  # 95 %, a row [low, high] each
     residual: np.ndarray   # measured less simulated position of each sample [m]; NaN where it is missing
+    rms: float             # of it [m]
     memory: float          # how many samples of the residual count as one, from its autocorrelation
+    misfit: bool           # the residual is more than noise and encoder: the device has what the model has not
+    untold: dict = field(default_factory=dict)  # names of what the log cannot tell, with the reason
 
-    @property
-    def rms(self):
-        return float(np.sqrt(np.nanmean(self.residual**2)))
+
+class Cost:
+    """What the first rows of a log have besides a simulation, less the mean of it over each piece: places before a piece do not
+    matter to it then."""
+
+    def __init__(self, simulate, log, seconds=np.inf, piece=np.inf):
+        self.rows = int(min(len(log.time), max(100.0, seconds / log.step)))
+        known = np.flatnonzero(np.isfinite(log.position[:self.rows]))
+        self.all_known = len(known) == self.rows
+        self.known, self._simulate = known, simulate
+        pieces = known // max(8.0, piece / log.step)
+        self.starts = np.flatnonzero(np.diff(pieces, prepend=-1.0) > 0.0)
+        self.counts = np.diff(self.starts, append=len(known))
+        self.measured = self._centred(log.position[known])
+
+    def _centred(self, values):
+        if len(self.starts) == 1:
+            return values - values.mean()
+        return values - np.repeat(np.add.reduceat(values, self.starts) / self.counts, self.counts)
+
+    def simulated(self, parameters):
+        places = self._simulate(parameters, self.rows)
+        return places if self.all_known else places[self.known]
+
+    def __call__(self, parameters):
+        return self.measured - self._centred(self.simulated(parameters))
+
+    def sensitivities(self, x, scale, free, central=False):
+        """Change of the simulated positions with each parameter, in units of `scale`, a row each."""
+        h = (1e-4 if central else 1e-6) * scale
+        here = None if central else self.simulated(x)
+        rows = []
+        for i in np.flatnonzero(free):
+            above, below = x.copy(), x.copy()
+            above[i] += h[i]
+            if central:
+                below[i] = max(x[i] - h[i], 0.0) if i in (MASS, VISCOUS, DRY, DELAY) else x[i] - h[i]
+            before = self.simulated(below) if central else here
+            rows.append(self._centred(self.simulated(above) - before) * (scale[i] / (above[i] - below[i])))
+        return np.array(rows)
+
+
+@dataclass
+class Found:
+    x: np.ndarray
+    squares: float  # sum of squared residuals
+
+
+def least_squares(cost, start, scale, steps, tolerance, held=()):
+    """Levenberg and Marquardt's. Mass stays positive; friction and delay do not become negative."""
+    low = np.array([1e-6, 0.0, 0.0, 0.0, -np.inf, -np.inf])
+    high = np.array([1e6, np.inf, np.inf, LONGEST * scale[DELAY], np.inf, np.inf])
+    x = np.clip(start, low, high)
+    residual = cost(x)
+    squares, damping = residual @ residual, 1e-3
+    for _ in range(steps):
+        units = scale.copy()
+        units[MASS] = x[MASS]
+        free = np.ones(len(x), bool)
+        free[list(held)] = False
+        J = cost.sensitivities(x, units, free)
+        gradient = np.zeros(len(x))
+        gradient[free] = J @ residual
+        moves = ~(((x <= low) & (gradient < 0.0)) | ((x >= high) & (gradient > 0.0)))[free]
+        J, free = J[moves], np.flatnonzero(free)[moves]
+        H, g = J @ J.T, gradient[free]
+        # What hardly matters, such as the first speed of a handle that sticks, does not run away.
+        weight = np.maximum(np.diag(H), 1e-9 * np.trace(H) + 1e-300)
+        before = squares
+        for _ in range(12):
+            trial = x.copy()
+            trial[free] += units[free] * np.clip(np.linalg.solve(H + damping * np.diag(weight), g), -1.0, 1.0)
+            trial = np.clip(trial, low, high)
+            trial[MASS] = max(trial[MASS], 0.2 * x[MASS])
+            missed = cost(trial)
+            if (there := missed @ missed) < squares:
+                x, residual, squares, damping = trial, missed, there, max(0.1 * damping, 1e-12)
+                break
+            damping = max(8.0 * damping, 1e-6)
+        if before - squares <= tolerance * before:
+            break
+    return Found(x, float(squares))
 
 
 def fit(log):
-    """The parameters that bring the simulated position closest to the log's, from the best of several regressions on. The
-    delay is a parameter like the others, because forces may arrive between samples."""
+    """The parameters that bring the simulated position closest to the log's."""
+    with Simulator(log.time, log.force) as simulate:
+        return _fit(log, simulate)
+
+
+def _fit(log, simulate):
     known = np.isfinite(log.position)
-    unit = max(log.encoder_step, 1e-9 * np.ptp(log.position[known]))
-
-    def misses_until(end):
-        seen = known[:end]
-        return lambda parameters: (positions(log.time[:end], log.force[:end], parameters)[seen] - log.position[:end][seen]) / unit
-
-    # A wrong parameter lets the simulated handle drift away, and over a long log the sum of squares has many minima: first the
-    # part with a tenth of the way, then more.
-    way = np.cumsum(np.abs(np.diff(log.position[known])))
-    samples = np.flatnonzero(known)
-    ends = [max(100, int(samples[np.searchsorted(way, share * way[-1])]) + 1) for share in (0.1, 0.3)] + [len(known)]
-    starts = starts_of(log)
-    if not starts:
-        fail("the handle hardly moves: nothing to identify")
-    least = np.array([1e-3, 1e-3, 1e-3, 0.1 * log.step, 1e-3, unit, unit / log.step])
-    cost = misses_until(ends[0])
-    tried = [solve(cost, values, np.maximum(np.abs(values), least), log.step, trials=10)
-             for values in sorted(starts, key=lambda values: np.sum(cost(values)**2))[:4]]
-    found = min(tried, key=lambda one: one.cost)
-    for end in ends[1:]:
-        misses, scale = misses_until(end), np.maximum(np.abs(found.x), least)
-        found = solve(misses, found.x, scale, log.step)
-    memory = memory_of(found.fun)
-    # Steps of an encoder are no random noise: without any, half a step counts as a deviation, not 1 / sqrt(12) of one.
-    steps = (0.25 - 1.0 / 12.0) * (log.encoder_step / unit)**2
-    variance = memory * (2.0 * found.cost / max(1, len(found.fun) - len(NAMES)) + steps)
-    # A parameter that moves nothing, such as viscous friction of a handle that sticks, has an infinite interval.
-    sensitivity = found.jac * scale
-    values, vectors = np.linalg.eigh(sensitivity.T @ sensitivity)
-    with np.errstate(divide="ignore"):
-        spread = scale * np.sqrt(variance * (vectors**2 @ (1.0 / np.maximum(values, 0.0))))
-    intervals = found.x[:, None] + TWO_SIDED * spread[:, None] * np.array([-1.0, 1.0])
-    intervals[DELAY] = profile(misses, found, scale, log.step, spread[DELAY], variance)
-    intervals[:4, 0] = np.maximum(intervals[:4, 0], 0.0)
-    residual = np.full(len(log.time), np.nan)
-    residual[known] = -unit * found.fun
-    return Fit(found.x, intervals, residual, memory)
+    place = np.interp(np.arange(len(log.time)), np.flatnonzero(known), log.position[known])
+    noise, way = noise_of(log.position[known]), np.ptp(place)
+    count = max(log.encoder_step, 1e-9 * way)
+    if way < FEWEST_COUNTS * max(count, noise):
+        fail(f"the handle hardly moves: {way:.3g} m, {way / count:.3g} steps of the encoder, noise of {noise:.3g} m; nothing to identify. More "
+             "force, or slower changes of it, move it further")
+    peak = float(np.abs(log.force).max())
+    lag = max(1, round(0.01 / log.step))
+    fast = max(float(np.abs(place[lag:] - place[:-lag]).max()) / (lag * log.step), 1e-9)
+    scale = np.array([0.1, peak / fast, peak, log.step, peak, fast])
+    whole = Cost(simulate, log)
+    found = _search(Cost(simulate, log, SCORED, PIECE), whole, log, place, scale)
+    samples = len(whole.known)
+    resting = least_squares(whole, np.where(np.arange(len(NAMES)) == SPEED, 0.0, found.x), scale, 60, 1e-8, held=(SPEED,))
+    if resting.squares <= found.squares * (1.0 + FROM_REST / samples):
+        found = resting
+    misfit = found.squares / samples > 2.0 * (noise**2 + log.encoder_step**2 / 12.0)
+    # Forces of missing rows are guesses, whose errors go on in the motion.
+    by_pieces = misfit or not known.all()
+    if by_pieces:
+        found, spread = _by_pieces(Cost(simulate, log, piece=SHORT_PIECE), found, scale)
+    residual = whole(found.x)
+    memory = memory_of(residual)
+    intervals, untold, seen = _intervals(whole, log, found, scale, residual, memory, noise, spread if by_pieces else None)
+    half = 0.5 * np.diff(intervals)[:, 0]
+    for i, most, said in ((MASS, 0.25 * found.x[MASS], "25 % of it"), (DELAY, 2.0 * log.step, "2 samples"),
+                          (DRY, 0.1 * peak, "10 % of the largest force"), (VISCOUS, 0.1 * peak / fast, "10 % of the largest force at full speed")):
+        if i not in untold and not half[i] <= most:
+            untold[i] = f"the interval is wider than {said} either way"
+    intervals[:OFFSET, 0] = np.maximum(intervals[:OFFSET, 0], 0.0)
+    filled = np.full(len(log.time), np.nan)
+    filled[whole.known] = residual
+    return Fit(found.x, intervals, filled, float(np.sqrt(np.mean(residual**2))), memory, misfit,
+               {NAMES[i]: f"{why} ({seen})" for i, why in sorted(untold.items()) if i != SPEED})
 
 
-def solve(misses, start, scale, step, fixed_delay=None, trials=25):
-    """Least squares in units of `scale`; the delay may be held."""
-    free = np.arange(len(start)) != (DELAY if fixed_delay is not None else -1)
-    low = np.array([1e-6, 0.0, 0.0, 0.0, -np.inf, -np.inf, -np.inf])
-    high = np.array([np.inf, np.inf, np.inf, LONGEST * step, np.inf, np.inf, np.inf])
-    whole = np.clip(start, low, high)
-    if fixed_delay is not None:
-        whole[DELAY] = fixed_delay
-
-    def with_free(x):
-        values = whole.copy()
-        values[free] = x * scale[free]
-        return values
-
-    limits = (low / scale)[free], (high / scale)[free]
-    inside = np.clip((whole / scale)[free], limits[0] + 1e-9, limits[1])
-    found = least_squares(lambda x: misses(with_free(x)), inside, bounds=limits, x_scale="jac", max_nfev=trials, xtol=1e-9,
-                          ftol=1e-9, gtol=1e-9)
-    found.x = with_free(found.x)
-    found.jac = found.jac / scale[free]
-    return found
+def _search(first, whole, log, place, scale):
+    """The least sum of squares on the `whole` log, from starts that the `first` part of it chooses."""
+    starts = starts_of(log, place[:first.rows], log.force[:first.rows])
+    scores = [np.sum(first(start)**2) for start in starts]
+    tried = [least_squares(first, starts[i], scale, 15, 1e-4) for i in np.argsort(scores)[:KEPT]]
+    distinct = []
+    for one in sorted(tried, key=lambda one: one.squares):
+        if all(_differs(one.x, other.x, scale) for other in distinct):
+            distinct.append(one)
+    found = _best(whole, distinct[:DISTINCT], scale)
+    # Once more from there, with other shares of friction and constant force; on the whole log only what may be better.
+    again = np.array([found.x, found.x])
+    again[:, OFFSET], again[:, DRY] = 0.0, found.x[DRY] * np.array([0.5, 2.0])
+    reached = np.sum(first(found.x)**2)
+    others = [one for one in (least_squares(first, start, scale, 15, 1e-4) for start in again)
+              if one.squares < 1.5 * reached and _differs(one.x, found.x, scale)]
+    return _best(whole, [found, *others], scale)
 
 
-def starts_of(log):
-    """Parameters by linear regression of the force on acceleration, speed and direction of motion, all of them through the same
-    smoothing, for several smoothings and delays. Unlike the simulated position it has a single minimum."""
-    known = np.isfinite(log.position)
-    time = np.arange(log.time[0], log.time[-1], log.step)  # smoothing wants an even clock
-    place = np.interp(time, log.time[known], log.position[known])
-    found = []
-    for window in sorted({max(5, min(n, len(time) // 10) | 1) for n in (9, 21, 41, 81)}):
-        acceleration, speed = (signal.savgol_filter(place, window, 2, deriv=n, delta=log.step) for n in (2, 1))
-        slow = max(log.encoder_step / (window * log.step), 0.05 * np.abs(speed).max())
-        moving = np.abs(speed) > slow  # where it may stick, friction has any direction
-        if np.count_nonzero(moving) < 10:
-            continue
-        rows = np.column_stack([acceleration, speed, np.sign(speed), -np.ones_like(speed)])[moving]
-        size = np.maximum(np.abs(rows).max(axis=0), 1e-300)
-        for delay in (0.0, 0.5, 1.0, 1.5, 2.0, 3.0, 5.0, 8.0):
-            which = np.searchsorted(log.time, time - delay * log.step, side="right") - 1
-            held = np.where(which < 0, 0.0, log.force[which])
-            pushes = signal.savgol_filter(held, window, 2)[moving]
-            mass, viscous, dry, offset = lsq_linear(rows / size, pushes, ([1e-6, 0.0, 0.0, -np.inf], np.full(4, np.inf))).x / size
-            found.append(np.array([mass, viscous, dry, delay * log.step, offset, place[0], 0.0]))
-    return found
+def _intervals(cost, log, found, scale, residual, memory, noise, spread):
+    """Intervals, what is untold by its index, and what the handle was seen to do. `spread`: half the intervals, where they are known."""
+    units = _units(scale, found.x)
+    places = cost.simulated(found.x)
+    J = np.vstack([cost.sensitivities(found.x, units, np.ones(len(NAMES), bool), central=True), np.ones(len(residual))])
+    if found.x[SPEED] == 0.0:
+        J[SPEED] = 0.0
+    strokes = Strokes(places, 3.0 * max(log.encoder_step, noise))
+    untold = _degenerate(J, strokes)
+    rms = np.sqrt(np.mean(residual**2))
+    by_samples, by_dwells = (units * one for one in _spreads(J, places, log.encoder_step, rms))
+    errors = np.maximum(by_dwells, by_samples * np.sqrt(memory))
+    if spread is None:
+        spread = TWO_SIDED * errors
+        profiled = [i for i in (DRY, OFFSET) if strokes.one_way and i not in untold]
+    else:
+        profiled = []
+    intervals = found.x[:, None] + spread[:, None] * np.array([-1.0, 1.0])
+    for i in profiled:
+        intervals[i] = profile(cost, found, scale, i, errors[i], (rms * errors[i] / by_samples[i])**2)
+    return intervals, untold, strokes.said(log.encoder_step)
+
+
+def _best(cost, tried, scale):
+    return min((least_squares(cost, one.x, scale, 60, 1e-8) for one in tried), key=lambda one: one.squares)
+
+
+def _differs(x, other, scale):
+    return bool(np.any(np.abs(x - other)[:SPEED] > 0.01 * _units(scale, other)[:SPEED]))
+
+
+def _units(scale, x):
+    units = scale.copy()
+    units[MASS] = x[MASS]
+    return units
+
+
+class Strokes:
+    """Motion one way each: a handle without another direction tells no friction from a constant force."""
+
+    def __init__(self, places, least):
+        steps = np.diff(places)
+        moves = steps[steps != 0.0]
+        turns = np.flatnonzero(np.diff(np.sign(moves)) != 0.0) + 1
+        ways = np.add.reduceat(moves, np.concatenate([[0], turns])) if len(moves) else np.zeros(0)
+        self.rest = 1.0 - len(moves) / max(1, len(steps))
+        self.up, self.down = int(np.sum(ways > least)), int(np.sum(ways < -least))
+        self.travel = float(np.ptp(places))
+        self.one_way = not (self.up and self.down)
+
+    def said(self, encoder_step):
+        counts = f"{self.travel / encoder_step:.0f} steps of the encoder" if encoder_step else f"{self.travel:.3g} m"
+        return f"at rest for {100.0 * self.rest:.0f} % of the log, {self.up} strokes one way and {self.down} the other, travel {counts}"
+
+
+def _degenerate(J, strokes):
+    """Which parameters can change together without a change of the positions, with the reason."""
+    sizes = np.sqrt(np.mean(J**2, axis=1))
+    felt = np.flatnonzero(sizes > 1e-12 * sizes.max())
+    untold = {i: "it changes nothing" for i in range(len(NAMES)) if i not in felt}
+    unit = J[felt] / sizes[felt, None]
+    values, vectors = np.linalg.eigh(unit @ unit.T / J.shape[1])
+    for vector in vectors.T[values < 1e-8]:
+        for i in felt[np.abs(vector) > 0.1]:
+            untold[int(i)] = "others make up for it"
+    if values[0] < 1e-5 and strokes.one_way:
+        untold |= {DRY: "moved one way only", OFFSET: "moved one way only"}
+    untold.pop(len(NAMES), None)  # the first place
+    return untold
+
+
+def _spreads(J, places, encoder_step, rms):
+    """Standard errors in units of the rows of J but its last: of a residual whose samples are independent, and of an encoder, whose error
+    stands still while the handle dwells in one count, so that samples of one dwell count as one for its share of the residual."""
+    H = J @ J.T
+    inverse = np.linalg.pinv(H, rcond=1e-14, hermitian=True)
+    of_encoder = 0.0
+    if encoder_step:
+        beyond, h = max(rms**2 - encoder_step**2 / 12.0, 0.0), np.arange(1, 30)
+        waves = encoder_step**2 / (2.0 * np.pi**2 * h**2) * np.exp(-4.0 * np.pi**2 * h**2 * beyond / encoder_step**2)
+        of_encoder = min(rms**2, float(waves.sum()))
+    middle = (rms**2 - of_encoder) * H
+    if of_encoder:
+        first, begins = np.inf, []
+        for k, place in enumerate(places.tolist()):
+            if abs(place - first) > encoder_step:
+                first = place
+                begins.append(k)
+        sums = np.add.reduceat(J, begins, axis=1)
+        middle = middle + of_encoder * sums @ sums.T
+    felt = np.any(J[:-1] != 0.0, axis=1)
+    return [np.where(felt, np.sqrt(np.maximum(np.diag(one)[:-1], 0.0)), np.inf) for one in (rms**2 * inverse, inverse @ middle @ inverse)]
+
+
+def _by_pieces(cost, found, scale):
+    """For a residual that is no noise: the fit on short pieces, and half of the intervals by leaving out one block of the log after
+    another, which assumes nothing about it."""
+    found = least_squares(cost, found.x, scale, 60, 1e-8)
+    units = _units(scale, found.x)
+    J, residual = cost.sensitivities(found.x, units, np.ones(len(NAMES), bool), central=True), cost(found.x)
+    parts = np.array_split(np.arange(J.shape[1]), BLOCKS)
+    H, g = J @ J.T, J @ residual
+    without = np.array([np.linalg.pinv(H - J[:, part] @ J[:, part].T, rcond=1e-14, hermitian=True) @ (g - J[:, part] @ residual[part])
+                        for part in parts])
+    spread = units * np.sqrt((BLOCKS - 1.0) * np.var(without, axis=0))
+    return found, float(t.ppf(0.975, BLOCKS - 1)) * spread
 
 
 def memory_of(residual):
-    """1 + 2 times the sum of the autocorrelations up to the first that is negative: as many samples count as one."""
+    """1 + 2 times the sum of the autocorrelations up to the first below 0.05: as many samples count as one."""
     centred = residual - residual.mean()
-    power = np.abs(np.fft.rfft(centred, 2 * len(centred)))**2
+    power = np.abs(np.fft.rfft(centred, 1 << (2 * len(centred) - 1).bit_length()))**2
     correlation = np.fft.irfft(power)[:len(centred)]
     if correlation[0] <= 0.0:
         return 1.0
-    negative = np.flatnonzero(correlation < 0.0)
-    return float(1.0 + 2.0 * np.sum(correlation[1:negative[0] if len(negative) else None]) / correlation[0])
+    correlation /= correlation[0]
+    return float(1.0 + 2.0 * np.sum(correlation[1:max(1, int(np.argmax(correlation < 0.05)))]))
 
 
-def profile(misses, found, scale, step, spread, variance):
-    """Where the sum of squares, with the best other parameters for each delay, has grown by that of 95 %."""
-    best, ends = found.x[DELAY], []
+def profile(cost, found, scale, i, spread, variance):
+    """Where the sum of squares, with the best other parameters for each value of the i-th, has grown by that of 95 %."""
+    best, ends = found.x[i], []
     for side in (-1.0, 1.0):
-        at = best + side * TWO_SIDED * min(spread, LONGEST * step)
-        for _ in range(2):
-            at = min(max(at, 0.0), LONGEST * step)
+        at = best + side * TWO_SIDED * min(spread, scale[i])
+        for _ in range(4):
+            at = max(at, 0.0) if i == DRY else at
             if at == best:
                 break
-            other = solve(misses, found.x, scale, step, at, trials=8)
-            growth = np.sqrt(max(2.0 * (other.cost - found.cost) / variance, 1e-6))
-            if (at == 0.0 or at == LONGEST * step) and growth <= TWO_SIDED:
-                break  # the bound itself is not excluded
+            start = found.x.copy()
+            start[i] = at
+            growth = np.sqrt(max((least_squares(cost, start, scale, 8, 1e-6, held=(i,)).squares - found.squares) / variance, 1e-6))
+            if (at == 0.0 and i == DRY and growth <= TWO_SIDED) or abs(growth - TWO_SIDED) < 0.05:
+                break
             at = best + (at - best) * min(TWO_SIDED / growth, 4.0)
-        ends.append(min(max(at, 0.0), LONGEST * step))
+        ends.append(at)
     return ends

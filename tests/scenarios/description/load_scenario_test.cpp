@@ -165,6 +165,34 @@ TEST_F(Override, SetsWhatItsPathLeadsTo) {
     EXPECT_EQ(with(c.overrides).at(Json::json_pointer(c.pointer)), Json::parse(c.value)) << c.overrides.front();
 }
 
+TEST_F(Override, DelayInSecondsIsTheSceneSamples) {
+  const std::string device = R"(device={"type":"impedance","handle_mass_kg":0.1,"delay_s":0.0023})";
+  const auto delays = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), device);
+    const Json json = with(more).at("device");
+    return std::pair(json.value("delay_s", -1.0), json.at("delay_samples").get<double>());
+  };
+  const double step = with({}).at("time").at("step_s");
+  EXPECT_EQ(delays({}), std::pair(0.0023, 0.0023 / step));
+  EXPECT_EQ(delays({"time.step_s=0.001"}), std::pair(0.0023, 0.0023 / 0.001));
+  // One replaces the other.
+  EXPECT_EQ(delays({"device.delay_samples=3"}), std::pair(-1.0, 3.0));
+  EXPECT_EQ(delays({"device.delay_samples=3", "device.delay_s=0.001"}), std::pair(0.001, 0.001 / step));
+  // The effective scenario has both and can be read again, also with another step.
+  const std::string both = "device=" + with({device}).at("device").dump();
+  EXPECT_EQ(with({both}), with({device}));
+  EXPECT_EQ(with({both, "time.step_s=0.0003"}), with({device, "time.step_s=0.0003"}));
+  EXPECT_EQ(
+      refusal(R"(device={"type":"impedance","handle_mass_kg":0.1,"delay_s":0.0023,"delay_samples":2.3})")
+          .find("/device/delay_s: got 0.0023 s beside delay_samples 2.3; allowed: one of the two, or both where they"),
+      0u);
+  EXPECT_NE(refusal(R"(device={"type":"impedance","handle_mass_kg":0.1,"delay_s":-1})").find("/device/delay_s: got -1"),
+            std::string::npos);
+  EXPECT_EQ(
+      refusal(R"(device={"type":"impedance","handle_mass_kg":0.1,"delay_s":9000})").find("/device/delay_s: got 9000"),
+      0u);
+}
+
 TEST_F(Override, IsCheckedLikeTheFile) {
   const std::pair<const char*, const char*> kRefusals[] = {
       {"rendering..iterations=1", "/rendering/: unknown field"},
