@@ -169,8 +169,8 @@ TEST(DeviceLoop, KnowsEveryFieldOfTheDevices) {
   const LowPassFilter filter{50.0, 3};
   for (const VelocityFilterConfig& velocity :
        {VelocityFilterConfig(filter), VelocityFilterConfig(AdaptiveWindowFilter{2e-5})}) {
-    scenario.device = ImpedanceDeviceConfig{
-        0.1, 0.2, 0.3, 1e-5, 1.5, velocity, 5.0, 0.01, 100.0, filter, 1e-6, 9, Transmission{0.3, 2000.0, 2.0}};
+    scenario.device = ImpedanceDeviceConfig{0.1, 0.2,  0.3,   1e-5,   1.5,  1.5e-3, velocity,
+                                            5.0, 0.01, 100.0, filter, 1e-6, 9,      Transmission{0.3, 2000.0, 2.0}};
     EXPECT_EQ(unknown_to_theory(scenario), "");
   }
   scenario.device = AdmittanceDeviceConfig{
