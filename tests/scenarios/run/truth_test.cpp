@@ -233,22 +233,6 @@ std::vector<Case> cases() {
        {kCube, "initial.velocity_m_per_s=[0,0,-30]", R"(hand={"type":"none"})"},
        kThrough,
        nullptr},
-      {"led sideways through a plate, its tip below",
-       {kPlate, kFlat, "initial.position_m=[-0.006,0,-0.002]", "time.steps=500",
-        R"(hand={"type":"impedance","stiffness_N_per_m":4000,"damping_N_s_per_m":40,"target":{"y_m":0,"z_m":-0.002,"x_m":{"type":"waypoints","points":[[0,-0.006],[0.25,0.006]]}}})"},
-       kThrough,
-       nullptr},
-      {"turned through a plate",
-       {kPlate, kFlat, kNoHand, R"(motion.position={"type":"prescribed","x_m":-0.0048,"y_m":0,"z_m":-0.001})",
-        R"(motion.orientation={"up":[0,0,1],"lean":[1,0,0],"tilt_rad":{"type":"waypoints","points":[[0,0],[0.3,1.4]]}})"},
-       kThrough,
-       nullptr},
-      {"dragged into a gap",
-       {R"(environment={"type":"mesh","file":"gap.off","scale":1,"spacing_m":0.0001})",
-        R"(hand={"type":"drag","force_N":1,"path_m":[[-0.003,0,0],[0.004,0,0]],"speed_m_per_s":0.02,"normal_damping_N_s_per_m":50,"stiffness_N_per_m":300,"damping_N_s_per_m":6})",
-        "initial.position_m=[-0.003,0,0.0006]", "time.steps=700"},
-       {Outcome::stuck},
-       nullptr},
       {"past a cube",
        {kCube, "initial.position_m=[0.0047,0,0.0006]", "initial.velocity_m_per_s=[0,0,-8]"},
        kMissed,
@@ -378,6 +362,35 @@ TEST_F(ScenesMadeToFool, GetTheirTrueOutcomeAndDepthAlsoWithoutARecord) {
     if (c.depth)
       expect_true_depths(c, tables.trials[0].at("trajectory.csv"), number_of(report.metrics, "inside_max_m"));
     expect_seen_without_record(loaded);
+  }
+}
+
+/// Where no row is deeper than half the wall is thick, and a drag that ends deep beside its way.
+TEST_F(ScenesMadeToFool, WithThinWallsOrAGapGetTheirTrueOutcome) {
+  const Case cases[] = {
+      {"led sideways through a plate, its tip below",
+       {kPlate, kFlat, "initial.position_m=[-0.006,0,-0.002]", "time.steps=500",
+        R"(hand={"type":"impedance","stiffness_N_per_m":4000,"damping_N_s_per_m":40,"target":{"y_m":0,"z_m":-0.002,"x_m":{"type":"waypoints","points":[[0,-0.006],[0.25,0.006]]}}})"},
+       kThrough},
+      {"turned through a plate",
+       {kPlate, kFlat, kNoHand, R"(motion.position={"type":"prescribed","x_m":-0.0048,"y_m":0,"z_m":-0.001})",
+        R"(motion.orientation={"up":[0,0,1],"lean":[1,0,0],"tilt_rad":{"type":"waypoints","points":[[0,0],[0.3,1.4]]}})"},
+       kThrough},
+      {"dragged into a gap",
+       {R"(environment={"type":"mesh","file":"gap.off","scale":1,"spacing_m":0.0001})",
+        R"(hand={"type":"drag","force_N":1,"path_m":[[-0.003,0,0],[0.004,0,0]],"speed_m_per_s":0.02,"normal_damping_N_s_per_m":50,"stiffness_N_per_m":300,"damping_N_s_per_m":6})",
+        "initial.position_m=[-0.003,0,0.0006]", "time.steps=700"},
+       {Outcome::stuck}},
+  };
+  for (Case c : cases) {
+    SCOPED_TRACE(c.name);
+    c.changes.push_back("record.inside=false");
+    const LoadedScenario loaded = scene(c);
+    const Outcome outcome = run_scenario(loaded, std::nullopt, false).end.outcome;
+    EXPECT_EQ(outcome, c.outcomes[0]) << outcome_name(outcome);
+    if (position_is_free(loaded.scenario.motion)) {
+      EXPECT_FALSE(is_stable(judged_run(loaded, make_shell(loaded.scenario, loaded.files)).verdict));
+    }
   }
 }
 
