@@ -41,7 +41,7 @@ std::vector<NamedTool> tools() {
           {"ball on a thin neck", bur(BurFamily::ball, 0.3)},
           {"inverted cone", bur(BurFamily::inverted_cone, 0.5)},
           {"flame", bur(BurFamily::flame, 0.6)},
-          {"mesh", std::make_shared<const MeshTool>(test::grid_of(drill, 0.2 * kRadius))}};
+          {"mesh", std::make_shared<const MeshTool>(test::grid_of(drill, 0.1 * kRadius))}};
 }
 
 /// A box between two corners [m].
