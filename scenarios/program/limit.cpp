@@ -189,6 +189,7 @@ LimitTable asked_table(const LimitOptions& options) {
   std::vector<ScenarioText> scenes;
   Axis scene{.path = kSceneAxis, .values = require_names_of_their_own(files, "each name once")},
       algorithm{.path = "--algorithms", .values = {""}, .named = true};
+  scenes.reserve(files.size());
   for (const fs::path& file : files) scenes.push_back(read_scenario_text(file));
   std::vector<ComparedDevice> devices;
   if (!options.devices.empty()) devices = asked_devices(options);
