@@ -12,14 +12,14 @@ namespace {
 
 /// Relative to the half width: the depth of a contact from which on the tip centre itself is part of the core, as a
 /// flat tip's is in the surface at any depth; the least step along the core and of its way; the step of differences.
-constexpr double kDeep = 0.9, kLeastStep = 5e-3, kDifference = 1e-3;
+constexpr double kDeep = 0.9, kCoreStep = 5e-3, kCoreDifference = 1e-3;
 /// Relative to where the tool is thinnest, as at a neck: the depth of a contact from which on the core is looked at. A
 /// little less than kDeep, because points of a surface, which are some fifths of that apart, may miss the core.
 constexpr double kLookFrom = 0.8;
 /// The core ends where the axis comes so close to the body's surface, in half widths, as in a bent body.
 constexpr double kThinnest = 0.05;
-constexpr std::size_t kSamples = 256;  ///< of the tool's thickness
-constexpr double kMostSteps = 256.0;   ///< of the core's way in a row
+constexpr std::size_t kCoreSamples = 256;  ///< of the tool's thickness
+constexpr double kMostCoreSteps = 256.0;   ///< of the core's way in a row
 
 }  // namespace
 
@@ -37,13 +37,13 @@ CorePassage::CorePassage(std::shared_ptr<const ToolShape> tool, std::shared_ptr<
   far_ = 0.0;
   for (const ProfilePoint& p : tool_->outline()) far_ = std::min(far_, p.s);
   const ToolPose pose;
-  ContactBuffer axis(kSamples);
-  const auto place = [this](std::size_t i) { return far_ * static_cast<double>(i) / (kSamples - 1); };
-  for (std::size_t i = 0; i < kSamples; ++i) axis.push(0, place(i) * pose.axis, Vec3::UnitZ());
+  ContactBuffer axis(kCoreSamples);
+  const auto place = [this](std::size_t i) { return far_ * static_cast<double>(i) / (kCoreSamples - 1); };
+  for (std::size_t i = 0; i < kCoreSamples; ++i) axis.push(0, place(i) * pose.axis, Vec3::UnitZ());
   tool_->surface_constraints(pose, Vec3::Zero(), 0.0, axis);
   double thinnest = width_;
   const double end = far_ + width_;  // behind it, the far end is nearest
-  for (std::size_t i = 0; i < kSamples; ++i) {
+  for (std::size_t i = 0; i < kCoreSamples; ++i) {
     const double s = place(i);
     if (s > -back || s < end) continue;
     if (axis.depth[i] < kThinnest * width_) {
@@ -57,7 +57,7 @@ CorePassage::CorePassage(std::shared_ptr<const ToolShape> tool, std::shared_ptr<
 }
 
 Vec3 CorePassage::normal_at(const Vec3& place) const noexcept {
-  return solid_->gradient(place, kDifference * width_);
+  return solid_->gradient(place, kCoreDifference * width_);
 }
 
 /// Follows the core from the row before in steps on which it cannot meet the surface.
@@ -71,13 +71,13 @@ void CorePassage::look(const ToolPose& pose, double deepest_contact, double time
     return;
   }
   const double front = deepest_contact >= kDeep * width_ ? 0.0 : shallow_;
-  const double least = std::max(kLeastStep * width_, way / kMostSteps);
+  const double least = std::max(kCoreStep * width_, way / kMostCoreSteps);
   double done = std::min(free_way_, way);
   for (;;) {
     const double rest = way > 0.0 ? 1.0 - done / way : 0.0;
     const double clear = look_at(pose.position - rest * moved, (pose.axis - rest * turned).normalized(), front, time);
     if (event_ || done >= way) {
-      free_way_ = std::max(clear, kLeastStep * width_);
+      free_way_ = std::max(clear, kCoreStep * width_);
       return;
     }
     done = std::min(way, done + std::max(clear, least));
@@ -124,7 +124,7 @@ double CorePassage::find_inside(const Vec3& position, const Vec3& axis, double f
     if (!(s > far_)) break;
     before = side;
     last = place;
-    s = std::max(far_, s - std::max(std::abs(phi.value), kLeastStep * width_));
+    s = std::max(far_, s - std::max(std::abs(phi.value), kCoreStep * width_));
   }
   return 0.5 * nearest;  // between two looks it may be half as far
 }

@@ -189,8 +189,7 @@ LimitTable asked_table(const LimitOptions& options) {
   std::vector<ScenarioText> scenes;
   Axis scene{.path = kSceneAxis, .values = require_names_of_their_own(files, "each name once")},
       algorithm{.path = "--algorithms", .values = {""}, .named = true};
-  scenes.reserve(files.size());
-  for (const fs::path& file : files) scenes.push_back(read_scenario_text(file));
+  std::transform(files.begin(), files.end(), std::back_inserter(scenes), read_scenario_text);
   std::vector<ComparedDevice> devices;
   if (!options.devices.empty()) devices = asked_devices(options);
   std::vector<Axis> axes = {{.path = "--device", .values = names_of(devices, &ComparedDevice::name), .named = true}};
