@@ -36,7 +36,7 @@ class Cost:
         self.rows = int(min(len(log.time), max(100.0, seconds / log.step)))
         known = np.flatnonzero(np.isfinite(log.position[:self.rows]))
         self.all_known = len(known) == self.rows
-        self.known, self._simulate = known, simulate
+        self.known, self._simulate, self._asked = known, simulate, None
         pieces = known // max(8.0, piece / log.step)
         self.starts = np.flatnonzero(np.diff(pieces, prepend=-1.0) > 0.0)
         self.counts = np.diff(self.starts, append=len(known))
@@ -48,8 +48,11 @@ class Cost:
         return values - np.repeat(np.add.reduceat(values, self.starts) / self.counts, self.counts)
 
     def simulated(self, parameters):
-        places = self._simulate(parameters, self.rows)
-        return places if self.all_known else places[self.known]
+        """The last answer is kept: derivatives are asked for where the residual just was."""
+        if not np.array_equal(parameters, self._asked):
+            places = self._simulate(parameters, self.rows)
+            self._asked, self._answer = np.array(parameters), places if self.all_known else places[self.known]
+        return self._answer
 
     def __call__(self, parameters):
         return self.measured - self._centred(self.simulated(parameters))
@@ -76,15 +79,15 @@ class Found:
 
 
 def least_squares(cost, start, scale, steps, tolerance, held=()):
-    """Levenberg and Marquardt's. Mass stays positive; friction and delay do not become negative."""
+    """Levenberg and Marquardt's. Mass stays positive; friction and delay do not become negative. SciPy's, which decomposes the whole
+    Jacobian for bounds, finds the same and takes 1.3 times as long for a log of 60 s at 4 kHz."""
     low = np.array([1e-6, 0.0, 0.0, 0.0, -np.inf, -np.inf])
     high = np.array([1e6, np.inf, np.inf, LONGEST * scale[DELAY], np.inf, np.inf])
     x = np.clip(start, low, high)
     residual = cost(x)
     squares, damping = residual @ residual, 1e-3
     for _ in range(steps):
-        units = scale.copy()
-        units[MASS] = x[MASS]
+        units = _units(scale, x)
         free = np.ones(len(x), bool)
         free[list(held)] = False
         J = cost.sensitivities(x, units, free)
@@ -164,14 +167,14 @@ def _search(first, whole, log, place, scale):
     for one in sorted(tried, key=lambda one: one.squares):
         if all(_differs(one.x, other.x, scale) for other in distinct):
             distinct.append(one)
-    found = _best(whole, distinct[:DISTINCT], scale)
+    found = min(_refined(whole, distinct[:DISTINCT], scale), key=lambda one: one.squares)
     # Once more from there, with other shares of friction and constant force; on the whole log only what may be better.
     again = np.array([found.x, found.x])
     again[:, OFFSET], again[:, DRY] = 0.0, found.x[DRY] * np.array([0.5, 2.0])
     reached = np.sum(first(found.x)**2)
     others = [one for one in (least_squares(first, start, scale, 15, 1e-4) for start in again)
               if one.squares < 1.5 * reached and _differs(one.x, found.x, scale)]
-    return _best(whole, [found, *others], scale)
+    return min([found, *_refined(whole, others, scale)], key=lambda one: one.squares)
 
 
 def _intervals(cost, log, found, scale, residual, memory, noise, spread):
@@ -197,8 +200,8 @@ def _intervals(cost, log, found, scale, residual, memory, noise, spread):
     return intervals, untold, strokes.said(log.encoder_step)
 
 
-def _best(cost, tried, scale):
-    return min((least_squares(cost, one.x, scale, 60, 1e-8) for one in tried), key=lambda one: one.squares)
+def _refined(cost, tried, scale):
+    return [least_squares(cost, one.x, scale, 60, 1e-8) for one in tried]
 
 
 def _differs(x, other, scale):
