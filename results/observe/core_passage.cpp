@@ -11,15 +11,14 @@ namespace hapbench {
 namespace {
 
 /// Relative to the half width: the depth of a contact from which on the tip centre itself is part of the core, as a
-/// flat tip's is in the surface at any depth; the least step along the core and of its way; the step of differences.
-constexpr double kDeep = 0.9, kCoreStep = 5e-3, kCoreDifference = 1e-3;
+/// flat tip's is in the surface at any depth; the least step along the core and of its way.
+constexpr double kDeep = 0.9, kCoreStep = 5e-3;
 /// Relative to where the tool is thinnest, as at a neck: the depth of a contact from which on the core is looked at. A
 /// little less than kDeep, because points of a surface, which are some fifths of that apart, may miss the core.
 constexpr double kLookFrom = 0.8;
 /// The core ends where the axis comes so close to the body's surface, in half widths, as in a bent body.
 constexpr double kThinnest = 0.05;
 constexpr std::size_t kCoreSamples = 256;  ///< of the tool's thickness
-constexpr double kMostCoreSteps = 256.0;   ///< of the core's way in a row
 
 }  // namespace
 
@@ -57,7 +56,7 @@ CorePassage::CorePassage(std::shared_ptr<const ToolShape> tool, std::shared_ptr<
 }
 
 Vec3 CorePassage::normal_at(const Vec3& place) const noexcept {
-  return solid_->gradient(place, kCoreDifference * width_);
+  return solid_->gradient(place, kNormalsOver * width_);
 }
 
 /// Follows the core from the row before in steps on which it cannot meet the surface.
@@ -71,7 +70,7 @@ void CorePassage::look(const ToolPose& pose, double deepest_contact, double time
     return;
   }
   const double front = deepest_contact >= kDeep * width_ ? 0.0 : shallow_;
-  const double least = std::max(kCoreStep * width_, way / kMostCoreSteps);
+  const double least = std::max(kCoreStep * width_, way / kMostStepsOfWay);
   double done = std::min(free_way_, way);
   for (;;) {
     const double rest = way > 0.0 ? 1.0 - done / way : 0.0;
@@ -129,7 +128,7 @@ double CorePassage::find_inside(const Vec3& position, const Vec3& axis, double f
   return 0.5 * nearest;  // between two looks it may be half as far
 }
 
-/// What became of the stretches that were inside, and what is new.
+/// Matches the stretches that are inside now with those of the look before, which hand on the face of their entry.
 void CorePassage::compare(const Vec3& position, const Vec3& axis, Stretches& now, double time) noexcept {
   std::array<bool, std::tuple_size_v<decltype(inside_.of)>> stays{};
   const auto through = [this, time](const Vec3& entered, const Vec3& left, bool at_once) {
@@ -156,7 +155,7 @@ void CorePassage::compare(const Vec3& position, const Vec3& axis, Stretches& now
     }
     next.entered = was->entered;
     next.normal = was->normal;
-    // What comes out by a face that looks away from the entry's has gone through, unless it had come in by that face.
+    // An end that comes out by a face opposite to the entry's has gone through, unless that end had come in by it.
     const bool away_low = next.face_low && look_away(*next.face_low, next.normal);
     const bool away_high = next.face_high && look_away(*next.face_high, next.normal);
     if (away_low && next.low > was->own_low) through(next.entered, place(next.low), false);

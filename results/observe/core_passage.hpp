@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 
+#include "sim/contact/inside.hpp"
 #include "sim/geometry/solid.hpp"
 #include "sim/tool/tool_shape.hpp"
 
@@ -12,16 +13,17 @@ namespace hapbench {
 
 /// Distance from the tip centre back to the place half the tool's width within the body [m]; of a ball 0.
 double way_to_core(const ToolShape& tool);
+inline constexpr double kMostStepsOfWay = 256.0;  ///< in which the way of a row is followed through a solid
 
 /// True for the normals of faces that look away from each other, by more than the rounding of a right angle.
 inline bool look_away(const Vec3& a, const Vec3& b) noexcept {
   return a.dot(b) < -1e-3;
 }
 
-/// Finds a tool that goes through a wall, however thin: by its core, the part of its axis that is in its body, from the
-/// tip centre to the far end. The core has gone through when it crosses the solid from face to face at one time, the
-/// faces looking away from each other, or when a part of it comes out by a face that looks away from the one by which
-/// it had entered.
+/// Finds a tool that goes through a wall, also one thinner than the tool: by its core, the part of its axis that is in
+/// its body, from the tip centre to the far end. The core has gone through when it crosses the solid from face to face
+/// at one time, the faces looking away from each other, or when a part of it comes out by a face that looks away from
+/// the one by which it had entered.
 ///
 /// A row costs a look only while a contact is so deep that the core is close to the surface (looks_from), or when the
 /// tool moves by a large part of its width in it; and then only once the core has moved by its distance from the

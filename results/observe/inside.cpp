@@ -13,10 +13,9 @@
 namespace hapbench {
 namespace {
 
-/// Relative to the tool's half width: the least step in which the core's way is looked at, and over which normals are
-/// measured; relative to the depth: what a depth of the tip centre may be wrong by.
-constexpr double kLeastStep = 2e-3, kDifference = 1e-3, kDepthWithin = 0.02;
-constexpr double kMostSteps = 256.0;  ///< along the core's way in a row
+/// Relative to the tool's half width: the least step in which the core's way is looked at; relative to the depth: what
+/// a depth of the tip centre may be wrong by.
+constexpr double kLeastStep = 2e-3, kDepthWithin = 0.02;
 /// Parts of a run of which a row is kept, rows in settled contact whose deepest point is looked for after it, how well
 /// (InsideSearch).
 constexpr std::size_t kParts = 16384, kSettled = 12;
@@ -149,7 +148,7 @@ void InsideObserver::look_at_tip(const StepRecord& record) noexcept {
 void InsideObserver::march(const Vec3& place, double length, double time) noexcept {
   const Vec3 from = std::exchange(core_, place);
   const Vec3 way = place - from;
-  const double least = std::max(kLeastStep * tool_->half_width(), length / kMostSteps);
+  const double least = std::max(kLeastStep * tool_->half_width(), length / kMostStepsOfWay);
   double done = std::min(free_way_, length);
   for (;;) {
     const Vec3 here = length > 0.0 ? Vec3(from + done / length * way) : place;
@@ -165,7 +164,7 @@ void InsideObserver::march(const Vec3& place, double length, double time) noexce
 }
 
 void InsideObserver::note_core(const Vec3& place, const SurfaceDistance& phi, double time) noexcept {
-  const double step = kDifference * tool_->half_width();
+  const double step = kNormalsOver * tool_->half_width();
   const Side before = std::exchange(side_, !phi.known ? Side::unknown : phi.value < 0.0 ? Side::inside : Side::outside);
   if (!began_) passage_.began_inside = side_ == Side::inside;
   passage_.ends_inside = side_ == Side::inside;

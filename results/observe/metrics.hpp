@@ -70,7 +70,7 @@ struct TrialContact {
   std::optional<double> last = {};  ///< time of the last of those [s]
   double force_max_squared = 0.0;   ///< largest ||f||^2 of a row [N^2]
 
-  /// Of both trials together: sums of the counts, the later time and the larger force.
+  /// Adds the counts and keeps the later time and the larger force.
   TrialContact operator+(const TrialContact& other) const noexcept;
 };
 

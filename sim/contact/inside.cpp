@@ -15,9 +15,9 @@ constexpr std::size_t kAtOnce = 4;  ///< cells halved at once, whose eight halve
 /// stack.
 constexpr std::size_t kMostCells = 1024;
 constexpr std::size_t kMostLooks = 20000;
-/// Relative to the half width: a point this little outside the tool counts as in it; the step of differences of phi;
-/// cells this small are not searched beyond the border.
-constexpr double kOnTool = 1e-9, kDifference = 1e-3, kCoarse = 0.25;
+/// Relative to the half width: a point this little outside the tool counts as in it; cells this small are not searched
+/// beyond the border.
+constexpr double kOnTool = 1e-9, kCoarse = 0.25;
 
 }  // namespace
 
@@ -141,7 +141,7 @@ void InsideSearch::improve(const ToolPose& pose, Vec3 place) noexcept {
   try_place(Vec3(place));
   for (int move = 0; move < kMoves; ++move) {
     one_.clear();
-    one_.push(0, place, solid_.gradient(place, kDifference * tool_.half_width()));
+    one_.push(0, place, solid_.gradient(place, kNormalsOver * tool_.half_width()));
     tool_.foremost_places(pose, one_, answer);
     const Vec3 way = Vec3(x_[0], y_[0], z_[0]) - place;
     bool moved = false;

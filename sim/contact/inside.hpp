@@ -9,6 +9,8 @@
 
 namespace hapbench {
 
+inline constexpr double kNormalsOver = 1e-3;  ///< share of a tool's half width over which normals are measured
+
 /// How deep a tool is in a solid: the largest distance below its surface of any point of the tool, max(0, -phi) over
 /// the tool's body. Not the depth of a contact, which ends at the tool's half width and is 0 for a tool that is inside
 /// as a whole.
