@@ -242,11 +242,10 @@ std::vector<std::string> require_names_of_their_own(const std::vector<std::files
                                                     const std::string& allowed) {
   std::vector<std::string> names;
   for (const std::filesystem::path& file : files) {
-    const bool is_new = std::ranges::find(names, file.stem().string()) == names.end();
-    names.push_back(file.stem().string());
-    if (is_new) continue;
-    throw InputError(
-        fmt::format("{}: a second scenario named \"{}\"; allowed: {}", file.string(), file.stem().string(), allowed));
+    const std::string name = file.stem().string();
+    if (std::ranges::find(names, name) != names.end())
+      throw InputError(fmt::format("{}: a second scenario named \"{}\"; allowed: {}", file.string(), name, allowed));
+    names.push_back(name);
   }
   return names;
 }

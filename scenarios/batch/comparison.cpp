@@ -135,10 +135,8 @@ fs::path Comparison::folder(std::size_t run) const {
 }
 
 Comparison planned(const ComparisonQuestion& question) {
-  Comparison comparison{{},
-                        require_names_of_their_own(question.scenarios, "one of each name in a comparison"),
-                        question.algorithms,
-                        question.seeds};
+  const auto names = require_names_of_their_own(question.scenarios, "one of each name in a comparison");
+  Comparison comparison{{}, names, question.algorithms, question.seeds};
   const std::size_t scenes = question.scenarios.size(), size = scenes * comparison.each();
   if (size > kMostRuns) {
     throw InputError(fmt::format("got {} scenarios x {} algorithms x {} seeds = {} runs; allowed: at most {}", scenes,

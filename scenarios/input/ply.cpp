@@ -142,7 +142,7 @@ struct Element {
   }
 };
 
-/// What is read of a file: its faces, or points of which the vertices have the normals.
+/// The use of a file: a surface by its faces, or points by its vertices, which then have normals.
 enum class Wanted { faces, points };
 
 Property scalar(const PlyHeader::Declaration& declaration, bool of_vertex, Wanted wanted, const fs::path& file) {

@@ -14,6 +14,7 @@
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/index.hpp"
 #include "scenarios/program/limit.hpp"
+#include "scenarios/run/scene_loop.hpp"
 #include "scenarios/studies/stability/judged_run.hpp"
 
 /// The tables of `limit` and what is printed of them.
@@ -339,8 +340,7 @@ std::string delays_text(const LimitTable& table) {
   std::map<std::string, std::vector<std::string>> names;
   for (std::size_t i = 0; i < table.rows.size(); i += table.columns()) {
     const LimitRow& row = table.rows[i];
-    const auto* impedance = std::get_if<ImpedanceDeviceConfig>(&row.scenario.device);
-    if (impedance != nullptr && !impedance->delay && !row.device->name.ends_with(']'))
+    if (has_delay_in_samples(row.scenario) && !row.device->name.ends_with(']'))
       append_new(names[delay_text(row.scenario)], {row.device->name});
   }
   std::vector<std::string> parts;

@@ -89,9 +89,9 @@ int run_for(CapturedOutput& host, const std::string& line) {
   return status;
 }
 
-/// What the identification asks this program for: the positions of a handle in a log, thousands of times. Standard
-/// input has, as numbers of this machine, the count of rows, their times and forces, and then requests: how many of the
-/// rows (0 ends it), and the fields of a LoggedHandle. The answers, positions, go to standard output.
+/// Makes "hapbench identify" simulate a log for its own Python, thousands of times over a pipe of doubles. Standard
+/// input has the count of rows, their times, their forces, and then requests: a number of rows (0 ends it) and the
+/// fields of a LoggedHandle. Each answer on standard output is the positions at these rows.
 constexpr const char* kSimulateLog = "--simulate-log";
 
 int simulate_log_for_pipe() {

@@ -25,11 +25,10 @@ struct RunOptions : CommonOptions {
 /// One directory per scenario: that of --out for a single one, a subdirectory named after the file for several; without
 /// --out, one of results/out. Throws InputError when two files have the same name.
 std::vector<fs::path> output_directories(const std::string& out, const std::vector<fs::path>& files) {
-  require_names_of_their_own(files, "one of each name in a run");
   std::vector<fs::path> directories;
-  for (const fs::path& file : files) {
-    const fs::path directory = results_directory(out, file.stem().string());
-    directories.push_back(out.empty() || files.size() == 1 ? directory : directory / file.stem());
+  for (const std::string& name : require_names_of_their_own(files, "one of each name in a run")) {
+    const fs::path directory = results_directory(out, name);
+    directories.push_back(out.empty() || files.size() == 1 ? directory : directory / name);
   }
   return directories;
 }
@@ -39,7 +38,7 @@ void note_replaced_run(const LoadedScenario& loaded, const fs::path& directory) 
   const fs::path earlier = directory / "scenario.effective.json";
   std::error_code ignored;
   if (!fs::is_regular_file(earlier, ignored)) return;
-  // What is no JSON is not equal.
+  // A text that is no JSON compares as different.
   const Json before = Json::parse(read_text_file(earlier, kLargestJsonFile), nullptr, /*allow_exceptions=*/false);
   if (before == effective_scenario(loaded.scenario, directory)) return;
   print_note(fmt::format("replaces the run of other fields in {}; --out DIRECTORY keeps both", directory.string()));

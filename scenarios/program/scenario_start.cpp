@@ -144,7 +144,7 @@ struct DragStart {
 DragStart choose_drag(const PointShell& shell, std::span<const Vec3> positions, double smoothing, double enough) {
   constexpr double kFurther = 1.1;
   const Box box = shell.bounds();
-  const double furthest = (box.max - box.min).norm();
+  const double furthest = diagonal(box);
   DragStart best{positions.front(), Vec3::UnitX(), smoothing, 0.0};
   for (const double radius : {smoothing, 2.0 * smoothing, 4.0 * smoothing}) {
     const SmoothedSurface surface(shell, radius);
@@ -175,10 +175,6 @@ Json list_of(const Vec3& v) {
   return {v.x() + 0.0, v.y() + 0.0, v.z() + 0.0};  // never -0
 }
 
-const StartKind& kind_on_mesh() {
-  return *std::ranges::find(start_kinds(), "mesh", &StartKind::name);
-}
-
 /// The box of things at a place each.
 template <class Things, class Place = std::identity>
 Box box_of(const Things& things, Place place = {}) {
@@ -204,7 +200,8 @@ class Start {
   Start(const StartKind& kind, const StartOptions& options, const fs::path& directory)
       : scene_(kind.scene), options_(options), directory_(directory) {
     const bool is_on_mesh = options.on || (kind.source == "mesh" && kind.is_source_optional && options.source);
-    if (is_on_mesh) scene_["environment"] = kind_on_mesh().scene.at("environment");
+    if (is_on_mesh)
+      scene_["environment"] = std::ranges::find(start_kinds(), "mesh", &StartKind::name)->scene.at("environment");
     turn_to_side();
     name_files();
     const bool is_placed = scene_.contains("initial") && scene_["initial"]["position_m"].is_null();

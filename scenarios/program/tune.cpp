@@ -385,8 +385,7 @@ int tune(const TuneOptions& options) {
   for (const TunedLaw& law : tuning.laws) trials.insert(trials.end(), law.trials.begin(), law.trials.end());
   report.write("tune_trials.csv", trial_columns(), trials);
   report.say(tuning_text(tuning));
-  const auto* impedance = std::get_if<ImpedanceDeviceConfig>(&loaded.scenario.device);
-  if (impedance != nullptr && !impedance->delay && impedance->delay_samples > 0.0)
+  if (has_delay_in_samples(loaded.scenario) && delay_of(loaded.scenario) > 0.0)
     report.say(wrapped(fmt::format("delay_samples: {}; {}", delay_text(loaded.scenario), kWhoseSamples), 0));
   fs::path tuned;
   if (const TunedLaw* law = tuning.recommended()) {

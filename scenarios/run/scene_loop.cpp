@@ -116,6 +116,11 @@ double delay_of(const Scenario& scenario) {
   return admittance != nullptr ? static_cast<double>(admittance->servo.delay) : 0.0;
 }
 
+bool has_delay_in_samples(const Scenario& scenario) {
+  const auto* device = std::get_if<ImpedanceDeviceConfig>(&scenario.device);
+  return device != nullptr && !device->delay;
+}
+
 const char* delay_path(const Scenario& scenario) {
   const bool has_servo = std::holds_alternative<AdmittanceDeviceConfig>(scenario.device);
   return has_servo ? "device.servo.delay_samples" : "device.delay_samples";

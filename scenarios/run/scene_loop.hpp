@@ -39,6 +39,8 @@ std::string unknown_to_theory(const Scenario& scenario);
 /// The delay of the device's force, or of its servo [samples], and the field that sets it.
 double delay_of(const Scenario& scenario);
 const char* delay_path(const Scenario& scenario);
+/// True for an impedance device whose delay is a number of samples, so that its time depends on the scene's step.
+bool has_delay_in_samples(const Scenario& scenario);
 
 /// The map of a step of the tool at a wall of lambda K and lambda B: by the device's loop, of an ideal device by the
 /// integrator alone. Empty for a loop that is too large to solve, and for a device with fields that are
