@@ -39,17 +39,25 @@ std::size_t columns() {
   return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
 }
 
-/// Shows a line on standard error in place of the one shown before, cut to the terminal's width: a broken line could
-/// not be taken back. Precondition: standard error is a terminal.
+bool is_terminal() {
+  return isatty(STDERR_FILENO) == 1;
+}
+
+/// Shows a line on standard error: on a terminal in place of the one shown before, cut to its width, as a broken line
+/// could not be taken back.
 void show_status(std::string_view line) {
+  if (!is_terminal()) {
+    std::fprintf(stderr, "%.*s\n", static_cast<int>(line.size()), line.data());
+    return;
+  }
   const auto length = static_cast<int>(std::min(line.size(), columns() - 1));
   std::fprintf(stderr, "\r%.*s\033[K", length, line.data());
   std::fflush(stderr);
 }
 
-/// Takes the line back.
+/// Takes the line back, where that is possible.
 void hide_status() {
-  std::fprintf(stderr, "\r\033[K");
+  if (is_terminal()) std::fprintf(stderr, "\r\033[K");
 }
 
 }  // namespace
@@ -58,11 +66,15 @@ void report_progress_to(ProgressListener* listener) noexcept {
   thread_listener = listener;
 }
 
+void tell_progress(std::string_view label, std::uint64_t done, std::uint64_t total) noexcept {
+  if (thread_listener != nullptr) thread_listener->progress(label, done, total);
+}
+
 ProgressBar::ProgressBar(std::string label, std::uint64_t total, bool enabled)
     : listener_(thread_listener),
       label_(std::move(label)),
       total_(total),
-      enabled_(enabled && (listener_ != nullptr || isatty(STDERR_FILENO) == 1)),
+      enabled_(enabled),
       start_(Clock::now()),
       next_(start_ + kSilence) {}
 
@@ -77,8 +89,8 @@ void ProgressBar::show(std::uint64_t done, bool counts) noexcept {
     return;
   }
   const auto now = Clock::now();
-  if (now < next_) return;
-  next_ = now + kRedraw;
+  if (now < next_ || (done == total_ && !is_terminal())) return;
+  next_ = is_terminal() ? now + kRedraw : now + (now - start_);
   drawn_ = true;
   const double part = static_cast<double>(done) / static_cast<double>(total_);
   // A buffer on the stack for as long a line as any: the bar is drawn between steps, which allocate nothing.
@@ -91,6 +103,10 @@ void ProgressBar::show(std::uint64_t done, bool counts) noexcept {
     add_time(numbers, each * static_cast<double>(total_ - done));
     fmt::format_to(fmt::appender(numbers), " left");
   }
+  if (!is_terminal()) {
+    fmt::format_to(fmt::appender(line), "{}: {}", label_, std::string_view(numbers.data(), numbers.size()));
+    return show_status({line.data(), line.size()});
+  }
   // The bar is what gives way to a narrow terminal.
   const std::size_t others = label_.size() + numbers.size() + 5;
   const std::size_t width = std::clamp<std::size_t>(columns() - std::min(columns(), others), 10, kWidth);
@@ -102,15 +118,17 @@ void ProgressBar::show(std::uint64_t done, bool counts) noexcept {
 
 namespace {
 
-void show_seconds(const std::string& what, const std::stop_token& ends) {
+void show_seconds(const std::function<std::string()>& what, const std::stop_token& ends) {
   std::mutex mutex;
   std::condition_variable_any ended;
   std::unique_lock lock(mutex);
   bool shown = false;
+  int next = static_cast<int>(kSilence.count());
   const auto has_ended = [&ends] { return ends.stop_requested(); };
   for (int seconds = 1; !ended.wait_for(lock, ends, std::chrono::seconds(1), has_ended); ++seconds) {
-    if (std::chrono::seconds(seconds) < kSilence) continue;
-    show_status(fmt::format("{} ... {} s", what, seconds));
+    if (seconds < next) continue;
+    next = is_terminal() ? seconds + 1 : 2 * seconds;
+    show_status(fmt::format("{} ... {} s", what(), seconds));
     shown = true;
   }
   if (shown) hide_status();
@@ -118,8 +136,11 @@ void show_seconds(const std::string& what, const std::stop_token& ends) {
 
 }  // namespace
 
-WaitNotice::WaitNotice(std::string what, bool enabled) {
-  if (!enabled || isatty(STDERR_FILENO) != 1) return;
+WaitNotice::WaitNotice(std::string what, bool enabled)
+    : WaitNotice([what = std::move(what)] { return what; }, enabled) {}
+
+WaitNotice::WaitNotice(std::function<std::string()> what, bool enabled) {
+  if (!enabled) return;
   // Signals stay with the threads that wait for them.
   sigset_t all, before;
   sigfillset(&all);

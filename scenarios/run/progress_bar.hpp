@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <thread>
@@ -19,8 +20,11 @@ class ProgressListener {
 /// Bars that this thread makes from now on tell the listener and draw nothing; null: they draw. It must outlive them.
 void report_progress_to(ProgressListener* listener) noexcept;
 
-/// A progress bar on standard error for work that takes longer than two seconds; silent otherwise, and when standard
-/// error is no terminal. Before a listener it tells that of every `show`.
+/// Tells this thread's listener, if there is one.
+void tell_progress(std::string_view label, std::uint64_t done, std::uint64_t total) noexcept;
+
+/// A progress bar on standard error for work that takes longer than two seconds; silent otherwise. Where standard error
+/// is no terminal, a line after 2 s, 4 s, 8 s and so on. Before a listener it tells that of every `show`.
 class ProgressBar {
  public:
   /// `label` stands before the bar; `enabled` false silences it (--quiet).
@@ -50,11 +54,13 @@ class ProgressBar {
 };
 
 /// A line on standard error that says what takes so long, with the seconds, for work of unknown length that takes
-/// longer than two of them; silent otherwise, and when standard error is no terminal.
+/// longer than two of them; silent otherwise. Where standard error is no terminal, lines after 2 s, 4 s, 8 s and so on.
 class WaitNotice {
  public:
   /// `enabled` false silences it (--quiet).
   WaitNotice(std::string what, bool enabled);
+  /// `what` is asked for each line, from another thread.
+  WaitNotice(std::function<std::string()> what, bool enabled);
 
  private:
   std::jthread thread_;  ///< shows the line, and removes it when this object goes
