@@ -96,6 +96,29 @@ std::optional<double> LastQuarterVibration::value() const noexcept {
   return std::max(of_earlier_trials_, if_any(rows_ > 0, std::sqrt(sum_ / static_cast<double>(rows_))));
 }
 
+void JudgedRows::touch(std::uint64_t step) noexcept {
+  if (begin_) return;
+  const std::uint64_t quarter = step + (steps_ - step) / 4;
+  begin_ = quarter;
+  const double periods = period_ > 0.0 ? std::floor(static_cast<double>(steps_ - quarter) / period_) : 0.0;
+  if (periods > 0.0) begin_ = steps_ - static_cast<std::uint64_t>(std::round(periods * period_));
+}
+
+void JudgedVibration::add(std::uint64_t step, const Vec3& velocity, const JudgedRows& judged) noexcept {
+  if (!high_pass_) return;
+  if (step == 0) high_pass_->settle_at(velocity);
+  const double squared = high_pass_->filter(velocity).squaredNorm();
+  if (!judged.begin() || step < *judged.begin()) return;
+  ++rows_;
+  sum_ += squared;
+}
+
+std::optional<double> JudgedVibration::value(const JudgedRows& judged, bool rests) const noexcept {
+  if (!high_pass_ || !judged.begin()) return std::nullopt;
+  const std::uint64_t rows = rests ? judged.end() - *judged.begin() : rows_;
+  return if_any(rows > 0, std::sqrt(sum_ / static_cast<double>(rows)));
+}
+
 ContactForces::ContactForces(double dt, const SettlingRule& rule)
     : dt_(dt), settling_rows_(rows_in(rule.time, dt)), rows_away_(settling_rows_) {
   assert(dt > 0.0);

@@ -72,8 +72,7 @@ inline constexpr double kVibrationCutoff = 30.0;
 /// or less.
 std::optional<HighPass> vibration_filter(double dt);
 
-/// Root mean square of the handle's speed behind that high-pass in the last quarter of a run: what
-/// `limit --stable still` judges a run by.
+/// Root mean square of the handle's speed behind that high-pass in the last quarter of a run.
 class LastQuarterVibration {
  public:
   /// The run has `steps` rows, `dt` seconds apart.
@@ -89,6 +88,40 @@ class LastQuarterVibration {
   std::optional<HighPass> high_pass_;
   double sum_ = 0.0;
   std::optional<double> of_earlier_trials_;
+};
+
+/// The rows by which a run is judged: from a quarter of its time in contact on, which begins with the first touch, to
+/// its end; where the script repeats, so many whole periods before the end as begin there or later, if one does: in
+/// less than a period the landing would be judged, too.
+class JudgedRows {
+ public:
+  /// The run has `steps` rows, its script a period of so many rows; 0: it does not repeat.
+  JudgedRows(std::uint64_t steps, double period) : steps_(steps), period_(period) {}
+  void touch(std::uint64_t step) noexcept;
+  /// The first of them; none before the first touch.
+  const std::optional<std::uint64_t>& begin() const noexcept { return begin_; }
+  std::uint64_t end() const noexcept { return steps_; }
+
+ private:
+  std::uint64_t steps_;
+  double period_;
+  std::optional<std::uint64_t> begin_;
+};
+
+/// Root mean square of the handle's speed behind that high-pass in the judged rows of a run: what `limit --stable
+/// still` and `tune` judge a run by.
+class JudgedVibration {
+ public:
+  /// Rows are `dt` seconds apart.
+  explicit JudgedVibration(double dt) : high_pass_(vibration_filter(dt)) {}
+  void add(std::uint64_t step, const Vec3& velocity, const JudgedRows& judged) noexcept;
+  /// [m/s]; none at 60 Hz or less and without rows. `rests`: the run was cut short because nothing moves any more.
+  std::optional<double> value(const JudgedRows& judged, bool rests) const noexcept;
+
+ private:
+  std::optional<HighPass> high_pass_;
+  std::uint64_t rows_ = 0;
+  double sum_ = 0.0;
 };
 
 /// Settled contact shorter than this has no metrics [s]: one period of the cutoff, the slowest vibration. Otherwise a

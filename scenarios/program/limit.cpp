@@ -13,6 +13,7 @@
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/run/assemble.hpp"
+#include "scenarios/run/progress_bar.hpp"
 
 namespace hapbench {
 namespace {
@@ -96,20 +97,22 @@ InputError on_device(const ComparedDevice& device, const InputError& error) {
   return InputError::all(faults);
 }
 
-/// The rule by which a run is stable.
-void set_rule(const LimitOptions& options, LimitQuestion& question) {
+/// The rule by which a run is stable; the default is that of `tune`.
+void set_rule(const LimitOptions& options, const Scenario& scenario, LimitQuestion& question) {
   question.bounded = options.stable == "bounded";
   if (!options.vibration.empty()) {
     if (!options.stable.empty() && options.stable != "still")
       throw InputError(fmt::format("--vibration: got it beside --stable {}; allowed: with still", options.stable));
     question.most_vibration = number_between("--vibration", options.vibration, 1e-9, 1e3);
-  } else if (options.stable == "still" || (options.stable.empty() && !options.devices.empty())) {
+  } else if (options.stable.empty()) {
+    question.most_vibration = rule_of(scenario).most_vibration;
+  } else if (options.stable == "still") {
     question.most_vibration = kMostVibration;
   }
   for (const std::string& bound : options.bounds) add_bound(bound, question.bounds);
 }
 
-LimitQuestion question_of(const LimitOptions& options, const ScenarioText& scene,
+LimitQuestion question_of(const LimitOptions& options, const ScenarioText& scene, const Scenario& scenario,
                           const std::vector<std::string>& overrides) {
   if (options.field.find('=') != std::string::npos) {
     throw InputError(
@@ -118,7 +121,8 @@ LimitQuestion question_of(const LimitOptions& options, const ScenarioText& scene
   LimitQuestion question = limit_question(scene, overrides, options.field, range_of("--between", options.between));
   question.smallest = options.smallest;
   if (!options.resolution.empty()) question.resolution = number_between("--resolution", options.resolution, 1e-6, 0.5);
-  set_rule(options, question);
+  question.between = options.devices.empty() && options.over.empty();
+  set_rule(options, scenario, question);
   return question;
 }
 
@@ -210,9 +214,9 @@ LimitRow asked_row(const LimitOptions& options, const LimitTable& table, std::si
   try {
     std::vector<std::string> overrides = table.cases.overrides(i);
     if (row.device != nullptr) overrides = overrides_on(*row.device, scene, overrides);
-    const LimitQuestion question = question_of(options, scene, overrides);
     const LoadedScenario loaded = load_scenario(scene, overrides);
     row.scenario = loaded.scenario;
+    const LimitQuestion question = question_of(options, scene, row.scenario, overrides);
     row.asked = {&scene, std::move(overrides), loaded.scenario.rendering.algorithm, question};
     append_new(warnings, question.warnings);
     append_new(warnings, with_files(loaded, check_named_files(loaded)));
@@ -254,8 +258,12 @@ int limit(const LimitOptions& options) {
   LimitTable table = limit_cases(options);
   Report report(options, options.scenarios.size() > 1 ? "limit" : "limit_" + table.first().scene());
   std::vector<LimitRow>& rows = table.rows;
-  for_each_job(rows.size(), job_options(options, "limit"),
-               [&](std::size_t i) { rows[i].found = field_limit(rows[i].asked); });
+  if (rows.size() == 1) rows[0].asked.question.threads = job_options(options, "").threads;
+  {
+    const WaitNotice notice("limit", !options.output.quiet && rows.size() == 1);
+    for_each_job(rows.size(), job_options(options, rows.size() > 1 ? "limit" : ""),
+                 [&](std::size_t i) { rows[i].found = field_limit(rows[i].asked); });
+  }
   add_ratios(table);
   tell_limits(table, report);
   report.say(fmt::format("\nresults in {}\n", report.folder().string()));
@@ -287,7 +295,7 @@ void add_limit(CommandLine& line) {
   command.add(
       "--stable", options.stable,
       "what a run has to do: be settled (come to rest), bounded (vibrating counts, too) or still (a handle that "
-      "does not vibrate; default with --device)",
+      "does not vibrate; default where a script moves the tool, elsewhere settled)",
       {.one_of = {"settled", "bounded", "still"}});
   command.add(
       "--vibration", options.vibration,

@@ -53,6 +53,9 @@ struct LimitTable {
   bool is_grid() const { return !devices.empty() || over() > 0; }
 };
 
+/// The answer in words: the linear edge, or the edge in runs, and what was tried between.
+std::string limit_answer(const FieldLimit& found, const LimitQuestion& question);
+
 /// Writes limit.csv and limit_runs.csv, and tells what was found.
 void tell_limits(const LimitTable& table, Report& report);
 

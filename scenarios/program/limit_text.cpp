@@ -173,6 +173,15 @@ void add_search(Columns<LimitRow>& columns) {
   columns.add("unstable_without_contact", "", "true when hand and device alone are unstable beyond the edge",
               of_answer(&FieldLimit::unstable_alone), only_json());
   columns.add("has_effect", "", "false when the field changes no run", of_answer(&FieldLimit::has_effect), only_json());
+  columns.add("scattered", "", "true where stable values are scattered and there is no edge",
+              of_answer(&FieldLimit::scattered), only_json());
+  columns.add("tried_between", "1",
+              "values between the ends of the interval that were tried, all stable; 0 in a table of devices or values",
+              of_answer(&FieldLimit::tried_between));
+  columns.add("may_fail_share", "1", "share of the interval that may be unstable for all that, with 95 % confidence",
+              [](const LimitRow& r) {
+                return r.found.tried_between > 0 ? Cell(may_fail_share(r.found.tried_between)) : Cell();
+              });
 }
 
 /// Numbers of the run at the limit, for cases to be compared by.
@@ -233,8 +242,8 @@ Columns<LimitRow> limit_columns(const LimitTable* table) {
 
 constexpr std::size_t kGridGap = 1;  // three scenes and two algorithms then fit into kTableWidth
 constexpr const char* kBeyondLinear =
-    "bounces below 30 Hz, dry friction or the end of the run hold the tool, and one that rests on the surface may not "
-    "be stable";
+    "beyond it stable runs are intermittent contact: bounces below 30 Hz, dry friction or the end of the run hold the "
+    "tool, and one that rests on the surface may not be stable";
 constexpr double kNone = std::numeric_limits<double>::infinity();
 
 /// States the question of one scene.
@@ -249,12 +258,18 @@ std::string question_text(const LimitQuestion& question, const Scenario& scenari
                      end(question.range.to), width, scenario.time.steps);
 }
 
-std::string none_text(const FieldLimit& limit) {
+std::string none_text(const FieldLimit& limit, const StabilityRule& rule) {
   std::map<RunVerdict, std::size_t> counts;
   for (const JudgedValue& run : limit.runs) ++counts[run.verdict];
   std::vector<std::string> texts;
   for (const auto& [verdict, count] : counts) texts.push_back(fmt::format("{} {}", count, run_verdict_name(verdict)));
-  return fmt::format("none of {} values tried is stable: {}", limit.runs.size(), fmt::join(texts, ", "));
+  const std::string tried = fmt::format("{}", fmt::join(texts, ", "));
+  if (!limit.scattered) return fmt::format("none of {} values tried is stable: {}", limit.runs.size(), tried);
+  const auto stable = [&](const JudgedValue& run) { return rule.holds(run.verdict); };
+  const auto first = std::ranges::find_if(limit.runs, stable);
+  const auto last = std::ranges::find_if(limit.runs.rbegin(), limit.runs.rend(), stable);
+  return fmt::format("no edge: stable values are scattered from {} to {}, no stretch of {:g} % is stable: {}",
+                     significant(first->value, 3), significant(last->value, 3), 100.0 * kNear, tried);
 }
 
 std::string inconsistent_text(const FieldLimit& limit) {
@@ -278,7 +293,6 @@ std::string remarks_text(const LimitRow& row) {
   const LimitQuestion& question = row.asked.question;
   std::string text;
   const auto say = [&](const std::string& what) { text += fmt::format("{}: {}\n", limit.algorithm, what); };
-  if (!limit.value) say(none_text(limit));
   if (limit.value && limit.own && !question.holds(limit.own->verdict)) {
     say(fmt::format("{} at the scenario's own {}: the edge is that of the first stable values from the {} end",
                     run_verdict_name(limit.own->verdict), significant(limit.own->value),
@@ -287,11 +301,6 @@ std::string remarks_text(const LimitRow& row) {
   if (limit.theory_has_none) {
     say(fmt::format("by the eigenvalues of a step no value of the range is stable{}",
                     limit.value ? ": the runs are too short for its growth" : ""));
-  }
-  if (is_beyond_linear(row)) {
-    say(fmt::format(
-        "the loop of device, hand and surface, linear and in contact, is stable up to {} only: beyond it {}",
-        significant(*limit.linear, 6), kBeyondLinear));
   }
   if (limit.undecided > 0) {
     say(fmt::format("{} runs were too short to tell slow motion from rest, though made up to 64 times as long",
@@ -324,14 +333,17 @@ std::string value_text(double value, const std::optional<double>& tolerance = {}
   return deserved(value, tolerance ? tolerance : value * 5e-3);
 }
 
-/// "800", "120-800" where it is not stable below, "> 800" where the range ends stable.
+/// "800", "120-800" where it is not stable below, "> 800" where the range ends stable; "800!" for the linear edge.
 std::string edge_text(const LimitRow& row) {
   const FieldLimit& limit = row.found;
   if (!limit.value) return "none";
+  const bool by_linear = is_beyond_linear(row);
+  if (by_linear && limit.other.beyond && *limit.linear < *limit.other.value) return "none!";
   return fmt::format("{}{}{}{}{}",
                      limit.other.beyond ? value_text(*limit.other.value, limit.other.tolerance()) + "-" : "",
-                     limit.beyond ? "" : "> ", value_text(*limit.value, limit.tolerance()),
-                     is_beyond_linear(row) ? "!" : "", limit.inconsistent.empty() ? "" : " ~");
+                     limit.beyond || by_linear ? "" : "> ",
+                     by_linear ? value_text(*limit.linear) : value_text(*limit.value, limit.tolerance()),
+                     by_linear ? "!" : "", limit.inconsistent.empty() || by_linear ? "" : " ~");
 }
 
 /// The delay in samples of each impedance device in the first scene, as "0 of touch; 1 (0.5 ms in steps of 0.5 ms) of
@@ -377,12 +389,14 @@ std::string approaches_text(const LimitTable& table) {
 
 /// A line for each case, with the numbers of its search.
 std::string detailed_text(const LimitTable& table) {
-  std::string text, remarks;
+  std::string text, answers, remarks;
   for (std::size_t i = 0; i < table.rows.size(); ++i) {
     const LimitRow& row = table.rows[i];
     if (i == 0 || row.scene() != table.rows[i - 1].scene()) text += question_text(row.asked.question, row.scenario);
+    answers += wrapped(fmt::format("{}: {}", row.found.algorithm, limit_answer(row.found, row.asked.question)), 0);
     remarks += remarks_text(row);
   }
+  text += answers + "\n";
   const LimitRow& first = table.first();
   text += limit_columns(&table).table(table.rows).text() + "\n" +
           wrapped(rule_text(first.asked.question, is_moved(first.scenario)), 0) + remarks + approaches_text(table);
@@ -442,14 +456,21 @@ std::string notes_text(const LimitTable& table) {
   if (!table.devices.empty()) text += devices_text(table);
   text += approaches_text(table);
   if (any(is_beyond_linear)) {
-    text += wrapped(fmt::format("!: beyond the edge of the loop of device, hand and surface, linear and in contact "
-                                "(linear in limit.csv): {}",
-                                kBeyondLinear),
-                    0);
+    text +=
+        wrapped(fmt::format("!: the linear edge, of the loop of device, hand and surface while they touch; {} (limit "
+                            "in limit.csv is the edge in runs)",
+                            kBeyondLinear),
+                0);
   }
   if (any([](const LimitRow& row) { return !row.found.inconsistent.empty(); }))
     text += "~: some values below it are unstable, or some beyond it are stable: limit_runs.csv\n";
-  return text;
+  const auto runs = [](const LimitRow& row) { return row.found.runs.size(); };
+  const auto [least, most] = std::ranges::minmax(table.rows, {}, runs);
+  return text +
+         wrapped(fmt::format("each edge was found at {} to {} values, and between them nothing was tried: ask for "
+                             "one scene and device alone, and its interval is",
+                             runs(least), runs(most)),
+                 0);
 }
 
 /// The limits alone, a line for each device and value, and how they compare.
@@ -479,6 +500,21 @@ std::vector<DescribedTable> limit_tables() {
       "limit.csv", "of limit: one line per device, values of --over, scene and algorithm");
   limits.headings.push_back({"pub-\nlished", true, "published_N_per_m"});
   return {limits, run_columns(nullptr).described("limit_runs.csv", "of limit: one line per run")};
+}
+
+std::string limit_answer(const FieldLimit& found, const LimitQuestion& question) {
+  if (!found.value) return none_text(found, question);
+  std::string text = found.beyond
+                         ? fmt::format("edge in runs {}", deserved(*found.value, found.tolerance()))
+                         : fmt::format("stable in runs to the end of the range, {}", significant(*found.value, 6));
+  const auto& linear = found.theory ? found.theory : found.linear;
+  if (linear && std::isfinite(*linear) && *linear > 0.0) {
+    const std::string edge = fmt::format("linear edge {}; ", significant(*linear, 6));
+    text = edge + (found.is_beyond_linear(question.resolution) ? fmt::format("{} ({})", kBeyondLinear, text) : text);
+  }
+  if (found.tried_between == 0) return text;
+  return text + fmt::format("; {} values between its ends are stable, too: at most {:.0f} % of them may fail (95 %)",
+                            found.tried_between, 100.0 * may_fail_share(found.tried_between));
 }
 
 void tell_limits(const LimitTable& table, Report& report) {

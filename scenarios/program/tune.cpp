@@ -2,6 +2,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <atomic>
 #include <nlohmann/json.hpp>
 #include <tuple>
 
@@ -78,10 +79,10 @@ std::optional<double> value_in(const TuneMetrics& metrics, const char* name, dou
   return found == metrics.end() ? std::nullopt : std::optional(factor * found->second);
 }
 
-/// A metric of the choice with the digits that its spread over the seeds leaves it, three where none is known.
+/// A metric of the choice with the digits that its error leaves it, one where that is not known.
 std::string metric_text(const TunedLaw& law, const char* name, double factor) {
   const auto value = law.choice ? value_in(law.choice->metrics, name, factor) : std::nullopt;
-  return value ? significant(*value, deserved_digits(*value, value_in(law.spread, name, factor), 3)) : "-";
+  return value ? significant(*value, deserved_digits(*value, value_in(law.error, name, factor), 1)) : "-";
 }
 
 constexpr const char* kRatioColumn = "rendering.damping_ratio";
@@ -134,8 +135,11 @@ Columns<TunedLaw> law_columns() {
   columns.add("why", "", "the same in words", &TunedLaw::why);
   columns.add("relax", "", "where nothing is feasible: which limit to relax, and to what", &TunedLaw::relax);
   add_margins(columns);
-  columns.add("verified", "1", "full-length runs from K to G K that show the choice to be settled",
+  columns.add("verified", "1",
+              fmt::format("full-length runs between K and G K, all settled, {} of them just below G K", kTriedNear),
               &TunedLaw::verified);
+  columns.add("may_fail_share", "1", "share of what lies between K and G K that may not be, with 95 % confidence",
+              [](const TunedLaw& l) { return l.verified > 0 ? Cell(may_fail_share(kTriedBetween)) : Cell(); });
   columns.add("runs", "1", "simulations in all", &TunedLaw::runs);
   const auto add_metric = [&](const char* name, double factor, const char* heading) {
     columns.print(heading, "by name", name, [=](const TunedLaw& l) { return metric_text(l, name, factor); });
@@ -174,7 +178,9 @@ Json law_json(const TunedLaw& law) {
                      {"delay_samples", or_null(law.margins.delay_samples)},
                      {"damping_ratio", or_null(law.margins.damping_ratio)}};
   json["metrics"] = law.choice ? law.choice->metrics : TuneMetrics();
-  json["spread"] = law.spread;
+  json["error"] = law.error;
+  json["linear_edge"] = law.choice ? or_null(law.edge.linear ? law.edge.linear : law.edge.theory) : Json();
+  json["edge_in_runs"] = law.choice ? or_null(law.edge.value) : Json();
   return json;
 }
 
@@ -230,6 +236,8 @@ Json tuned_scenario(const Tuning& tuning, const TunedLaw& law, const std::string
 
 std::string limits_text(const Tuning& tuning) {
   std::string text = fmt::format("largest K that is settled up to {:g} K", tuning.question.margin);
+  if (tuning.question.limits.empty())
+    text += ", in a run that is quiet (describe diagnosis: buzz, pop, chatter, energy)";
   for (const auto& [name, bound] : tuning.question.limits) {
     if (bound.min) text += fmt::format(", {} >= {:g}", name, *bound.min);
     if (bound.max) text += fmt::format(", {} <= {:g}", name, *bound.max);
@@ -264,10 +272,10 @@ std::string metrics_text(const TunedLaw& law) {
   std::vector<std::string> texts;
   for (std::size_t i = 0; i < kTuneMetrics.size(); ++i) {
     const auto& [name, unit, factor] = kTexts[i];
-    const auto spread = value_in(law.spread, kTuneMetrics[i], factor);
+    const auto error = value_in(law.error, kTuneMetrics[i], factor);
     if (!law.choice->metrics.contains(kTuneMetrics[i])) continue;
     texts.push_back(fmt::format("{} {}{} {}", name, metric_text(law, kTuneMetrics[i], factor),
-                                spread ? fmt::format(" +- {:.1g}", *spread) : "", unit));
+                                error ? fmt::format(" +- {:.1g}", *error) : " +- ?", unit));
   }
   return fmt::format("{}", fmt::join(texts, ", "));
 }
@@ -296,10 +304,16 @@ std::string recommendation_text(const Tuning& tuning) {
   const auto line = [&](const char* name, const std::string& what) { text += entry(name, what, 2, 14); };
   line("stops at", fmt::format("{}: {}", best->binding, best->why));
   line("margins", margins_text(best->margins));
-  line("expect", fmt::format("{} (+-: over {} seeds)", metrics_text(*best), kSeeds));
+  line("expect", metrics_text(*best));
+  line("",
+       "+-: how far half the step, half the distance of the points or a look at the depth in every row move it; ?: "
+       "such a run has no such number");
   if (tuning.ranking.size() > 1) line("runner-up", cost_text(*best, tuning.laws[tuning.ranking[1]]));
-  line("verified", fmt::format("by {} full-length runs from K to {:g} K, of {} runs in all", best->verified,
-                               tuning.question.margin, tuning.runs()));
+  line("K's edges", limit_answer(best->edge, best->edge_question));
+  line("verified",
+       fmt::format("by {} full-length runs between K and {:g} K, all settled: at most {:.0f} % of what lies "
+                   "between may not be (95 %); {} runs in all",
+                   best->verified, tuning.question.margin, 100.0 * may_fail_share(kTriedBetween), tuning.runs()));
   return text;
 }
 
@@ -359,6 +373,22 @@ TuneQuestion tune_question(const TuneOptions& options, const fs::path& file) {
   return question;
 }
 
+void tune_laws(const std::vector<std::string>& algorithms, bool quiet, Tuning& tuning) {
+  std::atomic<std::size_t> law = 0, runs = 0;
+  const auto now = [&] {
+    const std::size_t i = std::min(law.load(), algorithms.size() - 1);
+    return fmt::format("tune: {} ({} of {}), {} runs", algorithms[i], i + 1, algorithms.size(), runs.load());
+  };
+  const WaitNotice notice(now, !quiet);
+  tuning.question.on_runs = [&](std::size_t count) { runs = count; };
+  for (law = 0; law < algorithms.size(); ++law) {
+    tuning.laws.push_back(tuned_law(tuning.question, algorithms[law]));
+    tell_progress("tune", law + 1, algorithms.size());
+  }
+  tuning.question.on_runs = {};
+  tuning.ranking = ranking_of(tuning.laws);
+}
+
 int tune(const TuneOptions& options) {
   const fs::path file = find_scenario(options.scenario);
   Tuning tuning;
@@ -373,13 +403,7 @@ int tune(const TuneOptions& options) {
   tuning.ranges = with_file(loaded, [&] { return tune_ranges(tuning.question, algorithms.front()); });
   Report report(options, "tune_" + file.stem().string());
   const fs::path& out = report.folder();
-  tuning.laws.resize(algorithms.size());
-  ProgressBar bar("tune", algorithms.size(), !options.output.quiet);
-  for (std::size_t i = 0; i < algorithms.size(); ++i) {
-    tuning.laws[i] = tuned_law(tuning.question, algorithms[i]);
-    bar.show(i + 1);
-  }
-  tuning.ranking = ranking_of(tuning.laws);
+  tune_laws(algorithms, options.output.quiet, tuning);
   report.write("tune.csv", law_columns(), tuning.laws);
   std::vector<TuneTrial> trials;
   for (const TunedLaw& law : tuning.laws) trials.insert(trials.end(), law.trials.begin(), law.trials.end());
@@ -431,12 +455,14 @@ void add_tune(CommandLine& line) {
   add_overrides(command, options.overrides, "override a field of all runs: path=value");
   command.footer(fmt::format(
       "For each law the largest K, over zeta (and virtual mass on an admittance device), at which the scene's own run and each of the "
-      "family is settled (stable or dying out, \"hapbench describe stability\"; where a script moves the tool, no more than 1 mm/s rms above 30 Hz at the handle) at K and at margin x K, the loop of "
-      "device, hand and surface while they touch is stable as far by its eigenvalues, and all limits are kept at K. Hands are "
+      "family is settled (\"hapbench describe stability\"; where a script moves the tool, no more than 1 mm/s rms above 30 Hz at the handle) at K and at margin x K, the loop of "
+      "device, hand and surface while they touch is stable as far by its eigenvalues, and all limits are kept at K; without limits of yours the own run is quiet, by the rules of "
+      "\"hapbench describe diagnosis\": buzz, pop, chatter, energy. Hands are "
       "springs of 100 and 1000 N/m, on an impedance device's handle with 0.1 and 0.5 kg; the loop's, also none. Recommended is the law "
-      "that settles least deep; on springs, the one that renders most stiffness. At most {} runs a law search, and the choice is verified by runs of full length at {} gains. "
+      "that settles least deep; on springs, the one that renders most stiffness. At most {} runs a law search. The choice is verified by {} runs of full length between K and margin x K, and by longer ones; it keeps your limits by as "
+      "much as half the step, half the spacing and a look at the depth in every row move a number. "
       "Where nothing is feasible, it says which limit to relax. Files: tune.csv, tune_trials.csv, NAME_tuned.json, which run takes.",
-      kMostTuneRuns, kVerifiedGains));
+      kMostTuneRuns, kTriedBetween + kTriedNear));
 }
 
 }  // namespace hapbench

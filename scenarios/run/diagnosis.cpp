@@ -91,8 +91,8 @@ using Number = std::optional<double>;
 struct DiagnosedRun {
   const LoadedScenario& loaded;
   const Result& result;
-  const ToolShape& tool;
   const SeenRows& rows;
+  const ToolShape* tool;  ///< null for rules of a quiet run
 
   const Scenario& scenario() const { return loaded.scenario; }
   bool ended(Outcome outcome) const { return result.end.outcome == outcome; }
@@ -144,7 +144,7 @@ Number if_completed(const DiagnosedRun& run, const Number& number) {
 }
 
 Number half_width(const DiagnosedRun& run) {
-  return has_springs(run) ? std::nullopt : Number(run.tool.half_width());
+  return has_springs(run) ? std::nullopt : Number(run.tool->half_width());
 }
 
 Number longest_step(const DiagnosedRun& run) {
@@ -303,6 +303,11 @@ struct Rule {
   Number (*value)(const DiagnosedRun& run);
   Sentence attempt;
   Sentence more = "";  ///< further facts, behind what is wrong
+  bool quiet = false;  ///< as that of DiagnosisRule
+  Diagnosed diagnosed(const DiagnosedRun& run, double number_found) const {
+    const std::string what = fmt::format(fmt::runtime(says), fmt::format("{:.3g}", number_found));
+    return {name, number, unit, number_found, threshold, what + more.text(run), attempt.text(run)};
+  }
 };
 
 constexpr Rule kRules[] = {
@@ -324,11 +329,12 @@ constexpr Rule kRules[] = {
     {"buzz", "force above 30 Hz over the mean force in settled contact", "1", 0.1,
      "it buzzes: the force above 30 Hz is {} of the mean force", buzz,
      "less K; a velocity filter or less zeta where the encoder is felt, too; \"hapbench tune --max-vibration\"",
-     buzz_frequency},
+     buzz_frequency, true},
     {"pop", "largest force step in settled contact over the mean force", "1", 0.5,
      "it pops: a step of the force is {} of the mean force",
      [](const DiagnosedRun& r) { return if_completed(r, of_mean_force(r, "settled_force_step_max_N")); },
-     "rendering.reduction null where it steps, too; \"hapbench compare --algorithms all\" shows which law steps least"},
+     "rendering.reduction null where it steps, too; \"hapbench compare --algorithms all\" shows which law steps least",
+     "", true},
     {"reduction", "largest force step where the kept contacts change, over the mean force in settled contact", "1", 0.1,
      "the force steps by {} of its mean when the kept contacts change",
      [](const DiagnosedRun& r) { return of_mean_force(r, "reduction_force_step_max_N"); }, "rendering.reduction null"},
@@ -371,10 +377,10 @@ constexpr Rule kRules[] = {
     {"chatter", "turns of the force by more than 90 degrees a second in settled contact", "1/s", 10.0,
      "it chatters: the force turns round {} times a second",
      [](const DiagnosedRun& r) { return if_completed(r, r.metric("force_reversals_per_s")); }, against_chatter,
-     turned_rows},
+     turned_rows, true},
     {"energy", "energy that the rendering created", "J", 1e-3, "the rendering created {} J",
      [](const DiagnosedRun& r) { return if_completed(r, r.metric("passivity.net_created_J")); },
-     "less K; rendering.passivity_controller where it is off"},
+     "less K; rendering.passivity_controller where it is off", "", true},
     {"drift", "way across the force of a tool that a constant hand holds, in the last quarter, over its half width",
      "1", 0.05, "it drifts by {} of its half width under a constant hand", drift,
      "rendering.friction {\"type\": \"dry\"} with enough mu; viscous friction never holds"},
@@ -384,22 +390,30 @@ constexpr Rule kRules[] = {
 
 std::vector<DiagnosisRule> diagnosis_rules() {
   std::vector<DiagnosisRule> rules;
-  for (const Rule& rule : kRules) rules.push_back({rule.name, rule.number, rule.unit, rule.threshold});
+  for (const Rule& rule : kRules) rules.push_back({rule.name, rule.number, rule.unit, rule.threshold, rule.quiet});
   return rules;
 }
 
 std::vector<Diagnosed> DiagnosisObserver::findings(const LoadedScenario& loaded, const Result& result,
                                                    const ToolShape& tool) const {
-  const DiagnosedRun run{loaded, result, tool, seen_};
+  const DiagnosedRun run{loaded, result, seen_, &tool};
   std::vector<Diagnosed> findings;
   for (const Rule& rule : kRules) {
     const Number value = rule.value(run);
-    if (!value || !(*value > rule.threshold)) continue;
-    const std::string says = fmt::format(fmt::runtime(rule.says), fmt::format("{:.3g}", *value));
-    findings.push_back({rule.name, rule.number, rule.unit, *value, rule.threshold, says + rule.more.text(run),
-                        rule.attempt.text(run)});
+    if (value && *value > rule.threshold) findings.push_back(rule.diagnosed(run, *value));
   }
   return findings;
+}
+
+std::vector<Diagnosed> quiet_numbers(const LoadedScenario& loaded, const Result& result) {
+  const SeenRows rows;
+  const DiagnosedRun run{loaded, result, rows, nullptr};
+  std::vector<Diagnosed> found;
+  for (const Rule& rule : kRules) {
+    if (!rule.quiet) continue;
+    if (const Number value = rule.value(run)) found.push_back(rule.diagnosed(run, *value));
+  }
+  return found;
 }
 
 }  // namespace hapbench

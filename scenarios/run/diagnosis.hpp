@@ -23,10 +23,14 @@ struct DiagnosisRule {
   const char* number;  ///< what it is
   const char* unit;    ///< "1" for pure numbers
   double threshold;    ///< something is wrong where the number is larger
+  bool quiet;          ///< a quiet run keeps it: what is felt beside the force, told by metrics alone
 };
 
 /// In the order in which they are told: how the run ended, then why.
 std::vector<DiagnosisRule> diagnosis_rules();
+
+/// What the rules of a quiet run find in this result, also below their thresholds; none where they have no number.
+std::vector<Diagnosed> quiet_numbers(const LoadedScenario& loaded, const Result& result);
 
 /// What rules need of the rows of a run, of all its trials. The last quarter is that of the last trial, or the quarter
 /// in which that ended.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include "device_model/hands/drag_hand.hpp"
 #include "results/observe/inside.hpp"
@@ -239,24 +240,37 @@ double moves_until(const Profile& profile) {
   return way != nullptr ? way->points.back().first : kAlways;
 }
 
-double any_moves_until(const std::array<Profile, 3>& profiles) {
-  return std::max({moves_until(profiles[0]), moves_until(profiles[1]), moves_until(profiles[2])});
+double period_of(const Profile& profile) {
+  const auto* sine = std::get_if<Profile::Sine>(&profile.shape());
+  return sine != nullptr && !profile.is_constant() ? sine->period_s : 0.0;
 }
 
-double moves_until(const HandFields& hand) {
-  if (std::holds_alternative<NoHandFields>(hand)) return 0.0;
-  if (const auto* force = std::get_if<ForceHandFields>(&hand)) return any_moves_until(force->force);
-  if (const auto* push = std::get_if<PushHandFields>(&hand)) return moves_until(push->force);
-  const ImpedanceHandFields* spring = spring_of(hand);
-  return spring != nullptr ? any_moves_until(spring->target) : kAlways;
+/// The scripts of the hand; none of one that is moved otherwise, and of none.
+std::span<const Profile> scripts_of(const HandFields& hand) {
+  if (const auto* force = std::get_if<ForceHandFields>(&hand)) return force->force;
+  if (const auto* push = std::get_if<PushHandFields>(&hand)) return {&push->force, 1};
+  if (const ImpedanceHandFields* spring = spring_of(hand)) return spring->target;
+  return {};
+}
+
+/// The largest of what is said of a scenario's scripts.
+double largest(const Scenario& scenario, double (*of)(const Profile&)) {
+  double most = 0.0;
+  for (const Profile& script : scripts_of(scenario.hand)) most = std::max(most, of(script));
+  const auto& orientation = scenario.motion.orientation;
+  return orientation ? std::max({most, of(orientation->tilt), of(orientation->azimuth)}) : most;
 }
 
 }  // namespace
 
 double script_moves_until(const Scenario& scenario) {
-  const auto& orientation = scenario.motion.orientation;
-  if (!orientation) return kAlways;
-  return std::max({moves_until(orientation->tilt), moves_until(orientation->azimuth), moves_until(scenario.hand)});
+  const HandFields& hand = scenario.hand;
+  const bool is_led = scripts_of(hand).empty() && !std::holds_alternative<NoHandFields>(hand);
+  return is_led || !scenario.motion.orientation ? kAlways : largest(scenario, moves_until);
+}
+
+double script_period(const Scenario& scenario) {
+  return largest(scenario, period_of);
 }
 
 const TremorConfig* tremor_of(const Scenario& scenario) {

@@ -67,6 +67,8 @@ std::vector<Warning> tool_warnings(const RenderingConfig& rendering, const ToolS
 
 /// The time until which a script moves the hand or turns the tool [s]: 0 if it never does, infinite if it never stops.
 double script_moves_until(const Scenario& scenario);
+/// The longest period of what repeats in the scripts of hand and tool [s]; 0 where nothing does.
+double script_period(const Scenario& scenario);
 /// The tremor of the hand; null without.
 const TremorConfig* tremor_of(const Scenario& scenario);
 /// True when a script moves the hand or turns the tool: then the tool never comes to rest, and only what is above 30 Hz

@@ -200,6 +200,7 @@ double largest_bounded(const Evidence& e, const std::string& field, const Range&
   LimitQuestion question = limit_question(scene, overrides, field, range);
   question.bounded = true;
   question.resolution = kLimitResolution;
+  question.between = false;
   return field_limit({&scene, overrides, loaded.scenario.rendering.algorithm, question}).value.value_or(0.0);
 }
 

@@ -137,7 +137,7 @@ def limit_of_spring(bench):
              ("above", beyond, EXACT, limit), ("class_above", classes[list(values).index(beyond)], EXACT, "vibrating"),
              ("theory", theory, Within("bisected to 1e-12", relative=3e-12), 4 * M / dt ** 2), ("linear", math.nan, EXACT, theory),
              ("undecided", 0, EXACT, sum(name == "vibrating" for name in classes)), ("runs", len(values), EXACT, 17), ("inconsistent_runs", 0, EXACT, 1),
-             ("astray", 0, EXACT, 1)]
+             ("astray", 0, EXACT, 1), ("tried_between", 48, EXACT, 56), ("may_fail_share", 1 - 0.05 ** (1 / 48), ROUNDING, 0.05)]
     for name, known, within, naive in cells:
         bench.add(f"limit.csv:{name}", table[name][0], known, "rule on the recurrence, and the eigenvalues",
                   within, ("of the eigenvalues alone, or the value beside", naive))
@@ -146,7 +146,7 @@ def limit_of_spring(bench):
         bench.add(f"limit --json: {key}", row[key], known, "from the last stable value to the next tried", ROUNDING, ("the resolution asked", naive))
     digits(bench, base, field)
     for key, known, naive in (("from", 1e3, 1.0), ("to", 1e7, 1e6), ("resolution", resolution, 1e-3), ("has_effect", True, False),
-                              ("unstable_without_contact", False, True)):
+                              ("unstable_without_contact", False, True), ("scattered", False, True)):
         bench.add(f"limit --json: {key}", printed[key] if key in printed else row[key], known, "as asked; one spring, and no device", EXACT,
                   ("a default", naive))
     bench.add("limit --json: rule", "comes to rest or dies out" in printed["rule"], True, "describe stability", EXACT, ("bounded", False))
@@ -160,7 +160,7 @@ def digits(bench, base, field):
     for resolution in (0.1, 1e-3, 1e-5):
         ask = ("limit", base, "--vary", field, "--between", "1e5:1e7", "--resolution", resolution, "--out", "digits")
         row, text = bench.json(*ask)["limits"][0], bench.hapbench(*ask)
-        cell = next(line for line in text.splitlines() if line.startswith("summation")).split("  ")
+        cell = next(line for line in text.splitlines() if line.startswith("summation ")).split("  ")
         place = 10.0 ** math.floor(math.log10(row["limit_tolerance"]))
         known = f"{round(row['limit'] / place) * place:.{max(0, -round(math.log10(place)))}f}"
         bench.add("limit.csv:limit", known in [part.strip() for part in cell], True, "the table's digits are those of the width", EXACT,

@@ -9,12 +9,14 @@
 #include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <utility>
 
 #include "algorithms/stages/damping_and_limits.hpp"
 #include "device_model/theory/linear_loops.hpp"
 #include "device_model/theory/stiffness_limits.hpp"
 #include "results/observe/contact_forces.hpp"
+#include "scenarios/batch/parallel_for.hpp"
 #include "scenarios/description/load_scenario.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/text_lines.hpp"
@@ -59,7 +61,7 @@ std::map<double, bool> scanned(int intervals, const std::function<bool(double)>&
   return tried;
 }
 
-FoundEdge find_edge(const SearchWay& way, std::map<double, bool> tried, const std::function<bool(double)>& stable,
+FoundEdge find_edge(const SearchWay& way, std::map<double, bool>& tried, const std::function<bool(double)>& stable,
                     double resolution, bool beside) {
   const auto holds = [&](double part) { return tried[part] = stable(part); };
   const std::optional<double> own = way.own_part();
@@ -102,6 +104,57 @@ FoundEdge find_edge(const SearchWay& way, std::map<double, bool> tried, const st
   return with_other_end(edge);
 }
 
+double may_fail_share(std::size_t tried) {
+  return 1.0 - math::pow(0.05, 1.0 / static_cast<double>(tried));
+}
+
+std::vector<double> parts_between(double from, double to, std::size_t count) {
+  constexpr double kGolden = std::numbers::phi - 1.0;
+  std::vector<double> parts;
+  double share = 0.0;
+  for (std::size_t i = 0; i < count; ++i) {
+    share += kGolden;
+    share -= std::floor(share);
+    parts.push_back(from + share * (to - from));
+  }
+  return parts;
+}
+
+double near_part(const SearchWay& way, double part) {
+  const auto [from, to, logarithmic] = way.range;
+  if (logarithmic) return math::log(1.0 + kNear) / math::log(to / from);
+  return kNear * std::max(std::abs(way.value_at(part)) / (to - from), way.resolution);
+}
+
+TriedEdge find_tried_edge(const SearchWay& way, std::map<double, bool>& tried,
+                          const std::function<bool(double)>& stable, double resolution, bool near,
+                          const std::function<void(std::span<const double>)>& ahead) {
+  bool scattered = false;
+  double begin = -1.0;  // up to here stable values are scattered
+  const auto beyond_those = [&](double part) { return part > begin && stable(part); };
+  const auto fails = [&](double part) { return !(tried[part] = beyond_those(part)); };
+  while (true) {
+    const FoundEdge edge = find_edge(way, tried, beyond_those, resolution, true);
+    if (!edge.stable) return {edge, scattered};
+    const auto first = edge.first.value_or(*edge.stable);
+    const std::vector<double> between = parts_between(first, *edge.stable, kTriedBetween);
+    ahead(between);
+    if (std::ranges::any_of(between, fails)) continue;
+    if (!near || way.whole || !edge.beyond) return {edge, false};
+    const double low = std::max(0.0, *edge.stable - near_part(way, *edge.stable));
+    const std::vector<double> below = parts_between(*edge.stable, low, kTriedNear);
+    ahead(below);
+    const auto failing = std::ranges::find_if(below, fails);
+    if (failing == below.end()) return {edge, false};
+    if (*failing > first) continue;
+    scattered = true;
+    const std::optional<double> own = way.own_part();
+    if (own && first <= *own && *own <= *edge.stable) return {{}, true};
+    begin = *edge.stable;
+    for (auto& [part, is_stable] : tried) is_stable = is_stable && part > begin;
+  }
+}
+
 namespace {
 
 constexpr int kDoublings = 10;  // from the scenario's value to either end of a range that nobody gave
@@ -124,6 +177,13 @@ class Search {
     FieldLimit limit;
     limit.algorithm = asked_.algorithm;
     std::map<double, JudgedRun> runs;  // by value
+    const auto run_ahead = [&](std::span<const double> parts) {
+      std::vector<double> values;
+      for (const double part : parts)
+        if (const double value = question_.value_at(part); runs.try_emplace(value).second) values.push_back(value);
+      for_each_job(values.size(), {question_.threads, ""},
+                   [&](std::size_t i) { runs.at(values[i]) = judged(values[i]); });
+    };
     const auto judge = [&](double part) {
       const double value = question_.value_at(part);
       const auto known = runs.find(value);
@@ -133,12 +193,18 @@ class Search {
       return JudgedValue{question_.value_at(part), runs.at(question_.value_at(part)).verdict};
     };
     const Theory theory(*this, has_theory, step_is_stable, kTheoryIntervals);
+    std::vector<double> first = theory.islands();
+    for (int i = 0; i <= kEdgeIntervals; ++i) first.push_back(static_cast<double>(i) / kEdgeIntervals);
+    run_ahead(first);
     std::map<double, bool> tried;
-    for (int i = 0; i <= kEdgeIntervals; ++i) tried[static_cast<double>(i) / kEdgeIntervals] = {};
-    for (const double part : theory.islands()) tried[part] = {};
-    for (auto& [part, stable] : tried) stable = judge(part);
-    const FoundEdge edge = find_edge(question_, std::move(tried), judge, question_.resolution, true);
+    for (const double part : first) tried[part] = judge(part);
+    const bool is_linear = theory.edge().has_value();
+    const TriedEdge edge = question_.between
+                               ? find_tried_edge(question_, tried, judge, question_.resolution, !is_linear, run_ahead)
+                               : TriedEdge{find_edge(question_, tried, judge, question_.resolution, true)};
+    limit.scattered = edge.scattered;
     if (edge.stable) {
+      limit.tried_between = question_.between ? kTriedBetween : 0;
       limit.value = question_.value_at(*edge.stable);
       limit.settled = runs.at(*limit.value).settled;
     }
@@ -215,8 +281,9 @@ class Search {
     bool has_none() const { return !tried_.empty() && islands().empty(); }
     std::optional<double> edge() const {
       if (tried_.empty()) return std::nullopt;
+      std::map<double, bool> tried = tried_;
       const FoundEdge edge = find_edge(
-          search_.question_, tried_, [this](double part) { return holds(part); }, kTheoryResolution, false);
+          search_.question_, tried, [this](double part) { return holds(part); }, kTheoryResolution, false);
       if (!edge.stable) return std::nullopt;
       if (edge.beyond) return search_.question_.value_at(*edge.stable);
       return search_.question_.smallest ? 0.0 : std::numeric_limits<double>::infinity();

@@ -3,6 +3,7 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -45,15 +46,40 @@ struct FoundEdge {
 std::map<double, bool> scanned(int intervals, const std::function<bool(double)>& stable);
 
 /// The edge behind the own value, or if that is not stable behind the first stable values of the way; of the parts
-/// `tried`, which hold at least both ends. With `beside`, tries values on either side of it, too, and goes on where one
-/// of them shows an edge before it; then finds the other end of the interval.
-FoundEdge find_edge(const SearchWay& way, std::map<double, bool> tried, const std::function<bool(double)>& stable,
+/// `tried`, which hold at least both ends, and then what was tried besides. With `beside`, tries values on either side
+/// of it, too, and goes on where one of them shows an edge before it; then finds the other end of the interval.
+FoundEdge find_edge(const SearchWay& way, std::map<double, bool>& tried, const std::function<bool(double)>& stable,
                     double resolution, bool beside);
+
+// An interval of stable values is an answer once it was tried between its ends: loops in contact have islands of
+// unstable values that are 1 % of a range wide.
+
+inline constexpr std::size_t kTriedBetween = 48;  ///< values between the ends
+inline constexpr std::size_t kTriedNear = 8;      ///< and just below the edge,
+inline constexpr double kNear = 0.02;             ///< as far as this, relative
+/// With no value that fails among so many, at most this share of the interval does, with 95 % confidence.
+double may_fail_share(std::size_t tried);
+/// So many parts between two of a way: wherever one ends, those before it fill the interval evenly.
+std::vector<double> parts_between(double from, double to, std::size_t count);
+/// How far parts lie below `part` whose values are within kNear of its value.
+double near_part(const SearchWay& way, double part);
+
+/// The edge of find_edge with `beside`, of an interval that was tried between its ends and, with `near`, just below its
+/// edge: the first value that is not stable becomes the new end. Stable values that are not a stretch of kNear are no
+/// interval; `scattered` where there are only such. `ahead` hears of all parts before the first of them is asked for.
+struct TriedEdge : FoundEdge {
+  bool scattered = false;
+};
+TriedEdge find_tried_edge(const SearchWay& way, std::map<double, bool>& tried,
+                          const std::function<bool(double)>& stable, double resolution, bool near,
+                          const std::function<void(std::span<const double>)>& ahead);
 
 /// The question: which limit of which field, and by which rule a run is stable.
 struct LimitQuestion : StabilityRule, SearchWay {
   std::string path;                        ///< of the field, dotted as in --set
   std::vector<std::string> warnings = {};  ///< of the scenario with the field given
+  bool between = true;                     ///< the interval is tried between its ends before it is an answer
+  unsigned threads = 1;                    ///< runs at once; no result depends on it
 };
 
 /// A value and what a run with it came to.
@@ -97,13 +123,16 @@ struct FieldLimit : IntervalEnd {
   /// first one. Only asked of a hand that feels the handle and needs no surface.
   bool unstable_alone = false;
   bool has_effect = true;                 ///< false when the handle moved alike, bit for bit, in all runs
+  std::size_t tried_between = 0;          ///< values that were tried between the ends of the interval, all stable
+  bool scattered = false;                 ///< there are stable values, but no edge: no stretch of kNear is stable
   std::vector<JudgedValue> runs;          ///< all, by value
   std::vector<JudgedValue> inconsistent;  ///< runs that are unstable in this interval, or stable outside of it
 
   /// Runs that were still too short, lengthened as they were, to tell slow growth from rest (judged_run.hpp).
   std::size_t undecided = 0;
 
-  /// True where the limit lies beyond that of the linear loop by more than this, relative.
+  /// True where the limit lies beyond that of the linear loop by more than this, relative: then the linear edge is the
+  /// one to quote, and contact at a stable value beyond it is intermittent.
   bool is_beyond_linear(double resolution) const;
   /// value / theory - 1; none without either.
   std::optional<double> difference() const;
@@ -130,7 +159,8 @@ struct LimitCase {
 /// Answers the question. The range is tried at 17 values and the scenario's own. From the own value
 /// on, or if that is not stable from the first stable one of the low end (smallest: the high end) on, the first edge is
 /// narrowed down by bisection, as is then the other end of the interval; three values on either side of it are tried
-/// besides; if they show an earlier edge, that is narrowed down instead, up to five times. Some 35 to 120 runs. Throws
+/// besides; if they show an earlier edge, that is narrowed down instead, up to five times. Some 35 to 120 runs, and
+/// where the interval is an answer (LimitQuestion::between) 56 or more between its ends, as long as one fails. Throws
 /// InputError, with the file, for a scene without a free position or with fewer than 4 steps, and where vibration is
 /// asked for at a sampling rate of 60 Hz or less.
 FieldLimit field_limit(const LimitCase& asked);

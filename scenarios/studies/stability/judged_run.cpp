@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "results/observe/contact_forces.hpp"
 #include "results/observe/metrics.hpp"
@@ -129,16 +130,75 @@ MotionClass classify(Simulation& simulation, const MotionClassifier& classifier)
   return classifier.motion_class(result.outcome);
 }
 
-/// The end of a run: where the tool is and whether it touches, and sums over the quarter that was begun last, which is
-/// the last one unless the run was cut short because it came to rest.
+/// Tells a tool that goes on bouncing, more slowly than what counts as vibration. A bounce is a way off the surface and
+/// back that lasts longer than the contact before it, against a hand that presses; its height is the largest distance
+/// from where the handle let go, along the force there.
+class SlowBounces {
+ public:
+  explicit SlowBounces(double dt) : slow_(1.0 / (kVibrationCutoff * dt)) {}
+
+  void add(const StepRecord& record, const JudgedRows& judged) noexcept {
+    const Vec3& place = record.handle.position;
+    if (record.colliding > 0) {
+      if (away_ > 0) land(record.step, judged);
+      ++touching_;
+      away_ = 0;
+      place_ = place;
+      if (record.force.rendered.squaredNorm() > 0.0) up_ = record.force.rendered.normalized();
+      return;
+    }
+    if (away_++ == 0) height_ = 0.0;
+    const double height = (place - place_).dot(up_);
+    if (!(height > height_)) return;
+    height_ = height;
+    pressed_ = record.hand.measured.dot(up_) < 0.0;
+  }
+
+  /// True with two bounces or more in each half of the judged rows, those of the second as high to 1 %.
+  bool go_on() const noexcept {
+    constexpr int kLeast = 2;
+    constexpr double kFallen = 0.99;
+    return counts_[0] >= kLeast && counts_[1] >= kLeast && highest_[1] > kFallen * highest_[0];
+  }
+
+ private:
+  void land(std::uint64_t step, const JudgedRows& judged) noexcept {
+    const std::uint64_t touching = std::exchange(touching_, 0);
+    const bool slow = static_cast<double>(touching + away_) > slow_;
+    if (!slow || touching >= away_ || !pressed_ || !judged.begin() || step < *judged.begin()) return;
+    const std::size_t half = 2 * (step - *judged.begin()) / (judged.end() - *judged.begin());
+    ++counts_[half];
+    highest_[half] = std::max(highest_[half], height_);
+  }
+
+  double slow_;  ///< rows of a period of the cutoff
+  std::uint64_t touching_ = 0, away_ = 0;
+  Vec3 place_ = Vec3::Zero(), up_ = Vec3::Zero();
+  double height_ = 0.0;  ///< of the bounce under way [m]
+  bool pressed_ = false;
+  std::array<int, 2> counts_{};
+  std::array<double, 2> highest_{};  ///< [m]
+};
+
+/// The end of a run: where the tool is and whether it touches, what its judged rows say, and sums over the quarter that
+/// was begun last, which is the last one unless the run was cut short because it came to rest.
 class LastRows final : public Observer {
  public:
-  explicit LastRows(const TimeFields& time)
-      : steps_(static_cast<std::uint64_t>(time.steps)), vibration_(steps_, time.step) {}
+  /// `alone`: there is nothing to touch, and all but the first quarter of the run is judged.
+  explicit LastRows(const Scenario& scenario, bool alone = false)
+      : steps_(static_cast<std::uint64_t>(scenario.time.steps)),
+        judged_(steps_, script_period(scenario) / scenario.time.step),
+        vibration_(scenario.time.step),
+        bounces_(scenario.time.step) {
+    if (alone) judged_.touch(0);
+  }
 
   void on_step(const StepRecord& record) noexcept override {
     touches_ = record.colliding > 0;
     touched_ = touched_ || touches_;
+    if (touches_) judged_.touch(record.step);
+    vibration_.add(record.step, record.handle.velocity, judged_);
+    bounces_.add(record, judged_);
     place_ = record.tool.pose.position;
     for (const double coordinate : record.handle.position) way_.real(coordinate);
     if (const std::uint64_t quarter = record.step * 4 / steps_; quarter != quarter_) {
@@ -147,7 +207,6 @@ class LastRows final : public Observer {
       press_sum_ = 0.0;
       S_sum_.setZero();
     }
-    vibration_.add(record.step, record.handle.velocity);
     if (record.rendered->size() == 0) return;
     if (!touch_speed_) touch_speed_ = record.handle.velocity.norm();
     press_sum_ += record.hand.measured.norm();
@@ -158,14 +217,16 @@ class LastRows final : public Observer {
 
   bool touched() const { return touched_; }           ///< in any row
   std::uint64_t way() const { return way_.value(); }  ///< JudgedRun::way
+  bool goes_on_bouncing() const { return bounces_.go_on(); }
   bool has_left(const PointShell& shell, double reach) const {
     const Box bounds = shell.bounds();
     const Vec3 beyond = (bounds.min - place_).cwiseMax(place_ - bounds.max);
     return !touches_ && beyond.maxCoeff() > reach;
   }
-  SettledState state() const {
+  /// `rests`: the run was cut short because nothing moves any more.
+  SettledState state(bool rests) const {
     SettledState state;
-    state.vibration = vibration_.value();
+    state.vibration = vibration_.value(judged_, rests);
     state.touch_speed = touch_speed_.value_or(0.0);
     if (rows_in_contact_ == 0) return state;
     const auto rows = static_cast<double>(rows_in_contact_);
@@ -180,7 +241,9 @@ class LastRows final : public Observer {
   Vec3 place_ = Vec3::Zero();  ///< of the tip centre [m]
   Hash64 way_;
   std::uint64_t steps_;
-  LastQuarterVibration vibration_;
+  JudgedRows judged_;
+  JudgedVibration vibration_;
+  SlowBounces bounces_;
   std::uint64_t quarter_ = 0, rows_in_contact_ = 0, contacts_ = 0;
   std::optional<double> touch_speed_;
   double press_sum_ = 0.0;
@@ -209,12 +272,19 @@ std::optional<RunVerdict> verdict_of(Outcome outcome) {
 
 }  // namespace
 
+StabilityRule rule_of(const Scenario& scenario) {
+  StabilityRule rule;
+  const bool can_tell = vibration_filter(scenario.time.step).has_value() && tremor_of(scenario) == nullptr;
+  if (can_tell && is_moved(scenario)) rule.most_vibration = kMostVibration;
+  return rule;
+}
+
 std::string rule_text(const StabilityRule& rule, bool moved) {
   std::string text =
       rule.most_vibration
           ? fmt::format(
-                "stable: at most {} m/s rms above {:.0f} Hz at the handle in the last quarter of "
-                "a run",
+                "stable: at most {} m/s rms above {:.0f} Hz at the handle, from a quarter of the contact on, and no "
+                "bounces below that go on",
                 *rule.most_vibration, kVibrationCutoff)
           : fmt::format("stable: comes to rest or dies out{}", rule.bounded ? ", or vibrates without growing" : "");
   if (!rule.most_vibration && moved)
@@ -278,15 +348,13 @@ static JudgedRun judged_once(const LoadedScenario& loaded, const std::shared_ptr
                              const StabilityRule& rule) {
   const Scenario& scenario = loaded.scenario;
   MotionClassifier classifier = classifier_of(scenario, rule.tremor ? *rule.tremor : tremor_speeds(loaded));
-  LastRows last(scenario.time);
+  LastRows last(scenario);
   SimulationParts parts = assemble(scenario, loaded.files, shell, {});
   const std::shared_ptr<const ToolShape> tool = parts.tool;
   const auto seen = encounter_observer(scenario, loaded.files, parts);
   Simulation simulation(simulation_config(scenario), std::move(parts), {&classifier, &last, seen.get()});
   const MotionClass motion = classify(simulation, classifier);
-  SettledState settled = last.state();
-  // A run that was cut short there would tell the vibration of an earlier quarter.
-  if (classifier.at_rest() && settled.vibration) settled.vibration = 0.0;
+  const SettledState settled = last.state(classifier.at_rest());
   const Outcome outcome = seen->outcome(simulation.result().outcome);
   const auto verdict = [&] {
     if (motion == MotionClass::diverged) return RunVerdict::diverged;
@@ -295,6 +363,8 @@ static JudgedRun judged_once(const LoadedScenario& loaded, const std::shared_ptr
     if (outcome == Outcome::leaves_hole || (shell && last.has_left(*shell, tool->reach())))
       return RunVerdict::thrown_out;
     if (const auto known = verdict_of(outcome)) return *known;
+    const bool only_fast = rule.most_vibration || is_moved(scenario);
+    if (only_fast && last.goes_on_bouncing()) return RunVerdict::vibrating;
     return verdict_of(motion, settled, rule.most_vibration);
   };
   JudgedRun run{verdict(), settled, last.way()};
@@ -326,9 +396,9 @@ bool unstable_without_contact(const LoadedScenario& loaded, std::optional<double
   Scenario scenario = loaded.scenario;
   if (auto* device = std::get_if<ImpedanceDeviceConfig>(&scenario.device)) device->coulomb = 0.0;
   MotionClassifier classifier = classifier_of(scenario, tremor_speeds(loaded));
-  LastRows last(scenario.time);
+  LastRows last(scenario, true);
   const MotionClass motion = classify_alone(scenario, loaded.files, classifier, {&classifier, &last});
-  return !is_stable(verdict_of(motion, last.state(), most_vibration));
+  return !is_stable(verdict_of(motion, last.state(classifier.at_rest()), most_vibration));
 }
 
 }  // namespace hapbench

@@ -133,9 +133,10 @@ inline bool is_stable(RunVerdict verdict) noexcept {
 /// By a run of hand and device alone, with the scenario's first trial. Throws Stopped.
 TremorSpeeds tremor_speeds(const LoadedScenario& loaded);
 
-/// The last quarter of a run, and how the tool came to touch.
+/// What a run settles to, in its last quarter unless said otherwise, and how the tool came to touch.
 struct SettledState {
-  /// Root mean square of the handle's speed above 30 Hz [m/s]; empty at sampling rates of 60 Hz or less.
+  /// Root mean square of the handle's speed above 30 Hz in the judged rows (JudgedRows), from a quarter of the contact
+  /// on [m/s]; empty at sampling rates of 60 Hz or less.
   std::optional<double> vibration;
   double contacts = 0.0;     ///< mean number of rendered contacts of the rows in contact
   double lambda_max = 0.0;   ///< largest eigenvalue of their mean S: the stiffness rendered, in units of K
@@ -145,9 +146,10 @@ struct SettledState {
 
 /// What a run has to do to be stable: the one rule of limits, maps of devices and comparisons.
 struct StabilityRule {
-  /// Most vibration of the handle in the last quarter, which then decides between stable and vibrating whatever the
+  /// Most vibration of the handle in the judged rows, which then decides between stable and vibrating whatever the
   /// class of the motion [m/s rms]: a limit cycle that is too small to be felt is stable, and motion that is felt is
-  /// not, though it may die out; nothing is stable where no vibration is measured.
+  /// not, though it may die out; nothing is stable where no vibration is measured. A tool that bounces more slowly than
+  /// 30 Hz vibrates while its bounces do not get lower by 1 %.
   std::optional<double> most_vibration = {};
   /// Bounds on metrics of summary.json; a metric without a value keeps none.
   std::map<std::string, MetricBound> bounds = {};
@@ -159,6 +161,10 @@ struct StabilityRule {
     return is_stable(verdict) || (bounded && verdict == RunVerdict::vibrating);
   }
 };
+
+/// The rule where nobody asks for another: where a script moves the tool, which then is never at rest, what is felt
+/// decides (kMostVibration); not of a hand that trembles, nor at 60 Hz and less.
+StabilityRule rule_of(const Scenario& scenario);
 
 /// The rule as one line; `moved`: a script moves the tool (is_moved).
 std::string rule_text(const StabilityRule& rule, bool moved);

@@ -1,6 +1,7 @@
 #include "scenarios/studies/tuning/tune.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -13,12 +14,14 @@
 #include "device_model/theory/linear_loops.hpp"
 #include "scenarios/batch/comparison.hpp"
 #include "scenarios/batch/parallel_for.hpp"
-#include "scenarios/batch/statistics.hpp"
-#include "scenarios/input/json_file.hpp"
 #include "scenarios/run/assemble.hpp"
+#include "scenarios/run/diagnosis.hpp"
 #include "scenarios/run/run_scenario.hpp"
+#include "scenarios/run/scene_facts.hpp"
 #include "scenarios/run/scene_loop.hpp"
+#include "scenarios/studies/convergence/convergence.hpp"
 #include "scenarios/studies/stability/judged_run.hpp"
+#include "sim/core/bisection.hpp"
 #include "sim/core/math.hpp"
 
 namespace hapbench {
@@ -62,7 +65,7 @@ TuneRanges tune_ranges(const TuneQuestion& question, const std::string& algorith
 namespace {
 
 /// The settings to begin with, the scene's own first: with equal K it stays.
-std::vector<TuneSetting> settings_of(const TuneQuestion& question, const TuneRanges& ranges, const Scenario& own) {
+std::vector<TuneSetting> settings_of(const TuneRanges& ranges, const Scenario& own) {
   std::vector<std::optional<double>> ratios = {std::nullopt};
   if (ranges.damping_ratio) {
     const auto [from, to, logarithmic] = *ranges.damping_ratio;
@@ -76,85 +79,15 @@ std::vector<TuneSetting> settings_of(const TuneQuestion& question, const TuneRan
     const auto [from, to, logarithmic] = *ranges.mass;
     masses = {std::clamp(own.rendering.mass, from, to), from, to};
   }
-  std::vector<std::string> filters = {""};
-  if (question.filters && handle_moves_tool(own.device))
-    filters.insert(filters.end(), std::begin(kFilters), std::end(kFilters));
   std::vector<TuneSetting> settings;
-  for (const std::string& filter : filters)
-    for (const auto& mass : masses)
-      for (const auto& ratio : ratios) settings.push_back({ratio, mass, filter});
+  for (const auto& mass : masses)
+    for (const auto& ratio : ratios) settings.push_back({ratio, mass, ""});
   return settings;
 }
 
-std::vector<FamilyMember> hands_of(const Scenario& scenario) {
-  const bool has_mass = std::holds_alternative<MassSpringDamperHandFields>(scenario.hand);
-  if (!has_mass && spring_of(scenario.hand) == nullptr && !std::holds_alternative<DragHandFields>(scenario.hand))
-    return {};
-  const auto family = hand_family().subspan(1);  // the first is no hand
-  const auto [soft, stiff] = std::ranges::minmax(family, {}, &AttachedHand::stiffness);
-  const auto [light, heavy] = std::ranges::minmax(family, {}, &AttachedHand::mass);
-  std::vector<FamilyMember> hands;
-  for (const double k : {soft.stiffness, stiff.stiffness}) {
-    const std::string spring = fmt::format("hand.stiffness_N_per_m={}", k);
-    if (!has_mass) hands.push_back({fmt::format("a hand of {} N/m", k), {spring}});
-    for (const double m : {light.mass, heavy.mass})
-      if (has_mass)
-        hands.push_back({fmt::format("a hand of {} kg and {} N/m", m, k), {spring, fmt::format("hand.mass_kg={}", m)}});
-  }
-  return hands;
-}
-
-std::vector<FamilyMember> seeds_of(const LoadedScenario& loaded) {
-  const Axis axis = seed_axis(loaded.scenario, kSeeds, kSeedShift);
-  std::vector<FamilyMember> seeds;
-  for (std::size_t k = 1; k < kSeeds; ++k)
-    seeds.push_back({"seed " + axis.values[k], {"seed=" + axis.values[k], axis.along[k].overrides.front()}});
-  return seeds;
-}
-
-/// Makes everything in the JSON of a hand or a motion so many times as fast.
-void hasten(Json& json, double times) {
-  if (!json.is_structured()) return;
-  for (auto& [key, value] : json.items()) {
-    if (value.is_number() && (key == "speed_m_per_s" || key == "rate_per_s")) value = value.get<double>() * times;
-    if (value.is_number() && key == "period_s") value = value.get<double>() / times;
-    if (key == "points" && value.is_array()) {
-      for (Json& point : value) point[0] = point[0].get<double>() / times;
-    } else {
-      hasten(value, times);
-    }
-  }
-}
-
-std::vector<FamilyMember> speeds_of(const LoadedScenario& loaded) {
-  std::vector<FamilyMember> speeds;
-  const Json own = effective_scenario(loaded.scenario, loaded.scenario.directory);
-  for (const double times : {0.5, 2.0}) {
-    FamilyMember member{times < 1.0 ? "half the speed" : "twice the speed"};
-    for (const char* section : {"hand", "motion"}) {
-      Json json = own.value(section, Json());
-      hasten(json, times);
-      if (json != own.value(section, Json())) member.overrides.push_back(fmt::format("{}={}", section, json.dump()));
-    }
-    if (member.overrides.empty()) return {};
-    member.overrides.push_back(
-        fmt::format("time.steps={:.0f}", static_cast<double>(loaded.scenario.time.steps) / times));
-    speeds.push_back(std::move(member));
-  }
-  return speeds;
-}
-
-}  // namespace
-
-std::vector<FamilyMember> family_of(const LoadedScenario& loaded, FamilyOver over) {
-  if (over == FamilyOver::hands) return hands_of(loaded.scenario);
-  return over == FamilyOver::seeds ? seeds_of(loaded) : speeds_of(loaded);
-}
-
-namespace {
-
 constexpr double kResolution = 5e-3;  // of K
 constexpr double kFinest = 1.004;     // ratio of zeta, or of the mass, at which the search ends
+constexpr double kMuchLess = 1.25;    // of K, that is given up where a choice does not hold for longer
 
 /// Tunes one law of a question.
 class Tuner {
@@ -163,35 +96,32 @@ class Tuner {
       : question_(question), algorithm_(algorithm), ranges_(tune_ranges(question, algorithm)) {
     const LoadedScenario own = at({}, ranges_.stiffness.from, {});
     shell_ = make_shell(own.scenario, own.files);
-    settings_ = settings_of(question, ranges_, own.scenario);
+    settings_ = settings_of(ranges_, own.scenario);
     family_.push_back({"the scene's own run"});
     for (const FamilyOver over : question.over)
       for (FamilyMember& member : family_of(own, over)) family_.push_back(std::move(member));
     fail(end_, "range", "the end of the range that was searched");
     if (springs_stay(own.scenario)) springs_lambda_ = stiffness_eigenvalues(own.scenario)[2];
+    has_filters_ = question.filters && handle_moves_tool(own.scenario.device);
+    limits_ = question.limits;
+    is_quiet_ = limits_.empty();
+    for (const DiagnosisRule& rule : diagnosis_rules())
+      if (is_quiet_ && rule.quiet) limits_[rule.name].max = rule.threshold;
+    cap_ = ranges_.stiffness.to;
   }
 
   TunedLaw tuned() {
     TunedLaw law;
     law.algorithm = algorithm_;
-    Range range = ranges_.stiffness;
-    range.to /= question_.margin;
     do {
-      search(range);
-      const auto failing = best_ ? failing_gain(*best_, law.verified) : std::nullopt;
-      if (!failing) break;
-      // Not settled at a gain within the margin: any K whose margin reaches there is out.
-      range.to = best_->stiffness * *failing / question_.margin * (1.0 - kResolution);
-      fail(end_, "margin", fmt::format("at {:.4g} N/m it is not settled", best_->stiffness * *failing));
       best_.reset();
-    } while (range.to > range.from);
+      search();
+    } while (best_ && (is_refuted(*best_, law) || is_beyond_limits(*best_, law)));
     if (best_) {
-      if (best_->metrics.empty()) best_->metrics = own_metrics_of(*best_);
       law.choice = best_;
       law.binding = beyond_.binding;
       law.why = beyond_.why;
       law.margins = margins(*best_);
-      law.spread = spread(*best_);
       law.overrides = overrides(*best_, best_->stiffness);
       along_stiffness(*best_);
     } else {
@@ -228,30 +158,25 @@ class Tuner {
   void in_parallel(std::size_t count, const std::function<void(std::size_t)>& job) {
     runs_ += count;
     for_each_job(count, {question_.threads, ""}, job);
+    if (question_.on_runs) question_.on_runs(runs_);
   }
-  /// Where a script moves the tool, it is never at rest: then what is felt decides, as in `limit --stable still`.
-  JudgedRun judged(const LoadedScenario& loaded) const {
-    StabilityRule rule;
-    if (is_moved(loaded.scenario)) rule.most_vibration = kMostVibration;
-    return judged_run(loaded, shell_, rule);
-  }
-  TuneMetrics metrics_of(const LoadedScenario& loaded) const {
-    const Result summary = run_with_shell(loaded, shell_);
+  JudgedRun judged(const LoadedScenario& loaded) const { return judged_run(loaded, shell_, rule_of(loaded.scenario)); }
+  /// The metrics of a choice and those that are limited.
+  TuneMetrics metrics_of(const Result& run) const {
     TuneMetrics metrics;
     const auto add = [&](const std::string& name) {
-      if (const auto value = number_of(summary.metrics, name)) metrics[name] = *value;
+      if (const auto value = number_of(run.metrics, name)) metrics[name] = *value;
     };
     for (const char* name : kTuneMetrics) add(name);
     for (const auto& [name, bound] : question_.limits) add(name);
     return metrics;
   }
-  std::vector<TuneMetrics> metrics_of(const TuneTrial& trial, std::span<const FamilyMember> members) {
-    std::vector<TuneMetrics> metrics(members.size());
-    in_parallel(members.size(),
-                [&](std::size_t i) { metrics[i] = metrics_of(at(trial, trial.stiffness, members[i])); });
+  TuneMetrics own_metrics_of(const TuneTrial& trial) {
+    TuneMetrics metrics;
+    in_parallel(
+        1, [&](std::size_t) { metrics = metrics_of(run_with_shell(at(trial, trial.stiffness, family_[0]), shell_)); });
     return metrics;
   }
-  TuneMetrics own_metrics_of(const TuneTrial& trial) { return metrics_of(trial, std::span(family_).first(1))[0]; }
 
   // ---- The loop in contact
 
@@ -310,27 +235,68 @@ class Tuner {
     return false;
   }
 
-  /// Finds the first limit that a member does not keep, and the worst of each metric.
+  /// Finds the worst of what is limited: of a quiet run in the scene's own, of a user's metrics in all.
   void judge_limits(TuneTrial& trial) {
-    if (question_.limits.empty()) return;
-    const std::vector<TuneMetrics> metrics = metrics_of(trial, family_);
-    trial.metrics = metrics[0];
-    for (const auto& [name, bound] : question_.limits) {
-      for (std::size_t i = 0; i < metrics.size(); ++i) {
-        const auto found = metrics[i].find(name);
-        const bool known = found != metrics[i].end();
-        const double value = known ? found->second : 0.0;
-        if (known) {
-          double& worst = trial.worst.try_emplace(name, value).first->second;
-          worst = bound.max ? std::max(worst, value) : std::min(worst, value);
-        }
-        const bool more = known && bound.max && value > *bound.max, less = known && bound.min && value < *bound.min;
-        if ((known && !more && !less) || !trial.feasible()) continue;
-        trial.too_soft = more && (name.starts_with("inside") || name.starts_with("depth"));
-        fail(trial, name, (known ? fmt::format("{} {:.4g}", name, value) : name + " has no value") + with(family_[i]));
+    const std::size_t members = is_quiet_ ? 1 : family_.size();
+    std::vector<TuneMetrics> metrics(members);
+    in_parallel(members, [&](std::size_t i) {
+      const LoadedScenario loaded = at(trial, trial.stiffness, family_[i]);
+      const Result run = run_with_shell(loaded, shell_);
+      metrics[i] = metrics_of(run);
+      if (!is_quiet_) return;
+      for (const Diagnosed& number : quiet_numbers(loaded, run)) {
+        trial.worst[number.rule] = number.value;
+        trial.worst_text[number.rule] = number.says;
       }
+    });
+    trial.metrics = metrics[0];
+    for (const auto& [name, bound] : question_.limits) note_worst(trial, name, bound, metrics);
+    judge_worst(trial);
+  }
+
+  /// The worst value of a limited metric; none where it has none in some run.
+  void note_worst(TuneTrial& trial, const std::string& name, const MetricBound& bound,
+                  std::span<const TuneMetrics> metrics) const {
+    for (std::size_t i = 0; i < metrics.size(); ++i) {
+      const auto found = metrics[i].find(name);
+      if (found == metrics[i].end()) {
+        trial.worst.erase(name);
+        trial.worst_text[name] = name + " has no value" + with(family_[i]);
+        return;
+      }
+      const auto [worst, is_first] = trial.worst.try_emplace(name, found->second);
+      const bool is_worse = bound.max ? found->second > worst->second : found->second < worst->second;
+      if (!is_first && !is_worse) continue;
+      worst->second = found->second;
+      trial.worst_text[name] = fmt::format("{} {:.4g}{}", name, found->second, with(family_[i]));
+    }
+  }
+
+  /// Finds the first limit that is not kept. Precondition: judge_limits.
+  void judge_worst(TuneTrial& trial) const {
+    trial.binding.clear();
+    trial.too_soft = false;
+    for (const auto& [name, bound] : limits_) {
+      if (!(times_limit(trial, name, bound) > 1.0)) continue;
+      trial.too_soft =
+          bound.max && trial.worst.contains(name) && (name.starts_with("inside") || name.starts_with("depth"));
+      fail(trial, name, trial.worst_text.at(name));
+      break;
     }
     trial.limits_alone = !trial.feasible();
+  }
+
+  /// How many times its limit the worst value is; at most 1 where it is kept, infinite where there is no value. A quiet
+  /// run has no number of what it has nothing of.
+  double times_limit(const TuneTrial& trial, const std::string& name, const MetricBound& bound) const {
+    constexpr double kBeyond = std::numeric_limits<double>::infinity();
+    const auto found = trial.worst.find(name);
+    if (found == trial.worst.end()) return is_quiet_ ? 0.0 : kBeyond;
+    const double value = found->second;
+    const auto times = [](double far, double near) { return far > 0.0 && near > 0.0 ? far / near : kBeyond; };
+    if (bound.max && value > *bound.max) return std::max(times(value, *bound.max), std::nextafter(1.0, 2.0));
+    if (bound.min && value < *bound.min) return std::max(times(*bound.min, value), std::nextafter(1.0, 2.0));
+    return 1.0;
   }
 
   static void fail(TuneTrial& trial, const std::string& binding, const std::string& why) {
@@ -354,24 +320,38 @@ class Tuner {
     if (trial.feasible()) judge_limits(trial);
     return trial;
   }
-  bool feasible(const TuneSetting& setting, double stiffness) { return tried(setting, stiffness).feasible(); }
+  bool feasible(const TuneSetting& setting, double stiffness) {
+    return stiffness <= cap_ && tried(setting, stiffness).feasible();
+  }
+  const TuneTrial& beyond(const TuneSetting& setting, double stiffness) {
+    return stiffness <= cap_ ? tried(setting, stiffness) : end_;
+  }
 
   // ---- Search
 
-  void search(const Range& range) {
-    for (const TuneSetting& setting : settings_) improve(setting, range);
+  Range stiffnesses() const { return {ranges_.stiffness.from, ranges_.stiffness.to / question_.margin, true}; }
+
+  void search() {
+    for (const TuneSetting& setting : settings_) improve(setting);
+    if (!best_) approach();
     if (!best_) return;
-    using Searched = std::pair<std::optional<double> TuneSetting::*, std::optional<Range>>;
-    const Searched all[] = {{&TuneSetting::damping_ratio, ranges_.damping_ratio}, {&TuneSetting::mass, ranges_.mass}};
+    for (const char* filter : kFilters) {
+      for (const TuneSetting& setting : settings_)
+        if (has_filters_ && setting.mass == best_->mass) improve({setting.damping_ratio, setting.mass, filter});
+    }
+    refine();
+  }
+
+  void refine() {
     for (double ratio = math::pow(10.0, 0.125); ratio > kFinest; ratio = std::sqrt(ratio)) {
       for (bool better = true; better;) {
         better = false;
         for (const double step : {ratio, 1.0 / ratio}) {
-          for (const auto& [value, searched] : all) {
-            if (!searched) continue;
+          for (const auto& [value, range] : searched()) {
+            if (!range) continue;
             TuneSetting next = *best_;
-            next.*value = std::clamp(*(next.*value) * step, searched->from, searched->to);
-            better = improve(next, range) || better;
+            next.*value = std::clamp(*(next.*value) * step, range->from, range->to);
+            better = improve(next) || better;
           }
         }
       }
@@ -379,25 +359,68 @@ class Tuner {
   }
 
   /// Raises K at this setting if it can be raised beyond the best; true if it was.
-  bool improve(const TuneSetting& setting, const Range& range) {
-    SearchWay way{.range = range, .resolution = kResolution};
-    way.range.logarithmic = true;
+  bool improve(const TuneSetting& setting) {
+    SearchWay way{.range = stiffnesses(), .resolution = kResolution};
     if (best_) {
       way.range.from = best_->stiffness * (1.0 + kResolution);
-      if (!(way.range.from < range.to)) return false;
+      if (!(way.range.from < way.range.to)) return false;
       if (!feasible(setting, way.range.from)) {
-        if (setting == *best_) beyond_ = tried(setting, way.range.from);
+        if (setting == *best_) beyond_ = beyond(setting, way.range.from);
         return false;
       }
     }
     const auto holds = [&](double part) { return feasible(setting, way.value_at(part)); };
     std::map<double, bool> scan = scanned(kEdgeIntervals, holds);
     if (const auto between = window(setting, way, scan)) scan[*between] = true;
-    const FoundEdge edge = find_edge(way, std::move(scan), holds, kResolution, false);
+    const FoundEdge edge = find_edge(way, scan, holds, kResolution, false);
     if (!edge.stable) return false;
     best_ = tried(setting, way.value_at(*edge.stable));
-    beyond_ = edge.beyond ? tried(setting, way.value_at(*edge.beyond)) : end_;
+    beyond_ = edge.beyond ? beyond(setting, way.value_at(*edge.beyond)) : end_;
     return true;
+  }
+
+  /// Where only limits are not kept, walks from the trial that is nearest to keeping them all towards them.
+  void approach() {
+    const TuneTrial* at = nearest();
+    if (at == nullptr) return;
+    const auto is_better = [&](const TuneSetting& setting, double stiffness) {
+      const Range range = stiffnesses();
+      TuneTrial& next = tried(setting, std::clamp(stiffness, range.from, std::min(cap_, range.to)));
+      if (next.feasible()) best_ = next;
+      if (!best_ && !(next.limits_alone && excess(next) < excess(*at))) return false;
+      at = &next;
+      return true;
+    };
+    for (double ratio = math::pow(10.0, 0.25); ratio > kFinest && !best_; ratio = std::sqrt(ratio))
+      while (!best_ && std::ranges::any_of(neighbours(*at, ratio),
+                                           [&](const TuneTrial& n) { return is_better(n, n.stiffness); })) {
+      }
+    if (best_) improve(*best_);
+  }
+
+  /// The settings and stiffnesses around a trial: each of its numbers times and over the ratio, and other filters.
+  std::vector<TuneTrial> neighbours(const TuneTrial& trial, double ratio) const {
+    std::vector<TuneTrial> all;
+    for (const double times : {ratio, 1.0 / ratio}) {
+      all.push_back(trial);
+      all.back().stiffness *= times;
+      for (const auto& [value, range] : searched()) {
+        if (!range) continue;
+        all.push_back(trial);
+        all.back().*value = std::clamp(*(trial.*value) * times, range->from, range->to);
+      }
+    }
+    for (const char* filter : kFilters) {
+      if (!has_filters_) break;
+      all.push_back(trial);
+      all.back().filter = filter;
+    }
+    return all;
+  }
+
+  using Searched = std::pair<std::optional<double> TuneSetting::*, std::optional<Range>>;
+  std::array<Searched, 2> searched() const {
+    return {{{&TuneSetting::damping_ratio, ranges_.damping_ratio}, {&TuneSetting::mass, ranges_.mass}}};
   }
 
   /// Where no value of a scan is feasible: one between those that are too soft and those that are too stiff.
@@ -417,49 +440,200 @@ class Tuner {
 
   // ---- What is known of a choice
 
-  /// True when the runs of the whole family, with this gain and further override, are settled.
-  bool settled(const TuneTrial& trial, double gain, const std::string& more = {}) {
-    std::vector<char> stable(family_.size());
-    in_parallel(family_.size(), [&](std::size_t i) {
-      const LoadedScenario loaded = at(trial, gain * trial.stiffness, family_[i], more);
-      const double lambda = springs_lambda_.value_or(trial.lambda_max);
-      stable[i] = !unstable_loop(loaded.scenario, lambda, trial.stiffness, gain) && is_stable(judged(loaded).verdict);
-    });
-    return std::ranges::all_of(stable, [](char one) { return one != 0; });
-  }
+  /// What a choice is strained by: a factor on K and a further override.
+  struct Strain {
+    double gain = 1.0;
+    std::string more = {};
+  };
+  using Strained = std::function<Strain(double value)>;  ///< at a value of a way
 
-  /// The first of the gains from 1 to G at which the choice is not settled.
-  std::optional<double> failing_gain(const TuneTrial& trial, std::size_t& verified) {
-    verified = 0;
-    for (int i = 0; i < kVerifiedGains; ++i) {
-      const double gain = math::pow(question_.margin, static_cast<double>(i) / (kVerifiedGains - 1));
-      if (!settled(trial, gain)) return gain;
-      verified += family_.size();
-    }
+  /// Why the run of a member is not settled; empty where it is.
+  std::string unsettled(const TuneTrial& trial, const FamilyMember& member, const Strain& strain) const {
+    const LoadedScenario loaded = at(trial, strain.gain * trial.stiffness, member, strain.more);
+    const double lambda = springs_lambda_.value_or(trial.lambda_max);
+    if (unstable_loop(loaded.scenario, lambda, trial.stiffness, strain.gain))
+      return "unstable in contact" + with(member);
+    const RunVerdict verdict = judged(loaded).verdict;
+    return is_stable(verdict) ? "" : std::string(run_verdict_name(verdict)) + with(member);
+  }
+  /// Why a run of the family is not settled; empty where all are.
+  std::string unsettled(const TuneTrial& trial, const Strain& strain) {
+    std::vector<std::string> why(family_.size());
+    in_parallel(family_.size(), [&](std::size_t i) { why[i] = unsettled(trial, family_[i], strain); });
+    const auto first = std::ranges::find_if(why, [](const std::string& one) { return !one.empty(); });
+    return first == why.end() ? "" : *first;
+  }
+  bool is_settled(const TuneTrial& trial, const Strain& strain) { return unsettled(trial, strain).empty(); }
+
+  /// A part of a way at which a run is not settled, and why.
+  struct Failing {
+    double part;
+    std::string why;
+  };
+  /// The first of these parts, the family taking turns.
+  std::optional<Failing> first_failing(const TuneTrial& trial, const SearchWay& way, std::span<const double> parts,
+                                       const Strained& strained) {
+    std::vector<std::string> why(parts.size());
+    in_parallel(parts.size(), [&](std::size_t i) {
+      why[i] = unsettled(trial, family_[i % family_.size()], strained(way.value_at(parts[i])));
+    });
+    for (std::size_t i = 0; i < parts.size(); ++i)
+      if (!why[i].empty()) return Failing{parts[i], why[i]};
     return std::nullopt;
   }
+  static Strain by_gain(double gain) { return {gain}; }
 
-  /// The last of the values along a way up to which `holds`.
-  static double last_of(const SearchWay& way, const std::function<bool(double)>& holds) {
-    const auto at_part = [&](double part) { return holds(way.value_at(part)); };
+  /// True where the choice does not hold at gains between 1 and G, or in runs twice as long. Then no K is tried any
+  /// more that reaches what failed.
+  bool is_refuted(const TuneTrial& trial, TunedLaw& law) {
+    const SearchWay gains{.range = {1.0, question_.margin, true}};
+    std::vector<double> parts = parts_between(0.0, 1.0, kTriedBetween);
+    const std::vector<double> near = parts_between(1.0, 1.0 - near_part(gains, 1.0), kTriedNear);
+    parts.insert(parts.end(), near.begin(), near.end());
+    if (const auto failing = first_failing(trial, gains, parts, by_gain)) {
+      const double K = trial.stiffness * gains.value_at(failing->part);
+      refuted_ = std::min(refuted_, K);
+      cap_ = K / question_.margin * (1.0 - kResolution);
+      fail(end_, "margin", fmt::format("at {:.4g} N/m{} {}", K, setting_text(trial), failing->why));
+      return true;
+    }
+    law.verified = parts.size();
+    if (own_edge_is_near(trial, law)) return true;
+    const Scenario own = at(trial, trial.stiffness, family_[0]).scenario;
+    const double duration = own.time.step * static_cast<double>(own.time.steps);
+    // A script that leads on comes to places that the scene does not ask for.
+    if (script_moves_until(own) > duration && script_period(own) == 0.0) return false;
+    const std::string why = unsettled(trial, {1.0, fmt::format("time.steps={}", 2 * own.time.steps)});
+    if (why.empty()) return false;
+    cap_ = trial.stiffness / kMuchLess;
+    fail(end_, "settled",
+         fmt::format("at {:.4g} N/m{} in a run twice as long {}", trial.stiffness, setting_text(trial), why));
+    return true;
+  }
+
+  /// Finds the edges of K in the scene as chosen; true where the own run has one before G K.
+  bool own_edge_is_near(const TuneTrial& trial, TunedLaw& law) {
+    const std::vector<std::string> chosen = overrides(trial, trial.stiffness);
+    law.edge_question = limit_question(question_.scenario, chosen, kTunedField, {});
+    static_cast<StabilityRule&>(law.edge_question) = rule_of(load_scenario(question_.scenario, chosen).scenario);
+    law.edge_question.threads = question_.threads;
+    law.edge = field_limit({&question_.scenario, chosen, algorithm_, law.edge_question});
+    runs_ += law.edge.runs.size();
+    const double G_K = question_.margin * trial.stiffness;
+    if (!law.edge.value || (law.edge.beyond && law.edge.beyond->value < G_K)) {
+      const double K = law.edge.value ? law.edge.beyond->value : G_K;
+      refuted_ = std::min(refuted_, K);
+      cap_ = K / question_.margin * (1.0 - kResolution);
+      fail(end_, "margin",
+           fmt::format("at {:.4g} N/m{} {}", K, setting_text(trial),
+                       law.edge.value ? std::string(run_verdict_name(law.edge.beyond->verdict))
+                                      : "stable values are scattered"));
+      return true;
+    }
+    if (law.edge.beyond) refuted_ = std::min(refuted_, law.edge.beyond->value);
+    return false;
+  }
+
+  /// True where a limit of the user is not kept by as much as the metric's error. Then less is allowed.
+  bool is_beyond_limits(TuneTrial& choice, TunedLaw& law) {
+    if (choice.metrics.empty()) choice.metrics = own_metrics_of(choice);
+    law.error = last_error_ = known_errors(choice);
+    bool beyond = false;
+    for (const auto& [name, bound] : question_.limits) {
+      const auto worst = choice.worst.find(name), error = law.error.find(name);
+      if (worst == choice.worst.end() || error == law.error.end()) continue;
+      MetricBound& allowed = limits_[name];
+      if (bound.max && worst->second + error->second > *bound.max) {
+        allowed.max = std::min(*allowed.max * (1.0 - kResolution), std::max(*bound.max - error->second, 0.0));
+        beyond = true;
+      }
+      if (bound.min && worst->second - error->second < *bound.min) {
+        allowed.min = *bound.min + error->second;
+        beyond = true;
+      }
+    }
+    for (auto& [key, trial] : trials_)
+      if (beyond && (trial.limits_alone || trial.feasible())) judge_worst(trial);
+    return beyond;
+  }
+
+  /// How far the metrics of the choice move where the scene's own run has half the step or half the distance of the
+  /// points, and where its depth is looked at in every row: the largest difference; none of a metric that such a run
+  /// does not have.
+  TuneMetrics known_errors(const TuneTrial& choice) {
+    std::vector<std::string> chosen = overrides(choice, choice.stiffness);
+    const LoadedScenario own = load_scenario(question_.scenario, chosen);
+    std::vector<Cases> finer;
+    const auto add = [&](Axis axis) {
+      finer.emplace_back(std::vector{question_.scenario}, chosen, std::vector{std::move(axis)});
+    };
+    add(finest_of(level_sweep(own, kStepPath, 2, 2.0).axis));
+    if (const auto distance = point_distance(own)) {
+      add(finest_of(level_sweep(own, distance->path, 2, 2.0).axis));
+      add({.path = "record.inside", .values = {"true"}});
+    }
+    runs_ += finer.size();
+    TuneMetrics error;
+    std::vector<TuneMetrics> all;
+    for (const Result& run : run_all(finer, {question_.threads, ""})) all.push_back(metrics_of(run));
+    for (const auto& [name, value] : choice.metrics) {
+      double most = 0.0;
+      for (const TuneMetrics& metrics : all) {
+        const auto found = metrics.find(name);
+        most = found == metrics.end() ? std::numeric_limits<double>::infinity()
+                                      : std::max(most, std::abs(found->second - value));
+      }
+      if (std::isfinite(most)) error[name] = most;
+    }
+    return error;
+  }
+  static Axis finest_of(Axis axis) {
+    axis.values = {axis.values.back()};
+    if (!axis.along.empty()) axis.along = {axis.along.back()};
+    return axis;
+  }
+
+  /// The last value of a way up to which the choice is settled, also at values between.
+  double last_settled(const TuneTrial& choice, const SearchWay& way, const Strained& strained) {
+    const auto holds = [&](double part) { return is_settled(choice, strained(way.value_at(part))); };
     bool all = true;  // a run beyond the first edge tells nothing
-    std::map<double, bool> scan = scanned(kEdgeIntervals, [&](double part) { return all = all && at_part(part); });
-    return way.value_at(find_edge(way, std::move(scan), at_part, way.resolution, false).stable.value_or(0.0));
+    std::map<double, bool> scan = scanned(kEdgeIntervals, [&](double part) { return all = all && holds(part); });
+    double last = find_edge(way, scan, holds, way.resolution, false).stable.value_or(0.0);
+    while (const auto failing = first_failing(choice, way, parts_up_to(way, last), strained)) {
+      const auto good = std::ranges::find_if(
+          scan.rbegin(), scan.rend(), [&](const auto& tried) { return tried.second && tried.first < failing->part; });
+      double low = good == scan.rend() ? 0.0 : good->first, high = failing->part;
+      bisect(
+          low, high, holds, [](double a, double b) { return 0.5 * (a + b); },
+          [&](double a, double b) { return way.apart(a, b, way.resolution); });
+      last = low;
+    }
+    return way.value_at(last);
+  }
+  /// kTriedBetween parts before the last, of delays also each quarter of a sample; of whole numbers all.
+  static std::vector<double> parts_up_to(const SearchWay& way, double last) {
+    std::vector<double> parts;
+    if (!way.whole) parts = parts_between(0.0, last, kTriedBetween);
+    const double step = way.range.logarithmic ? 1.0 : (way.whole ? 1.0 : 0.25) / (way.range.to - way.range.from);
+    for (double part = step; part < last; part += step) parts.push_back(part);
+    return parts;
   }
 
   TuneMargins margins(const TuneTrial& choice) {
     TuneMargins margins;
-    const double most = ranges_.stiffness.to / choice.stiffness;
-    if (most > question_.margin) {
+    const double most = std::min(ranges_.stiffness.to, refuted_) / choice.stiffness;
+    if (most > question_.margin * (1.0 + kResolution)) {
       const SearchWay gains{.range = {question_.margin, std::min(kMostGain, most), true}, .resolution = kResolution};
-      margins.gain = last_of(gains, [&](double gain) { return settled(choice, gain); });
+      margins.gain = last_settled(choice, gains, by_gain);
+    } else if (refuted_ < ranges_.stiffness.to) {
+      margins.gain = question_.margin;
     }
     const Scenario scenario = at(choice, choice.stiffness, family_[0]).scenario;
     if (has_device(scenario)) {
       const bool whole = std::holds_alternative<AdmittanceDeviceConfig>(scenario.device);
       const SearchWay delays{.range = {0.0, kMostDelay}, .whole = whole, .resolution = 0.02 / kMostDelay};
-      margins.delay_samples = last_of(delays, [&](double more) {
-        return settled(choice, 1.0, fmt::format("{}={}", delay_path(scenario), delay_of(scenario) + more));
+      margins.delay_samples = last_settled(choice, delays, [&](double more) {
+        return Strain{1.0, fmt::format("{}={}", delay_path(scenario), delay_of(scenario) + more)};
       });
     }
     const double lambda = springs_lambda_.value_or(choice.lambda_max);
@@ -473,20 +647,6 @@ class Tuner {
       }
     }
     return margins;
-  }
-
-  TuneMetrics spread(const TuneTrial& choice) {
-    const LoadedScenario own = at(choice, choice.stiffness, family_[0]);
-    std::vector<TuneMetrics> all = metrics_of(choice, family_of(own, FamilyOver::seeds));
-    all.push_back(choice.metrics);
-    TuneMetrics spread;
-    for (const auto& [name, value] : choice.metrics) {
-      std::vector<double> values;
-      for (const TuneMetrics& metrics : all)
-        if (const auto found = metrics.find(name); found != metrics.end()) values.push_back(found->second);
-      if (values.size() == all.size()) spread[name] = standard_deviation(values);
-    }
-    return spread;
   }
 
   /// Trials from a thirtieth of the choice's stiffness to thirty times, for pictures.
@@ -504,36 +664,68 @@ class Tuner {
   // ---- Nothing feasible
 
   /// How far a trial is beyond its limits: how many it does not keep, and the largest ratio of a value to what is
-  /// allowed; infinite where there is none.
+  /// allowed.
   std::pair<int, double> excess(const TuneTrial& trial) const {
     std::pair<int, double> found{0, 0.0};
-    for (const auto& [name, bound] : question_.limits) {
-      const auto value = trial.worst.find(name);
-      const bool known = value != trial.worst.end() && bound.max && *bound.max > 0.0;
-      const double ratio = known ? value->second / *bound.max : std::numeric_limits<double>::infinity();
-      found.first += ratio > 1.0;
-      found.second = std::max(found.second, ratio);
+    for (const auto& [name, bound] : limits_) {
+      const double times = times_limit(trial, name, bound);
+      found.first += times > 1.0;
+      found.second = std::max(found.second, times);
     }
     return found;
   }
-
-  void explain(TunedLaw& law) {
+  const TuneTrial* nearest() const {
     const TuneTrial* nearest = nullptr;
     for (const auto& [key, trial] : trials_)
       if (trial.limits_alone && (nearest == nullptr || excess(trial) < excess(*nearest))) nearest = &trial;
-    if (nearest != nullptr) {
-      law.binding = nearest->binding;
-      law.why = nearest->why;
-      for (const auto& [name, bound] : question_.limits) {
-        const auto value = nearest->worst.find(name);
-        if (value == nearest->worst.end())
-          law.relax += fmt::format("drop the limit on {}, which has no value here; ", name);
-        else if (bound.max && value->second > *bound.max)
-          law.relax += fmt::format("{} <= {:.3g} in place of {:.3g}; ", name, value->second * 1.001, *bound.max);
-        else if (bound.min && value->second < *bound.min)
-          law.relax += fmt::format("{} >= {:.3g} in place of {:.3g}; ", name, value->second * 0.999, *bound.min);
+    return nearest;
+  }
+
+  /// By how much a limit has to give way to a trial.
+  std::string relaxed(const TuneTrial& trial, const std::string& name, const MetricBound& bound) const {
+    const auto worst = trial.worst.find(name);
+    if (worst == trial.worst.end()) return fmt::format("drop the limit on {}, which has no value here", name);
+    const auto error = last_error_.find(name);
+    const double more = error == last_error_.end() ? 0.0 : error->second;
+    if (bound.max)
+      return fmt::format("{} <= {:.3g} in place of {:.3g}", name, (worst->second + more) * 1.001, *bound.max);
+    return fmt::format("{} >= {:.3g} in place of {:.3g}", name, (worst->second - more) * 0.999,
+                       bound.min.value_or(0.0));
+  }
+  static std::string then_text(const TuneTrial& trial) {
+    return fmt::format("then K = {:.4g} N/m{}", trial.stiffness, setting_text(trial));
+  }
+
+  /// For each limit the least by which it alone has to give way for a trial to keep all; where one is not enough, what
+  /// the nearest trial needs.
+  std::string relaxations(const TuneTrial& nearest) const {
+    std::vector<std::string> texts;
+    for (const auto& [name, bound] : limits_) {
+      const TuneTrial* least = nullptr;
+      for (const auto& [key, trial] : trials_) {
+        if (!trial.limits_alone || excess(trial).first != 1) continue;
+        const double times = times_limit(trial, name, bound);
+        if (times > 1.0 && (least == nullptr || times < times_limit(*least, name, bound))) least = &trial;
       }
-      law.relax += fmt::format("then K = {:.4g} N/m{}", nearest->stiffness, setting_text(*nearest));
+      if (least != nullptr) texts.push_back(relaxed(*least, name, of_user(name, bound)) + "; " + then_text(*least));
+    }
+    if (!texts.empty()) return fmt::format("{}", fmt::join(texts, "; or "));
+    for (const auto& [name, bound] : limits_)
+      if (times_limit(nearest, name, bound) > 1.0) texts.push_back(relaxed(nearest, name, of_user(name, bound)));
+    return fmt::format("{}; {}", fmt::join(texts, "; "), then_text(nearest));
+  }
+  const MetricBound& of_user(const std::string& name, const MetricBound& bound) const {
+    const auto asked = question_.limits.find(name);
+    return asked == question_.limits.end() ? bound : asked->second;
+  }
+
+  void explain(TunedLaw& law) {
+    if (const TuneTrial* best = nearest()) {
+      if (!is_quiet_) last_error_ = known_errors(*best);
+      law.binding = best->binding;
+      law.why = best->why;
+      law.relax = relaxations(*best);
+      if (is_quiet_) law.relax += "; a limit of your own, such as --max-vibration, takes the place of what is quiet";
       return;
     }
     law.binding = "margin";
@@ -546,8 +738,8 @@ class Tuner {
     for (std::size_t i = 0; i < std::min(kMostAsked, settled_ones.size()); ++i) {
       const TuneTrial& trial = settled_ones[i * settled_ones.size() / std::min(kMostAsked, settled_ones.size())];
       const SearchWay gains{.range = {1.0, question_.margin, true}, .resolution = 0.02};
-      if (!settled(trial, 1.0)) continue;
-      const double gain = last_of(gains, [&](double g) { return settled(trial, g); });
+      if (!is_settled(trial, Strain{})) continue;
+      const double gain = last_settled(trial, gains, by_gain);
       TuneTrial with_less = trial;
       with_less.binding.clear();
       if (gain > largest) judge_limits(with_less);
@@ -580,14 +772,21 @@ class Tuner {
   const std::string& algorithm_;
   TuneRanges ranges_;
   std::vector<TuneSetting> settings_;
+  bool has_filters_ = false;                   ///< velocity filters are searched, too
+  bool is_quiet_ = false;                      ///< the limits are those of a quiet run
+  std::map<std::string, MetricBound> limits_;  ///< what is allowed: those of the question less what is known of errors
+  /// The least K that is known not to be settled within the margin of a choice, and the largest K that may be tried for
+  /// all that [N/m].
+  double refuted_ = std::numeric_limits<double>::infinity(), cap_ = 0.0;
   std::shared_ptr<const PointShell> shell_;
   std::vector<FamilyMember> family_;      ///< the scene's own first
   std::optional<double> springs_lambda_;  ///< of springs, which their place does not change
   std::map<std::pair<TuneSetting, double>, TuneTrial> trials_;
   std::size_t runs_ = 0;
   std::optional<TuneTrial> best_;
-  TuneTrial beyond_;  ///< just beyond the best
-  TuneTrial end_;     ///< beyond the range, of which only the reason counts
+  TuneTrial beyond_;        ///< just beyond the best
+  TuneMetrics last_error_;  ///< of the choice that was looked at last
+  TuneTrial end_;           ///< beyond the range, of which only the reason counts
 };
 
 }  // namespace

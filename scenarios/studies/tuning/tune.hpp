@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -8,33 +9,12 @@
 
 #include "scenarios/description/load_scenario.hpp"
 #include "scenarios/studies/stability/field_limit.hpp"
+#include "scenarios/studies/tuning/family.hpp"
 
 /// Which stiffness and damping to use: for a force law in a scene the largest K, over damping ratio and, on request or
 /// on an admittance device, velocity filter and virtual mass, at which the worst run of a family is settled with a gain
 /// margin and keeps limits on its metrics.
 namespace hapbench {
-
-/// What the runs differ in that a setting has to hold in, beside the scene's own.
-enum class FamilyOver { hands, seeds, speeds };
-inline constexpr const char* kFamilyNames[] = {"hands", "seeds", "speeds"};
-
-/// The scene's own run has no overrides.
-struct FamilyMember {
-  std::string name;  ///< for people, as in "a hand of 0.5 kg and 1000 N/m"
-  std::vector<std::string> overrides = {};
-};
-
-/// How far apart seeds start [m]: less than a hand repeats a place.
-inline constexpr double kSeedShift = 1e-5;
-/// Starts of `seeds`, the scene's own among them.
-inline constexpr int kSeeds = 5;
-
-/// The other runs of the family; none where the scene has nothing to vary, as a hand whose force is a script.
-///   hands   that are springs: the ends of hand_family(), 100 and 1000 N/m, with the damping of the scene's own; on an
-///           impedance device's handle with 0.1 and 0.5 kg each
-///   seeds   further seeds, started 10 um away
-///   speeds  the script of hand and tool at half and twice its speed
-std::vector<FamilyMember> family_of(const LoadedScenario& loaded, FamilyOver over);
 
 /// The metrics of a choice, in the order of tables; the first three are what --max-inside, --max-vibration and
 /// --max-step bound.
@@ -45,13 +25,15 @@ using TuneMetrics = std::map<std::string, double, std::less<>>;
 struct TuneQuestion {
   ScenarioText scenario;
   std::vector<std::string> overrides;
-  double margin = 2.0;                                 ///< G: settled up to G K
-  std::map<std::string, MetricBound> limits = {};      ///< on metrics of every run at K
+  double margin = 2.0;  ///< G: settled up to G K
+  /// On metrics of every run at K; without any, the own run has to be quiet by the rules of the diagnosis.
+  std::map<std::string, MetricBound> limits = {};
   std::vector<FamilyOver> over = {FamilyOver::hands};  ///< families, their runs together
   Range damping_ratio = {0.01, 10.0, true};            ///< zeta; of an impedance device by the mass of its handle
   std::optional<Range> mass = {};  ///< of the virtual mass on an admittance device [kg]; none: half to twice the own
   bool filters = false;            ///< try velocity filters of an impedance device, too
   unsigned threads = 1;
+  std::function<void(std::size_t runs)> on_runs = {};  ///< hears how many runs were made, now and then
 };
 
 /// The fields that are chosen beside K; what is not searched keeps the scene's value.
@@ -77,8 +59,9 @@ struct TuneTrial : TuneSetting {
   bool settled = false;       ///< the own run is, at K
   bool limits_alone = false;  ///< settled with the margin in all runs: only limits are not kept
   TuneMetrics metrics;        ///< of the scene's own run; empty where they were not asked for
-  TuneMetrics worst;          ///< of the limited ones, the largest of the family's runs
-  double lambda_max = 0.0;    ///< largest eigenvalue of the mean S in the end of the own run: K lambda_max is rendered
+  TuneMetrics worst;          ///< of what is limited, the worst of the family's runs; of a quiet run its numbers
+  std::map<std::string, std::string> worst_text = {};  ///< the same in words
+  double lambda_max = 0.0;  ///< largest eigenvalue of the mean S in the end of the own run: K lambda_max is rendered
 
   bool feasible() const { return binding.empty(); }
 };
@@ -100,14 +83,19 @@ struct TunedLaw {
   std::string binding, why;
   std::string relax;  ///< where nothing is feasible: which limit to relax, and by how much
   TuneMargins margins;
-  TuneMetrics spread;                  ///< standard deviation of the metrics over kSeeds seeds
+  /// The edges of K in the scene as chosen, with its own hand: what `limit` finds for the question.
+  FieldLimit edge;
+  LimitQuestion edge_question;
+  /// How far half the step, half the distance of the points and a look at the depth in every row move the metrics, the
+  /// largest of these; none of a metric that such a run does not have.
+  TuneMetrics error;
   std::vector<TuneTrial> trials;       ///< all, by setting and K; those along K at the choice's setting among them
   std::size_t runs = 0;                ///< simulations in all
-  std::size_t verified = 0;            ///< full-length ones that show the choice to be settled from K to G K
+  std::size_t verified = 0;            ///< full-length ones between K and G K, all settled (kTriedBetween, kTriedNear)
   std::vector<std::string> overrides;  ///< that make the scene the choice
 };
 
-/// Search of a law ends at so many simulations; margins, spread and verification take a few hundred more.
+/// Search of a law ends at so many simulations; margins, errors and verification take a few hundred more.
 inline constexpr std::size_t kMostTuneRuns = 6000;
 
 /// The range of zeta and of the virtual mass that are searched; none where they have no part.
@@ -120,16 +108,19 @@ TuneRanges tune_ranges(const TuneQuestion& question, const std::string& algorith
 /// Tunes one law. Deterministic whatever the number of threads.
 ///
 /// A setting at K is feasible when, for the scene's own run and for each of the family,
-///   - the run at K is settled and keeps the limits: stable (judged_run.hpp), where a script moves the tool by
-///     kMostVibration,
+///   - the run at K is settled (rule_of in judged_run.hpp) and keeps the limits; without limits of a user, the own run
+///   is
+///     quiet (quiet_numbers in diagnosis.hpp),
 ///   - the run at G K is settled, and
 ///   - the loop of device, hand and surface while they touch (scene_loop.hpp) is stable up to G K by its
 ///     eigenvalues, for an impedance device with each hand of hand_family() where a hand holds the handle.
-/// Values of zeta in ratios of 10^(1/4) are tried with each filter; where K can be raised by half a percent, it is, to
-/// its first edge; then zeta and mass are refined until a change by 0.4 % raises K no more. The choice is verified at
-/// kVerifiedGains gains from 1 to G; where one of these is not settled, the search starts again below it. Throws
-/// InputError for a scene without a free position, Stopped.
+/// Values of zeta in ratios of 10^(1/4) are tried; where K can be raised by half a percent, it is, to its first edge.
+/// Where only limits are in the way, the search walks from the trial nearest to them towards them. Then filters are
+/// tried with the best mass, and zeta and mass refined until a change by 0.4 % raises K no more.
+/// The choice has to be settled at 56 gains from 1 to G, the family taking turns, up to the edge that `limit` finds for
+/// the own run, and in runs twice as long unless a
+/// script leads on, and it has to keep limits of a user by as much as its metrics are known (TunedLaw::error);
+/// otherwise the search goes on below it. Throws InputError for a scene without a free position, Stopped.
 TunedLaw tuned_law(const TuneQuestion& question, const std::string& algorithm);
-inline constexpr int kVerifiedGains = 5;
 
 }  // namespace hapbench

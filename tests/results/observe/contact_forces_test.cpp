@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <vector>
 
 #include "results/observe/metrics.hpp"
@@ -40,6 +41,35 @@ MetricsObserver forces_of(const std::vector<Row>& rows, const SettlingRule& rule
     observer.on_step(r);
   }
   return observer;
+}
+
+TEST(JudgedRows, BeginAQuarterIntoTheContactOrWholePeriodsBeforeTheEnd) {
+  const auto begin = [](double period) {
+    JudgedRows rows(1000, period);
+    EXPECT_FALSE(rows.begin());
+    rows.touch(200);
+    rows.touch(500);
+    return rows.begin().value();
+  };
+  EXPECT_EQ(begin(0.0), 400u);
+  EXPECT_EQ(begin(250.0), 500u) << "two periods begin at 400 or later";
+  EXPECT_EQ(begin(600.0), 400u);
+  EXPECT_EQ(begin(700.0), 400u) << "none does";
+}
+
+/// 100 Hz at 1 m/s in the first half of the contact, then 0.1 m/s: the last quarter alone would tell the second only.
+TEST(JudgedVibration, SeesAllButTheFirstQuarterOfTheContact) {
+  constexpr double kStep = 1e-3;
+  JudgedRows rows(4000, 0.0);
+  JudgedVibration vibration(kStep);
+  for (std::uint64_t k = 0; k < 4000; ++k) {
+    if (k == 800) rows.touch(k);
+    const double t = kStep * static_cast<double>(k), amplitude = k < 2400 ? 1.0 : 0.1;
+    vibration.add(k, Vec3(amplitude * std::sin(200.0 * std::numbers::pi * t), 0.0, 0.0), rows);
+  }
+  // Rows 1600 to 4000, of which a third has the larger amplitude. The filter passes 100 Hz within 1e-4 and settles in
+  // some 30 rows.
+  EXPECT_NEAR(vibration.value(rows, false).value(), std::sqrt((0.5 * 800 + 0.005 * 1600) / 2400), 1e-2);
 }
 
 constexpr SettlingRule kThreeRows = {.from = {}, .time = 0.03};

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
+#include <map>
 
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/description/load_scenario.hpp"
@@ -26,6 +28,49 @@ FieldLimit ask(const Asked& asked, const char* algorithm = "summation") {
   LimitQuestion question = limit_question(scenario, asked.overrides, asked.field, asked.range);
   question.smallest = asked.smallest;
   return field_limit({&scenario, asked.overrides, algorithm, question});
+}
+
+using Stable = std::function<bool(double value)>;
+
+/// What find_tried_edge gives from 1e4 to 1e6: the last stable value, 0 without an edge, -1 for scattered ones.
+double tried_edge(const Stable& stable) {
+  const SearchWay way{.range = {1e4, 1e6, true}};
+  const auto holds = [&](double part) { return stable(way.value_at(part)); };
+  std::map<double, bool> tried = scanned(kEdgeIntervals, holds);
+  const TriedEdge edge = find_tried_edge(way, tried, holds, way.resolution, true, [](std::span<const double>) {});
+  return edge.stable ? way.value_at(*edge.stable) : edge.scattered ? -1.0 : 0.0;
+}
+
+TEST(TriedEdge, IsBelowAnIslandThatBisectionDoesNotMeet) {
+  const Stable islands = [](double K) { return K < 3e5 && !(K > 1.05e5 && K < 1.2e5); };
+  const SearchWay way{.range = {1e4, 1e6, true}};
+  const auto holds = [&](double part) { return islands(way.value_at(part)); };
+  std::map<double, bool> tried = scanned(kEdgeIntervals, holds);
+  EXPECT_NEAR(way.value_at(find_edge(way, tried, holds, way.resolution, true).stable.value()), 3e5, 300.0);
+  EXPECT_NEAR(tried_edge(islands), 1.05e5, 105.0);
+}
+
+TEST(TriedEdge, IsOfAStretchOfTwoPercent) {
+  // 56 234 and 237 137 are values of the scan.
+  EXPECT_EQ(tried_edge([](double K) { return K > 56000.0 && K < 56500.0; }), -1.0);
+  EXPECT_NEAR(tried_edge([](double K) { return (K > 56000.0 && K < 56500.0) || (K > 2e5 && K < 3e5); }), 3e5, 300.0);
+  EXPECT_EQ(tried_edge([](double K) { return std::fmod(std::sqrt(K) + 0.5, 1.0) < 0.5; }), -1.0) << "by chance";
+  EXPECT_EQ(tried_edge([](double) { return false; }), 0.0);
+}
+
+TEST(TriedEdge, LeavesAShareThatMayFail) {
+  EXPECT_NEAR(std::pow(1.0 - may_fail_share(48), 48.0), 0.05, 1e-12);
+  EXPECT_NEAR(may_fail_share(48), 0.0605, 1e-4);
+}
+
+/// A flat tip without damping and friction under 1 N bounces for ever: a run that seems to die out does so by chance.
+TEST(FieldLimit, OfWhatNeverRestsIsNone) {
+  const FieldLimit limit = ask({"poke_plane",
+                                "rendering.stiffness_N_per_m",
+                                {R"(hand={"type":"force","z_N":-1})", "time.duration_s=0.5", "rendering.reduction=null",
+                                 "rendering.damping_ratio=0", R"(rendering.friction={"mu_s_N_s_per_m":0})"}},
+                               "mean");
+  EXPECT_FALSE(limit.value) << *limit.value;
 }
 
 /// 2000 steps, within which a decay of a tenth in a quarter tells stable from vibrating 0.1 % below the limit.

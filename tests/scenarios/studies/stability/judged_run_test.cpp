@@ -6,8 +6,10 @@
 #include <functional>
 #include <numbers>
 
+#include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/description/load_scenario.hpp"
 #include "scenarios/input/installed_folder.hpp"
+#include "scenarios/run/assemble.hpp"
 
 namespace hapbench::judged_run_test {
 namespace {
@@ -133,6 +135,27 @@ TEST(MotionClassifier, OfAScriptThatHasEndedSeesSlowSwingingToo) {
   const double length = 0.0005 * kSteps;
   const MotionClass dying = class_of_swinging_tool(0.01, 2.0 / length, kSteps / 4);
   EXPECT_TRUE(dying == MotionClass::stable || dying == MotionClass::dying_out);
+}
+
+/// What goes on bouncing below 30 Hz is not still, however little it vibrates.
+TEST(JudgedRun, OfSlowBouncesThatGoOnIsVibrating) {
+  const ScenarioText plane = read_scenario_text(find_scenario("poke_plane"));
+  const auto at = [&](const char* zeta) {
+    const std::vector<std::string> fields = {R"(hand={"type":"force","z_N":-0.05})",
+                                             "time.duration_s=4",
+                                             "rendering.reduction=null",
+                                             "rendering.algorithm=mean",
+                                             "rendering.stiffness_N_per_m=5000",
+                                             std::string("rendering.damping_ratio=") + zeta};
+    return load_scenario(plane, fields);
+  };
+  const StabilityRule kAnyVibration{.most_vibration = 1.0};
+  const auto verdict = [&](const char* zeta) {
+    const LoadedScenario loaded = at(zeta);
+    return judged_run(loaded, make_shell(loaded.scenario, loaded.files), kAnyVibration).verdict;
+  };
+  EXPECT_EQ(verdict("0"), RunVerdict::vibrating);
+  EXPECT_EQ(verdict("0.5"), RunVerdict::stable);
 }
 
 /// A trembling hand drags a paddle with dry friction: sticking and slipping it shakes at 1.3 mm/s above 30 Hz whatever

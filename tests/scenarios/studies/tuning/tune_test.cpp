@@ -119,17 +119,19 @@ double worst_edge_at_wall(const Scenario& scenario, double zeta, double mass) {
 }
 
 /// A wall that only pushes lets go of a tool that is damped less, and the bounces do not die out within the run: from
-/// 0.3 on the answer is the edge of the worst hand, at the best zeta and mass.
+/// 0.5 on the answer is the edge of the worst hand, at the best zeta and mass. Four seconds, so that the landing, which
+/// dies out slowly near the edge, is a small part of what is judged.
 TEST(Tune, OfTheDeviceAtAWallIsTheEdgeOfTheWorstHand) {
-  TuneQuestion asked = question("device_at_wall", {"device.force_limit_N=null"});
+  TuneQuestion asked = question("device_at_wall", {"device.force_limit_N=null", "time.steps=8000"});
   asked.threads = 2;
-  asked.damping_ratio = {0.3, 3.0};
+  asked.damping_ratio = {0.5, 3.0};
+  asked.limits["force_max_N"].max = 1e9;  // nothing needs to be quiet
   const TunedLaw law = tuned_law(asked, "shaped_stiffness");
   ASSERT_TRUE(law.choice) << law.why;
-  EXPECT_EQ(law.verified, 15u) << "five gains of the scene's own hand, of 100 and of 1000 N/m";
+  EXPECT_EQ(law.verified, kTriedBetween + kTriedNear);
   const Scenario scenario = load_scenario(asked.scenario, law.overrides).scenario;
   double best = 0.0;
-  for (double zeta = 0.3; zeta < 3.0; zeta *= 1.05)
+  for (double zeta = 0.5; zeta < 3.0; zeta *= 1.05)
     for (const double mass : {0.1, 0.14, 0.2, 0.28, 0.4})
       best = std::max(best, worst_edge_at_wall(scenario, zeta, mass));
   EXPECT_NEAR(2.0 * law.choice->stiffness / best, 1.0, kWithin);
