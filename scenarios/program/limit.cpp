@@ -308,14 +308,16 @@ void add_limit(CommandLine& line) {
   command.add("--out", options.out, "directory of the results (default: results/out/limit_NAME)");
   add_overrides(command, options.overrides, "override a field of all runs: path=value");
   command.footer(
-      "A run is stable when it comes to rest or dies out, the classes of \"hapbench describe stability\". It is not "
+      "A run is stable when it comes to rest or dies out, the classes of \"hapbench describe stability\"; where a script moves the tool, when its handle does not vibrate. It is not "
       "stable when it vibrates, diverges, goes through the surface, is thrown out (leaves the hole, or ends without contact "
       "beyond the shell's box by more than the tool reaches), loses contact, is stuck, touches nothing, or does not keep a "
       "--bound. Oscillations slower than a quarter of the run are not seen. "
       "The range is tried at 17 values. The first edge upwards of the scenario's own value (of the first stable value, "
       "if that one is not stable; with --smallest downwards, from the high end) is bisected, then the other end of the "
       "interval of stable values, below which a surface may be too soft; three values are tried "
-      "on either side of the first edge, which may reveal an earlier edge. The column inconsistent counts unstable values in the interval "
+      "on either side of the first edge, which may reveal an earlier edge. Of one scene and device the interval is then tried at 48 values between its ends and 8 "
+      "just below its edge, and ends at the first that is not stable; where no 2 % of values are stable, there is no edge. The linear edge, of the loop in contact, is the answer "
+      "where stable runs beyond it are intermittent contact. The column inconsistent counts unstable values in the interval "
       "and stable ones outside of it. Where the hand is an impedance, a run without environment tells whether "
       "hand and device alone are unstable beyond the edge. Where the springs stay in contact, the theoretical limit "
       "stands beside the edge. A hand with a mass loses it on ideal and admittance, where the virtual mass stands for it. "

@@ -188,7 +188,7 @@ void add_search(Columns<LimitRow>& columns) {
 void add_settled(Columns<LimitRow>& columns) {
   const auto settled = [](const LimitRow& r, double value) { return r.found.value ? Cell(value) : Cell(); };
   columns.add("vibration_m_per_s", "m/s",
-              "at the limit: rms of the handle's speed above 30 Hz in the last quarter of the run",
+              "at the limit: rms of the handle's speed above 30 Hz from a quarter of the contact on",
               [](const LimitRow& r) { return r.found.value ? cell_if(r.found.settled.vibration) : Cell(); });
   columns.add("contacts", "1", "at the limit: mean number of rendered contacts there",
               [=](const LimitRow& r) { return settled(r, r.found.settled.contacts); });
@@ -464,12 +464,12 @@ std::string notes_text(const LimitTable& table) {
   }
   if (any([](const LimitRow& row) { return !row.found.inconsistent.empty(); }))
     text += "~: some values below it are unstable, or some beyond it are stable: limit_runs.csv\n";
-  const auto runs = [](const LimitRow& row) { return row.found.runs.size(); };
-  const auto [least, most] = std::ranges::minmax(table.rows, {}, runs);
+  const auto [least, most] = std::ranges::minmax(table.rows, {}, [](const LimitRow& r) { return r.found.runs.size(); });
+  const std::size_t fewest = least.found.runs.size(), all = most.found.runs.size();
   return text +
-         wrapped(fmt::format("each edge was found at {} to {} values, and between them nothing was tried: ask for "
-                             "one scene and device alone, and its interval is",
-                             runs(least), runs(most)),
+         wrapped(fmt::format("each edge was found at {} values, and nothing was tried between them; of one scene and "
+                             "device alone it is",
+                             fewest == all ? std::to_string(all) : fmt::format("{} to {}", fewest, all)),
                  0);
 }
 

@@ -12,6 +12,7 @@
 #include <csignal>
 #include <cstdio>
 #include <memory>
+#include <regex>
 #include <stdexcept>
 #include <thread>
 
@@ -40,6 +41,12 @@ std::string contents(std::FILE* file) {
   char piece[1 << 14];
   for (std::size_t n; (n = std::fread(piece, 1, sizeof piece, file)) > 0;) text.append(piece, n);
   return text;
+}
+
+/// Standard error without the lines of progress, which come or not by the speed of the machine.
+std::string without_progress(const std::string& err) {
+  static const std::regex kProgress("[^\\n]*( \\.\\.\\. \\d+ s|: +\\d+ %[^\\n]*)\\n");
+  return std::regex_replace(err, kProgress, "");
 }
 
 /// Between fork and exec only calls that are safe there; the strings are made before.
@@ -101,7 +108,7 @@ ProgramRun run_program(const std::filesystem::path& program, const std::vector<s
   if (WIFEXITED(status)) run.status = WEXITSTATUS(status);
   if (WIFSIGNALED(status)) run.signal = WTERMSIG(status);
   run.out = contents(out.get());
-  run.err = contents(err.get());
+  run.err = without_progress(contents(err.get()));
   return run;
 }
 
@@ -130,7 +137,7 @@ ProgramRun hapbench_here(const std::vector<std::string>& arguments) {
   run.status = run_program_to_exit(static_cast<int>(words.size()), argv.data());
   std::fflush(stdout);
   run.out = testing::internal::GetCapturedStdout();
-  run.err = testing::internal::GetCapturedStderr();
+  run.err = without_progress(testing::internal::GetCapturedStderr());
   return run;
 }
 
