@@ -54,6 +54,42 @@ TEST_F(TuneCommand, ItsScenarioGivesTheMetricsThatWerePrinted) {
   EXPECT_GT(lines_of(read_file(file("out/tune_trials.csv"))).size(), 30u);
 }
 
+/// Recommended, linear edge and edge in runs: for one scene and device the same from tune, limit and the device table.
+TEST_F(TuneCommand, SaysTheEdgesThatLimitSays) {
+  const Json law = hapbench(words({"--device", "touch", "--json"})).json()["algorithms"][0];
+  ASSERT_TRUE(law["edge_in_runs"].is_number() && law["linear_edge"].is_number()) << law.dump(1);
+  const std::string tuned = file("out/tap_wall_tuned.json");
+  const auto asked = [&](Words words) {
+    words.insert(words.begin(), {"limit", tuned, "--json", "--out", file("limit")});
+    return hapbench(words).json()["limits"][0];
+  };
+  const Json limit = asked({}), in_table = asked({"--device", "touch", "--friction", "none"});
+  EXPECT_EQ(limit["limit"], law["edge_in_runs"]);
+  EXPECT_EQ(limit["linear"], law["linear_edge"]);
+  EXPECT_EQ(in_table["low"], limit["low"]);
+  EXPECT_NEAR(in_table["linear"].get<double>(), limit["linear"].get<double>(), 0.01 * limit["linear"].get<double>());
+  EXPECT_GE(in_table["limit"], limit["limit"]) << "a table tries nothing between";
+  EXPECT_GE(law["edge_in_runs"].get<double>(), 2.0 * law["stiffness_N_per_m"].get<double>());
+  EXPECT_GE(law["linear_edge"].get<double>(), 2.0 * law["stiffness_N_per_m"].get<double>());
+}
+
+/// Without limits the recommendation keeps what the diagnosis calls quiet.
+TEST_F(TuneCommand, RecommendsAQuietRun) {
+  hapbench(words({"--quiet"}));
+  const Json run = hapbench({"run", file("out/tap_wall_tuned.json"), "--json", "--out", file("run")}).json();
+  for (const Json& finding : run[0]["diagnosis"])
+    for (const char* rule : {"buzz", "pop", "chatter", "energy"}) EXPECT_NE(finding["rule"], rule) << finding;
+}
+
+/// A limit is kept by as much as half the step, half the spacing and a look at every row move the metric.
+TEST_F(TuneCommand, KeepsALimitByTheErrorOfItsMetric) {
+  const Json law = hapbench(words({"--max-inside", "0.5", "--json"})).json()["algorithms"][0];
+  ASSERT_TRUE(law["feasible"].get<bool>()) << law.dump(1);
+  const double error = law["error"]["inside_max_m"].get<double>();
+  EXPECT_GT(error, 0.0);
+  EXPECT_LE(law["metrics"]["inside_max_m"].get<double>() + error, 0.5e-3);
+}
+
 TEST_F(TuneCommand, WritesTheSameBytesHoweverManyJobs) {
   hapbench(words({"--jobs", "1", "--quiet"}, "a"));
   hapbench(words({"--jobs", "3", "--quiet"}, "b"));
