@@ -21,33 +21,12 @@ K = "rendering.stiffness_N_per_m"
 
 
 def limit(name, words, status=0):
-    return Question(name, f"limit {words}", {"limits": "json.limits"}, status=status)
-
-
-def tune(name, words):
-    return Question(name, f"tune {words}", {"laws": "json.algorithms", "choice": "json"})
+    """Asked over one seed: a table of values is searched as before, while an interval that is the answer is tried between its ends."""
+    return Question(name, f"limit {words}", {"limits": "json.limits"}, f"limit {words} --stable settled --over seed=1", status=status)
 
 
 def converge(name, words):
     return Question(name, f"converge {words}", {"orders": "converge.csv", "levels": "converge_levels.csv"})
-
-
-def ends_of_devices(printed):
-    """The least and the largest K of each device that has other numbers, too, over these and its own."""
-    found = {}
-    for row in printed["limits"]:
-        found.setdefault((row["device"].partition("[")[0], row["scenario"], row["algorithm"]), []).append(row["limit"] or 0.0)
-    return [{"device": device, "scenario": scenario, "algorithm": algorithm, "least_N_per_m": min(limits), "largest_N_per_m": max(limits)}
-            for (device, scenario, algorithm), limits in found.items() if len(limits) > 1]
-
-
-def devices(name, scenes, words):
-    """Asked for algorithms that compare --devices took by itself. Where nothing below is unstable, `below` is empty, and so is now its class."""
-    now = {f"{column}_N_per_m": column for column in ("limit", "beyond", "low", "below", "limit_tolerance", "low_tolerance", "linear")}
-    algorithms = "" if "--algorithms" in words else " --algorithms shaped_stiffness,summation"
-    return Question(name, f"compare {scenes} --devices {words}",
-                    {"limits": lambda printed: [row for row in printed["limits"] if "[" not in row["device"]], "ends": ends_of_devices},
-                    f"limit {scenes} --device {words}{algorithms}", {**now, "class_below": None})
 
 
 def of_grid(low, high):
@@ -107,7 +86,6 @@ GIVEN = {
         "hand": {"type": "mass_spring_damper", "mass_kg": 0.2, "stiffness_N_per_m": 300, "damping_N_s_per_m": 6, "target": {"x_m": 0, "y_m": 0, "z_m": -0.003}},
         "device": {"type": "impedance", "handle_mass_kg": 0.1, "viscous_N_s_per_m": 0.5, "coulomb_N": 0.1, "encoder_step_m": 1e-5},
         "rendering": {"stiffness_N_per_m": 2000, "damping_ratio": 0.1, "friction": {"mu_s_N_s_per_m": 0, "mu_f_s_per_m": 0}}}""",
-    "mine.json": '{"type": "impedance", "handle_mass_kg": 0.1, "viscous_N_s_per_m": 0.5, "coulomb_N": 0.1, "delay_samples": 1.5}',
 }
 
 QUESTIONS = [
@@ -116,27 +94,17 @@ QUESTIONS = [
     limit("limit_time_step", "springs_oscillation --vary time.step_s --resolution 0.01"),
     limit("limit_both_ends_of_damping", "loop.json --vary rendering.damping_N_s_per_m --between 0.01:1e4 --resolution 0.01"),
     limit("limit_on_device", f"loop.json --vary {K} --algorithms mean,summation,shaped_stiffness,proxy --resolution 0.01"),
-    limit("limit_by_vibration", f"tap_corner --vary {K} --vibration 0.001 --algorithms all --resolution 0.05"),
     limit("limit_servo_delay", "device_at_wall --vary device.servo.delay_samples --between 0:60"),
     limit("limit_with_bound", f"poke_plane --vary {K} --smallest --bound inside_settled_m=3e-4 --resolution 0.01"),
     limit("limit_in_hole", f"tap_hole --vary {K} --algorithms mean,summation,shaped_stiffness,normal_projection,proxy --resolution 0.05"),
     limit("limit_without_effect", """loop.json --vary device.velocity_filter.cutoff_Hz --resolution 0.1
           --set 'device.velocity_filter={"type": "low_pass", "cutoff_Hz": 100}' --set rendering.damping_ratio=0"""),
     limit("limit_mesh", f"drag_molar --vary {K} --resolution 0.05 --algorithms mean,shaped_stiffness,summation"),
-    tune("tune_on_device", "impedance_at_wall --algorithms mean,shaped_stiffness --damping-ratio 0.2:0.3"),
-    tune("tune_of_springs", "single_spring"),
-    tune("tune_on_preset", "tap_corner --device omega.3 --algorithms proxy,normal_projection --margin 2 --damping-ratio 0.5:0.7"),
-    tune("tune_mass_of_admittance", "device_at_wall --mass 0.05:0.5 --damping-ratio 0.3:0.7"),
-    tune("tune_of_nothing_feasible", "tap_wall --max-inside 0.0001 --max-vibration 1e-6 --over speeds --damping-ratio 0.5:0.6"),
-    tune("tune_with_filters", "loop.json --filters --over hands,seeds --max-step 0.5 --damping-ratio 0.05:0.1"),
     converge("converge_springs", "springs_oscillation --metric force_max_N,inside_max_m,final_position_m.x"),
     converge("converge_step", "poke_plane --metric force_max_N,inside_settled_m,passivity.energy_min_J --levels 6"),
     converge("converge_shell", "drag_molar --vary environment.spacing_m --metric force_rms_above_30Hz_N,inside_max_m --levels 3 --set time.duration_s=1"),
     converge("converge_other_field", "explorer_on_bumps --vary tool.grid_m --metric force_max_N,force_mean_in_contact_N --levels 3 --to 1%"),
     converge("converge_on_device", "loop.json --metric force_max_N,inside_settled_m --levels 5 --ratio 3"),
-    devices("devices_over_what_is_not_published", "tap_wall", "all --algorithms mean --resolution 0.02"),
-    devices("devices_in_scenes", "tap_corner tap_hole", "touch,mine.json,omega.3 --resolution 0.05"),
-    devices("devices_over_friction", "loop.json", "touch,ideal,admittance --friction 0,2 --algorithms mean,summation --resolution 0.05"),
     # The maps over mass, contacts, wedge, servo delay of the admittance device, encoder step and friction are a page of text: they are asked no more.
     stability_map("time_step", "time_step_s", "single_spring --over time.step_s=5e-5:5e-3:5:log --set time.steps=8000"),
     stability_map("damping_ratio", "damping_ratio", "single_spring --over rendering.damping_ratio=0:3:5 --set time.steps=8000"),
