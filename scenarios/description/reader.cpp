@@ -210,13 +210,23 @@ class Reader final : public Fields {
     for (const auto& entry : json_.items()) {
       if (contains(names, entry.key())) continue;
       const std::vector<std::string> allowed(names.begin(), names.end());
-      keep(
-          InputError(InputError::Kind::shape, member(at(), entry.key()),
-                     "unknown field; allowed here: " + quoted_list(allowed) + nearest_name_hint(entry.key(), allowed)));
+      keep(InputError(InputError::Kind::shape, member(at(), entry.key()),
+                      fmt::format("unknown field{}; allowed here: {}", nearest_name_hint(entry.key(), allowed),
+                                  first_names(allowed))));
       meant_.push_back(nearest_name(entry.key(), allowed));
     }
     collect([&] { body(*this); });
     throw_errors();
+  }
+
+  /// Eight of these names, and where the others are described.
+  std::string first_names(std::span<const std::string> names) const {
+    constexpr std::size_t kMost = 8;
+    if (names.size() <= kMost || at().empty()) return quoted_list(names);
+    std::string section = at().substr(1);
+    std::replace(section.begin(), section.end(), '/', '.');
+    return fmt::format("{} and {} more, which \"hapbench describe {}\" tells", quoted_list(names.first(kMost)),
+                       names.size() - kMost, section);
   }
 
   const Json& json_;

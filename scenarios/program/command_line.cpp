@@ -292,6 +292,29 @@ int status_with_faults(int status) {
 
 }  // namespace
 
+InputError with_typed_places(const InputError& error, const std::vector<std::string>& overrides) {
+  constexpr std::size_t kMostTyped = 60;
+  std::vector<InputError> faults;
+  for (const InputError& fault : error.faults()) {
+    std::string place = fault.place();
+    for (const std::string& override : overrides) {
+      std::string pointer = "/" + std::string(overridden_path(override));
+      std::replace(pointer.begin(), pointer.end(), '.', '/');
+      const std::size_t at = place.find(": " + pointer);
+      const std::string rest = at == std::string::npos ? "" : place.substr(at + 2 + pointer.size());
+      if (at == std::string::npos || !(rest.empty() || rest.starts_with('/'))) continue;
+      const std::size_t file = place.rfind(": ", at - 1);  // behind what else was typed, as --device
+      const std::string typed = file == std::string::npos ? "" : place.substr(0, file + 2);
+      const bool is_long = override.size() > kMostTyped;
+      place = fmt::format("{}--set {}{}{}", typed, override.substr(0, kMostTyped), is_long ? "…" : "",
+                          rest.empty() ? "" : ": " + pointer + rest);
+      break;
+    }
+    faults.emplace_back(fault.kind(), place, fault.problem());
+  }
+  return InputError::all(faults);
+}
+
 int CommandLine::run(int argc, char** argv) {
   std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
   const std::optional<StudyWords> study = StudyWords::in(words);

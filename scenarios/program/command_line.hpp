@@ -11,6 +11,8 @@
 #include <variant>
 #include <vector>
 
+#include "scenarios/input/input_error.hpp"
+
 namespace CLI {
 class App;
 class Option;
@@ -74,6 +76,9 @@ class Command {
   CLI::App* app_;
 };
 
+/// The error with what was typed as the place of each fault in a field that --set gave, and not the scene's file.
+InputError with_typed_places(const InputError& error, const std::vector<std::string>& overrides);
+
 /// The program's command line: every command adds itself, then `run` parses and runs the one that was chosen.
 class CommandLine {
  public:
@@ -89,7 +94,15 @@ class CommandLine {
                                        int (*action)(const Options&),
                                        const std::string& when_stopped = "incomplete results are removed") {
     auto options = std::make_shared<Options>();
-    const Command command = add(name, summary, {[options, action] { return action(*options); }, when_stopped});
+    const auto run = [options, action] {
+      try {
+        return action(*options);
+      } catch (const InputError& error) {
+        if constexpr (requires { options->overrides; }) throw with_typed_places(error, options->overrides);
+        throw;
+      }
+    };
+    const Command command = add(name, summary, {run, when_stopped});
     outputs_.emplace_back(command, &options->output);
     return {command, *options};
   }

@@ -235,7 +235,8 @@ Json tuned_scenario(const Tuning& tuning, const TunedLaw& law, const std::string
 // ---- Text
 
 std::string limits_text(const Tuning& tuning) {
-  std::string text = fmt::format("largest K that is settled up to {:g} K", tuning.question.margin);
+  std::string text = fmt::format("largest K that is settled up to {:g} K{}", tuning.question.margin,
+                                 tuning.ranges.damping_ratio ? ", with B = 2 zeta sqrt(K m) at each" : "");
   if (tuning.question.limits.empty())
     text += ", in a run that is quiet (describe diagnosis: buzz, pop, chatter, energy)";
   for (const auto& [name, bound] : tuning.question.limits) {

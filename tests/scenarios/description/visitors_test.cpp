@@ -64,7 +64,7 @@ TEST(Object, LeavesAbsentFieldsAtTheirDefaults) {
 
 TEST(Object, NamesAnUnknownFieldAndTheNearest) {
   EXPECT_EQ(refusal_of(R"({"mass_kg": 3, "steps": 2, "inner": {"widht_m": 1}})"),
-            "/v/inner/widht_m: unknown field; allowed here: \"width_m\"; nearest valid name: \"width_m\"");
+            "/v/inner/widht_m: unknown field; nearest valid name: \"width_m\"; allowed here: \"width_m\"");
   EXPECT_EQ(refusal_of(R"({"mass_kg": 3, "steps": 2, "a/b~c": 1})").substr(0, 11), "/v/a~1b~0c:");
   EXPECT_EQ(refusal_of(R"({"mass_kg": 3, "steps": 2, "colour": 1})").find("nearest"), std::string::npos);
 }

@@ -142,10 +142,10 @@ TEST(OwnParameters, AreWrittenWithTheirAlgorithmCheckedAndInTheSchema) {
   EXPECT_EQ(refusal(R"({"hostile": {"gain": 3}})"),
             "/rendering/parameters/hostile/gain: got 3; allowed: a number >= 0 and <= 2 [1]");
   EXPECT_EQ(refusal(R"({"hostile": {"gian": 1}})"),
-            "/rendering/parameters/hostile/gian: unknown field; allowed here: \"gain\", \"bias\"; nearest valid name: "
-            "\"gain\"");
+            "/rendering/parameters/hostile/gian: unknown field; nearest valid name: \"gain\"; allowed here: "
+            "\"gain\", \"bias\"");
   const std::string unknown = refusal(R"({"hostil": {"gain": 1}})");
-  EXPECT_TRUE(unknown.ends_with("nearest valid name: \"hostile\"")) << unknown;
+  EXPECT_NE(unknown.find("nearest valid name: \"hostile\""), std::string::npos) << unknown;
 
   const Json schema = scenario_guide().schema;
   const Json& gain =
