@@ -317,7 +317,7 @@ class Adding(unittest.TestCase):
         self.assertEqual(effective["environment"], {"type": "ridge", "height_m": 0.001, "spacing_m": 0.0005})
         self.assertEqual(effective["tool"], {"type": "taper", "width_m": 0.003})
         for field, value, problem in (
-            ("environment.height_m", "-1", "/environment/height_m: got -1; allowed: a number > 0 and <= 1000 [m]"),
+            ("environment.height_m", "-1", "--set environment.height_m=-1: got -1; allowed: a number > 0 and <= 1000 [m]"),
             ("environment.heigth_m", "1", 'nearest valid name: "height_m"'),
             ("tool.width_m", "wide", '/tool/width_m: got "wide"; allowed: a number > 0 and <= 1000 [m]'),
             ("tool.type", "tapered", 'nearest valid name: "taper"'),

@@ -724,7 +724,7 @@ class Tuner {
       if (!is_quiet_) last_error_ = known_errors(*best);
       law.binding = best->binding;
       law.why = best->why;
-      if (const auto error = last_error_.find(best->binding); error != last_error_.end())
+      if (const auto error = last_error_.find(best->binding); error != last_error_.end() && error->second > 0.0)
         law.why += fmt::format(" +- {:.2g}", error->second);
       law.relax = relaxations(*best);
       if (is_quiet_) law.relax += "; a limit of your own, such as --max-vibration, takes the place of what is quiet";
