@@ -319,7 +319,7 @@ class Adding(unittest.TestCase):
         for field, value, problem in (
             ("environment.height_m", "-1", "--set environment.height_m=-1: got -1; allowed: a number > 0 and <= 1000 [m]"),
             ("environment.heigth_m", "1", 'nearest valid name: "height_m"'),
-            ("tool.width_m", "wide", '/tool/width_m: got "wide"; allowed: a number > 0 and <= 1000 [m]'),
+            ("tool.width_m", "wide", '--set tool.width_m=wide: got "wide"; allowed: a number > 0 and <= 1000 [m]'),
             ("tool.type", "tapered", 'nearest valid name: "taper"'),
             ("device", '{"type":"impedance","handle_mass_kg":0.1,"play_m":2}',
              "/device/play_m: got 2; allowed: a number >= 0 and <= 1 [m]"),
