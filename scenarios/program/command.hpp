@@ -110,9 +110,9 @@ std::string chosen_metric(const std::vector<std::string>& metrics, const std::st
 /// `out`, or results/out/`name` when it is empty.
 std::filesystem::path results_directory(const std::string& out, const std::string& name);
 
-/// Throws InputError unless results can be written to `directory`. Creates it, and removes it again if it is still
-/// empty when the program ends.
-void require_writable_directory(const std::filesystem::path& directory);
+/// Throws InputError, which names the option, unless results can be written to `directory`. Creates it, and removes it
+/// again if it is still empty when the program ends.
+void require_writable_directory(const std::filesystem::path& directory, std::string_view option = "--out");
 /// The threads of --jobs, and a progress bar behind `label` unless quiet.
 JobOptions job_options(const CommonOptions& options, const std::string& label);
 

@@ -33,18 +33,21 @@ struct OldWords {
 /// By command, so that what one command lost stands together.
 constexpr OldWords kOldWords[] = {
     {"*", "--memory", "ulimit -d KILOBYTES before the command; without it three quarters of what is free"},
-    {"*", "--plugin", "the same without it: the command runs no law"},
+    {"*", "--plugin", "--module FILE.so, of commands that run laws"},
     {"", "complete completion", "scripts/completion, which prints a completion for bash"},
     {"", "diff", "hapbench report A B --tolerance 0, which says what differs, with status 3"},
     {"", "explain",
      "hapbench run SCENE, which prints what is wrong and writes it to summary.json; hapbench describe diagnosis lists the rules"},
+    {"", "identify", "hapbench import device LOG"},
+    {"", "list", "hapbench describe, of a kind hapbench describe KIND; --grep TEXT searches"},
     {"", "man", "hapbench --help, and --help of each command"},
     {"", "merge", "hapbench sweep FOLDER, which joins the tables of the shards in it"},
     {"", "precision",
      "hapbench_accuracy, the benchmark of run time against error (tests/README.md), whose picture scripts/reproduce draws; "
      "hapbench converge SCENE --metric NAME"},
+    {"", "shell", "hapbench validate SCENE --points FILE.csv"},
     {"", "stability",
-     "hapbench limit spring_stiffness, spring_damping or spring_time_step; for --map other studies (hapbench list studies), "
+     "hapbench limit spring_stiffness, spring_damping or spring_time_step; for --map other studies (hapbench describe studies), "
      "for --stress hapbench stress, for --search hapbench sweep SCENE --sample lhs:400 --vary hand.x_N=-5:5"},
     {"", "suite", "hapbench compare GROUP --algorithms all --seeds 5"},
     {"compare", "--check --sure", "hapbench compare SCENE --errors, of one number hapbench converge SCENE"},
@@ -139,11 +142,11 @@ CommandLine::~CommandLine() = default;
 /// The program and each command have these options, so that they may stand before or behind the command.
 void CommandLine::add_common_options(CLI::App& app) {
   const auto add = [this](const std::vector<std::string>& files) {
-    plugins_.insert(plugins_.end(), files.begin(), files.end());
+    modules_.insert(modules_.end(), files.begin(), files.end());
   };
   app.add_option_function<std::vector<std::string>>(
-         "--plugin", add,
-         "load FILE.so, which holds a force law of your own; HAPBENCH_PLUGIN_PATH names folders of such files")
+         "--module", add,
+         "load FILE.so, which holds a force law of your own; HAPBENCH_MODULE_PATH names folders of such files")
       ->allow_extra_args(false)
       ->take_all();
 }
@@ -275,9 +278,14 @@ std::string problem_of(const CLI::ParseError& error, const CLI::App& program) {
   return one_line(name + error.what()) + help;
 }
 
-void load_plugins(const std::vector<std::string>& files) {
+void load_modules(const std::vector<std::string>& files) {
   for (const std::string& file : files) load_law(file);
-  if (const char* folders = std::getenv("HAPBENCH_PLUGIN_PATH")) load_laws_in("HAPBENCH_PLUGIN_PATH", folders);
+  constexpr const char *kFolders = "HAPBENCH_MODULE_PATH", *kBefore = "HAPBENCH_PLUGIN_PATH";
+  if (const char* folders = std::getenv(kFolders)) {
+    load_laws_in(kFolders, folders);
+  } else if (std::getenv(kBefore) != nullptr) {
+    throw InputError(fmt::format("{} is no longer read; instead: {}", kBefore, kFolders));
+  }
 }
 
 /// Makes a success fail when a module failed: its runs count as diverged, which by itself need not be a failure.
@@ -350,7 +358,7 @@ int CommandLine::run(std::vector<std::string> words) {
   } catch (const CLI::ParseError& error) {
     throw InputError(problem_of(error, *app_));
   }
-  load_plugins(plugins_);
+  load_modules(modules_);
   take_module_faults();  // forgets those of an earlier command of this process
   return status_with_faults(chosen_.action());
 }

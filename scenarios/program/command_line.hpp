@@ -109,9 +109,9 @@ class CommandLine {
   /// Adds a command whose words behind its name, options and --help included, all go to `action` as they are.
   void pass_on(const std::string& name, const std::string& summary,
                std::function<int(const std::vector<std::string>&)> action);
-  /// Replaces a study by its words (study.hpp), loads the plugins that the words and HAPBENCH_PLUGIN_PATH name, then
+  /// Replaces a study by its words (study.hpp), loads the modules that the words and HAPBENCH_MODULE_PATH name, then
   /// runs the command. Returns its exit status; for a success during which a law or a source of contacts from outside
-  /// failed, kUnexpectedOutcome. Throws what the command throws, and InputError for a wrong usage and for plugins.
+  /// failed, kUnexpectedOutcome. Throws what the command throws, and InputError for a wrong usage and for modules.
   int run(int argc, char** argv);
   /// The chosen command's note on its results for when it is stopped.
   const std::string& when_stopped() const { return chosen_.when_stopped; }
@@ -124,7 +124,7 @@ class CommandLine {
   std::unique_ptr<CLI::App> app_;
   ChosenCommand chosen_;
   std::vector<std::pair<Command, OutputOptions*>> outputs_;
-  std::vector<std::string> plugins_;
+  std::vector<std::string> modules_;
   std::map<std::string, std::function<int(const std::vector<std::string>&)>> passed_on_;
 };
 

@@ -19,7 +19,7 @@
 #include "scenarios/program/table.hpp"
 #include "scenarios/thesis_claims/ledger.hpp"
 
-/// The commands `list` and `describe`, which show the index and what lies in the folders beside the program.
+/// The command `describe`, which explains the index and what lies in the folders beside the program.
 namespace hapbench {
 namespace {
 
@@ -250,15 +250,30 @@ std::string plural(const std::string& kind) {
   return kind == "study" ? "studies" : kind + "s";
 }
 
-/// The kinds, and the groups of scenarios.
-std::vector<std::string> sections_of(const Index& all) {
+/// The name of the list of a kind: "depth_models".
+std::string list_name(const std::string& kind) {
+  std::string name = plural(kind);
+  std::replace(name.begin(), name.end(), ' ', '_');
+  return name;
+}
+
+/// The names of the lists: of the kinds, and of the groups of scenarios.
+std::vector<std::string> list_names() {
   std::vector<std::string> names;
-  for (const Named& thing : all) {
-    for (const std::string& name : {thing.kind, group_of(thing)}) {
-      if (!name.empty() && std::ranges::find(names, name) == names.end()) names.push_back(name);
-    }
-  }
+  for (const char* kind : kListed) names.push_back(list_name(kind));
+  for (const BundledScenario& bundled : bundled_scenarios())
+    if (std::ranges::find(names, bundled.group) == names.end()) names.push_back(bundled.group);
   return names;
+}
+
+/// True for the name of a kind's list. All metrics are told by a section of that name.
+bool is_kind(const std::string& name) {
+  return name != "metrics" && std::ranges::any_of(kListed, [&](const char* kind) { return list_name(kind) == name; });
+}
+
+bool is_group(const std::string& name) {
+  const std::vector<BundledScenario> all = bundled_scenarios();
+  return std::ranges::find(all, name, &BundledScenario::group) != all.end();
 }
 
 constexpr std::size_t kColumn = 34;  // of the summaries
@@ -317,27 +332,21 @@ std::string list_text(const Index& all) {
   return text + "\n\"hapbench describe NAME\" explains each.\n";
 }
 
-struct ListOptions {
-  std::string what;
+struct DescribeOptions {
+  std::string name;
   std::string grep;
   OutputOptions output;
 };
 
-int list(const ListOptions& options) {
+/// Lists everything, or what is of a kind or group.
+int list(const DescribeOptions& options) {
   Index all = everything();
-  if (!options.what.empty()) {
-    // "scenario" and "depth model" are accepted like "scenarios" and "depth_models".
-    std::string what = options.what;
-    std::replace(what.begin(), what.end(), '_', ' ');
-    const std::vector<std::string> sections = sections_of(all);
-    for (const std::string& section : sections) {
-      if (what == plural(section)) what = section;
-    }
-    require_valid_name("got", what, sections);
-    std::erase_if(all, [&what](const Named& thing) { return thing.kind != what && group_of(thing) != what; });
-  }
+  if (!options.name.empty())
+    std::erase_if(all, [&](const Named& thing) {
+      return list_name(thing.kind) != options.name && group_of(thing) != options.name;
+    });
   // There are so many metrics and claims that they are only shown on request.
-  const bool of_everything = options.what.empty() && options.grep.empty();
+  const bool of_everything = options.name.empty() && options.grep.empty();
   if (of_everything)
     std::erase_if(all, [](const Named& thing) { return thing.kind == "metric" || thing.kind == "claim"; });
   const std::string pattern = lower_case(options.grep);
@@ -352,7 +361,8 @@ int list(const ListOptions& options) {
     entry.update(thing.more);
   }
   print(options.output,
-        list_text(all) + (of_everything ? "\"hapbench list metrics\" and \"list claims\" show more.\n" : ""), json);
+        list_text(all) + (of_everything ? "\"hapbench describe metrics\" and \"describe claims\" show more.\n" : ""),
+        json);
   return kSuccess;
 }
 
@@ -409,25 +419,27 @@ std::vector<Description> described_headings(const Index& index, const std::strin
 }
 
 [[noreturn]] void refuse(const std::string& name, const Index& index, const Index& in_folders) {
-  std::vector<std::string> names;
+  std::vector<std::string> names = list_names();
   for (const Index* known : {&index, &in_folders})
     for (const Named& thing : *known)
       if (thing.kind != "heading") names.push_back(thing.name);
   throw InputError(
-      fmt::format("nothing is called \"{}\"{}; \"hapbench list\" shows the names, \"hapbench describe scenario\" "
+      fmt::format("nothing is called \"{}\"{}; \"hapbench describe\" shows the names, \"hapbench describe scenario\" "
                   "the fields of a scenario file",
                   name, nearest_name_hint(name, names)));
 }
 
-std::vector<Description> meanings_of(const std::string& name) {
-  const Index index = program_index();
-  std::vector<Description> found =
+std::vector<Description> own_meanings(const Index& index, const std::string& name) {
+  const std::vector<Description> found =
       described(index, [&](const Named& thing) { return thing.kind != "heading" && is_called(thing, name); });
-  if (found.empty()) found = described_headings(index, name);
-  if (!found.empty()) return found;
+  return found.empty() ? described_headings(index, name) : found;
+}
+
+/// What a name means that the program does not know by itself.
+std::vector<Description> other_meanings(const Index& index, const std::string& name) {
   if (const std::optional<Description> place = describe_place(name)) return {*place};
   // Fields of that name in any section: "torque" for record.torque.
-  found =
+  std::vector<Description> found =
       described(index, [&](const Named& thing) { return thing.kind == "field" && thing.name.ends_with("." + name); });
   if (!found.empty()) return found;
   const Index in_folders = folder_index(false);
@@ -440,13 +452,14 @@ std::vector<Description> meanings_of(const std::string& name) {
   return {describe_scenario(find_scenario(name))};
 }
 
-struct DescribeOptions {
-  std::string name;
-  OutputOptions output;
-};
-
 int describe(const DescribeOptions& options) {
-  const Description d = joined(meanings_of(options.name));
+  if (options.name.empty() || is_kind(options.name)) return list(options);
+  const Index index = program_index();
+  std::vector<Description> meanings = own_meanings(index, options.name);
+  if (meanings.empty() && is_group(options.name)) return list(options);
+  if (!options.grep.empty()) throw InputError("--grep: allowed: without a name, or with that of a list");
+  if (meanings.empty()) meanings = other_meanings(index, options.name);
+  const Description d = joined(meanings);
   OutputOptions output = options.output;
   output.json |= d.text.empty();
   print(output, d.text, d.json);
@@ -455,31 +468,16 @@ int describe(const DescribeOptions& options) {
 
 }  // namespace
 
-void add_list(CommandLine& line) {
-  auto [command, options] = line.command(
-      "list",
-      "List algorithms, models, integrators, environments, tools, hands, devices, scenarios, studies, metrics and claims",
-      list);
-  command.add(
-      "what", options.what,
-      "one kind alone, such as algorithms, depth_models, hands, metrics or claims, or one group of scenarios, such "
-      "as thesis");
-  command.add("--grep", options.grep, "only things with this text in their name, description or source");
-}
-
 void add_describe(CommandLine& line) {
-  auto [command, options] = line.command(
-      "describe",
-      "Explain an algorithm, a depth model, an integrator, an environment, a field, a scenario, a metric, a column or "
-      "file of the results, a word or heading that the program prints, a claim, a choice on record or a place of the thesis",
-      describe);
+  auto [command, options] = line.command("describe", "Explain a name; without one, or by a kind: a list", describe);
   command.add(
       "name", options.name,
-      "a name that \"list\" shows, a field such as rendering.limits, \"scenario\" (all fields), \"schema\", "
-      "\"choices_schema\", \"stability\", \"diagnosis\"; a metric or a column, \"metrics\" or \"columns\" for all of them, a "
-      "heading such as \">30Hz rms N\", or a file such as trajectory.csv; a claim such as C5, a choice such as "
-      "planar.first_tilt or a place such as \"Fig. A.2\"",
-      {.required = true});
+      "an algorithm, a depth model, an integrator, an environment, a hand, a device, a scenario, a study; a kind of these "
+      "such as algorithms, or a group of scenarios such as thesis, for a list; a field such as rendering.limits, "
+      "\"scenario\" (all fields), \"schema\", \"choices_schema\", \"stability\", \"diagnosis\"; a metric, \"metrics\" or "
+      "\"columns\" for all of them, a heading such as \">30Hz rms N\", or a file such as trajectory.csv; a claim such as C5, a "
+      "choice such as planar.first_tilt or a place such as \"Fig. A.2\"");
+  command.add("--grep", options.grep, "list only things with this text in their name, description or source");
 }
 
 }  // namespace hapbench

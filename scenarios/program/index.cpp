@@ -138,7 +138,7 @@ Description describe_field(const std::string& path) {
 
 Description describe_algorithms() {
   Description d = describe_field("rendering.algorithm");
-  d.text += wrapped("\"hapbench list algorithms\" shows them with what they do");
+  d.text += wrapped("\"hapbench describe algorithms\" shows them with what they do");
   return d;
 }
 
@@ -414,7 +414,7 @@ std::vector<DescribedTable> result_tables() {
   for (auto* tables_of : {run_tables, league_tables, limit_tables, converge_tables, tune_tables, claim_tables,
                           sweep_tables, stress_tables})
     std::ranges::move(tables_of(), std::back_inserter(tables));
-  add("shell.csv", "of shell: one line per point of the environment", kShellColumns);
+  add("shell.csv", "of validate --points: one line per point of the environment", kShellColumns);
   return tables;
 }
 

@@ -21,14 +21,14 @@ using AddCommand = void(CommandLine& line);
 
 /// Every command, each defined in a source file of its own subject; those of Python packages stand together. The second
 /// list is in the order of the help.
-AddCommand add_compare, add_converge, add_describe, add_limit, add_list, add_new, add_python_commands, add_reproduce,
-    add_run, add_shell, add_stress, add_sweep, add_tune, add_validate;
+AddCommand add_compare, add_converge, add_describe, add_limit, add_new, add_python_commands, add_reproduce, add_run,
+    add_stress, add_sweep, add_tune, add_validate;
 
 namespace {
 
-constexpr AddCommand* kCommands[] = {add_run,      add_compare,   add_stress,   add_tune,    add_limit,
-                                     add_converge, add_reproduce, add_sweep,    add_new,     add_python_commands,
-                                     add_shell,    add_list,      add_describe, add_validate};
+constexpr AddCommand* kCommands[] = {add_run,   add_compare,         add_stress,    add_tune,
+                                     add_limit, add_converge,        add_reproduce, add_sweep,
+                                     add_new,   add_python_commands, add_describe,  add_validate};
 
 /// The promise of a version.
 constexpr const char* kPromise =

@@ -241,7 +241,7 @@ void add_reproduce(CommandLine& line) {
                                          "finished runs are kept, and the same command continues from there");
   command.add(
       "--only", options.only,
-      "ids of claims, separated by commas; \"hapbench list claims\" shows them, and scripts/reproduce --only draws their "
+      "ids of claims, separated by commas; \"hapbench describe claims\" shows them, and scripts/reproduce --only draws their "
       "figures, too",
       {.comma_separated = true});
   command.add("--out", options.out, "directory of the results (default: results/out/reproduce)");

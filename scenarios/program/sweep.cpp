@@ -279,7 +279,7 @@ int print_row(const SweepCommand& command, const Cases& cases) {
   const fs::path scene = fs::absolute(cases.scene(command.row).file).lexically_normal();
   std::vector<std::string> words = {this_program().string(), "run", scene.string()};
   for (const std::string& override : cases.overrides(command.row)) words.insert(words.end(), {"--set", override});
-  for (const LoadedLaw& law : loaded_laws()) words.insert(words.end(), {"--plugin", law.file.string()});
+  for (const LoadedLaw& law : loaded_laws()) words.insert(words.end(), {"--module", law.file.string()});
   print(command.output, shell_line(words) + "\n", Json{{"row", command.row}, {"command", words}});
   return kSuccess;
 }

@@ -1,4 +1,4 @@
-"""`hapbench import` and the metrics of fidelity against numpy and scipy. Arguments: the built program, the source tree."""
+"""`hapbench import stroke` and the metrics of fidelity against numpy and scipy. Arguments: the built program, the source tree."""
 import json
 import math
 import os
@@ -85,7 +85,7 @@ class Given(unittest.TestCase):
             return "\n".join(f"{place}: {problem}" if place else problem for place, problem in faults.list).replace(f"{self.root}/", "")
 
     def imported(self, *words):
-        report = json.loads(hapbench("import", LOG, "--preset", "hapi", "--out", self.root / "stroke.csv", "--json", *words))
+        report = json.loads(hapbench("import", "stroke", LOG, "--preset", "hapi", "--out", self.root / "stroke.csv", "--json", *words))
         return report, *columns(self.root / "stroke.csv")
 
 
@@ -151,10 +151,10 @@ class Recordings(Given):
         # Two turns about x, by 0.2 +- 0.1 rad, written w first.
         rows = "".join(f"{0.01 * i},0,0,0,{math.cos(a / 2)!r},{math.sin(a / 2)!r},0,0\n" for i, a in enumerate((0.1, 0.3)))
         layout = ("--columns", "time=1,position=2,orientation=5", "--out", self.root / "s.csv", "--json")
-        report = json.loads(hapbench("import", self.write(rows), "--orientation", "quat_wxyz", *layout))
+        report = json.loads(hapbench("import", "stroke", self.write(rows), "--orientation", "quat_wxyz", *layout))
         np.testing.assert_allclose(report["tip_direction"], [0, math.sin(0.2), -math.cos(0.2)], atol=1e-12)
         self.assertAlmostEqual(report["tip_direction_spread_rad"], 0.1, delta=1e-8)
-        wrong = run("import", self.write(rows), "--orientation", "quat_xyzw", *layout)
+        wrong = run("import", "stroke", self.write(rows), "--orientation", "quat_xyzw", *layout)
         self.assertIn("the tip points upwards in the mean", wrong.stderr)
         self.assertGreater(json.loads(wrong.stdout)["tip_direction"][2], 0.5)
 
@@ -322,27 +322,27 @@ class Command(Given):
                          "step time_s mfx_N mfy_N mfz_N force_error_x_N force_error_y_N force_error_z_N".split())
 
     def test_says_what_it_found(self):
-        text = hapbench("import", LOG, "--preset", "hapi", "--smooth", "window=11,order=3", "--out", self.root / "stroke.csv")
+        text = hapbench("import", "stroke", LOG, "--preset", "hapi", "--smooth", "window=11,order=3", "--out", self.root / "stroke.csv")
         for words in ("99 Hz, resampled", "x 10 um, y 10 um, z 10 um", "K q = 0.2 N", "smoothing", "um rms", "next: hapbench new stroke --from"):
             self.assertIn(words, text)
 
     def test_writes_nothing_of_a_bad_recording_and_never_over_it(self):
         rec = self.write("t,x,y,z\n0,0,0,0\n1,0,0\n0.5,nan,0,0\n")
-        done = run("import", rec, "--columns", "time=t,position=x", "--out", self.root / "new" / "stroke.csv")
+        done = run("import", "stroke", rec, "--columns", "time=t,position=x", "--out", self.root / "new" / "stroke.csv")
         self.assertEqual(done.returncode, 2)
         self.assertIn("line 3: got 3 values; allowed: 4", done.stderr)
         self.assertIn('line 4: column 2 x: got "nan"', done.stderr)
-        done = run("import", rec, "--columns", "time=t,position=x", "--out", rec)
+        done = run("import", "stroke", rec, "--columns", "time=t,position=x", "--out", rec)
         self.assertIn("is the recording itself", done.stderr)
         self.assertEqual(os.listdir(self.root), ["rec.csv"])
 
     def test_does_not_depend_on_the_locale(self):
         rec = self.write("zeit,größe,y,z\n0,0,0,0\n0.5,0.001,0,0\n", "prüfung.csv")
         for locale in ("C", "C.UTF-8", "de_DE.ISO-8859-1"):
-            done = run("import", rec, "--columns", "time=zeit,position=größe", "--out", self.root / "ö.csv", LC_ALL=locale)
+            done = run("import", "stroke", rec, "--columns", "time=zeit,position=größe", "--out", self.root / "ö.csv", LC_ALL=locale)
             self.assertEqual(done.returncode, 0, done.stderr)
             self.assertIn("ö.csv", done.stdout)
-            self.assertIn("prüfung.csv: columns: position", run("import", rec, "--columns", "time=zeit,position=no", LC_ALL=locale).stderr)
+            self.assertIn("prüfung.csv: columns: position", run("import", "stroke", rec, "--columns", "time=zeit,position=no", LC_ALL=locale).stderr)
 
     def test_names_the_packages_that_are_missing(self):
         bare = self.root / "python"
@@ -355,15 +355,15 @@ class Command(Given):
         self.assertRegex(done.stderr, "^hapbench: error: import needs a python3 with numpy, scipy, .*\n$")
 
     def test_lists_presets_that_can_be_copied(self):
-        presets = json.loads(hapbench("import", "--list", "--json"))
+        presets = json.loads(hapbench("import", "stroke", "--list", "--json"))
         self.assertEqual([preset["preset"] for preset in presets], sorted(file.stem for file in PRESETS.iterdir()))
         for preset in presets:
             copy = self.write(Path(preset["file"]).read_bytes(), "copy.json")
-            self.assertIn("missing: cannot be read", self.refusal_of("import", self.root / "missing", "--preset", copy), "the preset is right")
-        self.assertIn('nearest valid name: "hapi"', self.refusal_of("import", LOG, "--preset", "hapy"))
+            self.assertIn("missing: cannot be read", self.refusal_of("import", "stroke", self.root / "missing", "--preset", copy), "the preset is right")
+        self.assertIn('nearest valid name: "hapi"', self.refusal_of("import", "stroke", LOG, "--preset", "hapy"))
         for text, problem in (("{,}", "is not JSON: syntax error at line 1, column 2"), ("[1]", "got [1]; allowed: an object"),
                               ('{"colums": {}}', 'nearest valid name: "columns"'), ('{"floats": 1}', "floats: got 1; allowed: true, false")):
-            self.assertIn("bad.json: ", found := self.refusal_of("import", LOG, "--preset", self.write(text, "bad.json")))
+            self.assertIn("bad.json: ", found := self.refusal_of("import", "stroke", LOG, "--preset", self.write(text, "bad.json")))
             self.assertIn(problem, found)
 
     def refusal_of(self, *words):

@@ -1,4 +1,4 @@
-"""python -m hapbench_identify WORDS…; the program calls it for `hapbench identify`: fits a device to its log, or makes the signal to
+"""python -m hapbench_identify WORDS…; the program calls it for `hapbench import device`: fits a device to its log, or makes the signal to
 play."""
 import json
 import math
@@ -22,8 +22,8 @@ the encoder. What the log cannot tell is not written, and a warning says why. Th
 encoder's step. A constant force besides the commands is told and not part of a device.
 --columns: time, force and position, by default time_s, force_N and position_m. Forces are as commanded at the time of the row, \
 positive in the direction of the position.
-  hapbench identify --design chirp --force 2 --travel 0.08 --mass 0.1 --out chirp.csv
-  hapbench identify log.csv --columns time=t,force=3,position=enc --scale time=1e-6,position=5.5e-5
+  hapbench import device --design chirp --force 2 --travel 0.08 --mass 0.1 --out chirp.csv
+  hapbench import device log.csv --columns time=t,force=3,position=enc --scale time=1e-6,position=5.5e-5
   hapbench limit tap_wall --device log_device.json"""
 UNITS = {"handle_mass_kg": "kg", "viscous_N_s_per_m": "N s/m", "coulomb_N": "N", "delay_s": "s", "delay_samples": "samples", "encoder_step_m": "m",
          "position_noise_m": "m", "offset_N": "N"}
@@ -32,7 +32,7 @@ IN_DEVICE = ("handle_mass_kg", "viscous_N_s_per_m", "coulomb_N", "delay_s", "enc
 
 
 def command_line():
-    line = CommandLine("identify", "Make a device's file from its log: mass, friction, delay, encoder", FOOTER)
+    line = CommandLine("import device", "Make a device's file from its log: mass, friction, delay, encoder", FOOTER)
     line.text("log", "CSV of one axis: time, commanded force, position of the handle, no hand on it", nargs="?", metavar="log")
     line.texts("--columns", "where quantities are, by name or number from 1 (below)")
     line.texts("--scale", "what units are: time [s], force [N], position [m] (below)")
@@ -50,13 +50,13 @@ def command_line():
 
 def run(options):
     if bool(options.design) == bool(options.log):
-        fail("identify takes either a LOG or --design, which makes the signal to play and to log")
+        fail("import device takes either a LOG or --design, which makes the signal to play and to log")
     out = options.out or (f"signal_{options.design}.csv" if options.design else f"{Path(options.log).stem}_device.json")
     if options.log:
         refuse_source(out, options.log, "log")
     table, data = play(options, out) if options.design else identify(options, out)
     headings = ["of the signal" if options.design else "of the device", "", "from", "to, 95 %"]
-    next_line = (f"command these forces, log time_s,force_N,position_m, then {shell_line('hapbench', 'identify', 'LOG.csv')}" if options.design
+    next_line = (f"command these forces, log time_s,force_N,position_m, then {shell_line('hapbench', 'import', 'device', 'LOG.csv')}" if options.design
                  else shell_line("hapbench", "limit", "tap_wall", "--device", out))
     answer(options, f"{out}\n{table_text(headings, table, options.wide, numbers=True)}\nnext: {next_line}", data | {"next": next_line})
 
@@ -81,7 +81,7 @@ def identify(options, out):
     require_likely_units(options, found.values[0], step)
     if told["handle_mass_kg"]["value"] is None:
         fail(f"the log cannot tell the mass: the simulated position misses by {found.rms:.3g} m. Is a hand or a spring on the handle, or is a "
-             "sign or a unit wrong? hapbench identify --design makes a signal that tells", options.log)
+             "sign or a unit wrong? hapbench import device --design makes a signal that tells", options.log)
     warnings = log.warnings + warnings_of(told, found, log)
     device = {"type": "impedance"} | {name: float(f"{told[name]['value']:.6g}") for name in IN_DEVICE if told[name]["value"]}
     write(Path(out), json.dumps(device, indent=2) + "\n")
@@ -172,4 +172,4 @@ def limited_by_travel(kind, numbers, peak):
 if __name__ == "__main__":
     asked_for = command_line().parse(sys.argv[1:])
     doing = "" if asked_for.quiet else "designing" if asked_for.design else "identifying"
-    sys.exit(exit_status("identify", doing, lambda: run(asked_for)))
+    sys.exit(exit_status("import device", doing, lambda: run(asked_for)))

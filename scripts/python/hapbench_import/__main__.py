@@ -1,4 +1,4 @@
-"""python -m hapbench_import WORDS…; the program calls it for `hapbench import`."""
+"""python -m hapbench_import WORDS…; the program calls it for `hapbench import stroke`."""
 import sys
 from pathlib import Path
 
@@ -14,13 +14,13 @@ qz, mfx, mfy, mfz. --orientation is none, axis (the direction out of the tip), q
 matrix (r11, r12 ... r33, row by row); it turns the tool's frame into the world's.
 Rows with wrong numbers, times that do not increase, quaternions that are no unit and jumps are refused with their lines, and \
 nothing is written.
-  hapbench import log.txt --preset hapi --smooth window=11,order=3 --out stroke.csv
-  hapbench import rec.csv --columns time=t,position=5,orientation=8,force=fx \\
+  hapbench import stroke log.txt --preset hapi --smooth window=11,order=3 --out stroke.csv
+  hapbench import stroke rec.csv --columns time=t,position=5,orientation=8,force=fx \\
     --orientation quat_xyzw --scale time=1e-6,position=0.001"""
 
 
 def command_line():
-    line = CommandLine("import", "Make a stroke to play back from a recording: poses and measured forces", FOOTER)
+    line = CommandLine("import stroke", "Make a stroke to play back from a recording: poses and measured forces", FOOTER)
     line.text("file", "the recording", nargs="?", metavar="file")
     line.text("--preset", "a layout by name or from FILE.json; options below override it")
     line.flag("--list", "list the presets")
@@ -50,7 +50,7 @@ def run(options):
         table = table_text(["PRESET", "of"], [[one["preset"], one["description"]] for one in presets], options.wide)
         return answer(options, f"{table}\nCopy one from {PRESETS}, correct it and give it as --preset FILE.json.", presets)
     if not options.file:
-        fail('FILE is missing: the recording; "hapbench import --help" explains')
+        fail('FILE is missing: the recording; "hapbench import stroke --help" explains')
     if not options.preset and not options.columns:
         fail("--columns or --preset is missing: which columns hold time and position?")
     from .recording import open_recording  # loads numpy and scipy, which the help does without
@@ -69,4 +69,4 @@ def run(options):
 
 if __name__ == "__main__":
     asked_for = command_line().parse(sys.argv[1:])
-    sys.exit(exit_status("import", "" if asked_for.quiet else "importing", lambda: run(asked_for)))
+    sys.exit(exit_status("import stroke", "" if asked_for.quiet else "importing", lambda: run(asked_for)))
