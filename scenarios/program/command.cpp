@@ -47,8 +47,8 @@ CapturedOutput* captured_output() noexcept {
   return captured;
 }
 
-void add_overrides(Command& command, std::vector<std::string>& overrides, const std::string& help) {
-  command.add("--set", overrides, help, {.several = true});
+void add_overrides(Command& command, std::vector<std::string>& overrides) {
+  command.add("--set", overrides, shared_option_help("--set"), {.several = true});
 }
 
 void add_jobs(Command& command, unsigned& jobs, const std::string& help) {

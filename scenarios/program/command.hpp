@@ -42,11 +42,10 @@ struct CommonOptions {
   OutputOptions output;
 };
 
-/// Adds --set, repeatable and completed by the fields of scenarios.
-void add_overrides(Command& command, std::vector<std::string>& overrides,
-                   const std::string& help = "override a field: path=value");
+/// Adds --set, repeatable.
+void add_overrides(Command& command, std::vector<std::string>& overrides);
 /// Adds --jobs, at least 1. Zero means not given.
-void add_jobs(Command& command, unsigned& jobs, const std::string& help);
+void add_jobs(Command& command, unsigned& jobs, const std::string& help = shared_option_help("--jobs"));
 
 /// Prints `text`, as wide as the output is, or `json` under --json, or nothing under --quiet.
 void print(const OutputOptions& options, const std::string& text, const Json& json);

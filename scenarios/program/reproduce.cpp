@@ -248,7 +248,7 @@ void add_reproduce(CommandLine& line) {
   command.add("--ledger", options.ledger,
               "file of the ledger, JSON, with a Markdown table beside it (default: OUT/claims.json; with --only none)");
   command.flag("--anew", options.anew, "run every scenario again, even where results are current");
-  add_jobs(command, options.jobs, "runs at once (default: one for each processor)");
+  add_jobs(command, options.jobs);
   command.add(
       "--choices", options.readings,
       "judge every claim again under each reading of FILE.csv, appendix D in the first quarter of them: a row each, a "

@@ -451,9 +451,9 @@ void add_tune(CommandLine& line) {
   command.add("--mass", options.mass,
               "a:b, range of the virtual mass on an admittance device [kg] (default: half to twice the scene's)");
   command.flag("--filters", options.filters, "on an impedance device choose the velocity filter, too");
-  add_jobs(command, options.jobs, "runs at once; no result depends on it (default: one per thread)");
+  add_jobs(command, options.jobs);
   command.add("--out", options.out, "directory of the results (default: results/out/tune_NAME)");
-  add_overrides(command, options.overrides, "override a field of all runs: path=value");
+  add_overrides(command, options.overrides);
   command.footer(fmt::format(
       "For each law the largest K, over zeta (and virtual mass on an admittance device), at which the scene's own run and each of the "
       "family is settled (\"hapbench describe stability\"; where a script moves the tool, no more than 1 mm/s rms above 30 Hz at the handle) at K and at margin x K, the loop of "

@@ -176,7 +176,7 @@ void add_validate(CommandLine& line) {
   command.add(
       "--points", options.points,
       "write the environment's points, with normals: FILE.csv (exact) or FILE.ply (single precision, for viewers)");
-  add_overrides(command, options.overrides, "override a field of all: path=value");
+  add_overrides(command, options.overrides);
 }
 
 }  // namespace hapbench

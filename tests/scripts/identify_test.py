@@ -213,12 +213,12 @@ class Design(unittest.TestCase):
     def test_travel_that_limits_the_force_is_said(self):
         with tempfile.TemporaryDirectory() as scratch:
             file = Path(scratch) / "chirp.csv"
-            words = ("identify", "--design", "chirp", "--travel", "0.08", "--mass", "0.1", "--out", file)
-            done = run(*words, "--force", "2")
+            words = ("import", "device", "--out", file, "--design")
+            done = run(*words, "chirp,travel=0.08,mass=0.1,force=2")
             self.assertIn("the travel of 0.08 m limits the force to 0.72 N of 2 N: the log tells dry friction up to 0.432 N", done.stderr)
-            asked = done.stderr.split("--force ")[1].split()[0]
-            self.assertGreaterEqual(json.loads(run(*words, "--force", asked, "--json").stdout)["force_max_N"], 0.99 * 2.0)
-            self.assertNotIn("limits", run("import", "device", "--design", "multisine", "--travel", "0.08", "--force", "2", "--out", file).stderr)
+            asked = done.stderr.split("force=")[1].split()[0]
+            self.assertGreaterEqual(json.loads(run(*words, f"chirp,travel=0.08,mass=0.1,force={asked}", "--json").stdout)["force_max_N"], 0.99 * 2.0)
+            self.assertNotIn("limits", run("import", "device", "--design", "multisine,travel=0.08,force=2", "--out", file).stderr)
 
     def test_each_signal_tells_the_device(self):
         m, b, c, d, q = TRUE.values()
