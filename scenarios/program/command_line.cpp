@@ -175,8 +175,7 @@ void CommandLine::add_module_option(CLI::App& app) {
   const auto add = [this](const std::vector<std::string>& files) {
     modules_.insert(modules_.end(), files.begin(), files.end());
   };
-  app.add_option_function<std::vector<std::string>>(
-         "--module", add, shared_option_help("--module"))
+  app.add_option_function<std::vector<std::string>>("--module", add, shared_option_help("--module"))
       ->allow_extra_args(false)
       ->take_all();
 }
@@ -372,9 +371,10 @@ std::string CommandLine::program_help() const {
   for (const SharedOption& option : kSharedOptions) text += entry(option.name, option.help, 2, 14);
   return text + entry("--version", "print the version; with --json also what it was built from and promises", 2, 14) +
          "\n" +
-         wrapped("Exit status: 0 success, 1 internal fault, 2 bad input or usage, 3 a run did not end as its scenario "
-                 "expects, 130 stopped by Ctrl-C.",
-                 0);
+         wrapped(
+             "Exit status: 0 success, 1 internal fault, 2 bad input or usage, 3 a run did not end as its scenario "
+             "expects, 130 stopped by Ctrl-C.",
+             0);
 }
 
 std::string CommandLine::examples_of(const std::string& command) const {
@@ -416,8 +416,8 @@ int CommandLine::run(std::vector<std::string> words) {
   } catch (const CLI::CallForHelp&) {
     const std::vector<CLI::App*> chosen = app_->get_subcommands();
     refuse_old_words(*app_, nullptr);
-    fmt::print("{}", chosen.empty() ? program_help()
-                                    : help_text(*chosen.front()) + examples_of(chosen.front()->get_name()));
+    fmt::print("{}",
+               chosen.empty() ? program_help() : help_text(*chosen.front()) + examples_of(chosen.front()->get_name()));
     return kSuccess;
   } catch (const CLI::CallForVersion& version) {
     fmt::print("{}\n", version.what());

@@ -7,7 +7,6 @@
 #include <iterator>
 #include <regex>
 
-#include "algorithms/registry.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/description/load_scenario.hpp"
 #include "scenarios/input/input_error.hpp"
@@ -203,6 +202,31 @@ bool names_place(const std::string& source, const Place& asked) {
   return false;
 }
 
+/// The pictures on record of a figure of the thesis, such as figure_A.2.svg of "A.2".
+std::vector<std::filesystem::path> pictures_of(const Place& place) {
+  const std::string figure = place.number.substr(0, place.number.find_last_not_of("abcd") + 1);
+  std::vector<std::filesystem::path> pictures;
+  std::error_code none;
+  for (const auto& entry :
+       std::filesystem::directory_iterator(installed_folder("results/reference") / "figures", none)) {
+    const std::string stem = entry.path().stem().string();
+    if (stem == "figure_" + figure || stem.starts_with("figure_" + figure + "_")) pictures.push_back(entry.path());
+  }
+  std::ranges::sort(pictures);
+  return pictures;
+}
+
+/// The pictures, and the commands that draw them anew.
+std::string pictures_text(const std::vector<std::filesystem::path>& pictures) {
+  std::string text;
+  for (const std::filesystem::path& picture : pictures) {
+    std::string id = picture.stem().string().substr(std::string_view("figure_").size());
+    std::replace(id.begin(), id.end(), '_', '-');
+    text += fmt::format("    {}\n    drawn anew by scripts/reproduce --figure {}\n", picture.string(), id);
+  }
+  return text;
+}
+
 /// The bundled scenarios and claims that name a place of the thesis, as "A.2", "Fig. A.2", "Table A.1" or
 /// "section 3.4"; a place includes its parts: 3.4 includes 3.4.1, Fig. 2 includes Fig. 2c. None when the name is no
 /// place's. Throws InputError for a place that nothing names.
@@ -221,9 +245,13 @@ std::optional<Description> describe_place(const std::string& name) {
                                            : entry(thing.name, source, 4, 44);
     json[is_claim ? "claims" : "scenarios"].push_back(thing.name);
   }
-  if (scenarios.empty() && claims.empty())
+  const std::vector<std::filesystem::path> pictures =
+      place->kind == "Fig." || place->kind.empty() ? pictures_of(*place) : std::vector<std::filesystem::path>();
+  for (const std::filesystem::path& picture : pictures) json["pictures"].push_back(picture.string());
+  if (scenarios.empty() && claims.empty() && pictures.empty())
     throw InputError(fmt::format("no bundled scenario and no claim names {} of the thesis", title));
-  return Description{fmt::format("{} of the thesis\n\n  scenarios\n{}\n  claims\n{}", bold(stdout, title),
+  return Description{fmt::format("{} of the thesis\n\n{}  scenarios\n{}\n  claims\n{}", bold(stdout, title),
+                                 pictures.empty() ? "" : "  picture\n" + pictures_text(pictures) + "\n",
                                  scenarios.empty() ? "    none\n" : scenarios, claims.empty() ? "    none\n" : claims),
                      json};
 }
@@ -234,36 +262,15 @@ std::optional<Description> describe_place(const std::string& name) {
 constexpr const char* kListed[] = {"algorithm", "depth model", "stage",    "integrator", "environment", "tool", "hand",
                                    "device",    "preset",      "scenario", "study",      "metric",      "claim"};
 
-Index everything() {
-  Index index = program_index(), all;
-  std::ranges::move(folder_index(), std::back_inserter(index));
-  for (const std::string_view kind : kListed)
-    std::ranges::copy_if(index, std::back_inserter(all), [kind](const Named& thing) { return thing.kind == kind; });
-  return all;
-}
-
-std::string group_of(const Named& thing) {
-  return thing.more.value("group", "");
-}
-
-std::string plural(const std::string& kind) {
-  return kind == "study" ? "studies" : kind + "s";
-}
-
-/// The name of the list of a kind: "depth_models".
+/// The name of the list that has it: "depth_models"; of scenarios also their group.
 std::string list_name(const std::string& kind) {
-  std::string name = plural(kind);
+  std::string name = kind == "study" ? "studies" : kind + "s";
   std::replace(name.begin(), name.end(), ' ', '_');
   return name;
 }
 
-/// The names of the lists: of the kinds, and of the groups of scenarios.
-std::vector<std::string> list_names() {
-  std::vector<std::string> names;
-  for (const char* kind : kListed) names.push_back(list_name(kind));
-  for (const BundledScenario& bundled : bundled_scenarios())
-    if (std::ranges::find(names, bundled.group) == names.end()) names.push_back(bundled.group);
-  return names;
+std::string group_of(const Named& thing) {
+  return thing.more.value("group", "");
 }
 
 /// True for the name of a kind's list. All metrics are told by a section of that name.
@@ -274,6 +281,15 @@ bool is_kind(const std::string& name) {
 bool is_group(const std::string& name) {
   const std::vector<BundledScenario> all = bundled_scenarios();
   return std::ranges::find(all, name, &BundledScenario::group) != all.end();
+}
+
+/// What lists have, in their order.
+Index everything() {
+  Index index = program_index(), all;
+  std::ranges::move(folder_index(), std::back_inserter(index));
+  for (const std::string_view kind : kListed)
+    std::ranges::copy_if(index, std::back_inserter(all), [kind](const Named& thing) { return thing.kind == kind; });
+  return all;
 }
 
 constexpr std::size_t kColumn = 34;  // of the summaries
@@ -292,44 +308,30 @@ std::string short_summary(const std::string& text) {
   return sentence.substr(0, sentence.rfind(' ', room - 4)) + " ...";
 }
 
-/// A scenario's name without the algorithm at its end, which scenarios of one scene have in common.
-std::string scene_of(const std::string& name) {
-  std::size_t longest = 0;
-  for (const AlgorithmEntry& entry : algorithms()) {
-    const std::string end = std::string("_") + entry.info->name;
-    if (name.ends_with(end)) longest = std::max(longest, end.size());
-  }
-  return name.substr(0, name.size() - longest);
-}
-
-/// The line of a thing. Scenarios that are one scene under several algorithms share the line of the first.
-std::string entry_of(const Index& all, const Named& first) {
-  if (first.kind == "claim")
-    return entry(fmt::format("{:<5}{}", first.name, verdicts_text(first.more)), first.summary, 2, kColumn,
-                 output_width());
-  const std::string scene = scene_of(first.name);
-  std::vector<std::string> algorithms;
+/// Lists below their titles: with a line for each name, or the names alone.
+std::string list_text(const Index& all, bool names_alone) {
+  std::string text, title, names;
+  const auto end_list = [&] {
+    if (!names.empty()) text += wrapped(names.substr(2));
+    names.clear();
+  };
   for (const Named& thing : all) {
-    if (thing.kind == "scenario" && group_of(thing) == group_of(first) && thing.name != scene &&
-        scene_of(thing.name) == scene)
-      algorithms.push_back(thing.name.substr(scene.size() + 1));
-  }
-  if (first.kind != "scenario" || first.name == scene || algorithms.size() < 2)
-    return entry(first.name, short_summary(first.summary), 2, kColumn, output_width());
-  if (!first.name.ends_with("_" + algorithms.front())) return "";  // on the line of the first
-  return entry(scene + "_*", short_summary(first.summary), 2, kColumn, output_width()) +
-         wrapped(fmt::format("*: {}", fmt::join(algorithms, ", ")), kColumn);
-}
-
-std::string list_text(const Index& all) {
-  std::string text, title;
-  for (const Named& thing : all) {
-    const std::string group = group_of(thing), of = group.empty() ? plural(thing.kind) : "scenarios: " + group;
-    if (of != title) text += (title.empty() ? "" : "\n") + bold(stdout, of) + "\n";
+    const std::string group = group_of(thing), of = list_name(thing.kind) + (group.empty() ? "" : " of " + group);
+    if (of != title) {
+      end_list();
+      text += (title.empty() ? "" : "\n") + bold(stdout, of) + "\n";
+    }
     title = of;
-    text += entry_of(all, thing);
+    const bool is_claim = thing.kind == "claim";
+    if (names_alone) {
+      names += ", " + thing.name;
+    } else {
+      text += entry(is_claim ? fmt::format("{:<5}{}", thing.name, verdicts_text(thing.more)) : thing.name,
+                    is_claim ? thing.summary : short_summary(thing.summary), 2, kColumn, output_width());
+    }
   }
-  return text + "\n\"hapbench describe NAME\" explains each.\n";
+  end_list();
+  return text;
 }
 
 struct DescribeOptions {
@@ -338,21 +340,17 @@ struct DescribeOptions {
   OutputOptions output;
 };
 
-/// Lists everything, or what is of a kind or group.
+/// Lists what is of a kind or a group, or of each kind but the many metrics and claims the names.
 int list(const DescribeOptions& options) {
   Index all = everything();
-  if (!options.name.empty())
-    std::erase_if(all, [&](const Named& thing) {
-      return list_name(thing.kind) != options.name && group_of(thing) != options.name;
-    });
-  // There are so many metrics and claims that they are only shown on request.
   const bool of_everything = options.name.empty() && options.grep.empty();
-  if (of_everything)
-    std::erase_if(all, [](const Named& thing) { return thing.kind == "metric" || thing.kind == "claim"; });
   const std::string pattern = lower_case(options.grep);
-  std::erase_if(all, [&pattern](const Named& thing) {
+  std::erase_if(all, [&](const Named& thing) {
     const std::string text = thing.name + " " + thing.summary + " " + thing.more.value("source", "");
-    return lower_case(text).find(pattern) == std::string::npos;
+    const bool is_asked =
+        options.name.empty() || list_name(thing.kind) == options.name || group_of(thing) == options.name;
+    return !is_asked || lower_case(text).find(pattern) == std::string::npos ||
+           (of_everything && (thing.kind == "metric" || thing.kind == "claim"));
   });
   if (all.empty()) throw InputError(fmt::format("--grep: nothing has \"{}\" in its name or text", options.grep));
   Json json = Json::array();
@@ -360,8 +358,11 @@ int list(const DescribeOptions& options) {
     Json& entry = json.emplace_back(Json{{"kind", thing.kind}, {"name", thing.name}, {"summary", thing.summary}});
     entry.update(thing.more);
   }
+  const char* more =
+      of_everything ? ", \"hapbench describe KIND\" lists a kind with what each is; more kinds: metrics, claims" : "";
   print(options.output,
-        list_text(all) + (of_everything ? "\"hapbench describe metrics\" and \"describe claims\" show more.\n" : ""),
+        list_text(all, of_everything) + "\n" +
+            wrapped(fmt::format("\"hapbench describe NAME\" explains each{}.", more), 0),
         json);
   return kSuccess;
 }
@@ -419,7 +420,8 @@ std::vector<Description> described_headings(const Index& index, const std::strin
 }
 
 [[noreturn]] void refuse(const std::string& name, const Index& index, const Index& in_folders) {
-  std::vector<std::string> names = list_names();
+  std::vector<std::string> names;
+  for (const char* kind : kListed) names.push_back(list_name(kind));
   for (const Index* known : {&index, &in_folders})
     for (const Named& thing : *known)
       if (thing.kind != "heading") names.push_back(thing.name);

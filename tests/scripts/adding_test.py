@@ -334,7 +334,7 @@ class Adding(unittest.TestCase):
         self.assertIn("taper", [tool["properties"]["type"]["const"] for tool in schema["tool"]["oneOf"]])
         devices = {device["properties"]["type"]["const"]: device["properties"] for device in schema["device"]["oneOf"]}
         self.assertEqual(devices["impedance"]["play_m"]["description"], "play of the transmission")
-        self.assertIn("a cone that ends in a narrow tip", self.hapbench("describe"))
+        self.assertIn("a cone that ends in a narrow tip", self.hapbench("describe", "tools"))
         for name, text in (("ridge", "height of the row"), ("taper", "width of the far end"), ("hand.file", "a stroke to compare with"),
                            ("device.play_m", "a number >= 0 and <= 1 [m]"),
                            ("environment.type", "a row of points")):

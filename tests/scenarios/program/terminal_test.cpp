@@ -29,12 +29,12 @@ using test::hapbench_here;
 using test::lines_of;
 using test::ProgramRun;
 
-/// The names of the commands, as the help has them.
+/// The names of the commands, behind those of their groups, as the program prints them.
 std::vector<std::string> command_names() {
-  const std::string help = hapbench({"--help"}).out;
+  const std::vector<std::string> lines = lines_of(hapbench({}).out);
   std::vector<std::string> names;
-  for (const std::string& line : lines_of(help.substr(help.find("\nCommands:\n") + 1)))
-    if (line.starts_with("  ") && line[2] != ' ') names.push_back(line.substr(2, line.find(' ', 2) - 2));
+  for (std::size_t i = 2; i < lines.size() && !lines[i].empty(); ++i)
+    names.push_back(lines[i].substr(8, lines[i].find(' ', 8) - 8));
   return names;
 }
 
@@ -50,8 +50,20 @@ ProgramRun in_terminal(const std::vector<std::string>& arguments, std::size_t co
   return hapbench(arguments, options);
 }
 
+TEST(Terminal, BeginsWithTheCommandsOnOnePage) {
+  const ProgramRun run = in_terminal({}, 80);
+  EXPECT_EQ(run.status, 0);
+  EXPECT_LE(lines_of(run.out).size(), 24u);
+  EXPECT_LE(widest(run.out), 80u);
+  for (const std::string& line : lines_of(run.out)) {
+    const std::size_t at = line.find("hapbench ");
+    if (line.find('"') == std::string::npos && at == 8)  // what to do first names commands that there are
+      EXPECT_NE(std::ranges::count(command_names(), line.substr(17, line.find(' ', 17) - 17)), 0) << line;
+  }
+}
+
 TEST(Terminal, HasEveryHelpInItsWidth) {
-  const std::vector<std::string> commands = command_names();
+  std::vector<std::string> commands = command_names();
   ASSERT_EQ(commands.size(), 14u);
   for (const std::string& command : commands) {
     const ProgramRun help = in_terminal({command, "--help"}, 80);
