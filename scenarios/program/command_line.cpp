@@ -58,14 +58,9 @@ constexpr OldWords kOldWords[] = {
     {"compare", "--no-skip", "hapbench run SCENE --no-skip"},
     {"converge", "--resume", "the same without it: the runs are made again"},
     {"import device", "--duration --force --mass --rate --travel", "--design chirp,force=2,travel=0.08,mass=0.1"},
-    {"import stroke", "--floats", "--set floats=true"},
-    {"import stroke", "--force-by-tool", "--set force_by_tool=true"},
     {"import stroke", "--list", "hapbench import stroke, without a file"},
-    {"import stroke", "--max-gap", "--set max_gap=SECONDS"},
-    {"import stroke", "--max-speed", "--set max_speed=M_PER_S"},
-    {"import stroke", "--sample-rate", "--set sample_rate_Hz=HZ"},
-    {"import stroke", "--shift", "--set shift=X,Y,Z"},
-    {"import stroke", "--tip-axis", "--set tip_axis=X,Y,Z"},
+    {"import stroke", "--floats --force-by-tool --max-gap --max-speed --sample-rate --shift --tip-axis",
+     "--set NAME=VALUE, as max_speed=9 or floats=true; the help has the names"},
     {"new", "--scale", "--extent SIZE, the longest edge of the mesh's box: 12mm, 1.2cm, 0.012m, 0.5in"},
     {"plot", "--no-sketch", "the same without it: plot draws no sketches"},
     {"reproduce", "--robustness",
@@ -76,6 +71,10 @@ constexpr OldWords kOldWords[] = {
     {"sweep", "--cpus --dry-run --partition --slurm --time",
      "sbatch --array=0-99 scripts/sweep.sbatch SCENE --vary ... --out FOLDER"},
     {"sweep", "--status", "squeue, and the tables sweep.I_of_N.csv that are in the folder"},
+    {"tune", "--max-inside", "--bound inside_max_m=3e-4 [m]"},
+    {"tune", "--max-step", "--bound settled_force_step_max_N=0.2"},
+    {"tune", "--max-vibration", "--bound force_rms_above_30Hz_N=0.05"},
+    {"tune", "--over", "--family hands,seeds,speeds"},
 };
 
 struct SharedOption {

@@ -161,7 +161,7 @@ std::vector<ComparedDevice> chosen_devices(const std::vector<std::string>& given
                [](const std::string& name) { return !is_file(name) && !name.ends_with(']'); });
   if (!unknown.empty()) {
     std::vector<std::string> names = names_of(compared_devices(), &ComparedDevice::name);
-    names.insert(names.begin(), kPresets);
+    names.insert(names.begin(), {"FILE.json", kPresets});
     chosen_names("--device: got", unknown, names);
   }
   std::vector<ComparedDevice> chosen;
