@@ -95,44 +95,39 @@ std::string text_in(const Json& object, const char* field) {
   return fmt::format("{}", fmt::join(texts, !value.empty() && value.front().is_number() ? " ... " : ", "));
 }
 
+/// Those of the fields that there are, each below the other.
+std::string said_of(const Json& object, std::initializer_list<const char*> fields) {
+  std::string text;
+  for (const char* field : fields) text += facts_text({{field, text_in(object, field)}}, 14);
+  return text;
+}
+
 Description describe_claim(const Json& claim) {
-  const auto said = [&claim](const char* field) { return text_in(claim, field); };
-  return {fmt::format("claim {}, verdict on record: {}\n{}\n", bold(stdout, said("id")), verdicts_text(claim),
-                      wrapped(said("claim"))) +
-              facts_text({{"place", said("place")},
-                          {"published", said("published")},
-                          {"measured", said("measured")},
-                          {"rule", said("rule")},
-                          {"why", said("why")},
-                          {"robustness", robustness_text(claim)},
-                          {"scenarios", said("scenarios")}},
-                         14) +
-              fmt::format("\njudge it again: hapbench reproduce --only {}\n", said("id")),
+  const std::string id = claim.at("id");
+  return {fmt::format("claim {}, verdict on record: {}\n{}\n", bold(stdout, id), verdicts_text(claim),
+                      wrapped(text_in(claim, "claim"))) +
+              said_of(claim, {"place", "published", "measured", "rule", "why"}) +
+              facts_text({{"robustness", robustness_text(claim)}}, 14) + said_of(claim, {"scenarios"}) +
+              fmt::format("\njudge it again: hapbench reproduce --only {}\n", id),
           claim};
 }
 
 Description describe_choice(const Json& choice) {
-  const auto said = [&choice](const char* field) { return text_in(choice, field); };
-  const std::string unit = said("unit");
-  std::string text = fmt::format("choice {}, on record\n{}\n", bold(stdout, said("id")), wrapped(said("what"))) +
-                     facts_text({{"value", said("value") + (unit.empty() ? "" : " " + unit)},
-                                 {"the thesis", said("thesis")},
-                                 {"plausible", said("range")},
-                                 {"options", said("options")},
-                                 {"scale", said("scale")},
-                                 {"why", said("why")},
-                                 {"chosen", said("chosen") + " results were seen"}},
-                                14);
+  const std::string unit = text_in(choice, "unit");
+  std::string text = fmt::format("choice {}, on record\n{}\n", bold(stdout, choice.at("id").get<std::string>()),
+                                 wrapped(text_in(choice, "what")));
+  text += facts_text({{"value", text_in(choice, "value") + (unit.empty() ? "" : " " + unit)}}, 14) +
+          said_of(choice, {"thesis", "range", "options", "scale", "why"}) +
+          facts_text({{"chosen", text_in(choice, "chosen") + " results were seen"}}, 14);
   for (const Json& field : choice.value("fields", Json::array())) {
-    text +=
-        facts_text({{"sets", fmt::format("{}{} of {}", text_in(field, "path"),
-                                         field.value("times", false) ? " (times)" : "", text_in(field, "scenarios"))}},
-                   14);
+    const char* times = field.value("times", false) ? " (times)" : "";
+    text += facts_text(
+        {{"sets", fmt::format("{}{} of {}", text_in(field, "path"), times, text_in(field, "scenarios"))}}, 14);
   }
-  return {
-      text +
-          "\nwhat it does to the verdicts: results/reference/claims.md; \"hapbench reproduce --choices\" judges by others\n",
-      choice};
+  return {text +
+              "\nwhat it does to the verdicts: results/reference/claims.md; \"hapbench reproduce --choices\" judges by "
+              "others\n",
+          choice};
 }
 
 /// What the folders beside the program hold: scenarios, studies, claims and choices on record. The files of scenarios
