@@ -7,7 +7,7 @@
 /* A force law or a source of contacts from outside, in C11 or any language that can speak C. A shared library defines
  * `hapbench_module`. Every command then has its law,
  *
- *     hapbench --plugin ./my_law.so run drag_molar --set rendering.algorithm=my_law
+ *     hapbench --module ./my_law.so run drag_molar --set rendering.algorithm=my_law
  *
  * or a scenario feeds the laws with its contacts:
  *

@@ -483,7 +483,7 @@ static void describe(Fields& f, ExpectFields& expect) {
   static const MetricList kMetrics = metrics_without_values();
   f.field("outcome", "how the run must end, or a list of ways", Presence::has_default,
           [&expect](Fields& value) { describe_outcomes(value, expect.outcomes); });
-  f.group("metrics", "bounds on the run's metrics, min and max of each; \"hapbench list metrics\" shows them",
+  f.group("metrics", "bounds on the run's metrics, min and max of each; \"hapbench describe metrics\" shows them",
           [&expect](Fields& metrics) {
             for (const Metric& metric : kMetrics) {
               const auto known = expect.metrics.find(metric.name);

@@ -87,7 +87,7 @@ static void describe_preset(Fields& f, ImpedanceDeviceConfig& device) {
   std::vector<std::string> names;
   for (const DevicePreset& known : device_presets()) names.emplace_back(known.name);
   f.if_any("preset", preset,
-           "a published device, whose numbers hold where the file gives none; \"hapbench list presets\" shows them",
+           "a published device, whose numbers hold where the file gives none; \"hapbench describe presets\" shows them",
            [&names](Fields& n, std::string& name) { n.name(name, names, "preset"); });
   if (!f.reads()) return;
   if (preset) {

@@ -193,10 +193,10 @@ std::string hint_elsewhere(const std::string& place) {
 InputError in_file(const InputError& fault, const fs::path& file) {
   std::string problem = fault.problem();
   if (problem.starts_with("unknown field") && problem.find("nearest valid name") == std::string::npos)
-    problem += fault.place().starts_with("/rendering/parameters/") ? "; a law from outside brings its own with --plugin"
+    problem += fault.place().starts_with("/rendering/parameters/") ? "; a law from outside brings its own with --module"
                                                                    : hint_elsewhere(fault.place());
   if (fault.place() == "/rendering/algorithm" && problem.find("nearest valid name") == std::string::npos)
-    problem += "; a law from outside comes with --plugin";
+    problem += "; a law from outside comes with --module";
   const std::string place = fault.place().empty() ? file.string() : file.string() + ": " + fault.place();
   return {fault.kind(), place, problem};
 }

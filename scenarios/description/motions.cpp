@@ -124,7 +124,7 @@ static void describe(Fields& f, RecordedPosition& position) {
   f.file(
       position.file, {FileContent::Kind::stroke},
       "CSV with header time_s,px_m,py_m,pz_m, then axis_x,axis_y,axis_z or qw,qx,qy,qz, then perhaps a measured force "
-      "mfx_N,mfy_N,mfz_N (\"hapbench import\" makes one); relative to the scenario file");
+      "mfx_N,mfy_N,mfz_N (\"hapbench import stroke\" makes one); relative to the scenario file");
 }
 
 void describe(Fields& f, PositionFields& position) {

@@ -31,7 +31,7 @@ enum class RandomUse : std::uint64_t {
 /// A seed of its own for each use in each trial: far apart in the 64 bits, whatever the scenario's seed.
 std::uint64_t derived_seed(const Scenario& scenario, Trial trial, RandomUse use);
 
-/// The point shell of the scenario's environment, in the order in which `hapbench shell` writes it; null for springs.
+/// The point shell of the scenario's environment, as `hapbench validate --points` writes it; null for springs.
 /// Equal environments share one (SharedCache).
 std::shared_ptr<const PointShell> make_shell(const Scenario& scenario, const NamedFiles& files);
 std::shared_ptr<const PointShell> make_shell(const Scenario& scenario);

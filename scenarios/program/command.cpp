@@ -47,8 +47,8 @@ CapturedOutput* captured_output() noexcept {
   return captured;
 }
 
-void add_overrides(Command& command, std::vector<std::string>& overrides, const std::string& help) {
-  command.add("--set", overrides, help, {.several = true});
+void add_overrides(Command& command, std::vector<std::string>& overrides) {
+  command.add("--set", overrides, shared_option_help("--set"), {.several = true});
 }
 
 void add_jobs(Command& command, unsigned& jobs, const std::string& help) {
@@ -133,14 +133,15 @@ fs::path results_directory(const std::string& out, const std::string& name) {
   return out.empty() ? fs::path("results") / "out" / name : fs::path(out);
 }
 
-void require_writable_directory(const fs::path& directory) {
+void require_writable_directory(const fs::path& directory, std::string_view option) {
   static NewDirectories directories;  // lives until the program ends, which removes empty ones
   std::error_code error;
   directories.create(directory, error);
-  if (error) throw InputError(fmt::format("--out {}: cannot be created: {}", directory.string(), error.message()));
-  if (!fs::is_directory(directory)) throw InputError(fmt::format("--out {}: is not a directory", directory.string()));
+  if (error) throw InputError(fmt::format("{} {}: cannot be created: {}", option, directory.string(), error.message()));
+  if (!fs::is_directory(directory))
+    throw InputError(fmt::format("{} {}: is not a directory", option, directory.string()));
   if (access(directory.c_str(), W_OK | X_OK) != 0) {
-    throw InputError(fmt::format("--out {}: cannot be written to", directory.string()));
+    throw InputError(fmt::format("{} {}: cannot be written to", option, directory.string()));
   }
 }
 

@@ -42,11 +42,10 @@ struct CommonOptions {
   OutputOptions output;
 };
 
-/// Adds --set, repeatable and completed by the fields of scenarios.
-void add_overrides(Command& command, std::vector<std::string>& overrides,
-                   const std::string& help = "override a field: path=value");
+/// Adds --set, repeatable.
+void add_overrides(Command& command, std::vector<std::string>& overrides);
 /// Adds --jobs, at least 1. Zero means not given.
-void add_jobs(Command& command, unsigned& jobs, const std::string& help);
+void add_jobs(Command& command, unsigned& jobs, const std::string& help = shared_option_help("--jobs"));
 
 /// Prints `text`, as wide as the output is, or `json` under --json, or nothing under --quiet.
 void print(const OutputOptions& options, const std::string& text, const Json& json);
@@ -110,9 +109,9 @@ std::string chosen_metric(const std::vector<std::string>& metrics, const std::st
 /// `out`, or results/out/`name` when it is empty.
 std::filesystem::path results_directory(const std::string& out, const std::string& name);
 
-/// Throws InputError unless results can be written to `directory`. Creates it, and removes it again if it is still
-/// empty when the program ends.
-void require_writable_directory(const std::filesystem::path& directory);
+/// Throws InputError, which names the option, unless results can be written to `directory`. Creates it, and removes it
+/// again if it is still empty when the program ends.
+void require_writable_directory(const std::filesystem::path& directory, std::string_view option = "--out");
 /// The threads of --jobs, and a progress bar behind `label` unless quiet.
 JobOptions job_options(const CommonOptions& options, const std::string& label);
 

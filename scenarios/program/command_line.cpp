@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <iterator>
 #include <string>
 #include <string_view>
 
@@ -33,18 +34,21 @@ struct OldWords {
 /// By command, so that what one command lost stands together.
 constexpr OldWords kOldWords[] = {
     {"*", "--memory", "ulimit -d KILOBYTES before the command; without it three quarters of what is free"},
-    {"*", "--plugin", "the same without it: the command runs no law"},
+    {"*", "--plugin", "--module FILE.so, of commands that run laws"},
     {"", "complete completion", "scripts/completion, which prints a completion for bash"},
     {"", "diff", "hapbench report A B --tolerance 0, which says what differs, with status 3"},
     {"", "explain",
      "hapbench run SCENE, which prints what is wrong and writes it to summary.json; hapbench describe diagnosis lists the rules"},
+    {"", "identify", "hapbench import device LOG"},
+    {"", "list", "hapbench describe, of a kind hapbench describe KIND; --grep TEXT searches"},
     {"", "man", "hapbench --help, and --help of each command"},
     {"", "merge", "hapbench sweep FOLDER, which joins the tables of the shards in it"},
     {"", "precision",
      "hapbench_accuracy, the benchmark of run time against error (tests/README.md), whose picture scripts/reproduce draws; "
      "hapbench converge SCENE --metric NAME"},
+    {"", "shell", "hapbench validate SCENE --points FILE.csv"},
     {"", "stability",
-     "hapbench limit spring_stiffness, spring_damping or spring_time_step; for --map other studies (hapbench list studies), "
+     "hapbench limit spring_stiffness, spring_damping or spring_time_step; for --map other studies (hapbench describe studies), "
      "for --stress hapbench stress, for --search hapbench sweep SCENE --sample lhs:400 --vary hand.x_N=-5:5"},
     {"", "suite", "hapbench compare GROUP --algorithms all --seeds 5"},
     {"compare", "--check --sure", "hapbench compare SCENE --errors, of one number hapbench converge SCENE"},
@@ -53,6 +57,10 @@ constexpr OldWords kOldWords[] = {
     {"compare", "--html", "hapbench report FOLDER, of the comparison's folder"},
     {"compare", "--no-skip", "hapbench run SCENE --no-skip"},
     {"converge", "--resume", "the same without it: the runs are made again"},
+    {"import device", "--duration --force --mass --rate --travel", "--design chirp,force=2,travel=0.08,mass=0.1"},
+    {"import stroke", "--list", "hapbench import stroke, without a file"},
+    {"import stroke", "--floats --force-by-tool --max-gap --max-speed --sample-rate --shift --tip-axis",
+     "--set NAME=VALUE, as max_speed=9 or floats=true; the help has the names"},
     {"new", "--scale", "--extent SIZE, the longest edge of the mesh's box: 12mm, 1.2cm, 0.012m, 0.5in"},
     {"plot", "--no-sketch", "the same without it: plot draws no sketches"},
     {"reproduce", "--robustness",
@@ -63,9 +71,38 @@ constexpr OldWords kOldWords[] = {
     {"sweep", "--cpus --dry-run --partition --slurm --time",
      "sbatch --array=0-99 scripts/sweep.sbatch SCENE --vary ... --out FOLDER"},
     {"sweep", "--status", "squeue, and the tables sweep.I_of_N.csv that are in the folder"},
+    {"tune", "--max-inside", "--bound inside_max_m=3e-4 [m]"},
+    {"tune", "--max-step", "--bound settled_force_step_max_N=0.2"},
+    {"tune", "--max-vibration", "--bound force_rms_above_30Hz_N=0.05"},
+    {"tune", "--over", "--family hands,seeds,speeds"},
 };
 
+struct SharedOption {
+  std::string_view name, help;
+};
+
+/// What commands have in common, as far as it means something to them.
+constexpr SharedOption kSharedOptions[] = {
+    {"--set", "override a field of every scene: path=value, as in time.steps=100; repeatable"},
+    {"--out", "where the results go (default: results/out/NAME); a command's help has its own"},
+    {"--jobs", "runs at once; no result depends on it (default: one per thread)"},
+    {"--seed", "of the random numbers, for another sample (default: 1)"},
+    {"--module", "load FILE.so, which holds a force law of your own; HAPBENCH_MODULE_PATH names folders of such files"},
+    {"--json", "print JSON instead of tables, for a script"},
+    {"--quiet", "print nothing on standard output, and no progress"},
+    {"--wide", "print tables in full width, however narrow the terminal is"},
+    {"--help", "explain the command, with examples"}};
+
+/// The first things to do.
+constexpr const char* kFirst[] = {"hapbench run drag_molar", "hapbench new drag --from my.stl --extent 12mm",
+                                  "hapbench describe"};
+
 }  // namespace
+
+std::string shared_option_help(const std::string& name) {
+  const auto* option = std::ranges::find(kSharedOptions, name, &SharedOption::name);
+  return option == std::end(kSharedOptions) ? "" : std::string(option->help);
+}
 
 void refuse_old_word(const std::string& command, const std::string& word) {
   const std::string name = word.substr(0, word.find('='));
@@ -118,41 +155,35 @@ void Command::footer(const std::string& text) {
   app_->footer(text);
 }
 
-CommandLine::CommandLine(const std::string& version, std::function<std::string()> version_json)
-    : app_(std::make_unique<CLI::App>("an offline bench for haptic rendering", kProgramName)) {
+CommandLine::CommandLine(std::vector<CommandGuide> guides, const std::string& version,
+                         std::function<std::string()> version_json)
+    : guides_(std::move(guides)),
+      app_(std::make_unique<CLI::App>("an offline bench for haptic rendering", kProgramName)) {
   CLI::Option* json = app_->add_flag("--json");
-  json->description("commit, compiler, instruction set and what the version promises");
   json->needs(app_->set_version_flag("--version", [=, version_json = std::move(version_json)] {
     return json->count() > 0 ? version_json() : version;
   }));
-  app_->get_option("--version")->description("print the version; with --json also what it was built from");
-  app_->get_option("--help")->description("print this help; with a command, that command's help");
-  add_common_options(*app_);
+  add_module_option(*app_);
   app_->require_subcommand(1);
-  app_->footer(
-      "Exit status: 0 success, 1 internal fault, 2 bad input or usage, 3 a run did not end as its scenario expects, "
-      "130 stopped by Ctrl-C.");
 }
 
 CommandLine::~CommandLine() = default;
 
-/// The program and each command have these options, so that they may stand before or behind the command.
-void CommandLine::add_common_options(CLI::App& app) {
+/// The program and each command have it, so that it may stand before or behind the command.
+void CommandLine::add_module_option(CLI::App& app) {
   const auto add = [this](const std::vector<std::string>& files) {
-    plugins_.insert(plugins_.end(), files.begin(), files.end());
+    modules_.insert(modules_.end(), files.begin(), files.end());
   };
-  app.add_option_function<std::vector<std::string>>(
-         "--plugin", add,
-         "load FILE.so, which holds a force law of your own; HAPBENCH_PLUGIN_PATH names folders of such files")
+  app.add_option_function<std::vector<std::string>>("--module", add, shared_option_help("--module"))
       ->allow_extra_args(false)
       ->take_all();
 }
 
 Command CommandLine::add(const std::string& name, const std::string& summary, ChosenCommand command) {
   CLI::App* app = app_->add_subcommand(name, summary);
-  app->get_option("--help")->description("print this help");
+  app->get_option("--help")->description(shared_option_help("--help"));
   app->callback([this, command = std::move(command)] { chosen_ = command; });
-  add_common_options(*app);
+  add_module_option(*app);
   return Command(app);
 }
 
@@ -179,8 +210,7 @@ std::string kind_of_value(const CLI::Option& option) {
 }
 
 std::string usage(const CLI::App& app) {
-  std::string words = app.get_parent() == nullptr ? fmt::format("{} [OPTIONS] COMMAND", kProgramName)
-                                                  : fmt::format("{} {} [OPTIONS]", kProgramName, app.get_name());
+  std::string words = fmt::format("{} {} [OPTIONS]", kProgramName, app.get_name());
   for (const CLI::Option* option : app.get_options()) {
     if (!option->get_positional()) continue;
     const std::string name = name_of(*option) + (kind_of_value(*option).ends_with("...") ? "..." : "");
@@ -189,29 +219,30 @@ std::string usage(const CLI::App& app) {
   return "Usage: " + words + "\n";
 }
 
+/// The arguments, or the options; those that say nothing of their own stand in one line.
 std::string options_text(const CLI::App& app, bool arguments) {
-  std::string text;
+  std::string text, shared;
   for (const CLI::Option* option : app.get_options()) {
     if (option->get_positional() != arguments) continue;
     std::string name = name_of(*option), help = option->get_description();
+    if (name == "-h,--help") name = "--help";
+    if (!arguments && help == shared_option_help(name)) {
+      shared += (shared.empty() ? "" : ", ") + name;
+      continue;
+    }
     if (const std::string kind = kind_of_value(*option); !arguments && !kind.empty()) name += " " + kind;
     for (const CLI::Option* other : option->get_needs()) help += "; with " + other->get_name();
     if (option->get_required() && !arguments) help += "; required";
     text += entry(name, help);
   }
+  if (!shared.empty()) text += entry(shared, fmt::format("as everywhere: {} --help", kProgramName));
   return text.empty() ? "" : fmt::format("\n{}\n{}", bold(stdout, arguments ? "Arguments:" : "Options:"), text);
 }
 
-/// The help of a command, as wide as prose is; that of the program lists the others.
+/// The help of a command, as wide as prose is.
 std::string help_text(const CLI::App& app) {
-  const bool is_program = app.get_parent() == nullptr;
-  std::string text = wrapped((is_program ? std::string(kProgramName) + ": " : "") + app.get_description(), 0);
-  text += usage(app) + options_text(app, true) + options_text(app, false);
-  if (is_program) {
-    text += "\n" + bold(stdout, "Commands:") + "\n";
-    for (const CLI::App* command : app.get_subcommands({}))
-      text += entry(command->get_name(), command->get_description(), 2, 16);
-  }
+  const std::string text =
+      wrapped(app.get_description(), 0) + usage(app) + options_text(app, true) + options_text(app, false);
   return app.get_footer().empty() ? text : text + "\n" + wrapped(app.get_footer(), 0);
 }
 
@@ -275,9 +306,14 @@ std::string problem_of(const CLI::ParseError& error, const CLI::App& program) {
   return one_line(name + error.what()) + help;
 }
 
-void load_plugins(const std::vector<std::string>& files) {
+void load_modules(const std::vector<std::string>& files) {
   for (const std::string& file : files) load_law(file);
-  if (const char* folders = std::getenv("HAPBENCH_PLUGIN_PATH")) load_laws_in("HAPBENCH_PLUGIN_PATH", folders);
+  constexpr const char *kFolders = "HAPBENCH_MODULE_PATH", *kBefore = "HAPBENCH_PLUGIN_PATH";
+  if (const char* folders = std::getenv(kFolders)) {
+    load_laws_in(kFolders, folders);
+  } else if (std::getenv(kBefore) != nullptr) {
+    throw InputError(fmt::format("{} is no longer read; instead: {}", kBefore, kFolders));
+  }
 }
 
 /// Makes a success fail when a module failed: its runs count as diverged, which by itself need not be a failure.
@@ -315,6 +351,39 @@ InputError with_typed_places(const InputError& error, const std::vector<std::str
   return InputError::all(faults);
 }
 
+/// The commands in their groups, and what to do first.
+std::string CommandLine::front() const {
+  std::string text = fmt::format("{}: {}\n\n", kProgramName, app_->get_description());
+  std::string_view group;
+  for (const CommandGuide& guide : guides_) {
+    text += entry(fmt::format("{:8}{}", guide.group == group ? "" : guide.group, guide.name), guide.answers, 0, 19);
+    group = guide.group;
+  }
+  text += "\n";
+  for (const char* line : kFirst) text += fmt::format("{:8}{}\n", line == kFirst[0] ? "first" : "", line);
+  return text + fmt::format("\n\"{} COMMAND --help\" explains a command, \"{} --help\" what all share.\n", kProgramName,
+                            kProgramName);
+}
+
+std::string CommandLine::program_help() const {
+  std::string text = front() + "\n" + bold(stdout, "Options:") + "\n";
+  for (const SharedOption& option : kSharedOptions) text += entry(option.name, option.help, 2, 14);
+  return text + entry("--version", "print the version; with --json also what it was built from and promises", 2, 14) +
+         "\n" +
+         wrapped(
+             "Exit status: 0 success, 1 internal fault, 2 bad input or usage, 3 a run did not end as its scenario "
+             "expects, 130 stopped by Ctrl-C.",
+             0);
+}
+
+std::string CommandLine::examples_of(const std::string& command) const {
+  const auto guide = std::ranges::find(guides_, command, &CommandGuide::name);
+  std::string text = "\n";
+  if (guide != guides_.end())
+    for (const std::string_view example : guide->examples) text += fmt::format("  {} {}\n", kProgramName, example);
+  return text;
+}
+
 int CommandLine::run(int argc, char** argv) {
   std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
   const std::optional<StudyWords> study = StudyWords::in(words);
@@ -327,14 +396,18 @@ int CommandLine::run(int argc, char** argv) {
 }
 
 int CommandLine::run(std::vector<std::string> words) {
-  if (!words.empty() && passed_on_.contains(words[0])) {
+  if (words.empty()) {
+    fmt::print("{}", front());
+    return kSuccess;
+  }
+  if (passed_on_.contains(words[0])) {
     const auto& action = passed_on_[words[0]];
     return action({words.begin() + 1, words.end()});
   }
   for (auto& [command, output] : outputs_) {
-    command.flag("--quiet", output->quiet, "print nothing on standard output, and no progress bar");
-    command.flag("--json", output->json, "print JSON instead of tables");
-    command.flag("--wide", output_in_full, "print tables at full width, however narrow the terminal is");
+    command.flag("--quiet", output->quiet, shared_option_help("--quiet"));
+    command.flag("--json", output->json, shared_option_help("--json"));
+    command.flag("--wide", output_in_full, shared_option_help("--wide"));
   }
   try {
     std::reverse(words.begin(), words.end());  // as CLI11 takes them
@@ -342,7 +415,8 @@ int CommandLine::run(std::vector<std::string> words) {
   } catch (const CLI::CallForHelp&) {
     const std::vector<CLI::App*> chosen = app_->get_subcommands();
     refuse_old_words(*app_, nullptr);
-    fmt::print("{}", help_text(chosen.empty() ? *app_ : *chosen.front()));
+    fmt::print("{}",
+               chosen.empty() ? program_help() : help_text(*chosen.front()) + examples_of(chosen.front()->get_name()));
     return kSuccess;
   } catch (const CLI::CallForVersion& version) {
     fmt::print("{}\n", version.what());
@@ -350,7 +424,7 @@ int CommandLine::run(std::vector<std::string> words) {
   } catch (const CLI::ParseError& error) {
     throw InputError(problem_of(error, *app_));
   }
-  load_plugins(plugins_);
+  load_modules(modules_);
   take_module_faults();  // forgets those of an earlier command of this process
   return status_with_faults(chosen_.action());
 }

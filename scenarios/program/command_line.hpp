@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -32,6 +33,16 @@ struct ChosenCommand {
   std::function<int()> action;  ///< does its work; returns the exit status
   std::string when_stopped;     ///< what becomes of its results when a signal stops it
 };
+
+/// A command in the program's help, and what its own help ends with.
+struct CommandGuide {
+  std::string_view group, name;
+  std::string_view answers;                  ///< the question that it answers
+  std::array<std::string_view, 3> examples;  ///< its words behind the program's name; of a command in Python empty
+};
+
+/// An option that means the same in every command that has it; `hapbench --help` explains it.
+std::string shared_option_help(const std::string& name);
 
 /// Throws an InputError that says what to write instead of a word that earlier versions took, such as the command
 /// "suite" or the option "--search" of the command "stability", which may have a value as NAME=VALUE. `command` is that
@@ -83,7 +94,7 @@ InputError with_typed_places(const InputError& error, const std::vector<std::str
 class CommandLine {
  public:
   /// `version` and `version_json` are what --version prints.
-  CommandLine(const std::string& version, std::function<std::string()> version_json);
+  CommandLine(std::vector<CommandGuide> guides, const std::string& version, std::function<std::string()> version_json);
   ~CommandLine();
 
   /// Adds a command and the options that `action` is called with when it is chosen; they live as long as the command
@@ -109,22 +120,26 @@ class CommandLine {
   /// Adds a command whose words behind its name, options and --help included, all go to `action` as they are.
   void pass_on(const std::string& name, const std::string& summary,
                std::function<int(const std::vector<std::string>&)> action);
-  /// Replaces a study by its words (study.hpp), loads the plugins that the words and HAPBENCH_PLUGIN_PATH name, then
+  /// Replaces a study by its words (study.hpp), loads the modules that the words and HAPBENCH_MODULE_PATH name, then
   /// runs the command. Returns its exit status; for a success during which a law or a source of contacts from outside
-  /// failed, kUnexpectedOutcome. Throws what the command throws, and InputError for a wrong usage and for plugins.
+  /// failed, kUnexpectedOutcome. Throws what the command throws, and InputError for a wrong usage and for modules.
   int run(int argc, char** argv);
   /// The chosen command's note on its results for when it is stopped.
   const std::string& when_stopped() const { return chosen_.when_stopped; }
 
  private:
+  std::string front() const;
+  std::string program_help() const;
+  std::string examples_of(const std::string& command) const;
   Command add(const std::string& name, const std::string& summary, ChosenCommand command);
-  void add_common_options(CLI::App& app);
+  void add_module_option(CLI::App& app);
   int run(std::vector<std::string> words);
 
+  std::vector<CommandGuide> guides_;
   std::unique_ptr<CLI::App> app_;
   ChosenCommand chosen_;
   std::vector<std::pair<Command, OutputOptions*>> outputs_;
-  std::vector<std::string> plugins_;
+  std::vector<std::string> modules_;
   std::map<std::string, std::function<int(const std::vector<std::string>&)>> passed_on_;
 };
 

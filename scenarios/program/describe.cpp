@@ -7,7 +7,6 @@
 #include <iterator>
 #include <regex>
 
-#include "algorithms/registry.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/description/load_scenario.hpp"
 #include "scenarios/input/input_error.hpp"
@@ -19,7 +18,7 @@
 #include "scenarios/program/table.hpp"
 #include "scenarios/thesis_claims/ledger.hpp"
 
-/// The commands `list` and `describe`, which show the index and what lies in the folders beside the program.
+/// The command `describe`, which explains the index and what lies in the folders beside the program.
 namespace hapbench {
 namespace {
 
@@ -96,44 +95,39 @@ std::string text_in(const Json& object, const char* field) {
   return fmt::format("{}", fmt::join(texts, !value.empty() && value.front().is_number() ? " ... " : ", "));
 }
 
+/// Those of the fields that there are, each below the other.
+std::string said_of(const Json& object, std::initializer_list<const char*> fields) {
+  std::string text;
+  for (const char* field : fields) text += facts_text({{field, text_in(object, field)}}, 14);
+  return text;
+}
+
 Description describe_claim(const Json& claim) {
-  const auto said = [&claim](const char* field) { return text_in(claim, field); };
-  return {fmt::format("claim {}, verdict on record: {}\n{}\n", bold(stdout, said("id")), verdicts_text(claim),
-                      wrapped(said("claim"))) +
-              facts_text({{"place", said("place")},
-                          {"published", said("published")},
-                          {"measured", said("measured")},
-                          {"rule", said("rule")},
-                          {"why", said("why")},
-                          {"robustness", robustness_text(claim)},
-                          {"scenarios", said("scenarios")}},
-                         14) +
-              fmt::format("\njudge it again: hapbench reproduce --only {}\n", said("id")),
+  const std::string id = claim.at("id");
+  return {fmt::format("claim {}, verdict on record: {}\n{}\n", bold(stdout, id), verdicts_text(claim),
+                      wrapped(text_in(claim, "claim"))) +
+              said_of(claim, {"place", "published", "measured", "rule", "why"}) +
+              facts_text({{"robustness", robustness_text(claim)}}, 14) + said_of(claim, {"scenarios"}) +
+              fmt::format("\njudge it again: hapbench reproduce --only {}\n", id),
           claim};
 }
 
 Description describe_choice(const Json& choice) {
-  const auto said = [&choice](const char* field) { return text_in(choice, field); };
-  const std::string unit = said("unit");
-  std::string text = fmt::format("choice {}, on record\n{}\n", bold(stdout, said("id")), wrapped(said("what"))) +
-                     facts_text({{"value", said("value") + (unit.empty() ? "" : " " + unit)},
-                                 {"the thesis", said("thesis")},
-                                 {"plausible", said("range")},
-                                 {"options", said("options")},
-                                 {"scale", said("scale")},
-                                 {"why", said("why")},
-                                 {"chosen", said("chosen") + " results were seen"}},
-                                14);
+  const std::string unit = text_in(choice, "unit");
+  std::string text = fmt::format("choice {}, on record\n{}\n", bold(stdout, choice.at("id").get<std::string>()),
+                                 wrapped(text_in(choice, "what")));
+  text += facts_text({{"value", text_in(choice, "value") + (unit.empty() ? "" : " " + unit)}}, 14) +
+          said_of(choice, {"thesis", "range", "options", "scale", "why"}) +
+          facts_text({{"chosen", text_in(choice, "chosen") + " results were seen"}}, 14);
   for (const Json& field : choice.value("fields", Json::array())) {
-    text +=
-        facts_text({{"sets", fmt::format("{}{} of {}", text_in(field, "path"),
-                                         field.value("times", false) ? " (times)" : "", text_in(field, "scenarios"))}},
-                   14);
+    const char* times = field.value("times", false) ? " (times)" : "";
+    text += facts_text(
+        {{"sets", fmt::format("{}{} of {}", text_in(field, "path"), times, text_in(field, "scenarios"))}}, 14);
   }
-  return {
-      text +
-          "\nwhat it does to the verdicts: results/reference/claims.md; \"hapbench reproduce --choices\" judges by others\n",
-      choice};
+  return {text +
+              "\nwhat it does to the verdicts: results/reference/claims.md; \"hapbench reproduce --choices\" judges by "
+              "others\n",
+          choice};
 }
 
 /// What the folders beside the program hold: scenarios, studies, claims and choices on record. The files of scenarios
@@ -203,6 +197,31 @@ bool names_place(const std::string& source, const Place& asked) {
   return false;
 }
 
+/// The pictures on record of a figure of the thesis, such as figure_A.2.svg of "A.2".
+std::vector<std::filesystem::path> pictures_of(const Place& place) {
+  const std::string figure = place.number.substr(0, place.number.find_last_not_of("abcd") + 1);
+  std::vector<std::filesystem::path> pictures;
+  std::error_code none;
+  for (const auto& entry :
+       std::filesystem::directory_iterator(installed_folder("results/reference") / "figures", none)) {
+    const std::string stem = entry.path().stem().string();
+    if (stem == "figure_" + figure || stem.starts_with("figure_" + figure + "_")) pictures.push_back(entry.path());
+  }
+  std::ranges::sort(pictures);
+  return pictures;
+}
+
+/// The pictures, and the commands that draw them anew.
+std::string pictures_text(const std::vector<std::filesystem::path>& pictures) {
+  std::string text;
+  for (const std::filesystem::path& picture : pictures) {
+    std::string id = picture.stem().string().substr(std::string_view("figure_").size());
+    std::replace(id.begin(), id.end(), '_', '-');
+    text += fmt::format("    {}\n    drawn anew by scripts/reproduce --figure {}\n", picture.string(), id);
+  }
+  return text;
+}
+
 /// The bundled scenarios and claims that name a place of the thesis, as "A.2", "Fig. A.2", "Table A.1" or
 /// "section 3.4"; a place includes its parts: 3.4 includes 3.4.1, Fig. 2 includes Fig. 2c. None when the name is no
 /// place's. Throws InputError for a place that nothing names.
@@ -221,9 +240,13 @@ std::optional<Description> describe_place(const std::string& name) {
                                            : entry(thing.name, source, 4, 44);
     json[is_claim ? "claims" : "scenarios"].push_back(thing.name);
   }
-  if (scenarios.empty() && claims.empty())
+  const std::vector<std::filesystem::path> pictures =
+      place->kind == "Fig." || place->kind.empty() ? pictures_of(*place) : std::vector<std::filesystem::path>();
+  for (const std::filesystem::path& picture : pictures) json["pictures"].push_back(picture.string());
+  if (scenarios.empty() && claims.empty() && pictures.empty())
     throw InputError(fmt::format("no bundled scenario and no claim names {} of the thesis", title));
-  return Description{fmt::format("{} of the thesis\n\n  scenarios\n{}\n  claims\n{}", bold(stdout, title),
+  return Description{fmt::format("{} of the thesis\n\n{}  scenarios\n{}\n  claims\n{}", bold(stdout, title),
+                                 pictures.empty() ? "" : "  picture\n" + pictures_text(pictures) + "\n",
                                  scenarios.empty() ? "    none\n" : scenarios, claims.empty() ? "    none\n" : claims),
                      json};
 }
@@ -234,31 +257,34 @@ std::optional<Description> describe_place(const std::string& name) {
 constexpr const char* kListed[] = {"algorithm", "depth model", "stage",    "integrator", "environment", "tool", "hand",
                                    "device",    "preset",      "scenario", "study",      "metric",      "claim"};
 
-Index everything() {
-  Index index = program_index(), all;
-  std::ranges::move(folder_index(), std::back_inserter(index));
-  for (const std::string_view kind : kListed)
-    std::ranges::copy_if(index, std::back_inserter(all), [kind](const Named& thing) { return thing.kind == kind; });
-  return all;
+/// The name of the list that has it: "depth_models"; of scenarios also their group.
+std::string list_name(const std::string& kind) {
+  std::string name = kind == "study" ? "studies" : kind + "s";
+  std::replace(name.begin(), name.end(), ' ', '_');
+  return name;
 }
 
 std::string group_of(const Named& thing) {
   return thing.more.value("group", "");
 }
 
-std::string plural(const std::string& kind) {
-  return kind == "study" ? "studies" : kind + "s";
+/// True for the name of a kind's list. All metrics are told by a section of that name.
+bool is_kind(const std::string& name) {
+  return name != "metrics" && std::ranges::any_of(kListed, [&](const char* kind) { return list_name(kind) == name; });
 }
 
-/// The kinds, and the groups of scenarios.
-std::vector<std::string> sections_of(const Index& all) {
-  std::vector<std::string> names;
-  for (const Named& thing : all) {
-    for (const std::string& name : {thing.kind, group_of(thing)}) {
-      if (!name.empty() && std::ranges::find(names, name) == names.end()) names.push_back(name);
-    }
-  }
-  return names;
+bool is_group(const std::string& name) {
+  const std::vector<BundledScenario> all = bundled_scenarios();
+  return std::ranges::find(all, name, &BundledScenario::group) != all.end();
+}
+
+/// What lists have, in their order.
+Index everything() {
+  Index index = program_index(), all;
+  std::ranges::move(folder_index(), std::back_inserter(index));
+  for (const std::string_view kind : kListed)
+    std::ranges::copy_if(index, std::back_inserter(all), [kind](const Named& thing) { return thing.kind == kind; });
+  return all;
 }
 
 constexpr std::size_t kColumn = 34;  // of the summaries
@@ -277,73 +303,49 @@ std::string short_summary(const std::string& text) {
   return sentence.substr(0, sentence.rfind(' ', room - 4)) + " ...";
 }
 
-/// A scenario's name without the algorithm at its end, which scenarios of one scene have in common.
-std::string scene_of(const std::string& name) {
-  std::size_t longest = 0;
-  for (const AlgorithmEntry& entry : algorithms()) {
-    const std::string end = std::string("_") + entry.info->name;
-    if (name.ends_with(end)) longest = std::max(longest, end.size());
-  }
-  return name.substr(0, name.size() - longest);
-}
-
-/// The line of a thing. Scenarios that are one scene under several algorithms share the line of the first.
-std::string entry_of(const Index& all, const Named& first) {
-  if (first.kind == "claim")
-    return entry(fmt::format("{:<5}{}", first.name, verdicts_text(first.more)), first.summary, 2, kColumn,
-                 output_width());
-  const std::string scene = scene_of(first.name);
-  std::vector<std::string> algorithms;
+/// Lists below their titles: with a line for each name, or the names alone.
+std::string list_text(const Index& all, bool names_alone) {
+  std::string text, title, names;
+  const auto end_list = [&] {
+    if (!names.empty()) text += wrapped(names.substr(2));
+    names.clear();
+  };
   for (const Named& thing : all) {
-    if (thing.kind == "scenario" && group_of(thing) == group_of(first) && thing.name != scene &&
-        scene_of(thing.name) == scene)
-      algorithms.push_back(thing.name.substr(scene.size() + 1));
-  }
-  if (first.kind != "scenario" || first.name == scene || algorithms.size() < 2)
-    return entry(first.name, short_summary(first.summary), 2, kColumn, output_width());
-  if (!first.name.ends_with("_" + algorithms.front())) return "";  // on the line of the first
-  return entry(scene + "_*", short_summary(first.summary), 2, kColumn, output_width()) +
-         wrapped(fmt::format("*: {}", fmt::join(algorithms, ", ")), kColumn);
-}
-
-std::string list_text(const Index& all) {
-  std::string text, title;
-  for (const Named& thing : all) {
-    const std::string group = group_of(thing), of = group.empty() ? plural(thing.kind) : "scenarios: " + group;
-    if (of != title) text += (title.empty() ? "" : "\n") + bold(stdout, of) + "\n";
+    const std::string group = group_of(thing), of = list_name(thing.kind) + (group.empty() ? "" : " of " + group);
+    if (of != title) {
+      end_list();
+      text += (title.empty() ? "" : "\n") + bold(stdout, of) + "\n";
+    }
     title = of;
-    text += entry_of(all, thing);
+    const bool is_claim = thing.kind == "claim";
+    if (names_alone) {
+      names += ", " + thing.name;
+    } else {
+      text += entry(is_claim ? fmt::format("{:<5}{}", thing.name, verdicts_text(thing.more)) : thing.name,
+                    is_claim ? thing.summary : short_summary(thing.summary), 2, kColumn, output_width());
+    }
   }
-  return text + "\n\"hapbench describe NAME\" explains each.\n";
+  end_list();
+  return text;
 }
 
-struct ListOptions {
-  std::string what;
+struct DescribeOptions {
+  std::string name;
   std::string grep;
   OutputOptions output;
 };
 
-int list(const ListOptions& options) {
+/// Lists what is of a kind or a group, or of each kind but the many metrics and claims the names.
+int list(const DescribeOptions& options) {
   Index all = everything();
-  if (!options.what.empty()) {
-    // "scenario" and "depth model" are accepted like "scenarios" and "depth_models".
-    std::string what = options.what;
-    std::replace(what.begin(), what.end(), '_', ' ');
-    const std::vector<std::string> sections = sections_of(all);
-    for (const std::string& section : sections) {
-      if (what == plural(section)) what = section;
-    }
-    require_valid_name("got", what, sections);
-    std::erase_if(all, [&what](const Named& thing) { return thing.kind != what && group_of(thing) != what; });
-  }
-  // There are so many metrics and claims that they are only shown on request.
-  const bool of_everything = options.what.empty() && options.grep.empty();
-  if (of_everything)
-    std::erase_if(all, [](const Named& thing) { return thing.kind == "metric" || thing.kind == "claim"; });
+  const bool of_everything = options.name.empty() && options.grep.empty();
   const std::string pattern = lower_case(options.grep);
-  std::erase_if(all, [&pattern](const Named& thing) {
+  std::erase_if(all, [&](const Named& thing) {
     const std::string text = thing.name + " " + thing.summary + " " + thing.more.value("source", "");
-    return lower_case(text).find(pattern) == std::string::npos;
+    const bool is_asked =
+        options.name.empty() || list_name(thing.kind) == options.name || group_of(thing) == options.name;
+    return !is_asked || lower_case(text).find(pattern) == std::string::npos ||
+           (of_everything && (thing.kind == "metric" || thing.kind == "claim"));
   });
   if (all.empty()) throw InputError(fmt::format("--grep: nothing has \"{}\" in its name or text", options.grep));
   Json json = Json::array();
@@ -351,8 +353,12 @@ int list(const ListOptions& options) {
     Json& entry = json.emplace_back(Json{{"kind", thing.kind}, {"name", thing.name}, {"summary", thing.summary}});
     entry.update(thing.more);
   }
+  const char* more =
+      of_everything ? ", \"hapbench describe KIND\" lists a kind with what each is; more kinds: metrics, claims" : "";
   print(options.output,
-        list_text(all) + (of_everything ? "\"hapbench list metrics\" and \"list claims\" show more.\n" : ""), json);
+        list_text(all, of_everything) + "\n" +
+            wrapped(fmt::format("\"hapbench describe NAME\" explains each{}.", more), 0),
+        json);
   return kSuccess;
 }
 
@@ -410,24 +416,27 @@ std::vector<Description> described_headings(const Index& index, const std::strin
 
 [[noreturn]] void refuse(const std::string& name, const Index& index, const Index& in_folders) {
   std::vector<std::string> names;
+  for (const char* kind : kListed) names.push_back(list_name(kind));
   for (const Index* known : {&index, &in_folders})
     for (const Named& thing : *known)
       if (thing.kind != "heading") names.push_back(thing.name);
   throw InputError(
-      fmt::format("nothing is called \"{}\"{}; \"hapbench list\" shows the names, \"hapbench describe scenario\" "
+      fmt::format("nothing is called \"{}\"{}; \"hapbench describe\" shows the names, \"hapbench describe scenario\" "
                   "the fields of a scenario file",
                   name, nearest_name_hint(name, names)));
 }
 
-std::vector<Description> meanings_of(const std::string& name) {
-  const Index index = program_index();
-  std::vector<Description> found =
+std::vector<Description> own_meanings(const Index& index, const std::string& name) {
+  const std::vector<Description> found =
       described(index, [&](const Named& thing) { return thing.kind != "heading" && is_called(thing, name); });
-  if (found.empty()) found = described_headings(index, name);
-  if (!found.empty()) return found;
+  return found.empty() ? described_headings(index, name) : found;
+}
+
+/// What a name means that the program does not know by itself.
+std::vector<Description> other_meanings(const Index& index, const std::string& name) {
   if (const std::optional<Description> place = describe_place(name)) return {*place};
   // Fields of that name in any section: "torque" for record.torque.
-  found =
+  std::vector<Description> found =
       described(index, [&](const Named& thing) { return thing.kind == "field" && thing.name.ends_with("." + name); });
   if (!found.empty()) return found;
   const Index in_folders = folder_index(false);
@@ -440,13 +449,14 @@ std::vector<Description> meanings_of(const std::string& name) {
   return {describe_scenario(find_scenario(name))};
 }
 
-struct DescribeOptions {
-  std::string name;
-  OutputOptions output;
-};
-
 int describe(const DescribeOptions& options) {
-  const Description d = joined(meanings_of(options.name));
+  if (options.name.empty() || is_kind(options.name)) return list(options);
+  const Index index = program_index();
+  std::vector<Description> meanings = own_meanings(index, options.name);
+  if (meanings.empty() && is_group(options.name)) return list(options);
+  if (!options.grep.empty()) throw InputError("--grep: allowed: without a name, or with that of a list");
+  if (meanings.empty()) meanings = other_meanings(index, options.name);
+  const Description d = joined(meanings);
   OutputOptions output = options.output;
   output.json |= d.text.empty();
   print(output, d.text, d.json);
@@ -455,31 +465,16 @@ int describe(const DescribeOptions& options) {
 
 }  // namespace
 
-void add_list(CommandLine& line) {
-  auto [command, options] = line.command(
-      "list",
-      "List algorithms, models, integrators, environments, tools, hands, devices, scenarios, studies, metrics and claims",
-      list);
-  command.add(
-      "what", options.what,
-      "one kind alone, such as algorithms, depth_models, hands, metrics or claims, or one group of scenarios, such "
-      "as thesis");
-  command.add("--grep", options.grep, "only things with this text in their name, description or source");
-}
-
 void add_describe(CommandLine& line) {
-  auto [command, options] = line.command(
-      "describe",
-      "Explain an algorithm, a depth model, an integrator, an environment, a field, a scenario, a metric, a column or "
-      "file of the results, a word or heading that the program prints, a claim, a choice on record or a place of the thesis",
-      describe);
+  auto [command, options] = line.command("describe", "Explain a name; without one, or by a kind: a list", describe);
   command.add(
       "name", options.name,
-      "a name that \"list\" shows, a field such as rendering.limits, \"scenario\" (all fields), \"schema\", "
-      "\"choices_schema\", \"stability\", \"diagnosis\"; a metric or a column, \"metrics\" or \"columns\" for all of them, a "
-      "heading such as \">30Hz rms N\", or a file such as trajectory.csv; a claim such as C5, a choice such as "
-      "planar.first_tilt or a place such as \"Fig. A.2\"",
-      {.required = true});
+      "an algorithm, a depth model, an integrator, an environment, a hand, a device, a scenario, a study; a kind of these "
+      "such as algorithms, or a group of scenarios such as thesis, for a list; a field such as rendering.limits, "
+      "\"scenario\" (all fields), \"schema\", \"choices_schema\", \"stability\", \"diagnosis\"; a metric, \"metrics\" or "
+      "\"columns\" for all of them, a heading such as \">30Hz rms N\", or a file such as trajectory.csv; a claim such as C5, a "
+      "choice such as planar.first_tilt or a place such as \"Fig. A.2\"");
+  command.add("--grep", options.grep, "list only things with this text in their name, description or source");
 }
 
 }  // namespace hapbench

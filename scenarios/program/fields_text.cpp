@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <functional>
 #include <nlohmann/json.hpp>
 
 #include "scenarios/program/table.hpp"
@@ -18,18 +17,33 @@ std::string spaced(const Json& value) {
   return text;
 }
 
-using FieldVisit = std::function<void(const std::string& path, const std::string& types, const FieldGuide& field)>;
+/// A field of scenarios, and the types that lead to it.
+struct PlacedField {
+  std::string path, types;
+  const FieldGuide* field;
+};
 
-/// Visits the fields of an object and of those in it. `at` is the path of the object with a dot behind it, `types` what
-/// leads there.
-void visit_fields(const ValueGuide& object, const std::string& at, const std::string& types, const FieldVisit& visit) {
-  for (const ValueGuide& choice : object.choices) visit_fields(choice, at, types, visit);
+/// Adds the fields of an object and of those in it. `at` is the path of the object with a dot behind it.
+void add_fields(std::vector<PlacedField>& all, const ValueGuide& object, const std::string& at,
+                const std::string& types) {
+  for (const ValueGuide& choice : object.choices) add_fields(all, choice, at, types);
   const std::string type = object.type.empty() ? "" : fmt::format("{}type \"{}\"", at, object.type);
-  const std::string all = types + (types.empty() || type.empty() ? "" : " and ") + type;
+  const std::string of = types + (types.empty() || type.empty() ? "" : " and ") + type;
   for (const FieldGuide& field : object.fields) {
-    visit(at + field.name, all, field);
-    visit_fields(field.value, at + field.name + ".", all, visit);
+    all.push_back({at + field.name, of, &field});
+    add_fields(all, field.value, at + field.name + ".", of);
   }
+}
+
+/// Those of all scenarios, found anew when laws from outside have added theirs.
+const std::vector<PlacedField>& all_fields() {
+  thread_local const ValueGuide* guide = nullptr;
+  thread_local std::vector<PlacedField> all;
+  if (guide == &scenario_guide()) return all;
+  guide = &scenario_guide();
+  all.clear();
+  add_fields(all, *guide, "", "");
+  return all;
 }
 
 /// True for an object whose fields are told one by one: not the bounds on metrics, which are more than all others.
@@ -97,22 +111,22 @@ void add_meanings(FieldMeanings& meanings, const std::string& prefix, const Json
 
 std::vector<TypedField> typed_fields(const std::string& path) {
   std::vector<TypedField> found;
-  visit_fields(scenario_guide(), "", "", [&](const std::string& of, const std::string& types, const FieldGuide& field) {
-    if (of != path) return;
-    const auto same = [&field](const TypedField& known) { return known.field->schema() == field.schema(); };
+  for (const auto& [of, types, field] : all_fields()) {
+    if (of != path) continue;
+    const auto same = [field = field](const TypedField& known) { return known.field->schema() == field->schema(); };
     const auto known = std::ranges::find_if(found, same);
     if (known == found.end()) {
-      found.push_back({types, &field});
+      found.push_back({types, field});
     } else {
       known->types += (types.empty() ? "" : ", ") + types;
     }
-  });
+  }
   return found;
 }
 
 const FieldGuide* find_field(const std::string& path) {
-  const std::vector<TypedField> found = typed_fields(path);
-  return found.empty() ? nullptr : found.front().field;
+  const auto found = std::ranges::find(all_fields(), path, &PlacedField::path);
+  return found == all_fields().end() ? nullptr : found->field;
 }
 
 std::vector<std::string> type_names(const std::string& field) {
@@ -124,14 +138,14 @@ std::vector<std::string> type_names(const std::string& field) {
 
 std::vector<FieldType> all_types() {
   std::vector<FieldType> found;
-  visit_fields(scenario_guide(), "", "", [&](const std::string& path, const std::string&, const FieldGuide& field) {
-    for (const ValueGuide& choice : field.value.choices) {
+  for (const PlacedField& placed : all_fields()) {
+    for (const ValueGuide& choice : placed.field->value.choices) {
       const auto same = [&choice](const FieldType& known) {
         return known.type->type == choice.type && known.type->schema == choice.schema;
       };
-      if (std::ranges::none_of(found, same)) found.push_back({path, &choice});
+      if (std::ranges::none_of(found, same)) found.push_back({placed.path, &choice});
     }
-  });
+  }
   return found;
 }
 

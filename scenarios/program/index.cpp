@@ -138,7 +138,7 @@ Description describe_field(const std::string& path) {
 
 Description describe_algorithms() {
   Description d = describe_field("rendering.algorithm");
-  d.text += wrapped("\"hapbench list algorithms\" shows them with what they do");
+  d.text += wrapped("\"hapbench describe algorithms\" shows them with what they do");
   return d;
 }
 
@@ -251,16 +251,11 @@ Description describe_metrics() {
           {{"kind", "metrics"}, {"metrics", columns_json(metrics)}}};
 }
 
-Description describe_metric(const Metric& metric) {
-  return {fmt::format("metric {}\n{}", titled(metric.name, metric.unit), wrapped(metric.meaning)),
-          {{"kind", "metric"}, {"name", metric.name}, {"unit", metric.unit}, {"meaning", metric.meaning}}};
-}
-
 Description describe_table(const DescribedTable& table) {
   Json columns = Json::array();
   for (const auto& [name, unit, meaning] : table.columns)
     columns.push_back({{"name", name}, {"unit", unit}, {"meaning", meaning}});
-  return {fmt::format("file {}\n{}\n{}", table.file, wrapped(table.holds), entries_text(table.columns)),
+  return {fmt::format("{}: file\n{}\n{}", bold(stdout, table.file), wrapped(table.holds), entries_text(table.columns)),
           {{"kind", "file"}, {"name", table.file}, {"holds", table.holds}, {"columns", std::move(columns)}}};
 }
 
@@ -269,36 +264,6 @@ Description describe_tables() {
   for (const DescribedTable& table : result_tables())
     if (!table.file.empty()) all.push_back(describe_table(table));
   return joined(all);
-}
-
-/// A column, and the files that have it with this meaning.
-struct SharedColumn {
-  DescribedTable::Entry column;
-  std::vector<std::string> files;
-};
-
-Description describe_column(const SharedColumn& shared) {
-  const auto& [name, unit, meaning] = shared.column;
-  return {fmt::format("column {} of {}\n{}", titled(name, unit), fmt::join(shared.files, ", "), wrapped(meaning)),
-          {{"kind", "column"}, {"name", name}, {"unit", unit}, {"meaning", meaning}, {"files", shared.files}}};
-}
-
-std::vector<SharedColumn> all_columns(const std::vector<DescribedTable>& tables) {
-  std::vector<SharedColumn> all;
-  for (const DescribedTable& table : tables) {
-    if (table.file.empty()) continue;
-    for (const DescribedTable::Entry& column : table.columns) {
-      const auto same = std::ranges::find_if(all, [&column](const SharedColumn& known) {
-        return known.column.name == column.name && known.column.meaning == column.meaning;
-      });
-      if (same != all.end()) {
-        same->files.push_back(table.file);
-      } else {
-        all.push_back({column, {table.file}});
-      }
-    }
-  }
-  return all;
 }
 
 struct Word {
@@ -343,12 +308,6 @@ constexpr Word kWords[] = {
      "the step in which the recorded places come along an axis, seen in their differences (its row resolution, quantum_m of "
      "--json); K times it is the step of force that the recording alone makes"}};
 
-Description describe_word(const Word& word) {
-  std::string text = fmt::format("{}: {}\n{}", bold(stdout, word.name), word.kind, wrapped(word.meaning));
-  if (word.kind == kMotion) text += "  in numbers: hapbench describe stability\n";
-  return {text, {{"kind", word.kind}, {"name", word.name}, {"meaning", word.meaning}}};
-}
-
 std::vector<Word> all_words() {
   std::vector<Word> all(std::begin(kWords), std::end(kWords));
   for (const OutcomeInfo& outcome : outcome_infos()) all.push_back({outcome.name, kOutcome, outcome.meaning});
@@ -357,46 +316,78 @@ std::vector<Word> all_words() {
   return all;
 }
 
+Json word_json(const Word& word) {
+  return {{"kind", word.kind}, {"name", word.name}, {"meaning", word.meaning}};
+}
+
 Description describe_words() {
   Description d{"words that the program prints\n\n", {{"kind", "words"}, {"words", Json::array()}}};
   for (const Word& word : all_words()) {
     d.text += fmt::format("  {} ({})\n{}", word.name, word.kind, wrapped(word.meaning, 6));
-    d.json["words"].push_back(describe_word(word).json);
+    d.json["words"].push_back(word_json(word));
   }
   return d;
 }
 
-Description describe_heading(const Table::Column& heading) {
-  const std::string title = heading.title.substr(0, heading.title.find_last_not_of(' ') + 1);
-  return {fmt::format("heading \"{}\"\n{}", title, wrapped(heading.meaning)),
-          {{"kind", "heading"}, {"name", heading.title}, {"meaning", heading.meaning}}};
+/// Adds a name with one meaning; `title` has its unit, `kind_text` also where it is.
+void add_term(Index& index, Json json, const std::string& title, const std::string& kind_text,
+              const std::string& summary) {
+  const std::string kind = json["kind"], name = json["name"], meaning = json["meaning"];
+  const auto describe = [=] {
+    return Description{fmt::format("{}: {}\n{}", bold(stdout, title), kind_text, wrapped(meaning)), json};
+  };
+  index.push_back({kind, name, summary, describe});
+}
+
+/// The columns of all files, those of one name and meaning once.
+void add_columns(Index& index, const std::vector<DescribedTable>& tables) {
+  std::vector<std::pair<DescribedTable::Entry, std::vector<std::string>>> all;
+  for (const DescribedTable& table : tables) {
+    for (const DescribedTable::Entry& column :
+         table.file.empty() ? std::vector<DescribedTable::Entry>() : table.columns) {
+      const auto same = std::ranges::find_if(all, [&column](const auto& known) {
+        return known.first.name == column.name && known.first.meaning == column.meaning;
+      });
+      (same != all.end() ? *same : all.emplace_back(column, std::vector<std::string>())).second.push_back(table.file);
+    }
+  }
+  for (const auto& [column, files] : all) {
+    const auto& [name, unit, meaning] = column;
+    add_term(index, {{"kind", "column"}, {"name", name}, {"unit", unit}, {"meaning", meaning}, {"files", files}},
+             titled(name, unit), fmt::format("column of {}", fmt::join(files, ", ")), "");
+  }
 }
 
 /// Metrics, files, columns.
 void add_results(Index& index, const std::vector<DescribedTable>& tables) {
   for (const char* name : {"metrics", "summary.json"}) index.push_back({"section", name, "", describe_metrics});
-  for (const Metric& metric : metrics_without_values())
-    index.push_back({"metric", metric.name, metric.meaning, [metric] { return describe_metric(metric); }});
+  for (const Metric& metric : metrics_without_values()) {
+    add_term(index, {{"kind", "metric"}, {"name", metric.name}, {"unit", metric.unit}, {"meaning", metric.meaning}},
+             titled(metric.name, metric.unit), "metric", metric.meaning);
+  }
   for (const char* name : {"columns", "columns.json"}) index.push_back({"section", name, "", describe_tables});
   for (const DescribedTable& table : tables)
     if (!table.file.empty()) index.push_back({"file", table.file, "", [table] { return describe_table(table); }});
-  for (const SharedColumn& column : all_columns(tables))
-    index.push_back({"column", column.column.name, "", [column] { return describe_column(column); }});
+  add_columns(index, tables);
 }
 
 /// Outcomes, classes of motion, verdicts and others that the program prints.
 void add_words(Index& index) {
   index.push_back({"section", "words", "", describe_words});
-  for (const Word& word : all_words())
-    index.push_back({word.kind, std::string(word.name), "", [word] { return describe_word(word); }});
+  for (const Word& word : all_words()) {
+    const char* more = word.kind == kMotion ? "; in numbers: hapbench describe stability" : "";
+    add_term(index, word_json(word), std::string(word.name), std::string(word.kind) + more, "");
+  }
 }
 
 /// Headings of printed tables, whose `summary`, a name or a sentence, says what they mean.
 void add_headings(Index& index, const std::vector<DescribedTable>& tables) {
   for (const DescribedTable& table : tables) {
     for (const Table::Column& heading : table.headings) {
-      if (!heading.meaning.empty())
-        index.push_back({"heading", heading.title, heading.meaning, [heading] { return describe_heading(heading); }});
+      if (heading.meaning.empty()) continue;
+      const std::string title = heading.title.substr(0, heading.title.find_last_not_of(' ') + 1);
+      add_term(index, {{"kind", "heading"}, {"name", heading.title}, {"meaning", heading.meaning}},
+               fmt::format("\"{}\"", title), "heading", heading.meaning);
     }
   }
 }
@@ -414,7 +405,7 @@ std::vector<DescribedTable> result_tables() {
   for (auto* tables_of : {run_tables, league_tables, limit_tables, converge_tables, tune_tables, claim_tables,
                           sweep_tables, stress_tables})
     std::ranges::move(tables_of(), std::back_inserter(tables));
-  add("shell.csv", "of shell: one line per point of the environment", kShellColumns);
+  add("shell.csv", "of validate --points: one line per point of the environment", kShellColumns);
   return tables;
 }
 

@@ -161,7 +161,7 @@ std::vector<ComparedDevice> chosen_devices(const std::vector<std::string>& given
                [](const std::string& name) { return !is_file(name) && !name.ends_with(']'); });
   if (!unknown.empty()) {
     std::vector<std::string> names = names_of(compared_devices(), &ComparedDevice::name);
-    names.insert(names.begin(), kPresets);
+    names.insert(names.begin(), {"FILE.json", kPresets});
     chosen_names("--device: got", unknown, names);
   }
   std::vector<ComparedDevice> chosen;
@@ -304,9 +304,9 @@ void add_limit(CommandLine& line) {
               "a stable run keeps metric=most or metric=least:most, too, as inside_settled_m=3e-4; repeatable");
   command.add("--resolution", options.resolution,
               "relative width of the answer (default: 0.001); of the range when the range reaches 0 or below");
-  add_jobs(command, options.jobs, "searches at once (default: as many as the machine has threads)");
+  add_jobs(command, options.jobs);
   command.add("--out", options.out, "directory of the results (default: results/out/limit_NAME)");
-  add_overrides(command, options.overrides, "override a field of all runs: path=value");
+  add_overrides(command, options.overrides);
   command.footer(
       "A run is stable when it comes to rest or dies out, the classes of \"hapbench describe stability\"; where a script moves the tool, when its handle does not vibrate. It is not "
       "stable when it vibrates, diverges, goes through the surface, is thrown out (leaves the hole, or ends without contact "

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <cstring>
 #include <exception>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <string_view>
 
@@ -19,16 +20,74 @@ namespace hapbench {
 
 using AddCommand = void(CommandLine& line);
 
-/// Every command, each defined in a source file of its own subject; those of Python packages stand together. The second
-/// list is in the order of the help.
-AddCommand add_compare, add_converge, add_describe, add_limit, add_list, add_new, add_python_commands, add_reproduce,
-    add_run, add_shell, add_stress, add_sweep, add_tune, add_validate;
+/// Every command, each defined in a source file of its own subject; those of Python packages stand together.
+AddCommand add_compare, add_converge, add_describe, add_limit, add_new, add_python_commands, add_reproduce, add_run,
+    add_stress, add_sweep, add_tune, add_validate;
 
 namespace {
 
-constexpr AddCommand* kCommands[] = {add_run,      add_compare,   add_stress,   add_tune,    add_limit,
-                                     add_converge, add_reproduce, add_sweep,    add_new,     add_python_commands,
-                                     add_shell,    add_list,      add_describe, add_validate};
+constexpr AddCommand* kCommands[] = {add_run,   add_compare,         add_stress,    add_tune,
+                                     add_limit, add_converge,        add_reproduce, add_sweep,
+                                     add_new,   add_python_commands, add_describe,  add_validate};
+
+/// In the order of the help.
+constexpr CommandGuide kGuides[] = {
+    {"make",
+     "new",
+     "a scene to start from",
+     {"new", "new drag --from my.stl --extent 12mm --preview", "new hole --out mine.json"}},
+    {"make", "import", "my recording as a stroke; my device's log as a device", {}},
+    {"make",
+     "validate",
+     "is a scene right, and what is in it?",
+     {"validate mine.json", "validate mine.json --set environment.spacing_m=1e-4",
+      "validate drag_molar --points shell.csv"}},
+    {"run",
+     "run",
+     "what happens, what is wrong with it, what to try?",
+     {"run drag_molar", "run drag_molar --set rendering.algorithm=proxy --out results/out/proxy",
+      "run mine.json --latency"}},
+    {"run",
+     "compare",
+     "which law does better, over scenes and seeds?",
+     {"compare drag_molar", "compare drag_molar cone_in_undercut --algorithms mean,shaped_stiffness --seeds 5",
+      "compare mine.json --algorithms mean,proxy --errors"}},
+    {"run",
+     "sweep",
+     "how does it depend on fields?",
+     {"sweep tap_wall --vary rendering.stiffness_N_per_m=1e3:1e5:20:log",
+      "sweep tap_wall --vary rendering.algorithm=mean,proxy --vary seed=1,2,3",
+      "sweep results/out/sweep_tap_wall --where 'inside_max_m<3e-4'"}},
+    {"decide",
+     "limit",
+     "how far may a field go, on which device, with which law?",
+     {"limit tap_wall --device all", "limit mine.json --algorithms mean,shaped_stiffness",
+      "limit tap_wall --vary time.step_s --between 1e-4:1e-2"}},
+    {"decide",
+     "tune",
+     "which law, stiffness and damping?",
+     {"tune tap_wall --device touch", "tune mine.json --device log_device.json --algorithms mean,shaped_stiffness",
+      "tune drag_molar --device omega.3 --bound inside_max_m=3e-4"}},
+    {"decide",
+     "converge",
+     "how accurate is a number?",
+     {"converge drag_molar --metric force_max_N", "converge mine.json --levels 5 --metric inside_max_m",
+      "converge drag_molar --vary environment.spacing_m"}},
+    {"decide",
+     "stress",
+     "does any law break on degenerate contacts?",
+     {"stress", "stress --count 1000", "stress --module ./my_law.so"}},
+    {"decide",
+     "reproduce",
+     "which claims of the thesis hold?",
+     {"reproduce", "reproduce --only T2,R1b", "reproduce --choices results/reference/readings.csv"}},
+    {"look",
+     "describe",
+     "what is a name? without one: what is there?",
+     {"describe", "describe shaped_stiffness", "describe scenarios --grep molar"}},
+    {"look", "plot", "a picture of results", {}},
+    {"look", "report", "a page of results with replay; of two: what differs", {}},
+};
 
 /// The promise of a version.
 constexpr const char* kPromise =
@@ -74,7 +133,8 @@ class PlainNumbers {
 int run_program(int argc, char** argv) {
   const PlainNumbers plain_numbers;
   const Provenance program = provenance();
-  CommandLine line(fmt::format("hapbench {} ({})", program.version, program.commit), version_json);
+  CommandLine line({std::begin(kGuides), std::end(kGuides)},
+                   fmt::format("hapbench {} ({})", program.version, program.commit), version_json);
   for (AddCommand* add_command : kCommands) add_command(line);
   try {
     return line.run(argc, argv);

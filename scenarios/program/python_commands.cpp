@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -18,6 +19,7 @@
 #include "scenarios/input/installed_folder.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/command.hpp"
+#include "scenarios/program/table.hpp"
 #include "scenarios/run/progress_bar.hpp"
 #include "scenarios/run/stop_signal.hpp"
 
@@ -28,13 +30,13 @@ namespace {
 using ProgramWords = std::vector<std::string>;
 
 struct PythonCommand {
-  const char *name, *sentence;
+  std::string_view name, sentence;
   ProgramWords words;  ///< for scripts/python/launch: the package, and what it takes before the user's words
 };
 
 const PythonCommand kPythonCommands[] = {
-    {"import", "Make a stroke to play back from a recording: poses and measured forces", {"hapbench_import"}},
-    {"identify", "Make a device's file from its log: mass, friction, delay, encoder", {"hapbench_identify"}},
+    {"import stroke", "Make a stroke to play back from a recording: poses and measured forces", {"hapbench_import"}},
+    {"import device", "Make a device's file from its log: mass, friction, delay, encoder", {"hapbench_identify"}},
     {"plot", "Draw runs over time and in space, a sweep, limits", {"hapbench_pictures", "plot"}},
     {"report",
      "Write a page of runs: curves, replay with sound, metrics, scenario, commands",
@@ -80,7 +82,7 @@ int run_for(CapturedOutput& host, const std::string& line) {
       faults.emplace_back(std::string(said->substr(kError.size())));
     } else if (said->starts_with(kWarning)) {
       host.warnings.emplace_back(said->substr(kWarning.size()));
-    } else {
+    } else if (!said->starts_with("hapbench: ")) {  // how long it takes is for people
       host.text.append(*said).append("\n");
     }
   }
@@ -89,9 +91,9 @@ int run_for(CapturedOutput& host, const std::string& line) {
   return status;
 }
 
-/// Makes "hapbench identify" simulate a log for its own Python, thousands of times over a pipe of doubles. Standard
-/// input has the count of rows, their times, their forces, and then requests: a number of rows (0 ends it) and the
-/// fields of a LoggedHandle. Each answer on standard output is the positions at these rows.
+/// Makes "hapbench import device" simulate a log for its own Python, thousands of times over a pipe of doubles.
+/// Standard input has the count of rows, their times, their forces, and then requests: a number of rows (0 ends it) and
+/// the fields of a LoggedHandle. Each answer on standard output is the positions at these rows.
 constexpr const char* kSimulateLog = "--simulate-log";
 
 int simulate_log_for_pipe() {
@@ -116,11 +118,28 @@ int simulate_log_for_pipe() {
 int run(const PythonCommand& command, const ProgramWords& given) {
   if (given.size() == 1 && given[0] == kSimulateLog && command.words[0] == "hapbench_identify")
     return simulate_log_for_pipe();
-  for (const std::string& word : given) refuse_old_word(command.name, word);
+  for (const std::string& word : given) refuse_old_word(std::string(command.name), word);
   const std::string line = launch_line(command.words, given);
   if (CapturedOutput* host = captured_output()) return run_for(*host, line);
   ::execl("/bin/sh", "sh", "-c", line.c_str(), nullptr);
   fail_to_launch();
+}
+
+/// Runs the kind of import that the first word names.
+int run_import(const ProgramWords& given) {
+  const std::string kind = given.empty() ? "" : given[0];
+  std::string kinds;
+  for (const PythonCommand& command : kPythonCommands) {
+    if (!command.name.starts_with("import ")) continue;
+    if (command.name.substr(7) == kind) return run(command, {given.begin() + 1, given.end()});
+    kinds += entry(fmt::format("hapbench {} --help", command.name), std::string(command.sentence), 2, 34);
+  }
+  if (kind == "-h" || kind == "--help") {
+    print({}, "Usage: hapbench import stroke FILE | hapbench import device LOG\n\n" + kinds, {});
+    return kSuccess;
+  }
+  throw InputError(fmt::format("import: {}; allowed: hapbench import stroke FILE, hapbench import device LOG",
+                               kind.empty() ? "the kind is missing" : fmt::format("got \"{}\" as the kind", kind)));
 }
 
 }  // namespace
@@ -135,8 +154,14 @@ void write_way(const std::filesystem::path& folder, const std::filesystem::path&
 }
 
 void add_python_commands(CommandLine& line) {
-  for (const PythonCommand& command : kPythonCommands)
-    line.pass_on(command.name, command.sentence, [&command](const ProgramWords& given) { return run(command, given); });
+  line.pass_on("import",
+               "Make a stroke from a recording (import stroke FILE), a device from its log (import device LOG)",
+               run_import);
+  for (const PythonCommand& command : kPythonCommands) {
+    if (command.name.starts_with("import ")) continue;
+    line.pass_on(std::string(command.name), std::string(command.sentence),
+                 [&command](const ProgramWords& given) { return run(command, given); });
+  }
 }
 
 }  // namespace hapbench

@@ -241,14 +241,14 @@ void add_reproduce(CommandLine& line) {
                                          "finished runs are kept, and the same command continues from there");
   command.add(
       "--only", options.only,
-      "ids of claims, separated by commas; \"hapbench list claims\" shows them, and scripts/reproduce --only draws their "
+      "ids of claims, separated by commas; \"hapbench describe claims\" shows them, and scripts/reproduce --only draws their "
       "figures, too",
       {.comma_separated = true});
   command.add("--out", options.out, "directory of the results (default: results/out/reproduce)");
   command.add("--ledger", options.ledger,
               "file of the ledger, JSON, with a Markdown table beside it (default: OUT/claims.json; with --only none)");
   command.flag("--anew", options.anew, "run every scenario again, even where results are current");
-  add_jobs(command, options.jobs, "runs at once (default: one for each processor)");
+  add_jobs(command, options.jobs);
   command.add(
       "--choices", options.readings,
       "judge every claim again under each reading of FILE.csv, appendix D in the first quarter of them: a row each, a "

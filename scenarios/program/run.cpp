@@ -103,7 +103,7 @@ void add_run(CommandLine& line) {
               {.required = true});
   command.add("--out", options.out,
               "directory of the results; several scenarios get a subdirectory each (default: results/out/NAME)");
-  add_overrides(command, options.overrides, "override a field: path=value, as in time.steps=100");
+  add_overrides(command, options.overrides);
   command.flag("--latency", options.latency,
                "time every step, as record.timing does, and print percentiles and missed deadlines");
   command.flag(

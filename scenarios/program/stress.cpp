@@ -67,7 +67,7 @@ void add_stress(CommandLine& line) {
       "stress", "Pass random degenerate contact sets through every algorithm, and count what no law may give", stress);
   command.add("--count", options.count, "contact sets (default: 100000)", {.range = {{1, 1'000'000'000}}});
   command.add("--seed", options.seed, "of the random numbers (default: 1)", {.range = {{0, std::int64_t{1} << 53}}});
-  add_jobs(command, options.jobs, "threads (default: as many as the machine has)");
+  add_jobs(command, options.jobs);
   command.add("--out", options.out, "directory of the results (default: results/out/stress)");
 }
 

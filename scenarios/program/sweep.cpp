@@ -279,7 +279,7 @@ int print_row(const SweepCommand& command, const Cases& cases) {
   const fs::path scene = fs::absolute(cases.scene(command.row).file).lexically_normal();
   std::vector<std::string> words = {this_program().string(), "run", scene.string()};
   for (const std::string& override : cases.overrides(command.row)) words.insert(words.end(), {"--set", override});
-  for (const LoadedLaw& law : loaded_laws()) words.insert(words.end(), {"--plugin", law.file.string()});
+  for (const LoadedLaw& law : loaded_laws()) words.insert(words.end(), {"--module", law.file.string()});
   print(command.output, shell_line(words) + "\n", Json{{"row", command.row}, {"command", words}});
   return kSuccess;
 }
@@ -365,7 +365,7 @@ int sweep(const SweepCommand& command) {
 }
 
 void add_run_options(Command& command, SweepCommand& options) {
-  command.add("--jobs", options.jobs, "runs at once; results do not depend on it (default: one per thread)");
+  command.add("--jobs", options.jobs, shared_option_help("--jobs"));
   command.flag("--resume", options.resume,
                "continue an interrupted sweep of the same definition, and try again what failed");
   command.flag("--keep-runs", options.keep_runs, "also write the files of each run, into runs/INDEX");
@@ -417,7 +417,7 @@ void add_sweep(CommandLine& line) {
               "'inside_max_m<3e-4'; several must all hold",
               {.several = true});
   command.add("--out", options.out, "directory of sweep.csv (default: results/out/sweep_NAME)");
-  add_overrides(command, options.overrides, "override a field of all runs: path=value");
+  add_overrides(command, options.overrides);
   add_run_options(command, options);
   command.add("--shard", options.shard, "i/n with 0 <= i < n: do only every n-th run, from the i-th on");
   command.footer(

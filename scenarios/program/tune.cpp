@@ -29,9 +29,8 @@ struct TuneOptions : CommonOptions {
   std::string device;
   std::vector<std::string> algorithms;
   double margin = 2.0;
-  std::string inside, vibration, step;
   std::vector<std::string> bounds;
-  std::vector<std::string> over;
+  std::vector<std::string> family;
   std::string damping_ratio, mass;
   bool filters = false;
 };
@@ -330,14 +329,6 @@ std::string tuning_text(const Tuning& tuning) {
 
 // ---- Command
 
-void add_limit_option(const char* option, const std::string& text, double unit, const char* metric,
-                      TuneQuestion& question) {
-  if (text.empty()) return;
-  const auto most = finite_number(text);
-  if (!most || !(*most > 0.0)) throw InputError(fmt::format("{}: got \"{}\"; allowed: a number > 0", option, text));
-  question.limits[metric].max = *most * unit;
-}
-
 std::string device_text(const std::string& name, TuneQuestion& question) {
   if (name.empty()) return "";
   const std::vector<ComparedDevice> devices = chosen_devices({name});
@@ -355,13 +346,10 @@ TuneQuestion tune_question(const TuneOptions& options, const fs::path& file) {
   if (!(options.margin > 1.0 && options.margin <= 16.0))
     throw InputError(fmt::format("--margin: got {}; allowed: more than 1, at most 16", options.margin));
   question.margin = options.margin;
-  add_limit_option("--max-inside", options.inside, 1e-3, kTuneMetrics[0], question);
-  add_limit_option("--max-vibration", options.vibration, 1.0, kTuneMetrics[1], question);
-  add_limit_option("--max-step", options.step, 1.0, kTuneMetrics[2], question);
   for (const std::string& bound : options.bounds) add_bound(bound, question.limits);
   const std::vector<std::string> families(std::begin(kFamilyNames), std::end(kFamilyNames));
-  if (!options.over.empty()) question.over.clear();
-  for (const std::string& name : chosen_names("--over: got", options.over, families))
+  if (!options.family.empty()) question.over.clear();
+  for (const std::string& name : chosen_names("--family: got", options.family, families))
     question.over.push_back(static_cast<FamilyOver>(std::ranges::find(families, name) - families.begin()));
   if (const auto range = range_of("--damping-ratio", options.damping_ratio)) question.damping_ratio = *range;
   question.mass = range_of("--mass", options.mass);
@@ -439,11 +427,10 @@ void add_tune(CommandLine& line) {
   command.add("--algorithms", options.algorithms, "names separated by commas, or all (default: the scene's own)",
               {.comma_separated = true});
   command.add("--margin", options.margin, "settled up to so many times K (default: 2)");
-  command.add("--max-inside", options.inside, "most that any point of the tool is inside [mm]: inside_max_m");
-  command.add("--max-vibration", options.vibration, "most force above 30 Hz [N rms]: force_rms_above_30Hz_N");
-  command.add("--max-step", options.step, "largest force step in settled contact [N]: settled_force_step_max_N");
-  command.add("--bound", options.bounds, "a limit on any other metric: metric=most or metric=least:most; repeatable");
-  command.add("--over", options.over,
+  command.add("--bound", options.bounds,
+              "what the choice has to keep: metric=most or metric=least:most, as inside_max_m=3e-4 [m], "
+              "force_rms_above_30Hz_N=0.05 or settled_force_step_max_N=0.2; repeatable");
+  command.add("--family", options.family,
               "families of runs that have to hold: hands, seeds, speeds, or all (default: hands)",
               {.comma_separated = true});
   command.add("--damping-ratio", options.damping_ratio,
@@ -451,9 +438,9 @@ void add_tune(CommandLine& line) {
   command.add("--mass", options.mass,
               "a:b, range of the virtual mass on an admittance device [kg] (default: half to twice the scene's)");
   command.flag("--filters", options.filters, "on an impedance device choose the velocity filter, too");
-  add_jobs(command, options.jobs, "runs at once; no result depends on it (default: one per thread)");
+  add_jobs(command, options.jobs);
   command.add("--out", options.out, "directory of the results (default: results/out/tune_NAME)");
-  add_overrides(command, options.overrides, "override a field of all runs: path=value");
+  add_overrides(command, options.overrides);
   command.footer(fmt::format(
       "For each law the largest K, over zeta (and virtual mass on an admittance device), at which the scene's own run and each of the "
       "family is settled (\"hapbench describe stability\"; where a script moves the tool, no more than 1 mm/s rms above 30 Hz at the handle) at K and at margin x K, the loop of "

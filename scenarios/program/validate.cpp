@@ -25,6 +25,7 @@ namespace {
 
 struct ValidateOptions : CommonOptions {
   std::vector<std::string> files;
+  std::string points;
 };
 
 std::string surface_text(const SceneFacts::Surface& surface, std::optional<bool> is_closed) {
@@ -115,7 +116,21 @@ bool is_device_file(const std::filesystem::path& file) {
          (text.json.contains(kTypeField) || text.json.contains("preset"));
 }
 
+/// Writes the points of the environment. Throws InputError when it has none, and when the file cannot be written.
+void write_points(const LoadedScenario& loaded, const std::filesystem::path& file) {
+  if (std::holds_alternative<SpringsEnvironment>(loaded.scenario.environment))
+    throw InputError(loaded.file.string() + ": /environment/type: got \"springs\", which have no point shell");
+  const std::string text = point_shell_text(make_shell(loaded.scenario, loaded.files)->points(), file);
+  std::error_code ignored;
+  if (std::filesystem::is_directory(file, ignored))
+    throw InputError(fmt::format("--points {}: is a directory", file.string()));
+  require_writable_directory(file.has_parent_path() ? file.parent_path() : ".", "--points");
+  write_file_atomically(file, text);
+}
+
 int validate(const ValidateOptions& options) {
+  if (!options.points.empty() && options.files.size() > 1)
+    throw InputError(fmt::format("--points: got {} scenes; allowed: one", options.files.size()));
   std::string text;
   Json verdicts = Json::array();
   int status = kSuccess;
@@ -123,7 +138,7 @@ int validate(const ValidateOptions& options) {
     try {
       const WaitNotice notice(argument, !options.output.quiet);
       const std::filesystem::path file = find_scenario(argument);
-      if (is_device_file(file)) {
+      if (options.points.empty() && is_device_file(file)) {
         device_of_file(file);  // throws what is wrong with it
         text += fmt::format("{}: a valid device, not a scenario: {}\n", argument,
                             shell_line({"hapbench", "limit", "tap_wall", "--device", argument}));
@@ -134,9 +149,13 @@ int validate(const ValidateOptions& options) {
       print_warnings(loaded, warnings_before_run(loaded));
       const SceneFacts facts = scene_facts(loaded);
       print_warnings(loaded, facts.warnings);
+      if (!options.points.empty()) write_points(loaded, options.points);
       text += fmt::format("{}: valid\n{}", argument, facts_text(loaded, facts));
       verdicts.push_back({{"file", argument}, {"valid", true}});
       verdicts.back().update(facts_json(loaded, facts));
+      if (options.points.empty()) continue;
+      text += fmt::format("  points       in {}\n", options.points);
+      verdicts.back()["environment"]["points_file"] = options.points;
     } catch (const InputError& error) {
       print_errors(error);
       verdicts.push_back({{"file", argument}, {"valid", false}, {"error", error.what()}, {"errors", messages(error)}});
@@ -154,45 +173,9 @@ void add_validate(CommandLine& line) {
       "validate", "Check scenario files and the files they name, without running them, and say what is in them",
       validate);
   command.add("files", options.files, "scenario files, or names of bundled scenarios", {.required = true});
-  add_overrides(command, options.overrides, "override a field of all: path=value");
-}
-
-namespace {
-
-struct ShellOptions : CommonOptions {
-  std::string scenario;
-};
-
-int shell(const ShellOptions& options) {
-  const LoadedScenario loaded = load_scenario(find_scenario(options.scenario), options.overrides);
-  if (std::holds_alternative<SpringsEnvironment>(loaded.scenario.environment)) {
-    throw InputError(loaded.file.string() + ": /environment/type: got \"springs\", which have no point shell");
-  }
-  const std::vector<SurfacePoint> points = [&] {
-    const WaitNotice notice("building the shell", !options.output.quiet);
-    print_warnings(loaded, check_named_files(loaded));
-    const auto made = make_shell(loaded.scenario, loaded.files);
-    throw_if_stopped();  // that may have taken seconds
-    return made->points();
-  }();
-  const std::filesystem::path file = options.out;
-  const std::string text = point_shell_text(points, file);
-  std::error_code ignored;
-  if (std::filesystem::is_directory(file, ignored))
-    throw InputError(fmt::format("--out {}: is a directory", file.string()));
-  require_writable_directory(file.has_parent_path() ? file.parent_path() : ".");
-  write_file_atomically(file, text);
-  print(options.output, fmt::format("{} points in {}\n", points.size(), file.string()),
-        {{"points", points.size()}, {"file", file.string()}});
-  return kSuccess;
-}
-
-}  // namespace
-
-void add_shell(CommandLine& line) {
-  auto [command, options] = line.command("shell", "Write the environment's point shell: positions and normals", shell);
-  command.add("scenario", options.scenario, "scenario file, or name of a bundled scenario", {.required = true});
-  command.add("--out", options.out, "FILE.csv (exact) or FILE.ply (single precision, for viewers)", {.required = true});
+  command.add(
+      "--points", options.points,
+      "write the environment's points, with normals: FILE.csv (exact) or FILE.ply (single precision, for viewers)");
   add_overrides(command, options.overrides);
 }
 

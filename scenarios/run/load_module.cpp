@@ -88,7 +88,7 @@ const char* kind_name(std::uint32_t kind) {
 
 /// Where a module of this kind is named.
 const char* place_of(std::uint32_t kind) {
-  return kind == HAPBENCH_LAW ? "--plugin" : "rendering.contact_source of a scenario";
+  return kind == HAPBENCH_LAW ? "--module" : "rendering.contact_source of a scenario";
 }
 
 /// The function by which the library hands over its table.

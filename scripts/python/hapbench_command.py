@@ -14,6 +14,7 @@ import time
 
 from hapbench.errors import InputError
 
+SHARED = "as everywhere: hapbench --help"  # the help of an option that means the same in every command
 SUCCESS, FAILED, BAD_INPUT, DIFFERENT, INTERRUPTED = 0, 1, 2, 3, 130
 SILENCE = 2.0  # before a notice [s]
 
@@ -38,7 +39,7 @@ class CommandLine(Arguments):
     def __init__(self, name, summary, footer):
         super().__init__(prog=f"hapbench {name}", description=summary, epilog=footer, add_help=False, allow_abbrev=False)
         self.name = name
-        self.add_argument("-h", "--help", action="help", help="print this help")
+        self.add_argument("-h", "--help", action="help", help=SHARED)
 
     def text(self, name, meaning, **more):
         self.add_argument(name, metavar=more.pop("metavar", "TEXT"), help=meaning, **more)
@@ -63,9 +64,8 @@ class CommandLine(Arguments):
         self.add_argument(name, action="store_true", help=meaning)
 
     def add_output_options(self):
-        self.flag("--quiet", "print nothing on standard output, and no progress bar")
-        self.flag("--json", "print JSON instead of tables")
-        self.flag("--wide", "print tables at full width, however narrow the terminal is")
+        for name in ("--json", "--quiet", "--wide"):
+            self.flag(name, SHARED)
 
     def parse(self, words):
         """An option takes the word behind it as its value, also one that begins with "-"; arguments may stand anywhere."""
@@ -100,12 +100,17 @@ class CommandLine(Arguments):
             actions = [action for action in self._actions if bool(action.option_strings) == named]
             if actions:
                 lines += ["", title]
+            shared = ", ".join(action.option_strings[-1] for action in actions if action.help == SHARED)
             for action in actions:
+                if action.help == SHARED:
+                    continue
                 word = ",".join(action.option_strings) + (f" {action.metavar}" if action.nargs != 0 else "") if named else action.metavar
                 lines.append(entry(word, action.help, width))
                 if not named:
                     several = f"{word}..." if action.nargs in ("+", "*") else word
                     lines[1] += f" {several}" if action.required else f" [{several}]"
+            if shared:
+                lines.append(entry(shared, SHARED, width))
         lines += [""] + [textwrap.fill(line, width, subsequent_indent=" " * (4 if line.startswith(" ") else 0), **WHOLE_WORDS)
                          for line in self.epilog.splitlines()]
         return "\n".join(lines) + "\n"
@@ -204,12 +209,13 @@ def unwritable(error):
 
 
 class Notice:
-    """A line with the seconds, for work that takes longer than two; silent without a text, and when standard error is no terminal."""
+    """A line with the seconds, for work that takes longer than two; lines after 2, 4, 8 s and so on where standard error is no
+    terminal; silent without a text."""
 
     def __init__(self, text):
         self._text = text
         self._ended = threading.Event()
-        self._thread = threading.Thread(target=self._show, daemon=True) if text and sys.stderr.isatty() else None
+        self._thread = threading.Thread(target=self._show, daemon=True) if text else None
 
     def say(self, text):
         """Changes the text."""
@@ -226,11 +232,12 @@ class Notice:
             self._thread.join()
 
     def _show(self):
-        start = time.monotonic()
-        if self._ended.wait(SILENCE):
-            return
-        while True:
-            print(f"\r{self._text} ... {time.monotonic() - start:.0f} s\033[K", end="", file=sys.stderr, flush=True)
-            if self._ended.wait(0.5):
-                break
-        print("\r\033[K", end="", file=sys.stderr, flush=True)
+        start, terminal = time.monotonic(), sys.stderr.isatty()
+        pause, shown = SILENCE, False
+        while not self._ended.wait(pause):
+            seconds = time.monotonic() - start
+            line = f"hapbench: {self._text} ... {seconds:.0f} s"
+            print(f"\r{line}\033[K" if terminal else line, end="" if terminal else "\n", file=sys.stderr, flush=True)
+            pause, shown = 0.5 if terminal else seconds, True
+        if shown and terminal:
+            print("\r\033[K", end="", file=sys.stderr, flush=True)

@@ -137,7 +137,7 @@ def compared(bench):
     bench.write("points.csv", "x_m,y_m,z_m,nx,ny,nz", points)
     shell = bench.scenario("shell", time={"step_s": 0.001, "steps": 1}, environment={"type": "point_shell", "file": "points.csv"},
                            rendering={"algorithm": "mean", **PLAIN})
-    bench.hapbench("shell", shell, "--out", "shell.csv")
+    bench.hapbench("validate", shell, "--points", "shell.csv")
     table = Table(bench.folder / "shell.csv")
     order = np.lexsort(points.T)
     found = np.lexsort(table.vectors(*table.names).T)

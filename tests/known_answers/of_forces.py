@@ -128,7 +128,7 @@ def imported(bench):
     p = np.column_stack([np.round(1e-3 * np.sin(7 * t) / 1e-5) * 1e-5, np.round(2e-3 * np.cos(5 * t) / 2e-5) * 2e-5, np.round(-1e-3 * t / 5e-6) * 5e-6])
     f = np.column_stack([np.full(400, 0.1), np.full(400, 0.2), np.sin(t)])
     bench.write("rec.csv", "t,x,y,z,fx,fy,fz", np.column_stack([t, p, f]))
-    told = bench.json("import", "rec.csv", "--columns", "time=t,position=x,force=fx", "--out", "stroke.csv")
+    told = bench.json("import", "stroke", "rec.csv", "--columns", "time=t,position=x,force=fx", "--out", "stroke.csv")
     speed = norms(np.diff(p, axis=0)) / 0.002
     close = Within("times and places as written, with all their digits", relative=1e-9, absolute=1e-15)
     q = np.array([1e-5, 2e-5, 5e-6])

@@ -81,7 +81,7 @@ def tuned(bench):
                           device={"type": "impedance", "handle_mass_kg": m, "viscous_N_s_per_m": b, "delay_samples": delay},
                           rendering={**PLAIN, "algorithm": "summation", "stiffness_N_per_m": 1000, "mass_kg": m})
     out = bench.folder / "tune"
-    printed = bench.json("tune", base, "--margin", "2", "--max-vibration", "1e3", "--out", out)
+    printed = bench.json("tune", base, "--margin", "2", "--bound", "force_rms_above_30Hz_N=1e3", "--out", out)
     law, table, trials = printed["algorithms"][0], Table(out / "tune.csv"), Table(out / "tune_trials.csv")
     loop = lambda K, B, more=0.0: HeldLoop(m, b, T, K, B, delay=delay + more)
     edge = lambda B: bisected(lambda K: loop(K, B).radius() < 1, 1.0, 1e5)

@@ -332,7 +332,7 @@ class Adding(unittest.TestCase):
         self.assertIn("taper", [tool["properties"]["type"]["const"] for tool in schema["tool"]["oneOf"]])
         devices = {device["properties"]["type"]["const"]: device["properties"] for device in schema["device"]["oneOf"]}
         self.assertEqual(devices["impedance"]["play_m"]["description"], "play of the transmission")
-        self.assertIn("a cone that ends in a narrow tip", self.hapbench("list"))
+        self.assertIn("a cone that ends in a narrow tip", self.hapbench("describe", "tools"))
         for name, text in (("ridge", "height of the row"), ("taper", "width of the far end"), ("hand.file", "a stroke to compare with"),
                            ("device.play_m", "a number >= 0 and <= 1 [m]"),
                            ("environment.type", "a row of points")):
@@ -386,7 +386,7 @@ class Adding(unittest.TestCase):
         self.assertGreater(first["halved"], 0)
         self.assertEqual(first["halved"], first["summation"] / 2)
         self.assertIn("c_i = 1/2", self.hapbench("describe", "halved"))
-        self.assertIn("half of all penalty springs", self.hapbench("list", "algorithms"))
+        self.assertIn("half of all penalty springs", self.hapbench("describe", "algorithms"))
         self.assertIn('nearest valid name: "halved"', self.hapbench("run", "scene.json", "--set", "rendering.algorithm=halvd", status=2))
         self.assertIn('"halved"', self.hapbench("describe", "schema"))
         self.assertIn("halved", self.hapbench("compare", "scene.json", "--algorithms", "all", "--out", "all"))
@@ -423,7 +423,7 @@ class Adding(unittest.TestCase):
         self.assertIn("still", summary["stillness"])
         self.assertIn("stillness.still", json.dumps(columns))
         self.assertIn("rows in which the tool did not move", self.hapbench("describe", "stillness.still"))
-        self.assertIn("stillness.still", self.hapbench("list", "metrics"))
+        self.assertIn("stillness.still", self.hapbench("describe", "metrics"))
         self.assertIn("stillness.still", json.dumps(json.loads(self.hapbench("describe", "schema"))["else"]["properties"]["expect"]))
         for pose, found in (("true", True), ("false", False)):
             self.hapbench("sweep", "scene.json", "--vary", "seed=1,2", "--set", f"record.pose={pose}", "--out", f"sweep_{pose}", "--quiet")

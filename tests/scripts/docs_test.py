@@ -187,10 +187,10 @@ class Commands(unittest.TestCase):
     def test_comments_continued_lines_and_redirections(self):
         with tempfile.TemporaryDirectory() as scratch:
             file = Path(scratch) / "x.md"
-            file.write_text("a\n\n    hapbench run x \\\n      --out y   # why\n\n```\n$ hapbench list >z\nscripts/test --fast | cat\n```\n"
+            file.write_text("a\n\n    hapbench run x \\\n      --out y   # why\n\n```\n$ hapbench describe >z\nscripts/test --fast | cat\n```\n"
                             "hapbench is prose\n", encoding="utf-8")
             self.assertEqual([c.words for c in Manual(file).commands()],
-                             [("hapbench", "run", "x", "--out", "y"), ("hapbench", "list"), ("scripts/test", "--fast")])
+                             [("hapbench", "run", "x", "--out", "y"), ("hapbench", "describe"), ("scripts/test", "--fast")])
 
 
 class Pages(unittest.TestCase):

@@ -198,7 +198,7 @@ class Figures(unittest.TestCase):
                 self.assertGreater(len(words), 1)
 
     def test_the_stiffness_of_every_algorithm_is_drawn_in_both_scenes(self):
-        names = [entry["name"] for entry in json.loads(program("list", "--json")) if entry["kind"] == "algorithm"]
+        names = [entry["name"] for entry in json.loads(program("describe", "--json")) if entry["kind"] == "algorithm"]
         text = list(xml.parse(self.drawn / "figure_stiffness.svg").getroot().itertext())
         self.assertGreater(len(names), 8)
         for name in names:

@@ -1,4 +1,4 @@
-"""`hapbench identify` on logs of a simulator of its own. Arguments: the built program, the source tree."""
+"""`hapbench import device` on logs of a simulator of its own. Arguments: the built program, the source tree."""
 import json
 import os
 import subprocess
@@ -62,7 +62,7 @@ class Identify(unittest.TestCase):
         return self.root / name
 
     def told(self, file, *words):
-        done = run("identify", file, "--json", "--out", self.root / "device.json", *words)
+        done = run("import", "device", file, "--json", "--out", self.root / "device.json", *words)
         self.assertEqual(done.returncode, 0, done.stderr)
         return json.loads(done.stdout), done.stderr
 
@@ -164,13 +164,13 @@ class Identify(unittest.TestCase):
         time = np.arange(len(rest)) * 1e-3
         told, _ = self.told(self.log(np.round(positions(time, rest, (m, b, c, 1.35e-3, 0.0, 0.0)) / q) * q, time, rest))
         self.assert_holds(told)
-        done = run("identify", self.log(1e-5 * np.round(5.0 * self.places / np.ptp(self.places)), name="still.csv"), "--out", self.root / "none.json")
+        done = run("import", "device", self.log(1e-5 * np.round(5.0 * self.places / np.ptp(self.places)), name="still.csv"), "--out", self.root / "none.json")
         self.assertEqual(done.returncode, 2)
         self.assertIn("the handle hardly moves", done.stderr)
 
     def test_units_that_are_unlikely_are_asked_about(self):
         file = self.log(1e3 * np.round(self.places / 1e-5) * 1e-5, 1e3 * self.time)
-        done = run("identify", file, "--out", self.root / "none.json")
+        done = run("import", "device", file, "--out", self.root / "none.json")
         self.assertEqual(done.returncode, 2)
         self.assertIn("are the units s, N, m?", done.stderr)
         self.assertFalse((self.root / "none.json").exists())
@@ -182,7 +182,7 @@ class Identify(unittest.TestCase):
         m, b, c, d, q = TRUE.values()
         for spring, why in ((2.0, "The device has something that this model has not"), (200.0, "The device has something|Is a hand or a spring")):
             places = played(self.time, self.force, m, b, c, 1e-3 * d, 50, spring)
-            done = run("identify", self.log(np.round(places / q) * q), "--out", self.root / "device.json")
+            done = run("import", "device", self.log(np.round(places / q) * q), "--out", self.root / "device.json")
             self.assertRegex(done.stderr, why)
 
     def test_refuses_what_is_no_log(self):
@@ -190,11 +190,11 @@ class Identify(unittest.TestCase):
                           ("time_s,force_N,position_m\n" + "".join(f"{i},1,{i}\n" for i in range(60)), "every force is 1"),
                           ("time_s,force_N,position_m\n" + "".join(f"0,{i},{i}\n" for i in range(60)), "increasing times")):
             (self.root / "bad.csv").write_text(text)
-            done = run("identify", self.root / "bad.csv", "--out", self.root / "none.json")
+            done = run("import", "device", self.root / "bad.csv", "--out", self.root / "none.json")
             self.assertEqual(done.returncode, 2, done.stderr)
             self.assertIn(why, done.stderr)
             self.assertFalse((self.root / "none.json").exists())
-        self.assertIn("either a LOG or --design", run("identify").stderr)
+        self.assertIn("either a LOG or --design", run("import", "device").stderr)
 
 
 class Design(unittest.TestCase):
@@ -213,12 +213,12 @@ class Design(unittest.TestCase):
     def test_travel_that_limits_the_force_is_said(self):
         with tempfile.TemporaryDirectory() as scratch:
             file = Path(scratch) / "chirp.csv"
-            words = ("identify", "--design", "chirp", "--travel", "0.08", "--mass", "0.1", "--out", file)
-            done = run(*words, "--force", "2")
+            words = ("import", "device", "--out", file, "--design")
+            done = run(*words, "chirp,travel=0.08,mass=0.1,force=2")
             self.assertIn("the travel of 0.08 m limits the force to 0.72 N of 2 N: the log tells dry friction up to 0.432 N", done.stderr)
-            asked = done.stderr.split("--force ")[1].split()[0]
-            self.assertGreaterEqual(json.loads(run(*words, "--force", asked, "--json").stdout)["force_max_N"], 0.99 * 2.0)
-            self.assertNotIn("limits", run("identify", "--design", "multisine", "--travel", "0.08", "--force", "2", "--out", file).stderr)
+            asked = done.stderr.split("force=")[1].split()[0]
+            self.assertGreaterEqual(json.loads(run(*words, f"chirp,travel=0.08,mass=0.1,force={asked}", "--json").stdout)["force_max_N"], 0.99 * 2.0)
+            self.assertNotIn("limits", run("import", "device", "--design", "multisine,travel=0.08,force=2", "--out", file).stderr)
 
     def test_each_signal_tells_the_device(self):
         m, b, c, d, q = TRUE.values()

@@ -1,4 +1,4 @@
-"""`hapbench import` and the metrics of fidelity against numpy and scipy. Arguments: the built program, the source tree."""
+"""`hapbench import stroke` and the metrics of fidelity against numpy and scipy. Arguments: the built program, the source tree."""
 import json
 import math
 import os
@@ -68,7 +68,10 @@ class Given(unittest.TestCase):
         """The report of a recording with these contents, by the package that the command starts."""
         words = [self.write(data)] + (["--columns", columns] if columns else [])
         for name, value in options.items():
-            words += [f"--{name.replace('_', '-')}"] + ([] if value is True else [str(value)])
+            if name in ("floats", "force_by_tool", "max_gap", "max_speed", "shift", "tip_axis"):
+                words += ["--set", f"{name}={str(value).lower()}"]
+            else:
+                words += [f"--{name.replace('_', '-')}"] + ([] if value is True else [str(value)])
         given = command_line().parse(words)
         chosen = options_of(given)
         return import_stroke(open_recording(given.file, chosen), chosen)
@@ -85,7 +88,7 @@ class Given(unittest.TestCase):
             return "\n".join(f"{place}: {problem}" if place else problem for place, problem in faults.list).replace(f"{self.root}/", "")
 
     def imported(self, *words):
-        report = json.loads(hapbench("import", LOG, "--preset", "hapi", "--out", self.root / "stroke.csv", "--json", *words))
+        report = json.loads(hapbench("import", "stroke", LOG, "--preset", "hapi", "--out", self.root / "stroke.csv", "--json", *words))
         return report, *columns(self.root / "stroke.csv")
 
 
@@ -139,22 +142,22 @@ class Recordings(Given):
 
     def test_clocks_of_other_units_are_refused(self):
         even = "".join(f"{1999 * i},{1e-5 * i},0,0\n" for i in range(5))  # [us]
-        self.assertEqual(self.refusal(even), "rec.csv: got intervals of 1999 s in the median; allowed: 0.5 s (--max-gap); are times "
+        self.assertEqual(self.refusal(even), "rec.csv: got intervals of 1999 s in the median; allowed: 0.5 s (--set max_gap=...); are times "
                          "in other units? (--scale time=1e-06)")
         self.assertEqual(self.refusal(even, scale="time=1e-6"), "")
         # Four times the median are no gap, but longer than allowed.
         slow = "0,0,0,0\n0.2,0.001,0,0\n0.4,0.002,0,0\n1.2,0.003,0,0\n"
-        self.assertEqual(self.refusal(slow), "rec.csv, line 3: a gap of 0.8 s follows; allowed: 0.5 s (--max-gap)")
+        self.assertEqual(self.refusal(slow), "rec.csv, line 3: a gap of 0.8 s follows; allowed: 0.5 s (--set max_gap=...)")
         self.assertEqual(self.report(slow, max_gap=0.8).gaps, [])
 
     def test_the_mean_direction_of_the_tip_shows_a_wrong_order(self):
         # Two turns about x, by 0.2 +- 0.1 rad, written w first.
         rows = "".join(f"{0.01 * i},0,0,0,{math.cos(a / 2)!r},{math.sin(a / 2)!r},0,0\n" for i, a in enumerate((0.1, 0.3)))
         layout = ("--columns", "time=1,position=2,orientation=5", "--out", self.root / "s.csv", "--json")
-        report = json.loads(hapbench("import", self.write(rows), "--orientation", "quat_wxyz", *layout))
+        report = json.loads(hapbench("import", "stroke", self.write(rows), "--orientation", "quat_wxyz", *layout))
         np.testing.assert_allclose(report["tip_direction"], [0, math.sin(0.2), -math.cos(0.2)], atol=1e-12)
         self.assertAlmostEqual(report["tip_direction_spread_rad"], 0.1, delta=1e-8)
-        wrong = run("import", self.write(rows), "--orientation", "quat_xyzw", *layout)
+        wrong = run("import", "stroke", self.write(rows), "--orientation", "quat_xyzw", *layout)
         self.assertIn("the tip points upwards in the mean", wrong.stderr)
         self.assertGreater(json.loads(wrong.stdout)["tip_direction"][2], 0.5)
 
@@ -191,7 +194,7 @@ class Recordings(Given):
                 ("0,0,0,0\n", line + "got time 0 s after 0 s; allowed: increasing times"),
                 ("-1,0,0,0\n", line + "got time -1 s after 0 s; allowed: increasing times"),
                 ("0.1,1,0,0\n", line + "got a jump of 1000 mm in 100 ms, 10 m/s; allowed: 5 m/s (is the scale right?)"),
-                ("0.1,0,0,0\n0.2,0,0,0\n0.3,0,0,0\n1.5,0,0,0\n", "rec.csv, line 5: a gap of 1.2 s follows; allowed: 0.5 s (--max-gap)"),
+                ("0.1,0,0,0\n0.2,0,0,0\n0.3,0,0,0\n1.5,0,0,0\n", "rec.csv, line 5: a gap of 1.2 s follows; allowed: 0.5 s (--set max_gap=...)"),
                 ("0.1,2e6,0,0\n", line + "too large a number; allowed: positions below 1e6 m, forces below 1e9 N, times below 1e12 s")):
             self.assertEqual(self.refusal(start + rows, "time=t,position=x"), problem)
         self.assertEqual(self.refusal(start + "x,0,0,0\n0,0,0\n", "time=t,position=x").count("\n"), 1, "each with its line")
@@ -211,7 +214,8 @@ class Recordings(Given):
                 ({"smooth": "window=4,order=2"}, "smooth: got a window of 4 samples; allowed: odd, 3 ... 4"), ({"smooth": "window=3,order=3"}, "order 3"),
                 ({"smooth": "window=x"}, '--smooth: window: got "x"'), ({"scale": "time=0"}, "scale: time: got 0; allowed: > 0"),
                 ({"scale": "tyme=1"}, 'nearest valid name: "time"'), ({"frame": "x,y,-z"}, "right-handed"), ({"frame": "x,y,y"}, "each once"),
-                ({"tip_axis": "0,0,0"}, "tip_axis: allowed: a direction"), ({"shift": "1,2"}, "--shift: got 2 numbers; allowed: three"),
+                ({"tip_axis": "0,0,0"}, "tip_axis: allowed: a direction"), ({"shift": "1,2"}, "shift: got [1,2]; allowed: three numbers"),
+                ({"set": "max_gab=1"}, 'nearest valid name: "max_gap"'),
                 ({"rate": "0"}, "rate: got 0 Hz"), ({"columns": "position"}, '--columns: got "position"; allowed: NAME=VALUE')):
             self.assertIn(problem, self.refusal(STRAIGHT, **options))
 
@@ -309,7 +313,7 @@ class Recordings(Given):
 
 class Command(Given):
     def test_makes_a_stroke_that_runs_at_once_and_is_compared_with_its_force(self):
-        report, _, _ = self.imported("--shift", "0,0,-0.001")
+        report, _, _ = self.imported("--set", "shift=0,0,-0.001")
         self.assertEqual((report["rate_Hz"], report["resampled"], report["has_roll"]), (99, True, True))
         self.assertAlmostEqual(report["quantum_force_N"], 0.2, delta=1e-7)
         hapbench("new", "stroke", "--from", self.root / "stroke.csv", "--out", self.root / "stroke.json")
@@ -322,27 +326,27 @@ class Command(Given):
                          "step time_s mfx_N mfy_N mfz_N force_error_x_N force_error_y_N force_error_z_N".split())
 
     def test_says_what_it_found(self):
-        text = hapbench("import", LOG, "--preset", "hapi", "--smooth", "window=11,order=3", "--out", self.root / "stroke.csv")
+        text = hapbench("import", "stroke", LOG, "--preset", "hapi", "--smooth", "window=11,order=3", "--out", self.root / "stroke.csv")
         for words in ("99 Hz, resampled", "x 10 um, y 10 um, z 10 um", "K q = 0.2 N", "smoothing", "um rms", "next: hapbench new stroke --from"):
             self.assertIn(words, text)
 
     def test_writes_nothing_of_a_bad_recording_and_never_over_it(self):
         rec = self.write("t,x,y,z\n0,0,0,0\n1,0,0\n0.5,nan,0,0\n")
-        done = run("import", rec, "--columns", "time=t,position=x", "--out", self.root / "new" / "stroke.csv")
+        done = run("import", "stroke", rec, "--columns", "time=t,position=x", "--out", self.root / "new" / "stroke.csv")
         self.assertEqual(done.returncode, 2)
         self.assertIn("line 3: got 3 values; allowed: 4", done.stderr)
         self.assertIn('line 4: column 2 x: got "nan"', done.stderr)
-        done = run("import", rec, "--columns", "time=t,position=x", "--out", rec)
+        done = run("import", "stroke", rec, "--columns", "time=t,position=x", "--out", rec)
         self.assertIn("is the recording itself", done.stderr)
         self.assertEqual(os.listdir(self.root), ["rec.csv"])
 
     def test_does_not_depend_on_the_locale(self):
         rec = self.write("zeit,größe,y,z\n0,0,0,0\n0.5,0.001,0,0\n", "prüfung.csv")
         for locale in ("C", "C.UTF-8", "de_DE.ISO-8859-1"):
-            done = run("import", rec, "--columns", "time=zeit,position=größe", "--out", self.root / "ö.csv", LC_ALL=locale)
+            done = run("import", "stroke", rec, "--columns", "time=zeit,position=größe", "--out", self.root / "ö.csv", LC_ALL=locale)
             self.assertEqual(done.returncode, 0, done.stderr)
             self.assertIn("ö.csv", done.stdout)
-            self.assertIn("prüfung.csv: columns: position", run("import", rec, "--columns", "time=zeit,position=no", LC_ALL=locale).stderr)
+            self.assertIn("prüfung.csv: columns: position", run("import", "stroke", rec, "--columns", "time=zeit,position=no", LC_ALL=locale).stderr)
 
     def test_names_the_packages_that_are_missing(self):
         bare = self.root / "python"
@@ -355,15 +359,15 @@ class Command(Given):
         self.assertRegex(done.stderr, "^hapbench: error: import needs a python3 with numpy, scipy, .*\n$")
 
     def test_lists_presets_that_can_be_copied(self):
-        presets = json.loads(hapbench("import", "--list", "--json"))
+        presets = json.loads(hapbench("import", "stroke", "--json"))
         self.assertEqual([preset["preset"] for preset in presets], sorted(file.stem for file in PRESETS.iterdir()))
         for preset in presets:
             copy = self.write(Path(preset["file"]).read_bytes(), "copy.json")
-            self.assertIn("missing: cannot be read", self.refusal_of("import", self.root / "missing", "--preset", copy), "the preset is right")
-        self.assertIn('nearest valid name: "hapi"', self.refusal_of("import", LOG, "--preset", "hapy"))
+            self.assertIn("missing: cannot be read", self.refusal_of("import", "stroke", self.root / "missing", "--preset", copy), "the preset is right")
+        self.assertIn('nearest valid name: "hapi"', self.refusal_of("import", "stroke", LOG, "--preset", "hapy"))
         for text, problem in (("{,}", "is not JSON: syntax error at line 1, column 2"), ("[1]", "got [1]; allowed: an object"),
                               ('{"colums": {}}', 'nearest valid name: "columns"'), ('{"floats": 1}', "floats: got 1; allowed: true, false")):
-            self.assertIn("bad.json: ", found := self.refusal_of("import", LOG, "--preset", self.write(text, "bad.json")))
+            self.assertIn("bad.json: ", found := self.refusal_of("import", "stroke", LOG, "--preset", self.write(text, "bad.json")))
             self.assertIn(problem, found)
 
     def refusal_of(self, *words):

@@ -25,7 +25,7 @@ class Looks(unittest.TestCase):
     LEAST_CONTRAST = 4.5  # WCAG 2.1, level AA, of text
 
     def test_algorithms_are_told_apart(self):
-        names = {entry["name"] for entry in json.loads(hapbench("list", "--json")) if entry["kind"] == "algorithm"}
+        names = {entry["name"] for entry in json.loads(hapbench("describe", "--json")) if entry["kind"] == "algorithm"}
         self.assertGreaterEqual(names, set(hapbench_looks.ALGORITHMS), "an entry for no algorithm")
         looks = [hapbench_looks.look(name) for name in names]
         for part in ("label", "colour", "dark", "marker"):

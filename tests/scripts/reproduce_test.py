@@ -53,9 +53,9 @@ class Reproduce(unittest.TestCase):
         self.assertIn("== Report", out)  # the others were done
 
     def test_laws_from_outside_take_no_part(self):
-        program = '#!/bin/sh\n[ -z "$HAPBENCH_PLUGIN_PATH" ] || exit 7\n'
-        self.assertEqual(self.run_with(program, HAPBENCH_PLUGIN_PATH="/plugins")[0], 0)
-        self.assertEqual(self.run_with(program, "--only", "T1", HAPBENCH_PLUGIN_PATH="/plugins")[0], 0)
+        program = '#!/bin/sh\n[ -z "$HAPBENCH_MODULE_PATH" ] || exit 7\n'
+        self.assertEqual(self.run_with(program, HAPBENCH_MODULE_PATH="/plugins")[0], 0)
+        self.assertEqual(self.run_with(program, "--only", "T1", HAPBENCH_MODULE_PATH="/plugins")[0], 0)
 
     def test_a_figure_after_what_it_needs(self):
         """Figures that miss a scene of the thesis, and studies; the program writes what it is asked for."""

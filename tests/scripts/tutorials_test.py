@@ -37,7 +37,7 @@ def played(text, folder):
     blocks = folder / "blocks.json"
     blocks.write_text(json.dumps(CODE.findall(text)), encoding="utf-8")
     environment = {**ENVIRONMENT, "PATH": f"{PROGRAM.parent}:{ENVIRONMENT['PATH']}", "PYTHONPATH": sys.argv[-1], "MPLBACKEND": "Agg",
-                   "HAPBENCH_PLUGIN_PATH": "", "COLUMNS": "100", "LC_ALL": "C.UTF-8"}
+                   "HAPBENCH_MODULE_PATH": "", "COLUMNS": "100", "LC_ALL": "C.UTF-8"}
     done = ran("bash", "-c", 'exec "$0" "$1" <"$2"', sys.executable, player, blocks, cwd=clone, env=environment)
     assert done.returncode == 0, done.stdout[-2000:] + done.stderr
     return done.stdout

@@ -217,7 +217,7 @@ def row(case):
 
 
 def main():
-    listed = json.loads(subprocess.run([PROGRAM, "list", "algorithms", "--json"], capture_output=True, text=True, check=True).stdout)
+    listed = json.loads(subprocess.run([PROGRAM, "describe", "algorithms", "--json"], capture_output=True, text=True, check=True).stdout)
     laws = [entry["name"] for entry in listed]
     write = "--write" in sys.argv
     every = [case for i, case in enumerate(cases(laws)) if write or i % 7 == 0]

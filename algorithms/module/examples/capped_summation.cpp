@@ -3,7 +3,7 @@
  *
  *     g++ -std=c++20 -O2 -fPIC -shared -ffp-contract=off -DEIGEN_DONT_VECTORIZE -I/usr/include/hapbench \
  *         -I/usr/include/eigen3 capped_summation.cpp -lhapbench_algorithms -lhapbench_sim -o capped_summation.so
- *     hapbench --plugin ./capped_summation.so compare peg_in_hole_2d_shaped_stiffness
+ *     hapbench --module ./capped_summation.so compare peg_in_hole_2d_shaped_stiffness
  *
  * CMake knows the flags: find_package(hapbench), add_library(capped_summation MODULE capped_summation.cpp),
  * target_link_libraries(capped_summation PRIVATE hapbench::algorithms). */

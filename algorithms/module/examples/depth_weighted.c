@@ -1,7 +1,7 @@
 /* A force law in C: contacts weigh by a power of their depth. From the root of hapbench's tree:
  *
  *     gcc -std=c11 -O2 -fPIC -shared -Ialgorithms/module algorithms/module/examples/depth_weighted.c -lm -o law.so
- *     hapbench --plugin ./law.so compare peg_in_hole_2d_shaped_stiffness
+ *     hapbench --module ./law.so compare peg_in_hole_2d_shaped_stiffness
  *
  * With hapbench installed: -IPREFIX/include, no -I where PREFIX is /usr. */
 #include <hapbench_module.h>

@@ -16,8 +16,7 @@
 /// margin and keeps limits on its metrics.
 namespace hapbench {
 
-/// The metrics of a choice, in the order of tables; the first three are what --max-inside, --max-vibration and
-/// --max-step bound.
+/// The metrics of a choice, in the order of tables; the first three are those that one bounds most.
 inline constexpr std::array kTuneMetrics = {"inside_max_m",     "force_rms_above_30Hz_N",  "settled_force_step_max_N",
                                             "inside_settled_m", "force_mean_in_contact_N", "landing_force_max_N"};
 using TuneMetrics = std::map<std::string, double, std::less<>>;

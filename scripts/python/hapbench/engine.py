@@ -103,10 +103,10 @@ def algorithms() -> list[str]:
 
 
 def load_plugin(file: str | os.PathLike) -> None:
-    """Take a law from a shared object with hapbench's C interface, as --plugin does; it then stands beside the others.
+    """Take a law from a shared object with hapbench's C interface, as --module does; it then stands beside the others.
 
     Raises ScenarioError for what is no law, and while another thread computes."""
-    command("--plugin", os.fspath(file), "list", "--quiet")
+    command("--module", os.fspath(file), "describe", "--quiet")
 
 
 def main(words: Sequence[str] | None = None) -> int:

@@ -21,7 +21,7 @@ class Program:
     def run(self, words, directory):
         """Standard output. A run that ends other than expected (3) has output, too."""
         # The tables are over the algorithms of this tree.
-        environment = {name: value for name, value in os.environ.items() if name != "HAPBENCH_PLUGIN_PATH"}
+        environment = {name: value for name, value in os.environ.items() if name != "HAPBENCH_MODULE_PATH"}
         done = subprocess.run([self.file, *words], cwd=directory, capture_output=True, text=True, encoding="utf-8",
                               env={**environment, "COLUMNS": str(COLUMNS), "LC_ALL": "C.UTF-8"}, stdin=subprocess.DEVNULL)
         if done.returncode not in (0, 3):

@@ -1,4 +1,4 @@
-"""python -m hapbench_identify WORDS…; the program calls it for `hapbench identify`: fits a device to its log, or makes the signal to
+"""python -m hapbench_identify WORDS…; the program calls it for `hapbench import device`: fits a device to its log, or makes the signal to
 play."""
 import json
 import math
@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 from hapbench_command import CommandLine, answer, exit_status, shell_line, table_text, write
-from hapbench_import.faults import fail, refuse_source
+from hapbench_import.faults import fail, finite_number, refuse_source, require_name
 from hapbench_import.stroke import number_text
 
 from .design import FRICTION_TOLD, KINDS, design, force_to_ask, travel_of
@@ -22,8 +22,10 @@ the encoder. What the log cannot tell is not written, and a warning says why. Th
 encoder's step. A constant force besides the commands is told and not part of a device.
 --columns: time, force and position, by default time_s, force_N and position_m. Forces are as commanded at the time of the row, \
 positive in the direction of the position.
-  hapbench identify --design chirp --force 2 --travel 0.08 --mass 0.1 --out chirp.csv
-  hapbench identify log.csv --columns time=t,force=3,position=enc --scale time=1e-6,position=5.5e-5
+--design: force, the largest [N], default 1; travel, the way that the handle has [m], default 0.05; mass, the least that it may have \
+[kg], default 0.05; rate of the samples [Hz], default 1000; duration [s], default 5.
+  hapbench import device --design chirp,force=2,travel=0.08,mass=0.1 --out chirp.csv
+  hapbench import device log.csv --columns time=t,force=3,position=enc --scale time=1e-6,position=5.5e-5
   hapbench limit tap_wall --device log_device.json"""
 UNITS = {"handle_mass_kg": "kg", "viscous_N_s_per_m": "N s/m", "coulomb_N": "N", "delay_s": "s", "delay_samples": "samples", "encoder_step_m": "m",
          "position_noise_m": "m", "offset_N": "N"}
@@ -32,17 +34,12 @@ IN_DEVICE = ("handle_mass_kg", "viscous_N_s_per_m", "coulomb_N", "delay_s", "enc
 
 
 def command_line():
-    line = CommandLine("identify", "Make a device's file from its log: mass, friction, delay, encoder", FOOTER)
+    line = CommandLine("import device", "Make a device's file from its log: mass, friction, delay, encoder", FOOTER)
     line.text("log", "CSV of one axis: time, commanded force, position of the handle, no hand on it", nargs="?", metavar="log")
     line.texts("--columns", "where quantities are, by name or number from 1 (below)")
     line.texts("--scale", "what units are: time [s], force [N], position [m] (below)")
     line.flag("--skip-bad-rows", "leave bad rows out and say which, instead of refusing")
-    line.one_of(list(KINDS), "--design", "instead of reading a log, make the signal to play: chirp, steps, multisine")
-    line.number("--force", "of --design: largest force [N]; default 1", 1.0)
-    line.number("--travel", "of --design: way that the handle has [m]; default 0.05", 0.05)
-    line.number("--mass", "of --design: least mass that the handle may have [kg]; default 0.05", 0.05)
-    line.number("--rate", "of --design: of the samples [Hz]; default 1000", 1000.0)
-    line.number("--duration", "of --design [s]; default 5", 5.0)
+    line.texts("--design", "instead of reading a log, make the signal to play: chirp, steps or multisine, and numbers (below)")
     line.text("--out", "the device, LOG_device.json by default, with a picture of the residual beside it; or the signal, signal_KIND.csv")
     line.add_output_options()
     return line
@@ -50,13 +47,14 @@ def command_line():
 
 def run(options):
     if bool(options.design) == bool(options.log):
-        fail("identify takes either a LOG or --design, which makes the signal to play and to log")
-    out = options.out or (f"signal_{options.design}.csv" if options.design else f"{Path(options.log).stem}_device.json")
+        fail("import device takes either a LOG or --design, which makes the signal to play and to log")
+    kind, numbers = design_of(options.design) if options.design else ("", {})
+    out = options.out or (f"signal_{kind}.csv" if kind else f"{Path(options.log).stem}_device.json")
     if options.log:
         refuse_source(out, options.log, "log")
-    table, data = play(options, out) if options.design else identify(options, out)
+    table, data = play(kind, numbers, out) if kind else identify(options, out)
     headings = ["of the signal" if options.design else "of the device", "", "from", "to, 95 %"]
-    next_line = (f"command these forces, log time_s,force_N,position_m, then {shell_line('hapbench', 'identify', 'LOG.csv')}" if options.design
+    next_line = (f"command these forces, log time_s,force_N,position_m, then {shell_line('hapbench', 'import', 'device', 'LOG.csv')}" if options.design
                  else shell_line("hapbench", "limit", "tap_wall", "--device", out))
     answer(options, f"{out}\n{table_text(headings, table, options.wide, numbers=True)}\nnext: {next_line}", data | {"next": next_line})
 
@@ -81,7 +79,7 @@ def identify(options, out):
     require_likely_units(options, found.values[0], step)
     if told["handle_mass_kg"]["value"] is None:
         fail(f"the log cannot tell the mass: the simulated position misses by {found.rms:.3g} m. Is a hand or a spring on the handle, or is a "
-             "sign or a unit wrong? hapbench identify --design makes a signal that tells", options.log)
+             "sign or a unit wrong? hapbench import device --design makes a signal that tells", options.log)
     warnings = log.warnings + warnings_of(told, found, log)
     device = {"type": "impedance"} | {name: float(f"{told[name]['value']:.6g}") for name in IN_DEVICE if told[name]["value"]}
     write(Path(out), json.dumps(device, indent=2) + "\n")
@@ -142,12 +140,21 @@ def draw(file, log, found):
     write(file, picture(figure, "svg"))
 
 
-def play(options, out):
-    kind = options.design
-    numbers = {name: getattr(options, name) for name in ("force", "travel", "rate", "duration", "mass")}
-    for name, value in numbers.items():
-        if not 0.0 < value < 1e9:
-            fail(f"--{name}: got {value:g}; allowed: > 0")
+def design_of(words):
+    """The kind of signal and its numbers, of words such as chirp and force=2."""
+    kind, *given = words
+    require_name("--design: got", kind, list(KINDS))
+    numbers = {"force": 1.0, "travel": 0.05, "rate": 1000.0, "duration": 5.0, "mass": 0.05}
+    for word in given:
+        name, _, text = word.partition("=")
+        require_name("--design: got", name, list(numbers))
+        numbers[name] = finite_number(text.encode())
+        if not 0.0 < numbers[name] < 1e9:
+            fail(f'--design: {name}: got "{text}"; allowed: a number > 0')
+    return kind, numbers
+
+
+def play(kind, numbers, out):
     time, force = design(kind, **numbers)
     rows = "\n".join(f"{number_text(t)},{number_text(f)}" for t, f in zip(time.tolist(), force.tolist()))
     write(Path(out), f"time_s,force_N\n{rows}\n")
@@ -165,11 +172,11 @@ def limited_by_travel(kind, numbers, peak):
     said = (f"the travel of {numbers['travel']:g} m limits the force to {peak:.3g} N of {force:g} N: the log tells dry friction up to "
             f"{FRICTION_TOLD * peak:.3g} N. ")
     asked = force_to_ask(kind, numbers)
-    return [said + (f"--force {asked:.3g} begins at a higher frequency and reaches {force:g} N, which tells {FRICTION_TOLD * force:.3g} N" if asked
-                    else f"A device with more of it needs more --travel, or --mass of more than {numbers['mass']:g} kg if it is known to have it")]
+    return [said + (f"force={asked:.3g} begins at a higher frequency and reaches {force:g} N, which tells {FRICTION_TOLD * force:.3g} N" if asked
+                    else f"A device with more of it needs more travel, or a mass of more than {numbers['mass']:g} kg if it is known to have it")]
 
 
 if __name__ == "__main__":
     asked_for = command_line().parse(sys.argv[1:])
     doing = "" if asked_for.quiet else "designing" if asked_for.design else "identifying"
-    sys.exit(exit_status("identify", doing, lambda: run(asked_for)))
+    sys.exit(exit_status("import device", doing, lambda: run(asked_for)))

@@ -13,14 +13,14 @@ def design(kind, force, travel, rate, duration, mass):
     """(time, force): no larger than `force` [N]; a handle of `mass` [kg] or more without friction keeps within `travel` [m]."""
     steps = int(round(duration * rate))
     if steps < 100:
-        fail(f"--duration: got {duration:g} s, {steps} samples; allowed: at least 100 of them")
+        fail(f"--design: duration: got {duration:g} s, {steps} samples; allowed: at least 100 of them")
     time = np.arange(steps) / rate
     # From rest, F cos(w t) moves a mass between 0 and 2 F / (m w^2): no drift.
     slowest = max(np.sqrt(2.0 * force / (mass * travel)) / (2.0 * np.pi), 2.0 / duration)
     fastest = min(0.1 * rate, HIGHEST)
     if slowest > 0.5 * fastest:
-        fail(f"--travel: a handle of {mass:g} kg moves further than {travel:g} m at {force:g} N below {slowest:.3g} Hz; allowed: less "
-             "--force, or more --travel")
+        fail(f"--design: travel: a handle of {mass:g} kg moves further than {travel:g} m at {force:g} N below {slowest:.3g} Hz; allowed: less "
+             "force, or more travel")
     if kind == "chirp":
         growth = np.log(fastest / slowest) / duration
         values = np.cos(2.0 * np.pi * slowest * np.expm1(growth * time) / growth)

@@ -17,7 +17,7 @@ class Simulator:
         program = os.environ.get("HAPBENCH_PROGRAM") or shutil.which("hapbench")
         if not program:
             fail("the program hapbench, which simulates the handle, is not in the path")
-        self._process = subprocess.Popen([program, "identify", "--simulate-log"], stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+        self._process = subprocess.Popen([program, "import", "device", "--simulate-log"], stdin=subprocess.PIPE, stdout=subprocess.PIPE)
         self._send(np.concatenate([[len(time)], time, force]))
         self.rows = len(time)
 

@@ -1,4 +1,4 @@
-"""python -m hapbench_import WORDS…; the program calls it for `hapbench import`."""
+"""python -m hapbench_import WORDS…; the program calls it for `hapbench import stroke`."""
 import sys
 from pathlib import Path
 
@@ -12,32 +12,30 @@ FOOTER = """\
 --columns: time, and position, orientation and force by the first of their columns, or each by itself as px, py, pz, qw, qx, qy, \
 qz, mfx, mfy, mfz. --orientation is none, axis (the direction out of the tip), quat_wxyz, quat_xyzw, axis_angle (axis, angle) or \
 matrix (r11, r12 ... r33, row by row); it turns the tool's frame into the world's.
+--set: sample_rate_Hz of a file without times; tip_axis, the direction out of the tip in the tool's frame, default 0,0,-1; shift, \
+added to the places of the tip [m]; force_by_tool=true, forces are the tool's on the object and are turned round; max_speed, faster \
+jumps are refused [m/s], default 5; max_gap, longer gaps are refused, not bridged [s], default 0.5; floats=true, hapi-binary has \
+numbers of four bytes.
 Rows with wrong numbers, times that do not increase, quaternions that are no unit and jumps are refused with their lines, and \
 nothing is written.
-  hapbench import log.txt --preset hapi --smooth window=11,order=3 --out stroke.csv
-  hapbench import rec.csv --columns time=t,position=5,orientation=8,force=fx \\
+  hapbench import stroke
+  hapbench import stroke log.txt --preset hapi --smooth window=11,order=3 --out stroke.csv
+  hapbench import stroke rec.csv --columns time=t,position=5,orientation=8,force=fx \\
     --orientation quat_xyzw --scale time=1e-6,position=0.001"""
 
 
 def command_line():
-    line = CommandLine("import", "Make a stroke to play back from a recording: poses and measured forces", FOOTER)
-    line.text("file", "the recording", nargs="?", metavar="file")
+    line = CommandLine("import stroke", "Make a stroke to play back from a recording: poses and measured forces", FOOTER)
+    line.text("file", "the recording; without it, the presets are listed", nargs="?", metavar="file")
     line.text("--preset", "a layout by name or from FILE.json; options below override it")
-    line.flag("--list", "list the presets")
+    line.text("--set", "any field of such a file: NAME=VALUE (below); repeatable", metavar="TEXT ...", action="append", default=[])
     line.one_of(FORMATS, "--format", "csv (default), traj (blanks between numbers), hapi, hapi-binary")
-    line.flag("--floats", "hapi-binary: numbers of four bytes")
     line.texts("--columns", "where quantities are, by name or number from 1 (below)")
     line.texts("--scale", "what units are: time [s], position [m], angle [rad], force [N] (below)")
-    line.number("--sample-rate", "[Hz] of a file without a column of times")
     line.one_of(list(ORIENTATIONS), "--orientation", "what its columns hold; default none: the tool never turns")
-    line.texts("--tip-axis", "x,y,z: direction out of the tip in the tool's frame; default 0,0,-1")
     line.texts("--frame", "recorded directions that are the scenario's x, y, z; y up: x,-z,y")
-    line.texts("--shift", "x,y,z: added to the places of the tip [m], in the scenario's frame")
-    line.flag("--force-by-tool", "forces are the tool's on the object, not the object's on the tool: turn them round")
     line.number("--rate", "[Hz] of the stroke; default: as recorded, or the median's if irregular")
     line.texts("--smooth", "window=N,order=M: Savitzky-Golay over N samples, an odd number")
-    line.number("--max-speed", "faster jumps are refused [m/s]; default 5")
-    line.number("--max-gap", "longer gaps are refused, not bridged [s]; default 0.5")
     line.flag("--skip-bad-rows", "leave bad rows out and say which, instead of refusing")
     line.text("--out", "the stroke; default: FILE_stroke.csv here")
     line.add_output_options()
@@ -45,12 +43,10 @@ def command_line():
 
 
 def run(options):
-    if options.list:
+    if not options.file:
         presets = list_of_presets()
         table = table_text(["PRESET", "of"], [[one["preset"], one["description"]] for one in presets], options.wide)
         return answer(options, f"{table}\nCopy one from {PRESETS}, correct it and give it as --preset FILE.json.", presets)
-    if not options.file:
-        fail('FILE is missing: the recording; "hapbench import --help" explains')
     if not options.preset and not options.columns:
         fail("--columns or --preset is missing: which columns hold time and position?")
     from .recording import open_recording  # loads numpy and scipy, which the help does without
@@ -69,4 +65,4 @@ def run(options):
 
 if __name__ == "__main__":
     asked_for = command_line().parse(sys.argv[1:])
-    sys.exit(exit_status("import", "" if asked_for.quiet else "importing", lambda: run(asked_for)))
+    sys.exit(exit_status("import stroke", "" if asked_for.quiet else "importing", lambda: run(asked_for)))

@@ -64,20 +64,14 @@ def options_of(asked):
     options.set("columns", columns)
     options.optional -= set(columns)
     options.set("scale", {quantity: _number("--scale", factor) for quantity, factor in _assignments("scale", asked.scale)})
-    for name, words in (("tip_axis", asked.tip_axis), ("shift", asked.shift)):
-        option = f"--{name.replace('_', '-')}"
-        if words and len(words) != 3:
-            fail(f"{option}: got {len(words)} numbers; allowed: three")
-        if words:
-            setattr(options, name, tuple(_number(option, word) for word in words))
     if asked.smooth:
         options.smooth = _smoothing(asked.smooth)
-    options.sample_rate_Hz = asked.sample_rate if asked.sample_rate is not None else None if "time" in columns else options.sample_rate_Hz
-    for name in ("rate", "max_speed", "max_gap"):
-        if (value := getattr(asked, name)) is not None:
-            setattr(options, name, value)
-    options.floats |= asked.floats
-    options.force_by_tool ^= asked.force_by_tool
+    if "time" in columns:
+        options.sample_rate_Hz = None
+    for name, value in _assignments("set", asked.set):
+        require_name("--set: got", name, list(_FIELDS))
+        options.set(name, _value(value))
+    options.rate = asked.rate
     options.skip_bad_rows = asked.skip_bad_rows
     if not 1e-9 < math.hypot(*options.tip_axis) < 1e9:
         fail("tip_axis: allowed: a direction")
@@ -136,6 +130,14 @@ def _assignments(option, words):
         yield name, value
 
 
+def _value(word):
+    """A value of --set: JSON, or numbers and words separated by commas."""
+    try:
+        return json.loads(word)
+    except ValueError:
+        return [_value(part) for part in word.split(",")] if "," in word else word
+
+
 def _number(option, word):
     value = finite_number(word.encode("utf-8", "surrogateescape"))
     if math.isnan(value):
@@ -161,6 +163,14 @@ def _is_number(value):
 def _is_column(value):
     """A name, a number, or a list of them."""
     return isinstance(value, str) or _is_number(value) or isinstance(value, list) and all(map(_is_column, value))
+
+
+def _is_vector(value):
+    return isinstance(value, list) and len(value) == 3 and all(map(_is_number, value))
+
+
+def _vector(_, value):
+    return tuple(map(float, value))
 
 
 def _named(name, valid):
@@ -202,7 +212,10 @@ _FIELDS = {
     "sample_rate_Hz": ("a number", _is_number, lambda _, v: float(v)),
     "scale": ("an object of numbers", lambda v: isinstance(v, dict) and all(map(_is_number, v.values())), _scale),
     "orientation": ("a text", lambda v: isinstance(v, str), _named("orientation", ORIENTATIONS)),
-    "tip_axis": ("three numbers", lambda v: isinstance(v, list) and len(v) == 3 and all(map(_is_number, v)), lambda _, v: tuple(map(float, v))),
+    "tip_axis": ("three numbers", _is_vector, _vector),
+    "shift": ("three numbers", _is_vector, _vector),
+    "max_speed": ("a number", _is_number, lambda _, v: float(v)),
+    "max_gap": ("a number", _is_number, lambda _, v: float(v)),
     "frame": ("a list of texts", lambda v: isinstance(v, list) and all(isinstance(one, str) for one in v), _frame),
     "force_by_tool": ("true, false", lambda v: isinstance(v, bool), lambda _, v: v),
 }

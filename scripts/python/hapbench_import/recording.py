@@ -120,5 +120,5 @@ def _binary(data, file, floats):
     kind = np.dtype([(name, "<i4" if name == "BUTTONS" else "<f4" if floats else "<f8") for name in names])
     count, rest = divmod(len(data) - end - 1, kind.itemsize)
     remark = (f"behind sample {count} are {rest} bytes, less than the {kind.itemsize} of a sample: the log was cut off, or its numbers "
-              f"are {'doubles (no --floats)' if floats else 'floats (--floats)'}") if rest else ""
+              f"are {'doubles (--set floats=false)' if floats else 'floats (--set floats=true)'}") if rest else ""
     return Recording(file, names, np.frombuffer(data, kind, count, end + 1), range(1, count + 1), "sample", remark)

@@ -77,7 +77,7 @@ def _warnings(report):
         warnings.append(f"{report.rate:.4g} samples a second are no usual rate: is the scale of time right? (--scale time=1e-3 is for "
                         "milliseconds)")
     if _direction(report.stroke)[0][2] > 0.5:
-        warnings.append("the tip points upwards in the mean: are --orientation (the order of a quaternion), --tip-axis and --frame right?")
+        warnings.append("the tip points upwards in the mean: are --orientation (the order of a quaternion), tip_axis and --frame right?")
     return warnings
 
 

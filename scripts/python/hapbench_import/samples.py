@@ -46,7 +46,7 @@ class Columns:
         if not self.position:
             self._fail("position", "is missing")
         if not options.sample_rate_Hz and not self.time:
-            self._fail("time", "is missing (or give --sample-rate)")
+            self._fail("time", "is missing (or give --set sample_rate_Hz=...)")
         self.orientation = self._group("orientation", ORIENTATIONS[options.orientation])
         if not self.orientation and options.orientation != "none" and "orientation" not in options.optional:
             self._fail("orientation", "is missing")

@@ -74,10 +74,10 @@ def gaps_in(read, clock, longest):
     """The gaps to bridge. Intervals longer than `longest` [s] are refused, however many there are."""
     if clock.interval_median > longest:
         factor = next((unit for unit in (1e-3, 1e-6, 1e-9) if clock.interval_median * unit <= longest), 1e-9)
-        fail(f"got intervals of {clock.interval_median:.4g} s in the median; allowed: {longest:g} s (--max-gap); are times in "
+        fail(f"got intervals of {clock.interval_median:.4g} s in the median; allowed: {longest:g} s (--set max_gap=...); are times in "
              f"other units? (--scale time={factor:g})", read.recording.file)
     intervals = np.diff(read.samples.time)
-    faults = [(read.recording.place(read.kept[i]), f"a gap of {intervals[i]:.4g} s follows; allowed: {longest:g} s (--max-gap)")
+    faults = [(read.recording.place(read.kept[i]), f"a gap of {intervals[i]:.4g} s follows; allowed: {longest:g} s (--set max_gap=...)")
               for i in np.flatnonzero(intervals > longest).tolist()]
     if faults:
         raise Faults(faults[:MOST_FAULTS])

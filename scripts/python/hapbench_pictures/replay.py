@@ -101,7 +101,7 @@ def shell_of(scenario):
         file = Path(scratch) / "shell.csv"
         # Whatever the algorithm: it may have come from a plugin that is not at hand.
         plain = ["--set", "rendering.algorithm=mean", "--set", "rendering.parameters={}"]
-        line = [program, "shell", str(scenario), "--out", str(file), "--quiet", *plain]
+        line = [program, "validate", str(scenario), "--points", str(file), "--quiet", *plain]
         try:
             done = subprocess.run(line, capture_output=True, text=True, timeout=PATIENCE_S, stdin=subprocess.DEVNULL)
         except (OSError, subprocess.TimeoutExpired) as error:

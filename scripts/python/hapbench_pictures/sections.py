@@ -181,7 +181,7 @@ def commands_section(runs, words):
 def plugin_option(run):
     """The option that loads a plugin's law; results know it by its file's name."""
     file = at(run.summary, "/provenance/plugin/file")
-    return f" --plugin {quoted(file)}" if file else ""
+    return f" --module {quoted(file)}" if file else ""
 
 
 def quoted(path):

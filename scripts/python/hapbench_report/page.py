@@ -60,7 +60,7 @@ def rerun_section():
             + "<p>One part:</p>" + command(
                 "hapbench=build/release/bin/hapbench\n"
                 "$hapbench run scenarios/thesis/*.json --out results/out/reproduce/thesis       # the thesis's scenes\n"
-                "$hapbench limit stability_z_width --out results/out/reproduce/stability_z_width  # a study; all: $hapbench list studies\n"
+                "$hapbench limit stability_z_width --out results/out/reproduce/stability_z_width  # a study; all: $hapbench describe studies\n"
                 "$hapbench describe scenario                                                    # what every field means")
             + "<p>This report:</p>" + command(
                 "scripts/report results/out/reproduce --figures results/out/figures --claims results/reference/claims.json \\\n"

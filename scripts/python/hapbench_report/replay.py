@@ -51,7 +51,7 @@ def record_replays(program: Path, out: Path):
             settings = (*RECORDED, "record.ratio_iterations=[]",
                         f"rendering.algorithm={algorithm}", *scene.settings)
             call(program, "run", scene.scenario, *overrides(settings), "--out", out / scene.id / algorithm)
-        call(program, "shell", scene.scenario, "--out", out / scene.id / "shell.csv")
+        call(program, "validate", scene.scenario, "--quiet", "--points", out / scene.id / "shell.csv")
 
 
 def overrides(settings):
@@ -62,7 +62,7 @@ def rerun_commands(scene):
     """The commands that make one recording."""
     settings = " ".join(overrides((*RECORDED, *scene.settings)))
     return [f"hapbench run {scene.scenario} {settings} --set rendering.algorithm={scene.algorithms[0]} --out {scene.id}",
-            f"hapbench shell {scene.scenario} --out shell.csv"]
+            f"hapbench validate {scene.scenario} --points shell.csv"]
 
 
 def call(program, *arguments):

@@ -35,24 +35,24 @@ class PluginCommand : public testing::Test {
 
 TEST_F(PluginCommand, KnowsTheLawAndItsParametersEverywhere) {
   // Before the command and behind it.
-  const ProgramRun described = hapbench({"--plugin", plugin("depth_weighted"), "describe", "depth_weighted"});
+  const ProgramRun described = hapbench({"--module", plugin("depth_weighted"), "describe", "depth_weighted"});
   EXPECT_EQ(described.status, 0) << described.err;
   EXPECT_NE(described.out.find("depth_weighted.so, hash "), std::string::npos);
   EXPECT_NE(described.out.find("rendering.parameters.depth_weighted.power\n"), std::string::npos) << described.out;
   const ProgramRun list =
-      hapbench({"list", "algorithms", "--plugin", plugin("depth_weighted"), "--plugin", plugin("capped_summation")});
+      hapbench({"describe", "algorithms", "--module", plugin("depth_weighted"), "--module", plugin("capped_summation")});
   EXPECT_NE(list.out.find("capped_summation"), std::string::npos) << list.err;
   EXPECT_NE(list.out.find("depth_weighted"), std::string::npos);
-  EXPECT_EQ(hapbench({"list", "algorithms"}).out.find("depth_weighted"), std::string::npos);
-  const EnvironmentVariable folders("HAPBENCH_PLUGIN_PATH", out("plugins"));
+  EXPECT_EQ(hapbench({"describe", "algorithms"}).out.find("depth_weighted"), std::string::npos);
+  const EnvironmentVariable folders("HAPBENCH_MODULE_PATH", out("plugins"));
   fs::create_directory(out("plugins"));
   fs::copy_file(plugin("depth_weighted"), out("plugins/my.so"));
-  EXPECT_NE(hapbench({"list", "algorithms"}).out.find("depth_weighted"), std::string::npos);
+  EXPECT_NE(hapbench({"describe", "algorithms"}).out.find("depth_weighted"), std::string::npos);
 }
 
 TEST_F(PluginCommand, ComparesTheLawsWithOurs) {
   const ProgramRun run =
-      hapbench({"compare", "peg_in_hole_2d_shaped_stiffness", "--plugin", plugin("depth_weighted"), "--plugin",
+      hapbench({"compare", "peg_in_hole_2d_shaped_stiffness", "--module", plugin("depth_weighted"), "--module",
                 plugin("capped_summation"), "--algorithms", "mean,depth_weighted,capped_summation", "--set",
                 "rendering.parameters.depth_weighted.power=0", "--out", out("a"), "--json"});
   ASSERT_EQ(run.status, 0) << run.err;
@@ -69,7 +69,7 @@ TEST_F(PluginCommand, ComparesTheLawsWithOurs) {
 
 TEST_F(PluginCommand, EndsARunAndNoMoreWhenALawFails) {
   const EnvironmentVariable how("HOSTILE", "error");
-  const ProgramRun run = hapbench({"run", "peg_in_hole_2d_shaped_stiffness", "--plugin", plugin("hostile"), "--set",
+  const ProgramRun run = hapbench({"run", "peg_in_hole_2d_shaped_stiffness", "--module", plugin("hostile"), "--set",
                                    "rendering.algorithm=hostile", "--out", out("run")});
   EXPECT_EQ(run.status, 3);
   EXPECT_NE(
@@ -78,7 +78,7 @@ TEST_F(PluginCommand, EndsARunAndNoMoreWhenALawFails) {
       << run.err;
   EXPECT_EQ(summary("run")["divergence"]["fault"], "hostile (hostile.so) fails in step: the oven? is ? cold");
 
-  const ProgramRun both = hapbench({"compare", "peg_in_hole_2d_shaped_stiffness", "--plugin", plugin("hostile"),
+  const ProgramRun both = hapbench({"compare", "peg_in_hole_2d_shaped_stiffness", "--module", plugin("hostile"),
                                     "--algorithms", "hostile,mean", "--out", out("compare"), "--json"});
   EXPECT_EQ(both.status, 3);
   EXPECT_EQ(both.json()[0]["outcome"], "diverges");
@@ -101,7 +101,7 @@ TEST_F(PluginCommand, FailsWhenASourceOfContactsFails) {
 
 TEST_F(PluginCommand, FailsWhenALawEndsTheProgram) {
   const EnvironmentVariable how("HOSTILE", "exits");
-  const ProgramRun run = hapbench({"run", "single_spring", "--plugin", plugin("hostile"), "--set",
+  const ProgramRun run = hapbench({"run", "single_spring", "--module", plugin("hostile"), "--set",
                                    "rendering.algorithm=hostile", "--out", out("run")});
   EXPECT_EQ(run.status, 1);
   EXPECT_EQ(run.err, "hapbench: error: internal fault: a module or a library called exit\n");
@@ -109,7 +109,7 @@ TEST_F(PluginCommand, FailsWhenALawEndsTheProgram) {
 
 TEST_F(PluginCommand, IsStoppedInALawThatDoesNotReturn) {
   const EnvironmentVariable how("HOSTILE", "loops");
-  test::RunningProgram run(test::hapbench_program(), {"run", "single_spring", "--plugin", plugin("hostile"), "--set",
+  test::RunningProgram run(test::hapbench_program(), {"run", "single_spring", "--module", plugin("hostile"), "--set",
                                                       "rendering.algorithm=hostile", "--out", out("run")});
   ASSERT_TRUE(run.runs_until([&] { return run.err() == "looping\n"; })) << run.err();
   const auto sent = std::chrono::steady_clock::now();
@@ -124,7 +124,7 @@ TEST_F(PluginCommand, FindsWhatIsNoForceBehindEveryStage) {
     for (const char* stage :
          {"rendering.passivity_controller=true", "rendering.limits.max_force_N=1", "rendering.angular_damping=true",
           "integrator.type=rk4", "integrator.type=implicit_midpoint"}) {
-      const ProgramRun run = hapbench({"run", "peg_in_hole_2d_shaped_stiffness", "--plugin", plugin("hostile"), "--set",
+      const ProgramRun run = hapbench({"run", "peg_in_hole_2d_shaped_stiffness", "--module", plugin("hostile"), "--set",
                                        "rendering.algorithm=hostile", "--set", stage, "--out", out("run")});
       EXPECT_EQ(run.status, 3) << fault << stage;
       EXPECT_NE(run.err.find("outcome is \"diverges\" (hostile "), std::string::npos) << stage << run.err;
@@ -136,7 +136,7 @@ TEST_F(PluginCommand, SweepsCarryThePluginAlong) {
   const fs::path mine = directory_ / "mine.so";
   fs::copy_file(plugin("depth_weighted"), mine);
   Words words = {"sweep",    "single_spring",
-                 "--plugin", mine.string(),
+                 "--module", mine.string(),
                  "--set",    "rendering.algorithm=depth_weighted",
                  "--vary",   "rendering.parameters.depth_weighted.power=0,1,2",
                  "--out",    out("s")};
@@ -145,7 +145,7 @@ TEST_F(PluginCommand, SweepsCarryThePluginAlong) {
     return hapbench(more);
   };
   const ProgramRun print = with({"--row", "2", "--print"});
-  EXPECT_NE(print.out.find("--plugin " + mine.string()), std::string::npos) << print.out;
+  EXPECT_NE(print.out.find("--module " + mine.string()), std::string::npos) << print.out;
   ASSERT_EQ(with({"--shard", "0/2"}).status, 0);
   const Json description = Json::parse(read_file(directory_ / "s/sweep.0_of_2.json"));
   EXPECT_EQ(description["plugins"].size(), 1u);
@@ -158,16 +158,16 @@ TEST_F(PluginCommand, SweepsCarryThePluginAlong) {
 }
 
 TEST_F(PluginCommand, RefusesPluginsInOneLine) {
-  for (const Words& words : {Words{"--plugin", "no/such.so", "list"}, Words{"list", "--plugin", "/proc/self/exe"}}) {
+  for (const Words& words : {Words{"--module", "no/such.so", "describe"}, Words{"describe", "--module", "/proc/self/exe"}}) {
     const ProgramRun run = hapbench(words);
     EXPECT_EQ(run.status, 2);
     EXPECT_EQ(lines_of(run.err).size(), 1u) << run.err;
     EXPECT_EQ(run.out, "");
   }
-  const EnvironmentVariable folders("HAPBENCH_PLUGIN_PATH", "/no/such/folder");
-  const ProgramRun run = hapbench({"list"});
+  const EnvironmentVariable folders("HAPBENCH_MODULE_PATH", "/no/such/folder");
+  const ProgramRun run = hapbench({"describe"});
   EXPECT_EQ(run.status, 2);
-  EXPECT_EQ(run.err, "hapbench: error: HAPBENCH_PLUGIN_PATH: /no/such/folder: No such file or directory\n");
+  EXPECT_EQ(run.err, "hapbench: error: HAPBENCH_MODULE_PATH: /no/such/folder: No such file or directory\n");
   EXPECT_EQ(hapbench({"--help"}).status, 0);
 }
 

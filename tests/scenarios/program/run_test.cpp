@@ -124,7 +124,7 @@ TEST_F(RunCommand, WarnsOfAnOpenMeshOnceAsEveryCommandDoes) {
           "/environment/file: cube.obj: the mesh is open: 3 boundary edges, within x 5 ... 5, y -5 ... 0, "
           "z 0 ... 5 mm; beyond them there is nothing to touch";
   for (Names words : {Names{"run", "--out", out()}, Names{"run", "--quiet", "--out", out()}, Names{"validate"},
-                      Names{"shell", "--out", out("shell.csv")},
+                      Names{"validate", "--points", out("shell.csv")},
                       Names{"compare", "--algorithms", "mean,summation,shaped_stiffness", "--out", out("c")}}) {
     words.insert(words.begin() + 1, file);
     const ProgramRun run = hapbench(words);

@@ -27,7 +27,7 @@ class TuneCommand : public testing::Test {
 
 TEST_F(TuneCommand, ItsScenarioGivesTheMetricsThatWerePrinted) {
   // Another device over the scene's, and one of its fields: sections that extending alone would mix.
-  const Json json = hapbench(words({"--device", "touch", "--set", "device.delay_samples=0.5", "--max-inside", "10",
+  const Json json = hapbench(words({"--device", "touch", "--set", "device.delay_samples=0.5", "--bound", "inside_max_m=0.01",
                                     "--algorithms", "shaped_stiffness,mean", "--json"}))
                         .json();
   ASSERT_EQ(json["algorithms"].size(), 2u);
@@ -83,7 +83,7 @@ TEST_F(TuneCommand, RecommendsAQuietRun) {
 
 /// A limit is kept by as much as half the step, half the spacing and a look at every row move the metric.
 TEST_F(TuneCommand, KeepsALimitByTheErrorOfItsMetric) {
-  const Json law = hapbench(words({"--max-inside", "0.5", "--json"})).json()["algorithms"][0];
+  const Json law = hapbench(words({"--bound", "inside_max_m=5e-4", "--json"})).json()["algorithms"][0];
   ASSERT_TRUE(law["feasible"].get<bool>()) << law.dump(1);
   const double error = law["error"]["inside_max_m"].get<double>();
   EXPECT_GT(error, 0.0);
@@ -98,7 +98,7 @@ TEST_F(TuneCommand, WritesTheSameBytesHoweverManyJobs) {
 }
 
 TEST_F(TuneCommand, SaysWhatToRelaxAndWritesNoScenario) {
-  const Json json = hapbench(words({"--max-inside", "1e-6", "--json"})).json();
+  const Json json = hapbench(words({"--bound", "inside_max_m=1e-9", "--json"})).json();
   EXPECT_TRUE(json["recommended"].is_null() && json["scenario"].is_null());
   const Json& law = json["algorithms"][0];
   EXPECT_FALSE(law["feasible"].get<bool>());

@@ -172,7 +172,7 @@ TEST(ContactPlugin, SaysWhatItMisses) {
             "sphere (sphere.so) fails in create: its config has no number radius_m");
   EXPECT_NE(said(folder + "none.so", "{}").find("cannot be loaded as a source of contacts: No such file"),
             std::string::npos);
-  EXPECT_NE(said(folder + "depth_weighted.so", "{}").find("holds a law, not a source of contacts; name it in --plugin"),
+  EXPECT_NE(said(folder + "depth_weighted.so", "{}").find("holds a law, not a source of contacts; name it in --module"),
             std::string::npos);
   EXPECT_NE(said(folder + "sphere.so", "3").find("config: got 3; allowed: an object"), std::string::npos);
 }
