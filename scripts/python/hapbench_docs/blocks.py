@@ -183,7 +183,6 @@ def controllers(old, program, directory):
 DAMPINGS = (
     ("0", ["rendering.damping_ratio=0"]),
     ("zeta 0.7", ["rendering.damping_ratio=0.7"]),
-    ("chi 1", ['rendering.damping={"type":"hunt_crossley","chi_s_per_m":1}']),
     ("chi 10", ['rendering.damping={"type":"hunt_crossley","chi_s_per_m":10}']),
     ("chi 100", ['rendering.damping={"type":"hunt_crossley","chi_s_per_m":100}']),
 )

@@ -64,7 +64,7 @@ def write_index(directory, entries):
 
 PAGE = """# Figures on record
 
-Here you see every figure of the thesis that a simulation can draw, and some of ours: made by `scripts/figures RESULTS --out DIR
+See every figure of the thesis that a simulation can draw, and some of ours: made by `scripts/figures RESULTS --out DIR
 --record results/reference/figures` from what `scripts/reproduce` leaves.
 """
 
