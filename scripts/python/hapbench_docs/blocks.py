@@ -134,7 +134,7 @@ def which_law(text):
     for title, values, unit in (
             ("Nearest to the ideal trajectory in height", rows_of(text, "in_the_hole", 0), "mm rms"),
             ("Least deep in the wall", rows_of(text, "in_the_hole", 2), "mm"),
-            ("Smallest largest step of the force", rows_of(text, "in_the_hole", 3), "N"),
+            ("Smallest force step at worst", rows_of(text, "in_the_hole", 3), "N"),
             ("Least jump of the force as contacts come and go", rows_of(text, "in_the_hole", 6), "N")):
         lines += [f"- {title}: {ranking(values, unit)}."]
     return "\n".join(textwrap.fill(line, 110, subsequent_indent="  ") for line in lines)
