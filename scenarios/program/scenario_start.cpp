@@ -185,9 +185,6 @@ Box box_of(const Things& things, Place place = {}) {
   return box;
 }
 
-/// The longest edges that a file of which no size is stated may have in metres [m].
-constexpr double kShortestObject = 0.001, kLongestObject = 1.0;
-
 /// Rounds to the micrometre, as people write places.
 double to_micrometres(double metres) {
   return std::round(1e6 * metres) / 1e6;
