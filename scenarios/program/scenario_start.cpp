@@ -12,9 +12,9 @@
 #include <span>
 
 #include "device_model/hands/drag_hand.hpp"
+#include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/description/load_scenario.hpp"
 #include "scenarios/description/parts.hpp"
-#include "scenarios/input/installed_folder.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/scene_facts.hpp"
