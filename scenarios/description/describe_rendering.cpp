@@ -179,6 +179,12 @@ static void describe(Fields& f, ForceStageConfig& stage) {
   f.variant(stage, "force stage", kTypes, [](Fields& fields, auto& held) { describe(fields, held); });
 }
 
+Scenario with_algorithm(Scenario scenario, std::string_view algorithm) {
+  scenario.rendering.algorithm = algorithm;
+  scenario.rendering = with_fixed_stages(scenario.rendering);
+  return scenario;
+}
+
 void describe(Fields& f, RenderingConfig& rendering) {
   static const std::vector<std::string> kDepthModels = depth_model_names();
   f.name("algorithm", rendering.algorithm, algorithm_names(), "algorithm", "force algorithm");

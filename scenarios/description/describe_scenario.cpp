@@ -73,10 +73,14 @@ bool has_ideal_trajectory(const Scenario& scenario) {
          cylinder->tip == Tip::flat;
 }
 
+bool has_other_contacts(const Scenario& scenario) {
+  return scenario.rendering.contact_source != kOwnContacts;
+}
+
 /// A combination of fields that is refused.
 struct Rule {
   const char* at;
-  const char* problem;
+  const char* problem;  ///< with {} for the source of contacts
   bool (*is_broken)(const Scenario& scenario);
 };
 
@@ -122,6 +126,21 @@ constexpr Rule kRules[] = {
     {"/motion/position/type",
      "got a prescribed position; allowed: \"free\" with hand \"tracking\", which moves the tool",
      [](const Scenario& s) { return is<TrackingHandFields>(s.hand) && !is<FreePosition>(s.motion.position); }},
+    // The contacts of a trace belong to its motion, and neither they nor those of a library are points of our shell.
+    {"/rendering/contact_source", "got \"{}\"; allowed: \"own\", with springs, which have no surface",
+     [](const Scenario& s) { return has_other_contacts(s) && is<SpringsEnvironment>(s.environment); }},
+    {"/rendering/contact_source",
+     "got \"{}\"; allowed: \"own\", unless motion.position is prescribed, as it was when the contacts were recorded",
+     [](const Scenario& s) {
+       return s.rendering.contact_source == kTrace && (position_is_free(s.motion) || handle_moves_tool(s.device));
+     }},
+    {"/rendering/contact_source", "got \"{}\"; allowed: \"own\", with local_average, which merges shell points",
+     [](const Scenario& s) { return has_other_contacts(s) && s.rendering.local_average; }},
+    {"/rendering/contact_source",
+     "got \"{}\"; allowed: \"own\", with reduction.shuffle_seed, which orders shell points",
+     [](const Scenario& s) {
+       return has_other_contacts(s) && s.rendering.reduction && s.rendering.reduction->shuffle_seed;
+     }},
     // The rules below are about the virtual mass between hand and tool, which an impedance device does not have.
     {"/hand/type",
      "got \"mass_spring_damper\", which is fixed to the handle of device \"impedance\"; allowed with other devices: "
@@ -144,24 +163,6 @@ constexpr Rule kRules[] = {
        return limited != nullptr && !limited->max_damping;
      }},
 };
-
-/// The contacts of a trace belong to its motion, and neither they nor those of a library are points of our shell.
-void check_contact_source(const Scenario& scenario) {
-  const RenderingConfig& rendering = scenario.rendering;
-  if (rendering.contact_source == kOwnContacts) return;
-  const bool is_trace = rendering.contact_source == kTrace;
-  const char* problem = std::holds_alternative<SpringsEnvironment>(scenario.environment)
-                            ? "with springs, which have no surface"
-                        : is_trace && (position_is_free(scenario.motion) || handle_moves_tool(scenario.device))
-                            ? "unless motion.position is prescribed, as it was when the contacts were recorded"
-                        : rendering.local_average ? "with local_average, which merges shell points"
-                        : rendering.reduction && rendering.reduction->shuffle_seed
-                            ? "with reduction.shuffle_seed, which orders shell points"
-                            : nullptr;
-  if (problem == nullptr) return;
-  fail_at("/rendering/contact_source",
-          fmt::format("got \"{}\"; allowed: \"{}\", {}", rendering.contact_source, kOwnContacts, problem));
-}
 
 double drag_length(const DragHandFields& hand, double duration) {
   if (!hand.path) return hand.drag.speed * duration;
@@ -201,9 +202,9 @@ void check_relations(const Scenario& scenario, double steps) {
   check_sizes(scenario, steps);
   check_orientation(scenario.motion);
   for (const Rule& rule : kRules) {
-    if (rule.is_broken(scenario)) fail_at(rule.at, rule.problem);
+    if (rule.is_broken(scenario))
+      fail_at(rule.at, fmt::format(fmt::runtime(rule.problem), scenario.rendering.contact_source));
   }
-  check_contact_source(scenario);
   check_drag_hand(scenario, steps);
   check_tracking_hand(scenario, steps);
 }
@@ -305,6 +306,11 @@ std::optional<Warning> first_unplayed(const Json& json, const std::string& at, d
 }
 
 }  // namespace
+
+bool records_rows(const RecordFields& record) {
+  return record.trajectory || !record.ratio_iterations.empty() || record.contacts || record.stiffness_tensor ||
+         record.energy || record.ideal_trajectory || record.force_reference;
+}
 
 void require_direction(const Vec3& direction, const std::string& at) {
   if (direction.norm() >= kShortestDirection) return;

@@ -148,6 +148,16 @@ void describe(Fields& f, DeviceFields& device) {
        {"impedance", "measures positions and renders forces: a light handle with motors, as most desktop devices"}});
 }
 
+bool handle_moves_tool(const DeviceFields& device) {
+  return std::holds_alternative<ImpedanceDeviceConfig>(device);
+}
+
+std::optional<double> input_force_limit(const DeviceFields& device) {
+  if (const auto* ideal = std::get_if<IdealDeviceFields>(&device)) return ideal->force_limit;
+  const auto* admittance = std::get_if<AdmittanceDeviceConfig>(&device);
+  return admittance != nullptr ? admittance->force_limit : std::nullopt;
+}
+
 void resolve_delay(Scenario& scenario) {
   auto* device = std::get_if<ImpedanceDeviceConfig>(&scenario.device);
   if (device == nullptr || !device->delay) return;

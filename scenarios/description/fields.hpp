@@ -191,6 +191,11 @@ class Fields {
     if (reads()) value = names[index];
   }
 
+  void pair(const char* allowed, double& first, NumberRange first_range, double& second, NumberRange second_range) {
+    pair(
+        allowed, [&](Fields& f) { f.number(first, first_range); }, [&](Fields& f) { f.number(second, second_range); });
+  }
+
   /// `each(Fields&, T&)` describes an entry.
   template <class T, class Each>
   void list(std::vector<T>& values, ListSize size, Each each) {

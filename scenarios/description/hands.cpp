@@ -4,6 +4,7 @@
 #include "scenarios/description/descriptions.hpp"
 #include "scenarios/description/parts.hpp"
 #include "scenarios/input/input_error.hpp"
+#include "sim/core/random.hpp"
 
 namespace hapbench {
 namespace {
@@ -153,6 +154,26 @@ void describe(Fields& f, HandFields& hand) {
              {"drag", "leads the tool over the surface, pressing along its normal"},
              {"tracking", "a simulated subject who follows targets on a display"},
              {"mass_spring_damper", "a passive hand fixed to the handle of an impedance device"}});
+}
+
+double trial_count(const HandFields& hand) {
+  const auto* tracking = std::get_if<TrackingHandFields>(&hand);
+  return tracking == nullptr ? 1.0
+                             : static_cast<double>(tracking->subjects.size()) * static_cast<double>(tracking->trials);
+}
+
+const ImpedanceHandFields* spring_of(const HandFields& hand) {
+  const auto* passive = std::get_if<MassSpringDamperHandFields>(&hand);
+  return passive != nullptr ? &passive->spring : std::get_if<ImpedanceHandFields>(&hand);
+}
+
+std::uint64_t derived_seed(const Scenario& scenario, Trial trial, RandomUse use) {
+  std::uint64_t seed = static_cast<std::uint64_t>(scenario.seed);
+  for (const std::uint64_t part :
+       {static_cast<std::uint64_t>(use), std::uint64_t{trial.subject}, std::uint64_t{trial.number}}) {
+    seed = Random::derive(seed ^ (seed >> 29), part);
+  }
+  return seed;
 }
 
 namespace {

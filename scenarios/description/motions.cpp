@@ -36,12 +36,7 @@ void describe_shape(Fields& f, Profile::Sine& sine, NumberRange range) {
 
 void describe_shape(Fields& f, Profile::Waypoints& waypoints, NumberRange range) {
   const auto point = [range](Fields& p, std::pair<double, double>& value) {
-    p.pair(
-        "a pair [time in s, value]",
-        [&](Fields& t) {
-          t.number(value.first, {-kLargestValue, kLargestValue, "s"});
-        },
-        [&](Fields& v) { v.number(value.second, range); });
+    p.pair("a pair [time in s, value]", value.first, {-kLargestValue, kLargestValue, "s"}, value.second, range);
   };
   f.list("points", waypoints.points, {1, 1'000'000}, "[t, v] pairs, t increasing; held constant outside", point,
          Presence::required);
@@ -50,48 +45,31 @@ void describe_shape(Fields& f, Profile::Waypoints& waypoints, NumberRange range)
   if (f.reads()) check_times(waypoints, f.at());
 }
 
-/// The parts of a profile that a number and an object describe.
-struct Parts {
-  double constant = 0.0;
-  MovingShape moving;
-  bool is_constant = true;
-};
-
-Parts parts_of(const Profile& profile) {
-  Parts parts;
-  std::visit(
-      [&parts](const auto& shape) {
-        if constexpr (std::is_same_v<std::decay_t<decltype(shape)>, Profile::Constant>) {
-          parts.constant = shape.value;
-        } else {
-          parts.moving = shape;
-          parts.is_constant = false;
-        }
-      },
-      profile.shape());
-  return parts;
-}
-
 }  // namespace
 
 void profile(Fields& f, std::string_view name, Profile& profile, const char* unit, const char* doc, Presence presence) {
   const NumberRange range = {-kLargestValue, kLargestValue, unit};
   const auto describe_profile = [&](Fields& value) {
-    Parts parts = parts_of(profile);
+    double constant = profile.is_constant() ? profile(0.0) : 0.0;
+    MovingShape moving;
+    const auto take = [&moving](const auto& shape) {
+      if constexpr (!std::is_same_v<std::decay_t<decltype(shape)>, Profile::Constant>) moving = shape;
+    };
+    std::visit(take, profile.shape());
     value.plain_or_object(
-        !parts.is_constant,
+        !profile.is_constant(),
         [&](Fields& v) {
-          v.number(parts.constant, range);
-          if (v.reads()) profile = Profile(parts.constant);
+          v.number(constant, range);
+          if (v.reads()) profile = Profile(constant);
         },
         [&](Fields& v) {
-          v.variant(parts.moving, "profile",
+          v.variant(moving, "profile",
                     {{"ramp", "a value that grows at a constant rate"},
                      {"sine", "an oscillation about a value"},
                      {"waypoints", "values at times, joined by straight lines or cosines"}},
                     [range](Fields& s, auto& shape) { describe_shape(s, shape, range); });
           if (!v.reads()) return;
-          std::visit([&](auto& shape) { profile = Profile(Profile::Shape(std::move(shape))); }, parts.moving);
+          std::visit([&](auto& shape) { profile = Profile(Profile::Shape(std::move(shape))); }, moving);
         });
   };
   f.field(name, doc, presence, [&](Fields& value) { value.shared("profile", describe_profile); });
@@ -143,6 +121,10 @@ void describe(Fields& f, MotionFields& motion) {
             "contradicts position type \"file\", whose columns give the orientation; allowed: one of the two");
   }
   motion.orientation.reset();
+}
+
+bool position_is_free(const MotionFields& motion) {
+  return std::holds_alternative<FreePosition>(motion.position);
 }
 
 Orientation make_orientation(const OrientationFields& fields) {

@@ -63,59 +63,40 @@ SharedCache& shared_cache() {
 
 namespace {
 
-/// A text that differs after a change of the file, so that a file whose text is known need not be read again. Nothing
-/// for a file that is not regular, and for one that changed so recently that the clock of the file system might not
-/// tell the next change.
+/// A text that differs after a change of the file, so that a file that is known need not be read again. Nothing for a
+/// file that is not regular, and for one that changed so recently that the clock of the file system might not tell the
+/// next change.
 std::optional<std::string> stamp_of(const std::filesystem::path& file) {
   struct stat s {};
   if (::stat(file.c_str(), &s) != 0 || !S_ISREG(s.st_mode)) return std::nullopt;
   constexpr std::time_t kSettled = 2;  // [s]
   if (std::time(nullptr) < std::max(s.st_mtim.tv_sec, s.st_ctim.tv_sec) + kSettled) return std::nullopt;
-  return fmt::format("hash of {} {} {} {} {} {} {} {}", s.st_dev, s.st_ino, s.st_size, s.st_mtim.tv_sec,
-                     s.st_mtim.tv_nsec, s.st_ctim.tv_sec, s.st_ctim.tv_nsec, file.string());
+  return fmt::format("stamp {} {} {} {} {} {} {}", s.st_dev, s.st_ino, s.st_size, s.st_mtim.tv_sec, s.st_mtim.tv_nsec,
+                     s.st_ctim.tv_sec, s.st_ctim.tv_nsec);
 }
 
 }  // namespace
 
-void NamedFile::read() {
-  bytes_ = read_named_file(path_);
-  std::string hash = hash_text(hash_of(bytes_));
-  if (!hash_.empty() && hash != hash_) fail_in_file(path_, "has changed since the scenario was loaded");
-  hash_ = std::move(hash);
-}
-
-const std::string& NamedFile::hash() {
-  if (!hash_.empty()) return hash_;
-  const auto stamp = stamp_of(path_);
-  if (!stamp) {
-    read();
-    return hash_;
-  }
-  // Kept under the stamp of before the reading, which a file that changed meanwhile never has again.
-  const auto known = shared_cache().get<std::string>(
-      *stamp,
-      [this] {
-        read();
-        return std::make_shared<const std::string>(hash_);
-      },
-      [](const std::string& hash) { return hash.size(); });
-  return hash_ = *known;
-}
-
-const NamedFile::Contents& NamedFile::contents() {
-  if (contents_) return *contents_;
+const NamedFile::Read& NamedFile::read() {
+  if (read_) return *read_;
   check_extension();
-  const std::string key = fmt::format("file {} as {}, scale {}, spacing {}, flip {}: {}", hash(),
+  std::string bytes;
+  // Kept under the stamp of before the reading, which a file that changed meanwhile never has again.
+  std::optional<std::string> state = stamp_of(path_);
+  if (!state) {
+    bytes = read_named_file(path_);
+    state = hash_text(hash_of(bytes));
+  }
+  const std::string key = fmt::format("file {} as {}, scale {}, spacing {}, flip {}: {}", *state,
                                       static_cast<int>(content_.kind), content_.sampling.scale,
                                       content_.sampling.spacing.value_or(0.0), content_.sampling.flip, path_.string());
-  const auto parse = [this] {
-    if (bytes_.empty()) read();
-    return std::make_shared<const Contents>(parsed());
+  const auto parse = [&] {
+    if (bytes.empty()) bytes = read_named_file(path_);
+    return std::make_shared<const Read>(Read{hash_text(hash_of(bytes)), parsed(bytes)});
   };
   // A parsed mesh takes some times the space of its text.
-  contents_ = shared_cache().get<Contents>(key, parse, [this](const Contents&) { return 4 * bytes_.size(); });
-  bytes_ = {};
-  return *contents_;
+  read_ = shared_cache().get<Read>(key, parse, [&bytes](const Read&) { return 4 * bytes.size(); });
+  return *read_;
 }
 
 void NamedFile::check_extension() const {
@@ -123,16 +104,16 @@ void NamedFile::check_extension() const {
   if (content_.kind == FileContent::Kind::mesh) mesh_extension(path_);
 }
 
-NamedFile::Contents NamedFile::parsed() {
+NamedFile::Contents NamedFile::parsed(std::string_view bytes) const {
   switch (content_.kind) {
     case FileContent::Kind::point_shell:
-      return point_shell_in(bytes_, path_);
+      return point_shell_in(bytes, path_);
     case FileContent::Kind::mesh:
-      return MeshFile(bytes_, path_, content_.sampling);
+      return MeshFile(bytes, path_, content_.sampling);
     case FileContent::Kind::stroke:
-      return stroke_in(bytes_, path_);
+      return stroke_in(bytes, path_);
     case FileContent::Kind::trace:
-      return trace_in(bytes_, path_);
+      return trace_in(bytes, path_);
     case FileContent::Kind::library:
       break;
   }
@@ -144,6 +125,10 @@ std::vector<Warning> NamedFile::warnings() {
   if (content_.kind != FileContent::Kind::mesh) return warnings;
   for (const std::string& text : mesh().warnings()) warnings.push_back({"mesh_file", pointer_, text});
   return warnings;
+}
+
+std::filesystem::path resolve_path(const Scenario& scenario, const std::string& file) {
+  return scenario.directory / file;  // an absolute `file` replaces the directory
 }
 
 NamedFiles::NamedFiles(Scenario scenario) {

@@ -91,15 +91,15 @@ class NamedFile {
   const std::filesystem::path& path() const { return path_; }
 
   /// FNV-1a of its bytes, as 16 hexadecimal digits.
-  const std::string& hash();
+  const std::string& hash() { return read().hash; }
   /// Reads and parses the file.
-  void check() { contents(); }
+  void check() { read(); }
   /// Warnings about its contents, without the file's directory.
   std::vector<Warning> warnings();
 
   /// The points with normals. Precondition, here and below: the content is of that kind.
-  const std::vector<SurfacePoint>& points() { return std::get<std::vector<SurfacePoint>>(contents()); }
-  const MeshFile& mesh() { return std::get<MeshFile>(contents()); }
+  const std::vector<SurfacePoint>& points() { return std::get<std::vector<SurfacePoint>>(read().contents); }
+  const MeshFile& mesh() { return std::get<MeshFile>(read().contents); }
   // These may be kept longer than the file.
   std::shared_ptr<const Stroke> stroke() { return kept<Stroke>(); }
   std::shared_ptr<const ContactTrace> trace() { return kept<ContactTrace>(); }
@@ -108,22 +108,24 @@ class NamedFile {
   /// Nothing of a library, whose code is loaded elsewhere.
   using Contents = std::variant<std::monostate, std::vector<SurfacePoint>, MeshFile, Stroke, ContactTrace>;
 
+  struct Read {
+    std::string hash;
+    Contents contents;
+  };
+
   template <class Kind>
   std::shared_ptr<const Kind> kept() {
-    const Kind& kind = std::get<Kind>(contents());
-    return {contents_, &kind};
+    const Kind& kind = std::get<Kind>(read().contents);
+    return {read_, &kind};
   }
   void check_extension() const;
-  void read();
-  const Contents& contents();
-  Contents parsed();
+  const Read& read();
+  Contents parsed(std::string_view bytes) const;
 
   std::string pointer_;
   std::filesystem::path path_;
   FileContent content_;
-  std::string hash_;   ///< empty until it is known
-  std::string bytes_;  ///< from when the file is read until it is parsed
-  std::shared_ptr<const Contents> contents_;
+  std::shared_ptr<const Read> read_;  ///< null until something of it is asked for
 };
 
 /// Every file that a scenario names, in the order of its fields. This is the one list of them: what loads, checks,

@@ -53,14 +53,8 @@ BurProfile profile_of(const BurFields& bur) {
 }  // namespace
 
 static void describe(Fields& f, ProfilePoint& point) {
-  f.pair(
-      "two numbers [s, rho]: along the axis from the tip centre, and from the axis [m]",
-      [&point](Fields& s) {
-        s.number(point.s, {-1000.0, 1000.0, "m"});
-      },
-      [&point](Fields& rho) {
-        rho.number(point.rho, {0.0, 1000.0, "m"});
-      });
+  f.pair("two numbers [s, rho]: along the axis from the tip centre, and from the axis [m]", point.s,
+         {-1000.0, 1000.0, "m"}, point.rho, {0.0, 1000.0, "m"});
 }
 
 static void describe(Fields& f, CylinderFields& tool) {

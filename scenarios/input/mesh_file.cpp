@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "scenarios/input/input_error.hpp"
-#include "scenarios/input/mesh_formats.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "sim/mesh/half_edge_mesh.hpp"
 

@@ -56,6 +56,23 @@ class MeshFile {
   std::vector<std::string> warnings_;
 };
 
+// ---- Readers of the formats. Each takes the contents of a file, whose name is for messages, and returns vertices and
+// faces in the file's unit. Numbers of a text are read in double precision, those of binary files as they are stored.
+// Vertex indices are not compared with the number of vertices, and coordinates of binary files may be infinite or NaN:
+// MeshFile checks both for all formats. They throw InputError that names the file, and the line of a text.
+
+/// Wavefront OBJ: the lines "v" and "f"; other lines are ignored.
+TriangleSoup read_obj(std::string_view text, const std::filesystem::path& file);
+/// OFF as a text, with or without normals, colours and texture coordinates.
+TriangleSoup read_off(std::string_view text, const std::filesystem::path& file);
+/// STL, text or binary.
+TriangleSoup read_stl(std::string_view text, const std::filesystem::path& file);
+/// PLY, text or binary of either byte order. Elements and properties that are not part of the surface are ignored.
+TriangleSoup read_ply(std::string_view text, const std::filesystem::path& file);
+/// The vertices of a PLY file, which have the properties x, y, z [m], nx, ny, nz, of any type; everything after them,
+/// such as faces, is not read.
+std::vector<SurfacePoint> ply_points_in(std::string_view text, const std::filesystem::path& file);
+
 /// The extension of a point shell's file. Throws InputError when it is neither .csv nor .ply.
 std::string shell_extension(const std::filesystem::path& file);
 

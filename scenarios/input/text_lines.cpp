@@ -34,11 +34,6 @@ std::optional<Number> whole_word_as(std::string_view word) {
   return value;
 }
 
-std::string quoted(std::string_view text) {
-  constexpr std::size_t kLongest = 60;
-  return fmt::format("\"{}{}\"", text.substr(0, kLongest), text.size() > kLongest ? "..." : "");
-}
-
 }  // namespace
 
 Words words_of(std::string_view line) {
@@ -124,7 +119,7 @@ NumberTable number_table_in(std::string_view text, const std::filesystem::path& 
   if (text.empty()) fail_in_line(file, 1, fmt::format("the file is empty; allowed: header {} and rows", allowed()));
   CsvReader csv{LineReader(text), file};
   if (std::find(headers.begin(), headers.end(), csv.header()) == headers.end())
-    fail_in_line(file, 1, fmt::format("got header {}; allowed: {}", quoted(csv.header()), allowed()));
+    fail_in_line(file, 1, fmt::format("got header {}; allowed: {}", quoted_word(csv.header()), allowed()));
   NumberTable table;
   table.columns = csv.columns().size();
   while (csv.next_not_blank()) {
@@ -132,7 +127,7 @@ NumberTable number_table_in(std::string_view text, const std::filesystem::path& 
       const auto value = finite_number(csv.cells()[i]);
       if (!value) {
         fail_in_line(file, csv.line(),
-                     fmt::format("column {}: got {}; allowed: a finite number", i + 1, quoted(csv.cells()[i])));
+                     fmt::format("column {}: got {}; allowed: a finite number", i + 1, quoted_word(csv.cells()[i])));
       }
       table.values.push_back(*value);
     }

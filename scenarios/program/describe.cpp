@@ -10,7 +10,6 @@
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/description/load_scenario.hpp"
 #include "scenarios/input/input_error.hpp"
-#include "scenarios/input/installed_folder.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/command.hpp"
 #include "scenarios/program/index.hpp"

@@ -15,8 +15,8 @@
 
 #include "device_model/logged_handle.hpp"
 #include "results/io/atomic_file.hpp"
+#include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/input/input_error.hpp"
-#include "scenarios/input/installed_folder.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/command.hpp"
 #include "scenarios/program/table.hpp"

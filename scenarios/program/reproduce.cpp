@@ -11,7 +11,6 @@
 #include "scenarios/batch/parallel_for.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/description/load_scenario.hpp"
-#include "scenarios/input/installed_folder.hpp"
 #include "scenarios/input/json_file.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/program/command.hpp"

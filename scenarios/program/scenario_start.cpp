@@ -12,9 +12,9 @@
 #include <span>
 
 #include "device_model/hands/drag_hand.hpp"
+#include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/description/load_scenario.hpp"
 #include "scenarios/description/parts.hpp"
-#include "scenarios/input/installed_folder.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/scene_facts.hpp"
@@ -184,9 +184,6 @@ Box box_of(const Things& things, Place place = {}) {
     box = {box.min.cwiseMin(std::invoke(place, thing)), box.max.cwiseMax(std::invoke(place, thing))};
   return box;
 }
-
-/// The longest edges that a file of which no size is stated may have in metres [m].
-constexpr double kShortestObject = 0.001, kLongestObject = 1.0;
 
 /// Rounds to the micrometre, as people write places.
 double to_micrometres(double metres) {

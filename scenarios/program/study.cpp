@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "results/io/columns.hpp"
-#include "scenarios/input/installed_folder.hpp"
+#include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/input/json_file.hpp"
 
 namespace hapbench {

@@ -27,6 +27,37 @@ ToolPose first_pose(const Scenario& scenario, const SimulationParts& parts) {
 
 constexpr double kUsualStep = 0.001;  ///< of haptic loops [s]
 
+/// The question about the field that makes an environment as large as it is.
+const char* size_question(const Environment& environment) {
+  if (std::holds_alternative<MeshEnvironment>(environment)) return "is environment.scale right?";
+  if (std::holds_alternative<PointShellEnvironment>(environment))
+    return "are the points of environment.file in metres?";
+  return "are the sizes of environment in metres?";
+}
+
+/// An environment that no hand works on, whatever the size of the tool.
+std::optional<Warning> size_warning(const Environment& environment, const Box& box) {
+  const double longest = (box.max - box.min).maxCoeff();
+  if (longest >= kShortestObject && longest <= kLongestObject) return std::nullopt;
+  return Warning{"size", "",
+                 fmt::format("the environment is {}; a hand works on what is {} ... {} long: {}", size_text(box),
+                             length_text(kShortestObject), length_text(kLongestObject), size_question(environment))};
+}
+
+/// Points of a mesh so far apart that the tool feels each of them. Surfaces of formulas have the spacing they were
+/// given.
+std::optional<Warning> spacing_warning(const LoadedScenario& loaded, const ToolShape& tool) {
+  constexpr double kSmooth = 0.1, kRough = 1.0 / 6.0;  // of the tool's width; "hapbench new" takes the former
+  if (!std::holds_alternative<MeshEnvironment>(loaded.scenario.environment)) return std::nullopt;
+  const PointDistance distance = *point_distance(loaded);
+  const double width = 2.0 * tool.half_width();
+  if (distance.metres <= kRough * width) return std::nullopt;
+  return Warning{"spacing", distance.is_given ? "/environment/spacing_m" : "/environment",
+                 fmt::format("{} are {} apart; a tool of {} feels them as a rough surface; --set {}={:.1g}",
+                             distance.is_given ? "the points" : "the mesh's vertices", length_text(distance.metres),
+                             length_text(width), distance.path, kSmooth * width)};
+}
+
 /// Where the tool starts, against its own size and the environment's.
 std::optional<Warning> start_warning(const ToolShape& tool, const SceneFacts::Surface& surface) {
   const double least = std::min(diagonal(surface.box), tool.reach());
@@ -130,10 +161,7 @@ std::string scale_question(const Scenario& scenario, const ToolShape& tool, cons
   const double size = diagonal(environment);
   if (size >= kTooSmall * 2.0 * tool.half_width() && size <= kTooLarge * tool.reach()) return "";
   if (std::holds_alternative<MeshToolFields>(scenario.tool)) return "are tool.scale and the environment's size right?";
-  if (std::holds_alternative<MeshEnvironment>(scenario.environment)) return "is environment.scale right?";
-  if (std::holds_alternative<PointShellEnvironment>(scenario.environment))
-    return "are the points of environment.file in metres?";
-  return "are the sizes of environment in metres?";
+  return size_question(scenario.environment);
 }
 
 std::optional<Warning> scale_warning(const Scenario& scenario, const ToolShape& tool, const Box& environment) {
@@ -205,7 +233,12 @@ SceneFacts scene_facts(const LoadedScenario& loaded) {
   const auto [gap, touching] = gap_between(tool, pose, *shell);
   const auto& surface = facts.surface.emplace(SceneFacts::Surface{shell->bounds(), shell->size(), gap, touching});
   if (surface.box.min != surface.box.max) {  // a single point has no size
-    warn(scale_warning(scenario, tool, surface.box));
+    if (const auto scale = scale_warning(scenario, tool, surface.box)) {
+      warn(scale);
+    } else {
+      warn(size_warning(scenario.environment, surface.box));
+      warn(spacing_warning(loaded, tool));
+    }
     warn(start_warning(tool, surface));
     if (std::holds_alternative<RecordedPosition>(scenario.motion.position)) {
       for (Warning& warning : stroke_warnings(*loaded.files.at(kMotionFile).stroke(), scenario.time, tool, surface.box))

@@ -41,6 +41,9 @@ std::optional<Warning> inverted_scan_warning(const LoadedScenario& loaded);
 /// Lengths and times this far apart are of different units: mm for m is a factor of 1000, cm for m one of 100.
 inline constexpr double kUnitsApart = 100.0;
 
+/// Longest edges of what a hand works on, at least and at most [m]: those of others are likely of another unit.
+inline constexpr double kShortestObject = 0.001, kLongestObject = 1.0;
+
 /// The length of the way on which a scenario has the tool dragged in `duration` [s]: along a direction as far as the
 /// time allows, along points at most to the last one [m].
 double way_to_cover(const DragHandFields& hand, double duration);

@@ -9,7 +9,7 @@
 
 #include "results/io/columns.hpp"
 #include "results/io/json_text.hpp"
-#include "scenarios/input/installed_folder.hpp"
+#include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "sim/core/hash.hpp"
 

@@ -9,8 +9,8 @@
 #include <tuple>
 #include <utility>
 
+#include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/input/input_error.hpp"
-#include "scenarios/input/installed_folder.hpp"
 #include "scenarios/input/json_file.hpp"
 
 namespace hapbench {

@@ -211,21 +211,6 @@ TEST_F(Override, IsCheckedLikeTheFile) {
   EXPECT_NE(refusal(R"(rendering={"iterations":1,"iterations":2})").find("stands twice"), std::string::npos);
 }
 
-TEST_F(Override, ThatEndsTheRunBeforeALegOfItsScriptBeginsIsWarnedOf) {
-  const std::string hand = R"(hand={"type":"force","x_N":{"type":"waypoints","points":[[0,0],[0.005,1],[0.02,0]]}})";
-  EXPECT_TRUE(load_scenario(file_, std::vector<std::string>{hand}).warnings.empty());
-  const auto warnings = load_scenario(file_, std::vector<std::string>{hand, "time.steps=10"}).warnings;
-  ASSERT_EQ(warnings.size(), 1u);
-  EXPECT_NE(warnings[0].told().find("/hand/x_N: the script's last waypoint is at 0.02 s, but the run ends at 0.005 s"),
-            std::string::npos);
-}
-
-TEST_F(Override, WithControlCharactersStillGivesOneLine) {
-  for (const char* override : {"a\nb=1", "x\ny", "environment.groups.\n=1", "rendering.algorithm=a\nb"}) {
-    EXPECT_EQ(refusal(override).find('\n'), std::string::npos);
-  }
-}
-
 TEST_F(Override, NestedDeeplyIsRefused) {
   std::string path = "rendering";
   for (int i = 0; i < 63; ++i) path += ".a";

@@ -92,27 +92,6 @@ TEST(Duration, BecomesARoundedNumberOfSteps) {
   EXPECT_EQ(effective(json)["time"]["steps"], 200);
 }
 
-/// What the algorithm is defined with goes before what is given, with a warning.
-TEST(FixedByTheAlgorithm, OverridesWithAWarning) {
-  const auto expect_warning = [](const char* algorithm, const char* field, const Json& fixed, const Json& other,
-                                 const std::string& said) {
-    Json json = test::minimal_scenario("plane");
-    json["rendering"] = {{"algorithm", algorithm}};
-    EXPECT_EQ(effective(json)["rendering"][field], fixed);
-    json["rendering"][field] = fixed;
-    EXPECT_TRUE(loaded(json).warnings.empty());
-    json["rendering"][field] = other;
-    EXPECT_EQ(effective(json)["rendering"][field], fixed);
-    ASSERT_EQ(loaded(json).warnings.size(), 1u);
-    EXPECT_EQ(loaded(json).warnings[0].told().find(said), 0u) << loaded(json).warnings[0].told();
-  };
-  expect_warning("original_averaging", "depth_model", "shortest_distance", "surface_normal",
-                 "/rendering/depth_model: \"surface_normal\" is not used: algorithm \"original_averaging\" is defined");
-  expect_warning("normal_projection", "depth_model", "normal_projection", "shortest_distance",
-                 "/rendering/depth_model: \"shortest_distance\" is not used: ");
-  expect_warning("original_averaging", "reduction", nullptr, Json::object(), "/rendering/reduction: not used");
-}
-
 TEST(AdmittanceDevice, WarnsUnderAHandThatDoesNotFeelTheHandle) {
   const auto warnings = [](const char* hand, const char* device) {
     Json json = test::minimal_scenario("plane");
@@ -196,40 +175,11 @@ void expect_fixed_point(const Scenario& scenario, const fs::path& directory) {
   EXPECT_EQ(content_hash(again.scenario), content_hash(scenario));
 }
 
-TEST(EffectiveScenario, OfEveryBundledScenarioIsAFixedPoint) {
-  for (const BundledScenario& bundled : bundled_scenarios()) {
-    SCOPED_TRACE(bundled.name);
-    expect_fixed_point(load_scenario(bundled.file).scenario, bundled.file.parent_path());
-  }
-}
-
 TEST(EffectiveScenario, OfEveryKindOfFieldIsAFixedPoint) {
   for (const auto& list : {test::minimal_scenarios(), test::rich_scenarios()}) {
     for (const test::NamedScenario& scenario : list) {
       SCOPED_TRACE(scenario.name);
       expect_fixed_point(read_scenario(scenario.json, test::data_directory()).scenario, test::data_directory());
-    }
-  }
-}
-
-TEST(EffectiveScenario, LeadsToItsFilesFromAnyOutputDirectoryAndThroughLinks) {
-  const test::TemporaryDirectory directory;
-  fs::create_directories(directory / "scenes here/data");
-  fs::create_directories(directory / "out/deep/er");
-  fs::create_directory_symlink(directory / "out/deep/er", directory / "link");
-  fs::create_directory_symlink(directory / "scenes here", directory / "out/scenes");
-  const fs::path shell = directory / "scenes here/data/shell.csv";
-  fs::copy_file(test::data_directory() / "shell.csv", shell);
-  Json json = test::minimal_scenario("point_shell");
-  for (const std::string& named : {std::string("data/shell.csv"), shell.string()}) {
-    json["environment"]["file"] = named;
-    test::write_plainly(directory / "scenes here/scene.json", json.dump());
-    for (const char* scenes : {"scenes here", "out/scenes"}) {
-      const Scenario scenario = load_scenario(directory / scenes / "scene.json").scenario;
-      for (const char* output : {"out", "out/deep/er", "link", "scenes here", "scenes here/data", "."}) {
-        const std::string file = effective_scenario(scenario, directory / output)["environment"]["file"];
-        EXPECT_EQ(fs::canonical(directory / output / file), fs::canonical(shell)) << output;
-      }
     }
   }
 }

@@ -43,23 +43,8 @@ void describe_outer(Fields& f, Outer& outer) {
   f.fields([&outer](Fields& fields) { describe_fields(fields, outer); });
 }
 
-Outer outer_of(const std::string& text) {
-  Outer outer;
-  test::read_json(Json::parse(text), "/v", outer, describe_outer);
-  return outer;
-}
-
 std::string refusal_of(const std::string& text) {
   return test::refusal_of(text, Outer{}, describe_outer);
-}
-
-TEST(Object, LeavesAbsentFieldsAtTheirDefaults) {
-  const Outer outer = outer_of(R"({"mass_kg": 3, "steps": 2})");
-  EXPECT_EQ(outer.mass, 3.0);
-  EXPECT_EQ(outer.name, "unnamed");
-  EXPECT_EQ(outer.inner.width, 2.0);
-  EXPECT_EQ(outer.scale, 0.25);
-  EXPECT_EQ(outer.duration, std::nullopt);
 }
 
 TEST(Object, NamesAnUnknownFieldAndTheNearest) {
@@ -89,12 +74,6 @@ TEST(Object, HasNoMoreFaultsReportedThanAnybodyReads) {
   const auto error = test::input_error_of([&] { test::read_json(json, "/v", outer, describe_outer); });
   ASSERT_TRUE(error);
   EXPECT_EQ(error->faults().size(), kMostFaults);
-}
-
-TEST(Object, RefusesNullForFieldsWithoutADefault) {
-  EXPECT_EQ(refusal_of(R"({"mass_kg": 3, "steps": 2, "scale": null})"),
-            "/v/scale: got null; allowed: a number >= 0 and <= 1");
-  EXPECT_EQ(refusal_of(R"({"mass_kg": 3, "steps": null})"), "/v/steps: got null; allowed: a number >= 0 and <= 9");
 }
 
 TEST(Object, HasOnePairOfExclusiveFieldsAtMost) {
@@ -134,27 +113,6 @@ TEST(Object, IsReadWhenItsDescriptionIsToldSo) {
   EXPECT_EQ(seen.at, "/a/0");
 }
 
-TEST(Object, IsWrittenWithAllFieldsThatHaveAValue) {
-  const Outer outer = outer_of(R"({"steps": 2, "mass_kg": 3})");
-  EXPECT_EQ(
-      test::written_by(describe_outer, outer),
-      Json::parse(R"({"mass_kg": 3.0, "name": "unnamed", "inner": {"width_m": 2.0}, "scale": 0.25, "steps": 2.0})"));
-}
-
-TEST(Object, HasDefaultsAndRequirementsInItsSchema) {
-  const Json schema = test::schema_of(describe_outer, Outer{});
-  EXPECT_EQ(schema["additionalProperties"], false);
-  EXPECT_EQ(schema["required"], Json::array({"mass_kg"}));
-  EXPECT_EQ(schema["oneOf"], Json::parse(R"([{"required": ["steps"]}, {"required": ["duration_s"]}])"));
-  EXPECT_EQ(
-      schema["properties"]["name"],
-      Json::parse(R"({"type": "string", "maxLength": 10, "description": "what it is called", "default": "unnamed"})"));
-  for (const char* field : {"mass_kg", "scale", "steps", "duration_s"}) {
-    EXPECT_FALSE(schema["properties"][field].contains("default")) << field;
-  }
-  EXPECT_EQ(schema["properties"]["inner"]["default"], Json::parse(R"({"width_m": 2.0})"));
-}
-
 struct Ball {
   double radius = 1.0;
 };
@@ -185,25 +143,12 @@ TEST(TaggedObject, IsChosenByType) {
   EXPECT_EQ(std::get<Box>(solid_of(R"({"edge_m": 4, "type": "box"})")).edge, 4.0);
 }
 
-TEST(TaggedObject, IsWrittenAsTypeAndFields) {
-  EXPECT_EQ(test::written_by(describe_any, Solid(Ball{3.0})).dump(), R"({"type":"ball","radius_m":3.0})");
-  EXPECT_EQ(test::written_by(describe_any, Solid(Box{4.0})).dump(), R"({"type":"box","edge_m":4.0})");
-}
-
 TEST(TaggedObject, IsNotWrittenWithoutAnAlternative) {
   const TypeName names[] = {"ball"};
   const auto describe = [&](Fields& f) {
     f.alternatives("solid", names, Untyped::refused, 1, [](Fields&, std::size_t) {});
   };
   EXPECT_THROW(json_of(describe), std::logic_error);
-}
-
-TEST(TaggedObject, HasAnAlternativeForEachTagInItsSchema) {
-  const Json choices = test::schema_of(describe_any, Solid{})["oneOf"];
-  ASSERT_EQ(choices.size(), 2u);
-  EXPECT_EQ(choices[0]["properties"]["type"]["const"], "ball");
-  EXPECT_EQ(choices[0]["required"], Json::array({"type", "radius_m"}));
-  EXPECT_EQ(choices[1]["required"], Json::array({"type"}));
 }
 
 /// A number or an object, one value or a list of them.

@@ -29,23 +29,12 @@ TEST(NearestName, KnowsANameByItsBeginningOrAPart) {
   EXPECT_EQ(nearest_name("ratio", kNames), "damping_ratio");
 }
 
-TEST(NearestName, KnowsAMisspeltNameWithoutItsUnit) {
-  EXPECT_EQ(nearest_name("stifness", kNames), "stiffness_N_per_m");
-  EXPECT_EQ(nearest_name("dampin", kNames), "damping_ratio");
-}
-
 TEST(NearestName, SuggestsNothingForSomethingElse) {
   EXPECT_EQ(nearest_name("colour", kNames), "");
   EXPECT_EQ(nearest_name("", kNames), "");
   EXPECT_EQ(nearest_name("x", kNames), "");
   EXPECT_EQ(nearest_name("mean", {}), "");
   EXPECT_EQ(nearest_name(std::string(1'000'000, 'm'), kNames), "");
-}
-
-TEST(NearestName, PrefersTheCloserOfTwo) {
-  const std::vector<std::string> names = {"min_depth", "max_depth", "max_death"};
-  EXPECT_EQ(nearest_name("max_depht", names), "max_depth");
-  EXPECT_EQ(nearest_name("max_deaht", names), "max_death");
 }
 
 }  // namespace

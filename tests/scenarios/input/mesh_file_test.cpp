@@ -211,23 +211,5 @@ TEST_F(MeshFile, IsResampledToTheSpacing) {
   }
 }
 
-TEST_F(MeshFile, IsRefusedWhenItIsCutAnywhere) {
-  const TriangleSoup soup = test::sphere(1.0, 1);
-  for (const auto& [name, text] : test::mesh_texts(soup)) {
-    // Text may lose its last digit or line and still be text; half a file never makes a closed surface.
-    const bool binary = name.find("text") == std::string::npos;
-    const std::size_t most = binary ? text.size() - 1 : text.size() / 2;
-    for (std::size_t size = most; size > 0; size -= std::min(size, text.size() / 7 + 1)) {
-      SCOPED_TRACE(name + " cut to " + std::to_string(size));
-      try {
-        EXPECT_FALSE(read(name, text.substr(0, size)).warnings.empty());
-        EXPECT_FALSE(binary);
-      } catch (const InputError& error) {
-        EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
-      }
-    }
-  }
-}
-
 }  // namespace
 }  // namespace hapbench::mesh_file_test

@@ -205,12 +205,41 @@ TEST_F(NewOnASheet, PlaysAStrokeBackOverAMesh) {
   EXPECT_EQ(json["motion"]["position"]["file"], "stroke.csv");
 }
 
+/// What validate warns of in the bundled scene of a tooth, 10 mm long, with these fields.
+std::string warnings_of_tooth(std::vector<std::string> fields) {
+  std::vector<std::string> words = {"validate", "mesh_molar"};
+  for (const std::string& field : fields) words.insert(words.end(), {"--set", field});
+  const ProgramRun run = test::hapbench_here(words);
+  EXPECT_EQ(run.status, 0) << run.err;
+  return run.err;
+}
+
+TEST(ValidateCommand, NamesASizeThatNoHandWorksOn) {
+  const std::string size = "a hand works on what is 1 mm ... 1 m long: is environment.scale right?";
+  // Millimetres for metres, and a tool to match.
+  const std::string large =
+      warnings_of_tooth({"environment.scale=1", "environment.spacing_m=0.15", "tool.diameter_m=1", "tool.length_m=10"});
+  EXPECT_NE(large.find(size), std::string::npos) << large;
+  const std::string small = warnings_of_tooth(
+      {"environment.scale=5e-5", "environment.spacing_m=1e-5", "tool.diameter_m=1e-4", "tool.length_m=1e-3"});
+  EXPECT_NE(small.find(size), std::string::npos) << small;
+}
+
+TEST(ValidateCommand, NamesPointsThatTheToolFeelsOneByOne) {
+  const std::string coarse = warnings_of_tooth({"environment.spacing_m=0.00017"});
+  EXPECT_NE(coarse.find("the points are 0.17 mm apart; a tool of 1 mm feels them as a rough surface; --set "
+                        "environment.spacing_m=0.0001\n"),
+            std::string::npos)
+      << coarse;
+  EXPECT_EQ(warnings_of_tooth({"environment.spacing_m=0.00016"}).find("apart"), std::string::npos);
+}
+
 /// A warning of a bundled scene would be a false one.
 TEST(ValidateCommand, FindsNoUnitsWrongInBundledScenes) {
   for (const test::NamedScenario& scenario : test::bundled_scenario_files()) {
     const ProgramRun run = test::hapbench_here({"validate", scenario.name});
     EXPECT_EQ(run.status, 0) << scenario.name << run.err;
-    for (const char* words : {"in metres?", "in seconds?", "behind the surface", "time.step_s right?", "right?"})
+    for (const char* words : {"in metres?", "in seconds?", "behind the surface", "right?", "rough surface"})
       EXPECT_EQ(run.err.find(words), std::string::npos) << scenario.name << run.err;
   }
 }

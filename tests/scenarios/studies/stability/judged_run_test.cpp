@@ -8,7 +8,6 @@
 
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/description/load_scenario.hpp"
-#include "scenarios/input/installed_folder.hpp"
 #include "scenarios/run/assemble.hpp"
 
 namespace hapbench::judged_run_test {
