@@ -14,7 +14,7 @@
 #include "device_model/hands/tracking_hand.hpp"
 #include "results/observe/contact_forces.hpp"
 #include "results/summary/outcome_names.hpp"
-#include "scenarios/run/scene_facts.hpp"
+#include "scenarios/run/scene_checks.hpp"
 #include "sim/contact/grid_index.hpp"
 
 namespace hapbench {

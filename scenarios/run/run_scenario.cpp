@@ -17,7 +17,7 @@
 #include "scenarios/run/diagnosis.hpp"
 #include "scenarios/run/outcome.hpp"
 #include "scenarios/run/progress_bar.hpp"
-#include "scenarios/run/scene_facts.hpp"
+#include "scenarios/run/scene_checks.hpp"
 #include "scenarios/run/stop_signal.hpp"
 
 namespace hapbench {

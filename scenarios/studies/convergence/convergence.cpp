@@ -14,7 +14,7 @@
 #include "scenarios/description/metric_sections.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/run/assemble.hpp"
-#include "scenarios/run/scene_facts.hpp"
+#include "scenarios/run/scene_checks.hpp"
 #include "scenarios/run/scene_loop.hpp"
 #include "scenarios/studies/stability/field_limit.hpp"
 #include "sim/core/math.hpp"

@@ -14,7 +14,7 @@
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/outcome.hpp"
 #include "scenarios/run/run_scenario.hpp"
-#include "scenarios/run/scene_facts.hpp"
+#include "scenarios/run/scene_checks.hpp"
 #include "scenarios/run/stop_signal.hpp"
 #include "sim/contact/stiffness_tensor.hpp"
 #include "sim/core/hash.hpp"

@@ -7,7 +7,7 @@
 #include "results/observe/metrics.hpp"
 #include "scenarios/description/metric_sections.hpp"
 #include "scenarios/run/run_scenario.hpp"
-#include "scenarios/run/scene_facts.hpp"
+#include "scenarios/run/scene_checks.hpp"
 #include "tests/results/rows.hpp"
 #include "tests/scenarios/support/bundled.hpp"
 

@@ -1,4 +1,4 @@
-#include "scenarios/run/scene_facts.hpp"
+#include "scenarios/run/scene_checks.hpp"
 
 #include <fmt/format.h>
 
