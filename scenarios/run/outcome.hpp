@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include "results/observe/inside.hpp"
+#include "results/observe/inside_observer.hpp"
 #include "results/observe/metrics.hpp"
 #include "results/summary/summary.hpp"
 #include "scenarios/description/parts.hpp"

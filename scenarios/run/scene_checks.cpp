@@ -8,7 +8,7 @@
 #include <span>
 
 #include "device_model/hands/drag_hand.hpp"
-#include "results/observe/inside.hpp"
+#include "results/observe/inside_observer.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/stop_signal.hpp"
 #include "sim/mesh/triangle_soup.hpp"

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <tuple>
 
-#include "results/observe/inside.hpp"
+#include "results/observe/inside_observer.hpp"
 #include "results/observe/metrics.hpp"
 #include "results/summary/outcome_names.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
