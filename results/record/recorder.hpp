@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "results/io/table_writer.hpp"
-#include "results/observe/energy_ledger.hpp"
+#include "results/observe/energy.hpp"
 #include "results/observe/force_fidelity.hpp"
 #include "results/observe/ideal_trajectory.hpp"
 #include "results/observe/inside_observer.hpp"
