@@ -13,7 +13,7 @@
 #include "device_model/hands/drag_hand.hpp"
 #include "device_model/hands/tracking_hand.hpp"
 #include "results/observe/contact_forces.hpp"
-#include "results/summary/outcome_names.hpp"
+#include "results/summary/summary.hpp"
 #include "scenarios/run/scene_checks.hpp"
 #include "sim/contact/grid_index.hpp"
 

@@ -9,7 +9,7 @@
 #include "algorithms/registry.hpp"
 #include "results/allocations/allocations.hpp"
 #include "results/observe/step_times.hpp"
-#include "results/summary/outcome_names.hpp"
+#include "results/summary/summary.hpp"
 #include "scenarios/description/metric_sections.hpp"
 #include "scenarios/description/parts.hpp"
 #include "scenarios/input/input_error.hpp"

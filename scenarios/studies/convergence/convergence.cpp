@@ -10,7 +10,7 @@
 
 #include "algorithms/stages/damping_and_limits.hpp"
 #include "results/io/json_text.hpp"
-#include "results/summary/outcome_names.hpp"
+#include "results/summary/summary.hpp"
 #include "scenarios/description/metric_sections.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/run/assemble.hpp"

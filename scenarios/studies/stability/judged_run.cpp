@@ -10,7 +10,7 @@
 
 #include "results/observe/contact_forces.hpp"
 #include "results/observe/metrics.hpp"
-#include "results/summary/outcome_names.hpp"
+#include "results/summary/summary.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/outcome.hpp"
 #include "scenarios/run/run_scenario.hpp"

@@ -16,7 +16,6 @@
 #include "results/observe/metrics.hpp"
 #include "results/observe/target_metrics.hpp"
 #include "results/record/recorder.hpp"
-#include "results/summary/outcome_names.hpp"
 #include "results/summary/provenance.hpp"
 
 namespace hapbench::summary_test {
