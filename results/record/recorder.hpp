@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "results/io/table_writer.hpp"
-#include "results/observe/energy_ledger.hpp"
+#include "results/observe/energy.hpp"
 #include "results/observe/force_fidelity.hpp"
 #include "results/observe/ideal_trajectory.hpp"
-#include "results/observe/inside.hpp"
+#include "results/observe/inside_observer.hpp"
 #include "results/observe/target_metrics.hpp"
 #include "results/record/trajectory_extras.hpp"
 #include "sim/contact/contact_buffer.hpp"

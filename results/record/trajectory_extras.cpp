@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <array>
 
-#include "results/observe/inside.hpp"
+#include "results/observe/inside_observer.hpp"
 
 namespace hapbench {
 namespace {

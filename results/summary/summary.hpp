@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -16,6 +17,19 @@
 #include "sim/tool/profile_point.hpp"
 
 namespace hapbench {
+
+/// An outcome in words.
+struct OutcomeInfo {
+  std::string_view name;    ///< in files, as "completes"
+  const char* meaning;      ///< in a sentence without its full stop
+  bool is_failure = false;  ///< the numbers of such a run say nothing about the algorithm
+};
+
+/// All outcomes, in the order of the enumeration.
+std::span<const OutcomeInfo> outcome_infos() noexcept;
+std::string_view outcome_name(Outcome outcome) noexcept;
+/// Returns nothing if no outcome has that name.
+std::optional<Outcome> outcome_named(std::string_view name) noexcept;
 
 /// Counted work of a run. Counts are exact and repeatable; times are in timing.json.
 struct RunWork {

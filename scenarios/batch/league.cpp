@@ -7,7 +7,7 @@
 #include <cmath>
 #include <utility>
 
-#include "results/summary/outcome_names.hpp"
+#include "results/summary/summary.hpp"
 #include "scenarios/batch/statistics.hpp"
 #include "scenarios/description/metric_sections.hpp"
 #include "scenarios/run/run_scenario.hpp"

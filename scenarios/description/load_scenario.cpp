@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "results/io/json_text.hpp"
-#include "results/summary/outcome_names.hpp"
+#include "results/summary/summary.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/description/descriptions.hpp"
 #include "scenarios/description/writer.hpp"

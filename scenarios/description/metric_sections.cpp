@@ -3,9 +3,8 @@
 #include <nlohmann/json.hpp>
 
 #include "results/observe/contact_metrics.hpp"
-#include "results/observe/energy_ledger.hpp"
+#include "results/observe/energy.hpp"
 #include "results/observe/ideal_trajectory.hpp"
-#include "results/observe/passivity_observer.hpp"
 #include "results/observe/target_metrics.hpp"
 
 namespace hapbench {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "results/observe/force_fidelity.hpp"
-#include "results/observe/inside.hpp"
+#include "results/observe/inside_observer.hpp"
 #include "results/observe/metrics.hpp"
 #include "results/summary/summary.hpp"
 #include "scenarios/description/scenario.hpp"

@@ -10,7 +10,7 @@
 #include <span>
 
 #include "algorithms/registry.hpp"
-#include "results/summary/outcome_names.hpp"
+#include "results/summary/summary.hpp"
 #include "scenarios/batch/comparison.hpp"
 #include "scenarios/batch/league.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"

@@ -12,7 +12,7 @@
 #include "device_model/device_presets.hpp"
 #include "device_model/theory/stiffness_limits.hpp"
 #include "results/record/recorder.hpp"
-#include "results/summary/outcome_names.hpp"
+#include "results/summary/summary.hpp"
 #include "scenarios/description/metric_sections.hpp"
 #include "scenarios/description/scenario.hpp"
 #include "scenarios/program/fields_text.hpp"

@@ -12,7 +12,7 @@
 #include <utility>
 
 #include "results/observe/target_metrics.hpp"
-#include "results/summary/outcome_names.hpp"
+#include "results/summary/summary.hpp"
 #include "scenarios/description/metric_sections.hpp"
 
 namespace hapbench {

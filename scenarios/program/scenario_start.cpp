@@ -17,7 +17,7 @@
 #include "scenarios/description/parts.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/run/assemble.hpp"
-#include "scenarios/run/scene_facts.hpp"
+#include "scenarios/run/scene_checks.hpp"
 #include "sim/core/math.hpp"
 #include "sim/core/types.hpp"
 #include "sim/geometry/point_shell.hpp"

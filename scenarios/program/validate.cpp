@@ -15,7 +15,7 @@
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/progress_bar.hpp"
 #include "scenarios/run/result_folder.hpp"
-#include "scenarios/run/scene_facts.hpp"
+#include "scenarios/run/scene_checks.hpp"
 #include "scenarios/run/stop_signal.hpp"
 #include "scenarios/studies/stability/scene_devices.hpp"
 #include "sim/tool/mesh_tool.hpp"

@@ -12,7 +12,7 @@
 #include "device_model/ideal_device.hpp"
 #include "device_model/impedance_device.hpp"
 #include "scenarios/run/load_module.hpp"
-#include "scenarios/run/scene_facts.hpp"
+#include "scenarios/run/scene_checks.hpp"
 #include "sim/contact/contact_source.hpp"
 #include "sim/contact/late_contacts.hpp"
 #include "sim/core/random.hpp"

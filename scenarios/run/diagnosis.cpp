@@ -8,7 +8,7 @@
 #include "algorithms/stages/damping_and_limits.hpp"
 #include "device_model/velocity_filter.hpp"
 #include "results/observe/contact_forces.hpp"
-#include "scenarios/run/scene_facts.hpp"
+#include "scenarios/run/scene_checks.hpp"
 #include "scenarios/run/scene_loop.hpp"
 #include "sim/loop/integrators/table.hpp"
 

@@ -61,7 +61,7 @@ class DiagnosisObserver final : public Observer {
 
   void on_step(const StepRecord& record) noexcept override;
 
-  /// After a trial: its EncounterObserver::longest_step [m].
+  /// After a trial: its OutcomeObserver::longest_step [m].
   void add_longest_step(double way) noexcept { seen_.longest_step = std::max(seen_.longest_step, way); }
 
   /// What is wrong with the run that gave this result, in the order of the rules. Some ms where a loop is solved.

@@ -10,7 +10,7 @@
 #include "results/io/atomic_file.hpp"
 #include "results/io/columns.hpp"
 #include "results/io/table_writer.hpp"
-#include "results/observe/inside.hpp"
+#include "results/observe/inside_observer.hpp"
 #include "results/record/recorder.hpp"
 #include "results/summary/summary.hpp"
 #include "scenarios/description/load_scenario.hpp"

@@ -9,15 +9,15 @@
 #include "algorithms/registry.hpp"
 #include "results/allocations/allocations.hpp"
 #include "results/observe/step_times.hpp"
-#include "results/summary/outcome_names.hpp"
+#include "results/summary/summary.hpp"
 #include "scenarios/description/metric_sections.hpp"
 #include "scenarios/description/parts.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/diagnosis.hpp"
-#include "scenarios/run/encounter.hpp"
+#include "scenarios/run/outcome.hpp"
 #include "scenarios/run/progress_bar.hpp"
-#include "scenarios/run/scene_facts.hpp"
+#include "scenarios/run/scene_checks.hpp"
 #include "scenarios/run/stop_signal.hpp"
 
 namespace hapbench {
@@ -147,7 +147,7 @@ class Run {
 
     StepSampler sampler(static_cast<std::uint64_t>(time.steps));
     RowsApart metrics_rows(*metrics_, time.stride);
-    const auto seen = encounter_observer(scenario_, loaded_.files, parts, &*metrics_);
+    const auto seen = outcome_observer(scenario_, loaded_.files, parts, &*metrics_);
     ProgressBar bar(label, static_cast<std::uint64_t>(time.steps), !label.empty());
     std::vector<Observer*> observers = {&sampler.first()};
     observers.push_back(time.stride == 1 ? static_cast<Observer*>(&*metrics_) : &metrics_rows);
@@ -221,7 +221,7 @@ class Run {
     return result;
   }
 
-  void end_trial(EncounterObserver& seen, SimulationResult result) {
+  void end_trial(OutcomeObserver& seen, SimulationResult result) {
     result.outcome = seen.outcome(result.outcome);
     std::vector<Warning> warnings = seen.warnings(result.outcome);
     ++trials_;

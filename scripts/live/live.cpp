@@ -6,9 +6,9 @@
 
 #include "device_model/hands/scripted_hands.hpp"
 #include "results/observe/contact_forces.hpp"
+#include "results/observe/energy.hpp"
 #include "results/observe/metrics.hpp"
-#include "results/observe/passivity_observer.hpp"
-#include "results/summary/outcome_names.hpp"
+#include "results/summary/summary.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/run/assemble.hpp"

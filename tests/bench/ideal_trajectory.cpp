@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "results/observe/ideal_trajectory.hpp"
-#include "results/observe/inside.hpp"
+#include "results/observe/inside_observer.hpp"
 #include "tests/bench/bench.hpp"
 #include "tests/bench/task_scene.hpp"
 

@@ -8,8 +8,8 @@
 
 #include "algorithms/depth/depth_model.hpp"
 #include "algorithms/registry.hpp"
+#include "results/observe/energy.hpp"
 #include "results/observe/metrics.hpp"
-#include "results/observe/passivity_observer.hpp"
 #include "results/observe/step_times.hpp"
 #include "sim/contact/contact_source.hpp"
 #include "sim/contact/neighbour_list_query.hpp"

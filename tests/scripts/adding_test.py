@@ -238,7 +238,7 @@ class StillnessObserver final : public MetricObserver {
 
 }  // namespace hapbench
 """),
-        tree.edit('#include "results/observe/passivity_observer.hpp"\n#include "results/observe/target_metrics.hpp"\n',
+        tree.edit('#include "results/observe/ideal_trajectory.hpp"\n#include "results/observe/target_metrics.hpp"\n',
                   '#include "results/observe/stillness.hpp"\n', before=True),
         tree.edit('make<PassivityObserver>, true},\n',
                   """    {"stillness", [](const Scenario& s, bool) { return std::size_t{s.record.pose}; }, make<StillnessObserver>},

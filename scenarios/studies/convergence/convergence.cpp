@@ -10,11 +10,11 @@
 
 #include "algorithms/stages/damping_and_limits.hpp"
 #include "results/io/json_text.hpp"
-#include "results/summary/outcome_names.hpp"
+#include "results/summary/summary.hpp"
 #include "scenarios/description/metric_sections.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/run/assemble.hpp"
-#include "scenarios/run/scene_facts.hpp"
+#include "scenarios/run/scene_checks.hpp"
 #include "scenarios/run/scene_loop.hpp"
 #include "scenarios/studies/stability/field_limit.hpp"
 #include "sim/core/math.hpp"

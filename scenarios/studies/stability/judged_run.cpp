@@ -10,11 +10,11 @@
 
 #include "results/observe/contact_forces.hpp"
 #include "results/observe/metrics.hpp"
-#include "results/summary/outcome_names.hpp"
+#include "results/summary/summary.hpp"
 #include "scenarios/run/assemble.hpp"
-#include "scenarios/run/encounter.hpp"
+#include "scenarios/run/outcome.hpp"
 #include "scenarios/run/run_scenario.hpp"
-#include "scenarios/run/scene_facts.hpp"
+#include "scenarios/run/scene_checks.hpp"
 #include "scenarios/run/stop_signal.hpp"
 #include "sim/contact/stiffness_tensor.hpp"
 #include "sim/core/hash.hpp"
@@ -351,7 +351,7 @@ static JudgedRun judged_once(const LoadedScenario& loaded, const std::shared_ptr
   LastRows last(scenario);
   SimulationParts parts = assemble(scenario, loaded.files, shell, {});
   const std::shared_ptr<const ToolShape> tool = parts.tool;
-  const auto seen = encounter_observer(scenario, loaded.files, parts);
+  const auto seen = outcome_observer(scenario, loaded.files, parts);
   Simulation simulation(simulation_config(scenario), std::move(parts), {&classifier, &last, seen.get()});
   const MotionClass motion = classify(simulation, classifier);
   const SettledState settled = last.state(classifier.at_rest());

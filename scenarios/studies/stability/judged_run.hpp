@@ -13,7 +13,7 @@
 
 #include "results/observe/contact_forces.hpp"
 #include "scenarios/description/load_scenario.hpp"
-#include "scenarios/run/scene_facts.hpp"
+#include "scenarios/run/scene_checks.hpp"
 #include "sim/geometry/point_shell.hpp"
 #include "sim/loop/observer.hpp"
 #include "sim/loop/simulation.hpp"

@@ -17,7 +17,7 @@
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/diagnosis.hpp"
 #include "scenarios/run/run_scenario.hpp"
-#include "scenarios/run/scene_facts.hpp"
+#include "scenarios/run/scene_checks.hpp"
 #include "scenarios/run/scene_loop.hpp"
 #include "scenarios/studies/convergence/convergence.hpp"
 #include "scenarios/studies/stability/judged_run.hpp"

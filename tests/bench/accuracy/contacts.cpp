@@ -5,7 +5,7 @@
 
 #include "algorithms/registry.hpp"
 #include "results/observe/metrics.hpp"
-#include "results/summary/outcome_names.hpp"
+#include "results/summary/summary.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "sim/loop/integrators/table.hpp"
 #include "tests/bench/accuracy/accuracy.hpp"

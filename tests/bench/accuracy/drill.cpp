@@ -5,7 +5,7 @@
 #include "algorithms/registry.hpp"
 #include "results/observe/ideal_trajectory.hpp"
 #include "results/observe/metrics.hpp"
-#include "results/summary/outcome_names.hpp"
+#include "results/summary/summary.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/thesis_claims/measurements.hpp"
 #include "tests/bench/accuracy/accuracy.hpp"

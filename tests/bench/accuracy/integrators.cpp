@@ -5,7 +5,7 @@
 #include <unsupported/Eigen/MatrixFunctions>
 
 #include "algorithms/stages/damping_and_limits.hpp"
-#include "results/summary/outcome_names.hpp"
+#include "results/summary/summary.hpp"
 #include "sim/loop/integrators/table.hpp"
 #include "tests/bench/accuracy/accuracy.hpp"
 

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "results/observe/inside.hpp"
+#include "results/observe/inside_observer.hpp"
 #include "sim/geometry/solid.hpp"
 #include "sim/tool/bur.hpp"
 #include "sim/tool/cylinder.hpp"

@@ -9,7 +9,7 @@
 
 #include "results/allocations/allocations.hpp"
 #include "results/observe/contact_metrics.hpp"
-#include "results/observe/passivity_observer.hpp"
+#include "results/observe/energy.hpp"
 #include "tests/results/rows.hpp"
 #include "tests/support/fakes.hpp"
 

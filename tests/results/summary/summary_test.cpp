@@ -10,14 +10,12 @@
 
 #include "results/io/columns.hpp"
 #include "results/observe/contact_metrics.hpp"
-#include "results/observe/energy_ledger.hpp"
+#include "results/observe/energy.hpp"
 #include "results/observe/force_fidelity.hpp"
 #include "results/observe/ideal_trajectory.hpp"
 #include "results/observe/metrics.hpp"
-#include "results/observe/passivity_observer.hpp"
 #include "results/observe/target_metrics.hpp"
 #include "results/record/recorder.hpp"
-#include "results/summary/outcome_names.hpp"
 #include "results/summary/provenance.hpp"
 
 namespace hapbench::summary_test {

@@ -5,7 +5,7 @@
 #include <set>
 
 #include "algorithms/registry.hpp"
-#include "results/summary/outcome_names.hpp"
+#include "results/summary/summary.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/description/metric_sections.hpp"
 #include "scenarios/description/writer.hpp"

@@ -8,7 +8,7 @@
 #include "scenarios/description/load_scenario.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/run_scenario.hpp"
-#include "scenarios/run/scene_facts.hpp"
+#include "scenarios/run/scene_checks.hpp"
 #include "sim/mesh/marching_cubes.hpp"
 #include "sim/tool/mesh_tool.hpp"
 #include "tests/scenarios/support/scenarios.hpp"

@@ -1,4 +1,4 @@
-#include "results/observe/inside.hpp"
+#include "results/observe/inside_observer.hpp"
 
 #include <algorithm>
 #include <cmath>

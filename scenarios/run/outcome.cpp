@@ -1,4 +1,4 @@
-#include "scenarios/run/encounter.hpp"
+#include "scenarios/run/outcome.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -13,8 +13,8 @@
 #include "device_model/hands/drag_hand.hpp"
 #include "device_model/hands/tracking_hand.hpp"
 #include "results/observe/contact_forces.hpp"
-#include "results/summary/outcome_names.hpp"
-#include "scenarios/run/scene_facts.hpp"
+#include "results/summary/summary.hpp"
+#include "scenarios/run/scene_checks.hpp"
 #include "sim/contact/grid_index.hpp"
 
 namespace hapbench {
@@ -277,10 +277,10 @@ std::string passage_text(const InsideObserver& inside, double half_width, double
                      begins, length_text(inside_max), length_text(half_width));
 }
 
-class Encounter final : public EncounterObserver {
+class OutcomeWatch final : public OutcomeObserver {
  public:
-  Encounter(const Scenario& scenario, const NamedFiles& files, const SimulationParts& parts,
-            const MetricsObserver* metrics)
+  OutcomeWatch(const Scenario& scenario, const NamedFiles& files, const SimulationParts& parts,
+               const MetricsObserver* metrics)
       : scenario_(scenario),
         metrics_(metrics),
         tool_(parts.tool),
@@ -497,9 +497,9 @@ class Encounter final : public EncounterObserver {
 
 }  // namespace
 
-std::unique_ptr<EncounterObserver> encounter_observer(const Scenario& scenario, const NamedFiles& files,
-                                                      const SimulationParts& parts, const MetricsObserver* metrics) {
-  return std::make_unique<Encounter>(scenario, files, parts, metrics);
+std::unique_ptr<OutcomeObserver> outcome_observer(const Scenario& scenario, const NamedFiles& files,
+                                                  const SimulationParts& parts, const MetricsObserver* metrics) {
+  return std::make_unique<OutcomeWatch>(scenario, files, parts, metrics);
 }
 
 }  // namespace hapbench

@@ -1,4 +1,4 @@
-#include "scenarios/run/encounter.hpp"
+#include "scenarios/run/outcome.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,12 +7,12 @@
 #include "results/observe/metrics.hpp"
 #include "scenarios/description/metric_sections.hpp"
 #include "scenarios/run/run_scenario.hpp"
-#include "scenarios/run/scene_facts.hpp"
+#include "scenarios/run/scene_checks.hpp"
 #include "tests/results/rows.hpp"
 #include "tests/scenarios/support/bundled.hpp"
 
 /// The outcomes of runs that miss or lose their object, whether they were expected, and the warnings about them.
-namespace hapbench::encounter_test {
+namespace hapbench::outcome_test {
 namespace {
 
 /// A tool of 1 mm above a plane of 10 mm, which a hand pushes.
@@ -32,7 +32,7 @@ Result run_of(const char* patch) {
   return run_scenario(read_scenario(json, HAPBENCH_TEST_DATA), std::nullopt, false);
 }
 
-TEST(Encounter, LostContactWhenTheToolEndedFarAway) {
+TEST(Outcome, LostContactWhenTheToolEndedFarAway) {
   const char* const pushed = R"({"initial": {"position_m": [0, 0, 0]}, "time": {"steps": 500},
                                  "hand": {"x_N": 8, "z_N": -0.5}})";
   const Result run = run_of(pushed);
@@ -44,14 +44,14 @@ TEST(Encounter, LostContactWhenTheToolEndedFarAway) {
       << run.warnings[0].text;
 }
 
-TEST(Encounter, AScriptMayLeadTheToolAway) {
+TEST(Outcome, AScriptMayLeadTheToolAway) {
   const char* const led = R"({"initial": null, "hand": null, "motion": {"position": {"type": "prescribed",
       "x_m": 0, "y_m": 0, "z_m": {"type": "waypoints", "points": [[0, 0], [0.04, 1]]}}}})";
   EXPECT_EQ(run_of(led).end.outcome, Outcome::completes);
 }
 
 /// The tip centre is in the environment's box all the time, 1 mm from the wall of a hole of 2 mm.
-TEST(Encounter, NoContactIsMeasuredToTheSurface) {
+TEST(Outcome, NoContactIsMeasuredToTheSurface) {
   const char* const in_hole =
       R"({"hand": null, "initial": {"position_m": [0, 0, -0.001]}, "tool": {"diameter_m": 0.0006},
       "environment": {"type": "block_with_hole", "size_m": [0.006, 0.005, 0.004], "hole_diameter_m": 0.002,
@@ -65,7 +65,7 @@ TEST(Encounter, NoContactIsMeasuredToTheSurface) {
   EXPECT_TRUE(run.warnings[0].text.ends_with("; nothing pushes the tool: is hand missing?")) << run.warnings[0].text;
 }
 
-TEST(Encounter, NoContactTellsTheLikelyCause) {
+TEST(Outcome, NoContactTellsTheLikelyCause) {
   for (const auto& [patch, cause] : {
            std::pair{R"({"hand": {"z_N": 1}})", "; is initial.position_m right?"},
            {R"({"hand": {"type": "impedance", "z_N": null, "stiffness_N_per_m": 300, "damping_N_s_per_m": 6,
@@ -223,4 +223,4 @@ TEST(StepWay, CountsWaysThatMayHaveMetTheBox) {
 }
 
 }  // namespace
-}  // namespace hapbench::encounter_test
+}  // namespace hapbench::outcome_test

@@ -1,4 +1,4 @@
-#include "results/observe/energy_ledger.hpp"
+#include "results/observe/energy.hpp"
 
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@
 #include "tests/support/scenes.hpp"
 #include "tests/support/setting.hpp"
 
-namespace hapbench::energy_ledger_test {
+namespace hapbench::energy_test {
 namespace {
 
 using test::Setting;
@@ -176,4 +176,4 @@ TEST(EnergyLedger, KeepsTheLargestEventsInOrder) {
 }
 
 }  // namespace
-}  // namespace hapbench::energy_ledger_test
+}  // namespace hapbench::energy_test

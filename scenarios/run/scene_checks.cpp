@@ -1,4 +1,4 @@
-#include "scenarios/run/scene_facts.hpp"
+#include "scenarios/run/scene_checks.hpp"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 #include <span>
 
 #include "device_model/hands/drag_hand.hpp"
-#include "results/observe/inside.hpp"
+#include "results/observe/inside_observer.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/stop_signal.hpp"
 #include "sim/mesh/triangle_soup.hpp"

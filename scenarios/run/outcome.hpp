@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include "results/observe/inside.hpp"
+#include "results/observe/inside_observer.hpp"
 #include "results/observe/metrics.hpp"
 #include "results/summary/summary.hpp"
 #include "scenarios/description/parts.hpp"
@@ -64,7 +64,7 @@ class OpenEdgeObserver final : public Observer {
 };
 
 /// Watches a run for all that decides its outcome; some 40 ns a row, no allocation.
-class EncounterObserver : public Observer {
+class OutcomeObserver : public Observer {
  public:
   /// The outcome of a run with a point shell that ended with `outcome`, which stays unless it is `completes`. That
   /// becomes `went_through` when the tool passed the surface (Passage, CorePassage), by itself or led by a script, or a
@@ -88,8 +88,8 @@ class EncounterObserver : public Observer {
 
 /// Scenario and parts must outlive the observer; `metrics` observes before. Without it, what only warnings need is not
 /// watched.
-std::unique_ptr<EncounterObserver> encounter_observer(const Scenario& scenario, const NamedFiles& files,
-                                                      const SimulationParts& parts,
-                                                      const MetricsObserver* metrics = nullptr);
+std::unique_ptr<OutcomeObserver> outcome_observer(const Scenario& scenario, const NamedFiles& files,
+                                                  const SimulationParts& parts,
+                                                  const MetricsObserver* metrics = nullptr);
 
 }  // namespace hapbench
