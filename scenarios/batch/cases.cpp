@@ -54,13 +54,8 @@ double value_between(const Range& range, double i, double last) {
                     std::max(a, b));
 }
 
-/// The parts of "a:b", or of "a:b:n" for a grid, optionally followed by ":log".
-struct RangeText {
-  Range range;
-  std::string_view count;  ///< empty for a sample
-};
-
-RangeText read_range(const std::string& text, std::string_view words, bool sampled) {
+/// Reads "a:b", or "a:b:n" for a grid, optionally followed by ":log".
+void read_range(const std::string& text, std::string_view words, bool sampled, Axis& axis) {
   const Words parts = parts_of(words, ':');
   const std::size_t least = sampled ? 2 : 3;
   if (sampled && parts.size() > 2 && whole_number(parts[2]))
@@ -71,22 +66,17 @@ RangeText read_range(const std::string& text, std::string_view words, bool sampl
     refuse_axis(text, fmt::format("got {} parts between colons", parts.size()),
                 sampled ? "a:b or a:b:log" : "a:b:n or a:b:n:log");
   }
-  RangeText read{{range_end(text, parts[0]), range_end(text, parts[1]), parts.size() > least},
-                 sampled ? std::string_view() : parts[2]};
-  if (!read.range.logarithmic) return read;
-  if (parts.back() != "log") refuse_axis(text, fmt::format("got \"{}\"", parts.back()), "\"log\" or nothing");
-  if (!(read.range.from > 0.0 && read.range.to > 0.0)) {
-    refuse_axis(text, fmt::format("got ends {} and {} of a logarithmic range", read.range.from, read.range.to),
-                "numbers > 0");
-  }
-  return read;
-}
-
-std::size_t steps_of(const std::string& text, std::string_view word) {
-  const auto n = whole_number(word);
-  if (!n || *n < 2 || *n > kMostRuns)
-    refuse_axis(text, fmt::format("got \"{}\" values", word), fmt::format("an integer 2 ... {}", kMostRuns));
-  return *n;
+  const Range range{range_end(text, parts[0]), range_end(text, parts[1]), parts.size() > least};
+  if (range.logarithmic && parts.back() != "log")
+    refuse_axis(text, fmt::format("got \"{}\"", parts.back()), "\"log\" or nothing");
+  if (range.logarithmic && !(range.from > 0.0 && range.to > 0.0))
+    refuse_axis(text, fmt::format("got ends {} and {} of a logarithmic range", range.from, range.to), "numbers > 0");
+  axis.range = range;
+  if (sampled) return;
+  const auto steps = whole_number(parts[2]);
+  if (!steps || *steps < 2 || *steps > kMostRuns)
+    refuse_axis(text, fmt::format("got \"{}\" values", parts[2]), fmt::format("an integer 2 ... {}", kMostRuns));
+  axis.steps = *steps;
 }
 
 /// The parts between commas that stand outside of JSON's brackets and strings.
@@ -168,31 +158,19 @@ Axis read_axis(const std::string& text, bool sampled) {
     refuse_axis(text, "has control characters", "numbers, names and JSON");
   const bool is_range =
       !begins_json(values) && values.find(',') == std::string_view::npos && values.find(':') != std::string_view::npos;
-  if (!is_range) {
+  if (is_range)
+    read_range(text, values, sampled, axis);
+  else
     axis.values = listed_values(text, values);
-    return axis;
-  }
-  const RangeText read = read_range(text, values, sampled);
-  axis.range = read.range;
-  if (!sampled) axis.steps = steps_of(text, read.count);
   return axis;
+}
+
+std::string number_text(const Axis& axis, double value) {
+  return cell_text(axis.whole ? std::round(value) : value);
 }
 
 /// By the method's number.
 constexpr std::string_view kMethodNames[] = {"lhs", "random", "points"};
-
-/// Largest coordinate, since rounding could move a point in the last stratum to 1.
-constexpr double kLast = 1.0 - 0x1.0p-53;
-
-std::vector<double> latin_hypercube(Random& random, std::size_t count) {
-  std::vector<std::size_t> strata(count);
-  std::iota(strata.begin(), strata.end(), std::size_t{0});
-  random.shuffle(strata);
-  std::vector<double> points(count);
-  for (std::size_t i = 0; i < count; ++i)
-    points[i] = std::min((static_cast<double>(strata[i]) + random.uniform()) / static_cast<double>(count), kLast);
-  return points;
-}
 
 /// How slowly an axis varies in the order of runs, the slowest first: what a shell depends on before all else.
 int speed(const Axis& axis) {
@@ -217,9 +195,8 @@ Axis parse_axis(const std::string& text, bool sampled) {
 }
 
 std::string Axis::value(std::size_t i) const {
-  if (!range) return values[i];
-  const double value = value_between(*range, static_cast<double>(i), static_cast<double>(steps - 1));
-  return cell_text(whole ? std::round(value) : value);
+  return range ? number_text(*this, value_between(*range, static_cast<double>(i), static_cast<double>(steps - 1)))
+               : values[i];
 }
 
 std::size_t Axis::place_at(double coordinate) const {
@@ -228,9 +205,7 @@ std::size_t Axis::place_at(double coordinate) const {
 }
 
 std::string Axis::value_at(double coordinate) const {
-  if (!range) return values[place_at(coordinate)];
-  const double value = range->value_at(coordinate);
-  return cell_text(whole ? std::round(value) : value);
+  return range ? number_text(*this, range->value_at(coordinate)) : values[place_at(coordinate)];
 }
 
 void append_new(std::vector<std::string>& texts, const std::vector<std::string>& more) {
@@ -255,13 +230,13 @@ std::string_view sampling_name(SamplingMethod method) {
 }
 
 Sampling parse_sampling(const std::string& text, std::uint64_t seed) {
-  const std::size_t colon = std::min(text.find(':'), text.size());
-  const std::string_view name = std::string_view(text).substr(0, colon);
+  const Words parts = parts_of(text, ':');
+  const std::string_view name = parts[0];
   if (name == "sobol") {
     throw InputError(
         "--sample: \"sobol\" is no longer known; instead: lhs:N, or --points FILE.csv with the points of another program");
   }
-  const auto count = whole_number(std::string_view(text).substr(std::min(colon + 1, text.size())));
+  const auto count = parts.size() == 2 ? whole_number(parts[1]) : std::nullopt;
   if ((name != "lhs" && name != "random") || !count || *count < 1 || *count > kMostRuns) {
     throw InputError(
         fmt::format("--sample: got \"{}\"; allowed: lhs:N or random:N with 1 <= N <= {}", text, kMostRuns));
@@ -270,10 +245,19 @@ Sampling parse_sampling(const std::string& text, std::uint64_t seed) {
 }
 
 std::vector<double> unit_sample(const Sampling& sampling, std::size_t axis) {
+  constexpr double kLast = 1.0 - 0x1.0p-53;  // rounding could move a point in the last stratum to 1
   Random random(Random::derive(sampling.seed, axis));
-  if (sampling.method == SamplingMethod::latin_hypercube) return latin_hypercube(random, sampling.count);
   std::vector<double> points(sampling.count);
-  for (double& point : points) point = random.uniform();
+  if (sampling.method == SamplingMethod::random) {
+    for (double& point : points) point = random.uniform();
+    return points;
+  }
+  std::vector<std::size_t> strata(sampling.count);
+  std::iota(strata.begin(), strata.end(), std::size_t{0});
+  random.shuffle(strata);
+  for (std::size_t i = 0; i < points.size(); ++i)
+    points[i] =
+        std::min((static_cast<double>(strata[i]) + random.uniform()) / static_cast<double>(points.size()), kLast);
   return points;
 }
 
@@ -308,9 +292,8 @@ PointTable read_points(const std::filesystem::path& file) {
 }
 
 Shard parse_shard(const std::string& text) {
-  const std::size_t slash = std::min(text.find('/'), text.size());
-  const auto index = whole_number(std::string_view(text).substr(0, slash));
-  const auto count = whole_number(std::string_view(text).substr(std::min(slash + 1, text.size())));
+  const Words parts = parts_of(text, '/');
+  const auto index = whole_number(parts[0]), count = parts.size() == 2 ? whole_number(parts[1]) : std::nullopt;
   if (!index || !count || *index >= *count || *count > kMostRuns) {
     throw InputError(
         fmt::format("--shard: got \"{}\"; allowed: i/n with 0 <= i < n <= {}, as in 0/4", text, kMostRuns));

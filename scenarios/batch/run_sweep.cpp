@@ -182,11 +182,6 @@ std::string finished_row(const SweepPlan& plan, std::size_t run, const Result& s
   return line_of(plan, run, cells);
 }
 
-std::string computed_row(const SweepPlan& plan, const SweepOptions& options, std::size_t run) {
-  const auto output = options.keep_runs ? std::optional(run_folder(options, run)) : std::nullopt;
-  return finished_row(plan, run, run_scenario(plan.cases.load(run), output, false));
-}
-
 /// Whether the row of an earlier sweep stays. Throws InputError when it has not so many cells.
 bool stays(const SweepPlan& plan, const SweepOptions& options, std::size_t run, std::string_view row,
            std::size_t columns) {
@@ -195,14 +190,6 @@ bool stays(const SweepPlan& plan, const SweepOptions& options, std::size_t run, 
     throw InputError(fmt::format("got the row \"{}\"; allowed: rows of this sweep", row.substr(0, 60)));
   return cells[1 + plan.cases.axes().size()] != kErrorOutcome &&
          (!options.keep_runs || fs::exists(run_folder(options, run) / "summary.json"));
-}
-
-/// The runs of the shard that the table has not, in the order of runs.
-std::vector<std::size_t> runs_left(const Cases& cases, const Shard& part, const TableFile& table) {
-  std::vector<std::size_t> left;
-  for (std::size_t place = part.index; place < cases.size(); place += part.count)
-    if (const std::size_t run = cases.at(place); !table.rows()[run]) left.push_back(run);
-  return left;
 }
 
 struct Sign {
@@ -216,38 +203,29 @@ constexpr Sign kSigns[] = {
     {"!=", [](double a, double b) { return a != b; }}, {"<", [](double a, double b) { return a < b; }},
     {">", [](double a, double b) { return a > b; }},   {"=", [](double a, double b) { return a == b; }}};
 
-/// A condition on the cells of a row.
-class Condition {
- public:
-  Condition(const std::string& text, const std::vector<std::string>& columns) {
-    const std::size_t end = std::min(text.find_first_of("<>=!"), text.size());
-    const std::string rest = text.substr(end), name = text.substr(0, end);
-    sign_ = std::find_if(std::begin(kSigns), std::end(kSigns), [&](const Sign& s) { return rest.starts_with(s.text); });
-    if (sign_ != std::end(kSigns)) value_ = rest.substr(sign_->text.size());
-    number_ = finite_number(value_);
-    const bool is_equality = sign_ != std::end(kSigns) && (sign_->text == "=" || sign_->text == "!=");
-    if (value_.empty() || (!number_ && !is_equality)) {
-      throw InputError(fmt::format(
-          "--where: got \"{}\"; allowed: a column of sweep.csv, one of < <= > >= = !=, and a number (a text with = and !=), "
-          "as inside_max_m<3e-4 or outcome=completes",
-          text));
-    }
-    require_valid_name("--where: got", name, columns);
-    column_ = static_cast<std::size_t>(std::find(columns.begin(), columns.end(), name) - columns.begin());
-  }
+/// Whether a row keeps a condition.
+using Condition = std::function<bool(const SweepRow& row)>;
 
-  bool holds(const std::vector<std::string>& cells) const {
-    if (!number_) return (cells[column_] == value_) == (sign_->text == "=");
-    const auto number = finite_number(cells[column_]);
-    return number && sign_->holds(*number, *number_);
+Condition condition_of(const std::string& text, const std::vector<std::string>& columns) {
+  const std::size_t end = std::min(text.find_first_of("<>=!"), text.size());
+  const std::string name = text.substr(0, end), rest = text.substr(end);
+  const auto* sign = std::ranges::find_if(kSigns, [&](const Sign& s) { return rest.starts_with(s.text); });
+  const std::string value = sign == std::end(kSigns) ? "" : rest.substr(sign->text.size());
+  const auto number = finite_number(value);
+  if (value.empty() || (!number && sign->text != "=" && sign->text != "!=")) {
+    throw InputError(fmt::format(
+        "--where: got \"{}\"; allowed: a column of sweep.csv, one of < <= > >= = !=, and a number (a text with = and !=), "
+        "as inside_max_m<3e-4 or outcome=completes",
+        text));
   }
-
- private:
-  std::size_t column_ = 0;
-  const Sign* sign_ = nullptr;
-  std::string value_;
-  std::optional<double> number_;
-};
+  require_valid_name("--where: got", name, columns);
+  const auto column = static_cast<std::size_t>(std::ranges::find(columns, name) - columns.begin());
+  return [=](const SweepRow& row) {
+    if (!number) return (row[column] == value) == (sign->text == "=");
+    const auto found = finite_number(row[column]);
+    return found && sign->holds(*found, *number);
+  };
+}
 
 /// The axis that sweep.json describes.
 Axis axis_of(const Json& json) {
@@ -370,14 +348,17 @@ SweepReport run_sweep(const SweepPlan& plan, const SweepOptions& options) {
   const std::size_t size = part.size(plan.cases.size());
   ProgressBar bar("sweep", size, options.progress);
   bar.start_at(report.resumed);
-  const std::vector<std::size_t> left = runs_left(plan.cases, part, table);
+  std::vector<std::size_t> left;  // in the order of runs
+  for (std::size_t place = part.index; place < plan.cases.size(); place += part.count)
+    if (const std::size_t run = plan.cases.at(place); !table.rows()[run]) left.push_back(run);
   std::mutex mutex;  // of table and report
   const auto work = [&](std::size_t k) {
     const std::size_t run = left[k];
     std::string row;
     std::optional<FailedRun> failed;
     try {
-      row = computed_row(plan, options, run);
+      const auto output = options.keep_runs ? std::optional(run_folder(options, run)) : std::nullopt;
+      row = finished_row(plan, run, run_scenario(plan.cases.load(run), output, false));
     } catch (const IoError&) {
       throw;  // further runs could not be kept either; --resume goes on
     } catch (const std::exception& error) {
@@ -448,7 +429,7 @@ SweepTable read_sweep(const fs::path& file, const std::vector<std::string>& cond
   table.columns = csv_cells(line);
   if (!has_columns_of_sweep(table)) fail_in_file(file, "is not the table of the sweep that sweep.json describes");
   std::vector<Condition> all;
-  for (const std::string& text : conditions) all.emplace_back(text, table.columns);
+  for (const std::string& text : conditions) all.push_back(condition_of(text, table.columns));
   while (std::getline(in, line)) {
     SweepRow row = csv_cells(line);
     const auto run = whole_number(row[0]);
@@ -457,7 +438,7 @@ SweepTable read_sweep(const fs::path& file, const std::vector<std::string>& cond
     const std::string& outcome = table.outcome(row);
     const bool is_expected = row[table.outcome_place() + 1] == "true";
     table.counts.add(*run, outcome, is_expected);
-    if (!std::ranges::all_of(all, [&row](const Condition& c) { return c.holds(row); })) continue;
+    if (!std::ranges::all_of(all, [&row](const Condition& keeps) { return keeps(row); })) continue;
     table.kept.add(*run, outcome, is_expected);
     if (table.kept.runs <= SweepTable::kMostRows) table.rows.push_back(std::move(row));
   }

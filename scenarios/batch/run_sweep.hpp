@@ -34,14 +34,13 @@ struct SweepPlan {
 /// Maximum number of runs of a sample, and of values of a field of a grid, that are checked before the first run.
 inline constexpr std::size_t kMostChecked = 1000;
 
-/// The runs that are checked, in order: all if there are at most kMostChecked. Of a larger grid, the runs at the edges
-/// through its first and its last run, along each of which one field takes all its values (at most kMostChecked of
-/// them, the ends included). Of a larger sample, the first runs.
+/// The runs that are checked, in order: all of at most kMostChecked. Of a larger grid those at its edges through the
+/// first and the last run, along each of which one field takes its values (at most kMostChecked of them, the ends
+/// included); of a larger sample the first.
 std::vector<std::size_t> runs_to_check(const Cases& cases);
 
 /// Loads the scenarios of the runs to check and reads the files they name, to find errors before anything is run or
-/// written. Takes about 0.1 ms for each run on each of `jobs` threads. `progress` allows a progress bar. Throws
-/// InputError, that of the run with the lowest number if there are several.
+/// written; some 0.1 ms a run on each of `jobs` threads. Throws InputError, that of the run with the lowest number.
 SweepPlan plan_sweep(Cases cases, std::size_t jobs, bool progress);
 
 struct SweepOptions {
@@ -73,12 +72,10 @@ struct SweepReport {
   int signal = 0;                   ///< the signal that stopped the sweep before there was a table, or 0
 };
 
-/// Runs the shard's part of a plan, `jobs` runs at once, and writes the table and, beside it, a JSON file that says
-/// what it holds. Runs in one environment share its shell. Files depend neither on `jobs` nor on interruptions.
-///
-/// Rows are in the growing table (table_file.hpp) as they come, so that a killed sweep loses the runs in flight.
-/// SIGINT and SIGTERM end the sweep after those, and leave it. Throws InputError when with `resume` there is the table
-/// of another sweep, and IoError when something cannot be written.
+/// Runs the shard's part of a plan and writes its table and the JSON beside it, which depend neither on `jobs` nor on
+/// interruptions. Runs in one environment share its shell. A killed sweep loses the runs in flight (table_file.hpp);
+/// SIGINT and SIGTERM end it after those. Throws InputError when with `resume` there is the table of another sweep, and
+/// IoError when something cannot be written.
 SweepReport run_sweep(const SweepPlan& plan, const SweepOptions& options);
 
 // ---- What a sweep leaves
