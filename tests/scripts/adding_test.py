@@ -215,6 +215,8 @@ void add_twice(CommandLine& line) {
 """),
         tree.edit("add_validate;", "add_twice, ", before=True),
         tree.edit("constexpr AddCommand* kCommands[] = {", "add_twice, "),
+        tree.edit("constexpr CommandGuide kGuides[] = {",
+                  '\n    {"look", "twice", "what is a word two times?", {"twice this", "twice that", "twice it"}},'),
     }
 
 
@@ -393,7 +395,8 @@ class Adding(unittest.TestCase):
 
     def test_a_command_is_in_the_help(self):
         self.assertEqual(self.hapbench("twice", "this"), "this this\n")
-        self.assertIn("Print a word two times", self.hapbench("--help"))
+        self.assertIn("what is a word two times?", self.hapbench())
+        self.assertIn("Print a word two times", self.hapbench("twice", "--help"))
 
     def test_a_metric_is_in_all_results(self):
         self.write(record={"torque": True}, expect={"outcome": scenario()["expect"]["outcome"],

@@ -173,7 +173,7 @@ class Commands(unittest.TestCase):
                     self.assertRegex(says, rf"{option}\b")
 
     def test_commands_in_sentences_exist(self):
-        known = set(re.findall(r"^  ([a-z]+) +[A-Z]", started([PROGRAM, "--help"]).stdout, re.M))
+        known = set(re.findall(r"^[a-z ]{8}([a-z]+) ", started([PROGRAM]).stdout, re.M))
         self.assertIn("run", known)
         for manual in MANUALS:
             for name in re.findall(r"`hapbench\s+([a-z]+)", manual.text):
