@@ -1,5 +1,7 @@
 """The command line of scripts/docs."""
 import difflib
+import re
+import shlex
 import sys
 import tempfile
 from pathlib import Path
@@ -7,9 +9,13 @@ from pathlib import Path
 from hapbench_command import BAD_INPUT, FAILED, INTERRUPTED, SUCCESS, Arguments, say_error, write
 from hapbench_report.json_input import InputError
 
-from . import blocks, gallery
+from . import blocks
 from .manuals import ROOT, Manual, manuals
 from .program import Program, ProgramError
+
+GALLERY = ROOT / "results" / "reference" / "gallery"
+# Commands, the last of which plots, and below them the picture.
+ILLUSTRATED = re.compile(r"((?:^    hapbench .*\n)+)\n!\[[^]]*\]\([^)]*/gallery/(\w+\.svg)\)", re.M)
 
 DESCRIPTION = """Renews what is generated in the manuals: sessions (commands with their output), the tables of the ledger
 and of its robustness, from results/reference, and, with --gallery, the pictures of commands. Needs the built program.
@@ -21,7 +27,7 @@ def arguments(words):
     parser.add_argument("--program", type=Path, default=ROOT / "build" / "release" / "bin" / "hapbench", metavar="FILE",
                         help="default: build/release/bin/hapbench")
     parser.add_argument("--tables", action="store_true", help="the tables from results/reference only, which need no program")
-    parser.add_argument("--gallery", action="store_true", help="the pictures of results/reference/gallery, too")
+    parser.add_argument("--gallery", action="store_true", help="also the pictures of results/reference/gallery")
     parser.add_argument("--check", action="store_true", help="write nothing; show what is not current")
     return parser.parse_args(words)
 
@@ -37,6 +43,17 @@ def renewed(manual, scratch, program):
     return blocks.renewed(text, {"which_law": lambda _: blocks.which_law(text)})  # by the tables made just now
 
 
+def draw_gallery(program, scratch):
+    """The pictures that manuals show below the commands that draw them."""
+    pictures = [found for manual in map(Manual, manuals()) for found in ILLUSTRATED.findall(manual.text)]
+    for commands, picture in pictures:
+        *runs, plot = (shlex.split(line, comments=True)[1:] for line in commands.splitlines())
+        for words in runs:
+            program.run([*words, "--quiet"], scratch)
+        program.run([*plot, "--quiet", "--out", GALLERY / picture], scratch)
+    print(f"drew {len(pictures)} pictures into {GALLERY.relative_to(ROOT)}")
+
+
 def differences(manual, text):
     """A unified diff from the manual as it is to the given text."""
     name = str(manual.file.relative_to(ROOT))
@@ -50,7 +67,7 @@ def main(words=None):
         program = None if chosen.tables else Program(chosen.program)
         with tempfile.TemporaryDirectory(prefix="hapbench-docs-") as scratch:
             if chosen.gallery and program:
-                gallery.draw_all(program, Path(scratch))
+                draw_gallery(program, Path(scratch))
             for manual in map(Manual, manuals()):
                 text = renewed(manual, Path(scratch), program)
                 if text == manual.text:
