@@ -205,20 +205,19 @@ class Pages(unittest.TestCase):
 
     def test_the_first_page_keeps_its_size(self):
         lines = (SOURCE / "README.md").read_text(encoding="utf-8").splitlines()
-        self.assertLessEqual(len(lines), 150)
+        self.assertLessEqual(len(lines), 60)
         self.assertEqual([line for line in lines if len(line) > 110], [])
 
-    def test_every_folder_of_the_first_page_has_its_manual(self):
-        for folder in ("algorithms", "device_model", "results", "scenarios", "sim", "tests"):
-            self.assertTrue((SOURCE / folder / "README.md").is_file(), folder)
+    def test_manuals_keep_their_size(self):
+        others = [manual for manual in MANUALS if str(manual.file.relative_to(SOURCE)) not in ("README.md", "CHANGELOG.md", "CONTRIBUTING.md")]
+        self.assertLessEqual(sum(manual.text.count("\n") for manual in others), 3600)
 
-    def test_every_algorithm_is_in_both_tables(self):
+    def test_every_algorithm_is_in_the_table(self):
         schema = json.dumps(json.loads((SOURCE / "scenarios" / "scenario.schema.json").read_text(encoding="utf-8")))
         names = json.loads(re.search(r'\["original_averaging", [^]]*\]', schema)[0])
         self.assertGreater(len(names), 12)
-        for page in ("README.md", "algorithms/README.md"):
-            rows = re.findall(r"^\| `(\w+)` \|", (SOURCE / page).read_text(encoding="utf-8"), re.M)
-            self.assertEqual(set(names) - set(rows), set(), page)
+        rows = re.findall(r"^\| `(\w+)` \|", (SOURCE / "algorithms/README.md").read_text(encoding="utf-8"), re.M)
+        self.assertEqual(set(names) - set(rows), set())
 
     def test_the_version_is_the_same_everywhere(self):
         version = re.search(r"project\(hapbench VERSION (\S+)", (SOURCE / "CMakeLists.txt").read_text(encoding="utf-8"))[1]

@@ -64,8 +64,8 @@ def write_index(directory, entries):
 
 PAGE = """# Figures on record
 
-Every figure of the thesis that a simulation can draw, and some of ours: made by `scripts/figures RESULTS --out DIR --record
-results/reference/figures` from what `scripts/reproduce` leaves.
+See every figure of the thesis that a simulation can draw, and some of ours: made by `scripts/figures RESULTS --out DIR
+--record results/reference/figures` from what `scripts/reproduce` leaves.
 """
 
 
@@ -80,9 +80,8 @@ def record(directory, page):
             continue
         write(on_record, style.compact((directory / on_record.name).read_text(encoding="utf-8")))
         name = f"Figure {figure.thesis}" if figure.thesis else "Ours"
-        text += f"\n## {name}: {figure.title}\n\n![{figure.title}]({on_record.name})\n\n{drawn[figure.id]['caption']}\n"
-        if figure.differs:
-            text += f"\nDiffers: {figure.differs}\n"
+        text += f"\n## {name}: {figure.title}\n\n![{figure.title}]({on_record.name})\n\n{drawn[figure.id]['caption']}"
+        text += f" Differs: {figure.differs}\n" if figure.differs else "\n"
     write(page / "figures.md", text)
 
 
