@@ -18,7 +18,7 @@
 /// registry.cpp; `add_algorithm` adds one from outside while the program runs.
 namespace hapbench {
 
-/// A parameter that belongs to one algorithm alone and is no member of RenderingConfig: a number, the field
+/// A parameter that belongs to one algorithm alone and is not a member of RenderingConfig: a number, the field
 /// rendering.parameters.<algorithm>.<name> of a scenario.
 struct OwnParameter {
   const char* name;
@@ -43,7 +43,7 @@ inline WedgeStiffness wedge_of_weight(double weight, double half_angle) {
   return {2.0 * weight * math::square(math::sin(half_angle)), 2.0 * weight * math::square(math::cos(half_angle))};
 }
 
-/// Known properties of an algorithm; null if unknown. Each derivation stands beside its algorithm.
+/// Known properties of an algorithm; null if unknown. Each derivation stands with its algorithm.
 struct AlgorithmTheory {
   /// The largest |f_spring| / K [m] that n contacts, the deepest of them by `depth` [m], may cause in one step.
   double (*force_bound)(const RenderingConfig& config, const ToolShape& tool, std::size_t n, double depth) = nullptr;
@@ -62,7 +62,7 @@ struct AlgorithmEntry {
   const ModelInfo* info;
   /// Makes a force law for one run, which PenaltyRendering uses.
   std::function<std::unique_ptr<ForceLaw>(const RenderingConfig&)> make_law = {};
-  /// Makes an algorithm that is no force law for one run.
+  /// Makes an algorithm that is not a force law, for one run.
   std::function<std::unique_ptr<ForceAlgorithm>(const RenderingConfig&)> make = {};
   AlgorithmTheory theory = {};
   /// The depth model that is part of the algorithm's definition; empty if the scenario chooses.

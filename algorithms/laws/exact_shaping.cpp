@@ -261,7 +261,7 @@ constexpr int kDirectionCells = 15;
 constexpr std::size_t kFaces = 6, kCells = kFaces * kDirectionCells * kDirectionCells;
 
 std::size_t step_of(double tangent) noexcept {
-  // Written so that a NaN gets a cell of the grid, too.
+  // Written so that a NaN also gets a cell of the grid.
   const double place = 0.5 * kDirectionCells * (tangent + 1.0);
   if (!(place > 0.0)) return 0;
   return place < kDirectionCells ? static_cast<std::size_t>(place) : kDirectionCells - 1;

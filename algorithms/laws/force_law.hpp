@@ -43,7 +43,7 @@ class ForceLaw {
   /// are the arguments. By default that of weighted springs: sum c_i <omega x r_i, u_i> u_i, with r_i from the tip
   /// centre to the colliding point. O(n).
   virtual Vec3 turning_velocity(const ContactBuffer& contacts, const Mat3& S, const ToolState& tool) const noexcept;
-  /// False for laws that are no weighted springs, whose contacts have no loads of their own.
+  /// False for laws that are not weighted springs, whose contacts have no loads of their own.
   virtual bool gives_weights() const noexcept { return true; }
   /// Describes the fault of external code since the last reset, or null. After a fault the force is NaN.
   virtual const char* fault() const noexcept { return nullptr; }

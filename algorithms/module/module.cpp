@@ -178,7 +178,7 @@ LawForce ModuleLaw::evaluate(ContactBuffer& contacts) noexcept {
   if (!gives_weights_) std::replace_if(weights, end, is_unwritten, 1.0 / static_cast<double>(n));
   std::copy(weights, end, contacts.weight.begin());
   LawForce force = gives_weights_ ? weighted_force(contacts, K_) : force_of(answer);
-  // A weight that is not finite makes the tensor not finite, too.
+  // A weight that is not finite also makes the tensor not finite.
   if (!force.spring.allFinite()) return failed("gives a force that is not finite");
   if (!force.S.allFinite()) return failed("gives a stiffness that is not finite");
   return force;

@@ -278,10 +278,10 @@ SpringState ProxyRendering::spring_state(const ToolState&, const ContactBuffer&)
   SpringState state{spring_.squaredNorm() / (2.0 * K_) + damping_and_limits_.stored_energy(), Vec3::Zero()};
   for_each_holding(*near_contacts_, [&](std::size_t i) {
     const double weight = near_contacts_->weight[i];
-    // In the compromise, the violations store energy, too.
+    // In the compromise, the violations also store energy.
     if (!feasible_) state.energy += 0.5 * K_ * weight * weight;
     if (!constraints_->act_at_points()) return;
-    // The stored energy depends on the scaled depth, so the moment of the point is scaled, too.
+    // The stored energy depends on the scaled depth, so the moment of the point is scaled as well.
     const double scale = near_contacts_->depth[i] > 0.0 ? slowed_ : 1.0;
     state.moment -= (near_contacts_->point(i) - proxy_).cross(scale * K_ * multiplier(i) * near_contacts_->gradient(i));
   });

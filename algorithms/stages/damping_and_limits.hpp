@@ -84,7 +84,7 @@ inline Vec3 cut_to(const Vec3& force, const std::optional<double>& most) noexcep
 ///
 ///   v_n = sum c_i <v_i, u_i> u_i = S v + sum c_i <omega x r_i, u_i> u_i;  v_t = v + omega x r_mean - v_n
 ///
-/// with r_mean weighted by c_i; laws that are no weighted springs define v_n by ForceLaw::turning_velocity.
+/// with r_mean weighted by c_i; laws that are not weighted springs define v_n by ForceLaw::turning_velocity.
 /// Guarantee: the dampers of weighted springs take the power B sum c_i <v_i, u_i>^2 >= 0 from the motion of the tool.
 /// Known failure: the device renders the translation of that motion only. A turn drives the tip sideways with energy of
 /// the turning hand, which the hand does not feel.

@@ -21,7 +21,7 @@ struct StageStep {
   double energy = 0.0;
 };
 
-/// A controller behind an algorithm: in every row, in free air, too, it sees the force that a law with its damping,
+/// A controller behind an algorithm: in every row, also in free air, it sees the force that a law with its damping,
 /// friction and limits would render, and answers the force to render in its place. One object is the state of one run.
 class ForceStage {
  public:

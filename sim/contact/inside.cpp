@@ -41,7 +41,7 @@ std::optional<double> InsideSearch::depth(const ToolPose& pose, double known, do
   const LookedUp looked{pose.position, tip.value};
   beyond_border_ = !tip.known;
   cells_.clear();
-  improve(pose, pose.position);  // finds what is less deep than the tolerance, too
+  improve(pose, pose.position);  // also finds what is less deep than the tolerance
   const Box box = tool_.box_near(pose, 0.0, solid_.region());
   const Vec3 low = box.min.cwiseMax(solid_.region().min), high = box.max.cwiseMin(solid_.region().max);
   if ((low.array() <= high.array()).all()) {
@@ -156,7 +156,7 @@ namespace {
 /// Relative to the half width: stretches this short are not halved, ones this long have one ball only; what outlines
 /// made of polylines leave out of round bodies.
 constexpr double kShort = 0.02, kLong = 1.0, kPolyline = 2e-4;
-/// Centres beside that of the smallest ball, in half widths.
+/// Centres to try around that of the smallest ball, in half widths.
 constexpr double kBeside[] = {0.25, -0.25, 0.5, -0.5, 1.0, -1.0, 2.0, -2.0, 4.0, -4.0, 8.0};
 
 }  // namespace

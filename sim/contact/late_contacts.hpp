@@ -11,7 +11,7 @@
 
 namespace hapbench {
 
-/// How late contacts come: a slow loop finds them beside the fast one that renders (multi-rate rendering).
+/// How late contacts come: a slow loop finds them while a fast one renders (multi-rate rendering).
 struct Lateness {
   std::int64_t every = 1;  ///< contacts are found at rows 0, every, 2 every, …
   std::int64_t delay = 0;  ///< rows from a query until its contacts serve
@@ -32,7 +32,7 @@ struct Lateness {
 /// whose depth is then not above 0 are left out, except springs that pull. Integrators that ask within a step get the
 /// row's contacts, held or moved to where they ask.
 ///
-/// The source is asked when its answer comes due, for the pose of the query. So there are no contacts to keep of
+/// The source is asked when its answer comes due, for the pose of the query. So no contacts are kept of
 /// queries on their way, and sources with a memory still see the queries in order.
 class LateContacts final : public ContactSource {
  public:

@@ -1,6 +1,6 @@
 #pragma once
 
-/// Loops over indices on all processors, by oneTBB; one after the other where there are no threads, as in a page's
+/// Loops over indices on all processors, by oneTBB; one after the other without threads, as in a page's
 /// worker.
 #ifdef __wasm__
 #include <functional>

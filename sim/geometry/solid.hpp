@@ -55,7 +55,7 @@ class Solid {
 };
 
 /// The solids of scenes in closed form (signed_distance in analytic_shells.hpp), at any depth below their surfaces.
-/// Known within their borders: above and below the square; beside the faces of the slot; between the ends of the planar
+/// Known within their borders: above and below the square; past the faces of the slot; between the ends of the planar
 /// hole's top; above and below the cone's mouth.
 std::unique_ptr<const Solid> make_solid(const Plane& plane);
 std::unique_ptr<const Solid> make_solid(const Slot& slot);

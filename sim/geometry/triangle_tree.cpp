@@ -121,7 +121,7 @@ TriangleTree::TriangleTree(std::span<const Vec3> vertices, std::span<const Trian
         {a + b + c, a.cwiseMin(b).cwiseMin(c), a.cwiseMax(b).cwiseMax(c), static_cast<std::uint32_t>(items.size())});
   }
   nodes_.push_back({Vec3::Zero(), Vec3::Zero(), 0, static_cast<std::uint32_t>(items.size())});
-  // Visits appended children, too.
+  // Also visits appended children.
   for (std::size_t node = 0; node < nodes_.size(); ++node) split(node, items);
   triangles_.reserve(items.size());
   for (const Item& item : items) {

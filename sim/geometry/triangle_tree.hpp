@@ -26,7 +26,7 @@ struct Crossing {
 };
 
 /// Where the vertical line meets a triangle. The signs of three edges decide; they are computed identically for both
-/// triangles of an edge, and a line through an edge counts as one slightly beside it, so that a closed surface is
+/// triangles of an edge, and a line through an edge counts as one slightly off it, so that a closed surface is
 /// crossed consistently.
 std::optional<Crossing> vertical_crossing(const std::array<Vec3, 3>& corners, double x, double y);
 

@@ -59,7 +59,7 @@ class MeshError : public std::runtime_error {
 
 /// Makes a surface of the triangles. Merges vertices at the same position, except that each of several fans of
 /// triangles that meet in a point keeps a vertex of its own; omits unused vertices and keeps the order of the others.
-/// An edge with more than two triangles connects none of them, so that each fan at its ends has its own vertices, too.
+/// An edge with more than two triangles connects none of them, so that each fan at its ends also has its own vertices.
 /// Makes the winding of each connected part consistent with its majority, and outward if the part is closed; a part in
 /// the bounding box of a larger one, which may be a cavity, turns with it. Throws MeshError if there are no triangles,
 /// the sides cannot be distinguished (a Moebius band), a coordinate is not finite, or more than 10,000 triangles meet

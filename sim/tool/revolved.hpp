@@ -118,7 +118,7 @@ class Revolved final : public ToolShape {
   void shortest_gradients(const ToolPose& pose, ContactBuffer& contacts) const noexcept override;
   /// The first place where the ray goes out; 0 for a point on the surface whose ray points outwards.
   void exit_distances(const ToolPose& pose, const ContactBuffer& contacts, double* exits) const noexcept override;
-  /// For a body that is not convex, too, signed distance and outward normal at the nearest place. They only describe
+  /// Signed distance and outward normal at the nearest place, also for a body that is not convex. They only describe
   /// the approach of that place: a long move may bring another part of the body, such as an undercut's far side, to the
   /// point, and no face replaces an edge that would bump into it.
   void surface_constraints(const ToolPose& pose, const Vec3& wanted, double slack,

@@ -109,7 +109,7 @@ Vec3 SupportTable::foremost(const Vec3& direction, const Vec3& abreast) const no
   }
   if (nearest == nullptr) return points_.front();  // a direction that is not finite
   // Approaches the other foremost points as long as that comes nearer to `abreast`, twice for faces. Means of foremost
-  // places are foremost, too.
+  // places are foremost as well.
   Vec3 place = *nearest;
   for (int pass = 0; pass < 2; ++pass) {
     for (const std::uint32_t i : candidates(direction)) {

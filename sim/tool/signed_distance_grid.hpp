@@ -47,7 +47,7 @@ class SupportTable {
 /// edges; these 27 give
 /// - a continuous gradient (phi_h is C1), each component within [-1, 1];
 /// - |phi_h - phi| <= sum w_k |x_k - x| <= sqrt(sum w_k |x_k - x|^2) = sqrt(3)/2 h, because phi is Lipschitz with
-///   constant 1; so phi_h = 0 lies within error_bound() of the mesh, too. Where the surface is smooth with principal
+///   constant 1; so phi_h = 0 also lies within error_bound() of the mesh. Where the surface is smooth with principal
 ///   curvatures c the error is h^2/8 (c_1 + c_2) to leading order, on flats 0;
 /// - phi_h >= phi for convex bodies, by Jensen's inequality: the body lies in the mesh, with edges rounded from within;
 /// - phi_h between the smallest and the largest of its 27 nodes, so that most points need no evaluation (kinds()).
