@@ -84,17 +84,10 @@ void AtomicFile::rename() {
   file_.reset();
 }
 
-void AtomicFile::commit() {
+void AtomicFile::commit(FileSet* together) {
+  if (together != nullptr) return together->take(std::move(*this));
   complete();
   rename();
-}
-
-void AtomicFile::commit(FileSet* together) {
-  if (together == nullptr) {
-    commit();
-  } else {
-    together->take(std::move(*this));
-  }
 }
 
 void AtomicFile::throw_error() {

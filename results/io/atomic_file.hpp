@@ -15,18 +15,8 @@ namespace hapbench {
 class IoError : public std::runtime_error {
  public:
   /// `attempt` completes "cannot …", e.g. "write".
-  IoError(const std::string& attempt, std::filesystem::path path, const std::error_code& reason)
-      : std::runtime_error("cannot " + attempt + " " + path.string() + ": " + reason.message()),
-        path_(std::move(path)),
-        reason_(reason) {}
-
-  /// The final name of the file, not that of the temporary.
-  const std::filesystem::path& path() const noexcept { return path_; }
-  const std::error_code& reason() const noexcept { return reason_; }
-
- private:
-  std::filesystem::path path_;
-  std::error_code reason_;
+  IoError(const std::string& attempt, const std::filesystem::path& path, const std::error_code& reason)
+      : std::runtime_error("cannot " + attempt + " " + path.string() + ": " + reason.message()) {}
 };
 
 class FileSet;
@@ -52,23 +42,16 @@ class AtomicFile {
   /// are dropped.
   void append(std::string_view bytes) noexcept;
 
-  /// Writes what is left, so that nothing but the renaming can fail any more. Throws IoError for the first error since
-  /// the beginning (a full disk, say), and then leaves nothing behind. Nothing may be appended after it.
-  void complete();
-
-  /// Completes the file and renames it; an existing target is replaced. Throws IoError as `complete`
-  /// does. Call once, last.
-  void commit();
-  /// Leaves that to a set of files, if there is one. Call once, last.
-  void commit(FileSet* together);
-
-  /// False after the first error.
-  bool good() const noexcept { return !error_; }
-  const std::filesystem::path& target() const noexcept { return target_; }
+  /// Completes the file and renames it, which replaces an existing target, or leaves that to a set of files. Throws
+  /// IoError for the first error since the beginning (a full disk, say), and then leaves nothing behind. Call once,
+  /// last.
+  void commit(FileSet* together = nullptr);
 
  private:
   friend FileSet;
 
+  /// Writes what is left, so that nothing but the renaming can fail any more. Throws IoError as `commit` does.
+  void complete();
   void throw_error();
   void rename();
   void discard() noexcept;

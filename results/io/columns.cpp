@@ -22,13 +22,23 @@ ordered_json entries_json(const Entries& entries) {
 
 }  // namespace
 
-void add_cell(ordered_json& object, const Column& column, const Cell& cell) {
-  ordered_json& value = object[column.name];
-  std::visit(
-      [&value](const auto& held) {
-        if constexpr (!std::is_same_v<std::decay_t<decltype(held)>, std::monostate>) value = held;
+ordered_json cell_json(const Cell& cell) {
+  return std::visit(
+      [](const auto& held) -> ordered_json {
+        if constexpr (std::is_same_v<std::decay_t<decltype(held)>, std::monostate>)
+          return nullptr;
+        else
+          return held;
       },
       cell);
+}
+
+std::string cell_text(const Cell& cell) {
+  if (const auto* count = std::get_if<std::uint64_t>(&cell)) return std::to_string(*count);
+  if (const auto* number = std::get_if<double>(&cell)) return std::string(NumberText(*number));
+  if (const auto* flag = std::get_if<bool>(&cell)) return *flag ? "true" : "false";
+  const auto* text = std::get_if<std::string>(&cell);
+  return text != nullptr ? *text : "";
 }
 
 const Metric* find_metric(const MetricList& list, std::string_view name) {
@@ -36,12 +46,12 @@ const Metric* find_metric(const MetricList& list, std::string_view name) {
   return metric != list.end() ? &*metric : nullptr;
 }
 
-Metric::Value value_of(const MetricList& list, std::string_view name) {
+Cell value_of(const MetricList& list, std::string_view name) {
   const Metric* metric = find_metric(list, name);
-  return metric != nullptr ? metric->value : Metric::Value();
+  return metric != nullptr ? metric->value : Cell();
 }
 
-std::optional<double> number_of(const Metric::Value& value) {
+std::optional<double> number_of(const Cell& value) {
   if (const auto* count = std::get_if<std::uint64_t>(&value)) return static_cast<double>(*count);
   const auto* real = std::get_if<double>(&value);
   return real != nullptr ? std::optional(*real) : std::nullopt;
@@ -61,12 +71,6 @@ Metric& Metric::within(double of_it, double beside) {
 std::optional<double> Metric::tolerance() const {
   const auto number = number_of(value);
   return if_any(number && bounded, relative * std::abs(number.value_or(0.0)) + absolute);
-}
-
-std::string cell_text(const Metric::Value& value) {
-  if (const auto* count = std::get_if<std::uint64_t>(&value)) return std::to_string(*count);
-  const auto* number = std::get_if<double>(&value);
-  return number != nullptr ? std::string(NumberText(*number)) : "";
 }
 
 std::string csv_cell(std::string_view text) {

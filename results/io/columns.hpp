@@ -48,48 +48,40 @@ Cell cell_if(const std::optional<Value>& value) {
   return value ? Cell(*value) : Cell();
 }
 
-/// Adds a cell to a JSON object, under the name of its column.
-void add_cell(nlohmann::ordered_json& object, const Column& column, const Cell& cell);
+nlohmann::ordered_json cell_json(const Cell& cell);
+/// A cell of a CSV file before it is quoted (csv_cell); empty for nothing.
+std::string cell_text(const Cell& cell);
 
 /// The direction in which a metric gets better, all else equal. Most have none: a position, a count, a work.
 enum class Better { none, less, more };
 
-/// A number of a run, by name. It has no value when it does not exist (a ratio without contact) or is not finite.
+/// A number of a run, by name.
 struct Metric {
-  using Value = std::variant<std::monostate, std::uint64_t, double>;  ///< none, a count, a number
-
   std::string name;     ///< dots lead into sections, as in "gentle.rows"
   const char* unit;     ///< "1" for pure numbers and counts
   const char* meaning;  ///< what it says and how it is computed; ||.|| is the Euclidean norm, f is f_render
-  Value value;
-  Better better;
+  Cell value;           ///< a count or a number; nothing where it does not exist (a ratio without contact)
+  Better better = Better::none;
   double relative = 0.0, absolute = 0.0;  ///< parts of the tolerance, as `within` gives them
   bool bounded = false;                   ///< has a tolerance where it has a value
-
-  /// From a number, a count, one of them that need not exist, or a Value.
-  template <class Given>
-  Metric(std::string name_given, const char* unit_given, const char* meaning_given, const Given& given,
-         Better direction = Better::none)
-      : name(std::move(name_given)),
-        unit(unit_given),
-        meaning(meaning_given),
-        value(value_from(given)),
-        better(direction) {}
 
   /// Sets the tolerance: `of_it` |value| + `beside` [its unit].
   Metric& within(double of_it, double beside);
   /// By how much the value may be wrong; none where that is not known or there is no value.
   std::optional<double> tolerance() const;
-
- private:
-  static Value value_from(const Value& given) { return given; }
-  static Value value_from(std::unsigned_integral auto count) { return std::uint64_t{count}; }
-  static Value value_from(double number) { return std::isfinite(number) ? Value(number) : Value(); }
-  template <class Given>
-  static Value value_from(const std::optional<Given>& given) {
-    return given ? value_from(*given) : Value();
-  }
 };
+
+/// The value of a metric: a number that is not finite is none.
+inline Cell metric_value(std::unsigned_integral auto count) {
+  return std::uint64_t{count};
+}
+inline Cell metric_value(double number) {
+  return std::isfinite(number) ? Cell(number) : Cell();
+}
+template <class Given>
+Cell metric_value(const std::optional<Given>& given) {
+  return given ? metric_value(*given) : Cell();
+}
 
 /// A value that need not exist.
 template <class Value>
@@ -103,13 +95,11 @@ using MetricList = std::vector<Metric>;
 /// The metric of that name; null when there is none.
 const Metric* find_metric(const MetricList& list, std::string_view name);
 /// The value of that name; none when there is no such metric.
-Metric::Value value_of(const MetricList& list, std::string_view name);
-/// A value as a number.
-std::optional<double> number_of(const Metric::Value& value);
+Cell value_of(const MetricList& list, std::string_view name);
+/// A count or a number as a number.
+std::optional<double> number_of(const Cell& value);
 /// The value of that name as a number; none when there is no such metric or it has no value.
 std::optional<double> number_of(const MetricList& list, std::string_view name);
-/// A value as a cell of a CSV file; empty for none.
-std::string cell_text(const Metric::Value& value);
 /// A text as a cell of a CSV file: in quotes where it has a comma, a quote or an end of a line (RFC 4180).
 std::string csv_cell(std::string_view text);
 

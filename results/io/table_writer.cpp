@@ -16,13 +16,7 @@ CsvWriter::CsvWriter(std::filesystem::path file, std::string_view header)
 }
 
 void CsvWriter::cells(std::span<const Cell> cells) {
-  for (const Cell& held : cells) {
-    if (const auto* count = std::get_if<std::uint64_t>(&held)) put(*count);
-    if (const auto* number = std::get_if<double>(&held)) put(*number);
-    if (const auto* flag = std::get_if<bool>(&held)) put(std::string_view(*flag ? "true" : "false"));
-    if (const auto* text = std::get_if<std::string>(&held)) put(std::string_view(*text));
-    if (std::holds_alternative<std::monostate>(held)) cell();
-  }
+  for (const Cell& held : cells) put(std::string_view(cell_text(held)));
   end_row();
 }
 

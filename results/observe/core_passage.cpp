@@ -85,7 +85,6 @@ void CorePassage::look(const ToolPose& pose, double deepest_contact, double time
 
 /// Returns a way on which the core cannot meet the surface [m].
 double CorePassage::look_at(const Vec3& position, const Vec3& axis, double front, double time) noexcept {
-  ++looks_;
   Stretches now;
   const double clear = find_inside(position, axis, front, now);
   compare(position, axis, now, time);

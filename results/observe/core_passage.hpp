@@ -25,7 +25,7 @@ inline bool look_away(const Vec3& a, const Vec3& b) noexcept {
 /// at one time, the faces looking away from each other, or when a part of it comes out by a face that looks away from
 /// the one by which it had entered.
 ///
-/// A row costs a look only while a contact is so deep that the core is close to the surface (looks_from), or when the
+/// A row costs a look only while a contact is so deep that the core is close to the surface (looks_from_), or when the
 /// tool moves by a large part of its width in it; and then only once the core has moved by its distance from the
 /// surface. A look is some 20 distances, along the axis in steps on which it cannot meet the surface. No look follows
 /// the first passage. Allocates in the constructor only.
@@ -54,8 +54,6 @@ class CorePassage {
   }
 
   const std::optional<Event>& event() const noexcept { return event_; }
-  double looks_from() const noexcept { return looks_from_; }  ///< depth of a contact [m]
-  std::size_t looks() const noexcept { return looks_; }       ///< along the core
 
  private:
   /// A stretch of the core that is inside, from `low` to `high` on the axis [m].
@@ -81,11 +79,10 @@ class CorePassage {
 
   std::shared_ptr<const ToolShape> tool_;
   std::shared_ptr<const Solid> solid_;
-  double width_;    ///< half the tool's [m]
-  double far_;      ///< the core's far end on the axis [m]
-  double shallow_;  ///< where it begins while no contact is deep [m]
-  double looks_from_, looks_from_way_;
-  std::size_t looks_ = 0;
+  double width_;                        ///< half the tool's [m]
+  double far_;                          ///< the core's far end on the axis [m]
+  double shallow_;                      ///< where it begins while no contact is deep [m]
+  double looks_from_, looks_from_way_;  ///< depth of a contact, and way in a row [m]
 
   Vec3 position_ = Vec3::Zero(), axis_ = Vec3::Zero();  ///< in the row before
   bool began_ = false, follows_ = false;                ///< there was a row before; it was looked at, too

@@ -130,8 +130,6 @@ class PassivityObserver final : public MetricObserver {
   void on_step(const StepRecord& record) noexcept override;
   void tell(Section& section) const override;
 
-  /// E of the last row with a force or a moment [J]; nothing before it.
-  std::optional<double> energy() const noexcept { return if_any(now_.rows, observed_.energy()); }
   /// Energy that the rendering created in the trial that was begun last, max(0, -E_min) [J]; NaN if any rendered force
   /// was NaN.
   double net_created() const noexcept { return now_.net_created(); }

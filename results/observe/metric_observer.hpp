@@ -35,7 +35,8 @@ class Section {
   template <class Given>
   Metric& metric(const std::string& name, const char* unit, const char* meaning, const Given& value,
                  Better better = Better::none) {
-    return list_.emplace_back(prefix_ + name, unit, meaning, value, better);
+    list_.push_back({prefix_ + name, unit, meaning, metric_value(value), better});
+    return list_.back();
   }
   /// The section of that name in this one.
   Section part(std::string_view name) const { return {list_, prefix_ + std::string(name)}; }

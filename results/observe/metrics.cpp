@@ -59,7 +59,10 @@ void add(Hash64& hash, const Vec3& v) noexcept {
 }  // namespace
 
 MetricsObserver::MetricsObserver(double dt, const MetricsConfig& config)
-    : high_pass_(vibration_filter(dt)), last_quarter_(config.steps, dt), contact_forces_(dt, config.settling) {
+    : stride_(config.stride),
+      high_pass_(vibration_filter(dt)),
+      last_quarter_(config.steps, dt),
+      contact_forces_(dt, config.settling) {
   assert(dt > 0.0);
   if (config.friction_limit) {
     friction_ = ExplicitFriction{*config.friction_limit, 0, {}};
@@ -80,8 +83,9 @@ void MetricsObserver::begin() noexcept {
 }
 
 void MetricsObserver::on_step(const StepRecord& record) noexcept {
+  if (stride_ > 1 && record.step % stride_ != 0) return;
   add_motion(record.tool.pose.position, record.body_velocity());
-  last_quarter_.add(record.step, record.handle.velocity);
+  last_quarter_.add(now_.rows, record.handle.velocity);
   add_contacts(record, add_force(record.force));
   ++now_.rows;
 

@@ -78,8 +78,9 @@ struct TrialContact {
 struct MetricsConfig {
   std::optional<double> friction_limit = {};  ///< of explicit_friction_limit [N]
   SettlingRule settling = {};
-  std::uint64_t steps = 0;                       ///< of the run; 0: unknown, no vibration of its last quarter
+  std::uint64_t steps = 0;                       ///< rows that count; 0: unknown, no vibration of the last quarter
   std::optional<std::size_t> most_reduced = {};  ///< the most contacts a row can have; none without a reduction
+  std::uint64_t stride = 1;                      ///< one row in so many counts, as if the others were not there
 };
 
 /// The metrics that every run has, while it goes on, in constant memory; about 20 ns a row, 24 ns with a reduction. Of
@@ -87,7 +88,7 @@ struct MetricsConfig {
 /// position. The constructor allocates only for a reduction.
 class MetricsObserver final : public MetricObserver {
  public:
-  /// `dt`: time from row to row [s], > 0.
+  /// `dt`: time between rows that count [s], > 0.
   explicit MetricsObserver(double dt, const MetricsConfig& config = {});
 
   void begin(const TrialParts&) override { begin(); }
@@ -121,6 +122,7 @@ class MetricsObserver final : public MetricObserver {
   void tell_contacts(Section& section) const;
   void tell_friction(Section& section) const;
 
+  std::uint64_t stride_;
   std::uint64_t trials_ = 0;  ///< begun so far
 
   // State of the current trial, which `begin` resets.

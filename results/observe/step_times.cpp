@@ -11,31 +11,6 @@ namespace {
 /// irrelevant.
 constexpr std::size_t kEmptySteps = 501;
 
-}  // namespace
-
-// The buffer is filled with zeros, so that its pages exist before the first step.
-StepTimes::StepTimes(std::size_t capacity) : times_(std::max(capacity, kEmptySteps)) {
-  start();
-  for (std::size_t i = 0; i < kEmptySteps; ++i) lap();
-  const auto median = times_.begin() + kEmptySteps / 2;
-  std::nth_element(times_.begin(), median, times_.begin() + kEmptySteps);
-  overhead_ = *median;
-  size_ = 0;
-}
-
-void StepTimes::lap() noexcept {
-  const Clock::time_point now = Clock::now();
-  const std::int64_t ns =
-      std::chrono::duration_cast<std::chrono::nanoseconds>(now - last_).count() - static_cast<std::int64_t>(overhead_);
-  last_ = now;
-  times_[size_++] = static_cast<std::uint64_t>(std::max<std::int64_t>(ns, 0));
-}
-
-StepSampler::StepSampler(std::uint64_t steps)
-    : every_(steps / kMostSamples + 1), times_(static_cast<std::size_t>(steps / every_) + 1) {}
-
-namespace {
-
 using Times = std::vector<std::uint64_t>;
 
 /// Percentile by nearest rank, in tenths of a percent so that the rank is exact. Precondition: sorted and not empty.
@@ -77,6 +52,27 @@ Times medians_over_time(std::span<const std::uint64_t> times) {
 }
 
 }  // namespace
+
+// The buffer is filled with zeros, so that its pages exist before the first step.
+StepTimes::StepTimes(std::size_t capacity) : times_(std::max(capacity, kEmptySteps)) {
+  start();
+  for (std::size_t i = 0; i < kEmptySteps; ++i) lap();
+  const auto median = times_.begin() + kEmptySteps / 2;
+  std::nth_element(times_.begin(), median, times_.begin() + kEmptySteps);
+  overhead_ = *median;
+  size_ = 0;
+}
+
+void StepTimes::lap() noexcept {
+  const Clock::time_point now = Clock::now();
+  const std::int64_t ns =
+      std::chrono::duration_cast<std::chrono::nanoseconds>(now - last_).count() - static_cast<std::int64_t>(overhead_);
+  last_ = now;
+  times_[size_++] = static_cast<std::uint64_t>(std::max<std::int64_t>(ns, 0));
+}
+
+StepSampler::StepSampler(std::uint64_t steps)
+    : every_(steps / kMostSamples + 1), times_(static_cast<std::size_t>(steps / every_) + 1) {}
 
 StepLatency step_latency(std::span<const std::uint64_t> nanoseconds, std::uint64_t overhead) {
   StepLatency latency;

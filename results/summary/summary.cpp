@@ -63,12 +63,6 @@ ordered_json divergence_json(const SimulationResult& result) {
   return json;
 }
 
-ordered_json value_json(const Metric::Value& value) {
-  if (const auto* count = std::get_if<std::uint64_t>(&value)) return *count;
-  const auto* number = std::get_if<double>(&value);
-  return number != nullptr ? ordered_json(*number) : ordered_json(nullptr);
-}
-
 /// The tolerances of the metrics that have one, by the full names of these.
 ordered_json tolerances_json(const MetricList& list) {
   ordered_json json = ordered_json::object();
@@ -80,7 +74,7 @@ ordered_json tolerances_json(const MetricList& list) {
 /// The array of a vector whose coordinates are three metrics; null without values.
 ordered_json vector_json(const Metric* xyz) {
   if (std::holds_alternative<std::monostate>(xyz->value)) return nullptr;
-  return {value_json(xyz[0].value), value_json(xyz[1].value), value_json(xyz[2].value)};
+  return {cell_json(xyz[0].value), cell_json(xyz[1].value), cell_json(xyz[2].value)};
 }
 
 /// Puts each metric into the object of its section, or into "metrics"; further dots lead into nested objects, and the
@@ -99,7 +93,7 @@ void add_metrics(ordered_json& json, const MetricList& list) {
     }
     for (std::size_t dot; (dot = name.find('.')) != std::string_view::npos; name.remove_prefix(dot + 1))
       object = &(*object)[std::string(name.substr(0, dot))];
-    (*object)[std::string(name)] = value_json(list[i].value);
+    (*object)[std::string(name)] = cell_json(list[i].value);
   }
 }
 

@@ -111,8 +111,7 @@ class Columns {
   Json json(const Row& row) const {
     Json object = Json::object();
     for (const Entry& entry : entries_) {
-      if (entry.shown.json)
-        add_cell(object, {entry.name.c_str(), entry.unit.c_str(), entry.meaning.c_str()}, entry.cell(row));
+      if (entry.shown.json) object[entry.name] = cell_json(entry.cell(row));
     }
     return object;
   }

@@ -29,32 +29,6 @@ void add(std::vector<double>& numbers, const Vec3& p) {
   numbers.insert(numbers.end(), {p.x(), p.y(), p.z()});
 }
 
-}  // namespace
-
-SurfaceArrays surface_arrays(const Scenario& scenario, const NamedFiles& files) {
-  SurfaceArrays surface;
-  const auto take = [&surface](const auto& triangles) {
-    for (const auto& triangle : triangles)
-      surface.triangles.insert(surface.triangles.end(), triangle.begin(), triangle.end());
-  };
-  if (const auto* block = std::get_if<BlockEnvironment>(&scenario.environment)) {
-    const IsoSurface mesh =
-        marching_cubes(density_field(block->block, block->grid, block->density), {.triangles = true});
-    for (const SurfacePoint& vertex : mesh.vertices) add(surface.vertices, vertex.position);
-    take(mesh.triangles);
-  } else if (std::holds_alternative<MeshEnvironment>(scenario.environment)) {
-    const TriangleSoup mesh = files.at(kEnvironmentFile).mesh().triangles();
-    for (const Vec3& vertex : mesh.vertices) add(surface.vertices, vertex);
-    take(mesh.triangles);
-  } else {
-    const auto shell = make_shell(scenario, files);
-    for (std::size_t i = 0; i < shell->size(); ++i) add(surface.vertices, shell->point(i).position);
-  }
-  return surface;
-}
-
-namespace {
-
 /// The file of the library of rendering.contact_source.
 std::filesystem::path contact_library(const Scenario& scenario) {
   return resolve_path(scenario, scenario.rendering.contact_file);
@@ -89,6 +63,28 @@ std::vector<StopRule> stop_rules(const Scenario& scenario) {
 }
 
 }  // namespace
+
+SurfaceArrays surface_arrays(const Scenario& scenario, const NamedFiles& files) {
+  SurfaceArrays surface;
+  const auto take = [&surface](const auto& triangles) {
+    for (const auto& triangle : triangles)
+      surface.triangles.insert(surface.triangles.end(), triangle.begin(), triangle.end());
+  };
+  if (const auto* block = std::get_if<BlockEnvironment>(&scenario.environment)) {
+    const IsoSurface mesh =
+        marching_cubes(density_field(block->block, block->grid, block->density), {.triangles = true});
+    for (const SurfacePoint& vertex : mesh.vertices) add(surface.vertices, vertex.position);
+    take(mesh.triangles);
+  } else if (std::holds_alternative<MeshEnvironment>(scenario.environment)) {
+    const TriangleSoup mesh = files.at(kEnvironmentFile).mesh().triangles();
+    for (const Vec3& vertex : mesh.vertices) add(surface.vertices, vertex);
+    take(mesh.triangles);
+  } else {
+    const auto shell = make_shell(scenario, files);
+    for (std::size_t i = 0; i < shell->size(); ++i) add(surface.vertices, shell->point(i).position);
+  }
+  return surface;
+}
 
 std::vector<Warning> named_file_warnings(const LoadedScenario& loaded) {
   const Scenario& scenario = loaded.scenario;

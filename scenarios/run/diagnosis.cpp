@@ -36,55 +36,6 @@ bool has_opposed(const ContactBuffer& contacts) noexcept {
   return false;
 }
 
-}  // namespace
-
-DiagnosisObserver::DiagnosisObserver(const Scenario& scenario)
-    : scenario_(scenario),
-      force_limit_(force_limit(scenario)),
-      input_limit_(input_force_limit(scenario.device)),
-      high_pass_(vibration_filter(scenario.time.step)) {}
-
-void DiagnosisObserver::on_step(const StepRecord& record) noexcept {
-  if (record.step == 0) {
-    touched_ = false;
-    high_.setZero();
-    if (high_pass_) high_pass_->settle_at(record.force.rendered);
-  }
-  if (record.colliding > 0) add_contact(record);
-  add_to_quarter(record);
-  touched_ = record.colliding > 0;
-  seen_.tip = record.tool.pose.position;
-  seen_.last_force = record.force.rendered;
-}
-
-void DiagnosisObserver::add_contact(const StepRecord& record) noexcept {
-  const Vec3& f = record.force.rendered;
-  ++seen_.touching;
-  if (force_limit_ && f.norm() >= kAtLimit * *force_limit_) ++seen_.at_force_limit;
-  if (input_limit_ && record.hand.input.norm() >= kAtLimit * *input_limit_) ++seen_.at_limiter;
-  if (!touched_) return;
-  seen_.way_in_contact += (record.tool.pose.position - seen_.tip).norm();
-  if (!(f.dot(seen_.last_force) < 0.0)) return;
-  ++seen_.turned;
-  if (has_opposed(*record.rendered)) ++seen_.opposed;
-}
-
-void DiagnosisObserver::add_to_quarter(const StepRecord& record) noexcept {
-  SeenRows::Quarter& last = seen_.last_quarter;
-  const std::uint64_t quarter = record.step * 4 / static_cast<std::uint64_t>(scenario_.time.steps);
-  if (record.step == 0 || quarter != quarter_) last = {.start = record.tool.pose.position};
-  quarter_ = quarter;
-  ++last.rows;
-  last.touches = last.touches && record.colliding > 0;
-  if (!high_pass_) return;
-  const Vec3 high = high_pass_->filter(record.force.rendered);
-  last.high_squares += high.cwiseAbs2();
-  for (int i = 0; i < 3; ++i) last.high_turns[static_cast<std::size_t>(i)] += high[i] * high_[i] < 0.0;
-  high_ = high;
-}
-
-namespace {
-
 using Number = std::optional<double>;
 
 /// A run, as rules see it.
@@ -387,6 +338,51 @@ constexpr Rule kRules[] = {
 };
 
 }  // namespace
+
+DiagnosisObserver::DiagnosisObserver(const Scenario& scenario)
+    : scenario_(scenario),
+      force_limit_(force_limit(scenario)),
+      input_limit_(input_force_limit(scenario.device)),
+      high_pass_(vibration_filter(scenario.time.step)) {}
+
+void DiagnosisObserver::on_step(const StepRecord& record) noexcept {
+  if (record.step == 0) {
+    touched_ = false;
+    high_.setZero();
+    if (high_pass_) high_pass_->settle_at(record.force.rendered);
+  }
+  if (record.colliding > 0) add_contact(record);
+  add_to_quarter(record);
+  touched_ = record.colliding > 0;
+  seen_.tip = record.tool.pose.position;
+  seen_.last_force = record.force.rendered;
+}
+
+void DiagnosisObserver::add_contact(const StepRecord& record) noexcept {
+  const Vec3& f = record.force.rendered;
+  ++seen_.touching;
+  if (force_limit_ && f.norm() >= kAtLimit * *force_limit_) ++seen_.at_force_limit;
+  if (input_limit_ && record.hand.input.norm() >= kAtLimit * *input_limit_) ++seen_.at_limiter;
+  if (!touched_) return;
+  seen_.way_in_contact += (record.tool.pose.position - seen_.tip).norm();
+  if (!(f.dot(seen_.last_force) < 0.0)) return;
+  ++seen_.turned;
+  if (has_opposed(*record.rendered)) ++seen_.opposed;
+}
+
+void DiagnosisObserver::add_to_quarter(const StepRecord& record) noexcept {
+  SeenRows::Quarter& last = seen_.last_quarter;
+  const std::uint64_t quarter = record.step * 4 / static_cast<std::uint64_t>(scenario_.time.steps);
+  if (record.step == 0 || quarter != quarter_) last = {.start = record.tool.pose.position};
+  quarter_ = quarter;
+  ++last.rows;
+  last.touches = last.touches && record.colliding > 0;
+  if (!high_pass_) return;
+  const Vec3 high = high_pass_->filter(record.force.rendered);
+  last.high_squares += high.cwiseAbs2();
+  for (int i = 0; i < 3; ++i) last.high_turns[static_cast<std::size_t>(i)] += high[i] * high_[i] < 0.0;
+  high_ = high;
+}
 
 std::vector<DiagnosisRule> diagnosis_rules() {
   std::vector<DiagnosisRule> rules;

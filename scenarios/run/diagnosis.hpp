@@ -41,7 +41,7 @@ struct SeenRows {
   std::uint64_t turned = 0;        ///< whose force is more than 90 degrees from that of the row before, in contact too
   std::uint64_t opposed = 0;       ///< of those: with two contacts whose directions are more than 120 degrees apart
   double way_in_contact = 0.0;     ///< of the tip [m]
-  double longest_step = 0.0;       ///< of the tip near the environment (StepWay) [m]
+  double longest_step = 0.0;       ///< OutcomeObserver::longest_step [m]
   Vec3 last_force = Vec3::Zero();  ///< rendered [N]
   struct Quarter {
     std::uint64_t rows = 0;

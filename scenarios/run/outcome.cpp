@@ -13,7 +13,6 @@
 #include "device_model/hands/drag_hand.hpp"
 #include "device_model/hands/tracking_hand.hpp"
 #include "results/observe/contact_forces.hpp"
-#include "results/summary/summary.hpp"
 #include "scenarios/run/scene_checks.hpp"
 #include "sim/contact/grid_index.hpp"
 
@@ -25,46 +24,52 @@ std::string millimetres(const Vec3& place) {
   return fmt::format("({:.3g}, {:.3g}, {:.3g}) mm", p.x(), p.y(), p.z());
 }
 
-}  // namespace
-
-OpenEdgeObserver::OpenEdgeObserver(const PointShell& shell, const std::vector<Vec3>& edges, double reach)
-    : reach_(reach), is_near_edge_(shell.size(), false) {
-  const GridIndex grid(shell);
-  const Vec3 half = Vec3::Constant(reach);
-  for (const Vec3& edge : edges) {
-    const Box box{edge - half, edge + half};
-    grid.for_each_run(box, [&](std::uint32_t first, std::uint32_t last) {
-      for (std::uint32_t i = first; i < last; ++i) {
-        const Vec3 point(grid.x()[i], grid.y()[i], grid.z()[i]);
-        if (distance_to(box, point) == 0.0) is_near_edge_[grid.shell_index(i)] = true;
-      }
-    });
-  }
-}
-
-void OpenEdgeObserver::on_step(const StepRecord& record) noexcept {
-  const ContactBuffer& contacts = *record.rendered;
-  for (std::size_t i = 0; i < contacts.size(); ++i) {
-    if (!is_near_edge_[contacts.index[i]]) continue;
-    if (rows_ == 0) {
-      first_time_ = record.time;
-      first_place_ = contacts.point(i);
+/// Notes when the tool touches an open mesh where it ends. Beyond such an edge there is nothing to touch, and a tool
+/// that reaches past it is held by too few points or by none.
+class OpenEdges {
+ public:
+  /// A point of the shell counts as near an edge if it lies within `reach` [m] of one of `edges`, the middles of the
+  /// boundary edges, along each coordinate. O(n) and the points near edges.
+  OpenEdges(const PointShell& shell, const std::vector<Vec3>& edges, double reach)
+      : reach_(reach), is_near_edge_(shell.size(), false) {
+    const GridIndex grid(shell);
+    const Vec3 half = Vec3::Constant(reach);
+    for (const Vec3& edge : edges) {
+      const Box box{edge - half, edge + half};
+      grid.for_each_run(box, [&](std::uint32_t first, std::uint32_t last) {
+        for (std::uint32_t i = first; i < last; ++i) {
+          const Vec3 point(grid.x()[i], grid.y()[i], grid.z()[i]);
+          if (distance_to(box, point) == 0.0) is_near_edge_[grid.shell_index(i)] = true;
+        }
+      });
     }
-    ++rows_;
-    return;
   }
-}
 
-std::optional<Warning> OpenEdgeObserver::warning() const {
-  if (rows_ == 0) return std::nullopt;
-  return Warning{
-      "open_edge", "",
-      fmt::format("touched the mesh within {} of where it is open in {} rows, first at {:.4g} s near {}: beyond "
-                  "the edge there is no surface",
-                  length_text(reach_), rows_, first_time_, millimetres(first_place_))};
-}
+  void add(const StepRecord& record) noexcept {
+    const ContactBuffer& contacts = *record.rendered;
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
+      if (!is_near_edge_[contacts.index[i]]) continue;
+      if (rows_++ == 0) first_ = {record.time, contacts.point(i)};
+      return;
+    }
+  }
 
-namespace {
+  /// With the first contact at such a point; none when there was none.
+  std::optional<Warning> warning() const {
+    if (rows_ == 0) return std::nullopt;
+    return Warning{
+        "open_edge", "",
+        fmt::format("touched the mesh within {} of where it is open in {} rows, first at {:.4g} s near {}: beyond "
+                    "the edge there is no surface",
+                    length_text(reach_), rows_, first_.time, millimetres(first_.place))};
+  }
+
+ private:
+  double reach_;
+  std::vector<bool> is_near_edge_;  ///< of each point of the shell
+  std::uint64_t rows_ = 0;          ///< with such a contact
+  Passage::Event first_{};
+};
 
 Vec3 target_at(const ImpedanceHandFields& hand, double time) {
   return {hand.target[0](time), hand.target[1](time), hand.target[2](time)};
@@ -81,21 +86,25 @@ double closest_target(const ImpedanceHandFields& hand, const TimeFields& time, c
   return closest;
 }
 
-/// How close a tool came that touches nothing. A row costs some nanoseconds; the distances from the surface itself are
-/// looked up after the run.
+/// The way of the tip centre near the environment, and how close a tool came that touches nothing. A row costs some
+/// nanoseconds; the distances from the surface itself are looked up after the run.
 class Approach {
  public:
   /// The shell has points; the run has at most so many steps.
   Approach(std::shared_ptr<const PointShell> shell, std::uint64_t steps)
-      : shell_(std::move(shell)), steps_(shell_->bounds()), every_(steps / kLooks + 1) {
+      : shell_(std::move(shell)), environment_(shell_->bounds()), every_(steps / kLooks + 1) {
     looks_.reserve(kLooks);
   }
 
   /// `looks`: the tool has touched nothing yet.
   void add(const StepRecord& record, bool looks) noexcept {
-    steps_.add(record.tool.pose.position);
+    const Vec3& place = record.tool.pose.position;
+    const double way = (place - place_).norm();
+    if (distance_ <= way && std::isfinite(way)) longest_step_ = std::max(longest_step_, way);
+    place_ = place;
+    distance_ = distance_to(environment_, place);
     if (!looks) return;
-    const Look look{record.time, steps_.distance(), record.tool.pose};
+    const Look look{record.time, distance_, record.tool.pose};
     if (record.step % every_ == 0) {
       looks_.push_back(look);
     } else if (look.from_box <= looks_.back().from_box) {
@@ -103,7 +112,9 @@ class Approach {
     }
   }
 
-  const StepWay& steps() const { return steps_; }  ///< of the tip centre
+  double longest_step() const { return longest_step_; }  ///< OutcomeObserver::longest_step [m]
+  double distance() const { return distance_; }          ///< in the last row from the box; 0 within it [m]
+  const Box& environment() const { return environment_; }
   /// Of the tip centre to the environment's box before the first contact; 0 within it [m].
   double closest_to_box() const { return std::ranges::min(looks_, {}, &Look::from_box).from_box; }
 
@@ -134,7 +145,9 @@ class Approach {
     ToolPose pose;
   };
   std::shared_ptr<const PointShell> shell_;
-  StepWay steps_;
+  Box environment_;
+  Vec3 place_ = Vec3::Zero();  ///< in the last row
+  double distance_ = std::numeric_limits<double>::infinity(), longest_step_ = 0.0;
   std::uint64_t every_;
   std::vector<Look> looks_;
 };
@@ -314,23 +327,15 @@ class OutcomeWatch final : public OutcomeObserver {
     if (approach_) approach_->add(record, !last_contact_);
     if (course_) course_->add(record.time);
     if (standstill_) standstill_->add(record);
-    if (open_edges_) open_edges_->on_step(record);
+    if (open_edges_) open_edges_->add(record);
   }
 
   Outcome outcome(Outcome outcome) override {
     if (!approach_ || outcome != Outcome::completes) return outcome;
-    if (inside_ &&
-        (inside_->passage().went_through() || inside_->core_passage().event() || inside_max() > tool_->half_width()))
-      return Outcome::went_through;
-    if (!last_contact_) return Outcome::no_contact;
-    const StepWay& steps = approach_->steps();
-    const bool is_far = steps.distance() > diagonal(steps.environment()) + tool_->reach();
-    if (is_far && position_is_free(scenario_.motion)) return Outcome::lost_contact;
-    if (drag_lost()) return Outcome::lost_contact;
-    // The spring that leads a tool which follows lags by less.
-    const double width = 2.0 * tool_->half_width();
-    if (course_ && course_->way() < width && drag_way_asked() > 2.0 * width) return Outcome::not_dragged;
-    return stuck() || (course_ && course_->left_behind()) ? Outcome::stuck : Outcome::completes;
+    for (const Condition& condition : kConditions) {
+      if ((this->*condition.holds)()) return condition.outcome;
+    }
+    return outcome;
   }
 
   std::vector<Warning> warnings(Outcome outcome) override {
@@ -345,16 +350,22 @@ class OutcomeWatch final : public OutcomeObserver {
                               length_text(inside_max()), length_text(*inside->at_most))});
     }
     if (!approach_) return warnings;
-    add(warning_about(outcome));
+    for (const Condition& condition : kConditions) {
+      if (condition.outcome != outcome) continue;
+      auto warning = (this->*condition.warning)();
+      if (warning)
+        warning->kind = std::string(outcome_name(outcome)) + (warning->kind.empty() ? "" : " ") + warning->kind;
+      add(std::move(warning));
+    }
     if (drag_lost() && outcome != Outcome::went_through) add(drag_lost_warning());
     if (drag_ != nullptr) add(drag_short_warning());
     if (std::holds_alternative<MeshToolFields>(scenario_.tool))
-      add(scale_warning(scenario_, *tool_, approach_->steps().environment()));
+      add(scale_warning(scenario_, *tool_, approach_->environment()));
     if (open_edges_) add(open_edges_->warning());
     return warnings;
   }
 
-  double longest_step() const override { return approach_ ? approach_->steps().longest() : 0.0; }
+  double longest_step() const override { return approach_ ? approach_->longest_step() : 0.0; }
   const InsideObserver* inside() const override { return inside_ ? &*inside_ : nullptr; }
   const InsideDepths* depths() override {
     if (inside_ && !depths_) depths_ = inside_->depths();
@@ -362,6 +373,15 @@ class OutcomeWatch final : public OutcomeObserver {
   }
 
  private:
+  /// What makes another outcome of one that completes, and a warning that says what happened and the likely cause. The
+  /// kind of that is the outcome and what the warning has as its kind. The diagnosis says what to try.
+  struct Condition {
+    Outcome outcome;
+    bool (OutcomeWatch::*holds)();
+    std::optional<Warning> (OutcomeWatch::*warning)();
+  };
+  static const Condition kConditions[5];  ///< the first that holds counts
+
   /// How deep any part of the tool was in any row; 0 without a solid [m].
   double inside_max() {
     const InsideDepths* inside = depths();
@@ -399,24 +419,24 @@ class OutcomeWatch final : public OutcomeObserver {
 
   /// A likely cause, or where to look when none suggests itself: its kind, and the end of a sentence.
   std::pair<const char*, std::string> likely_cause(Outcome outcome) const {
-    const StepWay& steps = approach_->steps();
-    const double size = diagonal(steps.environment());
-    if (std::string question = scale_question(scenario_, *tool_, steps.environment()); !question.empty())
+    const Box& environment = approach_->environment();
+    const double longest = approach_->longest_step();
+    if (std::string question = scale_question(scenario_, *tool_, environment); !question.empty())
       return {"scale", std::move(question)};
-    if (steps.longest() > tool_->half_width()) {
+    if (longest > tool_->half_width()) {
       return {"step",
               fmt::format("near it the tool moved {} in one step, more than its half width of {}: is time.step_s "
                           "too long?",
-                          length_text(steps.longest()), length_text(tool_->half_width()))};
+                          length_text(longest), length_text(tool_->half_width()))};
     }
     const auto* mesh = std::get_if<MeshEnvironment>(&scenario_.environment);
     if (outcome == Outcome::no_contact && mesh != nullptr && !mesh->spacing && approach_->closest_to_box() == 0.0)
       return {"spacing", "only the mesh's vertices can be touched: is environment.spacing_m missing?"};
     const bool recorded = std::holds_alternative<RecordedPosition>(scenario_.motion.position);
-    if (recorded && outcome == Outcome::no_contact && approach_->closest_to_box() > kUnitsApart * size)
+    if (recorded && outcome == Outcome::no_contact && approach_->closest_to_box() > kUnitsApart * diagonal(environment))
       return {"recording", "are the positions of motion.position.file in metres?"};
     if (const ImpedanceHandFields* hand = spring_of(scenario_.hand)) {
-      const double closest = closest_target(*hand, scenario_.time, steps.environment());
+      const double closest = closest_target(*hand, scenario_.time, environment);
       if (closest > 0.0)
         return {"target",
                 fmt::format("hand.target stays {} away from it: does it lead to the surface?", length_text(closest))};
@@ -432,51 +452,73 @@ class OutcomeWatch final : public OutcomeObserver {
     return {"start", is_free ? "is initial.position_m right?" : "is motion.position right?"};
   }
 
-  /// What happened and what the likely cause is; none for other outcomes, and none for a dragged tool that lost the
-  /// surface within the environment's box.
-  std::optional<Warning> warning_about(Outcome outcome) {
-    const StepWay& steps = approach_->steps();
-    const std::string kind(outcome_name(outcome));
-    if (outcome == Outcome::went_through) {
-      const bool is_led = !position_is_free(scenario_.motion);
-      const std::string question = scale_question(scenario_, *tool_, steps.environment());
-      return Warning{kind, "",
-                     passage_text(*inside_, tool_->half_width(), inside_max(), is_led) +
-                         (question.empty() ? "" : "; " + question)};
-    }
-    if (const auto s = stuck(); s && (outcome == Outcome::stuck || outcome == Outcome::not_dragged)) {
-      return Warning{
-          kind, "",
-          fmt::format("the tool stood still since {:.4g} s, coming {} further while its target went on by {}; it "
-                      "was at {} under a force of {:.3g} N in the end",
-                      s->since, length_text(s->way), length_text(s->target_way), millimetres(place_), force_.norm())};
-    }
-    if (outcome == Outcome::stuck) {
-      return Warning{
-          kind, "",
-          fmt::format("the dragged tool ended {} behind where its hand led it, {} along the path, at {}",
-                      length_text(*course_->left_behind()), length_text(course_->asked()), millimetres(place_))};
-    }
-    const std::string environment =
-        fmt::format("{}: {}", size_text(steps.environment()), place_text(steps.environment()));
-    if (outcome == Outcome::no_contact) {
-      const auto closest = approach_->closest_to_surface(*tool_);
-      const auto [cause, question] = likely_cause(outcome);
-      return Warning{fmt::format("{} {}", kind, cause), "",
-                     fmt::format("never in contact: the tool came as close as {} (at {:.4g} s) to the surface of the "
-                                 "environment ({}); {}",
-                                 length_text(closest.distance), closest.time, environment, question)};
-    }
-    // The course of the drag tells of a tool that lost the surface within the box.
-    if (outcome != Outcome::lost_contact || (drag_lost() && steps.distance() == 0.0)) return std::nullopt;
+  bool went_through() {
+    return inside_ &&
+           (inside_->passage().went_through() || inside_->core_passage().event() || inside_max() > tool_->half_width());
+  }
+  std::optional<Warning> went_through_warning() {
+    const std::string question = scale_question(scenario_, *tool_, approach_->environment());
+    return Warning{"", "",
+                   passage_text(*inside_, tool_->half_width(), inside_max(), !position_is_free(scenario_.motion)) +
+                       (question.empty() ? "" : "; " + question)};
+  }
+
+  bool never_touched() { return !last_contact_; }
+  std::optional<Warning> never_touched_warning() {
+    const auto closest = approach_->closest_to_surface(*tool_);
+    const auto [cause, question] = likely_cause(Outcome::no_contact);
+    return Warning{cause, "",
+                   fmt::format("never in contact: the tool came as close as {} (at {:.4g} s) to the surface of the "
+                               "environment ({}); {}",
+                               length_text(closest.distance), closest.time, environment_text(), question)};
+  }
+
+  /// As a tool that was thrown out or pushed past, or a dragged one past an edge.
+  bool lost_contact() {
+    const bool is_far = approach_->distance() > diagonal(approach_->environment()) + tool_->reach();
+    return (is_far && position_is_free(scenario_.motion)) || drag_lost();
+  }
+  std::optional<Warning> lost_contact_warning() {
+    const double away = approach_->distance();
+    if (drag_lost() && away == 0.0) return std::nullopt;  // drag_lost_warning says all
     const TrialContact& contact = metrics_->trial();
     const double share = static_cast<double>(contact.in_contact) / static_cast<double>(contact.rows);
-    const auto [cause, question] = likely_cause(outcome);
+    const auto [cause, question] = likely_cause(Outcome::lost_contact);
     return Warning{
-        fmt::format("{} {}", kind, cause), "",
-        fmt::format("in contact for {:.3g} % of the run, last at {:.4g} s; ended {} away from the environment "
-                    "({}); {}",
-                    100.0 * share, contact.last.value_or(0.0), length_text(steps.distance()), environment, question)};
+        cause, "",
+        fmt::format("in contact for {:.3g} % of the run, last at {:.4g} s; ended {} away from the "
+                    "environment ({}); {}",
+                    100.0 * share, contact.last.value_or(0.0), length_text(away), environment_text(), question)};
+  }
+
+  /// It was pressed on the surface, and its calm numbers tell nothing of a drag. The spring that leads a tool which
+  /// follows lags by less.
+  bool not_dragged() {
+    const double width = 2.0 * tool_->half_width();
+    return course_ && course_->way() < width && drag_way_asked() > 2.0 * width;
+  }
+  std::optional<Warning> stands_warning() {
+    const auto s = stuck();
+    if (!s) return std::nullopt;
+    return Warning{
+        "", "",
+        fmt::format("the tool stood still since {:.4g} s, coming {} further while its target went on by {}; "
+                    "it was at {} under a force of {:.3g} N in the end",
+                    s->since, length_text(s->way), length_text(s->target_way), millimetres(place_), force_.norm())};
+  }
+
+  bool is_stuck() { return stuck() || (course_ && course_->left_behind()); }
+  std::optional<Warning> stuck_warning() {
+    if (stuck()) return stands_warning();
+    return Warning{
+        "", "",
+        fmt::format("the dragged tool ended {} behind where its hand led it, {} along the path, at {}",
+                    length_text(*course_->left_behind()), length_text(course_->asked()), millimetres(place_))};
+  }
+
+  std::string environment_text() const {
+    const Box& box = approach_->environment();
+    return fmt::format("{}: {}", size_text(box), place_text(box));
   }
 
   const Scenario& scenario_;
@@ -486,14 +528,21 @@ class OutcomeWatch final : public OutcomeObserver {
   std::optional<InsideDepths> depths_;
   std::optional<Approach> approach_;
   std::optional<Standstill> standstill_;
-  std::optional<OpenEdgeObserver> open_edges_;  ///< where contacts are numbered as the points of an open mesh
-  const DragHand* drag_;                        ///< null unless one drags the tool
-  std::optional<DragCourse> course_;            ///< of that
+  std::optional<OpenEdges> open_edges_;  ///< where contacts are numbered as the points of an open mesh
+  const DragHand* drag_;                 ///< null unless one drags the tool
+  std::optional<DragCourse> course_;     ///< of that
   // In the last row.
   double time_ = 0.0;
   Vec3 place_ = Vec3::Zero(), force_ = Vec3::Zero();  ///< of the tip [m]; rendered [N]
   std::optional<double> last_contact_;                ///< time of the last row with a colliding point
 };
+
+constinit const OutcomeWatch::Condition OutcomeWatch::kConditions[] = {
+    {Outcome::went_through, &OutcomeWatch::went_through, &OutcomeWatch::went_through_warning},
+    {Outcome::no_contact, &OutcomeWatch::never_touched, &OutcomeWatch::never_touched_warning},
+    {Outcome::lost_contact, &OutcomeWatch::lost_contact, &OutcomeWatch::lost_contact_warning},
+    {Outcome::not_dragged, &OutcomeWatch::not_dragged, &OutcomeWatch::stands_warning},
+    {Outcome::stuck, &OutcomeWatch::is_stuck, &OutcomeWatch::stuck_warning}};
 
 }  // namespace
 

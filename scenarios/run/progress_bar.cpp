@@ -19,18 +19,14 @@ constexpr auto kSilence = std::chrono::seconds(2);
 constexpr auto kRedraw = std::chrono::milliseconds(200);
 constexpr std::size_t kWidth = 40;
 
-thread_local ProgressListener* thread_listener = nullptr;
+thread_local const ProgressListener* thread_listener = nullptr;
 
 /// "95 s", "12 min", "30 h"
 void add_time(fmt::memory_buffer& line, double seconds) {
-  const bool minutes = seconds >= 120.0, hours = seconds >= 7200.0;
-  fmt::format_to(fmt::appender(line), "{:.0f} {}",
-                 seconds / (hours     ? 3600.0
-                            : minutes ? 60.0
-                                      : 1.0),
-                 hours     ? "h"
-                 : minutes ? "min"
-                           : "s");
+  const auto [unit, name] = seconds >= 7200.0  ? std::pair(3600.0, "h")
+                            : seconds >= 120.0 ? std::pair(60.0, "min")
+                                               : std::pair(1.0, "s");
+  fmt::format_to(fmt::appender(line), "{:.0f} {}", seconds / unit, name);
 }
 
 /// Columns of the terminal behind standard error; 80 when it does not say.
@@ -60,14 +56,30 @@ void hide_status() {
   if (is_terminal()) std::fprintf(stderr, "\r\033[K");
 }
 
+void show_seconds(const std::function<std::string()>& what, const std::stop_token& ends) {
+  std::mutex mutex;
+  std::condition_variable_any ended;
+  std::unique_lock lock(mutex);
+  bool shown = false;
+  int next = static_cast<int>(kSilence.count());
+  const auto has_ended = [&ends] { return ends.stop_requested(); };
+  for (int seconds = 1; !ended.wait_for(lock, ends, std::chrono::seconds(1), has_ended); ++seconds) {
+    if (seconds < next) continue;
+    next = is_terminal() ? seconds + 1 : 2 * seconds;
+    show_status(fmt::format("{} ... {} s", what(), seconds));
+    shown = true;
+  }
+  if (shown) hide_status();
+}
+
 }  // namespace
 
-void report_progress_to(ProgressListener* listener) noexcept {
+void report_progress_to(const ProgressListener* listener) noexcept {
   thread_listener = listener;
 }
 
 void tell_progress(std::string_view label, std::uint64_t done, std::uint64_t total) noexcept {
-  if (thread_listener != nullptr) thread_listener->progress(label, done, total);
+  if (thread_listener != nullptr) (*thread_listener)(label, done, total);
 }
 
 ProgressBar::ProgressBar(std::string label, std::uint64_t total, bool enabled)
@@ -84,10 +96,7 @@ ProgressBar::~ProgressBar() {
 
 void ProgressBar::show(std::uint64_t done, bool counts) noexcept {
   if (!enabled_) return;
-  if (listener_ != nullptr) {
-    listener_->progress(label_, done, total_);
-    return;
-  }
+  if (listener_ != nullptr) return (*listener_)(label_, done, total_);
   const auto now = Clock::now();
   if (now < next_ || (done == total_ && !is_terminal())) return;
   next_ = is_terminal() ? now + kRedraw : now + (now - start_);
@@ -115,26 +124,6 @@ void ProgressBar::show(std::uint64_t done, bool counts) noexcept {
                  std::string_view(numbers.data(), numbers.size()));
   show_status({line.data(), line.size()});
 }
-
-namespace {
-
-void show_seconds(const std::function<std::string()>& what, const std::stop_token& ends) {
-  std::mutex mutex;
-  std::condition_variable_any ended;
-  std::unique_lock lock(mutex);
-  bool shown = false;
-  int next = static_cast<int>(kSilence.count());
-  const auto has_ended = [&ends] { return ends.stop_requested(); };
-  for (int seconds = 1; !ended.wait_for(lock, ends, std::chrono::seconds(1), has_ended); ++seconds) {
-    if (seconds < next) continue;
-    next = is_terminal() ? seconds + 1 : 2 * seconds;
-    show_status(fmt::format("{} ... {} s", what(), seconds));
-    shown = true;
-  }
-  if (shown) hide_status();
-}
-
-}  // namespace
 
 WaitNotice::WaitNotice(std::string what, bool enabled)
     : WaitNotice([what = std::move(what)] { return what; }, enabled) {}

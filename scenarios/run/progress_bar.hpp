@@ -9,16 +9,11 @@
 
 namespace hapbench {
 
-/// Hears of progress in place of the terminal.
-class ProgressListener {
- public:
-  virtual ~ProgressListener() = default;
-  /// From any thread, also from within steps: allocates nothing.
-  virtual void progress(std::string_view label, std::uint64_t done, std::uint64_t total) noexcept = 0;
-};
+/// Hears of progress in place of the terminal, from any thread. Throws nothing.
+using ProgressListener = std::function<void(std::string_view label, std::uint64_t done, std::uint64_t total)>;
 
 /// Bars that this thread makes from now on tell the listener and draw nothing; null: they draw. It must outlive them.
-void report_progress_to(ProgressListener* listener) noexcept;
+void report_progress_to(const ProgressListener* listener) noexcept;
 
 /// Tells this thread's listener, if there is one.
 void tell_progress(std::string_view label, std::uint64_t done, std::uint64_t total) noexcept;
@@ -43,7 +38,7 @@ class ProgressBar {
  private:
   using Clock = std::chrono::steady_clock;
 
-  ProgressListener* listener_;  ///< may be null
+  const ProgressListener* listener_;  ///< may be null
   std::string label_;
   std::uint64_t total_;
   std::uint64_t first_ = 0;

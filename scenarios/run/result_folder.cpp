@@ -56,39 +56,6 @@ std::span<const Column> columns_of(const RecorderEntry& entry, const RecordField
   return &entry.table == &kTrajectoryTable ? trajectory_rows(fields).columns : entry.table.columns;
 }
 
-}  // namespace
-
-Recorders make_recorders(const RecordedTrial& trial, const RecordTarget& target) {
-  Recorders recorders;
-  for (const RecorderEntry& entry : kRecorders) {
-    if (!entry.is_wanted(trial.fields)) continue;
-    RowSource rows = entry.rows(trial);
-    const auto place = [&]() -> TableTarget {
-      if (const auto* directory = std::get_if<fs::path>(&target)) return *directory / entry.table.file;
-      return &std::get<RecordedTables*>(target)->try_emplace(entry.table.file, rows.columns).first->second;
-    }();
-    const auto every = static_cast<std::uint64_t>(entry.has_every_row ? 1 : trial.fields.every);
-    recorders.push_back(std::make_unique<Recorder>(place, std::move(rows), every));
-  }
-  return recorders;
-}
-
-std::vector<ResultTable> record_tables() {
-  std::vector<ResultTable> tables;
-  for (const RecorderEntry& entry : kRecorders) tables.push_back(entry.table);
-  return tables;
-}
-
-std::vector<ResultTable> record_tables(const RecordFields& fields) {
-  std::vector<ResultTable> tables;
-  for (const RecorderEntry& entry : kRecorders) {
-    if (entry.is_wanted(fields)) tables.push_back({entry.table.file, entry.table.holds, columns_of(entry, fields)});
-  }
-  return tables;
-}
-
-namespace {
-
 constexpr double kBytesOfANumber = 12.0;  // between a zero and seventeen digits
 constexpr double kContactsOfARow = 30.0;
 
@@ -97,35 +64,6 @@ double lines_a_row(const ResultTable& table, const RecordFields& record) {
   if (file == "contacts.csv" || file == "contact_trace.csv") return kContactsOfARow;
   return file == "ratios.csv" ? static_cast<double>(record.ratio_iterations.size()) : 1.0;
 }
-
-}  // namespace
-
-double expected_output_bytes(const Scenario& scenario) {
-  const RecordFields& record = scenario.record;
-  double row = 0.0;
-  for (const ResultTable& table : record_tables(record))
-    row += lines_a_row(table, record) * kBytesOfANumber * static_cast<double>(table.columns.size());
-  const double rows = std::ceil(static_cast<double>(scenario.time.steps) / static_cast<double>(record.every));
-  return trial_count(scenario.hand) * rows * row;
-}
-
-void NewDirectories::create(const fs::path& directory, std::error_code& error) {
-  std::vector<fs::path> missing;
-  std::error_code unknown;
-  for (fs::path path = directory; !path.empty() && path != path.root_path() && !fs::exists(path, unknown);
-       path = path.parent_path()) {
-    missing.push_back(path);
-  }
-  made_.insert(made_.end(), missing.rbegin(), missing.rend());
-  fs::create_directories(directory, error);
-}
-
-NewDirectories::~NewDirectories() {
-  std::error_code not_empty;
-  for (auto path = made_.rbegin(); path != made_.rend(); ++path) fs::remove(*path, not_empty);
-}
-
-namespace {
 
 constexpr const char* kTrialDirectory = "subject_";
 
@@ -160,6 +98,60 @@ void remove_empty_trials(const fs::path& directory) {
 }
 
 }  // namespace
+
+Recorders make_recorders(const RecordedTrial& trial, const RecordTarget& target) {
+  Recorders recorders;
+  for (const RecorderEntry& entry : kRecorders) {
+    if (!entry.is_wanted(trial.fields)) continue;
+    RowSource rows = entry.rows(trial);
+    const auto place = [&]() -> TableTarget {
+      if (const auto* directory = std::get_if<fs::path>(&target)) return *directory / entry.table.file;
+      return &std::get<RecordedTables*>(target)->try_emplace(entry.table.file, rows.columns).first->second;
+    }();
+    const auto every = static_cast<std::uint64_t>(entry.has_every_row ? 1 : trial.fields.every);
+    recorders.push_back(std::make_unique<Recorder>(place, std::move(rows), every));
+  }
+  return recorders;
+}
+
+std::vector<ResultTable> record_tables() {
+  std::vector<ResultTable> tables;
+  for (const RecorderEntry& entry : kRecorders) tables.push_back(entry.table);
+  return tables;
+}
+
+std::vector<ResultTable> record_tables(const RecordFields& fields) {
+  std::vector<ResultTable> tables;
+  for (const RecorderEntry& entry : kRecorders) {
+    if (entry.is_wanted(fields)) tables.push_back({entry.table.file, entry.table.holds, columns_of(entry, fields)});
+  }
+  return tables;
+}
+
+double expected_output_bytes(const Scenario& scenario) {
+  const RecordFields& record = scenario.record;
+  double row = 0.0;
+  for (const ResultTable& table : record_tables(record))
+    row += lines_a_row(table, record) * kBytesOfANumber * static_cast<double>(table.columns.size());
+  const double rows = std::ceil(static_cast<double>(scenario.time.steps) / static_cast<double>(record.every));
+  return trial_count(scenario.hand) * rows * row;
+}
+
+void NewDirectories::create(const fs::path& directory, std::error_code& error) {
+  std::vector<fs::path> missing;
+  std::error_code unknown;
+  for (fs::path path = directory; !path.empty() && path != path.root_path() && !fs::exists(path, unknown);
+       path = path.parent_path()) {
+    missing.push_back(path);
+  }
+  made_.insert(made_.end(), missing.rbegin(), missing.rend());
+  fs::create_directories(directory, error);
+}
+
+NewDirectories::~NewDirectories() {
+  std::error_code not_empty;
+  for (auto path = made_.rbegin(); path != made_.rend(); ++path) fs::remove(*path, not_empty);
+}
 
 ResultFolder::ResultFolder(const fs::path& directory) : directory_(directory) {
   create(directories_, directory);
@@ -199,6 +191,12 @@ void ResultFolder::write(const RecordFields& record, const WrittenScenario& scen
   add("summary.json", summary_text(result));
   files.commit();
   remove_empty_trials(directory_);
+}
+
+void RunTables::write(const WrittenScenario& scenario, const Result& result, const Recorders& recorders) {
+  effective = scenario.effective(fs::current_path());
+  for (const auto& recorder : recorders) recorder->finish();
+  if (result.has_section("targets")) write_target_table(&targets.emplace(kTargetTable.columns), result.targets);
 }
 
 void remove_run(const fs::path& directory) {

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -90,6 +91,16 @@ class ResultFolder {
   std::filesystem::path directory_;
   NewDirectories directories_;
   int descriptor_ = -1;  ///< of the lock
+};
+
+/// What a run would have written, in memory.
+struct RunTables {
+  std::vector<RecordedTables> trials;
+  std::optional<MemoryTable> targets;  ///< targets.csv, of a tracking hand
+  Json effective;                      ///< scenario.effective.json, with paths from the working directory
+
+  /// Ends the recorders, and adds what is not of one trial. Throws std::bad_alloc when rows were lost.
+  void write(const WrittenScenario& scenario, const Result& result, const Recorders& recorders);
 };
 
 /// Removes the files that a run wrote into a directory, if it is there, and leaves all others. Throws IoError when the

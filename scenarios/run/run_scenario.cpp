@@ -34,6 +34,7 @@ MetricsConfig metrics_config(const Scenario& scenario, const SimulationParts& pa
     config.friction_limit = explicit_friction_limit(*scenario.integrator.type, rendering.mass, scenario.time.step,
                                                     rendering.mu_s, rendering.mu_f);
   config.settling = scenario.metrics;
+  config.stride = static_cast<std::uint64_t>(scenario.time.stride);
   config.steps = static_cast<std::uint64_t>(scenario.time.steps / scenario.time.stride);
   if (rendering.reduction) config.most_reduced = parts.source->capacity();
   return config;
@@ -49,25 +50,6 @@ std::shared_ptr<const ReferenceForce> reference_force(const Scenario& scenario, 
     throw InputError("/record/force_reference: got true; allowed: false, because the stroke has no measured force");
   return nullptr;
 }
-
-/// Forwards every `stride`-th row, renumbered as if the step were that much longer.
-class RowsApart final : public Observer {
- public:
-  RowsApart(Observer& observer, std::int64_t stride)
-      : observer_(observer), stride_(static_cast<std::uint64_t>(stride)) {}
-
-  bool wants_ratio() const noexcept override { return observer_.wants_ratio(); }
-  void on_step(const StepRecord& record) noexcept override {
-    if (record.step % stride_ != 0) return;
-    StepRecord row = record;
-    row.step /= stride_;
-    observer_.on_step(row);
-  }
-
- private:
-  Observer& observer_;
-  std::uint64_t stride_;
-};
 
 /// Warnings about the forces of a run: it passed the limit of explicit friction, or the reduction makes its force jump
 /// (results/observe).
@@ -146,11 +128,9 @@ class Run {
     tool_ = parts.tool;
 
     StepSampler sampler(static_cast<std::uint64_t>(time.steps));
-    RowsApart metrics_rows(*metrics_, time.stride);
     const auto seen = outcome_observer(scenario_, loaded_.files, parts, &*metrics_);
     ProgressBar bar(label, static_cast<std::uint64_t>(time.steps), !label.empty());
-    std::vector<Observer*> observers = {&sampler.first()};
-    observers.push_back(time.stride == 1 ? static_cast<Observer*>(&*metrics_) : &metrics_rows);
+    std::vector<Observer*> observers = {&sampler.first(), &*metrics_};
     for (const auto& observer : sections_.all()) observers.push_back(observer.get());
     observers.push_back(seen.get());
     if (diagnosis_) observers.push_back(&*diagnosis_);
@@ -310,13 +290,22 @@ Result run_trials(const LoadedScenario& loaded, const std::shared_ptr<const Poin
   const WrittenScenario written(scenario, loaded.files);
   add_provenance(result);
   result.scenario_hash = written.hash();
-  if (folder) {
-    folder->write(scenario.record, written, result, run.recorders());
-    return result;
-  }
-  for (const auto& recorder : run.recorders()) recorder->finish();
-  if (result.has_section("targets")) write_target_table(&tables->targets.emplace(kTargetTable.columns), result.targets);
+  if (folder) folder->write(scenario.record, written, result, run.recorders());
+  if (tables != nullptr) tables->write(written, result, run.recorders());
   return result;
+}
+
+std::string divergence_text(const SimulationResult& result) {
+  if (result.outcome != Outcome::diverges) return "";
+  const Divergence& d = result.divergence;
+  if (!d.fault.empty()) return fmt::format(" ({}, at step {})", d.fault, d.step);
+  return fmt::format(" ({} reached {:.4g} at step {}, beyond {:.4g})", d.quantity, d.magnitude, d.step, d.bound);
+}
+
+std::vector<std::string> names_of(const std::vector<Outcome>& outcomes) {
+  std::vector<std::string> names;
+  for (const Outcome outcome : outcomes) names.emplace_back(outcome_name(outcome));
+  return names;
 }
 
 }  // namespace
@@ -337,23 +326,6 @@ Result run_scenario(const LoadedScenario& loaded, const std::optional<fs::path>&
 Result run_with_shell(const LoadedScenario& loaded, const std::shared_ptr<const PointShell>& shell) {
   return run_trials(loaded, shell, {}, {}, false, nullptr, false);
 }
-
-namespace {
-
-std::string divergence_text(const SimulationResult& result) {
-  if (result.outcome != Outcome::diverges) return "";
-  const Divergence& d = result.divergence;
-  if (!d.fault.empty()) return fmt::format(" ({}, at step {})", d.fault, d.step);
-  return fmt::format(" ({} reached {:.4g} at step {}, beyond {:.4g})", d.quantity, d.magnitude, d.step, d.bound);
-}
-
-std::vector<std::string> names_of(const std::vector<Outcome>& outcomes) {
-  std::vector<std::string> names;
-  for (const Outcome outcome : outcomes) names.emplace_back(outcome_name(outcome));
-  return names;
-}
-
-}  // namespace
 
 bool outcome_is_expected(const ExpectFields& expect, Outcome outcome) {
   return std::ranges::find(expect.outcomes, outcome) != expect.outcomes.end();

@@ -5,19 +5,12 @@
 #include <optional>
 #include <vector>
 
-#include "results/io/table_writer.hpp"
 #include "results/summary/summary.hpp"
 #include "scenarios/description/load_scenario.hpp"
 #include "scenarios/run/result_folder.hpp"
 #include "sim/geometry/point_shell.hpp"
 
 namespace hapbench {
-
-/// The tables that a run recorded in memory.
-struct RunTables {
-  std::vector<RecordedTables> trials;
-  std::optional<MemoryTable> targets;  ///< targets.csv, of a tracking hand
-};
 
 /// Runs a scenario, all its trials one after the other. With `output`, writes summary.json, scenario.effective.json and
 /// what the scenario records into that directory, which is created, records of several trials into a subdirectory each;

@@ -133,6 +133,57 @@ bool is_open_scan(const Scenario& scenario, const NamedFiles& files) {
          !files.at(kEnvironmentFile).mesh().open_edges().empty();
 }
 
+constexpr double kAlways = std::numeric_limits<double>::infinity();
+
+/// The time until which a script moves [s]: 0 if it never does.
+double moves_until(const Profile& profile) {
+  if (profile.is_constant()) return 0.0;
+  const auto* way = std::get_if<Profile::Waypoints>(&profile.shape());
+  return way != nullptr ? way->points.back().first : kAlways;
+}
+
+double period_of(const Profile& profile) {
+  const auto* sine = std::get_if<Profile::Sine>(&profile.shape());
+  return sine != nullptr && !profile.is_constant() ? sine->period_s : 0.0;
+}
+
+/// The scripts of the hand; none of one that is moved otherwise, and of none.
+std::span<const Profile> scripts_of(const HandFields& hand) {
+  if (const auto* force = std::get_if<ForceHandFields>(&hand)) return force->force;
+  if (const auto* push = std::get_if<PushHandFields>(&hand)) return {&push->force, 1};
+  if (const ImpedanceHandFields* spring = spring_of(hand)) return spring->target;
+  return {};
+}
+
+/// The largest of what is said of a scenario's scripts.
+double largest(const Scenario& scenario, double (*of)(const Profile&)) {
+  double most = 0.0;
+  for (const Profile& script : scripts_of(scenario.hand)) most = std::max(most, of(script));
+  const auto& orientation = scenario.motion.orientation;
+  return orientation ? std::max({most, of(orientation->tilt), of(orientation->azimuth)}) : most;
+}
+
+/// The mean distance of a mesh's vertices [m].
+double vertex_distance(const TriangleSoup& soup) {
+  double area = 0.0;
+  for (const auto& [a, b, c] : soup.triangles) {
+    const Vec3& corner = soup.vertices[a];
+    area += 0.5 * (soup.vertices[b] - corner).cross(soup.vertices[c] - corner).norm();
+  }
+  return std::sqrt(area / static_cast<double>(soup.vertices.size()));
+}
+
+struct Unit {
+  double per_metre;
+  const char* name;
+};
+
+Unit unit_for(double metres) {
+  const double size = std::abs(metres);
+  if (size >= 1.0 || size == 0.0) return {1.0, "m"};
+  return size >= 1e-4 ? Unit{1e3, "mm"} : Unit{1e6, "um"};
+}
+
 }  // namespace
 
 double way_to_cover(const DragHandFields& hand, double duration) {
@@ -262,40 +313,6 @@ std::optional<Warning> inverted_scan_warning(const LoadedScenario& loaded) {
   return wrong_side_warning(*parts.shell, pose.position - way_to_core(*parts.tool) * pose.axis, 0.0);
 }
 
-namespace {
-
-constexpr double kAlways = std::numeric_limits<double>::infinity();
-
-/// The time until which a script moves [s]: 0 if it never does.
-double moves_until(const Profile& profile) {
-  if (profile.is_constant()) return 0.0;
-  const auto* way = std::get_if<Profile::Waypoints>(&profile.shape());
-  return way != nullptr ? way->points.back().first : kAlways;
-}
-
-double period_of(const Profile& profile) {
-  const auto* sine = std::get_if<Profile::Sine>(&profile.shape());
-  return sine != nullptr && !profile.is_constant() ? sine->period_s : 0.0;
-}
-
-/// The scripts of the hand; none of one that is moved otherwise, and of none.
-std::span<const Profile> scripts_of(const HandFields& hand) {
-  if (const auto* force = std::get_if<ForceHandFields>(&hand)) return force->force;
-  if (const auto* push = std::get_if<PushHandFields>(&hand)) return {&push->force, 1};
-  if (const ImpedanceHandFields* spring = spring_of(hand)) return spring->target;
-  return {};
-}
-
-/// The largest of what is said of a scenario's scripts.
-double largest(const Scenario& scenario, double (*of)(const Profile&)) {
-  double most = 0.0;
-  for (const Profile& script : scripts_of(scenario.hand)) most = std::max(most, of(script));
-  const auto& orientation = scenario.motion.orientation;
-  return orientation ? std::max({most, of(orientation->tilt), of(orientation->azimuth)}) : most;
-}
-
-}  // namespace
-
 double script_moves_until(const Scenario& scenario) {
   const HandFields& hand = scenario.hand;
   const bool is_led = scripts_of(hand).empty() && !std::holds_alternative<NoHandFields>(hand);
@@ -314,20 +331,6 @@ const TremorConfig* tremor_of(const Scenario& scenario) {
 bool is_moved(const Scenario& scenario) {
   return script_moves_until(scenario) > 0.0 || tremor_of(scenario) != nullptr;
 }
-
-namespace {
-
-/// The mean distance of a mesh's vertices [m].
-double vertex_distance(const TriangleSoup& soup) {
-  double area = 0.0;
-  for (const auto& [a, b, c] : soup.triangles) {
-    const Vec3& corner = soup.vertices[a];
-    area += 0.5 * (soup.vertices[b] - corner).cross(soup.vertices[c] - corner).norm();
-  }
-  return std::sqrt(area / static_cast<double>(soup.vertices.size()));
-}
-
-}  // namespace
 
 std::optional<PointDistance> point_distance(const LoadedScenario& loaded) {
   const Environment& environment = loaded.scenario.environment;
@@ -370,21 +373,6 @@ Gap gap_between(const ToolShape& tool, const ToolPose& pose, const PointShell& s
   }
   return gap;
 }
-
-namespace {
-
-struct Unit {
-  double per_metre;
-  const char* name;
-};
-
-Unit unit_for(double metres) {
-  const double size = std::abs(metres);
-  if (size >= 1.0 || size == 0.0) return {1.0, "m"};
-  return size >= 1e-4 ? Unit{1e3, "mm"} : Unit{1e6, "um"};
-}
-
-}  // namespace
 
 std::string length_text(double metres) {
   const Unit unit = unit_for(metres);

@@ -48,19 +48,17 @@ py::tuple table_of(const MemoryTable& table) {
 py::dict run(const std::string& scenario, const std::vector<std::string>& overrides, const py::object& progress) {
   Result report;
   RunTables tables;
-  std::string effective;
   std::vector<std::string> warnings;
   const bool shown = progress.ptr() != Py_False;
   supervise(progress, [&] {
     const LoadedScenario loaded = load_scenario(find_scenario(scenario), overrides);
     warnings = with_files(loaded, warnings_before_run(loaded));
-    effective = json_text(effective_scenario(loaded.scenario, std::filesystem::current_path()));
     report = run_scenario(loaded, std::nullopt, shown, &tables);
     for (std::string& warning : run_warnings({&report, 1})) warnings.push_back(std::move(warning));
   });
   py::dict result;
   result["summary"] = summary_text(report);
-  result["scenario"] = effective;
+  result["scenario"] = json_text(tables.effective);
   result["timing"] = timing_text(report.timing, instruction_set(), report.provenance);
   result["warnings"] = warnings;
   result["unmet"] = report.unmet;

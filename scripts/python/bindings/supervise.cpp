@@ -34,23 +34,6 @@ PyObject* python_error = nullptr;
 /// Label, done and total; the total is 0 before the first report.
 using ProgressState = std::tuple<std::string, std::uint64_t, std::uint64_t>;
 
-/// The last progress that the work reported.
-class ProgressBoard final : public ProgressListener {
- public:
-  void progress(std::string_view label, std::uint64_t done, std::uint64_t total) noexcept override {
-    const std::lock_guard lock(mutex_);
-    last_ = {std::string(label), done, total};
-  }
-  ProgressState last() {
-    const std::lock_guard lock(mutex_);
-    return last_;
-  }
-
- private:
-  std::mutex mutex_;
-  ProgressState last_;
-};
-
 void end_work() {
   if (under_way == 0) return;
   PyErr_SetNone(PyExc_SystemExit);
@@ -77,11 +60,18 @@ UnderWay::~UnderWay() {
 void supervise(const py::object& progress, const std::function<void()>& work) {
   const UnderWay counted;
   const bool is_told = PyCallable_Check(progress.ptr()) != 0;
-  ProgressBoard board;
-  ProgressState told;
-  ProgressListener* listener = progress.is_none() ? nullptr : &board;
-  auto result = std::async(std::launch::async, [listener, &work] {
-    report_progress_to(listener);
+  std::mutex mutex;
+  ProgressState reported, told;  // the work's last report, under the lock, and what Python was told
+  const auto last_report = [&] {
+    const std::lock_guard lock(mutex);
+    return reported;
+  };
+  const ProgressListener listener = [&](std::string_view label, std::uint64_t done, std::uint64_t total) {
+    const std::lock_guard lock(mutex);
+    reported = {std::string(label), done, total};
+  };
+  auto result = std::async(std::launch::async, [&] {
+    report_progress_to(progress.is_none() ? nullptr : &listener);
     work();
   });
   const auto has_ended = [&result] {
@@ -91,7 +81,7 @@ void supervise(const py::object& progress, const std::function<void()>& work) {
   while (!has_ended()) {
     runs_in_python([&] {
       if (PyErr_CheckSignals() != 0) throw py::error_already_set();
-      ProgressState last = board.last();
+      ProgressState last = last_report();
       if (!is_told || last == told) return;
       told = std::move(last);
       std::apply(progress, told);
@@ -99,7 +89,7 @@ void supervise(const py::object& progress, const std::function<void()>& work) {
   }
   raise_python_error();
   result.get();
-  if (const auto [label, done, total] = board.last(); is_told && total > 0) progress(label, total, total);
+  if (const auto [label, done, total] = last_report(); is_told && total > 0) progress(label, total, total);
 }
 
 void stop_work_by(const py::error_already_set& error) {

@@ -70,9 +70,8 @@ ToolPose upright(double x, double z) {
 }
 
 struct Ran {
-  bool through;       ///< by any part of it
-  std::size_t looks;  ///< along the core
-  double deepest;     ///< contact [m]
+  bool through;    ///< by any part of it
+  double deepest;  ///< contact [m]
 };
 
 /// The tool on its way, with contacts at points.
@@ -90,8 +89,7 @@ Ran run(const NamedTool& tool, const std::shared_ptr<const Solid>& solid, const 
     deepest = std::max(deepest, row.force.depth_max);
     observer.on_step(row);
   }
-  const auto& core = observer.core_passage();
-  return {observer.passage().went_through() || core.event().has_value(), core.looks(), deepest};
+  return {observer.passage().went_through() || observer.core_passage().event().has_value(), deepest};
 }
 
 /// A plate from x = 0 to 4 mm below z = 0, `thickness` t thick, through which ways lead.
@@ -200,25 +198,6 @@ TEST(DeepInAHole, IsNotThrough) {
   const Ran ran = run(drill, hole, points, worked, 400);
   EXPECT_FALSE(ran.through);
   EXPECT_GE(ran.deepest, 0.85 * kRadius);
-}
-
-/// No row looks along the core in free air or in shallow contact, and while it rests deep few do.
-TEST(LooksAlongTheCore, AreMadeInDeepContactOnly) {
-  const Vec3 low(0.0, -0.003, -0.004), high(0.004, 0.003, 0.0);
-  const TriangleSoup block = box(low, high);
-  const std::shared_ptr<const Solid> solid = make_solid(block.vertices, block.triangles);
-  const std::vector<Vec3> points = points_of(low, high);
-  for (const NamedTool& tool : tools()) {
-    const double ball = kRadius - way_to_core(*tool.shape), shallow = 0.7 * CorePassage(tool.shape, solid).looks_from();
-    const Way dragged = [&](double u) { return upright(0.001 + 0.002 * u, ball - shallow); };
-    const Way free = [](double u) { return upright(0.001 + 0.002 * u, 0.001); };
-    EXPECT_EQ(run(tool, solid, points, dragged, 200).looks, 0u) << tool.name;
-    EXPECT_EQ(run(tool, solid, points, free, 200).looks, 0u) << tool.name;
-    const Way rests = [&](double u) { return upright(0.002 + 1e-6 * u, ball - 0.95 * kRadius); };
-    const Ran deep = run(tool, solid, points, rests, 400);
-    EXPECT_GE(deep.looks, 1u) << tool.name;
-    EXPECT_LE(deep.looks, 4u) << tool.name;
-  }
 }
 
 }  // namespace

@@ -7,7 +7,6 @@
 #include <optional>
 
 #include "algorithms/registry.hpp"
-#include "device_model/admittance_device.hpp"
 #include "device_model/hands/scripted_hands.hpp"
 #include "device_model/ideal_device.hpp"
 #include "tests/support/scenes.hpp"
@@ -59,13 +58,6 @@ Accounts keep_accounts(SimulationConfig config, SimulationParts parts) {
   return accounts;
 }
 
-Setting springs_in_x(std::size_t count) {
-  Setting setting;
-  setting.springs = SpringSet{std::vector<Vec3>(count, Vec3(1, 0, 0)), true};
-  setting.pose.position = {0.003, 0, 0};
-  return setting;
-}
-
 /// Every joule of a free run is accounted for; a limit is that of an ideal device [N].
 void expect_closed(const test::AnalyticScene& scene, const RenderingConfig& config, const IntegratorEntry& integrator,
                    std::optional<double> limit = {}) {
@@ -100,43 +92,6 @@ TEST(EnergyLedger, ClosesToRoundingForEveryAlgorithmAndEveryIntegrator) {
     for (const IntegratorEntry* integrator : kIntegrators)
       expect_closed(scene, test::config_for("shaped_stiffness", scene), *integrator);
   }
-}
-
-TEST(EnergyLedger, ChargesTheIntegratorWithWhatItMakesOfAnUndampedSpring) {
-  const Setting setting = springs_in_x(5);
-  RenderingConfig config;
-  config.algorithm = "summation";
-  config.damping_ratio = 0.0;
-  const double stored = 0.5 * 5 * config.stiffness * 9e-6;
-  for (const IntegratorEntry* integrator : kIntegrators) {
-    SimulationConfig run = test::free_run_config(setting, config, 200);
-    run.integrator = integrator;
-    const EnergyBalance b = keep_accounts(run, test::free_run(setting, config)).balance;
-    SCOPED_TRACE(integrator->info.name);
-    // Whatever is missing of the energy at the start is the integrator's doing, and nobody else's.
-    EXPECT_NEAR(b.integration, b.kinetic + b.stored - stored, 200 * 20 * kEpsilon * stored);
-    if (integrator == &kImplicitMidpoint) {
-      EXPECT_NEAR(b.integration, 0.0, 200 * 20 * kEpsilon * stored);
-    } else if (integrator == &kImplicitEuler) {
-      // It keeps 1 / (1 + k) a step, k = 5 K dt^2 / M = 0.125: nothing is left after 200.
-      EXPECT_NEAR(b.integration, -stored, 1e-9 * stored);
-    }
-  }
-}
-
-TEST(EnergyLedger, AnAdmittanceDeviceHasABalanceOfItsOwn) {
-  const Setting setting = springs_in_x(3);
-  const RenderingConfig config;
-  SimulationParts parts = test::free_run(setting, config);
-  parts.hand = std::make_unique<ForceHand>(std::array<Profile, 3>{Profile::Shape(Profile::Sine{1, 3, 0.1, 0}), 0.5, 0});
-  parts.device = std::make_unique<AdmittanceDevice>(AdmittanceDeviceConfig{});
-  const Accounts a = keep_accounts(test::free_run_config(setting, config, 2000), std::move(parts));
-  const EnergyBalance& b = a.balance;
-  ASSERT_TRUE(b.device);
-  EXPECT_NE(b.hand, 0.0);
-  EXPECT_LT(b.device->dissipated, 0.0);
-  EXPECT_NEAR(b.device->stored, b.hand + b.actuator + b.device->dissipated, 1e-12 * (std::abs(b.hand) + 1.0));
-  EXPECT_LE(a.residual_max, 2000 * 20 * kEpsilon * a.turnover);
 }
 
 /// A spring whose far end stays while the tool turns: what the turn stores is the rotation's, not created.

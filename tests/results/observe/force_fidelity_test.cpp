@@ -3,8 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
-#include <numbers>
 #include <vector>
 
 namespace hapbench::force_fidelity_test {
@@ -20,26 +18,6 @@ TEST(ForceFidelity, WhereNothingIsRenderedTheNormalIsTheMeasuredForces) {
               1e-15);
   EXPECT_NEAR(told(observer, "force_error_tangential_rms_N").value(), 0.0, 1e-15);
   EXPECT_EQ(told(observer, "direction_rows"), 0.0);
-}
-
-TEST(ForceFidelity, TakesTheLagNearestToZeroOfPeriodicForces) {
-  for (const double frequency : {8.0, 10.0, 12.0, 15.0, 20.0, 50.0}) {
-    for (const double part : {0.0, 0.3, -0.2}) {  // of a period
-      std::vector<Vec3> early, late;
-      for (int k = 0; k < 3000; ++k) {
-        const double phase = 2.0 * std::numbers::pi * frequency * kDt * k;
-        early.push_back({0, 0, 1.0 + std::sin(phase)});
-        late.push_back({0, 0, 1.0 + std::sin(phase - 2.0 * std::numbers::pi * part)});
-      }
-      const auto found = lag_between(early, late, kDt, kMostLag);
-      ASSERT_TRUE(found) << frequency;
-      EXPECT_NEAR(found->time, part / frequency, 0.05 * kDt) << frequency << " Hz, " << part;
-      // A second answer is within reach for periods up to the range on the other side of 0, and at its end (10 Hz, 0).
-      const double other = (1.0 - std::abs(part)) / frequency;
-      ASSERT_EQ(found->period.has_value(), other < kMostLag + 0.5 * kDt) << frequency << " Hz, " << part;
-      EXPECT_NEAR(found->period.value_or(1.0 / frequency), 1.0 / frequency, 0.6 * kDt);
-    }
-  }
 }
 
 TEST(ForceFidelity, FindsNoLagBeyondItsReach) {

@@ -24,37 +24,11 @@ TEST(IdealPlace, ExistsWhileTheTipIsOnTheWallAboveTheBottom) {
   EXPECT_FALSE(ideal_place(kBlock, kRadius, -0.5));
   EXPECT_FALSE(ideal_place(kBlock, kRadius, 0.01)) << "would be 100 mm deep";
   EXPECT_TRUE(ideal_place(kBlock, kRadius, 0.3));
-  BlockWithHole shallow;
-  shallow.hole_depth = 0.001;
-  EXPECT_FALSE(ideal_place(shallow, kRadius, 0.3));
 }
 
 ToolPose tilted(const Vec3& position, double tilt, double azimuth = 0.0) {
   const Vec3 lean{std::cos(azimuth), std::sin(azimuth), 0.0};
   return {position, -(std::cos(tilt) * Vec3::UnitZ() + std::sin(tilt) * lean)};
-}
-
-TEST(IdealTrajectory, ErrorsAreActualMinusIdealInThePlaneOfTheTilt) {
-  const double tilt = 0.6, azimuth = 2.0;
-  const TipPlace ideal = *ideal_place(kBlock, kRadius, tilt);
-  const Vec3 lean{std::cos(azimuth), std::sin(azimuth), 0.0}, aside{-lean.y(), lean.x(), 0.0};
-  const Vec3 place = (ideal.lateral + 2e-5) * lean + 1e-4 * aside + (ideal.height - 3e-5) * Vec3::UnitZ();
-  for (const double push : {1.999, 2.0}) {
-    IdealTrajectoryObserver observer(kBlock);
-    StepRecord record;
-    record.tool.pose = tilted(place, tilt, azimuth);
-    record.hand_force = {0, 0, -push};
-    observer.on_step(record);
-    ASSERT_TRUE(observer.error());
-    EXPECT_NEAR(observer.error()->tilt, tilt, 1e-15);
-    const auto of_hand = [&](const char* name) {
-      return told(observer, (push < 2.0 ? "gentle." : "firm.") + std::string(name));
-    };
-    EXPECT_EQ(of_hand("rows"), 1.0) << push;
-    EXPECT_NEAR(of_hand("lateral_error_mean_m").value(), 2e-5, 1e-17);
-    EXPECT_NEAR(of_hand("height_error_mean_m").value(), -3e-5, 1e-17) << "sunk in";
-    EXPECT_GT(of_hand("interpenetration_max_m"), 0.0);
-  }
 }
 
 TEST(IdealTrajectory, ComparesEachSoManyRows) {
@@ -124,18 +98,6 @@ TEST(Interpenetration, EqualsASearchOverTheWholeTool) {
     const ToolPose pose =
         tilted({random.uniform(-7e-4, 7e-4), random.uniform(-7e-4, 7e-4), random.uniform(-4e-3, 3e-4)}, tilt, azimuth);
     EXPECT_NEAR(interpenetration(kBlock, kTool, pose), searched(pose), 2.0 * kRounding) << run;
-  }
-}
-
-/// The tip's edge just below the rim: what is deepest is the edge's point on the cone, a kink of the depth.
-TEST(Interpenetration, OfATipOnTheRimIsThatOfItsEdge) {
-  for (const double d : {1e-7, 1e-5, 1e-4}) {
-    for (const double tilt : {0.05, 0.3, 0.7}) {
-      const double s = std::sin(tilt), c = std::cos(tilt);
-      // The lowest point of the tip's edge, d below the top and outside the rim.
-      const Vec3 low{0.001 + d, 0.0, -d}, place = low - kTool.radius() * Vec3(c, 0.0, -s);
-      EXPECT_NEAR(interpenetration(kBlock, kTool, tilted(place, tilt)), d, kRounding) << tilt;
-    }
   }
 }
 

@@ -15,50 +15,12 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-void busy_for(std::chrono::nanoseconds time) {
-  const auto end = Clock::now() + time;
-  while (Clock::now() < end) {
-  }
-}
-
-TEST(StepTimes, TimesEachStep) {
-  StepTimes times(3);
-  times.start();
-  for (const int microseconds : {50, 300, 100}) {
-    busy_for(std::chrono::microseconds(microseconds));
-    times.lap();
-  }
-  const auto ns = times.nanoseconds();
-  ASSERT_EQ(ns.size(), 3u);
-  // A step takes no less than it is busy; the overhead, which was measured, is subtracted once. Longer it may take.
-  EXPECT_GE(ns[0] + times.overhead(), 50'000u);
-  EXPECT_GE(ns[1] + times.overhead(), 300'000u);
-  EXPECT_GE(ns[2] + times.overhead(), 100'000u);
-}
-
 // 4.29 s is 2^32 ns. A step that began 5 s ago need not be waited for.
 TEST(StepTimes, TimesAStepOfManySeconds) {
   StepTimes times(1);
   times.start(Clock::now() - std::chrono::seconds(5));
   times.lap();
   EXPECT_GE(times.nanoseconds()[0] + times.overhead(), 5'000'000'000u);
-}
-
-/// Whether more than half of many empty steps take less than a reading of the clock, which is subtracted from each.
-bool empty_steps_take_nothing() {
-  StepTimes times(10'001);
-  times.start();
-  for (int i = 0; i < 10'001; ++i) times.lap();
-  std::vector<std::uint64_t> ns(times.nanoseconds().begin(), times.nanoseconds().end());
-  std::nth_element(ns.begin(), ns.begin() + 5000, ns.end());
-  EXPECT_GT(times.overhead(), 0u);
-  return ns[5000] <= times.overhead();
-}
-
-// A machine that does something else can slow the steps down after the clock was measured, but not every time.
-TEST(StepTimes, AnEmptyStepTakesAboutNothing) {
-  int attempts = 0;
-  while (!empty_steps_take_nothing()) ASSERT_LT(++attempts, 1000);
 }
 
 TEST(StepTimes, AStepDoesNotAllocate) {
@@ -68,6 +30,7 @@ TEST(StepTimes, AStepDoesNotAllocate) {
   for (int i = 0; i < 100; ++i) times.lap();
   EXPECT_EQ(count.value(), 0u);
   EXPECT_EQ(times.nanoseconds().size(), 100u);
+  EXPECT_GT(times.overhead(), 0u);
 }
 
 using std::chrono::milliseconds;
@@ -164,17 +127,6 @@ TEST(StepLatency, WithoutStepsThereAreNoPercentiles) {
   EXPECT_NE(timing_text({}, {}, {}).find("\"step_mean_s\": null,"), std::string::npos);
 }
 
-TEST(StepLatency, JsonIsInSeconds) {
-  const auto json = step_latency_json(step_latency(Times{3, 600'000}, 0));
-  EXPECT_EQ(step_latency_json(step_latency(Times{5'000'000'000}, 0))["max_s"], 5.0);
-  EXPECT_EQ(json["p50_s"], 3e-9);
-  EXPECT_EQ(json["max_s"], 600e-6);
-  EXPECT_EQ(json["deadline_misses"][0]["deadline_s"], 0.0005);
-  EXPECT_EQ(json["deadline_misses"][1]["deadline_s"], 1.0 / 2048.0);
-  EXPECT_EQ(json["histogram"][0]["from_s"], 2e-9);
-  EXPECT_EQ(json["histogram"][0]["to_s"], 4e-9);
-}
-
 TEST(StepLatency, GivesMediansOverTheRun) {
   Times times;
   for (std::uint64_t i = 0; i < 10 * StepLatency::kSpans; ++i) times.push_back(100 * (i / 10) + i % 10);
@@ -186,49 +138,20 @@ TEST(StepLatency, GivesMediansOverTheRun) {
 }
 
 TEST(Timing, TextHoldsMeanTimeInstructionSetAndCpu) {
-  EXPECT_EQ(timing_text({.shell = 0.25,
-                         .loop = 0.5,
-                         .steps = 2000,
-                         .latency = {},
-                         .step_p50 = 0.5e-6,
-                         .step_p99 = 2e-6,
-                         .preemptions = 3},
-                        {.march = "native", .widest = "avx2", .simd = true},
-                        {.version = "1.2.3",
-                         .commit = "abc",
-                         .compiler = "GNU 12.2.0",
-                         .build_type = "Release",
-                         .flags = "-O3",
-                         .cpu = "Some CPU"}),
-            R"({
-  "shell_s": 0.25,
-  "loop_s": 0.5,
-  "steps": 2000,
-  "step_mean_s": 0.00025,
-  "step_p50_s": 5e-07,
-  "step_p99_s": 2e-06,
-  "step_latency": null,
-  "preemptions": 3,
-  "build": {
-    "march": "native",
-    "instruction_set": "avx2",
-    "simd": true,
-    "compiler": "GNU 12.2.0",
-    "build_type": "Release",
-    "flags": "-O3",
-    "commit": "abc"
-  },
-  "cpu": "Some CPU"
+  Provenance build;
+  build.cpu = "Some CPU";
+  const auto json = nlohmann::json::parse(
+      timing_text({.loop = 0.5, .steps = 2000, .latency = step_latency(Times{3, 5'000'000'000}, 0), .step_p50 = 5e-7},
+                  {.march = "native", .widest = "avx2", .simd = true}, build));
+  EXPECT_EQ(json["step_mean_s"], 0.00025);
+  EXPECT_EQ(json["step_p50_s"], 5e-7);
+  EXPECT_EQ(json["step_latency"]["p50_s"], 3e-9);
+  EXPECT_EQ(json["step_latency"]["max_s"], 5.0);
+  EXPECT_EQ(json["step_latency"]["deadline_misses"][1]["deadline_s"], 1.0 / 2048.0);
+  EXPECT_EQ(json["step_latency"]["histogram"][0]["to_s"], 4e-9);
+  EXPECT_EQ(json["build"]["instruction_set"], "avx2");
+  EXPECT_EQ(json["cpu"], "Some CPU");
 }
-)");
-}
-
-// On x86-64 every build has at least SSE2.
-#if defined(__x86_64__)
-TEST(InstructionSet, IsKnownOnX86) {
-  EXPECT_NE(instruction_set().widest, "none known");
-}
-#endif
 
 }  // namespace
 }  // namespace hapbench::step_times_test

@@ -31,13 +31,6 @@ std::vector<std::string> recorded(const RowSource& source, const std::vector<Ste
   return lines;
 }
 
-TEST(TrajectoryRecorder, HasItsColumnsInOrderAndPoseAndTorqueBehindThem) {
-  EXPECT_EQ(header_of(trajectory_rows({.pose = true, .torque = true}).columns),
-            "step,time_s,px_m,py_m,pz_m,vx_m_per_s,vy_m_per_s,vz_m_per_s,axis_x,axis_y,axis_z,fx_N,fy_N,fz_N,"
-            "fspring_x_N,fspring_y_N,fspring_z_N,fmeas_x_N,fmeas_y_N,fmeas_z_N,fin_x_N,fin_y_N,fin_z_N,hx_m,hy_m,hz_m,"
-            "colliding,rendered,depth_max_m,ratio_min,ratio_max,qw,qx,qy,qz,tx_Nm,ty_Nm,tz_Nm");
-}
-
 TEST(TrajectoryRecorder, WritesTheQuaternionWhoseFirstNumberIsNotNegative) {
   const ContactBuffer none(1);
   std::vector<StepRecord> rows;

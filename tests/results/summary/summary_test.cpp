@@ -32,33 +32,6 @@ TEST(Summary, WritesADivergenceThatIsNotFiniteAsNullAndText) {
   EXPECT_EQ(summary_json(run)["divergence"]["magnitude_text"], "nan");
 }
 
-// The summaries of the scalar and the SIMD build must be identical, so they must not name the instruction set.
-TEST(Summary, WithTheRealProvenanceDoesNotNameTheInstructionSet) {
-  Result run;
-  run.provenance = provenance();
-  const std::string text = summary_text(run);
-  for (const std::string word : {"march", "native", "avx", "sse", "simd", "SIMD"}) {
-    EXPECT_EQ(text.find(word), std::string::npos) << word << " in\n" << text;
-  }
-}
-
-TEST(OutcomeNames, LeadBackToTheirOutcomes) {
-  for (const OutcomeInfo& outcome : outcome_infos()) {
-    const auto named = outcome_named(outcome.name);
-    ASSERT_TRUE(named) << outcome.name;
-    EXPECT_EQ(outcome_name(*named), outcome.name);
-  }
-}
-
-TEST(ColumnsJson, HoldsTheColumnsOfEachFileAndTheMetrics) {
-  constexpr Column kColumns[] = {{"t_s", "s", "time"}, {"name", "", "who"}};
-  const ResultTable table = {"a.csv", "what a line is", kColumns};
-  const MetricList metrics = {{"force_max_N", "N", "largest force", 2.0}};
-  EXPECT_EQ(columns_json({&table, 1}, metrics).dump(),
-            R"({"summary.json":[{"name":"force_max_N","unit":"N","meaning":"largest force"}],)"
-            R"("a.csv":[{"name":"t_s","unit":"s","meaning":"time"},{"name":"name","unit":"","meaning":"who"}]})");
-}
-
 /// The suffix of a name that ends in its unit, as units are written in names.
 std::string unit_in_name(std::string unit) {
   if (unit == "1" || unit.empty()) return "";

@@ -80,28 +80,6 @@ TEST(LateContacts, OfEveryRowChangeNoBitForAnyAlgorithm) {
   }
 }
 
-/// f_spring between queries is that of the query, whoever finds the contacts.
-TEST(HeldContacts, HoldTheSpringForceOfEveryAlgorithm) {
-  for (const AlgorithmEntry& algorithm : algorithms()) {
-    SCOPED_TRACE(algorithm.info->name);
-    auto overrides = late(5, 0, "hold");
-    overrides.insert(overrides.end(), {"rendering.algorithm=" + std::string(algorithm.info->name),
-                                       "time.duration_s=0.2", "rendering.reduction=null"});
-    const auto rows = rows_of(bundled("drag_molar", overrides));
-    std::size_t held = 0, changes = 0;
-    for (std::size_t k = 1; k < rows.size(); ++k) {
-      if (k % 5 != 0) {
-        ASSERT_EQ(rows[k].force.spring, rows[k - 1].force.spring) << k;
-        held += static_cast<std::size_t>(rows[k].force.spring != Vec3(Vec3::Zero()));
-      } else {
-        changes += static_cast<std::size_t>(rows[k].force.spring != rows[k - 1].force.spring);
-      }
-    }
-    EXPECT_GT(held, 200u);
-    EXPECT_GT(changes, 50u);
-  }
-}
-
 // A trace.
 
 class Trace : public testing::Test {

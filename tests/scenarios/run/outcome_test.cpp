@@ -2,13 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "results/observe/metrics.hpp"
 #include "scenarios/description/metric_sections.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/run/scene_checks.hpp"
-#include "tests/results/rows.hpp"
+#include "tests/results/files.hpp"
 #include "tests/scenarios/support/bundled.hpp"
 
 /// The outcomes of runs that miss or lose their object, whether they were expected, and the warnings about them.
@@ -102,37 +103,22 @@ TEST(Expectation, IncludesItsBoundsAndMayBoundEveryMetric) {
   for (const std::string& name : metric_names()) EXPECT_EQ(unmet(name, {1e15, {}}), 1u) << name;
 }
 
-/// A row of points along x, a millimetre apart, the mesh being open at x = 0.
-class OpenEdges : public testing::Test {
- protected:
-  OpenEdges() : shell_(points(), 0.0), observer_(shell_, {Vec3::Zero()}, 0.002) {}
-
-  static std::vector<SurfacePoint> points() {
-    std::vector<SurfacePoint> points;
-    for (int i = 0; i < 20; ++i) points.push_back({{0.001 * i, 0, 0}, Vec3::UnitZ()});
-    return points;
+/// A square of 4 mm, open all around: touched within the tool's half width of the middle of an edge, and in the middle.
+TEST(Outcome, TellsOfContactsWhereAMeshIsOpen) {
+  const test::TemporaryDirectory directory;
+  test::write_plainly(directory / "sheet.off", "OFF\n4 2 0\n-2 -2 0\n2 -2 0\n2 2 0\n-2 2 0\n3 0 1 2\n3 0 2 3\n");
+  for (const auto& [place, warnings] : {std::pair("[0.0019, 0, 0.0001]", 1), {"[0, 0, 0.0001]", 0}}) {
+    Json json = above_plane();
+    json["environment"] = {
+        {"type", "mesh"}, {"file", (directory / "sheet.off").string()}, {"scale", 0.001}, {"spacing_m", 0.0001}};
+    json["initial"]["position_m"] = Json::parse(place);
+    const Result run = run_scenario(read_scenario(json, ""), std::nullopt, false);
+    const auto is_told = [](const Warning& warning) {
+      return warning.kind == "open_edge" &&
+             warning.text.starts_with("touched the mesh within 0.5 mm of where it is open in ");
+    };
+    EXPECT_EQ(std::ranges::count_if(run.warnings, is_told), warnings) << place;
   }
-  void touch(std::uint32_t point) {
-    ContactBuffer contacts(1);
-    contacts.push(point, shell_.point(point).position, Vec3::UnitZ());
-    observer_.on_step(test::row(row_, 0.5 * static_cast<double>(row_), contacts));
-    ++row_;
-  }
-
-  PointShell shell_;
-  OpenEdgeObserver observer_;
-  std::uint64_t row_ = 0;
-};
-
-TEST_F(OpenEdges, AreToldWhereTheToolFirstTouchesNearThem) {
-  for (std::uint32_t i = 3; i < 20; ++i) touch(i);
-  EXPECT_EQ(observer_.warning(), std::nullopt);
-  touch(2);
-  touch(0);
-  ASSERT_TRUE(observer_.warning());
-  EXPECT_EQ(observer_.warning()->text,
-            "touched the mesh within 2 mm of where it is open in 2 rows, first at 8.5 s near (2, 0, 0) mm: beyond the "
-            "edge there is no surface");
 }
 
 Json scene() {
@@ -206,20 +192,6 @@ TEST(Outcome, OfAShankThatIsInside) {
   EXPECT_EQ(run_scenario(load_scenario(find_scenario("pure_rotation"), half), std::nullopt, false).end.outcome,
             Outcome::completes);
   EXPECT_NE(warnings_of(report).find("a part of it was 0.86"), std::string::npos) << warnings_of(report);
-}
-
-/// The cube from -1 to 1.
-TEST(StepWay, CountsWaysThatMayHaveMetTheBox) {
-  StepWay steps({-Vec3::Ones(), Vec3::Ones()});
-  steps.add({0, 0, 9});
-  EXPECT_EQ(steps.distance(), 8.0);
-  steps.add({0, 0, 4});  // 5 long, but 8 away
-  EXPECT_EQ(steps.longest(), 0.0);
-  steps.add({0, 0, -4});  // 8 long and 3 away: through it
-  EXPECT_EQ(steps.longest(), 8.0);
-  steps.add({-4, 0, 5});             // 9.8 long and 3 away
-  EXPECT_EQ(steps.distance(), 5.0);  // from an edge
-  EXPECT_DOUBLE_EQ(steps.longest(), std::hypot(4.0, 9.0));
 }
 
 }  // namespace

@@ -12,32 +12,22 @@
 namespace hapbench::pose_and_torque_test {
 namespace {
 
-using test::cells_of;
 using test::lines_of;
-using test::number_in;
 using test::read_file;
 using test::TemporaryDirectory;
 
-/// A CSV file by column names; numbers as text.
-class Table {
- public:
-  explicit Table(const std::filesystem::path& file) {
-    std::vector<std::string> lines = lines_of(read_file(file));
-    names_ = cells_of(lines.at(0));
-    for (std::size_t i = 1; i < lines.size(); ++i) rows_.push_back(cells_of(lines[i]));
-  }
-  std::size_t rows() const { return rows_.size(); }
-  double number(std::size_t row, const std::string& name) const {
-    const auto at = std::find(names_.begin(), names_.end(), name);
-    return number_in(rows_.at(row).at(static_cast<std::size_t>(at - names_.begin())));
+/// A table that a run recorded, by column names.
+struct Table {
+  std::size_t rows() const { return table.rows(); }
+  double number(std::size_t row, std::string_view name) const {
+    const auto at = std::ranges::find(table.columns(), name, &Column::name) - table.columns().begin();
+    return table.numbers()[row * table.columns().size() + static_cast<std::size_t>(at)];
   }
   Vec3 vector(std::size_t row, const std::array<const char*, 3>& names) const {
     return {number(row, names[0]), number(row, names[1]), number(row, names[2])};
   }
 
- private:
-  std::vector<std::string> names_;
-  std::vector<std::vector<std::string>> rows_;
+  const MemoryTable& table;
 };
 
 struct Place {
@@ -90,11 +80,11 @@ constexpr std::string_view kWeighted[] = {
     "normal_projection", "proxy", "merged_shaping",   "mcneely"};
 
 void expect_torques(std::string_view algorithm, const Place& place) {
-  const TemporaryDirectory dir;
   const LoadedScenario loaded = read_scenario(pressed_drill(place, algorithm), ".");
   const RenderingConfig& rendering = loaded.scenario.rendering;
-  const Result report = run_scenario(loaded, dir.path(), false);
-  const Table rows(dir / "trajectory.csv"), contacts(dir / "contacts.csv");
+  RunTables tables;
+  const Result report = run_scenario(loaded, std::nullopt, false, &tables);
+  const Table rows{tables.trials[0].at("trajectory.csv")}, contacts{tables.trials[0].at("contacts.csv")};
   std::size_t next = 0;
   bool is_known = std::find(std::begin(kWeighted), std::end(kWeighted), algorithm) != std::end(kWeighted);
   double sum = 0.0, largest = 0.0, in_contact = 0.0;
@@ -182,9 +172,9 @@ TEST(Pose, IsThatOfTheScript) {
   Json json = pressed_drill(kPlane, "mean");
   json["record"] = {{"pose", true}};
   json["motion"]["orientation"]["roll_rad"] = 1.5;
-  const TemporaryDirectory dir;
-  run_scenario(read_scenario(json, "."), dir.path(), false);
-  const Table rows(dir / "trajectory.csv");
+  RunTables tables;
+  run_scenario(read_scenario(json, "."), std::nullopt, false, &tables);
+  const Table rows{tables.trials[0].at("trajectory.csv")};
   for (std::size_t k = 0; k < rows.rows(); ++k) {
     const double t = rows.number(k, "time_s");
     const Eigen::Quaterniond q(rows.number(k, "qw"), rows.number(k, "qx"), rows.number(k, "qy"), rows.number(k, "qz"));

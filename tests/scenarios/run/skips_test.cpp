@@ -1,7 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <algorithm>
-
 #include "algorithms/registry.hpp"
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/description/load_scenario.hpp"
@@ -9,7 +7,6 @@
 #include "scenarios/run/run_scenario.hpp"
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/file_tree.hpp"
-#include "tests/scenarios/support/scenarios.hpp"
 
 /// Skipped work must not change results: with every skip off, a run writes the same bytes, but for the counted work.
 /// The bundled scenarios are tested in tests/scenarios/program/bundled_scenarios_test.cpp.
@@ -17,24 +14,6 @@ namespace hapbench::skips_test {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// Long enough for the tasks of the thesis to touch the block; brute force takes 30 us a step there.
-constexpr std::int64_t kSteps = 1500;
-
-Json shortened(Json scenario) {
-  Json& time = scenario["time"];
-  const double steps = time.contains("steps") ? time["steps"].get<double>()
-                                              : time["duration_s"].get<double>() / time["step_s"].get<double>();
-  time.erase("duration_s");
-  time["steps"] = std::max<std::int64_t>(1, std::min(kSteps, static_cast<std::int64_t>(steps)));
-  // One trial of two subjects says of trials what all eighteen of a task do.
-  if (const auto hand = scenario.find("hand"); hand != scenario.end() && hand->contains("subjects")) {
-    Json& subjects = (*hand)["subjects"];
-    if (subjects.size() > 2) subjects.erase(subjects.begin() + 2, subjects.end());
-    (*hand)["trials"] = 1;
-  }
-  return scenario;
-}
 
 /// summary.json without the counted work, which goes out in `work`; still text, so that every digit counts.
 std::string summary_without_work(const fs::path& file, Json& work) {
@@ -46,8 +25,8 @@ std::string summary_without_work(const fs::path& file, Json& work) {
 
 class WithAndWithoutSkips : public testing::Test {
  protected:
-  void expect_same_results(const Json& scenario, const fs::path& from) {
-    LoadedScenario loaded = read_scenario(shortened(scenario), from);
+  void expect_same_results(const Json& scenario) {
+    LoadedScenario loaded = read_scenario(scenario, directory_.path());
     const fs::path taken = directory_ / "taken", off = directory_ / "off";
     for (const fs::path& old : {taken, off}) fs::remove_all(old);
     run_scenario(loaded, taken, false);
@@ -67,13 +46,6 @@ class WithAndWithoutSkips : public testing::Test {
   std::uint64_t skipped_ = 0;
 };
 
-TEST_F(WithAndWithoutSkips, ScenariosOfEveryFieldGiveTheSameBytes) {
-  for (const test::NamedScenario& scenario : test::rich_scenarios()) {
-    SCOPED_TRACE(scenario.name);
-    expect_same_results(scenario.json, test::data_directory());
-  }
-}
-
 // Free air, touch and free air again, through every algorithm with and without damping and friction.
 TEST_F(WithAndWithoutSkips, EveryAlgorithmGivesTheSameBytes) {
   for (const AlgorithmEntry& algorithm : algorithms()) {
@@ -88,7 +60,7 @@ TEST_F(WithAndWithoutSkips, EveryAlgorithmGivesTheSameBytes) {
           "rendering": {"friction": {"mu_s_N_s_per_m": )") +
                               friction + R"(, "mu_f_s_per_m": )" + friction + "}}}");
       json["rendering"]["algorithm"] = algorithm.info->name;
-      expect_same_results(json, directory_.path());
+      expect_same_results(json);
     }
   }
   EXPECT_GT(skipped_, 0u);
