@@ -6,15 +6,15 @@ import re
 from pathlib import Path
 
 from hapbench.columns import read_records
+from hapbench.errors import InputError
 from hapbench_command import nearest
-from hapbench_report.json_input import InputError
 from hapbench_report.markup import column
 from hapbench_report.runs import load_run, load_runs
 
 SUMMARY, SWEEP = "summary.json", "sweep.csv"
 SEED_FOLDER = re.compile(r"seed_\d+")  # of a comparison with --seeds
 # Titles of fields whose last name says too little, and symbols in formulas.
-TITLES, SYMBOLS = {"time.step_s": "time step"}, {"rendering.stiffness_N_per_m": "K"}
+TITLES, SYMBOLS = {"time.step_s": "time step", "rendering.damping_ratio": "damping ratio ζ"}, {"rendering.stiffness_N_per_m": "K"}
 NO_INPUT = ("expect", "description", "name", "source")
 
 

@@ -5,8 +5,9 @@ from pathlib import Path
 import numpy as np
 
 from hapbench.columns import read_columns
+from hapbench.errors import InputError
+from hapbench.results import at, number_or_none, read_object
 
-from .json_input import InputError, at, load_object, number_or_none
 from .markup import number
 
 TENSOR_COLUMNS = ("sxx", "sxy", "sxz", "syy", "syz", "szz")
@@ -113,8 +114,8 @@ class Recording:
     """One algorithm's run through a scene."""
 
     def __init__(self, directory: Path):
-        self.summary = load_object(directory / "summary.json")
-        self.scenario = load_object(directory / "scenario.effective.json")
+        self.summary = read_object(directory / "summary.json")
+        self.scenario = read_object(directory / "scenario.effective.json")
         self.tool = tool_profile(self.scenario, self.summary)
         self.algorithm = str(self.summary.get("algorithm", directory.name))
         # All rows, for the sound and the worst moments.
