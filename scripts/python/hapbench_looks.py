@@ -47,9 +47,8 @@ PUBLISHED, PUBLISHED_DARK = "#C2261C", "#FF8A75"
 
 # For curves that are of no algorithm, or all of one.
 SERIES = (
-    Look("", "#000000", "#F2F2F2", (), "o"), Look("", "#C2500A", "#FFA366", (4, 1.5), "s"), Look("", "#0B6BC4", "#6CB4F5", (1, 1), "^"),
-    Look("", "#9F0375", "#F07CC8", (4, 1, 1, 1), "v"), Look("", "#1D6A01", "#7EDB5A", (5, 1.5), "D"),
-    Look("", "#775543", "#D3AE97", (3, 1, 1, 1, 1, 1), "x"))
+    Look("", "#00647D", "#5FC4E8", (), "o"), Look("", "#8A5600", "#E9B64C", (4, 1.2), "s"), Look("", "#000000", "#F2F2F2", (1, 1.65), "^"),
+    Look("", "#8A3B75", "#F07CC8", (5, 1.5), "v"), Look("", "#5F5F5F", "#B5B9B9", (3, 1, 1, 1), "D"), Look("", "#1D6A01", "#7EDB5A", (6, 2), "x"))
 
 # Class of a run -> its name, colour and hatching; light to dark, so that they can be told apart in grey.
 CLASSES = {

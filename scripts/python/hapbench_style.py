@@ -72,7 +72,7 @@ def number_ticks(axis):
     """Further numbers along a logarithmic axis that shows too few powers of ten."""
     low, high = axis.get_view_interval()
     if axis.get_scale() == "log" and high / low < 60:
-        axis.set_major_locator(LogLocator(subs=(1, 2, 5) if high / low < 12 else (1, 3)))
+        axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
         axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
         axis.set_minor_formatter(NullFormatter())
 

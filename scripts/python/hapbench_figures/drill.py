@@ -49,7 +49,7 @@ def trajectory(results):
     draw_block(section, environment)
     bottom = 1e3 * environment["hole_depth_m"]
     drawn, errors = [], []
-    for run, (hand, own) in enumerate(zip(hands, style.SERIES[1:])):
+    for run, (hand, own) in enumerate(zip(hands, style.SERIES)):
         rows = samples(results, run)
         drawn.append(rows)
         force = float(hand["hand.force_N"])

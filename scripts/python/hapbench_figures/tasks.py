@@ -89,9 +89,8 @@ def point_counts(results):
         row[0].set_ylabel(f"{density_name}\npoints in contact")
     for ax in axes[1]:
         ax.set_xlabel("time [s]")
-    for load in loads[:-1]:
-        if load:
-            load.set_yticklabels([])
+    for load in filter(None, loads[:-1]):
+        load.set_yticklabels([])
     if loads[-1]:
         loads[-1].set_ylabel("loop load [%]")
     style.note(axes[1, 1], 0.03, 0.98, "before the reduction", style.AMBER)
@@ -154,7 +153,7 @@ def draw_quantiles(ax, results, **chosen):
         ax.plot(ITERATIONS, values[:, 2], color=colour, marker=marker)
         ax.plot(ITERATIONS, values[:, extreme], color=colour, ls=":", lw=1.1)
     once = published.entries()["R1.once"]
-    ax.errorbar([0.83], [1], yerr=[[1 - once["at_least"]], [once["at_most"] - 1]], **{**style.PUBLISHED, "marker": "none"})
+    ax.errorbar([0.8], [1], yerr=[[1 - once["at_least"]], [once["at_most"] - 1]], **{**style.PUBLISHED, "marker": "none"})
     ax.axhline(1, color=style.BLACK, ls="--", lw=0.8)
 
 

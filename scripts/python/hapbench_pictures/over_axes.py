@@ -64,7 +64,7 @@ def over_axes(ax, x, y, series=(), runs=()):
     places of its runs each; `x`, `y`: the Axis of either direction."""
     for name, xs, ys in runs:
         title, colour, hatch = look_of_class(name)
-        ax.scatter(xs, ys, s=22, marker="s", color=colour, edgecolor=PETROL, lw=0.3, hatch=hatch, label=title)
+        ax.scatter(xs, ys, s=26 if len(xs) < 40 else 9, marker="s", color=colour, edgecolor=PETROL, lw=0.3, hatch=hatch, label=title)
     for (label, xs, ys, own), (place, count) in zip(series, equal_curves([(xs, ys) for _, xs, ys, _ in series])):
         if count > 1 and len(xs) > 1:
             own = {**own, "markevery": (place % len(xs), count)} | ({"ls": striped(own["ls"], place, count)} if own.get("ls", "none") != "none" else {})
@@ -301,6 +301,7 @@ def draw_tune(files, _=""):
                 limits(with_room(positive.min(), positive.max()))
         number_ticks(ax.xaxis)
         number_ticks(ax.yaxis)
+        ax.tick_params(axis="x", labelrotation=40)
     handles, labels = left.get_legend_handles_labels()
     further = ((Line2D([], [], ls="none", marker="o", ms=8, color=BLACK, mfc="none"), "the choice"),
                (Line2D([], [], ls="none", marker="s", color=GREY, mfc="white"), "not feasible"))

@@ -15,7 +15,7 @@ from .given import common_folder, given_runs, given_sweep, named
 from .over_axes import PICTURES
 from .panels import AXIS_COLUMNS, PATH_COLUMNS, draw_over_time, draw_section, looks
 from .quantities import Samples, chosen
-from .sweep_plot import Sweep, draw_sweep, sensitivity_table
+from .sweep_plot import Sweep, draw_sweep, is_number, sensitivity_table
 
 KINDS = (".svg", ".png", ".pdf")
 WIDTH, LARGE, SMALL = 7.6, 2.6, 1.25  # of the page, the scene and the first quantity, and of the others [inch]
@@ -70,22 +70,13 @@ def of_study(path):
 
 def window_of(options):
     """The times to draw [s]."""
-    window = (time_of("--from", options.start, -math.inf), time_of("--to", options.end, math.inf))
+    for name, text in (("--from", options.start), ("--to", options.end)):
+        if text is not None and not is_number(text):
+            raise InputError(f"{name}: got \"{text}\"; allowed: a time in seconds")
+    window = float(options.start or -math.inf), float(options.end or math.inf)
     if not window[0] < window[1]:
         raise InputError(f"--from {options.start} --to {options.end}: is no span of time; allowed: --from before --to")
     return window
-
-
-def time_of(name, text, default):
-    if text is None:
-        return default
-    try:
-        time = float(text)
-    except ValueError:
-        time = math.nan
-    if not math.isfinite(time):
-        raise InputError(f"{name}: got \"{text}\"; allowed: a time in seconds")
-    return time
 
 
 def of_runs(options):

@@ -136,11 +136,12 @@ def is_number(text):
 def draw_sweep(sweep):
     with plt.rc_context(SETTINGS):
         axes = [Axis.of(sweep.axis(i), sweep.column(field), sweep.is_logarithmic(i)) for i, field in enumerate(sweep.fields)]
-        if sweep.is_cloud:
+        of_numbers = len(axes) == 2 and not any(of.names for of in axes)
+        if sweep.is_cloud or of_numbers and on_grid(axes, sweep.metric_values) is None:
             return draw_cloud(sweep, axes)
         figure, ax = plt.subplots(figsize=(6.0, 3.8))
         ax.set_title(sweep.name)
-        if len(axes) == 2 and not any(of.names for of in axes):
+        if of_numbers:
             draw_map(figure, ax, sweep, axes)
         else:
             draw_curves(ax, sweep, axes)
@@ -148,12 +149,10 @@ def draw_sweep(sweep):
 
 
 def draw_cloud(sweep, over):
-    """The metric over each field; over two fields of numbers also in colours over both."""
+    """The metric over each field."""
     value = Axis.of(axis(sweep.metric), sweep.metric_values)
-    both = len(over) == 2 and not any(of.names for of in over)
-    count = len(over) + both
-    wide = min(PANELS_WIDE, count)
-    high = -(-count // wide)
+    wide = min(PANELS_WIDE, len(over))
+    high = -(-len(over) // wide)
     figure, axes = plt.subplots(high, wide, figsize=(0.6 + 2.6 * wide, 0.4 + 2.5 * high), squeeze=False)
     figure.suptitle(sweep.name, x=0.01, ha="left", fontsize=9, weight="bold")
     found = sweep.sensitivities() if sweep.sampled else [None] * len(over)
@@ -166,19 +165,16 @@ def draw_cloud(sweep, over):
             ax.set_ylabel("")
     if sweep.classes:
         axes[0, 0].legend()
-    if both:
-        draw_map(figure, axes.flat[len(over)], sweep, over)
-    for ax in axes.flat[count:]:
+    for ax in axes.flat[len(over):]:
         ax.axis("off")
     return figure
 
 
-def mark_classes(ax, sweep, x, y=None):
-    """Marks of runs without a number in the looks of their classes: at their places, or below the axis."""
+def mark_classes(ax, sweep, x):
+    """Marks below the axis of runs without a number, in the looks of their classes."""
     for name, mine in sweep.classes.items():
         title, colour, _ = look_of_class(name)
-        below = {"transform": ax.get_xaxis_transform(), "clip_on": False} if y is None else {}
-        ax.plot(x[mine], np.zeros(mine.sum()) if y is None else y[mine], ls="", marker="x", color=colour, label=title, **below)
+        ax.plot(x[mine], np.zeros(mine.sum()), ls="", marker="x", color=colour, label=title, transform=ax.get_xaxis_transform(), clip_on=False)
 
 
 def sensitivity_text(found):
@@ -209,25 +205,17 @@ def draw_curves(ax, sweep, over):
 def draw_map(figure, ax, sweep, over):
     values, classes, (y_axis, x_axis) = sweep.metric_values, sweep.classes, over
     norm = colors.LogNorm() if spread_logarithmically(values) else None
-    grid = on_grid(y_axis.values, x_axis.values, values)
-    if grid is None:
-        ok = np.isfinite(values)
-        drawn = ax.scatter(x_axis.values[ok], y_axis.values[ok], c=values[ok], norm=norm, cmap="viridis")
-        mark_classes(ax, sweep, x_axis.values, y_axis.values)
-        shown = {}
-    else:
-        x, y = edges(grid[1]), edges(grid[0])
-        shown = {name: on_grid(y_axis.values, x_axis.values, mine.astype(float))[2] == 1 for name, mine in classes.items()}
-        shown[None] = ~np.isfinite(grid[2]) & ~sum(shown.values(), np.zeros(grid[2].shape, bool))
-        drawn = ax.pcolormesh(x, y, np.ma.masked_invalid(grid[2]), norm=norm, cmap="viridis")
-        for name, cells in shown.items():
-            for line, column in np.argwhere(cells):
-                ax.add_patch(Rectangle((x[column], y[line]), x[column + 1] - x[column], y[line + 1] - y[line], **patch_of(name)))
-        ax.grid(False)
+    grid = on_grid(over, values)
+    x, y = edges(grid[1]), edges(grid[0])
+    shown = {name: on_grid(over, mine.astype(float))[2] == 1 for name, mine in classes.items()}
+    shown[None] = ~np.isfinite(grid[2]) & ~sum(shown.values(), np.zeros(grid[2].shape, bool))
+    drawn = ax.pcolormesh(x, y, np.ma.masked_invalid(grid[2]), norm=norm, cmap="viridis")
+    for name, cells in shown.items():
+        for line, column in np.argwhere(cells):
+            ax.add_patch(Rectangle((x[column], y[line]), x[column + 1] - x[column], y[line + 1] - y[line], **patch_of(name)))
+    ax.grid(False)
     over_axes(ax, x_axis, y_axis)
     entries = [Patch(label=look_of_class(name)[0] if name else "no value", **patch_of(name)) for name, cells in shown.items() if cells.any()]
-    if grid is None and classes:
-        ax.legend()
     if entries:
         ax.legend(handles=entries, loc="lower right", bbox_to_anchor=(1, 1), ncol=2, borderaxespad=0.2)
     if np.isfinite(values).any():
@@ -250,9 +238,9 @@ def patch_of(name):
     return {"facecolor": colour, "edgecolor": PETROL, "hatch": hatch, "lw": 0}
 
 
-def on_grid(first, second, values):
+def on_grid(over, values):
     """The values of the first field, of the second, and the metric by both; None when these are points of a sample."""
-    (rows, i), (cells, j) = (np.unique(column, return_inverse=True) for column in (first, second))
+    (rows, i), (cells, j) = (np.unique(of.values, return_inverse=True) for of in over)
     if len(rows) * len(cells) > 4 * len(values) or min(len(rows), len(cells)) < 2:
         return None
     grid = np.full((len(rows), len(cells)), np.nan)

@@ -8,7 +8,6 @@ from hapbench.columns import read_columns
 from hapbench.errors import InputError
 from hapbench.results import at, number_or_none, read_object
 
-from .markup import number
 
 TENSOR_COLUMNS = ("sxx", "sxy", "sxz", "syy", "syz", "szz")
 # Per row: time, tip, axis, rendered force, ratio range, deepest point; with the tensor S where it was recorded.
@@ -156,12 +155,3 @@ class Recording:
         """Places of the tip in the shown rows; with `touching`, of those in contact."""
         rows = self.shown[self.columns["colliding"][self.shown] > 0] if touching else self.shown
         return np.column_stack([self.columns[f"p{axis}_m"][rows] for axis in "xyz"]).tolist()
-
-    def story(self):
-        """Contact, outcome and largest force, in a few words."""
-        times = self.columns["time_s"]
-        touching = times[self.columns["colliding"] > 0]
-        contact = f"in contact until {number(touching[-1], 3)} s of {number(times[-1], 3)} s" if touching.size else "never in contact"
-        outcome = str(self.summary.get("outcome", "")).replace("_", " ")
-        force = number(at(self.summary, "/metrics/force_max_N"), 3)
-        return f"{self.algorithm.replace('_', ' ')}: {contact}, {outcome}, largest force {force} N"
