@@ -164,7 +164,9 @@ def compact(svg):
     svg = re.sub(r' style="([^"]*)"', lambda s: f' class="{often[s[1]]}"' if s[1] in often else s[0], svg)
     rules = "".join(f".{name}{{{style}}}" for style, name in often.items())
     svg = re.sub(r"(<defs>\s*<style[^>]*>)", lambda d: d[1] + rules, svg, count=1)
-    svg = re.sub(r">\s+<", "><", svg)
+    svg, inner = re.sub(r">\s+<", "><", svg), re.compile(r"<g>((?:<(?!/?g[ >])[^>]*>[^<]*)*)</g>")
+    while inner.search(svg):  # groups that say nothing of what is in them
+        svg = inner.sub(r"\1", svg)
     svg = re.sub(r' d="([^"]*)"', lambda d: f' d="{re.sub(r"(?<=[LMCQ]) | (?=[LMCQz])|(?<=z) ", "", d[1]).strip()}"', re.sub(r"\s+", " ", svg))
     svg = re.sub(r"(?<=\d)L(-?[\d.]+ -?[\d.]+)(?=[Lz\"])", r" \1", svg)  # what follows a place is a line
     return re.sub(r"((?:[^>]*>){12,}?)(?=<(?:path|g|use|rect)[ >])", "\\1\n", svg).strip() + "\n"

