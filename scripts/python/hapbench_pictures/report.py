@@ -130,7 +130,7 @@ def drawing(size, draw, light, title, words, **labels):
     return f"<figure><figcaption>{text(title)}</figcaption>{''.join(images)}</figure>"
 
 
-MOST_LAWS = 3  # that a table tells apart at a glance
+MOST_LAWS = 2  # that a table tells apart at a glance
 DEEPER, SHAKIER = "inside_max_m", "force_rms_above_30Hz_N"
 
 
