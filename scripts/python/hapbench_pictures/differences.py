@@ -17,16 +17,19 @@ NO_NUMBER = math.inf  # the size of a difference of which not both are numbers
 
 
 def differences(a, b):
-    """For each run and sweep, by its path below the folders `a` and `b`: a dictionary of lists (name, in A, in B, size, relative size),
-    and under "counts" those of them that are results."""
+    """For each run and sweep, by its path below the folders `a` and `b`: under "field", "result", "state hash" and the names of tables
+    what differs, as (name, in A, in B, size, relative size)."""
     in_a, in_b = results_below(a), results_below(b)
     pairs = [path for path in in_a if path in in_b]
     if not pairs:
         raise InputError(f"{a} has {in_a[0]} and {b} has {in_b[0]}, nothing by the same name; allowed: the folders of two runs, or of "
                          "several each")
-    found = {str(path): of_runs(a / path.parent, b / path.parent) if path.name == SUMMARY else {path.name: of_tables(a / path, b / path)} for path in pairs}
-    alone = [(str(path), side) for side, own, other in (("A", in_a, in_b), ("B", in_b, in_a)) for path in own if path not in other]
-    return found | ({"": {"in one of them alone": [(path, *(["there", "-"] if side == "A" else ["-", "there"]), NO_NUMBER, NO_NUMBER) for path, side in alone]}} if alone else {})
+    found = {}
+    for path in pairs:
+        found[str(path)] = of_runs(a / path.parent, b / path.parent) if path.name == SUMMARY else {path.name: of_tables(a / path, b / path)}
+    alone = [(str(path), "there", "-", NO_NUMBER, NO_NUMBER) for path in in_a if path not in in_b]
+    alone += [(str(path), "-", "there", NO_NUMBER, NO_NUMBER) for path in in_b if path not in in_a]
+    return found | ({"": {"in one of them alone": alone}} if alone else {})
 
 
 def results_below(folder):
@@ -130,6 +133,9 @@ def in_words(a, b, found, tolerance):
         if rows:
             rows.insert(0, ("", "", "A", "B", "relative"))
             widths = [max(map(len, column)) for column in zip(*rows)]
-            lines += ["  ".join(text.ljust(width) if i < 2 else text.rjust(width) for i, (text, width) in enumerate(zip(row, widths))).rstrip() for row in rows] + [""]
+            for kind, name, *numbers in rows:
+                cells = [kind.ljust(widths[0]), name.ljust(widths[1]), *(text.rjust(width) for text, width in zip(numbers, widths[2:]))]
+                lines.append("  ".join(cells).rstrip())
+            lines.append("")
     within = f" within a relative tolerance of {tolerance:g}" if tolerance else ""
     return "\n".join([*lines, f"the results are {'' if are_equal(found, tolerance) else 'not '}equal{within}"])

@@ -137,7 +137,8 @@ class Limits:
         x, y, edge = numbers(rows, self.over[-1]), numbers(runs, self.field), numbers(rows, "limit")
         marks = [(name, *(numbers([row for row in runs if row["class"] == name], of) for of in (self.over[-1], self.field)))
                  for name in by_class(row["class"] for row in runs)]
-        over_axes(ax, Axis.of(axis(self.over[-1]), x), Axis(axis(self.field), y, log=True), [(label, x, values, own) for label, values, own in self.lines(rows)], marks)
+        lines = [(label, x, values, own) for label, values, own in self.lines(rows)]
+        over_axes(ax, Axis.of(axis(self.over[-1]), x), Axis(axis(self.field), y, log=True), lines, marks)
         edge = edge[np.isfinite(edge)]
         if edge.size:
             ax.set_ylim(edge.min() / 20, edge.max() * 20)

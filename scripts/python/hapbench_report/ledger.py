@@ -73,6 +73,7 @@ def summary_section(runs, claims, figures):
     if figures:
         tiles.append((len(figures), '<a href="#figures">figures</a>'))
     items = "".join(f"<li><b>{text(value)}</b><span>{label}</span></li>" for value, label in tiles)
+    headline = getattr(claims, "headline", "")
     commits = ", ".join(sorted({str(at(run.summary, "/provenance/commit") or "unknown") for run in runs}))
     return (
         "<h1>hapbench: haptic rendering of object-to-object contact</h1>"
@@ -80,12 +81,7 @@ def summary_section(runs, claims, figures):
         "stability limits and the cost of a step come out. Everything here is compared with T. C. Lee, <cite>Rendering "
         "6-DOF Object-to-Object Interaction with 3-DOF Haptic Interfaces</cite> (“the thesis”); numbers such as Fig. A.2 or "
         f"3.3 are its figures and sections. Program of commit <code>{text(commits)}</code>.</p>"
-        f'<ul class="cards">{items}</ul>{headline(claims)}{warnings(runs)}{refusals(claims)}')
-
-
-def headline(claims):
-    said = getattr(claims, "headline", "")
-    return f"<p>{typeset(said)}</p>" if said else ""
+        f'<ul class="cards">{items}</ul>{headline and f"<p>{typeset(headline)}</p>"}{warnings(runs)}{refusals(claims)}')
 
 
 def warnings(runs):
@@ -107,7 +103,7 @@ def ledger_section(claims, links):
     rows = [claim_row(claim, links) for claim in of_thesis(claims)]
     ours = [claim_row(claim, links) for claim in claims if claim.get("ours")]
     headings = [heading_cell(title) for title in ("Id", "Verdict", "Claim", "Published", "Measured", "Robustness")]
-    return (headline(claims) + "<p>Each claim of the thesis, what it publishes, what the runs below give, and a verdict by a rule, which unfolds "
+    return ("<p>Each claim of the thesis, what it publishes, what the runs below give, and a verdict by a rule, which unfolds "
             "with the figures and runs behind it. "
             "Hands are calibrated to mean and standard deviation of the raw colliding points; all else is a prediction. "
             "Robustness: how often the verdict is the same at points spread over the plausible ranges of everything the "

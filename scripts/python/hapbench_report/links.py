@@ -27,7 +27,8 @@ class Links:
 
     def of_run(self, run):
         """Claims that a run decides, and figures that show it."""
-        return [claim_link(claim) for claim in self.claims if run in self._deciding[id(claim)]] + figure_links(figure for figure in self.figures if run in self._drawn[figure.id])
+        claims = [claim_link(claim) for claim in self.claims if run in self._deciding[id(claim)]]
+        return claims + figure_links(figure for figure in self.figures if run in self._drawn[figure.id])
 
     def place(self, place):
         """A place in the thesis, its figures as links where the page has them."""
