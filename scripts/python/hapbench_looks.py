@@ -1,4 +1,5 @@
-"""How each algorithm is drawn, in figures and on pages: one colour, line and marker of its own everywhere.
+"""The palette of figures and pages: one colour, line and marker for each algorithm everywhere, for each class of runs, and for
+what is neither.
 
 Every colour has a contrast of at least 4.5 to the ground it is drawn on (WCAG 2.1, AA), so that names can be written in
 it: `colour` on white, `dark` on the dark page. The hues were spread for readers with and without deuteranopia and
@@ -43,6 +44,38 @@ ALGORITHMS = {
 }
 # Numbers of the thesis, in a colour that no algorithm has; hollow diamonds and dotted lines in figures.
 PUBLISHED, PUBLISHED_DARK = "#C2261C", "#FF8A75"
+
+# For curves that are of no algorithm, or all of one.
+SERIES = (
+    Look("", "#00647D", "#5FC4E8", (), "o"), Look("", "#8A5600", "#E9B64C", (4, 1.2), "s"), Look("", "#000000", "#F2F2F2", (1, 1.65), "^"),
+    Look("", "#8A3B75", "#F07CC8", (5, 1.5), "v"), Look("", "#5F5F5F", "#B5B9B9", (3, 1, 1, 1), "D"), Look("", "#1D6A01", "#7EDB5A", (6, 2), "x"))
+
+# Class of a run -> its name, colour and hatching; light to dark, so that they can be told apart in grey.
+CLASSES = {
+    "stable": ("stable", "#CFE6F5", ""),
+    "dying_out": ("dying out", "#E9F3FA", "/////"),
+    "vibrating": ("vibrating", "#E0A030", ""),
+    "thrown_out": ("thrown out", "#B05A1E", ""),
+    "diverged": ("diverged", "#7A2E00", ""),
+    # Classes of runs that tell nothing of stability, and outcomes of a sweep's runs.
+    "went_through": ("went through", "#8E7CC3", "xxxxx"),
+    "stuck": ("stuck", "#5B7F95", "....."),
+    "lost_contact": ("lost contact", "#B05A1E", "\\\\\\\\\\"),
+    "not_dragged": ("not dragged", "#C9B458", "-----"),
+    "no_contact": ("no contact", "#E2E2E2", ""),
+    "diverges": ("diverges", "#7A2E00", ""),
+    "error": ("error", "#3A3A3A", "+++++"),
+}
+
+
+def look_of_class(name):
+    return CLASSES.get(name) or (name.replace("_", " "), "#C8C8C8", "xxx")
+
+
+def by_class(names):
+    """Names of classes in the order of the table."""
+    order = list(CLASSES)
+    return sorted(set(names), key=lambda name: (order.index(name) if name in order else len(order), name))
 
 
 # For algorithms without an entry.

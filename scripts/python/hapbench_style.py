@@ -1,16 +1,17 @@
-"""The base of every picture: one look (sizes, colours; those of algorithms are in hapbench_looks), fewer rows for curves
-that cannot show all of theirs, and how a figure becomes the bytes of a file."""
+"""The base of every picture: one look (sizes, colours; the palette is hapbench_looks), fewer rows for curves that cannot show all of
+theirs, equal curves that show each other, and how a figure becomes the bytes of a file."""
 import io
 import re
 
 import matplotlib
 import numpy as np
 
-from hapbench_looks import ALGORITHMS, look  # noqa: F401  (style.look is how figures name it)
+from hapbench_looks import ALGORITHMS, SERIES, look  # noqa: F401  (style.look is how figures name it)
 from hapbench_looks import PUBLISHED as PUBLISHED_COLOUR
 
 matplotlib.use("agg")
 from matplotlib import pyplot as plt  # noqa: E402  (the backend comes first)
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter  # noqa: E402
 from matplotlib.transforms import Bbox  # noqa: E402
 
 WIDTH = 7.0  # of a page's text [inch]
@@ -67,6 +68,25 @@ def panels(rows, columns, height, **keywords):
     return plt.subplots(rows, columns, figsize=(WIDTH, height), squeeze=False, **keywords)
 
 
+def number_ticks(axis):
+    """Further numbers along a logarithmic axis that shows too few powers of ten."""
+    low, high = axis.get_view_interval()
+    if axis.get_scale() == "log" and high / low < 60:
+        axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+        axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+        axis.set_minor_formatter(NullFormatter())
+
+
+LINE = 0.17  # height of a line of a legend [inch]
+
+
+def legend_above(figure, handles, labels, columns=4):
+    """A legend over all panels, with room for it."""
+    lines = -(-len(labels) // columns)
+    figure.get_layout_engine().set(rect=(0, 0, 1, 1 - (0.08 + LINE * lines) / figure.get_figheight()))
+    figure.legend(handles, labels, loc="upper left", ncol=columns, handlelength=2.6)
+
+
 def letter(axes):
     """Puts (a), (b), … before the titles."""
     for i, ax in enumerate(axes):
@@ -102,35 +122,10 @@ def picture(figure, kind, salt="hapbench", dpi=DPI):
     undated = {"svg": {"Date": None}, "pdf": {"CreationDate": None}, "png": {"Software": None}}[kind]
     with matplotlib.rc_context({"svg.hashsalt": salt, "svg.fonttype": "none"}):
         figure.savefig(drawn, format=kind, dpi=dpi, metadata=undated)
-    return thinned(drawn.getvalue().decode()).encode() if kind == "svg" else drawn.getvalue()
+    return compact(drawn.getvalue().decode()).encode() if kind == "svg" else drawn.getvalue()
 
 
-# In an SVG: attributes that hold places, the shape of a marker, a mark, and a group of marks.
-PLACES = re.compile(r'( (?:d|x|y)=")([^"]*)')
-LONG_NUMBER = re.compile(r"-?\d+\.\d{3,}")
-MARKER = re.compile(r'<path id="(\w+)" d="[^"]*" style="([^"]*)"/>')
-MARK = re.compile(r'(<use xlink:href="#(\w+)"[^>]*?) style="([^"]*)"/>')
-MARKS = re.compile(r'<g( clip-path="[^"]*")?>\n((?:\s*<use [^>]*/>\n)+)')
-STYLE = re.compile(r' style="[^"]*"')
-
-
-def thinned(svg):
-    """The same drawing in fewer bytes: places to a hundredth of a point, and marks without the style of their marker or of all
-    marks of their group."""
-    styles = dict(MARKER.findall(svg))
-    svg = MARK.sub(lambda mark: f"{mark[1]}/>" if styles.get(mark[2]) == mark[3] else mark[0], svg)
-    svg = PLACES.sub(lambda place: place[1] + LONG_NUMBER.sub(lambda number: f"{round(float(number[0]), 2):.8g}", place[2]), svg)
-    return MARKS.sub(with_one_style, svg)
-
-
-def with_one_style(group):
-    clip, marks = group.groups(default="")
-    styles = STYLE.findall(marks)
-    if len(set(styles)) != 1 or len(styles) != marks.count("<use "):
-        return group[0]
-    return f"<g{clip}{styles[0]}>\n{STYLE.sub('', marks)}"
-
-
+PLACES = re.compile(r'( (?:d|x|y)=")([^"]*)')  # attributes of an SVG that hold places
 DISC = re.compile(r'<path id="(\w+)" d="M 0 ([\d.]+) \nC[^"]*z\n"')
 DISCS = re.compile(r'<g( clip-path="[^"]*")? style="([^"]*)">\s*((?:<use xlink:href="#(\w+)" x="[^"]*" y="[^"]*"/>\s*)+)</g>')
 
@@ -154,22 +149,9 @@ def as_dots(svg):
     return DISCS.sub(dots, svg)
 
 
-def without_bare_groups(svg):
-    """The same without groups that say nothing of what is in them."""
-    bare = []
-
-    def kept(tag):
-        if tag[0] != "</g>":
-            bare.append(tag[0] == "<g>")
-            return "" if bare[-1] else tag[0]
-        return "" if bare.pop() else tag[0]
-
-    return re.sub(r"<g(?: [^>]*)?>|</g>", kept, svg)
-
-
 def compact(svg):
-    """The same drawing for a repository, in half the bytes: places to a tenth of a point, styles that repeat as classes, short
-    identifiers, and nothing that only a reader of the source would see."""
+    """The same drawing in half the bytes: places to a tenth of a point, styles that repeat as classes, short identifiers, and
+    nothing that only a reader of the source would see."""
     svg = as_dots(re.sub(r"<!--.*?-->|<metadata>.*?</metadata>|<g[^>]*/>", "", svg, flags=re.S))
     svg = PLACES.sub(lambda place: place[1] + re.sub(r"-?\d+\.\d+", lambda n: f"{round(float(n[0]), 1):g}", place[2]), svg)
     svg = re.sub(r' transform="rotate\(-0 [^)]*\)"', "", svg)
@@ -182,7 +164,9 @@ def compact(svg):
     svg = re.sub(r' style="([^"]*)"', lambda s: f' class="{often[s[1]]}"' if s[1] in often else s[0], svg)
     rules = "".join(f".{name}{{{style}}}" for style, name in often.items())
     svg = re.sub(r"(<defs>\s*<style[^>]*>)", lambda d: d[1] + rules, svg, count=1)
-    svg = without_bare_groups(re.sub(r">\s+<", "><", svg))
+    svg, inner = re.sub(r">\s+<", "><", svg), re.compile(r"<g>((?:<(?!/?g[ >])[^>]*>[^<]*)*)</g>")
+    while inner.search(svg):  # groups that say nothing of what is in them
+        svg = inner.sub(r"\1", svg)
     svg = re.sub(r' d="([^"]*)"', lambda d: f' d="{re.sub(r"(?<=[LMCQ]) | (?=[LMCQz])|(?<=z) ", "", d[1]).strip()}"', re.sub(r"\s+", " ", svg))
     svg = re.sub(r"(?<=\d)L(-?[\d.]+ -?[\d.]+)(?=[Lz\"])", r" \1", svg)  # what follows a place is a line
     return re.sub(r"((?:[^>]*>){12,}?)(?=<(?:path|g|use|rect)[ >])", "\\1\n", svg).strip() + "\n"
@@ -205,3 +189,17 @@ def curve(time, low, high, spans):
     if len(t) == len(time):
         return time, low
     return np.repeat(t, 2), np.column_stack([least, most]).ravel()
+
+
+STRIPE = 6  # points
+
+
+def equal_curves(curves):
+    """For each curve (arrays) its place among those that are equal to it, and how many these are."""
+    keys = [b"".join(np.ascontiguousarray(part).tobytes() for part in curve) for curve in curves]
+    return [(keys[:i].count(key), keys.count(key)) for i, key in enumerate(keys)]
+
+
+def striped(ls, place, count):
+    """The line style of one of `count` equal curves: stripes in turn, so that each one shows; the given style for a single one."""
+    return ls if count == 1 else (place * STRIPE, (STRIPE, STRIPE * (count - 1)))

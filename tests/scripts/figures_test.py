@@ -9,10 +9,9 @@ from io import StringIO
 from pathlib import Path
 from unittest import mock
 
-from fixture import ENVIRONMENT, PROGRAM, SOURCE, hapbench as program, main, must, ran, scratch_folder
+from fixture import PROGRAM, SOURCE, main, must, ran, scratch_folder
 
-import hapbench_style as style  # below scripts/python, which the fixture adds
-from hapbench_figures import __main__ as command, catalogue, drawing
+from hapbench_figures import __main__ as command, catalogue  # below scripts/python, which the fixture adds
 
 SVG = "{http://www.w3.org/2000/svg}"
 RECORD = SOURCE / "results" / "reference" / "figures"
@@ -24,9 +23,6 @@ RUNS = (
     ("force_limit_*", []),
     ("corner_*", []),
     ("gradient_flip", []),
-    ("over_reduction_*", []),
-    ("parallel_faces", []),
-    ("pure_rotation", []),
     ("peg_in_hole_2d_*", []),
     ("springs_*", []),
     ("tilt_sweep_*", []),
@@ -70,8 +66,7 @@ def make_results(directory):
         hapbench("run", *scenarios, *(f"--set={text}" for text in overrides), "--out", out)
     name = "corner_continuous_normal_projection"
     hapbench("run", name, "--out", directory / "run_beyond" / name)
-    for ask, study, *words in (("compare", "torque_in_hole"), ("compare", "laws_in_hole"), ("compare", "stiffness_peg"),
-                               ("compare", "stiffness_wedge"), ("compare", "proxy_in_hole", "--set=time.duration_s=2", "--set=record.every=8"),
+    for ask, study, *words in (("compare", "stiffness_peg"), ("compare", "stiffness_wedge"), ("compare", "proxy_in_hole", "--set=time.duration_s=2", "--set=record.every=8"),
                                ("limit", "hardware_paddle", "--resolution", "0.5")):
         hapbench(ask, study, *words, "--out", directory / study)
     make_accuracy(directory / "accuracy")
@@ -85,20 +80,10 @@ def make_results(directory):
     scenes = ",".join(f"{task}_peg_in_hole_{law}" for task in ("vertical", "rotational") for law in ("original_averaging", "shaped_stiffness"))
     hapbench(*("sweep", f"--vary=scenario={scenes}", "--vary=hand.task.threshold.cutoff_Hz=null,30", "--vary=hand.task.threshold.grace_s=0,0.01"),
              *("--set=hand.trials=1", "--set=hand.task.time_limit_s=1", "--set=hand.task.targets_per_place=1", "--out", directory / "checked_force"))
-    timing = {
-        "step_latency": {
-            "steps": 10,
-            "p50_s": 2e-6,
-            "p99_9_s": 6e-4,
-            "histogram": [{"from_s": 0, "to_s": 2e-6, "steps": 9}, {"from_s": 5.12e-4, "to_s": 1.024e-3, "steps": 1}],
-        }
-    }
-    (directory / "thesis" / "gradient_flip" / "timing.json").write_text(json.dumps(timing))
     # The load of the loop is drawn where it is known.
-    timing["step_latency"]["over_time_s"] = [1e-6, 2e-6, 3e-6]
     loop = directory / "step_latency" / "task2_rotate_signed_distance"
     loop.mkdir(parents=True)
-    (loop / "timing.json").write_text(json.dumps(timing))
+    (loop / "timing.json").write_text(json.dumps({"step_latency": {"over_time_s": [1e-6, 2e-6, 3e-6]}}))
 
 
 def make_accuracy(directory):
@@ -128,7 +113,7 @@ class Figures(unittest.TestCase):
         cls.directory = scratch_folder(cls)
         cls.results, cls.drawn = cls.directory / "results", cls.directory / "figures"
         make_results(cls.results)
-        with mock.patch.object(drawing, "FORMATS", ("svg",)):
+        with mock.patch.object(command, "FORMATS", ("svg",)):
             cls.status, cls.said = figures_here(cls.results, "--out", cls.drawn)
 
     def index(self, directory=None):
@@ -138,13 +123,10 @@ class Figures(unittest.TestCase):
         self.assertEqual(self.status, 0, self.said)
         self.assertEqual([entry["id"] for entry in self.index()], ids(), self.said)
         self.assertEqual([line.split()[0] for line in figures("--list").stdout.splitlines()], ids())
-
-    def test_the_figures_of_the_thesis_are_there(self):
-        redrawn = " ".join(entry["thesis_figure"] or "" for entry in self.index())
-        for name in ("2 4 5 6 7a-c 8 A.1 A.2a-b A.5 B.3 B.4 B.5 C.1 C.2 C.3 C.4 D.6 D.7 D.8 E.1 E.2 E.3 E.4 F.4 F.5").split():
-            self.assertRegex(redrawn, rf"(^|\s){re.escape(name)}(,|\s|$)")
-        self.assertIn("A.4 (springs)", redrawn)
-        self.assertIn("A.4 (root locus)", redrawn)
+        redrawn = "2 4 5 6 7a-c 8 A.1 A.2a-b A.4 A.5 B.3 B.4 B.5 C.1 C.2 C.3 C.4 D.7 D.8 E.1 E.2 E.3 E.4 F.4 F.5"
+        found = " ".join(entry["thesis_figure"] or "" for entry in self.index())
+        for name in redrawn.split():
+            self.assertRegex(found, rf"(^|\s){re.escape(name)}(,|\s|$)")
 
     def test_those_of_the_thesis_are_on_record(self):
         page = (RECORD / "figures.md").read_text(encoding="utf-8")
@@ -159,65 +141,21 @@ class Figures(unittest.TestCase):
         for name in re.findall(r"\((figure_\S+\.svg)\)", page):
             self.assertTrue((RECORD / name).is_file(), name)
 
-    def test_a_compact_drawing_says_and_shows_the_same(self):
-        for entry in self.index():
-            with self.subTest(entry["id"]):
-                text = (self.drawn / entry["files"][0]).read_text(encoding="utf-8")
-                small = style.compact(text)
-                self.assertLess(len(small), 0.85 * len(text))
-                before, after = xml.fromstring(text), xml.fromstring(small)
-                said = [["".join("".join(t.itertext()).split()) for t in root.iter(f"{SVG}text")] for root in (before, after)]
-                self.assertEqual(*said)
-                # Every mark is there, alone or as a dot of a row, and refers to something.
-                marks = sum(1 for _ in before.iter(f"{SVG}use"))
-                kept = sum(1 for _ in after.iter(f"{SVG}use")) + sum(p.get("d", "").count("h0") for p in after.iter(f"{SVG}path"))
-                self.assertEqual(kept, marks)
-                known = {e.get("id") for e in after.iter()}
-                self.assertLessEqual(set(re.findall(r'(?:href="#|url\(#)(\w+)', small)), known)
-
-    def test_the_index_describes_the_files(self):
+    def test_each_says_what_it_shows(self):
         for entry in self.index():
             with self.subTest(entry["id"]):
                 self.assertGreater(len(entry["caption"]), 40)
                 self.assertRegex(entry["caption"], r"\b[Oo]urs\b")
-                self.assertTrue(entry["title"] and entry["sources"])
+                self.assertNotRegex(entry["caption"], r"[{}]")
                 for source in entry["sources"]:
                     self.assertTrue((self.results / source).is_file(), source)
-                for name in entry["files"]:
-                    self.assertGreater((self.drawn / name).stat().st_size, 1000, name)
-        self.assertFalse([path for path in self.drawn.iterdir() if path.name.endswith(".tmp")])
-
-    def test_svg_is_valid_and_shows_something(self):
-        for entry in self.index():
-            with self.subTest(entry["id"]):
-                root = xml.parse(self.drawn / f"{entry['files'][0]}").getroot()
-                self.assertEqual(root.tag, f"{SVG}svg")
+                root = xml.parse(self.drawn / entry["files"][0]).getroot()
+                known = {e.get("id") for e in root.iter()}
+                self.assertLessEqual(set(re.findall(r'(?:href="#|url\(#)(\w+)', (self.drawn / entry["files"][0]).read_text(encoding="utf-8"))), known)
                 # An empty pair of axes has about ten paths and no text besides the numbers. Dots of one colour are one path.
                 self.assertGreater(sum(1 for _ in root.iter(f"{SVG}path")), 12)
-                words = [text for text in root.itertext() if re.search("[a-z]{3}", text)]
-                self.assertGreater(len(words), 1)
-
-    def test_the_stiffness_of_every_algorithm_is_drawn_in_both_scenes(self):
-        names = [entry["name"] for entry in json.loads(program("describe", "--json")) if entry["kind"] == "algorithm"]
-        text = list(xml.parse(self.drawn / "figure_stiffness.svg").getroot().itertext())
-        self.assertGreater(len(names), 8)
-        for name in names:
-            # Long names take two lines, and some names end like others.
-            self.assertGreaterEqual(" ".join(" ".join(text).split()).count(name.replace("_", " ")), 2, name)
-
-    def test_axes_name_their_units(self):
-        for entry in self.index():
-            text = " ".join(xml.parse(self.drawn / entry["files"][0]).getroot().itertext())
-            with self.subTest(entry["id"]):
-                self.assertRegex(
-                    text, r"\[(1|mm|s|ms|µs|N|N/m|N s/m|Hz|rad|kg|mm/s|m|m/s)\]|/ K|iterations|real part|points in contact|contacts"
-                    "|0 to 100"
-                )
-
-    def test_the_limits_of_an_impedance_device_have_names(self):
-        text = " ".join(xml.parse(self.drawn / "figure_stability_z_width.svg").getroot().itertext())
-        for label in ("limit, worst hand", "passive (Colgate, Schenkel)", "stable (Gil, Hulin)"):
-            self.assertIn(label, text)
+                self.assertRegex(" ".join(root.itertext()),
+                                 r"\[(1|mm|s|ms|µs|N|N/m|N s/m|Hz|rad|kg|mm/s|m|m/s)\]|/ K|iterations|real part|points in contact|contacts")
 
     def test_same_data_same_bytes(self):
         again, alone = self.directory / "again", self.directory / "alone"
@@ -263,14 +201,6 @@ class Figures(unittest.TestCase):
             status, said = figures_here(*words)
             self.assertEqual((status, said.count("\n")), (2, 1), said)
             self.assertTrue(said.startswith("hapbench: error: "), said)
-
-    def test_without_an_interpreter_that_serves(self):
-        # A PATH with a python3 that can do nothing; the launcher may still find Debian's by its full name.
-        poor = self.directory / "poor"
-        poor.mkdir()
-        (poor / "python3").symlink_to("/bin/false")
-        done = figures("--list", PATH=f"{poor}:{ENVIRONMENT['PATH']}")
-        self.assertTrue(done.returncode == 0 or "needs a python3 with numpy" in done.stderr, done.stderr)
 
 
 if __name__ == "__main__":

@@ -33,7 +33,7 @@ def make_runs():
     hapbench("run", "mesh_molar", "--set", "time.duration_s=0.25", "--set", "record.contacts=true", "--set", "expect={}",
              "--out", root / "mesh", "--quiet")
     hapbench("run", "springs_limited_mean", "--set", "time.steps=300", "--set", "expect={}", "--out", root / "springs", "--quiet")
-    hapbench("compare", "peg_in_hole_2d_shaped_stiffness", "--algorithms", "mean,proxy,summation", "--out", root / "peg", "--quiet")
+    hapbench("compare", "peg_in_hole_2d_shaped_stiffness", "--algorithms", "mean,proxy,shaped_stiffness,summation", "--out", root / "peg", "--quiet")
     hapbench("sweep", "springs_limited_mean", "--vary", "rendering.stiffness_N_per_m=1e3:1e4:4:log", "--vary",
              "rendering.mass_kg=0.1:0.2:3", "--set", "expect={}", "--out", root / "sweep", "--quiet")
 

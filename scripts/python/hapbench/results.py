@@ -1,16 +1,18 @@
-"""Results: of a run, and of a folder of them. Needs no compiled module."""
+"""Results: of a run, of a folder of them, and single files below a folder. Needs no compiled module."""
 import json
+import math
 import os
 import re
 from collections.abc import Mapping
-from functools import cached_property
+from functools import cached_property, lru_cache
 from pathlib import Path
 
-from .columns import read_columns, read_mixed
+from .columns import read_columns, read_mixed, read_records
 from .errors import ResultError
 from .table import Table
 
 SUMMARY, SCENARIO = "summary.json", "scenario.effective.json"
+KINDS = {dict: "an object", list: "an array", str: "a string"}
 
 
 def read_json(file, **how):
@@ -21,6 +23,56 @@ def read_json(file, **how):
         raise ResultError(f"{file}: cannot be read: {error}") from error
     except (ValueError, RecursionError) as error:
         raise ResultError(f"{file}: not JSON: {error}") from error
+
+
+def read_object(file, **how):
+    """An object; `how` as of json.loads. Raises ResultError."""
+    value = read_json(file, **how)
+    if not isinstance(value, dict):
+        raise ResultError(f"{file}: /: got {shown(value)}; allowed: an object")
+    return value
+
+
+def shown(value):
+    text = json.dumps(value)
+    return text if len(text) <= 60 else text[:57] + "…"
+
+
+def member(value, key, kind, file, place="", default=None):
+    """value[key], which must be of that kind (object, array, string) where it is there. Raises ResultError."""
+    found = value.get(key, default)
+    if found is not default and not isinstance(found, kind):
+        raise ResultError(f"{file}: {place}/{key}: got {shown(found)}; allowed: {KINDS[kind]}")
+    return found
+
+
+def objects(value, key, file):
+    """The array of objects value[key]; empty where it is absent."""
+    found = member(value, key, list, file, default=[])
+    for i, entry in enumerate(found):
+        if not isinstance(entry, dict):
+            raise ResultError(f"{file}: /{key}/{i}: got {shown(entry)}; allowed: an object")
+    return found
+
+
+def at(value, pointer):
+    """The value that a JSON pointer names, or None."""
+    for key in pointer.strip("/").split("/"):
+        if isinstance(value, list):
+            value = value[int(key)] if key.isdecimal() and int(key) < len(value) else None
+        else:
+            value = value.get(key) if isinstance(value, dict) else None
+    return value
+
+
+def number_or_none(value):
+    """A finite number, else None. Booleans are not numbers here."""
+    if isinstance(value, bool) or not isinstance(value, (int, float)):
+        return None
+    try:
+        return value if math.isfinite(value) else None
+    except OverflowError:
+        return None
 
 
 class Tables(Mapping):
@@ -164,7 +216,7 @@ def load_run(folder):
     """The run of one folder."""
     folder = Path(folder)
     trials = sorted(folder.glob("subject_*_trial_*"), key=_numbers_of)
-    return Run(_object(folder / SUMMARY), _optional(folder / SCENARIO), _tables_of(folder),
+    return Run(read_object(folder / SUMMARY), _optional(folder / SCENARIO), _tables_of(folder),
                timing=_optional(folder / "timing.json"), folder=folder,
                trials=[Trial(_tables_of(trial, folder)) for trial in trials])
 
@@ -198,16 +250,46 @@ def _reader(file, described=None):
     return read
 
 
-def _object(file):
-    value = read_json(file)
-    if not isinstance(value, dict):
-        raise ResultError(f"{file}: /: got {json.dumps(value)[:60]}; allowed: an object")
-    return value
-
-
 def _optional(file):
-    return _object(file) if file.is_file() else {}
+    return read_object(file) if file.is_file() else {}
 
 
 def _numbers_of(path):
     return [int(number) for number in re.findall(r"\d+", path.name)]
+
+
+class MissingResult(Exception):
+    """A file that is not there."""
+
+
+class Files:
+    """Tables and JSON files below a directory, by their paths. `sources` are those that were read since it was emptied."""
+
+    def __init__(self, directory):
+        self.directory, self.sources = Path(directory), set()
+
+    def has(self, path):
+        return (self.directory / path).is_file()
+
+    def table(self, path):
+        """Columns of numbers by name."""
+        return self._read(path, _columns)
+
+    def records(self, path):
+        """Rows as dictionaries of texts, for tables that hold names or gaps."""
+        rows = self._read(path, read_records)
+        if not rows:
+            raise ResultError(f"{self.directory / path}: no rows")
+        return rows
+
+    def json(self, path):
+        return self._read(path, read_json)
+
+    def _read(self, path, read):
+        if not self.has(path):
+            raise MissingResult(f"no {path}")
+        self.sources.add(path)
+        return read(self.directory / path)
+
+
+_columns = lru_cache(maxsize=16)(read_columns)  # several figures show one table

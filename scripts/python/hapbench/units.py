@@ -4,7 +4,7 @@
 UNITS = {
     "N_per_m": "N/m", "N_s_per_m": "N s/m", "m_per_s": "m/s", "m_per_s2": "m/s²", "m2_per_s2": "m²/s²", "rad_per_s": "rad/s",
     "s_per_m": "s/m", "per_s": "1/s",
-    "m": "m", "mm": "mm", "s": "s", "N": "N", "J": "J", "W": "W", "kg": "kg", "rad": "rad", "Hz": "Hz", "bytes": "bytes"}
+    "m": "m", "mm": "mm", "s": "s", "N": "N", "Nm": "N m", "J": "J", "W": "W", "kg": "kg", "rad": "rad", "Hz": "Hz", "bytes": "bytes"}
 
 
 def ending_of(name):

@@ -7,7 +7,7 @@ import tempfile
 from pathlib import Path
 
 from hapbench_command import BAD_INPUT, FAILED, INTERRUPTED, SUCCESS, Arguments, say_error, write
-from hapbench_report.json_input import InputError
+from hapbench.errors import InputError
 
 from . import blocks
 from .manuals import ROOT, Manual, manuals

@@ -1,19 +1,23 @@
 """Command line of scripts/figures."""
 import json
-import os
 import sys
 import time
-from concurrent.futures.process import BrokenProcessPool
 from pathlib import Path
 
 import hapbench_style as style
+from hapbench.errors import ResultError
+from hapbench.results import Files, MissingResult
 from hapbench_command import BAD_INPUT, INTERRUPTED, SUCCESS, Arguments, say_error, write
 
 from . import catalogue
-from .drawing import attempts
-from .results import Results
 
-NOTHING_DRAWN = KILLED = 1
+NOTHING_DRAWN = 1
+FORMATS = ("svg", "pdf", "png")
+PAGE = """# Figures on record
+
+See every figure of the thesis that a simulation can draw, and some of ours: made by `scripts/figures RESULTS --out DIR
+--record results/reference/figures` from what `scripts/reproduce` leaves.
+"""
 
 
 def arguments(argv):
@@ -22,16 +26,12 @@ def arguments(argv):
     parser.add_argument("results", nargs="?", metavar="RESULTS_DIR", help="results as scripts/reproduce leaves them")
     parser.add_argument("--out", metavar="DIR", help="directory of the figures and of figures.json")
     parser.add_argument("--only", metavar="ID,…", help="draw these; an id stands for those that begin with it and a hyphen, too")
-    parser.add_argument("--jobs", type=int, metavar="N", default=len(os.sched_getaffinity(0)), help="figures at once (default: one per "
-                        "thread)")
     parser.add_argument("--record", metavar="DIR", help="also copy the SVGs of the thesis's figures, and of ours that lie there, "
                         "into DIR, with figures.md, a page of them all")
     parser.add_argument("--list", action="store_true", help="list the figures")
     chosen = parser.parse_args(argv)
     if not chosen.list and not (chosen.results and chosen.out):
         parser.error("needed are RESULTS_DIR and --out DIR, or --list")
-    if chosen.jobs < 1:
-        parser.error(f"--jobs: got {chosen.jobs}; allowed: 1 or more")
     return chosen
 
 
@@ -48,6 +48,30 @@ def selection(only):
     return chosen
 
 
+def draw(figure, results, directory):
+    """Draws and saves one figure; returns its entry in figures.json."""
+    drawing, values = figure.draw(results)
+    files = [f"{figure.stem}.{kind}" for kind in FORMATS]
+    for kind, name in zip(FORMATS, files):
+        write(directory / name, style.picture(drawing, kind, salt=figure.stem))
+    style.plt.close(drawing)
+    return {"id": figure.id, "title": figure.title, "thesis_figure": figure.thesis or None, "caption": figure.caption.format(**values), "files": files,
+            "sources": sorted(results.sources)}
+
+
+def attempt(figure, results, directory):
+    """Draws a figure; returns its entry, why it was skipped, and what is wrong with its data, two of them None."""
+    try:
+        return draw(figure, results, directory), None, None
+    except MissingResult as missing:
+        return None, f"{figure.id} ({missing})", None
+    except ResultError as error:
+        return None, None, str(error)
+    except (KeyError, IndexError, TypeError, ValueError) as error:
+        # A file that can be read but has not the columns, rows or members of hapbench's.
+        return None, None, f"figure {figure.id}: {', '.join(sorted(results.sources))}: {type(error).__name__}: {error}"
+
+
 def write_index(directory, entries):
     """figures.json: entries of earlier runs stay for figures that were not drawn anew and still are there."""
     file = directory / "figures.json"
@@ -60,35 +84,21 @@ def write_index(directory, entries):
     merged.update({entry["id"]: entry for entry in entries})
     known = [merged[f.id] for f in catalogue.FIGURES if f.id in merged and (directory / f"{f.stem}.svg").is_file()]
     write(file, json.dumps({"figures": known}, indent=2, ensure_ascii=False) + "\n")
+    return {entry["id"]: entry for entry in known}
 
 
-PAGE = """# Figures on record
-
-See every figure of the thesis that a simulation can draw, and some of ours: made by `scripts/figures RESULTS --out DIR
---record results/reference/figures` from what `scripts/reproduce` leaves.
-"""
-
-
-def record(directory, page):
+def record(directory, page, drawn):
     """Copies figures into the directory `page` and writes figures.md about all that lie there."""
-    page.mkdir(parents=True, exist_ok=True)
     text = PAGE
-    drawn = {e["id"]: e for e in json.loads((directory / "figures.json").read_text(encoding="utf-8"))["figures"]}
     for figure in catalogue.FIGURES:
         on_record = page / f"{figure.stem}.svg"
-        if figure.id not in drawn or not (figure.thesis or figure.page or on_record.is_file()):
+        if figure.id not in drawn or not (figure.thesis or figure.on_record or on_record.is_file()):
             continue
-        write(on_record, style.compact((directory / on_record.name).read_text(encoding="utf-8")))
+        write(on_record, (directory / on_record.name).read_bytes())
         name = f"Figure {figure.thesis}" if figure.thesis else "Ours"
         text += f"\n## {name}: {figure.title}\n\n![{figure.title}]({on_record.name})\n\n{drawn[figure.id]['caption']}"
         text += f" Differs: {figure.differs}\n" if figure.differs else "\n"
     write(page / "figures.md", text)
-
-
-def show_progress(done, total):
-    """A line that is written over, on a terminal."""
-    if sys.stderr.isatty():
-        print(f"\r{done} of {total} figures", end="\r\033[K" if done == total else "", file=sys.stderr, flush=True)
 
 
 def main(argv=None):
@@ -105,27 +115,18 @@ def main(argv=None):
     if not Path(chosen.results).is_dir():
         say_error(f"{chosen.results}: no such directory")
         return BAD_INPUT
-    directory = Path(chosen.out)
-    started = time.monotonic()
-    outcomes = []
+    directory, started = Path(chosen.out), time.monotonic()
     style.plt.rcParams.update(style.SETTINGS)
-    results = Results(chosen.results)
     try:
         directory.mkdir(parents=True, exist_ok=True)
-        for outcome in attempts(figures, results, directory, chosen.jobs):
-            outcomes.append(outcome)
-            show_progress(len(outcomes), len(figures))
-        _, drawn, skipped, bad = zip(*sorted(outcomes, key=lambda outcome: outcome[0]))
+        drawn, skipped, bad = zip(*(attempt(figure, Files(chosen.results), directory) for figure in figures))
         entries = [entry for entry in drawn if entry]
-        write_index(directory, entries)
+        index = write_index(directory, entries)
         if chosen.record and entries:
-            record(directory, Path(chosen.record))
+            record(directory, Path(chosen.record), index)
     except OSError as error:
         say_error(f"{error.filename}: {error.strerror}")
         return BAD_INPUT
-    except BrokenProcessPool:
-        say_error("a drawing process was killed, perhaps for memory, of which --jobs 1 needs less")
-        return KILLED
     except KeyboardInterrupt:
         print("figures: stopped", file=sys.stderr)
         return INTERRUPTED

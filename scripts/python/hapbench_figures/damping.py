@@ -92,14 +92,7 @@ def implicit_plane(results):
     draw_distributed(axes[0, 1], sweep)
     wall_damping(axes[0, 2], results)
     style.letter(axes[0])
-    return figure, ("Damping of the original algorithm. Its spring force defines one implicit plane (plum); normal damping "
-                    "(black) acts across it, tangential damping (petrol) along it, against the velocity (amber). (a) On a "
-                    "flat the plane is parallel to the surface. (b) In a hole it is parallel to neither wall. (c) What "
-                    "normal damping remains across the walls while the peg is tilted, in units of B: u_x^2 of the rendered "
-                    "direction for the original, S_xx for stiffness shaping, which keeps about the B that it should. The "
-                    "tangential damping of (b), which grows with the force, is left out of (c). Ours: "
-                    "(a) from the formulas of B.2, (b, c) from hapbench's forces and tensors; the velocity is made up, "
-                    "friction of Table A.1.")
+    return figure, {}
 
 
 def force_limit(results):
@@ -122,7 +115,4 @@ def force_limit(results):
     ax.text(4.0, 0.19, "without limit", color=style.AMBER, ha="right")
     ax.text(4.2, 0.113, "input force limited to 2 N", color=style.PETROL)
     ax.text(threshold + 0.05, 0.245, "published: 2.7 N measured = 2.0 N + 0.7 N weight", color=style.RED, fontsize=7)
-    return figure, ("Displacement of the tip into a flat against the measured force, without (amber triangles) and with "
-                    "(petrol circles) the limit of the input force; ours, a scripted hand that presses up to 5 N. Black: "
-                    "the ideal, (force - 0.7 N)/K. Dotted: the published threshold of 2.7 N measured force, 2.0 N plus 0.7 "
-                    "N of weight (3.5).")
+    return figure, {}

@@ -40,10 +40,7 @@ def shortest_distance_and_normal(results):
     style.note(axes[0, 0], 0.98, 0.04, "dashed: median line", style.GREY, ha="right", va="bottom")
     style.note(axes[0, 1], 0.98, 0.14, "too short: the segments end\ninside the tool", style.AMBER, ha="right")
     style.letter(axes[0])
-    return figure, (f"Depth and gradient of each contact of a peg tilted by {DEEP} rad, drawn from the point to where it is "
-                    "taken to leave the tool. (a) Shortest distance: beyond the median line (dashed) the gradients flip "
-                    "(green). (b) The same depths along the inverse surface normal: no gradient flips, but the depth is "
-                    "underestimated. Ours; the pose is prescribed.")
+    return figure, {"tilt": DEEP}
 
 
 def gradient_flipping(results):
@@ -60,11 +57,7 @@ def gradient_flipping(results):
     draw_flip_count(ax, sweep)
     ax.set_title("over the tilt")
     style.letter(axes[0])
-    return figure, ("Gradient flipping of the original algorithm. (a) Shallow: every depth pushes the tool off the wall it "
-                    "touches. (b) Deep: points beyond the median line (dashed) have flipped gradients (petrol). Arrow: "
-                    "direction of the spring force, and its size. (c) Over the tilt: share of flipped gradients, and the "
-                    "mean of each contact's pull towards its wall, -1 when all push off, +1 when all pull in. Ours; the "
-                    "pose is prescribed.")
+    return figure, {}
 
 
 def draw_flip_count(ax, sweep):
@@ -94,11 +87,7 @@ def underestimation(results):
     axes[0, 1].set_ylabel("")
     draw_error(axes[0, 2], scene.Sweep(results, NORMAL))
     style.letter(axes[0])
-    return figure, ("(a) Shortest distance, (b) inverse surface normal at a tilt of 0.3 rad; flipped gradients in petrol. "
-                    "(c) How much the depth of (b) falls short of the distance to the tool's surface along the same "
-                    "direction, for every contact of a peg tilted from 0 to 0.6 rad; the tilt is the brightness. Dotted: "
-                    "the published depth of 0.25 mm, below which the error is called negligible (4.2). Points whose exit "
-                    "is the far end of the tool are left out. Ours.")
+    return figure, {}
 
 
 def draw_error(ax, sweep):
@@ -138,10 +127,4 @@ def corner(results):
         ax.set_xlabel("tip's way towards the wall [mm]")
     axes[0, 1].legend(loc="upper left", handlelength=1.5, fontsize=6.5, borderaxespad=0.1)
     style.letter(axes[0])
-    return figure, (
-        "An upright drill is moved steadily against the wall of the hole, near its mouth. With normal projection "
-        "(grey) the depth of a point near the rim is at once as large as the way along its normal out of the "
-        "drill, and the force jumps in a single step; with the shortest distance (wide) it grows from zero"
-        + (", and so it does with continuous normal projection (brown), which nearly covers it" if ours else "")
-        + ". (a) Force, (b) greatest depth, (c) change from step to step. Ours."
-    )
+    return figure, {"continuous": ', and so it does with continuous normal projection (brown), which nearly covers it' if ours else ''}

@@ -1,20 +1,15 @@
-"""The drill turned in the hole: against the ideal trajectory (figure 7), with a proxy beside stiffness shaping, and the torque
-that a device of three degrees of freedom cannot render."""
+"""The drill turned in the hole, against the ideal trajectory (figure 7)."""
 import numpy as np
 from matplotlib.patches import Polygon
 
 import hapbench_style as style
+from hapbench.results import MissingResult
 
 from . import published
-from .results import MissingResult
 
 HANDS = "task2_hands"  # a sweep of task 2 over the hand's force, tilted from upright to 1.047 rad and back
-LOOKS = ((style.PETROL, "o"), (style.AMBER, "^"), (style.PLUM, "s"), (style.GREY, "D"), (style.BLACK, "v"))
 MARKS = 40  # of a hand at most: more could not be told from their neighbours
-OF_PROXY = ("shaped_stiffness", "exact_shaping", "proxy")
-EVERY = 320  # rows: a drawn mark of every row could not be told from its neighbours
 SETTLED = 0.5  # seconds: the drill starts above its place
-OF_TORQUE = ("original_averaging", "shaped_stiffness")
 
 
 def samples(results, run):
@@ -54,7 +49,7 @@ def trajectory(results):
     draw_block(section, environment)
     bottom = 1e3 * environment["hole_depth_m"]
     drawn, errors = [], []
-    for run, (hand, (colour, marker)) in enumerate(zip(hands, LOOKS)):
+    for run, (hand, own) in enumerate(zip(hands, style.SERIES)):
         rows = samples(results, run)
         drawn.append(rows)
         force = float(hand["hand.force_N"])
@@ -62,7 +57,7 @@ def trajectory(results):
                       f"{rows['interpenetration_m'].max():.2f} mm")
         pick = slice(None, None, max(1, len(rows["tilt_rad"]) // MARKS))
         thin = {key: column[pick] for key, column in rows.items()}
-        look = {"color": colour, "marker": marker, "ls": "none", "ms": 2.3, "mec": "none", "alpha": 0.7}
+        look = {"color": own.colour, "marker": own.marker, "ls": "none", "ms": 2.3, "mec": "none", "alpha": 0.7}
         section.plot(thin["lateral_m"], thin["height_m"], **look)
         height.plot(thin["tilt_rad"], thin["height_m"] + bottom, label=f"{force:.2g} N", **look)
         distance.plot(thin["tilt_rad"], np.abs(thin["lateral_m"]), **look)
@@ -81,81 +76,4 @@ def trajectory(results):
     height.margins(y=0.12)
     style.note(distance, 0.03, 0.3, "shaded: published,\nerror up to about\n0.25 mm", style.RED)
     style.letter(axes[0])
-    return figure, ("The tip while the drill is turned between upright and 1.047 rad in the hole, pushed with constant forces "
-                    "(marks) by a hand of task 2 that leans 0.45 rad towards the rim, and the ideal trajectory (black), which "
-                    "the exact geometry of drill and hole allows. (a) section, (b) height, (c) distance to the median line. "
-                    "Shaded: the published error of about 0.25 mm (Fig. 7, 3.6). Mean error of the height / largest overlap "
-                    f"with the exact hole: {', '.join(errors)}. Ours: the thesis's hand is not published; its input force is "
-                    "split at 2 N, which the limiter does not let pass, so that beyond it the hands differ little.")
-
-
-def rows_of(results, name):
-    rows = results.table(f"proxy_in_hole/{name}/ideal_trajectory.csv")
-    kept = rows["time_s"] > SETTLED
-    return {key: column[kept][::EVERY] for key, column in rows.items()}
-
-
-def rotated(results):
-    figure, axes = style.panels(1, 3, 3.1, gridspec_kw={"width_ratios": [0.75, 1.2, 1.2]})
-    section, height, depth = axes[0]
-    scenario = results.json("proxy_in_hole/proxy/scenario.effective.json")
-    draw_block(section, scenario["environment"])
-    spring = 1e3 * abs(scenario["hand"]["z_N"]) / scenario["rendering"]["stiffness_N_per_m"]
-    errors = {}
-    for name in OF_PROXY:
-        rows, look = rows_of(results, name), style.look(name)
-        error = 1e3 * (rows["height_m"] - rows["ideal_height_m"])
-        errors[name] = np.sqrt(np.mean(error**2))
-        mark = {"color": look.colour, "marker": look.marker, "ls": "none", "ms": 2, "mec": "none", "alpha": 0.7}
-        section.plot(1e3 * rows["lateral_m"], 1e3 * rows["height_m"], **mark)
-        height.plot(rows["tilt_rad"], error, label=look.label, **mark)
-        depth.plot(rows["tilt_rad"], 1e3 * rows["interpenetration_m"], **mark)
-    rows = rows_of(results, "proxy")
-    order = np.argsort(rows["tilt_rad"])
-    section.plot(1e3 * rows["ideal_lateral_m"][order], 1e3 * rows["ideal_height_m"][order], color=style.BLACK, lw=0.9)
-    height.axhline(-spring, color=style.BLACK, lw=0.7, ls="--", label=f"{spring:.2g} mm: the spring itself")
-    height.set_ylim(top=0)
-    height.set(title="height error of the tip", xlabel="tilt α [rad]", ylabel="error [mm]")
-    depth.set(title="interpenetration", xlabel="tilt α [rad]", ylabel="depth in the exact hole [mm]")
-    depth.set_ylim(bottom=0)
-    section.set_title("section")
-    height.legend(loc="lower right", markerscale=1.8, fontsize=6.5, handlelength=1.2)
-    style.letter(axes[0])
-    rms = ", ".join(f"{style.look(name).label} {error:.2f} mm" for name, error in errors.items())
-    return figure, ("The drill turned to and fro in the hole while 2 N push straight down (task 2), with two ways of "
-                    "shaping and with a proxy. (a) Section with the ideal trajectory of 3.6 (black), (b) height of the tip "
-                    f"over it, (c) how deep the drill is in the exact hole. Root mean square of the height error: {rms}. "
-                    "Ours.")
-
-
-def norm(rows, prefix, unit):
-    return np.sqrt(sum(rows[f"{prefix}{axis}_{unit}"] ** 2 for axis in "xyz"))
-
-
-def lost(results):
-    figure, axes = style.panels(1, 3, 2.7)
-    force_over_time, torque_over_time, arm_over_time = axes[0]
-    most = {}
-    for name in OF_TORQUE:
-        rows, look = results.table(f"torque_in_hole/{name}/trajectory.csv"), style.look(name)
-        force, torque = norm(rows, "f", "N"), norm(rows, "t", "Nm")
-        acting = force > 0
-        time, line = rows["time_s"][acting], {"color": look.colour, "lw": 1.1, "label": look.label}
-        force_over_time.plot(time, force[acting], **line)
-        torque_over_time.plot(time, 1e3 * torque[acting], **line)
-        arm_over_time.plot(time, 1e3 * torque[acting] / force[acting], **line)
-        most[look.label] = force.max(), 1e3 * torque.max()
-    force_over_time.set(xlabel="time [s]", ylabel="‖f‖ [N]", ylim=(0, None), title="force rendered")
-    torque_over_time.set(xlabel="time [s]", ylabel="‖τ‖ [mN m]", ylim=(0, None), title="torque lost")
-    arm_over_time.set(xlabel="time [s]", ylabel="‖τ‖ / ‖f‖ [mm]", ylim=(0, None), title="lost per newton rendered")
-    force_over_time.legend(loc="upper left", fontsize=6.5)
-    force_over_time.set_ylim(top=1.35 * force_over_time.get_ylim()[1])  # room for the legend
-    style.letter(axes[0])
-    shown = ", ".join(f"{label} {force:.2g} N and {torque:.2g} mN m" for label, (force, torque) in most.items())
-    return figure, ("A drill whose tip rests against the wall of the hole is turned by script until its side meets the rim "
-                    "opposite, and back; both algorithms see the same contacts. (a) The force that is rendered. (b) The "
-                    "torque about the tip that the contacts would exert by their shares of the spring force, and that a "
-                    "device of three degrees of freedom loses: what Fig. 1 is about. (c) Their ratio. While wall and rim "
-                    "push against each other, most of the contact is torque. Shaping renders the little force that is "
-                    "left; the original algorithm makes it up by dividing by the nearly cancelled sum of directions. At "
-                    f"most: {shown}. Ours.")
+    return figure, {"errors": ', '.join(errors)}

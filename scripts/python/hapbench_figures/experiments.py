@@ -5,9 +5,9 @@ import numpy as np
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 import hapbench_style as style
+from hapbench.columns import numbers
 
 from . import published
-from .results import numbers
 
 MEASURES = (
     ("success", "removed", "success rate", 1),
@@ -93,11 +93,7 @@ def experiment(results, task, targets, what):
     axes[0, 3].yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     axes[0, 3].yaxis.set_minor_formatter(NullFormatter())
     style.letter(axes[0])
-    return figure, (f"{what}: success rate (a), completion time (b), model force (c) and velocity (d, logarithmic), "
-                    "original algorithm (DP) against stiffness shaping (HS). Filled marks: ours, mean and standard error "
-                    "over six simulated subjects (grey dots: their means), whose parameters are ours. Hollow diamonds: "
-                    "published mean and standard error of six people. Paired t-tests over the subjects that have both "
-                    "values. A simulated subject shows the dynamics, not what people feel or learn.")
+    return figure, {"task": what}
 
 
 def vertical(results):
@@ -108,34 +104,3 @@ def vertical(results):
 def rotational(results):
     return experiment(results, "rotational", ((0, "D3", "target at 3 mm"), (1, "D4", "target at 4 mm")),
                       "Rotational peg-in-hole task")
-
-
-def questionnaires(results):
-    """Published means alone: nothing simulated fills in forms. Drawn where the experiments they belong to have been run."""
-    for method, _ in METHODS:
-        results.json(f"thesis/vertical_peg_in_hole_{method}/summary.json")
-    figure, axes = style.panels(1, 3, 2.4, gridspec_kw={"width_ratios": [1, 1, 1]})
-    effort, relative = axes[0][:2], axes[0][2]
-    for ax, task in zip(effort, ("vertical", "rotational")):
-        for x, (method, _) in enumerate(METHODS):
-            draw_published_bar(ax, x, f"D5.effort.{task}.{method}")
-        ax.set_xticks([0, 1], [short for _, short in METHODS])
-        ax.set(title=f"{task} task", ylim=(0, 100), ylabel="effort (NASA-TLX), 0 to 100")
-        t, p = published.value(f"D5.effort.{task}.t"), published.entries()[f"D5.effort.{task}.p"]["at_most"]
-        style.note(ax, 0.97, 0.97, f"t = {t:g}, p < {p:g}", style.RED, ha="right")
-    for x, task in enumerate(("vertical", "rotational")):
-        draw_published_bar(relative, x, f"D5.relative_effort.{task}")
-    relative.set_xticks([0, 1], ["vertical", "rotational"])
-    relative.set(title="effort with HS beside DP", ylim=(0, 1), ylabel="0: way less, 1: way more")
-    for ax in axes[0]:
-        ax.set_xlim(-0.6, 1.6)
-        ax.grid(axis="x", visible=False)
-    style.letter(axes[0])
-    return figure, ("What the thesis's subjects said of their effort (mean and standard error of six people), original "
-                    "algorithm (DP) and stiffness shaping (HS). Published numbers alone, with nothing of ours beside them: "
-                    "simulated subjects feel nothing and fill in no forms.")
-
-
-def draw_published_bar(ax, x, id_):
-    ax.bar([x], [published.value(id_)], width=0.55, color="white", edgecolor=style.RED, lw=1.2)
-    ax.errorbar([x], [published.value(id_)], yerr=[published.spread(id_)], **{**style.PUBLISHED, "marker": "none"})

@@ -3,7 +3,7 @@ import numpy as np
 
 import hapbench_style as style
 
-from . import published, scene
+from . import scene
 
 
 def simulation_view(results):
@@ -23,9 +23,7 @@ def simulation_view(results):
     ax.annotate(f"rendered force, {np.linalg.norm(force):.1f} N", xy=head, xytext=(0.75, -1.9),
                 arrowprops={"arrowstyle": "-", "color": style.BLACK, "lw": 0.6})
     ax.text(1.45, 1.35, "tool")
-    return figure, ("The planar simulation: point shell (petrol), tool (outline), colliding points with their depths "
-                    f"(amber) and the rendered force (arrow) of stiffness shaping, peg tilted by {sweep.tilt[step]:.2f} "
-                    "rad. Ours; the pose is prescribed.")
+    return figure, {"tilt": sweep.tilt[step]}
 
 
 SNAPSHOTS = 4
@@ -61,26 +59,20 @@ def trajectories(results):
                          fontsize=8.5).set_in_layout(False)
         for ax in line[1:-1]:
             ax.set_yticklabels([])
-        draw_velocity(line[-1], rows, look.colour)
+        with_friction = results.table(f"thesis/peg_in_hole_2d_{algorithm}/trajectory.csv")
+        draw_velocity(line[-1], rows, with_friction, look.colour)
         line[-1].set_title(f"({letters[1]}) {reversals['metrics']['force_reversals']} force reversals, with friction "
                            f"{rubbed['metrics']['force_reversals']}")
-        with_friction = results.table(f"thesis/peg_in_hole_2d_{algorithm}/trajectory.csv")
-        line[-1].plot(1e3 * with_friction["time_s"], with_friction["vx_m_per_s"], color=style.AMBER, lw=0.6, zorder=1)
-    return figure, (
-        "A peg as wide as its hole is tilted at constant speed: outlines at four equally spaced times with the tip's way so "
-        "far, and the velocity of the tip, on scales of their own. (a, b) The original algorithm, (c, d) stiffness shaping. "
-        "Ours, parameters of Table A.1, which lists no friction; thin and amber in (b, d): vx with the friction of Table B.1 in "
-        "place, under which the original algorithm vibrates far more. Published: \"an obvious vibration\" and \"a smooth "
-        'motion\" (Fig. A.2).'
-    )
+    return figure, {}
 
 
-def draw_velocity(ax, rows, colour):
+def draw_velocity(ax, rows, with_friction, colour):
+    ax.plot(1e3 * with_friction["time_s"], with_friction["vx_m_per_s"], color=style.AMBER, lw=0.6, zorder=1, label="vx, with friction")
     for name, line in (("x", "-"), ("y", (0, (3, 1)))):
         ax.plot(1e3 * rows["time_s"], rows[f"v{name}_m_per_s"], color=colour if name == "x" else style.GREY, lw=1, ls=line,
                 label=f"v{name}")
     ax.set(xlabel="time [ms]", ylabel="velocity of the tip [m/s]")
-    ax.legend(loc="upper right", ncol=2, handlelength=2)
+    ax.legend(loc="upper right", ncol=3, handlelength=1.6, columnspacing=1, fontsize=7)
     ax.margins(y=0.18)
 
 
@@ -117,32 +109,4 @@ def redistribution(results):
     style.note(axes[0, 0], 0.02, 0.91, "pushing sideways", style.GREY)
     axes[0, 1].set_ylabel("")
     style.letter(axes[0])
-    return figure, ("Spring forces of the contacts (a) before and (b) after tandpasta redistributes the elastic energy: "
-                    "forces that fight each other (grey) lose weight, those that push the peg out (amber) gain it, the "
-                    f"energy stays the same, and the outward force grows {outward[1] / outward[0]:.1f}-fold. Arrows to one "
-                    "scale. Ours; the pose is prescribed.")
-
-
-def turned_direction(results):
-    rows = results.table("thesis/gradient_flip/trajectory.csv")
-    figure, axes = style.panels(1, 2, 2.3)
-    time = 1e3 * rows["time_s"]
-    stiffness = results.json("thesis/gradient_flip/scenario.effective.json")["rendering"]["stiffness_N_per_m"]
-    unit = rows["depth_max_m"][0]
-    axes[0, 0].plot(time, rows["colliding"], drawstyle="steps-post", color=style.BLACK)
-    axes[0, 0].set(ylabel="contacts", xlabel="time [ms]", title="two more of 21 contacts", ylim=(0, 26))
-    axes[0, 1].plot(time, -rows["fspring_x_N"] / (stiffness * unit), drawstyle="steps-post",
-                    color=style.look("original_averaging").colour)
-    axes[0, 1].axhline(0, color=style.BLACK, lw=0.6)
-    # The thesis tells the sizes, 2n + 1 and 2n + 3, and that the direction turns round.
-    size = np.array([published.value("B3.depth.before"), published.value("B3.depth.after")])
-    sign = np.sign(-rows["fspring_x_N"][[0, -1]])
-    axes[0, 1].plot(time[[0, -1]], sign * size,
-                    **{k: v for k, v in style.PUBLISHED.items() if k in ("marker", "mfc", "mec", "ms", "mew", "ls")})
-    axes[0, 1].set(ylabel="signed depth / depth of a point", xlabel="time [ms]", title="rendered depth", ylim=(-30, 30))
-    style.note(axes[0, 0], 0.98, 0.08, "◇ in (b), published: 2n + 1 = 21, then\n2n + 3 = 23, turned by 180°", style.RED,
-               ha="right", va="bottom")
-    style.letter(axes[0])
-    return figure, ("The original algorithm with ten contacts one way and eleven the other, then two more on the first "
-                    "side (B.3.3): the rendered depth goes from 21 to 23 times that of a point, and its direction turns "
-                    "round. Ours, a run of 40 steps; diamonds: the published sizes.")
+    return figure, {"growth": outward[1] / outward[0]}

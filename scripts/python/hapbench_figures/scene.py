@@ -85,19 +85,6 @@ class Sweep:
         return np.array([self.rows[f"{name}x_N"][step], self.rows[f"{name}y_N"][step]])
 
 
-def shell(environment):
-    """Points of the wall of `hole_2d`, as hapbench lays them."""
-    half, depth, mouth, h = (environment[k] for k in ("width_m", "depth_m", "mouth_m", "spacing_m"))
-    half /= 2
-    top = np.arange(half, half + mouth + h / 2, h)
-    wall = np.arange(-depth, h / 2, h)
-    floor = np.arange(-half, half + h / 2, h)
-    return np.vstack(
-        [np.stack([top, 0 * top], 1), np.stack([-top, 0 * top], 1), np.stack([0 * wall + half, wall], 1),
-         np.stack([0 * wall - half, wall], 1), np.stack([floor, 0 * floor - depth], 1)]
-    )
-
-
 def draw_hole(ax, environment, points=False):
     half, depth, mouth = environment["width_m"] / 2, environment["depth_m"], environment["mouth_m"]
     corners = np.array(
@@ -107,7 +94,9 @@ def draw_hole(ax, environment, points=False):
     ax.add_patch(Polygon(corners * MM, closed=True, facecolor=style.SAND, edgecolor="none", zorder=0))
     ax.plot(*(corners[:6] * MM).T, color=style.SOIL, lw=0.9, zorder=1)
     if points:
-        ax.plot(*(shell(environment) * MM).T, ".", color=style.PETROL, ms=2.2, zorder=2)
+        way = np.append(0, np.cumsum(np.linalg.norm(np.diff(corners[:6], axis=0), axis=1)))
+        places = np.arange(0, way[-1] + 1e-9, environment["spacing_m"])
+        ax.plot(*(np.interp(places, way, corners[:6, i]) * MM for i in (0, 1)), ".", color=style.PETROL, ms=2.2, zorder=2)
     ax.set_aspect("equal")
     ax.grid(False)
 

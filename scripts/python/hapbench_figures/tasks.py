@@ -14,8 +14,6 @@ DENSITIES = (("signed_distance", "signed distance"), ("binary", "binary"))
 ITERATIONS = (1, 2, 3, 4, 5, 10, 20, 40, 80, 160)
 BINS = 240  # of a time axis: more cannot be told apart at column width
 FEW_BINS = 38  # where thirty panels share a page
-HAND = ("Hands and paths are ours, calibrated to the published mean and standard deviation of the raw points and to nothing "
-        "else.")
 
 
 def trajectory(results, task, density="signed_distance"):
@@ -91,9 +89,8 @@ def point_counts(results):
         row[0].set_ylabel(f"{density_name}\npoints in contact")
     for ax in axes[1]:
         ax.set_xlabel("time [s]")
-    for load in loads[:-1]:
-        if load:
-            load.set_yticklabels([])
+    for load in filter(None, loads[:-1]):
+        load.set_yticklabels([])
     if loads[-1]:
         loads[-1].set_ylabel("loop load [%]")
     style.note(axes[1, 1], 0.03, 0.98, "before the reduction", style.AMBER)
@@ -101,10 +98,7 @@ def point_counts(results):
     if any(loads):
         style.note(axes[0, 0], 0.03, 0.98, "loop load: black dots, right axis")
     style.note(axes[1, 0], 0.97, 0.98, "published mean ± SD ◇", style.RED, ha="right")
-    return figure, ("Colliding points before (amber dots) and after (petrol squares) the gradient-based reduction in the "
-                    "three tasks of 3.2, for both densities of the block, and the loop load (black dots, right axis, "
-                    "medians of spans): the share of the 0.49 ms of a step that this machine takes. Ours, thinned; hollow "
-                    f"diamonds at the right edge: published mean and standard deviation (3.3). {HAND}")
+    return figure, {}
 
 
 def count_distribution(results):
@@ -132,10 +126,7 @@ def count_distribution(results):
     style.note(axes[0, 1], 0.98, 0.68, "thick: ± SD\nthin: 5 to 95 %", style.PETROL, ha="right")
     style.note(axes[0, 1], 0.98, 0.44, "◇ published, 3.3 and C.3\n(mean ± SD)", style.RED, ha="right")
     style.letter(axes[0])
-    return figure, ("Distribution of the number of points in contact before (a) and after (b) the gradient-based "
-                    "reduction. Ours, for two densities of the block: mean (mark), standard deviation (thick), 5th to 95th "
-                    "percentile (thin), over the steps in contact. Published means and standard deviations of 3.3 (upper) "
-                    f"and C.3 (lower diamond). {HAND}")
+    return figure, {}
 
 
 def draw_distribution(ax, y, values, marker, label):
@@ -155,23 +146,22 @@ def quantiles(results, density="signed_distance", tasks=TASKS):
     return np.array(greatest), np.array(least)
 
 
-def draw_quantiles(ax, values, colour, marker, extreme):
-    ax.fill_between(ITERATIONS, values[:, 1], values[:, 3], color=colour, alpha=0.3, lw=0)
-    ax.plot(ITERATIONS, values[:, 2], color=colour, marker=marker)
-    ax.plot(ITERATIONS, values[:, extreme], color=colour, ls=":", lw=1.1)
+def draw_quantiles(ax, results, **chosen):
+    """Of the greatest and of the least ratio, with the published range after one iteration at the left edge."""
+    for values, colour, marker, extreme in zip(quantiles(results, **chosen), (style.PETROL, style.AMBER), "os", (4, 0)):
+        ax.fill_between(ITERATIONS, values[:, 1], values[:, 3], color=colour, alpha=0.3, lw=0)
+        ax.plot(ITERATIONS, values[:, 2], color=colour, marker=marker)
+        ax.plot(ITERATIONS, values[:, extreme], color=colour, ls=":", lw=1.1)
+    once = published.entries()["R1.once"]
+    ax.errorbar([0.8], [1], yerr=[[1 - once["at_least"]], [once["at_most"] - 1]], **{**style.PUBLISHED, "marker": "none"})
+    ax.axhline(1, color=style.BLACK, ls="--", lw=0.8)
 
 
 def convergence_by_task(results):
     figure, axes = style.panels(1, 3, 2.5, sharey=True)
-    bound = published.value("R1.limit"), published.entries()["R1.bound"]["at_most"]
-    once = published.entries()["R1.once"]
     for ax, task in zip(axes[0], TASKS):
-        greatest, least = quantiles(results, tasks=(task,))
-        draw_quantiles(ax, greatest, style.PETROL, "o", 4)
-        draw_quantiles(ax, least, style.AMBER, "s", 0)
-        ax.axhline(bound[0], color=style.BLACK, ls="--", lw=0.8)
-        ax.axhline(bound[1], **style.PUBLISHED_LINE)
-        ax.errorbar([0.8], [1], yerr=[[1 - once["at_least"]], [once["at_most"] - 1]], **{**style.PUBLISHED, "marker": "none"})
+        draw_quantiles(ax, results, tasks=(task,))
+        ax.axhline(published.entries()["R1.bound"]["at_most"], **style.PUBLISHED_LINE)
         ax.set(xscale="log", title=task[2], xlabel="iterations", xlim=(0.7, 200), ylim=(0.4, 1.62))
         ax.set_xticks([1, 3, 10, 40, 160], ["1", "3", "10", "40", "160"])
         ax.minorticks_off()
@@ -180,21 +170,13 @@ def convergence_by_task(results):
     style.note(axes[0, 0], 0.97, 0.92, "published bound 1.5", style.RED, ha="right")
     style.note(axes[0, 1], 0.97, 0.86, "greatest", style.PETROL, ha="right")
     style.note(axes[0, 1], 0.97, 0.3, "least", style.AMBER, ha="right")
-    return figure, ("Greatest (petrol circles) and least (amber squares) stiffness ratio of the contacts of a step after "
-                    "so many shaping iterations: median, 5th to 95th percentile (shaded) and extreme (dotted) over all "
-                    "steps in contact, ours, signed-distance block. Published (red): 0.8 to 1.3 after one iteration (bar "
-                    f"at the left edge, C.4.2), never above 1.5 (4.3). {HAND}")
+    return figure, {}
 
 
 def convergence(results):
     figure, axes = style.panels(1, 2, 2.7, sharey=True)
-    once = published.entries()["R1.once"]
     for ax, (density, name) in zip(axes[0], DENSITIES):
-        greatest, least = quantiles(results, density, TASKS[1:])
-        draw_quantiles(ax, greatest, style.PETROL, "o", 4)
-        draw_quantiles(ax, least, style.AMBER, "s", 0)
-        ax.axhline(1, color=style.BLACK, ls="--", lw=0.8)
-        ax.errorbar([0.85], [1], yerr=[[1 - once["at_least"]], [once["at_most"] - 1]], **{**style.PUBLISHED, "marker": "none"})
+        draw_quantiles(ax, results, density=density, tasks=TASKS[1:])
         ax.set(xscale="log", yscale="log", title=f"density: {name}", xlabel="iterations", xlim=(0.75, 200), ylim=(0.42, 1.6))
         ax.set_xticks(ITERATIONS, [str(i) if i in (1, 2, 3, 5, 10, 20, 40, 80, 160) else "" for i in ITERATIONS])
         ticks = (0.5, 0.6, 0.7, 0.8, 0.9, 1, 1.2, 1.4, 1.6)
@@ -204,10 +186,7 @@ def convergence(results):
     style.note(axes[0, 0], 0.97, 0.95, "greatest: stays above 1 where\na contact's weight vanishes", style.PETROL, ha="right")
     style.note(axes[0, 0], 0.97, 0.06, "least: tends to 1", style.AMBER, ha="right", va="bottom")
     style.letter(axes[0])
-    return figure, ("Convergence of the stiffness ratios over tasks 2 and 3 (in task 1 they are 1), both axes logarithmic: "
-                    "median (marks), 5th to 95th percentile (shaded), extreme (dotted); ours. Published: 0.8 to 1.3 after "
-                    "one iteration (red bar), and that the ratio converges to 1 (dashed). The least ratio does; the "
-                    "greatest does not where a contact's weight tends to zero.")
+    return figure, {}
 
 
 def over_time(results, draw, label, height=2.6, rows=1, **keywords):
@@ -236,8 +215,7 @@ def positions(results):
     figure, axes = over_time(results, draw, ["position of the tip [mm]"])
     figure.get_layout_engine().set(rect=(0, 0, 1, 0.92))
     figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="upper center", ncol=3, handlelength=2)
-    return figure, ("Position of the tip over time in the three tasks, ours (signed-distance block). x and y span the top face "
-                    f"of the block, whose height is z = 0; the bottom of the hole is at z = -5 mm. {HAND}")
+    return figure, {}
 
 
 def model_force(results):
@@ -259,10 +237,7 @@ def model_force(results):
     style.note(axes[0, 0], 0.98, 0.8, "logarithmic above 0.5 N", style.GREY, ha="right")
     limit = published.value("L1.threshold")
     axes[0, 0].text(0, 0.95 * limit, "published limit of the input force", color=style.RED, fontsize=7, va="top")
-    return figure, ("Size of the model force (spring, damping and friction) over time in the three tasks, ours: range in "
-                    f"each of {BINS} spans of time; the axis is linear up to 0.5 N. Dashed: the limit of the input force, 2 "
-                    f"N (3.5). {HAND} So task 2's presses with 0.19 N, a tenth of the model forces of appendix D, apart from three "
-                    "taps, which are its spikes.")
+    return figure, {"spans": BINS}
 
 
 def _ratio_over_time(results, column, colour, word):
@@ -289,10 +264,7 @@ def _ratio_over_time(results, column, colour, word):
         ax.grid(False)
     style.note(axes[0, 0], 0.98, 0.3 if above else 0.1, f"published: {'1.3' if above else '0.8'}", style.RED, ha="right",
                va="bottom")
-    return figure, (f"The {word} stiffness ratio of a step's contacts over time, after {', '.join(labels[:-1])} and "
-                    f"{labels[-1]} shaping iterations (rows), ours (signed-distance block): range in each of {FEW_BINS} spans "
-                    f"of time; numbers: the {word} of all. Dotted: published {'upper' if above else 'lower'} end after one "
-                    f"iteration (C.4.2). {HAND}")
+    return figure, {"word": word, "first": ', '.join(labels[:-1]), "last": labels[-1], "spans": FEW_BINS, "end": 'upper' if above else 'lower'}
 
 
 def greatest_ratio(results):

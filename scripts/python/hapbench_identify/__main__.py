@@ -132,10 +132,10 @@ def draw(file, log, found):
     above.plot(time, 1e3 * position, color=PETROL, label="measured" if every == 1 else f"measured, one sample in {every}")
     above.plot(time, 1e3 * (position - residual), color=AMBER, ls="--", label="device identified")
     above.set_ylabel("position [mm]")
-    above.legend()
+    above.legend(loc="lower left", bbox_to_anchor=(0, 1), ncol=2)
     unit, name = (log.encoder_step, "encoder steps") if log.encoder_step else (1e-6, "µm")
     below.plot(time, residual / unit, ".", ms=1.5, color=PETROL)
-    below.set_ylabel(f"measured - simulated [{name}]")
+    below.set_ylabel(f"residual [{name}]")
     below.set_xlabel("time [s]")
     write(file, picture(figure, "svg"))
 

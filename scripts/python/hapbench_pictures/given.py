@@ -6,15 +6,15 @@ import re
 from pathlib import Path
 
 from hapbench.columns import read_records
+from hapbench.errors import InputError
 from hapbench_command import nearest
-from hapbench_report.json_input import InputError
 from hapbench_report.markup import column
 from hapbench_report.runs import load_run, load_runs
 
 SUMMARY, SWEEP = "summary.json", "sweep.csv"
 SEED_FOLDER = re.compile(r"seed_\d+")  # of a comparison with --seeds
 # Titles of fields whose last name says too little, and symbols in formulas.
-TITLES, SYMBOLS = {"time.step_s": "time step"}, {"rendering.stiffness_N_per_m": "K"}
+TITLES, SYMBOLS = {"time.step_s": "time step", "rendering.damping_ratio": "damping ratio ζ"}, {"rendering.stiffness_N_per_m": "K"}
 NO_INPUT = ("expect", "description", "name", "source")
 
 
@@ -158,10 +158,14 @@ def title_and_unit(path):
     return TITLES.get(path, title), unit
 
 
+def is_ambiguous(path, among):
+    return any(other != path and title_and_unit(other)[0] == title_and_unit(path)[0] for other in among)
+
+
 def axis(path, among=()):
     """A field or column as a title with its unit; by its whole path where another one would have the same title."""
     title, unit = title_and_unit(path)
-    if any(other != path and title_and_unit(other)[0] == title for other in among):
+    if is_ambiguous(path, among):
         return path
     title = " ".join([title, SYMBOLS[path]]) if path in SYMBOLS else title
     return f"{title} [{unit}]" if unit else title
@@ -170,7 +174,7 @@ def axis(path, among=()):
 def entry(path, value, among):
     """A field and its value, for a legend: "K = 40 000 N/m"."""
     title, unit = title_and_unit(path)
-    if any(other != path and title_and_unit(other)[0] == title for other in among):
+    if is_ambiguous(path, among):
         return f"{path}={shown(value)}"
     return f"{SYMBOLS.get(path, title)} = {shown(value)}{' ' if unit else ''}{unit}"
 

@@ -1,30 +1,26 @@
 """How runs are drawn: as their algorithm is everywhere, with line styles where two runs share one; one quantity over time, and the
-tip's way in space, of several runs, into matplotlib's axes."""
+scene in a section, with the tip's way and the tool, of several runs, into matplotlib's axes."""
 from dataclasses import dataclass, replace
 
 import numpy as np
 from matplotlib.patches import Polygon
+from scipy.spatial import cKDTree
 
-from hapbench_looks import Look, look
-from hapbench_style import curve, reduced
+from hapbench_looks import SERIES, Look, look
+from hapbench_style import curve, equal_curves, reduced, striped
 
 from .quantities import range_of
 
-DASHES = ((), (4, 1.5), (1, 1), (4, 1, 1, 1))
-# Text, ground, grid and secondary text: of paper, and of the dark page.
-LIGHT = ("#1d2126", "#ffffff", "#e6e6e6", "#5b636c")
-DARK = ("#e7e9ea", "#1c2024", "#383e44", "#a3abb3")
-# Colours of runs that share one algorithm, on paper and on the dark page, each with a contrast of at least 4.5.
-SHARED = (("#000000", "#F2F2F2"), ("#C2500A", "#FFA366"), ("#0B6BC4", "#6CB4F5"), ("#9F0375", "#F07CC8"), ("#1D6A01", "#7EDB5A"),
-          ("#775543", "#D3AE97"))
+# Text, ground, grid, solid and its surface: of paper, and of the dark page.
+LIGHT = ("#1d2126", "#ffffff", "#e6e6e6", "#EFE8DC", "#8C7A58")
+DARK = ("#e7e9ea", "#1c2024", "#383e44", "#4a4438", "#b5a27c")
 THIN = 0.6  # line width of the single runs of a group [points]
 SPANS = 600  # of a curve: a page hardly shows more
 # Runs whose peaks are further apart than this share no linear axis.
 LARGEST_RATIO = 30
-SECTION_M = 0.15e-3  # a point of the surface no further away belongs to its section
-SURFACE = "#8A949C"  # on paper and in the dark
+GRID = 400  # cells of a section, to a side
 PATH_COLUMNS, AXIS_COLUMNS = ("px_m", "py_m", "pz_m"), ("axis_x", "axis_y", "axis_z")
-SNAPSHOTS = (0.3, 0.45, 0.65, 0.9)  # opacity of the tool at so many places of its way
+SNAPSHOTS = (0.35, 0.5, 0.7, 0.95)  # opacity of the tool at so many places of its way
 LEAST_IN_PLANE = 0.85  # of the tool's axis, for its outline to be drawn: no more than 30 degrees out of the plane
 
 
@@ -45,9 +41,9 @@ def looks(runs, labels, groups=()):
     width = RunLook.width if len(distinct) == len(runs) else THIN
     found = []
     for run, label, group in zip(runs, labels, groups):
-        own, i = look(run.algorithm), nth[group]
-        colours = SHARED[i % len(SHARED)] if alike and not one_each else (own.colour, own.dark)
-        found.append(RunLook(label, *colours, own.dash if one_each else DASHES[i % len(DASHES)], width=width, group=group))
+        own, of_series = look(run.algorithm), SERIES[nth[group] % len(SERIES)]
+        colours = of_series if alike and not one_each else own
+        found.append(RunLook(label, colours.colour, colours.dark, own.dash if one_each else of_series.dash, width=width, group=group))
     return found
 
 
@@ -57,24 +53,26 @@ def on_dark(shown):
 
 def settings(paper):
     """matplotlib's colours for LIGHT or DARK."""
-    ink, ground, grid, _ = paper
+    ink, ground, grid, *_ = paper
     return {"text.color": ink, "axes.labelcolor": ink, "xtick.color": ink, "ytick.color": ink, "axes.edgecolor": ink,
             "axes.facecolor": ground, "figure.facecolor": ground, "savefig.facecolor": ground, "grid.color": grid}
 
 
 def draw_over_time(ax, quantity, samples, looks):
+    """Equal curves show in stripes."""
     drawn = [(s, one, s.of(quantity)) for s, one in zip(samples, looks)]
     drawn = [(s, one, of) for s, one, of in drawn if of is not None]
     if not share_an_axis(ax, [of[2] for _, _, of in drawn]):
         cut_off_peaks(ax, quantity, drawn)
-    for s, one, (time, low, high) in drawn:
+    for (s, one, (time, low, high)), equal in zip(drawn, equal_curves([of for _, _, of in drawn])):
+        line = {"color": one.colour, "ls": striped(one.line, *equal)}
         if low is high:
-            ax.plot(*curve(time, low, high, SPANS), color=one.colour, ls=one.line, lw=one.width, label=one.label)
+            ax.plot(*curve(time, low, high, SPANS), lw=one.width, label=one.label, **line)
         else:
             time, low, high = reduced(time, low, high, SPANS)
             ax.fill_between(time, low, high, color=one.colour, alpha=0.2, lw=0)
             for edge in (low, high):
-                ax.plot(time, edge, color=one.colour, ls=one.line, lw=min(0.8, one.width), label=one.label if edge is low else None)
+                ax.plot(time, edge, lw=min(0.8, one.width), label=one.label if edge is low else None, **line)
         mark_first_touch(ax, s, one)
     ax.set_ylabel(quantity.axis)
     ax.margins(x=0.01)
@@ -113,33 +111,80 @@ def mark_first_touch(ax, samples, look):
         ax.plot(at, 0, marker="v", ms=5, color=look.colour, transform=ax.get_xaxis_transform(), clip_on=False)
 
 
-def projections(samples):
-    """Pairs of axes to look along: one for a planar scene, else two sides and the top."""
-    planar = all(np.all(s.trajectory["pz_m"] == 0) for s in samples)
-    return (("x", "y"),) if planar else (("x", "z"), ("y", "z"), ("x", "y"))
+def tip_of(samples, which=PATH_COLUMNS):
+    return np.column_stack([samples.trajectory[name] for name in which])
 
 
-def section(points, plane, tip):
-    """Points no further than 0.15 mm from the plane through the middle of the tip's way, along two of the axes 0 to 2."""
-    aside = 3 - sum(plane)
-    distance = np.abs(points[:, aside] - np.median(tip[:, aside]))
-    return points[distance <= max(SECTION_M, 1.01 * distance.min())][:, list(plane)]
+def framed(samples):
+    """The rows that a picture of the scene is about, a tool that is thrown away aside: the start and those in contact, or all."""
+    touching = np.flatnonzero(samples.trajectory["colliding"] > 0)
+    return np.append(touching, 0) if touching.size else np.arange(len(samples.trajectory["colliding"]))
 
 
-def draw_surface(ax, plane, samples, points):
-    """The section of the surface, as far as the axes reach."""
-    tip = np.vstack([np.column_stack([s.trajectory[name] for name in PATH_COLUMNS]) for s in samples])
-    dots = 1e3 * section(points, ["xyz".index(axis) for axis in plane], tip)
-    (left, right), (bottom, top) = ax.get_xlim(), ax.get_ylim()
-    inside = (dots[:, 0] >= left) & (dots[:, 0] <= right) & (dots[:, 1] >= bottom) & (dots[:, 1] <= top)
-    # Rasterised, because thousands of points would make the file large.
-    ax.plot(*dots[inside].T, ".", color=SURFACE, ms=1.5, zorder=0, rasterized=True)
+def plane_of(samples):
+    """The axes to the right and up of the section: x and y of a planar scene, else z and the horizontal one that the ways are longer
+    along."""
+    if all(np.all(s.trajectory["pz_m"] == 0) for s in samples):
+        return (0, 1)
+    ways = np.vstack([tip_of(s)[framed(s)] for s in samples])
+    return (int(np.ptp(ways[:, 1]) > np.ptp(ways[:, 0])), 2)
+
+
+def draw_section(ax, samples, looks, profile=None, surface=None, paper=LIGHT):
+    """The scene with equal axes, in the plane through the middle of the tip's ways: the solid filled, the ways, and the first run's
+    tool at four times. `profile`: of the tool [m]; `surface`: points and normals [m]."""
+    plane, radius = plane_of(samples), max((radius for _, radius in profile or ()), default=0.0)
+    ways = np.vstack([tip_of(s)[framed(s)][:, plane] for s in samples])
+    low, high = ways.min(0) - 1.3 * radius, ways.max(0) + 0.7 * radius
+    # A way shorter than 10 µm is numerical noise; it should not fill the picture.
+    middle, half = (low + high) / 2, np.maximum(0.53 * (high - low), 6e-6)
+    all_ways = [1e3 * tip_of(s)[:, plane] for s in samples]
+    if surface is not None:
+        draw_surface(ax, plane, np.median(np.vstack([tip_of(s) for s in samples]), axis=0), surface, half.max(), paper)
+    if profile:
+        draw_tool(ax, plane, samples[0], profile, looks[0].colour)
+    for s, way, one, equal in zip(samples, all_ways, looks, equal_curves([(way,) for way in all_ways])):
+        rows = corners(s.trajectory)
+        ax.plot(*way[rows].T, color=one.colour, ls=striped(one.line, *equal), lw=min(1, one.width))
+        ax.plot(*way[0], marker="o", ms=3.5, mfc="none", color=one.colour)
+        touching = np.flatnonzero(s.trajectory["colliding"] > 0)
+        if touching.size:
+            ax.plot(*way[touching[0]], marker="v", ms=5, color=one.colour)
+    low, high = 1e3 * (middle - half), 1e3 * (middle + half)
+    ax.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), xlabel=f"tip {'xyz'[plane[0]]} [mm]", ylabel=f"tip {'xyz'[plane[1]]} [mm]")
+    ax.set_aspect("equal", adjustable="datalim")
     ax.grid(False)
+    if any((np.abs(way - (low + high) / 2) > (high - low) / 2).any() for way in all_ways):
+        ax.set_title("goes on outside", loc="right")
+
+
+def draw_surface(ax, plane, middle, surface, reach, paper):
+    """The surface's points near the plane, and the solid: where the nearest of them has its normal away from."""
+    aside, up = ({0, 1, 2} - set(plane)).pop(), list(plane)
+    away, spacing = np.abs(surface[:, aside] - middle[aside]), spacing_of(surface[:, :3])
+    beside = np.abs(surface[:, up] - middle[up]).max(axis=1) < 4 * reach
+    near = surface[(away <= max(1.5 * spacing, 1.01 * away.min())) & beside]
+    if not len(near):
+        return
+    at, outward = near[:, up], near[:, [3 + axis for axis in plane]]
+    x, y = (np.linspace(middle[axis] - 4 * reach, middle[axis] + 4 * reach, GRID) for axis in plane)
+    cells = np.stack(np.meshgrid(x, y), -1)
+    nearest = cKDTree(at).query(cells)[1]
+    height = ((cells - at[nearest]) * outward[nearest]).sum(-1)
+    ax.contourf(1e3 * x, 1e3 * y, height, levels=(-np.inf, 0), colors=[paper[3]], zorder=0)
+    # Rasterised, because thousands of points would make the file large.
+    ax.plot(*(1e3 * at).T, ".", color=paper[4], ms=1.8, zorder=0.5, rasterized=True)
+
+
+def spacing_of(places):
+    """The usual distance of a point to the nearest one at another place."""
+    squares = [((places - one) ** 2).sum(axis=1) for one in places[np.linspace(0, len(places) - 1, min(len(places), 60)).astype(int)]]
+    return float(np.sqrt(np.median([square[square > 0].min(initial=np.inf) for square in squares])))
 
 
 def outline(profile, tip, axis):
     """Outline of the tool [m] at a tip with an axis, both projected into a plane; right where the axis lies in the plane, and near it
-    elsewhere. `profile`: hapbench_report.replay_tool.tool_profile."""
+    elsewhere. `profile`: hapbench_report.recording.tool_profile."""
     axis = axis / np.linalg.norm(axis)
     s, radius = np.array(profile).T[:, :, None]
     half, across = tip + s * axis, radius * np.array([-axis[1], axis[0]])
@@ -147,48 +192,14 @@ def outline(profile, tip, axis):
 
 
 def draw_tool(ax, plane, samples, profile, colour):
-    """Its outline at a few places of a run's way, as far as the axes reach; whether there is one. Of a way that is shorter
-    than the tool is wide, it would be lines across the picture."""
-    tip, axis = (np.column_stack([samples.trajectory[columns["xyz".index(one)]] for one in plane])
-                 for columns in (PATH_COLUMNS, AXIS_COLUMNS))
-    low, high = 1e-3 * np.array([ax.get_xlim(), ax.get_ylim()]).T
-    if high[0] - low[0] < 2 * max(radius for _, radius in profile):
-        return False
-    seen = np.flatnonzero(((tip >= low) & (tip <= high)).all(axis=1) & (np.linalg.norm(axis, axis=1) >= LEAST_IN_PLANE))
-    if not seen.size:
-        return False
-    for row, alpha in zip(seen[np.linspace(0, len(seen) - 1, len(SNAPSHOTS)).astype(int)], SNAPSHOTS):
-        ax.add_patch(Polygon(1e3 * outline(profile, tip[row], axis[row]), facecolor="none", edgecolor=colour, lw=0.8, alpha=alpha))
-    return True
-
-
-def draw_path(ax, plane, samples, looks, surface=None):
-    """The tip's way, framed by where it starts and is in contact, so that a tool thrown away leaves the picture. `surface`:
-    its points [m]."""
-    names = [f"p{axis}_m" for axis in plane]
-    lowest, highest, left = np.full(2, np.inf), np.full(2, -np.inf), False
-    for s, one in zip(samples, looks):
-        rows = corners(s.trajectory)
-        way = np.column_stack([s.trajectory[name] for name in names]) * 1e3
-        ax.plot(*way[rows].T, color=one.colour, ls=one.line, lw=min(1, one.width))
-        ax.plot(*way[0], marker="o", ms=3.5, mfc="none", color=one.colour)
-        touching = np.flatnonzero(s.trajectory["colliding"] > 0)
-        if touching.size:
-            ax.plot(*way[touching[0]], marker="v", ms=5, color=one.colour)
-        framed = way[np.append(touching, 0)] if touching.size else way
-        lowest, highest = np.fmin(lowest, framed.min(0)), np.fmax(highest, framed.max(0))
-    # A way shorter than 10 µm is numerical noise; it should not fill the picture.
-    half = 0.6 * max(float((highest - lowest).max()), 0.01)
-    middle = (lowest + highest) / 2
-    ax.set(xlim=(middle[0] - half, middle[0] + half), ylim=(middle[1] - half, middle[1] + half), aspect="equal",
-           xlabel=f"tip {plane[0]} [mm]", ylabel=f"tip {plane[1]} [mm]")
-    for s in samples:
-        way = np.column_stack([s.trajectory[name] for name in names]) * 1e3
-        left = left or bool((np.abs(way - middle) > half).any())
-    if left:
-        ax.set_title("goes on outside", loc="right")
-    if surface is not None:
-        draw_surface(ax, plane, samples, surface)
+    """Its outline at four times, from faint to strong."""
+    tip, axis = (tip_of(samples, columns)[:, plane] for columns in (PATH_COLUMNS, AXIS_COLUMNS))
+    rows = np.sort(framed(samples))
+    rows = rows[np.linalg.norm(axis[rows], axis=1) >= LEAST_IN_PLANE]
+    if not rows.size:
+        return
+    for row, alpha in zip(rows[np.linspace(0, len(rows) - 1, len(SNAPSHOTS)).astype(int)], SNAPSHOTS):
+        ax.add_patch(Polygon(1e3 * outline(profile, tip[row], axis[row]), facecolor="none", edgecolor=colour, lw=0.9, alpha=alpha, zorder=1))
 
 
 def corners(trajectory, spans=300):

@@ -1,49 +1,44 @@
-"""`hapbench plot`: a file with quantities over time under each other and the tip's way beside them; or the picture of a sweep
-or a study."""
+"""`hapbench plot`: a file with the scene in a section and quantities over time below it; or the picture of a sweep, of limits, of a
+tuning or of a convergence."""
 import math
 from collections import Counter
 from pathlib import Path
 
+from hapbench.errors import InputError
+from hapbench.results import Files, MissingResult, at
 from hapbench_command import write
-from hapbench_report.json_input import InputError, at
 from hapbench_report.recording import tool_profile
-from hapbench_style import SETTINGS, picture, plt
+from hapbench_report.replay import surface_of
+from hapbench_style import LINE, SETTINGS, picture, plt
 
 from .given import common_folder, given_runs, given_sweep, named
-from .map_plot import given_study, study_figures
-from .panels import AXIS_COLUMNS, PATH_COLUMNS, draw_over_time, draw_path, draw_tool, looks, projections
+from .over_axes import PICTURES
+from .panels import AXIS_COLUMNS, PATH_COLUMNS, draw_over_time, draw_section, looks
 from .quantities import Samples, chosen
-from .replay import surface_of
-from .sweep_plot import Sweep, draw_sweep, sensitivity_table
+from .sweep_plot import Sweep, draw_sweep, is_number, sensitivity_table
 
 KINDS = (".svg", ".png", ".pdf")
-PANEL_HEIGHT, WIDTH, PATH_WIDTH = 1.35, 7.0, 2.6  # [inch]
+WIDTH, LARGE, SMALL = 7.6, 2.6, 1.25  # of the page, the scene and the first quantity, and of the others [inch]
 LEGEND_COLUMNS = 4
 LETTER = 0.068  # width of a letter of the legend [inch]
 LONGEST_NAME = 90  # letters
-SURFACE_SAID = ("dots: section of the surface through", "the middle of the way")
-TOOL_SAID = "outlines: tool on its way"
+SAID = "circle: start; triangle: first touch"
+SOLID_SAID, TOOL_SAID = "filled: the solid, cut through the middle of the way", "outlines: the tool at four times"
 
 
 def plot(options):
-    sweep = given_sweep(options.runs)
-    study = given_study(options.runs)
+    sweep, study = given_sweep(options.runs), given_study(options.runs)
     if study:
         refuse(options, ("--y", "--metric", "--where", "--from", "--to"), f"{study} holds limits; allowed for it: --out")
-    folder = study.parent if study and study.is_file() else common_folder(options.runs)
-    file = options.out or folder / "plot.svg"
+    file = options.out or common_folder(options.runs) / "plot.svg"
     if file.suffix not in KINDS:
         raise InputError(f"--out {file}: got \"{file.suffix}\"; allowed: {', '.join(KINDS)}")
-    if study:
-        write_all(study_figures(study), file, options.quiet)
-        return
-    if sweep:
-        figure = of_sweep(sweep, options)
-    elif options.metric or options.where:
+    if not sweep and not study and (options.metric or options.where):
         raise InputError(f"{'--metric' if options.metric else '--where'}: is for a sweep's folder; allowed for runs: --y")
-    else:
-        figure = of_runs(options)
-    write_all([("", figure)], file, options.quiet)
+    figure = of_study(study) if study else of_sweep(sweep, options) if sweep else of_runs(options)
+    write(file, picture(figure, file.suffix[1:]))
+    if not options.quiet:
+        print(f"picture in {file}")
 
 
 def refuse(options, names, why):
@@ -54,40 +49,42 @@ def refuse(options, names, why):
         raise InputError(f"{unused}: {why}")
 
 
-def write_all(figures, file, quiet):
-    """Several of them beside each other, told apart by their names."""
-    for name, figure in figures:
-        to = file.with_stem(f"{file.stem}_{name}") if len(figures) > 1 else file
-        write(to, picture(figure, to.suffix[1:]))
-        if not quiet:
-            print(f"picture in {to}")
+def given_study(words):
+    """The folder of limits, a tuning or a convergence among the words; None where none was given."""
+    studies = [Path(word) for word in words if any((Path(word) / name).is_file() for name in PICTURES)]
+    if studies and len(words) > 1:
+        raise InputError(f"{studies[0]}: holds limits; allowed: one such folder alone, or any number of runs")
+    return studies[0] if studies else None
+
+
+def of_study(path):
+    draw = next(draw for name, draw in PICTURES.items() if (path / name).is_file())
+    try:
+        with plt.rc_context(SETTINGS):
+            return draw(Files(path))
+    except MissingResult as error:
+        raise InputError(str(error)) from error
+    except (KeyError, ValueError, IndexError) as error:
+        raise InputError(f"{path}: is not a table that hapbench wrote: {error}") from error
 
 
 def window_of(options):
     """The times to draw [s]."""
-    window = (time_of("--from", options.start, -math.inf), time_of("--to", options.end, math.inf))
+    for name, text in (("--from", options.start), ("--to", options.end)):
+        if text is not None and not is_number(text):
+            raise InputError(f"{name}: got \"{text}\"; allowed: a time in seconds")
+    window = float(options.start or -math.inf), float(options.end or math.inf)
     if not window[0] < window[1]:
         raise InputError(f"--from {options.start} --to {options.end}: is no span of time; allowed: --from before --to")
     return window
 
 
-def time_of(name, text, default):
-    if text is None:
-        return default
-    try:
-        time = float(text)
-    except ValueError:
-        time = math.nan
-    if not math.isfinite(time):
-        raise InputError(f"{name}: got \"{text}\"; allowed: a time in seconds")
-    return time
-
-
 def of_runs(options):
     runs = given_runs(options.runs)
     quantities, with_path = chosen(options.y, runs)
-    samples, shown = samples_of(runs, quantities, with_path, window_of(options)), looks(runs, *named(runs))
-    return draw(runs, shown, quantities, with_path, samples, surface_of(runs) if with_path else None)
+    further = (*PATH_COLUMNS, *AXIS_COLUMNS) if with_path else ()
+    samples = [Samples(run, quantities, further, window_of(options)) for run in runs]
+    return draw(runs, looks(runs, *named(runs)), quantities, with_path, samples, surface_of(runs) if with_path else None)
 
 
 def of_sweep(folder, options):
@@ -98,34 +95,32 @@ def of_sweep(folder, options):
     return draw_sweep(sweep)
 
 
-def samples_of(runs, quantities, with_path, window):
-    return [Samples(run, quantities, (*PATH_COLUMNS, *AXIS_COLUMNS) if with_path else (), window) for run in runs]
-
-
 def draw(runs, shown, quantities, with_path, samples, surface=None):
-    """The figure: a title with the runs' names, below it quantities on the left and ways on the right."""
+    """The figure: a title with the runs' names, below it the scene, the first quantity in the same room, and the others."""
     with plt.rc_context(SETTINGS):
-        ways, entries = projections(samples) if with_path else (), legend_of(shown)
-        widths = [WIDTH, PATH_WIDTH] if quantities and ways else [WIDTH]
-        body = PANEL_HEIGHT * max(len(quantities), len(ways) if quantities else 2 * len(ways))
-        columns = legend_columns(entries, sum(widths))
-        head = 0.3 + (0.19 * math.ceil(len(entries) / columns) if len(runs) > 1 else 0)
-        figure = plt.figure(figsize=(sum(widths), head + body + 0.3))
-        top, bottom = figure.subfigures(2, 1, height_ratios=[head, body + 0.3])
-        parts = bottom.subfigures(1, len(widths), width_ratios=widths, squeeze=False)[0]
+        entries = legend_of(shown)
+        columns = legend_columns(entries, WIDTH)
+        head = 0.3 + (LINE * math.ceil(len(entries) / columns) if len(runs) > 1 else 0)
+        heights = [LARGE] * (with_path + bool(quantities)) + [SMALL] * (len(quantities) - 1)
+        figure = plt.figure(figsize=(WIDTH, head + sum(heights) + 0.35))
+        top, bottom = figure.subfigures(2, 1, height_ratios=[head, sum(heights) + 0.35])
         write_title(top, head, runs, entries, columns)
-        if quantities:
-            axes = parts[0].subplots(len(quantities), 1, sharex=True, squeeze=False)[:, 0]
-            for ax, quantity in zip(axes, quantities):
-                draw_over_time(ax, quantity, samples, shown)
-            axes[-1].set_xlabel("time [s]   (triangles and dotted lines: first touch)")
-        if ways:
-            axes, profile, outlined = parts[-1].subplots(len(ways), 1, squeeze=False)[:, 0], profile_of(runs[0]), False
-            for ax, plane in zip(axes, ways):
-                draw_path(ax, plane, samples, shown, surface)
-                outlined |= profile is not None and draw_tool(ax, plane, samples[0], profile, shown[0].colour)
-            said = [*(SURFACE_SAID if surface is not None else ()), *([TOOL_SAID + ", first run" * (len(runs) > 1)] if outlined else ())]
-            axes[-1].set_xlabel("\n".join([axes[-1].get_xlabel(), *said]))
+        scene, *over_time = bottom.subplots(len(heights), 1, squeeze=False, gridspec_kw={"height_ratios": heights})[:, 0]
+        if with_path:
+            profile = profile_of(runs[0])
+            draw_section(scene, samples, shown, profile, surface)
+            tool = TOOL_SAID + (", first run" if len(runs) > 1 else "")
+            said = [SAID, *([SOLID_SAID] if surface is not None else []), *([tool] if profile else [])]
+            scene.set_xlabel(f"{scene.get_xlabel()}\n{'; '.join(said)}")
+        else:
+            over_time = [scene, *over_time]
+        for ax, quantity in zip(over_time, quantities):
+            draw_over_time(ax, quantity, samples, shown)
+            ax.sharex(over_time[0])
+            ax.tick_params(labelbottom=ax is over_time[-1])
+        if over_time:
+            over_time[-1].set_xlabel("time [s]   (triangles and dotted lines: first touch)")
+        bottom.align_ylabels()
         return figure
 
 

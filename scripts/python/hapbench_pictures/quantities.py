@@ -8,8 +8,10 @@ from pathlib import Path
 import numpy as np
 
 from hapbench.columns import header, read_columns
+from hapbench.errors import InputError
+from hapbench.results import at, number_or_none
 from hapbench_command import nearest
-from hapbench_report.json_input import InputError, at, number_or_none
+from hapbench_report.markup import column
 from hapbench_report.recording import SETTLING_S, settled_rows
 
 
@@ -18,8 +20,6 @@ REFERENCE = "force_reference.csv"
 # Tables of a row per recorded step, in which a column is looked for.
 TABLES = (TRAJECTORY, "energy.csv", "ideal_trajectory.csv", "stiffness_tensor.csv", REFERENCE)
 SCHEMA = Path(__file__).resolve().parents[3] / "scenarios" / "scenario.schema.json"
-# Unit by the end of a column's name -> shown unit, factor.
-UNITS = (("_Nm", "mN m", 1e3), ("_m_per_s", "m/s", 1.0), ("_J", "mJ", 1e3), ("_N", "N", 1.0), ("_m", "mm", 1e3), ("_s", "s", 1.0))
 # A peak of more than so many times the settled values is cut off.
 CUT_OFF = 3
 # If settled contact tells little of a run, as of one that hammers to the end, no range leaves out more of its rows.
@@ -80,10 +80,7 @@ USUAL = ("force", "reference", "force_error", "depth", "ratio", "contacts", "ene
 
 
 def by_column(name, file):
-    for end, unit, factor in UNITS:
-        if name.endswith(end):
-            return Quantity(name, name.removesuffix(end).replace("_", " "), unit, factor, file, (name,))
-    return Quantity(name, name.replace("_", " "), "", 1.0, file, (name,))
+    return Quantity(name, *column(name, (1e-3,)), file, (name,))
 
 
 def chosen(names, runs):
@@ -98,8 +95,8 @@ def quantity(name, runs):
     known = {}
     for run in runs:
         for file in tables_of(run):
-            for column in header(run.directory / file):
-                known.setdefault(column, file)
+            for title in header(run.directory / file):
+                known.setdefault(title, file)
     found = SHORT.get(name) or (by_column(name, known[name]) if name in known else None)
     if not found:
         raise InputError(f"--y: got \"{name}\"; allowed: {', '.join([*SHORT, PATH])}, or a column of "

@@ -1,29 +1,32 @@
 """`hapbench report`: one page of the runs given, and nothing else. Curves are drawn on light and on dark ground, one drawing for
-each quantity; with a measured force, the rendered one beside it."""
+each quantity."""
 import base64
 import math
 from pathlib import Path
 
 import numpy as np
 
+from hapbench.errors import InputError
 from hapbench.results import SCENARIO, SUMMARY
 from hapbench_command import DIFFERENT, SUCCESS, write
-from hapbench_report.json_input import InputError
+from hapbench_looks import look
 from hapbench_report.live_link import place_live_page
-from hapbench_report.markup import in_colour, table, text
+from hapbench_report.markup import in_colour, text
 from hapbench_report.page import whole_page
-from hapbench_report.replay import player
-from hapbench_style import SETTINGS, curve, picture, plt
+from hapbench_report.replay import player, replays, surface_of
+from hapbench_style import SETTINGS, picture, plt
 
 from .differences import are_equal, differences, in_words, number
 from .given import common_folder, given_runs, given_sweep, labels
-from .panels import DARK, LIGHT, PATH_COLUMNS, SPANS, draw_over_time, draw_path, looks, on_dark, projections, settings
-from .quantities import REFERENCE, SHORT, TRAJECTORY, USUAL, Samples, quantity, tables_of
-from .replay import replays, surface_of
-from .sections import (commands_section, diagnosis_section, metric_rows, metrics_section, provenance, scenario_section, seeds_section, summary_section, warnings_section)
+from .over_axes import Axis, look_of, over_axes, pareto
+from .panels import AXIS_COLUMNS, DARK, LIGHT, PATH_COLUMNS, RunLook, draw_over_time, draw_section, looks, on_dark, settings
+from .plot import profile_of
+from .quantities import SHORT, TRAJECTORY, USUAL, Samples, tables_of
+from .sections import (commands_section, diagnosis_section, metrics_section, provenance, scenario_section, seeds_section, summary_section,
+                       warnings_section)
 
 STYLE = Path(__file__).parent / "page.css"
-SIZE, PATH_SIZE = (4.0, 2.0), (4.0, 2.9)  # [inch]: on a phone as legible as the text around it
+SIZE, SCENE_SIZE = (4.0, 2.0), (4.0, 2.9)  # [inch]: on a phone as legible as the text around it
 
 
 def report(options):
@@ -77,8 +80,7 @@ def sections(runs, names, words):
         ("diagnosis", "Diagnosis", "What is wrong, and what to try", diagnosis_section(runs, names)),
         ("replay", "Replay", "Replay", drawn and player(replays(*zip(*drawn)))),
         ("curves", "Curves", "Curves", drawn and curves_section(*zip(*drawn))),
-        ("fidelity", "Fidelity", "Against the measured force", fidelity_section(runs, names)),
-        ("late", "Late contacts", "Contacts that came late", late_section(runs, names)),
+        ("pareto", "Depth, vibration", "Depth against vibration", pareto_section(runs)),
         ("metrics", "Metrics", "Metrics", metrics_section(runs, names)),
         ("seeds", "Seeds", "Between algorithms, over the seeds", seeds_section(runs)),
         ("scenario", "Scenario", "Scenario", scenario_section(runs, names)),
@@ -91,13 +93,14 @@ def sections(runs, names, words):
 def curves_section(runs, labels):
     quantities = [SHORT[name] for name in USUAL if name in SHORT]
     quantities = [q for q in quantities if any(q.file in tables_of(run) for run in runs)]
-    samples = [Samples(run, quantities, PATH_COLUMNS) for run in runs]
+    samples = [Samples(run, quantities, (*PATH_COLUMNS, *AXIS_COLUMNS)) for run in runs]
     light, surface = looks(runs, labels), surface_of(runs)
-    figures = [drawing(SIZE, lambda ax, shown, q=q: draw_over_time(ax, q, samples, shown), light,
+    figures = [drawing(SCENE_SIZE, lambda ax, shown, paper: draw_section(ax, samples, shown, profile_of(runs[0]), surface, paper), light,
+                       "The scene", "Circles: start; outlines: the tool of the first run; filled: the solid")]
+    figures += [drawing(SIZE, lambda ax, shown, paper, q=q: draw_over_time(ax, q, samples, shown), light,
                        f"{q.axis} over time", spoken(q, samples, labels), xlabel="time [s]") for q in quantities]
-    figures += [drawing(PATH_SIZE, lambda ax, shown, plane=plane: draw_path(ax, plane, samples, shown, surface), light,
-                        f"Way of the tip, {plane[0]} and {plane[1]}", "Circles: start; dots: surface") for plane in projections(samples)]
-    return f"<p>{key(light)} Triangles and dotted lines: first touch.{' Dots: section of the surface.' if surface is not None else ''}</p><div class=curves>{''.join(figures)}</div>"
+    return (f"<p>{key(light)} Triangles and dotted lines: first touch. Outlines: the tool of the first run at four times.</p>"
+            f"<div class=curves>{''.join(figures)}</div>")
 
 
 def key(light):
@@ -119,7 +122,7 @@ def drawing(size, draw, light, title, words, **labels):
     for paper, shown, name in ((LIGHT, light, "only-light"), (DARK, on_dark(light), "only-dark")):
         with plt.rc_context({**SETTINGS, **settings(paper)}):
             figure, ax = plt.subplots(figsize=size)
-            draw(ax, shown)
+            draw(ax, shown, paper)
             ax.set(**labels)
             data = base64.b64encode(picture(figure, "svg")).decode()
             plt.close(figure)
@@ -127,52 +130,32 @@ def drawing(size, draw, light, title, words, **labels):
     return f"<figure><figcaption>{text(title)}</figcaption>{''.join(images)}</figure>"
 
 
-def fidelity_section(runs, labels):
-    """Empty without a run whose stroke has a measured force."""
-    known = [(run, label) for run, label in zip(runs, labels) if run.sections.get("fidelity")]
-    if not known:
+MOST_LAWS = 2  # that a table tells apart at a glance
+DEEPER, SHAKIER = "inside_max_m", "force_rms_above_30Hz_N"
+
+
+def pareto_section(runs):
+    """Of a comparison with many laws: how deep each lets the tool against how much it vibrates, over all scenes and seeds."""
+    found = {}
+    for run in runs:
+        values = (run.metric(DEEPER), run.metric(SHAKIER))
+        if None not in values:
+            found.setdefault(run.algorithm, []).append(values)
+    if len(found) <= MOST_LAWS:
         return ""
-    runs, labels = zip(*known)
-    about = ("<b>Rendered against measured force</b> The normal is that of what is rendered, before damping and friction; "
-             "<code>hapbench describe</code> explains each")
-    return table(*metric_rows(runs, labels, "fidelity", list(runs[0].sections["fidelity"])), about, "sortable") + force_curves(runs, labels)
+    means = {name: np.mean(values, axis=0) * (1e3, 1.0) for name, values in found.items()}
+    front = pareto(np.array(list(means.values())))
 
+    def draw(ax, shown, paper):
+        ax.plot(*front.T, color=ax.xaxis.label.get_color(), lw=0.8, ls=":", zorder=1)
+        series = [(None, mean[:1], mean[1:], look_of(one.label, color=one.colour, ls="none")) for one, mean in zip(shown, means.values())]
+        every = np.array(list(means.values()))
+        over_axes(ax, Axis.of("deepest inside [mm]", every[:, 0]), Axis.of("force above 30 Hz [N rms]", every[:, 1]), series)
+        for one, mean in zip(shown, means.values()):
+            ax.annotate(one.label.replace("_", " "), mean, (5, 2), textcoords="offset points", color=one.colour, fontsize=6)
+        ax.margins(0.15)
 
-def late_section(runs, labels):
-    """Empty without a run whose contacts a slower loop finds."""
-    known = [(run, label) for run, label in zip(runs, labels) if run.sections.get("contacts")]
-    if not known:
-        return ""
-    runs, labels = zip(*known)
-    about = "<b>How old the contacts are that rows use</b> and how many queries were lost; <code>hapbench describe</code> explains each"
-    return table(*metric_rows(runs, labels, "contacts", list(runs[0].sections["contacts"])), about, "sortable")
-
-
-def force_curves(runs, labels):
-    """Curves of the runs that recorded both forces."""
-    drawn = [(run, label) for run, label in zip(runs, labels) if {TRAJECTORY, REFERENCE} <= set(tables_of(run))]
-    if not drawn:
-        return "<p class=note>With --set record.force_reference=true the curves stand here.</p>"
-    runs, labels = zip(*drawn)
-    force, reference, error = (quantity(name, runs) for name in ("force", "reference", "force_error"))
-    samples, light = [Samples(run, (force, reference, error)) for run in runs], looks(runs, labels)
-
-    def both(ax, shown):
-        # One recording is behind all runs of a scene: its curve is drawn once, in the colour of the text.
-        time, _, measured = samples[0].of(reference)
-        ax.plot(*curve(time, measured, measured, SPANS), color=ax.xaxis.label.get_color(), lw=0.8, ls=":")
-        for s, one in zip(samples, shown):
-            time, _, rendered = s.of(force)
-            ax.plot(*curve(time, rendered, rendered, SPANS), color=one.colour, ls=one.line, lw=0.9)
-        ax.set_ylabel("force [N]")
-
-    def errors(ax, shown):
-        for s, one in zip(samples, shown):
-            time, _, off = s.of(error)
-            ax.plot(*curve(time, off, off, SPANS), color=one.colour, ls=one.line, lw=0.9)
-        ax.set_ylabel("||f - f_m|| [N]")
-
-    figures = [drawing(SIZE, both, light, "Rendered and measured force [N] over time", spoken(reference, samples, labels),
-                       xlabel="time [s]"),
-               drawing(SIZE, errors, light, "Their difference [N] over time", spoken(error, samples, labels), xlabel="time [s]")]
-    return f"<p>{key(light)} Dotted: the force measured with the stroke.</p><div class=curves>{''.join(figures)}</div>"
+    light = [RunLook(name, look(name).colour, look(name).dark, ()) for name in means]
+    words = "; ".join(f"{name} {mean[0]:.3g} mm, {mean[1]:.3g} N" for name, mean in means.items())
+    return ("<p>Mean of all its runs. Dotted: no other algorithm is better in both.</p><div class=curves>"
+            + drawing(SCENE_SIZE, draw, light, "Depth against vibration", words) + "</div>")

@@ -3,34 +3,29 @@ import json
 import shlex
 
 import numpy as np
+from scipy import stats
 
-from hapbench_report.json_input import at, number_or_none
+from hapbench.results import at, number_or_none
 from hapbench_report.live_link import live_link
 from hapbench_report.markup import cell, columns, command, deserved_digits, heading_cell, named, number, number_cell, table, text
 from hapbench_report.runs import plugin_text, provenance_of, provenance_section
 
 from .given import SEED_FOLDER, differing, fields_of
 
-MOST_FIRST = 12  # runs in the first table
 FIRST = ("force_mean_in_contact_N", "force_max_N", "force_step_p99_N", "force_rms_above_30Hz_N", "inside_max_m")
-# Metrics of summary.json in the first table, as far as any run has them. Those that separate algorithms come first.
-METRICS = ("landings", "landing_force_max_N", "force_mean_in_contact_N", "force_step_p99_N", "settled_force_step_max_N",
-           "force_rms_above_30Hz_N", "force_reversals_per_s", "force_max_N", "velocity_total_variation_m_per_s", "depth_max_m",
-           "ratio_min", "ratio_max")
 
 
 def summary_section(runs, labels):
-    first = first_table(runs, labels) if len(runs) <= MOST_FIRST else f"<ul class=cards>{outcome_cards(runs, labels)}</ul>"
     names = list(dict.fromkeys(run.name for run in runs))
     descriptions = list(dict.fromkeys(str(run.scenario.get("description") or "") for run in runs))
     about = "".join(f"<p class=lead>{text(words)}</p>" for words in descriptions[:3] if words)
-    return f"<h1>{named(', '.join(names))}</h1>{about}{first}"
+    return f"<h1>{named(', '.join(names))}</h1>{about}{first_table(runs, labels)}"
 
 
 def first_table(runs, labels):
     shown = [name for name in FIRST if any(run.metric(name) is not None for run in runs)]
     return table(*metric_rows(runs, labels, "metrics", shown, (heading_cell("Outcome"), [outcome_cell(run) for run in runs]),
-                              (heading_cell("In contact", True), [cell(contact_text(run), contact_share(run) or 0, "number") for run in runs])),
+                              (heading_cell("In contact", True), [cell(contact_text(run), run.metric("contact_share") or 0, "number") for run in runs])),
                  classes="sortable")
 
 
@@ -46,26 +41,7 @@ def outcome_cell(run):
 
 
 def contact_text(run):
-    return f"{percent(contact_share(run))} of {number(at(run.summary, '/duration_s'), 4)} s"
-
-
-def outcome_cards(runs, labels):
-    """One for each way that runs ended."""
-    ways = {}
-    for run, label in zip(runs, labels):
-        ways.setdefault((run.outcome, run.expected), []).append(label)
-    return "".join(f"<li><b>{len(names)} of {len(runs)}</b><span class={'good' if expected else 'bad'}>{text(outcome.replace('_', ' ') or '–')}"
-                   f"{'' if expected else ', not as expected'}</span><span>: {named(', '.join(names))}</span></li>"
-                   for (outcome, expected), names in ways.items())
-
-
-def contact_share(run):
-    """Share of the steps that are in contact. Runs of earlier versions have no metric for it."""
-    share = run.metric("contact_share")
-    if share is not None:
-        return share
-    touching, steps = run.metric("steps_in_contact"), number_or_none(run.summary.get("steps"))
-    return touching / steps if steps and touching is not None else None
+    return f"{percent(run.metric('contact_share'))} of {number(at(run.summary, '/duration_s'), 4)} s"
 
 
 def percent(share):
@@ -92,24 +68,13 @@ def metric_rows(runs, labels, section, names, *beside):
 
 
 def metrics_section(runs, labels):
-    shares = [contact_share(run) for run in runs]
-    shown = [name for name in METRICS if any(run.metric(name) is not None for run in runs)]
-    beside = ((heading_cell("Outcome"), [cell(text(run.outcome.replace("_", " "))) for run in runs]),
-              (heading_cell("Steps", True), [number_cell(at(run.summary, "/steps")) for run in runs]),
-              (heading_cell("Contact", True), [cell(percent(share), share or 0, "number") for share in shares]))
-    return (table(*metric_rows(runs, labels, "metrics", shown, *beside), "<b>What separates the runs</b> Click a heading to sort; "
-                  "<code>hapbench describe</code> and a metric's name explain it", "sortable", "runs-table")
-            + f"<details><summary>All metrics</summary>{every_metric(runs, labels)}</details>")
-
-
-def every_metric(runs, labels):
     """All that the summaries measured, section by section."""
     names = dict.fromkeys((section, name) for run in runs for section, values in run.sections.items() for name in values)
     rows = [[cell(text(section)), cell(f"<code>{text(name)}</code>"),
              *(metric_cell(run.sections.get(section, {}).get(name), run.tolerance(section, name)) for run in runs)]
             for section, name in names]
     headings = [heading_cell("Section"), heading_cell("Metric"), *(heading_cell(text(label), True) for label in labels)]
-    return table(headings, rows, "All metrics")
+    return table(headings, rows, "<b>All metrics</b> <code>hapbench describe</code> and a metric's name explain it")
 
 
 def seeds_section(runs):
@@ -133,17 +98,9 @@ def between(laws, metric):
         if law == least or len(shared) < 2:
             continue
         more = np.array([values[law][seed] - values[least][seed] for seed in shared])
-        mean, within = more.mean(), critical_t(len(more) - 1) * more.std(ddof=1) / np.sqrt(len(more))
+        mean, within = more.mean(), stats.t.ppf(0.975, len(more) - 1) * stats.sem(more)
         yield (f"{law} has {number(mean, 3)} ± {number(within, 2)} more than {least} over {len(more)} seeds, "
                + ("which chance does not explain" if mean > within else "which may be chance"))
-
-
-def critical_t(degrees):
-    """Two-sided 5 % quantile of Student's t; beyond a table by Abramowitz and Stegun 26.7.5, to 0.001."""
-    table, z = (12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228), 1.959964
-    if degrees <= len(table):
-        return table[degrees - 1]
-    return z + (z**3 + z) / (4 * degrees) + (5 * z**5 + 16 * z**3 + 3 * z) / (96 * degrees**2)
 
 
 def metric_cell(value, tolerance):

@@ -10,20 +10,20 @@ from matplotlib import colors
 from matplotlib.patches import Patch, Rectangle
 
 from hapbench.columns import read_records
-from hapbench_figures.stability import CLASSES, edges, look_of_class
+from hapbench.errors import InputError
+from hapbench.results import at, read_object
 from hapbench_command import nearest
-from hapbench_looks import look
-from hapbench_report.json_input import InputError, at, load_object
+from hapbench_looks import by_class, look_of_class
 from hapbench_style import PETROL, SETTINGS, plt
 
 from .given import axis
+from .over_axes import Axis, look_of, over_axes, spread_logarithmically
 from .sensitivity import LEAST_ROWS, MOST_COSINES, sensitivity
 
 USUAL = ("force_rms_above_30Hz_N", "force_max_N")
 FAILURES = ("diverges", "error")
 # The look of places without a number.
 NO_VALUE = {"facecolor": "#F4F4F4", "edgecolor": "#C8C8C8", "lw": 0.5}
-MOST_TICKS = 12
 WIDTH = 100  # of text
 
 
@@ -52,7 +52,7 @@ class Sweep:
         if not self.rows:
             raise InputError(f"{file}: holds no row{' with ' + ' and '.join(where) if rows else ''}")
         names = list(self.rows[0])
-        plan = load_object(folder / "sweep.json") if (folder / "sweep.json").is_file() else {}
+        plan = read_object(folder / "sweep.json") if (folder / "sweep.json").is_file() else {}
         self.axes = at(plan, "/vary") or [{"path": name} for name in names[1:names.index("outcome")]]
         self.fields, self.sampled = [entry["path"] for entry in self.axes], "sample" in plan
         self.of_file = at(plan, "/sample/method") == "points"
@@ -76,8 +76,7 @@ class Sweep:
     def classes(self):
         """The outcomes of such runs in the order of stability maps, each with whose it is."""
         outcomes, failed = np.array([row["outcome"] for row in self.rows]), self.failed
-        names = sorted(set(outcomes[failed]), key=lambda name: ([*CLASSES, name].index(name), name))
-        return {name: failed & (outcomes == name) for name in names}
+        return {name: failed & (outcomes == name) for name in by_class(outcomes[failed])}
 
     @property
     def how_failed(self):
@@ -97,7 +96,10 @@ class Sweep:
         """As the field was varied: in equal ratios or steps; a list of other values by its span."""
         if "scale" in self.axes[i]:
             return self.axes[i]["scale"] == "log"
-        values = np.unique(self.column(self.fields[i]))
+        values = self.column(self.fields[i])
+        if isinstance(values, list):
+            return False
+        values = np.unique(values)
         if len(values) < 3:
             return spread_logarithmically(values)
         even = [np.allclose(np.diff(of), of[-1] - of[-2], rtol=1e-6) for of in (values, np.log(values) if values[0] > 0 else values)]
@@ -131,72 +133,48 @@ def is_number(text):
         return False
 
 
-def spread_logarithmically(values):
-    values = values[np.isfinite(values)]
-    return bool(values.size) and values.min() > 0 and values.max() > 30 * values.min()
-
-
 def draw_sweep(sweep):
     with plt.rc_context(SETTINGS):
-        if sweep.is_cloud:
-            return draw_cloud(sweep)
+        axes = [Axis.of(sweep.axis(i), sweep.column(field), sweep.is_logarithmic(i)) for i, field in enumerate(sweep.fields)]
+        of_numbers = len(axes) == 2 and not any(of.names for of in axes)
+        if sweep.is_cloud or of_numbers and on_grid(axes, sweep.metric_values) is None:
+            return draw_cloud(sweep, axes)
         figure, ax = plt.subplots(figsize=(6.0, 3.8))
         ax.set_title(sweep.name)
-        columns = [sweep.column(field) for field in sweep.fields]
-        texts = [i for i, column in enumerate(columns) if isinstance(column, list)]
-        if len(columns) == 2 and not texts:
-            draw_map(figure, ax, sweep, columns)
+        if of_numbers:
+            draw_map(figure, ax, sweep, axes)
         else:
-            draw_curves(ax, sweep, columns, texts)
+            draw_curves(ax, sweep, axes)
         return figure
 
 
-def draw_cloud(sweep):
-    """The metric over each field; over two fields of numbers also in colours over both."""
-    columns, values = [sweep.column(field) for field in sweep.fields], sweep.metric_values
-    both = len(columns) == 2 and not any(isinstance(column, list) for column in columns)
-    panels = len(columns) + both
-    wide = min(PANELS_WIDE, panels)
-    high = -(-panels // wide)
+def draw_cloud(sweep, over):
+    """The metric over each field."""
+    value = Axis.of(axis(sweep.metric), sweep.metric_values)
+    wide = min(PANELS_WIDE, len(over))
+    high = -(-len(over) // wide)
     figure, axes = plt.subplots(high, wide, figsize=(0.6 + 2.6 * wide, 0.4 + 2.5 * high), squeeze=False)
     figure.suptitle(sweep.name, x=0.01, ha="left", fontsize=9, weight="bold")
-    found = sweep.sensitivities() if sweep.sampled else [None] * len(columns)
-    for i, (ax, column) in enumerate(zip(axes.flat, columns)):
-        x, names = places_of(column)
-        ax.plot(x, values, ls="", marker="o", ms=2.5, alpha=0.7, color=PETROL)
-        mark_classes(ax, sweep, x)
-        if names:
-            ax.set_xticks(range(len(names)), [name.replace("_", "\n") for name in names])
-        elif sweep.is_logarithmic(i):
-            ax.set_xscale("log")
-        if spread_logarithmically(values):
-            ax.set_yscale("log")
+    found = sweep.sensitivities() if sweep.sampled else [None] * len(over)
+    for i, (ax, x) in enumerate(zip(axes.flat, over)):
+        over_axes(ax, x, value, [(None, x.values, value.values, {"ls": "none", "marker": "o", "ms": 2.5, "alpha": 0.7, "color": PETROL})])
+        mark_classes(ax, sweep, x.values)
         if found[i]:
             ax.set_title(sensitivity_text(found[i]), fontsize=7.5)
-        ax.set(xlabel=sweep.axis(i), ylabel="" if i % wide else axis(sweep.metric))
+        if i % wide:
+            ax.set_ylabel("")
     if sweep.classes:
         axes[0, 0].legend()
-    if both:
-        draw_map(figure, axes.flat[len(columns)], sweep, columns)
-    for ax in axes.flat[panels:]:
+    for ax in axes.flat[len(over):]:
         ax.axis("off")
     return figure
 
 
-def mark_classes(ax, sweep, x, y=None):
-    """Marks of runs without a number in the looks of their classes: at their places, or below the axis."""
+def mark_classes(ax, sweep, x):
+    """Marks below the axis of runs without a number, in the looks of their classes."""
     for name, mine in sweep.classes.items():
         title, colour, _ = look_of_class(name)
-        below = {"transform": ax.get_xaxis_transform(), "clip_on": False} if y is None else {}
-        ax.plot(x[mine], np.zeros(mine.sum()) if y is None else y[mine], ls="", marker="x", color=colour, label=title, **below)
-
-
-def places_of(column):
-    """Where the values are along an axis, and of texts their names."""
-    if not isinstance(column, list):
-        return column, None
-    names = list(dict.fromkeys(column))
-    return np.array([names.index(value) for value in column], float), names
+        ax.plot(x[mine], np.zeros(mine.sum()), ls="", marker="x", color=colour, label=title, transform=ax.get_xaxis_transform(), clip_on=False)
 
 
 def sensitivity_text(found):
@@ -209,67 +187,47 @@ def hundredths(number):
     return f"{round(number, 2) + 0.0:.2f}"
 
 
-def draw_curves(ax, sweep, columns, texts):
+def draw_curves(ax, sweep, over):
     """Over the field of numbers, a curve for each text of the other one; without numbers, over the texts."""
-    over = next((i for i in range(len(columns)) if i not in texts), 0)
-    others = [i for i in range(len(columns)) if i != over]
-    names = columns[others[0]] if others else [""] * len(sweep.rows)
-    for name in dict.fromkeys(names):
-        rows = np.array([n == name for n in names])
-        x = columns[over] if over in texts else columns[over][rows]
-        x = [value for value, mine in zip(columns[over], rows) if mine] if over in texts else x
-        order = np.arange(len(x)) if over in texts else np.argsort(x)
-        label = str(name).replace("_", " ")
-        ax.plot(np.array(x)[order], sweep.metric_values[rows][order], marker="o", label=label or None, color=look(str(name)).colour)
-    mark_classes(ax, sweep, np.array(columns[over]))
-    if others or sweep.classes:
+    x = next((of for of in over if not of.names), over[0])
+    other = next((of for of in over if of is not x), None)
+    value, series = Axis.of(axis(sweep.metric), sweep.metric_values), []
+    for i, name in enumerate(other.names if other else ("",)):
+        rows = np.flatnonzero(other.values == i) if other else np.arange(len(sweep.rows))
+        rows = rows if x.names else rows[np.argsort(x.values[rows], kind="stable")]
+        series.append((name.replace("_", " ") or None, x.values[rows], value.values[rows], look_of(name) if name else {"color": PETROL, "marker": "o", "ls": "-"}))
+    over_axes(ax, x, value, series)
+    mark_classes(ax, sweep, x.values)
+    if other or sweep.classes:
         ax.legend()
-    if over not in texts:
-        integer_ticks(ax.xaxis, columns[over])
-    if over not in texts and sweep.is_logarithmic(over):
-        ax.set_xscale("log")
-    if spread_logarithmically(sweep.metric_values):
-        ax.set_yscale("log")
-    ax.set(xlabel=sweep.axis(over), ylabel=axis(sweep.metric))
 
 
-def integer_ticks(of, values):
-    """Ticks at the values of a field of whole numbers."""
-    values = np.unique(values)
-    if (values == values.round()).all() and len(values) <= MOST_TICKS and not spread_logarithmically(values):
-        of.set_ticks(values, [f"{value:.0f}" for value in values])
-
-
-def draw_map(figure, ax, sweep, columns):
-    values, classes = sweep.metric_values, sweep.classes
+def draw_map(figure, ax, sweep, over):
+    values, classes, (y_axis, x_axis) = sweep.metric_values, sweep.classes, over
     norm = colors.LogNorm() if spread_logarithmically(values) else None
-    grid = on_grid(columns, values)
-    if grid is None:
-        ok = np.isfinite(values)
-        drawn = ax.scatter(columns[1][ok], columns[0][ok], c=values[ok], norm=norm, cmap="viridis")
-        mark_classes(ax, sweep, columns[1], columns[0])
-        shown = {}
-    else:
-        x, y = edges(grid[1]), edges(grid[0])
-        shown = {name: on_grid(columns, mine.astype(float))[2] == 1 for name, mine in classes.items()}
-        shown[None] = ~np.isfinite(grid[2]) & ~sum(shown.values(), np.zeros(grid[2].shape, bool))
-        drawn = ax.pcolormesh(x, y, np.ma.masked_invalid(grid[2]), norm=norm, cmap="viridis")
-        for name, cells in shown.items():
-            for line, column in np.argwhere(cells):
-                ax.add_patch(Rectangle((x[column], y[line]), x[column + 1] - x[column], y[line + 1] - y[line], **patch_of(name)))
-        ax.grid(False)
+    grid = on_grid(over, values)
+    x, y = edges(grid[1]), edges(grid[0])
+    shown = {name: on_grid(over, mine.astype(float))[2] == 1 for name, mine in classes.items()}
+    shown[None] = ~np.isfinite(grid[2]) & ~sum(shown.values(), np.zeros(grid[2].shape, bool))
+    drawn = ax.pcolormesh(x, y, np.ma.masked_invalid(grid[2]), norm=norm, cmap="viridis")
+    for name, cells in shown.items():
+        for line, column in np.argwhere(cells):
+            ax.add_patch(Rectangle((x[column], y[line]), x[column + 1] - x[column], y[line + 1] - y[line], **patch_of(name)))
+    ax.grid(False)
+    over_axes(ax, x_axis, y_axis)
     entries = [Patch(label=look_of_class(name)[0] if name else "no value", **patch_of(name)) for name, cells in shown.items() if cells.any()]
-    if grid is None and classes:
-        ax.legend()
     if entries:
         ax.legend(handles=entries, loc="lower right", bbox_to_anchor=(1, 1), ncol=2, borderaxespad=0.2)
-    for i, set_scale, of, column in ((1, ax.set_xscale, ax.xaxis, columns[1]), (0, ax.set_yscale, ax.yaxis, columns[0])):
-        if sweep.is_logarithmic(i):
-            set_scale("log")
-        integer_ticks(of, column)
-    ax.set(xlabel=sweep.axis(1), ylabel=sweep.axis(0))
     if np.isfinite(values).any():
         figure.colorbar(drawn, label=axis(sweep.metric))
+
+
+def edges(values):
+    """Borders of the cells around the values of a grid."""
+    if spread_logarithmically(values):
+        return np.exp(edges(np.log(values)))
+    middle = (values[1:] + values[:-1]) / 2
+    return np.concatenate([[2 * values[0] - middle[0]], middle, [2 * values[-1] - middle[-1]]])
 
 
 def patch_of(name):
@@ -280,9 +238,9 @@ def patch_of(name):
     return {"facecolor": colour, "edgecolor": PETROL, "hatch": hatch, "lw": 0}
 
 
-def on_grid(columns, values):
+def on_grid(over, values):
     """The values of the first field, of the second, and the metric by both; None when these are points of a sample."""
-    (rows, i), (cells, j) = (np.unique(column, return_inverse=True) for column in columns)
+    (rows, i), (cells, j) = (np.unique(of.values, return_inverse=True) for of in over)
     if len(rows) * len(cells) > 4 * len(values) or min(len(rows), len(cells)) < 2:
         return None
     grid = np.full((len(rows), len(cells)), np.nan)

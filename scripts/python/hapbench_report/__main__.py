@@ -1,60 +1,66 @@
 """The command line of scripts/report."""
+import os
+import subprocess
 import sys
-import tempfile
 from pathlib import Path
 
-from hapbench_command import Arguments, exit_status, write
+from hapbench.errors import InputError
+from hapbench_command import DIFFERENT, SUCCESS, Arguments, exit_status, write
 
-from .credibility import load_credibility
 from .figures import load_figures
-from .json_input import InputError
-from .ledger import load_choices, load_claims
+from .ledger import load_claims
 from .live_link import place_live_page
-from .page import report
-from .replay import packed_replays, record_replays
+from .page import thesis_page
 from .runs import REPLAY_DIRECTORY, load_runs
-from .studies import load_studies
 
-CHOICES = Path(__file__).resolve().parents[3] / "results" / "reference" / "choices.json"
+# Scenes of the replay: a scenario, further settings, and its algorithms, of which the first two are shown at first.
+REPLAYED = (
+    ("task2_rotate_signed_distance", ("time.duration_s=6",), ("original_averaging", "shaped_stiffness")),
+    ("peg_in_hole_2d_shaped_stiffness", (), ("original_averaging", "shaped_stiffness", "summation", "mean", "exact_shaping")),
+)
+# Every step, for the sound and the peaks. The bundled expectations are for the scenario's own algorithm.
+RECORDED = ("record.contacts=true", "record.stiffness_tensor=true", "record.every=1", "record.ratio_iterations=[]", "expect={}")
 
 
 def arguments(words):
-    parser = Arguments(
-        prog="scripts/report", description="Writes one self-contained HTML file: ledger, figures, tables, all runs, and a replay.")
+    parser = Arguments(prog="scripts/report", description="Writes one self-contained HTML file: ledger, figures, all runs, and a replay.")
     parser.add_argument("results", type=Path, metavar="RESULTS_DIR", help="what scripts/reproduce wrote")
     parser.add_argument("--figures", type=Path, metavar="DIR", help="what scripts/figures wrote; default: no figures")
     parser.add_argument("--claims", type=Path, metavar="FILE", help="the ledger, claims.json; default: no ledger")
-    parser.add_argument("--choices", type=Path, metavar="FILE", default=CHOICES,
-                        help="the choices on record; default: results/reference/choices.json of this tree")
-    parser.add_argument("--program", type=Path, metavar="FILE", help="a built hapbench, to record the runs of the replay")
-    parser.add_argument("--replay", type=Path, metavar="DIR",
-                        help=f"runs recorded earlier; default: RESULTS_DIR/{REPLAY_DIRECTORY} if it is there")
-    parser.add_argument("--keep-replay", type=Path, metavar="DIR", help="with --program: record into this directory")
+    parser.add_argument("--program", type=Path, metavar="FILE", help=f"a built hapbench, to record the runs of the replay into RESULTS_DIR/"
+                        f"{REPLAY_DIRECTORY}; default: the replay shows those that are there")
     parser.add_argument("--out", type=Path, metavar="FILE", help="default: RESULTS_DIR/report.html")
     return parser.parse_args(words)
 
 
-def scenes(options):
-    if options.program:
-        with tempfile.TemporaryDirectory(prefix="hapbench-replay-") as scratch:
-            directory = options.keep_replay or Path(scratch)
-            record_replays(options.program, directory)
-            return packed_replays(directory)
-    directory = options.replay or options.results / REPLAY_DIRECTORY
-    if options.replay and not options.replay.is_dir():
-        raise InputError(f"--replay {options.replay}: no such directory")
-    return packed_replays(directory)
+def record(program, directory):
+    for scenario, further, algorithms in REPLAYED:
+        for algorithm in algorithms:
+            settings = [f"--set={text}" for text in (*RECORDED, *further, f"rendering.algorithm={algorithm}")]
+            line = [program, "run", scenario, *settings, "--quiet", "--out", directory / scenario / algorithm]
+            try:
+                done = subprocess.run(line, capture_output=True, text=True, stdin=subprocess.DEVNULL)
+            except OSError as error:
+                raise InputError(f"{program}: {error}") from error
+            if done.returncode not in (SUCCESS, DIFFERENT):
+                said = done.stderr.strip().splitlines() or ["no message"]
+                raise InputError(f"{program} run {scenario}: exit status {done.returncode}: {said[-1]}")
 
 
 def run(options):
     if not options.results.is_dir():
         raise InputError(f"{options.results}: no such directory; scripts/reproduce writes one")
-    runs = load_runs(options.results)
+    runs = load_runs(options.results, but=REPLAY_DIRECTORY)
     if not runs:
         raise InputError(f"{options.results}: holds no summary.json; allowed: a directory that scripts/reproduce wrote")
-    page = report(runs, load_studies(options.results), load_claims(options.claims) if options.claims else [],
-                  load_choices(options.choices), load_figures(options.figures) if options.figures else [], scenes(options),
-                  load_credibility())
+    if options.program:
+        record(options.program, options.results / REPLAY_DIRECTORY)
+        os.environ["HAPBENCH_PROGRAM"] = str(options.program)
+    recorded = {run.path: run for run in load_runs(options.results / REPLAY_DIRECTORY)}
+    replayed = [f"{scenario}/{algorithm}" for scenario, _, algorithms in REPLAYED for algorithm in algorithms]
+    claims = load_claims(options.claims) if options.claims else []
+    figures = load_figures(options.figures) if options.figures else []
+    page = thesis_page(runs, claims, figures, [recorded[path] for path in replayed if path in recorded])
     out = options.out or options.results / "report.html"
     write(out, page)
     place_live_page(out.parent)

@@ -1,8 +1,9 @@
-"""The ledger: what the thesis claims, what it publishes, what we measure, and the verdict; with the choices on record and the
-summary of the page."""
-from .json_input import InputError, load_object, objects, shown
+"""The ledger: what the thesis claims, what it publishes, what we measure, and the verdict; with the summary of the page."""
+from hapbench.errors import InputError
+from hapbench.results import at, objects, read_object, shown
+
 from .links import claim_link
-from .markup import cell, command, counted, filters, folded, heading_cell, listed, table, text, typeset
+from .markup import cell, command, filters, folded, heading_cell, listed, table, text, typeset
 
 # Verdict -> (mark, tone). The mark tells verdicts apart without colour.
 VERDICTS = {
@@ -24,7 +25,7 @@ class Claims(list):
 
 
 def load_claims(file):
-    ledger = load_object(file)
+    ledger = read_object(file)
     claims = Claims(objects(ledger, "claims", file))
     claims.headline = str(ledger.get("headline") or "")
     for i, claim in enumerate(claims):
@@ -34,11 +35,6 @@ def load_claims(file):
         if claim.get("majority") not in (None, *VERDICTS):
             raise InputError(f"{file}: /claims/{i}/majority: got {shown(claim['majority'])}; allowed: {shown_verdicts()}")
     return claims
-
-
-def load_choices(file):
-    """The choices that the thesis leaves open: results/reference/choices.json."""
-    return objects(load_object(file), "choices", file)
 
 
 def shown_verdicts():
@@ -67,7 +63,7 @@ def verdict_marks(claim):
     return f"{verdict_mark(majority)} in most samples<br>{verdict_mark(recorded)} recorded"
 
 
-def summary_section(runs, claims, figures, provenance):
+def summary_section(runs, claims, figures):
     met = sum(run.expected for run in runs)
     tiles = [(len(runs), "run" if len(runs) == 1 else "runs"), (f"{met}/{len(runs)}", "ended as their scenario expects")]
     recorded, majority = verdict_counts(claims), verdict_counts(claims, "majority")
@@ -77,19 +73,15 @@ def summary_section(runs, claims, figures, provenance):
     if figures:
         tiles.append((len(figures), '<a href="#figures">figures</a>'))
     items = "".join(f"<li><b>{text(value)}</b><span>{label}</span></li>" for value, label in tiles)
-    commits = ", ".join(sorted({str(p.get("commit", "unknown")) for p, _ in provenance})) or "unknown"
+    headline = getattr(claims, "headline", "")
+    commits = ", ".join(sorted({str(at(run.summary, "/provenance/commit") or "unknown") for run in runs}))
     return (
         "<h1>hapbench: haptic rendering of object-to-object contact</h1>"
         '<p class="lead">Scripted tool trajectories go through pluggable force algorithms; trajectories, stiffness ratios, '
         "stability limits and the cost of a step come out. Everything here is compared with T. C. Lee, <cite>Rendering "
         "6-DOF Object-to-Object Interaction with 3-DOF Haptic Interfaces</cite> (“the thesis”); numbers such as Fig. A.2 or "
         f"3.3 are its figures and sections. Program of commit <code>{text(commits)}</code>.</p>"
-        f'<ul class="cards">{items}</ul>{headline(claims)}{warnings(runs)}{refusals(claims)}')
-
-
-def headline(claims):
-    said = getattr(claims, "headline", "")
-    return f"<p>{typeset(said)}</p>" if said else ""
+        f'<ul class="cards">{items}</ul>{headline and f"<p>{typeset(headline)}</p>"}{warnings(runs)}{refusals(claims)}')
 
 
 def warnings(runs):
@@ -111,11 +103,11 @@ def ledger_section(claims, links):
     rows = [claim_row(claim, links) for claim in of_thesis(claims)]
     ours = [claim_row(claim, links) for claim in claims if claim.get("ours")]
     headings = [heading_cell(title) for title in ("Id", "Verdict", "Claim", "Published", "Measured", "Robustness")]
-    return (headline(claims) + "<p>Each claim of the thesis, what it publishes, what the runs below give, and a verdict by a rule, which unfolds "
+    return ("<p>Each claim of the thesis, what it publishes, what the runs below give, and a verdict by a rule, which unfolds "
             "with the figures and runs behind it. "
             "Hands are calibrated to mean and standard deviation of the raw colliding points; all else is a prediction. "
             "Robustness: how often the verdict is the same at points spread over the plausible ranges of everything the "
-            'thesis leaves open (<a href="#choices">choices on record</a>), '
+            'thesis leaves open (<code>results/reference/choices.md</code>), '
             "and the choice that decides it, if one does, "
             "with its first-order Sobol index S.</p>"
             + filters("ledger-table", [("Verdict", 1)])
@@ -135,25 +127,3 @@ def claim_row(claim, links):
             cell(typeset(claim.get("published", ""))),
             cell(f"{typeset(claim.get('measured', ''))}<p class=note>{typeset(claim.get('why', ''))}</p>", classes="prose"),
             cell(text(claim.get("sureness") or ""))]
-
-
-def choices_section(choices):
-    if not choices:
-        return '<p class="note">None were given (<code>--choices</code>).</p>'
-    rows = [[cell(text(c.get("id", ""))), cell(typeset(c.get("what", "")), classes="prose"),
-             cell(text(c.get("thesis", "")), classes="prose"), cell(text(f"{c.get('value', '')} {c.get('unit', '')}".strip())),
-             cell(text(plausible(c))), cell(text(c.get("chosen", ""))), cell(text(c.get("why", "")), classes="prose")]
-            for c in choices]
-    headings = [heading_cell(t) for t in ("Choice", "Of what", "The thesis", "Value", "Plausible", "Results seen", "Why")]
-    return ("<p>Everything the thesis leaves open and a scenario had to choose. A value without a unit that stands beside a "
-            "range around 1 multiplies what the scenarios have. “after” means that results had been seen when it was "
-            "chosen.</p>" + folded(f"All {counted(len(rows), 'choice')}", table(
-                headings, rows, "<b>Choices on record</b>", "sortable stack", "choices-table")))
-
-
-def plausible(choice):
-    """The values a choice could as well have had, as text."""
-    options, range_ = choice.get("options"), choice.get("range")
-    if isinstance(options, list):
-        return ", ".join(map(str, options))
-    return " to ".join(map(str, range_ if isinstance(range_, list) else [])) + (", log" if choice.get("scale") == "log" else "")

@@ -5,7 +5,7 @@ import shutil
 from pathlib import Path
 from urllib.parse import quote
 
-from .json_input import at
+from hapbench.results import at
 
 # Where scripts/live/make puts it; a copy goes beside every page that links to it.
 BUILT = Path(__file__).resolve().parents[3] / "build" / "live" / "live.html"

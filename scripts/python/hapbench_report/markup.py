@@ -7,10 +7,9 @@ from decimal import Decimal
 from pathlib import Path
 from statistics import median
 
+from hapbench.results import number_or_none
 from hapbench.units import ending_of, unit_of
 from hapbench_looks import look
-
-from .json_input import number_or_none
 
 ABSENT = "–"
 ASSETS = Path(__file__).parent / "assets"
@@ -102,12 +101,7 @@ def folded(summary, content, element_id="", classes=""):
 
 def strip(markup):
     """Ready HTML without its tags, for labels."""
-    out, inside = [], False
-    for c in html.unescape(markup):
-        inside = c == "<" or (inside and c != ">")
-        if not inside and c != ">":
-            out.append(c)
-    return "".join(out)
+    return html.unescape(re.sub(r"<[^>]*>", "", markup))
 
 
 def command(line):

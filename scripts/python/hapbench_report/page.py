@@ -1,41 +1,30 @@
 """The page: its sections in order, with style and scripts inlined."""
-from .credibility import credibility_section
 from .figures import figures_section
-from .ledger import choices_section, ledger_section, summary_section
+from .ledger import ledger_section, summary_section
 from .links import Links
 from .markup import ASSETS, command, fill, text
-from .replay import replay_section
-from .runs import parameters_section, provenance_of, provenance_section, runs_section
-from .studies import studies_section, timing_section
-from .thesis import index_section, limits_table, load_tables, parameter_tables, target_tables
+from .replay import player, replays
+from .runs import provenance_of, provenance_section, runs_section
 
 STYLES = ("style.css", "replay.css")
 SCRIPTS = ("theme.js", "tables.js", "page.js", "replay_data.js", "replay_camera.js", "replay_scene.js", "replay_tool.js", "replay_field.js",
            "replay_tracks.js", "replay_sound.js", "replay_export.js", "replay_player.js", "replay_controls.js")
+NO_REPLAY = '<p class="note">No recorded runs were given (<code>--program</code>).</p>'
 
 
-def report(runs, studies, claims, choices, figures, scenes, credibility):
-    """The HTML of the report. Depends on nothing but its arguments."""
-    tables, provenance = load_tables(), provenance_of(runs)
-    links = Links(runs, figures, claims, studies)
-    sections = (
-        ("summary", "Summary", "Summary", summary_section(runs, claims, figures, provenance)),
+def thesis_page(runs, claims, figures, replayed):
+    """The HTML of the report on the thesis. Depends on nothing but its arguments."""
+    links = Links(runs, figures, claims)
+    replay = player(replays(replayed, [run.algorithm.replace("_", " ") for run in replayed])) if replayed else NO_REPLAY
+    return whole_page((
+        ("summary", "Summary", "Summary", summary_section(runs, claims, figures)),
         ("ledger", "Ledger", "Ledger", ledger_section(claims, links)),
-        ("credibility", "Credibility", "How far to believe a number", credibility_section(credibility)),
-        ("choices", "Choices", "Choices on record", choices_section(choices)),
-        ("replay", "Replay", "Replay", replay_section(scenes)),
-        ("thesis", "Index", "Figures and tables of the thesis", index_section(figures, tables, links)),
+        ("replay", "Replay", "Replay", replay),
         ("figures", "Figures", "Figures", figures_section(figures, links)),
-        ("subjects", "Subjects", "Simulated subjects", target_tables(runs, tables)),
-        ("tables", "Tables", "Parameters and limits of the thesis", parameter_tables(runs, tables) + limits_table(studies, tables)),
-        ("runs", "Runs", "Runs", runs_section(runs)),
-        ("studies", "Studies", "Tables of studies", studies_section(studies)),
-        ("timing", "Timing", "Timing", timing_section(runs, studies)),
+        ("runs", "Runs", "Runs", runs_section(runs, links)),
         ("rerun", "Rerun", "Run it again", rerun_section()),
-        ("parameters", "Scenarios", "Scenario of every run", parameters_section(runs, links)),
-        ("provenance", "Provenance", "Provenance", provenance_section(provenance)),
-    )
-    return whole_page(sections)
+        ("provenance", "Provenance", "Provenance", provenance_section(provenance_of(runs))),
+    ))
 
 
 def whole_page(sections, title="hapbench report", further_style=""):

@@ -5,9 +5,9 @@ from pathlib import Path
 import numpy as np
 
 from hapbench.columns import read_columns
+from hapbench.errors import InputError
+from hapbench.results import at, number_or_none, read_object
 
-from .json_input import InputError, at, load_object, number_or_none
-from .markup import number
 
 TENSOR_COLUMNS = ("sxx", "sxy", "sxz", "syy", "syz", "szz")
 # Per row: time, tip, axis, rendered force, ratio range, deepest point; with the tensor S where it was recorded.
@@ -113,8 +113,8 @@ class Recording:
     """One algorithm's run through a scene."""
 
     def __init__(self, directory: Path):
-        self.summary = load_object(directory / "summary.json")
-        self.scenario = load_object(directory / "scenario.effective.json")
+        self.summary = read_object(directory / "summary.json")
+        self.scenario = read_object(directory / "scenario.effective.json")
         self.tool = tool_profile(self.scenario, self.summary)
         self.algorithm = str(self.summary.get("algorithm", directory.name))
         # All rows, for the sound and the worst moments.
@@ -155,12 +155,3 @@ class Recording:
         """Places of the tip in the shown rows; with `touching`, of those in contact."""
         rows = self.shown[self.columns["colliding"][self.shown] > 0] if touching else self.shown
         return np.column_stack([self.columns[f"p{axis}_m"][rows] for axis in "xyz"]).tolist()
-
-    def story(self):
-        """Contact, outcome and largest force, in a few words."""
-        times = self.columns["time_s"]
-        touching = times[self.columns["colliding"] > 0]
-        contact = f"in contact until {number(touching[-1], 3)} s of {number(times[-1], 3)} s" if touching.size else "never in contact"
-        outcome = str(self.summary.get("outcome", "")).replace("_", " ")
-        force = number(at(self.summary, "/metrics/force_max_N"), 3)
-        return f"{self.algorithm.replace('_', ' ')}: {contact}, {outcome}, largest force {force} N"

@@ -1,79 +1,79 @@
-"""The interactive replay: recorded runs, packed for the page (contacts quantised to 16 bits, rows in single precision, base64),
-and its markup."""
+"""The interactive replay: recorded runs of whatever scene, packed for the page with as many rows and points as a browser draws in
+a frame (contacts quantised to 16 bits, rows in single precision, base64), and its markup."""
+import json
+import os
+import shutil
 import subprocess
-from dataclasses import dataclass
+import tempfile
+from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
 
+from hapbench.columns import read_columns
+from hapbench.errors import InputError
+from hapbench.results import at
 from hapbench_looks import look
 
-from .json_input import InputError, at
-from .markup import ASSETS, command, embedded_json, fill, text
-from .recording import CONTACT_COLUMNS, MEASURED_COLUMNS, NORMAL_COLUMNS, TENSOR_COLUMNS, Recording, numbers, worst_moments
-from .sound import base64_of, sound
+from .markup import ASSETS, embedded_json, fill
+from .recording import CONTACT_COLUMNS, MEASURED_COLUMNS, NORMAL_COLUMNS, TENSOR_COLUMNS, Recording, worst_moments
+from .sound import LONGEST, base64_of, sound
 
 # The shell is shown this far around the contacts and the tool's way along them, in units of the tool's radius.
 MARGIN = 1.8
 SHELL_COLUMNS = ("x_m", "y_m", "z_m", *NORMAL_COLUMNS)
+# Points drawn: near the contacts, and with the rest.
+NEAR, ALL = 5000, 8000
+SPEEDS = (0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 10)  # as in the player's menu
+WATCHED_S = 10.0  # how long a replay should take at first
+PATIENCE_S = 120
 
 
-@dataclass(frozen=True)
-class Scene:
-    id: str
-    title: str
-    scenario: str
-    algorithms: tuple  # the first two are shown side by side at first
-    settings: tuple  # further overrides
-    speed: float  # of the replay at first, in units of real time
-    note: str
+def replays(runs, labels):
+    """A packed scene for each environment and tool among the runs."""
+    scenes = {}
+    for run, label in zip(runs, labels):
+        key = json.dumps([run.scenario.get(part) for part in ("environment", "tool")], sort_keys=True)
+        scenes.setdefault(key, []).append((run, label))
+    return [scene(i, *zip(*members)) for i, members in enumerate(scenes.values())]
 
 
-SCENES = (
-    Scene("task2_rotate", "Task 2: the drill is rotated in the hole (3-D)", "task2_rotate_signed_distance",
-          ("original_averaging", "shaped_stiffness"), ("time.duration_s=6",), 0.5,
-          "One period of the tilt, the same hand pressing the drill into the hole."),
-    Scene("peg_in_hole_2d", "The peg in a hole of its own width (2-D)", "peg_in_hole_2d_shaped_stiffness",
-          ("original_averaging", "shaped_stiffness", "summation", "mean", "exact_shaping"), (), 0.05,
-          "The scene of appendix A.1: the peg is tilted at constant speed and nobody holds it."),
-)
-
-# Beside the trajectory; every step, for the sound and the peaks.
-RECORDED = ("record.contacts=true", "record.stiffness_tensor=true", "record.every=1")
-
-# The bundled expectations are for the scenario's own algorithm; another one may miss them.
-SUCCESS, UNEXPECTED_OUTCOME = 0, 3
-
-
-def record_replays(program: Path, out: Path):
-    for scene in SCENES:
-        for algorithm in scene.algorithms:
-            settings = (*RECORDED, "record.ratio_iterations=[]",
-                        f"rendering.algorithm={algorithm}", *scene.settings)
-            call(program, "run", scene.scenario, *overrides(settings), "--out", out / scene.id / algorithm)
-        call(program, "validate", scene.scenario, "--quiet", "--points", out / scene.id / "shell.csv")
-
-
-def overrides(settings):
-    return [argument for setting in settings for argument in ("--set", setting)]
-
-
-def rerun_commands(scene):
-    """The commands that make one recording."""
-    settings = " ".join(overrides((*RECORDED, *scene.settings)))
-    return [f"hapbench run {scene.scenario} {settings} --set rendering.algorithm={scene.algorithms[0]} --out {scene.id}",
-            f"hapbench validate {scene.scenario} --points shell.csv"]
-
-
-def call(program, *arguments):
-    line = [str(program), *map(str, arguments), "--quiet"]
+def scene(i, runs, labels):
+    recordings = [Recording(run.directory) for run in runs]
+    shell, said = points_of(runs[0], recordings)
+    longest = max(recording.columns["time_s"][-1] for recording in recordings)
+    if any(len(recording.columns["time_s"]) > LONGEST for recording in recordings):
+        said = f"{said} Sound: the first {LONGEST} recorded rows of each run.".strip()
+    thinned_out = [recording for recording in recordings if len(recording.shown) < len(recording.columns["time_s"])]
+    if thinned_out:
+        drawn, every = (sum(map(len, of)) for of in zip(*((r.shown, r.columns["time_s"]) for r in thinned_out)))
+        said = f"{said} {drawn} of {every} recorded rows are drawn, every peak among them.".strip()
+    names = list(dict.fromkeys(run.name for run in runs))
+    about = {"id": names[0] if i == 0 else f"{names[0]}-{i + 1}", "title": ", ".join(names), "scenario": names[0], "note": said,
+             "speed": min(SPEEDS, key=lambda speed: abs(np.log(speed / max(longest / WATCHED_S, 1e-9))))}
     try:
-        done = subprocess.run(line, capture_output=True, text=True, timeout=600, stdin=subprocess.DEVNULL)
-    except (OSError, subprocess.TimeoutExpired) as error:
-        raise InputError(f"{program}: {error}") from error
-    if done.returncode not in (SUCCESS, UNEXPECTED_OUTCOME):
-        said = done.stderr.strip().splitlines() or ["no message"]
-        raise InputError(f"{program} {arguments[0]} {arguments[1]}: exit status {done.returncode}: {said[-1]}")
+        return about | packed_scene(recordings, shell, labels)
+    except (ValueError, OverflowError) as error:
+        # Numbers that no run writes: steps left empty, normals far from unit length.
+        raise InputError(f"{runs[0].directory}: not what hapbench records: {error}") from error
+
+
+def packed_scene(recordings, shell, labels):
+    """`shell`: points with their normals, all of which are drawn."""
+    scale = float(np.abs(shell[:, :3]).max(initial=0.0)) / 32767 or 1.0
+    scenario = recordings[0].scenario
+    orientation = at(scenario, "/motion/orientation") or {}
+    springs = at(scenario, "/environment/type") == "springs"
+    return {
+        "planar": not shell[:, 2].any() and not any(tip[2] for r in recordings for tip in r.tips(touching=False)),
+        "up": orientation.get("up", [0, 0, 1]), "lean": orientation.get("lean", [1, 0, 0]),
+        "tool": None if springs else recordings[0].tool, "silhouette": at(scenario, "/tool/type") == "mesh", "focus": touched_box(recordings),
+        "springs": [[*group["direction"], group["count"]] for group in at(scenario, "/environment/groups") or ()] if springs else [],
+        "contactColumns": CONTACT_COLUMNS,
+        "shellScale": scale, "shell": base64_of("h", np.rint(shell[:, :3] / scale).astype(int).ravel().tolist()),
+        "normals": base64_of("b", np.rint(127 * shell[:, 3:]).astype(int).ravel().tolist()),
+        "recordings": [packed_recording(r, label) for r, label in zip(recordings, labels)],
+    }
 
 
 def packed_recording(recording, label):
@@ -97,6 +97,22 @@ def packed_recording(recording, label):
     }
 
 
+def points_of(run, recordings):
+    """The surface: from the program, or else the points that were in contact; and what to say about it."""
+    every, failure = shell(run)
+    if every is None:
+        touched = {tuple(contact[:3]): contact[8:] for r in recordings for of_row in r.contacts for contact in of_row}
+        every = np.array([[*place, *normal] for place, normal in touched.items()]).reshape(-1, 6)
+    radius = max((r for _, r in recordings[0].tool or ()), default=0.0)
+    drawn = thinned(every, touched_box(recordings), MARGIN * radius)
+    count = f"{len(drawn)} of {len(every)} points of the surface are drawn, all around the contacts first."
+    said = [failure] if failure else []
+    if at(run.scenario, "/tool/type") == "mesh":
+        said.append("Of the tool, a mesh, the silhouette is drawn, turned about its axis; points in the tool are marked "
+                    "where contacts were recorded.")
+    return drawn, " ".join(said + ([count] if len(drawn) < len(every) else []))
+
+
 def touched_box(recordings):
     """Corners of the box that the contacts and the tips of rows in contact span; of all tips where nothing touched."""
     places = [contact[:3] for r in recordings for of_row in r.contacts for contact in of_row]
@@ -105,76 +121,55 @@ def touched_box(recordings):
     return [[bound(p[i] for p in places) for i in range(3)] for bound in (min, max)]
 
 
-def within(points, box, margin):
-    """Which points, with or without normals, are in the box or no further from it than the margin along any axis."""
+def thinned(points, box, margin):
+    """All around the box first: `margin` is how far that goes along any axis."""
     low, high = np.array(box)
-    return ((points[:, :3] >= low - margin) & (points[:, :3] <= high + margin)).all(axis=1)
+    near = ((points[:, :3] >= low - margin) & (points[:, :3] <= high + margin)).all(axis=1)
+    kept = some(points[near], NEAR)
+    return np.concatenate([kept, some(points[~near], ALL - len(kept))])
 
 
-def radius_of(profile):
-    return max((r for _, r in profile or ()), default=0.0)
+def some(points, most):
+    """At most so many, spread over all of them. Drawn by lot, as every nth of a grid's points makes stripes."""
+    if len(points) <= most:
+        return points
+    return points[np.sort(np.random.default_rng(1).choice(len(points), most, replace=False))]
 
 
-def packed_scene(recordings, shell, labels=None, **about):
-    """`shell`: points with their normals, all of which are drawn. `about`: id, title, speed, scenario and note."""
-    places = [place for p in shell for place in p[:3]]
-    scale = max(map(abs, places), default=0.0) / 32767 or 1.0
-    scenario = recordings[0].scenario
-    orientation = at(scenario, "/motion/orientation") or {}
-    springs = at(scenario, "/environment/type") == "springs"
-    return {
-        **about,
-        "planar": is_planar(recordings, shell),
-        "up": orientation.get("up", [0, 0, 1]), "lean": orientation.get("lean", [1, 0, 0]),
-        "tool": None if springs else recordings[0].tool, "silhouette": at(scenario, "/tool/type") == "mesh", "focus": touched_box(recordings),
-        "springs": [[*group["direction"], group["count"]] for group in at(scenario, "/environment/groups") or ()] if springs else [],
-        "contactColumns": CONTACT_COLUMNS,
-        "shellScale": scale, "shell": base64_of("h", (round(x / scale) for x in places)),
-        "normals": base64_of("b", (round(127 * x) for p in shell for x in p[3:])),
-        "recordings": [packed_recording(r, label) for r, label in zip(recordings, labels or [None] * len(recordings))],
-    }
+def surface_of(runs):
+    """Points and normals of the surface that all runs share; None where they do not, or there is none to be had."""
+    environments = [run.scenario.get("environment") for run in runs]
+    if any(environment != environments[0] for environment in environments) or not environments[0]:
+        return None
+    return shell(runs[0])[0]
 
 
-def is_planar(recordings, shell):
-    return all(p[2] == 0 for p in shell) and all(tip[2] == 0 for r in recordings for tip in r.tips(touching=False))
+def shell(run):
+    """Points and normals, None with the reason where there are none to be had."""
+    if at(run.scenario, "/environment/type") == "springs":
+        return None, ""
+    return shell_of(run.directory / "scenario.effective.json")
 
 
-def recorded_scene(scene, directory: Path):
-    """One of the thesis's."""
-    recordings = [Recording(directory / name) for name in scene.algorithms if (directory / name).is_dir()]
-    if not recordings:
-        raise InputError(f"{directory}: holds no recording of {', '.join(scene.algorithms)}")
-    for recording in recordings:
-        if not recording.tool:
-            raise InputError(f"{directory / recording.algorithm / 'scenario.effective.json'}: /tool/diameter_m: missing, or "
-                             "length_m; allowed: numbers")
-    box, margin = touched_box(recordings), MARGIN * radius_of(recordings[0].tool)
-    shell = np.column_stack(list(numbers(directory / "shell.csv", SHELL_COLUMNS).values()))
-    return packed_scene(recordings, shell[within(shell, box, margin)].tolist(), id=scene.id, title=scene.title,
-                        speed=scene.speed, scenario=scene.scenario,
-                        note=f"{scene.note} {'; '.join(recording.story() for recording in recordings)}.")
-
-
-def packed_replays(directory: Path):
-    return [checked_scene(scene, directory / scene.id) for scene in SCENES if (directory / scene.id).is_dir()]
-
-
-def checked_scene(scene, directory: Path):
-    try:
-        return recorded_scene(scene, directory)
-    except (ValueError, OverflowError) as error:
-        # Numbers that no run writes: steps left empty, normals far from unit length.
-        raise InputError(f"{directory}: not what hapbench records: {error}") from error
-
-
-def replay_section(scenes):
-    if not scenes:
-        return '<p class="note">No recorded runs were given (<code>--program</code> or <code>--replay</code>).</p>'
-    shown = {scene["id"] for scene in scenes}
-    commands = "".join(f"<p>{text(scene.title)}:</p>" + command("\n".join(rerun_commands(scene)))
-                       for scene in SCENES if scene.id in shown)
-    return (f"<p>Recorded runs, several algorithms on one clock.</p>{player(scenes)}"
-            f"<details><summary>How these were recorded</summary>{commands}</details>")
+@lru_cache(maxsize=1)  # curves and replay of a page ask for the same one
+def shell_of(scenario):
+    program = os.environ.get("HAPBENCH_PROGRAM") or shutil.which("hapbench")
+    if not program:
+        return None, "Without the program hapbench in the path only points that were in contact are drawn."
+    with tempfile.TemporaryDirectory(prefix="hapbench-report-") as scratch:
+        file = Path(scratch) / "shell.csv"
+        # Whatever the algorithm: it may have come from a module that is not at hand.
+        plain = ["--set", "rendering.algorithm=mean", "--set", "rendering.parameters={}"]
+        line = [program, "validate", str(scenario), "--points", str(file), "--quiet", *plain]
+        try:
+            done = subprocess.run(line, capture_output=True, text=True, timeout=PATIENCE_S, stdin=subprocess.DEVNULL)
+        except (OSError, subprocess.TimeoutExpired) as error:
+            return None, f"The surface is not drawn: {error}."
+        if done.returncode:
+            said = (done.stderr.strip().splitlines() or ["no message"])[-1]
+            return None, f"Only points that were in contact are drawn: {said}."
+        columns = read_columns(file, SHELL_COLUMNS)
+        return np.column_stack([columns[name] for name in SHELL_COLUMNS]), ""
 
 
 def player(scenes):

@@ -1,15 +1,12 @@
-"""The runs in a results directory, which is every directory with a summary.json: their table, and parameters, provenance and
-command of each."""
+"""The runs in a results directory, which is every directory with a summary.json: their table, and what produced them."""
 import json
 from functools import cached_property
 from pathlib import Path
 
 from hapbench import results
+from hapbench.results import at, member, number_or_none
 
-from .json_input import at, member, number_or_none
-from .live_link import live_link
-from .markup import (algorithm_name, cell, columns, command, counted, filters, folded, heading_cell, listed, named, number_cell, table,
-                     text)
+from .markup import algorithm_name, cell, columns, filters, heading_cell, listed, named, number_cell, table, text
 
 # Written for the replay, not as results of their own.
 REPLAY_DIRECTORY = "replay"
@@ -66,21 +63,17 @@ class Run(results.Run):
                 if isinstance(value, dict) and (name == "metrics" or any(f"{name}.{key}" in documented for key in value))}
 
 
-def load_runs(directory: Path):
-    runs = []
-    for file in sorted(directory.rglob(results.SUMMARY)):
-        path = file.parent.relative_to(directory).as_posix()
-        if path.split("/")[0] == REPLAY_DIRECTORY:
-            continue
-        runs.append(load_run(file.parent, path))
-    return runs
+def load_runs(directory: Path, but=None):
+    """Those below a directory, without its folder `but`."""
+    paths = [file.parent.relative_to(directory).as_posix() for file in sorted(directory.rglob(results.SUMMARY))]
+    return [load_run(directory / path, path) for path in paths if path.split("/")[0] != but]
 
 
 def load_run(directory, path):
     """The run of one directory, which is known as `path`."""
     found = results.load_run(directory)
     for key in ("metrics", "provenance", "targets"):
-        member(found.summary, key, dict, directory / results.SUMMARY, "")
+        member(found.summary, key, dict, directory / results.SUMMARY)
     return Run(path, found, (directory.resolve().parent / "comparison.csv").exists())
 
 
@@ -90,62 +83,24 @@ def find_run(runs, name):
     return min(named, key=lambda run: (run.group != "thesis", run.path), default=None)
 
 
-def runs_section(runs):
+def runs_section(runs, links):
     numbers, cells = columns(METRICS, [[run.metric(name) for name in METRICS] for run in runs],
                              [[run.tolerance("metrics", name) for name in METRICS] for run in runs])
     rows = []
     for run, measured in zip(runs, cells):
         outcome = text(run.outcome.replace("_", " ")) + ("" if run.expected else ' <b class="bad">✗ unexpected</b>')
-        rows.append([cell(named(part_of(run))), cell(f'<a href="#{run.anchor}">{named(run.name)}</a>', classes="name"),
+        rows.append([cell(f'<span id="{run.anchor}">{named(part_of(run))}</span>'), cell(f"{named(run.name)}<br>{listed('', links.of_run(run))}", classes="name"),
                      cell(algorithm_name(run.algorithm), classes="name"), cell(outcome), number_cell(at(run.summary, "/steps")), *measured])
     headings = [*map(heading_cell, ("Part", "Scenario", "Algorithm", "Outcome")), heading_cell("Steps", True), *numbers]
-    return ("<p>Click a heading to sort; scenarios lead to parameters, provenance and the command.</p>"
+    return ("<p>Click a heading to sort. The folder of a run, its part and its scenario here, holds the scenario with every default filled in, "
+            "which gives the same bytes again; <code>hapbench report FOLDER</code> shows it.</p>"
             + filters("runs-table", [("Part", 0), ("Algorithm", 2), ("Outcome", 3)])
             + table(headings, rows, "<b>All runs</b> Ratio: combined stiffness along a contact in units of K; colliding, rendered: "
                     "mean numbers of points before and after the reduction", "sortable", "runs-table"))
 
 
-def parameters_section(runs, links):
-    return ("<p>The full scenario of every run, defaults filled in; saved to a file and run again it gives the same "
-            "bytes.</p>" + "\n".join(folded(f"{text(part)} <span class=note>{counted(len(own), 'run')}</span>",
-                                          "".join(run_details(run, links) for run in own))
-                                   for part, own in by_part(runs).items()))
-
-
-def by_part(runs):
-    parts = {}
-    for run in runs:
-        parts.setdefault(part_of(run), []).append(run)
-    return parts
-
-
 def part_of(run):
     return run.path.rpartition("/")[0] or run.group
-
-
-def run_details(run, links):
-    description = str(run.scenario.get("description", ""))
-    source = str(run.scenario.get("source", ""))
-    about = f"<p>{text(description)}" + (f" <span class=note>Thesis: {text(source)}</span>" if source else "") + "</p>"
-    claims, figures = links.of_run(run)
-    parts = [(title, run.scenario.get(title)) for title in run.scenario
-             if title not in ("name", "description", "source", "expect")]
-    return (f'<details id="{run.anchor}"><summary>{text(run.path)}</summary>{about}'
-            f"{listed('Claims', claims)}{listed('Figures', figures)}{command(rerun(run))}"
-            f"{live_link(run.scenario)}<pre>{text(compact(dict(parts)))}</pre>"
-            f"<p class=note>State hash {text(run.summary.get('state_hash', '–'))}, scenario hash "
-            f"{text(at(run.summary, '/provenance/scenario_hash') or '–')}{plugin_text(run)}.</p></details>")
-
-
-def rerun(run):
-    """The command of this very run. A comparison is one scenario through several algorithms."""
-    line = f"hapbench run {run.name} --out {run.path}"
-    return line + (f" --set rendering.algorithm={run.algorithm}" if run.compared else "")
-
-
-def compact(parts):
-    """One line per part."""
-    return "\n".join(f"{key}: {json.dumps(value, ensure_ascii=False)}" for key, value in parts.items())
 
 
 def plugin_text(run):

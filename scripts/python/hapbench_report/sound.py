@@ -5,6 +5,7 @@ import sys
 from array import array
 
 import numpy as np
+from scipy import signal
 
 CUTOFF_HZ = 30.0
 # Two minutes at 2 kHz; half a megabyte in the page.
@@ -28,7 +29,7 @@ def sound(columns):
     rate = (len(times) - 1) / (times[-1] - times[0])
     if rate < 4 * CUTOFF_HZ:
         return None
-    filtered = np.array([high_passed(columns[f"f{axis}_N"][:LONGEST].tolist(), rate) for axis in "xyz"])
+    filtered = np.array([high_passed(columns[f"f{axis}_N"][:LONGEST], rate) for axis in "xyz"])
     if not (np.abs(filtered) < 1e30).all():
         return None
     heard = strongest(filtered) @ filtered
@@ -43,20 +44,8 @@ def sound(columns):
 
 def high_passed(samples, rate):
     """Butterworth of fourth order, as in results/observe/contact_forces.hpp, at rest at the first sample."""
-    k = math.tan(math.pi * CUTOFF_HZ / rate)
-    for i, angle in enumerate((math.pi / 8, 3 * math.pi / 8)):
-        k_over_q = k * 2 * math.cos(angle)
-        n = 1 / (1 + k_over_q + k * k)
-        a1, a2 = 2 * n * (k * k - 1), n * (1 - k_over_q + k * k)
-        s1, s2 = (-n * samples[0], n * samples[0]) if i == 0 else (0.0, 0.0)
-        out = []
-        for x in samples:
-            bx = n * x
-            y = bx + s1
-            s1, s2 = s2 - 2 * bx - a1 * y, bx - a2 * y
-            out.append(y)
-        samples = out
-    return samples
+    sections = signal.butter(4, CUTOFF_HZ, "high", fs=rate, output="sos")
+    return signal.sosfilt(sections, samples, zi=signal.sosfilt_zi(sections) * samples[0])[0]
 
 
 def strongest(signals):

@@ -1,0 +1,146 @@
+"""Both pages, that of own runs and that of the thesis, in a real headless Chromium: each fits, can be read in both themes and says
+nothing to the console; its replay, tables and figures answer the hand."""
+import base64
+import unittest
+
+from fixture import hapbench, main, scratch_folder
+from headless_chromium import Page, downloaded
+from report_fixture import make_claims, make_figures, make_results, report
+
+# Decodes a screenshot in the page and counts its colours.
+COUNT_COLOURS = """(async () => {
+  const picture = new Image();
+  picture.src = "data:image/png;base64,%s";
+  await picture.decode();
+  const canvas = Object.assign(document.createElement("canvas"), {width: picture.width, height: picture.height});
+  const context = canvas.getContext("2d");
+  context.drawImage(picture, 0, 0);
+  return new Set(new Uint32Array(context.getImageData(0, 0, canvas.width, canvas.height).data.buffer)).size;
+})()"""
+PLAYING = "document.getElementById('replay-player').dataset.playing"
+
+
+def setUpModule():
+    root = scratch_folder(unittest)
+    hapbench("compare", "mesh_molar", "--algorithms", "original_averaging,shaped_stiffness,proxy,mean", "--set", "time.duration_s=0.5",
+             "--set", "record.contacts=true", "--quiet", "--out", root / "molar")
+    hapbench("run", "springs_limited_mean", "--quiet", "--out", root / "springs")
+    hapbench("report", root / "molar", root / "springs", "--quiet", "--out", root / "page.html")
+    make_results(root / "results")
+    make_figures(root / "figures")
+    make_claims(root / "claims.json")
+    done = report(root / "results", "--figures", root / "figures", "--claims", root / "claims.json", "--out", root / "report.html")
+    assert done.returncode == 0, done.stderr
+    OwnPage.show(root / "page.html")
+    OwnPage.root, OfThesis.url, OfThesis.browser = root, (root / "report.html").as_uri(), OwnPage.browser
+
+
+class EveryPage:
+    def test_it_fits_can_be_read_and_shows_something(self):
+        self.check_every_page()
+        for width in (400, 1400):
+            for dark in (False, True):
+                self.browser.size(width, 900)
+                self.browser.dark(dark)
+                self.assertLessEqual(self.js("document.documentElement.scrollWidth"), width)
+                for part in self.PARTS:
+                    self.js(f"document.getElementById('{part}').scrollIntoView()")
+                    shot = base64.b64encode(self.browser.screenshot()).decode()
+                    # Text alone has tens of shades of grey.
+                    self.assertGreater(self.js(COUNT_COLOURS % shot), 20, part)
+        self.assertTrue(self.browser.pdf().startswith(b"%PDF-"))
+
+    def test_pictures_are_loaded(self):
+        self.assertEqual(self.js("[...document.images].filter((i) => !(i.complete && i.naturalWidth > 0)).length"), 0)
+
+
+class OwnPage(EveryPage, Page):
+    PARTS = ("summary", "replay", "curves", "pareto", "metrics")
+
+    def test_begins_with_numbers(self):
+        first = self.js("[...document.querySelectorAll('#summary table tbody tr')].map((row) => [...row.cells].map((c) => c.textContent))")
+        self.assertEqual(len(first), 5)
+        self.assertRegex(" ".join(first[0]), r"original averaging\b.* completes .*%.* \d")
+
+    def test_it_plays_with_sound(self):
+        self.choose("#replay-views", "3")
+        self.assertEqual(self.js("[...document.querySelectorAll('.side:not([hidden])')].length"), 3)
+        self.choose("#replay-speed", "0.05")
+        self.click("#replay-sound")
+        self.browser.wait_for("player.sound.grains > 5")
+        self.click("#replay-play")
+        self.browser.wait_for(f"{PLAYING} === 'false'")
+        self.assertGreater(self.time(), 0)
+
+    def test_a_link_leads_back(self):
+        self.choose("#replay-views", "1")
+        self.choose(".side select", "2")
+        self.js("player.seek(0.125)")
+        self.click("#replay-link")
+        hash_ = self.js("location.hash")
+        self.open(hash_)
+        self.assertEqual((hash_, self.time()), ("#replay=mesh_molar,t=0.125,runs=2", 0.125))
+        self.open("#replay=nothing,t=x")
+        self.assertEqual(self.time(), 0)
+
+    def test_saves_a_picture(self):
+        self.browser.call("Page.setDownloadBehavior", behavior="allow", downloadPath=str(self.root))
+        self.click("#replay-picture")
+        self.assertTrue(downloaded(self.root, "*.png").read_bytes().startswith(b"\x89PNG"))
+
+    def test_springs_have_a_replay_too(self):
+        self.js("player.openScene(1)")
+        drawn = self.js("document.querySelector('.view').toDataURL()")
+        self.js("player.seek(0.1)")
+        self.assertNotEqual(drawn, self.js("document.querySelector('.view').toDataURL()"))
+
+
+class OfThesis(EveryPage, Page):
+    PARTS = ("summary", "ledger", "replay", "figures", "runs")
+
+    def test_keys_and_pointer_move_the_tools(self):
+        tips = "[...document.querySelectorAll('.side:not([hidden])')].map((side) => side.dataset.tip)"
+        self.choose("#replay-scene", 1)
+        self.js("document.getElementById('replay-time').focus()")
+        before = self.js(tips)
+        self.browser.key("ArrowRight")
+        self.assertTrue(all(a != b for a, b in zip(before, self.js(tips))))
+        self.browser.key("Home")
+        self.assertEqual(self.js(tips), before)
+        x, y = self.centre(".view")
+        self.browser.mouse("mouseWheel", x, y, deltaX=0, deltaY=-200)
+
+    def test_the_points_in_the_tool_are_the_recorded_ones(self):
+        """Over rows of all recordings: how many points the page finds in the tool, at least and at most, against the number recorded.
+        Places are rounded to half a step of the packing, the pose to single precision: only points within three steps of the
+        surface may change sides. Of a scene with more points than are drawn there may be more in the tool."""
+        for scene in range(2):
+            self.choose("#replay-scene", scene)
+            self.assertEqual(self.js("""(() => {
+              const scene = player.scene, wrong = [], step = 3 * player.packed[%d].shellScale;
+              for (const recording of scene.recordings) for (let row = 0; row < recording.length; row += 7) {
+                const depths = scene.points.map((point) => scene.depthIn(point.at, recording.tip(row), recording.axis(row)));
+                const least = depths.filter((d) => d >= step).length, most = depths.filter((d) => d >= -step).length;
+                if (recording.colliding[row] < least || %s && recording.colliding[row] > most) wrong.push([recording.algorithm, row]);
+              }
+              return wrong;
+            })()""" % (scene, "true" if scene else "false")), [])
+
+    def test_runs_sort_and_filter(self):
+        column = "[...document.querySelectorAll('#runs-table tbody tr:not([hidden])')].map((r) => r.cells[5].dataset.sort)"
+        for sign in (1, -1):
+            self.click("#runs-table thead th:nth-child(6) button")
+            values = [float(value) for value in self.js(column)]
+            self.assertEqual(values, sorted(values, key=lambda value: sign * value))
+        self.js("document.querySelector('[data-filters=runs-table] input').focus()")
+        self.browser.call("Input.insertText", text="poke")
+        self.assertEqual(len(self.js(column)), 1)
+
+    def test_a_figure_enlarges(self):
+        self.click(".enlarge")
+        self.assertTrue(self.js("document.getElementById('enlarged').open"))
+        self.browser.wait_for("document.getElementById('enlarged').querySelector('img').naturalWidth > 0")
+
+
+if __name__ == "__main__":
+    main()
