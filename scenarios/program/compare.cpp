@@ -284,12 +284,12 @@ void widen_tolerances(std::vector<Result>& reports, const ComparedErrors& errors
   }
 }
 
-/// The tables of one scenario's runs.
+/// The tables of one scenario's runs, and who does better.
 std::string comparison_text(const Answer& answer) {
   const std::vector<Result>& reports = answer.reports;
-  return fmt::format("{}\n\n{}{}{}\n{}{}", reports.front().name, run_table(reports, false), fidelity_text(reports),
-                     unsettled_text(reports),
-                     wrapped(scene_verdict(answer.league, answer.errors ? &answer.errors->finer : nullptr), 0),
+  const std::string verdict = scene_verdict(answer.league, answer.errors ? &answer.errors->finer : nullptr);
+  return fmt::format("{}\n\n{}{}{}{}{}", reports.front().name, run_table(reports, false), fidelity_text(reports),
+                     unsettled_text(reports), verdict.empty() ? "" : "\n" + wrapped(verdict, 0),
                      output_is_in_full() ? step_time_text(reports) : "");
 }
 

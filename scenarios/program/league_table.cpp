@@ -112,7 +112,9 @@ std::string league_verdict(const League& league) {
     ++rankings;
     first += *standing.rank == 1;
   }
-  if (first == rankings) return fmt::format("{} is first in all {} rankings\n", best.algorithm, rankings);
+  if (first == rankings)
+    return fmt::format("{} is first{}\n", best.algorithm,
+                       rankings > 1 ? fmt::format(" in all {} rankings", rankings) : "");
   return fmt::format("not decided: {} has the best mean rank, but is first in {} of {} rankings\n", best.algorithm,
                      first, rankings);
 }

@@ -48,7 +48,7 @@ TEST_F(RunCommand, WritesWhatTheScenarioRecords) {
 
 TEST_F(RunCommand, ShowsSevenColumnsAndARowForEachScenario) {
   const auto lines = lines_of(hapbench({"run", "single_spring", "single_damper", "--out", out()}).out);
-  ASSERT_EQ(lines.size(), 12u);
+  ASSERT_EQ(lines.size(), 11u);
   EXPECT_EQ(words_of(lines[2]).size(), 7u) << lines[2];
   EXPECT_EQ(lines[3].find("single_spring  summation  completes"), 0u) << lines[3];
   EXPECT_EQ(lines[4].find("single_damper  summation  completes"), 0u) << lines[4];
