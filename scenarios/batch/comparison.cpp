@@ -175,11 +175,8 @@ void replace_earlier_results(const fs::path& directory, const ResultList& now) {
     remove_empty(directory, run);
   }
   std::error_code ignored;
-  for (const fs::path& table : listed(directory, "tables")) {
-    if (!fs::is_regular_file(directory / table, ignored)) continue;
-    fs::remove(directory / table, ignored);
-    remove_empty(directory, table.parent_path());
-  }
+  for (const fs::path& table : listed(directory, "tables"))
+    if (fs::remove(directory / table, ignored)) remove_empty(directory, table.parent_path());
   write_file_atomically(directory / kResultListFile,
                         json_text({{"runs", texts_of(now.runs)}, {"tables", texts_of(now.tables)}}));
 }

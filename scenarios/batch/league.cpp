@@ -15,15 +15,6 @@
 namespace hapbench {
 namespace {
 
-bool do_seeds_matter(const League& league, std::size_t scenario) {
-  for (std::size_t a = 0; a < league.algorithms.size(); ++a) {
-    const auto runs = league.runs_of(scenario, a);
-    const auto differs = [&](const LeagueRun& run) { return run.state_hash != runs[0].state_hash; };
-    if (std::ranges::any_of(runs, differs)) return true;
-  }
-  return false;
-}
-
 /// The seeds in which none of the algorithms fails that have at most so many failures.
 std::vector<std::size_t> seeds_without_failure(const League& league, std::size_t scenario, std::size_t most_failures) {
   std::vector<std::size_t> seeds;
@@ -123,7 +114,10 @@ std::size_t League::failures(std::size_t scenario, std::size_t algorithm) const 
 
 void League::rank() {
   for (std::size_t s = 0; s < scenarios.size(); ++s) {
-    seeds_matter.push_back(do_seeds_matter(*this, s));
+    bool matter = false;
+    for (std::size_t a = 0; a < algorithms.size(); ++a)
+      for (const LeagueRun& run : runs_of(s, a)) matter |= run.state_hash != runs_of(s, a)[0].state_hash;
+    seeds_matter.push_back(matter);
     common.push_back(seeds_without_failure(*this, s, seeds - 1));
     if (common.back().empty()) common.back() = seeds_without_failure(*this, s, 0);
     const std::size_t first = standings.size();

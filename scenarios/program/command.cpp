@@ -55,6 +55,21 @@ void add_jobs(Command& command, unsigned& jobs, const std::string& help) {
   command.add("--jobs", jobs, help, {.range = {{1, 1024}}});
 }
 
+void add_out(Command& command, std::string& out, const std::string& name) {
+  command.add("--out", out, fmt::format("directory of the results (default: results/out/{})", name));
+}
+
+void add_algorithms(Command& command, std::vector<std::string>& algorithms, const std::string& otherwise) {
+  command.add("--algorithms", algorithms, fmt::format("names separated by commas, or all (default: {})", otherwise),
+              {.comma_separated = true});
+}
+
+void add_common(Command& command, CommonOptions& options, const std::string& name) {
+  add_jobs(command, options.jobs);
+  add_out(command, options.out, name);
+  add_overrides(command, options.overrides);
+}
+
 void print(const OutputOptions& options, const std::string& text, const Json& json) {
   if (options.quiet) return;
   const std::string output = options.json ? json_text(json) : fitted(text);

@@ -46,6 +46,12 @@ struct CommonOptions {
 void add_overrides(Command& command, std::vector<std::string>& overrides);
 /// Adds --jobs, at least 1. Zero means not given.
 void add_jobs(Command& command, unsigned& jobs, const std::string& help = shared_option_help("--jobs"));
+/// Adds --out; `name`: of the folder below results/out without it.
+void add_out(Command& command, std::string& out, const std::string& name);
+/// Adds --algorithms; `otherwise`: those without it.
+void add_algorithms(Command& command, std::vector<std::string>& algorithms, const std::string& otherwise);
+/// Adds --jobs, --out and --set.
+void add_common(Command& command, CommonOptions& options, const std::string& name);
 
 /// Prints `text`, as wide as the output is, or `json` under --json, or nothing under --quiet.
 void print(const OutputOptions& options, const std::string& text, const Json& json);

@@ -16,7 +16,7 @@
 #include "scenarios/description/bundled_scenarios.hpp"
 #include "scenarios/description/metric_sections.hpp"
 #include "scenarios/program/command.hpp"
-#include "scenarios/program/index.hpp"
+#include "scenarios/program/league_table.hpp"
 #include "scenarios/program/report.hpp"
 #include "scenarios/program/run_table.hpp"
 #include "scenarios/run/result_folder.hpp"
@@ -28,163 +28,6 @@ namespace hapbench {
 namespace {
 
 namespace fs = std::filesystem;
-
-// ---- The tables of a league
-
-/// "A" ... "Z", "AA", "AB", ...: short names for scenarios.
-std::string letter(std::size_t scenario) {
-  const std::string last(1, static_cast<char>('A' + scenario % 26));
-  return scenario < 26 ? last : letter(scenario / 26 - 1) + last;
-}
-
-std::string letters(const std::vector<std::size_t>& scenarios) {
-  std::vector<std::string> texts;
-  for (const std::size_t scenario : scenarios) texts.push_back(letter(scenario));
-  return fmt::format("{}", fmt::join(texts, " "));
-}
-
-/// By how much the mean may be wrong: by what its numbers may be, or by what another choice of seeds gives.
-std::optional<double> mean_error(const Standing& standing) {
-  if (!standing.spread) return standing.tolerance;
-  const double of_seeds = *standing.spread / std::sqrt(static_cast<double>(standing.common_seeds));
-  return std::max(standing.tolerance, std::optional(of_seeds));
-}
-
-std::string rank_text(const Standing& standing) {
-  return standing.rank ? fmt::format("{}{}", *standing.rank, standing.failed > 0 ? 'x' : ' ') : "- ";
-}
-
-std::string mean_text(const Standing& standing) {
-  return standing.mean ? deserved(*standing.mean, mean_error(standing)) : "-";
-}
-
-/// A row is the standings of an algorithm by one metric in each scenario.
-using StandingsRow = std::vector<const Standing*>;
-
-/// `with_spread`: also mean and spread of each scenario.
-Columns<StandingsRow> standings_columns(std::size_t scenarios, bool with_spread) {
-  Columns<StandingsRow> columns;
-  columns.print("algorithm", "", "", [](const StandingsRow& r) { return r[0]->algorithm; });
-  for (std::size_t s = 0; s < scenarios; ++s) {
-    columns.print(scenarios > 1 ? letter(s) + " " : "rank ", "1",
-                  scenarios > 1
-                      ? "of compare: rank in the scenario that has this letter above the table; x: a run failed"
-                      : "rank",
-                  [s](const StandingsRow& r) { return rank_text(*r[s]); });
-    if (!with_spread) continue;
-    columns.print("mean", "1", "mean", [s](const StandingsRow& r) { return mean_text(*r[s]); });
-    columns.print("spread", "1", "spread", [s](const StandingsRow& r) { return significant(r[s]->spread, 2); });
-  }
-  return columns;
-}
-
-std::string standings_text(const League& league, std::size_t metric) {
-  const std::size_t scenarios = league.scenarios.size();
-  std::vector<StandingsRow> rows(league.algorithms.size());
-  for (std::size_t a = 0; a < rows.size(); ++a)
-    for (std::size_t s = 0; s < scenarios; ++s) rows[a].push_back(&league.at(s, a, metric));
-  const Table table = standings_columns(scenarios, true).table(rows);
-  return table.width() <= prose_width() ? table.text()
-                                        : standings_columns(scenarios, false).table(rows).text(prose_width());
-}
-
-Columns<LawStanding> mean_rank_columns() {
-  Columns<LawStanding> columns;
-  columns.print("algorithm", "", "", &LawStanding::algorithm);
-  columns.print("mean rank", "1",
-                "mean of the algorithm's ranks over all metrics and scenarios, with those after failures",
-                [](const LawStanding& l) { return significant(l.mean_rank, 3); });
-  columns.print("fails", "", "letters of the scenarios in which a run failed",
-                [](const LawStanding& l) { return letters(l.fails); });
-  return columns;
-}
-
-/// Says where no spread is known, and why.
-std::string spread_text(const League& league) {
-  if (league.seeds < 2) return "one seed: no spread is known; --seeds K gives one\n";
-  std::vector<std::size_t> alike;
-  for (std::size_t s = 0; s < league.seeds_matter.size(); ++s) {
-    if (!league.seeds_matter[s]) alike.push_back(s);
-  }
-  if (alike.empty()) return "\"hapbench report\" says what lies between laws, seed by seed\n";
-  return fmt::format(
-      "nothing is random in {}: all seeds are one run, no spread is known; --jitter METRES shifts the start\n",
-      letters(alike));
-}
-
-/// Names the seeds that the means are over, in a scenario in which some runs failed.
-std::string failed_seeds_text(const League& league, std::size_t scenario) {
-  std::vector<std::string> failed;
-  for (std::size_t a = 0; a < league.algorithms.size(); ++a) {
-    const std::size_t failures = league.failures(scenario, a);
-    if (failures > 0 && failures < league.seeds) failed.push_back(fmt::format("{} {}", league.algorithms[a], failures));
-  }
-  if (failed.empty()) return "";
-  return fmt::format("\n   means over {} of {} seeds; failed: {}", league.common[scenario].size(), league.seeds,
-                     fmt::join(failed, ", "));
-}
-
-/// league.csv, a row for each scenario, algorithm and metric.
-Columns<Standing> league_columns() {
-  Columns<Standing> columns;
-  columns.add("scenario", "", "name of the scenario", &Standing::scenario);
-  columns.add("algorithm", "", "force algorithm", &Standing::algorithm);
-  columns.add("metric", "", "name of the metric; its unit is part of the name", &Standing::metric);
-  columns.add("seeds", "1", "seeds of the algorithm in the scenario", &Standing::seeds);
-  columns.add("failed", "1", "seeds that failed", &Standing::failed);
-  columns.add("outcome", "", "how the runs ended; of several ways with their numbers", &Standing::outcome);
-  columns.add("mean", "by name", "mean of the metric over the common seeds; empty when there is none", &Standing::mean);
-  columns.add("spread", "by name",
-              "standard deviation over these seeds; empty when there is one, or when seeds change nothing",
-              &Standing::spread);
-  columns.add(
-      "rank", "1",
-      "1 + the number of algorithms that did better in this scenario by this metric; those with failures are last",
-      &Standing::rank);
-  columns.add("common_seeds", "1",
-              "seeds that mean and spread are over: those in which no algorithm failed that has any success in the "
-              "scenario; if there are none, all seeds of the algorithms that never failed",
-              &Standing::common_seeds);
-  columns.add("better", "",
-              "less or more, whichever is better of the metric; empty when neither is, and nothing is ranked",
-              [](const Standing& s) {
-                return s.better == Better::none ? Cell() : Cell(s.better == Better::less ? "less" : "more");
-              });
-  return columns;
-}
-
-/// For each metric a table of algorithms and scenarios, with rank, mean and spread as far as they fit into the output,
-/// then a line for each algorithm.
-std::string league_text(const League& league) {
-  std::string text;
-  for (std::size_t s = 0; s < league.scenarios.size(); ++s)
-    text += fmt::format("{}  {}{}\n", letter(s), league.scenarios[s], failed_seeds_text(league, s));
-  for (std::size_t m = 0; m < league.metrics.size(); ++m) {
-    const Better better = league.better[m];
-    text += fmt::format("\n{}, {}\n\n{}", league.metrics[m],
-                        better == Better::less   ? "less is better"
-                        : better == Better::more ? "more is better"
-                                                 : "neither less nor more is better: not ranked",
-                        standings_text(league, m));
-  }
-  return text + fmt::format(
-                    "\nall metrics and scenarios\n\n{}\n"
-                    "Means closer than {} % share a rank. x: a run failed; it ranks behind all that did not, by the\n"
-                    "number of failures; of the others those without such a number are last.\n{}",
-                    mean_rank_columns().table(league.laws).text(), 100.0 * kSameRank, spread_text(league));
-}
-
-Json league_json(const League& league) {
-  Json rows = Json::array(), laws = Json::array();
-  const Columns<Standing> columns = league_columns();
-  for (const Standing& standing : league.standings) rows.push_back(columns.json(standing));
-  for (const LawStanding& law : league.laws) {
-    std::vector<std::string> fails;
-    for (const std::size_t scenario : law.fails) fails.push_back(league.scenarios[scenario]);
-    laws.push_back({{"algorithm", law.algorithm}, {"mean_rank", or_null(law.mean_rank)}, {"fails", fails}});
-  }
-  return {{"standings", std::move(rows)}, {"laws", std::move(laws)}};
-}
 
 // ---- Errors of --errors: which numbers are how sure, and which order of laws is larger than that
 
@@ -220,12 +63,15 @@ KnownError mean_error(const League& league, const FinerRuns& finer, std::size_t 
   return mean;
 }
 
-MetricNumbers numbers_of(const League& league, const FinerRuns& finer, std::size_t scenario, std::size_t metric) {
+/// Without finer runs the errors are the metric's own tolerances. Laws that failed have no number.
+MetricNumbers numbers_of(const League& league, const FinerRuns* finer, std::size_t scenario, std::size_t metric) {
   MetricNumbers found;
   for (std::size_t a = 0; a < league.algorithms.size(); ++a) {
-    const KnownError& known = found.known.emplace_back(mean_error(league, finer, scenario, a, league.metrics[metric]));
-    const bool failed = league.failures(scenario, a) > 0;
-    found.numbers.push_back({failed ? std::nullopt : league.at(scenario, a, metric).mean, known.sum()});
+    const Standing& standing = league.at(scenario, a, metric);
+    KnownError known{.step = 0.0, .spacing = 0.0, .tolerance = standing.tolerance.value_or(0.0)};
+    if (finer != nullptr) known = mean_error(league, *finer, scenario, a, standing.metric);
+    found.numbers.push_back({standing.failed > 0 ? std::nullopt : standing.mean, known.sum()});
+    found.known.push_back(known);
   }
   return found;
 }
@@ -247,27 +93,28 @@ Json numbers_json(const MetricNumbers& found, const std::vector<std::string>& al
   return {{"order", std::move(order)}, {"numbers", std::move(numbers)}};
 }
 
-/// Adds a table of the numbers of a scenario with their errors, and a sentence on each metric.
-void add_errors(const League& league, std::size_t scenario, ComparedErrors& errors) {
+/// Adds a table of the numbers of a scenario with their errors, and a sentence on each metric that it shows.
+void add_errors(const League& league, std::size_t scenario, bool all, ComparedErrors& errors) {
   Columns<std::size_t> columns;  // a row is the place of an algorithm
   columns.print("algorithm", "", "", [&league](std::size_t a) { return league.algorithms[a]; });
+  const std::vector<RunHeading> headings = shown_headings();
   std::string sentences;
   for (std::size_t m = 0; m < league.metrics.size(); ++m) {
     const std::string& metric = league.metrics[m];
-    const MetricNumbers found = numbers_of(league, errors.finer, scenario, m);
-    const auto* heading = std::ranges::find(kRunHeadings, metric, &RunHeading::metric);
-    const bool known = heading != std::end(kRunHeadings);
-    const double factor = known ? heading->factor : 1.0;
-    columns.print(known ? heading->title : metric, "by name", "", [numbers = found.numbers, factor](std::size_t a) {
-      const auto& [value, error] = numbers[a];
-      const auto scaled = error ? std::optional(factor * *error) : std::nullopt;
-      return value ? with_error_text(factor * *value, scaled) : "-";
-    });
+    const MetricNumbers found = numbers_of(league, &errors.finer, scenario, m);
     const std::string says = held_text(found.numbers, league.algorithms, kSameRank);
-    sentences += wrapped(fmt::format("{}: {}", metric, says), 0);
     Json& json = errors.json.emplace_back(Json{{"scenario", league.scenarios[scenario]}, {"metric", metric}});
     json.update(numbers_json(found, league.algorithms));
     json["says"] = says;
+    const auto heading = std::ranges::find(headings, metric, &RunHeading::metric);
+    const bool known = heading != headings.end();
+    if (!known && !all) continue;
+    const double factor = known ? heading->factor : 1.0;
+    columns.print(known ? heading->title : metric, "by name", "", [numbers = found.numbers, factor](std::size_t a) {
+      const auto& [value, error] = numbers[a];
+      return value ? with_error_text(factor * *value, error ? std::optional(factor * *error) : error) : "-";
+    });
+    sentences += wrapped(fmt::format("{}: {}", metric, says), 0);
   }
   std::vector<std::size_t> places(league.algorithms.size());
   std::iota(places.begin(), places.end(), std::size_t{0});
@@ -276,19 +123,62 @@ void add_errors(const League& league, std::size_t scenario, ComparedErrors& erro
                   sentences, wrapped(fmt::format("+-: {}", errors.finer.refined(scenario)), 0));
 }
 
-/// Runs the comparison more finely. Comparison and reports have to outlive the answer. Throws Stopped.
-ComparedErrors errors_of(const League& league, const Comparison& comparison, std::span<const Result> reports,
-                         const JobOptions& jobs) {
-  ComparedErrors errors{FinerRuns(comparison, reports, jobs)};
-  for (std::size_t s = 0; s < comparison.scenes.size(); ++s) add_errors(league, s, errors);
-  errors.text +=
-      "\n" +
-      wrapped(
-          "+-: how far half and a quarter of the step and of the distance of the points move a number, and what the metric "
-          "itself may be wrong by. <: less by more than both errors, every law to the left than every one to the right; ~: "
-          "not so. -: a run failed. ?: a finer run ends otherwise or has no such number.",
-          0);
-  return errors;
+// ---- Who does better, in a sentence
+
+/// "14 times less" or "3 % less", for a number below another one.
+std::string less_text(double less, double more) {
+  if (less * 1000.0 < more) return "over 1000 times less";
+  return less * 2.0 <= more ? fmt::format("{:.2g} times less", more / less)
+                            : fmt::format("{:.2g} % less", 100.0 * (1.0 - less / more));
+}
+
+/// "enters 3 % deeper"; empty where a depth is not known.
+std::string depth_text(const NumberWithError& here, const NumberWithError& there) {
+  if (!here.value || !there.value) return "";
+  const auto [less, more] = std::minmax(*here.value, *there.value);
+  const double error = here.error.value_or(more) + there.error.value_or(more);
+  if (more - less <= std::max(error, kSameRank * more)) return ", and enters as deep";
+  if (*here.value == less) return fmt::format(", and enters {} deep", less_text(less, more));
+  return more >= 2.0 * less ? fmt::format(", and enters {:.2g} times as deep", more / less)
+                            : fmt::format(", and enters {:.2g} % deeper", 100.0 * (more / less - 1.0));
+}
+
+/// Says which law of a scene vibrates least and how deep its tool enters, or that this is not decided. Where a law has
+/// no settled contact, as one that throws the tool out, the vibration is that of the tool.
+std::string scene_verdict(const League& league, const FinerRuns* finer) {
+  constexpr double kUnfelt = 1e-4, kUnfeltPower = 1e-10;  // [N], [m2/s2] of vibration, below what any hand feels
+  const auto numbers = [&](const char* metric, double least_error) {
+    const auto place = std::ranges::find(league.metrics, metric) - league.metrics.begin();
+    std::vector<NumberWithError> found = numbers_of(league, finer, 0, static_cast<std::size_t>(place)).numbers;
+    for (NumberWithError& number : found)
+      if (number.error) *number.error += least_error;
+    return found;
+  };
+  std::vector<std::string> failing, others;
+  for (std::size_t a = 0; a < league.algorithms.size(); ++a)
+    (league.failures(0, a) > 0 ? failing : others).push_back(league.algorithms[a]);
+  const std::size_t left = others.size();
+  const std::string fail = failing.empty() ? "" : fmt::format("; failing: {}", fmt::join(failing, ", "));
+  if (league.algorithms.size() < 2) return "";
+  if (left == 0) return "not decided: every law fails";
+  if (left == 1) return fmt::format("{} alone does not fail{}", others[0], fail);
+  std::vector<NumberWithError> vibrations = numbers("force_rms_above_30Hz_N", kUnfelt);
+  const auto has_value = [](const NumberWithError& number) { return number.value.has_value(); };
+  const bool of_force = static_cast<std::size_t>(std::ranges::count_if(vibrations, has_value)) == left;
+  if (!of_force) vibrations = numbers(kToolVibrationPower, kUnfeltPower);
+  const auto& [groups, unplaced] = held_order(vibrations, kSameRank);
+  if (groups.size() < 2 || groups[0].size() > 1 || !unplaced.empty()) {
+    return fmt::format("not decided, by the vibration of the {}: {}{}", of_force ? "force" : "tool",
+                       held_text(vibrations, league.algorithms, kSameRank), fail);
+  }
+  const std::size_t best = groups[0][0], next = groups[1][0];
+  const auto size = [&](std::size_t a) { return of_force ? *vibrations[a].value : std::sqrt(*vibrations[a].value); };
+  const std::vector<NumberWithError> depths = numbers("inside_max_m", 0.0);
+  return fmt::format("{} vibrates {} than {}{}{}{}{}{}", league.algorithms[best], less_text(size(best), size(next)),
+                     league.algorithms[next], left > 2 ? ", the next" : "",
+                     of_force ? "" : " (the tool above 30 Hz, as not all forces settle)",
+                     depth_text(depths[best], depths[next]), fail,
+                     finer != nullptr ? "" : "; --errors tells whether finer runs agree");
 }
 
 // ---- The command
@@ -349,10 +239,10 @@ void prepare(const Asked& asked) {
   announce_large_output(bytes);
 }
 
-/// The metrics of the league, or without one those of the printed table.
+/// The metrics of the league, or without one those of the table with --wide.
 std::vector<std::string> compared(const Asked& asked, const std::vector<Result>& reports) {
   if (asked.league) return asked.options.metrics;
-  std::vector<std::string> metrics;
+  std::vector<std::string> metrics = {"force_max_N", kToolVibrationPower};
   for (const RunHeading& heading : kRunHeadings) metrics.emplace_back(heading.metric);
   if (have_reference(reports)) metrics.insert(metrics.end(), kFidelityMetrics, std::end(kFidelityMetrics) - 1);
   return metrics;
@@ -368,13 +258,17 @@ struct Answer {
 Answer answer_to(const Asked& asked) {
   const CompareOptions& options = asked.options;
   const JobOptions jobs = job_options(options, "compare");
-  // The table of a single comparison shows times, which concurrent runs would lengthen.
-  const unsigned at_once = options.jobs > 0 || asked.league ? jobs.threads : 1;
+  // The wide table of a single comparison shows times, which concurrent runs would lengthen.
+  const unsigned at_once = options.jobs > 0 || asked.league || !output_is_in_full() ? jobs.threads : 1;
   try {
     Answer answer{run_all(asked.comparison.scenes, {at_once, jobs.label},
                           [&asked](std::size_t run) { return asked.out / asked.comparison.folder(run); })};
-    answer.league = league_of(asked.comparison, answer.reports, compared(asked, answer.reports));
-    if (options.errors) answer.errors.emplace(errors_of(answer.league, asked.comparison, answer.reports, jobs));
+    const League& league = answer.league = league_of(asked.comparison, answer.reports, compared(asked, answer.reports));
+    if (!options.errors) return answer;
+    ComparedErrors& errors = answer.errors.emplace(ComparedErrors{FinerRuns(asked.comparison, answer.reports, jobs)});
+    for (std::size_t s = 0; s < league.scenarios.size(); ++s)
+      add_errors(league, s, asked.league || output_is_in_full(), errors);
+    errors.text += "\n" + wrapped("<: less by more than both errors; ~: not so; ?: a finer run ends otherwise", 0);
     return answer;
   } catch (const Stopped&) {
     forget_results_if_none(asked.out);
@@ -390,24 +284,26 @@ void widen_tolerances(std::vector<Result>& reports, const ComparedErrors& errors
   }
 }
 
-/// The tables of one scenario's runs.
-std::string comparison_text(std::span<const Result> reports) {
-  return fmt::format("{}\n\n{}{}{}{}", reports.front().name, run_table(reports, false), fidelity_text(reports),
-                     unsettled_text(reports), step_time_text(reports));
+/// The tables of one scenario's runs, and who does better.
+std::string comparison_text(const Answer& answer) {
+  const std::vector<Result>& reports = answer.reports;
+  const std::string verdict = scene_verdict(answer.league, answer.errors ? &answer.errors->finer : nullptr);
+  return fmt::format("{}\n\n{}{}{}{}{}", reports.front().name, run_table(reports, false), fidelity_text(reports),
+                     unsettled_text(reports), verdict.empty() ? "" : "\n" + wrapped(verdict, 0),
+                     output_is_in_full() ? step_time_text(reports) : "");
 }
 
 /// Names the algorithms of a single scenario whose definition fixes a depth model, if others use another one. Each of
 /// their runs would warn of it.
 std::string own_depth_models_text(const Comparison& comparison) {
+  if (std::holds_alternative<SpringsEnvironment>(comparison.load(0).scenario.environment)) return "";
   std::vector<std::string> own;
   std::set<std::string> models;
   for (std::size_t i = 0; i < comparison.size(); i += comparison.seeds) {
-    const Scenario scenario = comparison.load(i).scenario;
-    if (std::holds_alternative<SpringsEnvironment>(scenario.environment)) return "";
-    const RenderingConfig& rendering = scenario.rendering;
-    models.insert(rendering.depth_model);
-    if (!find_algorithm(rendering.algorithm)->fixed_depth_model.empty())
-      own.push_back(fmt::format("{} with {}", rendering.algorithm, rendering.depth_model));
+    const auto [model, fixed] = std::pair(comparison.load(i).scenario.rendering.depth_model,
+                                          find_algorithm(comparison.algorithm(i))->fixed_depth_model);
+    models.insert(model);
+    if (!fixed.empty()) own.push_back(fmt::format("{} with {}", comparison.algorithm(i), model));
   }
   if (models.size() < 2) return "";
   return wrapped(fmt::format("defined with a depth model of their own: {}", fmt::join(own, ", ")), 0);
@@ -449,27 +345,29 @@ int compare(const CompareOptions& options) {
   const Asked asked{options};
   print_warnings(asked.comparison.warnings);
   prepare(asked);
-  auto [reports, league, errors] = answer_to(asked);
+  Answer answer = answer_to(asked);
+  std::vector<Result>& reports = answer.reports;
   Report report(options.output, asked.out);
   for (std::size_t s = 0; s < asked.comparison.scenes.size(); ++s) {
     print_warnings(run_warnings(asked.of(s, reports)));
-    report.write(asked.table(s).c_str(), comparison_columns(options.seeds > 1),
-                 compared_runs(asked.of(s, reports), options.seeds));
+    std::vector<ComparedRun> runs;
+    for (const Result& run : asked.of(s, reports)) runs.push_back({runs.size() % options.seeds, &run});
+    report.write(asked.table(s).c_str(), comparison_columns(options.seeds > 1), runs);
   }
   report.json() = summaries_json(asked, reports);
   if (asked.league) {
-    report.write("league.csv", league_columns(), league.standings);
-    report.say(league_text(league));
+    report.write("league.csv", league_columns(false), answer.league.standings);
+    report.say(league_text(answer.league));
     report.json() = {{"runs", std::move(report.json())}};
-    report.json().update(league_json(league));
+    report.json().update(league_json(answer.league));
   } else {
-    if (errors) widen_tolerances(reports, *errors);
-    report.say(comparison_text(reports) + own_depth_models_text(asked.comparison));
-    if (errors) report.json() = {{"runs", std::move(report.json())}};
+    if (answer.errors) widen_tolerances(reports, *answer.errors);
+    report.say(comparison_text(answer) + own_depth_models_text(asked.comparison));
+    if (answer.errors) report.json() = {{"runs", std::move(report.json())}};
   }
-  if (errors) {
-    report.say(errors->text);
-    report.json()["errors"] = std::move(errors->json);
+  if (answer.errors) {
+    report.say(answer.errors->text);
+    report.json()["errors"] = std::move(answer.errors->json);
   }
   report.say(fmt::format("\nresults in {}\n", asked.out.string()));
   judge(asked, reports, report);
@@ -478,20 +376,12 @@ int compare(const CompareOptions& options) {
 
 }  // namespace
 
-std::vector<DescribedTable> league_tables() {
-  return {league_columns().described(
-              "league.csv", "of compare with several scenarios or seeds: one line per scenario, algorithm and metric"),
-          standings_columns(26, false).described(), standings_columns(1, true).described(),
-          mean_rank_columns().described()};
-}
-
 void add_compare(CommandLine& line) {
   auto [command, options] =
       line.command("compare", "Run scenarios through several algorithms side by side; several scenarios give a league",
                    compare, "the folders of finished runs are kept, but no table is written");
   command.add("scenarios", options.scenarios, "scenario files, names of bundled scenarios, or of groups of them");
-  command.add("--algorithms", options.algorithms, "names, separated by commas, or all (default: all)",
-              {.comma_separated = true});
+  add_algorithms(command, options.algorithms, "all");
   command.add("--seeds", options.seeds, "run each K times, time k with the scenario's seed + k (default: 1)",
               {.range = {{1, 10'000}}});
   command.add(
@@ -503,11 +393,7 @@ void add_compare(CommandLine& line) {
                   fmt::format("{}", fmt::join(kDefaultMetrics, ",")) +
                   "; fidelity where every scene has a reference force)",
               {.comma_separated = true});
-  add_jobs(command, options.jobs, "runs at once (default: one per thread; 1 where the table shows times)");
-  command.add(
-      "--out", options.out,
-      "directory of the results (default: results/out/compare_NAME, for several scenarios results/out/compare)");
-  add_overrides(command, options.overrides);
+  add_common(command, options, "compare_NAME, of several scenarios results/out/compare");
   command.flag("--errors", options.errors,
                "also run each at half and a quarter of the step and of the distance of the shell's points, and say of "
                "each metric how far that moves it and which laws' order holds");

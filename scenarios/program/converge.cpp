@@ -298,9 +298,7 @@ void add_converge(CommandLine& line) {
               {.range = {{kFewestLevels, kMostLevels}}});
   command.add("--ratio", options.ratio, "of each level to the next; whole for the step (default: 2)");
   command.add("--to", options.to, "also name the coarsest level with a smaller relative error, as 1%, and its cost");
-  add_jobs(command, options.jobs);
-  command.add("--out", options.out, "directory of the results (default: results/out/converge_NAME)");
-  add_overrides(command, options.overrides);
+  add_common(command, options, "converge_NAME");
   command.footer(
       "Observed order p, Richardson's value and grid convergence index of the three finest levels (Roache; ASME V&V 20; "
       "\"hapbench describe converge.csv\"). No order is stated, and the reason said, where contacts switch between them, "

@@ -281,8 +281,7 @@ void add_limit(CommandLine& line) {
   command.add("--between", options.between,
               "a:b, the range to search (default: a thousandth to a thousandfold of the scenario's value)");
   command.flag("--smallest", options.smallest, "find the smallest stable value instead, as of a mass");
-  command.add("--algorithms", options.algorithms, "names separated by commas, or all (default: each scenario's own)",
-              {.comma_separated = true});
+  add_algorithms(command, options.algorithms, "each scenario's own");
   command.add("--device", options.devices,
               "in place of each scene's own: presets, ideal, admittance, files NAME.json, all, or impedance for all "
               "presets, separated by commas; a preset also at both ends of what nobody published of it",
@@ -304,9 +303,7 @@ void add_limit(CommandLine& line) {
               "a stable run keeps metric=most or metric=least:most, too, as inside_settled_m=3e-4; repeatable");
   command.add("--resolution", options.resolution,
               "relative width of the answer (default: 0.001); of the range when the range reaches 0 or below");
-  add_jobs(command, options.jobs);
-  command.add("--out", options.out, "directory of the results (default: results/out/limit_NAME)");
-  add_overrides(command, options.overrides);
+  add_common(command, options, "limit_NAME");
   command.footer(
       "A run is stable when it comes to rest or dies out, the classes of \"hapbench describe stability\"; where a script moves the tool, when its handle does not vibrate. It is not "
       "stable when it vibrates, diverges, goes through the surface, is thrown out (leaves the hole, or ends without contact "

@@ -81,19 +81,17 @@ Columns<Row> place_columns(const LimitTable* table) {
 
 /// The edge that was asked for and the ends of the interval that it ends. Printed is the end on the other side, too.
 void add_ends(Columns<LimitRow>& columns, const LimitTable* table) {
-  const bool smallest = table != nullptr && table->first().asked.question.smallest;
-  const auto printed_if = [](bool shown, const std::string& heading) {
-    return Shown{.heading = shown ? heading : "", .digits = 6};
-  };
   const auto add_end = [&](bool low, const std::string& end, const char* meaning, const std::string& outside,
-                           const char* first, bool shown) {
+                           const char* first) {
+    const bool shown = table == nullptr || low != table->first().asked.question.smallest;
     columns.add(
         end, "by field", meaning, [low](const LimitRow& r) { return end_of(r, low).value; },
-        printed_if(shown, end + " end"), [low](const LimitRow& r) { return end_of(r, low).tolerance(); });
+        {.heading = shown ? end + " end" : "", .digits = 6},
+        [low](const LimitRow& r) { return end_of(r, low).tolerance(); });
     columns.add(outside, "by field", first, [low](const LimitRow& r) { return value_cell(end_of(r, low).beyond); });
-    columns.add(
-        "class_" + outside, "", "what became of the run there",
-        [low](const LimitRow& r) { return verdict_cell(end_of(r, low).beyond); }, printed_if(shown, outside + " it"));
+    columns.add("class_" + outside, "", "what became of the run there",
+                [low](const LimitRow& r) { return verdict_cell(end_of(r, low).beyond); },
+                {.heading = shown ? outside + " it" : ""});
   };
   columns.add(
       "field", "", "path of the field", [](const LimitRow& r) { return r.asked.question.path; }, only_csv());
@@ -102,19 +100,18 @@ void add_ends(Columns<LimitRow>& columns, const LimitTable* table) {
       [](const LimitRow& r) { return r.asked.question.smallest ? "smallest" : "largest"; }, only_csv());
   columns.add("limit", "by field",
               "the last stable value before the first edge, by bisection on runs; empty when there is none",
-              of_answer(&FieldLimit::value), printed_if(true, "first edge"),
+              of_answer(&FieldLimit::value), {.heading = "first edge", .digits = 6},
               [](const LimitRow& r) { return r.found.tolerance(); });
   columns.add("beyond", "by field", "the first unstable value beyond it; empty when the range ends stable",
               [](const LimitRow& r) { return value_cell(r.found.beyond); });
   columns.add("class_beyond", "", "what became of the run there (describe stability), or \"end of the range\"",
-              of_answer(beyond_text), printed_if(true, "beyond it"));
+              of_answer(beyond_text), {.heading = "beyond it"});
   add_end(
       true, "low",
       "the low end of the interval of stable values that the limit ends: its smallest stable value, to the resolution",
-      "below", "the first value below that is not stable; empty when the range begins stable",
-      table == nullptr || !smallest);
+      "below", "the first value below that is not stable; empty when the range begins stable");
   add_end(false, "high", "the high end of this interval", "above",
-          "the first value above that is not stable; empty when the range ends stable", table == nullptr || smallest);
+          "the first value above that is not stable; empty when the range ends stable");
 }
 
 void add_theory(Columns<LimitRow>& columns, bool with_inequality) {
@@ -273,14 +270,10 @@ std::string none_text(const FieldLimit& limit, const StabilityRule& rule) {
 }
 
 std::string inconsistent_text(const FieldLimit& limit) {
-  constexpr std::size_t kMost = 4;
-  std::string text = fmt::format("{}: not one edge:", limit.algorithm);
-  for (std::size_t i = 0; i < std::min(kMost, limit.inconsistent.size()); ++i) {
-    const JudgedValue& run = limit.inconsistent[i];
-    text += fmt::format("{} {} at {}", i == 0 ? "" : ",", run_verdict_name(run.verdict), significant(run.value));
-  }
-  return text + (limit.inconsistent.size() > kMost ? fmt::format(" and at {} more\n", limit.inconsistent.size() - kMost)
-                                                   : "\n");
+  std::vector<std::string> texts;
+  for (const JudgedValue& run : limit.inconsistent)
+    texts.push_back(fmt::format("{} at {}", run_verdict_name(run.verdict), significant(run.value)));
+  return fmt::format("{}: not one edge: {}\n", limit.algorithm, fmt::join(first_few(std::move(texts), 4), ", "));
 }
 
 bool is_beyond_linear(const LimitRow& row) {
@@ -362,20 +355,19 @@ std::string delays_text(const LimitTable& table) {
       fmt::format("delay_samples: {}; {}; none of a preset is published", fmt::join(parts, "; "), kWhoseSamples), 0);
 }
 
-constexpr const char* kWhichStiffness = "which K to quote: device_model/README.md, \"Which K to quote?\"\n";
+constexpr const char* kWhichStiffness = "which K to quote: device_model/README.md, \"Which K to quote?\"";
 
 /// The approach that limits with dry friction belong to, over all cases.
 std::string approaches_text(const LimitTable& table) {
   if (std::ranges::none_of(table.rows, [](const LimitRow& row) { return has_dry_friction(row.scenario); })) return "";
-  std::pair touches(kNone, 0.0), presses(kNone, 0.0);
-  for (const LimitRow& row : table.rows) {
-    if (!row.found.value) continue;
-    const SettledState& settled = row.found.settled;
-    touches = {std::min(touches.first, settled.touch_speed), std::max(touches.second, settled.touch_speed)};
-    presses = {std::min(presses.first, settled.press), std::max(presses.second, settled.press)};
-  }
-  const auto between = [](const std::pair<double, double>& ends) {
-    const std::string low = significant(ends.first, 2), high = significant(ends.second, 2);
+  const auto range = [&](double SettledState::*of) {
+    double least = kNone, most = 0.0;
+    for (const LimitRow& row : table.rows) {
+      if (!row.found.value) continue;
+      least = std::min(least, row.found.settled.*of);
+      most = std::max(most, row.found.settled.*of);
+    }
+    const std::string low = significant(least, 2), high = significant(most, 2);
     return low == high ? low : low + " to " + high;
   };
   return wrapped(
@@ -383,7 +375,7 @@ std::string approaches_text(const LimitTable& table) {
           "dry friction holds a hand that presses slowly, and is ours in every preset: the limit is that of this "
           "approach (first touch at {} m/s, pressed with {} N), not of a device; --set device.coulomb_N=0 shows what is "
           "left without",
-          between(touches), between(presses)),
+          range(&SettledState::touch_speed), range(&SettledState::press)),
       0);
 }
 
@@ -401,7 +393,9 @@ std::string detailed_text(const LimitTable& table) {
   text += limit_columns(&table).table(table.rows).text() + "\n" +
           wrapped(rule_text(first.asked.question, is_moved(first.scenario)), 0) + remarks + approaches_text(table);
   const bool on_device = std::holds_alternative<ImpedanceDeviceConfig>(first.scenario.device);
-  return text + (on_device && first.asked.question.path == "rendering.stiffness_N_per_m" ? kWhichStiffness : "");
+  return text + (on_device && first.asked.question.path == "rendering.stiffness_N_per_m"
+                     ? std::string(kWhichStiffness) + "\n"
+                     : "");
 }
 
 /// A row is the first of those with all else equal.
@@ -426,51 +420,40 @@ Columns<const LimitRow*> grid_columns(const LimitTable& table) {
   return columns;
 }
 
-/// What is to be known of devices.
-std::string devices_text(const LimitTable& table) {
-  const auto is_named = [&](char sign) {
-    return std::ranges::any_of(
-        table.rows, [sign](const LimitRow& row) { return row.device->name.find(sign) != std::string::npos; });
-  };
-  std::string text = "published: largest stable stiffness of a wall; \"hapbench describe DEVICE\" names its source\n";
-  text += kWhichStiffness;
-  if (is_named('*')) text += "*: a preset with numbers of --set, of which nothing is published\n";
-  if (is_named('[')) {
-    text += wrapped(
-        fmt::format("[soft], [stiff]: the preset at either end of what nobody published of it ({}); [friction*2]: with "
-                    "its dry friction times a factor",
-                    kPresetRanges),
-        0);
-  }
-  return text + delays_text(table);
-}
-
-/// What the signs in the grid mean.
+/// What the signs in the grid mean, as far as there are any, and what else is to be known of its numbers.
 std::string notes_text(const LimitTable& table) {
   const auto any = [&](auto holds) { return std::ranges::any_of(table.rows, holds); };
-  std::string text;
-  if (any([](const LimitRow& row) { return row.found.other.beyond.has_value(); }))
-    text += "a-b: stable from a on only; class_below in limit.csv says what becomes of the run below\n";
-  if (any([](const LimitRow& row) { return !row.found.value; }))
-    text += "none: no value tried is stable; limit_runs.csv says what becomes of each\n";
-  if (!table.devices.empty()) text += devices_text(table);
-  text += approaches_text(table);
-  if (any(is_beyond_linear)) {
-    text +=
-        wrapped(fmt::format("!: the linear edge, of the loop of device, hand and surface while they touch; {} (limit "
-                            "in limit.csv is the edge in runs)",
-                            kBeyondLinear),
-                0);
-  }
-  if (any([](const LimitRow& row) { return !row.found.inconsistent.empty(); }))
-    text += "~: some values below it are unstable, or some beyond it are stable: limit_runs.csv\n";
+  const bool devices = !table.devices.empty();
+  const auto is_named = [&](char sign) {
+    return devices && any([sign](const LimitRow& row) { return row.device->name.find(sign) != std::string::npos; });
+  };
   const auto [least, most] = std::ranges::minmax(table.rows, {}, [](const LimitRow& r) { return r.found.runs.size(); });
-  const std::size_t fewest = least.found.runs.size(), all = most.found.runs.size();
-  return text +
-         wrapped(fmt::format("each edge was found at {} values, and nothing was tried between them; of one scene and "
-                             "device alone it is",
-                             fewest == all ? std::to_string(all) : fmt::format("{} to {}", fewest, all)),
-                 0);
+  const std::string fewest = std::to_string(least.found.runs.size()), all = std::to_string(most.found.runs.size());
+  const std::pair<bool, std::string> notes[] = {
+      {any([](const LimitRow& row) { return row.found.other.beyond.has_value(); }),
+       "a-b: stable from a on only; class_below in limit.csv says what becomes of the run below"},
+      {any([](const LimitRow& row) { return !row.found.value; }),
+       "none: no value tried is stable; limit_runs.csv says what becomes of each"},
+      {devices, "published: largest stable stiffness of a wall; \"hapbench describe DEVICE\" names its source"},
+      {devices, kWhichStiffness},
+      {is_named('*'), "*: a preset with numbers of --set, of which nothing is published"},
+      {is_named('['),
+       fmt::format("[soft], [stiff]: the preset at either end of what nobody published of it ({}); [friction*2]: with "
+                   "its dry friction times a factor",
+                   kPresetRanges)},
+      {any(is_beyond_linear),
+       fmt::format("!: the linear edge, of the loop of device, hand and surface while they touch; {} (limit in "
+                   "limit.csv is the edge in runs)",
+                   kBeyondLinear)},
+      {any([](const LimitRow& row) { return !row.found.inconsistent.empty(); }),
+       "~: some values below it are unstable, or some beyond it are stable: limit_runs.csv"},
+      {true, fmt::format("each edge was found at {} values, and nothing was tried between them; of one scene and "
+                         "device alone it is",
+                         fewest == all ? all : fewest + " to " + all)}};
+  std::string text;
+  for (const auto& [holds, note] : notes)
+    if (holds) text += wrapped(note, 0);
+  return text + (devices ? delays_text(table) : "") + approaches_text(table);
 }
 
 /// The limits alone, a line for each device and value, and how they compare.

@@ -14,6 +14,7 @@
 #include "results/observe/target_metrics.hpp"
 #include "results/summary/summary.hpp"
 #include "scenarios/description/metric_sections.hpp"
+#include "scenarios/input/text_lines.hpp"
 
 namespace hapbench {
 namespace {
@@ -23,13 +24,6 @@ std::string cell(std::optional<double> value, int digits = 3) {
   if (value && digits < 3) value = std::stod(significant(*value, digits));
   if (value && std::abs(*value) >= 100.0 && std::abs(*value) < 1e6) return fmt::format("{:.0f}", *value);
   return significant(value.value_or(std::numeric_limits<double>::quiet_NaN()) + 0.0, digits);
-}
-
-/// The metric of that name with the digits that its tolerance leaves it; `factor`: to the unit that is shown.
-std::string metric_cell(const MetricList& metrics, std::string_view name, double factor) {
-  const Metric* metric = find_metric(metrics, name);
-  const auto value = metric == nullptr ? std::nullopt : number_of(metric->value);
-  return value ? cell(factor * *value, deserved_digits(*value, metric->tolerance(), 3)) : "-";
 }
 
 /// A time in microseconds of at most four characters, so that tables are as wide on a slow machine as on a fast one:
@@ -54,27 +48,65 @@ std::string distinct_name(const Result& report, std::span<const Result> reports)
   return one_scenario ? report.algorithm : report.name;
 }
 
+/// The largest force, and of kRunHeadings the usual ones or all.
+std::vector<RunHeading> headings_of(bool all) {
+  std::vector<RunHeading> headings = {{"largest\nforce [N]", "force_max_N"}};
+  for (const RunHeading& heading : kRunHeadings)
+    if (all || heading.usual) headings.push_back(heading);
+  return headings;
+}
+
 using ListedRun = std::reference_wrapper<const Result>;
 
-void add_metrics(Columns<ListedRun>& columns, std::span<const RunHeading> headings) {
+/// How a run ended, and when, as far as that was before its last row.
+std::string ending_text(const Result& report) {
+  const std::string name(outcome_name(report.end.outcome));
+  const auto last = number_of(report.metrics, "last_contact_s");
+  switch (report.end.outcome) {
+    case Outcome::leaves_hole:
+    case Outcome::tool_horizontal:
+      // Several trials have no time in common.
+      return !report.has_section("targets") ? fmt::format("{} at {:.3g} s", name, report.duration) : name;
+    case Outcome::diverges:
+      return fmt::format("{} at {:.3g} s", name, report.end.divergence.time);
+    case Outcome::lost_contact:
+    case Outcome::went_through:
+      return last ? fmt::format("{}, last contact at {:.3g} s", name, *last) : name;
+    default:
+      return name;
+  }
+}
+
+template <class Headings>
+void add_metrics(Columns<ListedRun>& columns, const Headings& headings) {
   for (const RunHeading& heading : headings) {
-    columns.print(heading.title, "1", heading.metric, [&heading](const ListedRun& r) {
-      return metric_cell(r.get().metrics, heading.metric, heading.factor);
+    columns.print(heading.title, "1", heading.metric, [heading](const ListedRun& r) -> std::string {
+      const Metric* metric = find_metric(r.get().metrics, heading.metric);
+      const auto value = metric == nullptr ? std::nullopt : number_of(metric->value);
+      return value ? short_text(*value, metric->tolerance(), heading.factor) : "-";
     });
   }
 }
 
-Columns<ListedRun> run_columns(bool of_scenes) {
+Columns<ListedRun> run_columns(bool of_scenes, bool all) {
   Columns<ListedRun> columns;
   if (of_scenes) columns.print("scenario", "", "", [](const ListedRun& r) { return r.get().name; });
   columns.print("algorithm", "", "", [](const ListedRun& r) { return r.get().algorithm; });
-  columns.print("outcome", "", "outcome", [](const ListedRun& r) { return outcome_name(r.get().end.outcome); });
-  add_metrics(columns, kRunHeadings);
-  columns.print("ratio", "", "ratio_min", [](const ListedRun& r) {
+  columns.print("how it ended", "", "outcome, and when, as far as that was before the last row", ending_text);
+  add_metrics(columns, all ? headings_of(true) : shown_headings());
+  if (!of_scenes || all) {
+    columns.print("tool shakes\n[mm/s rms]", "1", "root of vibration_power_above_30Hz_m2_per_s2, over all rows",
+                  [](const ListedRun& r) {
+                    const auto power = number_of(r.get().metrics, kToolVibrationPower);
+                    return power ? short_text(std::sqrt(*power), std::nullopt, 1e3) : "-";
+                  });
+  }
+  if (!all) return columns;
+  columns.print("stiffness\nratio", "1", "ratio_min", [](const ListedRun& r) {
     const auto least = number_of(r.get().metrics, "ratio_min"), most = number_of(r.get().metrics, "ratio_max");
     return least && most ? fmt::format("{}..{}", cell(least, 2), cell(most, 2)) : "-";
   });
-  columns.print("us/\nstep", "1", "step_p50_s", [](const ListedRun& r) {
+  columns.print("half of the\nsteps [us]", "1", "step_p50_s", [](const ListedRun& r) {
     const auto& median = r.get().timing.step_p50;
     return median ? short_time(*median) : "-";
   });
@@ -83,19 +115,26 @@ Columns<ListedRun> run_columns(bool of_scenes) {
 
 /// Of runs with a reference force: measured with the stroke, or ideal.
 constexpr RunHeading kFidelityHeadings[] = {
-    {"error\n%", "fidelity.force_error_relative", 100.0},
-    {"normal\nrms N", "fidelity.force_error_normal_rms_N", 1.0},
-    {"tangential\nrms N", "fidelity.force_error_tangential_rms_N", 1.0},
-    {"direction\ndeg", "fidelity.force_direction_error_rad", 57.295779513082323},
-    {"artefacts\n%", "fidelity.force_artefact_share", 100.0},
-    {"lag\nms", "fidelity.force_lag_s", 1e3}};
+    {"force\nerror [%]", "fidelity.force_error_relative", 100.0},
+    {"normal\n[N rms]", "fidelity.force_error_normal_rms_N"},
+    {"tangential\n[N rms]", "fidelity.force_error_tangential_rms_N"},
+    {"direction\n[deg]", "fidelity.force_direction_error_rad", 57.295779513082323},
+    {"artefacts\n[%]", "fidelity.force_artefact_share", 100.0},
+    {"lag\n[ms]", "fidelity.force_lag_s", 1e3}};
 
 }  // namespace
 
+std::vector<RunHeading> shown_headings() {
+  return headings_of(output_is_in_full());
+}
+
+std::string short_text(double value, const std::optional<double>& tolerance, double factor) {
+  return cell(factor * value, deserved_digits(value, tolerance, 3));
+}
+
 std::string run_table(std::span<const Result> reports, bool of_scenes) {
-  constexpr std::size_t kNarrowGap = 1;  // the names of all algorithms fit into kTableWidth with it
   const std::vector<ListedRun> runs(reports.begin(), reports.end());
-  return run_columns(of_scenes).table(runs, kNarrowGap).text();
+  return run_columns(of_scenes, output_is_in_full()).table(runs).text();
 }
 
 std::string fidelity_text(std::span<const Result> reports) {
@@ -142,27 +181,18 @@ std::vector<std::string> run_warnings(std::span<const Result> reports) {
 }
 
 std::string step_time_text(std::span<const Result> reports) {
-  const auto p99_or = [](double none) {
-    return [none](const Result& report) { return report.timing.step_p99.value_or(none); };
-  };
-  const Result& quickest = *std::ranges::min_element(reports, {}, p99_or(std::numeric_limits<double>::infinity()));
-  const Result& slowest = *std::ranges::max_element(reports, {}, p99_or(0.0));
-  if (!slowest.timing.step_p99) return "";
-  const std::string quick = distinct_name(quickest, reports), slow = distinct_name(slowest, reports);
-  const auto of = [](const Result& report, const std::string& name) {
-    return fmt::format("{} ({})", time_text(*report.timing.step_p99), name);
-  };
-  std::string text = "99 % of the steps take at most ";
-  if (reports.size() == 1) {
-    text += time_text(*slowest.timing.step_p99);
-    const double step = slowest.duration / static_cast<double>(slowest.end.rows);
-    if (*slowest.timing.step_p99 > step)
-      text += fmt::format(", longer than a step of {}: fewer points, rendering.reduction or a cheaper law",
-                          time_text(step));
-  } else {
-    text += quick == slow ? of(slowest, slow) : of(quickest, quick) + " to " + of(slowest, slow);
-  }
-  return "\n" + wrapped(text, 0);
+  const auto p99 = [](const Result& report) { return report.timing.step_p99.value_or(0.0); };
+  const Result& slowest = *std::ranges::max_element(reports, {}, p99);
+  if (p99(slowest) == 0.0) return "";
+  const std::string whose = reports.size() == 1 ? "" : fmt::format(" ({})", distinct_name(slowest, reports));
+  const double step = slowest.duration / static_cast<double>(slowest.end.rows);
+  const std::string longer =
+      p99(slowest) <= step
+          ? ""
+          : fmt::format(", longer than a step of {}: fewer points, rendering.reduction or a cheaper law",
+                        time_text(step));
+  return "\n" +
+         wrapped(fmt::format("99 % of the steps take at most {}{}{}", time_text(p99(slowest)), whose, longer), 0);
 }
 
 std::string unsettled_text(std::span<const Result> reports) {
@@ -176,9 +206,9 @@ std::string unsettled_text(std::span<const Result> reports) {
   }
   if (names.empty()) return "";
   // In runs without landings all contact counts already.
-  const std::string_view advice = landed ? "; --set metrics.from_s=0 takes all contact" : "";
-  return fmt::format(
-      "\n{}", wrapped(fmt::format("\"-\": under 1/30 s of settled contact ({}){}", fmt::join(names, ", "), advice), 0));
+  return "\n" + wrapped(fmt::format("without mean force and vibration, as under 1/30 s in settled contact: {}{}",
+                                    fmt::join(names, ", "), landed ? "; --set metrics.from_s=0 takes all contact" : ""),
+                        0);
 }
 
 std::string diagnosis_text(std::span<const Result> reports) {
@@ -202,8 +232,7 @@ namespace {
 
 Columns<PlaceMetrics> place_columns() {
   Columns<PlaceMetrics> columns;
-  columns.print("place", "1", "number of the target, from 0",
-                [](const PlaceMetrics& p) { return std::to_string(p.place); });
+  columns.print("place", "1", "number of the target, from 0", &PlaceMetrics::place);
   const auto add = [&columns](const char* title, const char* meaning, SubjectMean PlaceMetrics::*of, double factor) {
     columns.print(title, "1", meaning, [of, factor](const PlaceMetrics& p) {
       const SubjectMean& m = p.*of;
@@ -213,9 +242,9 @@ Columns<PlaceMetrics> place_columns() {
     });
   };
   add("success rate", "targets.0.success_rate.mean", &PlaceMetrics::success_rate, 1.0);
-  add("completion s", "targets.0.completion_time_s.mean", &PlaceMetrics::completion_time, 1.0);
-  add("model force N", "targets.0.model_force_N.mean", &PlaceMetrics::model_force, 1.0);
-  add("speed mm/s", "targets.0.speed_m_per_s.mean", &PlaceMetrics::speed, 1e3);
+  add("completion [s]", "targets.0.completion_time_s.mean", &PlaceMetrics::completion_time, 1.0);
+  add("model force [N]", "targets.0.model_force_N.mean", &PlaceMetrics::model_force, 1.0);
+  add("speed [mm/s]", "targets.0.speed_m_per_s.mean", &PlaceMetrics::speed, 1e3);
   return columns;
 }
 
@@ -254,9 +283,8 @@ Columns<LatencyRow> latency_columns() {
 }
 
 std::vector<DescribedTable> run_tables() {
-  Columns<ListedRun> runs = run_columns(true);
+  Columns<ListedRun> runs = run_columns(true, true);
   add_metrics(runs, kFidelityHeadings);
-  runs.print("ratio", "", "ratio_max", [](const ListedRun&) { return Cell(); });
   return {comparison_columns().described("comparison.csv", "of compare: one line per algorithm"), runs.described(),
           place_columns().described(), latency_columns().described()};
 }
@@ -264,59 +292,29 @@ std::vector<DescribedTable> run_tables() {
 namespace {
 
 /// Programs may read these by their place: append new ones.
-constexpr const char* kComparedMetrics[] = {"force_max_N",
-                                            "velocity_total_variation_m_per_s",
-                                            "force_reversals",
-                                            "vibration_power_above_30Hz_m2_per_s2",
-                                            "depth_max_m",
-                                            "ratio_min",
-                                            "ratio_max",
-                                            "steps_in_contact",
-                                            "contact_share",
-                                            "landings",
-                                            "landing_force_max_N",
-                                            "landing_force_step_max_N",
-                                            "settled_s",
-                                            "force_mean_in_contact_N",
-                                            "settled_force_max_N",
-                                            "force_step_p99_N",
-                                            "settled_force_step_max_N",
-                                            "force_rms_above_30Hz_N",
-                                            "force_reversals_per_s",
-                                            "reduction_changes",
-                                            "reduction_force_step_max_N",
-                                            "inside_max_m",
-                                            "inside_settled_m",
-                                            "centre_inside_share",
-                                            "vibration_last_quarter_m_per_s",
-                                            "fidelity.force_error_relative",
-                                            "fidelity.force_direction_error_rad",
-                                            "fidelity.force_artefact_share"};
+constexpr std::string_view kComparedMetrics =
+    "force_max_N velocity_total_variation_m_per_s force_reversals vibration_power_above_30Hz_m2_per_s2 depth_max_m "
+    "ratio_min ratio_max steps_in_contact contact_share landings landing_force_max_N landing_force_step_max_N settled_s "
+    "force_mean_in_contact_N settled_force_max_N force_step_p99_N settled_force_step_max_N force_rms_above_30Hz_N "
+    "force_reversals_per_s reduction_changes reduction_force_step_max_N inside_max_m inside_settled_m "
+    "centre_inside_share vibration_last_quarter_m_per_s fidelity.force_error_relative "
+    "fidelity.force_direction_error_rad fidelity.force_artefact_share";
 
 }  // namespace
-
-std::vector<ComparedRun> compared_runs(std::span<const Result> reports, std::size_t seeds) {
-  std::vector<ComparedRun> runs;
-  for (std::size_t i = 0; i < reports.size(); ++i) {
-    const Result& run = reports[i];
-    runs.push_back({i % seeds, run.algorithm, std::string(outcome_name(run.end.outcome)), run.end.rows, {}});
-    for (const char* name : kComparedMetrics)
-      runs.back().metrics.push_back(
-          std::visit([](const auto& value) { return Cell(value); }, value_of(run.metrics, name)));
-  }
-  return runs;
-}
 
 Columns<ComparedRun> comparison_columns(bool seeds) {
   Columns<ComparedRun> columns;
   if (seeds) columns.add("seed", "1", "number of the repetition", &ComparedRun::seed);
-  columns.add("algorithm", "", "force algorithm", &ComparedRun::algorithm);
-  columns.add("outcome", "", "how the run ended", &ComparedRun::outcome);
-  columns.add("steps", "1", "rows of the run", &ComparedRun::steps);
+  columns.add("algorithm", "", "force algorithm", [](const ComparedRun& r) { return r.run->algorithm; });
+  columns.add("outcome", "", "how the run ended",
+              [](const ComparedRun& r) { return outcome_name(r.run->end.outcome); });
+  columns.add("steps", "1", "rows of the run", [](const ComparedRun& r) { return r.run->end.rows; });
   const MetricList metrics = metrics_without_values();
-  for (std::size_t i = 0; i < std::size(kComparedMetrics); ++i) {
-    const Metric& metric = *find_metric(metrics, kComparedMetrics[i]);
-    columns.add(metric.name, metric.unit, metric.meaning, [i](const ComparedRun& r) { return r.metrics[i]; });
+  for (const std::string_view name : words_of(kComparedMetrics)) {
+    const Metric& metric = *find_metric(metrics, name);
+    columns.add(metric.name, metric.unit, metric.meaning, [name](const ComparedRun& r) {
+      return std::visit([](const auto& value) { return Cell(value); }, value_of(r.run->metrics, name));
+    });
   }
   return columns;
 }

@@ -15,30 +15,41 @@ namespace hapbench {
 /// A printed column of a metric of runs.
 struct RunHeading {
   const char *title, *metric;
-  double factor;  ///< from the metric's unit to the heading's
+  double factor = 1.0;  ///< from the metric's unit to the heading's
+  bool usual = false;   ///< printed without --wide, too
 };
 
 /// The figures that separate algorithms: the share of rows in contact, the largest force of landings, then of settled
 /// contact the mean force, 99 % of the force steps, rms above 30 Hz and reversals per second; then the largest depth
 /// below the surface.
-inline constexpr RunHeading kRunHeadings[] = {{"con\n%", "contact_share", 100.0},
-                                              {"land.\nmax N", "landing_force_max_N", 1.0},
-                                              {"mean\nN", "force_mean_in_contact_N", 1.0},
-                                              {"step\np99 N", "force_step_p99_N", 1.0},
-                                              {">30Hz\nrms N", "force_rms_above_30Hz_N", 1.0},
-                                              {"rev.\n1/s", "force_reversals_per_s", 1.0},
-                                              {"depth\nmm", "inside_max_m", 1e3}};
+inline constexpr RunHeading kRunHeadings[] = {{"in contact\n[%]", "contact_share", 100.0},
+                                              {"landing\nforce [N]", "landing_force_max_N"},
+                                              {"mean\nforce [N]", "force_mean_in_contact_N", 1.0, true},
+                                              {"force step\n(99 %) [N]", "force_step_p99_N"},
+                                              {"vibration\n[N rms]", "force_rms_above_30Hz_N", 1.0, true},
+                                              {"reversals\n[1/s]", "force_reversals_per_s"},
+                                              {"deepest\ninside [mm]", "inside_max_m", 1e3, true}};
 
-/// The printed table of runs: outcome, kRunHeadings, the range of ratios, and what half of the steps take at most.
-/// `of_scenes`: of several, told apart by name. Metrics have the digits that their tolerance leaves them. Its width
-/// does not depend on the times in it.
+/// What tables of runs show: the largest force, and of kRunHeadings the usual ones, or all with --wide.
+std::vector<RunHeading> shown_headings();
+
+/// A number with the digits that its tolerance leaves it, three at most; `factor`: to the unit that is shown.
+std::string short_text(double value, const std::optional<double>& tolerance, double factor);
+
+/// The printed table of runs, of seven columns: names, how they ended and when, shown_headings. Of several algorithms
+/// in one scene also the vibration of the tool, which runs without settled contact have, too. With --wide also the
+/// range of ratios, and what half of the steps take at most, by which the width of the table does not depend on times.
+/// `of_scenes`: of several, told apart by name.
 std::string run_table(std::span<const Result> reports, bool of_scenes);
 
-/// A paragraph on what 99 % of the steps take at most, in the quickest and the slowest of the runs; empty when no run
-/// was long enough to tell. Precondition: there is a report.
+/// Its root is the vibration of the tool.
+inline constexpr const char* kToolVibrationPower = "vibration_power_above_30Hz_m2_per_s2";
+
+/// A paragraph on what 99 % of the steps take at most, in the slowest of the runs; empty when no run was long enough to
+/// tell. Precondition: there is a report.
 std::string step_time_text(std::span<const Result> reports);
 
-/// Explains "-" for metrics of settled contact in runs that touched; empty when there is none.
+/// Names the runs that touched too shortly for metrics of settled contact; empty when there is none.
 std::string unsettled_text(std::span<const Result> reports);
 
 /// What is wrong with a run by the rules of its diagnosis, and what to try; of several runs a line each, with the names
@@ -65,13 +76,9 @@ Columns<LatencyRow> latency_columns();
 
 /// A line of comparison.csv.
 struct ComparedRun {
-  std::uint64_t seed = 0;  ///< number of its repetition
-  std::string algorithm, outcome;
-  std::uint64_t steps = 0;
-  std::vector<Cell> metrics;
+  std::uint64_t seed;  ///< number of its repetition
+  const Result* run;
 };
-/// The runs of one scene, the seeds of an algorithm one after the other.
-std::vector<ComparedRun> compared_runs(std::span<const Result> reports, std::size_t seeds);
 /// comparison.csv: algorithm, outcome, steps, and the metrics that separate algorithms, without times, so that equal
 /// comparisons give equal bytes; several seeds get a column in front.
 Columns<ComparedRun> comparison_columns(bool seeds = false);

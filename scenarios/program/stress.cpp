@@ -68,7 +68,7 @@ void add_stress(CommandLine& line) {
   command.add("--count", options.count, "contact sets (default: 100000)", {.range = {{1, 1'000'000'000}}});
   command.add("--seed", options.seed, "of the random numbers (default: 1)", {.range = {{0, std::int64_t{1} << 53}}});
   add_jobs(command, options.jobs);
-  command.add("--out", options.out, "directory of the results (default: results/out/stress)");
+  add_out(command, options.out, "stress");
 }
 
 }  // namespace hapbench

@@ -85,12 +85,11 @@ Columns<SweepRow> run_columns(const SweepTable& table) {
                   [c, sampled](const SweepRow& row) { return sampled ? shown_value(row[c]) : row[c]; });
   }
   columns.print("outcome", "", "outcome", [&table](const SweepRow& row) { return table.outcome(row); });
-  for (const RunHeading& heading : kRunHeadings) {
+  for (const RunHeading& heading : shown_headings()) {
     if (std::ranges::find(table.columns, heading.metric) == table.columns.end()) continue;
-    columns.print(heading.title, "by name", heading.metric, [&table, heading](const SweepRow& row) -> std::string {
+    columns.print(heading.title, "by name", heading.metric, [&table, heading](const SweepRow& row) {
       const auto value = table.number(row, heading.metric);
-      if (!value) return "-";
-      return significant(heading.factor * *value, deserved_digits(*value, table.tolerance(row, heading.metric), 3));
+      return value ? short_text(*value, table.tolerance(row, heading.metric), heading.factor) : "-";
     });
   }
   return columns;
@@ -182,25 +181,15 @@ Json summary_json(const SweepTable& table) {
 
 // ---- The command
 
-constexpr std::int64_t kMostJobs = 1024;
-
-struct SweepCommand {
+struct SweepCommand : CommonOptions {
   std::string scenario;
   std::vector<std::string> vary;
-  std::string sample;
-  std::string points;
+  std::string sample, points, metric;
   std::uint64_t seed = 1;
-  std::string metric;
   std::vector<std::string> where;
-  std::string out;
-  std::vector<std::string> overrides;
-  std::int64_t jobs = 0;  ///< 0: one per thread of the machine
   std::string shard;
-  bool resume = false;
-  bool keep_runs = false;
+  bool resume = false, keep_runs = false, print = false;
   std::uint64_t row = 0;
-  bool print = false;
-  OutputOptions output;
 };
 
 /// The scenes that an axis names, or the one of the command line.
@@ -237,13 +226,9 @@ Cases cases_of(const SweepCommand& command) {
 }
 
 SweepOptions sweep_options(const SweepCommand& command, const fs::path& scenario) {
-  if (command.jobs < 0 || command.jobs > kMostJobs) {
-    throw InputError(
-        fmt::format("--jobs: got {}; allowed: 1 ... {}, or 0 for one per thread", command.jobs, kMostJobs));
-  }
   SweepOptions options;
   options.directory = results_directory(command.out, "sweep_" + scenario.stem().string());
-  options.jobs = command.jobs == 0 ? available_threads() : static_cast<std::size_t>(command.jobs);
+  options.jobs = job_options(command, "").threads;
   if (!command.shard.empty()) options.shard = parse_shard(command.shard);
   options.resume = command.resume;
   options.keep_runs = command.keep_runs;
@@ -364,17 +349,6 @@ int sweep(const SweepCommand& command) {
   return verdict(plan, report, table.counts);
 }
 
-void add_run_options(Command& command, SweepCommand& options) {
-  command.add("--jobs", options.jobs, shared_option_help("--jobs"));
-  command.flag("--resume", options.resume,
-               "continue an interrupted sweep of the same definition, and try again what failed");
-  command.flag("--keep-runs", options.keep_runs, "also write the files of each run, into runs/INDEX");
-  command.add("--row", options.row, "index of the run for --print");
-  command.flag("--print", options.print, "only print the command that repeats the run of --row");
-  command.needs("--row", "--print");
-  command.needs("--print", "--row");
-}
-
 }  // namespace
 
 std::vector<DescribedTable> sweep_tables() {
@@ -416,9 +390,14 @@ void add_sweep(CommandLine& line) {
               "print only the runs with this: a column of sweep.csv, one of < <= > >= = !=, and a number or a text, as "
               "'inside_max_m<3e-4'; several must all hold",
               {.several = true});
-  command.add("--out", options.out, "directory of sweep.csv (default: results/out/sweep_NAME)");
-  add_overrides(command, options.overrides);
-  add_run_options(command, options);
+  add_common(command, options, "sweep_NAME");
+  command.flag("--resume", options.resume,
+               "continue an interrupted sweep of the same definition, and try again what failed");
+  command.flag("--keep-runs", options.keep_runs, "also write the files of each run, into runs/INDEX");
+  command.add("--row", options.row, "index of the run for --print");
+  command.flag("--print", options.print, "only print the command that repeats the run of --row");
+  command.needs("--row", "--print");
+  command.needs("--print", "--row");
   command.add("--shard", options.shard, "i/n with 0 <= i < n: do only every n-th run, from the i-th on");
   command.footer(
       "sweep.csv has a row for each run: index, the varied fields, outcome (\"error\" when it could not be computed), "

@@ -49,6 +49,10 @@ void output_in_full() {
   in_full = true;
 }
 
+bool output_is_in_full() {
+  return in_full;
+}
+
 std::string fitted(std::string_view text, std::size_t width) {
   std::string all;
   while (!text.empty()) {

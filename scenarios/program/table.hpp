@@ -22,6 +22,7 @@ std::size_t prose_width();
 
 /// Makes the output unbounded (--wide).
 void output_in_full();
+bool output_is_in_full();
 
 /// Breaks lines that are wider than the output at blanks; continuations are indented by two more blanks. A word is
 /// never broken.

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <atomic>
 #include <nlohmann/json.hpp>
-#include <tuple>
 
 #include "algorithms/registry.hpp"
 #include "results/io/json_text.hpp"
@@ -84,6 +83,16 @@ std::string metric_text(const TunedLaw& law, const char* name, double factor) {
   return value ? significant(*value, deserved_digits(*value, value_in(law.error, name, factor), 1)) : "-";
 }
 
+/// A metric of the tuned scene as it is told.
+struct ToldMetric {
+  const char *name, *says;
+  double factor = 1.0;
+};
+constexpr ToldMetric kTold[] = {
+    {kTuneMetrics[0], "deepest inside [mm]", 1e3}, {kTuneMetrics[1], "force above 30 Hz [N rms]"},
+    {kTuneMetrics[2], "largest force step [N]"},   {kTuneMetrics[3], "settled inside [mm]", 1e3},
+    {kTuneMetrics[4], "mean force [N]"},           {kTuneMetrics[5], "landing force [N]"}};
+
 constexpr const char* kRatioColumn = "rendering.damping_ratio";
 
 /// A member of the choice; nothing where nothing is feasible.
@@ -95,8 +104,8 @@ auto of_choice(Member member) {
 void add_choice(Columns<TunedLaw>& columns) {
   columns.add("stiffness_N_per_m", "N/m", "the largest K; empty when nothing is feasible",
               of_choice(&TuneTrial::stiffness));
-  const auto text = [](const TunedLaw& l) { return l.choice ? stiffness_text(*l.choice) : "none"; };
-  columns.print("K", "N/m", "of tune: the largest stiffness that keeps margin and limits [N/m]", text);
+  columns.print("K [N/m]", "N/m", "of tune: the largest stiffness that keeps margin and limits [N/m]",
+                [](const TunedLaw& l) { return l.choice ? stiffness_text(*l.choice) : "none"; });
   columns.add(kRatioColumn, "1", "zeta with it; empty where it has no part", of_choice(&TuneTrial::damping_ratio),
               {.json = false, .heading = "zeta", .digits = 3});
   columns.add("damping_ratio", "1", "the same", of_choice(&TuneTrial::damping_ratio), only_json());
@@ -108,19 +117,19 @@ void add_choice(Columns<TunedLaw>& columns) {
               of_choice(&TuneTrial::lambda_max));
 }
 
-void add_margins(Columns<TunedLaw>& columns) {
-  const auto add = [&](const char* name, const char* unit, const char* meaning, std::optional<double> TuneMargins::*of,
-                       const char* heading) {
-    columns.add(name, unit, meaning, [of](const TunedLaw& l) { return l.margins.*of; },
-                {.json = false, .heading = heading, .digits = 3});
-  };
-  add("gain_margin", "1", "largest factor on K, up to 64, at which all runs and the loop in contact are settled",
-      &TuneMargins::gain, "gain");
-  add("delay_margin_samples", "time steps", "likewise of further delay of the device, up to 64; empty without device",
-      &TuneMargins::delay_samples, "delay");
-  add("damping_margin", "1", "damping ratio of the least damped mode of the loop in contact; empty without one",
-      &TuneMargins::damping_ratio, "");
-}
+/// A margin in tables, JSON and words.
+struct Margin {
+  const char *column, *unit, *meaning, *heading, *key, *words;
+  std::optional<double> TuneMargins::*of;
+  double most;
+};
+constexpr Margin kMargins[] = {
+    {"gain_margin", "1", "largest factor on K, up to 64, at which all runs and the loop in contact are settled", "gain",
+     "gain", "gain {}", &TuneMargins::gain, 0.99 * kMostGain},
+    {"delay_margin_samples", "time steps", "likewise of further delay of the device, up to 64; empty without device",
+     "delay", "delay_samples", "{} samples more delay", &TuneMargins::delay_samples, kMostDelay},
+    {"damping_margin", "1", "damping ratio of the least damped mode of the loop in contact; empty without one", "",
+     "damping_ratio", "least damped mode {}", &TuneMargins::damping_ratio, 2.0}};
 
 Columns<TunedLaw> law_columns() {
   Columns<TunedLaw> columns;
@@ -133,7 +142,11 @@ Columns<TunedLaw> law_columns() {
               &TunedLaw::binding);
   columns.add("why", "", "the same in words", &TunedLaw::why);
   columns.add("relax", "", "where nothing is feasible: which limit to relax, and to what", &TunedLaw::relax);
-  add_margins(columns);
+  for (const Margin& margin : kMargins) {
+    columns.add(margin.column, margin.unit, margin.meaning,
+                [of = margin.of](const TunedLaw& l) { return l.margins.*of; },
+                {.json = false, .heading = margin.heading, .digits = 3});
+  }
   columns.add("verified", "1",
               fmt::format("full-length runs between K and G K, all settled, {} of them just below G K", kTriedNear),
               &TunedLaw::verified);
@@ -143,9 +156,9 @@ Columns<TunedLaw> law_columns() {
   const auto add_metric = [&](const char* name, double factor, const char* heading) {
     columns.print(heading, "by name", name, [=](const TunedLaw& l) { return metric_text(l, name, factor); });
   };
-  add_metric("inside_settled_m", 1e3, "inside mm");
-  add_metric("force_rms_above_30Hz_N", 1.0, "vibration N");
-  add_metric("settled_force_step_max_N", 1.0, "step N");
+  add_metric("inside_settled_m", 1e3, "settled\ninside [mm]");
+  add_metric("force_rms_above_30Hz_N", 1.0, "vibration\n[N rms]");
+  add_metric("settled_force_step_max_N", 1.0, "largest\nstep [N]");
   columns.print("binding", "", "of tune: what a larger K does not keep", &TunedLaw::binding);
   return columns;
 }
@@ -173,9 +186,7 @@ Columns<TuneTrial> trial_columns() {
 
 Json law_json(const TunedLaw& law) {
   Json json = law_columns().json(law);
-  json["margins"] = {{"gain", or_null(law.margins.gain)},
-                     {"delay_samples", or_null(law.margins.delay_samples)},
-                     {"damping_ratio", or_null(law.margins.damping_ratio)}};
+  for (const Margin& margin : kMargins) json["margins"][margin.key] = or_null(law.margins.*margin.of);
   json["metrics"] = law.choice ? law.choice->metrics : TuneMetrics();
   json["error"] = law.error;
   json["linear_edge"] = law.choice ? or_null(law.edge.linear ? law.edge.linear : law.edge.theory) : Json();
@@ -254,47 +265,28 @@ std::string choice_text(const TuneTrial& choice) {
 
 std::string margins_text(const TuneMargins& margins) {
   std::vector<std::string> texts;
-  const auto add = [&](const char* what, const std::optional<double>& margin, double most) {
-    if (margin)
-      texts.push_back(fmt::format(fmt::runtime(what), (*margin >= most ? "over " : "") + significant(*margin, 3)));
-  };
-  add("gain {}", margins.gain, 0.99 * kMostGain);
-  add("{} samples more delay", margins.delay_samples, kMostDelay);
-  add("least damped mode {}", margins.damping_ratio, 2.0);
-  return fmt::format("{}", fmt::join(texts, ", "));
-}
-
-std::string metrics_text(const TunedLaw& law) {
-  constexpr std::tuple<const char*, const char*, double> kTexts[kTuneMetrics.size()] = {
-      {"deepest inside", "mm", 1e3}, {"force above 30 Hz", "N rms", 1.0},
-      {"largest step", "N", 1.0},    {"settled inside", "mm", 1e3},
-      {"mean force", "N", 1.0},      {"landing", "N", 1.0}};
-  std::vector<std::string> texts;
-  for (std::size_t i = 0; i < kTuneMetrics.size(); ++i) {
-    const auto& [name, unit, factor] = kTexts[i];
-    const auto error = value_in(law.error, kTuneMetrics[i], factor);
-    if (!law.choice->metrics.contains(kTuneMetrics[i])) continue;
-    texts.push_back(fmt::format("{} {}{} {}", name, metric_text(law, kTuneMetrics[i], factor),
-                                error ? fmt::format(" +- {:.1g}", *error) : " +- ?", unit));
+  for (const Margin& margin : kMargins) {
+    if (const auto& found = margins.*margin.of)
+      texts.push_back(
+          fmt::format(fmt::runtime(margin.words), (*found >= margin.most ? "over " : "") + significant(*found, 3)));
   }
   return fmt::format("{}", fmt::join(texts, ", "));
 }
 
-/// The price of the runner-up, in times of the recommended law's metrics.
-std::string cost_text(const TunedLaw& best, const TunedLaw& other) {
-  const TuneTrial &a = *best.choice, &b = *other.choice;
-  std::vector<std::string> texts;
-  constexpr std::pair<const char*, const char*> kCosts[] = {{"inside_settled_m", "as deep"},
-                                                            {"force_rms_above_30Hz_N", "the force above 30 Hz"},
-                                                            {"settled_force_step_max_N", "the largest step"}};
-  for (const auto& [name, what] : kCosts) {
-    const auto here = value_in(a.metrics, name), there = value_in(b.metrics, name);
-    if (here && there && *here > 0.0) texts.push_back(fmt::format("{:.2g} times {}", *there / *here, what));
-  }
-  if (a.lambda_max > 0.0)
-    texts.push_back(
-        fmt::format("{:.2g} times the rendered stiffness", b.stiffness * b.lambda_max / (a.stiffness * a.lambda_max)));
-  return fmt::format("{} ({}): {}", other.algorithm, choice_text(b), fmt::join(texts, ", "));
+/// What to expect of the recommended law, and of the next one if there is one.
+Columns<ToldMetric> expect_columns(const TunedLaw* best, const TunedLaw* next) {
+  Columns<ToldMetric> columns;
+  columns.print("expect", "", "of tune: a metric of the tuned scene's run", [](const ToldMetric& m) { return m.says; });
+  columns.print(best == nullptr ? "recommended" : best->algorithm, "1", "of tune: of the law to use",
+                [best](const ToldMetric& m) { return metric_text(*best, m.name, m.factor); });
+  columns.print("may be off by", "1",
+                "of tune: how far half the step, half the distance of the points or a look at the depth in every row "
+                "move it; - where such a run has no such number",
+                [best](const ToldMetric& m) { return significant(value_in(best->error, m.name, m.factor), 1); });
+  if (best != nullptr && next == nullptr) return columns;
+  columns.print(next == nullptr ? "next" : next->algorithm, "1", "of tune: of the next best law",
+                [next](const ToldMetric& m) { return metric_text(*next, m.name, m.factor); });
+  return columns;
 }
 
 std::string recommendation_text(const Tuning& tuning) {
@@ -304,17 +296,22 @@ std::string recommendation_text(const Tuning& tuning) {
   const auto line = [&](const char* name, const std::string& what) { text += entry(name, what, 2, 14); };
   line("stops at", fmt::format("{}: {}", best->binding, best->why));
   line("margins", margins_text(best->margins));
-  line("expect", metrics_text(*best));
-  line("",
-       "+-: how far half the step, half the distance of the points or a look at the depth in every row move it; ?: "
-       "such a run has no such number");
-  if (tuning.ranking.size() > 1) line("runner-up", cost_text(*best, tuning.laws[tuning.ranking[1]]));
+  const TunedLaw* next = tuning.ranking.size() > 1 ? &tuning.laws[tuning.ranking[1]] : nullptr;
+  if (next != nullptr) {
+    const double rendered = best->choice->stiffness * best->choice->lambda_max;
+    line("runner-up",
+         fmt::format("{}, {}: {} times the rendered stiffness", next->algorithm, choice_text(*next->choice),
+                     significant(next->choice->stiffness * next->choice->lambda_max / rendered, 2)));
+  }
   line("K's edges", limit_answer(best->edge, best->edge_question));
   line("verified",
        fmt::format("by {} full-length runs between K and {:g} K, all settled: at most {:.0f} % of what lies "
                    "between may not be (95 %); {} runs in all",
                    best->verified, tuning.question.margin, 100.0 * may_fail_share(kTriedBetween), tuning.runs()));
-  return text;
+  std::vector<ToldMetric> told;
+  for (const ToldMetric& metric : kTold)
+    if (best->choice->metrics.contains(metric.name)) told.push_back(metric);
+  return text + "\n" + expect_columns(best, next).table(told).text();
 }
 
 std::string tuning_text(const Tuning& tuning) {
@@ -416,6 +413,7 @@ int tune(const TuneOptions& options) {
 std::vector<DescribedTable> tune_tables() {
   return {
       law_columns().described("tune.csv", "of tune: one line per algorithm"),
+      expect_columns(nullptr, nullptr).described(),
       trial_columns().described("tune_trials.csv", "of tune: one line per algorithm, setting and K that was tried")};
 }
 
@@ -424,8 +422,7 @@ void add_tune(CommandLine& line) {
       line.command("tune", "Say which stiffness and damping to use, in a scene on a device", tune);
   command.add("scenario", options.scenario, "scenario file, or name of a bundled scenario", {.required = true});
   command.add("--device", options.device, "a preset, ideal, admittance, or a file NAME.json (default: the scene's)");
-  command.add("--algorithms", options.algorithms, "names separated by commas, or all (default: the scene's own)",
-              {.comma_separated = true});
+  add_algorithms(command, options.algorithms, "the scene's own");
   command.add("--margin", options.margin, "settled up to so many times K (default: 2)");
   command.add("--bound", options.bounds,
               "what the choice has to keep: metric=most or metric=least:most, as inside_max_m=3e-4 [m], "
@@ -438,9 +435,7 @@ void add_tune(CommandLine& line) {
   command.add("--mass", options.mass,
               "a:b, range of the virtual mass on an admittance device [kg] (default: half to twice the scene's)");
   command.flag("--filters", options.filters, "on an impedance device choose the velocity filter, too");
-  add_jobs(command, options.jobs);
-  command.add("--out", options.out, "directory of the results (default: results/out/tune_NAME)");
-  add_overrides(command, options.overrides);
+  add_common(command, options, "tune_NAME");
   command.footer(fmt::format(
       "For each law the largest K, over zeta (and virtual mass on an admittance device), at which the scene's own run and each of the "
       "family is settled (\"hapbench describe stability\"; where a script moves the tool, no more than 1 mm/s rms above 30 Hz at the handle) at K and at margin x K, the loop of "

@@ -130,11 +130,16 @@ def ranking(values, unit):
 
 def which_law(text):
     """Which algorithm when, by the tables of the same manual."""
+    vibrations = {}
+    for line in next(found[3] for found in BLOCK.finditer(text) if found[2] == "session").splitlines():
+        law, *cells = line.split() or [""]
+        if len(cells) >= 3 and all(re.fullmatch(r"[\d.]+(e[+-]\d+)?", cell) for cell in cells[-3:]):
+            vibrations[law] = float(cells[-3])  # the last three are vibration, depth, how the tool shakes
     lines = []
     for title, values, unit in (
             ("Nearest to the ideal trajectory in height", rows_of(text, "in_the_hole", 0), "mm rms"),
             ("Least deep in the wall", rows_of(text, "in_the_hole", 2), "mm"),
-            ("Smallest force step at worst", rows_of(text, "in_the_hole", 3), "N"),
+            ("Least vibration of the force, peg in the hole", vibrations, "N rms above 30 Hz"),
             ("Least jump of the force as contacts come and go", rows_of(text, "in_the_hole", 6), "N")):
         lines += [f"- {title}: {ranking(values, unit)}."]
     return "\n".join(textwrap.fill(line, 110, subsequent_indent="  ") for line in lines)

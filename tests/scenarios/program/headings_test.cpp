@@ -69,7 +69,6 @@ TEST(Headings, OfEveryTableAreKnownToDescribeAndFitATerminal) {
       {"run", "vertical_peg_in_hole_shaped_stiffness", "--set", "hand.trials=1", "--set", "hand.task.time_limit_s=1",
        "--set", "hand.task.targets_per_place=1", "--set", "expect={}"},
       {"compare", "springs_limited_mean", "--algorithms", "mean,summation", "--out", "c"},
-      {"compare", "springs_limited_mean", "--algorithms", "mean,summation", "--set", "seed=2", "--out", "d"},
       {"compare", "recorded_wipe", "--algorithms", "mean,summation"},
       {"compare", "springs_limited_mean", "--algorithms", "mean,summation", "--seeds", "2"},
       {"compare", "springs_limited_mean", "springs_limited_summation", "--algorithms", "mean,summation"},

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <fstream>
 
+#include "scenarios/input/text_lines.hpp"
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/file_tree.hpp"
 #include "tests/scenarios/support/program.hpp"
@@ -23,19 +24,15 @@ class SweepCommand : public testing::Test {
  protected:
   /// 24 runs in four environments, some of which end early.
   Words words(const std::string& out) const {
-    return {"peg_in_hole_2d_shaped_stiffness",
-            "--out",
-            (directory_ / out).string(),
-            "--set",
-            "expect.outcome=[\"completes\",\"leaves_hole\",\"lost_contact\",\"diverges\"]",
-            "--set",
-            "expect.metrics={}",
-            "--vary",
-            "rendering.stiffness_N_per_m=5000:20000:2",
-            "--vary",
-            "environment.spacing_m=2e-5:5e-5:4:log",
-            "--vary",
-            "rendering.algorithm=mean,summation,exact_shaping"};
+    const std::string line =
+        "peg_in_hole_2d_shaped_stiffness --set expect.metrics={} "
+        R"(--set expect.outcome=["completes","leaves_hole","lost_contact","diverges"] )"
+        "--vary rendering.stiffness_N_per_m=5000:20000:2 --vary environment.spacing_m=2e-5:5e-5:4:log "
+        "--vary rendering.algorithm=mean,summation,exact_shaping --out";
+    Words words;
+    for (const std::string_view word : words_of(line)) words.emplace_back(word);
+    words.push_back((directory_ / out).string());
+    return words;
   }
   ProgramRun sweep(const std::string& out, const Words& more = {}) const {
     Words all = words(out);
