@@ -21,7 +21,7 @@
 #include "scenarios/program/table.hpp"
 #include "scenarios/run/diagnosis.hpp"
 #include "scenarios/run/result_folder.hpp"
-#include "scenarios/studies/stability/judged_run.hpp"
+#include "scenarios/studies/stability/run_stability.hpp"
 #include "scenarios/thesis_claims/choices.hpp"
 #include "scenarios/thesis_claims/claims.hpp"
 #include "sim/loop/integrators/table.hpp"

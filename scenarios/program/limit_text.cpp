@@ -15,7 +15,7 @@
 #include "scenarios/program/index.hpp"
 #include "scenarios/program/limit.hpp"
 #include "scenarios/run/scene_loop.hpp"
-#include "scenarios/studies/stability/judged_run.hpp"
+#include "scenarios/studies/stability/run_stability.hpp"
 
 /// The tables of `limit` and what is printed of them.
 namespace hapbench {

@@ -230,16 +230,22 @@ namespace {
 constexpr std::size_t kErrorLevels = 3;
 constexpr double kErrorRatio = 2.0;
 
-LevelSweep spacing_levels(const LoadedScenario& loaded, const PointDistance& distance) {
-  LevelSweep levels = level_sweep(loaded, distance.path, kErrorLevels, kErrorRatio);
-  if (!distance.is_given) {
+/// The levels of the distance between the points; or why there are none.
+LevelSweep spacing_levels(const LoadedScenario& loaded, bool has_points) {
+  const auto distance = point_distance(loaded);
+  if (!distance)
+    throw InputError(has_points ? "no field sets the distance of the points; only a finer file could tell"
+                                : "springs have no points");
+  LevelSweep levels = level_sweep(loaded, distance->path, kErrorLevels, kErrorRatio);
+  if (!distance->is_given) {
     levels.no_order = "the mesh's own points are not as far apart everywhere as those of the other levels";
     levels.axis.values.front() = "the mesh's own";
   }
   return levels;
 }
 
-/// The runs of a scene's finer levels. Throws InputError where one of them cannot be run.
+}  // namespace
+
 Cases finer_cases(const LevelSweep& levels, const Cases& cases) {
   Axis axis = levels.axis;
   axis.values.erase(axis.values.begin());
@@ -257,8 +263,6 @@ Cases finer_cases(const LevelSweep& levels, const Cases& cases) {
   return finer;
 }
 
-}  // namespace
-
 std::optional<double> KnownError::sum() const {
   if (!step || (has_points && !spacing)) return std::nullopt;
   return *step + spacing.value_or(0.0) + tolerance;
@@ -268,29 +272,24 @@ FinerRuns::FinerRuns(const Comparison& comparison, std::span<const Result> repor
     : comparison_(comparison), reports_(reports) {
   std::vector<Cases> finer;
   std::size_t runs = 0;
-  const auto add = [&](Part& part, const Cases& cases) {
+  const auto part_of = [&](const Cases& cases, const std::function<LevelSweep()>& levels) {
+    Part part;
     try {
+      part.levels = levels();
       finer.push_back(finer_cases(part.levels, cases));
       part.first = runs;
       runs += finer.back().size();
     } catch (const InputError& error) {
       part.why_not = error.what();
     }
+    return part;
   };
   for (const Cases& cases : comparison.scenes) {
     const LoadedScenario loaded = cases.load(0);
-    Parts& parts = parts_.emplace_back();
-    parts.step.levels = level_sweep(loaded, kStepPath, kErrorLevels, kErrorRatio);
-    add(parts.step, cases);
-    parts.has_points = !std::holds_alternative<SpringsEnvironment>(loaded.scenario.environment);
-    if (const auto distance = point_distance(loaded)) {
-      parts.spacing.levels = spacing_levels(loaded, *distance);
-      add(parts.spacing, cases);
-    } else {
-      parts.spacing.why_not = parts.has_points
-                                  ? "no field sets the distance of the points; only a finer file could tell"
-                                  : "springs have no points";
-    }
+    const bool has_points = !std::holds_alternative<SpringsEnvironment>(loaded.scenario.environment);
+    has_points_.push_back(has_points);
+    steps_.push_back(part_of(cases, [&] { return level_sweep(loaded, kStepPath, kErrorLevels, kErrorRatio); }));
+    spacings_.push_back(part_of(cases, [&] { return spacing_levels(loaded, has_points); }));
   }
   finer_ = run_all(finer, jobs);
 }
@@ -307,10 +306,10 @@ std::optional<double> FinerRuns::error_by(const Part& part, std::size_t run, con
 }
 
 KnownError FinerRuns::known_error(std::size_t run, const std::string& metric) const {
-  const Parts& parts = parts_[comparison_.scene(run)];
-  KnownError known{.step = error_by(parts.step, run, metric),
-                   .spacing = error_by(parts.spacing, run, metric),
-                   .has_points = parts.has_points};
+  const std::size_t scene = comparison_.scene(run);
+  KnownError known{.step = error_by(steps_[scene], run, metric),
+                   .spacing = error_by(spacings_[scene], run, metric),
+                   .has_points = has_points_[scene]};
   const MetricList& metrics = reports_[run].metrics;
   if (const Metric* found = find_metric(metrics, metric)) known.tolerance = found->tolerance().value_or(0.0);
   return known;
@@ -321,7 +320,7 @@ std::string FinerRuns::refined(std::size_t scene) const {
     if (!part.why_not.empty()) return part.why_not;
     return fmt::format("{} {}", part.levels.axis.path, fmt::join(part.levels.axis.values, ", "));
   };
-  return fmt::format("{}; {}", text(parts_[scene].step), text(parts_[scene].spacing));
+  return fmt::format("{}; {}", text(steps_[scene]), text(spacings_[scene]));
 }
 
 namespace {
@@ -344,8 +343,8 @@ std::vector<std::vector<std::size_t>> cut(std::span<const std::size_t> order, co
 
 /// The member of a group that is apart from the fewest others, of several the one with the largest error; none where
 /// no two are apart.
-std::optional<std::size_t> least_sure(const std::vector<std::size_t>& group, std::span<const NumberWithError> numbers,
-                                      const IsLess& is_less) {
+std::optional<std::size_t> most_uncertain(const std::vector<std::size_t>& group,
+                                          std::span<const NumberWithError> numbers, const IsLess& is_less) {
   std::optional<std::size_t> found;
   std::ptrdiff_t fewest = 0, all = 0;
   for (const std::size_t a : group) {
@@ -381,10 +380,10 @@ HeldOrder held_order(std::span<const NumberWithError> numbers, double rounding) 
     again = false;
     held.groups = cut(sorted, is_less);
     for (const std::vector<std::size_t>& group : held.groups) {
-      const auto unsure = least_sure(group, numbers, is_less);
-      if (!unsure) continue;
-      held.unplaced.push_back(*unsure);
-      std::erase(sorted, *unsure);
+      const auto uncertain = most_uncertain(group, numbers, is_less);
+      if (!uncertain) continue;
+      held.unplaced.push_back(*uncertain);
+      std::erase(sorted, *uncertain);
       again = true;
     }
   }

@@ -50,7 +50,7 @@ struct Convergence {
   std::optional<double> extrapolated;  ///< Richardson's value; only with an order, as the next two
   std::optional<double> gci;           ///< of the finest level, relative to its result; none where that is 0
   /// GCI_21 / (r^p GCI_32) is 1 within 0.1 at the three finest levels, and where a fourth one counts with the same p at
-  /// the three before: with p of its own the first is merely f_3 / f_2.
+  /// the three before.
   bool asymptotic = false;
   /// Least and largest result of the last three levels that count, or of two; none with fewer.
   std::optional<std::pair<double, double>> band;
@@ -62,10 +62,9 @@ struct Convergence {
 };
 
 /// Judges the results of levels from coarse to fine, each by `ratio` (> 1) finer than the one before. Those count that
-/// follow the last one that ended otherwise than the finest or has no result. No order is stated where `no_order` is
-/// the reason; with fewer than three of them; where contacts switch between the last three; where the last two differ
-/// by rounding only; where differences change their sign within the last four; or where an order within the last four
-/// is not in (0, 2 formal].
+/// follow the last one that ended otherwise than the finest or has no result. No order is stated for the reason
+/// `no_order`; with fewer than three of them; where contacts switch between the last three or the last two differ by
+/// rounding only; where within the last four differences change their sign or an order is not in (0, 2 formal].
 Convergence convergence_of(std::span<const LevelResult> levels, double ratio, double formal_order,
                            const std::string& no_order = "");
 
@@ -74,6 +73,9 @@ LevelResult level_result(const LevelSweep& levels, std::size_t level, const Resu
 
 /// The verdict on the results of the levels.
 Convergence convergence_of(const LevelSweep& levels, std::span<const LevelResult> results);
+
+/// The cases at the levels behind the first. Throws InputError where one of them cannot be run.
+Cases finer_cases(const LevelSweep& levels, const Cases& cases);
 
 /// Of a number, in its unit. By step and by spacing it is the error that convergence_of gives the coarsest of three
 /// levels: 1.25 |f - f*| with Richardson's value f* where an order is seen, else the largest plain difference.
@@ -100,20 +102,17 @@ class FinerRuns {
 
  private:
   struct Part {
-    LevelSweep levels;
-    std::size_t first = 0;  ///< number of the first finer run
-    std::string why_not;    ///< why there are no levels; empty otherwise
-  };
-  struct Parts {
-    Part step, spacing;
-    bool has_points = true;
+    LevelSweep levels = {};
+    std::size_t first = 0;     ///< number of the first finer run
+    std::string why_not = {};  ///< why there are no levels; empty otherwise
   };
   std::optional<double> error_by(const Part& part, std::size_t run, const std::string& metric) const;
 
   const Comparison& comparison_;
   std::span<const Result> reports_;
-  std::vector<Parts> parts_;   ///< of each scene
-  std::vector<Result> finer_;  ///< by part, then by level, then as in the comparison
+  std::vector<Part> steps_, spacings_;  ///< of each scene
+  std::vector<bool> has_points_;        ///< of each scene
+  std::vector<Result> finer_;           ///< by part, then by level, then as in the comparison
 };
 
 /// A number of a table and what is known of its error.

@@ -45,11 +45,11 @@ std::optional<double> SearchWay::own_part() const {
   return smallest ? 1.0 - part : part;
 }
 
-bool SearchWay::apart(double a, double b, double resolution_asked) const {
+bool SearchWay::apart(double a, double b) const {
   const double low = std::min(value_at(a), value_at(b)), high = std::max(value_at(a), value_at(b));
   if (whole) return high - low > 1.0;
-  if (range.logarithmic) return high > (1.0 + resolution_asked) * low;
-  return high - low > resolution_asked * (range.to - range.from);
+  if (range.logarithmic) return high > (1.0 + resolution) * low;
+  return high - low > resolution * (range.to - range.from);
 }
 
 std::map<double, bool> scanned(int intervals, const std::function<bool(double)>& stable) {
@@ -62,23 +62,23 @@ std::map<double, bool> scanned(int intervals, const std::function<bool(double)>&
 }
 
 FoundEdge find_edge(const SearchWay& way, std::map<double, bool>& tried, const std::function<bool(double)>& stable,
-                    double resolution, bool beside) {
+                    bool beside) {
   const auto holds = [&](double part) { return tried[part] = stable(part); };
   const std::optional<double> own = way.own_part();
   const double start = own && holds(*own) ? *own : 0.0;
-  const auto middle = [](double a, double b) { return 0.5 * (a + b); };
-  const auto apart = [&](double a, double b) { return way.apart(a, b, resolution); };
+  const auto narrow = [&](double& good, double& bad) {
+    bisect(
+        good, bad, holds, [](double a, double b) { return 0.5 * (a + b); },
+        [&](double a, double b) { return way.apart(a, b); });
+  };
   const auto with_other_end = [&](FoundEdge edge) {
     if (!beside) return edge;
     auto first = tried.find(*edge.stable);
     while (first != tried.begin() && std::prev(first)->second) --first;
-    double high = first->first;
-    edge.first = high;
+    edge.first = first->first;
     if (first == tried.begin()) return edge;
-    double low = std::prev(first)->first;
-    bisect(high, low, holds, middle, [&](double a, double b) { return apart(b, a); });
-    edge.first = high;
-    edge.before = low;
+    edge.before = std::prev(first)->first;
+    narrow(*edge.first, *edge.before);
     return edge;
   };
   FoundEdge edge;
@@ -87,11 +87,11 @@ FoundEdge find_edge(const SearchWay& way, std::map<double, bool>& tried, const s
     const auto first = std::find_if(tried.lower_bound(start), tried.end(), is(true));
     if (first == tried.end()) return {};
     const auto end = std::find_if(first, tried.end(), is(false));
-    if (end == tried.end()) return with_other_end({tried.rbegin()->first, {}, {}, {}});
+    if (end == tried.end()) return with_other_end({.stable = tried.rbegin()->first});
     double low = std::prev(end)->first, high = end->first;
     if (edge.stable == low) return with_other_end(edge);
-    bisect(low, high, holds, middle, apart);
-    edge = {low, high, {}, {}};
+    narrow(low, high);
+    edge = {.stable = low, .beyond = high};
     if (!beside) return edge;
     const double before = std::max(first->first, low - 1.0 / kEdgeIntervals),
                  behind = std::min(1.0, high + 1.0 / kEdgeIntervals);
@@ -126,30 +126,30 @@ double near_part(const SearchWay& way, double part) {
   return kNear * std::max(std::abs(way.value_at(part)) / (to - from), way.resolution);
 }
 
-TriedEdge find_tried_edge(const SearchWay& way, std::map<double, bool>& tried,
-                          const std::function<bool(double)>& stable, double resolution, bool near,
+FoundEdge find_tried_edge(const SearchWay& way, std::map<double, bool>& tried,
+                          const std::function<bool(double)>& stable, bool near,
                           const std::function<void(std::span<const double>)>& ahead) {
   bool scattered = false;
   double begin = -1.0;  // up to here stable values are scattered
   const auto beyond_those = [&](double part) { return part > begin && stable(part); };
   const auto fails = [&](double part) { return !(tried[part] = beyond_those(part)); };
   while (true) {
-    const FoundEdge edge = find_edge(way, tried, beyond_those, resolution, true);
-    if (!edge.stable) return {edge, scattered};
+    const FoundEdge edge = find_edge(way, tried, beyond_those, true);
+    if (!edge.stable) return {.scattered = scattered};
     const auto first = edge.first.value_or(*edge.stable);
     const std::vector<double> between = parts_between(first, *edge.stable, kTriedBetween);
     ahead(between);
     if (std::ranges::any_of(between, fails)) continue;
-    if (!near || way.whole || !edge.beyond) return {edge, false};
+    if (!near || way.whole || !edge.beyond) return edge;
     const double low = std::max(0.0, *edge.stable - near_part(way, *edge.stable));
     const std::vector<double> below = parts_between(*edge.stable, low, kTriedNear);
     ahead(below);
     const auto failing = std::ranges::find_if(below, fails);
-    if (failing == below.end()) return {edge, false};
+    if (failing == below.end()) return edge;
     if (*failing > first) continue;
     scattered = true;
     const std::optional<double> own = way.own_part();
-    if (own && first <= *own && *own <= *edge.stable) return {{}, true};
+    if (own && first <= *own && *own <= *edge.stable) return {.scattered = true};
     begin = *edge.stable;
     for (auto& [part, is_stable] : tried) is_stable = is_stable && part > begin;
   }
@@ -176,7 +176,7 @@ class Search {
   FieldLimit limit() {
     FieldLimit limit;
     limit.algorithm = asked_.algorithm;
-    std::map<double, JudgedRun> runs;  // by value
+    std::map<double, RunStability> runs;  // by value
     const auto run_ahead = [&](std::span<const double> parts) {
       std::vector<double> values;
       for (const double part : parts)
@@ -184,13 +184,12 @@ class Search {
       for_each_job(values.size(), {question_.threads, ""},
                    [&](std::size_t i) { runs.at(values[i]) = judged(values[i]); });
     };
-    const auto judge = [&](double part) {
-      const double value = question_.value_at(part);
-      const auto known = runs.find(value);
-      return question_.holds((known == runs.end() ? runs.emplace(value, judged(value)).first : known)->second.verdict);
-    };
     const auto at_part = [&](double part) {
       return JudgedValue{question_.value_at(part), runs.at(question_.value_at(part)).verdict};
+    };
+    const auto judge = [&](double part) {
+      run_ahead({&part, 1});
+      return question_.holds(at_part(part).verdict);
     };
     const Theory theory(*this, has_theory, step_is_stable, kTheoryIntervals);
     std::vector<double> first = theory.islands();
@@ -199,9 +198,8 @@ class Search {
     std::map<double, bool> tried;
     for (const double part : first) tried[part] = judge(part);
     const bool is_linear = theory.edge().has_value();
-    const TriedEdge edge = question_.between
-                               ? find_tried_edge(question_, tried, judge, question_.resolution, !is_linear, run_ahead)
-                               : TriedEdge{find_edge(question_, tried, judge, question_.resolution, true)};
+    const FoundEdge edge = question_.between ? find_tried_edge(question_, tried, judge, !is_linear, run_ahead)
+                                             : find_edge(question_, tried, judge, true);
     limit.scattered = edge.scattered;
     if (edge.stable) {
       limit.tried_between = question_.between ? kTriedBetween : 0;
@@ -240,9 +238,10 @@ class Search {
            (!limit.other.beyond || is_before(limit.other.beyond->value, value));
   }
 
-  JudgedRun judged(double value) const {
+  RunStability judged(double value) const {
     const LoadedScenario loaded = at(value);
-    return with_file(loaded, [&] { return judged_run(loaded, make_shell(loaded.scenario, loaded.files), question_); });
+    return with_file(loaded,
+                     [&] { return stability_of(loaded, make_shell(loaded.scenario, loaded.files), question_); });
   }
 
   LoadedScenario at(double value) const {
@@ -282,11 +281,14 @@ class Search {
     std::optional<double> edge() const {
       if (tried_.empty()) return std::nullopt;
       std::map<double, bool> tried = tried_;
+      const SearchWay& asked = search_.question_;
+      SearchWay way = asked;
+      way.resolution = kTheoryResolution;
       const FoundEdge edge = find_edge(
-          search_.question_, tried, [this](double part) { return holds(part); }, kTheoryResolution, false);
+          way, tried, [this](double part) { return holds(part); }, false);
       if (!edge.stable) return std::nullopt;
-      if (edge.beyond) return search_.question_.value_at(*edge.stable);
-      return search_.question_.smallest ? 0.0 : std::numeric_limits<double>::infinity();
+      if (edge.beyond) return way.value_at(*edge.stable);
+      return way.smallest ? 0.0 : std::numeric_limits<double>::infinity();
     }
 
    private:

@@ -9,10 +9,10 @@
 
 #include "scenarios/batch/cases.hpp"
 #include "scenarios/description/load_scenario.hpp"
-#include "scenarios/studies/stability/judged_run.hpp"
+#include "scenarios/studies/stability/run_stability.hpp"
 
 /// The search for the edge of the stable values of a field, whatever makes a value stable, and with it the largest or
-/// smallest value of a scenario's field at which its run is stable (judged_run.hpp).
+/// smallest value of a scenario's field at which its run is stable (run_stability.hpp).
 namespace hapbench {
 
 /// Equal parts that a way is divided into before bisection.
@@ -30,26 +30,28 @@ struct SearchWay {
   double value_at(double part) const;
   /// The part of the own value.
   std::optional<double> own_part() const;
-  /// True while bisection to this resolution has to go on between two parts.
-  bool apart(double a, double b, double resolution) const;
+  /// True while bisection has to go on between two parts.
+  bool apart(double a, double b) const;
 };
 
 /// The result of a search, as parts of the way.
 struct FoundEdge {
-  std::optional<double> stable;  ///< the last stable part
-  std::optional<double> beyond;  ///< the first unstable part beyond it
-  std::optional<double> first;   ///< the first stable part of the interval that ends with `stable`
-  std::optional<double> before;  ///< the last unstable part before it
+  std::optional<double> stable = {};  ///< the last stable part
+  std::optional<double> beyond = {};  ///< the first unstable part beyond it
+  std::optional<double> first = {};   ///< the first stable part of the interval that ends with `stable`
+  std::optional<double> before = {};  ///< the last unstable part before it
+  bool scattered = false;             ///< there are stable parts, but no stretch of them as long as kNear
 };
 
 /// Which ends of so many equal parts of a way are stable, from its begin on.
 std::map<double, bool> scanned(int intervals, const std::function<bool(double)>& stable);
 
-/// The edge behind the own value, or if that is not stable behind the first stable values of the way; of the parts
-/// `tried`, which hold at least both ends, and then what was tried besides. With `beside`, tries values on either side
-/// of it, too, and goes on where one of them shows an edge before it; then finds the other end of the interval.
+/// The first edge behind the own value, or if that is not stable behind the first stable one of the parts `tried`,
+/// which hold at least both ends, and then what was tried besides; narrowed down by bisection. With `beside`, three
+/// values on either side are tried, and an edge before it that they show is narrowed down instead, up to five times;
+/// then the other end of the interval is.
 FoundEdge find_edge(const SearchWay& way, std::map<double, bool>& tried, const std::function<bool(double)>& stable,
-                    double resolution, bool beside);
+                    bool beside);
 
 // An interval of stable values is an answer once it was tried between its ends: loops in contact have islands of
 // unstable values that are 1 % of a range wide.
@@ -65,13 +67,10 @@ std::vector<double> parts_between(double from, double to, std::size_t count);
 double near_part(const SearchWay& way, double part);
 
 /// The edge of find_edge with `beside`, of an interval that was tried between its ends and, with `near`, just below its
-/// edge: the first value that is not stable becomes the new end. Stable values that are not a stretch of kNear are no
-/// interval; `scattered` where there are only such. `ahead` hears of all parts before the first of them is asked for.
-struct TriedEdge : FoundEdge {
-  bool scattered = false;
-};
-TriedEdge find_tried_edge(const SearchWay& way, std::map<double, bool>& tried,
-                          const std::function<bool(double)>& stable, double resolution, bool near,
+/// edge: the first value that is not stable becomes the new end. `ahead` hears of all parts before the first of them is
+/// asked for.
+FoundEdge find_tried_edge(const SearchWay& way, std::map<double, bool>& tried,
+                          const std::function<bool(double)>& stable, bool near,
                           const std::function<void(std::span<const double>)>& ahead);
 
 /// The question: which limit of which field, and by which rule a run is stable.
@@ -109,8 +108,8 @@ struct FieldLimit : IntervalEnd {
   /// tool is alone with the springs; none under an integrator without one.
   std::optional<double> closed_form;
   /// Of a device at what only pushes, where there is no theory: the edge of the loop of device, hand and the stiffness
-  /// rendered at the limit while it lasts, without dry friction and encoder; infinite when the whole range is stable. A
-  /// limit beyond it is held up by what that loop leaves out: a tool that bounces, dry friction, a run that ends.
+  /// rendered at the limit while contact lasts, without dry friction and encoder; infinite when the whole range is
+  /// stable. A limit beyond it is held up by what that loop leaves out.
   std::optional<double> linear;
   /// Of K on a wall that holds the handle of an impedance device from both sides: what stiffness_limits() say, in their
   /// order, and the least edge over hand_family() in place of the scene's hand; empty elsewhere.
@@ -119,20 +118,17 @@ struct FieldLimit : IntervalEnd {
   std::string no_theory;           ///< of the same: why the eigenvalues of its loop tell nothing; empty where they do
   SettledState settled;            ///< the run at `value`
   std::optional<JudgedValue> own;  ///< the run at the scenario's value, if that was in the range
-  /// Hand and device are unstable even where there is nothing to touch, at the value beyond, or without a limit at the
-  /// first one. Only asked of a hand that feels the handle and needs no surface.
+  /// unstable_without_contact, at the value beyond, or without a limit at the first one
   bool unstable_alone = false;
   bool has_effect = true;                 ///< false when the handle moved alike, bit for bit, in all runs
   std::size_t tried_between = 0;          ///< values that were tried between the ends of the interval, all stable
   bool scattered = false;                 ///< there are stable values, but no edge: no stretch of kNear is stable
   std::vector<JudgedValue> runs;          ///< all, by value
   std::vector<JudgedValue> inconsistent;  ///< runs that are unstable in this interval, or stable outside of it
+  std::size_t undecided = 0;              ///< runs that were too short to tell (RunStability::undecided)
 
-  /// Runs that were still too short, lengthened as they were, to tell slow growth from rest (judged_run.hpp).
-  std::size_t undecided = 0;
-
-  /// True where the limit lies beyond that of the linear loop by more than this, relative: then the linear edge is the
-  /// one to quote, and contact at a stable value beyond it is intermittent.
+  /// True where the limit lies beyond `linear` by more than this, relative: then that is the one to quote, and contact
+  /// at a stable value beyond it is intermittent.
   bool is_beyond_linear(double resolution) const;
   /// value / theory - 1; none without either.
   std::optional<double> difference() const;
@@ -156,13 +152,10 @@ struct LimitCase {
   LimitQuestion question;
 };
 
-/// Answers the question. The range is tried at 17 values and the scenario's own. From the own value
-/// on, or if that is not stable from the first stable one of the low end (smallest: the high end) on, the first edge is
-/// narrowed down by bisection, as is then the other end of the interval; three values on either side of it are tried
-/// besides; if they show an earlier edge, that is narrowed down instead, up to five times. Some 35 to 120 runs, and
-/// where the interval is an answer (LimitQuestion::between) 56 or more between its ends, as long as one fails. Throws
-/// InputError, with the file, for a scene without a free position or with fewer than 4 steps, and where vibration is
-/// asked for at a sampling rate of 60 Hz or less.
+/// Answers the question: find_edge with `beside`, of 17 values and the scenario's own, or find_tried_edge where the
+/// interval is to be tried between its ends. Some 35 to 120 runs, and between the ends 56 or more, as long as one
+/// fails. Throws InputError, with the file, for a scene without a free position or with fewer than 4 steps, and where
+/// vibration is asked for at a sampling rate of 60 Hz or less.
 FieldLimit field_limit(const LimitCase& asked);
 
 }  // namespace hapbench

@@ -177,28 +177,6 @@ void draw_rendering(Random& random, RenderingConfig& config) {
 constexpr double kForceRounding = 1e-6;
 constexpr std::uint64_t kSetsOfAJob = 1000;
 
-/// One set under one algorithm.
-struct Answer {
-  RenderedForce force;
-  std::size_t colliding = 0, rendered = 0;
-  std::uint64_t dropped = 0;
-};
-
-Answer answer(const ContactSet& set, const RenderingConfig& config, const PointShell& shell) {
-  ShellSource source(shell, set.tool, std::make_unique<ShellQuery>(shell, set.tool), make_depth_model(config));
-  ContactBuffer contacts(source.capacity());
-  const auto algorithm = make_algorithm(config);
-  algorithm->prepare({source.capacity(), &set.tool, &shell});
-  algorithm->reset();
-  source.contacts_at(set.pose, contacts);
-  Answer out;
-  out.colliding = contacts.size();
-  algorithm->compute({set.pose, set.velocity}, contacts, out.force);
-  out.rendered = contacts.size();
-  out.dropped = algorithm->work().points_dropped;
-  return out;
-}
-
 bool finite(const RenderedForce& force) {
   return force.spring.allFinite() && force.rendered.allFinite() && force.S.allFinite() &&
          std::isfinite(force.depth_max);
@@ -215,26 +193,36 @@ bool damping_in_bound(const ContactSet& set, const RenderedForce& force) {
   return force.rendered.norm() <= (1.0 + kForceRounding) * bound;
 }
 
-/// The counts of one set.
-StressCounts counts_of(const ContactSet& set, const RenderingConfig& config, std::uint64_t number,
-                       const Answer& answer) {
-  const RenderedForce& force = answer.force;
+/// Counts a set under one algorithm.
+void count_set(const ContactSet& set, std::uint64_t number, const PointShell& shell, StressCounts& counts) {
+  RenderingConfig config = set.rendering;
+  config.algorithm = counts.algorithm;
+  ShellSource source(shell, set.tool, std::make_unique<ShellQuery>(shell, set.tool), make_depth_model(config));
+  ContactBuffer contacts(source.capacity());
+  const auto algorithm = make_algorithm(config);
+  algorithm->prepare({source.capacity(), &set.tool, &shell});
+  algorithm->reset();
+  source.contacts_at(set.pose, contacts);
+  ++counts.sets;
+  counts.in_contact += !contacts.empty();
+  RenderedForce force;
+  algorithm->compute({set.pose, set.velocity}, contacts, force);
+  counts.points_dropped += algorithm->work().points_dropped;
+
   const auto bound_of = find_algorithm(config.algorithm)->theory.force_bound;
-  StressCounts counts;
-  counts.sets = 1;
-  counts.in_contact = answer.colliding > 0;
-  counts.points_dropped = answer.dropped;
-  double bound = std::numeric_limits<double>::infinity();
-  if (bound_of != nullptr) bound = config.stiffness * bound_of(config, set.tool, answer.rendered, force.depth_max);
-  counts.non_finite = !finite(force);
-  counts.out_of_bound = finite(force) && (force.spring.norm() > (1.0 + kForceRounding) * bound ||
-                                          !depth_in_bound(set.tool, force.depth_max) || !damping_in_bound(set, force));
-  counts.first_bad = number;
-  const double unit = config.stiffness * force.depth_max;
-  if (!(unit > 0.0)) return counts;
-  counts.largest_force = force.spring.norm() / unit;
-  if (bound_of != nullptr && bound > 0.0) counts.largest_share = force.spring.norm() / bound;
-  return counts;
+  const double size = force.spring.norm(), unit = config.stiffness * force.depth_max,
+               bound = bound_of == nullptr
+                           ? std::numeric_limits<double>::infinity()
+                           : config.stiffness * bound_of(config, set.tool, contacts.size(), force.depth_max);
+  const bool is_finite = finite(force);
+  const bool in_bound = is_finite && size <= (1.0 + kForceRounding) * bound &&
+                        depth_in_bound(set.tool, force.depth_max) && damping_in_bound(set, force);
+  if (!in_bound && counts.non_finite + counts.out_of_bound == 0) counts.first_bad = number;
+  counts.non_finite += !is_finite;
+  counts.out_of_bound += is_finite && !in_bound;
+  if (!(unit > 0.0)) return;
+  counts.largest_force = std::max(counts.largest_force, size / unit);
+  if (bound_of != nullptr && bound > 0.0) counts.largest_share = std::max(*counts.largest_share, size / bound);
 }
 
 std::vector<StressCounts> no_counts() {
@@ -285,11 +273,7 @@ std::vector<StressCounts> stress_laws(std::uint64_t count, std::uint64_t seed, c
     for (std::uint64_t i = job * kSetsOfAJob; i < end; ++i) {
       const ContactSet set = stress_set(seed, i);
       const PointShell shell(set.points, 0.0);
-      for (StressCounts& counts : part) {
-        RenderingConfig config = set.rendering;
-        config.algorithm = counts.algorithm;
-        add(counts_of(set, config, i, answer(set, config, shell)), counts);
-      }
+      for (StressCounts& counts : part) count_set(set, i, shell, counts);
     }
     const std::lock_guard lock(mutex);
     for (std::size_t i = 0; i < all.size(); ++i) add(part[i], all[i]);

@@ -1,5 +1,3 @@
-#include "scenarios/studies/tuning/family.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,6 +6,7 @@
 #include "device_model/theory/linear_loops.hpp"
 #include "scenarios/batch/comparison.hpp"
 #include "scenarios/run/assemble.hpp"
+#include "scenarios/studies/tuning/tune.hpp"
 
 namespace hapbench {
 namespace {
@@ -31,6 +30,8 @@ std::vector<FamilyMember> hands_of(const Scenario& scenario) {
 }
 
 std::vector<FamilyMember> seeds_of(const LoadedScenario& loaded) {
+  constexpr std::size_t kSeeds = 5;    // the scene's own among them
+  constexpr double kSeedShift = 1e-5;  // [m]
   const Axis axis = seed_axis(loaded.scenario, kSeeds, kSeedShift);
   std::vector<FamilyMember> seeds;
   for (std::size_t k = 1; k < kSeeds; ++k)

@@ -5,22 +5,37 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "scenarios/description/load_scenario.hpp"
 #include "scenarios/studies/stability/field_limit.hpp"
-#include "scenarios/studies/tuning/family.hpp"
 
 /// Which stiffness and damping to use: for a force law in a scene the largest K, over damping ratio and, on request or
 /// on an admittance device, velocity filter and virtual mass, at which the worst run of a family is settled with a gain
 /// margin and keeps limits on its metrics.
 namespace hapbench {
 
-/// The metrics of a choice, in the order of tables; the first three are what --max-inside, --max-vibration and
-/// --max-step bound.
+/// The metrics of a choice, in the order of tables; --max-inside, --max-vibration and --max-step bound the first three.
 inline constexpr std::array kTuneMetrics = {"inside_max_m",     "force_rms_above_30Hz_N",  "settled_force_step_max_N",
                                             "inside_settled_m", "force_mean_in_contact_N", "landing_force_max_N"};
 using TuneMetrics = std::map<std::string, double, std::less<>>;
+
+/// What the runs differ in that a setting has to hold in besides the scene's own:
+///   hands   that are springs: the ends of hand_family(), 100 and 1000 N/m, with the damping of the scene's own; on an
+///           impedance device's handle with 0.1 and 0.5 kg each
+///   seeds   four further seeds, started 10 um away: less than a hand repeats a place
+///   speeds  the script of hand and tool at half and twice its speed
+enum class FamilyOver { hands, seeds, speeds };
+inline constexpr const char* kFamilyNames[] = {"hands", "seeds", "speeds"};
+
+struct FamilyMember {
+  std::string name;                         ///< for people, as in "a hand of 0.5 kg and 1000 N/m"
+  std::vector<std::string> overrides = {};  ///< none: the scene's own run
+};
+
+/// Those runs; none where the scene has nothing to vary, as a hand whose force is a script.
+std::vector<FamilyMember> family_of(const LoadedScenario& loaded, FamilyOver over);
 
 struct TuneQuestion {
   ScenarioText scenario;
@@ -64,6 +79,10 @@ struct TuneTrial : TuneSetting {
   double lambda_max = 0.0;  ///< largest eigenvalue of the mean S in the end of the own run: K lambda_max is rendered
 
   bool feasible() const { return binding.empty(); }
+  void fail(std::string constraint, std::string reason) {
+    binding = std::move(constraint);
+    why = std::move(reason);
+  }
 };
 
 /// What a choice can bear before the worst run of the family is not settled any more; none where it cannot be asked, as
@@ -83,8 +102,7 @@ struct TunedLaw {
   std::string binding, why;
   std::string relax;  ///< where nothing is feasible: which limit to relax, and by how much
   TuneMargins margins;
-  /// The edges of K in the scene as chosen, with its own hand: what `limit` finds for the question.
-  FieldLimit edge;
+  FieldLimit edge;  ///< of K in the scene as chosen, with its own hand: what `limit` finds for the question
   LimitQuestion edge_question;
   /// How far half the step, half the distance of the points and a look at the depth in every row move the metrics, the
   /// largest of these; none of a metric that such a run does not have.
@@ -105,22 +123,19 @@ struct TuneRanges {
 };
 TuneRanges tune_ranges(const TuneQuestion& question, const std::string& algorithm);
 
-/// Tunes one law. Deterministic whatever the number of threads.
+/// Tunes one law. The number of threads changes nothing.
 ///
-/// A setting at K is feasible when, for the scene's own run and for each of the family,
-///   - the run at K is settled (rule_of in judged_run.hpp) and keeps the limits; without limits of a user, the own run
-///   is
-///     quiet (quiet_numbers in diagnosis.hpp),
-///   - the run at G K is settled, and
-///   - the loop of device, hand and surface while they touch (scene_loop.hpp) is stable up to G K by its
-///     eigenvalues, for an impedance device with each hand of hand_family() where a hand holds the handle.
+/// A setting at K is feasible when, for the scene's own run and each of the family, the run at K is settled (rule_of in
+/// run_stability.hpp) and keeps the limits (without limits of a user, the own run is quiet: quiet_numbers in
+/// diagnosis.hpp), the run at G K is settled, and the loop in contact (contact_loops, with hand_family() where a hand
+/// holds an impedance device's handle) has stable eigenvalues up to G K.
 /// Values of zeta in ratios of 10^(1/4) are tried; where K can be raised by half a percent, it is, to its first edge.
 /// Where only limits are in the way, the search walks from the trial nearest to them towards them. Then filters are
 /// tried with the best mass, and zeta and mass refined until a change by 0.4 % raises K no more.
 /// The choice has to be settled at 56 gains from 1 to G, the family taking turns, up to the edge that `limit` finds for
-/// the own run, and in runs twice as long unless a
-/// script leads on, and it has to keep limits of a user by as much as its metrics are known (TunedLaw::error);
-/// otherwise the search goes on below it. Throws InputError for a scene without a free position, Stopped.
+/// the own run, and in runs twice as long unless a script leads on; and it has to keep limits of a user by as much as
+/// its metrics are known (TunedLaw::error). Otherwise the search goes on below it. Throws InputError for a scene
+/// without a free position, Stopped.
 TunedLaw tuned_law(const TuneQuestion& question, const std::string& algorithm);
 
 }  // namespace hapbench

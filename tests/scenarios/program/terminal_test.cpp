@@ -11,7 +11,7 @@
 #include "scenarios/description/writer.hpp"
 #include "scenarios/program/fields_text.hpp"
 #include "scenarios/program/run_table.hpp"
-#include "scenarios/studies/stability/judged_run.hpp"
+#include "scenarios/studies/stability/run_stability.hpp"
 #include "scenarios/thesis_claims/claims.hpp"
 #include "sim/loop/integrators/table.hpp"
 #include "tests/results/files.hpp"

@@ -16,7 +16,7 @@
 #include "scenarios/description/parts.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/run_scenario.hpp"
-#include "scenarios/studies/stability/judged_run.hpp"
+#include "scenarios/studies/stability/run_stability.hpp"
 #include "tests/support/meshes.hpp"
 #include "tests/support/scale.hpp"
 
@@ -389,7 +389,7 @@ TEST_F(ScenesMadeToFool, WithThinWallsOrAGapGetTheirTrueOutcome) {
     const Outcome outcome = run_scenario(loaded, std::nullopt, false).end.outcome;
     EXPECT_EQ(outcome, c.outcomes[0]) << outcome_name(outcome);
     if (position_is_free(loaded.scenario.motion)) {
-      EXPECT_FALSE(is_stable(judged_run(loaded, make_shell(loaded.scenario, loaded.files)).verdict));
+      EXPECT_FALSE(is_stable(stability_of(loaded, make_shell(loaded.scenario, loaded.files)).verdict));
     }
   }
 }
@@ -415,7 +415,7 @@ TEST_F(ScenesMadeToFool, AreNotStable) {
     SCOPED_TRACE(c.name);
     const LoadedScenario loaded = scene(c);
     if (!position_is_free(loaded.scenario.motion)) continue;
-    const RunVerdict verdict = judged_run(loaded, make_shell(loaded.scenario, loaded.files)).verdict;
+    const RunVerdict verdict = stability_of(loaded, make_shell(loaded.scenario, loaded.files)).verdict;
     const bool fine = std::find(c.outcomes.begin(), c.outcomes.end(), Outcome::completes) != c.outcomes.end();
     EXPECT_TRUE(fine || !is_stable(verdict)) << run_verdict_name(verdict);
     EXPECT_TRUE(!fine || is_stable(verdict) || verdict == RunVerdict::vibrating) << run_verdict_name(verdict);

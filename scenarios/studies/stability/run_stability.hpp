@@ -77,11 +77,10 @@ class MotionClassifier final : public Observer {
  public:
   /// `steps`: rows the run will have. Precondition: steps >= 4.
   explicit MotionClassifier(std::uint64_t steps) : steps_(steps) {}
-  /// For a tool that a script moves: only the part of its velocity above 30 Hz counts (all of it when steps are longer
-  /// than a 60th of a second), and in the last quarter only amplitudes beyond 1 mm/s, about what a hand can feel there.
-  /// Such a tool is never at rest. Where the script ends in the first half of the run, at the row `still`, all motion
-  /// from then on counts besides, by quarters of what is left, beyond 1 mm/s again. What
-  /// a tremor of the hand does by itself is allowed besides.
+  /// For a tool that a script moves, which is never at rest: only the part of its velocity above 30 Hz counts (all of
+  /// it when steps are longer than a 60th of a second), in the last quarter beyond 1 mm/s, about what a hand can feel
+  /// there. Where the script ends in the first half of the run, at the row `still`, all motion from then on counts
+  /// besides, by quarters of what is left, beyond 1 mm/s. What a tremor of the hand does by itself is allowed.
   static MotionClassifier of_moved_tool(std::uint64_t steps, double time_step, double still,
                                         const TremorSpeeds& tremor = {});
 
@@ -90,8 +89,8 @@ class MotionClassifier final : public Observer {
   /// True once the tool has come to rest to 1e-12 of its largest speed for 200 rows: what is left is rounding, and the
   /// run may be cut short.
   bool at_rest() const noexcept { return !is_moved_ && rows_at_rest_ >= kRowsAtRest; }
-  /// True for a complete run that neither came to rest nor lasted for an oscillation: it moves on in the last quarter,
-  /// by 1 % of the first one's amplitude or more, and turns at most once there. A longer one can tell.
+  /// True for a complete run that is too short to tell: it moves on in the last quarter, by 1 % of the first one's
+  /// amplitude or more, and turns at most once there.
   bool is_undecided() const noexcept;
   /// Largest speed in the second half of a complete run, as the class sees it [m/s].
   double late_amplitude() const noexcept { return std::max(all_.quarters[2].amplitude, all_.quarters[3].amplitude); }
@@ -146,10 +145,10 @@ struct SettledState {
 
 /// What a run has to do to be stable: the one rule of limits, maps of devices and comparisons.
 struct StabilityRule {
-  /// Most vibration of the handle in the judged rows, which then decides between stable and vibrating whatever the
-  /// class of the motion [m/s rms]: a limit cycle that is too small to be felt is stable, and motion that is felt is
-  /// not, though it may die out; nothing is stable where no vibration is measured. A tool that bounces more slowly than
-  /// 30 Hz vibrates while its bounces do not get lower by 1 %.
+  /// Most vibration of the handle in the judged rows [m/s rms], which then decides between stable and vibrating in
+  /// place of the motion: a limit cycle that is too small to be felt is stable, motion that is felt is not, though it
+  /// may die out; nothing is stable where no vibration is measured. A tool that bounces more slowly than 30 Hz vibrates
+  /// while its bounces do not get lower by 1 %.
   std::optional<double> most_vibration = {};
   /// Bounds on metrics of summary.json; a metric without a value keeps none.
   std::map<std::string, MetricBound> bounds = {};
@@ -169,7 +168,7 @@ StabilityRule rule_of(const Scenario& scenario);
 /// The rule as one line; `moved`: a script moves the tool (is_moved).
 std::string rule_text(const StabilityRule& rule, bool moved);
 
-struct JudgedRun {
+struct RunStability {
   RunVerdict verdict = RunVerdict::stable;
   SettledState settled;
   std::uint64_t way = 0;  ///< a hash of all positions of the handle: runs that differ in it moved differently
@@ -178,11 +177,11 @@ struct JudgedRun {
 };
 
 /// Runs the scenario's first trial, without records, and judges it, longer where that is too short to tell and no
-/// script ends (JudgedRun::undecided); where there are bounds and it is stable, runs it again for its metrics. `shell`
-/// is make_shell of the scenario, null for springs, which have neither an inside nor a place to leave. Throws Stopped
-/// when a signal ends it. Precondition: the position is free, and there are 4 steps or more.
-JudgedRun judged_run(const LoadedScenario& loaded, std::shared_ptr<const PointShell> shell,
-                     const StabilityRule& rule = {});
+/// script ends (RunStability::undecided); where there are bounds and it is stable, runs it again for its metrics.
+/// `shell` is make_shell of the scenario, null for springs, which have neither an inside nor a place to leave. Throws
+/// Stopped when a signal ends it. Precondition: the position is free, and there are 4 steps or more.
+RunStability stability_of(const LoadedScenario& loaded, std::shared_ptr<const PointShell> shell,
+                          const StabilityRule& rule = {});
 
 /// True when the tool vibrates or diverges without any environment, so that hand and device are to blame and not the
 /// contact; `most_vibration` as in the rule. False for hands that do not feel the handle, and for those that need a

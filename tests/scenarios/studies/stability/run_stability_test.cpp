@@ -1,4 +1,4 @@
-#include "scenarios/studies/stability/judged_run.hpp"
+#include "scenarios/studies/stability/run_stability.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,20 +11,24 @@
 #include "scenarios/input/installed_folder.hpp"
 #include "scenarios/run/assemble.hpp"
 
-namespace hapbench::judged_run_test {
+namespace hapbench::run_stability_test {
 namespace {
 
 constexpr std::uint64_t kSteps = 4000;
 
-/// The class of a motion along x whose velocity at row k is given.
-MotionClass class_of(const std::function<double(double)>& velocity) {
-  MotionClassifier classifier(kSteps);
+/// What a classifier makes of a tool whose velocity at row k is given.
+MotionClass class_by(MotionClassifier classifier, const std::function<Vec3(double k)>& velocity) {
   StepRecord record;
   for (record.step = 0; record.step < kSteps; ++record.step) {
-    record.tool.velocity = Vec3(velocity(static_cast<double>(record.step)), 0.0, 0.0);
+    record.tool.velocity = velocity(static_cast<double>(record.step));
     classifier.on_step(record);
   }
   return classifier.motion_class(Outcome::completes);
+}
+
+/// The class of a motion along x.
+MotionClass class_of(const std::function<double(double k)>& velocity) {
+  return class_by(MotionClassifier(kSteps), [&](double k) { return Vec3(velocity(k), 0.0, 0.0); });
 }
 
 TEST(MotionClassifier, OfNoMotionAndOfCreepingIsStable) {
@@ -70,16 +74,15 @@ MotionClass class_of_oscillation(double per_step) {
   return class_of([&](double k) { return std::pow(per_step, k) * std::cos(0.2 * std::numbers::pi * k); });
 }
 
-TEST(MotionClassifier, SeparatesDyingFromDeadAtAHundredthInThreeQuarters) {
-  const double at_limit = std::pow(0.01, 1.0 / (0.75 * kSteps));
-  EXPECT_EQ(class_of_oscillation(1.0 - 0.9 * (1.0 - at_limit)), MotionClass::dying_out);
-  EXPECT_EQ(class_of_oscillation(1.0 - 1.1 * (1.0 - at_limit)), MotionClass::stable);
-}
-
-TEST(MotionClassifier, SeparatesVibratingFromDyingAtATenthInAQuarter) {
-  const double at_limit = std::pow(0.9, 4.0 / kSteps);
-  EXPECT_EQ(class_of_oscillation(1.0 - 0.9 * (1.0 - at_limit)), MotionClass::vibrating);
-  EXPECT_EQ(class_of_oscillation(1.0 - 1.1 * (1.0 - at_limit)), MotionClass::dying_out);
+TEST(MotionClassifier, SeparatesClassesByWhatIsLostInAQuarter) {
+  const double hundredth = std::pow(0.01, 1.0 / (0.75 * kSteps)), tenth = std::pow(0.9, 4.0 / kSteps),
+               growth = std::pow(1.01, 4.0 / kSteps);
+  EXPECT_EQ(class_of_oscillation(1.0 - 1.1 * (1.0 - hundredth)), MotionClass::stable);
+  EXPECT_EQ(class_of_oscillation(1.0 - 0.9 * (1.0 - hundredth)), MotionClass::dying_out);
+  EXPECT_EQ(class_of_oscillation(1.0 - 1.1 * (1.0 - tenth)), MotionClass::dying_out);
+  EXPECT_EQ(class_of_oscillation(1.0 - 0.9 * (1.0 - tenth)), MotionClass::vibrating);
+  EXPECT_EQ(class_of_oscillation(1.0 + 0.8 * (growth - 1.0)), MotionClass::vibrating);
+  EXPECT_EQ(class_of_oscillation(1.0 + 1.2 * (growth - 1.0)), MotionClass::diverged);
 }
 
 TEST(MotionClassifier, OfABeatThatEndsInATroughIsVibrating) {
@@ -93,17 +96,10 @@ TEST(MotionClassifier, OfABeatThatEndsInATroughIsVibrating) {
 
 /// The class of a tool that a hand moves to and fro, 20 mm/s at 1 Hz, and that vibrates besides.
 MotionClass class_of_moved_tool(double amplitude, double frequency) {
-  constexpr double kStep = 0.0005;
-  MotionClassifier classifier = MotionClassifier::of_moved_tool(kSteps, kStep, kSteps);
-  StepRecord record;
-  for (record.step = 0; record.step < kSteps; ++record.step) {
-    const double t = kStep * static_cast<double>(record.step);
-    record.tool.velocity = Vec3(0.02 * std::cos(2.0 * std::numbers::pi * t),
-                                amplitude * std::cos(2.0 * std::numbers::pi * frequency * t), 0.0);
-    classifier.on_step(record);
-  }
-  EXPECT_FALSE(classifier.at_rest());
-  return classifier.motion_class(Outcome::completes);
+  constexpr double kStep = 0.0005, kTurn = 2.0 * std::numbers::pi * kStep;
+  return class_by(MotionClassifier::of_moved_tool(kSteps, kStep, kSteps), [&](double k) {
+    return Vec3(0.02 * std::cos(kTurn * k), amplitude * std::cos(kTurn * frequency * k), 0.0);
+  });
 }
 
 TEST(MotionClassifier, OfAMovedToolSeesWhatNoHandDoesAndWhatOneFeels) {
@@ -115,16 +111,11 @@ TEST(MotionClassifier, OfAMovedToolSeesWhatNoHandDoesAndWhatOneFeels) {
 
 /// The class of a tool that a hand leads to a place in a quarter of the run and that swings there at 12 Hz.
 MotionClass class_of_swinging_tool(double amplitude, double decay, double still) {
-  constexpr double kStep = 0.0005;
-  MotionClassifier classifier = MotionClassifier::of_moved_tool(kSteps, kStep, still);
-  StepRecord record;
-  for (record.step = 0; record.step < kSteps; ++record.step) {
-    const double t = kStep * static_cast<double>(record.step), led = record.step < kSteps / 4 ? 0.02 : 0.0;
-    record.tool.velocity =
-        Vec3(led + amplitude * std::exp(-decay * t) * std::cos(2.0 * std::numbers::pi * 12.0 * t), 0.0, 0.0);
-    classifier.on_step(record);
-  }
-  return classifier.motion_class(Outcome::completes);
+  constexpr double kStep = 0.0005, kTurn = 2.0 * std::numbers::pi * kStep;
+  return class_by(MotionClassifier::of_moved_tool(kSteps, kStep, still), [&](double k) {
+    const double led = k < kSteps / 4 ? 0.02 : 0.0;
+    return Vec3(led + amplitude * std::exp(-decay * kStep * k) * std::cos(12.0 * kTurn * k), 0.0, 0.0);
+  });
 }
 
 TEST(MotionClassifier, OfAScriptThatHasEndedSeesSlowSwingingToo) {
@@ -137,61 +128,6 @@ TEST(MotionClassifier, OfAScriptThatHasEndedSeesSlowSwingingToo) {
   EXPECT_TRUE(dying == MotionClass::stable || dying == MotionClass::dying_out);
 }
 
-/// What goes on bouncing below 30 Hz is not still, however little it vibrates.
-TEST(JudgedRun, OfSlowBouncesThatGoOnIsVibrating) {
-  const ScenarioText plane = read_scenario_text(find_scenario("poke_plane"));
-  const auto at = [&](const char* zeta) {
-    const std::vector<std::string> fields = {R"(hand={"type":"force","z_N":-0.05})",
-                                             "time.duration_s=4",
-                                             "rendering.reduction=null",
-                                             "rendering.algorithm=mean",
-                                             "rendering.stiffness_N_per_m=5000",
-                                             std::string("rendering.damping_ratio=") + zeta};
-    return load_scenario(plane, fields);
-  };
-  const StabilityRule kAnyVibration{.most_vibration = 1.0};
-  const auto verdict = [&](const char* zeta) {
-    const LoadedScenario loaded = at(zeta);
-    return judged_run(loaded, make_shell(loaded.scenario, loaded.files), kAnyVibration).verdict;
-  };
-  EXPECT_EQ(verdict("0"), RunVerdict::vibrating);
-  EXPECT_EQ(verdict("0.5"), RunVerdict::stable);
-}
-
-/// A trembling hand drags a paddle with dry friction: sticking and slipping it shakes at 1.3 mm/s above 30 Hz whatever
-/// the wall, which is no fault of the wall's.
-TEST(JudgedRun, AllowsWhatATremorDoesWithoutAWall) {
-  const ScenarioText paddle = read_scenario_text(installed_folder("scenarios") / "validation" / "epfl_paddle.json");
-  const auto at = [&](const char* stiffness) {
-    const std::vector<std::string> fields = {"device.coulomb_N=0.231",
-                                             "device.viscous_N_s_per_m=0.318",
-                                             "device.delay_samples=0.66",
-                                             "device.encoder_step_m=1.36e-5",
-                                             "hand.mass_kg=0.0257",
-                                             "hand.stiffness_N_per_m=919",
-                                             "hand.damping_N_s_per_m=1.27",
-                                             "hand.tremor.rms_m=[1.1e-4,0,0]",
-                                             "seed=3",
-                                             std::string("rendering.stiffness_N_per_m=") + stiffness};
-    return load_scenario(paddle, fields);
-  };
-  const TremorSpeeds alone = tremor_speeds(at("8000"));
-  EXPECT_GT(alone.handle, 1e-4);
-  EXPECT_LT(alone.handle, 0.2 * alone.target);
-  EXPECT_NEAR(alone.target, 4.0 * 2.0 * std::numbers::pi * 12.0 * 1.1e-4, 1e-9);
-  EXPECT_EQ(judged_run(at("300"), nullptr).verdict, RunVerdict::stable);
-  EXPECT_EQ(judged_run(at("8000"), nullptr).verdict, RunVerdict::stable);
-  EXPECT_EQ(judged_run(at("200000"), nullptr).verdict, RunVerdict::vibrating);
-  // Where everything beyond 1 mm/s counted, the finger's own sway at a soft wall would be called vibration.
-  EXPECT_EQ(judged_run(at("300"), nullptr, {.tremor = TremorSpeeds{}}).verdict, RunVerdict::vibrating);
-}
-
-TEST(MotionClassifier, SeparatesVibratingFromGrowingAtAPercentInAQuarter) {
-  const double at_limit = std::pow(1.01, 4.0 / kSteps);
-  EXPECT_EQ(class_of_oscillation(1.0 + 0.8 * (at_limit - 1.0)), MotionClass::vibrating);
-  EXPECT_EQ(class_of_oscillation(1.0 + 1.2 * (at_limit - 1.0)), MotionClass::diverged);
-}
-
 TEST(MotionClassifier, OfALimitCycleIsVibratingHoweverItBegan) {
   EXPECT_EQ(class_of([](double k) { return std::min(1.0, 0.001 * k) * std::sin(k); }), MotionClass::vibrating);
   EXPECT_EQ(class_of([](double k) { return (1.0 + 9.0 * std::exp(-0.01 * k)) * std::sin(k); }), MotionClass::vibrating);
@@ -199,14 +135,12 @@ TEST(MotionClassifier, OfALimitCycleIsVibratingHoweverItBegan) {
 
 TEST(MotionClassifier, SeesAnOscillationAlongAnyAxis) {
   for (int axis = 0; axis < 3; ++axis) {
-    MotionClassifier classifier(kSteps);
-    StepRecord record;
-    for (record.step = 0; record.step < kSteps; ++record.step) {
-      record.tool.velocity = Vec3::Ones();  // a drift does not hide it
-      record.tool.velocity[axis] = record.step % 2 == 0 ? 1.0 : -1.0;
-      classifier.on_step(record);
-    }
-    EXPECT_EQ(classifier.motion_class(Outcome::completes), MotionClass::vibrating) << axis;
+    const auto velocity = [axis](double k) {
+      Vec3 v = Vec3::Ones();  // a drift does not hide it
+      v[axis] = std::fmod(k, 2.0) == 0.0 ? 1.0 : -1.0;
+      return v;
+    };
+    EXPECT_EQ(class_by(MotionClassifier(kSteps), velocity), MotionClass::vibrating) << axis;
   }
 }
 
@@ -229,5 +163,49 @@ TEST(MotionClassifier, IsAtRestOnlyAfterManyQuietRows) {
   EXPECT_TRUE(classifier.at_rest());
 }
 
+/// What goes on bouncing below 30 Hz is not still, however little it vibrates.
+TEST(StabilityOf, OfSlowBouncesThatGoOnIsVibrating) {
+  const ScenarioText plane = read_scenario_text(find_scenario("poke_plane"));
+  const StabilityRule any_vibration{.most_vibration = 1.0};
+  for (const auto& [zeta, verdict] : {std::pair("0", RunVerdict::vibrating), {"0.5", RunVerdict::stable}}) {
+    const std::vector<std::string> fields = {R"(hand={"type":"force","z_N":-0.05})",
+                                             "time.duration_s=4",
+                                             "rendering.reduction=null",
+                                             "rendering.algorithm=mean",
+                                             "rendering.stiffness_N_per_m=5000",
+                                             std::string("rendering.damping_ratio=") + zeta};
+    const LoadedScenario loaded = load_scenario(plane, fields);
+    EXPECT_EQ(stability_of(loaded, make_shell(loaded.scenario, loaded.files), any_vibration).verdict, verdict) << zeta;
+  }
+}
+
+/// A trembling hand drags a paddle with dry friction: sticking and slipping it shakes at 1.3 mm/s above 30 Hz whatever
+/// the wall, which is no fault of the wall's.
+TEST(StabilityOf, AllowsWhatATremorDoesWithoutAWall) {
+  const ScenarioText paddle = read_scenario_text(installed_folder("scenarios") / "validation" / "epfl_paddle.json");
+  const auto at = [&](const char* stiffness) {
+    const std::vector<std::string> fields = {"device.coulomb_N=0.231",
+                                             "device.viscous_N_s_per_m=0.318",
+                                             "device.delay_samples=0.66",
+                                             "device.encoder_step_m=1.36e-5",
+                                             "hand.mass_kg=0.0257",
+                                             "hand.stiffness_N_per_m=919",
+                                             "hand.damping_N_s_per_m=1.27",
+                                             "hand.tremor.rms_m=[1.1e-4,0,0]",
+                                             "seed=3",
+                                             std::string("rendering.stiffness_N_per_m=") + stiffness};
+    return load_scenario(paddle, fields);
+  };
+  const TremorSpeeds alone = tremor_speeds(at("8000"));
+  EXPECT_GT(alone.handle, 1e-4);
+  EXPECT_LT(alone.handle, 0.2 * alone.target);
+  EXPECT_NEAR(alone.target, 4.0 * 2.0 * std::numbers::pi * 12.0 * 1.1e-4, 1e-9);
+  EXPECT_EQ(stability_of(at("300"), nullptr).verdict, RunVerdict::stable);
+  EXPECT_EQ(stability_of(at("8000"), nullptr).verdict, RunVerdict::stable);
+  EXPECT_EQ(stability_of(at("200000"), nullptr).verdict, RunVerdict::vibrating);
+  // Where everything beyond 1 mm/s counted, the finger's own sway at a soft wall would be called vibration.
+  EXPECT_EQ(stability_of(at("300"), nullptr, {.tremor = TremorSpeeds{}}).verdict, RunVerdict::vibrating);
+}
+
 }  // namespace
-}  // namespace hapbench::judged_run_test
+}  // namespace hapbench::run_stability_test

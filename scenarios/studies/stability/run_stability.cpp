@@ -1,4 +1,4 @@
-#include "scenarios/studies/stability/judged_run.hpp"
+#include "scenarios/studies/stability/run_stability.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -216,7 +216,7 @@ class LastRows final : public Observer {
   }
 
   bool touched() const { return touched_; }           ///< in any row
-  std::uint64_t way() const { return way_.value(); }  ///< JudgedRun::way
+  std::uint64_t way() const { return way_.value(); }  ///< RunStability::way
   bool goes_on_bouncing() const { return bounces_.go_on(); }
   bool has_left(const PointShell& shell, double reach) const {
     const Box bounds = shell.bounds();
@@ -270,6 +270,53 @@ std::optional<RunVerdict> verdict_of(Outcome outcome) {
   return static_cast<RunVerdict>(found - texts.begin());
 }
 
+/// The class of the motion of hand and device without any environment.
+MotionClass classify_alone(const Scenario& scenario, const NamedFiles& files, const MotionClassifier& classifier,
+                           const std::vector<Observer*>& observers) {
+  constexpr double kCells = 1.0;  // [m], of the grid that local_average wants
+  const auto nothing = std::make_shared<const PointShell>(std::vector<SurfacePoint>{}, kCells);
+  Simulation simulation(simulation_config(scenario), assemble(scenario, files, nothing, {}), observers);
+  return classify(simulation, classifier);
+}
+
+/// True when the run, made once more to its end, keeps all bounds.
+bool keeps(const LoadedScenario& loaded, const std::shared_ptr<const PointShell>& shell,
+           const std::map<std::string, MetricBound>& bounds) {
+  const Result report = run_with_shell(loaded, shell);
+  ExpectFields expect;
+  expect.outcomes = {report.end.outcome};
+  expect.metrics = bounds;
+  return unmet_expectations(expect, report).empty();
+}
+
+RunStability judged_once(const LoadedScenario& loaded, const std::shared_ptr<const PointShell>& shell,
+                         const StabilityRule& rule) {
+  const Scenario& scenario = loaded.scenario;
+  MotionClassifier classifier = classifier_of(scenario, rule.tremor ? *rule.tremor : tremor_speeds(loaded));
+  LastRows last(scenario);
+  SimulationParts parts = assemble(scenario, loaded.files, shell, {});
+  const std::shared_ptr<const ToolShape> tool = parts.tool;
+  const auto seen = encounter_observer(scenario, loaded.files, parts);
+  Simulation simulation(simulation_config(scenario), std::move(parts), {&classifier, &last, seen.get()});
+  const MotionClass motion = classify(simulation, classifier);
+  const SettledState settled = last.state(classifier.at_rest());
+  const Outcome outcome = seen->outcome(simulation.result().outcome);
+  const auto verdict = [&] {
+    if (motion == MotionClass::diverged) return RunVerdict::diverged;
+    if (outcome == Outcome::went_through) return RunVerdict::went_through;
+    if (!last.touched()) return RunVerdict::no_contact;
+    if (outcome == Outcome::leaves_hole || (shell && last.has_left(*shell, tool->reach())))
+      return RunVerdict::thrown_out;
+    if (const auto known = verdict_of(outcome)) return *known;
+    const bool only_fast = rule.most_vibration || is_moved(scenario);
+    if (only_fast && last.goes_on_bouncing()) return RunVerdict::vibrating;
+    return verdict_of(motion, settled, rule.most_vibration);
+  };
+  RunStability run{verdict(), settled, last.way()};
+  run.undecided = is_stable(run.verdict) && classifier.is_undecided();
+  return run;
+}
+
 }  // namespace
 
 StabilityRule rule_of(const Scenario& scenario) {
@@ -309,15 +356,6 @@ std::string rule_text(const StabilityRule& rule, bool moved) {
   return fmt::format("{}; not: {}", text, fmt::join(others, ", "));
 }
 
-/// The class of the motion of hand and device without any environment.
-static MotionClass classify_alone(const Scenario& scenario, const NamedFiles& files, const MotionClassifier& classifier,
-                                  const std::vector<Observer*>& observers) {
-  constexpr double kCells = 1.0;  // [m], of the grid that local_average wants
-  const auto nothing = std::make_shared<const PointShell>(std::vector<SurfacePoint>{}, kCells);
-  Simulation simulation(simulation_config(scenario), assemble(scenario, files, nothing, {}), observers);
-  return classify(simulation, classifier);
-}
-
 TremorSpeeds tremor_speeds(const LoadedScenario& loaded) {
   const TremorConfig* tremor = tremor_of(loaded.scenario);
   if (tremor == nullptr) return {};
@@ -330,52 +368,11 @@ TremorSpeeds tremor_speeds(const LoadedScenario& loaded) {
   return {tremor->largest_speed(), classifier.late_amplitude()};
 }
 
-namespace {
-
-/// True when the run, made once more to its end, keeps all bounds.
-bool keeps(const LoadedScenario& loaded, const std::shared_ptr<const PointShell>& shell,
-           const std::map<std::string, MetricBound>& bounds) {
-  const Result report = run_with_shell(loaded, shell);
-  ExpectFields expect;
-  expect.outcomes = {report.end.outcome};
-  expect.metrics = bounds;
-  return unmet_expectations(expect, report).empty();
-}
-
-}  // namespace
-
-static JudgedRun judged_once(const LoadedScenario& loaded, const std::shared_ptr<const PointShell>& shell,
-                             const StabilityRule& rule) {
-  const Scenario& scenario = loaded.scenario;
-  MotionClassifier classifier = classifier_of(scenario, rule.tremor ? *rule.tremor : tremor_speeds(loaded));
-  LastRows last(scenario);
-  SimulationParts parts = assemble(scenario, loaded.files, shell, {});
-  const std::shared_ptr<const ToolShape> tool = parts.tool;
-  const auto seen = encounter_observer(scenario, loaded.files, parts);
-  Simulation simulation(simulation_config(scenario), std::move(parts), {&classifier, &last, seen.get()});
-  const MotionClass motion = classify(simulation, classifier);
-  const SettledState settled = last.state(classifier.at_rest());
-  const Outcome outcome = seen->outcome(simulation.result().outcome);
-  const auto verdict = [&] {
-    if (motion == MotionClass::diverged) return RunVerdict::diverged;
-    if (outcome == Outcome::went_through) return RunVerdict::went_through;
-    if (!last.touched()) return RunVerdict::no_contact;
-    if (outcome == Outcome::leaves_hole || (shell && last.has_left(*shell, tool->reach())))
-      return RunVerdict::thrown_out;
-    if (const auto known = verdict_of(outcome)) return *known;
-    const bool only_fast = rule.most_vibration || is_moved(scenario);
-    if (only_fast && last.goes_on_bouncing()) return RunVerdict::vibrating;
-    return verdict_of(motion, settled, rule.most_vibration);
-  };
-  JudgedRun run{verdict(), settled, last.way()};
-  run.undecided = is_stable(run.verdict) && classifier.is_undecided();
-  return run;
-}
-
-JudgedRun judged_run(const LoadedScenario& loaded, std::shared_ptr<const PointShell> shell, const StabilityRule& rule) {
+RunStability stability_of(const LoadedScenario& loaded, std::shared_ptr<const PointShell> shell,
+                          const StabilityRule& rule) {
   constexpr int kLengthenings = 3;
   constexpr std::int64_t kTimes = 4, kMostLengthened = 1'000'000;  // steps
-  JudgedRun run = judged_once(loaded, shell, rule);
+  RunStability run = judged_once(loaded, shell, rule);
   LoadedScenario longer = loaded;
   for (int i = 0; run.undecided && i < kLengthenings && longer.scenario.time.steps * kTimes <= kMostLengthened; ++i) {
     longer.scenario.time.steps *= kTimes;
