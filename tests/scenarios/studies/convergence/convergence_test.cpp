@@ -10,7 +10,7 @@
 #include "tests/scenarios/support/scenarios.hpp"
 
 /// Observed orders of sequences whose order is known, and of such as have none; levels of scenes, and scenes that have
-/// no order.
+/// no order. Roache's formulas on a recurrence are in tests/known_answers.
 namespace hapbench::convergence_test {
 namespace {
 
@@ -52,51 +52,33 @@ TEST(ObservedOrder, IsThatOfAPureErrorTerm) {
   }
 }
 
-/// Roache's own numbers, 1.25 |f_3 - f_2| / (|f_3| (r^p - 1)) and f_3 + (f_3 - f_2) / (r^p - 1), by hand: differences
-/// 0.4 and 0.1 are of the second order, and 0.1 / 3 is left.
-TEST(ObservedOrder, FollowsTheFormulas) {
-  const Convergence c = convergence_of(levels_with({1.5, 1.1, 1.0}), 2.0, 2.0);
-  EXPECT_NEAR(*c.order, 2.0, 1e-12);
-  EXPECT_NEAR(*c.extrapolated, 1.0 - 0.1 / 3.0, 1e-12);
-  EXPECT_NEAR(*c.gci, 1.25 * 0.1 / 3.0, 1e-12);
-  ASSERT_EQ(c.orders.size(), 3u);
-  EXPECT_FALSE(c.orders[0] || c.orders[1]);
-  EXPECT_EQ(c.orders[2], c.order);
-  EXPECT_EQ(c.band, std::pair(1.0, 1.5));
-  // f_3 / f_2 = 1 / 1.1 is within 0.1 of 1.
-  EXPECT_TRUE(c.asymptotic);
-  EXPECT_FALSE(convergence_of(levels_with({1.6, 1.2, 1.0}), 2.0, 2.0).asymptotic) << "1 / 1.2 is not";
+TEST(ObservedOrder, IsAsymptoticWhereTheIndicesAgreeWithinATenth) {
+  EXPECT_TRUE(convergence_of(levels_with({1.5, 1.1, 1.0}), 2.0, 2.0).asymptotic) << "f_3 / f_2 = 1 / 1.1";
+  EXPECT_FALSE(convergence_of(levels_with({1.6, 1.2, 1.0}), 2.0, 2.0).asymptotic) << "1 / 1.2";
 }
 
-TEST(ObservedOrder, IsNotStatedWhereDifferencesChangeTheirSign) {
-  expect_no_order(convergence_of(levels_with({1.0, 1.2, 1.1, 1.15, 1.125}), 2.0, 1.0), "change their sign");
-  // The last three alone would have order 1.
+TEST(ObservedOrder, IsNotStatedWhereTheDifferencesShowNone) {
+  const double ulp = std::nextafter(1.0, 2.0) - 1.0;
+  const std::pair<std::vector<double>, const char*> kCases[] = {
+      {{1.0, 1.2, 1.1, 1.15, 1.125}, "change their sign"},
+      {{2.0, 1.0, 1.4, 1.2, 1.1}, "change their sign"},  // the last three alone would have order 1
+      {{1.0, 1.1, 1.3, 1.7}, "do not shrink"},
+      {{1.0, 1.1, 1.2, 1.3}, "do not shrink"},
+      {{1.0, 1.01, 1.2, 1.344}, "do not shrink"},  // the last three alone would have order 0.4
+      {{2.0, 1.125, 1.015625, 1.001953125}, "more than twice the formal one, 1"},
+      {{2.0, 2.0, 2.0}, "rounding"},
+      {{0.0, 0.0, 0.0}, "rounding"},
+      {{1.1, 1.0 + 16 * ulp, 1.0 + 4 * ulp, 1.0 + 2 * ulp, 1.0 + ulp}, "rounding"},
+      {{1.0, 2.0, 2.0, 3.0, 3.5}, "some of the last levels"}};
+  for (const auto& [results, said] : kCases) expect_no_order(convergence_of(levels_with(results), 2.0, 1.0), said);
+}
+
+TEST(ObservedOrder, LeavesABandWhereThereIsNone) {
   const Convergence c = convergence_of(levels_with({2.0, 1.0, 1.4, 1.2, 1.1}), 2.0, 1.0);
-  expect_no_order(c, "change their sign");
   EXPECT_EQ(c.band, std::pair(1.1, 1.4));
   EXPECT_NEAR(*c.errors[0], 1.0, 1e-12) << "from the second level";
   EXPECT_NEAR(*c.errors[3], 0.3, 1e-12) << "the band is wider than what is left";
   EXPECT_NEAR(*c.errors[4], 0.3, 1e-12);
-}
-
-TEST(ObservedOrder, IsNotStatedWhereDifferencesGrowOrStagnate) {
-  expect_no_order(convergence_of(levels_with({1.0, 1.1, 1.3, 1.7}), 2.0, 1.0), "do not shrink");
-  expect_no_order(convergence_of(levels_with({1.0, 1.1, 1.2, 1.3}), 2.0, 1.0), "do not shrink");
-  // The last three alone would have order 0.4.
-  expect_no_order(convergence_of(levels_with({1.0, 1.01, 1.2, 1.344}), 2.0, 1.0), "do not shrink");
-  const auto cubic = levels_of([](double h) { return 1.0 + h * h * h; });
-  expect_no_order(convergence_of(cubic, 2.0, 1.0), "more than twice the formal one, 1");
-}
-
-TEST(ObservedOrder, IsNotStatedAtRounding) {
-  expect_no_order(convergence_of(levels_with({2.0, 2.0, 2.0}), 2.0, 1.0), "rounding");
-  expect_no_order(convergence_of(levels_with({0.0, 0.0, 0.0}), 2.0, 1.0), "rounding");
-  const double ulp = std::nextafter(1.0, 2.0) - 1.0;
-  const Convergence c =
-      convergence_of(levels_with({1.1, 1.0 + 16 * ulp, 1.0 + 4 * ulp, 1.0 + 2 * ulp, 1.0 + ulp}), 2.0, 1.0);
-  expect_no_order(c, "rounding");
-  EXPECT_LT(c.band->second - c.band->first, 1e-14);
-  expect_no_order(convergence_of(levels_with({1.0, 2.0, 2.0, 3.0, 3.5}), 2.0, 1.0), "some of the last levels");
 }
 
 TEST(ObservedOrder, IsNotStatedWhereContactsSwitch) {
@@ -131,25 +113,6 @@ TEST(ObservedOrder, CountsLevelsThatEndAsTheFinest) {
   expect_no_order(none, "the finest run, at h = 0.062500, has no value of the metric (stuck)");
   for (const auto& error : none.errors) EXPECT_FALSE(error);
   expect_no_order(convergence_of(levels_with({1.0, 2.0}), 2.0, 1.0), "2 levels are fewer than three");
-}
-
-/// Of noise an order is rarely stated: of the last four levels all differences must have one sign (a twelfth of the
-/// orders of four numbers), and both orders must be credible.
-TEST(ObservedOrder, IsRarelyFoundInNoise) {
-  int stated = 0, asymptotic = 0;
-  std::uint64_t state = 1;
-  const auto random = [&state] {  // Lehmer's generator
-    state = state * 48271 % 2147483647;
-    return static_cast<double>(state) / 2147483647.0;
-  };
-  constexpr int kTrials = 20'000;
-  for (int i = 0; i < kTrials; ++i) {
-    const Convergence c = convergence_of(levels_of([&](double) { return 1.0 + 0.01 * random(); }), 2.0, 1.0);
-    stated += c.order ? 1 : 0;
-    asymptotic += c.asymptotic ? 1 : 0;
-  }
-  EXPECT_LT(stated, kTrials / 50);
-  EXPECT_LT(asymptotic, kTrials / 200);
 }
 
 struct Study {
