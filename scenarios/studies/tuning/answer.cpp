@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <limits>
 #include <span>
 
 #include "device_model/theory/linear_loops.hpp"
@@ -116,10 +117,13 @@ TuneMetrics known_errors(Trials& trials, const TuneTrial& trial) {
   for (const Result& run : run_all(finer, {trials.question.threads, ""})) all.push_back(trials.metrics_of(run));
   TuneMetrics error;
   for (const auto& [name, value] : trial.metrics) {
-    const auto has = [&name = name](const TuneMetrics& metrics) { return metrics.contains(name); };
-    if (!std::ranges::all_of(all, has)) continue;
-    for (const TuneMetrics& metrics : all)
-      error[name] = std::max(error[name], std::abs(metrics.find(name)->second - value));
+    double most = 0.0;
+    for (const TuneMetrics& metrics : all) {
+      const auto found = metrics.find(name);
+      most = std::max(
+          most, found == metrics.end() ? std::numeric_limits<double>::infinity() : std::abs(found->second - value));
+    }
+    if (std::isfinite(most)) error[name] = most;
   }
   return error;
 }
