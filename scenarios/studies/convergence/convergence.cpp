@@ -194,16 +194,11 @@ Convergence convergence_of(std::span<const LevelResult> levels, double ratio, do
   return c;
 }
 
-namespace {
-
-/// Counts of contacts at the rows that the metrics take in, by which contacts are said to switch. Other points come
-/// with another surface: then it is the first that tells whether the tool meets the same things.
-constexpr const char* kContactCounts[] = {"landings", "steps_in_contact", "colliding_mean", "rendered_mean"};
-
-}  // namespace
-
 LevelResult level_result(const LevelSweep& levels, std::size_t level, const Result& summary,
                          const std::string& metric) {
+  // Counts at the rows that the metrics take in, by which contacts are said to switch. Other points come with another
+  // surface: then it is the first that tells whether the tool meets the same things.
+  constexpr const char* kContactCounts[] = {"landings", "steps_in_contact", "colliding_mean", "rendered_mean"};
   const std::string& path = levels.axis.path;
   LevelResult result{.setting = fmt::format("{} = {}", path, levels.axis.values[level]),
                      .outcome = std::string(outcome_name(summary.end.outcome)),
@@ -261,11 +256,6 @@ Cases finer_cases(const LevelSweep& levels, const Cases& cases) {
     }
   }
   return finer;
-}
-
-std::optional<double> KnownError::sum() const {
-  if (!step || (has_points && !spacing)) return std::nullopt;
-  return *step + spacing.value_or(0.0) + tolerance;
 }
 
 FinerRuns::FinerRuns(const Comparison& comparison, std::span<const Result> reports, const JobOptions& jobs)

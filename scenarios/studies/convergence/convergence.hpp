@@ -11,9 +11,9 @@
 #include "scenarios/batch/comparison.hpp"
 #include "scenarios/description/load_scenario.hpp"
 
-/// A scene sampled more and more finely, in its step or in any field, and how far a number is from converged then:
-/// observed order, Richardson's value and grid convergence index (Roache 1994; ASME V&V 20) of a metric at levels h,
-/// h/r, h/r^2, … of one field; or why no order can be stated.
+/// How far a number is from converged when a scene is sampled more finely in its step or in any field: observed order,
+/// Richardson's value and grid convergence index (Roache 1994; ASME V&V 20) at levels h, h/r, h/r^2, … of the field; or
+/// why no order can be stated.
 namespace hapbench {
 
 inline constexpr const char* kStepPath = "time.step_s";
@@ -37,8 +37,7 @@ struct LevelResult {
   std::string setting;           ///< the field's value, for reasons
   std::string outcome;           ///< how the run ended
   std::optional<double> result;  ///< none where the run failed or has no such number
-  /// Counts of contacts, by name. Where they differ between the last levels, contacts have switched between them, and
-  /// the differences are not those of one smooth motion.
+  /// Counts of contacts, by name; where they differ between levels, contacts have switched.
   std::vector<std::pair<std::string, double>> contacts = {};
   std::uint64_t state_hash = 0;  ///< equal for runs that are the same, bit for bit
 };
@@ -56,8 +55,8 @@ struct Convergence {
   std::optional<std::pair<double, double>> band;
   /// Of each level: the order that it and the two before show; none where there is none.
   std::vector<std::optional<double>> orders;
-  /// Of each level, in the metric's unit: with an order 1.25 |f - f*|, which at the finest level is its GCI; without
-  /// one the largest distance from a finer level, and at least the width of the band: what the levels show, no bound.
+  /// Of each level, in the metric's unit: with an order 1.25 |f - f*|, at the finest level its GCI; without one the
+  /// largest distance from a finer level, and at least the width of the band: what the levels show, no bound.
   std::vector<std::optional<double>> errors;
 };
 
@@ -85,7 +84,10 @@ struct KnownError {
   double tolerance = 0.0;               ///< of the metric itself, as that of a quantile of a histogram
 
   /// All of it together; none where a part that there is to know is not known.
-  std::optional<double> sum() const;
+  std::optional<double> sum() const {
+    if (!step || (has_points && !spacing)) return std::nullopt;
+    return *step + spacing.value_or(0.0) + tolerance;
+  }
 };
 
 /// The runs of a comparison again, by step and by spacing.

@@ -4,10 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <iterator>
 #include <limits>
-#include <map>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <utility>
@@ -17,7 +15,6 @@
 #include "device_model/theory/stiffness_limits.hpp"
 #include "results/observe/contact_forces.hpp"
 #include "scenarios/batch/parallel_for.hpp"
-#include "scenarios/description/load_scenario.hpp"
 #include "scenarios/input/input_error.hpp"
 #include "scenarios/input/text_lines.hpp"
 #include "scenarios/run/assemble.hpp"
@@ -26,13 +23,6 @@
 #include "sim/core/math.hpp"
 
 namespace hapbench {
-namespace {
-
-constexpr int kBeside = 3;  // values tried on either side of the edge, up to an interval away
-constexpr int kRounds = 6;  // of bisection, each towards an edge that values beside the last one showed
-
-}  // namespace
-
 double SearchWay::value_at(double part) const {
   const double value = range.value_at(smallest ? 1.0 - part : part);
   return whole ? std::round(value) : value;
@@ -63,6 +53,8 @@ std::map<double, bool> scanned(int intervals, const std::function<bool(double)>&
 
 FoundEdge find_edge(const SearchWay& way, std::map<double, bool>& tried, const std::function<bool(double)>& stable,
                     bool beside) {
+  constexpr int kBeside = 3;  // values tried on either side of the edge, up to an interval away
+  constexpr int kRounds = 6;  // of bisection, each towards an edge that values beside the last one showed
   const auto holds = [&](double part) { return tried[part] = stable(part); };
   const std::optional<double> own = way.own_part();
   const double start = own && holds(*own) ? *own : 0.0;
@@ -156,8 +148,6 @@ FoundEdge find_tried_edge(const SearchWay& way, std::map<double, bool>& tried,
 }
 
 namespace {
-
-constexpr int kDoublings = 10;  // from the scenario's value to either end of a range that nobody gave
 
 // Theory costs a thousandth of a run: it is scanned so much finer, and bisected to rounding whatever the runs'
 // resolution.
@@ -268,9 +258,7 @@ class Search {
     std::vector<double> islands() const {
       std::vector<double> middles;
       for (auto from = tried_.begin(); from != tried_.end();) {
-        const auto unstable = [&](auto at) { return at == tried_.end() || !at->second; };
-        auto to = from;
-        while (!unstable(to)) ++to;
+        const auto to = std::find_if(from, tried_.end(), [](const auto& tried) { return !tried.second; });
         if (to != from) middles.push_back(0.5 * (from->first + std::prev(to)->first));
         from = to == tried_.end() ? to : std::next(to);
       }
@@ -371,6 +359,7 @@ namespace {
 
 /// The end nearest to 2^10 or 2^-10 times the value that the field allows.
 double allowed_end(double value, int sign, const std::function<bool(double)>& allowed) {
+  constexpr int kDoublings = 10;
   for (int doublings = kDoublings; doublings > 0; --doublings) {
     const double end = std::ldexp(value, sign * doublings);
     if (allowed(end)) return end;
@@ -399,19 +388,6 @@ void check_sampling(const LoadedScenario& loaded) {
 }
 
 }  // namespace
-
-bool FieldLimit::is_beyond_linear(double resolution) const {
-  return value && linear && *value > (1.0 + resolution) * *linear;
-}
-
-std::optional<double> IntervalEnd::tolerance() const {
-  return value && beyond ? std::optional(std::abs(beyond->value - *value)) : std::nullopt;
-}
-
-std::optional<double> FieldLimit::difference() const {
-  if (!value || !theory || !std::isfinite(*theory) || *theory == 0.0) return std::nullopt;
-  return *value / *theory - 1.0;
-}
 
 LimitQuestion limit_question(const ScenarioText& scenario, const std::vector<std::string>& overrides,
                              const std::string& path, std::optional<Range> range) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <functional>
 #include <map>
 #include <optional>
@@ -93,7 +94,9 @@ struct IntervalEnd {
   std::optional<JudgedValue> beyond;  ///< the first one beyond it that is not; none when the range ends stable
 
   /// How far the edge may lie beyond the value: from there to the next one that is not stable; none without one.
-  std::optional<double> tolerance() const;
+  std::optional<double> tolerance() const {
+    return value && beyond ? std::optional(std::abs(beyond->value - *value)) : std::nullopt;
+  }
 };
 
 /// The answer for one algorithm: the end that was asked for.
@@ -129,9 +132,12 @@ struct FieldLimit : IntervalEnd {
 
   /// True where the limit lies beyond `linear` by more than this, relative: then that is the one to quote, and contact
   /// at a stable value beyond it is intermittent.
-  bool is_beyond_linear(double resolution) const;
+  bool is_beyond_linear(double resolution) const { return value && linear && *value > (1.0 + resolution) * *linear; }
   /// value / theory - 1; none without either.
-  std::optional<double> difference() const;
+  std::optional<double> difference() const {
+    if (!value || !theory || !std::isfinite(*theory) || *theory == 0.0) return std::nullopt;
+    return *value / *theory - 1.0;
+  }
 };
 
 /// The scenario's own value at a path, or null.

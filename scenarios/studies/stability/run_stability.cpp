@@ -4,17 +4,14 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <utility>
 
-#include "results/observe/contact_forces.hpp"
 #include "results/observe/metrics.hpp"
 #include "results/summary/summary.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/outcome.hpp"
 #include "scenarios/run/run_scenario.hpp"
-#include "scenarios/run/scene_checks.hpp"
 #include "scenarios/run/stop_signal.hpp"
 #include "sim/contact/stiffness_tensor.hpp"
 #include "sim/core/hash.hpp"
@@ -25,7 +22,6 @@ namespace {
 constexpr double kGrowth = 1.01;
 constexpr double kLeft = 0.01;
 constexpr double kSustained = 0.9;
-constexpr std::uint64_t kTurns = 2;
 constexpr double kRest = 1e-12;
 constexpr double kFelt = 1e-3;  // [m/s]
 
@@ -87,10 +83,6 @@ void MotionClassifier::on_step(const StepRecord& record) noexcept {
   const double speed = v.norm();
   largest_speed_ = std::max(largest_speed_, speed);
   rows_at_rest_ = speed <= kRest * largest_speed_ ? rows_at_rest_ + 1 : 0;
-}
-
-bool MotionClassifier::Quarter::oscillates() const noexcept {
-  return std::any_of(turns.begin(), turns.end(), [](std::uint64_t n) { return n >= kTurns; });
 }
 
 bool MotionClassifier::is_undecided() const noexcept {

@@ -27,14 +27,13 @@
 /// handle at the turns. A quarter oscillates with two turns or more of one component. The rules of the classes are
 /// those of run_verdict_texts(); an irregular vibration may lose a tenth of its amplitude once, by chance.
 ///
-/// Both stable and dying_out come to rest if the run goes on long enough, so both count as stable where a limit is
-/// looked for. A damped oscillation dies out to 1 % within three quarters of n steps when it loses more than 6.1 / n of
-/// its amplitude in a step, and vibrates when it loses less than 0.42 / n: "vibrating" is a thin strip below the limit
-/// of a damped linear system, all that is stable of an undamped one, and the limit cycles of a nonlinear one.
+/// Both stable and dying_out come to rest in a longer run, so both count as stable where a limit is looked for. A
+/// damped oscillation dies out to 1 % within three quarters of n steps when it loses more than 6.1 / n of its amplitude
+/// in a step, and vibrates when it loses less than 0.42 / n: that is a thin strip below the limit of a damped linear
+/// system, all that is stable of an undamped one, and the limit cycles of a nonlinear one.
 namespace hapbench {
 
-/// The classes of motion, ends of a run that no motion tells, most of them outcomes of the same name, and a bound that
-/// is not kept.
+/// The classes of motion, ends of a run that no motion tells (outcomes of the same name), and a bound that is not kept.
 enum class RunVerdict {
   stable,
   dying_out,
@@ -103,7 +102,7 @@ class MotionClassifier final : public Observer {
   struct Quarter {
     double amplitude = 0.0;                ///< largest speed [m/s]
     std::array<std::uint64_t, 3> turns{};  ///< of each component
-    bool oscillates() const noexcept;
+    bool oscillates() const noexcept { return std::ranges::max(turns) >= 2; }
   };
   /// A stretch of the run in quarters.
   struct Stretch {

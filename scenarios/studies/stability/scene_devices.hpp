@@ -30,8 +30,8 @@ std::vector<ComparedDevice> compared_devices();
 /// an object as its `device`. Throws InputError with file and pointer.
 ComparedDevice device_of_file(const std::filesystem::path& file);
 
-/// A preset with a field of `device` overridden, its controller's too, is another device: its name ends in '*', and
-/// nothing is published of it. Other devices stay as they are.
+/// A preset with a field of `device` overridden is another device: its name ends in '*', and nothing is published of
+/// it.
 ComparedDevice with_marked_name(ComparedDevice device, const std::vector<std::string>& overrides);
 
 /// The same with its dry friction times a factor, named touch[friction*2]; nothing for a device that has none.

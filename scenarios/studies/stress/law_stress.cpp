@@ -182,10 +182,6 @@ bool finite(const RenderedForce& force) {
          std::isfinite(force.depth_max);
 }
 
-bool depth_in_bound(const Cylinder& tool, double depth) {
-  return depth >= 0.0 && depth <= (1.0 + kForceRounding) * tool.longest_exit();
-}
-
 /// Damping is B S v, and friction is off: |f_render| <= |f_spring| + B lambda_max(S) |v|.
 bool damping_in_bound(const ContactSet& set, const RenderedForce& force) {
   const double B = 2.0 * set.rendering.damping_ratio * std::sqrt(set.rendering.stiffness * set.rendering.mass);
@@ -215,8 +211,9 @@ void count_set(const ContactSet& set, std::uint64_t number, const PointShell& sh
                            ? std::numeric_limits<double>::infinity()
                            : config.stiffness * bound_of(config, set.tool, contacts.size(), force.depth_max);
   const bool is_finite = finite(force);
-  const bool in_bound = is_finite && size <= (1.0 + kForceRounding) * bound &&
-                        depth_in_bound(set.tool, force.depth_max) && damping_in_bound(set, force);
+  const bool in_bound = is_finite && size <= (1.0 + kForceRounding) * bound && force.depth_max >= 0.0 &&
+                        force.depth_max <= (1.0 + kForceRounding) * set.tool.longest_exit() &&
+                        damping_in_bound(set, force);
   if (!in_bound && counts.non_finite + counts.out_of_bound == 0) counts.first_bad = number;
   counts.non_finite += !is_finite;
   counts.out_of_bound += is_finite && !in_bound;

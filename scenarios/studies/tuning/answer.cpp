@@ -24,13 +24,7 @@ constexpr double kMuchLess = 1.25;  // of K, that is given up where a choice doe
 
 using Strained = std::function<Strain(double value)>;  ///< at a value of a way
 
-Strain by_gain(double gain) {
-  return {gain};
-}
-
-SearchWay gains_between(double from, double to, double resolution) {
-  return {.range = {from, to, true}, .resolution = resolution};
-}
+const Strained kByGain = [](double gain) { return Strain{gain}; };
 
 /// A part of a way at which a run is not settled, and why.
 struct Failing {
@@ -63,7 +57,7 @@ bool fails_between(Trials& trials, const TuneTrial& choice, TunedLaw& law) {
   std::vector<double> parts = parts_between(0.0, 1.0, kTriedBetween);
   const std::vector<double> near = parts_between(1.0, 1.0 - near_part(gains, 1.0), kTriedNear);
   parts.insert(parts.end(), near.begin(), near.end());
-  if (const auto failing = first_failing(trials, choice, gains, parts, by_gain))
+  if (const auto failing = first_failing(trials, choice, gains, parts, kByGain))
     return refute(trials, choice, choice.stiffness * gains.value_at(failing->part), failing->why);
   law.verified = parts.size();
   return false;
@@ -100,8 +94,7 @@ bool fails_later(Trials& trials, const TuneTrial& choice) {
   return true;
 }
 
-/// How far the metrics of a trial move where the scene's own run has half the step or half the distance of the points,
-/// and where its depth is looked at in every row: the largest difference; none of a metric that such a run has not.
+/// TunedLaw::error of a trial.
 TuneMetrics known_errors(Trials& trials, const TuneTrial& trial) {
   const ScenarioText& scene = trials.question.scenario;
   const std::vector<std::string> chosen = trials.overrides(trial, trial.stiffness);
@@ -247,7 +240,8 @@ bool explain_margin(Trials& trials, TunedLaw& law) {
   for (std::size_t i = 0; i < asked; ++i) {
     TuneTrial trial = settled[i * settled.size() / asked];
     if (!trials.unsettled(trial, Strain{}).empty()) continue;
-    const double gain = last_settled(trials, trial, gains_between(1.0, trials.question.margin, 0.02), by_gain);
+    const double gain =
+        last_settled(trials, trial, {.range = {1.0, trials.question.margin, true}, .resolution = 0.02}, kByGain);
     if (gain <= largest) continue;
     const std::string why = trial.why;
     trials.judge_limits(trial);
@@ -293,7 +287,8 @@ TuneMargins margins_of(Trials& trials, const TuneTrial& choice) {
   const double G = trials.question.margin, largest = trials.ranges.stiffness.to,
                most = std::min(largest, trials.refuted) / choice.stiffness;
   if (most > G * (1.0 + kTuneResolution))
-    margins.gain = last_settled(trials, choice, gains_between(G, std::min(kMostGain, most), kTuneResolution), by_gain);
+    margins.gain = last_settled(
+        trials, choice, {.range = {G, std::min(kMostGain, most), true}, .resolution = kTuneResolution}, kByGain);
   else if (trials.refuted < largest)
     margins.gain = G;
   const Scenario scenario = trials.load(choice, choice.stiffness, trials.family[0]).scenario;

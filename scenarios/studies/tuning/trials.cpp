@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <span>
 
 #include "device_model/theory/linear_loops.hpp"
+#include "scenarios/batch/comparison.hpp"
 #include "scenarios/batch/parallel_for.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/diagnosis.hpp"
@@ -15,6 +17,66 @@
 
 namespace hapbench {
 namespace {
+
+std::vector<FamilyMember> hands_of(const Scenario& scenario) {
+  const bool has_mass = std::holds_alternative<MassSpringDamperHandFields>(scenario.hand);
+  if (!has_mass && spring_of(scenario.hand) == nullptr && !std::holds_alternative<DragHandFields>(scenario.hand))
+    return {};
+  const auto family = hand_family().subspan(1);  // the first is no hand
+  const auto [soft, stiff] = std::ranges::minmax(family, {}, &AttachedHand::stiffness);
+  const auto [light, heavy] = std::ranges::minmax(family, {}, &AttachedHand::mass);
+  std::vector<FamilyMember> hands;
+  for (const double k : {soft.stiffness, stiff.stiffness}) {
+    const std::string spring = fmt::format("hand.stiffness_N_per_m={}", k);
+    if (!has_mass) hands.push_back({fmt::format("a hand of {} N/m", k), {spring}});
+    for (const double m : {light.mass, heavy.mass})
+      if (has_mass)
+        hands.push_back({fmt::format("a hand of {} kg and {} N/m", m, k), {spring, fmt::format("hand.mass_kg={}", m)}});
+  }
+  return hands;
+}
+
+std::vector<FamilyMember> seeds_of(const LoadedScenario& loaded) {
+  constexpr std::size_t kSeeds = 5;    // the scene's own among them
+  constexpr double kSeedShift = 1e-5;  // [m]
+  const Axis axis = seed_axis(loaded.scenario, kSeeds, kSeedShift);
+  std::vector<FamilyMember> seeds;
+  for (std::size_t k = 1; k < kSeeds; ++k)
+    seeds.push_back({"seed " + axis.values[k], {"seed=" + axis.values[k], axis.along[k].overrides.front()}});
+  return seeds;
+}
+
+/// Makes everything in the JSON of a hand or a motion so many times as fast.
+void hasten(Json& json, double times) {
+  if (!json.is_structured()) return;
+  for (auto& [key, value] : json.items()) {
+    if (value.is_number() && (key == "speed_m_per_s" || key == "rate_per_s")) value = value.get<double>() * times;
+    if (value.is_number() && key == "period_s") value = value.get<double>() / times;
+    if (key == "points" && value.is_array()) {
+      for (Json& point : value) point[0] = point[0].get<double>() / times;
+    } else {
+      hasten(value, times);
+    }
+  }
+}
+
+std::vector<FamilyMember> speeds_of(const LoadedScenario& loaded) {
+  std::vector<FamilyMember> speeds;
+  const Json own = effective_scenario(loaded.scenario, loaded.scenario.directory);
+  for (const double times : {0.5, 2.0}) {
+    FamilyMember member{times < 1.0 ? "half the speed" : "twice the speed"};
+    for (const char* section : {"hand", "motion"}) {
+      Json json = own.value(section, Json());
+      hasten(json, times);
+      if (json != own.value(section, Json())) member.overrides.push_back(fmt::format("{}={}", section, json.dump()));
+    }
+    if (member.overrides.empty()) return {};
+    member.overrides.push_back(
+        fmt::format("time.steps={:.0f}", static_cast<double>(loaded.scenario.time.steps) / times));
+    speeds.push_back(std::move(member));
+  }
+  return speeds;
+}
 
 std::string with(const FamilyMember& member) {
   return member.overrides.empty() ? "" : fmt::format(" ({})", member.name);
@@ -54,6 +116,11 @@ void note_worst(TuneTrial& trial, const std::string& name, const MetricBound& bo
 }
 
 }  // namespace
+
+std::vector<FamilyMember> family_of(const LoadedScenario& loaded, FamilyOver over) {
+  if (over == FamilyOver::hands) return hands_of(loaded.scenario);
+  return over == FamilyOver::seeds ? seeds_of(loaded) : speeds_of(loaded);
+}
 
 Trials::Trials(const TuneQuestion& asked, const std::string& law)
     : question(asked),
@@ -153,14 +220,6 @@ TuneTrial& Trials::tried(const TuneSetting& setting, double stiffness) {
   if (trial.feasible() && family.size() > 1) judge_motion(trial, 1, family.size());
   if (trial.feasible()) judge_limits(trial);
   return trial;
-}
-
-bool Trials::feasible(const TuneSetting& setting, double stiffness) {
-  return stiffness <= cap && tried(setting, stiffness).feasible();
-}
-
-const TuneTrial& Trials::beyond(const TuneSetting& setting, double stiffness) {
-  return stiffness <= cap ? tried(setting, stiffness) : end;
 }
 
 /// Finds the first of the members from `first` on that is not settled with the margin.

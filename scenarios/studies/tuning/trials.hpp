@@ -38,9 +38,13 @@ struct Trials {
   void measure(TuneTrial& trial);
 
   TuneTrial& tried(const TuneSetting& setting, double stiffness);
-  bool feasible(const TuneSetting& setting, double stiffness);
+  bool feasible(const TuneSetting& setting, double stiffness) {
+    return stiffness <= cap && tried(setting, stiffness).feasible();
+  }
   /// The trial, or above `cap` the end.
-  const TuneTrial& beyond(const TuneSetting& setting, double stiffness);
+  const TuneTrial& beyond(const TuneSetting& setting, double stiffness) {
+    return stiffness <= cap ? tried(setting, stiffness) : end;
+  }
   /// Runs the family for the metrics that are limited, and finds the first limit that is not kept.
   void judge_limits(TuneTrial& trial);
   /// Finds that limit anew. Precondition: judge_limits.

@@ -11,14 +11,6 @@
 #include "sim/core/math.hpp"
 
 namespace hapbench {
-namespace {
-
-constexpr const char* kFilters[] = {R"({"type":"difference"})", R"({"type":"low_pass","cutoff_Hz":50})",
-                                    R"({"type":"low_pass","cutoff_Hz":100})", R"({"type":"low_pass","cutoff_Hz":200})",
-                                    R"({"type":"adaptive_window"})"};
-
-}  // namespace
-
 std::string setting_text(const TuneSetting& setting) {
   std::string text;
   if (setting.damping_ratio) text += fmt::format(", zeta = {:.3g}", *setting.damping_ratio);
@@ -48,6 +40,10 @@ TuneRanges tune_ranges(const TuneQuestion& question, const std::string& algorith
 }
 
 namespace {
+
+constexpr const char* kFilters[] = {R"({"type":"difference"})", R"({"type":"low_pass","cutoff_Hz":50})",
+                                    R"({"type":"low_pass","cutoff_Hz":100})", R"({"type":"low_pass","cutoff_Hz":200})",
+                                    R"({"type":"adaptive_window"})"};
 
 /// The settings to begin with, the scene's own first: with equal K it stays.
 std::vector<TuneSetting> settings_of(const TuneRanges& ranges, const Scenario& own) {

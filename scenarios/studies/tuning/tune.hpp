@@ -104,8 +104,8 @@ struct TunedLaw {
   TuneMargins margins;
   FieldLimit edge;  ///< of K in the scene as chosen, with its own hand: what `limit` finds for the question
   LimitQuestion edge_question;
-  /// How far half the step, half the distance of the points and a look at the depth in every row move the metrics, the
-  /// largest of these; none of a metric that such a run does not have.
+  /// How far half the step, half the distance of the points and a look at the depth in every row move the metrics of
+  /// the own run, the largest of these; none of a metric that such a run does not have.
   TuneMetrics error;
   std::vector<TuneTrial> trials;       ///< all, by setting and K; those along K at the choice's setting among them
   std::size_t runs = 0;                ///< simulations in all
