@@ -103,9 +103,8 @@ fs::path find_scenario(const std::string& argument, const fs::path& directory) {
 std::vector<fs::path> find_scenarios(const std::vector<std::string>& arguments) {
   std::vector<fs::path> files;
   for (const std::string& argument : arguments) {
-    const auto is_group = [&argument](const char* group) { return argument == group; };
     std::error_code error;
-    if (std::none_of(std::begin(kScenarioGroups), std::end(kScenarioGroups), is_group) || fs::exists(argument, error)) {
+    if (std::ranges::find(kScenarioGroups, argument) == std::end(kScenarioGroups) || fs::exists(argument, error)) {
       files.push_back(find_scenario(argument));
       continue;
     }

@@ -52,11 +52,6 @@ BurProfile profile_of(const BurFields& bur) {
 
 }  // namespace
 
-static void describe(Fields& f, ProfilePoint& point) {
-  f.pair("two numbers [s, rho]: along the axis from the tip centre, and from the axis [m]", point.s,
-         {-1000.0, 1000.0, "m"}, point.rho, {0.0, 1000.0, "m"});
-}
-
 static void describe(Fields& f, CylinderFields& tool) {
   f.number("diameter_m", tool.diameter, kLength, "diameter of the cylinder; default 0.001", Presence::no_default);
   f.number("length_m", tool.length, kLength, "from the tip plane to the bottom; default 0.005 in hole_2d, else 0.01",
@@ -70,7 +65,11 @@ static void describe(Fields& f, RevolvedFields& tool) {
       "profile_m", tool.profile, {2, kMostCorners},
       "corners [s, rho] of the outline beside the axis, from the far end to the tip: s <= 0 along the axis from the tip "
       "centre, rho from the axis",
-      [](Fields& p, ProfilePoint& point) { describe(p, point); }, Presence::required);
+      [](Fields& p, ProfilePoint& point) {
+        p.pair("two numbers [s, rho]: along the axis from the tip centre, and from the axis [m]", point.s,
+               {-1000.0, 1000.0, "m"}, point.rho, {0.0, 1000.0, "m"});
+      },
+      Presence::required);
   f.choice("tip", tool.tip, kTips, "tip", "round adds a half ball beyond the last corner");
   if (f.reads()) {
     check_shape(f.at() + "/profile_m", "an outline from the far end to the tip that does not meet itself",
