@@ -137,7 +137,7 @@ std::string depth_text(const NumberWithError& here, const NumberWithError& there
   if (!here.value || !there.value) return "";
   const auto [less, more] = std::minmax(*here.value, *there.value);
   const double error = here.error.value_or(more) + there.error.value_or(more);
-  if (more - less <= std::max(error, kSameRank * more)) return ", and enters as deep";
+  if (more - less <= std::max(error, kSameRank * more)) return ", and enters as deep, within the error";
   if (*here.value == less) return fmt::format(", and enters {} deep", less_text(less, more));
   return more >= 2.0 * less ? fmt::format(", and enters {:.2g} times as deep", more / less)
                             : fmt::format(", and enters {:.2g} % deeper", 100.0 * (more / less - 1.0));
