@@ -727,7 +727,9 @@ class Tuner {
       if (const auto error = last_error_.find(best->binding); error != last_error_.end() && error->second > 0.0)
         law.why += fmt::format(" +- {:.2g}", error->second);
       law.relax = relaxations(*best);
-      if (is_quiet_) law.relax += "; a limit of your own, such as --bound force_rms_above_30Hz_N=0.05, takes the place of what is quiet";
+      if (is_quiet_)
+        law.relax +=
+            "; a limit of your own, such as --bound force_rms_above_30Hz_N=0.05, takes the place of what is quiet";
       return;
     }
     law.binding = "margin";
