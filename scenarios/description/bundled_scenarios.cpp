@@ -96,8 +96,8 @@ fs::path find_scenario(const std::string& argument, const fs::path& directory) {
     throw InputError(
         fmt::format("{}: no such file and no bundled scenario; a field is overridden by --set {}", argument, argument));
   const std::string stem = fs::path(argument).stem().string();
-  throw InputError(fmt::format("{}: no such file and no bundled scenario{}; \"hapbench describe scenarios\" shows them", argument,
-                               nearest_name_hint(stem, names)));
+  throw InputError(fmt::format("{}: no such file and no bundled scenario{}; \"hapbench describe scenarios\" shows them",
+                               argument, nearest_name_hint(stem, names)));
 }
 
 std::vector<fs::path> find_scenarios(const std::vector<std::string>& arguments) {

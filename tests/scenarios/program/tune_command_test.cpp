@@ -26,8 +26,8 @@ class TuneCommand : public testing::Test {
 
 TEST_F(TuneCommand, ItsScenarioGivesTheMetricsThatWerePrinted) {
   // Another device over the scene's, and one of its fields: sections that extending alone would mix.
-  const Json json = hapbench(words({"--device", "touch", "--set", "device.delay_samples=0.5", "--bound", "inside_max_m=0.01",
-                                    "--algorithms", "shaped_stiffness,mean", "--json"}))
+  const Json json = hapbench(words({"--device", "touch", "--set", "device.delay_samples=0.5", "--bound",
+                                    "inside_max_m=0.01", "--algorithms", "shaped_stiffness,mean", "--json"}))
                         .json();
   ASSERT_EQ(json["algorithms"].size(), 2u);
   ASSERT_TRUE(json["recommended"].is_string()) << json.dump(1);
