@@ -29,12 +29,7 @@ endforeach()
 
 # The files that come with program and libraries. bin and share stay side by side, which is how the program finds them.
 set(share share/hapbench)
-foreach(group thesis limits beyond quality examples library)
-  install(DIRECTORY ${PROJECT_SOURCE_DIR}/scenarios/${group} DESTINATION ${share}/scenarios)
-endforeach()
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/scenarios/import/presets DESTINATION ${share}/scenarios/import)
-install(FILES ${PROJECT_SOURCE_DIR}/scenarios/scenario.schema.json ${PROJECT_SOURCE_DIR}/scenarios/starts.json
-  DESTINATION ${share}/scenarios)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/scenarios/library DESTINATION ${share}/scenarios)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/scripts/python DESTINATION ${share}/scripts USE_SOURCE_PERMISSIONS
   PATTERN __pycache__ EXCLUDE)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/results/reference DESTINATION ${share}/results
@@ -57,8 +52,8 @@ install(FILES ${PROJECT_SOURCE_DIR}/algorithms/module/hapbench_module.h DESTINAT
 # The manuals, and the examples that they link, in the folders in which they do.
 file(GLOB_RECURSE manuals RELATIVE ${PROJECT_SOURCE_DIR} CONFIGURE_DEPENDS
   algorithms/module/examples/* algorithms/module/hapbench_module.h algorithms/module/law_module.hpp algorithms/laws/equal_weights.cpp
-  scenarios/validation/*.csv
-  scripts/sweep.sbatch scenarios/tutorials/*.c tests/consumer/*.cpp tests/consumer/CMakeLists.txt
+  scenarios/library/validation/*.csv
+  scripts/sweep.sbatch scenarios/library/tutorials/*.c tests/consumer/*.cpp tests/consumer/CMakeLists.txt
   sim/*.md algorithms/*.md device_model/*.md results/*.md scenarios/*.md scripts/*.md tests/*.md)
 foreach(manual README.md CHANGELOG.md CONTRIBUTING.md LICENSE CITATION.cff ${manuals})
   cmake_path(GET manual PARENT_PATH folder)

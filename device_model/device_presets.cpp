@@ -11,7 +11,7 @@ constexpr SourcedNumber sheet(double value) {
 }
 // An estimate of an unpublished number, and the factors that bound it (kPresetRanges). They are wide: no measured
 // friction of these devices was found, and a paddle whose motor's data sheet says 0.04 N s/m took 3 to 4
-// (scenarios/validation).
+// (scenarios/library/validation).
 constexpr SourcedNumber ours(double value, double low, double high) {
   return {value, NumberSource::ours, low * value, high * value};
 }

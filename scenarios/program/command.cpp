@@ -10,11 +10,11 @@
 #include <utility>
 
 #include "results/io/json_text.hpp"
-#include "scenarios/batch/cases.hpp"
-#include "scenarios/batch/league.hpp"
-#include "scenarios/batch/parallel_for.hpp"
-#include "scenarios/input/input_error.hpp"
-#include "scenarios/input/memory_limit.hpp"
+#include "scenarios/cases/cases.hpp"
+#include "scenarios/cases/league.hpp"
+#include "scenarios/cases/parallel_for.hpp"
+#include "scenarios/format/input_error.hpp"
+#include "scenarios/format/memory_limit.hpp"
 #include "scenarios/program/table.hpp"
 #include "scenarios/run/result_folder.hpp"
 

@@ -8,9 +8,9 @@
 #include <string_view>
 #include <vector>
 
-#include "scenarios/batch/parallel_for.hpp"
-#include "scenarios/description/load_scenario.hpp"
-#include "scenarios/input/json_file.hpp"
+#include "scenarios/cases/parallel_for.hpp"
+#include "scenarios/format/json_file.hpp"
+#include "scenarios/format/load_scenario.hpp"
 #include "scenarios/program/command_line.hpp"
 #include "sim/core/types.hpp"
 

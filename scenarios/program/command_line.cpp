@@ -11,9 +11,9 @@
 #include <string_view>
 
 #include "algorithms/module/module.hpp"
-#include "scenarios/description/writer.hpp"
-#include "scenarios/input/input_error.hpp"
-#include "scenarios/input/text_lines.hpp"
+#include "scenarios/format/input_error.hpp"
+#include "scenarios/format/text_lines.hpp"
+#include "scenarios/format/writer.hpp"
 #include "scenarios/program/command.hpp"
 #include "scenarios/program/study.hpp"
 #include "scenarios/program/table.hpp"
@@ -65,8 +65,7 @@ constexpr OldWords kOldWords[] = {
     {"plot", "--no-sketch", "the same without it: plot draws no sketches"},
     {"reproduce", "--robustness",
      "hapbench reproduce --choices results/reference/readings.csv, or of scripts/readings.py 256"},
-    {"reproduce", "--subjects",
-     "their record, in the manual of the thesis's claims (scenarios/thesis_claims/README.md)"},
+    {"reproduce", "--subjects", "their record, in the manual of the thesis's claims (scenarios/thesis/README.md)"},
     {"run", "--sure", "hapbench converge SCENE, of the points with --vary environment.spacing_m"},
     {"sweep", "--cpus --dry-run --partition --slurm --time",
      "sbatch --array=0-99 scripts/sweep.sbatch SCENE --vary ... --out FOLDER"},

@@ -12,7 +12,7 @@
 #include <variant>
 #include <vector>
 
-#include "scenarios/input/input_error.hpp"
+#include "scenarios/format/input_error.hpp"
 
 namespace CLI {
 class App;

@@ -11,10 +11,11 @@
 
 #include "algorithms/registry.hpp"
 #include "results/summary/summary.hpp"
-#include "scenarios/batch/comparison.hpp"
-#include "scenarios/batch/league.hpp"
-#include "scenarios/description/bundled_scenarios.hpp"
-#include "scenarios/description/metric_sections.hpp"
+#include "scenarios/cases/comparison.hpp"
+#include "scenarios/cases/league.hpp"
+#include "scenarios/format/bundled_scenarios.hpp"
+#include "scenarios/format/metric_sections.hpp"
+#include "scenarios/limits/convergence/convergence.hpp"
 #include "scenarios/program/command.hpp"
 #include "scenarios/program/league_table.hpp"
 #include "scenarios/program/report.hpp"
@@ -22,7 +23,6 @@
 #include "scenarios/run/result_folder.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/run/stop_signal.hpp"
-#include "scenarios/studies/convergence/convergence.hpp"
 
 namespace hapbench {
 namespace {

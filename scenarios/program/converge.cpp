@@ -6,18 +6,18 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "scenarios/batch/league.hpp"
-#include "scenarios/batch/parallel_for.hpp"
-#include "scenarios/batch/run_sweep.hpp"
-#include "scenarios/description/bundled_scenarios.hpp"
-#include "scenarios/input/text_lines.hpp"
+#include "scenarios/cases/league.hpp"
+#include "scenarios/cases/parallel_for.hpp"
+#include "scenarios/cases/run_sweep.hpp"
+#include "scenarios/format/bundled_scenarios.hpp"
+#include "scenarios/format/text_lines.hpp"
+#include "scenarios/limits/convergence/convergence.hpp"
+#include "scenarios/limits/stability/field_limit.hpp"
 #include "scenarios/program/command.hpp"
 #include "scenarios/program/index.hpp"
 #include "scenarios/program/report.hpp"
 #include "scenarios/program/run_table.hpp"
 #include "scenarios/run/assemble.hpp"
-#include "scenarios/studies/convergence/convergence.hpp"
-#include "scenarios/studies/stability/field_limit.hpp"
 #include "sim/core/math.hpp"
 
 namespace hapbench {

@@ -7,15 +7,15 @@
 #include <iterator>
 #include <regex>
 
-#include "scenarios/description/bundled_scenarios.hpp"
-#include "scenarios/description/load_scenario.hpp"
-#include "scenarios/input/input_error.hpp"
-#include "scenarios/input/text_lines.hpp"
+#include "scenarios/format/bundled_scenarios.hpp"
+#include "scenarios/format/input_error.hpp"
+#include "scenarios/format/load_scenario.hpp"
+#include "scenarios/format/text_lines.hpp"
 #include "scenarios/program/command.hpp"
 #include "scenarios/program/index.hpp"
 #include "scenarios/program/study.hpp"
 #include "scenarios/program/table.hpp"
-#include "scenarios/thesis_claims/ledger.hpp"
+#include "scenarios/thesis/ledger.hpp"
 
 /// The command `describe`, which explains the index and what lies in the folders beside the program.
 namespace hapbench {

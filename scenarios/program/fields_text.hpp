@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "scenarios/description/writer.hpp"
+#include "scenarios/format/writer.hpp"
 
 /// The fields of scenario files as text for the terminal. Names of fields are dotted paths, as "rendering.limits".
 namespace hapbench {

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "scenarios/input/json_file.hpp"
+#include "scenarios/format/json_file.hpp"
 
 /// The index of names that users meet: `list` shows those of some kinds, `describe` explains each, and refusals take
 /// the nearest name from it. Every part is made of the table of its kind, so that a new entry there is known here.

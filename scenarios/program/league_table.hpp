@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "scenarios/batch/league.hpp"
+#include "scenarios/cases/league.hpp"
 #include "scenarios/program/report.hpp"
 
 /// What is written and printed of a league.

@@ -7,11 +7,11 @@
 #include <set>
 
 #include "algorithms/registry.hpp"
-#include "scenarios/batch/parallel_for.hpp"
-#include "scenarios/description/bundled_scenarios.hpp"
-#include "scenarios/description/metric_sections.hpp"
-#include "scenarios/input/input_error.hpp"
-#include "scenarios/input/text_lines.hpp"
+#include "scenarios/cases/parallel_for.hpp"
+#include "scenarios/format/bundled_scenarios.hpp"
+#include "scenarios/format/input_error.hpp"
+#include "scenarios/format/metric_sections.hpp"
+#include "scenarios/format/text_lines.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/progress_bar.hpp"
 

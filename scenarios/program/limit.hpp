@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/batch/cases.hpp"
-#include "scenarios/description/scenario.hpp"
+#include "scenarios/cases/cases.hpp"
+#include "scenarios/format/scenario.hpp"
+#include "scenarios/limits/stability/field_limit.hpp"
+#include "scenarios/limits/stability/scene_devices.hpp"
 #include "scenarios/program/report.hpp"
-#include "scenarios/studies/stability/field_limit.hpp"
-#include "scenarios/studies/stability/scene_devices.hpp"
 
 /// What `limit` finds, and options that other searches take, too.
 namespace hapbench {

@@ -11,11 +11,11 @@
 
 #include "device_model/device_presets.hpp"
 #include "device_model/theory/stiffness_limits.hpp"
-#include "scenarios/input/text_lines.hpp"
+#include "scenarios/format/text_lines.hpp"
+#include "scenarios/limits/stability/run_stability.hpp"
 #include "scenarios/program/index.hpp"
 #include "scenarios/program/limit.hpp"
 #include "scenarios/run/scene_loop.hpp"
-#include "scenarios/studies/stability/run_stability.hpp"
 
 /// The tables of `limit` and what is printed of them.
 namespace hapbench {

@@ -10,8 +10,8 @@
 #include <exception>
 #include <string>
 
-#include "scenarios/input/input_error.hpp"
-#include "scenarios/input/memory_limit.hpp"
+#include "scenarios/format/input_error.hpp"
+#include "scenarios/format/memory_limit.hpp"
 #include "scenarios/program/command.hpp"
 #include "scenarios/run/stop_signal.hpp"
 

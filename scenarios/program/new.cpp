@@ -7,8 +7,8 @@
 
 #include "results/io/atomic_file.hpp"
 #include "results/io/json_text.hpp"
-#include "scenarios/description/load_scenario.hpp"
-#include "scenarios/input/text_lines.hpp"
+#include "scenarios/format/load_scenario.hpp"
+#include "scenarios/format/text_lines.hpp"
 #include "scenarios/program/command.hpp"
 #include "scenarios/program/fields_text.hpp"
 #include "scenarios/program/scenario_start.hpp"

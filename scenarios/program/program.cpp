@@ -11,8 +11,8 @@
 
 #include "results/io/atomic_file.hpp"
 #include "results/summary/provenance.hpp"
-#include "scenarios/input/input_error.hpp"
-#include "scenarios/input/memory_limit.hpp"
+#include "scenarios/format/input_error.hpp"
+#include "scenarios/format/memory_limit.hpp"
 #include "scenarios/program/command.hpp"
 #include "scenarios/run/stop_signal.hpp"
 

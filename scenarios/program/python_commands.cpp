@@ -15,9 +15,9 @@
 
 #include "device_model/logged_handle.hpp"
 #include "results/io/atomic_file.hpp"
-#include "scenarios/description/bundled_scenarios.hpp"
-#include "scenarios/input/input_error.hpp"
-#include "scenarios/input/text_lines.hpp"
+#include "scenarios/format/bundled_scenarios.hpp"
+#include "scenarios/format/input_error.hpp"
+#include "scenarios/format/text_lines.hpp"
 #include "scenarios/program/command.hpp"
 #include "scenarios/program/table.hpp"
 #include "scenarios/run/progress_bar.hpp"

@@ -8,18 +8,18 @@
 
 #include "results/io/atomic_file.hpp"
 #include "results/io/json_text.hpp"
-#include "scenarios/batch/parallel_for.hpp"
-#include "scenarios/description/bundled_scenarios.hpp"
-#include "scenarios/description/load_scenario.hpp"
-#include "scenarios/input/json_file.hpp"
-#include "scenarios/input/text_lines.hpp"
+#include "scenarios/cases/parallel_for.hpp"
+#include "scenarios/format/bundled_scenarios.hpp"
+#include "scenarios/format/json_file.hpp"
+#include "scenarios/format/load_scenario.hpp"
+#include "scenarios/format/text_lines.hpp"
 #include "scenarios/program/command.hpp"
 #include "scenarios/program/index.hpp"
 #include "scenarios/program/report.hpp"
 #include "scenarios/run/progress_bar.hpp"
 #include "scenarios/run/run_scenario.hpp"
-#include "scenarios/thesis_claims/ledger.hpp"
-#include "scenarios/thesis_claims/robustness.hpp"
+#include "scenarios/thesis/ledger.hpp"
+#include "scenarios/thesis/robustness.hpp"
 
 namespace hapbench {
 namespace {

@@ -2,9 +2,9 @@
 #include <nlohmann/json.hpp>
 
 #include "results/summary/summary.hpp"
-#include "scenarios/batch/cases.hpp"
-#include "scenarios/description/bundled_scenarios.hpp"
-#include "scenarios/input/json_file.hpp"
+#include "scenarios/cases/cases.hpp"
+#include "scenarios/format/bundled_scenarios.hpp"
+#include "scenarios/format/json_file.hpp"
 #include "scenarios/program/command.hpp"
 #include "scenarios/program/report.hpp"
 #include "scenarios/program/run_table.hpp"

@@ -13,8 +13,8 @@
 
 #include "results/observe/target_metrics.hpp"
 #include "results/summary/summary.hpp"
-#include "scenarios/description/metric_sections.hpp"
-#include "scenarios/input/text_lines.hpp"
+#include "scenarios/format/metric_sections.hpp"
+#include "scenarios/format/text_lines.hpp"
 
 namespace hapbench {
 namespace {

@@ -12,10 +12,10 @@
 #include <span>
 
 #include "device_model/hands/drag_hand.hpp"
-#include "scenarios/description/bundled_scenarios.hpp"
-#include "scenarios/description/load_scenario.hpp"
-#include "scenarios/description/parts.hpp"
-#include "scenarios/input/text_lines.hpp"
+#include "scenarios/format/bundled_scenarios.hpp"
+#include "scenarios/format/load_scenario.hpp"
+#include "scenarios/format/parts.hpp"
+#include "scenarios/format/text_lines.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/scene_checks.hpp"
 #include "sim/core/math.hpp"
@@ -485,7 +485,7 @@ class Start {
 
 const std::vector<StartKind>& start_kinds() {
   static const std::vector<StartKind> kinds = [] {
-    const Json json = parse_json(read_named_file(installed_folder("scenarios") / "starts.json"));
+    const Json json = parse_json(read_named_file(installed_folder("scenarios/library") / "starts.json"));
     std::vector<StartKind> all;
     for (const Json& kind : json.at("kinds")) {
       all.push_back({kind.at("kind"), kind.at("summary"), kind.value("from", ""), kind.value("optional", false), {}});

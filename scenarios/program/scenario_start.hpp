@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/input/json_file.hpp"
+#include "scenarios/format/json_file.hpp"
 #include "sim/core/types.hpp"
 
 /// Scenario files to start from: each scene runs at once and touches something, and has only the fields that a newcomer
@@ -22,8 +22,8 @@ struct StartKind {
   Json scene;  ///< with what does not depend on the source
 };
 
-/// All kinds, those of scenarios/starts.json, in the order in which they are shown. Throws InputError without that
-/// file.
+/// All kinds, those of scenarios/library/starts.json, in the order in which they are shown. Throws InputError without
+/// that file.
 const std::vector<StartKind>& start_kinds();
 
 /// What a start is made from and where it starts, as far as it is said.

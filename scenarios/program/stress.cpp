@@ -1,9 +1,9 @@
 #include <fmt/format.h>
 
+#include "scenarios/limits/stress/law_stress.hpp"
 #include "scenarios/program/command_line.hpp"
 #include "scenarios/program/index.hpp"
 #include "scenarios/program/report.hpp"
-#include "scenarios/studies/stress/law_stress.hpp"
 
 namespace hapbench {
 namespace {

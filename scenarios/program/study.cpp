@@ -7,8 +7,8 @@
 #include <nlohmann/json.hpp>
 
 #include "results/io/columns.hpp"
-#include "scenarios/description/bundled_scenarios.hpp"
-#include "scenarios/input/json_file.hpp"
+#include "scenarios/format/bundled_scenarios.hpp"
+#include "scenarios/format/json_file.hpp"
 
 namespace hapbench {
 namespace {
@@ -20,7 +20,7 @@ constexpr const char* kAsk = "ask";
 constexpr const char* kNoOptions[] = {kAsk, "scenarios", "summary", "source", "alone", "$schema"};
 
 fs::path studies_folder() {
-  return installed_folder("scenarios") / "library" / "studies";
+  return installed_folder("scenarios/library") / "studies";
 }
 
 struct StudyFile {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/input/input_error.hpp"
+#include "scenarios/format/input_error.hpp"
 
 /// Studies: questions as files. A study names a command, scenarios, and the command's options, and a command takes it
 /// in place of scenarios.

@@ -7,14 +7,14 @@
 #include <optional>
 #include <utility>
 
-#include "scenarios/batch/league.hpp"
-#include "scenarios/batch/parallel_for.hpp"
-#include "scenarios/batch/run_sweep.hpp"
-#include "scenarios/batch/table_file.hpp"
-#include "scenarios/description/bundled_scenarios.hpp"
-#include "scenarios/description/metric_sections.hpp"
-#include "scenarios/input/input_error.hpp"
-#include "scenarios/input/text_lines.hpp"
+#include "scenarios/cases/league.hpp"
+#include "scenarios/cases/parallel_for.hpp"
+#include "scenarios/cases/run_sweep.hpp"
+#include "scenarios/cases/table_file.hpp"
+#include "scenarios/format/bundled_scenarios.hpp"
+#include "scenarios/format/input_error.hpp"
+#include "scenarios/format/metric_sections.hpp"
+#include "scenarios/format/text_lines.hpp"
 #include "scenarios/program/command.hpp"
 #include "scenarios/program/index.hpp"
 #include "scenarios/program/run_table.hpp"

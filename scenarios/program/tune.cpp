@@ -7,16 +7,16 @@
 
 #include "algorithms/registry.hpp"
 #include "results/io/json_text.hpp"
-#include "scenarios/description/bundled_scenarios.hpp"
-#include "scenarios/description/metric_sections.hpp"
-#include "scenarios/input/text_lines.hpp"
+#include "scenarios/format/bundled_scenarios.hpp"
+#include "scenarios/format/metric_sections.hpp"
+#include "scenarios/format/text_lines.hpp"
+#include "scenarios/limits/tuning/tune.hpp"
 #include "scenarios/program/index.hpp"
 #include "scenarios/program/limit.hpp"
 #include "scenarios/program/report.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/progress_bar.hpp"
 #include "scenarios/run/scene_loop.hpp"
-#include "scenarios/studies/tuning/tune.hpp"
 
 namespace hapbench {
 namespace {

@@ -5,19 +5,19 @@
 #include <cstdio>
 
 #include "results/io/atomic_file.hpp"
-#include "scenarios/description/bundled_scenarios.hpp"
-#include "scenarios/description/descriptions.hpp"
-#include "scenarios/description/load_scenario.hpp"
-#include "scenarios/description/parts.hpp"
-#include "scenarios/input/memory_limit.hpp"
-#include "scenarios/input/mesh_file.hpp"
+#include "scenarios/format/bundled_scenarios.hpp"
+#include "scenarios/format/descriptions.hpp"
+#include "scenarios/format/load_scenario.hpp"
+#include "scenarios/format/memory_limit.hpp"
+#include "scenarios/format/mesh_file.hpp"
+#include "scenarios/format/parts.hpp"
+#include "scenarios/limits/stability/scene_devices.hpp"
 #include "scenarios/program/command.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/progress_bar.hpp"
 #include "scenarios/run/result_folder.hpp"
 #include "scenarios/run/scene_checks.hpp"
 #include "scenarios/run/stop_signal.hpp"
-#include "scenarios/studies/stability/scene_devices.hpp"
 #include "sim/tool/mesh_tool.hpp"
 
 namespace hapbench {

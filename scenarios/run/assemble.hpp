@@ -3,8 +3,8 @@
 #include <memory>
 #include <vector>
 
-#include "scenarios/description/load_scenario.hpp"
-#include "scenarios/description/parts.hpp"
+#include "scenarios/format/load_scenario.hpp"
+#include "scenarios/format/parts.hpp"
 
 namespace hapbench {
 

@@ -9,7 +9,7 @@
 
 #include "results/observe/contact_forces.hpp"
 #include "results/summary/summary.hpp"
-#include "scenarios/description/load_scenario.hpp"
+#include "scenarios/format/load_scenario.hpp"
 #include "sim/loop/observer.hpp"
 #include "sim/tool/tool_shape.hpp"
 

@@ -12,8 +12,8 @@
 #include <utility>
 
 #include "algorithms/module/module.hpp"
-#include "scenarios/input/input_error.hpp"
-#include "scenarios/input/json_file.hpp"
+#include "scenarios/format/input_error.hpp"
+#include "scenarios/format/json_file.hpp"
 #include "sim/core/hash.hpp"
 
 namespace hapbench {

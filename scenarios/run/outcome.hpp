@@ -6,8 +6,8 @@
 #include "results/observe/inside_observer.hpp"
 #include "results/observe/metrics.hpp"
 #include "results/summary/summary.hpp"
-#include "scenarios/description/parts.hpp"
-#include "scenarios/description/scenario.hpp"
+#include "scenarios/format/parts.hpp"
+#include "scenarios/format/scenario.hpp"
 #include "sim/loop/observer.hpp"
 
 /// Outcomes of runs, and warnings about them.

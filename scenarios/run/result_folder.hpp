@@ -14,9 +14,9 @@
 #include "results/observe/inside_observer.hpp"
 #include "results/record/recorder.hpp"
 #include "results/summary/summary.hpp"
-#include "scenarios/description/load_scenario.hpp"
-#include "scenarios/description/metric_sections.hpp"
-#include "scenarios/description/parts.hpp"
+#include "scenarios/format/load_scenario.hpp"
+#include "scenarios/format/metric_sections.hpp"
+#include "scenarios/format/parts.hpp"
 
 /// What a run records, row by row, and the directory of its results.
 namespace hapbench {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "results/summary/summary.hpp"
-#include "scenarios/description/load_scenario.hpp"
+#include "scenarios/format/load_scenario.hpp"
 #include "scenarios/run/result_folder.hpp"
 #include "sim/geometry/point_shell.hpp"
 

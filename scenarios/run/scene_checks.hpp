@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/description/load_scenario.hpp"
+#include "scenarios/format/load_scenario.hpp"
 #include "sim/core/types.hpp"
 #include "sim/geometry/point_shell.hpp"
 #include "sim/tool/tool_shape.hpp"

@@ -7,8 +7,8 @@
 #include <nlohmann/json.hpp>
 
 #include "algorithms/stages/damping_and_limits.hpp"
-#include "scenarios/description/descriptions.hpp"
-#include "scenarios/description/writer.hpp"
+#include "scenarios/format/descriptions.hpp"
+#include "scenarios/format/writer.hpp"
 #include "scenarios/run/assemble.hpp"
 
 namespace hapbench {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "device_model/theory/linear_loops.hpp"
-#include "scenarios/description/scenario.hpp"
+#include "scenarios/format/scenario.hpp"
 #include "sim/loop/integrators/spring_damper.hpp"
 
 /// The linear loop of a scenario: tool, device, hand and the springs of its wall, as they are while nothing saturates

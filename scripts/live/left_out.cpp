@@ -1,8 +1,8 @@
 // Replaces the parts of the engine that need an operating system: the folder of an installation, modules and signals.
 #include <filesystem>
 
-#include "scenarios/description/bundled_scenarios.hpp"
-#include "scenarios/input/input_error.hpp"
+#include "scenarios/format/bundled_scenarios.hpp"
+#include "scenarios/format/input_error.hpp"
 #include "scenarios/run/load_module.hpp"
 #include "scenarios/run/stop_signal.hpp"
 

@@ -9,12 +9,12 @@ from hapbench_report.markup import ASSETS, fill
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGE = ROOT / "scripts" / "live" / "page"
-SCENARIOS = ROOT / "scenarios"
+SCENARIOS = ROOT / "scenarios" / "library"
 REPLAY = ("replay_camera.js", "replay_scene.js", "replay_tool.js", "replay_field.js", "replay_tracks.js")
 
 def scenario_files():
     """Bundled scenarios by name."""
-    return {file.stem: file for file in sorted(SCENARIOS.glob("*/*.json"))}
+    return {file.stem: file for file in sorted(SCENARIOS.glob("*/*.json")) if file.parent.name not in ("studies", "presets")}
 
 
 def named_files(value):

@@ -2,7 +2,7 @@
 
 #include <map>
 
-#include "scenarios/description/bundled_scenarios.hpp"
+#include "scenarios/format/bundled_scenarios.hpp"
 #include "scenarios/run/assemble.hpp"
 
 namespace hapbench::bench {

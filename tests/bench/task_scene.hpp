@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "scenarios/description/load_scenario.hpp"
+#include "scenarios/format/load_scenario.hpp"
 #include "scenarios/run/assemble.hpp"
 
 /// The scenes in which searches and steps are timed, assembled as the program assembles them.

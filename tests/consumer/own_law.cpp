@@ -7,8 +7,8 @@
 #include <exception>
 #include <memory>
 #include <results/observe/metrics.hpp>
-#include <scenarios/description/bundled_scenarios.hpp>
-#include <scenarios/description/load_scenario.hpp>
+#include <scenarios/format/bundled_scenarios.hpp>
+#include <scenarios/format/load_scenario.hpp>
 #include <scenarios/run/assemble.hpp>
 #include <sim/loop/simulation.hpp>
 

@@ -16,15 +16,15 @@
 #include <vector>
 
 #include "algorithms/module/module.hpp"
-#include "scenarios/batch/table_file.hpp"
-#include "scenarios/description/load_scenario.hpp"
-#include "scenarios/description/parts.hpp"
-#include "scenarios/input/input_error.hpp"
-#include "scenarios/input/json_file.hpp"
-#include "scenarios/input/mesh_file.hpp"
-#include "scenarios/input/recordings.hpp"
+#include "scenarios/cases/table_file.hpp"
+#include "scenarios/format/input_error.hpp"
+#include "scenarios/format/json_file.hpp"
+#include "scenarios/format/load_scenario.hpp"
+#include "scenarios/format/mesh_file.hpp"
+#include "scenarios/format/parts.hpp"
+#include "scenarios/format/recordings.hpp"
+#include "scenarios/limits/stability/scene_devices.hpp"
 #include "scenarios/run/run_scenario.hpp"
-#include "scenarios/studies/stability/scene_devices.hpp"
 #include "sim/geometry/analytic_shells.hpp"
 
 /// libFuzzer's targets: each reader of files from outside, fed with bytes of libFuzzer's choice (scripts/fuzz). It

@@ -60,10 +60,10 @@ def limits_of_springs(bench):
 
 @scene
 def real_paddle(bench):
-    """Three predictions for the paddle of scenarios/validation: its ultimate stiffness over B without dry friction, by the held loop."""
+    """Three predictions for the paddle of scenarios/library/validation: its ultimate stiffness over B without dry friction, by the held loop."""
     m, b, T, B = 0.1362, 3.0, 0.00035, (0, 30, 60)
     linear = [word for field in ("coulomb_N=0", "encoder_step_m=0", "force_max_N=null") for word in ("--set", f"device.{field}")]
-    rows = bench.json("limit", SOURCE / "scenarios" / "validation" / "epfl_position_loop.json", *linear, "--over", "rendering.damping_N_s_per_m=0,30,60",
+    rows = bench.json("limit", SOURCE / "scenarios" / "library" / "validation" / "epfl_position_loop.json", *linear, "--over", "rendering.damping_N_s_per_m=0,30,60",
                       "--stable", "bounded", "--resolution", "1e-4", "--out", "paddle")["limits"]
     known = [bisected(lambda K: HeldLoop(m, b, T, K, damping, delay=1).radius() < 1, 1, 1e6) for damping in B]
     early = [bisected(lambda K: HeldLoop(m, b, T, K, damping).radius() < 1, 1, 1e7) for damping in B]
@@ -295,6 +295,6 @@ def stressed(bench):
               ("the bound of shaping", [1.366] * 3))
     bench.add("stress.csv:largest_share_of_bound", table["largest_share_of_bound"][rows], [1.0] * 3, "which reach the bounds", reached,
               ("of mcneely's in K d", [1.0, 1.0, 10.0]))
-    tests = "tests/scenarios/studies/stress/law_stress_test.cpp"
+    tests = "tests/scenarios/limits/stress/law_stress_test.cpp"
     for name in ("sets", "in_contact", "non_finite", "out_of_bound", "points_dropped"):
         bench.proven(f"stress.csv:{name}", tests, "LawStress.NoForceIsInfiniteOrOutOfBound", f"c.{name}", "first_bad")

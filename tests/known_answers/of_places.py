@@ -238,5 +238,5 @@ def verdicts(bench):
                                 ("holds", '{"T2b", "raw=55 kept=20 | raw=56", {{"", holds}', "does_not_hold"),
                                 ("does not hold", '"0.raw=56 1.raw=57", does_not_hold', "holds"),
                                 ("not reproducible", 'EXPECT_EQ(finding.verdict, not_reproducible)', "reproduced")):
-        bench.proven(f"{word} (verdict on a claim)", "tests/scenarios/thesis_claims/claims_test.cpp", "Claims.AreJudgedByTheirThresholds",
+        bench.proven(f"{word} (verdict on a claim)", "tests/scenarios/thesis/claims_test.cpp", "Claims.AreJudgedByTheirThresholds",
                      said, refused)

@@ -344,7 +344,7 @@ class Adding(unittest.TestCase):
         summary = json.loads((self.folder / "out/summary.json").read_text())
         self.assertAlmostEqual(summary["metrics"]["inside_max_m"], 1e-5, delta=1e-6)
         self.assertIn("went_through", self.hapbench("run", "scene.json", "--set", "environment.height_m=0.003", "--out", "deep", status=3))
-        silent = (self.scratch / "tree/scenarios/description/environments.cpp").read_text().replace(INSIDE, "")
+        silent = (self.scratch / "tree/scenarios/format/environments.cpp").read_text().replace(INSIDE, "")
         done = subprocess.run(["c++", "-std=c++20", "-fsyntax-only", "-DEIGEN_DONT_VECTORIZE", "-I", self.scratch / "tree", "-isystem",
                                "/usr/include/eigen3", "-x", "c++", "-"], input=silent, capture_output=True, text=True)
         self.assertNotEqual(done.returncode, 0)

@@ -65,7 +65,7 @@ class Consumer(unittest.TestCase):
         all_of_parent = must("ninja", "-C", build, "-t", "commands", "all")
         self.assertIn("own_law.cpp", all_of_parent)
         self.assertIn("installed_folder.cpp", all_of_parent)
-        self.assertNotIn("scenarios/studies", all_of_parent, "nothing is built that the parent does not link")
+        self.assertNotIn("scenarios/limits", all_of_parent, "nothing is built that the parent does not link")
         self.assertNotIn("scenarios/program", all_of_parent)
         own = next(line for line in all_of_parent.splitlines() if line.rstrip("\"'").endswith("own_law.cpp"))
         self.assertIn("-ffp-contract=off", own)
@@ -73,7 +73,7 @@ class Consumer(unittest.TestCase):
         for word in ("-Wconversion", "-march", "-Werror", "HAPBENCH_SIMD"):
             self.assertNotIn(word, own)
         # Its scenarios are where the library will look for them.
-        self.assertTrue((build / "hapbench" / "share" / "hapbench" / "scenarios" / "thesis" / f"{SCENARIO}.json").is_file())
+        self.assertTrue((build / "hapbench" / "share" / "hapbench" / "scenarios" / "library" / "thesis" / f"{SCENARIO}.json").is_file())
 
 
 if __name__ == "__main__":

@@ -18,7 +18,7 @@ from hapbench_docs.manuals import Manual, anchor, broken_links, manuals
 from hapbench_docs.program import Program, ProgramError, same_but_for_times
 
 RECORD = SOURCE / "results" / "reference"
-TUTORIALS = SOURCE / "scenarios" / "tutorials"
+TUTORIALS = SOURCE / "scenarios" / "library" / "tutorials"
 MANUALS = [Manual(file) for file in manuals()]
 COMMANDS = [command for manual in MANUALS for command in manual.commands()]
 # No option of the program is like it, so that no other is named as the one that may have been meant.
@@ -85,12 +85,12 @@ class Bench:
     def prepare(self):
         folder = self.folder
         write_stl(folder / "my.stl")
-        shutil.copy(SOURCE / "scenarios/examples/data/wipe.hapi.txt", folder / "log.txt")
+        shutil.copy(SOURCE / "scenarios/library/examples/data/wipe.hapi.txt", folder / "log.txt")
         write_recording(folder / "rec.csv")
         write_device(folder / "mydevice.json")
         write_log(folder / "log.csv")
         shutil.copy(folder / "mydevice.json", folder / "log_device.json")
-        shutil.copy(SOURCE / "scenarios/validation/epfl_paddle.json", folder)
+        shutil.copy(SOURCE / "scenarios/library/validation/epfl_paddle.json", folder)
         shutil.copy(SOURCE / "scenarios/library/studies/stability_delay.json", folder / "mine.json")
         compile_law(folder / "depth_weighted.so")
         self.must("new", "mesh", "--from", "my.stl", "--extent", "6mm", "--out", "my.json")
@@ -213,7 +213,7 @@ class Pages(unittest.TestCase):
         self.assertLessEqual(sum(manual.text.count("\n") for manual in others), 3600)
 
     def test_every_algorithm_is_in_the_table(self):
-        schema = json.dumps(json.loads((SOURCE / "scenarios" / "scenario.schema.json").read_text(encoding="utf-8")))
+        schema = json.dumps(json.loads((SOURCE / "scenarios" / "library" / "scenario.schema.json").read_text(encoding="utf-8")))
         names = json.loads(re.search(r'\["original_averaging", [^]]*\]', schema)[0])
         self.assertGreater(len(names), 12)
         rows = re.findall(r"^\| `(\w+)` \|", (SOURCE / "algorithms/README.md").read_text(encoding="utf-8"), re.M)

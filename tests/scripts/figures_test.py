@@ -59,7 +59,7 @@ def ids():
 
 def make_results(directory):
     for pattern, overrides in RUNS:
-        scenarios = sorted(glob.glob(str(SOURCE / "scenarios" / "thesis" / f"{pattern}.json")))
+        scenarios = sorted(glob.glob(str(SOURCE / "scenarios" / "library" / "thesis" / f"{pattern}.json")))
         assert scenarios, pattern
         # Only several scenarios get a directory each.
         out = directory / "thesis" / (Path(scenarios[0]).stem if len(scenarios) == 1 else "")

@@ -23,8 +23,8 @@ from hapbench_import.options import options_of  # noqa: E402
 from hapbench_import.recording import open_recording  # noqa: E402
 from hapbench_import.stroke import import_stroke, number_text, resolution_of, stroke_text  # noqa: E402
 
-DATA = SOURCE / "scenarios" / "examples" / "data"
-PRESETS = SOURCE / "scenarios" / "import" / "presets"
+DATA = SOURCE / "scenarios" / "library" / "examples" / "data"
+PRESETS = SOURCE / "scenarios" / "library" / "presets"
 LOG = DATA / "wipe.hapi.txt"
 Y_UP = np.array([[1, 0, 0], [0, 0, -1], [0, 1, 0]], float)  # x, -z, y
 

@@ -241,7 +241,7 @@ class Plot(Given):
 
     def test_new_draws_a_preview(self):
         folder = scratch_folder(self)
-        said = json.loads(must(PROGRAM, "new", "bur", "--from", SOURCE / "scenarios/examples/data/bumpy.obj", "--extent", "5mm", "--preview", "--json", cwd=folder))
+        said = json.loads(must(PROGRAM, "new", "bur", "--from", SOURCE / "scenarios/library/examples/data/bumpy.obj", "--extent", "5mm", "--preview", "--json", cwd=folder))
         self.assertEqual(said["picture"], "bumpy_bur.svg")
         picture = (folder / "bumpy_bur.svg").read_text()
         for text in ("tip x", "tip z", "outlines: the tool at four times", "filled: the solid"):

@@ -65,7 +65,7 @@ class Runs(Scratch):
         self.compare("springs_limited_mean", SHORT)
 
     def test_of_several_trials(self):
-        scene = json.loads((SOURCE / "scenarios/thesis/vertical_peg_in_hole_shaped_stiffness.json").read_text())
+        scene = json.loads((SOURCE / "scenarios/library/thesis/vertical_peg_in_hole_shaped_stiffness.json").read_text())
         self.assertEqual(scene.get("hand", {}).get("type", "tracking"), "tracking")
         name = "vertical_peg_in_hole_shaped_stiffness"
         overrides = {"time.duration_s": 0.2, "record.trajectory": True, "hand.trials": 2, "expect": "{}"}
@@ -97,7 +97,7 @@ class Runs(Scratch):
     def test_files_that_a_dict_names(self):
         here = os.getcwd()
         self.addCleanup(os.chdir, here)
-        os.chdir(SOURCE / "scenarios/examples")
+        os.chdir(SOURCE / "scenarios/library/examples")
         scene = json.loads(Path("mesh_molar.json").read_text())
         scene.update(time={**scene["time"], "duration_s": 0.02}, expect={})
         by_dict = hapbench.run(scene)

@@ -8,7 +8,7 @@ from concurrent.futures import ThreadPoolExecutor
 
 from fixture import ENVIRONMENT, PROGRAM, SOURCE, main, ran, scratch_folder
 
-TUTORIALS = [file for file in sorted((SOURCE / "scenarios" / "tutorials").glob("*.md")) if file.name != "README.md"]
+TUTORIALS = [file for file in sorted((SOURCE / "scenarios" / "library" / "tutorials").glob("*.md")) if file.name != "README.md"]
 CODE = re.compile(r"^```(bash|python)\n(.*?)^```\n", re.M | re.S)
 CHECKS = re.compile(r"^<!-- checked by .*?^-->\n", re.M | re.S)
 # A number in a sentence; not a part of a name, such as C5 or 2-D.

@@ -5,7 +5,7 @@
 
 #include "bindings/bindings.hpp"
 #include "results/summary/summary.hpp"
-#include "scenarios/description/bundled_scenarios.hpp"
+#include "scenarios/format/bundled_scenarios.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/stop_signal.hpp"
 

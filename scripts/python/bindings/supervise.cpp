@@ -9,7 +9,7 @@
 #include <tuple>
 
 #include "bindings/bindings.hpp"
-#include "scenarios/input/input_error.hpp"
+#include "scenarios/format/input_error.hpp"
 #include "scenarios/run/load_module.hpp"
 #include "scenarios/run/progress_bar.hpp"
 #include "scenarios/run/stop_signal.hpp"

@@ -11,7 +11,7 @@ from hapbench_pictures.over_axes import Limits, draw_limits, draw_over
 
 from . import published
 
-SPRING = published.FILE.parents[2] / "scenarios" / "limits" / "single_spring.json"
+SPRING = published.FILE.parents[2] / "scenarios" / "library" / "limits" / "single_spring.json"
 
 
 def spaced(number):
@@ -59,7 +59,7 @@ def of_all_devices(results):
     return draw_limits(results, 'device_limits/'), {}
 
 
-MEASURED = published.FILE.parents[2] / "scenarios" / "validation" / "measured.csv"
+MEASURED = published.FILE.parents[2] / "scenarios" / "library" / "validation" / "measured.csv"
 SCATTER = 1.3  # of sessions of measuring one setting, a factor
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from .faults import Faults, fail, finite_number, plain, quoted, require_name, shown
 
-PRESETS = Path(__file__).resolve().parents[3] / "scenarios" / "import" / "presets"
+PRESETS = Path(__file__).resolve().parents[3] / "scenarios" / "library" / "presets"
 FORMATS = ("csv", "traj", "hapi", "hapi-binary")
 # The columns of each way to write an orientation, in their order.
 ORIENTATIONS = {

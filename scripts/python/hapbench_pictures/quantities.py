@@ -19,7 +19,7 @@ TRAJECTORY = "trajectory.csv"
 REFERENCE = "force_reference.csv"
 # Tables of a row per recorded step, in which a column is looked for.
 TABLES = (TRAJECTORY, "energy.csv", "ideal_trajectory.csv", "stiffness_tensor.csv", REFERENCE)
-SCHEMA = Path(__file__).resolve().parents[3] / "scenarios" / "scenario.schema.json"
+SCHEMA = Path(__file__).resolve().parents[3] / "scenarios" / "library" / "scenario.schema.json"
 # A peak of more than so many times the settled values is cut off.
 CUT_OFF = 3
 # If settled contact tells little of a run, as of one that hammers to the end, no range leaves out more of its rows.

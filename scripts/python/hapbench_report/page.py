@@ -48,7 +48,7 @@ def rerun_section():
     return ("<p>From the root of the repository. Everything, installing what is missing:</p>" + command("scripts/reproduce")
             + "<p>One part:</p>" + command(
                 "hapbench=build/release/bin/hapbench\n"
-                "$hapbench run scenarios/thesis/*.json --out results/out/reproduce/thesis       # the thesis's scenes\n"
+                "$hapbench run scenarios/library/thesis/*.json --out results/out/reproduce/thesis       # the thesis's scenes\n"
                 "$hapbench limit stability_z_width --out results/out/reproduce/stability_z_width  # a study; all: $hapbench describe studies\n"
                 "$hapbench describe scenario                                                    # what every field means")
             + "<p>This report:</p>" + command(

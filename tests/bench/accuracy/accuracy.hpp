@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "scenarios/description/scenario.hpp"
+#include "scenarios/format/scenario.hpp"
 #include "sim/contact/contact_buffer.hpp"
 #include "sim/loop/simulation.hpp"
 

@@ -7,7 +7,7 @@
 #include "results/observe/metrics.hpp"
 #include "results/summary/summary.hpp"
 #include "scenarios/run/assemble.hpp"
-#include "scenarios/thesis_claims/measurements.hpp"
+#include "scenarios/thesis/measurements.hpp"
 #include "tests/bench/accuracy/accuracy.hpp"
 
 /// Panels of a drill that a hand presses into a hole while it turns.

@@ -7,7 +7,7 @@
 #include "algorithms/laws/shaped_stiffness.hpp"
 #include "algorithms/registry.hpp"
 #include "algorithms/stages/point_stage.hpp"
-#include "scenarios/thesis_claims/measurements.hpp"
+#include "scenarios/thesis/measurements.hpp"
 #include "sim/core/random.hpp"
 #include "tests/bench/accuracy/accuracy.hpp"
 

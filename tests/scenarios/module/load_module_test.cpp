@@ -8,9 +8,9 @@
 #include <nlohmann/json.hpp>
 
 #include "algorithms/registry.hpp"
-#include "scenarios/description/load_scenario.hpp"
-#include "scenarios/description/writer.hpp"
-#include "scenarios/input/input_error.hpp"
+#include "scenarios/format/input_error.hpp"
+#include "scenarios/format/load_scenario.hpp"
+#include "scenarios/format/writer.hpp"
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/environment_variable.hpp"
 #include "tests/scenarios/support/errors.hpp"

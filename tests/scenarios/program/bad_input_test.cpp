@@ -12,8 +12,8 @@
 
 /// Hostile input, given to the real program: exit status 2, one line on standard error that names file and place,
 /// nothing written, soon, in bounded memory. The wording for ordinary mistakes is in tests/data/golden/refused_*.txt,
-/// refusals of every field in tests/scenarios/description/schema_agreement_test.cpp, of texts that are no JSON in
-/// tests/scenarios/input/json_file_test.cpp.
+/// refusals of every field in tests/scenarios/format/schema_agreement_test.cpp, of texts that are no JSON in
+/// tests/scenarios/format/json_file_test.cpp.
 namespace hapbench::bad_input_test {
 namespace {
 

@@ -5,8 +5,8 @@
 #include <regex>
 #include <set>
 
-#include "scenarios/description/bundled_scenarios.hpp"
-#include "scenarios/description/load_scenario.hpp"
+#include "scenarios/format/bundled_scenarios.hpp"
+#include "scenarios/format/load_scenario.hpp"
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/file_tree.hpp"
 #include "tests/scenarios/support/program.hpp"

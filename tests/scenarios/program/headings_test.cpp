@@ -4,7 +4,7 @@
 #include <regex>
 #include <set>
 
-#include "scenarios/input/text_lines.hpp"
+#include "scenarios/format/text_lines.hpp"
 #include "scenarios/program/index.hpp"
 #include "scenarios/program/report.hpp"
 #include "tests/results/files.hpp"

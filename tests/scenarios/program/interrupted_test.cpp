@@ -10,7 +10,7 @@
 #include <optional>
 #include <thread>
 
-#include "scenarios/batch/table_file.hpp"
+#include "scenarios/cases/table_file.hpp"
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/file_tree.hpp"
 #include "tests/scenarios/support/program.hpp"

@@ -5,7 +5,7 @@
 #include <map>
 #include <optional>
 
-#include "scenarios/thesis_claims/robustness.hpp"
+#include "scenarios/thesis/robustness.hpp"
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/program.hpp"
 
@@ -16,7 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 using test::hapbench;
 
-const fs::path kReference = fs::path(HAPBENCH_SCENARIOS) / "../results/reference";
+const fs::path kReference = fs::path(HAPBENCH_SCENARIOS) / "../../results/reference";
 
 /// By id, without the claims whose findings hold times.
 std::map<std::string, Json> repeatable_claims(const Json& ledger) {

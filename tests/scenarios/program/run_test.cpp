@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "scenarios/input/text_lines.hpp"
+#include "scenarios/format/text_lines.hpp"
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/file_tree.hpp"
 #include "tests/scenarios/support/program.hpp"

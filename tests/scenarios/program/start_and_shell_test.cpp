@@ -5,7 +5,7 @@
 #include <regex>
 #include <utility>
 
-#include "scenarios/input/mesh_file.hpp"
+#include "scenarios/format/mesh_file.hpp"
 #include "sim/geometry/analytic_shells.hpp"
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/file_tree.hpp"

@@ -8,7 +8,7 @@
 #include <map>
 #include <set>
 
-#include "scenarios/description/bundled_scenarios.hpp"
+#include "scenarios/format/bundled_scenarios.hpp"
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/program.hpp"
 

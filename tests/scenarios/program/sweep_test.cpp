@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <fstream>
 
-#include "scenarios/input/text_lines.hpp"
+#include "scenarios/format/text_lines.hpp"
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/file_tree.hpp"
 #include "tests/scenarios/support/program.hpp"
@@ -161,7 +161,7 @@ TEST_F(SweepCommand, VariesScenesAndWholeObjects) {
 TEST_F(SweepCommand, RunsInShardsByTheScriptForSlurm) {
   const auto task = [&](const std::string& number, Words more) {
     more.insert(more.begin(), {"HAPBENCH=" + test::hapbench_program().string(), "SLURM_ARRAY_TASK_COUNT=3",
-                               "SLURM_ARRAY_TASK_ID=" + number, HAPBENCH_SCENARIOS "/../scripts/sweep.sbatch"});
+                               "SLURM_ARRAY_TASK_ID=" + number, HAPBENCH_SCENARIOS "/../../scripts/sweep.sbatch"});
     return test::run_program("/usr/bin/env", more);
   };
   for (const char* number : {"1", "1", "0", "2"}) {

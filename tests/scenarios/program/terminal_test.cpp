@@ -7,13 +7,13 @@
 
 #include "algorithms/registry.hpp"
 #include "results/summary/summary.hpp"
-#include "scenarios/description/bundled_scenarios.hpp"
-#include "scenarios/description/metric_sections.hpp"
-#include "scenarios/description/writer.hpp"
+#include "scenarios/format/bundled_scenarios.hpp"
+#include "scenarios/format/metric_sections.hpp"
+#include "scenarios/format/writer.hpp"
+#include "scenarios/limits/stability/run_stability.hpp"
 #include "scenarios/program/fields_text.hpp"
 #include "scenarios/program/run_table.hpp"
-#include "scenarios/studies/stability/run_stability.hpp"
-#include "scenarios/thesis_claims/claims.hpp"
+#include "scenarios/thesis/claims.hpp"
 #include "sim/loop/integrators/table.hpp"
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/program.hpp"
@@ -100,7 +100,7 @@ TEST(Terminal, HasListsAndCardsInItsWidth) {
 }
 
 std::string completion_script() {
-  return test::run_program(HAPBENCH_SCENARIOS "/../scripts/completion", {test::hapbench_program().string()}).out;
+  return test::run_program(HAPBENCH_SCENARIOS "/../../scripts/completion", {test::hapbench_program().string()}).out;
 }
 
 /// As bash itself asks for it.

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "algorithms/registry.hpp"
-#include "scenarios/description/load_scenario.hpp"
+#include "scenarios/format/load_scenario.hpp"
 #include "scenarios/program/fields_text.hpp"
 #include "scenarios/program/table.hpp"
 #include "tests/scenarios/support/errors.hpp"

@@ -6,7 +6,7 @@
 #include <set>
 
 #include "algorithms/registry.hpp"
-#include "scenarios/description/bundled_scenarios.hpp"
+#include "scenarios/format/bundled_scenarios.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/run_scenario.hpp"
 

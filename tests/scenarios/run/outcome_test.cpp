@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "results/observe/metrics.hpp"
-#include "scenarios/description/metric_sections.hpp"
+#include "scenarios/format/metric_sections.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/run/scene_checks.hpp"
 #include "tests/results/files.hpp"

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "algorithms/proxy/proxy_rendering.hpp"
-#include "scenarios/description/bundled_scenarios.hpp"
+#include "scenarios/format/bundled_scenarios.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "sim/contact/contact_source.hpp"

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "scenarios/description/load_scenario.hpp"
+#include "scenarios/format/load_scenario.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/result_folder.hpp"
 #include "scenarios/run/stop_signal.hpp"

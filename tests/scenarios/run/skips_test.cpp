@@ -1,9 +1,9 @@
 #include <gtest/gtest.h>
 
 #include "algorithms/registry.hpp"
-#include "scenarios/description/bundled_scenarios.hpp"
-#include "scenarios/description/load_scenario.hpp"
-#include "scenarios/input/json_file.hpp"
+#include "scenarios/format/bundled_scenarios.hpp"
+#include "scenarios/format/json_file.hpp"
+#include "scenarios/format/load_scenario.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/file_tree.hpp"

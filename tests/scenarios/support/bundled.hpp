@@ -4,8 +4,8 @@
 #include <utility>
 #include <vector>
 
-#include "scenarios/description/bundled_scenarios.hpp"
-#include "scenarios/description/load_scenario.hpp"
+#include "scenarios/format/bundled_scenarios.hpp"
+#include "scenarios/format/load_scenario.hpp"
 #include "scenarios/run/assemble.hpp"
 
 namespace hapbench::test {

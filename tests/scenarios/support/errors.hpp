@@ -4,7 +4,7 @@
 
 #include <optional>
 
-#include "scenarios/input/input_error.hpp"
+#include "scenarios/format/input_error.hpp"
 
 namespace hapbench::test {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/input/json_file.hpp"
+#include "scenarios/format/json_file.hpp"
 
 /// Scenarios to test with.
 namespace hapbench::test {

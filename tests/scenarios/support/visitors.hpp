@@ -4,8 +4,8 @@
 
 #include <string>
 
-#include "scenarios/description/fields.hpp"
-#include "scenarios/description/writer.hpp"
+#include "scenarios/format/fields.hpp"
+#include "scenarios/format/writer.hpp"
 #include "tests/scenarios/support/errors.hpp"
 
 /// Applies the three visitors to a value that `describe(Fields&, T&)` describes.

@@ -1,0 +1,407 @@
+#include "scenarios/cases/cases.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <numeric>
+#include <set>
+#include <utility>
+
+#include "results/io/columns.hpp"
+#include "scenarios/cases/table_file.hpp"
+#include "scenarios/format/input_error.hpp"
+#include "scenarios/format/json_file.hpp"
+#include "scenarios/format/text_lines.hpp"
+#include "scenarios/format/writer.hpp"
+#include "sim/core/math.hpp"
+#include "sim/core/random.hpp"
+
+namespace hapbench {
+namespace {
+
+/// Largest magnitude of a range's end: beyond the range of every field, and small enough that sums of weighted ends do
+/// not overflow.
+constexpr double kLargestEnd = 1e300;
+
+[[noreturn]] void refuse_axis(const std::string& text, const std::string& problem, const std::string& allowed) {
+  constexpr std::size_t kLongest = 200;
+  const std::string shown = text.size() > kLongest ? text.substr(0, kLongest) + "..." : text;
+  throw InputError(fmt::format("--vary \"{}\": {}; allowed: {}", shown, problem, allowed));
+}
+
+double range_end(const std::string& text, std::string_view word) {
+  const auto number = finite_number(word);
+  if (!number || std::abs(*number) > kLargestEnd)
+    refuse_axis(text, fmt::format("got \"{}\" for an end of the range", word), "a finite number");
+  return *number;
+}
+
+/// The i-th of the values 0 ... last between two ends, which are returned exactly. Weighting the ends, rather than
+/// adding steps, gives 0.3 and not 0.30000000000000004 for the third of ten steps from 0 to 1.
+double linear_value(double a, double b, double i, double last) {
+  if (i == 0.0 || i == last) return i == 0.0 ? a : b;
+  return std::clamp((a * (last - i) + b * i) / last, std::min(a, b), std::max(a, b));
+}
+
+double value_between(const Range& range, double i, double last) {
+  const double a = range.from, b = range.to;
+  if (!range.logarithmic || i == 0.0 || i == last) return linear_value(a, b, i, last);
+  // Decimal logarithms make decades exact.
+  return std::clamp(math::pow(10.0, linear_value(math::log10(a), math::log10(b), i, last)), std::min(a, b),
+                    std::max(a, b));
+}
+
+/// Reads "a:b", or "a:b:n" for a grid, optionally followed by ":log".
+void read_range(const std::string& text, std::string_view words, bool sampled, Axis& axis) {
+  const Words parts = parts_of(words, ':');
+  const std::size_t least = sampled ? 2 : 3;
+  if (sampled && parts.size() > 2 && whole_number(parts[2]))
+    refuse_axis(text, "got a number of values beside --sample, which has its own", "a:b or a:b:log");
+  if (!sampled && parts.size() == 2)
+    refuse_axis(text, "got 2 parts between colons", "a:b:n or a:b:n:log; a:b and a:b:log with --sample");
+  if (parts.size() != least && parts.size() != least + 1) {
+    refuse_axis(text, fmt::format("got {} parts between colons", parts.size()),
+                sampled ? "a:b or a:b:log" : "a:b:n or a:b:n:log");
+  }
+  const Range range{range_end(text, parts[0]), range_end(text, parts[1]), parts.size() > least};
+  if (range.logarithmic && parts.back() != "log")
+    refuse_axis(text, fmt::format("got \"{}\"", parts.back()), "\"log\" or nothing");
+  if (range.logarithmic && !(range.from > 0.0 && range.to > 0.0))
+    refuse_axis(text, fmt::format("got ends {} and {} of a logarithmic range", range.from, range.to), "numbers > 0");
+  axis.range = range;
+  if (sampled) return;
+  const auto steps = whole_number(parts[2]);
+  if (!steps || *steps < 2 || *steps > kMostRuns)
+    refuse_axis(text, fmt::format("got \"{}\" values", parts[2]), fmt::format("an integer 2 ... {}", kMostRuns));
+  axis.steps = *steps;
+}
+
+/// The parts between commas that stand outside of JSON's brackets and strings.
+Words listed_words(std::string_view list) {
+  Words words;
+  std::size_t begin = 0, depth = 0;
+  bool in_string = false;
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    const char c = list[i];
+    if (in_string && c == '\\') {
+      ++i;
+    } else if (c == '"') {
+      in_string = !in_string;
+    } else if (in_string) {
+      continue;
+    } else if (c == '{' || c == '[') {
+      ++depth;
+    } else if ((c == '}' || c == ']') && depth > 0) {
+      --depth;
+    } else if (c == ',' && depth == 0) {
+      words.push_back(list.substr(begin, i - begin));
+      begin = i + 1;
+    }
+  }
+  words.push_back(list.substr(begin));
+  return words;
+}
+
+bool begins_json(std::string_view text) {
+  return text.starts_with('{') || text.starts_with('[') || text.starts_with('"');
+}
+
+/// A value in the spelling that axes have. Throws InputError for text that begins as JSON and is none, and for no text.
+std::string axis_value(std::string_view text) {
+  if (text.empty()) throw InputError("got an empty value");
+  if (const auto number = finite_number(text)) return cell_text(*number);
+  return begins_json(text) ? parse_json(std::string(text)).dump() : std::string(text);
+}
+
+std::vector<std::string> listed_values(const std::string& text, std::string_view list) {
+  const Words words = listed_words(list);
+  if (words.size() > kMostRuns)
+    refuse_axis(text, fmt::format("got {} values", words.size()), fmt::format("at most {}", kMostRuns));
+  std::vector<std::string> values;
+  for (const std::string_view word : words) {
+    try {
+      values.push_back(axis_value(word));
+    } catch (const InputError& error) {
+      refuse_axis(text, error.problem(), "numbers, names and JSON, separated by commas");
+    }
+  }
+  return values;
+}
+
+/// The description of a field by its path; null when there is none, or when it is in the entries of a list.
+const ValueGuide* guide_at(const ValueGuide& guide, std::string_view path) {
+  const std::size_t dot = std::min(path.find('.'), path.size());
+  for (const FieldGuide& field : guide.fields) {
+    if (field.name != path.substr(0, dot)) continue;
+    return dot == path.size() ? &field.value : guide_at(field.value, path.substr(dot + 1));
+  }
+  for (const ValueGuide& choice : guide.choices)
+    if (const ValueGuide* found = guide_at(choice, path)) return found;
+  return nullptr;
+}
+
+Axis read_axis(const std::string& text, bool sampled) {
+  const std::size_t equals = text.find('=');
+  Axis axis{text.substr(0, equals)};
+  constexpr const char* kPathCharacters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_.$";
+  if (equals == std::string::npos || axis.path.empty() ||
+      axis.path.find_first_not_of(kPathCharacters) != std::string::npos) {
+    refuse_axis(text, "has no path",
+                sampled ? "path=a:b, path=a:b:log or path=v,w, as in time.step_s=0.0001:0.001"
+                        : "path=a:b:n, path=a:b:n:log or path=v,w, as in time.step_s=0.0001:0.001:10");
+  }
+  const std::string_view values = std::string_view(text).substr(equals + 1);
+  if (std::any_of(values.begin(), values.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }))
+    refuse_axis(text, "has control characters", "numbers, names and JSON");
+  const bool is_range =
+      !begins_json(values) && values.find(',') == std::string_view::npos && values.find(':') != std::string_view::npos;
+  if (is_range)
+    read_range(text, values, sampled, axis);
+  else
+    axis.values = listed_values(text, values);
+  return axis;
+}
+
+std::string number_text(const Axis& axis, double value) {
+  return cell_text(axis.whole ? std::round(value) : value);
+}
+
+/// By the method's number.
+constexpr std::string_view kMethodNames[] = {"lhs", "random", "points"};
+
+/// How slowly an axis varies in the order of runs, the slowest first: what a shell depends on before all else.
+int speed(const Axis& axis) {
+  if (axis.path == kSceneAxis) return 0;
+  return axis.path == "environment" || axis.path.starts_with("environment.") ? 1 : 2;
+}
+
+}  // namespace
+
+double Range::value_at(double part) const {
+  return value_between(*this, part, 1.0);
+}
+
+Axis parse_axis(const std::string& text, bool sampled) {
+  Axis axis = read_axis(text, sampled);
+  const ValueGuide* guide = guide_at(scenario_guide(), axis.path);
+  if (guide == nullptr) return axis;
+  axis.whole = axis.range && guide->schema.value("type", Json()) == "integer";
+  if (axis.values == std::vector<std::string>{"all"} && guide->schema.contains("enum"))
+    axis.values = guide->schema["enum"].get<std::vector<std::string>>();
+  return axis;
+}
+
+std::string Axis::value(std::size_t i) const {
+  return range ? number_text(*this, value_between(*range, static_cast<double>(i), static_cast<double>(steps - 1)))
+               : values[i];
+}
+
+std::size_t Axis::place_at(double coordinate) const {
+  const auto count = static_cast<double>(values.size());
+  return std::min(static_cast<std::size_t>(coordinate * count), values.size() - 1);
+}
+
+std::string Axis::value_at(double coordinate) const {
+  return range ? number_text(*this, range->value_at(coordinate)) : values[place_at(coordinate)];
+}
+
+void append_new(std::vector<std::string>& texts, const std::vector<std::string>& more) {
+  for (const std::string& text : more)
+    if (std::find(texts.begin(), texts.end(), text) == texts.end()) texts.push_back(text);
+}
+
+std::vector<std::string> require_names_of_their_own(const std::vector<std::filesystem::path>& files,
+                                                    const std::string& allowed) {
+  std::vector<std::string> names;
+  for (const std::filesystem::path& file : files) {
+    const std::string name = file.stem().string();
+    if (std::ranges::find(names, name) != names.end())
+      throw InputError(fmt::format("{}: a second scenario named \"{}\"; allowed: {}", file.string(), name, allowed));
+    names.push_back(name);
+  }
+  return names;
+}
+
+std::string_view sampling_name(SamplingMethod method) {
+  return kMethodNames[static_cast<std::size_t>(method)];
+}
+
+Sampling parse_sampling(const std::string& text, std::uint64_t seed) {
+  const Words parts = parts_of(text, ':');
+  const std::string_view name = parts[0];
+  if (name == "sobol") {
+    throw InputError(
+        "--sample: \"sobol\" is no longer known; instead: lhs:N, or --points FILE.csv with the points of another program");
+  }
+  const auto count = parts.size() == 2 ? whole_number(parts[1]) : std::nullopt;
+  if ((name != "lhs" && name != "random") || !count || *count < 1 || *count > kMostRuns) {
+    throw InputError(
+        fmt::format("--sample: got \"{}\"; allowed: lhs:N or random:N with 1 <= N <= {}", text, kMostRuns));
+  }
+  return {name == "lhs" ? SamplingMethod::latin_hypercube : SamplingMethod::random, *count, seed};
+}
+
+std::vector<double> unit_sample(const Sampling& sampling, std::size_t axis) {
+  constexpr double kLast = 1.0 - 0x1.0p-53;  // rounding could move a point in the last stratum to 1
+  Random random(Random::derive(sampling.seed, axis));
+  std::vector<double> points(sampling.count);
+  if (sampling.method == SamplingMethod::random) {
+    for (double& point : points) point = random.uniform();
+    return points;
+  }
+  std::vector<std::size_t> strata(sampling.count);
+  std::iota(strata.begin(), strata.end(), std::size_t{0});
+  random.shuffle(strata);
+  for (std::size_t i = 0; i < points.size(); ++i)
+    points[i] =
+        std::min((static_cast<double>(strata[i]) + random.uniform()) / static_cast<double>(points.size()), kLast);
+  return points;
+}
+
+PointTable read_points(const std::filesystem::path& file) {
+  const std::string text = read_named_file(file);
+  LineReader lines(text);
+  PointTable table;
+  for (const std::string& path : csv_cells(lines.next().value_or(""))) table.axes.push_back({path});
+  table.places.resize(table.axes.size());
+  std::vector<std::map<std::string, std::uint32_t>> known(table.axes.size());
+  while (const auto line = lines.next()) {
+    const std::vector<std::string> cells = csv_cells(*line);
+    if (cells.size() != known.size() || table.places[0].size() == kMostRuns) {
+      fail_in_line(file, lines.line(),
+                   fmt::format("got {} values in row {}; allowed: {}, one of each field, in at most {} rows",
+                               cells.size(), table.places[0].size() + 1, known.size(), kMostRuns));
+    }
+    try {
+      for (std::size_t a = 0; a < cells.size(); ++a) {
+        const std::string value = axis_value(cells[a]);
+        const auto place = static_cast<std::uint32_t>(known[a].size());
+        const auto [at, is_new] = known[a].emplace(value, place);
+        if (is_new) table.axes[a].values.push_back(value);
+        table.places[a].push_back(at->second);
+      }
+    } catch (const InputError& error) {
+      fail_in_line(file, lines.line(), error.problem());
+    }
+  }
+  if (table.places[0].empty()) fail_in_file(file, "has no rows; allowed: a header of fields, and rows of their values");
+  return table;
+}
+
+Shard parse_shard(const std::string& text) {
+  const Words parts = parts_of(text, '/');
+  const auto index = whole_number(parts[0]), count = parts.size() == 2 ? whole_number(parts[1]) : std::nullopt;
+  if (!index || !count || *index >= *count || *count > kMostRuns) {
+    throw InputError(
+        fmt::format("--shard: got \"{}\"; allowed: i/n with 0 <= i < n <= {}, as in 0/4", text, kMostRuns));
+  }
+  return {*index, *count};
+}
+
+std::string shard_text(const Shard& shard) {
+  return fmt::format("{}/{}", shard.index, shard.count);
+}
+
+Cases::Cases(std::vector<ScenarioText> scenes, std::vector<std::string> sets, std::vector<Axis> axes,
+             std::optional<Sampling> sampling)
+    : scenes_(std::move(scenes)), sets_(std::move(sets)), axes_(std::move(axes)), sampling_(sampling) {
+  check_paths();
+  if (sampling_) {
+    size_ = sampling_->count;
+    for (std::size_t a = 0; a < axes_.size(); ++a) unit_.push_back(unit_sample(*sampling_, a));
+    sort_runs();
+    return;
+  }
+  double size = 1.0;  // a double, because the product may overflow integers
+  for (const Axis& axis : axes_) size *= static_cast<double>(axis.size());
+  if (size > static_cast<double>(kMostRuns))
+    throw InputError(fmt::format("--vary: got a grid of {:.7g} runs; allowed: at most {}", size, kMostRuns));
+  strides_.resize(axes_.size());
+  for (std::size_t a = axes_.size(); a-- > 0; size_ *= axes_[a].size()) strides_[a] = size_;
+  sort_runs();
+}
+
+Cases::Cases(std::vector<ScenarioText> scenes, std::vector<std::string> sets, PointTable points)
+    : scenes_(std::move(scenes)),
+      sets_(std::move(sets)),
+      axes_(std::move(points.axes)),
+      sampling_(Sampling{SamplingMethod::points, points.places[0].size()}),
+      places_(std::move(points.places)),
+      size_(sampling_->count) {
+  check_paths();
+  sort_runs();
+}
+
+void Cases::check_paths() const {
+  std::set<std::string> paths;
+  for (const Axis& axis : axes_) {
+    if (paths.insert(axis.path).second) continue;
+    throw InputError(fmt::format("--vary: got \"{}\" twice; allowed: each field once", axis.path));
+  }
+}
+
+/// Each point of a sampled range has a value of its own, which no other case shares.
+void Cases::sort_runs() {
+  std::vector<std::size_t> slow;
+  for (const int slowest : {0, 1})
+    for (std::size_t a = 0; a < axes_.size(); ++a)
+      if (speed(axes_[a]) == slowest && axes_[a].size() > 0) slow.push_back(a);
+  if (slow.empty()) return;
+  sorted_.resize(size_);
+  std::iota(sorted_.begin(), sorted_.end(), std::size_t{0});
+  std::ranges::stable_sort(sorted_, [&](std::size_t i, std::size_t j) {
+    const auto differs = std::ranges::find_if(slow, [&](std::size_t a) { return place(i, a) != place(j, a); });
+    return differs != slow.end() && place(i, *differs) < place(j, *differs);
+  });
+}
+
+std::size_t Cases::place(std::size_t i, std::size_t axis) const {
+  if (!sampling_) return i / strides_[axis] % axes_[axis].size();
+  return places_.empty() ? axes_[axis].place_at(unit_[axis][i]) : places_[axis][i];
+}
+
+std::string Cases::value(std::size_t i, std::size_t axis) const {
+  return unit_.empty() ? axes_[axis].value(place(i, axis)) : axes_[axis].value_at(unit_[axis][i]);
+}
+
+std::vector<std::string> Cases::values(std::size_t i) const {
+  std::vector<std::string> values(axes_.size());
+  for (std::size_t a = 0; a < axes_.size(); ++a) values[a] = value(i, a);
+  return values;
+}
+
+std::vector<std::string> Cases::changes(std::size_t i) const {
+  std::vector<std::string> changes = values(i);
+  for (std::size_t a = 0; a < axes_.size(); ++a) changes[a].insert(0, axes_[a].path + "=");
+  for (std::size_t a = 0; a < axes_.size(); ++a) {
+    if (axes_[a].along.empty()) continue;
+    const std::vector<std::string>& more = axes_[a].along[place(i, a)].overrides;
+    changes.insert(changes.end(), more.begin(), more.end());
+  }
+  return changes;
+}
+
+const ScenarioText& Cases::scene(std::size_t i) const {
+  const auto axis = std::ranges::find(axes_, kSceneAxis, &Axis::path);
+  return scenes_[axis == axes_.end() ? 0 : place(i, static_cast<std::size_t>(axis - axes_.begin()))];
+}
+
+std::vector<std::string> Cases::overrides(std::size_t i) const {
+  std::vector<std::string> overrides = sets_;
+  const std::vector<std::string> all = changes(i);
+  for (std::size_t c = 0; c < all.size(); ++c)
+    if (c >= axes_.size() || !(axes_[c].named || axes_[c].path == kSceneAxis)) overrides.push_back(all[c]);
+  return overrides;
+}
+
+LoadedScenario Cases::load(std::size_t i) const {
+  LoadedScenario loaded = load_scenario(scene(i), overrides(i));
+  for (std::size_t a = 0; a < axes_.size(); ++a)
+    if (!axes_[a].along.empty()) loaded.scenario.time.stride *= axes_[a].along[place(i, a)].stride;
+  return loaded;
+}
+
+}  // namespace hapbench

@@ -1,0 +1,176 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "scenarios/format/load_scenario.hpp"
+
+/// Cases: scenes with overrides, of which fields vary.
+namespace hapbench {
+
+/// Maximum number of cases, and of the values of an axis.
+inline constexpr std::size_t kMostRuns = 1'000'000;
+
+/// An interval to sample, or to divide into equal steps or ratios.
+struct Range {
+  double from = 0.0;
+  double to = 0.0;
+  bool logarithmic = false;
+
+  /// The value at a fraction of the interval in [0, 1], measured in the logarithm if the range is logarithmic. Returns
+  /// both ends exactly and never a value outside.
+  double value_at(double part) const;
+};
+
+/// A field and its values: as in --set, numbers as shortest decimals, objects and lists as compact JSON.
+struct Axis {
+  std::string path;                      ///< dotted, as in --set
+  std::vector<std::string> values = {};  ///< listed values, unless there is a range
+  std::optional<Range> range = {};       ///< replaces listed values
+  std::size_t steps = 0;                 ///< number of values of a range on a grid
+  bool whole = false;                    ///< numbers of the range are rounded to integers
+  bool named = false;                    ///< values are names, for whoever asks, and no overrides
+
+  /// Changes that go with a value of the axis: further overrides, and the TimeFields::stride of its runs.
+  struct Along {
+    std::vector<std::string> overrides;
+    std::int64_t stride = 1;
+  };
+  std::vector<Along> along = {};  ///< of each listed value; empty: nothing
+
+  /// Number of values; 0 for the range of a sample.
+  std::size_t size() const { return range ? steps : values.size(); }
+  /// Precondition: i < size().
+  std::string value(std::size_t i) const;
+  /// Index of the listed value at a coordinate in [0, 1): each has an equal share of the interval. Precondition: the
+  /// axis has listed values.
+  std::size_t place_at(double coordinate) const;
+  /// The value at a coordinate in [0, 1): of a range the value at that fraction, of a list the value at place_at().
+  std::string value_at(double coordinate) const;
+};
+
+/// Reads "path=a:b:n" (n numbers from a to b, both exactly, in equal steps), "path=a:b:n:log" (in equal ratios) or
+/// "path=v,w,…" (numbers, names, JSON objects and lists); with `sampled`, "path=a:b" or "path=a:b:log" in place of the
+/// first two. "path=all" stands for all names that the field takes. The range of a field of integers, entries of lists
+/// aside, has integers. Throws InputError. Whether a scenario has such a field and accepts the values is not checked.
+Axis parse_axis(const std::string& text, bool sampled = false);
+
+/// Appends the texts, such as warnings of cases, that are not in the list yet.
+void append_new(std::vector<std::string>& texts, const std::vector<std::string>& more);
+
+/// The names of the files, after which results are named. Throws InputError when two are the same; `allowed` is for its
+/// message.
+std::vector<std::string> require_names_of_their_own(const std::vector<std::filesystem::path>& files,
+                                                    const std::string& allowed);
+
+/// The path of the axis whose values name scenes.
+inline constexpr const char* kSceneAxis = "scenario";
+
+/// How points are distributed over the unit cube.
+enum class SamplingMethod {
+  latin_hypercube,  ///< along each axis one point in each of `count` equal strata (McKay, Beckman, Conover 1979)
+  random,           ///< independent and uniform
+  points            ///< as a file has them
+};
+
+/// The name of a method, as in --sample.
+std::string_view sampling_name(SamplingMethod method);
+
+/// A sample of the unit cube. Equal samples have the same points to the last bit on every machine.
+struct Sampling {
+  SamplingMethod method = SamplingMethod::latin_hypercube;
+  std::size_t count = 1;   ///< points
+  std::uint64_t seed = 1;  ///< of the shuffles, or the points themselves
+};
+
+/// Reads "lhs:N" or "random:N" with 1 <= N <= kMostRuns. Throws InputError.
+Sampling parse_sampling(const std::string& text, std::uint64_t seed);
+
+/// The coordinates in [0, 1) of each point along an axis, from a stream of random numbers of its own: one more axis
+/// does not change the others. Precondition: the points are not those of a file.
+std::vector<double> unit_sample(const Sampling& sampling, std::size_t axis);
+
+/// The points of a file, a row each: the columns are the axes, whose values are listed once.
+struct PointTable {
+  std::vector<Axis> axes;
+  std::vector<std::vector<std::uint32_t>> places;  ///< by axis: which of the axis's values a point has
+};
+
+/// Reads the table of --points: a header of fields' paths, and their values. Throws InputError with the line.
+PointTable read_points(const std::filesystem::path& file);
+
+/// A part of the cases: those whose place in the order of the runs leaves the remainder `index` when divided by
+/// `count`. By default all.
+struct Shard {
+  std::size_t index = 0;
+  std::size_t count = 1;
+
+  /// Number of the cases that belong to it.
+  std::size_t size(std::size_t cases) const { return (cases + count - 1 - index) / count; }
+};
+
+/// Reads "i/n" with 0 <= i < n. Throws InputError.
+Shard parse_shard(const std::string& text);
+
+/// "i/n"
+std::string shard_text(const Shard& shard);
+
+/// Scenes with overrides, of which fields vary: all combinations of the values of the axes, the last one fastest, or a
+/// sample of them. Numbered from 0. Memory: 8 bytes a case and axis of a sample, 8 bytes a case where scenes or fields
+/// of the environment vary, and the rows of a file.
+class Cases {
+ public:
+  /// A grid, or a sample of the box that the axes span. `scenes` has one, or one for each value of the axis kSceneAxis.
+  /// `sets` are overrides of all cases, as in --set. Throws InputError for two axes of one path and for more than
+  /// kMostRuns combinations. Precondition: on a grid every axis has values.
+  Cases(std::vector<ScenarioText> scenes, std::vector<std::string> sets, std::vector<Axis> axes,
+        std::optional<Sampling> sampling = {});
+  /// The points of a file.
+  Cases(std::vector<ScenarioText> scenes, std::vector<std::string> sets, PointTable points);
+
+  std::size_t size() const { return size_; }
+  const std::vector<ScenarioText>& scenes() const { return scenes_; }
+  const std::vector<std::string>& sets() const { return sets_; }
+  const std::vector<Axis>& axes() const { return axes_; }
+  /// None for a grid.
+  const std::optional<Sampling>& sampling() const { return sampling_; }
+
+  // Precondition, here and below: i < size().
+
+  /// Index of the value of an axis. Precondition: Axis::size() > 0.
+  std::size_t place(std::size_t i, std::size_t axis) const;
+  /// One value for each axis, computed anew at each call.
+  std::vector<std::string> values(std::size_t i) const;
+  /// The values as "path=value", then what goes along with them.
+  std::vector<std::string> changes(std::size_t i) const;
+  const ScenarioText& scene(std::size_t i) const;
+  /// The overrides of the scene: the sets, and the changes but for names.
+  std::vector<std::string> overrides(std::size_t i) const;
+  /// The scenario. Thread-safe. Throws InputError.
+  LoadedScenario load(std::size_t i) const;
+  /// The case that runs at a place of the order of runs. Scenes, then fields of the environment vary slowest there, so
+  /// that neighbours share a shell; apart from that cases are in order.
+  std::size_t at(std::size_t place) const { return sorted_.empty() ? place : sorted_[place]; }
+
+ private:
+  void check_paths() const;
+  void sort_runs();
+  std::string value(std::size_t i, std::size_t axis) const;
+
+  std::vector<ScenarioText> scenes_;
+  std::vector<std::string> sets_;
+  std::vector<Axis> axes_;
+  std::optional<Sampling> sampling_;
+  std::vector<std::vector<double>> unit_;           ///< by axis: the coordinates of a random sample
+  std::vector<std::vector<std::uint32_t>> places_;  ///< by axis: of the points of a file
+  std::vector<std::size_t> strides_;  ///< of a grid: distance of cases with neighbouring values of an axis
+  std::vector<std::size_t> sorted_;   ///< in the order of runs; empty: as they are numbered
+  std::size_t size_ = 1;
+};
+
+}  // namespace hapbench

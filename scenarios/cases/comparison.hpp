@@ -1,0 +1,85 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "scenarios/cases/cases.hpp"
+#include "scenarios/cases/parallel_for.hpp"
+#include "scenarios/run/run_scenario.hpp"
+
+/// Scenes, each under the same laws and with the same number of seeds.
+namespace hapbench {
+
+/// The scenario's seed and those after it. Unless `jitter` [m] is 0, a shift of the start by that length goes along
+/// with each, whose direction depends only on the seed, so that all algorithms start from the same places: uniform on
+/// the sphere, in planar scenes on the circle z = 0.
+Axis seed_axis(const Scenario& scenario, std::size_t seeds, double jitter);
+
+/// The question of `compare`.
+struct ComparisonQuestion {
+  std::vector<std::filesystem::path> scenarios;  ///< files
+  std::vector<std::string> algorithms;
+  std::vector<std::string> overrides = {};  ///< of all runs, as in --set
+  std::size_t seeds = 1;                    ///< repetition k has the scenario's seed + k
+  double jitter = 0.0;                      ///< length of a random shift of the start [m]
+};
+
+/// A comparison that was checked before its first run. Runs are numbered by scene first, then by algorithm, then by
+/// seed. A scene has cases of its own, because its seeds and starts are.
+struct Comparison {
+  std::vector<Cases> scenes;
+  std::vector<std::string> names;  ///< unique names of the scenes' files, without extension
+  std::vector<std::string> algorithms;
+  std::size_t seeds = 1;
+  std::vector<std::string> warnings = {};  ///< without duplicates
+
+  /// Runs of a scene.
+  std::size_t each() const { return algorithms.size() * seeds; }
+  std::size_t size() const { return scenes.size() * each(); }
+  std::size_t scene(std::size_t run) const { return run / each(); }
+  const std::string& algorithm(std::size_t run) const { return algorithms[run % each() / seeds]; }
+  /// The scenario of a run. Thread-safe.
+  LoadedScenario load(std::size_t run) const { return scenes[scene(run)].load(run % each()); }
+  /// Returns the folder of a scene's tables, relative to that of the comparison: SCENARIO if there are several scenes,
+  /// else empty.
+  std::filesystem::path scene_folder(std::size_t scene) const;
+  /// Returns the folder of a run's files, relative to that of the comparison: [SCENARIO/]ALGORITHM[/seed_K], the parts
+  /// in brackets where there are several.
+  std::filesystem::path folder(std::size_t run) const;
+};
+
+/// Loads every scene with every algorithm and reads the files they name. Throws InputError for the first that is wrong,
+/// for two scenes of one name, and where jitter cannot shift the start because the motion prescribes it.
+Comparison planned(const ComparisonQuestion& question);
+
+/// Runs all cases of a list, numbered one after the other, and writes the files of each into the folder that `folder`
+/// names, or none without it. Runs in one environment share its shell, which is built once. Neither reports nor files
+/// depend on the number of jobs. Reports have no targets: there may be very many, and files have them. Throws IoError
+/// when something cannot be written, and Stopped after SIGINT or SIGTERM.
+std::vector<Result> run_all(std::span<const Cases> cases, const JobOptions& jobs,
+                            const std::function<std::filesystem::path(std::size_t run)>& folder = {});
+
+/// The files that a command with several runs writes into a directory, by relative paths.
+struct ResultList {
+  std::vector<std::filesystem::path> runs;    ///< directories of runs
+  std::vector<std::filesystem::path> tables;  ///< other files
+};
+
+/// The file in which a command keeps its list.
+inline constexpr const char* kResultListFile = "hapbench_results.json";
+
+/// Removes from `directory` the results of an earlier command, which are listed in kResultListFile, and replaces that
+/// list by `now`. Call it before the first run. Removes all listed tables, and the listed runs that `now` does not
+/// name: their result files (remove_run), and their directories if these are empty afterwards. Ignores entries that
+/// lead out of `directory`, by ".." or a link, and a list that cannot be read. Throws IoError when the new list cannot
+/// be written.
+void replace_earlier_results(const std::filesystem::path& directory, const ResultList& now);
+
+/// Removes the list if none of the files it names exists, for instance after a command was stopped in its first run.
+void forget_results_if_none(const std::filesystem::path& directory);
+
+}  // namespace hapbench

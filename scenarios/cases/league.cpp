@@ -1,0 +1,178 @@
+#include "scenarios/cases/league.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "results/summary/summary.hpp"
+#include "scenarios/cases/statistics.hpp"
+#include "scenarios/format/metric_sections.hpp"
+#include "scenarios/run/run_scenario.hpp"
+
+namespace hapbench {
+namespace {
+
+/// The seeds in which none of the algorithms fails that have at most so many failures.
+std::vector<std::size_t> seeds_without_failure(const League& league, std::size_t scenario, std::size_t most_failures) {
+  std::vector<std::size_t> seeds;
+  for (std::size_t k = 0; k < league.seeds; ++k) {
+    bool failed = false;
+    for (std::size_t a = 0; a < league.algorithms.size(); ++a)
+      failed |= league.runs_of(scenario, a)[k].failed && league.failures(scenario, a) <= most_failures;
+    if (!failed) seeds.push_back(k);
+  }
+  return seeds;
+}
+
+/// Numbers of the runs in the common seeds that did not fail, as far as they have any.
+std::vector<double> numbers_of(const League& league, std::size_t scenario, std::size_t algorithm, std::size_t metric,
+                               std::vector<std::optional<double>> LeagueRun::*numbers) {
+  std::vector<double> found;
+  for (const std::size_t k : league.common[scenario]) {
+    const LeagueRun& run = league.runs_of(scenario, algorithm)[k];
+    if (const auto& number = (run.*numbers)[metric]; number && !run.failed) found.push_back(*number);
+  }
+  return found;
+}
+
+/// "completes", or with counts "completes 3; diverges 2", in the order of their first appearance.
+std::string outcomes_text(std::span<const LeagueRun> runs) {
+  std::vector<std::string> ways, texts;
+  for (const LeagueRun& run : runs)
+    if (std::ranges::find(ways, run.outcome) == ways.end()) ways.push_back(run.outcome);
+  if (ways.size() == 1) return ways.front();
+  for (const std::string& way : ways)
+    texts.push_back(fmt::format("{} {}", way, std::ranges::count(runs, way, &LeagueRun::outcome)));
+  return fmt::format("{}", fmt::join(texts, "; "));
+}
+
+/// Without a rank.
+Standing standing_of(const League& league, std::size_t s, std::size_t a, std::size_t m) {
+  Standing standing{league.scenarios[s], league.algorithms[a],  league.metrics[m],
+                    league.seeds,        league.failures(s, a), outcomes_text(league.runs_of(s, a))};
+  standing.common_seeds = league.common[s].size();
+  standing.better = league.better[m];
+  const std::vector<double> numbers = numbers_of(league, s, a, m, &LeagueRun::metrics),
+                            tolerances = numbers_of(league, s, a, m, &LeagueRun::tolerances);
+  if (!numbers.empty()) standing.mean = mean_of(numbers);
+  if (!tolerances.empty()) standing.tolerance = mean_of(tolerances);
+  if (numbers.size() >= 2 && league.seeds_matter[s]) standing.spread = standard_deviation(numbers);
+  return standing;
+}
+
+bool is_same(double a, double b) {
+  return std::abs(a - b) <= kSameRank * std::max(std::abs(a), std::abs(b));
+}
+
+bool is_better(const Standing* a, const Standing* b) {
+  return a->better == Better::more ? *a->mean > *b->mean : *a->mean < *b->mean;
+}
+
+/// Ranks the algorithms in one scenario by one metric.
+void rank_by_means(const std::vector<Standing*>& standings) {
+  if (standings.front()->better == Better::none) return;
+  const auto has_mean = [](const Standing* s) { return s->mean.has_value(); };
+  if (std::ranges::none_of(standings, has_mean)) return;
+  std::vector<Standing*> order;
+  for (Standing* s : standings)
+    if (s->failed == 0 && s->mean) order.push_back(s);
+  std::ranges::stable_sort(order, is_better);
+  std::size_t leader = 0;
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    if (!is_same(*order[leader]->mean, *order[i]->mean)) leader = i;
+    order[i]->rank = 1 + leader;
+  }
+  for (Standing* s : standings) {
+    const auto has_fewer = [s](const Standing* other) { return other->failed < s->failed; };
+    if (s->failed > 0)
+      s->rank = 1 + static_cast<std::uint64_t>(std::ranges::count_if(standings, has_fewer));
+    else if (!s->mean)
+      s->rank = 1 + order.size();
+  }
+}
+
+LawStanding law_standing(const League& league, std::size_t a) {
+  LawStanding law{league.algorithms[a], {}, {}};
+  std::vector<double> ranks;
+  for (std::size_t s = 0; s < league.scenarios.size(); ++s) {
+    for (std::size_t m = 0; m < league.metrics.size(); ++m)
+      if (const auto rank = league.at(s, a, m).rank) ranks.push_back(static_cast<double>(*rank));
+    if (league.failures(s, a) > 0) law.fails.push_back(s);
+  }
+  if (!ranks.empty()) law.mean_rank = mean_of(ranks);
+  return law;
+}
+
+}  // namespace
+
+std::size_t League::failures(std::size_t scenario, std::size_t algorithm) const {
+  return static_cast<std::size_t>(std::ranges::count_if(runs_of(scenario, algorithm), &LeagueRun::failed));
+}
+
+void League::rank() {
+  for (std::size_t s = 0; s < scenarios.size(); ++s) {
+    bool matter = false;
+    for (std::size_t a = 0; a < algorithms.size(); ++a)
+      for (const LeagueRun& run : runs_of(s, a)) matter |= run.state_hash != runs_of(s, a)[0].state_hash;
+    seeds_matter.push_back(matter);
+    common.push_back(seeds_without_failure(*this, s, seeds - 1));
+    if (common.back().empty()) common.back() = seeds_without_failure(*this, s, 0);
+    const std::size_t first = standings.size();
+    for (std::size_t a = 0; a < algorithms.size(); ++a)
+      for (std::size_t m = 0; m < metrics.size(); ++m) standings.push_back(standing_of(*this, s, a, m));
+    for (std::size_t m = 0; m < metrics.size(); ++m) {
+      std::vector<Standing*> column;
+      for (std::size_t a = 0; a < algorithms.size(); ++a) column.push_back(&standings[first + a * metrics.size() + m]);
+      rank_by_means(column);
+    }
+  }
+  for (std::size_t a = 0; a < algorithms.size(); ++a) laws.push_back(law_standing(*this, a));
+  std::ranges::stable_sort(laws, [](const LawStanding& a, const LawStanding& b) {
+    return a.mean_rank && (!b.mean_rank || *a.mean_rank < *b.mean_rank);
+  });
+}
+
+bool is_failure(std::string_view outcome) {
+  const std::optional<Outcome> known = outcome_named(outcome);
+  return known && outcome_infos()[static_cast<std::size_t>(*known)].is_failure;
+}
+
+bool have_reference(std::span<const Result> runs) {
+  const auto has = [](const Result& run) { return run.has_section("fidelity"); };
+  return std::ranges::all_of(runs, has);
+}
+
+League league_of(const Comparison& comparison, std::span<const Result> reports,
+                 const std::vector<std::string>& metrics) {
+  const std::span<const std::string_view> usual =
+      have_reference(reports) ? std::span<const std::string_view>(kFidelityMetrics) : kDefaultMetrics;
+  League league{comparison.names, comparison.algorithms, metrics, {}, comparison.seeds, {}};
+  if (metrics.empty()) league.metrics.assign(usual.begin(), usual.end());
+  const MetricList known = metrics_without_values();
+  for (const std::string& name : league.metrics) {
+    const Metric* metric = find_metric(known, name);
+    league.better.push_back(metric == nullptr ? Better::none : metric->better);
+  }
+  for (std::size_t i = 0; i < reports.size(); ++i) {
+    const Result& summary = reports[i];
+    const Outcome outcome = summary.end.outcome;
+    const Scenario scenario = comparison.load(i).scenario;
+    // No law keeps a tool out that a script leads in: its force along the way is comparable all the same.
+    const bool is_led = outcome == Outcome::went_through && !position_is_free(scenario.motion);
+    const bool failed = is_failure(outcome_name(outcome)) || !outcome_is_expected(scenario.expect, outcome);
+    LeagueRun run{std::string(outcome_name(outcome)), failed && !is_led, summary.state_hash, {}, {}};
+    for (const std::string& name : league.metrics) {
+      const Metric* metric = find_metric(summary.metrics, name);
+      run.metrics.push_back(metric == nullptr ? std::nullopt : number_of(metric->value));
+      run.tolerances.push_back(metric == nullptr ? std::nullopt : metric->tolerance());
+    }
+    league.runs.push_back(std::move(run));
+  }
+  league.rank();
+  return league;
+}
+
+}  // namespace hapbench

@@ -1,0 +1,201 @@
+#include "scenarios/format/json_file.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cctype>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <set>
+#include <vector>
+
+#include "scenarios/format/input_error.hpp"
+
+namespace hapbench {
+namespace {
+
+constexpr int kDeepestNesting = 64;
+constexpr std::size_t kMostKeys = 10'000;
+
+/// Line and column, both from 1, of a byte offset.
+std::string line_and_column(const std::string& text, std::size_t byte) {
+  const auto end = text.begin() + static_cast<std::ptrdiff_t>(std::min(byte, text.size()));
+  const auto line = 1 + std::count(text.begin(), end, '\n');
+  const std::size_t start = text.rfind('\n', byte == 0 ? 0 : std::min(byte, text.size()) - 1);
+  const std::size_t column = start == std::string::npos || start >= byte ? byte : byte - start - 1;
+  return fmt::format("line {}, column {}", line, std::max<std::size_t>(column, 1));
+}
+
+/// A hint at the probable cause of a syntax error; may be empty. `byte` is the position, from 1, of the last byte that
+/// the parser read.
+std::string syntax_hint(const std::string& text, std::size_t byte) {
+  if (text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff")) return "; the text is UTF-16; allowed: UTF-8";
+  if (byte > text.size()) return "; the text ends too early";
+  std::size_t at = std::max<std::size_t>(byte, 1) - 1;
+  const char last = text[at];
+  // Go back to the beginning of the word or the string.
+  const auto is_letter = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; };
+  while (at > 0 && is_letter(last) && is_letter(text[at - 1])) --at;
+  if (const std::size_t quote = last == '"' ? text.rfind('"', byte - 2) : std::string::npos; quote < at) at = quote;
+  const std::size_t before = at == 0 ? std::string::npos : text.find_last_not_of(" \t\r\n", at - 1);
+  const char first = text[at], previous = before == std::string::npos ? '\0' : text[before];
+  const bool may_begin = previous == '\0' || std::strchr("{[,:", previous) != nullptr;
+  if ((last == '}' || last == ']') && previous == ',') return fmt::format("; a comma stands before \"{}\"", last);
+  if (last == '/' || last == '#' || previous == '/') return "; JSON has no comments";
+  if (may_begin && (last == '\'' || (std::isalpha(static_cast<unsigned char>(first)) && is_letter(last))))
+    return "; names and texts stand in double quotes";
+  if (last == '"' && !may_begin)
+    return fmt::format("; a {} is missing before it", previous == '"' ? "comma or colon" : "comma");
+  return "";
+}
+
+[[noreturn]] void refuse_syntax(const std::string& text, std::size_t byte) {
+  throw InputError(
+      InputError::Kind::shape, "",
+      fmt::format("is not JSON: syntax error at {}{}", line_and_column(text, byte), syntax_hint(text, byte)));
+}
+
+/// The number in the parser's message "… number overflow parsing '1e999'".
+std::string number_in(const std::string& message) {
+  constexpr std::size_t kLongest = 80;
+  const std::size_t start = message.find('\'');
+  const std::string number =
+      start == std::string::npos ? "a number too large" : message.substr(start + 1, message.rfind('\'') - start - 1);
+  return number.size() > kLongest ? number.substr(0, kLongest) + "..." : number;
+}
+
+/// Follows the parser's events to refuse what the parser accepts, such as duplicate keys, and to know the position.
+class Guard {
+ public:
+  bool operator()(int depth, Json::parse_event_t event, Json& parsed) {
+    using Event = Json::parse_event_t;
+    switch (event) {
+      case Event::object_start:
+      case Event::array_start:
+        if (depth >= kDeepestNesting)
+          refuse_here(fmt::format("nested too deeply; allowed: {} levels", kDeepestNesting));
+        levels_.push_back({event == Event::array_start, "", 0, {}});
+        break;
+      case Event::object_end:
+      case Event::array_end:
+        levels_.pop_back();
+        next_element();
+        break;
+      case Event::key:
+        enter_key(parsed.get_ref<const std::string&>());
+        break;
+      case Event::value:
+        next_element();
+        break;
+    }
+    return true;
+  }
+
+  /// JSON pointer of the current value; only its first levels if it is deep.
+  std::string pointer() const {
+    std::string at;
+    for (std::size_t i = 0; i < levels_.size() && i < 8; ++i)
+      at = levels_[i].is_array ? element(at, levels_[i].index) : member(at, levels_[i].key);
+    return at;
+  }
+
+  [[noreturn]] void refuse_here(const std::string& problem) const {
+    throw InputError(InputError::Kind::shape, pointer(), problem);
+  }
+
+ private:
+  struct Level {
+    bool is_array;
+    std::string key;
+    std::size_t index;
+    std::set<std::string> seen;
+  };
+
+  void next_element() {
+    if (!levels_.empty() && levels_.back().is_array) ++levels_.back().index;
+  }
+
+  void enter_key(const std::string& key) {
+    Level& object = levels_.back();
+    object.key = key;
+    if (!object.seen.insert(key).second) refuse_here("the key stands twice in one object; allowed: once");
+    if (object.seen.size() > kMostKeys) refuse_here(fmt::format("more than {} keys in one object", kMostKeys));
+  }
+
+  std::vector<Level> levels_;  ///< open objects and arrays
+};
+
+}  // namespace
+
+std::string read_text_file(const std::filesystem::path& file, std::uintmax_t largest) {
+  // The system would open the file whose name ends before the zero byte.
+  if (file.native().find('\0') != std::string::npos) throw InputError("cannot be read: the name has a zero byte");
+  std::error_code error;
+  if (std::filesystem::is_directory(file, error)) throw InputError("is a directory, not a file");
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) throw InputError(fmt::format("cannot be read: {}", std::strerror(errno)));
+  // Read in pieces up to the limit, because pipes and devices have no size.
+  std::string text;
+  std::vector<char> piece(1 << 16);
+  while (stream.read(piece.data(), static_cast<std::streamsize>(piece.size())) || stream.gcount() > 0) {
+    text.append(piece.data(), static_cast<std::size_t>(stream.gcount()));
+    if (text.size() > largest) throw InputError(fmt::format("is larger than {} MiB", largest >> 20));
+  }
+  return text;
+}
+
+Json parse_json(const std::string& text) {
+  // The parser would stop at a zero byte.
+  if (const std::size_t zero = text.find('\0'); zero != std::string::npos) refuse_syntax(text, zero + 1);
+  Guard guard;
+  try {
+    return Json::parse(
+        text, [&guard](int depth, Json::parse_event_t event, Json& parsed) { return guard(depth, event, parsed); });
+  } catch (const Json::parse_error& error) {
+    refuse_syntax(text, error.byte);
+  } catch (const Json::out_of_range& error) {
+    guard.refuse_here(fmt::format("got {}; allowed: finite numbers", number_in(error.what())));
+  }
+}
+
+std::string shown(const Json& json) {
+  constexpr std::size_t kLongest = 80;
+  // Printing all of a large value could take long.
+  if ((json.is_array() || json.is_object()) && json.size() > 20)
+    return fmt::format("{} of {} entries", json.is_array() ? "a list" : "an object", json.size());
+  std::string text = json.dump(-1, ' ', true, Json::error_handler_t::replace);
+  if (text.size() > kLongest) text = text.substr(0, kLongest) + "...";
+  return text;
+}
+
+std::string shown(double value) {
+  return shown(Json(value));
+}
+
+std::string shown(const Vec3& value) {
+  return shown(Json({value.x(), value.y(), value.z()}));
+}
+
+std::string shown(std::string_view text) {
+  return shown(Json(text));
+}
+
+std::string member(const std::string& at, const std::string& name) {
+  std::string pointer = at + "/";
+  for (const char c : name.substr(0, 200))
+    if (c == '~')
+      pointer += "~0";
+    else if (c == '/')
+      pointer += "~1";
+    else
+      pointer += static_cast<unsigned char>(c) < 0x20 ? '?' : c;  // keep the message on one line
+  return pointer;
+}
+
+std::string element(const std::string& at, std::size_t index) {
+  return at + "/" + std::to_string(index);
+}
+
+}  // namespace hapbench

@@ -1,0 +1,314 @@
+#include "scenarios/format/load_scenario.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "results/io/json_text.hpp"
+#include "results/summary/summary.hpp"
+#include "scenarios/format/bundled_scenarios.hpp"
+#include "scenarios/format/descriptions.hpp"
+#include "scenarios/format/json_file.hpp"
+#include "scenarios/format/writer.hpp"
+#include "sim/core/hash.hpp"
+
+namespace hapbench {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Fields of which an object has one or the other.
+constexpr std::pair<std::string_view, const char*> kEitherOr[] = {
+    {"steps", "duration_s"}, {"duration_s", "steps"},      {"path_m", "direction"},
+    {"direction", "path_m"}, {"delay_s", "delay_samples"}, {"delay_samples", "delay_s"}};
+
+/// Takes out of `object` the field that excludes the one of this name.
+void drop_alternative(Json& object, std::string_view field) {
+  for (const auto& [given, other] : kEitherOr) {
+    if (given == field) object.erase(other);
+  }
+}
+
+void merge(Json& base, const Json& more) {
+  const bool other_type =
+      more.contains(kTypeField) && (!base.contains(kTypeField) || base[kTypeField] != more[kTypeField]);
+  if (!base.is_object() || !more.is_object() || other_type) {
+    base = more;
+    return;
+  }
+  for (const auto& entry : more.items()) drop_alternative(base, entry.key());
+  for (const auto& entry : more.items()) merge(base[entry.key()], entry.value());
+}
+
+/// Makes relative paths of files start from `directory`.
+void keep_files(Json& json, const fs::path& directory) {
+  if (!json.is_structured()) return;
+  for (auto& entry : json.items()) {
+    Json& value = entry.value();
+    if (entry.key() == kFileField && value.is_string()) {
+      value = (directory / value.get<std::string>()).string();
+    } else {
+      keep_files(value, directory);
+    }
+  }
+}
+
+/// Refuses to extend a file that is in the chain already.
+void check_chain(const std::vector<ScenarioLayer>& layers, const fs::path& next) {
+  std::error_code ignored;
+  std::string chain;
+  bool again = false;
+  for (const ScenarioLayer& layer : layers) {
+    chain += layer.file.string() + " -> ";
+    again = again || fs::equivalent(layer.file, next, ignored);
+  }
+  if (!again) return;
+  fail_at(fmt::format("/{}", kExtends),
+          fmt::format("got a circle, {}{}; allowed: a chain that ends", chain, next.string()));
+}
+
+/// The file that `json`, read from `file`, extends.
+fs::path base_file(const Json& json, const fs::path& file, const std::vector<ScenarioLayer>& layers) {
+  const Json& name = json[kExtends];
+  const std::string at = fmt::format("/{}", kExtends);
+  if (!name.is_string()) {
+    throw InputError(InputError::Kind::shape, at,
+                     fmt::format("got {}; allowed: a scenario file or the name of a bundled scenario", shown(name)));
+  }
+  fs::path base;
+  try {
+    base = find_scenario(name.get<std::string>(), file.parent_path());
+  } catch (const InputError& error) {
+    fail_at(at, error.problem());
+  }
+  check_chain(layers, base);
+  return base;
+}
+
+/// Appends the file and those it extends to `layers`; returns the fields of all.
+Json read_extended(const fs::path& file, std::vector<ScenarioLayer>& layers) {
+  Json json;
+  fs::path base;
+  try {
+    json = parse_json(read_text_file(file, kLargestJsonFile));
+    layers.push_back({file, json});
+    if (json.contains(kExtends)) base = base_file(json, file, layers);
+    if (layers.size() > 1 && !json.is_object())
+      throw InputError(fmt::format("got {}; allowed: a scenario, which is an object", shown(json)));
+  } catch (const InputError& error) {
+    rethrow_with_file(error, file);
+  }
+  if (base.empty()) return json;
+  Json merged = read_extended(base, layers);
+  if (base.parent_path() != file.parent_path()) keep_files(merged, fs::current_path() / base.parent_path());
+  for (const char* own : {"name", "expect"}) merged.erase(own);
+  json.erase(kExtends);
+  merge(merged, json);
+  return merged;
+}
+
+/// Sets the field at a dotted path; a number in the path indexes a list. Of two fields that exclude each other the
+/// other one is removed, as where a scenario extends another.
+void apply_override(Json& json, const std::string& text) {
+  const std::size_t equals = text.find('=');
+  if (equals == 0 || equals == std::string::npos) {
+    throw InputError("--set: got \"" + text + "\"; allowed: path=value, as in rendering.stiffness_N_per_m=40000");
+  }
+  Json* node = &json;
+  std::string path = text.substr(0, equals);
+  constexpr std::ptrdiff_t kMostKeys = 64;  // what walks through JSON goes down by a call for each
+  if (std::count(path.begin(), path.end(), '.') >= kMostKeys)
+    throw InputError(fmt::format("--set: got a path of more than {0} keys; allowed: at most {0}", kMostKeys));
+  for (std::size_t start = 0; start != std::string::npos;) {
+    const std::size_t dot = path.find('.', start);
+    const std::string key = path.substr(start, dot == std::string::npos ? dot : dot - start);
+    start = dot == std::string::npos ? dot : dot + 1;
+    if (node->is_array()) {
+      const bool digits = !key.empty() && key.size() < 9 && key.find_first_not_of("0123456789") == std::string::npos;
+      if (!digits || std::stoul(key) >= node->size()) {
+        throw InputError(path + ": got list index \"" + key + "\"; allowed: " +
+                         (node->empty() ? "none, the list is empty" : "0 ... " + std::to_string(node->size() - 1)));
+      }
+      node = &(*node)[std::stoul(key)];
+    } else {
+      if (!node->is_object()) *node = Json::object();  // null or a number gives way to an object
+      if (start == std::string::npos) drop_alternative(*node, key);
+      node = &(*node)[key];
+    }
+  }
+  const std::string value = text.substr(equals + 1);
+  *node = Json::accept(value) ? parse_json(value) : Json(value);
+  // An effective scenario has the device's delay in seconds and in samples of the step that is no longer its own.
+  if (path == "time.step_s" && json.contains("device") && json["device"].is_object() &&
+      json["device"].contains("delay_s"))
+    json["device"].erase("delay_samples");
+}
+
+/// True when a run with this field overridden is still the run that the scenario's expectations were written for.
+bool leaves_run_alone(std::string_view override) {
+  const std::string_view path = overridden_path(override);
+  const std::string_view section = path.substr(0, path.find('.'));
+  // Metrics come and go with these, and those of the ideal trajectory are over the recorded rows.
+  if (path == "record.energy" || path == "record.ideal_trajectory" || path == "record.torque" || path == "record.every")
+    return false;
+  return section == "expect" || section == "record" || section == "name" || section == "description" ||
+         section == "source";
+}
+
+/// Removes the expectations that hold only for the run that the scenario describes: bounds on metrics and the exact
+/// outcome. A run that misses its object or diverges stays unexpected unless the scenario expects it.
+void expect_less(Json& expect) {
+  if (!expect.is_object()) return;  // the reader will say so
+  expect.erase("metrics");
+  Json outcomes = Json::array();
+  for (const Outcome outcome : ExpectFields().outcomes) outcomes.push_back(outcome_name(outcome));
+  const Json given = expect.value("outcome", Json());
+  for (const Json& outcome : given.is_array() ? given : given.is_null() ? Json::array() : Json::array({given})) {
+    if (std::find(outcomes.begin(), outcomes.end(), outcome) == outcomes.end()) outcomes.push_back(outcome);
+  }
+  expect["outcome"] = std::move(outcomes);
+}
+
+std::string last_name(const std::string& path, char separator) {
+  return path.substr(path.rfind(separator) + 1);
+}
+
+/// The hint for a field whose name resembles no field of its object: fields elsewhere with the nearest name.
+std::string hint_elsewhere(const std::string& place) {
+  const std::string field = last_name(place, '/');
+  const std::vector<std::string> paths = scenario_field_paths();
+  std::vector<std::string> names, found;
+  for (const std::string& path : paths) names.push_back(last_name(path, '.'));
+  const std::string nearest = nearest_name(field, names);
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (names[i] == nearest) found.push_back(paths[i]);
+  }
+  std::string typed = place.substr(1);
+  std::replace(typed.begin(), typed.end(), '/', '.');
+  if (std::find(found.begin(), found.end(), typed) != found.end()) return "; only an object of another type has it";
+  return found.empty() ? "" : "; nearest valid names: " + quoted_list(found);
+}
+
+/// The fault with its file in front, and with hints.
+InputError in_file(const InputError& fault, const fs::path& file) {
+  std::string problem = fault.problem();
+  if (problem.starts_with("unknown field") && problem.find("nearest valid name") == std::string::npos)
+    problem += fault.place().starts_with("/rendering/parameters/") ? "; a law from outside brings its own with --module"
+                                                                   : hint_elsewhere(fault.place());
+  if (fault.place() == "/rendering/algorithm" && problem.find("nearest valid name") == std::string::npos)
+    problem += "; a law from outside comes with --module";
+  const std::string place = fault.place().empty() ? file.string() : file.string() + ": " + fault.place();
+  return {fault.kind(), place, problem};
+}
+
+}  // namespace
+
+void rethrow_with_file(const InputError& error, const fs::path& file) {
+  LoadedScenario place;
+  place.file = file;
+  rethrow_with_file(error, place);
+}
+
+void rethrow_with_file(const InputError& error, const LoadedScenario& loaded) {
+  std::vector<InputError> faults;
+  for (const InputError& fault : error.faults()) faults.push_back(in_file(fault, file_of(loaded, fault.place())));
+  throw InputError::all(faults);
+}
+
+LoadedScenario read_scenario(const Json& json, const fs::path& directory) {
+  LoadedScenario loaded;
+  loaded.scenario.directory = directory;
+  read_value(
+      json, "", [&](Fields& f) { f.object(loaded.scenario); }, &loaded.warnings);
+  for (Warning& warning : relation_warnings(loaded.scenario, json)) loaded.warnings.push_back(std::move(warning));
+  loaded.files = NamedFiles(loaded.scenario);
+  return loaded;
+}
+
+ScenarioText read_scenario_text(const fs::path& file) {
+  auto layers = std::make_shared<std::vector<ScenarioLayer>>();
+  ScenarioText text{file, read_extended(file, *layers)};
+  if (layers->size() > 1) text.layers = std::move(layers);
+  return text;
+}
+
+fs::path file_of(const LoadedScenario& loaded, const std::string& pointer) {
+  if (!loaded.layers || !pointer.starts_with('/')) return loaded.file;
+  try {
+    // A field that no file has is at its default; the object around it is the nearest place to name.
+    for (Json::json_pointer at(pointer); !at.empty(); at = at.parent_pointer()) {
+      for (const ScenarioLayer& layer : *loaded.layers) {
+        if (layer.json.contains(at)) return layer.file;
+      }
+    }
+  } catch (const Json::exception&) {
+    // A place that is no pointer, such as the path of a mesh.
+  }
+  return loaded.file;
+}
+
+std::vector<std::string> with_files(const LoadedScenario& loaded, const std::vector<Warning>& warnings) {
+  std::vector<std::string> texts;
+  for (const Warning& warning : warnings)
+    texts.push_back(file_of(loaded, warning.pointer).string() + ": " + warning.told());
+  return texts;
+}
+
+LoadedScenario load_scenario(const ScenarioText& text, std::span<const std::string> overrides) {
+  LoadedScenario loaded;
+  loaded.file = text.file;
+  loaded.layers = text.layers;
+  try {
+    Json json = text.json;
+    const bool same_run = std::all_of(overrides.begin(), overrides.end(), leaves_run_alone);
+    if (!same_run && json.is_object() && json.contains("expect")) expect_less(json["expect"]);
+    for (const std::string& override : overrides) apply_override(json, override);
+    if (text.layers && !overrides.empty()) {
+      auto layers = std::make_shared<std::vector<ScenarioLayer>>(*text.layers);
+      for (const std::string& override : overrides) apply_override(layers->front().json, override);
+      loaded.layers = std::move(layers);
+    }
+    LoadedScenario read = read_scenario(json, text.file.parent_path());
+    loaded.scenario = std::move(read.scenario);
+    loaded.files = std::move(read.files);
+    if (loaded.scenario.name.empty()) loaded.scenario.name = text.file.stem().string();
+    loaded.warnings = std::move(read.warnings);
+    return loaded;
+  } catch (const InputError& error) {
+    rethrow_with_file(error, loaded);
+  }
+}
+
+LoadedScenario load_scenario(const fs::path& file, std::span<const std::string> overrides) {
+  return load_scenario(read_scenario_text(file), overrides);
+}
+
+WrittenScenario::WrittenScenario(const Scenario& scenario, NamedFiles files)
+    : json_(written_object(scenario)), files_(std::move(files)) {}
+
+Json WrittenScenario::effective(const fs::path& directory) const {
+  Json json = json_;
+  for (const auto& file : files_.all()) {
+    const fs::path path = fs::current_path() / file->path();
+    std::error_code error;
+    const fs::path near = fs::proximate(path, fs::current_path() / directory, error);
+    json.at(Json::json_pointer(file->pointer())) = (error ? path : near).generic_string();
+  }
+  return json;
+}
+
+std::string WrittenScenario::hash() const {
+  Json json = json_;
+  for (const auto& file : files_.all()) json.at(Json::json_pointer(file->pointer())) = file->hash();
+  return hash_text(hash_of(json_text(json)));
+}
+
+Json effective_scenario(const Scenario& scenario, const fs::path& directory) {
+  return WrittenScenario(scenario, NamedFiles(scenario)).effective(directory);
+}
+
+std::string scenario_hash(const Scenario& scenario, const NamedFiles& files) {
+  return WrittenScenario(scenario, files).hash();
+}
+
+}  // namespace hapbench

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "results/observe/force_fidelity.hpp"
+#include "results/observe/inside_observer.hpp"
+#include "results/observe/metrics.hpp"
+#include "results/summary/summary.hpp"
+#include "scenarios/format/scenario.hpp"
+
+/// The metrics of runs: those that every run has, and those of the sections of a summary. The list of sections in
+/// metric_sections.cpp is the one place that says which there are; observers, summary.json, columns.json, tables of
+/// sweeps, `expect` and `describe` follow from it.
+namespace hapbench {
+
+/// The metrics of a run of the scenario, in the order of the summary, with unit and meaning, without values.
+/// `has_reference_force`: the scenario gives a reference force or its stroke has a measured one.
+MetricList metrics_without_values(const Scenario& scenario, bool has_reference_force);
+/// The metrics of all sections: those that `expect` may bound. By default tasks have two places, as those of the
+/// thesis.
+MetricList metrics_without_values(std::size_t places = 2);
+/// The same by their names.
+std::vector<std::string> metric_names();
+
+/// The observers of a run for the sections that its scenario asks for.
+class SectionObservers {
+ public:
+  SectionObservers(const Scenario& scenario, bool has_reference_force);
+
+  /// Before each trial.
+  void begin(const TrialParts& trial);
+  /// In the order of the sections.
+  const std::vector<std::unique_ptr<MetricObserver>>& all() const { return observers_; }
+
+  /// The observer of that type; null when the scenario does not ask for it.
+  template <class Type>
+  Type* find() const {
+    for (const auto& observer : observers_) {
+      if (auto* found = dynamic_cast<Type*>(observer.get())) return found;
+    }
+    return nullptr;
+  }
+
+  /// Adds the sections and their metrics. Those that make no sense over several trials are left out when there were
+  /// some.
+  void tell(Result& result) const;
+
+ private:
+  std::vector<std::unique_ptr<MetricObserver>> observers_;
+  std::vector<std::size_t> kinds_;  ///< place of each observer's section in the list
+  std::size_t trials_ = 0;          ///< begun
+};
+
+/// Tells the metrics of every run. `inside`: null without a solid.
+void tell_common(const MetricsObserver& metrics, const InsideDepths* inside, MetricList& list);
+
+}  // namespace hapbench

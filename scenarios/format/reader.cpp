@@ -1,0 +1,253 @@
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+#include "results/summary/summary.hpp"
+#include "scenarios/format/fields.hpp"
+#include "scenarios/format/input_error.hpp"
+#include "scenarios/format/writer.hpp"
+
+namespace hapbench {
+namespace {
+
+/// Code points of a UTF-8 text, which is what a schema counts.
+std::size_t characters(const std::string& text) {
+  const auto continues = [](char c) { return (static_cast<unsigned char>(c) & 0xc0) == 0x80; };
+  return text.size() - static_cast<std::size_t>(std::count_if(text.begin(), text.end(), continues));
+}
+
+template <class Name>
+bool contains(const std::vector<Name>& names, std::string_view name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+/// Hint for users who passed the name of a file instead of its content.
+std::string text_of_file_hint(const Json& given) {
+  if (!given.is_string() || !given.get_ref<const std::string&>().ends_with(".json")) return "";
+  return fmt::format("; on a command line \"$(cat {})\" is what is in the file", given.get_ref<const std::string&>());
+}
+
+class Reader final : public Fields {
+ public:
+  Reader(const Json& json, const std::string& at, std::vector<Warning>* warnings)
+      : json_(json), at_(at), warnings_(warnings) {}
+
+  void number(double& value, NumberRange range) override {
+    const auto allowed = [&](Fields& f) { f.number(value, range); };
+    if (!json_.is_number()) refuse(allowed);
+    const double given = json_.get<double>();
+    const bool above = range.above_min ? given > range.min : given >= range.min;
+    if (!above || !(given <= range.max)) refuse(allowed);
+    value = given;
+  }
+
+  void integer(std::int64_t& value, IntegerRange range) override {
+    const auto allowed = [&](Fields& f) { f.integer(value, range); };
+    if (!json_.is_number()) refuse(allowed);
+    // Through double, which sees unsigned and 1e3 alike and is exact for every integer that a range allows.
+    const double given = json_.get<double>();
+    const auto min = static_cast<double>(range.min), max = static_cast<double>(range.max);
+    if (!(given >= min && given <= max) || given != std::floor(given)) refuse(allowed);
+    const auto whole = static_cast<std::int64_t>(given);
+    // 2^53 + 1 would round to 2^53.
+    if (json_.is_number_integer() && json_ != Json(whole)) refuse(allowed);
+    value = whole;
+  }
+
+  void boolean(bool& value) override {
+    if (!json_.is_boolean()) refuse([&](Fields& f) { f.boolean(value); });
+    value = json_.get<bool>();
+  }
+
+  void text(std::string& value, std::size_t max_length) override {
+    if (!json_.is_string() || characters(json_.get_ref<const std::string&>()) > max_length)
+      refuse([&](Fields& f) { f.text(value, max_length); });
+    value = json_.get<std::string>();
+  }
+
+  void name(std::size_t& index, const std::vector<std::string>& names, const char* what) override {
+    const auto allowed = [&](Fields& f) { f.name(index, names, what); };
+    if (!json_.is_string()) refuse(allowed);
+    const auto& given = json_.get_ref<const std::string&>();
+    const auto found = std::find(names.begin(), names.end(), given);
+    if (found == names.end()) refuse(allowed, nearest_name_hint(given, names));
+    index = static_cast<std::size_t>(found - names.begin());
+  }
+
+  void vector3(Vec3& value, NumberRange component) override {
+    if (!json_.is_array() || json_.size() != 3) refuse([&](Fields& f) { f.vector3(value, component); });
+    for (std::size_t i = 0; i < 3; ++i)
+      Reader(json_[i], *this, i).number(value[static_cast<Eigen::Index>(i)], component);
+  }
+
+  void pair(const char* allowed, Body first, Body second) override {
+    if (!json_.is_array() || json_.size() != 2) refuse([&](Fields& f) { f.pair(allowed, first, second); });
+    Reader first_reader(json_[0], *this, 0), second_reader(json_[1], *this, 1);
+    first(first_reader);
+    second(second_reader);
+  }
+
+  void entries(std::size_t length, ListSize size, FunctionRef<std::size_t> resize,
+               FunctionRef<Fields&, std::size_t> entry) override {
+    if (!json_.is_array() || json_.size() < size.min || json_.size() > size.max)
+      refuse([&](Fields& f) { f.entries(length, size, resize, entry); });
+    resize(json_.size());
+    for (std::size_t i = 0; i < json_.size(); ++i) {
+      Reader reader(json_[i], *this, i);
+      collect([&] { entry(reader, i); });
+    }
+    throw_errors();
+  }
+
+  void or_null(bool, FunctionRef<> set_null, Body value) override {
+    if (json_.is_null()) return set_null();
+    null_allowed_ = true;
+    value(*this);
+  }
+
+  void plain_or_object(bool is_object, Body plain, Body object) override {
+    if (json_.is_object()) return object(*this);
+    if (json_.is_number() || guide_to(plain).schema.at("type") == json_.type_name()) return plain(*this);
+    refuse([&](Fields& f) { f.plain_or_object(is_object, plain, object); });
+  }
+
+  void any_object(std::string& json) override {
+    if (!json_.is_object()) refuse([&](Fields& f) { f.any_object(json); });
+    json = json_.dump();
+  }
+
+  void one_or_list(bool, Body one, Body list) override { (json_.is_array() ? list : one)(*this); }
+
+  void alternatives(const char* what, std::span<const TypeName> choices, Untyped untyped, std::size_t held,
+                    FunctionRef<Fields&, std::size_t> fields) override {
+    if (!json_.is_object())
+      refuse([&](Fields& f) { f.alternatives(what, choices, untyped, held, fields); }, text_of_file_hint(json_));
+    const std::vector<std::string> types = names_of(choices);
+    const auto type = json_.find(kTypeField);
+    if (type == json_.end() && untyped == Untyped::refused)
+      fail(fmt::format("missing field \"{}\"; allowed: {}: one of {}", kTypeField, what, quoted_list(types)));
+    std::size_t index = 0;
+    if (type != json_.end()) Reader(*type, *this, kTypeField).name(index, types, what);
+    read_fields([&](Fields& f) { fields(f, index); }, {kTypeField});
+  }
+
+  void fields(Body body) override {
+    if (!json_.is_object()) refuse([&](Fields& f) { f.fields(body); });
+    read_fields(body, {});
+  }
+
+  void field(std::string_view name, const char*, Presence presence, Body value) override {
+    if (names_ != nullptr) return names_->push_back(name);
+    const auto entry = json_.find(name);
+    if (entry != json_.end()) {
+      Reader reader(*entry, *this, name);
+      return collect([&] { value(reader); });
+    }
+    // A misspelt name of this field has been reported already.
+    if (presence != Presence::required || contains(meant_, name)) return;
+    collect([&] { fail(fmt::format("missing field \"{}\"; allowed: {}", name, allowed_by(value))); });
+  }
+
+  void ignored(std::string_view name, const char*) override {
+    if (names_ != nullptr) names_->emplace_back(name);
+  }
+
+  void exactly_one_of(const char* a, const char* b) override {
+    if (names_ != nullptr) return;
+    const bool has_a = json_.contains(a), has_b = json_.contains(b);
+    if (has_a != has_b) return;
+    const char* problem = has_a ? "got both \"{}\" and \"{}\", which contradict; allowed: exactly one of them"
+                                : "missing field; allowed: exactly one of \"{}\" and \"{}\"";
+    fail(fmt::format(fmt::runtime(problem), a, b));
+  }
+
+  bool reads() const override { return names_ == nullptr && errors_.empty(); }
+  std::string at() const override {
+    if (parent_ == nullptr) return at_;
+    return is_entry_ ? element(parent_->at(), index_) : member(parent_->at(), std::string(name_));
+  }
+  bool given(std::string_view name) const override { return names_ == nullptr && json_.contains(name); }
+  void warn(const Warning& warning) override {
+    if (warnings_ != nullptr) warnings_->push_back(warning);
+  }
+
+ private:
+  /// Reads a field or an entry of the value that `parent` reads; both must outlive this reader, as must the name. The
+  /// JSON pointer is built lazily: only errors need it, and sweeps read scenarios by the million.
+  Reader(const Json& json, const Reader& parent, std::string_view name) : json_(json), parent_(&parent), name_(name) {}
+  Reader(const Json& json, const Reader& parent, std::size_t index)
+      : json_(json), parent_(&parent), index_(index), is_entry_(true) {}
+
+  [[noreturn]] void fail(const std::string& problem) const { throw InputError(InputError::Kind::shape, at(), problem); }
+  /// Refuses the value: "got VALUE; allowed: ...", in the words that the schema writer has for `what`.
+  [[noreturn]] void refuse(Body what, const std::string& hint = "") const {
+    fail(fmt::format("got {}; allowed: {}{}{}", shown(json_), null_allowed_ ? "null or " : "", allowed_by(what), hint));
+  }
+  /// Calls `read` and keeps the error that it may throw.
+  void collect(FunctionRef<> read) {
+    try {
+      read();
+    } catch (const InputError& error) {
+      keep(error);
+    }
+  }
+  /// Keeps an error for `throw_errors`, which throws all that were kept.
+  void keep(const InputError& error) {
+    errors_.push_back(error);
+    if (errors_.size() == kMostFaults) throw_errors();
+  }
+  void throw_errors() const {
+    if (!errors_.empty()) throw InputError::all(errors_);
+  }
+
+  /// `names` are the fields that `body` does not describe.
+  void read_fields(Body body, std::vector<std::string_view> names) {
+    names_ = &names;
+    body(*this);
+    names_ = nullptr;
+    for (const auto& entry : json_.items()) {
+      if (contains(names, entry.key())) continue;
+      const std::vector<std::string> allowed(names.begin(), names.end());
+      keep(InputError(InputError::Kind::shape, member(at(), entry.key()),
+                      fmt::format("unknown field{}; allowed here: {}", nearest_name_hint(entry.key(), allowed),
+                                  first_names(allowed))));
+      meant_.push_back(nearest_name(entry.key(), allowed));
+    }
+    collect([&] { body(*this); });
+    throw_errors();
+  }
+
+  /// Eight of these names, and where the others are described.
+  std::string first_names(std::span<const std::string> names) const {
+    constexpr std::size_t kMost = 8;
+    if (names.size() <= kMost || at().empty()) return quoted_list(names);
+    std::string section = at().substr(1);
+    std::replace(section.begin(), section.end(), '/', '.');
+    return fmt::format("{} and {} more, which \"hapbench describe {}\" tells", quoted_list(names.first(kMost)),
+                       names.size() - kMost, section);
+  }
+
+  const Json& json_;
+  std::string at_;  ///< JSON pointer of the value, for a reader without a parent
+  const Reader* parent_ = nullptr;
+  std::string_view name_;
+  std::size_t index_ = 0;
+  bool is_entry_ = false;
+  std::vector<Warning>* warnings_ = nullptr;
+  bool null_allowed_ = false;
+  /// When not null, the body of an object is called only to collect the names of its fields.
+  std::vector<std::string_view>* names_ = nullptr;
+  std::vector<InputError> errors_;  ///< of the fields or entries that were read
+  std::vector<std::string> meant_;  ///< valid names near to unknown fields
+};
+
+}  // namespace
+
+void read_value(const Json& json, const std::string& at, Fields::Body value, std::vector<Warning>* warnings) {
+  Reader reader(json, at, warnings);
+  value(reader);
+}
+
+}  // namespace hapbench

@@ -1,0 +1,167 @@
+#pragma once
+
+#include <cmath>
+#include <functional>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "scenarios/cases/cases.hpp"
+#include "scenarios/format/load_scenario.hpp"
+#include "scenarios/limits/stability/run_stability.hpp"
+
+/// The search for the edge of the stable values of a field, whatever makes a value stable, and with it the largest or
+/// smallest value of a scenario's field at which its run is stable (run_stability.hpp).
+namespace hapbench {
+
+/// Equal parts that a way is divided into before bisection.
+inline constexpr int kEdgeIntervals = 16;
+
+/// A range of values as a way from the end that is expected to be stable (part 0) to the other end (part 1).
+struct SearchWay {
+  Range range;                     ///< where the edge may lie, from < to; both ends are tried
+  std::optional<double> own = {};  ///< the value from which the search goes on, if it lies in the range
+  bool whole = false;              ///< values are integers
+  bool smallest = false;           ///< the way begins at the high end
+  /// Width at which bisection stops: relative to the value in a logarithmic range, to the range in a linear one.
+  double resolution = 1e-3;
+
+  double value_at(double part) const;
+  /// The part of the own value.
+  std::optional<double> own_part() const;
+  /// True while bisection has to go on between two parts.
+  bool apart(double a, double b) const;
+};
+
+/// The result of a search, as parts of the way.
+struct FoundEdge {
+  std::optional<double> stable = {};  ///< the last stable part
+  std::optional<double> beyond = {};  ///< the first unstable part beyond it
+  std::optional<double> first = {};   ///< the first stable part of the interval that ends with `stable`
+  std::optional<double> before = {};  ///< the last unstable part before it
+  bool scattered = false;             ///< there are stable parts, but no stretch of them as long as kNear
+};
+
+/// Which ends of so many equal parts of a way are stable, from its begin on.
+std::map<double, bool> scanned(int intervals, const std::function<bool(double)>& stable);
+
+/// The first edge behind the own value, or if that is not stable behind the first stable one of the parts `tried`,
+/// which hold at least both ends, and then what was tried besides; narrowed down by bisection. With `beside`, three
+/// values on either side are tried, and an edge before it that they show is narrowed down instead, up to five times;
+/// then the other end of the interval is.
+FoundEdge find_edge(const SearchWay& way, std::map<double, bool>& tried, const std::function<bool(double)>& stable,
+                    bool beside);
+
+// An interval of stable values is an answer once it was tried between its ends: loops in contact have islands of
+// unstable values that are 1 % of a range wide.
+
+inline constexpr std::size_t kTriedBetween = 48;  ///< values between the ends
+inline constexpr std::size_t kTriedNear = 8;      ///< and just below the edge,
+inline constexpr double kNear = 0.02;             ///< as far as this, relative
+/// With no value that fails among so many, at most this share of the interval does, with 95 % confidence.
+double may_fail_share(std::size_t tried);
+/// So many parts between two of a way: wherever one ends, those before it fill the interval evenly.
+std::vector<double> parts_between(double from, double to, std::size_t count);
+/// How far parts lie below `part` whose values are within kNear of its value.
+double near_part(const SearchWay& way, double part);
+
+/// The edge of find_edge with `beside`, of an interval that was tried between its ends and, with `near`, just below its
+/// edge: the first value that is not stable becomes the new end. `ahead` hears of all parts before the first of them is
+/// asked for.
+FoundEdge find_tried_edge(const SearchWay& way, std::map<double, bool>& tried,
+                          const std::function<bool(double)>& stable, bool near,
+                          const std::function<void(std::span<const double>)>& ahead);
+
+/// The question: which limit of which field, and by which rule a run is stable.
+struct LimitQuestion : StabilityRule, SearchWay {
+  std::string path;                        ///< of the field, dotted as in --set
+  std::vector<std::string> warnings = {};  ///< of the scenario with the field given
+  bool between = true;                     ///< the interval is tried between its ends before it is an answer
+  unsigned threads = 1;                    ///< runs at once; no result depends on it
+};
+
+/// A value and what a run with it came to.
+struct JudgedValue {
+  double value = 0.0;
+  RunVerdict verdict = RunVerdict::stable;
+};
+
+/// An end of the interval of stable values around the place where the search began.
+struct IntervalEnd {
+  std::optional<double> value;        ///< the last stable one; none when no run is stable
+  std::optional<JudgedValue> beyond;  ///< the first one beyond it that is not; none when the range ends stable
+
+  /// How far the edge may lie beyond the value: from there to the next one that is not stable; none without one.
+  std::optional<double> tolerance() const {
+    return value && beyond ? std::optional(std::abs(beyond->value - *value)) : std::nullopt;
+  }
+};
+
+/// The answer for one algorithm: the end that was asked for.
+struct FieldLimit : IntervalEnd {
+  std::string algorithm;
+  IntervalEnd other;
+  /// The same by the eigenvalues of a step, where the springs stay in contact; infinite (smallest: 0) when the whole
+  /// range is stable, none where there is no theory or nothing is stable.
+  std::optional<double> theory;
+  bool theory_has_none = false;  ///< by theory no value of the range is stable
+  /// The same by the integrator's inequality, of leapfrog 4 - 2 lambda B dt / M - lambda K dt^2 / M >= 0, where the
+  /// tool is alone with the springs; none under an integrator without one.
+  std::optional<double> closed_form;
+  /// Of a device at what only pushes, where there is no theory: the edge of the loop of device, hand and the stiffness
+  /// rendered at the limit while contact lasts, without dry friction and encoder; infinite when the whole range is
+  /// stable. A limit beyond it is held up by what that loop leaves out.
+  std::optional<double> linear;
+  /// Of K on a wall that holds the handle of an impedance device from both sides: what stiffness_limits() say, in their
+  /// order, and the least edge over hand_family() in place of the scene's hand; empty elsewhere.
+  std::vector<std::optional<double>> closed_forms;
+  std::optional<double> worst_hand;
+  std::string no_theory;           ///< of the same: why the eigenvalues of its loop tell nothing; empty where they do
+  SettledState settled;            ///< the run at `value`
+  std::optional<JudgedValue> own;  ///< the run at the scenario's value, if that was in the range
+  /// unstable_without_contact, at the value beyond, or without a limit at the first one
+  bool unstable_alone = false;
+  bool has_effect = true;                 ///< false when the handle moved alike, bit for bit, in all runs
+  std::size_t tried_between = 0;          ///< values that were tried between the ends of the interval, all stable
+  bool scattered = false;                 ///< there are stable values, but no edge: no stretch of kNear is stable
+  std::vector<JudgedValue> runs;          ///< all, by value
+  std::vector<JudgedValue> inconsistent;  ///< runs that are unstable in this interval, or stable outside of it
+  std::size_t undecided = 0;              ///< runs that were too short to tell (RunStability::undecided)
+
+  /// True where the limit lies beyond `linear` by more than this, relative: then that is the one to quote, and contact
+  /// at a stable value beyond it is intermittent.
+  bool is_beyond_linear(double resolution) const { return value && linear && *value > (1.0 + resolution) * *linear; }
+  /// value / theory - 1; none without either.
+  std::optional<double> difference() const {
+    if (!value || !theory || !std::isfinite(*theory) || *theory == 0.0) return std::nullopt;
+    return *value / *theory - 1.0;
+  }
+};
+
+/// The scenario's own value at a path, or null.
+Json own_value(const Scenario& scenario, const std::string& path);
+
+/// The question about a field in a range, or by default between a thousandth and a thousandfold (2^10) of the
+/// scenario's own value, as far as the field allows. The range is logarithmic when both ends are above 0. Throws
+/// InputError when the field is no number, when the ends are none of its values, and, without a range, when its value
+/// is not above 0.
+LimitQuestion limit_question(const ScenarioText& scenario, const std::vector<std::string>& overrides,
+                             const std::string& path, std::optional<Range> range);
+
+/// One case of a question: a scene with overrides and an algorithm.
+struct LimitCase {
+  const ScenarioText* scene = nullptr;
+  std::vector<std::string> overrides;
+  std::string algorithm;
+  LimitQuestion question;
+};
+
+/// Answers the question: find_edge with `beside`, of 17 values and the scenario's own, or find_tried_edge where the
+/// interval is to be tried between its ends. Some 35 to 120 runs, and between the ends 56 or more, as long as one
+/// fails. Throws InputError, with the file, for a scene without a free position or with fewer than 4 steps, and where
+/// vibration is asked for at a sampling rate of 60 Hz or less.
+FieldLimit field_limit(const LimitCase& asked);
+
+}  // namespace hapbench

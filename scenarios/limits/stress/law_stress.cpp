@@ -1,0 +1,281 @@
+#include "scenarios/limits/stress/law_stress.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <memory>
+#include <mutex>
+
+#include "algorithms/depth/depth_model.hpp"
+#include "algorithms/registry.hpp"
+#include "sim/contact/contact_source.hpp"
+#include "sim/contact/stiffness_tensor.hpp"
+#include "sim/core/math.hpp"
+#include "sim/core/random.hpp"
+
+namespace hapbench {
+namespace {
+
+/// A number whose logarithm is uniform.
+double log_uniform(Random& random, double low, double high) {
+  return low * math::pow(high / low, random.uniform());
+}
+
+/// A vector in a random direction whose length is log-uniform. Its draws are statements of their own: compilers take
+/// the operands of a product in either order.
+Vec3 log_uniform_vector(Random& random, double low, double high) {
+  const Vec3 direction = random.direction();
+  return log_uniform(random, low, high) * direction;
+}
+
+bool chance(Random& random, double probability) {
+  return random.uniform() < probability;
+}
+
+/// A unit vector that differs from u by 1e-16 (rounding) … 1.
+Vec3 nearly(Random& random, const Vec3& u) {
+  return (u + log_uniform_vector(random, 1e-16, 1.0)).normalized();
+}
+
+Vec3 sign_of(Random& random, const Vec3& u) {
+  return chance(random, 0.5) ? u : Vec3(-u);
+}
+
+/// Two unit vectors that make a right-handed frame with the axis.
+std::array<Vec3, 2> across(const Vec3& axis) {
+  const Vec3 first = axis.unitOrthogonal();
+  return {first, axis.cross(first)};
+}
+
+/// A point at radius and height along the axis, in a random direction.
+Vec3 at(Random& random, const ContactSet& set, double radius, double height) {
+  const auto [e, f] = across(set.pose.axis);
+  const Vec3 d = random.direction_in_plane();
+  return set.pose.position + height * set.pose.axis + radius * (d.x() * e + d.y() * f);
+}
+
+Vec3 in_tool(Random& random, const ContactSet& set) {
+  const double radius = set.tool.radius() * std::sqrt(random.uniform());
+  return at(random, set, radius, -set.tool.length() * random.uniform());
+}
+
+using Points = std::vector<SurfacePoint>;
+
+/// n points from a position and a normal each.
+template <class Position, class Normal>
+Points fill(std::size_t n, Position position, Normal normal) {
+  Points points(n);
+  for (SurfacePoint& point : points) point = {position(), normal()};
+  return points;
+}
+
+/// The same anywhere in the tool.
+template <class Normal>
+Points fill_tool(Random& random, const ContactSet& set, std::size_t n, Normal normal) {
+  return fill(
+      n, [&] { return in_tool(random, set); }, normal);
+}
+
+Points random_points(Random& random, const ContactSet& set, std::size_t n) {
+  return fill_tool(random, set, n, [&] { return random.direction(); });
+}
+
+Points zero_normals(Random& random, const ContactSet& set, std::size_t n) {
+  const double share = random.uniform() < 0.3 ? 1.0 : 0.5;
+  return fill_tool(random, set, n, [&]() -> Vec3 { return chance(random, share) ? Vec3::Zero() : random.direction(); });
+}
+
+Points coincident(Random& random, const ContactSet& set, std::size_t n) {
+  const Vec3 place = in_tool(random, set);
+  return fill(
+      n, [&] { return place; }, [&] { return random.direction(); });
+}
+
+/// Points on the axis, where no radial direction exists, the tip centre among them; normals along the axis or not.
+Points on_the_axis(Random& random, const ContactSet& set, std::size_t n) {
+  const double height = chance(random, 0.3) ? 0.0 : set.tool.length();
+  return fill(
+      n, [&]() -> Vec3 { return set.pose.position - height * random.uniform() * set.pose.axis; },
+      [&] { return chance(random, 0.5) ? random.direction() : sign_of(random, set.pose.axis); });
+}
+
+Points opposite(Random& random, const ContactSet& set, std::size_t n) {
+  const Vec3 u = random.direction();
+  std::size_t i = 0;
+  return fill_tool(random, set, n, [&] { return i++ % 2 == 0 ? u : Vec3(-u); });
+}
+
+Points nearly_opposite(Random& random, const ContactSet& set, std::size_t n) {
+  const Vec3 u = random.direction();
+  return fill_tool(random, set, n, [&] { return sign_of(random, nearly(random, u)); });
+}
+
+Points nearly_parallel(Random& random, const ContactSet& set, std::size_t n) {
+  const Vec3 u = random.direction();
+  return fill_tool(random, set, n, [&] { return nearly(random, u); });
+}
+
+/// Points on the side, in the tip plane, on its rim. Their depth is 0 up to rounding; the search drops those outside.
+Points on_the_surface(Random& random, const ContactSet& set, std::size_t n) {
+  const auto position = [&] {
+    const double radius = chance(random, 0.6) ? set.tool.radius() : set.tool.radius() * std::sqrt(random.uniform());
+    return at(random, set, radius, chance(random, 0.6) ? 0.0 : -set.tool.length() * random.uniform());
+  };
+  return fill(n, position, [&] { return random.direction(); });
+}
+
+/// Walls on both sides of the axis: gradients of shortest_distance that cancel.
+Points across_the_axis(Random& random, const ContactSet& set, std::size_t n) {
+  const Vec3 e = across(set.pose.axis)[0];
+  const Vec3 wall = set.tool.radius() * log_uniform(random, 1e-16, 1.0) * e;
+  return fill(
+      n, [&]() -> Vec3 { return set.pose.position - 0.5 * set.tool.length() * set.pose.axis + sign_of(random, wall); },
+      [&] { return sign_of(random, e); });
+}
+
+struct Family {
+  const char* name;
+  Points (*draw)(Random& random, const ContactSet& set, std::size_t n);
+};
+
+constexpr Family kFamilies[] = {
+    {"random", random_points},
+    {"zero_normals", zero_normals},
+    {"coincident", coincident},
+    {"on_the_axis", on_the_axis},
+    {"opposite", opposite},
+    {"nearly_opposite", nearly_opposite},
+    {"nearly_parallel", nearly_parallel},
+    {"on_the_surface", on_the_surface},
+    {"across_the_axis", across_the_axis},
+};
+
+void draw_tool(Random& random, ContactSet& set) {
+  // A fifth of the scenes at each end of the scale, the others in between.
+  const double which = random.uniform();
+  const double scale = which < 0.2 ? 1e-12 : which < 0.4 ? 1e3 : log_uniform(random, 1e-12, 1e3);
+  set.tool = {scale * random.uniform(0.05, 1.0), scale * random.uniform(0.1, 3.0),
+              chance(random, 0.5) ? Tip::round : Tip::flat};
+  set.pose.axis = chance(random, 0.3) ? Vec3(0.0, 0.0, -1.0) : random.direction();
+  if (chance(random, 0.5)) set.pose.position = scale * random.direction();
+  if (chance(random, 0.5)) set.velocity = log_uniform_vector(random, 1e-12, 1e3);
+}
+
+void draw_rendering(Random& random, RenderingConfig& config) {
+  config.depth_model = depth_models()[random.below(depth_models().size())].info->name;
+  config.iterations = static_cast<int>(chance(random, 0.8) ? 3 : 1 + random.below(50));
+  if (chance(random, 0.3)) config.stiffness = log_uniform(random, 1.0, 1e12);
+  // n_ext far below the number of contacts overflows.
+  if (chance(random, 0.5)) config.reduction = ReductionConfig{0.995, chance(random, 0.5) ? 3u : 100u, std::nullopt};
+}
+
+/// Relative rounding error allowed in sums over at most kMostContacts contacts and in exact_shaping's weights, which
+/// its epsilon of 1e-6 makes sensitive.
+constexpr double kForceRounding = 1e-6;
+constexpr std::uint64_t kSetsOfAJob = 1000;
+
+bool finite(const RenderedForce& force) {
+  return force.spring.allFinite() && force.rendered.allFinite() && force.S.allFinite() &&
+         std::isfinite(force.depth_max);
+}
+
+/// Damping is B S v, and friction is off: |f_render| <= |f_spring| + B lambda_max(S) |v|.
+bool damping_in_bound(const ContactSet& set, const RenderedForce& force) {
+  const double B = 2.0 * set.rendering.damping_ratio * std::sqrt(set.rendering.stiffness * set.rendering.mass);
+  const double bound = force.spring.norm() + B * lambda_max(force.S) * set.velocity.norm();
+  return force.rendered.norm() <= (1.0 + kForceRounding) * bound;
+}
+
+/// Counts a set under one algorithm.
+void count_set(const ContactSet& set, std::uint64_t number, const PointShell& shell, StressCounts& counts) {
+  RenderingConfig config = set.rendering;
+  config.algorithm = counts.algorithm;
+  ShellSource source(shell, set.tool, std::make_unique<ShellQuery>(shell, set.tool), make_depth_model(config));
+  ContactBuffer contacts(source.capacity());
+  const auto algorithm = make_algorithm(config);
+  algorithm->prepare({source.capacity(), &set.tool, &shell});
+  algorithm->reset();
+  source.contacts_at(set.pose, contacts);
+  ++counts.sets;
+  counts.in_contact += !contacts.empty();
+  RenderedForce force;
+  algorithm->compute({set.pose, set.velocity}, contacts, force);
+  counts.points_dropped += algorithm->work().points_dropped;
+
+  const auto bound_of = find_algorithm(config.algorithm)->theory.force_bound;
+  const double size = force.spring.norm(), unit = config.stiffness * force.depth_max,
+               bound = bound_of == nullptr
+                           ? std::numeric_limits<double>::infinity()
+                           : config.stiffness * bound_of(config, set.tool, contacts.size(), force.depth_max);
+  const bool is_finite = finite(force);
+  const bool in_bound = is_finite && size <= (1.0 + kForceRounding) * bound && force.depth_max >= 0.0 &&
+                        force.depth_max <= (1.0 + kForceRounding) * set.tool.longest_exit() &&
+                        damping_in_bound(set, force);
+  if (!in_bound && counts.non_finite + counts.out_of_bound == 0) counts.first_bad = number;
+  counts.non_finite += !is_finite;
+  counts.out_of_bound += is_finite && !in_bound;
+  if (!(unit > 0.0)) return;
+  counts.largest_force = std::max(counts.largest_force, size / unit);
+  if (bound_of != nullptr && bound > 0.0) counts.largest_share = std::max(*counts.largest_share, size / bound);
+}
+
+std::vector<StressCounts> no_counts() {
+  std::vector<StressCounts> counts;
+  for (const AlgorithmEntry& entry : algorithms()) {
+    StressCounts& of = counts.emplace_back();
+    of.algorithm = entry.info->name;
+    if (entry.theory.force_bound != nullptr) of.largest_share = 0.0;
+  }
+  return counts;
+}
+
+/// Adds the counts of other sets, in whatever order they come.
+void add(const StressCounts& other, StressCounts& all) {
+  const bool bad = all.non_finite + all.out_of_bound > 0, other_bad = other.non_finite + other.out_of_bound > 0;
+  if (other_bad) all.first_bad = bad ? std::min(all.first_bad, other.first_bad) : other.first_bad;
+  all.sets += other.sets;
+  all.in_contact += other.in_contact;
+  all.non_finite += other.non_finite;
+  all.out_of_bound += other.out_of_bound;
+  all.points_dropped += other.points_dropped;
+  all.largest_force = std::max(all.largest_force, other.largest_force);
+  all.largest_share = std::max(all.largest_share, other.largest_share);
+}
+
+}  // namespace
+
+ContactSet stress_set(std::uint64_t seed, std::uint64_t i) {
+  Random random(Random::derive(seed + 1, i));
+  ContactSet set;
+  draw_tool(random, set);
+  draw_rendering(random, set.rendering);
+  const Family& family = kFamilies[random.below(std::size(kFamilies))];
+  set.family = family.name;
+  // Every fifth set has one point. The other sizes are log-uniform, so that small sets, which are degenerate most
+  // often, are common.
+  const double n = chance(random, 0.2) ? 1.0 : log_uniform(random, 1.0, static_cast<double>(kMostContacts));
+  set.points = family.draw(random, set, static_cast<std::size_t>(n));
+  return set;
+}
+
+std::vector<StressCounts> stress_laws(std::uint64_t count, std::uint64_t seed, const JobOptions& options) {
+  std::vector<StressCounts> all = no_counts();
+  std::mutex mutex;
+  for_each_job((count + kSetsOfAJob - 1) / kSetsOfAJob, options, [&](std::size_t job) {
+    std::vector<StressCounts> part = no_counts();
+    const std::uint64_t end = std::min(count, (job + 1) * kSetsOfAJob);
+    for (std::uint64_t i = job * kSetsOfAJob; i < end; ++i) {
+      const ContactSet set = stress_set(seed, i);
+      const PointShell shell(set.points, 0.0);
+      for (StressCounts& counts : part) count_set(set, i, shell, counts);
+    }
+    const std::lock_guard lock(mutex);
+    for (std::size_t i = 0; i < all.size(); ++i) add(part[i], all[i]);
+  });
+  return all;
+}
+
+}  // namespace hapbench

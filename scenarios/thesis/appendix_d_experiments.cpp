@@ -1,0 +1,243 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <map>
+
+#include "results/observe/target_metrics.hpp"
+#include "scenarios/cases/statistics.hpp"
+#include "scenarios/thesis/claims.hpp"
+#include "sim/core/math.hpp"
+
+/// Claims of appendix D: the man-machine experiments with simulated subjects.
+namespace hapbench {
+namespace {
+
+struct MeasuredColumn {
+  const char* name;       ///< of the measure
+  const char* column;     ///< of targets.csv
+  const char* published;  ///< part of the id
+};
+constexpr const char *kSuccessRate = "success rate", *kCompletionTime = "completion time";
+constexpr MeasuredColumn kMeasures[] = {{kSuccessRate, "removed", "success"},
+                                        {kCompletionTime, "time_s", "time"},
+                                        {"model force", "model_force_N", "force"},
+                                        {"speed", "speed_m_per_s", "speed"}};
+
+/// Largest difference of a success rate or a completion time to the published one, in standard errors of the
+/// difference; half a unit of the last published digit is added.
+constexpr double kStandardErrors = 2.0;  // in words in the rule
+
+/// The columns of targets.csv that count here: place, subject, removed, time_s, model_force_N, speed_m_per_s; NaN where
+/// there is no value.
+using TargetTable = std::map<std::string, std::vector<double>>;
+
+/// Mean of a column over each subject's targets at a place; subjects without a value are left out.
+std::map<double, double> subject_means(const TargetTable& targets, const char* column, double place) {
+  std::map<double, std::vector<double>> values;
+  for (std::size_t i = 0; i < targets.at("place").size(); ++i) {
+    const double value = targets.at(column)[i];
+    if (targets.at("place")[i] != place || std::isnan(value)) continue;
+    values[targets.at("subject")[i]].push_back(value);
+  }
+  std::map<double, double> means;
+  for (const auto& [subject, all] : values) means[subject] = mean_of(all);
+  return means;
+}
+
+/// A case for each measure, with the mean of each subject that has one with either algorithm.
+Measured measure(const Evidence& e, const std::string& task, double place) {
+  const TargetTable original = e.table(task + "_original_averaging", "targets.csv"),
+                    shaped = e.table(task + "_shaped_stiffness", "targets.csv");
+  Measured measured;
+  for (const MeasuredColumn& column : kMeasures) {
+    MeasuredCase& m = measured.emplace_back();
+    m.name = column.name;
+    const auto a = subject_means(original, column.column, place), b = subject_means(shaped, column.column, place);
+    std::vector<double>&of_original = m.values["original"], &of_shaped = m.values["shaped"];
+    for (const auto& [subject, value] : a) {
+      if (!b.contains(subject)) continue;
+      of_original.push_back(value);
+      of_shaped.push_back(b.at(subject));
+    }
+  }
+  return measured;
+}
+
+/// Half a unit of the last digit with which the thesis prints a mean.
+double half_a_digit(double printed) {
+  const std::string text = plain(printed);
+  const auto point = text.find('.');
+  // Every mean of appendix D is printed with a digit behind the point, 1.0 too.
+  const auto digits = point == std::string::npos ? 1 : text.size() - point - 1;
+  return 0.5 * math::pow(10.0, -static_cast<double>(digits));
+}
+
+/// Comparison of one measure with the published one.
+struct Compared {
+  bool agrees = false;  ///< significant or not, and in the direction, as published
+  bool near = false;    ///< success rates or times near the published ones; true of other measures
+  double t = 0.0;
+  double farthest = 0.0;  ///< larger difference to a published mean [standard errors of the difference]
+};
+
+Compared compare(const MeasuredCase& m, const PublishedNumbers& published, const std::string& id,
+                 bool published_difference) {
+  const auto column = std::find_if(std::begin(kMeasures), std::end(kMeasures),
+                                   [&m](const MeasuredColumn& c) { return c.name == m.name; });
+  const std::vector<double>&original = m.all("original"), &shaped = m.all("shaped");
+  const PublishedNumber& of_original = published[id + "." + column->published + ".original_averaging"];
+  const PublishedNumber& of_shaped = published[id + "." + column->published + ".shaped_stiffness"];
+  const auto difference = [](const std::vector<double>& ours, const PublishedNumber& p) {
+    const double beyond = std::max(std::abs(mean_of(ours) - p.mean) - half_a_digit(p.mean), 0.0);
+    return beyond == 0.0 ? 0.0 : beyond / math::hypot(p.spread, standard_error(ours));
+  };
+  Compared c;
+  c.t = paired_t(original, shaped);
+  const bool significant = std::abs(c.t) > critical_t(original.empty() ? 0 : original.size() - 1);
+  // Means that would be printed alike do not differ, however small their scatter.
+  const double margin = half_a_digit(of_original.mean) + half_a_digit(of_shaped.mean);
+  const bool alike = std::abs(mean_of(original) - mean_of(shaped)) <= margin;
+  c.agrees =
+      published_difference ? significant && c.t * (of_original.mean - of_shaped.mean) > 0.0 : !significant || alike;
+  const bool input = m.name != kSuccessRate && m.name != kCompletionTime;
+  c.farthest = std::max(difference(original, of_original), difference(shaped, of_shaped));
+  c.near = input || c.farthest <= kStandardErrors;
+  return c;
+}
+
+/// `id` is that of a claim D1 to D4; `published_difference`: whether the thesis found one.
+Finding judge_experiment(const Measured& measured, const PublishedNumbers& published, const std::string& id,
+                         bool published_difference) {
+  bool all = true, success = false;
+  std::string text, deviating, farthest;
+  double most = -1.0;
+  for (const MeasuredCase& m : measured) {
+    const Compared c = compare(m, published, id, published_difference);
+    if (c.farthest > most) farthest = m.name;
+    most = std::max(most, c.farthest);
+    if (m.name == kSuccessRate) success = c.agrees;
+    const std::vector<double>&a = m.all("original"), &b = m.all("shaped");
+    if (!c.agrees) {
+      append_item(deviating, m.name, ", ");
+    } else if (!c.near) {
+      append_item(deviating,
+                  fmt::format("{} {:.2g} and {:.2g}, not near the published ones", m.name, mean_of(a), mean_of(b)),
+                  ", ");
+    }
+    all = all && c.agrees && c.near;
+    append_item(text, fmt::format("{} {:.2g} ± {:.1g} vs {:.2g} ± {:.1g} (t = {:.3g})", m.name, mean_of(a),
+                                  standard_error(a), mean_of(b), standard_error(b), c.t));
+  }
+  return {decide(all, success), text,
+          (deviating.empty() ? std::string("every measure agrees with the published one in direction and significance")
+                             : "other than published: " + deviating) +
+              fmt::format("; the {} differs most, by {:.2g} standard errors of the difference; subjects regulate the "
+                          "gauge, so the mean force is nearly an input",
+                          farthest, most)};
+}
+
+constexpr const char *kVertical = "vertical_peg_in_hole", *kRotational = "rotational_peg_in_hole";
+
+/// The side target, with how far the tip must go to reach it and how far it can go before the drill meets the wall [m].
+Measured measure_side_target(const Evidence& e) {
+  Measured measured = measure(e, kVertical, 1.0);
+  const Scenario scene = e.load(std::string(kVertical) + "_original_averaging").scenario;
+  const TargetRules& task = std::get<TrackingHandFields>(scene.hand).task;
+  const double hole = std::get<BlockEnvironment>(scene.environment).block.hole_diameter,
+               drill = std::get<CylinderFields>(scene.tool).diameter;
+  measured.front().values["reached_at"] = {task.places.at(1).head<2>().norm() - task.tolerance};
+  measured.front().values["wall_at"] = {0.5 * (hole - drill)};
+  return measured;
+}
+
+Finding judge_side_target(const Measured& measured, const PublishedNumbers& published) {
+  Finding finding = judge_experiment(measured, published, "D1", true);
+  const double reached = 1e3 * measured.front()["reached_at"], wall = 1e3 * measured.front()["wall_at"];
+  finding.why +=
+      fmt::format("; the target is reached {:.3g} mm from the axis, {} the wall, which the drill meets at {:.3g} mm",
+                  reached, reached < wall ? "without" : "at", wall);
+  return finding;
+}
+
+// ---- D6: success rates over places that the pilot experiments went through. A case for each place, with the subjects'
+// mean of both algorithms.
+
+constexpr double kHardlyAny = 0.1;
+constexpr double kMostTrials = 0.5;
+constexpr double kOffsets[] = {0.4e-3, 0.46e-3, 0.52e-3, 0.58e-3, 0.64e-3, 0.7e-3};  ///< from the hole's axis [m]
+constexpr double kHeights[] = {2e-3, 2.5e-3, 3e-3, 3.5e-3, 4e-3, 4.5e-3};            ///< over the hole's bottom [m]
+constexpr double kHoleDepth = 5e-3;
+
+/// The subjects' success rate at a place: four targets each, and no other place, since a drill that is lost at one
+/// would spoil the others.
+double success_rate(const Evidence& e, const std::string& scenario, const Vec3& place) {
+  const Result run = e.run(scenario, {fmt::format("hand.task.places_m=[[{},{},{}]]", place.x(), place.y(), place.z()),
+                                      "hand.task.targets_per_place=4", "hand.trials=1"});
+  return place_metrics(run.targets).at(0).success_rate.mean;
+}
+
+Measured measure_pilots(const Evidence& e) {
+  Measured measured;
+  const auto add = [&](const char* name, const std::string& task, double value, const Vec3& place) {
+    measured.push_back({name,
+                        {{"value", {value}},
+                         {"original", {success_rate(e, task + "_original_averaging", place)}},
+                         {"shaped", {success_rate(e, task + "_shaped_stiffness", place)}}}});
+  };
+  for (const double offset : kOffsets) add("offset", kVertical, offset, {offset, 0.0, -kHoleDepth});
+  for (const double height : kHeights) add("height", kRotational, height, {0.0, 0.0, height - kHoleDepth});
+  return measured;
+}
+
+struct PilotResult {
+  bool as_published = true;  ///< hardly any target beyond the published place, most at the easiest
+  bool somewhere = false;    ///< a place where hardly any is removed, but most with stiffness shaping
+
+  const char* said() const { return as_published ? "as published" : somewhere ? "another threshold" : "no threshold"; }
+};
+
+template <class IsHard>
+PilotResult pilot_result(const Measured& measured, const char* pilot, IsHard is_hard) {
+  PilotResult found;
+  double easiest = 0.0;
+  for (const MeasuredCase& m : measured) {
+    if (m.name != pilot) continue;
+    const bool hardly_any = m["original"] <= kHardlyAny;
+    if (is_hard(m["value"]) && !hardly_any) found.as_published = false;
+    if (hardly_any && m["shaped"] >= kMostTrials) found.somewhere = true;
+    easiest = std::max(easiest, m["original"]);
+  }
+  found.as_published = found.as_published && easiest >= kMostTrials;
+  return found;
+}
+
+Finding judge_pilots(const Measured& measured, const PublishedNumbers& published) {
+  const double furthest = published["D6.offset"].at_most, lowest = published["D6.height"].at_least;
+  const PilotResult offset = pilot_result(measured, "offset", [furthest](double x) { return x > furthest; });
+  const PilotResult height = pilot_result(measured, "height", [lowest](double z) { return z < lowest; });
+  const std::string text = said_of_each(measured, [](const MeasuredCase& m) {
+    return fmt::format("{} {:.2f} mm: {:.2f} vs {:.2f}", m.name, 1e3 * m["value"], m["original"], m["shaped"]);
+  });
+  return {decide(offset.as_published && height.as_published, offset.somewhere || height.somewhere),
+          "success of the original algorithm vs stiffness shaping: " + text,
+          fmt::format("offset: {}; height: {}", offset.said(), height.said())};
+}
+
+}  // namespace
+
+std::vector<ClaimRule> appendix_d_experiments() {
+  return {
+      {"D1", measure_side_target, judge_side_target},
+      {"D2", [](const Evidence& e) { return measure(e, kVertical, 0.0); },
+       [](const Measured& m, const PublishedNumbers& p) { return judge_experiment(m, p, "D2", false); }},
+      {"D3", [](const Evidence& e) { return measure(e, kRotational, 0.0); },
+       [](const Measured& m, const PublishedNumbers& p) { return judge_experiment(m, p, "D3", true); }},
+      {"D4", [](const Evidence& e) { return measure(e, kRotational, 1.0); },
+       [](const Measured& m, const PublishedNumbers& p) { return judge_experiment(m, p, "D4", true); }},
+      {"D6", measure_pilots, judge_pilots},
+  };
+}
+
+}  // namespace hapbench

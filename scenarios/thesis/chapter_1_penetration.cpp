@@ -1,0 +1,152 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "results/io/columns.hpp"
+#include "results/observe/ideal_trajectory.hpp"
+#include "scenarios/run/assemble.hpp"
+#include "scenarios/thesis/claims.hpp"
+#include "scenarios/thesis/measurements.hpp"
+
+/// Claims of 1.1, 1.2 and B.3.1: how far a drill pressed into the hole sinks in under other ways to merge forces, and
+/// what their plain sum does. The hand's direction is that of task 2.
+namespace hapbench {
+namespace {
+
+constexpr double kPressedTilts[] = {0.35, 0.68, 1.0};  ///< [rad]
+/// Rows between evaluations of the depth: 4 ms.
+constexpr std::uint64_t kRowsBetweenLooks = 8;
+/// Rows before this time are ignored [s]: the start is not the resting place at every tilt.
+constexpr double kLanded = 0.5;
+
+/// The largest depth of the drill in the block after it has landed, at each tilt [m]. The largest one, because a drill
+/// that pops through has left the block at the end.
+MeasuredCase pressed(const Evidence& e, const std::string& name, const std::string& scene,
+                     std::vector<std::string> overrides) {
+  MeasuredCase m{name, {{"depth", {}}}};
+  overrides.emplace_back();
+  for (const double tilt : kPressedTilts) {
+    overrides.back() = fmt::format("motion.orientation.tilt_rad={}", tilt);
+    const LoadedScenario loaded = e.load(scene, overrides);
+    IdealTrajectoryObserver ideal(std::get<BlockEnvironment>(loaded.scenario.environment).block,
+                                  make_cylinder(loaded.scenario.tool));
+    double& deepest = m.values["depth"].emplace_back(0.0);
+    for_each_row(loaded, [&](const StepRecord& row) {
+      if (row.step % kRowsBetweenLooks != 0 || row.time < kLanded) return;
+      ideal.on_step(row);
+      if (ideal.error()) deepest = std::max(deepest, ideal.error()->interpenetration);
+    });
+  }
+  return m;
+}
+
+/// Stiffness shaping with the reduction, as the thesis has it.
+MeasuredCase pressed_shaped(const Evidence& e) {
+  return pressed(e, kProposedLaw, "press_towards_rim", {});
+}
+
+std::string depths_text(const Measured& measured) {
+  std::string text;
+  for (const MeasuredCase& m : measured) {
+    append_item(text, m.name + " ");
+    for (std::size_t i = 0; i < std::size(kPressedTilts); ++i)
+      text += fmt::format("{}{:.2f}", i == 0 ? "" : "/", 1e3 * m.all("depth")[i]);
+  }
+  return fmt::format("inside by at most, in mm, at {} rad: {}", fmt::join(kPressedTilts, "/"), text);
+}
+
+/// True if at every tilt `a` is at least `factor` times as deep as `b`.
+bool deeper(const MeasuredCase& a, const MeasuredCase& b, double factor) {
+  return std::equal(a.all("depth").begin(), a.all("depth").end(), b.all("depth").begin(),
+                    [factor](double deep, double other) { return deep >= factor * other; });
+}
+
+/// Whether the drill sinks in easily with the second case's law, beside shaping, the first one.
+Finding judge_sinking(const Measured& m, const PublishedNumbers& p) {
+  const bool easily = deeper(m.at(1), m.at(0), threshold(p, "easily")), more = deeper(m.at(1), m.at(0), 1.0);
+  return {decide(easily, more), depths_text(m),
+          fmt::format("with {} the drill sinks in {}", m.at(1).name,
+                      easily ? "easily"
+                      : more ? "further than with stiffness shaping, not easily"
+                             : "less than with stiffness shaping at some tilt")};
+}
+
+Measured measure_averaging(const Evidence& e) {
+  return {pressed_shaped(e),
+          pressed(e, "mean", "press_towards_rim", {"rendering.algorithm=mean", "rendering.reduction=null"}),
+          pressed(e, "mean after the reduction", "press_towards_rim", {"rendering.algorithm=mean"})};
+}
+
+// ---- B1b: the depth of a drill that is turned in the hole, as B.3.1 has it, while it is near the hole [m].
+
+Measured measure_original(const Evidence& e) {
+  Measured measured;
+  for (const std::string law : {kProposedLaw, "original_averaging"}) {
+    const Result run = e.run("task2_held", {"rendering.algorithm=" + law});
+    const auto depth = number_of(run.metrics, "ideal_trajectory.gentle.interpenetration_max_m");
+    measured.push_back({law, {{"depth", {depth.value_or(0.0)}}}});
+  }
+  return measured;
+}
+
+Finding judge_original(const Measured& m, const PublishedNumbers& p) {
+  const double times = m.at(1)["depth"] / m.at(0)["depth"];
+  return {decide(times >= threshold(p, "easily"), times > 1.0),
+          fmt::format("turned with 1 N, inside by at most {:.2f} mm, with stiffness shaping {:.2f} mm",
+                      1e3 * m.at(1)["depth"], 1e3 * m.at(0)["depth"]),
+          fmt::format("{:.2g} times as deep as with stiffness shaping", times)};
+}
+
+// ---- V2, V2b: virtual coupling as it stands on record, and of other stiffness; then what it is at heart, least
+// squares.
+
+constexpr double kCouplings[] = {5000.0, 20000.0, 40000.0};  ///< [N/m]
+
+Measured measure_couplings(const Evidence& e) {
+  Measured measured = {pressed_shaped(e)};
+  for (const double coupling : kCouplings) {
+    measured.push_back(pressed(e, fmt::format("K_vc = {:g} N/m", coupling), "press_coupled",
+                               {fmt::format("rendering.virtual_coupling_N_per_m={}", coupling)}));
+  }
+  measured.push_back(pressed(e, "least_squares", "press_coupled", {"rendering.algorithm=least_squares"}));
+  return measured;
+}
+
+Finding judge_couplings(const Measured& m, const PublishedNumbers&) {
+  const bool holds = deeper(m.at(1), m.at(2), 1.0) && deeper(m.at(2), m.at(3), 1.0);
+  return {found(holds), depths_text(m),
+          "the coupling's displacement is the translation that resolves all depths best; more points only bring every "
+          "direction nearer to K"};
+}
+
+// ---- S1: the plain sum of all points, in the planar peg and in the turn of task 2, beside stiffness shaping.
+
+Finding judge_summation(const Measured& m, const PublishedNumbers& p) {
+  const auto unstable = [&](std::size_t i) {
+    return m.at(i)["diverges"] == 1.0 || vibrates_much_more(m.at(i), m.at(i + 1), p);
+  };
+  const bool peg = unstable(0), task = unstable(2);
+  return {decide(peg && task, peg || task), vibrations_text(m),
+          fmt::format("n points are up to n K: in the planar peg the sum is {}, in task 2 {}",
+                      peg ? "unstable" : "stable", task ? "unstable" : "stable")};
+}
+
+}  // namespace
+
+std::vector<ClaimRule> chapter_1_penetration() {
+  return {
+      {"V1", measure_averaging, judge_sinking},
+      {"V2",
+       [](const Evidence& e) -> Measured {
+         return {pressed_shaped(e), pressed(e, "virtual coupling", "press_coupled", {})};
+       },
+       judge_sinking},
+      {"V2b", measure_couplings, judge_couplings},
+      {"S1",
+       [](const Evidence& e) { return vibrations_beside_shaping(e, "summation", "task2_held", {"metrics.from_s=0"}); },
+       judge_summation},
+      {"B1b", measure_original, judge_original},
+  };
+}
+
+}  // namespace hapbench

@@ -1,0 +1,162 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "algorithms/laws/shaped_stiffness.hpp"
+#include "algorithms/stages/point_stage.hpp"
+#include "scenarios/thesis/claims.hpp"
+#include "scenarios/thesis/measurements.hpp"
+
+/// Claims of 2.8 and 3.4: what the points cost. Times of this machine, so no two ledgers agree in digits.
+namespace hapbench {
+namespace {
+
+constexpr int kIterations = 3;  ///< the thesis's default
+constexpr int kRepetitions = 20;
+
+/// Stiffness shaping as the thesis writes it: with the n x n matrix of squared inner products.
+class DenseShaping {
+ public:
+  explicit DenseShaping(std::size_t capacity) : matrix_(capacity * capacity), ratio_(capacity) {}
+
+  void shape(ContactBuffer& contacts, int iterations) {
+    const std::size_t n = contacts.size();
+    for (std::size_t i = 0; i < n; ++i) {
+      for (std::size_t j = 0; j < n; ++j) {
+        const double product = contacts.gradient(i).dot(contacts.gradient(j));
+        matrix_[i * n + j] = product * product;
+      }
+      contacts.weight[i] = 1.0;
+    }
+    for (int iteration = 0; iteration < iterations; ++iteration) {
+      for (std::size_t i = 0; i < n; ++i) {
+        ratio_[i] = 0.0;
+        for (std::size_t j = 0; j < n; ++j) ratio_[i] += matrix_[i * n + j] * contacts.weight[j];
+      }
+      for (std::size_t i = 0; i < n; ++i) contacts.weight[i] /= ratio_[i];
+    }
+  }
+
+ private:
+  std::vector<double> matrix_, ratio_;
+};
+
+// ---- T4, T4b: one step's work for the most contacts of a task [s].
+
+/// Floating-point operations for n contacts: 5 for a scalar product, 1 for its square, 2 for a term of the ratio; with
+/// the tensor 12 to add u u^T, 17 for u^T S u and its quotient.
+double dense_operations(double n) {
+  return n * n * (6.0 + 2.0 * kIterations);
+}
+double tensor_operations(double n) {
+  return n * (12.0 + (12.0 + 17.0) * kIterations);
+}
+
+/// Contacts of task 3 with the drill upright and pressed against the wall, of the row that has most: the extreme case
+/// of 2.8, almost a thousand.
+ContactBuffer extreme_contacts(const Evidence& e) {
+  const LoadedScenario loaded =
+      e.load("task3_spin_signed_distance",
+             {"motion.orientation.tilt_rad=0", "hand.target.x_m.amplitude=0.002", "hand.target.y_m.amplitude=0.002"});
+  return largest_of(contact_sets(loaded.scenario, 64));
+}
+
+Measured measure_deadline(const Evidence& e) {
+  const ContactBuffer all = extreme_contacts(e);
+  ContactBuffer contacts = all;
+  DenseShaping dense(all.size());
+  const auto reduction = make_gradient_reduction({});
+  reduction->prepare({});
+  return {{"",
+           {{"points", {static_cast<double>(all.size())}},
+            {"matrix", {seconds_of(kRepetitions, [&] { dense.shape(contacts, kIterations); })}},
+            {"tensor", {seconds_of(kRepetitions, [&] { shape_weights(contacts, kIterations); })}},
+            {"reduced", {seconds_of(kRepetitions, [&] {
+               contacts = all;
+               reduction->process(contacts);
+               dense.shape(contacts, kIterations);
+             })}}}}};
+}
+
+std::string deadline_text(const MeasuredCase& m, double deadline) {
+  return fmt::format(
+      "{} contacts of task 3, upright and pressed hard: n × n matrix {:.0f} µs ({:.2g} operations), reduced first {:.0f} µs, tensor without reduction "
+      "{:.1f} µs ({:.2g} operations); deadline {:.0f} µs",
+      m["points"], 1e6 * m["matrix"], dense_operations(m["points"]), 1e6 * m["reduced"], 1e6 * m["tensor"],
+      tensor_operations(m["points"]), 1e6 * deadline);
+}
+
+Finding judge_dense_deadline(const Measured& measured, const PublishedNumbers& published) {
+  const MeasuredCase& m = measured.at(0);
+  const double deadline = published["T4.step"].mean;
+  const bool missed = m["matrix"] > deadline, met = m["reduced"] < deadline;
+  return {decide(missed && met, met), deadline_text(m, deadline),
+          missed ? fmt::format("in the dense form the thesis uses, {}",
+                               met ? "the reduction is needed and suffices" : "even the reduction does not suffice")
+                 : "this machine is fast enough for the dense form"};
+}
+
+Finding judge_tensor_deadline(const Measured& measured, const PublishedNumbers& published) {
+  const MeasuredCase& m = measured.at(0);
+  const double deadline = published["T4.step"].mean;
+  const bool met = m["tensor"] < deadline;
+  return {found(met), deadline_text(m, deadline),
+          met ? "through the 3 × 3 stiffness tensor all points are shaped in time without a reduction"
+              : "without the reduction the tensor form misses the deadline, too"};
+}
+
+// ---- T5: one step's share of the period [1] for the contacts of task 3, in the dense form; and in the tensor form.
+
+Measured measure_loop_load(const Evidence& e) {
+  const LoadedScenario task = e.load("task3_spin_signed_distance");
+  std::vector<ContactBuffer> sets = contact_sets(task.scenario, 128);
+  const std::size_t largest = largest_size(sets);
+  DenseShaping dense(largest);
+  const auto reduction = make_gradient_reduction({});
+  reduction->prepare({});
+  const auto load = [&](auto shape, bool reduce) -> std::vector<double> {
+    const double seconds = seconds_with(sets, kRepetitions, [&](ContactBuffer& contacts) {
+      if (reduce) reduction->process(contacts);
+      shape(contacts);
+    });
+    return {seconds / static_cast<double>(sets.size()) / task.scenario.time.step};
+  };
+  const auto by_matrix = [&dense](int n) { return [&dense, n](ContactBuffer& contacts) { dense.shape(contacts, n); }; };
+  const auto by_tensor = [](ContactBuffer& contacts) { shape_weights(contacts, kIterations); };
+  return {{"",
+           {{"points", {static_cast<double>(largest)}},
+            {"reduced_0", load(by_matrix(0), true)},
+            {"reduced_3", load(by_matrix(kIterations), true)},
+            {"unreduced_3", load(by_matrix(kIterations), false)},
+            {"tensor_reduced_3", load(by_tensor, true)},
+            {"tensor_unreduced_3", load(by_tensor, false)}}}};
+}
+
+Finding judge_loop_load(const Measured& measured, const PublishedNumbers& p) {
+  const MeasuredCase& m = measured.at(0);
+  const bool small = m["reduced_3"] - m["reduced_0"] <= threshold(p, "small_load");
+  const bool falls = m["reduced_3"] < m["unreduced_3"];
+  return {
+      decide(small && falls, small || falls),
+      fmt::format("task 3, up to {} points, share of the period: dense form without reduction {:.2g} %, with it "
+                  "{:.2g} %, of which the iterations {:.2g} %; tensor form {:.2g} % and {:.2g} %",
+                  m["points"], 100.0 * m["unreduced_3"], 100.0 * m["reduced_3"],
+                  100.0 * (m["reduced_3"] - m["reduced_0"]), 100.0 * m["tensor_unreduced_3"],
+                  100.0 * m["tensor_reduced_3"]),
+      fmt::format("the iterations cost {}; the reduction {} the load of the dense form and {} that of the tensor form",
+                  small ? "next to nothing" : "more than that", falls ? "lowers" : "raises",
+                  m["tensor_reduced_3"] < m["tensor_unreduced_3"] ? "lowers" : "raises")};
+}
+
+}  // namespace
+
+std::vector<ClaimRule> chapter_3_cost() {
+  return {
+      {"T4", measure_deadline, judge_dense_deadline},
+      {"T4b", measure_deadline, judge_tensor_deadline},
+      {"T5", measure_loop_load, judge_loop_load},
+  };
+}
+
+}  // namespace hapbench

@@ -1,0 +1,252 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "algorithms/registry.hpp"
+#include "scenarios/cases/statistics.hpp"
+#include "scenarios/format/parts.hpp"
+#include "scenarios/thesis/claims.hpp"
+#include "scenarios/thesis/measurements.hpp"
+
+/// Claims of chapter 4: the thesis's two depth models (4.2), and what else it discusses as limits.
+namespace hapbench {
+namespace {
+
+// ---- G1: the median line.
+
+constexpr double kSameDirection = 0.999;
+
+Measured measure_median_line(const Evidence&) {
+  const auto product = [](const char* model) {
+    return wall_point(-0.0001, model).gradient(0).dot(wall_point(0.0001, model).gradient(0));
+  };
+  return {
+      {"", {{"shortest_product", {product("shortest_distance")}}, {"normal_product", {product("surface_normal")}}}}};
+}
+
+Finding judge_median_line(const Measured& measured, const PublishedNumbers&) {
+  const MeasuredCase& m = measured.at(0);
+  const bool flips = m["shortest_product"] < 0.0;
+  const bool steady = m["normal_product"] > kSameDirection;
+  return {
+      decide(flips && steady, flips),
+      fmt::format("gradients across the median line: inner product {:.2g} (shortest distance), {:.2g} (surface normal)",
+                  m["shortest_product"], m["normal_product"]),
+      fmt::format("the shortest distance {}, the surface normal {}", flips ? "flips" : "does not flip",
+                  steady ? "does not" : "turns, too")};
+}
+
+// ---- G1b: what the underestimated depth does in task 2. The thesis calls the error negligible on its system, because
+// depths are small there: judged are the force of the same contacts, up to the depth it names, and the way of a run
+// whose depth is that along the normal.
+
+/// Rows between samples: about 30 a second.
+constexpr std::uint64_t kRowsBetweenSamples = 64;
+
+Measured measure_underestimation(const Evidence& e) {
+  const double shallow = e.published["G1.negligible"].at_most;
+  const LoadedScenario loaded = e.load("task2_rotate_signed_distance");
+  const Cylinder tool = make_cylinder(loaded.scenario.tool);
+  const auto law = make_law(kProposedLaw, loaded.scenario.rendering);
+  std::vector<double> error, share;
+  std::vector<Vec3> way;
+  double apart = 0.0, force = 0.0;
+  for_each_row(loaded, [&](const StepRecord& row) {
+    if (row.step % kRowsBetweenSamples != 0) return;
+    way.push_back(row.tool.pose.position);
+    const auto with_depths = [&](const char* model) {
+      ContactBuffer contacts = copy_of(*row.found);
+      find_depth_model(model)->make()->evaluate(tool, row.tool.pose, contacts);
+      contacts.pad();
+      return contacts;
+    };
+    ContactBuffer exact = with_depths("normal_projection"), shortest = with_depths("surface_normal");
+    if (exact.empty() || exact.largest_depth() > shallow) return;
+    law->prepare(exact.size());
+    const Vec3 right = law->evaluate(exact).spring;
+    apart += (law->evaluate(shortest).spring - right).squaredNorm();
+    force += right.squaredNorm();
+    for (std::size_t i = 0; i < exact.size(); ++i) {
+      error.push_back(exact.depth[i] - shortest.depth[i]);
+      if (exact.depth[i] > 0.0) share.push_back(error.back() / exact.depth[i]);
+    }
+  });
+  std::sort(error.begin(), error.end());
+  double distance = 0.0;
+  std::size_t place = 0;
+  for_each_row(e.load("task2_rotate_signed_distance", {"rendering.depth_model=normal_projection"}),
+               [&](const StepRecord& row) {
+                 if (row.step % kRowsBetweenSamples != 0 || place >= way.size()) return;
+                 distance += (row.tool.pose.position - way[place++]).squaredNorm();
+               });
+  return {{"",
+           {{"contacts", {static_cast<double>(error.size())}},
+            {"depth_mean", {mean_of(error)}},
+            {"depth_95", {error.at(error.size() * 95 / 100)}},
+            {"depth_max", {error.back()}},
+            {"share", {mean_of(share)}},
+            {"force", {std::sqrt(apart / force)}},
+            {"way", {std::sqrt(distance / static_cast<double>(place))}}}}};
+}
+
+Finding judge_underestimation(const Measured& measured, const PublishedNumbers& published) {
+  const MeasuredCase& m = measured.at(0);
+  const double small = threshold(published, "negligible"), shallow = published["G1.negligible"].at_most;
+  const bool force = m["force"] <= small, way = m["way"] <= small * shallow, depth = m["depth_95"] <= small * shallow;
+  return {decide(force && way, force || way || depth),
+          fmt::format(
+              "{:.0f} contacts of task 2 up to {} mm deep: depths fall short by {:.1f} µm on average ({:.0f} % of the "
+              "depth), {:.1f} µm at the 95th percentile, {:.0f} µm at most; the force of the same contacts is off by "
+              "{:.1f} % rms, the way of a run with exact depths by {:.0f} µm rms",
+              m["contacts"], plain(1e3 * shallow), 1e6 * m["depth_mean"], 100.0 * m["share"], 1e6 * m["depth_95"],
+              1e6 * m["depth_max"], 100.0 * m["force"], 1e6 * m["way"]),
+          fmt::format("the shortfall is {} of {} mm for 95 % of the contacts, and {} for the force and {} for the way",
+                      depth ? "a negligible part" : "no negligible part", plain(1e3 * shallow),
+                      force ? "negligible" : "not negligible", way ? "negligible" : "not negligible")};
+}
+
+// ---- G2: the time that a contact's depth takes [s], for the contacts of task 2, along the normal and as the thesis
+// has it.
+
+constexpr int kRepetitions = 20;
+
+Measured measure_depth_cost(const Evidence& e) {
+  const std::vector<ContactBuffer> sets =
+      contact_sets(e.load("task2_rotate_signed_distance").scenario, kRowsBetweenSamples);
+  double contacts = 0.0;
+  for (const ContactBuffer& set : sets) contacts += static_cast<double>(set.size());
+  const double copying = seconds_with(sets, kRepetitions, [](ContactBuffer&) {});
+  const auto of_contact = [&](const char* model) -> std::vector<double> {
+    const auto depth = find_depth_model(model)->make();
+    const double seconds =
+        seconds_with(sets, kRepetitions, [&](ContactBuffer& set) { depth->evaluate(kDrill, kUpright, set); });
+    return {std::max(0.0, seconds - copying) / contacts};
+  };
+  return {
+      {"", {{"normal_projection", of_contact("normal_projection")}, {"surface_normal", of_contact("surface_normal")}}}};
+}
+
+Finding judge_depth_cost(const Measured& measured, const PublishedNumbers& p) {
+  const MeasuredCase& m = measured.at(0);
+  const double times = m["normal_projection"] / m["surface_normal"];
+  return {decide(times >= threshold(p, "huge"), times > 1.0),
+          fmt::format("a contact's depth takes {:.1f} ns along the normal, {:.1f} ns with the shortest distance",
+                      1e9 * m["normal_projection"], 1e9 * m["surface_normal"]),
+          fmt::format("{:.2g} times as much, for a cylinder; a mesh, which the thesis means besides, is not looked at",
+                      times)};
+}
+
+// ---- B4: the highest depth along the averaged direction, against stiffness shaping, in the planar peg and in the turn
+// of task 2.
+
+Finding judge_highest_depth(const Measured& m, const PublishedNumbers& p) {
+  const bool peg = vibrates_much_more(m.at(0), m.at(1), p), task = vibrates_much_more(m.at(2), m.at(3), p);
+  return {decide(peg || task, vibrates_more(m.at(0), m.at(1)) && vibrates_more(m.at(2), m.at(3))), vibrations_text(m),
+          fmt::format(
+              "the averaged direction turns quickly where gradients cancel: it {} in the planar peg and {} in task 2",
+              peg ? "vibrates" : "does not vibrate much more", task ? "vibrates" : "does not vibrate much more")};
+}
+
+// ---- C1: over-reduction.
+
+constexpr double kPointsLeft = 1.0, kFewestPoints = 10.0;  // in words in the rule
+
+Measured measure_over_reduction(const Evidence& e) {
+  const char *reduced = "over_reduction_reduced", *unreduced = "over_reduction_unreduced";
+  const auto a = e.table(reduced, "trajectory.csv"), b = e.table(unreduced, "trajectory.csv");
+  double difference = 0.0, largest = 0.0;
+  for (std::size_t i = 0; i < b.at("fx_N").size(); ++i) {
+    const Vec3 with{a.at("fx_N")[i], a.at("fy_N")[i], a.at("fz_N")[i]};
+    const Vec3 without{b.at("fx_N")[i], b.at("fy_N")[i], b.at("fz_N")[i]};
+    difference = std::max(difference, (with - without).norm());
+    largest = std::max(largest, without.norm());
+  }
+  return {{"",
+           {{"reduced_max", {e.number(reduced, "metrics.rendered_max")}},
+            {"unreduced_max", {e.number(unreduced, "metrics.rendered_max")}},
+            {"force_difference", {difference / largest}}}}};
+}
+
+Finding judge_over_reduction(const Measured& measured, const PublishedNumbers& p) {
+  const MeasuredCase& m = measured.at(0);
+  const bool collapsed = m["reduced_max"] == kPointsLeft && m["unreduced_max"] >= kFewestPoints;
+  const bool matters = m["force_difference"] >= threshold(p, "over_reduced");
+  return {decide(collapsed && matters, collapsed),
+          fmt::format("{} of {} points left; the force differs by up to {:.0f} %", m["reduced_max"], m["unreduced_max"],
+                      100.0 * m["force_difference"]),
+          collapsed ? "each point replaces its similar, shallower predecessor until one is left"
+                    : "more than one point is left"};
+}
+
+// ---- C2, C7: a tool that a hand holds in place and turns into a wall, with the damping of the thesis, which does not
+// see the turn, and with one that does; as fast as the scene has it, and slowly.
+
+Measured measure_turn_into_wall(const Evidence& e, const std::vector<std::string>& overrides) {
+  return {vibration("as in the thesis", e.run("turned_into_wall", overrides)),
+          vibration("damping sees the turn", e.run("turned_into_wall_angular_damping", overrides))};
+}
+
+Finding judge_turn_into_wall(const Measured& measured, const PublishedNumbers& p) {
+  const MeasuredCase &blind = measured.at(0), &seeing = measured.at(1);
+  const double more = blind["velocity_variation"] / seeing["velocity_variation"];
+  const bool reverses = blind["force_reversals"] > seeing["force_reversals"];
+  return {decide(more >= threshold(p, "turn") && reverses, more > 1.0), vibrations_text(measured),
+          fmt::format("the tip's velocity varies {:.2g} times as much as with damping that sees the turn", more)};
+}
+
+Finding judge_slow_turn(const Measured& measured, const PublishedNumbers& p) {
+  Finding finding = judge_turn_into_wall(measured, p);
+  const bool calm = measured.at(0)["force_reversals"] <= measured.at(1)["force_reversals"];
+  const bool same = measured.at(0)["velocity_variation"] < threshold(p, "turn") * measured.at(1)["velocity_variation"];
+  finding.verdict = decide(same && calm, same || calm);
+  return finding;
+}
+
+// ---- C3: a drill between two parallel faces.
+
+Measured measure_parallel_faces(const Evidence& e) {
+  const Scenario scenario = e.load("parallel_faces").scenario;
+  const double depth = e.number("parallel_faces", "metrics.depth_max_m");
+  return {{"",
+           {{"depth", {depth}},
+            {"radius", {make_cylinder(scenario.tool).radius()}},
+            {"force", {e.number("parallel_faces", "metrics.force_max_N")}},
+            {"one_wall_force", {scenario.rendering.stiffness * depth}}}}};
+}
+
+Finding judge_parallel_faces(const Measured& measured, const PublishedNumbers& p) {
+  const MeasuredCase& m = measured.at(0);
+  const bool sinks = m["depth"] >= threshold(p, "sinks_in") * m["radius"];
+  const bool weightless = m["force"] < threshold(p, "no_force") * m["one_wall_force"];
+  return {decide(sinks && weightless, weightless),
+          fmt::format("sinks in by {:.2f} mm, net force at most {:.2g} N where one wall alone would push with {:.3g} N",
+                      1e3 * m["depth"], m["force"], m["one_wall_force"]),
+          weightless ? "the forces of the two walls cancel" : "the walls push back"};
+}
+
+}  // namespace
+
+std::vector<ClaimRule> chapter_4() {
+  return {
+      {"G1", measure_median_line, judge_median_line},
+      {"G1b", measure_underestimation, judge_underestimation},
+      {"G2", measure_depth_cost, judge_depth_cost},
+      {"B4",
+       [](const Evidence& e) {
+         return vibrations_beside_shaping(e, "highest_depth", "task2_rotate_signed_distance",
+                                          {"time.duration_s=6", "record.ideal_trajectory=false"});
+       },
+       judge_highest_depth},
+      {"C1", measure_over_reduction, judge_over_reduction},
+      {"C2", [](const Evidence& e) { return measure_turn_into_wall(e, {}); }, judge_turn_into_wall},
+      {"C7",
+       [](const Evidence& e) {
+         return measure_turn_into_wall(e, {"motion.orientation.tilt_rad.period_s=6", "time.duration_s=6"});
+       },
+       judge_slow_turn},
+      {"C3", measure_parallel_faces, judge_parallel_faces},
+  };
+}
+
+}  // namespace hapbench

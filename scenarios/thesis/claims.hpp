@@ -1,0 +1,151 @@
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "scenarios/thesis/evidence.hpp"
+
+/// The claims of the thesis, and how each is judged. results/reference/rules.json has their texts, the file of their
+/// chapter what is measured and the rule, results/reference/published.json the published numbers.
+namespace hapbench {
+
+/// The outcome of testing a published statement.
+/// The last two are those of findings of ours.
+enum class Verdict { reproduced, in_kind, not_reproduced, refuted, not_reproducible, holds, does_not_hold };
+
+/// A verdict in words.
+struct VerdictText {
+  std::string_view name;  ///< also in the ledger
+  const char* meaning;
+};
+/// In the order of the enumeration.
+inline constexpr VerdictText kVerdicts[] = {
+    {"reproduced", "the rule of the claim holds with the published numbers"},
+    {"reproduced in kind", "direction or mechanism are the published ones, the numbers are not"},
+    {"not reproduced", "neither, in this model of the device and the hand"},
+    {"refuted", "it contradicts an exact result"},
+    {"not reproducible", "no simulation can show it: people or the trainer are needed"},
+    {"holds", "a finding of ours that the measurement shows"},
+    {"does not hold", "a finding of ours that the measurement does not show"}};
+inline constexpr std::string_view verdict_name(Verdict verdict) {
+  return kVerdicts[static_cast<std::size_t>(verdict)].name;
+}
+
+/// The verdict of a rule for "reproduced" and a weaker one for "reproduced in kind".
+Verdict decide(bool reproduced, bool in_kind);
+
+/// The verdict on a finding of ours.
+inline Verdict found(bool holds) {
+  return holds ? Verdict::holds : Verdict::does_not_hold;
+}
+
+/// The result of judging a claim, computed from measured numbers.
+struct Finding {
+  Verdict verdict = Verdict::not_reproducible;
+  std::string measured;  ///< the numbers, for people
+  std::string why;       ///< one sentence: which part of the rule decided
+};
+
+/// The measurements in one case of a claim, such as a density or an algorithm: numbers by name, several under one name
+/// where each subject has its own.
+struct MeasuredCase {
+  std::string name;  ///< empty where the claim has a single case
+  std::map<std::string, std::vector<double>> values;
+
+  /// The value of a name that has one. Throws std::out_of_range for other names.
+  double operator[](const std::string& value) const { return all(value).at(0); }
+  const std::vector<double>& all(const std::string& value) const { return values.at(value); }
+};
+
+/// All numbers that decide a claim beside the published ones, so that it can be judged again at any time.
+using Measured = std::vector<MeasuredCase>;
+
+/// Takes the deciding numbers from the results of scenarios, or computes them.
+using Measure = Measured (*)(const Evidence& evidence);
+/// Depends on its arguments alone.
+using Judge = Finding (*)(const Measured& measured, const PublishedNumbers& published);
+
+/// Appends an item to an enumeration in words.
+void append_item(std::string& list, std::string_view item, std::string_view separator = "; ");
+
+/// What `text_of` says of each case, one after the other.
+template <class TextOf>
+std::string said_of_each(const Measured& measured, TextOf text_of, std::string_view separator = "; ") {
+  std::string said;
+  for (const MeasuredCase& m : measured) append_item(said, text_of(m), separator);
+  return said;
+}
+
+/// A number as the rules of claims write it, with six digits at most: "0.1", "15", "1e-9".
+std::string plain(double number);
+
+/// A row of results/reference/rules.json with its rule. Texts hold published numbers by id, which
+/// PublishedNumbers::fill puts in. A threshold of ours that `measure` or `judge` compares with is a choice on record
+/// without fields, such as rule.easily; the rule's text names it in the same way, which also tells that the choice
+/// reaches the claim.
+struct Claim {
+  std::string id = {};
+  std::string place = {};      ///< in the thesis
+  std::string claim = {};      ///< in our words
+  std::string published = {};  ///< its numbers, for people
+  std::string rule = {};       ///< of the verdict, for people: with the thresholds that `judge` compares with
+  std::string why = {};        ///< why no simulation can show it; empty where one can
+  Measure measure = nullptr;   ///< null, as `judge`, for a claim that no simulation can show
+  Judge judge = nullptr;
+  bool timing = false;  ///< the finding holds times, so no two runs agree
+  bool ours = false;    ///< found on the way: no claim of the thesis, and not counted among those
+  bool costly = false;  ///< takes long to measure: judged again for a part of a sample only (robustness.hpp)
+
+  /// Measures and judges it. Throws InputError.
+  Finding finding(const Evidence& evidence) const;
+};
+
+/// A claim with the verdict on it.
+struct JudgedClaim {
+  Claim claim;
+  Finding finding;
+  std::vector<std::string> scenarios = {};  ///< bundled ones that it was measured with, in the order of their names
+  std::string reach = {};                   ///< of the choices, as Choices::reach has it; empty: none reaches it
+
+  /// Whether another reading of the choices could change the verdict: a simulation shows it, and a choice reaches it.
+  bool can_be_sampled() const {
+    return !claim.timing && finding.verdict != Verdict::not_reproducible && !reach.empty();
+  }
+};
+
+/// All of them, in the order of the ledger. Throws InputError for a file without what a claim needs.
+std::vector<Claim> all_claims();
+
+/// A threshold of ours: the choice rule.NAME.
+inline double threshold(const PublishedNumbers& numbers, const std::string& name) {
+  return numbers["rule." + name].mean;
+}
+
+/// The algorithm that the thesis proposes.
+inline constexpr const char* kProposedLaw = "shaped_stiffness";
+
+/// How a claim of rules.json is measured and judged. A constant that is no choice stands in the claim's text, too.
+struct ClaimRule {
+  const char* id;
+  Measure measure;
+  Judge judge;
+};
+
+// By chapter.
+std::vector<ClaimRule> chapter_1_penetration();           ///< V, S1, B1b
+std::vector<ClaimRule> chapter_3_reduction();             ///< T1 to T3
+std::vector<ClaimRule> chapter_3_cost();                  ///< T4, T5
+std::vector<ClaimRule> chapter_3_stiffness_ratios();      ///< R
+std::vector<ClaimRule> chapter_3_force_limit();           ///< L
+std::vector<ClaimRule> chapter_3_ideal_trajectory();      ///< J
+std::vector<ClaimRule> chapter_4();                       ///< G, B4, C1 to C3, C7
+std::vector<ClaimRule> appendix_a();                      ///< A
+std::vector<ClaimRule> appendix_b_original_algorithm();   ///< B1 to B3
+std::vector<ClaimRule> appendix_c_proposed_algorithm();   ///< P, C5, C6
+std::vector<ClaimRule> appendix_d_experiments();          ///< D
+std::vector<ClaimRule> appendix_f_optional_algorithms();  ///< F
+
+}  // namespace hapbench

@@ -1,0 +1,87 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "scenarios/cases/parallel_for.hpp"
+#include "scenarios/thesis/choices.hpp"
+#include "scenarios/thesis/claims.hpp"
+
+/// Robustness of the verdicts: the claims judged again under other readings of what the thesis leaves open, and the
+/// choices that decide. A reading has one value for each choice on record. The values on record are the ledger's.
+namespace hapbench {
+
+// Statistics of a sample: which input decides a yes or no.
+
+/// For each value the number of its bin, when the values in order are cut into `bins` of equal count; of equal values
+/// the first ones come first.
+std::vector<std::size_t> equal_count_bins(std::span<const double> values, std::size_t bins);
+
+/// The first-order Sobol index of an input, Var(E[y | x]) / Var(y), from given data: x is cut into bins (one for each
+/// value of a discrete input) and E[y | x] is the mean of y in a bin,
+///
+///   S = (SSB - (B - 1) SSW / (n - B)) / SST,  SSB = sum_b n_b (mean_b - mean)^2,  SSW = SST - SSB,
+///
+/// for n points in B bins that are not empty. Without the subtracted term, the mean of SSB when x has no influence,
+/// this is the estimator of Plischke, Borgonovo, Smith, "Global sensitivity measures from given
+/// data", EJOR 226 (2013) 536-550; with it, Kelley's epsilon squared (1935). May be a little below 0. NaN when y never
+/// changes or there are no more points than bins. Precondition: as many bins as values.
+double first_order_index(std::span<const std::size_t> bin, std::span<const double> y);
+
+/// The input with the largest index, if that is significant.
+struct DecidingInput {
+  std::size_t input = 0;
+  double index = 0.0;
+};
+
+/// The input with the largest first-order index, if less than `level` of `permutations` random orders of y (seeded)
+/// have a largest index as large: the largest of all inputs, so that many inputs do not make a false alarm likely. None
+/// when y never changes.
+std::optional<DecidingInput> deciding_input(const std::vector<std::vector<std::size_t>>& bins_of_inputs,
+                                            std::vector<double> y, std::uint64_t seed, double level = 0.01,
+                                            std::size_t permutations = 999);
+
+/// What is judged again.
+struct Readings {
+  Choices choices;
+  PublishedNumbers published;
+  std::vector<JudgedClaim> claims;               ///< with the ledger's verdicts
+  std::vector<std::vector<std::string>> values;  ///< of each reading, as texts for --set
+
+  /// Costly claims are judged in the first quarter of the readings only.
+  std::size_t costly() const { return (values.size() + 3) / 4; }
+};
+
+/// The readings of a CSV file: a row each, a column for each choice that the file reads otherwise than on record.
+/// Throws InputError with the line for a column that is no choice's, a number out of the choice's range and a text that
+/// is none of its options.
+std::vector<std::vector<std::string>> read_readings(const std::filesystem::path& file, const Choices& choices);
+
+/// Cells of claims without a verdict: one that could not be measured (a run diverged where its scenario does not expect
+/// it, a field refuses the value), and a costly one beyond the readings for those.
+inline constexpr const char* kNotMeasured = "error";
+inline constexpr const char* kNotJudged = "";
+
+/// A reading's verdict on each claim, by name.
+struct ReadingVerdicts {
+  std::vector<std::string> verdicts;
+  std::vector<std::string> problems;  ///< of the claims that could not be measured, for people
+};
+
+/// Judges the claims under one reading. Scenarios run when a claim asks, once, into `directory`, which is removed
+/// afterwards. For several threads, with a directory each. Throws IoError.
+ReadingVerdicts judge_reading(const Readings& readings, std::size_t reading, const std::filesystem::path& directory);
+
+/// robustness.csv: sample, a column for each choice and one for each claim.
+std::string robustness_table(const Readings& readings, const std::vector<ReadingVerdicts>& judged);
+
+/// robustness.json: what the readings' verdicts say of each claim, and the hash of the choices that reach it. Of claims
+/// that are not among the readings', it keeps what such a record from before has.
+Json robustness_json(const Readings& readings, const std::vector<ReadingVerdicts>& judged, const Json& before);
+
+}  // namespace hapbench

@@ -1,0 +1,107 @@
+#include "scenarios/cases/comparison.hpp"
+
+#include <gtest/gtest.h>
+
+#include "scenarios/format/named_files.hpp"
+#include "tests/results/files.hpp"
+#include "tests/scenarios/support/errors.hpp"
+#include "tests/scenarios/support/file_tree.hpp"
+#include "tests/scenarios/support/scenarios.hpp"
+
+namespace hapbench::comparison_test {
+namespace {
+
+namespace fs = std::filesystem;
+
+class ComparisonOf : public testing::Test {
+ protected:
+  fs::path write(const std::string& name, const Json& scenario) const {
+    test::write_plainly(directory_ / name, scenario.dump());
+    return directory_ / name;
+  }
+  /// Two scenes, the second with random springs.
+  ComparisonQuestion two_scenes() const {
+    Json springs = test::minimal_scenario("springs");
+    springs["environment"] = {{"type", "springs"}, {"random", {{"count", 5}}}};
+    springs["initial"] = {{"position_m", {0.001, 0.0, 0.0}}};
+    springs["seed"] = 40;
+    return {.scenarios = {write("plane.json", test::minimal_scenario("plane")), write("springs.json", springs)},
+            .algorithms = {"mean", "summation"},
+            .seeds = 3};
+  }
+  std::string refused(const ComparisonQuestion& question) const {
+    const auto error = test::input_error_of([&] { planned(question); });
+    return error ? error->what() : "";
+  }
+  test::TemporaryDirectory directory_;
+};
+
+TEST_F(ComparisonOf, SeveralScenesNumbersRunsSceneByScene) {
+  const Comparison comparison = planned(two_scenes());
+  ASSERT_EQ(comparison.size(), 12u);
+  EXPECT_EQ(comparison.folder(0), "plane/mean/seed_0");
+  EXPECT_EQ(comparison.folder(5), "plane/summation/seed_2");
+  EXPECT_EQ(comparison.folder(11), "springs/summation/seed_2");
+  EXPECT_EQ(comparison.load(11).scenario.seed, 42);
+  EXPECT_EQ(comparison.load(11).scenario.rendering.algorithm, "summation");
+  ComparisonQuestion one = two_scenes();
+  one.scenarios.pop_back();
+  one.seeds = 1;
+  EXPECT_EQ(planned(one).folder(1), "summation");
+}
+
+TEST_F(ComparisonOf, JitteredScenesStartFromOnePlaceForEachSeed) {
+  ComparisonQuestion question = two_scenes();
+  question.jitter = 1e-4;
+  const Comparison comparison = planned(question);
+  const auto start = [&](std::size_t run) { return comparison.load(run).scenario.initial.position; };
+  for (std::size_t seed = 0; seed < 3; ++seed) {
+    // Norms of sums of three rounded squares are exact to a few units in the last place.
+    EXPECT_NEAR(start(seed).norm(), 1e-4, 1e-18);
+    EXPECT_EQ(start(seed), start(3 + seed)) << "the other algorithm";
+    EXPECT_NE(start(seed), start((seed + 1) % 3));
+    // Springs in the plane stay there. Adding to 1e-3 rounds by up to 1e-19.
+    EXPECT_EQ(start(6 + seed).z(), 0.0);
+    EXPECT_NEAR((start(6 + seed) - Vec3(0.001, 0.0, 0.0)).norm(), 1e-4, 1e-18);
+  }
+}
+
+TEST_F(ComparisonOf, WhatCannotBeComparedSaysWhichFile) {
+  ComparisonQuestion question = two_scenes();
+  Json script = test::minimal_scenario("plane");
+  script["motion"] = {{"position", {{"type", "prescribed"}, {"x_m", 0.0}, {"y_m", 0.0}, {"z_m", 0.0}}}};
+  question.scenarios.push_back(write("script.json", script));
+  EXPECT_NO_THROW(planned(question));
+  question.jitter = 1e-4;
+  EXPECT_NE(refused(question).find("script.json: /motion/position: "), std::string::npos) << refused(question);
+  question = two_scenes();
+  fs::create_directory(directory_ / "copy");
+  question.scenarios.push_back(write("copy/plane.json", test::minimal_scenario("plane")));
+  EXPECT_NE(refused(question).find("a second scenario named \"plane\"; allowed: "), std::string::npos);
+  question = two_scenes();
+  question.overrides = {"seed=9007199254740991"};  // 2^53 - 1: two more is too many
+  EXPECT_NE(refused(question).find("/seed: got 9007199254740991; allowed: at most "), std::string::npos);
+  question.seeds = 1'000'000;
+  EXPECT_NE(refused(question).find("= 4000000 runs; allowed: at most 1000000"), std::string::npos);
+}
+
+/// Two blocks of different grids, one of them twice with another start, however many runs each has and whoever comes
+/// first.
+TEST_F(ComparisonOf, AnyScenesBuildsEachDistinctShellOnce) {
+  for (const unsigned jobs : {1u, 4u}) {
+    Json scene = test::minimal_scenario("block_with_hole");
+    ComparisonQuestion question{.scenarios = {}, .algorithms = {"mean", "summation", "proxy"}, .seeds = 4};
+    for (const auto& [name, grid] : {std::pair{"a", 1e-4}, {"b", 2e-4}, {"c", 1e-4}}) {
+      scene["environment"]["grid_m"] = grid + 1e-6 * jobs;  // shells that no earlier run has left
+      scene["initial"]["position_m"] = {0.0, 0.0, name[0] == 'c' ? 1e-3 : 0.0};
+      question.scenarios.push_back(write(std::string(name) + ".json", scene));
+    }
+    const Comparison comparison = planned(question);
+    const std::size_t before = shared_cache().made();
+    run_all(comparison.scenes, {.threads = jobs, .label = ""});
+    EXPECT_EQ(shared_cache().made() - before, 2u) << jobs << " jobs";
+  }
+}
+
+}  // namespace
+}  // namespace hapbench::comparison_test

@@ -1,0 +1,103 @@
+#include "scenarios/format/json_file.hpp"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <string>
+
+#include "scenarios/format/text_lines.hpp"
+#include "tests/results/files.hpp"
+#include "tests/scenarios/support/errors.hpp"
+
+namespace hapbench::json_file_test {
+namespace {
+
+std::string refusal_of(const std::string& text) {
+  SCOPED_TRACE(text.substr(0, 100));
+  const auto error = test::input_error_of([&] { parse_json(text); });
+  if (!error) return "";
+  EXPECT_EQ(error->kind(), InputError::Kind::shape);
+  return error->what();
+}
+
+std::string nested(int levels) {
+  return std::string(static_cast<std::size_t>(levels), '[') + std::string(static_cast<std::size_t>(levels), ']');
+}
+
+TEST(ParseJson, ReadsJsonAndKeepsTheOrderOfKeys) {
+  EXPECT_EQ(parse_json(" {\"b\": [1, -2.5e3, true, null, \"\\u00e4\"], \"a\": {}}\n").dump(),
+            "{\"b\":[1,-2500.0,true,null,\"\xc3\xa4\"],\"a\":{}}");
+}
+
+TEST(ParseJson, IgnoresAByteOrderMark) {
+  // RFC 8259, section 8.1: parsers may ignore it; editors on some systems write it.
+  EXPECT_EQ(parse_json("\xef\xbb\xbf{\"a\": 1}"), parse_json("{\"a\": 1}"));
+}
+
+TEST(ParseJson, GuessesWhatWasMeant) {
+  const std::pair<std::string, const char*> cases[] = {
+      {"{\"a\": 1,}", "; a comma stands before \"}\""},
+      {"[1,\n 2,\n]", "; a comma stands before \"]\""},
+      {"// here\n{}", "; JSON has no comments"},
+      {"{\"a\": 1 /* here */}", "; JSON has no comments"},
+      {"{\n# here\n\"a\": 1}", "; JSON has no comments"},
+      {"{'a': 1}", "; names and texts stand in double quotes"},
+      {"{a: 1}", "; names and texts stand in double quotes"},
+      {"{\"a\": 1 \"b\": 2}", "; a comma is missing before it"},
+      {"{\"a\": \"x\" \"b\": 2}", "; a comma or colon is missing before it"},
+      {"{\"a\": [1", "; the text ends too early"},
+      {std::string("\xff\xfe{\0}\0", 6), "; the text is UTF-16; allowed: UTF-8"},
+      {"[\"a\", \"b\" \"c\"]", "; a comma or colon is missing before it"},
+      {"[0x10]", "column 3"},
+      {"\"\\x\"", "column 3"},
+      {"{\"a\": 01}", "column 8"}};
+  for (const auto& [text, hint] : cases) EXPECT_TRUE(refusal_of(text).ends_with(hint)) << refusal_of(text);
+}
+
+TEST(ParseJson, RefusesNumbersBeyondDouble) {
+  EXPECT_EQ(refusal_of("{\"time\": {\"step_s\": 1e999}}"), "/time/step_s: got 1e999; allowed: finite numbers");
+  EXPECT_EQ(refusal_of("[1, -1e400]"), "/1: got -1e400; allowed: finite numbers");
+  EXPECT_LT(refusal_of("[1" + std::string(100'000, '0') + "]").size(), 200u);
+  EXPECT_EQ(parse_json("[1e308, 1e-999]"), Json::parse("[1e308, 0.0]"));
+}
+
+TEST(ParseJson, RefusesDuplicateKeysButNotEqualKeysOfDifferentObjects) {
+  EXPECT_EQ(refusal_of("{\"a\": 1, \"b\": 2, \"a\": 1}"), "/a: the key stands twice in one object; allowed: once");
+  EXPECT_EQ(refusal_of("{\"x\": [{}, {\"a\": 1, \"\\u0061\": 2}]}"),
+            "/x/1/a: the key stands twice in one object; allowed: once");
+  EXPECT_NO_THROW(parse_json("{\"a\": {\"a\": [{\"a\": 1}, {\"a\": 1}]}, \"b\": {\"a\": 1}}"));
+}
+
+TEST(ParseJson, RefusesDeepNesting) {
+  EXPECT_NO_THROW(parse_json(nested(64)));
+  EXPECT_NE(refusal_of(nested(65)).find("nested too deeply; allowed: 64 levels"), std::string::npos);
+}
+
+TEST(ParseJson, RefusesObjectsWithMoreThanTenThousandKeys) {
+  const auto object_with = [](int keys) {
+    std::string text = "{";
+    for (int i = 0; i < keys; ++i) text += (i > 0 ? ",\"k" : "\"k") + std::to_string(i) + "\":0";
+    return text + "}";
+  };
+  EXPECT_EQ(parse_json(object_with(10'000)).size(), 10'000u);
+  EXPECT_NE(refusal_of(object_with(10'001)).find("more than 10000 keys"), std::string::npos);
+}
+
+TEST(ReadTextFile, RefusesANameThatTheSystemWouldCut) {
+  EXPECT_TRUE(test::input_error_of([] { read_text_file(std::string("/dev/null\0more", 14), 100); }));
+}
+
+TEST(ReadTextFile, ReadsUpToItsLimitAndNoFurther) {
+  const test::TemporaryDirectory directory;
+  const std::string contents(1 << 20, 'x');
+  test::write_plainly(directory / "file", contents);
+  EXPECT_EQ(read_text_file(directory / "file", contents.size()), contents);
+  const auto refusal = test::input_error_of([&] { read_text_file(directory / "file", contents.size() - 1); });
+  ASSERT_TRUE(refusal);
+  EXPECT_NE(refusal->problem().find("is larger than"), std::string::npos);
+  // A device without end stops at the limit too.
+  EXPECT_TRUE(test::input_error_of([] { read_text_file("/dev/zero", 1 << 20); }));
+}
+
+}  // namespace
+}  // namespace hapbench::json_file_test

@@ -1,0 +1,244 @@
+#include "scenarios/format/load_scenario.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "scenarios/format/bundled_scenarios.hpp"
+#include "scenarios/run/assemble.hpp"
+#include "tests/results/files.hpp"
+#include "tests/scenarios/support/errors.hpp"
+#include "tests/scenarios/support/scenarios.hpp"
+
+/// "extends" and `--set path=value`. What is refused of files that extend others is in
+/// tests/data/golden/refused_scenarios.txt.
+namespace hapbench::load_scenario_test {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kBase = R"({
+  "name": "the base", "description": "springs",
+  "time": {"step_s": 0.0005, "steps": 20},
+  "environment": {"type": "springs", "groups": [{"direction": [1, 0, 0], "count": 2}]},
+  "hand": {"type": "force", "x_N": {"type": "ramp", "start": 1, "rate_per_s": 2}},
+  "rendering": {"reduction": {"threshold": 0.9}, "stiffness_N_per_m": 1000},
+  "expect": {"outcome": "diverges"}
+})";
+
+class Extends : public testing::Test {
+ protected:
+  fs::path write(const std::string& name, const std::string& text) const {
+    fs::create_directories((directory_ / name).parent_path());
+    test::write_plainly(directory_ / name, text);
+    return directory_ / name;
+  }
+  Json merged(const std::string& text) const {
+    write("base.json", kBase);
+    return read_scenario_text(write("mine.json", text)).json;
+  }
+
+  test::TemporaryDirectory directory_;
+};
+
+TEST_F(Extends, MergesObjectsFieldByField) {
+  const Json json = merged(R"({"extends": "base.json", "rendering": {"stiffness_N_per_m": 5, "mass_kg": 1},
+    "environment": {"bilateral": false}})");
+  EXPECT_EQ(json["rendering"],
+            Json::parse(R"({"reduction": {"threshold": 0.9}, "stiffness_N_per_m": 5, "mass_kg": 1})"));
+  EXPECT_EQ(json["environment"]["type"], "springs");
+  EXPECT_EQ(json["environment"]["bilateral"], false);
+  EXPECT_EQ(json["time"], Json::parse(kBase)["time"]);
+  EXPECT_FALSE(json.contains("extends"));
+}
+
+TEST_F(Extends, NullAndListsReplace) {
+  const Json json =
+      merged(R"({"extends": "base.json", "rendering": {"reduction": null}, "environment": {"groups": []}})");
+  ASSERT_TRUE(json["rendering"].contains("reduction"));
+  EXPECT_TRUE(json["rendering"]["reduction"].is_null());
+  EXPECT_EQ(json["environment"]["groups"], Json::array());
+}
+
+TEST_F(Extends, AnObjectOfAnotherTypeReplacesAllOfIt) {
+  EXPECT_EQ(merged(R"({"extends": "base.json", "environment": {"type": "plane"}})")["environment"],
+            Json::parse(R"({"type": "plane"})"));
+  EXPECT_EQ(merged(R"({"extends": "base.json", "hand": {"x_N": {"type": "sine", "mean": 1}}})")["hand"],
+            Json::parse(R"({"type": "force", "x_N": {"type": "sine", "mean": 1}})"));
+  EXPECT_EQ(merged(R"({"extends": "base.json", "hand": {"type": "force", "y_N": 3}})")["hand"],
+            Json::parse(R"({"type": "force", "x_N": {"type": "ramp", "start": 1, "rate_per_s": 2}, "y_N": 3})"));
+}
+
+TEST_F(Extends, NeitherNameNorExpectIsTakenOver) {
+  merged(R"({"extends": "base.json"})");
+  const Scenario scenario = load_scenario(directory_ / "mine.json").scenario;
+  EXPECT_EQ(scenario.name, "mine");
+  EXPECT_EQ(scenario.description, "springs");
+  EXPECT_EQ(scenario.expect.outcomes, Scenario{}.expect.outcomes);
+}
+
+TEST_F(Extends, RelativePathsStartFromTheFileThatHasThem) {
+  write("there/data/cube.obj", test::read_file(test::data_directory() / "cube.obj"));
+  write("there/base.json", R"({"time": {"step_s": 0.0005, "steps": 20},
+    "environment": {"type": "mesh", "file": "data/cube.obj", "scale": 0.001}})");
+  write("between/middle.json", R"({"extends": "../there/base.json", "seed": 2})");
+  const LoadedScenario loaded = load_scenario(write("mine.json", R"({"extends": "between/middle.json", "seed": 3})"));
+  EXPECT_EQ(loaded.scenario.seed, 3);
+  EXPECT_TRUE(check_named_files(loaded).empty());
+  // The effective scenario names it from where it stands, and extends nothing.
+  const Json effective = effective_scenario(loaded.scenario, directory_.path());
+  EXPECT_EQ(effective["environment"]["file"], "there/data/cube.obj");
+  EXPECT_FALSE(effective.contains("extends"));
+}
+
+TEST_F(Extends, AcceptsItselfInNoJsonInMemory) {
+  Json json = Json::parse(kBase);
+  json["extends"] = "poke_plane";
+  const auto error = test::input_error_of([&] { read_scenario(json, ""); });
+  ASSERT_TRUE(error);
+  EXPECT_EQ(error->place(), "/extends");
+}
+
+constexpr const char* kScenario = R"({
+  "name": "base",
+  "time": {"step_s": 0.0005, "steps": 20},
+  "environment": {"type": "springs", "groups": [{"direction": [1, 0, 0], "count": 2}, {"direction": [0, 1, 0], "count": 3}]},
+  "rendering": {"reduction": {"threshold": 0.9}}
+})";
+
+class Override : public testing::Test {
+ protected:
+  Override() { test::write_plainly(file_, kScenario); }
+
+  Json with(const std::vector<std::string>& overrides) const {
+    return effective_scenario(load_scenario(file_, overrides).scenario, directory_.path());
+  }
+  /// The refusal, without the file that stands before it.
+  std::string refusal(const std::string& override) const {
+    SCOPED_TRACE(override);
+    const auto error = test::input_error_of([&] { with({override}); });
+    if (!error) return "";
+    const std::string message = error->what(), before = file_.string() + ": ";
+    EXPECT_EQ(message.find(before), 0u) << message;
+    return message.substr(before.size());
+  }
+
+  test::TemporaryDirectory directory_;
+  std::filesystem::path file_ = directory_ / "base scenario.json";
+};
+
+TEST_F(Override, SetsWhatItsPathLeadsTo) {
+  const struct {
+    std::vector<std::string> overrides;
+    const char *pointer, *value;
+  } kCases[] = {
+      {{"time.steps=7"}, "/time/steps", "7"},
+      {{"rendering.reduction.threshold=0.5"}, "/rendering/reduction/threshold", "0.5"},
+      // Entries of lists, by their index.
+      {{"environment.groups.1.count=9"}, "/environment/groups/1/count", "9"},
+      {{"environment.groups.1.count=9"}, "/environment/groups/0/count", "2"},
+      {{"environment.groups.0.direction.2=4"}, "/environment/groups/0/direction", "[1.0, 0.0, 4.0]"},
+      // Objects that are not there are created.
+      {{"rendering.limits.max_force_N=30"}, "/rendering/limits/max_force_N", "30.0"},
+      {{"record.every=5"}, "/record/every", "5"},
+      // JSON of every kind.
+      {{"rendering.reduction=null"}, "/rendering/reduction", "null"},
+      {{"rendering.local_average=false"}, "/rendering/local_average", "false"},
+      {{"initial.position_m=[0.001, 0, -2e-3]"}, "/initial/position_m", "[0.001, 0.0, -0.002]"},
+      {{R"(environment={"type":"plane"})"}, "/environment/type", "\"plane\""},
+      {{"time.steps=1e3"}, "/time/steps", "1000"},
+      // Anything else is a text.
+      {{"rendering.algorithm=mean"}, "/rendering/algorithm", "\"mean\""},
+      {{R"(rendering.algorithm="mean")"}, "/rendering/algorithm", "\"mean\""},
+      {{"description=a = b, c"}, "/description", "\"a = b, c\""},
+      {{"description="}, "/description", "\"\""},
+      // A later one wins.
+      {{"time.steps=7", "time.steps=8"}, "/time/steps", "8"},
+      {{R"(rendering={"iterations":9})", "rendering.damping_ratio=0"}, "/rendering/iterations", "9"},
+      // The field that says the same is removed.
+      {{"time.duration_s=1"}, "/time/steps", "2000"},
+      {{"time.duration_s=1", "time.steps=8"}, "/time/steps", "8"},
+  };
+  for (const auto& c : kCases)
+    EXPECT_EQ(with(c.overrides).at(Json::json_pointer(c.pointer)), Json::parse(c.value)) << c.overrides.front();
+}
+
+TEST_F(Override, DelayInSecondsIsTheSceneSamples) {
+  const std::string device = R"(device={"type":"impedance","handle_mass_kg":0.1,"delay_s":0.0023})";
+  const auto delays = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), device);
+    const Json json = with(more).at("device");
+    return std::pair(json.value("delay_s", -1.0), json.at("delay_samples").get<double>());
+  };
+  const double step = with({}).at("time").at("step_s");
+  EXPECT_EQ(delays({}), std::pair(0.0023, 0.0023 / step));
+  EXPECT_EQ(delays({"time.step_s=0.001"}), std::pair(0.0023, 0.0023 / 0.001));
+  // One replaces the other.
+  EXPECT_EQ(delays({"device.delay_samples=3"}), std::pair(-1.0, 3.0));
+  EXPECT_EQ(delays({"device.delay_samples=3", "device.delay_s=0.001"}), std::pair(0.001, 0.001 / step));
+  // The effective scenario has both and can be read again, also with another step.
+  const std::string both = "device=" + with({device}).at("device").dump();
+  EXPECT_EQ(with({both}), with({device}));
+  EXPECT_EQ(with({both, "time.step_s=0.0003"}), with({device, "time.step_s=0.0003"}));
+  EXPECT_EQ(
+      refusal(R"(device={"type":"impedance","handle_mass_kg":0.1,"delay_s":0.0023,"delay_samples":2.3})")
+          .find("/device/delay_s: got 0.0023 s beside delay_samples 2.3; allowed: one of the two, or both where they"),
+      0u);
+  EXPECT_NE(refusal(R"(device={"type":"impedance","handle_mass_kg":0.1,"delay_s":-1})").find("/device/delay_s: got -1"),
+            std::string::npos);
+  EXPECT_EQ(
+      refusal(R"(device={"type":"impedance","handle_mass_kg":0.1,"delay_s":9000})").find("/device/delay_s: got 9000"),
+      0u);
+}
+
+TEST_F(Override, IsCheckedLikeTheFile) {
+  const std::pair<const char*, const char*> kRefusals[] = {
+      {"rendering..iterations=1", "/rendering/: unknown field"},
+      {".=1", "/: unknown field"},
+      {"rendering.mass_kg=heavy", "/rendering/mass_kg: got \"heavy\"; allowed: a number > 0"},
+      {"rendering.mass_kg=1e999", "/rendering/mass_kg: got \"1e999\""},
+      {"seed.x=1", "/seed: got {\"x\":1}; allowed: an integer"},
+      {"time.stop_when.0=leaves_hole", "/time/stop_when: got {"},  // absent: an object is made
+      {"environment.groups.2.count=1", "environment.groups.2.count: got list index \"2\"; allowed: 0 ... 1"},
+      {"environment.groups.-1=1", "environment.groups.-1: got list index \"-1\"; allowed: 0 ... 1"},
+      {"environment.groups.99999999999999999999=1", "environment.groups.99999999999999999999: got list index"},
+      {"=5", "--set: got \"=5\"; allowed: path=value, as in rendering.stiffness_N_per_m=40000"},
+  };
+  for (const auto& [override, message] : kRefusals)
+    EXPECT_EQ(refusal(override).find(message), 0u) << override << ": " << refusal(override);
+  EXPECT_NE(refusal(R"(rendering={"iterations":1,"iterations":2})").find("stands twice"), std::string::npos);
+}
+
+TEST_F(Override, NestedDeeplyIsRefused) {
+  std::string path = "rendering";
+  for (int i = 0; i < 63; ++i) path += ".a";
+  EXPECT_EQ(refusal(path + "=1").find("/rendering/a: unknown field"), 0u);
+  EXPECT_EQ(refusal(path + ".a=1").find("--set: got a path of more than 64 keys"), 0u);
+  EXPECT_NE(refusal("rendering=" + std::string(20'000, '[') + std::string(20'000, ']')).find("nested too deeply"),
+            std::string::npos);
+}
+
+/// The warnings about a bundled scenario with these overrides, without the file in front.
+std::vector<std::string> warnings_with(std::vector<std::string> overrides) {
+  std::vector<std::string> warnings;
+  for (const Warning& warning : load_scenario(find_scenario("poke_plane"), overrides).warnings)
+    warnings.push_back(warning.told());
+  return warnings;
+}
+
+TEST(Warnings, NameFieldsThatTheAlgorithmDoesNotRead) {
+  EXPECT_TRUE(warnings_with({"rendering.iterations=3"}).empty()) << "the default";
+  EXPECT_TRUE(warnings_with({"rendering.iterations=7"}).empty()) << "shaped_stiffness reads it";
+  const auto found =
+      warnings_with({"rendering.algorithm=mean", "rendering.iterations=7", "rendering.virtual_coupling_N_per_m=100",
+                     "rendering.angular_velocity_cutoff_Hz=5"});
+  ASSERT_EQ(found.size(), 3u);
+  EXPECT_TRUE(found[0].starts_with("/rendering/iterations: has no effect on this algorithm")) << found[0];
+  EXPECT_TRUE(found[1].ends_with("it is a parameter of virtual_coupling, static_coupling")) << found[1];
+  EXPECT_EQ(found[2], "/rendering/angular_velocity_cutoff_Hz: has no effect without rendering.angular_damping");
+}
+
+}  // namespace
+}  // namespace hapbench::load_scenario_test

@@ -1,0 +1,196 @@
+#include "scenarios/limits/stability/field_limit.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <map>
+
+#include "scenarios/format/bundled_scenarios.hpp"
+#include "scenarios/format/load_scenario.hpp"
+
+/// Limits of springs by theory and by runs, of fields beside K, and under bounds on metrics are in tests/known_answers
+/// and tests/equivalence.
+namespace hapbench::field_limit_test {
+namespace {
+
+using Words = std::vector<std::string>;
+
+struct Asked {
+  const char* scenario;
+  const char* field;
+  Words overrides = {};
+  std::optional<Range> range = {};
+  bool smallest = false;
+  StabilityRule rule = {};
+};
+
+FieldLimit ask(const Asked& asked, const char* algorithm = "summation") {
+  const ScenarioText scenario = read_scenario_text(find_scenario(asked.scenario));
+  LimitQuestion question = limit_question(scenario, asked.overrides, asked.field, asked.range);
+  question.smallest = asked.smallest;
+  static_cast<StabilityRule&>(question) = asked.rule;
+  return field_limit({&scenario, asked.overrides, algorithm, question});
+}
+
+using Stable = std::function<bool(double value)>;
+
+/// What find_tried_edge gives from 1e4 to 1e6: the last stable value, 0 without an edge, -1 for scattered ones.
+double tried_edge(const Stable& stable) {
+  const SearchWay way{.range = {1e4, 1e6, true}};
+  const auto holds = [&](double part) { return stable(way.value_at(part)); };
+  std::map<double, bool> tried = scanned(kEdgeIntervals, holds);
+  const FoundEdge edge = find_tried_edge(way, tried, holds, true, [](std::span<const double>) {});
+  return edge.stable ? way.value_at(*edge.stable) : edge.scattered ? -1.0 : 0.0;
+}
+
+TEST(TriedEdge, IsBelowAnIslandThatBisectionDoesNotMeet) {
+  const Stable islands = [](double K) { return K < 3e5 && !(K > 1.05e5 && K < 1.2e5); };
+  const SearchWay way{.range = {1e4, 1e6, true}};
+  const auto holds = [&](double part) { return islands(way.value_at(part)); };
+  std::map<double, bool> tried = scanned(kEdgeIntervals, holds);
+  EXPECT_NEAR(way.value_at(find_edge(way, tried, holds, true).stable.value()), 3e5, 300.0);
+  EXPECT_NEAR(tried_edge(islands), 1.05e5, 105.0);
+}
+
+TEST(TriedEdge, IsOfAStretchOfTwoPercent) {
+  // 56 234 and 237 137 are values of the scan.
+  EXPECT_EQ(tried_edge([](double K) { return K > 56000.0 && K < 56500.0; }), -1.0);
+  EXPECT_NEAR(tried_edge([](double K) { return (K > 56000.0 && K < 56500.0) || (K > 2e5 && K < 3e5); }), 3e5, 300.0);
+  EXPECT_EQ(tried_edge([](double K) { return std::fmod(std::sqrt(K) + 0.5, 1.0) < 0.5; }), -1.0) << "by chance";
+  EXPECT_EQ(tried_edge([](double) { return false; }), 0.0);
+}
+
+TEST(TriedEdge, LeavesAShareThatMayFail) {
+  EXPECT_NEAR(std::pow(1.0 - may_fail_share(48), 48.0), 0.05, 1e-12);
+  EXPECT_NEAR(may_fail_share(48), 0.0605, 1e-4);
+}
+
+/// A flat tip without damping and friction under 1 N bounces for ever: a run that seems to die out does so by chance.
+TEST(FieldLimit, OfWhatNeverRestsIsNone) {
+  const FieldLimit limit = ask({"poke_plane",
+                                "rendering.stiffness_N_per_m",
+                                {R"(hand={"type":"force","z_N":-1})", "time.duration_s=0.5", "rendering.reduction=null",
+                                 "rendering.damping_ratio=0", R"(rendering.friction={"mu_s_N_s_per_m":0})"}},
+                               "mean");
+  EXPECT_FALSE(limit.value) << *limit.value;
+}
+
+/// 2000 steps, within which a decay of a tenth in a quarter tells stable from vibrating 0.1 % below the limit.
+const Words kLong = {"time.steps=2000"};
+
+/// The handle, 0.1 kg without friction, on an undamped spring behind a delay is unstable at every K, if slowly at small
+/// ones: K = 1 N/m grows by 0.1 % a second.
+const Words kSlow = {"time={\"step_s\":0.001,\"steps\":1000}",
+                     R"(device={"type":"impedance","handle_mass_kg":0.1,"viscous_N_s_per_m":0,"delay_samples":1})",
+                     "rendering.damping_N_s_per_m=0"};
+
+TEST(FieldLimit, IsNoneWhereGrowthIsSlow) {
+  const FieldLimit limit = ask({"single_spring", "rendering.stiffness_N_per_m", kSlow, Range{10.0, 1000.0, false}});
+  EXPECT_FALSE(limit.value) << "35 N/m make half a turn in 100 ms, a quarter of the run";
+  EXPECT_TRUE(limit.theory_has_none);
+  EXPECT_FALSE(limit.theory);
+}
+
+/// A heavy handle that taps a wall bounces below 30 Hz: its force stays, but one that rests is stable up to the edge of
+/// the linear loop alone, 1774 N/m.
+TEST(FieldLimit, OfADeviceAtAWallIsComparedWithItsLinearLoop) {
+  const Words device = {R"(device={"type":"impedance","handle_mass_kg":3,"viscous_N_s_per_m":0.2,"delay_samples":3})"};
+  const FieldLimit limit = ask({.scenario = "tap_wall",
+                                .field = "rendering.stiffness_N_per_m",
+                                .overrides = device,
+                                .rule = {.most_vibration = 1e-3}});
+  ASSERT_TRUE(limit.value && limit.linear);
+  EXPECT_NEAR(*limit.linear, 1773.8, 0.1);
+  EXPECT_TRUE(limit.is_beyond_linear(0.01));
+}
+
+TEST(FieldLimit, OfAFieldOfIntegersIsOne) {
+  // n (2 B dt / M + K dt^2 / M) = 4 with B = 62.6 N s/m, K = 20 000 N/m: n = 5.9.
+  const FieldLimit limit = ask({"single_spring", "environment.groups.0.count", kLong, Range{1.0, 100.0, false}});
+  EXPECT_EQ(*limit.value, 5.0);
+  EXPECT_EQ(limit.beyond->value, 6.0);
+  EXPECT_EQ(*limit.theory, 5.0);
+}
+
+TEST(FieldLimit, SaysWhenThereIsNone) {
+  const FieldLimit stable = ask({"single_spring", "rendering.stiffness_N_per_m", kLong, Range{1e4, 1e5, false}});
+  EXPECT_EQ(*stable.value, 1e5);
+  EXPECT_FALSE(stable.beyond);
+  EXPECT_TRUE(std::isinf(*stable.theory));
+  const FieldLimit undamped = ask({"single_spring",
+                                   "rendering.stiffness_N_per_m",
+                                   {"time.steps=2000", "rendering.damping_ratio=0"},
+                                   Range{1e4, 1e6, false}});
+  EXPECT_FALSE(undamped.value);
+  EXPECT_EQ(undamped.runs.front().verdict, RunVerdict::vibrating);
+}
+
+TEST(FieldLimit, IsDecidedByTheVibrationThatIsAllowed) {
+  // An undamped spring vibrates below K = 4 M / dt^2 = 1.6e6 N/m for ever, and above it diverges.
+  const auto limit = [](double most) {
+    return ask({.scenario = "single_spring",
+                .field = "rendering.stiffness_N_per_m",
+                .overrides = {"time.steps=2000", "rendering.damping_ratio=0"},
+                .range = Range{1e5, 1e7, false},
+                .rule = {.most_vibration = most}});
+  };
+  const FieldLimit any = limit(1e9);
+  ASSERT_TRUE(any.value && any.settled.vibration);
+  EXPECT_NEAR(*any.value, 1.6e6, 0.01 * 1.6e6);
+  EXPECT_EQ(any.beyond->verdict, RunVerdict::diverged);
+  EXPECT_GT(*any.settled.vibration, 0.0);
+  EXPECT_NEAR(any.settled.lambda_max, 1.0, 1e-12);
+  EXPECT_EQ(any.settled.contacts, 1.0);
+  const FieldLimit none = limit(1e-9);
+  EXPECT_FALSE(none.value);
+  EXPECT_EQ(none.runs.front().verdict, RunVerdict::vibrating);
+}
+
+/// A passive hand on a handle with dry friction is stable, although it sticks and slips.
+TEST(FieldLimit, DoesNotBlameDryFrictionForVibration) {
+  const Words rubbing = {R"(device={"type":"impedance","handle_mass_kg":0.136,"coulomb_N":0.25,"delay_samples":1})",
+                         "time.step_s=0.00035"};
+  const FieldLimit limit = ask({"tap_wall", "rendering.stiffness_N_per_m", rubbing, Range{1e3, 1e6, true}});
+  ASSERT_TRUE(limit.value && limit.beyond);
+  EXPECT_EQ(limit.beyond->verdict, RunVerdict::vibrating);
+  EXPECT_FALSE(limit.unstable_alone);
+  EXPECT_GT(limit.settled.touch_speed, 0.0);
+  EXPECT_GT(limit.settled.press, 0.25) << "more than friction alone holds";
+}
+
+TEST(FieldLimit, HasTwoEnds) {
+  const Words pressed = {R"(hand={"type":"force","z_N":-1})", "time.duration_s=0.5", "rendering.reduction=null"};
+  const FieldLimit limit = ask({"poke_plane", "rendering.stiffness_N_per_m", pressed}, "mean");
+  ASSERT_TRUE(limit.value && limit.other.value && limit.other.beyond);
+  EXPECT_EQ(limit.other.beyond->verdict, RunVerdict::went_through);
+  // A force of 1 N presses the flat tip 1 / K deep, and its half width is 0.5 mm: the landing goes deeper.
+  EXPECT_GT(*limit.other.value, 1.0 / 0.0005);
+  EXPECT_LT(limit.other.beyond->value, *limit.other.value);
+  EXPECT_LT(*limit.other.value, 1.01 * limit.other.beyond->value);
+  for (const JudgedValue& run : limit.inconsistent)
+    EXPECT_EQ(is_stable(run.verdict), run.value < limit.other.beyond->value || run.value > limit.value);
+}
+
+TEST(FieldLimit, TellsAToolThatFallsThrough) {
+  const FieldLimit limit = ask({"poke_plane",
+                                "rendering.stiffness_N_per_m",
+                                {R"(hand={"type":"force","z_N":-1})", "time.duration_s=1"},
+                                Range{0.001, 0.01, false}},
+                               "mean");
+  EXPECT_FALSE(limit.value);
+  for (const JudgedValue& run : limit.runs) EXPECT_EQ(run.verdict, RunVerdict::went_through) << run.value;
+  const FieldLimit missed = ask({"poke_plane", "rendering.stiffness_N_per_m", {R"(hand={"type":"none"})"}});
+  for (const JudgedValue& run : missed.runs) EXPECT_EQ(run.verdict, RunVerdict::no_contact) << run.value;
+}
+
+/// What is asked about hand and device alone has no points, and yet a stage that merges the points of a cell.
+TEST(FieldLimit, OfASceneWithLocalAverageIsOne) {
+  const Asked asked{"tap_corner", "rendering.stiffness_N_per_m", {"time.steps=200"}, Range{1e6, 1e8, true}};
+  Asked averaged = asked;
+  averaged.overrides.emplace_back("rendering.local_average=true");
+  EXPECT_EQ(ask(averaged).unstable_alone, ask(asked).unstable_alone);
+}
+
+}  // namespace
+}  // namespace hapbench::field_limit_test

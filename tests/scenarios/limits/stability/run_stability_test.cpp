@@ -1,0 +1,211 @@
+#include "scenarios/limits/stability/run_stability.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+#include "scenarios/format/bundled_scenarios.hpp"
+#include "scenarios/format/load_scenario.hpp"
+#include "scenarios/run/assemble.hpp"
+
+namespace hapbench::run_stability_test {
+namespace {
+
+constexpr std::uint64_t kSteps = 4000;
+
+/// What a classifier makes of a tool whose velocity at row k is given.
+MotionClass class_by(MotionClassifier classifier, const std::function<Vec3(double k)>& velocity) {
+  StepRecord record;
+  for (record.step = 0; record.step < kSteps; ++record.step) {
+    record.tool.velocity = velocity(static_cast<double>(record.step));
+    classifier.on_step(record);
+  }
+  return classifier.motion_class(Outcome::completes);
+}
+
+/// The class of a motion along x.
+MotionClass class_of(const std::function<double(double k)>& velocity) {
+  return class_by(MotionClassifier(kSteps), [&](double k) { return Vec3(velocity(k), 0.0, 0.0); });
+}
+
+TEST(MotionClassifier, OfNoMotionAndOfCreepingIsStable) {
+  EXPECT_EQ(class_of([](double) { return 0.0; }), MotionClass::stable);
+  EXPECT_EQ(class_of([](double) { return 1.0; }), MotionClass::stable);
+  EXPECT_EQ(class_of([](double k) { return std::exp(-0.0001 * k); }), MotionClass::stable)
+      << "slow, but no oscillation";
+  EXPECT_EQ(class_of([](double k) { return 1.0 + 0.001 * k; }), MotionClass::stable) << "falls, but does not oscillate";
+}
+
+TEST(MotionClassifier, OfASustainedOscillationIsVibrating) {
+  for (const double period : {2.0, 17.3, 100.0, 900.0}) {
+    EXPECT_EQ(class_of([&](double k) { return std::cos(2.0 * std::numbers::pi * k / period); }), MotionClass::vibrating)
+        << period;
+  }
+}
+
+TEST(MotionClassifier, SeesTurnsBetweenWhichDryFrictionHoldsAHandle) {
+  const auto sticking = [](double k) {
+    const int phase = static_cast<int>(k) % 40;
+    return phase == 0 ? 1.0 : (phase == 20 ? -1.0 : 0.0);
+  };
+  EXPECT_EQ(class_of(sticking), MotionClass::vibrating);
+}
+
+// An encoder makes jumps of the velocity of a handle that creeps.
+TEST(MotionClassifier, OfAHandleThatMovesTheToolTakesItsOwnVelocity) {
+  MotionClassifier classifier(kSteps);
+  StepRecord record;
+  record.handle_moves_tool = true;
+  for (record.step = 0; record.step < kSteps; ++record.step) {
+    record.tool.velocity = Vec3(record.step % 2 == 0 ? 1.0 : -1.0, 0.0, 0.0);
+    record.handle.velocity = Vec3(0.001, 0.0, 0.0);
+    classifier.on_step(record);
+  }
+  EXPECT_EQ(classifier.motion_class(Outcome::completes), MotionClass::stable);
+}
+
+/// An oscillation that changes by the factor `per_step` in every step. The amplitude of the fourth quarter is that of
+/// the first times per_step^(3/4 kSteps), up to the phase at the beginning of a quarter, a period of 10 rows: 1 % of
+/// it.
+MotionClass class_of_oscillation(double per_step) {
+  return class_of([&](double k) { return std::pow(per_step, k) * std::cos(0.2 * std::numbers::pi * k); });
+}
+
+TEST(MotionClassifier, SeparatesClassesByWhatIsLostInAQuarter) {
+  const double hundredth = std::pow(0.01, 1.0 / (0.75 * kSteps)), tenth = std::pow(0.9, 4.0 / kSteps),
+               growth = std::pow(1.01, 4.0 / kSteps);
+  EXPECT_EQ(class_of_oscillation(1.0 - 1.1 * (1.0 - hundredth)), MotionClass::stable);
+  EXPECT_EQ(class_of_oscillation(1.0 - 0.9 * (1.0 - hundredth)), MotionClass::dying_out);
+  EXPECT_EQ(class_of_oscillation(1.0 - 1.1 * (1.0 - tenth)), MotionClass::dying_out);
+  EXPECT_EQ(class_of_oscillation(1.0 - 0.9 * (1.0 - tenth)), MotionClass::vibrating);
+  EXPECT_EQ(class_of_oscillation(1.0 + 0.8 * (growth - 1.0)), MotionClass::vibrating);
+  EXPECT_EQ(class_of_oscillation(1.0 + 1.2 * (growth - 1.0)), MotionClass::diverged);
+}
+
+TEST(MotionClassifier, OfABeatThatEndsInATroughIsVibrating) {
+  // The last quarter has 70 % of the third's amplitude, which is the second's.
+  EXPECT_EQ(class_of([](double k) {
+              const double quarter = 4.0 * k / kSteps;
+              return (quarter < 3.0 ? 1.0 : 0.7) * std::cos(0.2 * std::numbers::pi * k);
+            }),
+            MotionClass::vibrating);
+}
+
+/// The class of a tool that a hand moves to and fro, 20 mm/s at 1 Hz, and that vibrates besides.
+MotionClass class_of_moved_tool(double amplitude, double frequency) {
+  constexpr double kStep = 0.0005, kTurn = 2.0 * std::numbers::pi * kStep;
+  return class_by(MotionClassifier::of_moved_tool(kSteps, kStep, kSteps), [&](double k) {
+    return Vec3(0.02 * std::cos(kTurn * k), amplitude * std::cos(kTurn * frequency * k), 0.0);
+  });
+}
+
+TEST(MotionClassifier, OfAMovedToolSeesWhatNoHandDoesAndWhatOneFeels) {
+  EXPECT_EQ(class_of_moved_tool(0.0, 0.0), MotionClass::stable) << "the hand alone";
+  EXPECT_EQ(class_of_moved_tool(0.01, 200.0), MotionClass::vibrating);
+  EXPECT_EQ(class_of_moved_tool(0.0005, 200.0), MotionClass::stable) << "half a millimetre a second is not felt";
+  EXPECT_EQ(class_of_moved_tool(0.01, 3.0), MotionClass::stable) << "a hand does that, too";
+}
+
+/// The class of a tool that a hand leads to a place in a quarter of the run and that swings there at 12 Hz.
+MotionClass class_of_swinging_tool(double amplitude, double decay, double still) {
+  constexpr double kStep = 0.0005, kTurn = 2.0 * std::numbers::pi * kStep;
+  return class_by(MotionClassifier::of_moved_tool(kSteps, kStep, still), [&](double k) {
+    const double led = k < kSteps / 4 ? 0.02 : 0.0;
+    return Vec3(led + amplitude * std::exp(-decay * kStep * k) * std::cos(12.0 * kTurn * k), 0.0, 0.0);
+  });
+}
+
+TEST(MotionClassifier, OfAScriptThatHasEndedSeesSlowSwingingToo) {
+  EXPECT_EQ(class_of_swinging_tool(0.01, 0.0, kSteps), MotionClass::stable) << "a script that goes on may swing itself";
+  EXPECT_EQ(class_of_swinging_tool(0.01, 0.0, kSteps / 4), MotionClass::vibrating);
+  EXPECT_EQ(class_of_swinging_tool(0.0005, 0.0, kSteps / 4), MotionClass::stable) << "not felt";
+  EXPECT_EQ(class_of_swinging_tool(0.0, 0.0, kSteps / 4), MotionClass::stable);
+  const double length = 0.0005 * kSteps;
+  const MotionClass dying = class_of_swinging_tool(0.01, 2.0 / length, kSteps / 4);
+  EXPECT_TRUE(dying == MotionClass::stable || dying == MotionClass::dying_out);
+}
+
+TEST(MotionClassifier, OfALimitCycleIsVibratingHoweverItBegan) {
+  EXPECT_EQ(class_of([](double k) { return std::min(1.0, 0.001 * k) * std::sin(k); }), MotionClass::vibrating);
+  EXPECT_EQ(class_of([](double k) { return (1.0 + 9.0 * std::exp(-0.01 * k)) * std::sin(k); }), MotionClass::vibrating);
+}
+
+TEST(MotionClassifier, SeesAnOscillationAlongAnyAxis) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto velocity = [axis](double k) {
+      Vec3 v = Vec3::Ones();  // a drift does not hide it
+      v[axis] = std::fmod(k, 2.0) == 0.0 ? 1.0 : -1.0;
+      return v;
+    };
+    EXPECT_EQ(class_by(MotionClassifier(kSteps), velocity), MotionClass::vibrating) << axis;
+  }
+}
+
+TEST(MotionClassifier, IsAtRestOnlyAfterManyQuietRows) {
+  MotionClassifier classifier(kSteps);
+  StepRecord record;
+  const auto see = [&](double speed, int rows) {
+    for (int i = 0; i < rows; ++i, ++record.step) {
+      record.tool.velocity = Vec3(speed, 0.0, 0.0);
+      classifier.on_step(record);
+    }
+  };
+  see(1.0, 1);
+  see(1e-13, 199);
+  EXPECT_FALSE(classifier.at_rest());
+  see(1e-11, 1);  // not quiet enough: counting begins again
+  see(1e-13, 199);
+  EXPECT_FALSE(classifier.at_rest());
+  see(1e-13, 1);
+  EXPECT_TRUE(classifier.at_rest());
+}
+
+/// What goes on bouncing below 30 Hz is not still, however little it vibrates.
+TEST(StabilityOf, OfSlowBouncesThatGoOnIsVibrating) {
+  const ScenarioText plane = read_scenario_text(find_scenario("poke_plane"));
+  const StabilityRule any_vibration{.most_vibration = 1.0};
+  for (const auto& [zeta, verdict] : {std::pair("0", RunVerdict::vibrating), {"0.5", RunVerdict::stable}}) {
+    const std::vector<std::string> fields = {R"(hand={"type":"force","z_N":-0.05})",
+                                             "time.duration_s=4",
+                                             "rendering.reduction=null",
+                                             "rendering.algorithm=mean",
+                                             "rendering.stiffness_N_per_m=5000",
+                                             std::string("rendering.damping_ratio=") + zeta};
+    const LoadedScenario loaded = load_scenario(plane, fields);
+    EXPECT_EQ(stability_of(loaded, make_shell(loaded.scenario, loaded.files), any_vibration).verdict, verdict) << zeta;
+  }
+}
+
+/// A trembling hand drags a paddle with dry friction: sticking and slipping it shakes at 1.3 mm/s above 30 Hz whatever
+/// the wall, which is no fault of the wall's.
+TEST(StabilityOf, AllowsWhatATremorDoesWithoutAWall) {
+  const ScenarioText paddle =
+      read_scenario_text(installed_folder("scenarios/library") / "validation" / "epfl_paddle.json");
+  const auto at = [&](const char* stiffness) {
+    const std::vector<std::string> fields = {"device.coulomb_N=0.231",
+                                             "device.viscous_N_s_per_m=0.318",
+                                             "device.delay_samples=0.66",
+                                             "device.encoder_step_m=1.36e-5",
+                                             "hand.mass_kg=0.0257",
+                                             "hand.stiffness_N_per_m=919",
+                                             "hand.damping_N_s_per_m=1.27",
+                                             "hand.tremor.rms_m=[1.1e-4,0,0]",
+                                             "seed=3",
+                                             std::string("rendering.stiffness_N_per_m=") + stiffness};
+    return load_scenario(paddle, fields);
+  };
+  const TremorSpeeds alone = tremor_speeds(at("8000"));
+  EXPECT_GT(alone.handle, 1e-4);
+  EXPECT_LT(alone.handle, 0.2 * alone.target);
+  EXPECT_NEAR(alone.target, 4.0 * 2.0 * std::numbers::pi * 12.0 * 1.1e-4, 1e-9);
+  EXPECT_EQ(stability_of(at("300"), nullptr).verdict, RunVerdict::stable);
+  EXPECT_EQ(stability_of(at("8000"), nullptr).verdict, RunVerdict::stable);
+  EXPECT_EQ(stability_of(at("200000"), nullptr).verdict, RunVerdict::vibrating);
+  // Where everything beyond 1 mm/s counted, the finger's own sway at a soft wall would be called vibration.
+  EXPECT_EQ(stability_of(at("300"), nullptr, {.tremor = TremorSpeeds{}}).verdict, RunVerdict::vibrating);
+}
+
+}  // namespace
+}  // namespace hapbench::run_stability_test
