@@ -116,9 +116,9 @@ void apply_override(Json& json, const std::string& text) {
   }
   Json* node = &json;
   std::string path = text.substr(0, equals);
-  constexpr std::ptrdiff_t kMostKeys = 64;  // what walks through JSON goes down by a call for each
-  if (std::count(path.begin(), path.end(), '.') >= kMostKeys)
-    throw InputError(fmt::format("--set: got a path of more than {0} keys; allowed: at most {0}", kMostKeys));
+  constexpr std::ptrdiff_t kDeepestPath = 64;  // what walks through JSON goes down by a call for each
+  if (std::count(path.begin(), path.end(), '.') >= kDeepestPath)
+    throw InputError(fmt::format("--set: got a path of more than {0} keys; allowed: at most {0}", kDeepestPath));
   for (std::size_t start = 0; start != std::string::npos;) {
     const std::size_t dot = path.find('.', start);
     const std::string key = path.substr(start, dot == std::string::npos ? dot : dot - start);

@@ -14,7 +14,7 @@ namespace {
 
 /// By how much the mean may be wrong: by what its numbers may be, or by what another choice of seeds gives; more digits
 /// than means of one rank have in common are not shown.
-std::optional<double> mean_error(const Standing& standing) {
+std::optional<double> error_of_mean(const Standing& standing) {
   if (!standing.spread) return standing.tolerance;
   const double of_seeds = *standing.spread / std::sqrt(static_cast<double>(standing.common_seeds));
   return std::max(
@@ -34,7 +34,7 @@ Columns<Standing> league_columns(bool seeds) {
   columns.add("outcome", "", "how the runs ended; of several ways with their numbers", &Standing::outcome,
               {.heading = "how it ended"});
   columns.add("mean", "by name", "mean of the metric over the common seeds; empty when there is none", &Standing::mean,
-              {.heading = "mean"}, mean_error);
+              {.heading = "mean"}, error_of_mean);
   columns.add("spread", "by name",
               "standard deviation over these seeds; empty when there is one, or when seeds change nothing",
               &Standing::spread, {.heading = seeds ? "spread" : "", .digits = 2});

@@ -62,9 +62,10 @@ def spread_logarithmically(values):
 def over_axes(ax, x, y, series=(), runs=()):
     """`series`: label, values along x and y, and look of each curve, of which equal ones show in stripes; `runs`: a class with the
     places of its runs each; `x`, `y`: the Axis of either direction."""
+    size = 26 if sum(len(xs) for _, xs, _ in runs) < 100 else 9
     for name, xs, ys in runs:
         title, colour, hatch = look_of_class(name)
-        ax.scatter(xs, ys, s=26 if len(xs) < 40 else 9, marker="s", color=colour, edgecolor=PETROL, lw=0.3, hatch=hatch, label=title)
+        ax.scatter(xs, ys, s=size, marker="s", color=colour, edgecolor=PETROL, lw=0.3, hatch=hatch, label=title)
     for (label, xs, ys, own), (place, count) in zip(series, equal_curves([(xs, ys) for _, xs, ys, _ in series])):
         if count > 1 and len(xs) > 1:
             own = {**own, "markevery": (place % len(xs), count)} | ({"ls": striped(own["ls"], place, count)} if own.get("ls", "none") != "none" else {})
