@@ -106,7 +106,7 @@ TEST_F(TableFiles, OnAFullDiskAreAnErrorThatNamesThem) {
     for (; added < 10; ++added) table.add(0, row);
     ADD_FAILURE() << "no error";
   } catch (const IoError& error) {
-    EXPECT_EQ(error.path(), part_);
+    EXPECT_NE(std::string(error.what()).find(part_.string()), std::string::npos) << error.what();
   }
   EXPECT_EQ(added, 3u);  // 8 bytes of header and 63 of each row
 }
