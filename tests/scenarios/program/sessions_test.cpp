@@ -124,7 +124,8 @@ class Session {
   std::string without_places(std::string text) const {
     text = replaced(std::move(text), directory_.path().string(), "<here>");
     text = replaced(std::move(text), fs::canonical(test::hapbench_program()).string(), "<program>");
-    return replaced(std::move(text), fs::canonical(HAPBENCH_SCENARIOS).string(), "<scenarios>");
+    text = replaced(std::move(text), fs::canonical(HAPBENCH_SCENARIOS).string(), "<scenarios>");
+    return replaced(std::move(text), fs::canonical(HAPBENCH_SCENARIOS "/../../results").string(), "<results>");
   }
 
   test::TemporaryDirectory directory_;
