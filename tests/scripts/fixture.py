@@ -1,5 +1,6 @@
 """Shared by the tests of scripts: the tree, the built program (their first argument), and commands to run."""
 import os
+import re
 import subprocess
 import sys
 import tempfile
@@ -14,9 +15,12 @@ sys.path.insert(0, str(SOURCE / "scripts" / "python"))
 
 
 def ran(*words, cwd=None, env=ENVIRONMENT, **environment):
-    """The finished process of a command, with its output. `environment`: variables set besides those of `env`."""
-    return subprocess.run([*map(str, words)], cwd=cwd, env={**env, **environment}, capture_output=True, text=True, encoding="utf-8",
+    """The finished process of a command, with its output, but for lines of progress, which come with time. `environment`: variables
+    set besides those of `env`."""
+    done = subprocess.run([*map(str, words)], cwd=cwd, env={**env, **environment}, capture_output=True, text=True, encoding="utf-8",
                           stdin=subprocess.DEVNULL)
+    done.stderr = re.sub(r"[^\n]*( \.\.\. \d+ s|: +\d+ %[^\n]*)\n", "", done.stderr)
+    return done
 
 
 def must(*words, statuses=(0,), **options):
