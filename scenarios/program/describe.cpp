@@ -98,7 +98,7 @@ std::string text_in(const Json& object, const char* field) {
 
 Description describe_claim(const Json& claim) {
   const auto said = [&claim](const char* field) { return text_in(claim, field); };
-  return {fmt::format("claim {}, verdict on record: {}\n{}\n", bold(stdout, said("id")), verdicts_text(claim),
+  return {fmt::format("claim {}, verdict on record: {}\n{}\n", bold(stdout, said("id")), said("verdict"),
                       wrapped(said("claim"))) +
               facts_text({{"place", said("place")},
                           {"published", said("published")},
@@ -108,7 +108,7 @@ Description describe_claim(const Json& claim) {
                           {"robustness", robustness_text(claim)},
                           {"scenarios", said("scenarios")}},
                          14) +
-              fmt::format("\njudge it again: hapbench reproduce --only {}\n", said("id")),
+              fmt::format("\njudge it again: {} ({} s)\n", said("command"), seconds_text(claim)),
           claim};
 }
 
@@ -144,12 +144,11 @@ Index folder_index(bool summaries = true) {
   for (const BundledStudy& study : bundled_studies())
     index.push_back({"study", study.name, study.summary, [study] { return describe_study(study); }});
   for (const Json& claim : list_on_record("claims"))
-    index.push_back(
-        {"claim",
-         claim.at("id"),
-         claim.at("claim"),
-         [claim] { return describe_claim(claim); },
-         {{"verdict", claim.at("verdict")}, {"majority", claim.at("majority")}, {"source", claim.at("place")}}});
+    index.push_back({"claim",
+                     claim.at("id"),
+                     claim.at("claim"),
+                     [claim] { return describe_claim(claim); },
+                     {{"verdict", claim.at("verdict")}, {"source", claim.at("place")}}});
   for (const Json& choice : list_on_record("choices"))
     index.push_back({"choice", choice.at("id"), "", [choice] { return describe_choice(choice); }});
   return index;
@@ -290,8 +289,8 @@ std::string scene_of(const std::string& name) {
 /// The line of a thing. Scenarios that are one scene under several algorithms share the line of the first.
 std::string entry_of(const Index& all, const Named& first) {
   if (first.kind == "claim")
-    return entry(fmt::format("{:<5}{}", first.name, verdicts_text(first.more)), first.summary, 2, kColumn,
-                 output_width());
+    return entry(fmt::format("{:<5}{}", first.name, first.more.at("verdict").get<std::string>()), first.summary, 2,
+                 kColumn, output_width());
   const std::string scene = scene_of(first.name);
   std::vector<std::string> algorithms;
   for (const Named& thing : all) {

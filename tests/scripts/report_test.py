@@ -143,13 +143,12 @@ class Page(WithResults):
 
     def test_the_ledger_tells_how_robust_its_verdicts_are(self):
         page = self.full_page()
-        for text in ("this verdict in 64 of 64 samples<", "the recorded verdict in 24", "depends on no recorded choice",
-                     "its first-order Sobol index S", "One verdict would survive."):
+        for text in ("steady: 64 of 64<", "fragile: 24 of 64<", "not sampled<", "One verdict is steady."):
             self.assertIn(text, page)
-        # Where most samples have another verdict, that one comes first.
-        row = self.part(page, 'id="claim-C1"', "</tr>")
-        self.assertLess(row.index("not reproduced"), row.index("reproduced in kind"))
-        self.assertIn("in most samples", row)
+        # What is contradicted comes first.
+        self.assertLess(page.index('id="claim-C3"'), page.index('id="claim-C0"'))
+        for text in ("Few points are left", "hapbench reproduce --only C0", "<td>2</td>"):
+            self.assertIn(text, self.part(page, 'id="main-results"', "</table>"))
         # What was found on the way is counted apart.
         self.assertIn('id="claim-C5"', self.part(page, 'id="findings-table"', "</table>"))
         self.assertNotIn('id="claim-C5"', self.part(page, 'id="ledger-table"', "</table>"))
@@ -286,7 +285,7 @@ class BadInput(WithResults):
     def test_claims(self):
         for value, said in (([], "got []"), ({"claims": 1}, "/claims: got 1; allowed: an array"),
                             ({"claims": [1]}, "/claims/0: got 1; allowed: an object"),
-                            ({"claims": [claim("refuted", majority=1)]}, '/claims/0/majority: got 1; allowed: "reproduced"'),
+                            ({"claims": [claim("refuted", sureness=1)]}, '/claims/0/sureness: got 1; allowed: "steady"'),
                             ({"claims": [claim("maybe")]}, '/claims/0/verdict: got "maybe"; allowed: "reproduced"')):
             file = self.written("claims.json", json.dumps(value))
             self.assertIn(said, self.refused(self.results, "--claims", file))
