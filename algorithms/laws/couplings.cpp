@@ -48,15 +48,40 @@ class SeriesLaw : public ForceLaw {
   Eigen::LLT<Mat3> series_;  ///< of M of the last contacts
 };
 
+constexpr OwnParameter kAlongSum[] = {
+    {"along_sum",
+     {0.0, 1.0, "1"},
+     0.0,
+     "0: a coupling spring in space; 1: a scalar one along the sum of the depths, whose direction the force keeps"}};
+
 /// The formula divided by K_vc, so that K = 0 needs no case of its own.
 class VirtualCoupling final : public SeriesLaw {
  public:
   explicit VirtualCoupling(const RenderingConfig& config)
-      : SeriesLaw(config.stiffness, 1.0, config.virtual_coupling ? config.stiffness / *config.virtual_coupling : 1.0) {}
+      : SeriesLaw(config.stiffness, 1.0, config.virtual_coupling ? config.stiffness / *config.virtual_coupling : 1.0),
+        along_sum_(own_value(config, "virtual_coupling", kAlongSum[0]) >= 0.5) {}
+
+  LawForce evaluate(ContactBuffer& contacts) noexcept override {
+    if (!along_sum_) return SeriesLaw::evaluate(contacts);
+    set_weights(contacts, 1.0);
+    const Mat3 S_sum = stiffness_tensor(contacts);
+    const Vec3 sum = weighted_depth(contacts), u = sum.normalized();
+    passed_ = shift_ / (shift_ + scale_ * u.dot(S_sum * u));
+    return {-passed_ * K_ * sum, passed_ * S_sum};
+  }
 
   SpringState spring_state(const ContactBuffer& contacts, const Vec3& spring, const Vec3& tip) const noexcept override {
     return K_ == 0.0 ? SpringState{} : springs(contacts, spring, spring * (scale_ / K_), tip, K_);
   }
+
+  Vec3 turning_velocity(const ContactBuffer& contacts, const Mat3& S, const ToolState& tool) const noexcept override {
+    return along_sum_ ? Vec3(passed_ * ForceLaw::turning_velocity(contacts, S, tool))
+                      : SeriesLaw::turning_velocity(contacts, S, tool);
+  }
+
+ private:
+  bool along_sum_;
+  double passed_ = 1.0;  ///< part of the sum that a scalar coupling passes on
 };
 
 /// (I + U U^T)^-1 U has the singular values s / (1 + s^2) <= 1/2, and |(d_1 … d_n)| <= sqrt(n) d.
@@ -84,14 +109,16 @@ AlgorithmEntry virtual_coupling_entry() {
       .name = "virtual_coupling",
       .summary = "all springs in series with one quasi-static coupling spring",
       .formula =
-          "f = -K_vc (K_vc I + K S_sum)^-1 K sum d_i u_i, S = K_vc (K_vc I + K S_sum)^-1 S_sum, S_sum = sum u u^T",
+          "f = -K_vc (K_vc I + K S_sum)^-1 K sum d_i u_i, S = K_vc (K_vc I + K S_sum)^-1 S_sum, S_sum = sum u u^T; along "
+          "the sum g of the depths alone: f = -q K g, S = q S_sum, q = K_vc / (K_vc + K <u, S_sum u>), u = g / |g|",
       .source = "thesis Fig. 2d",
       .known_failure = "bounds the stiffness, but the force still follows the direction with most points",
       .parameters = kParameters,
   };
   return {.info = &kInfo,
           .make_law = law_of<VirtualCoupling>,
-          .theory = {.force_bound = virtual_coupling_bound, .wedge_stiffness = virtual_coupling_wedge}};
+          .theory = {.force_bound = virtual_coupling_bound, .wedge_stiffness = virtual_coupling_wedge},
+          .own_parameters = kAlongSum};
 }
 
 namespace {

@@ -13,6 +13,10 @@ constexpr NumberRange kCoordinate = {-1000.0, 1000.0, "m"};
 constexpr NumberRange kAngle = {-6.3, 6.3, "rad"};  ///< a full turn either way
 
 constexpr Choice<TargetDisplay> kDisplays[] = {{"panel", TargetDisplay::panel}, {"height", TargetDisplay::height}};
+constexpr Choice<LowForce> kLowForces[] = {{"restarts", LowForce::restarts},
+                                           {"pauses", LowForce::pauses},
+                                           {"closes", LowForce::closes},
+                                           {"nothing", LowForce::nothing}};
 constexpr Choice<PressForce> kPressForces[] = {{"rendered", PressForce::rendered}, {"spring", PressForce::spring}};
 
 }  // namespace
@@ -98,6 +102,8 @@ static void describe(Fields& f, Threshold& threshold) {
            "of a first-order low-pass; null: every sample counts");
   f.number("grace_s", threshold.grace, {0.0, 1000.0, "s"},
            "how long it may be less than least_press_N without a break of the hold");
+  f.choice("low", threshold.low, kLowForces, "effect",
+           "of a longer dip: the hold restarts, or pauses, the target closes, or nothing");
 }
 
 static void describe(Fields& f, TargetRules& task) {

@@ -103,11 +103,11 @@ std::string said_of(const Json& object, std::initializer_list<const char*> field
 
 Description describe_claim(const Json& claim) {
   const std::string id = claim.at("id");
-  return {fmt::format("claim {}, verdict on record: {}\n{}\n", bold(stdout, id), verdicts_text(claim),
+  return {fmt::format("claim {}, verdict on record: {}\n{}\n", bold(stdout, id), text_in(claim, "verdict"),
                       wrapped(text_in(claim, "claim"))) +
               said_of(claim, {"place", "published", "measured", "rule", "why"}) +
               facts_text({{"robustness", robustness_text(claim)}}, 14) + said_of(claim, {"scenarios"}) +
-              fmt::format("\njudge it again: hapbench reproduce --only {}\n", id),
+              fmt::format("\njudge it again: {} ({} s)\n", text_in(claim, "command"), seconds_text(claim)),
           claim};
 }
 
@@ -137,12 +137,11 @@ Index folder_index(bool summaries = true) {
   for (const BundledStudy& study : bundled_studies())
     index.push_back({"study", study.name, study.summary, [study] { return describe_study(study); }});
   for (const Json& claim : list_on_record("claims"))
-    index.push_back(
-        {"claim",
-         claim.at("id"),
-         claim.at("claim"),
-         [claim] { return describe_claim(claim); },
-         {{"verdict", claim.at("verdict")}, {"majority", claim.at("majority")}, {"source", claim.at("place")}}});
+    index.push_back({"claim",
+                     claim.at("id"),
+                     claim.at("claim"),
+                     [claim] { return describe_claim(claim); },
+                     {{"verdict", claim.at("verdict")}, {"source", claim.at("place")}}});
   for (const Json& choice : list_on_record("choices"))
     index.push_back({"choice", choice.at("id"), "", [choice] { return describe_choice(choice); }});
   return index;
@@ -320,7 +319,7 @@ std::string list_text(const Index& all, bool names_alone) {
     if (names_alone) {
       names += ", " + thing.name;
     } else {
-      text += entry(is_claim ? fmt::format("{:<5}{}", thing.name, verdicts_text(thing.more)) : thing.name,
+      text += entry(is_claim ? fmt::format("{:<5}{}", thing.name, thing.more.at("verdict").get<std::string>()) : thing.name,
                     is_claim ? thing.summary : short_summary(thing.summary), 2, kColumn, output_width());
     }
   }

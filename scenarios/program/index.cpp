@@ -300,7 +300,6 @@ constexpr Word kWords[] = {
     {"claims.json", kResultFile, "the ledger of reproduce: claims, what was measured, verdicts, robustness"},
     {"claims.md", kResultFile, "the ledger of reproduce, for people"},
     {"choices.json", kResultFile, "what the thesis leaves open and what was chosen; \"describe choices_schema\""},
-    {"choices.md", kResultFile, "the choices on record, for people"},
     {"robustness.csv", kResultFile, "of reproduce --choices: the choices and verdicts of each reading"},
     {"robustness.json", kResultFile,
      "how many samples have the verdict on record, and which choices decide it, for each claim"},
@@ -312,7 +311,7 @@ std::vector<Word> all_words() {
   std::vector<Word> all(std::begin(kWords), std::end(kWords));
   for (const OutcomeInfo& outcome : outcome_infos()) all.push_back({outcome.name, kOutcome, outcome.meaning});
   for (const RunVerdictText& verdict : run_verdict_texts()) all.push_back({verdict.name, kMotion, verdict.meaning});
-  for (const auto& [name, meaning] : kVerdicts) all.push_back({name, kVerdict, meaning});
+  for (const auto& [name, meaning, mark] : kVerdicts) all.push_back({name, kVerdict, meaning});
   return all;
 }
 

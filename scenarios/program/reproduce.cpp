@@ -19,6 +19,7 @@
 #include "scenarios/run/progress_bar.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/thesis/ledger.hpp"
+#include "scenarios/thesis/measurements.hpp"
 #include "scenarios/thesis/robustness.hpp"
 
 namespace hapbench {
@@ -74,15 +75,24 @@ class ThesisRuns {
   /// Runs all of them on several threads.
   void run_all(const JobOptions& jobs) {
     std::vector<std::vector<std::string>> unmet(scenarios_.size());
-    for_each_job(unmet.size(), jobs, [&](std::size_t i) { unmet[i] = run(scenarios_[i]); });
-    for (std::size_t i = 0; i < unmet.size(); ++i) unmet_[scenarios_[i].name] = unmet[i];
+    std::vector<double> seconds(scenarios_.size());
+    for_each_job(unmet.size(), jobs,
+                 [&](std::size_t i) { seconds[i] = seconds_of(1, [&] { unmet[i] = run(scenarios_[i]); }); });
+    for (std::size_t i = 0; i < unmet.size(); ++i) {
+      unmet_[scenarios_[i].name] = unmet[i];
+      seconds_[scenarios_[i].name] = seconds[i];
+    }
   }
 
   /// Runs one of them unless that has been done.
   void provide(const std::string& name) {
     const auto bundled = std::ranges::find(scenarios_, name, &BundledScenario::name);
-    if (bundled != scenarios_.end() && !unmet_.contains(name)) unmet_[name] = run(*bundled);
+    if (bundled != scenarios_.end() && !unmet_.contains(name))
+      seconds_[name] = seconds_of(1, [&] { unmet_[name] = run(*bundled); });
   }
+
+  /// Those that a run took; 0 for results that were current.
+  double seconds(const std::string& name) const { return seconds_.contains(name) ? seconds_.at(name) : 0.0; }
 
   /// What runs did otherwise than their scenarios expect, by their names.
   const std::map<std::string, std::vector<std::string>>& unmet() const { return unmet_; }
@@ -98,6 +108,7 @@ class ThesisRuns {
   bool anew_;
   std::vector<BundledScenario> scenarios_;
   std::map<std::string, std::vector<std::string>> unmet_;
+  std::map<std::string, double> seconds_;
 };
 
 /// Judges the claims by the thesis's runs.
@@ -105,9 +116,12 @@ std::vector<JudgedClaim> judge(const std::vector<Claim>& claims, const Published
                                const Choices& choices, ThesisRuns& runs, bool progress) {
   std::set<std::string> used;  // scenarios of the current claim
   const auto note = [&](const std::string& scenario) { used.insert(scenario); };
+  double providing = 0.0, running = 0.0;  // seconds of the current claim: for what others share, of its own runs
+  std::set<std::string> provided;
   const auto provide = [&](const std::string& scenario) {
     note(scenario);
-    runs.provide(scenario);
+    providing += seconds_of(1, [&] { runs.provide(scenario); });
+    if (provided.insert(scenario).second) running += runs.seconds(scenario);
   };
   const Evidence evidence{published, runs.directory(), provide, {}, note};
   std::vector<JudgedClaim> judged;
@@ -115,9 +129,12 @@ std::vector<JudgedClaim> judge(const std::vector<Claim>& claims, const Published
   for (const Claim& claim : claims) {
     bar.show(judged.size());
     used.clear();
-    Finding finding = claim.finding(evidence);
+    provided.clear();
+    providing = running = 0.0;
+    Finding finding;
+    const double measuring = seconds_of(1, [&] { finding = claim.finding(evidence); }) - providing;
     const std::vector<std::string> scenarios(used.begin(), used.end());
-    judged.push_back({claim, std::move(finding), scenarios, choices.reach(scenarios, claim.rule)});
+    judged.push_back({claim, std::move(finding), scenarios, choices.reach(scenarios, claim.rule), running + measuring});
   }
   return judged;
 }
@@ -176,16 +193,16 @@ std::string claims_text(const std::vector<JudgedClaim>& judged) {
 /// The claims of the ledger.
 Columns<Json> claim_columns() {
   Columns<Json> columns;
-  columns.print("id", "", "id of a claim, which describe explains",
-                [](const Json& claim) { return claim.at("id").get<std::string>(); });
-  columns.print("verdict", "", "on the claim; where most samples of the choices have another one, that in brackets",
-                verdicts_text);
-  columns.print(
-      "robustness", "",
-      "the share of the samples of the choices on record in which the verdict is the same, and what decides it",
-      robustness_text);
-  columns.print("measured", "", "what the claim's verdict is about",
-                [](const Json& claim) { return claim.at("measured").get<std::string>(); });
+  const auto text_of = [](const char* key) {
+    return [key](const Json& claim) { return claim.at(key).get<std::string>(); };
+  };
+  columns.print("id", "", "id of a claim, which describe explains", text_of("id"));
+  columns.print("verdict", "", "on the claim", text_of("verdict"));
+  columns.print("sureness", "",
+                "steady: more than half of the samples of the choices on record have the verdict; else fragile, or not "
+                "sampled",
+                text_of("sureness"));
+  columns.print("measured", "", "what the claim's verdict is about", text_of("measured"));
   return columns;
 }
 
@@ -219,7 +236,6 @@ int reproduce(const ReproduceOptions& options) {
   if (ledger) {
     report.files().write(*ledger, json_text(json));
     report.files().write(fs::path(*ledger).replace_extension(".md"), ledger_markdown(json));
-    report.files().write(ledger->parent_path() / "choices.md", choices.markdown());
     report.say(fmt::format("\nledger in {}\n", ledger->string()));
   } else {
     report.say("\nno ledger is written of single claims without --ledger FILE\n");
@@ -255,8 +271,7 @@ void add_reproduce(CommandLine& line) {
       "robustness.csv and .json beside the ledger, if there is one; with --only, .json keeps what it has of other "
       "claims");
   command.footer(
-      "choices.md beside the ledger lists what the thesis leaves open (results/reference/choices.json); "
-      "scripts/readings.py draws readings of it.\n"
+      "results/reference/choices.json has what the thesis leaves open; scripts/readings.py draws readings of it.\n"
       "Exit status: 0 success, 2 bad input or usage, 3 a run did not end as its scenario expects, 130 stopped by Ctrl-C.");
 }
 

@@ -44,15 +44,6 @@ class DenseShaping {
 
 // ---- T4, T4b: one step's work for the most contacts of a task [s].
 
-/// Floating-point operations for n contacts: 5 for a scalar product, 1 for its square, 2 for a term of the ratio; with
-/// the tensor 12 to add u u^T, 17 for u^T S u and its quotient.
-double dense_operations(double n) {
-  return n * n * (6.0 + 2.0 * kIterations);
-}
-double tensor_operations(double n) {
-  return n * (12.0 + (12.0 + 17.0) * kIterations);
-}
-
 /// Contacts of task 3 with the drill upright and pressed against the wall, of the row that has most: the extreme case
 /// of 2.8, almost a thousand.
 ContactBuffer extreme_contacts(const Evidence& e) {
@@ -79,19 +70,11 @@ Measured measure_deadline(const Evidence& e) {
              })}}}}};
 }
 
-std::string deadline_text(const MeasuredCase& m, double deadline) {
-  return fmt::format(
-      "{} contacts of task 3, upright and pressed hard: n × n matrix {:.0f} µs ({:.2g} operations), reduced first {:.0f} µs, tensor without reduction "
-      "{:.1f} µs ({:.2g} operations); deadline {:.0f} µs",
-      m["points"], 1e6 * m["matrix"], dense_operations(m["points"]), 1e6 * m["reduced"], 1e6 * m["tensor"],
-      tensor_operations(m["points"]), 1e6 * deadline);
-}
-
 Finding judge_dense_deadline(const Measured& measured, const PublishedNumbers& published) {
   const MeasuredCase& m = measured.at(0);
   const double deadline = published["T4.step"].mean;
   const bool missed = m["matrix"] > deadline, met = m["reduced"] < deadline;
-  return {decide(missed && met, met), deadline_text(m, deadline),
+  return {decide(missed && met, met), "",
           missed ? fmt::format("in the dense form the thesis uses, {}",
                                met ? "the reduction is needed and suffices" : "even the reduction does not suffice")
                  : "this machine is fast enough for the dense form"};
@@ -101,7 +84,7 @@ Finding judge_tensor_deadline(const Measured& measured, const PublishedNumbers& 
   const MeasuredCase& m = measured.at(0);
   const double deadline = published["T4.step"].mean;
   const bool met = m["tensor"] < deadline;
-  return {found(met), deadline_text(m, deadline),
+  return {found(met), "",
           met ? "through the 3 × 3 stiffness tensor all points are shaped in time without a reduction"
               : "without the reduction the tensor form misses the deadline, too"};
 }
@@ -138,12 +121,7 @@ Finding judge_loop_load(const Measured& measured, const PublishedNumbers& p) {
   const bool small = m["reduced_3"] - m["reduced_0"] <= threshold(p, "small_load");
   const bool falls = m["reduced_3"] < m["unreduced_3"];
   return {
-      decide(small && falls, small || falls),
-      fmt::format("task 3, up to {} points, share of the period: dense form without reduction {:.2g} %, with it "
-                  "{:.2g} %, of which the iterations {:.2g} %; tensor form {:.2g} % and {:.2g} %",
-                  m["points"], 100.0 * m["unreduced_3"], 100.0 * m["reduced_3"],
-                  100.0 * (m["reduced_3"] - m["reduced_0"]), 100.0 * m["tensor_unreduced_3"],
-                  100.0 * m["tensor_reduced_3"]),
+      decide(small && falls, small || falls), "",
       fmt::format("the iterations cost {}; the reduction {} the load of the dense form and {} that of the tensor form",
                   small ? "next to nothing" : "more than that", falls ? "lowers" : "raises",
                   m["tensor_reduced_3"] < m["tensor_unreduced_3"] ? "lowers" : "raises")};

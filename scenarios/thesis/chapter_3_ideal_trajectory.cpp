@@ -43,22 +43,21 @@ Finding judge_ideal_trajectory(const Measured& measured, const PublishedNumbers&
   const double depth = around * published["J1.depth"].mean, lateral = around * published["J1.lateral"].mean;
   const MeasuredCase& gentlest = measured.front();
   // No number is far off.
-  const bool follows = std::abs(gentlest["height"]) <= depth && gentlest["inside"] <= depth;
-  bool on_line = true, above = true;
-  std::string text, as_high;
+  const bool follows = std::abs(gentlest["height"]) <= depth;
+  bool on_line = true, above = true, shallow = true;
+  std::string as_high;
   for (const MeasuredCase& m : measured) {
     on_line = on_line && m["lateral"] <= lateral;
+    shallow = shallow && m["inside"] <= depth;
     if (m["force"] > split) above = above && std::abs(m["height"]) > std::abs(gentlest["height"]);
     if (m["force"] < split && !(std::abs(m["height"]) <= depth)) append_item(as_high, m.name, ", ");
-    append_item(text, fmt::format("{}: {:.2f}, {:.2f}, {:.2f}", m.name, 1e3 * m["height"], 1e3 * m["lateral"],
-                                  1e3 * m["inside"]));
   }
-  return {decide(false, follows && on_line && above),
-          "height off on average, distance to the axis off at most, inside at most, in mm: " + text,
-          fmt::format("the gentlest hand {}; {}; the distance to the axis is {}", follows ? "follows" : "is off",
+  return {decide(false, follows && on_line && above && shallow), "",
+          fmt::format("the gentlest hand {}; {}; the distance to the axis is {}, the depth {}",
+                      follows ? "follows" : "is off",
                       as_high.empty() ? "the offset in height starts above 2 N"
                                       : "the height is as far off below 2 N, with " + as_high,
-                      on_line ? "as published" : "further off")};
+                      on_line ? "as published" : "further off", shallow ? "as published" : "more than published")};
 }
 
 // ---- J2: the tilt at which the lower edge of the tip leaves the hole, by bisection.
@@ -78,7 +77,7 @@ Measured measure_end_of_contact(const Evidence& e) {
 Finding judge_end_of_contact(const Measured& measured, const PublishedNumbers& published) {
   const double tilt = measured.at(0)["tilt"], printed = published["J1.tilt"].at_most;
   const bool same = std::abs(tilt - printed) < 5e-4;  // the printed digits
-  return {decide(same, false), fmt::format("{:.6f} rad", tilt),
+  return {decide(same, false), "",
           same ? "π / 3 exactly, for a drill of half the hole's diameter" : "another tilt than printed"};
 }
 

@@ -29,12 +29,9 @@ Finding judge_median_line(const Measured& measured, const PublishedNumbers&) {
   const MeasuredCase& m = measured.at(0);
   const bool flips = m["shortest_product"] < 0.0;
   const bool steady = m["normal_product"] > kSameDirection;
-  return {
-      decide(flips && steady, flips),
-      fmt::format("gradients across the median line: inner product {:.2g} (shortest distance), {:.2g} (surface normal)",
-                  m["shortest_product"], m["normal_product"]),
-      fmt::format("the shortest distance {}, the surface normal {}", flips ? "flips" : "does not flip",
-                  steady ? "does not" : "turns, too")};
+  return {decide(flips && steady, flips), "",
+          fmt::format("the shortest distance {}, the surface normal {}", flips ? "flips" : "does not flip",
+                      steady ? "does not" : "turns, too")};
 }
 
 // ---- G1b: what the underestimated depth does in task 2. The thesis calls the error negligible on its system, because
@@ -94,13 +91,7 @@ Finding judge_underestimation(const Measured& measured, const PublishedNumbers& 
   const MeasuredCase& m = measured.at(0);
   const double small = threshold(published, "negligible"), shallow = published["G1.negligible"].at_most;
   const bool force = m["force"] <= small, way = m["way"] <= small * shallow, depth = m["depth_95"] <= small * shallow;
-  return {decide(force && way, force || way || depth),
-          fmt::format(
-              "{:.0f} contacts of task 2 up to {} mm deep: depths fall short by {:.1f} µm on average ({:.0f} % of the "
-              "depth), {:.1f} µm at the 95th percentile, {:.0f} µm at most; the force of the same contacts is off by "
-              "{:.1f} % rms, the way of a run with exact depths by {:.0f} µm rms",
-              m["contacts"], plain(1e3 * shallow), 1e6 * m["depth_mean"], 100.0 * m["share"], 1e6 * m["depth_95"],
-              1e6 * m["depth_max"], 100.0 * m["force"], 1e6 * m["way"]),
+  return {decide(force && way, force || way || depth), "",
           fmt::format("the shortfall is {} of {} mm for 95 % of the contacts, and {} for the force and {} for the way",
                       depth ? "a negligible part" : "no negligible part", plain(1e3 * shallow),
                       force ? "negligible" : "not negligible", way ? "negligible" : "not negligible")};
@@ -130,9 +121,7 @@ Measured measure_depth_cost(const Evidence& e) {
 Finding judge_depth_cost(const Measured& measured, const PublishedNumbers& p) {
   const MeasuredCase& m = measured.at(0);
   const double times = m["normal_projection"] / m["surface_normal"];
-  return {decide(times >= threshold(p, "huge"), times > 1.0),
-          fmt::format("a contact's depth takes {:.1f} ns along the normal, {:.1f} ns with the shortest distance",
-                      1e9 * m["normal_projection"], 1e9 * m["surface_normal"]),
+  return {decide(times >= threshold(p, "huge"), times > 1.0), "",
           fmt::format("{:.2g} times as much, for a cylinder; a mesh, which the thesis means besides, is not looked at",
                       times)};
 }
@@ -142,7 +131,7 @@ Finding judge_depth_cost(const Measured& measured, const PublishedNumbers& p) {
 
 Finding judge_highest_depth(const Measured& m, const PublishedNumbers& p) {
   const bool peg = vibrates_much_more(m.at(0), m.at(1), p), task = vibrates_much_more(m.at(2), m.at(3), p);
-  return {decide(peg || task, vibrates_more(m.at(0), m.at(1)) && vibrates_more(m.at(2), m.at(3))), vibrations_text(m),
+  return {decide(peg || task, vibrates_more(m.at(0), m.at(1)) && vibrates_more(m.at(2), m.at(3))), "",
           fmt::format(
               "the averaged direction turns quickly where gradients cancel: it {} in the planar peg and {} in task 2",
               peg ? "vibrates" : "does not vibrate much more", task ? "vibrates" : "does not vibrate much more")};
@@ -172,9 +161,7 @@ Finding judge_over_reduction(const Measured& measured, const PublishedNumbers& p
   const MeasuredCase& m = measured.at(0);
   const bool collapsed = m["reduced_max"] == kPointsLeft && m["unreduced_max"] >= kFewestPoints;
   const bool matters = m["force_difference"] >= threshold(p, "over_reduced");
-  return {decide(collapsed && matters, collapsed),
-          fmt::format("{} of {} points left; the force differs by up to {:.0f} %", m["reduced_max"], m["unreduced_max"],
-                      100.0 * m["force_difference"]),
+  return {decide(collapsed && matters, collapsed), "",
           collapsed ? "each point replaces its similar, shallower predecessor until one is left"
                     : "more than one point is left"};
 }
@@ -191,7 +178,7 @@ Finding judge_turn_into_wall(const Measured& measured, const PublishedNumbers& p
   const MeasuredCase &blind = measured.at(0), &seeing = measured.at(1);
   const double more = blind["velocity_variation"] / seeing["velocity_variation"];
   const bool reverses = blind["force_reversals"] > seeing["force_reversals"];
-  return {decide(more >= threshold(p, "turn") && reverses, more > 1.0), vibrations_text(measured),
+  return {decide(more >= threshold(p, "turn") && reverses, more > 1.0), "",
           fmt::format("the tip's velocity varies {:.2g} times as much as with damping that sees the turn", more)};
 }
 
@@ -219,9 +206,7 @@ Finding judge_parallel_faces(const Measured& measured, const PublishedNumbers& p
   const MeasuredCase& m = measured.at(0);
   const bool sinks = m["depth"] >= threshold(p, "sinks_in") * m["radius"];
   const bool weightless = m["force"] < threshold(p, "no_force") * m["one_wall_force"];
-  return {decide(sinks && weightless, weightless),
-          fmt::format("sinks in by {:.2f} mm, net force at most {:.2g} N where one wall alone would push with {:.3g} N",
-                      1e3 * m["depth"], m["force"], m["one_wall_force"]),
+  return {decide(sinks && weightless, weightless), "",
           weightless ? "the forces of the two walls cancel" : "the walls push back"};
 }
 

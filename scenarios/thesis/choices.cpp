@@ -1,7 +1,6 @@
 #include "scenarios/thesis/choices.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <fnmatch.h>
 #include <nlohmann/json.hpp>
 
@@ -17,17 +16,11 @@ namespace hapbench {
 namespace {
 
 OpenChoice choice_of(const Json& json) {
-  OpenChoice choice;
-  for (const auto& [name, text] :
-       {std::pair{"id", &choice.id}, std::pair{"what", &choice.what}, std::pair{"thesis", &choice.thesis},
-        std::pair{"why", &choice.why}, std::pair{"chosen", &choice.chosen}})
-    json.at(name).get_to(*text);
   const Json& value = json.at("value");
-  choice.value = value.is_number() ? cell_text(value.get<double>()) : value.get<std::string>();
-  choice.unit = json.value("unit", "");
+  OpenChoice choice{.id = json.at("id"),
+                    .value = value.is_number() ? cell_text(value.get<double>()) : value.get<std::string>(),
+                    .options = json.value("options", std::vector<std::string>())};
   if (json.contains("range")) choice.range = json.at("range").get<std::pair<double, double>>();
-  choice.options = json.value("options", choice.options);
-  choice.logarithmic = json.value("scale", "linear") == "log";
   for (const Json& field : json.value("fields", Json::array()))
     choice.fields.push_back({field.at("scenarios"), field.at("path"), field.value("times", false)});
   return choice;
@@ -68,20 +61,6 @@ std::string chosen_text(const Place& place, const ChosenField& field, const std:
   if (!place.second->is_number())
     throw InputError(fmt::format("\"{}\" is no number, which a factor needs", place.first));
   return cell_text(finite_number(value).value_or(1.0) * place.second->get<double>());
-}
-
-std::string fields_text(const OpenChoice& choice) {
-  if (choice.fields.empty()) return "read by rules";
-  std::vector<std::string> texts;
-  for (const ChosenField& field : choice.fields) {
-    texts.push_back(fmt::format("`{}{}` of {}", field.path, field.times ? " ×" : "", fmt::join(field.scenarios, ", ")));
-  }
-  return fmt::format("{}", fmt::join(texts, "; "));
-}
-
-std::string range_text(const OpenChoice& choice) {
-  if (!choice.range) return fmt::format("{}", fmt::join(choice.options, ", "));
-  return fmt::format("{} ... {}{}", choice.range->first, choice.range->second, choice.logarithmic ? " (log)" : "");
 }
 
 }  // namespace
@@ -153,17 +132,6 @@ std::string Choices::reach(std::span<const std::string> scenarios, const std::st
     if (sets || (all_[i].fields.empty() && named)) reaching += texts_[i];
   }
   return reaching.empty() ? "" : hash_text(hash_of(reaching));
-}
-
-std::string Choices::markdown() const {
-  std::string text =
-      "| id | choice | the thesis | value | plausible | seen results? | why | fields |\n|---|---|---|---|---|---|---|---|\n";
-  for (const OpenChoice& choice : all_) {
-    text += fmt::format("| {} | {} | {} | {}{}{} | {} | {} | {} | {} |\n", choice.id, choice.what, choice.thesis,
-                        choice.value, choice.unit.empty() ? "" : " ", choice.unit, range_text(choice), choice.chosen,
-                        choice.why, fields_text(choice));
-  }
-  return text;
 }
 
 Json choices_schema() {

@@ -22,14 +22,11 @@ struct ChosenField {
 };
 
 struct OpenChoice {
-  std::string id, what, thesis, why;
-  std::string value;                               ///< as the scenarios have it, a text as in --set
-  std::string unit;                                ///< of a number; empty for a ratio
-  std::optional<std::pair<double, double>> range;  ///< plausible values of a number; exactly one of this …
-  std::vector<std::string> options;                ///< … and these, texts as in --set
-  bool logarithmic = false;                        ///< the range is sampled evenly in the logarithm
-  std::string chosen;                              ///< "before" or "after" results were seen
-  std::vector<ChosenField> fields;                 ///< none for a number that rules read by the choice's id
+  std::string id = {};
+  std::string value = {};                               ///< as the scenarios have it, a text as in --set
+  std::optional<std::pair<double, double>> range = {};  ///< plausible values of a number; exactly one of this …
+  std::vector<std::string> options = {};                ///< … and these, texts as in --set
+  std::vector<ChosenField> fields = {};                 ///< none for a number that rules read by the choice's id
 };
 
 /// True when a pattern of a choice's scenarios matches this scenario's name; '*' stands for any characters.
@@ -60,9 +57,6 @@ class Choices {
   /// Hash of the choices that reach a claim: those that concern one of these scenarios, and numbers that the rule's
   /// text names, as in <rule.easily>. Empty when none does.
   std::string reach(std::span<const std::string> scenarios, const std::string& rule) const;
-
-  /// A Markdown table for people.
-  std::string markdown() const;
 
  private:
   std::vector<OpenChoice> all_;

@@ -9,6 +9,7 @@
 #include <tuple>
 #include <utility>
 
+#include "scenarios/cases/statistics.hpp"
 #include "scenarios/format/bundled_scenarios.hpp"
 #include "scenarios/format/input_error.hpp"
 #include "scenarios/format/json_file.hpp"
@@ -34,7 +35,20 @@ std::string plain(double number) {
 
 Finding Claim::finding(const Evidence& evidence) const {
   if (judge == nullptr) return {Verdict::not_reproducible, "", why};
-  return judge(measure(evidence), evidence.published);
+  const Measured cases = measure(evidence);
+  Finding finding = judge(cases, evidence.published);
+  PublishedNumbers numbers = evidence.published;
+  std::string of_cases;
+  for (const MeasuredCase& m : cases) {
+    for (const auto& [name, values] : m.values)
+      for (const std::string& of_case : {name, m.name + "." + name}) numbers.set(of_case, mean_of(values));
+    std::string text = each;
+    if (const std::size_t gap = text.find("{}"); gap != std::string::npos) text.replace(gap, 2, m.name);
+    if (!each.empty()) append_item(of_cases, numbers.fill(text));
+  }
+  if (finding.measured.empty()) finding.measured = numbers.fill(measured) + of_cases;
+  finding.brief = numbers.fill(main.ours);
+  return finding;
 }
 
 std::vector<Claim> all_claims() {
@@ -56,10 +70,14 @@ std::vector<Claim> all_claims() {
                         .published = row.value("published", ""),
                         .rule = row.at("rule"),
                         .why = row.value("why", ""),
+                        .measured = row.value("measured", ""),
+                        .each = row.value("each", ""),
                         .timing = row.value("timing", false),
                         .ours = row.value("ours", false),
                         .costly = row.value("costly", false)});
       Claim& claim = claims.back();
+      if (const Json main = row.value("main", Json()); !main.is_null())
+        claim.main = {main.at("claim"), main.at("published"), main.at("ours")};
       if (claim.why.empty()) std::tie(claim.measure, claim.judge) = rules.at(claim.id);
     }
   } catch (const std::exception& problem) {

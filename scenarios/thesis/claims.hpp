@@ -12,24 +12,27 @@
 /// chapter what is measured and the rule, results/reference/published.json the published numbers.
 namespace hapbench {
 
-/// The outcome of testing a published statement.
-/// The last two are those of findings of ours.
+/// The outcome of testing a published statement; the last two are those of findings of ours.
 enum class Verdict { reproduced, in_kind, not_reproduced, refuted, not_reproducible, holds, does_not_hold };
 
 /// A verdict in words.
 struct VerdictText {
   std::string_view name;  ///< also in the ledger
   const char* meaning;
+  const char* mark;  ///< in bars
 };
 /// In the order of the enumeration.
 inline constexpr VerdictText kVerdicts[] = {
-    {"reproduced", "the rule of the claim holds with the published numbers"},
-    {"reproduced in kind", "direction or mechanism are the published ones, the numbers are not"},
-    {"not reproduced", "neither, in this model of the device and the hand"},
-    {"refuted", "it contradicts an exact result"},
-    {"not reproducible", "no simulation can show it: people or the trainer are needed"},
-    {"holds", "a finding of ours that the measurement shows"},
-    {"does not hold", "a finding of ours that the measurement does not show"}};
+    {"reproduced",
+     "another implementation, by other authors and from the text alone, meets the claim's rule with the published "
+     "numbers (ACM calls that replicated)",
+     "✓"},
+    {"reproduced in kind", "direction or mechanism are the published ones, the numbers are not", "≈"},
+    {"not reproduced", "neither, in this model of the device and the hand", "✗"},
+    {"refuted", "it contradicts an exact result", "⊘"},
+    {"not reproducible", "no simulation can show it: people or the trainer are needed", "–"},
+    {"holds", "a finding of ours that the measurement shows", "✓"},
+    {"does not hold", "a finding of ours that the measurement does not show", "✗"}};
 inline constexpr std::string_view verdict_name(Verdict verdict) {
   return kVerdicts[static_cast<std::size_t>(verdict)].name;
 }
@@ -45,8 +48,9 @@ inline Verdict found(bool holds) {
 /// The result of judging a claim, computed from measured numbers.
 struct Finding {
   Verdict verdict = Verdict::not_reproducible;
-  std::string measured;  ///< the numbers, for people
-  std::string why;       ///< one sentence: which part of the rule decided
+  std::string measured;    ///< the numbers, for people; empty where rules.json has their text
+  std::string why;         ///< one sentence: which part of the rule decided
+  std::string brief = {};  ///< the deciding number, of a main result
 };
 
 /// The measurements in one case of a claim, such as a density or an algorithm: numbers by name, several under one name
@@ -71,14 +75,6 @@ using Judge = Finding (*)(const Measured& measured, const PublishedNumbers& publ
 /// Appends an item to an enumeration in words.
 void append_item(std::string& list, std::string_view item, std::string_view separator = "; ");
 
-/// What `text_of` says of each case, one after the other.
-template <class TextOf>
-std::string said_of_each(const Measured& measured, TextOf text_of, std::string_view separator = "; ") {
-  std::string said;
-  for (const MeasuredCase& m : measured) append_item(said, text_of(m), separator);
-  return said;
-}
-
 /// A number as the rules of claims write it, with six digits at most: "0.1", "15", "1e-9".
 std::string plain(double number);
 
@@ -93,11 +89,18 @@ struct Claim {
   std::string published = {};  ///< its numbers, for people
   std::string rule = {};       ///< of the verdict, for people: with the thresholds that `judge` compares with
   std::string why = {};        ///< why no simulation can show it; empty where one can
+  std::string measured = {};   ///< for people, with measured numbers, as <rows> or <40 N.depth> of a case
+  std::string each = {};       ///< the same of each case, for whose name {} stands; after `measured`
   Measure measure = nullptr;   ///< null, as `judge`, for a claim that no simulation can show
   Judge judge = nullptr;
   bool timing = false;  ///< the finding holds times, so no two runs agree
   bool ours = false;    ///< found on the way: no claim of the thesis, and not counted among those
   bool costly = false;  ///< takes long to measure: judged again for a part of a sample only (robustness.hpp)
+
+  /// A main result in a few words: claim, published and, with measured numbers, ours. Empty for other claims.
+  struct Main {
+    std::string claim = {}, published = {}, ours = {};
+  } main = {};
 
   /// Measures and judges it. Throws InputError.
   Finding finding(const Evidence& evidence) const;
@@ -109,6 +112,7 @@ struct JudgedClaim {
   Finding finding;
   std::vector<std::string> scenarios = {};  ///< bundled ones that it was measured with, in the order of their names
   std::string reach = {};                   ///< of the choices, as Choices::reach has it; empty: none reaches it
+  double seconds = 0.0;                     ///< to run its scenarios and to measure it
 
   /// Whether another reading of the choices could change the verdict: a simulation shows it, and a choice reaches it.
   bool can_be_sampled() const {

@@ -1,25 +1,112 @@
 #include "scenarios/thesis/ledger.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <map>
-#include <optional>
 
 namespace hapbench {
 namespace {
 
-constexpr const char *kWaiting = "not sampled yet", *kUntouched = "depends on no recorded choice";
+constexpr const char *kSteady = "steady", *kFragile = "fragile", *kNotSampled = "not sampled";
 
 std::string text_at(const Json& claim, const char* key) {
   return claim.at(key).get<std::string>();
 }
 
-/// The verdict of most samples, if it is not the one on record.
-std::optional<std::string> other_majority(const Json& claim) {
-  const Json& majority = claim.at("majority");
-  if (majority.is_null() || majority == claim.at("verdict")) return std::nullopt;
-  return majority.get<std::string>();
+bool is_ours(const Json& claim) {
+  return claim.at("ours").get<bool>();
+}
+
+/// Steady: more than half of the samples have the recorded verdict.
+const char* sureness(const Json& robustness) {
+  if (robustness.is_null()) return kNotSampled;
+  const auto judged = robustness.at("judged").get<std::size_t>(), holds = robustness.at("holds").get<std::size_t>();
+  return 2 * holds > judged ? kSteady : kFragile;
+}
+
+Verdict verdict_of(const Json& claim) {
+  const auto* found = std::ranges::find(kVerdicts, text_at(claim, "verdict"), &VerdictText::name);
+  return static_cast<Verdict>(found - std::begin(kVerdicts));
+}
+
+/// True at the first byte of a character of UTF-8.
+bool begins_character(char byte) {
+  return (static_cast<unsigned char>(byte) & 0xC0U) != 0x80U;
+}
+
+std::size_t characters_of(std::string_view text) {
+  return static_cast<std::size_t>(std::ranges::count_if(text, begins_character));
+}
+
+/// At most `most` characters of it: whole words, with an ellipsis for the rest.
+std::string shortened(const std::string& text, std::size_t most) {
+  if (characters_of(text) <= most) return text;
+  std::size_t end = 0;
+  for (std::size_t i = 0, seen = 0; i < text.size() && seen < most; ++i) {
+    if (begins_character(text[i])) ++seen;
+    if (text[i] == ' ') end = i;
+  }
+  return text.substr(0, text.find_last_not_of(" ,;:", end) + 1) + " …";
+}
+
+/// The chapter or appendix of its first place with a number: "C" of "abstract, C.2".
+std::string chapter_of(const Json& claim) {
+  const std::string place = text_at(claim, "place");
+  const std::size_t number = place.find_first_of("0123456789");
+  const bool appendix = number >= 2 && place[number - 1] == '.';
+  return std::string(1, place.at(appendix ? number - 2 : number));
+}
+
+/// A line for each chapter, a mark for each of its claims.
+std::string chapter_bars(const Json& claims) {
+  std::map<std::string, std::array<std::string, std::size(kVerdicts)>> chapters;
+  for (const Json& claim : claims) {
+    const auto verdict = static_cast<std::size_t>(verdict_of(claim));
+    if (!is_ours(claim)) chapters[chapter_of(claim)][verdict] += kVerdicts[verdict].mark;
+  }
+  std::string text;
+  for (const auto& [chapter, marks] : chapters) text += fmt::format("    {}  {}\n", chapter, fmt::join(marks, ""));
+  return text;
+}
+
+std::string main_results(const Json& claims) {
+  std::string text =
+      "| claim | place | published | ours | verdict | command | seconds |\n|---|---|---|---|---|---|---|\n";
+  for (const Json& claim : claims) {
+    if (!claim.contains("main")) continue;
+    const Json& main = claim.at("main");
+    text += fmt::format("| {} | {} | {} | {} | {} | `{}` | {} |\n", text_at(main, "claim"), text_at(claim, "place"),
+                        text_at(main, "published"), text_at(main, "ours"), text_at(claim, "verdict"),
+                        text_at(claim, "command"), seconds_text(claim));
+  }
+  return text;
+}
+
+constexpr const char* kRowHeading =
+    "| id | claim | published | ours | verdict | sureness | command | seconds |\n|---|---|---|---|---|---|---|---|\n";
+
+std::string row_of(const Json& claim) {
+  constexpr std::size_t kClaim = 90, kPublished = 50;
+  const std::string before =
+      fmt::format("| {} | {} | {} | ", text_at(claim, "id"), shortened(text_at(claim, "claim"), kClaim),
+                  shortened(text_at(claim, "published"), kPublished));
+  const std::string after = fmt::format(" | {} | {} | `{}` | {} |", text_at(claim, "verdict"),
+                                        text_at(claim, "sureness"), text_at(claim, "command"), seconds_text(claim));
+  const std::size_t ellipsis = 2, room = kLongestRow - characters_of(before + after) - ellipsis;
+  return before + shortened(text_at(claim, "measured"), room) + after + "\n";
+}
+
+/// The rows of the claims of the thesis that have this verdict.
+std::string rows_with(const Json& claims, Verdict verdict) {
+  std::string text;
+  for (const Json& claim : claims)
+    if (!is_ours(claim) && verdict_of(claim) == verdict) text += row_of(claim);
+  return text;
 }
 
 }  // namespace
@@ -44,6 +131,8 @@ Json robustness_on_record(const Json& record, const JudgedClaim& judged) {
 Json ledger_json(const std::vector<JudgedClaim>& judged, const PublishedNumbers& published, const Json& robustness) {
   Json claims = Json::array();
   for (const JudgedClaim& j : judged) {
+    Json counts = robustness_on_record(robustness, j);
+    const char* sure = sureness(counts);
     Json& claim = claims.emplace_back(Json{{"id", j.claim.id},
                                            {"place", j.claim.place},
                                            {"claim", j.claim.claim},
@@ -51,38 +140,35 @@ Json ledger_json(const std::vector<JudgedClaim>& judged, const PublishedNumbers&
                                            {"measured", j.finding.measured},
                                            {"rule", published.fill(j.claim.rule)},
                                            {"verdict", verdict_name(j.finding.verdict)},
-                                           {"robustness", robustness_on_record(robustness, j)},
+                                           {"sureness", sure},
+                                           {"robustness", std::move(counts)},
                                            {"choices_reach_it", !j.reach.empty()},
                                            {"why", j.finding.why},
                                            {"scenarios", j.scenarios},
+                                           {"command", "hapbench reproduce --only " + j.claim.id},
+                                           {"seconds", std::round(10.0 * j.seconds) / 10.0},
                                            {"timing", j.claim.timing},
                                            {"ours", j.claim.ours}});
-    const Json& counts = claim.at("robustness");
-    claim["majority"] = counts.is_null() ? Json() : counts.at("majority");
-    claim["sureness"] = robustness_text(claim);
+    if (!j.claim.main.claim.empty()) {
+      claim["main"] = {{"claim", j.claim.main.claim},
+                       {"published", published.fill(j.claim.main.published)},
+                       {"ours", j.finding.brief}};
+    }
   }
   return {{"headline", ledger_headline(claims)}, {"claims", std::move(claims)}};
-}
-
-std::string verdicts_text(const Json& claim) {
-  const std::string verdict = text_at(claim, "verdict");
-  const std::optional<std::string> majority = other_majority(claim);
-  return majority ? fmt::format("most samples: {}; recorded: {}", *majority, verdict) : verdict;
 }
 
 std::string robustness_text(const Json& claim) {
   const Json& robustness = claim.at("robustness");
   if (robustness.is_null()) {
     if (claim.at("timing").get<bool>()) return "not sampled: times of one machine";
-    if (claim.at("verdict") == verdict_name(Verdict::not_reproducible)) return "not sampled: nothing to simulate";
-    return claim.at("choices_reach_it").get<bool>() ? kWaiting : kUntouched;
+    if (verdict_of(claim) == Verdict::not_reproducible) return "not sampled: nothing to simulate";
+    return claim.at("choices_reach_it").get<bool>() ? "not sampled yet" : "not sampled: depends on no recorded choice";
   }
   const auto judged = robustness.at("judged").get<std::size_t>(), holds = robustness.at("holds").get<std::size_t>();
-  std::string text = fmt::format("this verdict in {} of {} samples", holds, judged);
-  if (const auto majority = other_majority(claim)) {
-    text = fmt::format("{} in {} of {} samples, the recorded verdict in {}", *majority,
-                       robustness.at("verdicts").at(*majority).get<std::size_t>(), judged, holds);
-  }
+  std::string text = fmt::format("{}: this verdict in {} of {} samples", text_at(claim, "sureness"), holds, judged);
+  for (const auto& [verdict, count] : robustness.at("verdicts").items())
+    if (verdict != text_at(claim, "verdict")) text += fmt::format(", {} in {}", verdict, count.get<std::size_t>());
   const Json& decided_by = robustness.at("decided_by");
   if (!decided_by.is_null()) {
     text += fmt::format("; decided by {} (S = {:.2f})", text_at(decided_by, "choice"),
@@ -93,42 +179,48 @@ std::string robustness_text(const Json& claim) {
   return text;
 }
 
+std::string seconds_text(const Json& claim) {
+  const double seconds = claim.at("seconds").get<double>();
+  return seconds < 1.0 ? "< 1" : fmt::format("{:.0f}", seconds);
+}
+
 std::string ledger_headline(const Json& claims) {
+  std::map<Verdict, std::size_t> verdicts;
+  std::map<std::string, std::size_t> sure;
   std::size_t all = 0;
-  std::map<std::string, std::size_t> count;
-  std::string changed;
   for (const Json& claim : claims) {
-    if (claim.at("ours").get<bool>()) continue;
-    const auto majority = other_majority(claim);
-    ++count[majority ? "changes" : claim.at("robustness").is_null() ? robustness_text(claim) : "survives"];
+    if (is_ours(claim)) continue;
     ++all;
-    if (!majority) continue;
-    append_item(changed, fmt::format("{} (most samples: {}; recorded: {})", text_at(claim, "id"), *majority,
-                                     text_at(claim, "verdict")));
+    ++verdicts[verdict_of(claim)];
+    ++sure[text_at(claim, "sureness")];
   }
-  const std::size_t survive = count["survives"], changes = count["changes"], waiting = count[kWaiting],
-                    untouched = count[kUntouched], other = all - survive - changes - waiting - untouched;
-  std::string text = fmt::format(
-      "Of {} verdicts on claims of the thesis, {} of the {} sampled would survive another reasonable reading: most samples "
-      "of the choices on record have them, too. ",
-      all, survive, survive + changes);
-  if (!changed.empty()) text += fmt::format("{} would not: {}. ", changes, changed);
-  text += fmt::format("{} depend on no recorded choice; {} are about times or cannot be simulated", untouched, other);
-  return text + (waiting > 0 ? fmt::format("; {} have not been sampled yet.", waiting) : ".");
+  std::string counts;
+  for (const auto& [verdict, count] : verdicts)
+    append_item(counts, fmt::format("{} {}", count, verdict_name(verdict)), ", ");
+  return fmt::format(
+      "{} claims of the thesis: {}. {} of the verdicts are steady (more than half of the samples of the choices on "
+      "record have them), {} fragile, {} not sampled.",
+      all, counts, sure[kSteady], sure[kFragile], sure[kNotSampled]);
 }
 
 std::string ledger_markdown(const Json& ledger) {
-  const std::string heading =
-      "| id | place | claim | published | measured | verdict | robustness | why |\n|---|---|---|---|---|---|---|---|\n";
-  std::string claims, findings;
-  for (const Json& claim : ledger.at("claims")) {
-    (claim.at("ours").get<bool>() ? findings : claims) +=
-        fmt::format("| {} | {} | {} | {} | {} | **{}** | {} | {} |\n", text_at(claim, "id"), text_at(claim, "place"),
-                    text_at(claim, "claim"), text_at(claim, "published"), text_at(claim, "measured"),
-                    verdicts_text(claim), robustness_text(claim), text_at(claim, "why"));
+  const Json& claims = ledger.at("claims");
+  std::string text =
+      main_results(claims) + "\n" + text_at(ledger, "headline") + " By chapter:\n\n" + chapter_bars(claims) + "\n";
+  for (std::size_t v = 0; v <= static_cast<std::size_t>(Verdict::not_reproducible); ++v)
+    text += fmt::format("{} *{}*: {}.  \n", kVerdicts[v].mark, kVerdicts[v].name, kVerdicts[v].meaning);
+  text += std::string("\nMore of a row: `hapbench describe ID`.\n\n") + kRowHeading;
+  for (const Verdict verdict : {Verdict::refuted, Verdict::not_reproduced, Verdict::in_kind, Verdict::reproduced})
+    text += rows_with(claims, verdict);
+  std::string unjudged, findings;
+  for (const Json& claim : claims) {
+    if (is_ours(claim)) findings += row_of(claim);
+    if (verdict_of(claim) != Verdict::not_reproducible) continue;
+    unjudged += fmt::format("- {}, {}: {}.\n", text_at(claim, "id"), text_at(claim, "claim"), text_at(claim, "why"));
   }
-  std::string text = text_at(ledger, "headline") + "\n\n" + heading + claims;
-  if (!findings.empty()) text += "\nFound on the way, and no claims of the thesis:\n\n" + heading + findings;
+  if (!unjudged.empty()) text += "\nWhat cannot be judged:\n\n" + unjudged;
+  if (!findings.empty())
+    text += std::string("\nFound on the way, and no claims of the thesis:\n\n") + kRowHeading + findings;
   return text;
 }
 

@@ -18,14 +18,17 @@ Json ledger_json(const std::vector<JudgedClaim>& judged, const PublishedNumbers&
 
 // The functions below take a claim as ledger_json writes it.
 
-/// The recorded verdict, and in front of it that of most samples if it is another one.
-std::string verdicts_text(const Json& claim);
-/// Its entry "sureness", the counts in words: "this verdict in 91 of 100 samples; decided by task2.hand_angle (S =
-/// 0.43)"; or why there are none.
+/// How sure its verdict is, in counts: "this verdict in 91 of 100 samples; decided by task2.hand_angle (S = 0.43)"; or
+/// why it was not sampled.
 std::string robustness_text(const Json& claim);
-/// How many verdicts another reasonable reading would leave as they are, and which it would not.
+/// The seconds that it takes to judge it: whole ones, "< 1" for less.
+std::string seconds_text(const Json& claim);
+/// How many claims have which verdict, and how many verdicts are steady.
 std::string ledger_headline(const Json& claims);
-/// claims.md: the headline, the claims of the thesis, and what was found on the way.
+/// A row of a claim has at most so many characters; `describe ID` says the rest.
+inline constexpr std::size_t kLongestRow = 300;
+/// claims.md: the main results, counts by chapter, the claims of the thesis, those that are contradicted first, what
+/// was found on the way.
 std::string ledger_markdown(const Json& ledger);
 
 }  // namespace hapbench

@@ -1,7 +1,5 @@
 #include "scenarios/thesis/measurements.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -75,19 +73,13 @@ Measured vibrations_beside_shaping(const Evidence& e, const std::string& law, co
 
 bool vibrates_much_more(const MeasuredCase& a, const MeasuredCase& b, const PublishedNumbers& p) {
   const double more = threshold(p, "vibrates");
-  return a["velocity_variation"] >= more * b["velocity_variation"] &&
-         a["vibration_power"] >= more * more * b["vibration_power"];
+  const bool moves = a["velocity_variation"] >= more * b["velocity_variation"] &&
+                     a["vibration_power"] >= more * more * b["vibration_power"];
+  return moves || (vibrates_more(a, b) && a["force_reversals"] >= more * std::max(1.0, b["force_reversals"]));
 }
 
 bool vibrates_more(const MeasuredCase& a, const MeasuredCase& b) {
   return a["velocity_variation"] > b["velocity_variation"] && a["vibration_power"] > b["vibration_power"];
-}
-
-std::string vibrations_text(const Measured& cases) {
-  return said_of_each(cases, [](const MeasuredCase& m) {
-    return fmt::format("{}: velocity varies by {:.3g} m/s, power above 30 Hz {:.2g} m²/s², {:.0f} force reversals",
-                       m.name, m["velocity_variation"], m["vibration_power"], m["force_reversals"]);
-  });
 }
 
 std::optional<double> damping_ratio_of_swings(std::span<const double> x) {

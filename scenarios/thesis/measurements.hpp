@@ -87,12 +87,10 @@ Measured vibrations_beside_shaping(const Evidence& e, const std::string& law, co
                                    const std::vector<std::string>& overrides_of_task);
 
 /// An algorithm vibrates, compared with a smooth one, if it has rule.vibrates times the total variation and the square
-/// of it times the power.
+/// of it times the power; or more of both, and so many times the reversals of the force, which then turns to and fro.
 bool vibrates_much_more(const MeasuredCase& a, const MeasuredCase& b, const PublishedNumbers& p);
 /// True if `a` has more of both.
 bool vibrates_more(const MeasuredCase& a, const MeasuredCase& b);
-
-std::string vibrations_text(const Measured& cases);
 
 /// The damping ratio of a swing about zero [m], a value for each row, from the ratio q of successive extremes,
 /// zeta = -ln q / sqrt(pi^2 + ln^2 q). An extreme within a micrometre of zero ends the decay: rounding and grazing

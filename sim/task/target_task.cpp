@@ -53,10 +53,15 @@ void TargetTask::advance(const Vec3& tip, double spring, double rendered, double
     shown_ = 0.0;
   }
   shown_ += dt;
-  held_ = pressed && on_target(tip) ? held_ + dt : 0.0;
+  const LowForce low = active_ && !pressed && rules_.threshold ? rules_.threshold->low : LowForce::restarts;
+  if (!on_target(tip) || (!pressed && low == LowForce::restarts)) {
+    held_ = 0.0;
+  } else if (pressed || low == LowForce::nothing) {
+    held_ += dt;
+  }
   if (held_ >= rules_.hold) {
     next_target(true, shown_);
-  } else if (shown_ >= rules_.time_limit) {
+  } else if (shown_ >= rules_.time_limit || (!pressed && low == LowForce::closes)) {
     next_target(false, rules_.time_limit);
   }
 }

@@ -28,12 +28,21 @@ enum class PressForce {
   spring     ///< f_spring
 };
 
+/// What a force that falls below least_press, for longer than the grace, does to the time on the target.
+enum class LowForce {
+  restarts,  ///< it starts anew
+  pauses,    ///< it waits
+  closes,    ///< the target disappears
+  nothing    ///< it goes on
+};
+
 /// The force along +z that the task compares with least_press, sample by sample or after a first-order low-pass. The
 /// gauge that the subject sees may show another one.
 struct Threshold {
   PressForce force = PressForce::rendered;
   std::optional<double> cutoff = {};  ///< corner of the low-pass [Hz]; without it every sample counts
   double grace = 0.0;                 ///< time below least_press that does not break the hold [s]
+  LowForce low = LowForce::restarts;
 };
 
 /// The rules of the man-machine experiments (thesis D.2.2, D.3.2).

@@ -2,7 +2,6 @@
 whose answer has left the program leaves with its tables, in a commit that says why."""
 import math
 from dataclasses import dataclass, field
-from pathlib import Path
 
 
 @dataclass(frozen=True)
@@ -70,16 +69,8 @@ def accuracy(name, words=""):
                     tolerance=dict.fromkeys(("kept_mean", "force_error_relative", "depth_error_max_m"), (1e-12, "of forces in place of depths, added up in another order")) if name == "reduction" else {})
 
 
-def readings_on_record():
-    """The samples of the question robustness, without their numbers and the verdicts on its eight claims."""
-    answers = Path(__file__).with_name("answers.txt").read_text(encoding="utf-8")
-    rows = answers.partition("# robustness verdicts\n")[2].partition("\n#")[0].splitlines()
-    return "\n".join(",".join(row.split(",")[1:-8]) for row in rows)
-
-
 # Files that the questions name.
 GIVEN = {
-    "readings.csv": readings_on_record(),
     # A wall, a hand and a device with friction and encoder: no theory but that of the loop.
     "loop.json": """{"time": {"step_s": 0.001, "steps": 600}, "tool": {"diameter_m": 0.01, "length_m": 0.1},
         "environment": {"type": "plane", "size_m": 0.006, "spacing_m": 0.001},
@@ -118,7 +109,4 @@ QUESTIONS = [
     *map(accuracy, ("integrators", "shaping", "spacing", "reduction", "merging", "algorithms", "events")),
     accuracy("late_contacts", "--set time.duration_s=0.2"),
     *map(limit_of_spring, ("stiffness", "damping", "time_step")),
-    # 64 verdicts: eight claims in eight samples of the choices, which stand in the table, too.
-    Question("robustness", "reproduce --only B1b,B2,C2,C3,C5,L2,L3,V1 --robustness 8 --ledger out/claims.json", {"verdicts": "robustness.csv"},
-             "reproduce --only B1b,B2,C2,C3,C5,L2,L3,V1 --choices readings.csv --ledger out/claims.json"),
 ]

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 from hapbench.columns import read_records
+from hapbench_report.ledger import plausible
 
 from .manuals import ROOT
 from .program import ProgramError
@@ -59,20 +60,24 @@ def read(name):
 
 
 def headline(_old=""):
-    """How many verdicts another reasonable reading would leave as they are, without the list of those that it would change."""
-    said = re.sub(r"(would not): .*?\)\. (?=\d+ depend)", r"\1. ", read("claims.json")["headline"])
-    return wrapped([said.replace(": most samples of the choices on record have them, too", "")])
+    """How many claims have which verdict, and how many verdicts are steady."""
+    return wrapped([read("claims.json")["headline"]])
+
+
+def main_results(_old=""):
+    """The main results, as the ledger opens with them."""
+    return (REFERENCE / "claims.md").read_text(encoding="utf-8").split("\n\n")[0]
 
 
 def verdicts(_old=""):
-    """How many claims have which verdict, on record and in most samples, and which; then what was found on the way."""
+    """How many claims have which verdict, how many of them steadily, and which; then what was found on the way."""
     ledger = read("claims.json")["claims"]
     claims = [claim for claim in ledger if not claim["ours"]]
-    lines = ["| verdict | recorded | in most samples, else recorded | recorded are |", "|---|---|---|---|"]
+    lines = ["| verdict | claims | steady | which |", "|---|---|---|---|"]
     for verdict in VERDICTS:
-        ids = [claim["id"] for claim in claims if claim["verdict"] == verdict]
-        most = sum((claim["majority"] or claim["verdict"]) == verdict for claim in claims)
-        lines.append(f"| {verdict} | {len(ids)} of {len(claims)} | {most} | {' '.join(ids)} |")
+        those = [claim for claim in claims if claim["verdict"] == verdict]
+        steady = sum(claim["sureness"] == "steady" for claim in those)
+        lines.append(f"| {verdict} | {len(those)} of {len(claims)} | {steady} | {' '.join(claim['id'] for claim in those)} |")
     ours = [f"{claim['id']} {claim['claim']} ({claim['verdict']})" for claim in ledger if claim["ours"]]
     return wrapped([*lines, "", f"Found on the way, and no claims of the thesis: {'; '.join(ours)}."])
 
@@ -90,26 +95,34 @@ def experiments(_old=""):
 
 
 def robustness(_old=""):
-    """How firmly the verdicts hold over the choices on record, and those that most samples do not have."""
-    record, claims = read("robustness.json"), read("claims.json")["claims"]
+    """How firmly the verdicts hold over the choices on record: and the fragile ones."""
+    claims = read("claims.json")["claims"]
     sampled = [claim for claim in claims if claim["robustness"]]
     always = [claim for claim in sampled if claim["robustness"]["holds"] == claim["robustness"]["judged"]]
-    untouched = [claim["id"] for claim in claims if claim["sureness"] == "depends on no recorded choice"]
-    waiting = [claim["id"] for claim in claims if claim["sureness"] == "not sampled yet"]
-    lines = [f"On record are {record.get('samples', 0)} samples, of costly claims {record.get('costly_samples', 0)}. Of {len(sampled)} verdicts that "
-             f"were sampled, {len(always)} are the same in every sample. No recorded choice reaches {' '.join(untouched)}. Most samples "
-             "do not have these verdicts; the ledger has the others:",
-             "", "| claim | recorded | in most samples | recorded verdict in | decided by (first-order Sobol index) |", "|---|---|---|---|---|"]
-    for claim in sampled:
-        if claim["majority"] == claim["verdict"]:
-            continue
+    fragile = [claim for claim in sampled if claim["sureness"] == "fragile"]
+    untouched = [claim["id"] for claim in claims if not claim["choices_reach_it"] and claim["verdict"] != "not reproducible"]
+    judged = [claim["robustness"]["judged"] for claim in sampled]
+    lines = [f"Of {len(sampled)} verdicts that were sampled, in {min(judged)} to {max(judged)} readings, "
+             f" {len(always)} are the same in every sample. No recorded choice reaches {' '.join(untouched)}. Fragile are "
+             "these; the ledger has the others:",
+             "", "| claim | recorded | recorded verdict in | decided by (first-order Sobol index) |", "|---|---|---|---|"]
+    for claim in fragile:
         counts = claim["robustness"]
         by = counts["decided_by"]
         decided = f"`{by['choice']}` ({by['index']:.2f})" if by else "no single choice"
-        lines.append(f"| {claim['id']} | {claim['verdict']} | {claim['majority']} | {counts['holds']} of {counts['judged']} | {decided} |")
-    if waiting:
-        lines += ["", f"Not sampled since they or their choices changed: {' '.join(waiting)}."]
+        lines.append(f"| {claim['id']} | {claim['verdict']} | {counts['holds']} of {counts['judged']} | {decided} |")
     return wrapped(lines)
+
+
+def choices(_old=""):
+    """What the thesis leaves open and what was chosen."""
+    lines = ["| id | choice | the thesis | value | plausible | seen results? | why | fields |", "|---|---|---|---|---|---|---|---|"]
+    for choice in read("choices.json")["choices"]:
+        fields = "; ".join(f"`{field['path']}{' ×' if field.get('times') else ''}` of {', '.join(field['scenarios'])}" for field in choice.get("fields", []))
+        value = f"{choice['value']} {choice.get('unit', '')}".strip()
+        lines.append(f"| {choice['id']} | {choice['what']} | {choice['thesis']} | {value} | {plausible(choice)} | {choice['chosen']} | "
+                     f"{choice['why']} | {fields or 'read by rules'} |")
+    return "\n".join(lines)
 
 
 def rows_of(text, block, column):
@@ -212,4 +225,5 @@ def hunt_crossley(old, program, directory):
 
 
 # The tables that need no program.
-MAKERS = {"headline": headline, "verdicts": verdicts, "experiments": experiments, "robustness": robustness}
+MAKERS = {"headline": headline, "main_results": main_results, "verdicts": verdicts, "experiments": experiments,
+          "robustness": robustness, "choices": choices}

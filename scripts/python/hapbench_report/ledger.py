@@ -18,8 +18,13 @@ VERDICTS = {
 }
 
 
+# In this order: what is contradicted comes first.
+ORDER = ("refuted", "not reproduced", "reproduced in kind", "reproduced", "not reproducible", "does not hold", "holds")
+SURENESS = ("steady", "fragile", "not sampled")
+
+
 class Claims(list):
-    """The ledger's claims; `headline` says how many verdicts another reading would leave as they are."""
+    """The ledger's claims; `headline` says how many have which verdict, and how many verdicts are steady."""
 
     headline = ""
 
@@ -31,23 +36,24 @@ def load_claims(file):
     for i, claim in enumerate(claims):
         verdict = claim.get("verdict")
         if verdict not in VERDICTS:
-            raise InputError(f"{file}: /claims/{i}/verdict: got {shown(verdict)}; allowed: {shown_verdicts()}")
-        if claim.get("majority") not in (None, *VERDICTS):
-            raise InputError(f"{file}: /claims/{i}/majority: got {shown(claim['majority'])}; allowed: {shown_verdicts()}")
+            raise InputError(f"{file}: /claims/{i}/verdict: got {shown(verdict)}; allowed: {listed_words(VERDICTS)}")
+        if claim.get("sureness") not in SURENESS:
+            raise InputError(f"{file}: /claims/{i}/sureness: got {shown(claim.get('sureness'))}; allowed: {listed_words(SURENESS)}")
     return claims
 
 
-def shown_verdicts():
-    return ", ".join(f'"{verdict}"' for verdict in VERDICTS)
+def listed_words(words):
+    return ", ".join(f'"{word}"' for word in words)
 
 
 def of_thesis(claims):
-    return [claim for claim in claims if not claim.get("ours")]
+    """Those of the thesis, the contradicted ones first."""
+    return sorted((claim for claim in claims if not claim.get("ours")), key=lambda claim: ORDER.index(claim["verdict"]))
 
 
-def verdict_counts(claims, key="verdict"):
-    """How many claims of the thesis have which verdict: on record, or in most samples, where there are any."""
-    return {verdict: sum((claim.get(key) or claim["verdict"]) == verdict for claim in of_thesis(claims)) for verdict in VERDICTS}
+def verdict_counts(claims):
+    """How many claims of the thesis have which verdict."""
+    return {verdict: sum(claim["verdict"] == verdict for claim in of_thesis(claims)) for verdict in VERDICTS}
 
 
 def verdict_mark(verdict):
@@ -55,21 +61,10 @@ def verdict_mark(verdict):
     return f'<span class="verdict {tone}">{mark} {text(verdict)}</span>'
 
 
-def verdict_marks(claim):
-    """The recorded verdict; in front of it that of most samples, if it is another one."""
-    recorded, majority = claim["verdict"], claim.get("majority")
-    if majority in (None, recorded):
-        return verdict_mark(recorded)
-    return f"{verdict_mark(majority)} in most samples<br>{verdict_mark(recorded)} recorded"
-
-
 def summary_section(runs, claims, figures):
     met = sum(run.expected for run in runs)
     tiles = [(len(runs), "run" if len(runs) == 1 else "runs"), (f"{met}/{len(runs)}", "ended as their scenario expects")]
-    recorded, majority = verdict_counts(claims), verdict_counts(claims, "majority")
-    tiles += [(str(count) if count == majority[verdict] else f"{count} | {majority[verdict]}",
-               verdict_mark(verdict) + (" (recorded | in most samples)" if count != majority[verdict] else ""))
-              for verdict, count in recorded.items() if count or majority[verdict]]
+    tiles += [(str(count), verdict_mark(verdict)) for verdict, count in verdict_counts(claims).items() if count]
     if figures:
         tiles.append((len(figures), '<a href="#figures">figures</a>'))
     items = "".join(f"<li><b>{text(value)}</b><span>{label}</span></li>" for value, label in tiles)
@@ -81,7 +76,22 @@ def summary_section(runs, claims, figures):
         "stability limits and the cost of a step come out. Everything here is compared with T. C. Lee, <cite>Rendering "
         "6-DOF Object-to-Object Interaction with 3-DOF Haptic Interfaces</cite> (“the thesis”); numbers such as Fig. A.2 or "
         f"3.3 are its figures and sections. Program of commit <code>{text(commits)}</code>.</p>"
-        f'<ul class="cards">{items}</ul>{headline and f"<p>{typeset(headline)}</p>"}{warnings(runs)}{refusals(claims)}')
+        f'<ul class="cards">{items}</ul>{main_results(claims)}{headline(claims)}{warnings(runs)}{refusals(claims)}')
+
+
+def main_results(claims):
+    """The results that a reader should have seen, with the command of each."""
+    rows = [[cell(f"{claim_link(claim)} {typeset(claim['main']['claim'])}", classes="prose"), cell(text(claim["place"])),
+             cell(typeset(claim["main"]["published"])), cell(typeset(claim["main"]["ours"])), cell(verdict_mark(claim["verdict"])),
+             cell(f"<code>{text(claim['command'])}</code>"), cell(text("< 1" if claim["seconds"] < 1 else f"{claim['seconds']:.0f}"))]
+            for claim in claims if claim.get("main")]
+    headings = [heading_cell(title) for title in ("Claim", "Place", "Published", "Ours", "Verdict", "Command", "Seconds")]
+    return table(headings, rows, "<b>Main results</b>", "stack", "main-results") if rows else ""
+
+
+def headline(claims):
+    said = getattr(claims, "headline", "")
+    return f"<p>{typeset(said)}</p>" if said else ""
 
 
 def warnings(runs):
@@ -92,7 +102,7 @@ def warnings(runs):
 
 def refusals(claims):
     """The claims of the thesis that are not confirmed. They belong into the summary."""
-    items = "".join(f"<li>{verdict_marks(c)} {claim_link(c)} ({text(c.get('place', ''))}): "
+    items = "".join(f"<li>{verdict_mark(c['verdict'])} {claim_link(c)} ({text(c.get('place', ''))}): "
                     f"{typeset(c.get('claim', ''))}</li>" for c in of_thesis(claims) if VERDICTS[c["verdict"]][1] == "bad")
     return f"<p>What these runs do not confirm:</p><ul>{items}</ul>" if items else ""
 
@@ -102,14 +112,12 @@ def ledger_section(claims, links):
         return '<p class="note">No ledger was given (<code>--claims</code>).</p>'
     rows = [claim_row(claim, links) for claim in of_thesis(claims)]
     ours = [claim_row(claim, links) for claim in claims if claim.get("ours")]
-    headings = [heading_cell(title) for title in ("Id", "Verdict", "Claim", "Published", "Measured", "Robustness")]
-    return ("<p>Each claim of the thesis, what it publishes, what the runs below give, and a verdict by a rule, which unfolds "
+    headings = [heading_cell(title) for title in ("Id", "Verdict", "Claim", "Published", "Measured", "Sureness")]
+    return (headline(claims) + "<p>Each claim of the thesis, what it publishes, what the runs below give, and a verdict by a rule, which unfolds "
             "with the figures and runs behind it. "
             "Hands are calibrated to mean and standard deviation of the raw colliding points; all else is a prediction. "
-            "Robustness: how often the verdict is the same at points spread over the plausible ranges of everything the "
-            'thesis leaves open (<code>results/reference/choices.md</code>), '
-            "and the choice that decides it, if one does, "
-            "with its first-order Sobol index S.</p>"
+            "Steady: more than half of the samples spread over the plausible ranges of everything the thesis leaves open "
+            '(<code>results/reference/choices.md</code>) have the verdict; else fragile, or not sampled.</p>'
             + filters("ledger-table", [("Verdict", 1)])
             + table(headings, rows, "<b>The ledger</b>", "sortable stack", "ledger-table")
             + (table(headings, ours, "<b>Found on the way, and no claims of the thesis</b>", "sortable stack", "findings-table")
@@ -121,9 +129,37 @@ def claim_row(claim, links):
     figures, runs = links.of_claim(claim)
     more = (f"<p><b>Rule</b> {typeset(claim.get('rule', ''))}</p>" + listed("Figures", figures) + listed("Runs", runs)
             + command(f"hapbench reproduce --only {claim.get('id', '')}"))
-    return [cell(f'<a id="claim-{id_}" href="#claim-{id_}">{id_}</a>', classes="id"), cell(verdict_marks(claim)),
+    return [cell(f'<a id="claim-{id_}" href="#claim-{id_}">{id_}</a>', classes="id"), cell(verdict_mark(claim["verdict"])),
             cell(f"{typeset(claim.get('claim', ''))}<p class=note>{links.place(str(claim.get('place', '')))}</p>"
                  + folded("Rule, figures, runs", more, classes="printed"), classes="prose"),
             cell(typeset(claim.get("published", ""))),
             cell(f"{typeset(claim.get('measured', ''))}<p class=note>{typeset(claim.get('why', ''))}</p>", classes="prose"),
-            cell(text(claim.get("sureness") or ""))]
+            cell(text(sureness(claim)))]
+
+
+def sureness(claim):
+    """The word, and in how many samples."""
+    counts = claim.get("robustness")
+    return claim["sureness"] + (f": {counts['holds']} of {counts['judged']}" if counts else "")
+
+
+def choices_section(choices):
+    if not choices:
+        return '<p class="note">None were given (<code>--choices</code>).</p>'
+    rows = [[cell(text(c.get("id", ""))), cell(typeset(c.get("what", "")), classes="prose"),
+             cell(text(c.get("thesis", "")), classes="prose"), cell(text(f"{c.get('value', '')} {c.get('unit', '')}".strip())),
+             cell(text(plausible(c))), cell(text(c.get("chosen", ""))), cell(text(c.get("why", "")), classes="prose")]
+            for c in choices]
+    headings = [heading_cell(t) for t in ("Choice", "Of what", "The thesis", "Value", "Plausible", "Results seen", "Why")]
+    return ("<p>Everything the thesis leaves open and a scenario had to choose. A value without a unit that stands beside a "
+            "range around 1 multiplies what the scenarios have. “after” means that results had been seen when it was "
+            "chosen.</p>" + folded(f"All {counted(len(rows), 'choice')}", table(
+                headings, rows, "<b>Choices on record</b>", "sortable stack", "choices-table")))
+
+
+def plausible(choice):
+    """The values a choice could as well have had, as text."""
+    options, range_ = choice.get("options"), choice.get("range")
+    if isinstance(options, list):
+        return ", ".join(map(str, options))
+    return " to ".join(map(str, range_ if isinstance(range_, list) else [])) + (", log" if choice.get("scale") == "log" else "")

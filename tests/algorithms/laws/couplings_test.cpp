@@ -43,6 +43,25 @@ TEST(VirtualCoupling, IsItsFormula) {
   });
 }
 
+TEST(VirtualCoupling, AlongTheSumKeepsItsDirectionAndTakesItsStiffnessInSeries) {
+  test::for_random_contacts([](ContactBuffer contacts, const char* name) {
+    for (const double coupling : {kK / 10, kK, 10 * kK}) {
+      RenderingConfig config = config_of(coupling);
+      config.parameters["virtual_coupling"]["along_sum"] = 1.0;
+      const LawForce force = make_law("virtual_coupling", config)->evaluate(contacts);
+      const test::Dense dense(contacts);
+      const Vec3 sum = dense.U * dense.d;
+      const double along = kK * (dense.U.transpose() * sum.normalized()).squaredNorm();
+      const Vec3 expected = -coupling * kK / (coupling + along) * sum;
+      const double tolerance = rounding(dense, coupling);
+      ASSERT_LE((force.spring - expected).norm(), tolerance * coupling * dense.d.sum()) << name;
+      ASSERT_LE((force.S - coupling / (coupling + along) * dense.U * dense.U.transpose()).norm(),
+                tolerance * static_cast<double>(dense.n()))
+          << name;
+    }
+  });
+}
+
 /// The displacement at which the coupling pulls with f: the inverse of f = K x / sqrt(1 + (K x / F)^2).
 Vec3 displacement(const Vec3& f, double coupling, double saturation) {
   return f / (coupling * std::sqrt(1.0 - (f / saturation).squaredNorm()));

@@ -39,6 +39,23 @@ TEST(TargetTask, LeavingOrLettingGoStartsTheHoldAnew) {
   }
 }
 
+TEST(TargetTask, ALowForceDoesWhatTheThresholdSays) {
+  constexpr int kLow = 10;
+  for (const auto& [low, time] :
+       {std::pair(LowForce::restarts, 1.0 + (500 + kLow) * kStep), std::pair(LowForce::pauses, 1.0 + kLow * kStep),
+        std::pair(LowForce::nothing, 1.0), std::pair(LowForce::closes, 10.0)}) {
+    TargetRules rules = one_target();
+    rules.threshold = Threshold{.low = low};
+    TargetTask task(rules, 1);
+    advance(task, 500, kOn, 1.0);
+    advance(task, kLow, kOn, 0.999);
+    EXPECT_EQ(task.finished(), low == LowForce::closes);
+    advance(task, 2 * kSecond, kOn, 1.0);
+    EXPECT_EQ(task.results()[0].removed, low != LowForce::closes);
+    EXPECT_EQ(task.results()[0].time, time);
+  }
+}
+
 /// A gauge whose grace is a whole number of samples.
 TargetRules with_gauge(double cutoff, double grace) {
   TargetRules rules = one_target();
