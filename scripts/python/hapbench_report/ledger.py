@@ -68,7 +68,6 @@ def summary_section(runs, claims, figures):
     if figures:
         tiles.append((len(figures), '<a href="#figures">figures</a>'))
     items = "".join(f"<li><b>{text(value)}</b><span>{label}</span></li>" for value, label in tiles)
-    headline = getattr(claims, "headline", "")
     commits = ", ".join(sorted({str(at(run.summary, "/provenance/commit") or "unknown") for run in runs}))
     return (
         "<h1>hapbench: haptic rendering of object-to-object contact</h1>"
