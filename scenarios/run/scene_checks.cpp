@@ -38,7 +38,8 @@ const char* size_question(const Environment& environment) {
 /// An environment that no hand works on, whatever the size of the tool.
 std::optional<Warning> size_warning(const Environment& environment, const Box& box) {
   const double longest = (box.max - box.min).maxCoeff();
-  if (longest >= kShortestObject && longest <= kLongestObject) return std::nullopt;
+  const bool may_be_a_patch = std::holds_alternative<PointShellEnvironment>(environment);
+  if (longest <= kLongestObject && (longest >= kShortestObject || may_be_a_patch)) return std::nullopt;
   return Warning{"size", "",
                  fmt::format("the environment is {}; a hand works on what is {} ... {} long: {}", size_text(box),
                              length_text(kShortestObject), length_text(kLongestObject), size_question(environment))};

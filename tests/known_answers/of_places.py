@@ -223,8 +223,8 @@ def one_subject(bench):
              ("rows_on_target", counts, how, EXACT, "with the last", counts + 1),
              ("model_force_N", [norms(f[on]).mean() for _, _, on in found], how, ROUNDING, "its vertical part", [f[on, 2].mean() for _, _, on in found])]
     bench.columns("targets.csv", table, known)
-    bench.proven("targets.csv:speed_m_per_s", "tests/results/observe/target_metrics_test.cpp", "TargetMetrics.MeansAreOverTheRowsOnTheTarget",
-                 "EXPECT_EQ(row.speed, 5.0)", "step(0.001, 100.0, 100.0);  // off the target")
+    bench.proven("targets.csv:speed_m_per_s", "tests/results/observe/target_metrics_test.cpp", "TargetMetrics.MeansAreOverTheRowsOnTheTargetOfTheTrial",
+                 "EXPECT_EQ(observer.rows()[0].speed, 5.0)", "step(0.001, 100.0, 100.0);  // off the target")
     first = sorted(order) == [0, 0, 0, 1, 1, 1]
     bench.add("targets.csv:place", first, True, "three of each place, in an order that is drawn", EXACT, ("any", False))
 

@@ -64,7 +64,7 @@ class Consumer(unittest.TestCase):
         self.assertFalse((build / "CTestTestfile.cmake").exists())
         all_of_parent = must("ninja", "-C", build, "-t", "commands", "all")
         self.assertIn("own_law.cpp", all_of_parent)
-        self.assertIn("installed_folder.cpp", all_of_parent)
+        self.assertIn("bundled_scenarios.cpp", all_of_parent)
         self.assertNotIn("scenarios/limits", all_of_parent, "nothing is built that the parent does not link")
         self.assertNotIn("scenarios/program", all_of_parent)
         own = next(line for line in all_of_parent.splitlines() if line.rstrip("\"'").endswith("own_law.cpp"))

@@ -19,8 +19,12 @@ def ran(*words, cwd=None, env=ENVIRONMENT, **environment):
     set besides those of `env`."""
     done = subprocess.run([*map(str, words)], cwd=cwd, env={**env, **environment}, capture_output=True, text=True, encoding="utf-8",
                           stdin=subprocess.DEVNULL)
-    done.stderr = re.sub(r"[^\n]*( \.\.\. \d+ s|: +\d+ %[^\n]*)\n", "", done.stderr)
+    done.stderr = without_progress(done.stderr)
     return done
+
+
+def without_progress(said):
+    return re.sub(r"[^\n]*( \.\.\. \d+ s|: +\d+ %[^\n]*)\n", "", said)
 
 
 def must(*words, statuses=(0,), **options):

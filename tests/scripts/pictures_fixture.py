@@ -9,7 +9,7 @@ from io import StringIO
 from pathlib import Path
 from unittest import mock
 
-from fixture import PROGRAM, hapbench, scratch_folder
+from fixture import PROGRAM, hapbench, scratch_folder, without_progress
 
 from hapbench_pictures.__main__ import main as pictures
 
@@ -21,7 +21,7 @@ def drawn(command, *words, expected=0):
     with redirect_stdout(said), redirect_stderr(error), mock.patch.dict(os.environ, HAPBENCH_PROGRAM=str(PROGRAM)):
         status = pictures([command, *map(str, words)])
     assert status == expected, (words, status, error.getvalue())
-    return error.getvalue() if expected else said.getvalue()
+    return without_progress(error.getvalue()) if expected else said.getvalue()
 
 
 plotted = partial(drawn, "plot")

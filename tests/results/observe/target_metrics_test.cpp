@@ -88,7 +88,8 @@ TEST(TargetMetrics, MeansAreOverTheRowsOnTheTargetOfTheTrial) {
     task.advance(record.tool.pose.position, 2.0, 2.0, 1.0);
     observer.on_step(record);
   };
-  step(0.0002, 1.0, 4.0);  // near enough to be logged, not to be held
+  step(0.001, 100.0, 100.0);  // off the target
+  step(0.0002, 1.0, 4.0);     // near enough to be logged, not to be held
   step(0.0, 3.0, 6.0);
   step(0.0, 50.0, 50.0);  // removes the target: this row is the next one's
   ASSERT_EQ(observer.rows().size(), 1u);

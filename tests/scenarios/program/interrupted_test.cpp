@@ -80,10 +80,10 @@ TEST(FailedWrite, LeavesTheResultsOfAnEarlierRun) {
 
 TEST(FailedWrite, OfStandardOutputIsAFailure) {
   if (!fs::exists("/dev/full")) GTEST_SKIP() << "no /dev/full here";
-  const ProgramRun list =
-      test::run_program("/bin/sh", {"-c", "\"$0\" list >/dev/full", test::hapbench_program().string()});
-  EXPECT_EQ(list.status, 1);
-  EXPECT_NE(list.err.find("cannot write standard output"), std::string::npos) << list.err;
+  const ProgramRun all =
+      test::run_program("/bin/sh", {"-c", "\"$0\" describe >/dev/full", test::hapbench_program().string()});
+  EXPECT_EQ(all.status, 1);
+  EXPECT_NE(all.err.find("cannot write standard output"), std::string::npos) << all.err;
 }
 
 TEST(FailedWrite, OfAFolderThatAnotherRunWritesTo) {
