@@ -120,11 +120,11 @@ Finding judge_density(const Measured& measured, const PublishedNumbers& p) {
 // ---- C5: the errors of the turn of task 2 against the ideal trajectory [m], without and with the local average. Two
 // cases, without and with, for each force of the hand.
 
-constexpr double kForces[] = {0.5, 1.0, 1.9};  ///< [N]
+constexpr double kPressingForces[] = {0.5, 1.0, 1.9};  ///< [N]
 
 Measured measure_local_average(const Evidence& e) {
   Measured measured;
-  for (const double force : kForces) {
+  for (const double force : kPressingForces) {
     for (const bool averaged : {false, true}) {
       const Result run = e.run(
           "task2_held", {fmt::format("hand.force_N={}", force), fmt::format("rendering.local_average={}", averaged)});
