@@ -76,7 +76,7 @@ class Page(WithResults):
         (figures / "figures.json").write_text(json.dumps([dict.fromkeys(("id", "title", "caption", "thesis_figure"), hostile) | {
             "files": ["f.svg"], "sources": [hostile]}]))
         claims = self.root / "hostile.json"
-        claims.write_text(json.dumps({"claims": [{k: hostile for k in claim("")} | {"verdict": "refuted"}]}))
+        claims.write_text(json.dumps({"claims": [{k: hostile for k in claim("")} | {"verdict": "refuted", "sureness": "steady"}]}))
         page = self.page("--figures", figures, "--claims", claims, results=results)
         self.assertFalse("<script>alert" in page or '<img src="https' in page)
 
