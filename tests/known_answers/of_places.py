@@ -232,9 +232,9 @@ def one_subject(bench):
 @scene
 def verdicts(bench):
     """Verdicts on claims, by tests that give the rules of claims numbers beside their thresholds, for each verdict and for another."""
-    for word, said, refused in (("reproduced", 'reduced_max=1 |",\n       {{"", reproduced}', "not_reproduced"),
+    for word, said, refused in (("reproduced", '{"T4", costs, {{"", reproduced}', "not_reproduced"),
                                 ("not reproduced", '"1.reduced_mean=1.1 1.reduced_max=2", not_reproduced', "reproduced"),
-                                ("reproduced in kind", '"1.reduced_max=15", in_kind', "reproduced"), ("refuted", '"last_max=1.3 limit_max=1.3", refuted', "reproduced"),
+                                ("reproduced in kind", '"outside_taps=15", in_kind', "reproduced"), ("refuted", '"last_max=1.3 limit_max=1.3", refuted', "reproduced"),
                                 ("holds", '{"T2b", "raw=55 kept=20 | raw=56", {{"", holds}', "does_not_hold"),
                                 ("does not hold", '"0.raw=56 1.raw=57", does_not_hold', "holds"),
                                 ("not reproducible", 'EXPECT_EQ(finding.verdict, not_reproducible)', "reproduced")):
