@@ -319,8 +319,9 @@ std::string list_text(const Index& all, bool names_alone) {
     if (names_alone) {
       names += ", " + thing.name;
     } else {
-      text += entry(is_claim ? fmt::format("{:<5}{}", thing.name, thing.more.at("verdict").get<std::string>()) : thing.name,
-                    is_claim ? thing.summary : short_summary(thing.summary), 2, kColumn, output_width());
+      text +=
+          entry(is_claim ? fmt::format("{:<5}{}", thing.name, thing.more.at("verdict").get<std::string>()) : thing.name,
+                is_claim ? thing.summary : short_summary(thing.summary), 2, kColumn, output_width());
     }
   }
   end_list();
