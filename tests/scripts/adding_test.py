@@ -213,6 +213,8 @@ void add_twice(CommandLine& line) {
 
 }  // namespace hapbench
 """),
+        tree.edit("add_validate;", "add_twice, ", before=True),
+        tree.edit("constexpr AddCommand* kCommands[] = {", "add_twice, "),
         tree.edit("constexpr CommandGuide kGuides[] = {",
                   '\n    {"look", "twice", "what is a word two times?", {"twice this", "twice that", "twice it"}},'),
     }
