@@ -1,17 +1,14 @@
 """`hapbench import device` on logs of a simulator of its own. Arguments: the built program, the source tree."""
 import json
 import os
-import subprocess
 import sys
 import tempfile
 import unittest
 from pathlib import Path
 
 import numpy as np
+from fixture import PROGRAM, SOURCE, ran
 
-PROGRAM, SOURCE = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve()
-sys.path[:0] = [str(SOURCE / "scripts" / "python"), str(SOURCE / "tests" / "scripts")]
-sys.dont_write_bytecode = True
 os.environ["HAPBENCH_PROGRAM"] = str(PROGRAM)
 from hapbench_identify.design import KINDS, design, travel_of  # noqa: E402
 from hapbench_identify.fit import Cost, fit  # noqa: E402
@@ -41,8 +38,7 @@ def played(time, force, mass, viscous, dry, late, finer=200, spring=0.0):
 
 
 def run(*words):
-    return subprocess.run([PROGRAM, *map(str, words)], capture_output=True, text=True, stdin=subprocess.DEVNULL,
-                          env={**os.environ, "HAPBENCH_PYTHON": sys.executable})
+    return ran(PROGRAM, *words)
 
 
 class Identify(unittest.TestCase):

@@ -11,12 +11,10 @@ import unittest
 from pathlib import Path
 
 import numpy as np
+from fixture import PROGRAM, SOURCE, ran
 from scipy import signal
 from scipy.spatial.transform import Rotation, Slerp
 
-PROGRAM, SOURCE = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve()
-sys.path.insert(0, str(SOURCE / "scripts" / "python"))
-sys.dont_write_bytecode = True
 from hapbench_import.__main__ import command_line  # noqa: E402
 from hapbench_import.faults import Faults  # noqa: E402
 from hapbench_import.options import options_of  # noqa: E402
@@ -30,8 +28,7 @@ Y_UP = np.array([[1, 0, 0], [0, 0, -1], [0, 1, 0]], float)  # x, -z, y
 
 
 def run(*words, **environment):
-    return subprocess.run([PROGRAM, *map(str, words)], capture_output=True, text=True, stdin=subprocess.DEVNULL,
-                          env={**os.environ, "HAPBENCH_PYTHON": sys.executable, **environment})
+    return ran(PROGRAM, *words, **environment)
 
 
 def hapbench(*words):
