@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-/// What comes with the program: its folders, and the scenarios in them, which are known by their names.
+/// Finds the folders that come with the program, and the scenarios in them by their names.
 namespace hapbench {
 
 /// A folder of the files that come with hapbench: the first existing share/hapbench/NAME of

@@ -268,7 +268,7 @@ class PlyHeader {
   /// The elements up to those wanted; later ones are not read.
   const std::vector<Element>& elements() const { return elements_; }
   bool is_text() const { return format_ == "ascii"; }
-  /// Of a binary file.
+  /// The byte order of the numbers. Precondition: not is_text().
   std::endian byte_order() const { return format_ == "binary_big_endian" ? std::endian::big : std::endian::little; }
 
  private:

@@ -53,10 +53,11 @@ struct Convergence {
   bool asymptotic = false;
   /// Least and largest result of the last three levels that count, or of two; none with fewer.
   std::optional<std::pair<double, double>> band;
-  /// Of each level: the order that it and the two before show; none where there is none.
+  /// The observed order of each level over it and the two coarser levels, if defined.
   std::vector<std::optional<double>> orders;
-  /// Of each level, in the metric's unit: with an order 1.25 |f - f*|, at the finest level its GCI; without one the
-  /// largest distance from a finer level, and at least the width of the band: what the levels show, no bound.
+  /// The estimated error of each level, in the metric's unit: with an order 1.25 |f - f*|, at the finest level its GCI;
+  /// without one the largest distance to a finer level, and at least the width of the band. An observation, not a
+  /// bound.
   std::vector<std::optional<double>> errors;
 };
 

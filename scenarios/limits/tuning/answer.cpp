@@ -15,8 +15,8 @@
 #include "scenarios/run/scene_loop.hpp"
 #include "sim/core/math.hpp"
 
-/// What is known of a choice: whether it holds between the values that were tried and for longer, how far its metrics
-/// are known, and what it can bear. Where nothing is feasible: what is in the way, and what to relax.
+/// Checks a choice before it is recommended: between the values that were tried, in longer runs, against the errors of
+/// its metrics, and up to its margins. If nothing is feasible, explains what is in the way and what to relax.
 namespace hapbench {
 namespace {
 
@@ -230,7 +230,8 @@ void explain_limits(Trials& trials, const TuneTrial& nearest, TunedLaw& law) {
     law.relax += "; a limit of your own, such as --bound force_rms_above_30Hz_N=0.05, takes the place of what is quiet";
 }
 
-/// Where trials are settled at K but not with the margin: the largest one that some trial has. False without one.
+/// Names the largest margin that a trial has which is settled at K but lacks the margin asked for. False if none is
+/// settled.
 bool explain_margin(Trials& trials, TunedLaw& law) {
   constexpr std::size_t kMostAsked = 8;
   std::vector<TuneTrial> settled;
@@ -273,7 +274,7 @@ void explain_motion(const Trials& trials, TunedLaw& law) {
   if (soft != nullptr)
     law.why = fmt::format("up to {:.4g} N/m too soft, {}; from there on too stiff, {}", soft->stiffness, soft->why,
                           stiff->why);
-  law.relax = "no limit is to blame: a gentler hand, a wider tool or another device, or other runs with --over";
+  law.relax = "no limit is to blame: a gentler hand, a wider tool or another device, or other runs with --family";
 }
 
 }  // namespace
