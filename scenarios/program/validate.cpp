@@ -120,7 +120,9 @@ bool is_device_file(const std::filesystem::path& file) {
 void write_points(const LoadedScenario& loaded, const std::filesystem::path& file) {
   if (std::holds_alternative<SpringsEnvironment>(loaded.scenario.environment))
     throw InputError(loaded.file.string() + ": /environment/type: got \"springs\", which have no point shell");
-  const std::string text = point_shell_text(make_shell(loaded.scenario, loaded.files)->points(), file);
+  const auto shell = make_shell(loaded.scenario, loaded.files);
+  throw_if_stopped();  // that may have taken seconds
+  const std::string text = point_shell_text(shell->points(), file);
   std::error_code ignored;
   if (std::filesystem::is_directory(file, ignored))
     throw InputError(fmt::format("--points {}: is a directory", file.string()));
