@@ -186,9 +186,8 @@ Command CommandLine::add(const std::string& name, const std::string& summary, Ch
   return Command(app);
 }
 
-void CommandLine::pass_on(const std::string& name, const std::string& summary,
-                          std::function<int(const std::vector<std::string>&)> action) {
-  app_->add_subcommand(name, summary);
+void CommandLine::pass_on(const std::string& name, std::function<int(const std::vector<std::string>&)> action) {
+  app_->add_subcommand(name);
   passed_on_[name] = std::move(action);
 }
 

@@ -118,8 +118,7 @@ class CommandLine {
     return {command, *options};
   }
   /// Adds a command whose words behind its name, options and --help included, all go to `action` as they are.
-  void pass_on(const std::string& name, const std::string& summary,
-               std::function<int(const std::vector<std::string>&)> action);
+  void pass_on(const std::string& name, std::function<int(const std::vector<std::string>&)> action);
   /// Replaces a study by its words (study.hpp), loads the modules that the words and HAPBENCH_MODULE_PATH name, then
   /// runs the command. Returns its exit status; for a success during which a law or a source of contacts from outside
   /// failed, kUnexpectedOutcome. Throws what the command throws, and InputError for a wrong usage and for modules.

@@ -143,8 +143,9 @@ Json league_json(const League& league) {
   Json rows = Json::array(), laws = Json::array();
   const Columns<Standing> columns = league_columns(false);
   for (const Standing& standing : league.standings) rows.push_back(columns.json(standing));
+  const Columns<LawStanding> columns_of_laws = law_columns(league);
   for (const LawStanding& law : league.laws)
-    laws.emplace_back(law_columns(league).json(law))["fails"] = scenes_of_failures(league, law);
+    laws.emplace_back(columns_of_laws.json(law))["fails"] = scenes_of_failures(league, law);
   return {{"standings", std::move(rows)}, {"laws", std::move(laws)}};
 }
 

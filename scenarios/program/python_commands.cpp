@@ -30,17 +30,16 @@ namespace {
 using ProgramWords = std::vector<std::string>;
 
 struct PythonCommand {
-  std::string_view name, sentence;
-  ProgramWords words;  ///< for scripts/python/launch: the package, and what it takes before the user's words
+  std::string_view name;
+  std::string_view sentence;  ///< of a kind of import, for its help
+  ProgramWords words;         ///< for scripts/python/launch: the package, and what it takes before the user's words
 };
 
 const PythonCommand kPythonCommands[] = {
     {"import stroke", "Make a stroke to play back from a recording: poses and measured forces", {"hapbench_import"}},
     {"import device", "Make a device's file from its log: mass, friction, delay, encoder", {"hapbench_identify"}},
-    {"plot", "Draw runs over time and in space, a sweep, limits", {"hapbench_pictures", "plot"}},
-    {"report",
-     "Write a page of runs: curves, replay with sound, metrics, scenario, commands",
-     {"hapbench_pictures", "report"}}};
+    {"plot", "", {"hapbench_pictures", "plot"}},
+    {"report", "", {"hapbench_pictures", "report"}}};
 
 /// The line of a shell that becomes the launcher, which finds a Python that has what the package needs.
 std::string launch_line(const ProgramWords& package, const ProgramWords& given) {
@@ -154,13 +153,10 @@ void write_way(const std::filesystem::path& folder, const std::filesystem::path&
 }
 
 void add_python_commands(CommandLine& line) {
-  line.pass_on("import",
-               "Make a stroke from a recording (import stroke FILE), a device from its log (import device LOG)",
-               run_import);
+  line.pass_on("import", run_import);
   for (const PythonCommand& command : kPythonCommands) {
     if (command.name.starts_with("import ")) continue;
-    line.pass_on(std::string(command.name), std::string(command.sentence),
-                 [&command](const ProgramWords& given) { return run(command, given); });
+    line.pass_on(std::string(command.name), [&command](const ProgramWords& given) { return run(command, given); });
   }
 }
 
