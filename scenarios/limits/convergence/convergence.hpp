@@ -55,9 +55,8 @@ struct Convergence {
   std::optional<std::pair<double, double>> band;
   /// The observed order of each level over it and the two coarser levels, if defined.
   std::vector<std::optional<double>> orders;
-  /// The estimated error of each level, in the metric's unit: with an order 1.25 |f - f*|, at the finest level its GCI;
-  /// without one the largest distance to a finer level, and at least the width of the band. An observation, not a
-  /// bound.
+  /// The estimated error of each level [metric's unit], observed and no bound: with an order 1.25 |f - f*|, at the
+  /// finest level its GCI; otherwise the largest distance to a finer level, and at least the width of the band.
   std::vector<std::optional<double>> errors;
 };
 

@@ -15,8 +15,8 @@
 #include "scenarios/run/scene_loop.hpp"
 #include "sim/core/math.hpp"
 
-/// Checks a choice before it is recommended: between the values that were tried, in longer runs, against the errors of
-/// its metrics, and up to its margins. If nothing is feasible, explains what is in the way and what to relax.
+/// Checks a choice before it is recommended: between the values tried, in longer runs and up to its margins. If nothing
+/// is feasible, explains what is in the way and what to relax.
 namespace hapbench {
 namespace {
 
@@ -230,8 +230,7 @@ void explain_limits(Trials& trials, const TuneTrial& nearest, TunedLaw& law) {
     law.relax += "; a limit of your own, such as --bound force_rms_above_30Hz_N=0.05, takes the place of what is quiet";
 }
 
-/// Names the largest margin that a trial has which is settled at K but lacks the margin asked for. False if none is
-/// settled.
+/// Names the largest margin of a trial that is settled without the one asked for. False if there is no such trial.
 bool explain_margin(Trials& trials, TunedLaw& law) {
   constexpr std::size_t kMostAsked = 8;
   std::vector<TuneTrial> settled;
