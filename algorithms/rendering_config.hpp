@@ -66,7 +66,7 @@ struct RenderingConfig {
   double mu_s = 0.0;                              ///< viscous friction [N s/m]
   double mu_f = 0.0;                              ///< viscous friction per newton of spring force [s/m]
   std::optional<DryFrictionConfig> dry_friction;  ///< then mu_s and mu_f are 0
-  /// chi [s/m] of damping that grows with depth (Hunt and Crossley); then there is no B.
+  /// chi [s/m] of damping that grows with depth (Hunt and Crossley), in place of B.
   std::optional<double> hunt_crossley;
   std::optional<double> max_damping;       ///< B_max [N s/m]
   std::optional<double> max_force;         ///< F_max [N]

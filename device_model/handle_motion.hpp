@@ -51,7 +51,7 @@ double time_of_rest(const MotionLaw& law, double v, double g) noexcept;
 ///
 ///   m x'' = f - b x' - c sign(x') + f_hand
 ///
-/// with m = handle_mass, b = viscous, c = coulomb of the device. f_hand is held, too, or the force of a hand fixed to
+/// with m = handle_mass, b = viscous, c = coulomb of the device. f_hand is also held, or the force of a hand fixed to
 /// the handle. Coulomb friction is exact: the closed form gives the instant at which the handle stops. There it sticks
 /// while the other forces sum up to at most c, and otherwise leaves in their direction. It stops once between two
 /// changes of a force, and once more in each half period if a hand with a spring oscillates, so a step has at most 2 +

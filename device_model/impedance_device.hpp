@@ -73,7 +73,7 @@ class ForcePath {
 ///   handle -> noise -> encoder -> x_k -> filter -> v_k -> f_render(x_k, v_k) -> resolution, saturation, slew
 ///     -> delay d T -> hold -> motors -> handle <- hand
 ///
-/// There is no virtual mass: the tool is at the measured position of the handle. x_k is the nearest multiple of q,
+/// No virtual mass: the tool is at the measured position of the handle. x_k is the nearest multiple of q,
 /// halves away from zero, in each axis, of the position with its noise; a position filter changes the x_k that is
 /// rendered, not that of the velocity. v_0 = 0. The motors give no force before the first one arrives, at t = d T; a
 /// fraction of d changes the force within the period. Between samples the handle moves exactly (HandleMotion). With an

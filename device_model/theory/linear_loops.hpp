@@ -59,7 +59,7 @@ struct SampledLoop {
   bool differentiates() const {
     return !std::holds_alternative<LowPassFilter>(device.velocity_filter) && !device.position_filter;
   }
-  /// The modes of the low-pass of the velocity and of the position; none where there is no such filter.
+  /// The modes of the low-passes of the velocity and of the position; empty without such a filter.
   std::vector<LowPassMode> velocity_modes() const;
   std::vector<LowPassMode> position_modes() const;
   /// Says which property of the device the linear system does not have; null if none.

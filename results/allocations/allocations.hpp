@@ -10,7 +10,7 @@ namespace hapbench {
 /// and its tests. 0 in any other, whose allocations nobody counts.
 std::uint64_t heap_allocations() noexcept;
 
-/// The count, for that malloc. Of each thread by itself: a run stays on one thread, beside which others may run.
+/// The calling thread's count, for that malloc: a run stays on one thread while others may run.
 extern constinit thread_local std::uint64_t allocations_of_thread;
 
 /// Counts from its construction on.

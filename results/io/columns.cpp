@@ -61,10 +61,10 @@ std::optional<double> number_of(const MetricList& list, std::string_view name) {
   return number_of(value_of(list, name));
 }
 
-Metric& Metric::within(double of_it, double beside) {
+Metric& Metric::within(double relative_part, double absolute_part) {
   bounded = true;
-  relative = of_it;
-  absolute = beside;
+  relative = relative_part;
+  absolute = absolute_part;
   return *this;
 }
 

@@ -65,9 +65,9 @@ struct Metric {
   double relative = 0.0, absolute = 0.0;  ///< parts of the tolerance, as `within` gives them
   bool bounded = false;                   ///< has a tolerance where it has a value
 
-  /// Sets the tolerance: `of_it` |value| + `beside` [its unit].
-  Metric& within(double of_it, double beside);
-  /// By how much the value may be wrong; none where that is not known or there is no value.
+  /// Sets the tolerance: `relative` |value| + `absolute` [unit of the value].
+  Metric& within(double relative_part, double absolute_part);
+  /// How far the value may be off; empty if that is not known or there is no value.
   std::optional<double> tolerance() const;
 };
 
@@ -94,11 +94,11 @@ using MetricList = std::vector<Metric>;
 
 /// The metric of that name; null when there is none.
 const Metric* find_metric(const MetricList& list, std::string_view name);
-/// The value of that name; none when there is no such metric.
+/// The value of that name, if there is such a metric.
 Cell value_of(const MetricList& list, std::string_view name);
 /// A count or a number as a number.
 std::optional<double> number_of(const Cell& value);
-/// The value of that name as a number; none when there is no such metric or it has no value.
+/// The value of that name as a number; empty without such a metric or without a value.
 std::optional<double> number_of(const MetricList& list, std::string_view name);
 /// A text as a cell of a CSV file: in quotes where it has a comma, a quote or an end of a line (RFC 4180).
 std::string csv_cell(std::string_view text);

@@ -122,7 +122,7 @@ using TableTarget = std::variant<std::filesystem::path, MemoryTable*>;
 /// Writes a table of numbers row by row. Allocates in the constructor only.
 class TableWriter {
  public:
-  /// `columns` are those of a table in memory, too. Throws IoError.
+  /// A table in memory has the same `columns`. Throws IoError.
   TableWriter(TableTarget target, std::span<const Column> columns) {
     if (auto* file = std::get_if<std::filesystem::path>(&target)) {
       csv_.emplace(std::move(*file), columns);
@@ -131,7 +131,7 @@ class TableWriter {
     }
   }
 
-  /// As CsvWriter::row, of cells that are no text.
+  /// As CsvWriter::row, for numeric cells only.
   template <class... Cells>
   void row(const Cells&... cells) noexcept {
     if (memory_ != nullptr) {

@@ -92,7 +92,7 @@ class LastQuarterVibration {
 
 /// The rows by which a run is judged: from a quarter of its time in contact on, which begins with the first touch, to
 /// its end; where the script repeats, so many whole periods before the end as begin there or later, if one does: in
-/// less than a period the landing would be judged, too.
+/// less than a period the landing would also be judged.
 class JudgedRows {
  public:
   /// The run has `steps` rows, its script a period of so many rows; 0: it does not repeat.

@@ -26,7 +26,7 @@ class ContactAgeObserver final : public MetricObserver {
   double dt_ = 0.0;
   std::uint64_t rows_ = 0, oldest_ = 0;
   std::uint64_t asked_ = 0, lost_ = 0;
-  std::vector<std::uint64_t> rows_of_age_;  ///< by samples; the last entry has all that are older, too
+  std::vector<std::uint64_t> rows_of_age_;  ///< by samples; the last entry also counts all older ones
 };
 
 /// Observes the lost torque (thesis Fig. 1), tau = sum r_i x f_i about the tip centre, where f_i is the contribution of

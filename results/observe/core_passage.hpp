@@ -62,7 +62,7 @@ class CorePassage {
     std::optional<Vec3> face_low, face_high;  ///< outward normals where it ends at the surface
     double deepest;                           ///< phi, the least [m]
     Vec3 deepest_place;
-    /// By which face it entered, where, and which part of it did.
+    /// The face by which it entered, where, and the part that did.
     Vec3 normal = Vec3::Zero(), entered = Vec3::Zero();
     double own_low = 0.0, own_high = 0.0;
   };
@@ -85,7 +85,7 @@ class CorePassage {
   double looks_from_, looks_from_way_;  ///< depth of a contact, and way in a row [m]
 
   Vec3 position_ = Vec3::Zero(), axis_ = Vec3::Zero();  ///< in the row before
-  bool began_ = false, follows_ = false;                ///< there was a row before; it was looked at, too
+  bool began_ = false, follows_ = false;                ///< there was a row before; it was also looked at
   double free_way_ = 0.0;                               ///< of the core, on which nothing changes [m]
   Stretches inside_;
   std::optional<Event> event_;

@@ -16,9 +16,9 @@ class MetricsObserver;
 /// How deep the tool was in the environment, in a trial or in several.
 struct InsideDepths {
   std::optional<double> max;      ///< of any point of the tool in any row [m]
-  std::optional<double> at_most;  ///< no row is deeper [m]; none where that is `max` within InsideSearch::kTolerance
+  std::optional<double> at_most;  ///< no row is deeper [m]; empty if that is `max` within InsideSearch::kTolerance
   std::vector<double> settled;    ///< of rows in settled contact [m]
-  /// By how much `max` and `settled` may be too low, beside InsideSearch::kTolerance of them [m].
+  /// How much `max` and `settled` may be too low, on top of InsideSearch::kTolerance of them [m].
   double max_within = 0.0, settled_within = 0.0;
   std::uint64_t rows = 0;  ///< with the tip centre where the inside is known
   std::uint64_t centre_inside = 0;
@@ -99,7 +99,7 @@ class InsideObserver final : public Observer {
 
   void on_step(const StepRecord& record) noexcept override;
 
-  /// How deep the tool was in the last row [m]; none where nobody knows and in rows that are not looked at.
+  /// Depth of the tool in the last row [m]; empty if unknown and in rows that are not looked at.
   const std::optional<double>& depth() const noexcept { return depth_; }
   const Passage& passage() const noexcept { return passage_; }
   const CorePassage& core_passage() const noexcept { return core_passage_; }

@@ -54,7 +54,7 @@ class MetricObserver : public Observer {
   /// must not count: an observer whose numbers make sense over several trials goes on adding, any other starts anew.
   virtual void begin(const TrialParts& trial) = 0;
   virtual void tell(Section& section) const = 0;
-  /// Adds the members of its section in summary.json that are no metrics.
+  /// Adds the members of its section in summary.json that are not metrics.
   virtual void add_members(nlohmann::ordered_json&) const {}
 };
 

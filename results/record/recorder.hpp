@@ -80,7 +80,7 @@ RowSource energy_rows(const EnergyLedger& ledger);
 /// ideal_trajectory.csv: one line per row that `observer` compares and at whose tilt the ideal trajectory exists
 /// (thesis Fig. 7). The recorder must observe after `observer` and keep every row.
 RowSource ideal_trajectory_rows(const IdealTrajectoryObserver& observer);
-/// force_reference.csv: the reference force beside the error of the rendered one, one line per row. The recorder must
+/// force_reference.csv: the reference force and the error of the rendered one, one line per row. The recorder must
 /// observe after `observer`.
 RowSource force_reference_rows(const ForceFidelityObserver& observer);
 

@@ -23,7 +23,7 @@ struct TrajectoryGroup {
   const char* field;   ///< its name
   const char* effect;  ///< what it does
   std::span<const Column> columns;
-  /// Writes a cell for each column. `inside` observes before the recorder; null where there is no inside.
+  /// Writes a cell for each column. `inside` observes before the recorder; null without an inside.
   void (*fill)(const StepRecord& record, const InsideObserver* inside, std::optional<double>* cells);
   bool wants_roll = false, wants_springs = false;  ///< as those of Observer
 };

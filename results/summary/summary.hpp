@@ -58,7 +58,7 @@ struct ToolSummary {
 /// An object of summary.json with metrics of one kind.
 struct MetricSection {
   std::string name;                ///< stands before the metrics' names, as in "energy.input_J"
-  nlohmann::ordered_json members;  ///< an object: those that are no metrics, as the energy's events
+  nlohmann::ordered_json members;  ///< an object: what is not a metric, such as the events of the energy
 };
 
 /// Something that may make the numbers of a run mislead; nothing is refused for it.
@@ -107,7 +107,7 @@ struct Result {
   MetricList metrics;
   std::vector<MetricSection> sections;              ///< passivity, and others for which the scenario asks
   std::uint64_t state_hash = 0;                     ///< MetricsObserver::state_hash
-  std::optional<ToolSummary> tool;                  ///< of a tool that is no cylinder
+  std::optional<ToolSummary> tool;                  ///< of a tool that is not a cylinder
   std::vector<Warning> warnings;                    ///< about the files that the scenario names, then about the run
   std::optional<std::vector<Diagnosed>> diagnosis;  ///< of a run that asked for it
   RunWork work;

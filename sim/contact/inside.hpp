@@ -34,7 +34,7 @@ class InsideSearch {
   std::optional<double> depth(const ToolPose& pose, double known = 0.0, double tolerance = kTolerance) noexcept;
 
   static constexpr double kTolerance = 0.02;
-  /// By how much depths may be wrong on top of the tolerance [m]: the tool's grid, points in place of a surface.
+  /// Additional depth error [m] from the tool's grid or from points that stand for a surface.
   double error() const noexcept { return error_; }
   std::size_t looks() const noexcept { return looks_; }  ///< distances of all searches so far, about
 

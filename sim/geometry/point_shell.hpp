@@ -47,7 +47,7 @@ class PointShell {
   /// Coordinate of the padding points [m], beyond every tool; finite, because infinities would produce NaN.
   static constexpr double kFarAway = 1e9;
 
-  /// cell_size is the edge [m] of the grid cells in which the local average merges points; 0 if there is no grid.
+  /// cell_size is the edge [m] of the grid cells in which the local average merges points; 0 without a grid.
   /// `cells` is as in ShellPoints.
   PointShell(const std::vector<SurfacePoint>& points, double cell_size, std::vector<std::uint32_t> cells = {});
 

@@ -36,9 +36,9 @@ class Solid {
   virtual SurfaceDistance at(const Vec3& point, const LookedUp* near = nullptr) const noexcept = 0;
   /// A box that contains all points that are known to be inside [m].
   const Box& region() const noexcept { return region_; }
-  /// By how much a distance may be wrong [m].
+  /// Largest error of a distance [m].
   virtual double error() const noexcept { return 0.0; }
-  /// In memory, about.
+  /// Approximate size in memory.
   virtual std::size_t bytes() const noexcept { return 0; }
   /// No point of the box is deeper than this [m]: what is known without a look.
   virtual double deepest_in(const Box&) const noexcept { return std::numeric_limits<double>::infinity(); }

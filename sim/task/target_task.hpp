@@ -92,7 +92,7 @@ class TargetTask {
   /// The place of each target, in the order in which they appear.
   const std::vector<std::size_t>& order() const noexcept { return order_; }
 
-  /// From the tip to the target, in the components on display [m]. Precondition: not finished.
+  /// Vector from the tip to the target, in the components on display [m]. Precondition: not finished.
   Vec3 error(const Vec3& tip) const noexcept;
   bool on_target(const Vec3& tip) const noexcept { return error(tip).norm() <= rules_.tolerance; }
   /// True if force and speed of this row are logged. Precondition: not finished.

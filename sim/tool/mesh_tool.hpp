@@ -49,7 +49,7 @@ class MeshTool final : public ToolShape {
   /// Marches along the ray in steps too short to reach the surface (the field changes by at most sqrt(3) of the step),
   /// but at least an eighth of a spacing, so that thinner gaps are not seen, and refines the last one by regula falsi.
   void exit_distances(const ToolPose& pose, const ContactBuffer& contacts, double* exits) const noexcept override;
-  /// For a concave body, the field's depths and gradients.
+  /// Depths and gradients of the field, for a concave body.
   void surface_constraints(const ToolPose& pose, const Vec3& wanted, double slack,
                            ContactBuffer& contacts) const noexcept override;
   /// Places of the mesh's convex hull; some 100 products for a contact of a smooth mesh, see SupportTable.

@@ -73,7 +73,8 @@ class RecordedMotion final : public Motion {
     double time = 0.0;  ///< [s], strictly increasing from sample to sample
     Vec3 position = Vec3::Zero();
     Vec3 axis = {0.0, 0.0, -1.0};
-    /// From the tool's frame to the world's, unit; determines the axis. Either all samples have one or none has.
+    /// Rotation from the tool's frame to the world's, unit; determines the axis. Either all samples have one or none
+    /// has.
     std::optional<Eigen::Quaterniond> orientation = {};
   };
 

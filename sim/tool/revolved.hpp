@@ -23,8 +23,8 @@ struct HalfPlane {
 struct Meridian {
   /// Throws std::invalid_argument that names the first wrong point: fewer than two points, a number that is not finite,
   /// s > 0, rho < 0, a point on the axis that is neither the first nor the last, a repeated point, lines that go back
-  /// on themselves or meet others, a tip behind the shank's end, or, for a round tip, a last point that is not beside
-  /// the tip centre. O(n^2).
+  /// on themselves or meet others, a tip behind the shank's end, or, for a round tip, a last point with s other than
+  /// 0, where the tip centre is. O(n^2).
   Meridian(std::vector<ProfilePoint> points, Tip end);
 
   /// A line of the outline: the boundary of its half plane from `start` on, in the direction (nr, -ns).

@@ -30,7 +30,7 @@ class SupportTable {
   std::span<const std::uint32_t> candidates(const Vec3& direction) const noexcept;
 
   std::vector<Vec3> points_;
-  double tie_;  ///< points up to this far behind the foremost one are foremost, too [m]
+  double tie_;  ///< points up to this far behind the foremost one count as foremost [m]
   std::vector<std::uint32_t> starts_, listed_;
 };
 

@@ -62,7 +62,7 @@ class ToolShape {
   double half_width() const noexcept { return half_width_; }
   /// Distance of the body's furthest point from the tip centre.
   double reach() const noexcept { return reach_; }
-  /// By how much the body's surface may lie elsewhere than that of what it stands for [m]: a mesh on a grid.
+  /// Largest distance of the body's surface from the one that it stands for [m], such as a mesh sampled on a grid.
   virtual double surface_error() const noexcept { return 0.0; }
   /// A proxy keeps every point out of a convex body only.
   virtual bool convex() const noexcept = 0;

@@ -17,8 +17,8 @@ struct ToolPose {
   Vec3 axis = {0.0, 0.0, -1.0};  ///< unit vector out of the tip
   double roll = 0.0;             ///< turn about the axis, right-handed [rad]; see rotation()
 
-  /// From the tool's frame to the world's: the shortest turn of -z to the axis (half a turn about x if the axis is +z),
-  /// followed by the turn by `roll` about the axis.
+  /// Rotation from the tool's frame to the world's: the shortest turn of -z to the axis (half a turn about x if the
+  /// axis is +z), followed by the turn by `roll` about the axis.
   Mat3 rotation() const noexcept;
 };
 
