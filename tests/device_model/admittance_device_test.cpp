@@ -161,23 +161,6 @@ TEST(AdmittanceDevice, AHandStrongerThanTheActuatorsMovesTheHandle) {
   }
 }
 
-TEST(AdmittanceDevice, FollowsASlowMotionClosely) {
-  AdmittanceDevice device({});
-  device.reset({});
-  double worst = 0.0;
-  constexpr double kAmplitude = 0.001, kOmega = 2.0 * std::numbers::pi;  // 1 Hz
-  for (int i = 1; i <= 8192; ++i) {
-    ToolState tool;
-    tool.pose.position.x() = kAmplitude * std::sin(kOmega * i * kStep);
-    tool.velocity.x() = kAmplitude * kOmega * std::cos(kOmega * i * kStep);
-    device.advance(tool, {0, 0, 0}, kStep);
-    if (i > 2048) worst = std::max(worst, std::abs(device.handle().position.x() - tool.pose.position.x()));
-  }
-  // The servo lags by its delay and the friction needs b v / k; together under 2 % of the amplitude.
-  EXPECT_LE(worst, 0.02 * kAmplitude);
-  EXPECT_GT(worst, 0.0);
-}
-
 TEST(AdmittanceDevice, AResetRepeatsEverythingBitForBit) {
   AdmittanceDeviceConfig config;
   config.sensor.noise = 0.1;

@@ -132,17 +132,6 @@ TEST(ImpedanceDevice, ItsNoiseIsThatOfTheSeedAndGaussian) {
   EXPECT_NEAR(beyond / 20'000, 0.3173, 0.0132);
 }
 
-TEST(VelocityFilter, ALowPassAboveAllFrequenciesIsTheDifference) {
-  VelocityFilter low_pass(LowPassFilter{1e9, 3}, kT), difference(DifferenceFilter{}, kT);
-  low_pass.reset(Vec3::Zero());
-  difference.reset(Vec3::Zero());
-  Random random(1);
-  for (int k = 0; k < 50; ++k) {
-    const Vec3 x(random.normal(), random.normal(), random.normal());
-    EXPECT_EQ(low_pass.read(x), difference.read(x));
-  }
-}
-
 /// The definition, on all samples at once: the longest window, grown from 1, all samples of which are within the noise
 /// of the line through its ends.
 double longest_line(const std::vector<double>& x, double noise) {

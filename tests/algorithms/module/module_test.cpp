@@ -279,19 +279,6 @@ TEST_F(AModuleLaw, IsNotAskedAgainAfterAFaultUntilAReset) {
   EXPECT_TRUE(law.evaluate(contacts).spring.allFinite());
 }
 
-TEST_F(AModuleLaw, IsDestroyedOnceForEachCreation) {
-  {
-    ModuleLaw law(module_of(kMean), kK, {});
-    law.prepare(10);
-    law.prepare(20);
-    EXPECT_EQ(script.destroyed, 1);
-  }
-  EXPECT_EQ(script.destroyed, 2);
-  script = {.creates = false};
-  ModuleLaw(module_of(kMean), kK, {}).prepare(10);
-  EXPECT_EQ(script.destroyed, 0);
-}
-
 /// virtual_coupling as a law from outside, with weights, force and tensor.
 class Coupling final : public ForceLaw {
  public:

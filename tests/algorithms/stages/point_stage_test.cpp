@@ -90,21 +90,6 @@ TEST(GradientReduction, InnerProductsEqualToTheThresholdAreNotSimilar) {
   EXPECT_EQ(reduced({std::nextafter(0.5, 0.0), 100, {}}, test::contacts_of(gradients)).size(), 1u);
 }
 
-TEST(GradientReduction, ContactsBeyondMaxPointsAreDroppedAndCountedUntilReset) {
-  const ContactBuffer contacts =
-      test::contacts_of({{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {-1, 0, 0}, {1, 0, 0}}, {1, 1, 1, 1, 3});
-  const auto stage = reduction({0.995, 2, {}}, 5);
-  for (int step = 1; step <= 3; ++step) {
-    ContactBuffer actual = contacts;
-    stage->process(actual);
-    // The last contact is absorbed by the first although the buffer is full.
-    EXPECT_EQ(indices(actual), (std::vector<std::uint32_t>{4, 1}));
-    EXPECT_EQ(stage->dropped(), 2u * static_cast<unsigned>(step));
-  }
-  stage->reset();
-  EXPECT_EQ(stage->dropped(), 0u);
-}
-
 /// Gradients no two of which are similar, so that the reduction keeps all of them in its visiting order.
 ContactBuffer dissimilar(std::size_t n) {
   std::vector<Vec3> gradients;
