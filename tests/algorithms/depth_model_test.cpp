@@ -34,17 +34,6 @@ Vec3 at(double s, double a) {
   return kPose.position + kUnit * (s * kAxis + Vec3(a, 0, 0));
 }
 
-TEST(ShortestDistance, TiesPreferTheSideThenTheTipThenTheBottom) {
-  const Cylinder tool{4 * kUnit, 16 * kUnit, Tip::flat};
-  EXPECT_EQ(evaluate(tool, kPose, at(-1, 3)).gradient, Vec3(1, 0, 0)) << "side and tip";
-  EXPECT_EQ(evaluate(tool, kPose, at(-15, 3)).gradient, Vec3(1, 0, 0)) << "side and bottom";
-  const Cylinder disc{4 * kUnit, 2 * kUnit, Tip::flat};
-  EXPECT_EQ(evaluate(disc, kPose, at(-1, 1)).gradient, kAxis) << "tip and bottom";
-  EXPECT_EQ(evaluate(disc, kPose, at(-1, 3)).gradient, Vec3(1, 0, 0)) << "all three";
-  const Cylinder round{4 * kUnit, 16 * kUnit, Tip::round};
-  EXPECT_EQ(evaluate(round, kPose, at(-15, 3)).gradient, Vec3(1, 0, 0)) << "side and bottom, round tip";
-}
-
 TEST(ShortestDistance, AnUndefinedDirectionFallsBackToTheInwardNormal) {
   const Vec3 normal = Vec3(3, 4, 0) / 5;
   // On the median line the side is nearest, in an undefined direction.
@@ -70,12 +59,12 @@ TEST(ShortestDistance, DirectionsLongerThan1e12thOfTheRadiusAreDefined) {
   }
 }
 
-/// Calls check(tool, pose, contacts) with tools of all kinds among points in, on and around them.
+/// Calls check(tool, pose, shell, contacts) with cylinders of both tips among points in, on and around them.
 template <class Check>
 void for_tools(std::size_t n, Check check) {
   Random random(1);
   for (std::size_t i = 0; i < test::cases(n); ++i) {
-    const test::DefinedTool tool = test::tool_kinds()[i % test::tool_kinds().size()].make(random, 0.001);
+    const test::DefinedTool tool = test::tool_kinds()[i % 2].make(random, 0.001);
     const ToolPose pose = test::random_pose(random);
     std::vector<SurfacePoint> points;
     while (points.size() < 100) {

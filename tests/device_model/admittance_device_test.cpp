@@ -31,11 +31,6 @@ TEST(InputForceLimiter, ScalesLongerForcesToTheLimitAndLeavesOthersUntouched) {
   EXPECT_EQ(limit_input_force({0, 0, 0}, 0.0), Vec3(0, 0, 0));
 }
 
-TEST(ForceSensor, ReadsTheWeightOfTheDrillAsWell) {
-  ForceSensor sensor({.weight = 0.7, .down = {0, -1, 0}});
-  EXPECT_EQ(sensor.read({1, 2, 3}), Vec3(1, 2 - 0.7, 3));
-}
-
 TEST(ForceSensor, NoiseHasTheGivenDeviationInEveryComponentAndNoMean) {
   const double sigma = 0.02;
   ForceSensor sensor({.weight = 0.0, .noise = sigma, .seed = 5});

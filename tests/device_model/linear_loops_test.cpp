@@ -63,15 +63,6 @@ TEST(SampledLoop, HasTheEdgeOfTheClosedFormWithoutDelay) {
   EXPECT_EQ(eigenvalue_edge(unit_loop(0.0, 0.0)), 0.0) << "nothing damps";
 }
 
-TEST(SampledLoop, CountsAHandsMassAndDampingAsTheHandles) {
-  SampledLoop held = unit_loop(1.5, 0.2), heavy = held;
-  held.device.handle_mass = 0.6;
-  held.device.viscous = 0.01;
-  held.hand = {0.4, 0.0, 0.02};
-  heavy.device.viscous = 0.03;
-  EXPECT_NEAR(eigenvalue_edge(held), eigenvalue_edge(heavy), 1e-10);
-}
-
 TEST(SampledLoop, OfAHandWithASpringMovesAsTheClosedFormHasIt) {
   SampledLoop loop = light_loop();  // no wall: x'' + 2 zeta w x' + w^2 x = 0
   loop.hand = {0.3, 500.0, 2.0};
@@ -80,28 +71,6 @@ TEST(SampledLoop, OfAHandWithASpringMovesAsTheClosedFormHasIt) {
   const Eigen::MatrixXd A = loop.state_matrix();
   EXPECT_NEAR(A(0, 0), decay * (std::cos(wd * T) + zeta * w / wd * std::sin(wd * T)), 1e-15);
   EXPECT_NEAR(A(0, 1) * T, decay * std::sin(wd * T) / wd, 1e-15 * T);
-}
-
-TEST(SampledLoop, HasAFractionalDelayBetweenTheWholeOnes) {
-  double last = std::numeric_limits<double>::infinity();
-  for (double delay = 0.0; delay <= 3.0; delay += 0.125) {
-    const double edge = eigenvalue_edge(unit_loop(delay, 0.2));
-    EXPECT_LT(edge, last) << delay;
-    last = edge;
-  }
-  // The edge of a whole delay is the limit from either side.
-  const double whole = eigenvalue_edge(unit_loop(1.0, 0.2));
-  EXPECT_NEAR(eigenvalue_edge(unit_loop(1.0 - 1e-7, 0.2)), whole, 1e-6);
-  EXPECT_NEAR(eigenvalue_edge(unit_loop(1.0 + 1e-7, 0.2)), whole, 1e-6);
-}
-
-TEST(SampledLoop, AWideLowPassIsTheDifference) {
-  SampledLoop loop = unit_loop(0.0, 0.3);
-  const double difference = eigenvalue_edge(loop);
-  loop.device.velocity_filter = LowPassFilter{20.0};  // a = e^-126
-  EXPECT_NEAR(eigenvalue_edge(loop), difference, 1e-10);
-  loop.device.velocity_filter = LowPassFilter{0.05};
-  EXPECT_LT(eigenvalue_edge(loop), 0.9 * difference) << "a filter is late";
 }
 
 /// The smallest K with an eigenvalue on the unit circle, by the frequency response. The wall enters the state matrix as

@@ -271,7 +271,10 @@ std::vector<StepRecord> rows_of(std::shared_ptr<const ToolShape> tool, const Ori
 }
 
 const auto kCylinder = std::make_shared<const Cylinder>();
-const auto kCube = std::make_shared<const MeshTool>(test::grid_of(test::cube(0.0005), 0.0001));
+/// It is not round.
+std::shared_ptr<const ToolShape> cube() {
+  return std::make_shared<const MeshTool>(test::grid_of(test::cube(0.0005), 0.0001));
+}
 
 TEST(Roll, IsRecordedOfEveryToolAndInThePoseOfThoseThatAreNotRound) {
   for (const StepRecord& row : rows_of(kCylinder, kSpun)) {
@@ -279,7 +282,7 @@ TEST(Roll, IsRecordedOfEveryToolAndInThePoseOfThoseThatAreNotRound) {
               1e-14);
     EXPECT_EQ(row.tool.pose.roll, 0.0);
   }
-  for (const StepRecord& row : rows_of(kCube, kSpun)) {
+  for (const StepRecord& row : rows_of(cube(), kSpun)) {
     EXPECT_LE((row.tool.pose.rotation() - rotation(kSpun, row.time)).norm(), 1e-14);
     EXPECT_EQ(row.tool.pose.roll, row.roll);
   }
@@ -295,8 +298,8 @@ TEST(Roll, IsInTheAngularVelocityWhereItIsScriptedOrTheToolIsNotRound) {
     }
   };
   expect_whole(rows_of(kCylinder, kSpun), kSpun);
-  expect_whole(rows_of(kCube, kSpun), kSpun);
-  expect_whole(rows_of(kCube, kLed), kLed);
+  expect_whole(rows_of(cube(), kSpun), kSpun);
+  expect_whole(rows_of(cube(), kLed), kLed);
   const auto led = rows_of(kCylinder, kLed);
   for (std::size_t k = 1; k < led.size(); ++k) {
     EXPECT_EQ(led[k].tool.angular_velocity, Vec3(turn(led[k - 1].tool.pose.axis, led[k].tool.pose.axis) / kDt));

@@ -98,20 +98,6 @@ TEST(MeshFromTriangles, LeavesOutUnusedVerticesAndTrianglesWithEqualCorners) {
   EXPECT_EQ(found.open_edges.size(), 0u);
 }
 
-TEST(MeshFromTriangles, RefusesNothingness) {
-  EXPECT_NE(refusal_of({}).find("has no faces"), std::string::npos);
-  EXPECT_NE(refusal_of({{{0, 0, 0}, {1, 0, 0}}, {}}).find("has no faces"), std::string::npos);
-  EXPECT_NE(refusal_of({{{0, 0, 0}, {1, 0, 0}}, {{0, 1, 1}}}).find("has no faces"), std::string::npos);
-}
-
-TEST(MeshFromTriangles, RefusesCoordinatesThatAreNotFinite) {
-  for (const double bad : {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()}) {
-    TriangleSoup soup = cube();
-    soup.vertices[5].y() = bad;
-    EXPECT_EQ(refusal_of(soup), "vertex 5 is not finite");
-  }
-}
-
 TEST(MeshFromTriangles, CutsTheSurfaceAlongEdgesWithMoreThanTwoFaces) {
   TriangleSoup winged = cube();
   winged.vertices.push_back({0, 0, 5});
