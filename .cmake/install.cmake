@@ -15,12 +15,11 @@ install(EXPORT hapbench-targets NAMESPACE hapbench:: DESTINATION ${config_folder
 # Packages that the headers and the code of static libraries need.
 set(HAPBENCH_DEPENDENCIES "find_dependency(Eigen3 3.4)\nfind_dependency(nlohmann_json 3.11)\nfind_dependency(fmt 9)
 find_dependency(OpenMesh)\nfind_dependency(TBB 2021)")
-install(FILES ${CMAKE_CURRENT_LIST_DIR}/share_folder.cpp DESTINATION ${config_folder})
 configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/hapbench-config.cmake.in ${PROJECT_BINARY_DIR}/hapbench-config.cmake
   INSTALL_DESTINATION ${config_folder})
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/hapbench-config-version.cmake COMPATIBILITY SameMinorVersion)
-install(FILES ${PROJECT_BINARY_DIR}/hapbench-config.cmake ${PROJECT_BINARY_DIR}/hapbench-config-version.cmake
-  DESTINATION ${config_folder})
+install(FILES ${CMAKE_CURRENT_LIST_DIR}/share_folder.cpp ${PROJECT_BINARY_DIR}/hapbench-config.cmake
+  ${PROJECT_BINARY_DIR}/hapbench-config-version.cmake DESTINATION ${config_folder})
 
 foreach(folder ${folders})
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/${folder}/ DESTINATION include/hapbench/${folder}
@@ -59,9 +58,8 @@ foreach(manual README.md CHANGELOG.md CONTRIBUTING.md LICENSE CITATION.cff ${man
   cmake_path(GET manual PARENT_PATH folder)
   install(FILES ${PROJECT_SOURCE_DIR}/${manual} DESTINATION ${CMAKE_INSTALL_DOCDIR}/${folder})
 endforeach()
-foreach(pictures figures gallery)
-  install(DIRECTORY ${PROJECT_SOURCE_DIR}/results/reference/${pictures} DESTINATION ${CMAKE_INSTALL_DOCDIR}/results/reference)
-endforeach()
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/results/reference/figures ${PROJECT_SOURCE_DIR}/results/reference/gallery
+  DESTINATION ${CMAKE_INSTALL_DOCDIR}/results/reference)
 
 if(PROJECT_IS_TOP_LEVEL)
   include(${CMAKE_CURRENT_LIST_DIR}/package.cmake)

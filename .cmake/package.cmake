@@ -1,6 +1,5 @@
 # The Debian package: cpack in the folder of a build, the preset "package" for any processor.
-file(STRINGS ${PROJECT_SOURCE_DIR}/CITATION.cff authors REGEX "^  - name: ")
-list(GET authors 0 maintainer)
+file(STRINGS ${PROJECT_SOURCE_DIR}/CITATION.cff maintainer REGEX "^  - name: " LIMIT_COUNT 1)
 string(REGEX REPLACE "^  - name: *" "" maintainer "${maintainer}")
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME hapbench)

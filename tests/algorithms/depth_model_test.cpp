@@ -1,8 +1,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <memory>
-#include <string>
 #include <vector>
 
 #include "algorithms/depth/depth_model.hpp"
@@ -36,17 +34,6 @@ Vec3 at(double s, double a) {
   return kPose.position + kUnit * (s * kAxis + Vec3(a, 0, 0));
 }
 
-TEST(ShortestDistance, TiesPreferTheSideThenTheTipThenTheBottom) {
-  const Cylinder tool{4 * kUnit, 16 * kUnit, Tip::flat};
-  EXPECT_EQ(evaluate(tool, kPose, at(-1, 3)).gradient, Vec3(1, 0, 0)) << "side and tip";
-  EXPECT_EQ(evaluate(tool, kPose, at(-15, 3)).gradient, Vec3(1, 0, 0)) << "side and bottom";
-  const Cylinder disc{4 * kUnit, 2 * kUnit, Tip::flat};
-  EXPECT_EQ(evaluate(disc, kPose, at(-1, 1)).gradient, kAxis) << "tip and bottom";
-  EXPECT_EQ(evaluate(disc, kPose, at(-1, 3)).gradient, Vec3(1, 0, 0)) << "all three";
-  const Cylinder round{4 * kUnit, 16 * kUnit, Tip::round};
-  EXPECT_EQ(evaluate(round, kPose, at(-15, 3)).gradient, Vec3(1, 0, 0)) << "side and bottom, round tip";
-}
-
 TEST(ShortestDistance, AnUndefinedDirectionFallsBackToTheInwardNormal) {
   const Vec3 normal = Vec3(3, 4, 0) / 5;
   // On the median line the side is nearest, in an undefined direction.
@@ -72,17 +59,28 @@ TEST(ShortestDistance, DirectionsLongerThan1e12thOfTheRadiusAreDefined) {
   }
 }
 
-TEST(SurfaceNormal, HasTheDepthOfShortestDistanceAndTheInwardNormalAsGradient) {
+/// Calls check(tool, pose, shell, contacts) with cylinders of both tips among points in, on and around them.
+template <class Check>
+void for_tools(std::size_t n, Check check) {
   Random random(1);
-  for (const Tip tip : {Tip::flat, Tip::round}) {
-    const Cylinder tool = test::random_tool(random, tip);
+  for (std::size_t i = 0; i < test::cases(n); ++i) {
+    const test::DefinedTool tool = test::tool_kinds()[i % 2].make(random, 0.001);
     const ToolPose pose = test::random_pose(random);
-    ContactBuffer contacts(1000);
-    while (contacts.size() < contacts.capacity()) {
-      const Vec3 point = test::random_point_near(tool, pose, random);
-      if (test::slack(tool, pose, point.cast<long double>()) < 0.0L) continue;
-      contacts.push(static_cast<std::uint32_t>(contacts.size()), point, random.direction());
+    std::vector<SurfacePoint> points;
+    while (points.size() < 100) {
+      points.push_back({tool.surface_point(pose, random), random.direction()});
+      points.push_back({tool.near_point(pose, random), random.direction()});
     }
+    const PointShell shell(points, 0.0);
+    ShellQuery query(shell, *tool.shape);
+    ContactBuffer contacts(query.capacity());
+    query.contacts_at(pose, contacts);
+    check(*tool.shape, pose, shell, contacts);
+  }
+}
+
+TEST(SurfaceNormal, HasTheDepthOfShortestDistanceAndTheInwardNormalAsGradient) {
+  for_tools(400, [](const ToolShape& tool, const ToolPose& pose, const PointShell&, ContactBuffer& contacts) {
     ContactBuffer shortest = contacts;
     make_depth_model("surface_normal")->evaluate(tool, pose, contacts);
     make_depth_model("shortest_distance")->evaluate(tool, pose, shortest);
@@ -90,56 +88,25 @@ TEST(SurfaceNormal, HasTheDepthOfShortestDistanceAndTheInwardNormalAsGradient) {
       EXPECT_EQ(contacts.depth[i], shortest.depth[i]);
       EXPECT_EQ(contacts.gradient(i), Vec3(-contacts.normal(i)));
     }
-  }
+  });
 }
 
-class EveryDepthModel : public testing::TestWithParam<DepthModelEntry> {};
-INSTANTIATE_TEST_SUITE_P(Registered, EveryDepthModel, testing::ValuesIn(depth_models().begin(), depth_models().end()),
-                         [](const auto& entry) { return std::string(entry.param.info->name); });
-
-/// A model of a shell of so many points.
-std::unique_ptr<DepthModel> prepared(const DepthModelEntry& entry, std::size_t points) {
-  std::unique_ptr<DepthModel> model = entry.make();
-  model->prepare(PointShell(std::vector<SurfacePoint>(points), 0.0));
-  return model;
-}
-
-TEST_P(EveryDepthModel, NeverGivesACollidingPointANegativeDepth) {
-  Random random(1);
-  std::size_t on_surface = 0;
-  for (std::size_t i = 0; i < test::cases(4000); ++i) {
-    const Cylinder tool = test::random_tool(random, i % 2 == 0 ? Tip::flat : Tip::round);
-    const ToolPose pose = test::random_pose(random);
-    std::vector<SurfacePoint> points;
-    while (points.size() < 100) {
-      points.push_back({test::random_point_on(tool, pose, random), random.direction()});
-      points.push_back({test::random_point_near(tool, pose, random), random.direction()});
-    }
-    const PointShell shell(points, 0.0);
-    ShellQuery query(shell, tool);
-    ContactBuffer contacts(query.capacity());
-    query.contacts_at(pose, contacts);
-    prepared(GetParam(), points.size())->evaluate(tool, pose, contacts);
-    for (std::size_t k = 0; k < contacts.size(); ++k) {
-      ASSERT_GE(contacts.depth[k], 0.0);
-      ASSERT_TRUE(std::isfinite(contacts.depth[k]));
-      on_surface += contacts.depth[k] < 1e-15;
-    }
-  }
-  // There were points that the search and the model could round differently.
-  EXPECT_GT(on_surface, test::cases(4000));
-}
-
-TEST_P(EveryDepthModel, PadsItsContacts) {
-  Random random(3);
-  const Cylinder tool;
-  ContactBuffer contacts(8);
-  for (int i = 0; i < 8; ++i) contacts.push(0, {0, 0, 0.001}, random.direction());
-  contacts.shrink(5);
-  prepared(GetParam(), contacts.capacity())->evaluate(tool, {}, contacts);
-  for (std::size_t i = 5; i < 8; ++i) {
-    EXPECT_EQ(contacts.depth[i], 0.0);
-    EXPECT_EQ(contacts.gradient(i), Vec3(0, 0, 0));
+TEST(EveryDepthModel, NeverGivesACollidingPointANegativeDepth) {
+  for (const DepthModelEntry& model : depth_models()) {
+    SCOPED_TRACE(model.info->name);
+    std::size_t on_surface = 0;
+    for_tools(4000, [&](const ToolShape& tool, const ToolPose& pose, const PointShell& shell, ContactBuffer& contacts) {
+      const auto made = model.make();
+      made->prepare(shell);
+      made->evaluate(tool, pose, contacts);
+      for (std::size_t k = 0; k < contacts.size(); ++k) {
+        ASSERT_GE(contacts.depth[k], 0.0);
+        ASSERT_TRUE(std::isfinite(contacts.depth[k]));
+        on_surface += contacts.depth[k] < 1e-15;
+      }
+    });
+    // There were points that the search and the model could round differently.
+    EXPECT_GT(on_surface, test::cases(4000));
   }
 }
 

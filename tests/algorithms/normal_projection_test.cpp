@@ -17,7 +17,7 @@ namespace {
 
 using test::Vec3L;
 
-double depth_at(const Cylinder& tool, const ToolPose& pose, const Vec3& point, const Vec3& normal) {
+double depth_at(const ToolShape& tool, const ToolPose& pose, const Vec3& point, const Vec3& normal) {
   ContactBuffer contacts(1);
   contacts.push(0, point, normal);
   make_depth_model("normal_projection")->evaluate(tool, pose, contacts);
@@ -26,7 +26,7 @@ double depth_at(const Cylinder& tool, const ToolPose& pose, const Vec3& point, c
 }
 
 /// Whether the search reports the point, as it does for every point a depth model sees.
-bool collides(const Cylinder& tool, const ToolPose& pose, const Vec3& point) {
+bool collides(const ToolShape& tool, const ToolPose& pose, const Vec3& point) {
   const PointShell shell({{point, Vec3::UnitZ()}}, 0.0);
   ShellQuery query(shell, tool);
   ContactBuffer contacts(query.capacity());
@@ -34,55 +34,61 @@ bool collides(const Cylinder& tool, const ToolPose& pose, const Vec3& point) {
   return !contacts.empty();
 }
 
-class NormalProjectionDepthForTip : public testing::TestWithParam<Tip> {};
-INSTANTIATE_TEST_SUITE_P(BothTips, NormalProjectionDepthForTip, testing::Values(Tip::flat, Tip::round),
-                         [](const auto& tip) { return tip.param == Tip::flat ? "flat" : "round"; });
+/// Flat and round.
+std::span<const test::ToolKind> cylinders() {
+  return test::tool_kinds().first(2);
+}
+
+class NormalProjectionDepthOf : public testing::TestWithParam<test::ToolKind> {};
+INSTANTIATE_TEST_SUITE_P(Both, NormalProjectionDepthOf, testing::ValuesIn(cylinders().begin(), cylinders().end()),
+                         [](const auto& kind) { return kind.param.name; });
 
 /// Checks that the ray from the point against its normal leaves the tool after `depth`: there the slack is zero, and
 /// not yet before nor any more after. Slacks carry a few roundings of coordinates up to 1 m.
-void expect_exit(const Cylinder& tool, const ToolPose& pose, const Vec3& point, const Vec3& normal, double depth) {
+void expect_exit(const test::DefinedTool& tool, const ToolPose& pose, const Vec3& point, const Vec3& normal,
+                 double depth) {
   constexpr long double rounding = 2e-15L;
   const Vec3L x = point.cast<long double>(), u = -normal.cast<long double>();
-  const auto slack_at = [&](long double d) { return test::slack(tool, pose, x + d * u); };
+  const auto slack_at = [&](long double d) { return tool.slack(pose, x + d * u); };
   ASSERT_GE(depth, 0.0);
   ASSERT_LE(std::abs(slack_at(depth)), rounding);
   // The slack is concave along the ray: inside half-way, and if the ray went on inside it would show a little later.
   ASSERT_GE(slack_at(0.5L * depth), -rounding);
-  ASSERT_LE(slack_at(depth + 0.001L * tool.radius()), rounding);
+  ASSERT_LE(slack_at(depth + 0.001L * tool.shape->half_width()), rounding);
 }
 
-TEST_P(NormalProjectionDepthForTip, ARayInwardsFromTheSurfaceCrossesTheTool) {
+TEST_P(NormalProjectionDepthOf, ARayInwardsFromTheSurfaceCrossesTheTool) {
   // Independent of the side of the surface to which rounding has moved the point.
   Random random(2);
   std::size_t inwards = 0;
   for (std::size_t i = 0; i < test::cases(100000); ++i) {
-    const Cylinder tool = test::random_tool(random, GetParam());
+    const test::DefinedTool tool = GetParam().make(random, 0.001);
     const ToolPose pose = test::random_pose(random);
-    const Vec3 point = test::random_point_on(tool, pose, random);
-    const Vec3 normal = random.direction();
-    const Vec3L a_little_on = point.cast<long double>() - 0.001L * tool.radius() * normal.cast<long double>();
-    if (!collides(tool, pose, point) || test::slack(tool, pose, a_little_on) < 1e-12L) continue;
+    const Vec3 point = tool.surface_point(pose, random), normal = random.direction();
+    const double little = 0.001 * tool.shape->half_width();
+    const Vec3L a_little_on = point.cast<long double>() - little * normal.cast<long double>();
+    if (!collides(*tool.shape, pose, point) || tool.slack(pose, a_little_on) < 1e-12L) continue;
     ++inwards;
-    const double depth = depth_at(tool, pose, point, normal);
-    ASSERT_GE(depth, 0.001 * tool.radius());
+    const double depth = depth_at(*tool.shape, pose, point, normal);
+    ASSERT_GE(depth, little);
     expect_exit(tool, pose, point, normal, depth);
   }
   EXPECT_GT(inwards, test::cases(100000) / 8);
 }
 
-TEST_P(NormalProjectionDepthForTip, HandlesRaysAlongAndAcrossTheAxis) {
+TEST_P(NormalProjectionDepthOf, HandlesRaysAlongAndAcrossTheAxis) {
   // Rays for which the denominator of (F.7) or (F.12) is zero or nearly zero.
   Random random(3);
   for (std::size_t i = 0; i < test::cases(20000); ++i) {
-    const Cylinder tool = test::random_tool(random, GetParam());
+    const test::DefinedTool tool = GetParam().make(random, 0.001);
     const ToolPose pose{Vec3::Zero(), random.uniform() < 0.5 ? Vec3(0, 0, -1) : Vec3(1, 0, 0)};
-    const Vec3 point = test::random_point_near(tool, pose, random);
-    if (test::slack(tool, pose, point.cast<long double>()) < 0.0L) continue;
+    const Vec3 point = tool.near_point(pose, random);
+    if (tool.slack(pose, point.cast<long double>()) < 0.0L) continue;
     const double tiny = std::pow(10.0, random.uniform(-18.0, -3.0));
     for (const Vec3& direction : {Vec3(1, 0, 0), Vec3(-1, 0, 0), Vec3(0, 0, 1), Vec3(0, 0, -1), Vec3(0, 1, 0)}) {
-      expect_exit(tool, pose, point, direction, depth_at(tool, pose, point, direction));
+      expect_exit(tool, pose, point, direction, depth_at(*tool.shape, pose, point, direction));
       const Vec3 nearly = (direction + tiny * random.direction()).normalized();
-      expect_exit(tool, pose, point, nearly, depth_at(tool, pose, point, nearly));
+      expect_exit(tool, pose, point, nearly, depth_at(*tool.shape, pose, point, nearly));
     }
   }
 }
@@ -136,8 +142,9 @@ struct Depths {
 /// A tool led through points, step by step.
 class Stroke {
  public:
-  Stroke(const Cylinder& tool, const std::vector<SurfacePoint>& points)
-      : tool_(tool), shell_(points, 0.0), query_(shell_, tool_), contacts_(query_.capacity()) {
+  explicit Stroke(const std::vector<SurfacePoint>& points,
+                  std::shared_ptr<const ToolShape> tool = std::make_shared<Cylinder>())
+      : tool_(std::move(tool)), shell_(points, 0.0), query_(shell_, *tool_), contacts_(query_.capacity()) {
     model_->prepare(shell_);
     model_->reset();
   }
@@ -148,18 +155,18 @@ class Stroke {
     std::map<std::uint32_t, Depths> depths;
     std::vector<double> exits(contacts_.size());
     for (std::size_t i = 0; i < contacts_.size(); ++i) contacts_.set_gradient(i, -contacts_.normal(i));
-    tool_.shortest_depths(pose, contacts_);
-    tool_.exit_distances(pose, contacts_, exits.data());
+    tool_->shortest_depths(pose, contacts_);
+    tool_->exit_distances(pose, contacts_, exits.data());
     for (std::size_t i = 0; i < contacts_.size(); ++i) {
       depths[contacts_.index[i]] = {0.0, contacts_.depth[i], exits[i]};
     }
-    model_->evaluate(tool_, pose, contacts_);
+    model_->evaluate(*tool_, pose, contacts_);
     for (std::size_t i = 0; i < contacts_.size(); ++i) depths[contacts_.index[i]].continuous = contacts_.depth[i];
     return depths;
   }
 
  private:
-  Cylinder tool_;
+  std::shared_ptr<const ToolShape> tool_;
   PointShell shell_;
   ShellQuery query_;
   ContactBuffer contacts_;
@@ -185,8 +192,7 @@ class RandomStroke {
   }
   std::vector<SurfacePoint> points() {
     std::vector<SurfacePoint> points;
-    for (int i = 0; i < 100; ++i)
-      points.push_back({test::random_point_near(tool, pose_, random_), random_.direction()});
+    for (int i = 0; i < 100; ++i) points.push_back({tool.near_point(pose_, random_), random_.direction()});
     return points;
   }
 
@@ -195,7 +201,7 @@ class RandomStroke {
   ToolPose pose_ = test::random_pose(random_);
 
  public:
-  const Cylinder tool = test::random_tool(random_, random_.uniform() < 0.5 ? Tip::flat : Tip::round);
+  const test::DefinedTool tool = cylinders()[random_.below(2)].make(random_, 0.001);
 };
 
 TEST(ContinuousNormalProjectionDepth, FollowsItsFormulaFromStepToStep) {
@@ -203,7 +209,7 @@ TEST(ContinuousNormalProjectionDepth, FollowsItsFormulaFromStepToStep) {
   for (std::uint64_t seed = 0; seed < test::cases(300); ++seed) {
     RandomStroke walk(seed);
     const std::vector<SurfacePoint> points = walk.points();
-    Stroke stroke(walk.tool, points);
+    Stroke stroke(points, walk.tool.shape);
     ToolPose before;
     std::map<std::uint32_t, Depths> last;
     for (int step = 0; step < 50; ++step) {
@@ -229,7 +235,7 @@ TEST(ContinuousNormalProjectionDepth, FollowsItsFormulaFromStepToStep) {
 
 TEST(ContinuousNormalProjectionDepth, AFlatTipPressedInIsAsDeepAsItsTip) {
   // Up to twice the radius, far beyond the saturation of the shortest distance. Each step rounds lengths below 2 mm.
-  Stroke stroke(Cylinder{}, surface_points(Plane{0.002, 0.0001}));
+  Stroke stroke(surface_points(Plane{0.002, 0.0001}));
   for (int step = 0; step <= 1000; ++step) {
     const double depth = 1e-6 * step;
     for (const auto& [i, d] : stroke.to(upright(0.00001, -depth))) {
@@ -239,25 +245,8 @@ TEST(ContinuousNormalProjectionDepth, AFlatTipPressedInIsAsDeepAsItsTip) {
   }
 }
 
-TEST(ContinuousNormalProjectionDepth, UnderAFaceEnteredSidewaysItIsTheLargestShortestDistanceSoFar) {
-  // Fig. F.4: an upright tool 1 mm below a face is led in under it.
-  Stroke stroke(Cylinder{}, {{{0.0, 0.00003, 0.0}, Vec3::UnitZ()}});
-  double largest = 0.0;
-  int steps = 0;
-  for (double x = -0.0006; x < 0.0004; x += 1e-6) {
-    for (const auto& [i, d] : stroke.to(upright(x, -0.001))) {
-      largest = std::max(largest, d.shortest);
-      ASSERT_EQ(d.projected, 0.001);
-      ASSERT_NEAR(d.continuous, largest, 1e-18);
-      ++steps;
-    }
-  }
-  EXPECT_GT(steps, 800);
-  EXPECT_GT(largest, 0.0004);
-}
-
 TEST(ContinuousNormalProjectionDepth, APointThatHasLeftIsForgotten) {
-  Stroke stroke(Cylinder{}, {{{0.0, 0.0, 0.0}, Vec3::UnitZ()}});
+  Stroke stroke({{{0.0, 0.0, 0.0}, Vec3::UnitZ()}});
   for (int step = 0; step <= 700; ++step) stroke.to(upright(0.0, -1e-6 * step));
   EXPECT_NEAR(stroke.to(upright(0.0, -0.0007))[0].continuous, 0.0007, 1e-15);
   EXPECT_TRUE(stroke.to(upright(0.001, -0.0007)).empty());

@@ -41,22 +41,6 @@ TEST(PenaltyRendering, DepthMaxIsTheDeepestCollidingPointBeforeAnyStage) {
   EXPECT_EQ(staged.contacts().size(), 1u);
 }
 
-TEST(PenaltyRendering, LocalAverageComesBeforeReduction) {
-  RenderingConfig config;
-  config.local_average = true;
-  test::Probe averaged(pressed_plane(), config);
-  averaged.force_at(pressed_plane().pose);
-  double deepest_mean = 0.0;
-  for (std::size_t i = 0; i < averaged.contacts().size(); ++i) {
-    deepest_mean = std::max(deepest_mean, averaged.contacts().depth[i]);
-  }
-  config.reduction = ReductionConfig{};
-  test::Probe both(pressed_plane(), config);
-  both.force_at(pressed_plane().pose);
-  ASSERT_EQ(both.contacts().size(), 1u);
-  EXPECT_EQ(both.contacts().depth[0], deepest_mean);
-}
-
 TEST(PenaltyRendering, SpringsBringTheirOwnDepths) {
   for (const DepthModelEntry& model : depth_models()) {
     RenderingConfig config;

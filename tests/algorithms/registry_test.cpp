@@ -5,7 +5,6 @@
 #include <cmath>
 #include <numbers>
 #include <set>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -116,20 +115,6 @@ TEST(ForceBound, HoldsForSpringsOfEqualDepthInClosedForm) {
   EXPECT_DOUBLE_EQ(bound("proxy", 1), 64 * 0.2 * 0.0005);
   config.iterations = 0;
   EXPECT_EQ(bound("shaped_stiffness", 50), 50.0);  // summation
-}
-
-TEST(Registry, UnknownNamesAreNotFoundAndThrow) {
-  EXPECT_EQ(find_algorithm("no_such"), nullptr);
-  EXPECT_EQ(find_algorithm(""), nullptr);
-  EXPECT_EQ(find_algorithm("Summation"), nullptr);
-  EXPECT_EQ(find_depth_model("no_such"), nullptr);
-  RenderingConfig config;
-  config.algorithm = "no_such";
-  EXPECT_THROW(static_cast<void>(make_algorithm(config)), std::invalid_argument);
-  EXPECT_THROW(static_cast<void>(make_depth_model(config)), std::invalid_argument);
-  config = {};
-  config.depth_model = "no_such";
-  EXPECT_THROW(static_cast<void>(make_depth_model(config)), std::invalid_argument);
 }
 
 /// The contacts of the tilted peg in its hole after the algorithm, in a second step so that depth models with a memory

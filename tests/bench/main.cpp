@@ -22,7 +22,6 @@ bool take_full(int& argc, char** argv) {
 void add_benchmarks(bool full) {
   register_laws();
   register_steps();
-  register_ideal_trajectory();
   register_searches(full);
 }
 

@@ -33,43 +33,6 @@ SampledLoop unit_loop(double delay, double beta) {
   return loop;
 }
 
-/// Coefficients from the constant up.
-using Polynomial = std::vector<double>;
-
-Polynomial product(const Polynomial& a, const Polynomial& b) {
-  Polynomial out(a.size() + b.size() - 1, 0.0);
-  for (std::size_t i = 0; i < a.size(); ++i)
-    for (std::size_t j = 0; j < b.size(); ++j) out[i + j] += a[i] * b[j];
-  return out;
-}
-
-Polynomial sum(Polynomial a, const Polynomial& b) {
-  a.resize(std::max(a.size(), b.size()), 0.0);
-  for (std::size_t i = 0; i < b.size(); ++i) a[i] += b[i];
-  return a;
-}
-
-/// The largest |root|, by the companion matrix.
-double largest_root(const Polynomial& p) {
-  const auto n = static_cast<Eigen::Index>(p.size()) - 1;
-  Eigen::MatrixXd companion = Eigen::MatrixXd::Zero(n, n);
-  for (Eigen::Index i = 0; i + 1 < n; ++i) companion(i, i + 1) = 1.0;
-  for (Eigen::Index i = 0; i < n; ++i) companion(n - 1, i) = -p[static_cast<std::size_t>(i)] / p.back();
-  return spectral_radius(companion);
-}
-
-Polynomial z_to(int power) {
-  Polynomial p(static_cast<std::size_t>(power) + 1, 0.0);
-  p.back() = 1.0;
-  return p;
-}
-
-/// z^(d+1) (z - 1) (z - e) + (b1 z + b2) ((alpha + beta) z - beta) for a handle damped with b T/m.
-Polynomial damped(int d, double alpha, double beta, double b) {
-  const double e = std::exp(-b), b1 = (b - 1.0 + e) / (b * b), b2 = (1.0 - e - b * e) / (b * b);
-  return sum(product(z_to(d + 1), product({-1.0, 1.0}, {-e, 1.0})), product({b2, b1}, {-beta, alpha + beta}));
-}
-
 /// The largest value over beta, found between 0 and 2 by the golden section; the edge rises and falls once.
 template <class Edge>
 double best_over_damping(Edge edge) {
@@ -100,28 +63,6 @@ TEST(SampledLoop, HasTheEdgeOfTheClosedFormWithoutDelay) {
   EXPECT_EQ(eigenvalue_edge(unit_loop(0.0, 0.0)), 0.0) << "nothing damps";
 }
 
-TEST(SampledLoop, HasTheRootsOfTheTransferFunctionOfADampedHandle) {
-  Random random(1);
-  for (int i = 0; i < 200; ++i) {
-    const int d = i % 4;
-    SampledLoop loop = unit_loop(d, random.uniform());
-    loop.device.viscous = 0.05 + random.uniform();
-    loop.stiffness = random.uniform();
-    const double root = largest_root(damped(d, loop.stiffness, loop.wall_damping, loop.device.viscous));
-    // Rounding moves a double root by the square root of eps.
-    EXPECT_NEAR(spectral_radius(loop.state_matrix()), root, 1e-7);
-  }
-}
-
-TEST(SampledLoop, CountsAHandsMassAndDampingAsTheHandles) {
-  SampledLoop held = unit_loop(1.5, 0.2), heavy = held;
-  held.device.handle_mass = 0.6;
-  held.device.viscous = 0.01;
-  held.hand = {0.4, 0.0, 0.02};
-  heavy.device.viscous = 0.03;
-  EXPECT_NEAR(eigenvalue_edge(held), eigenvalue_edge(heavy), 1e-10);
-}
-
 TEST(SampledLoop, OfAHandWithASpringMovesAsTheClosedFormHasIt) {
   SampledLoop loop = light_loop();  // no wall: x'' + 2 zeta w x' + w^2 x = 0
   loop.hand = {0.3, 500.0, 2.0};
@@ -130,28 +71,6 @@ TEST(SampledLoop, OfAHandWithASpringMovesAsTheClosedFormHasIt) {
   const Eigen::MatrixXd A = loop.state_matrix();
   EXPECT_NEAR(A(0, 0), decay * (std::cos(wd * T) + zeta * w / wd * std::sin(wd * T)), 1e-15);
   EXPECT_NEAR(A(0, 1) * T, decay * std::sin(wd * T) / wd, 1e-15 * T);
-}
-
-TEST(SampledLoop, HasAFractionalDelayBetweenTheWholeOnes) {
-  double last = std::numeric_limits<double>::infinity();
-  for (double delay = 0.0; delay <= 3.0; delay += 0.125) {
-    const double edge = eigenvalue_edge(unit_loop(delay, 0.2));
-    EXPECT_LT(edge, last) << delay;
-    last = edge;
-  }
-  // The edge of a whole delay is the limit from either side.
-  const double whole = eigenvalue_edge(unit_loop(1.0, 0.2));
-  EXPECT_NEAR(eigenvalue_edge(unit_loop(1.0 - 1e-7, 0.2)), whole, 1e-6);
-  EXPECT_NEAR(eigenvalue_edge(unit_loop(1.0 + 1e-7, 0.2)), whole, 1e-6);
-}
-
-TEST(SampledLoop, AWideLowPassIsTheDifference) {
-  SampledLoop loop = unit_loop(0.0, 0.3);
-  const double difference = eigenvalue_edge(loop);
-  loop.device.velocity_filter = LowPassFilter{20.0};  // a = e^-126
-  EXPECT_NEAR(eigenvalue_edge(loop), difference, 1e-10);
-  loop.device.velocity_filter = LowPassFilter{0.05};
-  EXPECT_LT(eigenvalue_edge(loop), 0.9 * difference) << "a filter is late";
 }
 
 /// The smallest K with an eigenvalue on the unit circle, by the frequency response. The wall enters the state matrix as

@@ -26,14 +26,6 @@ Eigen::VectorXd shaped_weights(const Eigen::MatrixXd& A, int m) {
   return c;
 }
 
-Eigen::VectorXd tandpasta_weights(const Dense& contacts) {
-  const Eigen::MatrixXd inner = contacts.U.transpose() * contacts.U;
-  const Eigen::VectorXd beta = inner.rowwise().sum().cwiseAbs().cwiseQuotient(inner.cwiseAbs().rowwise().sum());
-  const Eigen::VectorXd d2 = contacts.d.array().square();
-  const double sigma = beta.dot(d2) / d2.sum();
-  return sigma > 1e-12 ? Eigen::VectorXd(beta / sigma) : Eigen::VectorXd::Zero(contacts.n());
-}
-
 ShapingOptimality shaping_optimality(const ContactBuffer& contacts, double eps) {
   using Real = long double;
   // xx, yy, zz, xy, xz, yz of S.

@@ -32,9 +32,6 @@ Eigen::VectorXd weights(const ContactBuffer& contacts);
 /// Weights after m iterations of thesis Eq. 4 on the n x n matrix: rho = A c, c_i <- c_i / rho_i.
 Eigen::VectorXd shaped_weights(const Eigen::MatrixXd& A, int m);
 
-/// Beta_i over sigma_E of thesis F.2; zeros when sigma_E <= 1e-12.
-Eigen::VectorXd tandpasta_weights(const Dense& contacts);
-
 /// How well the weights in a buffer solve the problem that defines exact_shaping,
 ///   min ½|S - I|²_F + (eps/2)|c|², c >= 0,
 /// judged in long double from gradients and weights alone.

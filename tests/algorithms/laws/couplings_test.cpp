@@ -90,17 +90,6 @@ TEST(StaticCoupling, BalancesACopyBetweenTheCouplingAndTheContactsItIsStillIn) {
   });
 }
 
-TEST(StaticCoupling, WithoutSaturationIsTheVirtualCouplingOfTheContactsItStaysIn) {
-  // The contacts are on one side, so the copy leaves none.
-  ContactBuffer contacts =
-      test::contacts_of({Vec3::UnitX(), Vec3(0.8, 0.6, 0.0), Vec3(0.8, 0.0, 0.6)}, {0.001, 0.001, 0.001});
-  const LawForce force = make_law("static_coupling", config_of(2 * kK))->evaluate(contacts);
-  const LawForce virtually = make_law("virtual_coupling", config_of(2 * kK))->evaluate(contacts);
-  // 1e9 N bend the spring by (f / F)^2 < 1e-13.
-  EXPECT_TRUE(force.spring.isApprox(virtually.spring, 1e-12));
-  EXPECT_TRUE(force.S.isApprox(virtually.S, 1e-12));
-}
-
 /// Rounding of x relative to the sum of depths: sums of n <= 300 terms, amplified by the condition of eps I + S_sum, at
 /// most 1 + n / eps, and by its inverse, at most 1 / eps.
 double rounding_of(const test::Dense& dense, double regularisation) {

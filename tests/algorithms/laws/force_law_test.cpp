@@ -89,26 +89,6 @@ TEST(TurningVelocity, OfOriginalAveragingIsThatOfTheMiddleOfTheContactsAlongTheM
   });
 }
 
-TEST(TurningVelocity, OfContactsInOnePlaceIsThatOfATranslation) {
-  // At one place, a turn is the velocity v = omega x r, hence S v.
-  Random random(2);
-  for (const char* name : {"summation", "mean", "shaped_stiffness", "tandpasta", "exact_shaping", "virtual_coupling",
-                           "least_squares", "original_averaging", "highest_depth", "mcneely", "static_coupling"}) {
-    for (int i = 0; i < 20; ++i) {
-      std::vector<Vec3> gradients(20);
-      for (Vec3& u : gradients) u = random.direction();
-      ContactBuffer contacts = test::contacts_of(gradients);  // at the origin
-      const auto law = make_law(name, {});
-      law->prepare(contacts.capacity());
-      const Mat3 S = law->evaluate(contacts).S;
-      const ToolState tool = turning_tool(random);
-      const Vec3 v = tool.angular_velocity.cross(-tool.pose.position);
-      // Weights known to 1e-9 (exact_shaping) of velocities up to 3 m/s.
-      ASSERT_LE((law->turning_velocity(contacts, S, tool) - S * v).norm(), 3e-9 * (1.0 + S.norm()));
-    }
-  }
-}
-
 TEST(MeanArm, IsWeighedAndZeroWithoutWeights) {
   ContactBuffer contacts = test::contacts_of({Vec3::UnitX(), Vec3::UnitY()});
   contacts.x[1] = 4.0;

@@ -16,23 +16,19 @@ LawForce evaluate(ContactBuffer& contacts) {
   return make_law("tandpasta", {})->evaluate(contacts);
 }
 
-/// sigma_E of thesis F.2, from dense matrices.
-double sigma(const test::Dense& dense) {
-  const Eigen::MatrixXd inner = dense.U.transpose() * dense.U;
-  const Eigen::VectorXd beta = inner.rowwise().sum().cwiseAbs().cwiseQuotient(inner.cwiseAbs().rowwise().sum());
-  const Eigen::VectorXd d2 = dense.d.array().square();
-  return beta.dot(d2) / d2.sum();
-}
-
+/// Beta_i and sigma_E of thesis F.2, from dense matrices.
 TEST(Tandpasta, IsItsFormula) {
   test::for_random_contacts([](ContactBuffer contacts, const char* name) {
     const test::Dense dense(contacts);
-    const double s = sigma(dense);
+    const Eigen::MatrixXd inner = dense.U.transpose() * dense.U;
+    const Eigen::VectorXd beta = inner.rowwise().sum().cwiseAbs().cwiseQuotient(inner.cwiseAbs().rowwise().sum());
+    const Eigen::VectorXd d2 = dense.d.array().square();
+    const double s = beta.dot(d2) / d2.sum();
     // Betas are off by up to n eps (sums of n inner products over a sum of at least 1); c = beta / sigma amplifies
     // that.
     const double rounding = 8 * static_cast<double>(dense.n()) * kEps / s;
     if (s < 1e-9) return;  // near the threshold rounding decides
-    const Eigen::VectorXd c = test::tandpasta_weights(dense);
+    const Eigen::VectorXd c = beta / s;
     const LawForce force = evaluate(contacts);
     ASSERT_LE((test::weights(contacts) - c).cwiseAbs().maxCoeff(), rounding * c.maxCoeff()) << name;
     const double magnitude = dense.d.sum() * c.maxCoeff();

@@ -279,55 +279,6 @@ TEST_F(AModuleLaw, IsNotAskedAgainAfterAFaultUntilAReset) {
   EXPECT_TRUE(law.evaluate(contacts).spring.allFinite());
 }
 
-TEST_F(AModuleLaw, IsDestroyedOnceForEachCreation) {
-  {
-    ModuleLaw law(module_of(kMean), kK, {});
-    law.prepare(10);
-    law.prepare(20);
-    EXPECT_EQ(script.destroyed, 1);
-  }
-  EXPECT_EQ(script.destroyed, 2);
-  script = {.creates = false};
-  ModuleLaw(module_of(kMean), kK, {}).prepare(10);
-  EXPECT_EQ(script.destroyed, 0);
-}
-
-/// virtual_coupling as a law from outside, with weights, force and tensor.
-class Coupling final : public ForceLaw {
- public:
-  Coupling(double stiffness, const double* values) : ForceLaw(stiffness) {
-    RenderingConfig config;
-    config.stiffness = stiffness;
-    config.virtual_coupling = values[0];
-    law_ = make_law("virtual_coupling", config);
-  }
-  LawForce evaluate(ContactBuffer& contacts) noexcept override { return law_->evaluate(contacts); }
-  bool gives_weights() const noexcept override { return false; }
-
- private:
-  std::unique_ptr<ForceLaw> law_;
-};
-
-TEST(ALawModule, IsItsLawToTheLastBit) {
-  constexpr HapbenchParameter kParameters[] = {{"coupling_N_per_m", "N/m", 1.0, 1e6, 1e4, "K_vc"}};
-  ModuleLaw law(module_of(law_module<Coupling>({"coupling", "a", "b", "c", "d"}, kParameters)), kK, {5000.0});
-  law.prepare(400);
-  RenderingConfig config;
-  config.stiffness = kK;
-  config.virtual_coupling = 5000.0;
-  const auto direct = make_law("virtual_coupling", config);
-  test::for_random_contacts([&](ContactBuffer contacts, const char* family) {
-    ContactBuffer same = contacts;
-    const AllocationCount count;
-    const LawForce force = law.evaluate(contacts);
-    EXPECT_EQ(count.value(), 0u);
-    const LawForce expected = direct->evaluate(same);
-    EXPECT_EQ(force.spring, expected.spring) << family;
-    EXPECT_EQ(force.S, expected.S) << family;
-    EXPECT_EQ(contacts.weight, same.weight) << family;
-  });
-}
-
 TEST_F(AModuleLaw, InCppMayThrowInItsConstructor) {
   struct Refuses final : ForceLaw {
     Refuses(double stiffness, const double*) : ForceLaw(stiffness) { throw std::runtime_error("no"); }

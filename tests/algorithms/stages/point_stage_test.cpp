@@ -90,21 +90,6 @@ TEST(GradientReduction, InnerProductsEqualToTheThresholdAreNotSimilar) {
   EXPECT_EQ(reduced({std::nextafter(0.5, 0.0), 100, {}}, test::contacts_of(gradients)).size(), 1u);
 }
 
-TEST(GradientReduction, ContactsBeyondMaxPointsAreDroppedAndCountedUntilReset) {
-  const ContactBuffer contacts =
-      test::contacts_of({{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {-1, 0, 0}, {1, 0, 0}}, {1, 1, 1, 1, 3});
-  const auto stage = reduction({0.995, 2, {}}, 5);
-  for (int step = 1; step <= 3; ++step) {
-    ContactBuffer actual = contacts;
-    stage->process(actual);
-    // The last contact is absorbed by the first although the buffer is full.
-    EXPECT_EQ(indices(actual), (std::vector<std::uint32_t>{4, 1}));
-    EXPECT_EQ(stage->dropped(), 2u * static_cast<unsigned>(step));
-  }
-  stage->reset();
-  EXPECT_EQ(stage->dropped(), 0u);
-}
-
 /// Gradients no two of which are similar, so that the reduction keeps all of them in its visiting order.
 ContactBuffer dissimilar(std::size_t n) {
   std::vector<Vec3> gradients;
@@ -238,27 +223,6 @@ TEST_F(LocalAverage, EqualsAStraightforwardMeanOnRandomContactsStepAfterStep) {
     }
     for (std::size_t k = contacts.size(); k < contacts.padded_size(); ++k) EXPECT_EQ(contacts.depth[k], 0.0);
   }
-}
-
-TEST_F(LocalAverage, MergesTheCellsThatAShellWasListedBy) {
-  // Two cells that share their vertices, so that positions do not determine the cell.
-  const Vec3 a(0, 0, 0), b(0, kCell, 0);
-  shell_ = std::make_unique<PointShell>(std::vector<SurfacePoint>{{a}, {b}, {a}, {b}}, kCell,
-                                        std::vector<std::uint32_t>{0, 0, 1, 1});
-  stage_ = make_local_average();
-  stage_->prepare({.shell = shell_.get()});
-  const std::vector<Contact> all = {{0, 3.0, {1, 0, 0}}, {0, 4.0, {0, 1, 0}}, {0, 3.0, {1, 0, 0}}, {0, 4.0, {0, 1, 0}}};
-  const ContactBuffer both = process(all, {0, 1, 2, 3});
-  ASSERT_EQ(both.size(), 2u);
-  for (std::size_t i = 0; i < 2; ++i) {
-    EXPECT_EQ(both.index[i], 2 * i);
-    EXPECT_NEAR(both.depth[i], 2.5, kRounding * 2.5);
-    EXPECT_LE((both.gradient(i) - Vec3(0.6, 0.8, 0)).norm(), kRounding);
-  }
-  const ContactBuffer one_each = process(all, {1, 2});
-  ASSERT_EQ(one_each.size(), 2u);
-  EXPECT_EQ(one_each.depth[0], 4.0);
-  EXPECT_EQ(one_each.depth[1], 3.0);
 }
 
 }  // namespace

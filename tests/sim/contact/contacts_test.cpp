@@ -1,11 +1,11 @@
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "sim/contact/contact_buffer.hpp"
 #include "sim/contact/contact_source.hpp"
 #include "sim/contact/stiffness_tensor.hpp"
-#include "tests/support/bits.hpp"
 #include "tests/support/contact_sets.hpp"
-#include "tests/support/dense_laws.hpp"
 #include "tests/support/scale.hpp"
 
 namespace hapbench::contacts_test {
@@ -21,19 +21,6 @@ ContactBuffer random_contacts(std::size_t n) {
     contacts.weight[i] = random.uniform();
   }
   return contacts;
-}
-
-TEST(ContactBuffer, PushedContactsHaveNoDepthGradientOrWeight) {
-  ContactBuffer contacts = random_contacts(3);
-  contacts.clear();
-  contacts.push(7, {1, 2, 3}, {0, 1, 0});
-  ASSERT_EQ(contacts.size(), 1u);
-  EXPECT_EQ(contacts.index[0], 7u);
-  EXPECT_EQ(contacts.point(0), Vec3(1, 2, 3));
-  EXPECT_EQ(contacts.normal(0), Vec3(0, 1, 0));
-  EXPECT_EQ(contacts.gradient(0), Vec3(0, 0, 0));
-  EXPECT_EQ(contacts.depth[0], 0.0);
-  EXPECT_EQ(contacts.weight[0], 0.0);
 }
 
 TEST(ContactBuffer, HasRoomForWholePacksUpToItsCapacity) {
@@ -58,58 +45,7 @@ TEST(ContactBuffer, PadZeroesWhatSumsReadBeyondTheLastContact) {
   EXPECT_NE(contacts.weight[8], 0.0);
 }
 
-TEST(ContactBuffer, PushCopyOfTakesEveryColumnFromTheOtherBuffer) {
-  const ContactBuffer from = random_contacts(6);
-  ContactBuffer to(6);
-  for (std::size_t i = 0; i < 6; ++i) to.push_copy_of(from, i);
-  EXPECT_EQ(test::hash_of(to), test::hash_of(from));
-}
-
-TEST(ContactBuffer, AssignTakesAllContactsInPlaceOfItsOwn) {
-  const ContactBuffer from = random_contacts(5);
-  ContactBuffer to = random_contacts(20);
-  to.assign(from);
-  EXPECT_EQ(test::hash_of(to), test::hash_of(from));
-  for (std::size_t i = 5; i < to.padded_size(); ++i) EXPECT_EQ(to.weight[i], 0.0) << "padded";
-}
-
 constexpr double kEps = std::numeric_limits<double>::epsilon();
-
-// An entry of S adds n / 8 <= 13 products in each of eight partial sums: 20 roundings of numbers below n = 100, 2e-13.
-// The dense sums round as much again.
-constexpr double kTolerance = 1e-12;
-
-/// A random set with random weights in [1/2, 1).
-ContactBuffer weighted_contacts(const test::GradientFamily& family, Random& random) {
-  const auto gradients = family.draw(random, test::random_size(random, 100));
-  ContactBuffer contacts = test::contacts_of(gradients, test::random_depths(random, gradients.size()));
-  for (std::size_t i = 0; i < contacts.size(); ++i) contacts.weight[i] = random.uniform(0.5, 1.0);
-  return contacts;
-}
-
-TEST(StiffnessTensor, IsTheWeightedSumOfOuterProducts) {
-  Random random(1);
-  for (const auto& family : test::gradient_families()) {
-    for (std::size_t i = 0; i < test::cases(100); ++i) {
-      const ContactBuffer contacts = weighted_contacts(family, random);
-      const Eigen::VectorXd c = test::weights(contacts);
-      const Mat3 expected = test::Dense(contacts).S(c);
-      const Mat3 S = stiffness_tensor(contacts);
-      EXPECT_LE((S - expected).norm(), kTolerance * c.sum()) << family.name;
-      EXPECT_EQ(S, S.transpose());
-    }
-  }
-}
-
-TEST(WeightedDepth, IsTheSumOfWeightedDepthVectors) {
-  Random random(3);
-  for (const auto& family : test::gradient_families()) {
-    const ContactBuffer contacts = weighted_contacts(family, random);
-    const test::Dense dense(contacts);
-    const Eigen::VectorXd c = test::weights(contacts);
-    EXPECT_LE((weighted_depth(contacts) + dense.spring(1.0, c)).norm(), kTolerance * dense.magnitude(c)) << family.name;
-  }
-}
 
 TEST(LambdaMax, IsTheLargestEigenvalue) {
   Random random(4);

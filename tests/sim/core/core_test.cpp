@@ -35,26 +35,6 @@ TEST(Hash, OfTextEqualsPublishedVectorsOfFnv1a) {
   EXPECT_EQ(hash_of("foobar"), 0x85944171f73967e8u);
 }
 
-TEST(Hash, OfTextInPiecesEqualsHashOfTheWhole) {
-  Hash64 hash;
-  hash.bytes("foo");
-  hash.bytes("bar");
-  EXPECT_EQ(hash.value(), hash_of("foobar"));
-}
-
-std::uint64_t hash_of_reals(double a, double b) {
-  Hash64 hash;
-  hash.real(a);
-  hash.real(b);
-  return hash.value();
-}
-
-TEST(Hash, TellsZeroFromMinusZeroTwoFlippedSignsFromNoneAndOrders) {
-  EXPECT_NE(hash_of_reals(0.0, 1.0), hash_of_reals(-0.0, 1.0));
-  EXPECT_NE(hash_of_reals(1.5, 2.5), hash_of_reals(-1.5, -2.5));
-  EXPECT_NE(hash_of_reals(1.0, 2.0), hash_of_reals(2.0, 1.0));
-}
-
 TEST(Hash, TextHasSixteenHexadecimalDigitsLeadingZerosIncluded) {
   EXPECT_EQ(hash_text(0x00f1e2d3c4b5a697u), "00f1e2d3c4b5a697");
   EXPECT_EQ(hash_text(0), "0000000000000000");
@@ -90,18 +70,6 @@ TEST(Random, DerivesSeedsThatDifferForNeighboursOfBothKinds) {
   }
   EXPECT_EQ(seeds.size(), 10'000u);
   static_assert(Random::derive(3, 5) == 3 * 0x9e3779b97f4a7c15u + 5, "results depend on it");
-}
-
-TEST(Random, DirectionsFavourNoOctant) {
-  Random random(3);
-  constexpr int n = 80000;
-  std::array<int, 8> octants{};
-  for (int i = 0; i < n; ++i) {
-    const Vec3 u = random.direction();
-    ++octants[(u.x() > 0) + 2u * (u.y() > 0) + 4u * (u.z() > 0)];
-  }
-  // Binomial with p = 1/8: standard deviation 94; six of them.
-  for (const int count : octants) EXPECT_NEAR(count, n / 8, 6 * 94);
 }
 
 using Waypoints = Profile::Waypoints;

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <functional>
 
 #include "sim/core/random.hpp"
 #include "tests/support/scale.hpp"
@@ -55,25 +54,6 @@ TEST(AnalyticShells, AMultipleOfTheSpacingButForRoundingIsDividedIntoThatMany) {
 
 TEST(AnalyticShells, AbsurdSizesAreCountedWithoutBeingBuilt) {
   EXPECT_NEAR(point_count(Plane{1.0, 1e-12}), 1e24, 1e13);
-}
-
-// Air just outside along the normal, material just inside.
-void expect_outward(const std::vector<SurfacePoint>& points, double probe,
-                    const std::function<bool(const Vec3&)>& air) {
-  for (const SurfacePoint& point : points) {
-    EXPECT_TRUE(air(point.position + probe * point.normal)) << point.position.transpose();
-    EXPECT_FALSE(air(point.position - probe * point.normal)) << point.position.transpose();
-  }
-}
-
-TEST(Hole2dShell, NormalsPointIntoTheAir) {
-  Random random(2);
-  for (int i = 0; i < 50; ++i) {
-    const Hole2d hole = random_hole(random);
-    expect_outward(surface_points(hole), 1e-6, [&hole](const Vec3& p) {
-      return p.y() > 0.0 || (std::abs(p.x()) < hole.width / 2 && p.y() > -hole.depth);
-    });
-  }
 }
 
 TEST(Hole2dShell, FollowsTheProfileFromLeftToRightInStepsOfAtMostTheSpacing) {
@@ -156,44 +136,6 @@ TEST(ConicalHoleShell, LiesOnTheConeAndIsItsOwnQuarterTurn) {
       for (std::size_t turned = k; turned < k + 3; ++turned) {
         const Vec3 &p = points[turned].position, &q = points[turned + 1].position;
         EXPECT_EQ(q, Vec3(-p.y(), p.x(), p.z()));
-      }
-    }
-  }
-}
-
-TEST(SlotShell, IsTwoFacesThatLookAtEachOther) {
-  Random random(5);
-  for (int i = 0; i < 20; ++i) {
-    const Slot slot = random_slot(random);
-    const auto points = surface_points(slot);
-    const std::size_t face = points.size() / 2;
-    for (std::size_t k = 0; k < points.size(); ++k) {
-      const double side = k < face ? -1.0 : 1.0;
-      EXPECT_EQ(points[k].position.x(), side * slot.gap / 2);
-      EXPECT_EQ(points[k].normal, Vec3(-side, 0, 0));
-      // The right face repeats the left one.
-      EXPECT_EQ(points[k].position.y(), points[k % face].position.y());
-      EXPECT_EQ(points[k].position.z(), points[k % face].position.z());
-    }
-    EXPECT_EQ(points.front().position, Vec3(-slot.gap / 2, -slot.length / 2, -slot.depth));
-    EXPECT_EQ(points.back().position, Vec3(slot.gap / 2, slot.length / 2, 0));
-  }
-}
-
-TEST(SlotShell, PointsAreNoFartherApartThanTheSpacingWithZFastest) {
-  Random random(6);
-  for (int i = 0; i < 20; ++i) {
-    const Slot slot = random_slot(random);
-    const auto points = surface_points(slot);
-    std::size_t column = 1;
-    while (points[column].position.z() > points[column - 1].position.z()) ++column;
-    for (std::size_t k = 0; k < points.size() / 2; ++k) {
-      if (k % column > 0) {
-        EXPECT_LE(points[k].position.z() - points[k - 1].position.z(), longest(slot.spacing));
-      } else if (k > 0) {
-        EXPECT_EQ(points[k].position.z(), -slot.depth);
-        EXPECT_EQ(points[k - 1].position.z(), 0.0);
-        EXPECT_LE(points[k].position.y() - points[k - 1].position.y(), longest(slot.spacing));
       }
     }
   }

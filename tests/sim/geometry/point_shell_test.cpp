@@ -32,25 +32,6 @@ TEST(PointShell, IsPaddedToWholePacksWithPointsFarAway) {
   }
 }
 
-TEST(PointShell, ColumnsStartOnCacheLines) {
-  Random random(3);
-  const PointShell shell(random_points(random, 13), 0.0);
-  for (const double* column : {shell.x(), shell.y(), shell.z(), shell.nx(), shell.ny(), shell.nz()}) {
-    EXPECT_EQ(reinterpret_cast<std::uintptr_t>(column) % 64, 0u);
-  }
-}
-
-TEST(PointShell, CellsAreCubesBetweenHalfIntegerMultiplesOfTheirSize) {
-  // Cells of size 1: [-0.5, 0.5) holds 0, and a point on a boundary belongs to the upper cell.
-  const std::vector<double> along = {0.0, 0.49, -0.5, 0.5, 1.49, -0.51, 1.5};
-  const std::vector<std::uint32_t> expected = {0, 0, 0, 1, 1, 2, 3};
-  for (Eigen::Index axis = 0; axis < 3; ++axis) {
-    std::vector<SurfacePoint> points(along.size());
-    for (std::size_t i = 0; i < along.size(); ++i) points[i].position[axis] = along[i];
-    EXPECT_EQ(PointShell(points, 1.0).cell_of_points(), expected) << "along axis " << axis;
-  }
-}
-
 TEST(PointShell, TwoPointsShareACellExactlyWhenAllTheirCoordinatesDo) {
   Random random(5);
   const double size = 0.003;

@@ -5,8 +5,6 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <set>
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -19,18 +17,6 @@ namespace hapbench::integrators_test {
 namespace {
 
 constexpr double kEps = std::numeric_limits<double>::epsilon();
-
-TEST(IntegratorTable, HasUniqueNamesAndDocumentsEveryRow) {
-  std::set<std::string> names;
-  for (const IntegratorEntry* entry : kIntegrators) {
-    const ModelInfo& info = entry->info;
-    for (const char* text : {info.name, info.summary, info.formula, info.source, info.known_failure}) {
-      ASSERT_NE(text, nullptr);
-      EXPECT_FALSE(std::string(text).empty()) << info.name;
-    }
-    EXPECT_TRUE(names.insert(info.name).second) << info.name;
-  }
-}
 
 /// Calls check(system) with random spring-dampers on either side of the stability limits.
 template <class Check>
@@ -124,21 +110,6 @@ TEST(Integrators, AskForTheForceAsOftenAsTheySay) {
     integrator->make({})->step(tool, Vec3::UnitX(), kMass, 0.0005, field);
     EXPECT_EQ(field.calls, integrator->forces - 1) << integrator->info.name << " beside the row's";
     EXPECT_EQ(tool.pose.axis, Vec3(-Vec3::UnitZ()));
-  }
-}
-
-TEST(Integrators, MoveAFreeMassAlike) {
-  // A constant force: only methods of order 1 differ from the parabola, by half a step's fall.
-  struct Constant final : ForceField {
-    Vec3 force_at(double, const Vec3&, const Vec3&) noexcept override { return {0, 0, -2}; }
-    ForceJacobian jacobian() const noexcept override { return {}; }
-  } field;
-  for (const IntegratorEntry* integrator : kIntegrators) {
-    ToolState tool;
-    integrator->make({})->step(tool, {0, 0, -2}, 0.5, 0.25, field);
-    EXPECT_EQ(tool.velocity, Vec3(0, 0, -1)) << integrator->info.name;
-    const bool first_order = integrator->order == 1;
-    EXPECT_NEAR(tool.pose.position.z(), first_order ? -0.25 : -0.125, 4 * kEps) << integrator->info.name;
   }
 }
 
@@ -325,37 +296,6 @@ TEST(IntegratorInTheLoop, SeesTheTurnThroughTheLowPassOfTheAlgorithm) {
     constexpr double kParts[] = {0.0, 0.5, 0.5, 1.0};
     const double t = (static_cast<double>(i / 4) + kParts[i % 4]) * dt;
     EXPECT_NEAR(within[i].angular_velocity.norm(), response(t), 1e-11) << i;
-  }
-}
-
-/// Moves the tool by 1 in its first step and by one more in each that follows.
-class Counting final : public Integrator {
- public:
-  void reset() noexcept override { steps_ = 0; }
-  void step(ToolState& tool, const Vec3&, double, double, ForceField&) noexcept override {
-    tool.pose.position.x() += ++steps_;
-  }
-
- private:
-  int steps_ = 0;
-};
-
-TEST(IntegratorInTheLoop, MayKeepAStateThatResetForgets) {
-  const IntegratorEntry counting = {.info = {}, .make = [](const IntegratorOptions&) -> std::unique_ptr<Integrator> {
-                                      return std::make_unique<Counting>();
-                                    }};
-  test::Recorder recorder;
-  SimulationConfig config = config_of(&counting, 4);
-  config.position = Vec3::Zero();
-  Simulation simulation(config, test::fake_parts(test::weightless), {&recorder});
-  simulation.run();
-  simulation.reset();
-  simulation.run();
-  ASSERT_EQ(recorder.rows.size(), 8u);
-  for (const std::size_t run : {0u, 4u}) {
-    for (const auto& [row, x] : {std::pair{0u, 0.0}, {1u, 1.0}, {2u, 3.0}, {3u, 6.0}}) {
-      EXPECT_EQ(recorder.rows[run + row].tool.pose.position.x(), x) << run << " " << row;
-    }
   }
 }
 

@@ -9,7 +9,7 @@
 #include "sim/tool/tool_state.hpp"
 #include "tests/support/bits.hpp"
 #include "tests/support/fakes.hpp"
-#include "tests/support/tool_kinds.hpp"
+#include "tests/support/meshes.hpp"
 
 namespace hapbench::simulation_test {
 namespace {
@@ -117,24 +117,6 @@ TEST(Simulation, EndsWithTheRowInWhichTheHandHasFinishedItsTask) {
   EXPECT_EQ(result.outcome, Outcome::completes);
   EXPECT_EQ(result.rows, 4u) << "two targets, two samples each";
   EXPECT_EQ(recorder.rows.back().task->results().size(), 2u);
-}
-
-/// Notes the order in which observers see rows.
-class Note final : public Observer {
- public:
-  Note(int id, std::vector<int>& notes) : id_(id), notes_(&notes) {}
-  void on_step(const StepRecord&) noexcept override { notes_->push_back(id_); }
-
- private:
-  int id_;
-  std::vector<int>* notes_;
-};
-
-TEST(Simulation, ObserversAreCalledInTheirOrderOnEveryRow) {
-  std::vector<int> notes;
-  Note first(1, notes), second(2, notes), third(3, notes);
-  Simulation(config_of(3), fake_parts(spring), {&second, &first, &third}).run();
-  EXPECT_EQ(notes, (std::vector<int>{2, 1, 3, 2, 1, 3, 2, 1, 3}));
 }
 
 TEST(Simulation, TheRatioIsComputedExactlyWhenAnObserverWantsIt) {
@@ -289,7 +271,10 @@ std::vector<StepRecord> rows_of(std::shared_ptr<const ToolShape> tool, const Ori
 }
 
 const auto kCylinder = std::make_shared<const Cylinder>();
-const auto kBrick = std::make_shared<const test::Brick>(0.0003, 0.0008, 0.002);
+/// It is not round.
+std::shared_ptr<const ToolShape> cube() {
+  return std::make_shared<const MeshTool>(test::grid_of(test::cube(0.0005), 0.0001));
+}
 
 TEST(Roll, IsRecordedOfEveryToolAndInThePoseOfThoseThatAreNotRound) {
   for (const StepRecord& row : rows_of(kCylinder, kSpun)) {
@@ -297,7 +282,7 @@ TEST(Roll, IsRecordedOfEveryToolAndInThePoseOfThoseThatAreNotRound) {
               1e-14);
     EXPECT_EQ(row.tool.pose.roll, 0.0);
   }
-  for (const StepRecord& row : rows_of(kBrick, kSpun)) {
+  for (const StepRecord& row : rows_of(cube(), kSpun)) {
     EXPECT_LE((row.tool.pose.rotation() - rotation(kSpun, row.time)).norm(), 1e-14);
     EXPECT_EQ(row.tool.pose.roll, row.roll);
   }
@@ -313,41 +298,12 @@ TEST(Roll, IsInTheAngularVelocityWhereItIsScriptedOrTheToolIsNotRound) {
     }
   };
   expect_whole(rows_of(kCylinder, kSpun), kSpun);
-  expect_whole(rows_of(kBrick, kSpun), kSpun);
-  expect_whole(rows_of(kBrick, kLed), kLed);
+  expect_whole(rows_of(cube(), kSpun), kSpun);
+  expect_whole(rows_of(cube(), kLed), kLed);
   const auto led = rows_of(kCylinder, kLed);
   for (std::size_t k = 1; k < led.size(); ++k) {
     EXPECT_EQ(led[k].tool.angular_velocity, Vec3(turn(led[k - 1].tool.pose.axis, led[k].tool.pose.axis) / kDt));
   }
-}
-
-/// Counts who asks for its roll.
-class Counting final : public Motion {
- public:
-  explicit Counting(int& asked) : asked_(&asked) {}
-  Vec3 axis_at(double) const noexcept override { return -Vec3::UnitZ(); }
-  double roll_at(double) const noexcept override { return ++*asked_; }
-  bool scripts_roll() const noexcept override { return true; }
-  bool position_is_free() const noexcept override { return true; }
-  Vec3 position_at(double) const noexcept override { return Vec3::Zero(); }
-
- private:
-  int* asked_;
-};
-
-TEST(Roll, IsNotComputedUnlessSomebodyReadsIt) {
-  const auto asked = [](std::shared_ptr<const ToolShape> tool) {
-    int count = 0;
-    SimulationParts parts = test::fake_parts(test::weightless);
-    parts.tool = std::move(tool);
-    parts.motion = std::make_unique<Counting>(count);
-    SimulationConfig config;
-    config.steps = 5;
-    Simulation(config, std::move(parts), {}).run();
-    return count;
-  };
-  EXPECT_EQ(asked(kCylinder), 0);
-  EXPECT_GE(asked(kBrick), 5);
 }
 
 }  // namespace

@@ -71,20 +71,6 @@ void expect_nothing_found(const MeshFindings& found) {
   EXPECT_EQ(found.open_edges.size(), 0u);
 }
 
-TEST(MeshFromTriangles, OfACleanSurfaceIsThatSurface) {
-  const TriangleSoup soup = cube();
-  const auto [mesh, found] = mesh_from_triangles(soup);
-  expect_nothing_found(found);
-  ASSERT_EQ(mesh.n_vertices(), 8u);
-  EXPECT_EQ(mesh.n_faces(), 12u);
-  EXPECT_EQ(mesh.n_edges(), 18u);
-  for (unsigned i = 0; i < 8; ++i) {
-    const auto p = mesh.point(OpenMesh::VertexHandle(static_cast<int>(i)));
-    EXPECT_EQ(Vec3(p[0], p[1], p[2]), soup.vertices[i]) << "order and bits are kept";
-  }
-  EXPECT_EQ(enclosed_volume(mesh), 8.0);
-}
-
 TEST(MeshFromTriangles, WeldsEqualPositions) {
   TriangleSoup loose = exploded(cube());
   ASSERT_EQ(loose.vertices.size(), 36u);
@@ -110,20 +96,6 @@ TEST(MeshFromTriangles, LeavesOutUnusedVerticesAndTrianglesWithEqualCorners) {
   EXPECT_EQ(mesh.n_vertices(), 8u);
   EXPECT_EQ(found.degenerate_triangles, 2u);
   EXPECT_EQ(found.open_edges.size(), 0u);
-}
-
-TEST(MeshFromTriangles, RefusesNothingness) {
-  EXPECT_NE(refusal_of({}).find("has no faces"), std::string::npos);
-  EXPECT_NE(refusal_of({{{0, 0, 0}, {1, 0, 0}}, {}}).find("has no faces"), std::string::npos);
-  EXPECT_NE(refusal_of({{{0, 0, 0}, {1, 0, 0}}, {{0, 1, 1}}}).find("has no faces"), std::string::npos);
-}
-
-TEST(MeshFromTriangles, RefusesCoordinatesThatAreNotFinite) {
-  for (const double bad : {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()}) {
-    TriangleSoup soup = cube();
-    soup.vertices[5].y() = bad;
-    EXPECT_EQ(refusal_of(soup), "vertex 5 is not finite");
-  }
 }
 
 TEST(MeshFromTriangles, CutsTheSurfaceAlongEdgesWithMoreThanTwoFaces) {
@@ -380,22 +352,6 @@ TEST(Thinned, KeepsTheMostCentralPointOfEachCubeAndDirection) {
     EXPECT_LE(found->second, off_centre(p) + 1e-15);
   }
   EXPECT_EQ(thinned(thin, spacing).size(), thin.size());
-}
-
-TEST(Thinned, KeepsBothSidesOfAThinWallTheOrderAndTheFirstOfEquals) {
-  std::vector<SurfacePoint> points;
-  for (int i = 0; i < 10; ++i) {
-    points.push_back({{0.1 * i, 0.001, 0.0}, {0, 1, 0}});
-    points.push_back({{0.1 * i, -0.001, 0.0}, {0, -1, 0}});
-  }
-  const auto thin = thinned(points, 1.0);
-  ASSERT_EQ(thin.size(), 4u);  // cubes around 0 and 1, two sides each
-  EXPECT_EQ(thin[0].position, points[0].position);
-  EXPECT_EQ(thin[1].position, points[1].position);
-  EXPECT_EQ(thin[2].position, points[18].position);
-  EXPECT_EQ(thin[3].position, points[19].position);
-  points = {{{0.25, 0, 0}, {0, 1, 0}}, {{-0.25, 0, 0}, {0, 1, 0}}};
-  EXPECT_EQ(thinned(points, 1.0).at(0).position, points[0].position);
 }
 
 }  // namespace

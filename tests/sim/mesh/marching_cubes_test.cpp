@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <map>
 #include <numbers>
 #include <set>
@@ -119,16 +118,6 @@ TEST(MarchingCubes, DoesNotDependOnTheNumberOfThreads) {
   };
   const IsoSurface one = with(1);
   for (const std::size_t threads : {2u, 3u, 8u}) EXPECT_TRUE(same(one, with(threads))) << threads;
-}
-
-TEST(MarchingCubes, KeepsTheSameVerticesWhateverElseIsKept) {
-  const DensityField field = density_field(small_block(), 0.0002, Density::binary);
-  IsoSurface all = surface_of(field);
-  const IsoSurface alone = marching_cubes(field);
-  EXPECT_TRUE(alone.triangles.empty() && alone.cells.centres.empty());
-  all.triangles.clear();
-  all.cells = {};
-  EXPECT_TRUE(same(all, alone));
 }
 
 TEST(MarchingCubes, NoiseGivesClosedManifoldSurfacesWhateverTheCase) {
@@ -298,12 +287,6 @@ TEST(SurfaceShell, LeavesOutVerticesWithoutANormal) {
     expect_same(shell, vertices_in_grid_order(field));
   }
   EXPECT_GT(without, 0u);
-}
-
-TEST(SurfaceShell, OfNothingIsEmpty) {
-  DensityField field = test::noise(1);
-  field.signed_distance = [](const Vec3&) { return 1e-9; };
-  expect_same(surface_shell(field), PointShell({}, field.spacing));
 }
 
 }  // namespace

@@ -107,14 +107,6 @@ TEST(ForceGauge, GraceNeitherActivatesATargetNorCarriesOverFromTheLast) {
   EXPECT_FALSE(task.active());
 }
 
-TEST(ForceGauge, AResetClearsTheReading) {
-  TargetTask task(with_gauge(30.0, 0.1), 1);
-  advance(task, 100, kOn, 2.0);
-  EXPECT_GT(task.reading(), 1.0);
-  task.reset();
-  EXPECT_EQ(task.reading(), 0.0);
-}
-
 TEST(Threshold, IsCheckedWhateverTheGaugeShows) {
   TargetRules rules = with_gauge(1e6, 0.1);
   rules.threshold = Threshold{};
@@ -204,18 +196,6 @@ TEST(TargetTask, EveryPlaceComesEquallyOftenInAnOrderOfTheSeed) {
   // 15! / 5!^3 = 756 756 orders: twenty equal pairs are out of the question.
   std::sort(orders.begin(), orders.end());
   EXPECT_EQ(std::unique(orders.begin(), orders.end()), orders.end());
-}
-
-TEST(TargetTask, AResetShowsTheSameTargetsAgain) {
-  TargetRules rules;
-  rules.places = {Vec3(0, 0, 0), Vec3(1, 0, 0)};
-  TargetTask task(rules, 3);
-  const std::size_t first = task.place();
-  advance(task, 7 * kSecond, rules.places[first], 1.0);
-  task.reset();
-  EXPECT_EQ(task.number(), 0u);
-  EXPECT_EQ(task.place(), first);
-  EXPECT_FALSE(task.active());
 }
 
 }  // namespace

@@ -78,27 +78,12 @@ ScriptedMotion motion(Orientation orientation) {
   return ScriptedMotion(std::move(orientation), std::nullopt);
 }
 
-TEST(ScriptedMotion, PositionIsFreeUnlessPrescribed) {
-  EXPECT_TRUE(motion({}).position_is_free());
-  const ScriptedMotion prescribed({}, std::array<Profile, 3>{1.0, Profile::Shape(Profile::Ramp{0.0, 2.0}), -1.0});
-  EXPECT_FALSE(prescribed.position_is_free());
-  EXPECT_EQ(prescribed.position_at(3.0), Vec3(1.0, 6.0, -1.0));
-}
-
 Mat3 rotation(const Motion& motion, double t) {
   return ToolPose{Vec3::Zero(), motion.axis_at(t), motion.roll_at(t)}.rotation();
 }
 
 Mat3 rotation(const Orientation& orientation) {
   return rotation(motion(orientation), 0.0);
-}
-
-TEST(ScriptedMotion, AnglesAreThoseOfEuler) {
-  const double tilt = 0.7, azimuth = -1.3, roll = 2.1;
-  const Mat3 expected = (Eigen::AngleAxisd(azimuth, Vec3::UnitZ()) * Eigen::AngleAxisd(tilt, Vec3::UnitY()) *
-                         Eigen::AngleAxisd(roll, -Vec3::UnitZ()))
-                            .toRotationMatrix();
-  EXPECT_LE((rotation({{0, 0, 1}, {1, 0, 0}, tilt, azimuth, roll}) - expected).norm(), 4 * kScript);
 }
 
 TEST(ScriptedMotion, UpAndLeanTurnTheWholeFrame) {
@@ -132,15 +117,6 @@ TEST(RecordedMotion, IsLinearBetweenItsSamplesAndHeldConstantOutside) {
   EXPECT_EQ(motion.axis_at(3.0), Vec3(1, 0, 0));
   for (const double t : {5.0, 5.001, 1e9}) EXPECT_EQ(motion.axis_at(t), Vec3(0, 1, 0));
   EXPECT_FALSE(motion.position_is_free());
-}
-
-TEST(RecordedMotion, AxisIsNormalisedAfterInterpolation) {
-  const RecordedMotion motion({{0.0, Vec3::Zero(), {1, 0, 0}}, {1.0, Vec3::Zero(), {0, 1, 0}}});
-  const Vec3 half_way = motion.axis_at(0.5);
-  // The mean (1/2, 1/2) is exact; its norm and the division round once each.
-  EXPECT_NEAR(half_way.x(), std::sqrt(0.5), 2 * std::numeric_limits<double>::epsilon());
-  EXPECT_EQ(half_way.x(), half_way.y());
-  for (int k = 0; k <= 100; ++k) EXPECT_NEAR(motion.axis_at(k / 100.0).norm(), 1.0, 4e-16);
 }
 
 TEST(RecordedMotion, OppositeAxesKeepTheLastDirectionHalfWay) {
