@@ -21,9 +21,7 @@ DPI = 150  # of a PNG
 # algorithms. Amber and petrol differ for every kind of colour vision; a third colour comes with a line style or marker of
 # its own. Red is for the thesis's numbers.
 BLACK, GREY, AMBER, PETROL, PLUM, RED = "#000000", "#5F5F5F", "#8A5600", "#00647D", "#8A3B75", PUBLISHED_COLOUR
-# For areas only.
-SAND, PALE = "#EFE8DC", "#CFE6F5"
-SOIL = "#8C7A58"  # the sand's border
+SAND, SOIL = "#EFE8DC", "#8C7A58"  # an area, and its border
 
 # Numbers of the thesis are hollow diamonds everywhere.
 PUBLISHED = {"marker": "D", "mfc": "white", "mec": RED, "ecolor": RED, "color": RED, "ms": 4.5, "mew": 1.2, "elinewidth": 1.2,

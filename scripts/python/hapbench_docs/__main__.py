@@ -37,10 +37,7 @@ def renewed(manual, scratch, program):
     makers = dict(blocks.MAKERS)
     if program:
         makers["session"] = lambda old: blocks.session(old, program, scratch)
-        makers["controllers"] = lambda old: blocks.controllers(old, program, scratch)
-        makers["hunt_crossley"] = lambda old: blocks.hunt_crossley(old, program, scratch)
-    text = blocks.renewed(manual.text, makers)
-    return blocks.renewed(text, {"which_law": lambda _: blocks.which_law(text)})  # by the tables made just now
+    return blocks.renewed(manual.text, makers)
 
 
 def draw_gallery(program, scratch):

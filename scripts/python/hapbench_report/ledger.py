@@ -140,25 +140,3 @@ def sureness(claim):
     """The word, and in how many samples."""
     counts = claim.get("robustness")
     return claim["sureness"] + (f": {counts['holds']} of {counts['judged']}" if counts else "")
-
-
-def choices_section(choices):
-    if not choices:
-        return '<p class="note">None were given (<code>--choices</code>).</p>'
-    rows = [[cell(text(c.get("id", ""))), cell(typeset(c.get("what", "")), classes="prose"),
-             cell(text(c.get("thesis", "")), classes="prose"), cell(text(f"{c.get('value', '')} {c.get('unit', '')}".strip())),
-             cell(text(plausible(c))), cell(text(c.get("chosen", ""))), cell(text(c.get("why", "")), classes="prose")]
-            for c in choices]
-    headings = [heading_cell(t) for t in ("Choice", "Of what", "The thesis", "Value", "Plausible", "Results seen", "Why")]
-    return ("<p>Everything the thesis leaves open and a scenario had to choose. A value without a unit that stands beside a "
-            "range around 1 multiplies what the scenarios have. “after” means that results had been seen when it was "
-            "chosen.</p>" + folded(f"All {counted(len(rows), 'choice')}", table(
-                headings, rows, "<b>Choices on record</b>", "sortable stack", "choices-table")))
-
-
-def plausible(choice):
-    """The values a choice could as well have had, as text."""
-    options, range_ = choice.get("options"), choice.get("range")
-    if isinstance(options, list):
-        return ", ".join(map(str, options))
-    return " to ".join(map(str, range_ if isinstance(range_, list) else [])) + (", log" if choice.get("scale") == "log" else "")

@@ -50,10 +50,6 @@ def number(value, digits=4):
     return typeset(format(Decimal(short), "f") if 1e-4 <= abs(value) < 1e7 else short)
 
 
-def counted(number_, what):
-    return f"{number_} {what}{'' if number_ == 1 else 's'}"
-
-
 def cell(value, sort_key=None, classes=""):
     """A table cell from ready HTML; sort_key overrides the shown text when the table is sorted."""
     attributes = f' class="{classes}"' if classes else ""
