@@ -13,6 +13,7 @@ from pathlib import Path
 
 from fixture import PROGRAM, SOURCE, main, ran
 
+from hapbench.errors import InputError
 from hapbench_docs import blocks
 from hapbench_docs.manuals import Manual, broken_links, manuals
 from hapbench_docs.program import same_but_for_times
@@ -215,7 +216,7 @@ class Generated(unittest.TestCase):
                 self.assertEqual(blocks.renewed(manual.text, blocks.MAKERS), manual.text, "renew it with scripts/docs --tables")
 
     def test_a_block_without_end_is_refused(self):
-        with self.assertRaises(blocks.BlockError):
+        with self.assertRaises(InputError):
             blocks.renewed("<!-- generated: verdicts -->\n| a |\n", blocks.MAKERS)
 
     def test_measured_times_are_no_news(self):

@@ -1,4 +1,4 @@
-"""`hapbench import stroke` and the metrics of fidelity against numpy and scipy. Arguments: the built program, the source tree."""
+"""`hapbench import stroke` against numpy and scipy. Arguments: the built program, the source tree."""
 import json
 import math
 import os
@@ -371,80 +371,6 @@ class Command(Given):
         done = run(*words, "--out", self.root / "out.csv")
         self.assertEqual(done.returncode, 2, done.stderr)
         return done.stderr
-
-
-class Fidelity(Given):
-    def test_metrics_are_those_of_the_recorded_rows(self):
-        run = self.root / "run"
-        summary = json.loads(hapbench("run", "recorded_wipe", "--out", run, "--json"))[0]
-        found = summary["fidelity"]
-        names, rows = columns(run / "trajectory.csv")
-        f, spring, time = (rows[:, [names.index(n) for n in group]] for group in (
-            ("fx_N", "fy_N", "fz_N"), ("fspring_x_N", "fspring_y_N", "fspring_z_N"), ("time_s",)))
-        _, reference = columns(run / "force_reference.csv")
-        _, stroke = columns(DATA / "wipe.csv")
-        measured = np.column_stack([np.interp(time[:, 0], stroke[:, 0], part) for part in stroke[:, 8:].T])
-        inside = time[:, 0] <= stroke[-1, 0]
-        f, spring, measured = f[inside], spring[inside], measured[inside]
-        np.testing.assert_allclose(reference[inside, 2:5], measured, atol=1e-13)
-        np.testing.assert_allclose(reference[inside, 5:8], f - measured, atol=1e-13)
-
-        def rms(v):
-            return np.sqrt(np.mean(np.sum(v**2, axis=1)))
-
-        def norms(v):
-            return np.linalg.norm(v, axis=1, keepdims=True)
-
-        error = f - measured
-        normal = np.where(norms(spring) > 0, spring, measured)
-        normal /= norms(normal)
-        along = np.sum(error * normal, axis=1, keepdims=True) * normal
-        both = (norms(f)[:, 0] > 0.1) & (norms(measured)[:, 0] > 0.1)
-        cosine = np.sum(f * measured, axis=1)[both] / (norms(f) * norms(measured))[both, 0]
-        for name, expected in (("rows", len(f)), ("reference_force_rms_N", rms(measured)), ("force_error_rms_N", rms(error)),
-                               ("force_error_relative", rms(error) / rms(measured)), ("force_error_normal_rms_N", rms(along)),
-                               ("force_error_tangential_rms_N", rms(error - along)), ("direction_rows", both.sum()),
-                               ("force_direction_error_rad", np.arccos(np.clip(cosine, -1, 1)).mean())):
-            self.assertAlmostEqual(found[name], expected, delta=1e-9 * max(1, abs(expected)), msg=name)
-        self.assertAlmostEqual(found["force_lag_s"], lag(measured, f, 0.0005), delta=1e-9)
-
-    def test_a_late_force_has_that_lag(self):
-        names, stroke = columns(DATA / "wipe.csv")
-        for delay in (-0.02, 0.0137):
-            late = stroke.copy()
-            late[:, 8:] = np.column_stack([np.interp(stroke[:, 0] + delay, stroke[:, 0], part) for part in stroke[:, 8:].T])
-            np.savetxt(self.root / "late.csv", late, delimiter=",", header=",".join(names), comments="", fmt="%.17g")
-            lags = [json.loads(hapbench("run", "recorded_wipe", "--set", f"motion.position.file={file}", "--set",
-                                        "record.trajectory=false", "--out", self.root / "run", "--json"))[0]["fidelity"]
-                    ["force_lag_s"] for file in (DATA / "wipe.csv", self.root / "late.csv")]
-            # Noise of 1 % of the force moves the top of a correlation over 4 s by less than a recorded sample.
-            self.assertAlmostEqual(lags[1] - lags[0], delay, delta=0.01)
-
-
-class Pictures(Given):
-    def test_a_page_and_a_picture_show_both_forces(self):
-        run = self.root / "run"
-        hapbench("run", "recorded_wipe", "--out", run, "--quiet")
-        hapbench("report", run, "--quiet")
-        page = (run / "report.html").read_text(encoding="utf-8")
-        for words in ("force_error_tangential_rms_N", "force of the stroke| [N] over time"):
-            self.assertIn(words, page)
-        hapbench("plot", run, "--y", "reference,force_error", "--quiet")
-        self.assertIn("force of the stroke", (run / "plot.svg").read_text(encoding="utf-8"))
-
-
-def lag(early, late, dt, most=0.1):
-    """By brute force: Pearson's coefficient at every shift, its top by a parabola."""
-    shifts = np.arange(-round(most / dt), round(most / dt) + 1)
-    found = []
-    for shift in shifts:
-        n = len(early) - abs(shift)
-        a, b = early[max(0, -shift):][:n], late[max(0, shift):][:n]
-        a, b = a - a.mean(axis=0), b - b.mean(axis=0)
-        found.append(np.sum(a * b) / np.sqrt(np.sum(a * a) * np.sum(b * b)))
-    top = int(np.argmax(found))
-    below, peak, above = found[top - 1:top + 2]
-    return (shifts[top] + 0.5 * (below - above) / (below - 2 * peak + above)) * dt
 
 
 if __name__ == "__main__":

@@ -212,13 +212,12 @@ def load(folder: str | os.PathLike) -> "Run | Folder":
     return found
 
 
-def load_run(folder):
-    """The run of one folder."""
+def load_run(folder, kind=Run):
+    """The run of one folder, of a class derived from Run."""
     folder = Path(folder)
     trials = sorted(folder.glob("subject_*_trial_*"), key=_numbers_of)
-    return Run(read_object(folder / SUMMARY), _optional(folder / SCENARIO), _tables_of(folder),
-               timing=_optional(folder / "timing.json"), folder=folder,
-               trials=[Trial(_tables_of(trial, folder)) for trial in trials])
+    return kind(read_object(folder / SUMMARY), _optional(folder / SCENARIO), _tables_of(folder), timing=_optional(folder / "timing.json"),
+                folder=folder, trials=[Trial(_tables_of(trial, folder)) for trial in trials])
 
 
 class Trial(_WithTables):

@@ -6,12 +6,11 @@ import sys
 import tempfile
 from pathlib import Path
 
-from hapbench_command import BAD_INPUT, FAILED, INTERRUPTED, SUCCESS, Arguments, say_error, write
-from hapbench.errors import InputError
+from hapbench_command import FAILED, SUCCESS, Arguments, exit_status, say_error, write
 
 from . import blocks
 from .manuals import ROOT, Manual, manuals
-from .program import Program, ProgramError
+from .program import Program
 
 GALLERY = ROOT / "results" / "reference" / "gallery"
 # Commands, the last of which plots, and below them the picture.
@@ -57,33 +56,26 @@ def differences(manual, text):
     return "\n".join(difflib.unified_diff(manual.text.splitlines(), text.splitlines(), name, f"{name}, renewed", lineterm=""))
 
 
-def main(words=None):
-    chosen = arguments(words)
-    status = SUCCESS
-    try:
-        program = None if chosen.tables else Program(chosen.program)
-        with tempfile.TemporaryDirectory(prefix="hapbench-docs-") as scratch:
-            if chosen.gallery and program:
-                draw_gallery(program, Path(scratch))
-            for manual in map(Manual, manuals()):
-                text = renewed(manual, Path(scratch), program)
-                if text == manual.text:
-                    continue
-                if chosen.check:
-                    print(differences(manual, text))
-                    status = FAILED
-                else:
-                    write(manual.file, text)
-                    print(f"renewed {manual.file.relative_to(ROOT)}")
-    except (ProgramError, InputError, blocks.BlockError, OSError) as error:
-        say_error(error)
-        return BAD_INPUT
-    except KeyboardInterrupt:
-        return INTERRUPTED
-    if status == FAILED:
+def run(chosen):
+    program, stale = None if chosen.tables else Program(chosen.program), False
+    with tempfile.TemporaryDirectory(prefix="hapbench-docs-") as scratch:
+        if chosen.gallery and program:
+            draw_gallery(program, Path(scratch))
+        for manual in map(Manual, manuals()):
+            text = renewed(manual, Path(scratch), program)
+            if text == manual.text:
+                continue
+            if chosen.check:
+                print(differences(manual, text))
+                stale = True
+            else:
+                write(manual.file, text)
+                print(f"renewed {manual.file.relative_to(ROOT)}")
+    if stale:
         say_error("the manuals are not current; scripts/docs renews them")
-    return status
+    return FAILED if stale else SUCCESS
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    options = arguments(sys.argv[1:])
+    sys.exit(exit_status("docs", "", lambda: run(options)))

@@ -5,17 +5,15 @@ import re
 import subprocess
 from pathlib import Path
 
+from hapbench.errors import InputError
+
 COLUMNS = 100  # of a session in a manual
-
-
-class ProgramError(Exception):
-    """The program could not do what a manual says."""
 
 
 class Program:
     def __init__(self, file):
         if not file.is_file():
-            raise ProgramError(f"{file}: no such file; build it, or name another with --program")
+            raise InputError(f"{file}: no such file; build it, or name another with --program")
         self.file = file.resolve()
 
     def run(self, words, directory):
@@ -25,7 +23,7 @@ class Program:
         done = subprocess.run([self.file, *words], cwd=directory, capture_output=True, text=True, encoding="utf-8",
                               env={**environment, "COLUMNS": str(COLUMNS), "LC_ALL": "C.UTF-8"}, stdin=subprocess.DEVNULL)
         if done.returncode not in (0, 3):
-            raise ProgramError(f"hapbench {' '.join(map(str, words))}: exit status {done.returncode}: {done.stderr.strip()}")
+            raise InputError(f"hapbench {' '.join(map(str, words))}: exit status {done.returncode}: {done.stderr.strip()}")
         return done.stdout
 
     def stamped(self, text, old):

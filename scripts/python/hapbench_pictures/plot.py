@@ -2,8 +2,8 @@
 tuning or of a convergence."""
 import math
 from collections import Counter
-from pathlib import Path
 
+from hapbench.columns import is_number
 from hapbench.errors import InputError
 from hapbench.results import Files, MissingResult, at
 from hapbench_command import write
@@ -11,11 +11,11 @@ from hapbench_report.recording import tool_profile
 from hapbench_report.replay import surface_of
 from hapbench_style import LINE, SETTINGS, picture, plt
 
-from .given import common_folder, given_runs, given_sweep, named
+from .given import common_folder, given_alone, given_runs, given_sweep, named
 from .over_axes import PICTURES
 from .panels import AXIS_COLUMNS, PATH_COLUMNS, draw_over_time, draw_section, looks
 from .quantities import Samples, chosen
-from .sweep_plot import Sweep, draw_sweep, is_number, sensitivity_table
+from .sweep_plot import Sweep, draw_sweep, sensitivity_table
 
 KINDS = (".svg", ".png", ".pdf")
 WIDTH, LARGE, SMALL = 7.6, 2.6, 1.25  # of the page, the scene and the first quantity, and of the others [inch]
@@ -27,7 +27,7 @@ SOLID_SAID, TOOL_SAID = "filled: the solid, cut through the middle of the way", 
 
 
 def plot(options):
-    sweep, study = given_sweep(options.runs), given_study(options.runs)
+    sweep, study = given_sweep(options.runs), given_alone(options.runs, PICTURES, "holds limits")
     if study:
         refuse(options, ("--y", "--metric", "--where", "--from", "--to"), f"{study} holds limits; allowed for it: --out")
     file = options.out or common_folder(options.runs) / "plot.svg"
@@ -47,14 +47,6 @@ def refuse(options, names, why):
     unused = next((name for name in names if given[name]), None)
     if unused:
         raise InputError(f"{unused}: {why}")
-
-
-def given_study(words):
-    """The folder of limits, a tuning or a convergence among the words; None where none was given."""
-    studies = [Path(word) for word in words if any((Path(word) / name).is_file() for name in PICTURES)]
-    if studies and len(words) > 1:
-        raise InputError(f"{studies[0]}: holds limits; allowed: one such folder alone, or any number of runs")
-    return studies[0] if studies else None
 
 
 def of_study(path):

@@ -81,8 +81,8 @@ def seeds_section(runs):
     """What lies between laws over the seeds of a comparison: of each metric the law with the least mean against every other."""
     scenes = {}
     for run in runs:
-        if SEED_FOLDER.fullmatch(run.directory.name):
-            scenes.setdefault(run.name, {}).setdefault(run.algorithm, {})[run.directory.name] = run
+        if SEED_FOLDER.fullmatch(run.folder.name):
+            scenes.setdefault(run.name, {}).setdefault(run.algorithm, {})[run.folder.name] = run
     said = [f"<li>{text(scene)}, <code>{name}</code>: {text(sentence)}</li>" for scene, laws in scenes.items() for name in FIRST
             for sentence in between(laws, name)]
     return said and f"<ul>{''.join(said)}</ul><p class=note>Seed by seed, as a seed gives all laws the same start; ±: 95 % interval of the mean.</p>"
@@ -127,8 +127,8 @@ def differences(known):
 
 
 def commands_section(runs, words):
-    lines = [f"hapbench run {quoted(run.directory / 'scenario.effective.json')}{plugin_option(run)} "
-             f"--out {quoted(run.directory.name + '_again')}" for run in runs if run.scenario]
+    lines = [f"hapbench run {quoted(run.folder / 'scenario.effective.json')}{plugin_option(run)} "
+             f"--out {quoted(run.folder.name + '_again')}" for run in runs if run.scenario]
     given = " ".join(quoted(word) for word in words)
     return ((f"<p>Each run again, the same bytes:</p>{command(chr(10).join(lines))}" if lines else "")
             + f"<p>Pictures and this page:</p>{command(f'hapbench plot {given}{chr(10)}hapbench report {given}')}"

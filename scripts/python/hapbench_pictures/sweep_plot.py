@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib import colors
 from matplotlib.patches import Patch, Rectangle
 
-from hapbench.columns import read_records
+from hapbench.columns import is_number, read_records
 from hapbench.errors import InputError
 from hapbench.results import at, read_object
 from hapbench_command import nearest
@@ -124,13 +124,6 @@ class Sweep:
     def is_cloud(self):
         """Whether its points are on no grid that a picture shows."""
         return len(self.fields) > 2 or self.sampled and len(self.fields) > 1
-
-
-def is_number(text):
-    try:
-        return np.isfinite(float(text))
-    except (TypeError, ValueError):
-        return False
 
 
 def draw_sweep(sweep):

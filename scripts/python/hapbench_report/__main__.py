@@ -58,9 +58,9 @@ def run(options):
         os.environ["HAPBENCH_PROGRAM"] = str(options.program)
     recorded = {run.path: run for run in load_runs(options.results / REPLAY_DIRECTORY)}
     replayed = [f"{scenario}/{algorithm}" for scenario, _, algorithms in REPLAYED for algorithm in algorithms]
-    claims = load_claims(options.claims) if options.claims else []
+    claims, headline = load_claims(options.claims) if options.claims else ([], "")
     figures = load_figures(options.figures) if options.figures else []
-    page = thesis_page(runs, claims, figures, [recorded[path] for path in replayed if path in recorded])
+    page = thesis_page(runs, claims, headline, figures, [recorded[path] for path in replayed if path in recorded])
     out = options.out or options.results / "report.html"
     write(out, page)
     place_live_page(out.parent)

@@ -1,59 +1,41 @@
 """The ledger: what the thesis claims, what it publishes, what we measure, and the verdict; with the summary of the page."""
+from collections import Counter
+
 from hapbench.errors import InputError
 from hapbench.results import at, objects, read_object, shown
 
 from .links import claim_link
 from .markup import cell, command, filters, folded, heading_cell, listed, table, text, typeset
 
-# Verdict -> (mark, tone). The mark tells verdicts apart without colour.
+# Verdict -> (mark, tone), what is contradicted first; the last two are of findings of ours. The mark tells verdicts apart without colour.
 VERDICTS = {
-    "reproduced": ("✓", "good"),
-    "reproduced in kind": ("≈", "fair"),
-    "not reproduced": ("✗", "bad"),
     "refuted": ("⊘", "bad"),
+    "not reproduced": ("✗", "bad"),
+    "reproduced in kind": ("≈", "fair"),
+    "reproduced": ("✓", "good"),
     "not reproducible": ("–", "none"),
-    # Of findings of ours.
-    "holds": ("✓", "good"),
     "does not hold": ("✗", "bad"),
+    "holds": ("✓", "good"),
 }
-
-
-# In this order: what is contradicted comes first.
-ORDER = ("refuted", "not reproduced", "reproduced in kind", "reproduced", "not reproducible", "does not hold", "holds")
 SURENESS = ("steady", "fragile", "not sampled")
 
 
-class Claims(list):
-    """The ledger's claims; `headline` says how many have which verdict, and how many verdicts are steady."""
-
-    headline = ""
-
-
 def load_claims(file):
+    """The ledger's claims, and its sentence on how many have which verdict and how many verdicts are steady."""
     ledger = read_object(file)
-    claims = Claims(objects(ledger, "claims", file))
-    claims.headline = str(ledger.get("headline") or "")
+    claims = objects(ledger, "claims", file)
     for i, claim in enumerate(claims):
-        verdict = claim.get("verdict")
-        if verdict not in VERDICTS:
-            raise InputError(f"{file}: /claims/{i}/verdict: got {shown(verdict)}; allowed: {listed_words(VERDICTS)}")
-        if claim.get("sureness") not in SURENESS:
-            raise InputError(f"{file}: /claims/{i}/sureness: got {shown(claim.get('sureness'))}; allowed: {listed_words(SURENESS)}")
-    return claims
-
-
-def listed_words(words):
-    return ", ".join(f'"{word}"' for word in words)
+        for key, allowed in (("verdict", VERDICTS), ("sureness", SURENESS)):
+            if claim.get(key) not in allowed:
+                words = ", ".join(f'"{word}"' for word in allowed)
+                raise InputError(f"{file}: /claims/{i}/{key}: got {shown(claim.get(key))}; allowed: {words}")
+    return claims, str(ledger.get("headline") or "")
 
 
 def of_thesis(claims):
     """Those of the thesis, the contradicted ones first."""
-    return sorted((claim for claim in claims if not claim.get("ours")), key=lambda claim: ORDER.index(claim["verdict"]))
-
-
-def verdict_counts(claims):
-    """How many claims of the thesis have which verdict."""
-    return {verdict: sum(claim["verdict"] == verdict for claim in of_thesis(claims)) for verdict in VERDICTS}
+    order = list(VERDICTS)
+    return sorted((claim for claim in claims if not claim.get("ours")), key=lambda claim: order.index(claim["verdict"]))
 
 
 def verdict_mark(verdict):
@@ -61,10 +43,11 @@ def verdict_mark(verdict):
     return f'<span class="verdict {tone}">{mark} {text(verdict)}</span>'
 
 
-def summary_section(runs, claims, figures):
+def summary_section(runs, claims, headline, figures):
     met = sum(run.expected for run in runs)
     tiles = [(len(runs), "run" if len(runs) == 1 else "runs"), (f"{met}/{len(runs)}", "ended as their scenario expects")]
-    tiles += [(str(count), verdict_mark(verdict)) for verdict, count in verdict_counts(claims).items() if count]
+    counts = Counter(claim["verdict"] for claim in of_thesis(claims))
+    tiles += [(str(count), verdict_mark(verdict)) for verdict, count in counts.items()]
     if figures:
         tiles.append((len(figures), '<a href="#figures">figures</a>'))
     items = "".join(f"<li><b>{text(value)}</b><span>{label}</span></li>" for value, label in tiles)
@@ -75,7 +58,7 @@ def summary_section(runs, claims, figures):
         "stability limits and the cost of a step come out. Everything here is compared with T. C. Lee, <cite>Rendering "
         "6-DOF Object-to-Object Interaction with 3-DOF Haptic Interfaces</cite> (“the thesis”); numbers such as Fig. A.2 or "
         f"3.3 are its figures and sections. Program of commit <code>{text(commits)}</code>.</p>"
-        f'<ul class="cards">{items}</ul>{main_results(claims)}{headline(claims)}{warnings(runs)}{refusals(claims)}')
+        f'<ul class="cards">{items}</ul>{main_results(claims)}<p>{typeset(headline)}</p>{warnings(runs)}{refusals(claims)}')
 
 
 def main_results(claims):
@@ -86,11 +69,6 @@ def main_results(claims):
             for claim in claims if claim.get("main")]
     headings = [heading_cell(title) for title in ("Claim", "Place", "Published", "Ours", "Verdict", "Command", "Seconds")]
     return table(headings, rows, "<b>Main results</b>", "stack", "main-results") if rows else ""
-
-
-def headline(claims):
-    said = getattr(claims, "headline", "")
-    return f"<p>{typeset(said)}</p>" if said else ""
 
 
 def warnings(runs):
@@ -112,7 +90,7 @@ def ledger_section(claims, links):
     rows = [claim_row(claim, links) for claim in of_thesis(claims)]
     ours = [claim_row(claim, links) for claim in claims if claim.get("ours")]
     headings = [heading_cell(title) for title in ("Id", "Verdict", "Claim", "Published", "Measured", "Sureness")]
-    return (headline(claims) + "<p>Each claim of the thesis, what it publishes, what the runs below give, and a verdict by a rule, which unfolds "
+    return ("<p>Each claim of the thesis, what it publishes, what the runs below give, and a verdict by a rule, which unfolds "
             "with the figures and runs behind it. "
             "Hands are calibrated to mean and standard deviation of the raw colliding points; all else is a prediction. "
             "Steady: more than half of the samples spread over the plausible ranges of everything the thesis leaves open "
@@ -129,7 +107,7 @@ def claim_row(claim, links):
     more = (f"<p><b>Rule</b> {typeset(claim.get('rule', ''))}</p>" + listed("Figures", figures) + listed("Runs", runs)
             + command(f"hapbench reproduce --only {claim.get('id', '')}"))
     return [cell(f'<a id="claim-{id_}" href="#claim-{id_}">{id_}</a>', classes="id"), cell(verdict_mark(claim["verdict"])),
-            cell(f"{typeset(claim.get('claim', ''))}<p class=note>{links.place(str(claim.get('place', '')))}</p>"
+            cell(f"{typeset(claim.get('claim', ''))}<p class=note>{text(claim.get('place', ''))}</p>"
                  + folded("Rule, figures, runs", more, classes="printed"), classes="prose"),
             cell(typeset(claim.get("published", ""))),
             cell(f"{typeset(claim.get('measured', ''))}<p class=note>{typeset(claim.get('why', ''))}</p>", classes="prose"),

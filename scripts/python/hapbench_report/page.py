@@ -12,16 +12,16 @@ SCRIPTS = ("theme.js", "tables.js", "page.js", "replay_data.js", "replay_camera.
 NO_REPLAY = '<p class="note">No recorded runs were given (<code>--program</code>).</p>'
 
 
-def thesis_page(runs, claims, figures, replayed):
+def thesis_page(runs, claims, headline, figures, replayed):
     """The HTML of the report on the thesis. Depends on nothing but its arguments."""
     links = Links(runs, figures, claims)
     replay = player(replays(replayed, [run.algorithm.replace("_", " ") for run in replayed])) if replayed else NO_REPLAY
     return whole_page((
-        ("summary", "Summary", "Summary", summary_section(runs, claims, figures)),
+        ("summary", "Summary", "Summary", summary_section(runs, claims, headline, figures)),
         ("ledger", "Ledger", "Ledger", ledger_section(claims, links)),
         ("replay", "Replay", "Replay", replay),
         ("figures", "Figures", "Figures", figures_section(figures, links)),
-        ("runs", "Runs", "Runs", runs_section(runs, links)),
+        ("runs", "Runs", "Runs", runs_section(runs)),
         ("rerun", "Rerun", "Run it again", rerun_section()),
         ("provenance", "Provenance", "Provenance", provenance_section(provenance_of(runs))),
     ))
