@@ -217,7 +217,7 @@ class Generated(unittest.TestCase):
 
     def test_a_block_without_end_is_refused(self):
         with self.assertRaises(InputError):
-            blocks.renewed("<!-- generated: verdicts -->\n| a |\n", blocks.MAKERS)
+            blocks.renewed("<!-- generated: robustness -->\n| a |\n", blocks.MAKERS)
 
     def test_measured_times_are_no_news(self):
         old = "    law     force   us/\n                   step\n    ------  -----  ----\n    mean     1.25  0.25\n\n" \

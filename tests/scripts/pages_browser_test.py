@@ -77,7 +77,7 @@ class OwnPage(EveryPage, Page):
 
 
 class OfThesis(EveryPage, Page):
-    PARTS = ("summary", "ledger", "replay", "figures", "runs")
+    PARTS = ("summary", "ledger", "replay", "figures")
 
     def test_the_points_in_the_tool_are_the_recorded_ones(self):
         """Over rows of all recordings: how many points the page finds in the tool, at least and at most, against the number recorded.
@@ -95,15 +95,14 @@ class OfThesis(EveryPage, Page):
               return wrong;
             })()""" % (scene, "true" if scene else "false")), [])
 
-    def test_runs_sort_and_filter(self):
-        column = "[...document.querySelectorAll('#runs-table tbody tr:not([hidden])')].map((r) => r.cells[5].dataset.sort)"
-        for sign in (1, -1):
-            self.click("#runs-table thead th:nth-child(6) button")
-            values = [float(value) for value in self.js(column)]
-            self.assertEqual(values, sorted(values, key=lambda value: sign * value))
-        self.js("document.querySelector('[data-filters=runs-table] input').focus()")
-        self.browser.call("Input.insertText", text="poke")
-        self.assertEqual(len(self.js(column)), 1)
+    def test_the_ledger_sorts_and_filters(self):
+        ids = "[...document.querySelectorAll('#ledger-table tbody tr:not([hidden])')].map((r) => r.cells[0].textContent)"
+        for turned in (False, True):
+            self.click("#ledger-table thead th:nth-child(1) button")
+            self.assertEqual(self.js(ids), sorted((f"C{i}" for i in range(5)), reverse=turned))
+        self.js("document.querySelector('[data-filters=ledger-table] input').focus()")
+        self.browser.call("Input.insertText", text="not_among_these")
+        self.assertEqual(self.js(ids), ["C2"])
 
     def test_a_figure_enlarges(self):
         self.click(".enlarge")

@@ -12,7 +12,6 @@ from .manuals import ROOT
 BLOCK = re.compile(r"(<!-- generated: (\S+)[^\n]*-->\n)(.*?)(<!-- /generated -->)", re.S)
 BEGIN = "<!-- generated:"
 REFERENCE = ROOT / "results" / "reference"
-VERDICTS = ("reproduced", "reproduced in kind", "not reproduced", "refuted", "not reproducible")
 TASKS = {"D1": "upright, 0.52 mm aside", "D2": "upright, centre", "D3": "turning, 3 mm high", "D4": "turning, 4 mm high"}
 PAIR = re.compile(r"success(?: rate)? (.+?) vs ([^;(]+)")
 
@@ -43,27 +42,9 @@ def read(name):
     return json.loads((REFERENCE / name).read_text(encoding="utf-8"))
 
 
-def headline(_old=""):
-    """How many claims have which verdict, and how many verdicts are steady."""
-    return wrapped([read("claims.json")["headline"]])
-
-
 def main_results(_old=""):
     """The main results, as the ledger opens with them."""
     return (REFERENCE / "claims.md").read_text(encoding="utf-8").split("\n\n")[0]
-
-
-def verdicts(_old=""):
-    """How many claims have which verdict, how many of them steadily, and which; then what was found on the way."""
-    ledger = read("claims.json")["claims"]
-    claims = [claim for claim in ledger if not claim["ours"]]
-    lines = ["| verdict | claims | steady | which |", "|---|---|---|---|"]
-    for verdict in VERDICTS:
-        those = [claim for claim in claims if claim["verdict"] == verdict]
-        steady = sum(claim["sureness"] == "steady" for claim in those)
-        lines.append(f"| {verdict} | {len(those)} of {len(claims)} | {steady} | {' '.join(claim['id'] for claim in those)} |")
-    ours = [f"{claim['id']} {claim['claim']} ({claim['verdict']})" for claim in ledger if claim["ours"]]
-    return wrapped([*lines, "", f"Found on the way, and no claims of the thesis: {'; '.join(ours)}."])
 
 
 def experiments(_old=""):
@@ -98,29 +79,10 @@ def robustness(_old=""):
     return wrapped(lines)
 
 
-def plausible(choice):
-    """The values that a choice could as well have."""
-    if "options" in choice:
-        return ", ".join(map(str, choice["options"]))
-    return " to ".join(map(str, choice.get("range", []))) + (", log" if choice.get("scale") == "log" else "")
-
-
-def choices(_old=""):
-    """What the thesis leaves open and what was chosen."""
-    lines = ["| id | choice | the thesis | value | plausible | seen results? | why | fields |", "|---|---|---|---|---|---|---|---|"]
-    for choice in read("choices.json")["choices"]:
-        fields = "; ".join(f"`{field['path']}{' ×' if field.get('times') else ''}` of {', '.join(field['scenarios'])}" for field in choice.get("fields", []))
-        value = f"{choice['value']} {choice.get('unit', '')}".strip()
-        lines.append(f"| {choice['id']} | {choice['what']} | {choice['thesis']} | {value} | {plausible(choice)} | {choice['chosen']} | "
-                     f"{choice['why']} | {fields or 'read by rules'} |")
-    return "\n".join(lines)
-
-
 def wrapped(lines, width=110):
     """Sentences in lines of that width; tables stay."""
     return "\n".join(line if line.startswith("|") else "\n".join(textwrap.wrap(line, width)) for line in lines)
 
 
 # The tables that need no program.
-MAKERS = {"headline": headline, "main_results": main_results, "verdicts": verdicts, "experiments": experiments,
-          "robustness": robustness, "choices": choices}
+MAKERS = {"main_results": main_results, "experiments": experiments, "robustness": robustness}

@@ -21,7 +21,7 @@ from .given import common_folder, given_runs, given_sweep, labels
 from .over_axes import Axis, look_of, over_axes, pareto
 from .panels import AXIS_COLUMNS, DARK, LIGHT, PATH_COLUMNS, RunLook, draw_over_time, draw_section, looks, on_dark, settings
 from .plot import profile_of
-from .quantities import SHORT, TRAJECTORY, USUAL, Samples, tables_of
+from .quantities import SHORT, TRAJECTORY, USUAL, Samples, switch_of, tables_of
 from .sections import (commands_section, diagnosis_section, metrics_section, provenance, scenario_section, seeds_section, summary_section,
                        warnings_section)
 
@@ -99,7 +99,9 @@ def curves_section(runs, labels):
                        "The scene", "Circles: start; outlines: the tool of the first run; filled: the solid")]
     figures += [drawing(SIZE, lambda ax, shown, paper, q=q: draw_over_time(ax, q, samples, shown), light,
                        f"{q.axis} over time", spoken(q, samples, labels), xlabel="time [s]") for q in quantities]
-    return (f"<p>{key(light)} Triangles and dotted lines: first touch. Outlines: the tool of the first run at four times.</p>"
+    lacking = [SHORT[name] for name, section in (("energy", "metrics"), ("reference", "fidelity")) if any(section in run.sections for run in runs)]
+    hints = "".join(f" <code>--set {switch_of(q.file)}=true</code> adds the {q.title}." for q in lacking if q not in quantities)
+    return (f"<p>{key(light)} Triangles and dotted lines: first touch. Outlines: the tool of the first run at four times.{hints}</p>"
             f"<div class=curves>{''.join(figures)}</div>")
 
 

@@ -1,5 +1,6 @@
-"""The drawn figures: figures.json tells what they show; each with its caption, and the claims, runs and files it belongs to."""
+"""The drawn figures: figures.json tells what they show; each with its caption, and the claims and files it belongs to."""
 import base64
+import re
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -22,6 +23,18 @@ class Figure:
     def name(self):
         return f"Fig. {self.thesis_figure.removeprefix('Fig. ')}" if self.thesis_figure else self.title or self.id
 
+    def is_about(self, claim):
+        """The claim's place names the figure, or a scenario that decides it is drawn there."""
+        named = " ".join(re.findall(r"Fig\. (?:[A-F]\.?)?\d+", str(claim.get("place", ""))))
+        drawn = {Path(source).parent.name for source in self.sources}
+        return bool(labels(named) & labels(self.thesis_figure) or drawn & set(map(str, claim.get("scenarios") or ())))
+
+
+def labels(thesis_figure):
+    """"7a–c, B.4" -> {"7", "B.4"}: the numbers without their parts."""
+    return {prefix + digits for prefix, digits in
+            re.findall(r"(?<![A-Za-z0-9.])((?:[A-F]\.)?)(\d+)(?![0-9])", re.sub(r"\b([A-F])(?=\d)", r"\1.", thesis_figure))}
+
 
 def load_figures(directory: Path):
     file = directory / "figures.json"
@@ -41,22 +54,26 @@ def figure(entry, i, file):
     return Figure(id_ or f"figure-{i + 1}", title, str(entry.get("thesis_figure") or ""), caption, list(map(str, sources)), drawing.read_bytes())
 
 
-def figures_section(figures, links):
+def figures_section(figures, claims):
     if not figures:
         return '<p class="note">No figures were given (<code>--figures</code>).</p>'
     return ("<p>Redrawn from the results above, published numbers as red hollow marks where the thesis gives them. A click enlarges a figure. "
             "<span class=dark-only>On the dark page black and white have changed places; captions name the colours of the light one. </span>"
             f"To draw them again:</p>{command('scripts/figures results/out/reproduce --out results/out/figures')}"
-            f"<div class=figures>{''.join(figure_markup(figure, links) for figure in figures)}</div>")
+            f"<div class=figures>{''.join(figure_markup(figure, claims) for figure in figures)}</div>")
 
 
-def figure_markup(figure, links):
-    claims, runs = links.of_figure(figure)
+def figure_markup(figure, claims):
+    about = [claim_link(claim) for claim in claims if figure.is_about(claim)]
     files = "<br>".join(f"<code>{text(source)}</code>" for source in figure.sources)
-    data = listed("Runs", runs) + (f"<p><b>Files</b><br>{files}</p>" if files else "")
     title, name = text(figure.title or figure.id), f"{text(figure.name)}: " if figure.thesis_figure else ""
     image = f"data:image/svg+xml;base64,{base64.b64encode(figure.drawing).decode()}"
     return (f'<figure id="figure-{text(figure.id)}"><h3>{name}{title}</h3>'
             f'<button type="button" class="enlarge" aria-label="Enlarge {title}"><img src="{image}" alt="{title}"></button>'
-            f"<figcaption>{typeset(figure.caption)}</figcaption>{listed('Claims', claims)}"
-            + (folded("Runs and files", data) if data else "") + "</figure>")
+            f"<figcaption>{typeset(figure.caption)}</figcaption>{listed('Claims', about)}"
+            + (folded("Files", f"<p>{files}</p>") if files else "") + "</figure>")
+
+
+def claim_link(claim):
+    id_ = text(claim.get("id", ""))
+    return f'<a href="#claim-{id_}">{id_}</a>'

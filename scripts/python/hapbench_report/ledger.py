@@ -4,7 +4,7 @@ from collections import Counter
 from hapbench.errors import InputError
 from hapbench.results import at, objects, read_object, shown
 
-from .links import claim_link
+from .figures import claim_link
 from .markup import cell, command, filters, folded, heading_cell, listed, table, text, typeset
 
 # Verdict -> (mark, tone), what is contradicted first; the last two are of findings of ours. The mark tells verdicts apart without colour.
@@ -73,7 +73,7 @@ def main_results(claims):
 
 def warnings(runs):
     """The runs that ended otherwise than expected, by name: they must not hide in a long table."""
-    missed = [f'<a href="#{run.anchor}">{text(run.path)}</a> ({text(run.outcome)})' for run in runs if not run.expected]
+    missed = [f"{text(run.path)} ({text(run.outcome)})" for run in runs if not run.expected]
     return f'<p><b class="bad">✗ Not as expected:</b> {", ".join(missed)}.</p>' if missed else ""
 
 
@@ -84,31 +84,32 @@ def refusals(claims):
     return f"<p>What these runs do not confirm:</p><ul>{items}</ul>" if items else ""
 
 
-def ledger_section(claims, links):
+def ledger_section(claims, figures):
     if not claims:
         return '<p class="note">No ledger was given (<code>--claims</code>).</p>'
-    rows = [claim_row(claim, links) for claim in of_thesis(claims)]
-    ours = [claim_row(claim, links) for claim in claims if claim.get("ours")]
+    rows = [claim_row(claim, figures) for claim in of_thesis(claims)]
+    ours = [claim_row(claim, figures) for claim in claims if claim.get("ours")]
     headings = [heading_cell(title) for title in ("Id", "Verdict", "Claim", "Published", "Measured", "Sureness")]
-    return ("<p>Each claim of the thesis, what it publishes, what the runs below give, and a verdict by a rule, which unfolds "
-            "with the figures and runs behind it. "
+    return ("<p>Each claim of the thesis, what it publishes, what our runs give, and a verdict by a rule, which unfolds "
+            "with the figures and scenarios behind it. "
             "Hands are calibrated to mean and standard deviation of the raw colliding points; all else is a prediction. "
             "Steady: more than half of the samples spread over the plausible ranges of everything the thesis leaves open "
-            '(<code>results/reference/choices.md</code>) have the verdict; else fragile, or not sampled.</p>'
+            '(<code>results/reference/choices.json</code>) have the verdict; else fragile, or not sampled.</p>'
             + filters("ledger-table", [("Verdict", 1)])
             + table(headings, rows, "<b>The ledger</b>", "sortable stack", "ledger-table")
             + (table(headings, ours, "<b>Found on the way, and no claims of the thesis</b>", "sortable stack", "findings-table")
                if ours else ""))
 
 
-def claim_row(claim, links):
+def claim_row(claim, figures):
     id_ = text(claim.get("id", ""))
-    figures, runs = links.of_claim(claim)
-    more = (f"<p><b>Rule</b> {typeset(claim.get('rule', ''))}</p>" + listed("Figures", figures) + listed("Runs", runs)
+    shown_in = [f'<a href="#figure-{text(f.id)}">{text(f.name)}</a>' for f in figures if f.is_about(claim)]
+    scenarios = [f"<code>{text(name)}</code>" for name in claim.get("scenarios") or ()]
+    more = (f"<p><b>Rule</b> {typeset(claim.get('rule', ''))}</p>" + listed("Figures", shown_in) + listed("Scenarios", scenarios)
             + command(f"hapbench reproduce --only {claim.get('id', '')}"))
     return [cell(f'<a id="claim-{id_}" href="#claim-{id_}">{id_}</a>', classes="id"), cell(verdict_mark(claim["verdict"])),
             cell(f"{typeset(claim.get('claim', ''))}<p class=note>{text(claim.get('place', ''))}</p>"
-                 + folded("Rule, figures, runs", more, classes="printed"), classes="prose"),
+                 + folded("Rule, figures, scenarios", more, classes="printed"), classes="prose"),
             cell(typeset(claim.get("published", ""))),
             cell(f"{typeset(claim.get('measured', ''))}<p class=note>{typeset(claim.get('why', ''))}</p>", classes="prose"),
             cell(text(sureness(claim)))]

@@ -9,7 +9,6 @@ from statistics import median
 
 from hapbench.results import number_or_none
 from hapbench.units import ending_of, unit_of
-from hapbench_looks import look
 
 ABSENT = "–"
 ASSETS = Path(__file__).parent / "assets"
@@ -113,10 +112,6 @@ def embedded_json(value):
 def in_colour(one, shown):
     """Ready HTML in the colour of a look, on light and on dark ground."""
     return f'<span class=run-name style="--light:{one.colour};--dark:{one.dark}">{shown}</span>'
-
-
-def algorithm_name(algorithm):
-    return in_colour(look(algorithm), named(algorithm))
 
 
 def column(name, values=()):

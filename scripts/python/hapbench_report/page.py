@@ -1,10 +1,9 @@
 """The page: its sections in order, with style and scripts inlined."""
 from .figures import figures_section
 from .ledger import ledger_section, summary_section
-from .links import Links
 from .markup import ASSETS, command, fill, text
 from .replay import player, replays
-from .runs import provenance_of, provenance_section, runs_section
+from .runs import provenance_of, provenance_section
 
 STYLES = ("style.css", "replay.css")
 SCRIPTS = ("theme.js", "tables.js", "page.js", "replay_data.js", "replay_camera.js", "replay_scene.js", "replay_tool.js", "replay_field.js",
@@ -14,14 +13,12 @@ NO_REPLAY = '<p class="note">No recorded runs were given (<code>--program</code>
 
 def thesis_page(runs, claims, headline, figures, replayed):
     """The HTML of the report on the thesis. Depends on nothing but its arguments."""
-    links = Links(runs, figures, claims)
     replay = player(replays(replayed, [run.algorithm.replace("_", " ") for run in replayed])) if replayed else NO_REPLAY
     return whole_page((
         ("summary", "Summary", "Summary", summary_section(runs, claims, headline, figures)),
-        ("ledger", "Ledger", "Ledger", ledger_section(claims, links)),
+        ("ledger", "Ledger", "Ledger", ledger_section(claims, figures)),
         ("replay", "Replay", "Replay", replay),
-        ("figures", "Figures", "Figures", figures_section(figures, links)),
-        ("runs", "Runs", "Runs", runs_section(runs)),
+        ("figures", "Figures", "Figures", figures_section(figures, claims)),
         ("rerun", "Rerun", "Run it again", rerun_section()),
         ("provenance", "Provenance", "Provenance", provenance_section(provenance_of(runs))),
     ))
