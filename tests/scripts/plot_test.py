@@ -45,12 +45,6 @@ class Plot(Given):
         plotted(run, "--y", "force", "--from", after, "--to", 0.24)
         self.assertNotIn("peak", (run / "plot.svg").read_text())
 
-    def test_what_an_earlier_comparison_left_is_not_drawn(self):
-        folder = self.copy("peg")
-        table = (folder / "comparison.csv").read_text().splitlines()
-        (folder / "comparison.csv").write_text("\n".join(line for line in table if not line.startswith("proxy")) + "\n")
-        self.assertEqual(sorted(run.algorithm for run in given_runs([folder])), ["mean", "shaped_stiffness", "summation"])
-
     def test_labels_tell_runs_apart(self):
         runs = given_runs([self.root / "peg"])
         self.assertEqual(labels(runs), ["mean", "proxy", "shaped stiffness", "summation"])

@@ -10,7 +10,7 @@ from hapbench_report.live_link import live_link
 from hapbench_report.markup import cell, columns, command, deserved_digits, heading_cell, named, number, number_cell, table, text
 from hapbench_report.runs import plugin_text, provenance_of, provenance_section
 
-from .given import SEED_FOLDER, differing, fields_of
+from .given import SEED_FOLDER
 
 FIRST = ("force_mean_in_contact_N", "force_max_N", "force_step_p99_N", "force_rms_above_30Hz_N", "inside_max_m")
 
@@ -108,22 +108,11 @@ def metric_cell(value, tolerance):
 
 
 def scenario_section(runs, labels):
-    known = [(run, label) for run, label in zip(runs, labels) if run.scenario]
-    if not known:
-        return ""
-    return differences(known) + "".join(
+    return "".join(
         f"<details><summary>Scenario of {text(label)}</summary><pre>{text(json.dumps(run.scenario, indent=2, ensure_ascii=False))}</pre>"
         f"{live_link(run.scenario)}"
-        f"<p class=note>State hash {text(run.summary.get('state_hash', '–'))}{plugin_text(run)}.</p></details>" for run, label in known)
-
-
-def differences(known):
-    """The fields in which the scenarios differ."""
-    found = differing([fields_of(run) for run, _ in known])
-    if not found:
-        return ""
-    rows = [[cell(f"<code>{text(path)}</code>"), *(cell(text(json.dumps(value))) for value in values)] for path, values in found.items()]
-    return table([heading_cell("Field"), *(heading_cell(text(label)) for _, label in known)], rows, "<b>In what they differ</b>")
+        f"<p class=note>State hash {text(run.summary.get('state_hash', '–'))}{plugin_text(run)}.</p></details>"
+        for run, label in zip(runs, labels) if run.scenario)
 
 
 def commands_section(runs, words):
