@@ -16,7 +16,6 @@ from fixture import PROGRAM, SOURCE, main, ran
 from hapbench.errors import InputError
 from hapbench_docs import blocks
 from hapbench_docs.manuals import Manual, broken_links, manuals
-from hapbench_docs.program import same_but_for_times
 
 RECORD = SOURCE / "results" / "reference"
 TUTORIALS = SOURCE / "scenarios" / "library" / "tutorials"
@@ -223,13 +222,13 @@ class Generated(unittest.TestCase):
         old = "    law     force   us/\n                   step\n    ------  -----  ----\n    mean     1.25  0.25\n\n" \
             "    99 % of the steps take at most 0.24 us (mean) to 4.2 us (proxy)"
         slower = old.replace("0.25", "10.5").replace("  ----", "  -----").replace("4.2 us (proxy)", "14 us (summation)")
-        self.assertTrue(same_but_for_times(old, slower))
-        self.assertFalse(same_but_for_times(old, slower.replace("1.25", "1.26")))
-        self.assertTrue(same_but_for_times("    99 % of the steps take at most 2.3 us", "    99 % of the steps take at most 11 us"))
+        self.assertTrue(blocks.same_but_for_times(old, slower))
+        self.assertFalse(blocks.same_but_for_times(old, slower.replace("1.25", "1.26")))
+        self.assertTrue(blocks.same_but_for_times("    99 % of the steps take at most 2.3 us", "    99 % of the steps take at most 11 us"))
         levels = "    step  order  run s\n    ----  -----  -----\n    0.1   1.02   0.21\n\n    below 1 %: 0.1, 0.21 s a\n    run, 2.1 times the first level's"
-        self.assertTrue(same_but_for_times(levels, levels.replace("0.21", "0.34").replace("2.1 times", "3 times")))
-        self.assertFalse(same_but_for_times(levels, levels.replace("1.02", "1.03")))
-        self.assertFalse(same_but_for_times(old.replace("us/", "N/"), slower.replace("us/", "N/")))
+        self.assertTrue(blocks.same_but_for_times(levels, levels.replace("0.21", "0.34").replace("2.1 times", "3 times")))
+        self.assertFalse(blocks.same_but_for_times(levels, levels.replace("1.02", "1.03")))
+        self.assertFalse(blocks.same_but_for_times(old.replace("us/", "N/"), slower.replace("us/", "N/")))
 
 
 if __name__ == "__main__":

@@ -15,8 +15,7 @@ from hapbench_pictures.panels import draw_over_time, looks
 from hapbench_pictures.given import given_runs, labels
 from hapbench_pictures.over_axes import Axis, over_axes
 from hapbench_pictures.quantities import SHORT, Samples, settled_range
-from hapbench_report.recording import force_steps, forces, rows_to_show, settled_rows, tool_profile
-from hapbench_report.sound import sound, strongest
+from hapbench_report.recording import force_steps, forces, rows_to_show, settled_rows, sound, strongest, tool_profile
 
 setUpModule = make_runs
 

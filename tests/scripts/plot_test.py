@@ -14,8 +14,7 @@ from hapbench_looks import CLASSES
 from hapbench_pictures.given import given_runs, labels, named
 from hapbench_pictures.panels import looks
 from hapbench_pictures.plot import legend_columns, legend_of
-from hapbench_pictures.sensitivity import sensitivity
-from hapbench_pictures.sweep_plot import Sweep
+from hapbench_pictures.sweep_plot import Sweep, sensitivity
 
 setUpModule = make_runs
 

@@ -93,9 +93,6 @@ class Tables(Mapping):
     def __len__(self):
         return len(self._readers)
 
-    def __repr__(self):
-        return f"<tables {', '.join(self) or 'none'}>"
-
 
 class _WithTables:
     """Tables as attributes: `run.trajectory` is `run.tables["trajectory"]`."""
@@ -189,11 +186,6 @@ class Folder(_WithTables):
     @cached_property
     def json(self):
         return {file.stem: read_json(file) for file in sorted(self.folder.glob("*.json"))}
-
-    @property
-    def scenario(self):
-        """The scenario of what is in the folder, where it has one."""
-        return self.json.get("scenario.effective")
 
     def __repr__(self):
         return f"<{self.folder}: tables {', '.join(self.tables) or 'none'}>"

@@ -10,7 +10,6 @@ from hapbench_command import FAILED, SUCCESS, Arguments, exit_status, say_error,
 
 from . import blocks
 from .manuals import ROOT, Manual, manuals
-from .program import Program
 
 GALLERY = ROOT / "results" / "reference" / "gallery"
 # Commands, the last of which plots, and below them the picture.
@@ -57,7 +56,7 @@ def differences(manual, text):
 
 
 def run(chosen):
-    program, stale = None if chosen.tables else Program(chosen.program), False
+    program, stale = None if chosen.tables else blocks.Program(chosen.program), False
     with tempfile.TemporaryDirectory(prefix="hapbench-docs-") as scratch:
         if chosen.gallery and program:
             draw_gallery(program, Path(scratch))

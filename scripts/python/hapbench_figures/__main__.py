@@ -72,7 +72,7 @@ def record(directory, page, drawn):
     text = PAGE
     for figure in catalogue.FIGURES:
         on_record = page / f"{figure.stem}.svg"
-        if figure.id not in drawn or not (figure.thesis or figure.on_record or on_record.is_file()):
+        if figure.id not in drawn or not (figure.thesis or on_record.is_file()):
             continue
         write(on_record, (directory / on_record.name).read_bytes())
         name = f"Figure {figure.thesis}" if figure.thesis else "Ours"

@@ -9,8 +9,7 @@ from hapbench_command import DIFFERENT, SUCCESS, Arguments, exit_status, write
 
 from .figures import load_figures
 from .ledger import load_claims
-from .live_link import place_live_page
-from .page import thesis_page
+from .page import place_live_page, thesis_page
 from .runs import REPLAY_DIRECTORY, load_runs
 
 # Scenes of the replay: a scenario, further settings, and its algorithms, of which the first two are shown at first.

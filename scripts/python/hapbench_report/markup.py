@@ -8,7 +8,7 @@ from pathlib import Path
 from statistics import median
 
 from hapbench.results import number_or_none
-from hapbench.units import ending_of, unit_of
+from hapbench.table import ending_of, unit_of
 
 ABSENT = "–"
 ASSETS = Path(__file__).parent / "assets"

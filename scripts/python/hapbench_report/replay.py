@@ -16,8 +16,8 @@ from hapbench.results import at
 from hapbench_looks import look
 
 from .markup import ASSETS, embedded_json, fill
-from .recording import CONTACT_COLUMNS, MEASURED_COLUMNS, NORMAL_COLUMNS, TENSOR_COLUMNS, Recording, worst_moments
-from .sound import LONGEST, base64_of, sound
+from .recording import (CONTACT_COLUMNS, LONGEST, MEASURED_COLUMNS, NORMAL_COLUMNS, TENSOR_COLUMNS, Recording, base64_of, sound,
+                        worst_moments)
 
 # The shell is shown this far around the contacts and the tool's way along them, in units of the tool's radius.
 MARGIN = 1.8
