@@ -70,7 +70,7 @@ def number_ticks(axis):
     """Further numbers along a logarithmic axis that shows too few powers of ten."""
     low, high = axis.get_view_interval()
     if axis.get_scale() == "log" and high / low < 60:
-        axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+        axis.set_major_locator(LogLocator(subs=(1, 2, 5) if high / low < 20 else (1, 3)))
         axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
         axis.set_minor_formatter(NullFormatter())
 
@@ -79,7 +79,9 @@ LINE = 0.17  # height of a line of a legend [inch]
 
 
 def legend_above(figure, handles, labels, columns=4):
-    """A legend over all panels, with room for it."""
+    """A legend over all panels, with room for it; none without labels."""
+    if not labels:
+        return
     lines = -(-len(labels) // columns)
     figure.get_layout_engine().set(rect=(0, 0, 1, 1 - (0.08 + LINE * lines) / figure.get_figheight()))
     figure.legend(handles, labels, loc="upper left", ncol=columns, handlelength=2.6)

@@ -7,6 +7,7 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 import hapbench_style as style
 from hapbench.columns import numbers
+from hapbench_pictures.over_axes import Axis, over_axes
 
 from . import published
 
@@ -122,17 +123,19 @@ def threshold(results):
         cutoff = np.nan_to_num([float(r["hand.task.threshold.cutoff_Hz"].replace("null", "nan")) for r in rows], nan=EVERY_SAMPLE)
         grace = numbers(rows, "hand.task.threshold.grace_s")
         success = numbers(rows, f"targets.{place}.success_rate.mean")
+        series = []
         for value, line, marker in GRACES:
             own = np.flatnonzero(grace == value)[np.argsort(cutoff[grace == value])]
-            ax.plot(cutoff[own], success[own], color=style.look("original_averaging").colour, ls=line, marker=marker, ms=3,
-                    label=f"DP, grace {1e3 * value:g} ms")
+            look = {"color": style.look("original_averaging").colour, "ls": line, "marker": marker, "ms": 3}
+            series.append((f"DP, grace {1e3 * value:g} ms", cutoff[own], success[own], look))
+        over_axes(ax, Axis("cut-off [Hz]", cutoff, log=True), Axis("", success), series)
         targets = results.records(f"thesis/{task}_peg_in_hole_shaped_stiffness/targets.csv")
         shaped = np.mean([float(row["removed"]) for row in targets if float(row["place"]) == place])
         ax.axhline(shaped, color=style.look("shaped_stiffness").colour, label="HS, every sample")
         for at, method in ((4500, "original_averaging"), (6500, "shaped_stiffness")):
             id_ = f"{claim}.success.{method}"
             ax.errorbar([at], [published.value(id_)], yerr=[published.spread(id_)], **style.PUBLISHED)
-        ax.set(xscale="log", title=title, xlabel="cut-off [Hz]", xlim=(22, 9000), ylim=(-0.05, 1.08))
+        ax.set(title=title, xlim=(22, 9000), ylim=(-0.05, 1.08))
         ax.set_xticks([30, 100, EVERY_SAMPLE], ["30", "100", "every\nsample"], rotation=60)
         ax.minorticks_off()
         every = cutoff == EVERY_SAMPLE

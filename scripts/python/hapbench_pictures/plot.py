@@ -88,28 +88,35 @@ def of_sweep(folder, options):
 
 
 def draw(runs, shown, quantities, with_path, samples, surface=None):
-    """The figure: a title with the runs' names, below it the scene, the first quantity in the same room, and the others."""
+    """The figure: a title with the runs' names, below it the scene and the first quantity in the same room, side by side where no solid
+    fills the width of the scene, and the others."""
     with plt.rc_context(SETTINGS):
         entries = legend_of(shown)
         columns = legend_columns(entries, WIDTH)
         head = 0.3 + (LINE * math.ceil(len(entries) / columns) if len(runs) > 1 else 0)
-        heights = [LARGE] * (with_path + bool(quantities)) + [SMALL] * (len(quantities) - 1)
+        beside = with_path and bool(quantities) and surface is None
+        heights = [LARGE] * (with_path + bool(quantities) - beside) + [SMALL] * (len(quantities) - 1)
         figure = plt.figure(figsize=(WIDTH, head + sum(heights) + 0.35))
         top, bottom = figure.subfigures(2, 1, height_ratios=[head, sum(heights) + 0.35])
         write_title(top, head, runs, entries, columns)
-        scene, *over_time = bottom.subplots(len(heights), 1, squeeze=False, gridspec_kw={"height_ratios": heights})[:, 0]
+        grid = bottom.add_gridspec(len(heights), 2, height_ratios=heights, width_ratios=(1, 1.5))
+        rows = [grid[i, :] for i in range(len(heights))]
+        scene, *over_time = map(bottom.add_subplot, [grid[0, 0], grid[0, 1], *rows[1:]] if beside else rows)
         if with_path:
             profile = profile_of(runs[0])
             draw_section(scene, samples, shown, profile, surface)
             tool = TOOL_SAID + (", first run" if len(runs) > 1 else "")
             said = [SAID, *([SOLID_SAID] if surface is not None else []), *([tool] if profile else [])]
-            scene.set_xlabel(f"{scene.get_xlabel()}\n{'; '.join(said)}")
+            separator = ";\n" if beside else "; "
+            scene.set_xlabel(f"{scene.get_xlabel()}\n{separator.join(said)}")
         else:
             over_time = [scene, *over_time]
         for ax, quantity in zip(over_time, quantities):
             draw_over_time(ax, quantity, samples, shown)
             ax.sharex(over_time[0])
-            ax.tick_params(labelbottom=ax is over_time[-1])
+            ax.tick_params(labelbottom=ax is over_time[-1] or beside and ax is over_time[0])
+            if beside:
+                over_time[0].set_xlabel("time [s]")
         if over_time:
             over_time[-1].set_xlabel("time [s]   (triangles and dotted lines: first touch)")
         bottom.align_ylabels()

@@ -103,7 +103,7 @@ def curves_section(runs, labels):
     figures += [drawing(SIZE, lambda ax, shown, paper, q=q: draw_over_time(ax, q, samples, shown), light,
                        f"{q.axis} over time", spoken(q, samples, labels), xlabel="time [s]") for q in quantities]
     lacking = [SHORT[name] for name, section in (("energy", "metrics"), ("reference", "fidelity")) if any(section in run.sections for run in runs)]
-    hints = "".join(f" <code>--set {switch_of(q.file)}=true</code> adds the {q.title}." for q in lacking if q not in quantities)
+    hints = "".join(f" <code>{switch_of(q.file)}</code> adds the {q.title}." for q in lacking if q not in quantities)
     return (f"<p>{key(light)} Triangles and dotted lines: first touch. Outlines: the tool of the first run at four times.{hints}</p>"
             f"<div class=curves>{''.join(figures)}</div>")
 
@@ -153,12 +153,12 @@ def pareto_section(runs):
 
     def draw(ax, shown, paper):
         ax.plot(*front.T, color=ax.xaxis.label.get_color(), lw=0.8, ls=":", zorder=1)
-        series = [(None, mean[:1], mean[1:], look_of(one.label, color=one.colour, ls="none")) for one, mean in zip(shown, means.values())]
+        series = [(one.label.replace("_", " "), mean[:1], mean[1:], look_of(one.label, color=one.colour, ls="none"))
+                  for one, mean in zip(shown, means.values())]
         every = np.array(list(means.values()))
         over_axes(ax, Axis.of("deepest inside [mm]", every[:, 0]), Axis.of("force above 30 Hz [N rms]", every[:, 1]), series)
-        for one, mean in zip(shown, means.values()):
-            ax.annotate(one.label.replace("_", " "), mean, (5, 2), textcoords="offset points", color=one.colour, fontsize=6)
-        ax.margins(0.15)
+        ax.legend(loc="upper left", bbox_to_anchor=(1, 1.05), fontsize=6, handletextpad=0.1)
+        ax.margins(0.08)
 
     light = [RunLook(name, look(name).colour, look(name).dark, ()) for name in means]
     words = "; ".join(f"{name} {mean[0]:.3g} mm, {mean[1]:.3g} N" for name, mean in means.items())

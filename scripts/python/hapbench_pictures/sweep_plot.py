@@ -15,7 +15,7 @@ from hapbench.errors import InputError
 from hapbench.results import at, read_object
 from hapbench_command import nearest, table_text
 from hapbench_looks import by_class, look_of_class
-from hapbench_style import PETROL, SETTINGS, plt
+from hapbench_style import PETROL, SETTINGS, legend_above, plt
 
 from .given import axis
 from .over_axes import Axis, look_of, over_axes, spread_logarithmically
@@ -121,6 +121,7 @@ def draw_sweep(sweep):
             draw_map(figure, ax, sweep, axes)
         else:
             draw_curves(ax, sweep, axes)
+            legend_above(figure, *ax.get_legend_handles_labels(), columns=3)
         return figure
 
 
@@ -140,7 +141,7 @@ def draw_cloud(sweep, over):
         if i % wide:
             ax.set_ylabel("")
     if sweep.classes:
-        axes[0, 0].legend()
+        figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="upper right", ncol=4)
     for ax in axes.flat[len(over):]:
         ax.axis("off")
     return figure
@@ -174,8 +175,6 @@ def draw_curves(ax, sweep, over):
         series.append((name.replace("_", " ") or None, x.values[rows], value.values[rows], look_of(name) if name else {"color": PETROL, "marker": "o", "ls": "-"}))
     over_axes(ax, x, value, series)
     mark_classes(ax, sweep, x.values)
-    if other or sweep.classes:
-        ax.legend()
 
 
 def draw_map(figure, ax, sweep, over):
