@@ -98,10 +98,11 @@ def curves_section(runs, labels):
     quantities = [q for q in quantities if any(q.file in tables_of(run) for run in runs)]
     samples = [Samples(run, quantities, (*PATH_COLUMNS, *AXIS_COLUMNS)) for run in runs]
     light, surface = looks(runs, labels), surface_of(runs)
+    span = [end(end(s.trajectory["time_s"]) for s in samples) for end in (min, max)]  # also of what begins with contact
     figures = [drawing(SCENE_SIZE, lambda ax, shown, paper: draw_section(ax, samples, shown, profile_of(runs[0]), surface, paper), light,
                        "The scene", "Circles: start; outlines: the tool of the first run; filled: the solid")]
     figures += [drawing(SIZE, lambda ax, shown, paper, q=q: draw_over_time(ax, q, samples, shown), light,
-                       f"{q.axis} over time", spoken(q, samples, labels), xlabel="time [s]") for q in quantities]
+                       f"{q.axis} over time", spoken(q, samples, labels), xlabel="time [s]", xlim=span) for q in quantities]
     lacking = [SHORT[name] for name, section in (("energy", "metrics"), ("reference", "fidelity")) if any(section in run.sections for run in runs)]
     hints = "".join(f" <code>{switch_of(q.file)}</code> adds the {q.title}." for q in lacking if q not in quantities)
     return (f"<p>{key(light)} Triangles and dotted lines: first touch. Outlines: the tool of the first run at four times.{hints}</p>"
