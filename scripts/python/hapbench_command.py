@@ -217,10 +217,6 @@ class Notice:
         self._ended = threading.Event()
         self._thread = threading.Thread(target=self._show, daemon=True) if text else None
 
-    def say(self, text):
-        """Changes the text."""
-        self._text = text
-
     def __enter__(self):
         if self._thread:
             self._thread.start()

@@ -21,9 +21,7 @@ DPI = 150  # of a PNG
 # algorithms. Amber and petrol differ for every kind of colour vision; a third colour comes with a line style or marker of
 # its own. Red is for the thesis's numbers.
 BLACK, GREY, AMBER, PETROL, PLUM, RED = "#000000", "#5F5F5F", "#8A5600", "#00647D", "#8A3B75", PUBLISHED_COLOUR
-# For areas only.
-SAND, PALE = "#EFE8DC", "#CFE6F5"
-SOIL = "#8C7A58"  # the sand's border
+SAND, SOIL = "#EFE8DC", "#8C7A58"  # an area, and its border
 
 # Numbers of the thesis are hollow diamonds everywhere.
 PUBLISHED = {"marker": "D", "mfc": "white", "mec": RED, "ecolor": RED, "color": RED, "ms": 4.5, "mew": 1.2, "elinewidth": 1.2,
@@ -72,7 +70,7 @@ def number_ticks(axis):
     """Further numbers along a logarithmic axis that shows too few powers of ten."""
     low, high = axis.get_view_interval()
     if axis.get_scale() == "log" and high / low < 60:
-        axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+        axis.set_major_locator(LogLocator(subs=(1, 2, 5) if high / low < 20 else (1, 3)))
         axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
         axis.set_minor_formatter(NullFormatter())
 
@@ -81,7 +79,9 @@ LINE = 0.17  # height of a line of a legend [inch]
 
 
 def legend_above(figure, handles, labels, columns=4):
-    """A legend over all panels, with room for it."""
+    """A legend over all panels, with room for it; none without labels."""
+    if not labels:
+        return
     lines = -(-len(labels) // columns)
     figure.get_layout_engine().set(rect=(0, 0, 1, 1 - (0.08 + LINE * lines) / figure.get_figheight()))
     figure.legend(handles, labels, loc="upper left", ncol=columns, handlelength=2.6)

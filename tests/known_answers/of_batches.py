@@ -12,7 +12,7 @@ BY = ["force_step_p99_N", "velocity_total_variation_m_per_s", "contact_share"]
 SEEDS = 14
 
 
-def rows_of(league, runs, scenes):
+def rows_of(runs, scenes):
     """The league by the book: means over common seeds, and ranks."""
     for scene_name in scenes:
         failed = {law: [runs[scene_name, law, k].summary["outcome"] != "completes" for k in range(SEEDS)] for law in LAWS}
@@ -42,7 +42,7 @@ def league(bench):
     naive = {name: [] for name in ("failed", "mean", "spread", "rank", "common_seeds", "seeds")}
     ranks = {law: [] for law in LAWS}
     number = lambda x: math.nan if x is None else float(x)
-    for s, law, metric, failed, common, values in rows_of(table, runs, scenes):
+    for s, law, metric, failed, common, values in rows_of(runs, scenes):
         bad = {name: sum(failed[name]) for name in LAWS}
         means = {name: np.mean(v) for name, v in values.items() if not any(x is None for x in v)}
         sure = [name for name in means if bad[name] == 0]

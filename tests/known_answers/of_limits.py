@@ -3,27 +3,8 @@ import math
 
 import numpy as np
 
-from answers import EXACT, ROUNDING, SOURCE, Table, Within, scene
+from answers import EXACT, ROUNDING, Table, Within, scene
 from physics import PLAIN, HeldLoop, bisected, class_of, grows, high_pass, motion_of
-
-
-@scene
-def limit_of_handle(bench):
-    """B of a wall that is stiffer than its handle allows without damping: an island of stable values, by the eigenvalues of the held loop."""
-    m, b, T, K = 0.1, 0.5, 0.001, 4000.0
-    base = bench.scenario("limit_of_handle", time={"step_s": T, "steps": 8000}, initial={"position_m": [1e-3, 0, 0]},
-                          environment={"type": "springs", "groups": [{"direction": [1, 0, 0], "count": 1}]},
-                          device={"type": "impedance", "handle_mass_kg": m, "viscous_N_s_per_m": b},
-                          rendering={**PLAIN, "algorithm": "summation", "stiffness_N_per_m": K})
-    row = bench.json("limit", base, "--vary", "rendering.damping_N_s_per_m", "--between", "0.01:10000", "--resolution", "1e-4", "--out", "B")["limits"][0]
-    rests = lambda B: HeldLoop(m, b, T, K, B).radius() < 0.9 ** (4 / 8000)
-    bounded = lambda B: HeldLoop(m, b, T, K, B).radius() < 1
-    inside = next(B for B in np.geomspace(0.01, 1e4, 400) if rests(B))
-    low, high, theory = bisected(lambda B: not rests(B), 0.01, inside), bisected(rests, inside, 1e4), bisected(bounded, inside, 1e4)
-    fine = Within("bisection ends at 1e-4; beside the edges motion decays by a tenth a quarter only once its slowest part is alone", relative=5e-4)
-    for name, known, within, naive in (("limit", high, fine, 2 * m / T), ("low", low, fine, 0.01), ("high", high, fine, 2 * m / T),
-                                       ("theory", theory, Within("bisected to 1e-12", relative=3e-12), 2 * m / T)):
-        bench.add(f"limit.csv:{name}", row[name], known, "eigenvalues of the held loop", within, ("of leapfrog, or the end of the range", naive))
 
 
 @scene
@@ -56,20 +37,6 @@ def limits_of_springs(bench):
               asked("rk4_B", "--vary", "rendering.damping_N_s_per_m", "--between", "1:1e5", "--set", "rendering.stiffness_N_per_m=0", *rk4))
     bench.add("limit.csv:theory", np.concatenate([table["theory"] for table in of_rk4]), [8 * M / (lam * dt ** 2), real * M / (lam * dt)],
               "polynomial of Runge and Kutta's method", fine, ("leapfrog's", [value[0], value[2]]))
-
-
-@scene
-def real_paddle(bench):
-    """Three predictions for the paddle of scenarios/library/validation: its ultimate stiffness over B without dry friction, by the held loop."""
-    m, b, T, B = 0.1362, 3.0, 0.00035, (0, 30, 60)
-    linear = [word for field in ("coulomb_N=0", "encoder_step_m=0", "force_max_N=null") for word in ("--set", f"device.{field}")]
-    rows = bench.json("limit", SOURCE / "scenarios" / "library" / "validation" / "epfl_position_loop.json", *linear, "--over", "rendering.damping_N_s_per_m=0,30,60",
-                      "--stable", "bounded", "--resolution", "1e-4", "--out", "paddle")["limits"]
-    known = [bisected(lambda K: HeldLoop(m, b, T, K, damping, delay=1).radius() < 1, 1, 1e6) for damping in B]
-    early = [bisected(lambda K: HeldLoop(m, b, T, K, damping).radius() < 1, 1, 1e7) for damping in B]
-    for name, within in (("theory", Within("an edge by eigenvalues, bisected to 1e-8", relative=1e-8)),
-                         ("limit", Within("growth of a percent over a quarter of the run, 1e-5 a step, is seen", relative=5e-3))):
-        bench.add(f"limit.csv:{name}", [row[name] for row in rows], known, "eigenvalues of the held loop", within, ("without the delay", early))
 
 
 @scene

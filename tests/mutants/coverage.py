@@ -4,8 +4,7 @@
     cmake --preset coverage && cmake --build --preset coverage --target fast_tests program_test
     tests/mutants/coverage.py build/coverage >tests/mutants/coverage.txt
 
-Without --counted it first forgets what was counted and runs the tests: the fast ones, those that run the program, and the
-known answers. A line counts, in headers too, if a library of these folders has code of it, and as run if any of its object
+It first forgets what was counted and runs the tests: the fast ones, those that run the program, and the known answers. A line counts, in headers too, if a library of these folders has code of it, and as run if any of its object
 files has run it. With --against FILE the exit status is 1 if the share of a folder is more than one per cent below that.
 """
 import argparse
@@ -68,12 +67,10 @@ def counted(build: Path) -> dict[str, tuple[int, int]]:
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("build", type=Path, help="a build folder of the preset coverage")
-    parser.add_argument("--counted", action="store_true", help="take the counts that are there, without running tests")
     parser.add_argument("--against", type=Path, metavar="FILE", help="an earlier output to compare with")
     options = parser.parse_args()
     build = options.build.resolve()
-    if not options.counted:
-        run_tests(build)
+    run_tests(build)
     commit = subprocess.run(["git", "-C", SOURCE, "describe", "--always", "--dirty"], stdout=subprocess.PIPE, text=True,
                             check=True).stdout.strip()
     print(f"# Lines of code that tests run, by gcov at commit {commit}: ctest " + "; ".join(map(" ".join, TESTS)))

@@ -398,15 +398,6 @@ class Adding(unittest.TestCase):
         self.assertIn("what is a word two times?", self.hapbench())
         self.assertIn("Print a word two times", self.hapbench("twice", "--help"))
 
-    def test_a_metric_is_in_all_results(self):
-        self.write(record={"torque": True}, expect={"outcome": scenario()["expect"]["outcome"],
-                                                    "metrics": {"torque.lost_sum_Nm": {"min": 1e6}}})
-        self.assertIn("torque.lost_sum_Nm", self.hapbench("run", "scene.json", "--out", "out", status=3))
-        summary, columns = (json.loads((self.folder / "out" / name).read_text()) for name in ("summary.json", "columns.json"))
-        self.assertIn("lost_sum_Nm", summary["torque"])
-        self.assertIn("torque.lost_sum_Nm", json.dumps(columns))
-        self.assertIn("sum of ||tau||", self.hapbench("describe", "torque.lost_sum_Nm"))
-
     def test_a_column_of_the_trajectory_has_a_field_that_adds_it(self):
         self.assertIn("add the tip's speed", self.hapbench("describe", "record.speed"))
         self.assertIn("norm of its velocity", self.hapbench("describe", "speed_m_per_s"))

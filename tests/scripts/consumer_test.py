@@ -8,8 +8,6 @@ from pathlib import Path
 
 from fixture import ENVIRONMENT, PROGRAM, SOURCE, main, must as any_must, scratch_folder
 
-from hapbench_docs.manuals import Manual, broken_links
-
 CMAKE, BUILD = sys.argv[2:4]
 CONSUMER = SOURCE / "tests" / "consumer"
 SCENARIO = "peg_in_hole_2d_mean"
@@ -22,7 +20,6 @@ def must(*words, cwd=None):
 
 
 class Consumer(unittest.TestCase):
-    maxDiff = None  # every broken link
     @classmethod
     def setUpClass(cls):
         cls.folder = scratch_folder(cls)
@@ -39,12 +36,6 @@ class Consumer(unittest.TestCase):
         must(PROGRAM, "run", SCENARIO, "--out", out)
         self.assertEqual(state_hash, json.loads((out / "summary.json").read_text())["state_hash"])
 
-    def test_links_of_the_installed_manuals_lead_somewhere(self):
-        folder = self.prefix / "share" / "doc" / "hapbench"
-        manuals = sorted(folder.rglob("*.md"))
-        self.assertIn(folder / "scripts" / "python" / "README.md", manuals)
-        self.assertEqual({str(file): links for file in manuals if (links := list(broken_links(Manual(file))))}, {})
-
     def test_headers_without_the_flags_that_lay_out_their_types_do_not_compile(self):
         source = self.folder / "bare.cpp"
         for header, complaint in (("sim/core/types.hpp", "EIGEN_DONT_VECTORIZE"), ("sim/core/simd.hpp", "hapbench's own")):
@@ -57,23 +48,14 @@ class Consumer(unittest.TestCase):
     def test_a_folder_of_another_project_leaves_that_alone(self):
         build = self.folder / "parent"
         must(CMAKE, "-S", CONSUMER, "-B", build, "-G", "Ninja", f"-DHAPBENCH_SOURCE={SOURCE}")
-        cache = (build / "CMakeCache.txt").read_text().splitlines()
-        self.assertIn("CMAKE_BUILD_TYPE:STRING=", cache)
-        self.assertIn("HAPBENCH_BUILD_TESTS:BOOL=OFF", cache)
-        self.assertFalse((build / "compile_commands.json").exists())
-        self.assertFalse((build / "CTestTestfile.cmake").exists())
+        self.assertIn("HAPBENCH_BUILD_TESTS:BOOL=OFF", (build / "CMakeCache.txt").read_text().splitlines())
         all_of_parent = must("ninja", "-C", build, "-t", "commands", "all")
-        self.assertIn("own_law.cpp", all_of_parent)
-        self.assertIn("bundled_scenarios.cpp", all_of_parent)
         self.assertNotIn("scenarios/limits", all_of_parent, "nothing is built that the parent does not link")
-        self.assertNotIn("scenarios/program", all_of_parent)
         own = next(line for line in all_of_parent.splitlines() if line.rstrip("\"'").endswith("own_law.cpp"))
-        self.assertIn("-ffp-contract=off", own)
-        self.assertIn("-DEIGEN_DONT_VECTORIZE", own)
+        for word in ("-ffp-contract=off", "-DEIGEN_DONT_VECTORIZE"):
+            self.assertIn(word, own)
         for word in ("-Wconversion", "-march", "-Werror", "HAPBENCH_SIMD"):
             self.assertNotIn(word, own)
-        # Its scenarios are where the library will look for them.
-        self.assertTrue((build / "hapbench" / "share" / "hapbench" / "scenarios" / "library" / "thesis" / f"{SCENARIO}.json").is_file())
 
 
 if __name__ == "__main__":

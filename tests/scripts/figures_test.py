@@ -178,20 +178,6 @@ class Figures(unittest.TestCase):
             self.assertRegex(said, rf"skipped {re.escape(id_)} \(no .+\)")
         self.assertEqual(self.index(out), [])
 
-    def test_damaged_data_is_named(self):
-        damaged, out = self.directory / "damaged", self.directory / "out_of_damaged"
-        target = damaged / "thesis" / "task1_flat_signed_distance" / "trajectory.csv"
-        target.parent.mkdir(parents=True)
-        whole = (self.results / "thesis" / "task1_flat_signed_distance" / "trajectory.csv").read_text()
-        for text in ("", "step,time_s\n", whole[: len(whole) // 2], whole.replace("px_m", "other"), "step\nmany\n",
-                     "\x00\xff"):
-            target.write_text(text)
-            status, said = figures_here(damaged, "--out", out, "--only", "E.1")
-            with self.subTest(text[:30]):
-                self.assertIn(status, (1, 2))
-                self.assertIn("thesis/task", said)
-                self.assertEqual([path.name for path in out.iterdir()], ["figures.json"])
-
     def test_usage(self):
         x = self.directory / "x"
         occupied = self.drawn / "figures.json"

@@ -11,7 +11,6 @@ import time
 import unittest
 
 PATIENCE_S = 300
-DOWNLOAD_S = 1800  # a video is recorded as it plays
 UNNAMED = """[...document.querySelectorAll('button, select, input, canvas, img')].filter((e) =>
     !(e.getAttribute('aria-label') || e.getAttribute('alt') || e.textContent.trim() && e.tagName === 'BUTTON' ||
       [...(e.labels || [])].some((label) => label.textContent.trim()))).map((e) => e.outerHTML.slice(0, 80))"""
@@ -38,29 +37,8 @@ PALE = """(() => {
 })()"""
 
 
-def downloaded(folder, name):
-    """Returns the file that a page saves there, once it has content. `name` may be a pattern."""
-    deadline = time.monotonic() + DOWNLOAD_S
-    while not (found := [file for file in folder.glob(name) if file.stat().st_size > 0]):
-        if time.monotonic() > deadline:
-            raise TimeoutError(f"{folder / name} is not saved")
-        time.sleep(0.1)
-    return found[0]
-
-
-class Browser:
-    """What browsers share that have an `evaluate`."""
-
-    def wait_for(self, expression):
-        deadline = time.monotonic() + PATIENCE_S
-        while not self.evaluate(expression):
-            if time.monotonic() > deadline:
-                raise TimeoutError(expression)
-            time.sleep(0.05)
-
-
-class Chromium(Browser):
-    """One browser with one page, without network. Use it in a with statement."""
+class Chromium:
+    """One browser with one page, without network."""
 
     def __init__(self, program, width=1280, height=900, dark=False):
         self.messages, self.buffer, self.last_id = [], b"", 0
@@ -86,10 +64,7 @@ class Chromium(Browser):
         self.size(width, height)
         self.dark(dark)
 
-    def __enter__(self):
-        return self
-
-    def __exit__(self, *_):
+    def close(self):
         self.process.kill()
         self.process.wait()
         os.close(self.write_end)
@@ -124,6 +99,13 @@ class Chromium(Browser):
         self.call("Page.navigate", url=url)
         self.wait_for(f"document.readyState === 'complete' && location.href === {json.dumps(url)}")
 
+    def wait_for(self, expression):
+        deadline = time.monotonic() + PATIENCE_S
+        while not self.evaluate(expression):
+            if time.monotonic() > deadline:
+                raise TimeoutError(expression)
+            time.sleep(0.05)
+
     def evaluate(self, expression):
         result = self.call("Runtime.evaluate", expression=expression, returnByValue=True, awaitPromise=True)
         if "exceptionDetails" in result:
@@ -140,7 +122,7 @@ class Chromium(Browser):
                 found.append(about)
             elif method == "Log.entryAdded" and about["entry"]["level"] != "verbose":
                 found.append(about["entry"])
-            elif method == "Network.requestWillBeSent" and not about["request"]["url"].startswith(("file:", "data:")):
+            elif method == "Network.requestWillBeSent" and not about["request"]["url"].startswith(("file:", "data:", "blob:")):
                 found.append(about["request"]["url"])
         return found
 
@@ -150,19 +132,12 @@ class Chromium(Browser):
     def dark(self, dark=True):
         self.call("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": "dark" if dark else "light"}])
 
-    def key(self, key, code="", text=""):
-        for kind in ("keyDown", "keyUp"):
-            self.call("Input.dispatchKeyEvent", type=kind, key=key, code=code or key, **({"text": text} if text else {}))
-
     def mouse(self, kind, x, y, **more):
         self.call("Input.dispatchMouseEvent", type=kind, x=x, y=y, **more)
 
     def screenshot(self):
         """The visible part, as PNG."""
         return base64.b64decode(self.call("Page.captureScreenshot", format="png")["data"])
-
-    def pdf(self):
-        return base64.b64decode(self.call("Page.printToPDF", printBackground=True, preferCSSPageSize=True)["data"])
 
 
 class Page(unittest.TestCase):
@@ -172,7 +147,7 @@ class Page(unittest.TestCase):
     def show(cls, file):
         """Opens the file for the tests of a module, in its setUpModule."""
         cls.url, cls.browser = file.as_uri(), Chromium(os.environ["HAPBENCH_CHROMIUM"])
-        unittest.addModuleCleanup(cls.browser.__exit__)
+        unittest.addModuleCleanup(cls.browser.close)
 
     def setUp(self):
         self.browser.messages.clear()

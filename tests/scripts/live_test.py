@@ -1,13 +1,11 @@
-"""The live page in a real Chromium and a real Firefox: what a hand does there is what the program computes."""
+"""The live page in a real Chromium: what a hand does there is what the program computes."""
 import json
-import os
 import re
 import time
 import unittest
 
 from fixture import PROGRAM, SOURCE, hapbench, main, must, ran, scratch_folder
-from headless_chromium import Chromium
-from headless_firefox import Firefox
+from headless_chromium import Page
 
 SCENES = ("peg", "hole", "task2", "wedge", "molar", "friction")
 READY = "window.live && live.begun && live.shown ? true : false"
@@ -25,22 +23,13 @@ def setUpModule():
     if "could not" in made.stderr:
         raise unittest.SkipTest(made.stderr.strip())  # packages that this machine cannot get
     assert made.returncode == 0, made.stderr
+    Live.show(page)
 
 
-class OfBrowser:
-    """Tests that every browser passes."""
-
+class Live(Page):
     def open(self, hash_=""):
-        self.browser.open("about:blank")
-        self.browser.open(page.as_uri() + hash_)
+        super().open(hash_)
         self.browser.wait_for(READY)
-
-    def js(self, expression):
-        return self.browser.evaluate(expression)
-
-    def centre(self, selector):
-        return self.js(f"(() => {{ const e = document.querySelector('{selector}'); e.scrollIntoView({{block: 'center', behavior: 'instant'}});"
-                       "const b = e.getBoundingClientRect(); return [b.x + b.width / 2, b.y + b.height / 2]; })()")
 
     def choose(self, selector, value):
         self.js(f"(async () => {{ const menu = document.querySelector('{selector}'); menu.value = '{value}';"
@@ -73,7 +62,6 @@ class OfBrowser:
             self.assertTrue(all(touched), scene)
 
     def test_a_drag_pushes_the_peg(self):
-        self.open()
         before = self.js("live.pointer")
         x, y = self.centre(".view")
         self.drag([(x, y), (x + 10, y + 30), (x + 10, y + 60)])
@@ -85,7 +73,6 @@ class OfBrowser:
 
     def test_an_own_mesh_is_dropped(self):
         cube = (SOURCE / "tests" / "data" / "cube.obj").read_text(encoding="utf-8")
-        self.open()
         self.js("document.getElementById('scale').value = '1'")
         self.js(f"(() => {{ live.begun = null; const given = new DataTransfer(); given.items.add(new File([{json.dumps(cube)}], 'own.obj'));"
                 "document.getElementById('live').dispatchEvent(new DragEvent('drop', {dataTransfer: given, bubbles: true, cancelable: true})); })()")
@@ -95,7 +82,6 @@ class OfBrowser:
         self.assertGreater(self.assert_program_agrees(own__obj=cube)["steps_in_contact"], 0)
 
     def test_faults_are_told_and_left(self):
-        self.open()
         self.js("live.takeScenario('wrong.json', '{\"extends\": \"tap_wall\", \"tool\": {\"diameter_m\": -1}}')")
         self.browser.wait_for("document.getElementById('said').classList.contains('failed')")
         self.assertIn("diameter_m", self.js("document.getElementById('said').textContent"))
@@ -104,7 +90,6 @@ class OfBrowser:
         self.assert_program_agrees()
 
     def test_back_is_the_same_way(self):
-        self.open()
         self.move((2e-4, -1e-3, 0, 0.25, 0), 400)
         self.js("live.stepRows(1)")
         before = self.js("live.kept().then((kept) => kept.state_hash)")
@@ -123,19 +108,6 @@ class OfBrowser:
         self.move((0, 0, -1e-3, 0, 0), 400)
         self.assertGreater(self.assert_program_agrees()["steps_in_contact"], 0)
 
-
-class InChromium(OfBrowser, unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        cls.browser = Chromium(os.environ["HAPBENCH_CHROMIUM"])
-        cls.addClassCleanup(cls.browser.__exit__)
-
-    def setUp(self):
-        self.browser.messages.clear()
-
-    def tearDown(self):
-        self.assertEqual([c for c in self.browser.complaints() if not str(c).startswith("blob:")], [])
-
     def drag(self, places):
         x, y = places[0]
         self.browser.mouse("mousePressed", x, y, button="left", clickCount=1)
@@ -145,7 +117,6 @@ class InChromium(OfBrowser, unittest.TestCase):
         self.browser.mouse("mouseReleased", x, y, button="left", clickCount=1)
 
     def test_every_law_and_stage_is_the_program_s(self):
-        self.open()
         self.choose("#views", "1")
         for menu, values in ((".side select", "PACKED.laws"), ("#stage", "PACKED.stages.map((_, i) => String(i))"),
                              ("#device", "PACKED.devices.map((_, i) => String(i))")):
@@ -157,10 +128,9 @@ class InChromium(OfBrowser, unittest.TestCase):
 
     def test_every_bundled_scene_is_the_program_s(self):
         """A thousand rows of each, as the scenario says: WebAssembly is one of the machines that have the same bytes."""
-        self.open()
         short = "time.steps=1000"
         names = {}
-        scenarios = SOURCE / "scenarios"
+        scenarios = SOURCE / "scenarios" / "library"
         for file in sorted(scenarios.glob("*/*.json")):
             if {"environment", "extends"} & json.loads(file.read_text(encoding="utf-8")).keys():
                 names[f"/scenarios/{file.relative_to(scenarios)}"] = file
@@ -180,17 +150,6 @@ class InChromium(OfBrowser, unittest.TestCase):
           }}
         }})""")
         self.assertEqual({name: value for name, value in found if single[name] != value}, {})
-
-class InFirefox(OfBrowser, unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        if not os.environ.get("HAPBENCH_FIREFOX"):
-            raise unittest.SkipTest("no Firefox: scripts/setup --browser installs one")
-        cls.browser = Firefox(os.environ["HAPBENCH_FIREFOX"])
-        cls.addClassCleanup(cls.browser.__exit__)
-
-    def drag(self, places):
-        self.browser.drag(places)
 
 
 if __name__ == "__main__":

@@ -9,15 +9,8 @@ from fixture import SOURCE, hapbench, main, must
 import hapbench_looks
 
 
-def luminance(colour):
-    """Relative luminance of WCAG 2.1 of "#RRGGBB"."""
-    parts = [int(colour[i : i + 2], 16) / 255 for i in (1, 3, 5)]
-    linear = [part / 12.92 if part <= 0.04045 else ((part + 0.055) / 1.055) ** 2.4 for part in parts]
-    return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
-
-
 def contrast(first, second):
-    low, high = sorted((luminance(first), luminance(second)))
+    low, high = sorted(hapbench_looks.luminance([int(colour[i:i + 2], 16) / 255 for i in (1, 3, 5)]) for colour in (first, second))
     return (high + 0.05) / (low + 0.05)
 
 

@@ -15,8 +15,7 @@ from hapbench_pictures.panels import draw_over_time, looks
 from hapbench_pictures.given import given_runs, labels
 from hapbench_pictures.over_axes import Axis, over_axes
 from hapbench_pictures.quantities import SHORT, Samples, settled_range
-from hapbench_report.recording import force_steps, forces, rows_to_show, settled_rows, tool_profile, worst_moments
-from hapbench_report.sound import sound, strongest
+from hapbench_report.recording import force_steps, forces, rows_to_show, settled_rows, sound, strongest, tool_profile
 
 setUpModule = make_runs
 
@@ -106,13 +105,6 @@ class Moments(unittest.TestCase):
         self.assertIsNone(settled_range([(calm & False, force, force)]))
         hammering = np.where(calm & (np.arange(502) % 2 > 0), 10.0, force)
         self.assertIsNone(settled_range([(calm & (np.arange(502) < 50) & (hammering < 2), hammering, hammering)]))
-
-    def test_the_worst_step_is_not_the_landing(self):
-        force, none = np.array([0.0] * 10 + [9.0] + [1.0] * 59 + [1.5] + [1.0] * 29), np.zeros(100)
-        table = {"time_s": np.arange(100) / 100, "colliding": force > 0, "fx_N": force, "fy_N": none, "fz_N": none, "depth_max_m": force / 1000}
-        step, depth = worst_moments(table, {})
-        self.assertEqual((step["title"], step["time"], step["value"]), ("settled force step", 0.7, 0.5))
-        self.assertEqual((depth["time"], depth["value"]), (0.1, 9.0))
 
 
 class Shapes(unittest.TestCase):

@@ -38,33 +38,6 @@ class Laws(Scratch):
         # Sums in another order: the first row differs by rounding, of at most some 30 terms.
         np.testing.assert_allclose(own.trajectory.fx_N[0], built_in.trajectory.fx_N[0], rtol=1e-13, atol=1e-10)
 
-    def test_a_force_has_the_springs_of_one_from_c(self):
-        """One spring of stiffness K at the middle of the contacts: its energy, its moment, and what a turn adds."""
-        @hapbench.force_law("test_force")
-        def law(depths, gradients, stiffness):
-            return -stiffness * depths @ gradients / len(depths), gradients.T @ gradients / len(depths)
-
-        # A free tool that turns in a hole.
-        scene = {"extends": "turned_into_wall", "time": {"duration_s": 0.5}, "expect": {},
-                 "rendering": {"algorithm": "test_force", "reduction": None, "angular_damping": True, "angular_velocity_cutoff_Hz": None},
-                 "record": {"torque": True, "energy": True, "contacts": True}}
-        run = hapbench.run(scene)
-        trajectory, contacts = run.trajectory, run.contacts
-        force = np.column_stack([trajectory[f"fspring_{axis}_N"] for axis in "xyz"])
-        stiffness = run.scenario["rendering"]["stiffness_N_per_m"]
-        np.testing.assert_allclose(run.energy.stored_J, (force**2).sum(axis=1) / (2 * stiffness), rtol=1e-12)
-        touched = np.flatnonzero(trajectory.rendered > 0)
-        self.assertGreater(len(touched), 100)
-        tip = np.column_stack([trajectory[f"p{axis}_m"] for axis in "xyz"])
-        for row in touched[::50]:
-            mine = contacts.step == trajectory.step[row]
-            middle = np.column_stack([contacts[f"{axis}_m"][mine] for axis in "xyz"]).mean(axis=0)
-            torque = [trajectory[f"t{axis}_Nm"][row] for axis in "xyz"]
-            np.testing.assert_allclose(torque, np.cross(middle - tip[row], force[row]), rtol=1e-9, atol=1e-15)
-        # The turn is damped where it pushes contacts in.
-        still = hapbench.run(scene, {"rendering.angular_damping": False})
-        self.assertNotEqual(run.state_hash, still.state_hash)
-
     def test_arguments(self):
         seen = {}
 

@@ -1,15 +1,11 @@
 """Runs, studies and results by the Python package. Arguments: those of python_fixture.py."""
-import ast
-import inspect
 import json
 import os
 import re
-import signal
 import subprocess
 import sys
 import threading
 import time
-import unittest
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
@@ -18,7 +14,6 @@ from fixture import must
 from python_fixture import ENVIRONMENT, EVERYTHING, PEG, SHORT, SOURCE, WEDGE, Scratch, main, program, python, words_of
 
 import hapbench
-from hapbench import _hapbench
 from hapbench.columns import read_columns
 
 
@@ -60,9 +55,6 @@ class Runs(Scratch):
         self.assertTrue(np.isnan(run.trajectory.ratio_min).any() or (run.trajectory.rendered > 0).all())
         self.assertEqual((run.name, run.algorithm, run.outcome), (PEG, "shaped_stiffness", "completes"))
         self.assertEqual(repr(run.trajectory), repr(read.trajectory))
-
-    def test_of_springs(self):
-        self.compare("springs_limited_mean", SHORT)
 
     def test_of_several_trials(self):
         scene = json.loads((SOURCE / "scenarios/library/thesis/vertical_peg_in_hole_shaped_stiffness.json").read_text())
@@ -149,14 +141,6 @@ class Errors(Scratch):
             hapbench.run(PEG, {"rendering.mass_kg": -1, "time.step_s": -1})
         self.assertEqual({fault.pointer for fault in caught.exception.faults}, {"/rendering/mass_kg", "/time/step_s"})
 
-    def test_of_commands(self):
-        with self.assertRaisesRegex(hapbench.ScenarioError, "allowed"):
-            hapbench.compare(PEG, algorithms=["mean", "nobody"])
-        with self.assertRaisesRegex(hapbench.ScenarioError, "unknown command"):
-            hapbench.command("runn")
-        with self.assertRaises(hapbench.ScenarioError):
-            hapbench.compare(PEG, seeds=0)
-
     def test_of_results(self):
         with self.assertRaisesRegex(hapbench.ResultError, "is not a folder"):
             hapbench.load(self.root / "nothing")
@@ -193,13 +177,6 @@ class Studies(Scratch):
         self.assertEqual(mean.state_hash, alone.state_hash)
         self.assertEqual(mean.trajectory.rows, 300)
         self.assertIn("and 280 more rows", str(mean.trajectory))
-
-    def test_league(self):
-        report = hapbench.compare([PEG, {"extends": PEG, "name": "other", "seed": 2}], ["mean", "summation"], SHORT, seeds=2,
-                                  jitter=1e-6, out=self.root / "kept")
-        self.assertEqual(len(report.runs), 8)
-        self.assertIn("league", report.tables)
-        self.assertEqual(set(hapbench.load(self.root / "kept").runs), set(report.runs))
 
     def test_sweep(self):
         seen = []
@@ -241,13 +218,6 @@ class Steps(Scratch):
         self.assertEqual(simulation.state["step"], 99)
         self.assertEqual(simulation.advance(1000), 200)
 
-    def test_errors_of_a_law(self):
-        hapbench.force_law("test_raises_at_once")(eval("lambda depths: 1 / 0"))
-        simulation = hapbench.Simulation(PEG, {**SHORT, "rendering.algorithm": "test_raises_at_once"})
-        with self.assertRaises(ZeroDivisionError):
-            simulation.advance(300)
-        self.assertEqual(hapbench.run(PEG, SHORT).outcome, "completes")
-
 
 class Program(Scratch):
     def test_is_the_same(self):
@@ -272,18 +242,6 @@ class Program(Scratch):
                         for words in (("de_DE.UTF-8", "0,5", self.root / "a.json"), ("C", "0.5", self.root / "b.json")))
         self.assertEqual(comma, point)
 
-    def test_stops_cleanly(self):
-        for number, code in ((signal.SIGINT, 130), (signal.SIGTERM, 143)):
-            out = self.root / f"stopped_{code}"
-            words = ["run", PEG, *words_of({"time.steps": 1_000_000_000, "time.stop_when": "[]", "record.every": 20_000, "expect": "{}"}), "--out", str(out)]
-            running = subprocess.Popen([sys.executable, "-m", "hapbench", *words], env=ENVIRONMENT, stderr=subprocess.PIPE, text=True)
-            while not any(out.glob(".*.tmp")) and running.poll() is None:
-                time.sleep(0.02)
-            running.send_signal(number)
-            said = running.communicate()[1]
-            self.assertEqual(running.returncode, code, said)
-            self.assertEqual(list(out.glob("*")) + list(out.glob(".*")) if out.exists() else [], [])
-
     def test_ctrl_c_in_a_script(self):
         """Ends within 0.2 s, also while a slow law is called. The fastest of three, because the machine may be busy."""
         code = ("import hapbench, os, signal, threading, time\n"
@@ -302,33 +260,6 @@ class Program(Scratch):
         *seconds, rows = map(float, done.stdout.split())
         self.assertEqual((len(seconds), rows), (2, 10), done.stderr)
         self.assertLess(max(seconds), 0.2)
-
-
-class Stubs(unittest.TestCase):
-    def test_agree_with_the_module(self):
-        stub = ast.parse((SOURCE / "scripts/python/hapbench/_hapbench.pyi").read_text())
-        functions = {node.name: node for node in stub.body if isinstance(node, ast.FunctionDef)}
-        self.assertEqual(set(functions) | {"Simulation"}, {name for name in vars(_hapbench) if not name.startswith("_")})
-        for name, node in functions.items():
-            self.assert_same_arguments(getattr(_hapbench, name), node)
-        (stubbed,) = (node for node in stub.body if isinstance(node, ast.ClassDef))
-        members = {node.name: node for node in stubbed.body}
-        found = {name: member for name, member in vars(_hapbench.Simulation).items() if not name.startswith("_") or name == "__init__"}
-        self.assertEqual(set(members), set(found))
-        for name, member in found.items():
-            self.assertEqual(bool(members[name].decorator_list), isinstance(member, property), name)
-            if not isinstance(member, property):
-                self.assert_same_arguments(member, members[name])
-
-    def assert_same_arguments(self, function, node):
-        """pybind11 writes the signature into the docstring."""
-        given = re.search(r"\((.*)\) ->", function.__doc__.splitlines()[0]).group(1)
-        own = [part.split(":")[0].strip() for part in re.sub(r"\[[^][]*(\[[^][]*\])*[^][]*\]", "", given).split(",") if part.strip()]
-        self.assertEqual(own, [argument.arg for argument in node.args.args], node.name)
-
-    def test_everything_public_is_documented(self):
-        for name in hapbench.__all__:
-            self.assertTrue(inspect.getdoc(getattr(hapbench, name)), name)
 
 
 if __name__ == "__main__":

@@ -32,7 +32,6 @@ Place = str | os.PathLike | None
 Progress = Callable[[str, int, int], object] | bool | None
 
 
-
 def run(scenario: Scenario, overrides: Overrides = None, *, record: Iterable[str] = (), progress: Progress = None) -> Run:
     """Run a scenario and return its Run, all in memory: the same numbers as `hapbench run` writes.
 
@@ -129,61 +128,24 @@ class Report(Folder):
         self._scratch = scratch  # removed with this object
 
 
-class Simulation:
+class Simulation(_hapbench.Simulation):
     """One run of a scenario, step by step, for loops of your own. `scenario` and `overrides` as in `run`.
 
         simulation = hapbench.Simulation("drag_molar")
         while simulation.step():
             print(simulation.state["force_N"], len(simulation.contacts["depths_m"]))
 
-    The state is that of the last row: everything before the integrator moved the tool."""
+    `step()` computes the next row: False, and nothing done, once the run has ended. `advance(steps)` computes up to so many rows, the
+    interpreter released, and returns how many. `reset()` goes back to the start, bit for bit. `rows` are those computed so far, `steps`
+    those of the whole run, `time_step_s` the time from row to row [s]; `outcome` is how the run ended, "completes" while it goes on.
+
+    `state` is the last row as a dict, everything before the integrator moved the tool: step, time_s, position_m, velocity_m_per_s, axis,
+    force_N, spring_force_N, stiffness_tensor (in units of K), measured_force_N, input_force_N, handle_m, colliding, depth_max_m.
+    `contacts` are its rendered ones as a dict of arrays: index, points_m, normals, depths_m, gradients, weights."""
 
     def __init__(self, scenario: Scenario, overrides: Overrides = None):
         with _Scratch() as scratch:
-            self._simulation = scratch.call(_hapbench.Simulation, scratch.file_of(scenario), _words(overrides or {}))
-
-    def step(self) -> bool:
-        """Compute the next row. False, and nothing done, once the run has ended."""
-        return self._simulation.step()
-
-    def advance(self, steps: int) -> int:
-        """Compute up to so many rows, the interpreter released; returns how many."""
-        return self._simulation.advance(steps)
-
-    def reset(self) -> None:
-        """Back to the start, bit for bit."""
-        self._simulation.reset()
-
-    @property
-    def state(self) -> dict[str, Any]:
-        """The last row as a dict: step, time_s, position_m, velocity_m_per_s, axis, force_N, spring_force_N,
-        stiffness_tensor (in units of K), measured_force_N, input_force_N, handle_m, colliding, depth_max_m."""
-        return self._simulation.state
-
-    @property
-    def contacts(self) -> dict[str, Any]:
-        """Its rendered contacts as a dict of arrays: index, points_m, normals, depths_m, gradients, weights."""
-        return self._simulation.contacts
-
-    @property
-    def rows(self) -> int:
-        """Rows computed so far."""
-        return self._simulation.rows
-
-    @property
-    def steps(self) -> int:
-        """Rows of the whole run."""
-        return self._simulation.steps
-
-    @property
-    def time_step_s(self) -> float:
-        """The time from row to row [s]."""
-        return self._simulation.time_step_s
-
-    @property
-    def outcome(self) -> str:
-        """How the run ended; "completes" while it goes on."""
-        return self._simulation.outcome
+            scratch.call(super().__init__, scratch.file_of(scenario), _words(overrides or {}))
 
 
 class _Scratch:

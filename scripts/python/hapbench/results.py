@@ -93,9 +93,6 @@ class Tables(Mapping):
     def __len__(self):
         return len(self._readers)
 
-    def __repr__(self):
-        return f"<tables {', '.join(self) or 'none'}>"
-
 
 class _WithTables:
     """Tables as attributes: `run.trajectory` is `run.tables["trajectory"]`."""
@@ -190,11 +187,6 @@ class Folder(_WithTables):
     def json(self):
         return {file.stem: read_json(file) for file in sorted(self.folder.glob("*.json"))}
 
-    @property
-    def scenario(self):
-        """The scenario of what is in the folder, where it has one."""
-        return self.json.get("scenario.effective")
-
     def __repr__(self):
         return f"<{self.folder}: tables {', '.join(self.tables) or 'none'}>"
 
@@ -212,13 +204,12 @@ def load(folder: str | os.PathLike) -> "Run | Folder":
     return found
 
 
-def load_run(folder):
-    """The run of one folder."""
+def load_run(folder, kind=Run):
+    """The run of one folder, of a class derived from Run."""
     folder = Path(folder)
     trials = sorted(folder.glob("subject_*_trial_*"), key=_numbers_of)
-    return Run(read_object(folder / SUMMARY), _optional(folder / SCENARIO), _tables_of(folder),
-               timing=_optional(folder / "timing.json"), folder=folder,
-               trials=[Trial(_tables_of(trial, folder)) for trial in trials])
+    return kind(read_object(folder / SUMMARY), _optional(folder / SCENARIO), _tables_of(folder), timing=_optional(folder / "timing.json"),
+                folder=folder, trials=[Trial(_tables_of(trial, folder)) for trial in trials])
 
 
 class Trial(_WithTables):

@@ -1,12 +1,24 @@
-"""A table of results."""
+"""A table of results, and the units of columns by their names."""
+import textwrap
 from collections.abc import Mapping
 
-import textwrap
-
-from .units import unit_of
-
+# Ending of a name -> unit; the longest that fits.
+UNITS = {
+    "N_per_m": "N/m", "N_s_per_m": "N s/m", "m_per_s": "m/s", "m_per_s2": "m/s²", "m2_per_s2": "m²/s²", "rad_per_s": "rad/s",
+    "s_per_m": "s/m", "per_s": "1/s",
+    "m": "m", "mm": "mm", "s": "s", "N": "N", "Nm": "N m", "J": "J", "W": "W", "kg": "kg", "rad": "rad", "Hz": "Hz", "bytes": "bytes"}
 MOST_NAMED = 16
 MOST_PRINTED, WIDEST = 20, 100  # rows and characters of a printed table
+
+
+def ending_of(name):
+    """The end of a name that says its unit, "" where it has none."""
+    return max((ending for ending in UNITS if name.endswith("_" + ending)), key=len, default="")
+
+
+def unit_of(name):
+    """The unit of a column, "" where its name says none."""
+    return UNITS.get(ending_of(name), "")
 
 
 class Table(Mapping):

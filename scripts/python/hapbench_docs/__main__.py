@@ -6,12 +6,10 @@ import sys
 import tempfile
 from pathlib import Path
 
-from hapbench_command import BAD_INPUT, FAILED, INTERRUPTED, SUCCESS, Arguments, say_error, write
-from hapbench.errors import InputError
+from hapbench_command import FAILED, SUCCESS, Arguments, exit_status, say_error, write
 
 from . import blocks
 from .manuals import ROOT, Manual, manuals
-from .program import Program, ProgramError
 
 GALLERY = ROOT / "results" / "reference" / "gallery"
 # Commands, the last of which plots, and below them the picture.
@@ -37,10 +35,7 @@ def renewed(manual, scratch, program):
     makers = dict(blocks.MAKERS)
     if program:
         makers["session"] = lambda old: blocks.session(old, program, scratch)
-        makers["controllers"] = lambda old: blocks.controllers(old, program, scratch)
-        makers["hunt_crossley"] = lambda old: blocks.hunt_crossley(old, program, scratch)
-    text = blocks.renewed(manual.text, makers)
-    return blocks.renewed(text, {"which_law": lambda _: blocks.which_law(text)})  # by the tables made just now
+    return blocks.renewed(manual.text, makers)
 
 
 def draw_gallery(program, scratch):
@@ -60,33 +55,26 @@ def differences(manual, text):
     return "\n".join(difflib.unified_diff(manual.text.splitlines(), text.splitlines(), name, f"{name}, renewed", lineterm=""))
 
 
-def main(words=None):
-    chosen = arguments(words)
-    status = SUCCESS
-    try:
-        program = None if chosen.tables else Program(chosen.program)
-        with tempfile.TemporaryDirectory(prefix="hapbench-docs-") as scratch:
-            if chosen.gallery and program:
-                draw_gallery(program, Path(scratch))
-            for manual in map(Manual, manuals()):
-                text = renewed(manual, Path(scratch), program)
-                if text == manual.text:
-                    continue
-                if chosen.check:
-                    print(differences(manual, text))
-                    status = FAILED
-                else:
-                    write(manual.file, text)
-                    print(f"renewed {manual.file.relative_to(ROOT)}")
-    except (ProgramError, InputError, blocks.BlockError, OSError) as error:
-        say_error(error)
-        return BAD_INPUT
-    except KeyboardInterrupt:
-        return INTERRUPTED
-    if status == FAILED:
+def run(chosen):
+    program, stale = None if chosen.tables else blocks.Program(chosen.program), False
+    with tempfile.TemporaryDirectory(prefix="hapbench-docs-") as scratch:
+        if chosen.gallery and program:
+            draw_gallery(program, Path(scratch))
+        for manual in map(Manual, manuals()):
+            text = renewed(manual, Path(scratch), program)
+            if text == manual.text:
+                continue
+            if chosen.check:
+                print(differences(manual, text))
+                stale = True
+            else:
+                write(manual.file, text)
+                print(f"renewed {manual.file.relative_to(ROOT)}")
+    if stale:
         say_error("the manuals are not current; scripts/docs renews them")
-    return status
+    return FAILED if stale else SUCCESS
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    options = arguments(sys.argv[1:])
+    sys.exit(exit_status("docs", "", lambda: run(options)))

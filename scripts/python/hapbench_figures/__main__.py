@@ -5,9 +5,9 @@ import time
 from pathlib import Path
 
 import hapbench_style as style
-from hapbench.errors import ResultError
-from hapbench.results import Files, MissingResult
-from hapbench_command import BAD_INPUT, INTERRUPTED, SUCCESS, Arguments, say_error, write
+from hapbench.errors import InputError, ResultError
+from hapbench.results import Files, MissingResult, read_json
+from hapbench_command import BAD_INPUT, SUCCESS, Arguments, exit_status, say_error, write
 
 from . import catalogue
 
@@ -36,16 +36,14 @@ def arguments(argv):
 
 
 def selection(only):
-    """The figures that are asked for. Raises KeyError with an id that no figure has."""
-    if only is None:
-        return catalogue.FIGURES
+    """The figures that are asked for."""
     chosen = []
-    for id_ in only.split(","):
+    for id_ in only.split(",") if only else ():
         found = [f for f in catalogue.FIGURES if f.id == id_ or f.id.startswith(id_ + "-")]
         if not found:
-            raise KeyError(id_)
+            raise InputError(f"--only: no figure {id_!r}; there are {', '.join(f.id for f in catalogue.FIGURES)}")
         chosen += [f for f in found if f not in chosen]
-    return chosen
+    return chosen or catalogue.FIGURES
 
 
 def draw(figure, results, directory):
@@ -59,32 +57,14 @@ def draw(figure, results, directory):
             "sources": sorted(results.sources)}
 
 
-def attempt(figure, results, directory):
-    """Draws a figure; returns its entry, why it was skipped, and what is wrong with its data, two of them None."""
-    try:
-        return draw(figure, results, directory), None, None
-    except MissingResult as missing:
-        return None, f"{figure.id} ({missing})", None
-    except ResultError as error:
-        return None, None, str(error)
-    except (KeyError, IndexError, TypeError, ValueError) as error:
-        # A file that can be read but has not the columns, rows or members of hapbench's.
-        return None, None, f"figure {figure.id}: {', '.join(sorted(results.sources))}: {type(error).__name__}: {error}"
-
-
 def write_index(directory, entries):
     """figures.json: entries of earlier runs stay for figures that were not drawn anew and still are there."""
     file = directory / "figures.json"
-    merged = {}
-    if file.is_file():
-        try:
-            merged = {e["id"]: e for e in json.loads(file.read_text(encoding="utf-8"))["figures"]}
-        except (ValueError, KeyError, TypeError):
-            pass  # not ours or damaged: written anew
-    merged.update({entry["id"]: entry for entry in entries})
-    known = [merged[f.id] for f in catalogue.FIGURES if f.id in merged and (directory / f"{f.stem}.svg").is_file()]
-    write(file, json.dumps({"figures": known}, indent=2, ensure_ascii=False) + "\n")
-    return {entry["id"]: entry for entry in known}
+    known = {entry["id"]: entry for entry in read_json(file)["figures"]} if file.is_file() else {}
+    known |= {entry["id"]: entry for entry in entries}
+    known = {f.id: known[f.id] for f in catalogue.FIGURES if f.id in known and (directory / f"{f.stem}.svg").is_file()}
+    write(file, json.dumps({"figures": list(known.values())}, indent=2, ensure_ascii=False) + "\n")
+    return known
 
 
 def record(directory, page, drawn):
@@ -92,7 +72,7 @@ def record(directory, page, drawn):
     text = PAGE
     for figure in catalogue.FIGURES:
         on_record = page / f"{figure.stem}.svg"
-        if figure.id not in drawn or not (figure.thesis or figure.on_record or on_record.is_file()):
+        if figure.id not in drawn or not (figure.thesis or on_record.is_file()):
             continue
         write(on_record, (directory / on_record.name).read_bytes())
         name = f"Figure {figure.thesis}" if figure.thesis else "Ours"
@@ -101,43 +81,43 @@ def record(directory, page, drawn):
     write(page / "figures.md", text)
 
 
-def main(argv=None):
-    chosen = arguments(argv)
-    try:
-        figures = selection(chosen.only)
-    except KeyError as error:
-        say_error(f"--only: no figure {error}; there are {', '.join(f.id for f in catalogue.FIGURES)}")
-        return BAD_INPUT
+def run(chosen):
+    figures, started = selection(chosen.only), time.monotonic()
     if chosen.list:
-        for figure in figures:
-            print(f"{figure.id:24} {figure.title}")
+        print("\n".join(f"{figure.id:24} {figure.title}" for figure in figures))
         return SUCCESS
     if not Path(chosen.results).is_dir():
-        say_error(f"{chosen.results}: no such directory")
-        return BAD_INPUT
-    directory, started = Path(chosen.out), time.monotonic()
+        raise InputError(f"{chosen.results}: no such directory")
+    directory = Path(chosen.out)
     style.plt.rcParams.update(style.SETTINGS)
-    try:
-        directory.mkdir(parents=True, exist_ok=True)
-        drawn, skipped, bad = zip(*(attempt(figure, Files(chosen.results), directory) for figure in figures))
-        entries = [entry for entry in drawn if entry]
-        index = write_index(directory, entries)
-        if chosen.record and entries:
-            record(directory, Path(chosen.record), index)
-    except OSError as error:
-        say_error(f"{error.filename}: {error.strerror}")
-        return BAD_INPUT
-    except KeyboardInterrupt:
-        print("figures: stopped", file=sys.stderr)
-        return INTERRUPTED
-    for line in filter(None, skipped):
-        print(f"figures: skipped {line}", file=sys.stderr)
-    if any(skipped):
+    directory.mkdir(parents=True, exist_ok=True)
+    entries, skipped, bad = [], False, {}
+    for figure in figures:
+        results = Files(chosen.results)
+        try:
+            entries.append(draw(figure, results, directory))
+        except MissingResult as missing:
+            skipped = True
+            print(f"figures: skipped {figure.id} ({missing})", file=sys.stderr)
+        except ResultError as error:
+            bad[str(error)] = None
+        except (KeyError, IndexError, TypeError, ValueError) as error:
+            # A file that can be read but has not the columns, rows or members of hapbench's.
+            bad[f"figure {figure.id}: {', '.join(sorted(results.sources))}: {type(error).__name__}: {error}"] = None
+    index = write_index(directory, entries)
+    if chosen.record and entries:
+        record(directory, Path(chosen.record), index)
+    if skipped:
         print("figures: \"scripts/reproduce --figure ID\" makes what a figure needs, and draws it", file=sys.stderr)
-    for line in filter(None, dict.fromkeys(bad)):
+    for line in bad:
         say_error(line)
     print(f"{len(entries)} figures in {directory}, {time.monotonic() - started:.0f} s")
-    return BAD_INPUT if any(bad) else SUCCESS if entries else NOTHING_DRAWN
+    return BAD_INPUT if bad else SUCCESS if entries else NOTHING_DRAWN
+
+
+def main(argv=None):
+    chosen = arguments(argv)
+    return exit_status("figures", "", lambda: run(chosen))
 
 
 if __name__ == "__main__":

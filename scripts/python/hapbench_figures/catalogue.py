@@ -19,7 +19,6 @@ class Figure:
     title: str
     caption: str
     differs: str  # from the thesis's figure, and why
-    on_record: bool  # ours, and on record all the same
 
     @property
     def stem(self):
@@ -30,10 +29,9 @@ def entry(text, before):
     """A figure; without a caption it has that of the one before it."""
     head, *lines = text.strip().split("\n")
     id_, thesis, module, function, argument, title = HEAD.fullmatch(head).groups()
-    on_record = lines[-1:] == ["On record."]
-    caption, _, differs = " ".join(lines[:-1] if on_record else lines).partition(" Differs: ")
+    caption, _, differs = " ".join(lines).partition(" Differs: ")
     draw = partial(call, module, function, *([argument] if argument else []))
-    return Figure(id_, thesis.removeprefix("-"), draw, title, caption or before.caption, differs, on_record)
+    return Figure(id_, thesis.removeprefix("-"), draw, title, caption or before.caption, differs)
 
 
 def call(module, function, *arguments_and_results):

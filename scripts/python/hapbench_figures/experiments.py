@@ -1,4 +1,5 @@
-"""The man-machine experiments with simulated subjects against the published means (figures D.7 and D.8)."""
+"""The man-machine experiments of appendix D with simulated subjects: against the published means (figures D.7 and D.8), and their
+success against what the task checks (ours)."""
 import warnings
 
 import numpy as np
@@ -6,6 +7,7 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 import hapbench_style as style
 from hapbench.columns import numbers
+from hapbench_pictures.over_axes import Axis, over_axes
 
 from . import published
 
@@ -104,3 +106,42 @@ def vertical(results):
 def rotational(results):
     return experiment(results, "rotational", ((0, "D3", "target at 3 mm"), (1, "D4", "target at 4 mm")),
                       "Rotational peg-in-hole task")
+
+
+TARGETS = (("vertical", 0, "D2", "centre"), ("vertical", 1, "D1", "0.52 mm aside"), ("rotational", 0, "D3", "3 mm high"),
+           ("rotational", 1, "D4", "4 mm high"))
+GRACES = ((0.0, "-", "o"), (0.002, (0, (4, 1.2)), "s"), (0.005, (0, (1, 1)), "D"))
+EVERY_SAMPLE = 2048.0  # where a threshold without a filter is drawn [Hz]
+
+
+def threshold(results):
+    """Success of the original algorithm over the bandwidth of the force that is checked, beside stiffness shaping under every sample."""
+    figure, axes = style.panels(1, 4, 2.7, sharey=True)
+    said, table = [], results.records("checked_force/sweep.csv")
+    for ax, (task, place, claim, title) in zip(axes[0], TARGETS):
+        rows = [row for row in table if row["scenario"] == f"{task}_peg_in_hole_original_averaging"]
+        cutoff = np.nan_to_num([float(r["hand.task.threshold.cutoff_Hz"].replace("null", "nan")) for r in rows], nan=EVERY_SAMPLE)
+        grace = numbers(rows, "hand.task.threshold.grace_s")
+        success = numbers(rows, f"targets.{place}.success_rate.mean")
+        series = []
+        for value, line, marker in GRACES:
+            own = np.flatnonzero(grace == value)[np.argsort(cutoff[grace == value])]
+            look = {"color": style.look("original_averaging").colour, "ls": line, "marker": marker, "ms": 3}
+            series.append((f"DP, grace {1e3 * value:g} ms", cutoff[own], success[own], look))
+        over_axes(ax, Axis("cut-off [Hz]", cutoff, log=True), Axis("", success), series)
+        targets = results.records(f"thesis/{task}_peg_in_hole_shaped_stiffness/targets.csv")
+        shaped = np.mean([float(row["removed"]) for row in targets if float(row["place"]) == place])
+        ax.axhline(shaped, color=style.look("shaped_stiffness").colour, label="HS, every sample")
+        for at, method in ((4500, "original_averaging"), (6500, "shaped_stiffness")):
+            id_ = f"{claim}.success.{method}"
+            ax.errorbar([at], [published.value(id_)], yerr=[published.spread(id_)], **style.PUBLISHED)
+        ax.set(title=title, xlim=(22, 9000), ylim=(-0.05, 1.08))
+        ax.set_xticks([30, 100, EVERY_SAMPLE], ["30", "100", "every\nsample"], rotation=60)
+        ax.minorticks_off()
+        every = cutoff == EVERY_SAMPLE
+        said.append(f"{title} {success[every & (grace == 0)][0]:.2f}, {success[every & (grace == GRACES[-1][0])][0]:.2f} and "
+                    f"{success[cutoff == 30].max():.2f}")
+    axes[0, 0].set_ylabel("success rate")
+    axes[0, 0].legend(loc="lower left", fontsize=5.5, ncol=1)
+    style.letter(axes[0])
+    return figure, {"success": ", ".join(said)}

@@ -67,7 +67,7 @@ def trajectories(results):
 
 
 def draw_velocity(ax, rows, with_friction, colour):
-    ax.plot(1e3 * with_friction["time_s"], with_friction["vx_m_per_s"], color=style.AMBER, lw=0.6, zorder=1, label="vx, with friction")
+    ax.plot(1e3 * with_friction["time_s"], with_friction["vx_m_per_s"], color=style.AMBER, lw=2.4, alpha=0.5, zorder=1, label="vx, with friction")
     for name, line in (("x", "-"), ("y", (0, (3, 1)))):
         ax.plot(1e3 * rows["time_s"], rows[f"v{name}_m_per_s"], color=colour if name == "x" else style.GREY, lw=1, ls=line,
                 label=f"v{name}")

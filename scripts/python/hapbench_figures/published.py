@@ -1,4 +1,4 @@
-"""The numbers that the thesis publishes, from results/reference/published.json (see published.schema.json beside it)."""
+"""The numbers that the thesis publishes, from results/reference/published.json."""
 import json
 from functools import lru_cache
 from pathlib import Path

@@ -13,16 +13,11 @@ from . import published, scene
 SWEEP = "tilt_sweep_shaped_stiffness"
 PEG = "stiffness_peg"  # the same sweep under every algorithm
 TITLES = {"summation": "sum", "mean": "mean", "virtual_coupling": "coupling", "shaped_stiffness": "shaping"}
+PEG_TILT = 0.12  # of figure 2 and of all algorithms [rad]
 DIRECTIONS = np.linspace(0, 2 * np.pi, 73)
 # Half of a panel's side and the marks on it, in units of K.
 REACH, TICKS = 1.6, (-1, 0, 1)
 SUMMATION_REACH, SUMMATION_TICKS = 45, (-40, 0, 40)
-
-
-def merged(results, step):
-    """Name, stiffness tensor in units of K and spring force [N] of four laws in the step of the sweep, as recorded."""
-    for name in TITLES:
-        yield name, rendered_tensor(results, f"{PEG}/{name}", step), scene.Sweep(results, name, PEG).force(step)
 
 
 def rendered_tensor(results, directory, step):
@@ -35,11 +30,6 @@ def field(tensor):
     """Ratio k(e) = e^T S e in each direction, as a curve."""
     e = np.stack([np.cos(DIRECTIONS), np.sin(DIRECTIONS)], 1)
     return e * np.einsum("ij,jk,ik->i", e, tensor, e)[:, None]
-
-
-def scale(name):
-    """The sum needs a scale of its own."""
-    return (SUMMATION_REACH, SUMMATION_TICKS) if name == "summation" else (REACH, TICKS)
 
 
 def draw_field(ax, name, tensor, contacts, reach, ticks):
@@ -65,48 +55,41 @@ def draw_contacts(ax, sweep, step):
     return contacts
 
 
-def excessive_stiffness(results):
-    sweep = scene.Sweep(results, SWEEP)
-    step = sweep.step_at(0.12)
-    figure, axes = style.panels(1, 5, 2.15, gridspec_kw={"width_ratios": [0.62, 1, 1, 1, 1]})
-    contacts = draw_contacts(axes[0, 0], sweep, step)
+def of_four_laws(results, tilts, height):
+    """A row for each tilt: the contacts, and the fields of four laws, the sum on a scale of its own; with what is drawn of each law."""
+    sweep, drawn = scene.Sweep(results, SWEEP), []
+    figure, axes = style.panels(len(tilts), 5, height, gridspec_kw={"width_ratios": [0.62, 1, 1, 1, 1]})
+    for row, tilt in zip(axes, tilts):
+        step = sweep.step_at(tilt)
+        contacts = draw_contacts(row[0], sweep, step)
+        for ax, (name, title) in zip(row[1:], TITLES.items()):
+            tensor = rendered_tensor(results, f"{PEG}/{name}", step)
+            reach = (SUMMATION_REACH, SUMMATION_TICKS) if name == "summation" else (REACH, TICKS)
+            drawn.append((ax, draw_field(ax, name, tensor, contacts, *reach), scene.Sweep(results, name, PEG).force(step)))
+            ax.set(title=title if row is axes[0] else "", xlabel="stiffness / K" if row is axes[-1] else "")
+        if row is not axes[-1]:
+            row[0].set_xlabel("")
+        if len(tilts) > 1:
+            row[0].set_ylabel(f"tilt {sweep.tilt[step]:.2f} rad\ny [mm]")
     axes[0, 0].set_title("contacts")
-    for ax, (name, tensor, _) in zip(axes[0, 1:], merged(results, step)):
-        ratio = draw_field(ax, name, tensor, contacts, *scale(name))
-        ax.set_title(TITLES[name])
-        ax.set_xlabel("stiffness / K")
-        text = f"{ratio.min():.2g} … {ratio.max():.3g}"
-        style.note(ax, 0.5, 0.02, text, style.AMBER, ha="center", va="bottom")
+    style.letter(axes[0])
+    return figure, axes, drawn
+
+
+def excessive_stiffness(results):
+    figure, axes, drawn = of_four_laws(results, (PEG_TILT,), 2.15)
+    for ax, ratio, _ in drawn:
+        style.note(ax, 0.5, 0.02, f"{ratio.min():.2g} … {ratio.max():.3g}", style.AMBER, ha="center", va="bottom")
     style.note(axes[0, 1], 0.5, 0.985, "published: 4 K", style.RED, ha="center")
     style.note(axes[0, 4], 0.5, 0.985, "K", ha="center")
-    style.letter(axes[0])
     return figure, {}
 
 
 def fields_over_tilt(results):
-    sweep = scene.Sweep(results, SWEEP)
-    tilts = (0.06, 0.2, 0.4)
-    figure, axes = style.panels(len(tilts), 5, 5.2, gridspec_kw={"width_ratios": [0.62, 1, 1, 1, 1]})
-    for row, tilt in zip(axes, tilts):
-        step = sweep.step_at(tilt)
-        contacts = draw_contacts(row[0], sweep, step)
-        row[0].set_ylabel(f"tilt {sweep.tilt[step]:.2f} rad\ny [mm]")
-        for ax, (name, tensor, force) in zip(row[1:], merged(results, step)):
-            draw_field(ax, name, tensor, contacts, *scale(name))
-            length = 0.75 * ax.get_xlim()[1]
-            scene.draw_arrow(ax, (0, 0), length * force / np.linalg.norm(force), style.BLACK)
-            if tilt == tilts[0]:
-                ax.set_title(TITLES[name])
-            ax.set_xlabel("stiffness / K" if tilt == tilts[-1] else "")
-    axes[0, 0].set_title("contacts")
-    for ax in axes[:-1, 0]:
-        ax.set_xlabel("")
-    style.letter(axes[0])
+    figure, _, drawn = of_four_laws(results, (0.06, 0.2, 0.4), 5.2)
+    for ax, _, force in drawn:
+        scene.draw_arrow(ax, (0, 0), 0.75 * ax.get_xlim()[1] * force / np.linalg.norm(force), style.BLACK)
     return figure, {}
-
-
-SHAPING = "shaped_stiffness"
-PEG_TILT = 0.12  # that of figure 2 [rad]
 
 
 def own_scale(tensor):
@@ -124,7 +107,7 @@ def of_all_algorithms(results):
     columns = 6
     lines = -(-(1 + len(names)) // columns)
     figure, axes = style.panels(lines, columns, 0.3 + 1.75 * lines)
-    run = scene.Sweep(results, SHAPING, PEG)
+    run = scene.Sweep(results, "shaped_stiffness", PEG)
     draw_contacts(axes[0, 0], run, run.step_at(PEG_TILT))
     for ax, name in zip(axes.flat[1:], names):
         run = scene.Sweep(results, name, PEG)

@@ -59,8 +59,9 @@ def run(options):
     write(Path(out), stroke_text(report.stroke))
     scenario = f"{Path(out).stem}.json"
     next_line = f"{shell_line('hapbench', 'new', 'stroke', '--from', out, '--out', scenario)} && {shell_line('hapbench', 'run', scenario)}"
-    table = table_text(["of the stroke", ""], table_of(report, STIFFNESS), options.wide)
-    answer(options, f"{out}\n{table}\nnext: {next_line}", {"file": out} | json_of(report, STIFFNESS) | {"next": next_line})
+    found = json_of(report, STIFFNESS)
+    table = table_text(["of the stroke", ""], table_of(found, STIFFNESS), options.wide)
+    answer(options, f"{out}\n{table}\nnext: {next_line}", {"file": out} | found | {"next": next_line})
 
 
 if __name__ == "__main__":

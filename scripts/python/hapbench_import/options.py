@@ -1,7 +1,6 @@
 """The options of an import: those of a preset, and over them those of the command line."""
 import json
 import math
-import os
 import sys
 from dataclasses import dataclass, field
 from pathlib import Path

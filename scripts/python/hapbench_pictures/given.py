@@ -18,12 +18,16 @@ TITLES, SYMBOLS = {"time.step_s": "time step", "rendering.damping_ratio": "dampi
 NO_INPUT = ("expect", "description", "name", "source")
 
 
+def given_alone(words, files, what):
+    """The folder among the words with one of these files, and no run; None without any. It is drawn alone."""
+    found = [Path(word) for word in words if any((Path(word) / name).is_file() for name in files) and not (Path(word) / SUMMARY).is_file()]
+    if found and len(words) > 1:
+        raise InputError(f"{found[0]}: {what}; allowed: one such folder alone, or any number of runs")
+    return found[0] if found else None
+
+
 def given_sweep(words):
-    """The folder of the sweep when one was given, else None. A sweep is drawn alone."""
-    sweeps = [Path(word) for word in words if (Path(word) / SWEEP).is_file() and not (Path(word) / SUMMARY).is_file()]
-    if sweeps and len(words) > 1:
-        raise InputError(f"{sweeps[0]}: is a sweep; allowed: one sweep alone, or any number of runs")
-    return sweeps[0] if sweeps else None
+    return given_alone(words, [SWEEP], "is a sweep")
 
 
 def given_runs(words):
@@ -37,13 +41,13 @@ def given_runs(words):
                 folder = folder.parent
             else:
                 raise InputError(f"{folder}: no such folder; allowed: a folder that \"hapbench run\", "
-                                 f"\"compare\" or \"sweep\" wrote{similar(folder)}")
+                                 f"\"compare\" or \"sweep\" wrote{nearest(folder.name, [beside.name for beside in folder.parent.glob('*/')])}")
         runs = [load_run(folder, folder.name)] if (folder / SUMMARY).is_file() else compared(folder)
         if not runs:
             raise InputError(f"{folder}: holds neither {SUMMARY} nor folders with one nor {SWEEP}; allowed: a folder that "
                              "\"hapbench run\", \"compare\" or \"sweep\" wrote")
         for run in runs:
-            found.setdefault(os.path.realpath(run.directory), run)
+            found.setdefault(os.path.realpath(run.folder), run)
     return list(found.values())
 
 
@@ -58,23 +62,16 @@ def compared(folder):
     return sorted((run for run in runs if run.algorithm in order), key=lambda run: order[run.algorithm])
 
 
-def similar(folder):
-    """A hint at a folder of nearly that name beside it."""
-    try:
-        names = [entry.name for entry in folder.parent.iterdir() if entry.is_dir()]
-    except OSError:
-        return ""
-    return nearest(folder.name, names)
-
-
 def labels(runs):
-    """The shortest names that tell the runs apart: by algorithm, scene, the fields in which they differ, seed, folder."""
+    """Names that tell the runs apart: scene, algorithm, fields, seed and folder, as far as they differ."""
     return named(runs)[0]
 
 
 def named(runs):
     """These names; and the same without the seed, which is one name for all runs that differ in nothing else."""
-    groups, folders = group_labels(runs), relative_folders(runs)
+    parts = [part for part in ([run.name for run in runs], [plain(run) for run in runs]) if len(runs) == 1 or len(set(part)) > 1]
+    groups = [", ".join([*(part[i] for part in parts), *fields]) or plain(runs[i]) for i, fields in enumerate(field_entries(runs))]
+    folders = relative_folders(runs)
     seeded = [f"{group}, seed {run.scenario.get('seed')}" for group, run in zip(groups, runs)]
     placed = [f"{group}, {folder}" for group, folder in zip(groups, folders)]
     for names, shared in ((groups, groups), (seeded, groups), (placed, placed)):
@@ -83,45 +80,26 @@ def named(runs):
     return folders, folders
 
 
-def group_labels(runs):
-    """Algorithm, scene, differing fields: as few of them as tell apart what differs in more than the seed."""
-    plain = [run.algorithm.replace("_", " ") for run in runs]
-    names = [run.name for run in runs]
-    both = [f"{name}, {algorithm}" for name, algorithm in zip(names, plain)]
-    if len(runs) == 1:
-        return both
-    kinds = len({json.dumps(kind(run), sort_keys=True) for run in runs})
-    for found in (plain, names, both):
-        if all(found) and len(set(found)) == kinds:
-            return found
-    several = [part for part in (names, plain) if len(set(part)) > 1]
-    return [", ".join([*(part[i] for part in several), *fields]) or plain[i] for i, fields in enumerate(field_entries(runs, both))]
+def plain(run):
+    return run.algorithm.replace("_", " ")
 
 
 def by_seed(run):
     """The fields that a seed sets: in a comparison, with --jitter, the start too."""
-    return ("seed", "initial.position_m") if SEED_FOLDER.fullmatch(run.directory.name) else ("seed",)
+    return ("seed", "initial.position_m") if SEED_FOLDER.fullmatch(run.folder.name) else ("seed",)
 
 
-def kind(run):
-    """All that makes a run, but what its seed sets."""
-    if not run.scenario:
-        return run.directory.as_posix()
-    return [run.name, {path: value for path, value in fields_of(run).items() if path not in by_seed(run)}]
-
-
-def field_entries(runs, scenes):
+def field_entries(runs):
     """For each run the fields, with their values, in which it differs from others of its scene and algorithm."""
-    paths = {}
-    for scene in dict.fromkeys(scenes):
-        paths |= dict.fromkeys(differing([fields_of(run) for run, own in zip(runs, scenes) if own == scene and run.scenario]))
-    values = [{path: value for path, value in fields_of(run).items() if path not in by_seed(run)} for run in runs]
-    return [[entry(path, of[path], paths) for path in paths if path in of] for of in values]
+    fields = [{path: value for path, value in fields_of(run).items() if path not in by_seed(run)} for run in runs]
+    scenes = [(run.name, run.algorithm) for run in runs]
+    paths = {path: None for scene in dict.fromkeys(scenes) for path in differing([of for of, own in zip(fields, scenes) if own == scene and of])}
+    return [[entry(path, of[path], paths) for path in paths if path in of] for of in fields]
 
 
 def relative_folders(runs):
     """The runs' folders, without what is common to all."""
-    paths = [os.path.abspath(run.directory) for run in runs]
+    paths = [os.path.abspath(run.folder) for run in runs]
     common = os.path.commonpath([os.path.dirname(path) for path in paths])
     return [os.path.relpath(path, common) for path in paths]
 
@@ -133,7 +111,7 @@ def common_folder(words):
 
 def fields_of(run):
     """The scenario's fields by their paths. Files, which it names from its own folder, are named from here, where they are one."""
-    return {path: os.path.relpath(run.directory / value) if path.rpartition(".")[2] == "file" and isinstance(value, str) else value
+    return {path: os.path.relpath(run.folder / value) if path.rpartition(".")[2] == "file" and isinstance(value, str) else value
             for path, value in leaves(run.scenario)}
 
 

@@ -187,8 +187,9 @@ def draw_over(found):
     if ratio:
         ratios = [(None, *of(name, numbers(rows, "limit") / numbers(rows, "theory"))) for name, rows in curves.items()]
         over_axes(ratio, x, Axis("bisection / theory", np.array([])), ratios)
-        low, high = ratio.dataLim.intervaly
-        ratio.set(title="its ratio to theory", ylim=(min(low, 0.998), max(high, 1.002)))
+        low, high = min(ratio.dataLim.y0, 0.998), max(ratio.dataLim.y1, 1.002)
+        room = 0.05 * (high - low)
+        ratio.set(title="its ratio to theory", ylim=(low - room, high + room))
         ratio.ticklabel_format(axis="y", useOffset=False)
     for ax, group in zip(others, groups):
         found.draw_classes(ax, group[0])

@@ -2,8 +2,8 @@
 tuning or of a convergence."""
 import math
 from collections import Counter
-from pathlib import Path
 
+from hapbench.columns import is_number
 from hapbench.errors import InputError
 from hapbench.results import Files, MissingResult, at
 from hapbench_command import write
@@ -11,11 +11,11 @@ from hapbench_report.recording import tool_profile
 from hapbench_report.replay import surface_of
 from hapbench_style import LINE, SETTINGS, picture, plt
 
-from .given import common_folder, given_runs, given_sweep, named
+from .given import common_folder, given_alone, given_runs, given_sweep, named
 from .over_axes import PICTURES
 from .panels import AXIS_COLUMNS, PATH_COLUMNS, draw_over_time, draw_section, looks
 from .quantities import Samples, chosen
-from .sweep_plot import Sweep, draw_sweep, is_number, sensitivity_table
+from .sweep_plot import Sweep, draw_sweep, sensitivity_table
 
 KINDS = (".svg", ".png", ".pdf")
 WIDTH, LARGE, SMALL = 7.6, 2.6, 1.25  # of the page, the scene and the first quantity, and of the others [inch]
@@ -27,7 +27,7 @@ SOLID_SAID, TOOL_SAID = "filled: the solid, cut through the middle of the way", 
 
 
 def plot(options):
-    sweep, study = given_sweep(options.runs), given_study(options.runs)
+    sweep, study = given_sweep(options.runs), given_alone(options.runs, PICTURES, "holds limits")
     if study:
         refuse(options, ("--y", "--metric", "--where", "--from", "--to"), f"{study} holds limits; allowed for it: --out")
     file = options.out or common_folder(options.runs) / "plot.svg"
@@ -47,14 +47,6 @@ def refuse(options, names, why):
     unused = next((name for name in names if given[name]), None)
     if unused:
         raise InputError(f"{unused}: {why}")
-
-
-def given_study(words):
-    """The folder of limits, a tuning or a convergence among the words; None where none was given."""
-    studies = [Path(word) for word in words if any((Path(word) / name).is_file() for name in PICTURES)]
-    if studies and len(words) > 1:
-        raise InputError(f"{studies[0]}: holds limits; allowed: one such folder alone, or any number of runs")
-    return studies[0] if studies else None
 
 
 def of_study(path):
@@ -96,28 +88,35 @@ def of_sweep(folder, options):
 
 
 def draw(runs, shown, quantities, with_path, samples, surface=None):
-    """The figure: a title with the runs' names, below it the scene, the first quantity in the same room, and the others."""
+    """The figure: a title with the runs' names, below it the scene and the first quantity in the same room, side by side where no solid
+    fills the width of the scene, and the others."""
     with plt.rc_context(SETTINGS):
         entries = legend_of(shown)
         columns = legend_columns(entries, WIDTH)
         head = 0.3 + (LINE * math.ceil(len(entries) / columns) if len(runs) > 1 else 0)
-        heights = [LARGE] * (with_path + bool(quantities)) + [SMALL] * (len(quantities) - 1)
+        beside = with_path and bool(quantities) and surface is None
+        heights = [LARGE] * (with_path + bool(quantities) - beside) + [SMALL] * (len(quantities) - 1)
         figure = plt.figure(figsize=(WIDTH, head + sum(heights) + 0.35))
         top, bottom = figure.subfigures(2, 1, height_ratios=[head, sum(heights) + 0.35])
         write_title(top, head, runs, entries, columns)
-        scene, *over_time = bottom.subplots(len(heights), 1, squeeze=False, gridspec_kw={"height_ratios": heights})[:, 0]
+        grid = bottom.add_gridspec(len(heights), 2, height_ratios=heights, width_ratios=(1, 1.5))
+        rows = [grid[i, :] for i in range(len(heights))]
+        scene, *over_time = map(bottom.add_subplot, [grid[0, 0], grid[0, 1], *rows[1:]] if beside else rows)
         if with_path:
             profile = profile_of(runs[0])
             draw_section(scene, samples, shown, profile, surface)
             tool = TOOL_SAID + (", first run" if len(runs) > 1 else "")
             said = [SAID, *([SOLID_SAID] if surface is not None else []), *([tool] if profile else [])]
-            scene.set_xlabel(f"{scene.get_xlabel()}\n{'; '.join(said)}")
+            separator = ";\n" if beside else "; "
+            scene.set_xlabel(f"{scene.get_xlabel()}\n{separator.join(said)}")
         else:
             over_time = [scene, *over_time]
         for ax, quantity in zip(over_time, quantities):
             draw_over_time(ax, quantity, samples, shown)
             ax.sharex(over_time[0])
-            ax.tick_params(labelbottom=ax is over_time[-1])
+            ax.tick_params(labelbottom=ax is over_time[-1] or beside and ax is over_time[0])
+            if beside:
+                over_time[0].set_xlabel("time [s]")
         if over_time:
             over_time[-1].set_xlabel("time [s]   (triangles and dotted lines: first touch)")
         bottom.align_ylabels()

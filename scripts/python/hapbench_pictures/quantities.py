@@ -95,15 +95,16 @@ def quantity(name, runs):
     known = {}
     for run in runs:
         for file in tables_of(run):
-            for title in header(run.directory / file):
+            for title in header(run.folder / file):
                 known.setdefault(title, file)
     found = SHORT.get(name) or (by_column(name, known[name]) if name in known else None)
     if not found:
+        hint = nearest(name, [*SHORT, PATH, *known]) or f": {', '.join(known)}"
         raise InputError(f"--y: got \"{name}\"; allowed: {', '.join([*SHORT, PATH])}, or a column of "
-                         f"{' or '.join(sorted(set(known.values())) or [TRAJECTORY])}{meant(name, known)}")
+                         f"{' or '.join(sorted(set(known.values())) or [TRAJECTORY])}{hint}")
     if not any(has(run, found) for run in runs):
         lacks = found.columns[0] if found.file in tables_of(runs[0]) else found.file
-        raise InputError(f"--y {name}: {runs[0].directory}: has no {lacks}; run it with --set {switch_of(lacks)}=true")
+        raise InputError(f"--y {name}: {runs[0].folder}: has no {lacks}; run it with --set {switch_of(lacks)}=true")
     return found
 
 
@@ -113,21 +114,12 @@ def switch_of(lacks):
     return next(f"record.{field}" for field, about in record.items() if re.search(rf"\b{re.escape(lacks)}\b", about["description"]))
 
 
-def meant(name, columns):
-    """The nearest name: of "force_x" the column of that component. All columns where none is near."""
-    stem, _, axis = name.rpartition("_")
-    vector = SHORT.get(stem)
-    if vector and len(vector.columns) == 3 and axis in ("x", "y", "z"):
-        return f"; nearest valid name: \"{vector.columns['xyz'.index(axis)]}\""
-    return nearest(name, [*SHORT, PATH, *columns]) or f": {', '.join(columns)}"
-
-
 def has(run, quantity):
-    return quantity.file in tables_of(run) and set(quantity.columns) <= set(header(run.directory / quantity.file))
+    return quantity.file in tables_of(run) and set(quantity.columns) <= set(header(run.folder / quantity.file))
 
 
 def tables_of(run):
-    return [file for file in TABLES if (run.directory / file).is_file()]
+    return [file for file in TABLES if (run.folder / file).is_file()]
 
 
 class Samples:
@@ -140,8 +132,8 @@ class Samples:
             wanted.setdefault(q.file, {"time_s"}).update(q.columns)
         present = tables_of(run)
         if TRAJECTORY not in present:
-            raise InputError(f"{run.directory}: has no {TRAJECTORY}; run it with --set {switch_of(TRAJECTORY)}=true")
-        tables = {file: read_columns(run.directory / file, sorted(columns)) for file, columns in wanted.items() if file in present}
+            raise InputError(f"{run.folder}: has no {TRAJECTORY}; run it with --set {switch_of(TRAJECTORY)}=true")
+        tables = {file: read_columns(run.folder / file, sorted(columns)) for file, columns in wanted.items() if file in present}
         time = tables[TRAJECTORY]["time_s"]
         touching = time[tables[TRAJECTORY]["colliding"] > 0]
         # Time of the first recorded row in contact; None without one, and outside the window.
@@ -151,7 +143,7 @@ class Samples:
         for file, table in tables.items():
             rows = (table["time_s"] >= window[0]) & (table["time_s"] <= window[1])
             if not rows.any():
-                raise InputError(f"--from, --to: {run.directory}: no row of {file} between {window[0]:g} and {window[1]:g} s; "
+                raise InputError(f"--from, --to: {run.folder}: no row of {file} between {window[0]:g} and {window[1]:g} s; "
                                  f"allowed: a span with rows between {time[0]:.4g} and {time[-1]:.4g} s")
             self.tables[file] = {name: values[rows] for name, values in table.items()}
             beside = np.minimum(np.searchsorted(time, table["time_s"][rows]), len(time) - 1)

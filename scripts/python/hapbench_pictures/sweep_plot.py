@@ -3,22 +3,22 @@ fields, points over each of them, with how much each matters."""
 import operator
 import re
 import textwrap
-from functools import cached_property
+from dataclasses import dataclass
 
 import numpy as np
 from matplotlib import colors
 from matplotlib.patches import Patch, Rectangle
+from scipy.stats import spearmanr
 
-from hapbench.columns import read_records
+from hapbench.columns import is_number, read_records
 from hapbench.errors import InputError
 from hapbench.results import at, read_object
-from hapbench_command import nearest
+from hapbench_command import nearest, table_text
 from hapbench_looks import by_class, look_of_class
-from hapbench_style import PETROL, SETTINGS, plt
+from hapbench_style import PETROL, SETTINGS, legend_above, plt
 
 from .given import axis
 from .over_axes import Axis, look_of, over_axes, spread_logarithmically
-from .sensitivity import LEAST_ROWS, MOST_COSINES, sensitivity
 
 USUAL = ("force_rms_above_30Hz_N", "force_max_N")
 FAILURES = ("diverges", "error")
@@ -29,6 +29,8 @@ WIDTH = 100  # of text
 
 SIGNS = {"<": operator.lt, "<=": operator.le, ">": operator.gt, ">=": operator.ge, "=": operator.eq, "!=": operator.ne}
 PANELS_WIDE = 3
+MOST_COSINES, ROWS_PER_COSINE = 6, 10
+LEAST_ROWS = 20  # of a sample that tells how much a field matters
 
 
 def keeps(row, condition):
@@ -48,7 +50,7 @@ class Sweep:
     def __init__(self, folder, metric, where=()):
         file = folder / "sweep.csv"
         rows = read_records(file)
-        self.rows = [row for row in rows if all(keeps(row, condition) for condition in where)]
+        self.name, self.rows = folder.name, [row for row in rows if all(keeps(row, condition) for condition in where)]
         if not self.rows:
             raise InputError(f"{file}: holds no row{' with ' + ' and '.join(where) if rows else ''}")
         names = list(self.rows[0])
@@ -60,34 +62,16 @@ class Sweep:
         self.metric = metric or next((name for name in USUAL if name in metrics), metrics[0])
         if self.metric not in metrics:
             raise InputError(f"--metric: got \"{self.metric}\"; allowed: {', '.join(metrics)}{nearest(self.metric, metrics)}")
-        self.name = folder.name
+        outcomes = np.array([row["outcome"] for row in self.rows])
+        failed = np.array([row["outcome"] in FAILURES or row.get("expected") == "false" for row in self.rows])
+        # Whose outcome is each of those whose metric says nothing: diverged, not computed, or ended not as expected.
+        self.classes = {name: failed & (outcomes == name) for name in by_class(outcomes[failed])}
+        self.values = np.array([float(row[self.metric]) if is_number(row[self.metric]) and not bad else np.nan for row, bad in zip(self.rows, failed)])
 
     def column(self, field):
         """The numbers of a field, or its texts as they are."""
         texts = [row[field] for row in self.rows]
         return np.array([float(text) for text in texts]) if all(map(is_number, texts)) else texts
-
-    @property
-    def failed(self):
-        """Runs whose metric says nothing: diverged, not computed, or ended not as expected."""
-        return np.array([row["outcome"] in FAILURES or row.get("expected") == "false" for row in self.rows])
-
-    @cached_property
-    def classes(self):
-        """The outcomes of such runs in the order of stability maps, each with whose it is."""
-        outcomes, failed = np.array([row["outcome"] for row in self.rows]), self.failed
-        return {name: failed & (outcomes == name) for name in by_class(outcomes[failed])}
-
-    @property
-    def how_failed(self):
-        """How many of them there are of each."""
-        return ", ".join(f"{mine.sum()} {name.replace('_', ' ')}" for name, mine in self.classes.items())
-
-    @property
-    def metric_values(self):
-        """NaN where the run failed or has no such number."""
-        return np.array([float(row[self.metric]) if is_number(row[self.metric]) and not failed else np.nan
-                         for row, failed in zip(self.rows, self.failed)])
 
     def axis(self, i):
         return axis(self.fields[i], self.fields)
@@ -107,8 +91,7 @@ class Sweep:
 
     def sensitivities(self):
         """One for each field, over the runs that have the metric; None where there is none."""
-        y = self.metric_values
-        ok = np.isfinite(y)
+        ok = np.isfinite(self.values)
         found = []
         for i, entry in enumerate(self.axes):
             column = self.column(self.fields[i])
@@ -117,7 +100,7 @@ class Sweep:
             if ("range" in entry or self.of_file and isinstance(column, np.ndarray)) and len(column):
                 place = np.log(column) if self.is_logarithmic(i) else column
                 place = (place - place.min()) / (np.ptp(place) or 1.0)
-            found.append(sensitivity(column, place, y[ok]))
+            found.append(sensitivity(column, place, self.values[ok]))
         return found
 
     @property
@@ -126,18 +109,11 @@ class Sweep:
         return len(self.fields) > 2 or self.sampled and len(self.fields) > 1
 
 
-def is_number(text):
-    try:
-        return np.isfinite(float(text))
-    except (TypeError, ValueError):
-        return False
-
-
 def draw_sweep(sweep):
     with plt.rc_context(SETTINGS):
         axes = [Axis.of(sweep.axis(i), sweep.column(field), sweep.is_logarithmic(i)) for i, field in enumerate(sweep.fields)]
         of_numbers = len(axes) == 2 and not any(of.names for of in axes)
-        if sweep.is_cloud or of_numbers and on_grid(axes, sweep.metric_values) is None:
+        if sweep.is_cloud or of_numbers and on_grid(axes, sweep.values) is None:
             return draw_cloud(sweep, axes)
         figure, ax = plt.subplots(figsize=(6.0, 3.8))
         ax.set_title(sweep.name)
@@ -145,12 +121,13 @@ def draw_sweep(sweep):
             draw_map(figure, ax, sweep, axes)
         else:
             draw_curves(ax, sweep, axes)
+            legend_above(figure, *ax.get_legend_handles_labels(), columns=3)
         return figure
 
 
 def draw_cloud(sweep, over):
     """The metric over each field."""
-    value = Axis.of(axis(sweep.metric), sweep.metric_values)
+    value = Axis.of(axis(sweep.metric), sweep.values)
     wide = min(PANELS_WIDE, len(over))
     high = -(-len(over) // wide)
     figure, axes = plt.subplots(high, wide, figsize=(0.6 + 2.6 * wide, 0.4 + 2.5 * high), squeeze=False)
@@ -164,7 +141,7 @@ def draw_cloud(sweep, over):
         if i % wide:
             ax.set_ylabel("")
     if sweep.classes:
-        axes[0, 0].legend()
+        figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="upper right", ncol=4)
     for ax in axes.flat[len(over):]:
         ax.axis("off")
     return figure
@@ -191,19 +168,17 @@ def draw_curves(ax, sweep, over):
     """Over the field of numbers, a curve for each text of the other one; without numbers, over the texts."""
     x = next((of for of in over if not of.names), over[0])
     other = next((of for of in over if of is not x), None)
-    value, series = Axis.of(axis(sweep.metric), sweep.metric_values), []
+    value, series = Axis.of(axis(sweep.metric), sweep.values), []
     for i, name in enumerate(other.names if other else ("",)):
         rows = np.flatnonzero(other.values == i) if other else np.arange(len(sweep.rows))
         rows = rows if x.names else rows[np.argsort(x.values[rows], kind="stable")]
         series.append((name.replace("_", " ") or None, x.values[rows], value.values[rows], look_of(name) if name else {"color": PETROL, "marker": "o", "ls": "-"}))
     over_axes(ax, x, value, series)
     mark_classes(ax, sweep, x.values)
-    if other or sweep.classes:
-        ax.legend()
 
 
 def draw_map(figure, ax, sweep, over):
-    values, classes, (y_axis, x_axis) = sweep.metric_values, sweep.classes, over
+    values, classes, (y_axis, x_axis) = sweep.values, sweep.classes, over
     norm = colors.LogNorm() if spread_logarithmically(values) else None
     grid = on_grid(over, values)
     x, y = edges(grid[1]), edges(grid[0])
@@ -252,18 +227,62 @@ def sensitivity_table(sweep):
     """The lines that say how much each field of a sample matters, the most first, and how that was told."""
     if not (sweep.sampled and sweep.is_cloud):
         return []
-    found, runs = sweep.sensitivities(), np.isfinite(sweep.metric_values).sum()
-    without = f"; {sweep.how_failed}" if sweep.classes else ""
+    found, runs = sweep.sensitivities(), np.isfinite(sweep.values).sum()
+    without = "".join(f"; {mine.sum()} {name.replace('_', ' ')}" for name, mine in sweep.classes.items())
     if not any(found):
         return [f"how much each field matters cannot be told from {runs} runs with this metric{without}; needed: {LEAST_ROWS}, of several values"]
-    wide = max(map(len, sweep.fields))
-    lines = [f"{'how much each field matters':{wide}}  rank correlation  first order    +-"]
-    for field, of in sorted(zip(sweep.fields, found), key=lambda pair: -(pair[1].first_order if pair[1] else -1)):
-        numbers = ["-" if number is None else hundredths(number) for number in (of.rank, of.first_order, of.error)] if of else "---"
-        lines.append(f"{field:{wide}}  {numbers[0]:>16}  {numbers[1]:>11}  {numbers[2]:>4}")
+    rows = [[field, *(("-" if number is None else hundredths(number) for number in (of.rank, of.first_order, of.error)) if of else "---")]
+            for field, of in sorted(zip(sweep.fields, found), key=lambda pair: -(pair[1].first_order if pair[1] else -1))]
     together = hundredths(sum(of.first_order for of in found if of))
-    return [*lines, *textwrap.wrap(
+    return [table_text(["how much each field matters", "rank correlation", "first order", "+-"], rows, wide=True, numbers=True), *textwrap.wrap(
         f"rank correlation: Spearman's; first order: Sobol's index, the share of the variance of {sweep.metric} that the field explains "
         f"alone; together {together}, the rest is fields that act together, and what depends on none. By regression on at most "
         f"{MOST_COSINES} cosines of the field's place in its range, or on the values of a list, over {runs} runs{without}; +-: standard "
         "error, by jackknife", WIDTH)]
+
+
+@dataclass(frozen=True)
+class Sensitivity:
+    """How much each field of a sampled sweep matters for a metric, from the sweep's rows alone: Spearman's rank correlation, and the
+    first-order Sobol index S_i = Var(E[y | x_i]) / Var(y), the share of the metric's variance that the field explains by itself.
+    
+    E[y | x_i] is a least-squares fit: up to six cosines of the field's place in its range, cos(pi k u) (Plischke, "How to compute
+    variance-based sensitivity indicators with your spreadsheet software", Environmental Modelling & Software 35, 2012), or for listed
+    values the mean of each. S_i is the fit's R^2, adjusted for the number of functions (Ezekiel), so that a field without influence
+    has 0 in the mean. Its standard error is the jackknife's over the rows; a Latin hypercube or a Sobol sequence errs less. What
+    changes faster than the sixth cosine, as the edge of a jump, is not seen: of a step in the middle a fifteenth."""
+
+    rank: float | None  # none for texts, which have no order
+    first_order: float
+    error: float  # standard error of first_order
+
+
+def sensitivity(column, place, y):
+    """Of y to a field: `column` its values, `place` where they are in the range (0 ... 1), None for listed values. None with too
+    few rows, and where either is constant."""
+    if len(y) < LEAST_ROWS or np.ptp(y) == 0 or len(set(column)) < 2:
+        return None
+    if place is None:
+        values = sorted(set(column))
+        functions = np.array([[float(value == other) for other in values] for value in column])
+    else:
+        count = min(MOST_COSINES, len(y) // ROWS_PER_COSINE)
+        functions = np.column_stack([np.ones(len(y)), np.cos(np.pi * np.outer(place, np.arange(1, count + 1)))])
+    share, error = adjusted_share(functions, y)
+    return Sensitivity(None if isinstance(column, list) else float(spearmanr(column, y).statistic), share, error)
+
+
+def adjusted_share(functions, y):
+    """The adjusted R^2 of a fit by functions that span the constant, and the jackknife's standard error: without row i the squares
+    of the residuals e sum up to less by e_i^2 / (1 - h_i), h_i the row's leverage, those of y - mean by n / (n - 1) (y_i - mean)^2."""
+    n, fitted = len(y), functions.shape[1]
+    q, _ = np.linalg.qr(functions)
+    residual, leverage, off = y - q @ (q.T @ y), (q ** 2).sum(axis=1), y - y.mean()
+
+    def adjusted(residuals, total, rows):
+        return 1 - residuals / total * (rows - 1) / (rows - fitted)
+
+    alone = leverage > 1 - 1e-9  # a listed value that one row has: it is fitted without the row, too
+    without = np.where(alone, 0.0, residual ** 2 / np.where(alone, 1.0, 1 - leverage))
+    each = adjusted(residual @ residual - without, off @ off - n / (n - 1) * off ** 2, n - 1)
+    return adjusted(residual @ residual, off @ off, n), float(np.sqrt((n - 1) / n * ((each - each.mean()) ** 2).sum()))

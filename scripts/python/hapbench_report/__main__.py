@@ -9,8 +9,7 @@ from hapbench_command import DIFFERENT, SUCCESS, Arguments, exit_status, write
 
 from .figures import load_figures
 from .ledger import load_claims
-from .live_link import place_live_page
-from .page import thesis_page
+from .page import place_live_page, thesis_page
 from .runs import REPLAY_DIRECTORY, load_runs
 
 # Scenes of the replay: a scenario, further settings, and its algorithms, of which the first two are shown at first.
@@ -58,9 +57,9 @@ def run(options):
         os.environ["HAPBENCH_PROGRAM"] = str(options.program)
     recorded = {run.path: run for run in load_runs(options.results / REPLAY_DIRECTORY)}
     replayed = [f"{scenario}/{algorithm}" for scenario, _, algorithms in REPLAYED for algorithm in algorithms]
-    claims = load_claims(options.claims) if options.claims else []
+    claims, headline = load_claims(options.claims) if options.claims else ([], "")
     figures = load_figures(options.figures) if options.figures else []
-    page = thesis_page(runs, claims, figures, [recorded[path] for path in replayed if path in recorded])
+    page = thesis_page(runs, claims, headline, figures, [recorded[path] for path in replayed if path in recorded])
     out = options.out or options.results / "report.html"
     write(out, page)
     place_live_page(out.parent)

@@ -1,13 +1,12 @@
-"""The drawn figures: figures.json tells what they show; each with its caption, the claims and runs it belongs to, and how to
-draw it again."""
+"""The drawn figures: figures.json tells what they show; each with its caption, and the claims and files it belongs to."""
 import base64
+import re
 from dataclasses import dataclass
 from pathlib import Path
 
 from hapbench.errors import InputError
 from hapbench.results import member, objects, read_json, shown
 
-from .links import figure_name
 from .markup import command, folded, listed, text, typeset
 
 
@@ -19,6 +18,22 @@ class Figure:
     caption: str
     sources: list
     drawing: bytes  # an SVG
+
+    @property
+    def name(self):
+        return f"Fig. {self.thesis_figure.removeprefix('Fig. ')}" if self.thesis_figure else self.title or self.id
+
+    def is_about(self, claim):
+        """The claim's place names the figure, or a scenario that decides it is drawn there."""
+        named = " ".join(re.findall(r"Fig\. (?:[A-F]\.?)?\d+", str(claim.get("place", ""))))
+        drawn = {Path(source).parent.name for source in self.sources}
+        return bool(labels(named) & labels(self.thesis_figure) or drawn & set(map(str, claim.get("scenarios") or ())))
+
+
+def labels(thesis_figure):
+    """"7a–c, B.4" -> {"7", "B.4"}: the numbers without their parts."""
+    return {prefix + digits for prefix, digits in
+            re.findall(r"(?<![A-Za-z0-9.])((?:[A-F]\.)?)(\d+)(?![0-9])", re.sub(r"\b([A-F])(?=\d)", r"\1.", thesis_figure))}
 
 
 def load_figures(directory: Path):
@@ -36,29 +51,29 @@ def figure(entry, i, file):
     drawing = next((file.parent / Path(str(name)).name for name in files if str(name).endswith(".svg")), None)
     if drawing is None or not drawing.is_file():
         raise InputError(f"{file}: {place}/files: got {shown(files)}; allowed: an SVG file beside it")
-    return Figure(id_ or f"figure-{i + 1}", title, str(entry.get("thesis_figure") or ""), caption, list(map(str, sources)),
-                  drawing.read_bytes())
+    return Figure(id_ or f"figure-{i + 1}", title, str(entry.get("thesis_figure") or ""), caption, list(map(str, sources)), drawing.read_bytes())
 
 
-def figures_section(figures, links):
+def figures_section(figures, claims):
     if not figures:
         return '<p class="note">No figures were given (<code>--figures</code>).</p>'
-    shown_ = "\n".join(figure_markup(figure, links) for figure in figures)
-    return ("<p>Redrawn from the results above, published numbers as red hollow marks where the thesis gives them. A click "
-            "enlarges a figure. <span class=dark-only>On the dark page black and white have changed places; captions name the colours "
-            "of the light one. </span>To draw them "
-            f"again:</p>{command('scripts/figures results/out/reproduce --out results/out/figures')}<div class=figures>{shown_}</div>")
+    return ("<p>Redrawn from the results above, published numbers as red hollow marks where the thesis gives them. A click enlarges a figure. "
+            "<span class=dark-only>On the dark page black and white have changed places; captions name the colours of the light one. </span>"
+            f"To draw them again:</p>{command('scripts/figures results/out/reproduce --out results/out/figures')}"
+            f"<div class=figures>{''.join(figure_markup(figure, claims) for figure in figures)}</div>")
 
 
-def figure_markup(figure, links):
-    name = f"{figure_name(figure)}: " if figure.thesis_figure else ""
-    claims, runs = links.of_figure(figure)
+def figure_markup(figure, claims):
+    about = [claim_link(claim) for claim in claims if figure.is_about(claim)]
     files = "<br>".join(f"<code>{text(source)}</code>" for source in figure.sources)
-    data = listed("Runs", runs) + (f"<p><b>Files</b><br>{files}</p>" if files else "")
-    title = text(figure.title or figure.id)
+    title, name = text(figure.title or figure.id), f"{text(figure.name)}: " if figure.thesis_figure else ""
     image = f"data:image/svg+xml;base64,{base64.b64encode(figure.drawing).decode()}"
-    return (f'<figure id="figure-{text(figure.id)}"><h3>{text(name)}{title}</h3>'
-            f'<button type="button" class="enlarge" aria-label="Enlarge {title}">'
-            f'<img src="{image}" alt="{title}"></button>'
-            f"<figcaption>{typeset(figure.caption)}</figcaption>{listed('Claims', claims)}"
-            + (folded("Runs and files", data) if data else "") + "</figure>")
+    return (f'<figure id="figure-{text(figure.id)}"><h3>{name}{title}</h3>'
+            f'<button type="button" class="enlarge" aria-label="Enlarge {title}"><img src="{image}" alt="{title}"></button>'
+            f"<figcaption>{typeset(figure.caption)}</figcaption>{listed('Claims', about)}"
+            + (folded("Files", f"<p>{files}</p>") if files else "") + "</figure>")
+
+
+def claim_link(claim):
+    id_ = text(claim.get("id", ""))
+    return f'<a href="#claim-{id_}">{id_}</a>'

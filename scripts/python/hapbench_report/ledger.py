@@ -1,59 +1,41 @@
 """The ledger: what the thesis claims, what it publishes, what we measure, and the verdict; with the summary of the page."""
+from collections import Counter
+
 from hapbench.errors import InputError
 from hapbench.results import at, objects, read_object, shown
 
-from .links import claim_link
+from .figures import claim_link
 from .markup import cell, command, filters, folded, heading_cell, listed, table, text, typeset
 
-# Verdict -> (mark, tone). The mark tells verdicts apart without colour.
+# Verdict -> (mark, tone), what is contradicted first; the last two are of findings of ours. The mark tells verdicts apart without colour.
 VERDICTS = {
-    "reproduced": ("✓", "good"),
-    "reproduced in kind": ("≈", "fair"),
-    "not reproduced": ("✗", "bad"),
     "refuted": ("⊘", "bad"),
+    "not reproduced": ("✗", "bad"),
+    "reproduced in kind": ("≈", "fair"),
+    "reproduced": ("✓", "good"),
     "not reproducible": ("–", "none"),
-    # Of findings of ours.
-    "holds": ("✓", "good"),
     "does not hold": ("✗", "bad"),
+    "holds": ("✓", "good"),
 }
-
-
-# In this order: what is contradicted comes first.
-ORDER = ("refuted", "not reproduced", "reproduced in kind", "reproduced", "not reproducible", "does not hold", "holds")
 SURENESS = ("steady", "fragile", "not sampled")
 
 
-class Claims(list):
-    """The ledger's claims; `headline` says how many have which verdict, and how many verdicts are steady."""
-
-    headline = ""
-
-
 def load_claims(file):
+    """The ledger's claims, and its sentence on how many have which verdict and how many verdicts are steady."""
     ledger = read_object(file)
-    claims = Claims(objects(ledger, "claims", file))
-    claims.headline = str(ledger.get("headline") or "")
+    claims = objects(ledger, "claims", file)
     for i, claim in enumerate(claims):
-        verdict = claim.get("verdict")
-        if verdict not in VERDICTS:
-            raise InputError(f"{file}: /claims/{i}/verdict: got {shown(verdict)}; allowed: {listed_words(VERDICTS)}")
-        if claim.get("sureness") not in SURENESS:
-            raise InputError(f"{file}: /claims/{i}/sureness: got {shown(claim.get('sureness'))}; allowed: {listed_words(SURENESS)}")
-    return claims
-
-
-def listed_words(words):
-    return ", ".join(f'"{word}"' for word in words)
+        for key, allowed in (("verdict", VERDICTS), ("sureness", SURENESS)):
+            if claim.get(key) not in allowed:
+                words = ", ".join(f'"{word}"' for word in allowed)
+                raise InputError(f"{file}: /claims/{i}/{key}: got {shown(claim.get(key))}; allowed: {words}")
+    return claims, str(ledger.get("headline") or "")
 
 
 def of_thesis(claims):
     """Those of the thesis, the contradicted ones first."""
-    return sorted((claim for claim in claims if not claim.get("ours")), key=lambda claim: ORDER.index(claim["verdict"]))
-
-
-def verdict_counts(claims):
-    """How many claims of the thesis have which verdict."""
-    return {verdict: sum(claim["verdict"] == verdict for claim in of_thesis(claims)) for verdict in VERDICTS}
+    order = list(VERDICTS)
+    return sorted((claim for claim in claims if not claim.get("ours")), key=lambda claim: order.index(claim["verdict"]))
 
 
 def verdict_mark(verdict):
@@ -61,10 +43,11 @@ def verdict_mark(verdict):
     return f'<span class="verdict {tone}">{mark} {text(verdict)}</span>'
 
 
-def summary_section(runs, claims, figures):
+def summary_section(runs, claims, headline, figures):
     met = sum(run.expected for run in runs)
     tiles = [(len(runs), "run" if len(runs) == 1 else "runs"), (f"{met}/{len(runs)}", "ended as their scenario expects")]
-    tiles += [(str(count), verdict_mark(verdict)) for verdict, count in verdict_counts(claims).items() if count]
+    counts = Counter(claim["verdict"] for claim in of_thesis(claims))
+    tiles += [(str(count), verdict_mark(verdict)) for verdict, count in counts.items()]
     if figures:
         tiles.append((len(figures), '<a href="#figures">figures</a>'))
     items = "".join(f"<li><b>{text(value)}</b><span>{label}</span></li>" for value, label in tiles)
@@ -75,7 +58,7 @@ def summary_section(runs, claims, figures):
         "stability limits and the cost of a step come out. Everything here is compared with T. C. Lee, <cite>Rendering "
         "6-DOF Object-to-Object Interaction with 3-DOF Haptic Interfaces</cite> (“the thesis”); numbers such as Fig. A.2 or "
         f"3.3 are its figures and sections. Program of commit <code>{text(commits)}</code>.</p>"
-        f'<ul class="cards">{items}</ul>{main_results(claims)}{headline(claims)}{warnings(runs)}{refusals(claims)}')
+        f'<ul class="cards">{items}</ul>{main_results(claims)}<p>{typeset(headline)}</p>{warnings(runs)}{refusals(claims)}')
 
 
 def main_results(claims):
@@ -88,14 +71,9 @@ def main_results(claims):
     return table(headings, rows, "<b>Main results</b>", "stack", "main-results") if rows else ""
 
 
-def headline(claims):
-    said = getattr(claims, "headline", "")
-    return f"<p>{typeset(said)}</p>" if said else ""
-
-
 def warnings(runs):
     """The runs that ended otherwise than expected, by name: they must not hide in a long table."""
-    missed = [f'<a href="#{run.anchor}">{text(run.path)}</a> ({text(run.outcome)})' for run in runs if not run.expected]
+    missed = [f"{text(run.path)} ({text(run.outcome)})" for run in runs if not run.expected]
     return f'<p><b class="bad">✗ Not as expected:</b> {", ".join(missed)}.</p>' if missed else ""
 
 
@@ -106,31 +84,32 @@ def refusals(claims):
     return f"<p>What these runs do not confirm:</p><ul>{items}</ul>" if items else ""
 
 
-def ledger_section(claims, links):
+def ledger_section(claims, figures):
     if not claims:
         return '<p class="note">No ledger was given (<code>--claims</code>).</p>'
-    rows = [claim_row(claim, links) for claim in of_thesis(claims)]
-    ours = [claim_row(claim, links) for claim in claims if claim.get("ours")]
+    rows = [claim_row(claim, figures) for claim in of_thesis(claims)]
+    ours = [claim_row(claim, figures) for claim in claims if claim.get("ours")]
     headings = [heading_cell(title) for title in ("Id", "Verdict", "Claim", "Published", "Measured", "Sureness")]
-    return (headline(claims) + "<p>Each claim of the thesis, what it publishes, what the runs below give, and a verdict by a rule, which unfolds "
-            "with the figures and runs behind it. "
+    return ("<p>Each claim of the thesis, what it publishes, what our runs give, and a verdict by a rule, which unfolds "
+            "with the figures and scenarios behind it. "
             "Hands are calibrated to mean and standard deviation of the raw colliding points; all else is a prediction. "
             "Steady: more than half of the samples spread over the plausible ranges of everything the thesis leaves open "
-            '(<code>results/reference/choices.md</code>) have the verdict; else fragile, or not sampled.</p>'
+            '(<code>results/reference/choices.json</code>) have the verdict; else fragile, or not sampled.</p>'
             + filters("ledger-table", [("Verdict", 1)])
             + table(headings, rows, "<b>The ledger</b>", "sortable stack", "ledger-table")
             + (table(headings, ours, "<b>Found on the way, and no claims of the thesis</b>", "sortable stack", "findings-table")
                if ours else ""))
 
 
-def claim_row(claim, links):
+def claim_row(claim, figures):
     id_ = text(claim.get("id", ""))
-    figures, runs = links.of_claim(claim)
-    more = (f"<p><b>Rule</b> {typeset(claim.get('rule', ''))}</p>" + listed("Figures", figures) + listed("Runs", runs)
+    shown_in = [f'<a href="#figure-{text(f.id)}">{text(f.name)}</a>' for f in figures if f.is_about(claim)]
+    scenarios = [f"<code>{text(name)}</code>" for name in claim.get("scenarios") or ()]
+    more = (f"<p><b>Rule</b> {typeset(claim.get('rule', ''))}</p>" + listed("Figures", shown_in) + listed("Scenarios", scenarios)
             + command(f"hapbench reproduce --only {claim.get('id', '')}"))
     return [cell(f'<a id="claim-{id_}" href="#claim-{id_}">{id_}</a>', classes="id"), cell(verdict_mark(claim["verdict"])),
-            cell(f"{typeset(claim.get('claim', ''))}<p class=note>{links.place(str(claim.get('place', '')))}</p>"
-                 + folded("Rule, figures, runs", more, classes="printed"), classes="prose"),
+            cell(f"{typeset(claim.get('claim', ''))}<p class=note>{text(claim.get('place', ''))}</p>"
+                 + folded("Rule, figures, scenarios", more, classes="printed"), classes="prose"),
             cell(typeset(claim.get("published", ""))),
             cell(f"{typeset(claim.get('measured', ''))}<p class=note>{typeset(claim.get('why', ''))}</p>", classes="prose"),
             cell(text(sureness(claim)))]
@@ -140,25 +119,3 @@ def sureness(claim):
     """The word, and in how many samples."""
     counts = claim.get("robustness")
     return claim["sureness"] + (f": {counts['holds']} of {counts['judged']}" if counts else "")
-
-
-def choices_section(choices):
-    if not choices:
-        return '<p class="note">None were given (<code>--choices</code>).</p>'
-    rows = [[cell(text(c.get("id", ""))), cell(typeset(c.get("what", "")), classes="prose"),
-             cell(text(c.get("thesis", "")), classes="prose"), cell(text(f"{c.get('value', '')} {c.get('unit', '')}".strip())),
-             cell(text(plausible(c))), cell(text(c.get("chosen", ""))), cell(text(c.get("why", "")), classes="prose")]
-            for c in choices]
-    headings = [heading_cell(t) for t in ("Choice", "Of what", "The thesis", "Value", "Plausible", "Results seen", "Why")]
-    return ("<p>Everything the thesis leaves open and a scenario had to choose. A value without a unit that stands beside a "
-            "range around 1 multiplies what the scenarios have. “after” means that results had been seen when it was "
-            "chosen.</p>" + folded(f"All {counted(len(rows), 'choice')}", table(
-                headings, rows, "<b>Choices on record</b>", "sortable stack", "choices-table")))
-
-
-def plausible(choice):
-    """The values a choice could as well have had, as text."""
-    options, range_ = choice.get("options"), choice.get("range")
-    if isinstance(options, list):
-        return ", ".join(map(str, options))
-    return " to ".join(map(str, range_ if isinstance(range_, list) else [])) + (", log" if choice.get("scale") == "log" else "")

@@ -8,8 +8,7 @@ from pathlib import Path
 from statistics import median
 
 from hapbench.results import number_or_none
-from hapbench.units import ending_of, unit_of
-from hapbench_looks import look
+from hapbench.table import ending_of, unit_of
 
 ABSENT = "–"
 ASSETS = Path(__file__).parent / "assets"
@@ -48,10 +47,6 @@ def number(value, digits=4):
     short = f"{value:.{digits}g}"
     # Powers of ten only where the zeros would have to be counted.
     return typeset(format(Decimal(short), "f") if 1e-4 <= abs(value) < 1e7 else short)
-
-
-def counted(number_, what):
-    return f"{number_} {what}{'' if number_ == 1 else 's'}"
 
 
 def cell(value, sort_key=None, classes=""):
@@ -117,10 +112,6 @@ def embedded_json(value):
 def in_colour(one, shown):
     """Ready HTML in the colour of a look, on light and on dark ground."""
     return f'<span class=run-name style="--light:{one.colour};--dark:{one.dark}">{shown}</span>'
-
-
-def algorithm_name(algorithm):
-    return in_colour(look(algorithm), named(algorithm))
 
 
 def column(name, values=()):

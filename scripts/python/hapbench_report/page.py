@@ -1,27 +1,35 @@
-"""The page: its sections in order, with style and scripts inlined."""
+"""The page: its sections in order, with style and scripts inlined, and its links to the live page, where a scene is under the reader's
+own hand."""
+import json
+import os
+import shutil
+from pathlib import Path
+from urllib.parse import quote
+
+from hapbench.results import at
+
 from .figures import figures_section
 from .ledger import ledger_section, summary_section
-from .links import Links
 from .markup import ASSETS, command, fill, text
 from .replay import player, replays
-from .runs import provenance_of, provenance_section, runs_section
+from .runs import provenance_of, provenance_section
 
 STYLES = ("style.css", "replay.css")
 SCRIPTS = ("theme.js", "tables.js", "page.js", "replay_data.js", "replay_camera.js", "replay_scene.js", "replay_tool.js", "replay_field.js",
            "replay_tracks.js", "replay_sound.js", "replay_export.js", "replay_player.js", "replay_controls.js")
+LIVE = "live.html"  # a copy of it lies beside every page that links to it
+BUILT = Path(__file__).resolve().parents[3] / "build" / "live" / LIVE  # by scripts/live/make
 NO_REPLAY = '<p class="note">No recorded runs were given (<code>--program</code>).</p>'
 
 
-def thesis_page(runs, claims, figures, replayed):
+def thesis_page(runs, claims, headline, figures, replayed):
     """The HTML of the report on the thesis. Depends on nothing but its arguments."""
-    links = Links(runs, figures, claims)
     replay = player(replays(replayed, [run.algorithm.replace("_", " ") for run in replayed])) if replayed else NO_REPLAY
     return whole_page((
-        ("summary", "Summary", "Summary", summary_section(runs, claims, figures)),
-        ("ledger", "Ledger", "Ledger", ledger_section(claims, links)),
+        ("summary", "Summary", "Summary", summary_section(runs, claims, headline, figures)),
+        ("ledger", "Ledger", "Ledger", ledger_section(claims, figures)),
         ("replay", "Replay", "Replay", replay),
-        ("figures", "Figures", "Figures", figures_section(figures, links)),
-        ("runs", "Runs", "Runs", runs_section(runs, links)),
+        ("figures", "Figures", "Figures", figures_section(figures, claims)),
         ("rerun", "Rerun", "Run it again", rerun_section()),
         ("provenance", "Provenance", "Provenance", provenance_section(provenance_of(runs))),
     ))
@@ -54,3 +62,33 @@ def rerun_section():
             + "<p>This report:</p>" + command(
                 "scripts/report results/out/reproduce --figures results/out/figures --claims results/reference/claims.json \\\n"
                 "  --out results/out/reproduce/report.html"))
+
+
+def live_page():
+    """The built page, or None. HAPBENCH_LIVE names another, or, empty, none."""
+    named = os.environ.get("HAPBENCH_LIVE")
+    page = BUILT if named is None else Path(named)
+    return page if page.is_file() else None
+
+
+def names_a_file(value):
+    parts = value.values() if isinstance(value, dict) else value if isinstance(value, list) else ()
+    return isinstance(value, dict) and isinstance(value.get("file"), str) or any(map(names_a_file, parts))
+
+
+def live_link(scenario):
+    """A sentence with the link; nothing where there is no live page or a pointer cannot lead the scene's tool."""
+    position = at(scenario, "/motion/position")
+    is_free = position is None or at(scenario, "/motion/position/type") == "free"
+    if live_page() is None or not scenario or not is_free or names_a_file(scenario):
+        return ""
+    led = {key: value for key, value in scenario.items() if key not in ("$schema", "record", "expect", "description", "reference_force")}
+    scene = quote(json.dumps(led, separators=(",", ":"), ensure_ascii=False))
+    return f'<p><a href="{LIVE}#scenario={scene}">Take this scene in hand</a></p>'
+
+
+def place_live_page(folder):
+    """Puts the live page beside the pages in the folder that link to it."""
+    page = live_page()
+    if page and page != folder / LIVE:
+        shutil.copyfile(page, folder / LIVE)

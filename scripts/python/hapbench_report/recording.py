@@ -1,13 +1,15 @@
-"""A recorded run as the replay reads it: its tool, the rows that are shown, and the moments to jump to."""
+"""A recorded run as the replay reads it: its tool, the rows that are shown, the moments to jump to, and the rendered force above 30 Hz
+as a sound, what a hand feels as vibration."""
+import base64
 import math
-from pathlib import Path
+import sys
+from array import array
 
 import numpy as np
+from scipy import signal
 
 from hapbench.columns import read_columns
-from hapbench.errors import InputError
-from hapbench.results import at, number_or_none, read_object
-
+from hapbench.results import at, number_or_none
 
 TENSOR_COLUMNS = ("sxx", "sxy", "sxz", "syy", "syz", "szz")
 # Per row: time, tip, axis, rendered force, ratio range, deepest point; with the tensor S where it was recorded.
@@ -18,6 +20,8 @@ NORMAL_COLUMNS = ("nx", "ny", "nz")
 ARC_POINTS = 48  # of a rounded tip: off the circle by 0.013 % of its radius
 SPANS = 500  # of a run; each keeps up to five rows
 SETTLING_S = 0.05
+CUTOFF_HZ = 30.0
+LONGEST = 1 << 18  # of a sound [rows]: two minutes at 2 kHz, half a megabyte in the page
 LEAST_SETTLED_S = 1 / 30  # less tells nothing: the run hammers, and it has no metrics of settled contact
 
 
@@ -95,56 +99,27 @@ def worst_moments(columns, scenario):
             {"title": "depth", "time": times[deepest], "value": depth[deepest] * 1e3, "unit": "mm"}]
 
 
-def numbers(file, columns, steps=None):
-    """The named columns of a CSV file; with `steps`, of those rows whose step is among them."""
-    found = read_columns(file, [*columns, *({"step"} - set(columns) if steps is not None else ())], may_be_empty=True)
-    # Beyond single precision nothing can be drawn.
-    bad = next((name for name, values in found.items() if (np.abs(values) >= 1e38).any()), None)
-    if bad:
-        raise InputError(f"{file}: {bad}: holds numbers beyond 1e38; allowed: finite numbers")
-    without = np.flatnonzero(np.isnan(found.get("step", ())))
-    if without.size:
-        raise InputError(f"{file}: line {2 + without[0]}: step: got nan; allowed: a finite number")
-    kept = slice(None) if steps is None else np.isin(found["step"], np.fromiter(steps, float))
-    return {name: found[name][kept] for name in columns}
-
-
 class Recording:
     """One algorithm's run through a scene."""
 
-    def __init__(self, directory: Path):
-        self.summary = read_object(directory / "summary.json")
-        self.scenario = read_object(directory / "scenario.effective.json")
-        self.tool = tool_profile(self.scenario, self.summary)
-        self.algorithm = str(self.summary.get("algorithm", directory.name))
+    def __init__(self, run):
+        self.run, self.tool = run, tool_profile(run.scenario, run.summary)
         # All rows, for the sound and the worst moments.
-        self.columns = numbers(directory / "trajectory.csv", ("step", *MEASURED_COLUMNS, "colliding"))
-        if not len(self.columns["step"]):
-            raise InputError(f"{directory / 'trajectory.csv'}: holds no row")
+        self.columns = read_columns(run.folder / "trajectory.csv", ("step", *MEASURED_COLUMNS, "colliding"))
         self.shown = rows_to_show(self.columns)
-        self.steps = self.columns["step"][self.shown].astype(int).tolist()
-        self.tensors = self.read_tensors(directory / "stiffness_tensor.csv")
-        self.contacts = self.read_contacts(directory / "contacts.csv")
+        tensors = self.rows_of("stiffness_tensor", TENSOR_COLUMNS)
+        self.tensors = [of_row[0] for of_row in tensors] if all(tensors) else None  # None if they were not recorded
+        self.contacts = self.rows_of("contacts", (*CONTACT_COLUMNS, *NORMAL_COLUMNS))  # of every shown row, with their normals
 
-    def read_tensors(self, file):
-        """The tensors of every shown row; None if they were not recorded."""
-        if not file.is_file():
-            return None
-        columns = numbers(file, ("step", *TENSOR_COLUMNS), set(self.steps))
-        of_step = {int(step): tensor for step, *tensor in np.column_stack(list(columns.values())).tolist()}
-        for step in self.steps:
-            if step not in of_step:
-                raise InputError(f"{file}: no row of step {step}")
-        return [of_step[step] for step in self.steps]
-
-    def read_contacts(self, file):
-        """The contacts of every shown row, in the order of the file, with their normals; empty if they were not recorded."""
-        rows = {step: [] for step in self.steps}
-        if file.is_file():
-            columns = numbers(file, ("step", *CONTACT_COLUMNS, *NORMAL_COLUMNS), set(self.steps))
-            for step, *contact in np.column_stack(list(columns.values())).tolist():
-                rows[int(step)].append(contact)
-        return [rows[step] for step in self.steps]
+    def rows_of(self, table, columns):
+        """The rows of a table for every shown row, in the order of the file; none if it was not recorded."""
+        steps = self.columns["step"][self.shown]
+        rows = {step: [] for step in steps.tolist()}
+        if table in self.run.tables:
+            found = np.column_stack(list(read_columns(self.run.folder / f"{table}.csv", ("step", *columns), may_be_empty=True).values()))
+            for step, *numbers in found[np.isin(found[:, 0], steps)].tolist():
+                rows[step].append(numbers)
+        return list(rows.values())
 
     def rows(self):
         """The shown rows as they are packed."""
@@ -155,3 +130,44 @@ class Recording:
         """Places of the tip in the shown rows; with `touching`, of those in contact."""
         rows = self.shown[self.columns["colliding"][self.shown] > 0] if touching else self.shown
         return np.column_stack([self.columns[f"p{axis}_m"][rows] for axis in "xyz"]).tolist()
+
+
+def base64_of(code, values):
+    """Numbers as text for a page: little endian, base64. Raises OverflowError for one that the type of array cannot hold."""
+    packed = array(code, values)
+    if sys.byteorder == "big":
+        packed.byteswap()
+    return base64.b64encode(packed.tobytes()).decode()
+
+
+def sound(columns):
+    """Samples for the page, None where too few rows a second were recorded. One direction is heard, that in which the
+    force above 30 Hz is strongest: its size alone would hide a force that turns round."""
+    times = columns["time_s"][:LONGEST]
+    if len(times) < 3 or not times[-1] > times[0]:
+        return None
+    rate = (len(times) - 1) / (times[-1] - times[0])
+    if rate < 4 * CUTOFF_HZ:
+        return None
+    filtered = np.array([high_passed(columns[f"f{axis}_N"][:LONGEST], rate) for axis in "xyz"])
+    if not (np.abs(filtered) < 1e30).all():
+        return None
+    heard = strongest(filtered) @ filtered
+    peak = np.abs(heard).max()
+    if peak == 0:
+        return None
+    touching = heard[columns["colliding"][:LONGEST] > 0]
+    return {"rate": rate, "scale": peak / 32767, "start": times[0],
+            "rms": math.sqrt(np.mean(touching**2)) if touching.size else 0.0,
+            "samples": base64_of("h", map(round, (heard / peak * 32767).tolist()))}
+
+
+def high_passed(samples, rate):
+    """Butterworth of fourth order, as in results/observe/contact_forces.hpp, at rest at the first sample."""
+    sections = signal.butter(4, CUTOFF_HZ, "high", fs=rate, output="sos")
+    return signal.sosfilt(sections, samples, zi=signal.sosfilt_zi(sections) * samples[0])[0]
+
+
+def strongest(signals):
+    """Unit vector along which the three signals have most power: the last eigenvector of their covariance."""
+    return np.linalg.eigh(signals @ signals.T)[1][:, -1]

@@ -16,8 +16,8 @@ from hapbench.results import at
 from hapbench_looks import look
 
 from .markup import ASSETS, embedded_json, fill
-from .recording import CONTACT_COLUMNS, MEASURED_COLUMNS, NORMAL_COLUMNS, TENSOR_COLUMNS, Recording, worst_moments
-from .sound import LONGEST, base64_of, sound
+from .recording import (CONTACT_COLUMNS, LONGEST, MEASURED_COLUMNS, NORMAL_COLUMNS, TENSOR_COLUMNS, Recording, base64_of, sound,
+                        worst_moments)
 
 # The shell is shown this far around the contacts and the tool's way along them, in units of the tool's radius.
 MARGIN = 1.8
@@ -39,7 +39,7 @@ def replays(runs, labels):
 
 
 def scene(i, runs, labels):
-    recordings = [Recording(run.directory) for run in runs]
+    recordings = [Recording(run) for run in runs]
     shell, said = points_of(runs[0], recordings)
     longest = max(recording.columns["time_s"][-1] for recording in recordings)
     if any(len(recording.columns["time_s"]) > LONGEST for recording in recordings):
@@ -55,13 +55,13 @@ def scene(i, runs, labels):
         return about | packed_scene(recordings, shell, labels)
     except (ValueError, OverflowError) as error:
         # Numbers that no run writes: steps left empty, normals far from unit length.
-        raise InputError(f"{runs[0].directory}: not what hapbench records: {error}") from error
+        raise InputError(f"{runs[0].folder}: not what hapbench records: {error}") from error
 
 
 def packed_scene(recordings, shell, labels):
     """`shell`: points with their normals, all of which are drawn."""
     scale = float(np.abs(shell[:, :3]).max(initial=0.0)) / 32767 or 1.0
-    scenario = recordings[0].scenario
+    scenario = recordings[0].run.scenario
     orientation = at(scenario, "/motion/orientation") or {}
     springs = at(scenario, "/environment/type") == "springs"
     return {
@@ -80,19 +80,19 @@ def packed_recording(recording, label):
     flat = [contact for of_row in recording.contacts for contact in of_row]
     width = len(CONTACT_COLUMNS)
     scales = [max((abs(c[i]) for c in flat), default=0.0) / 32767 or 1.0 for i in range(width)]
-    own = look(recording.algorithm)
+    own = look(recording.run.algorithm)
     colliding = recording.columns["colliding"]
     return {
-        "algorithm": recording.algorithm, "label": label, "colour": own.colour, "dark": own.dark, "dash": own.dash,
-        "outcome": str(recording.summary.get("outcome", "")),
-        "end_s": at(recording.summary, "/duration_s"),
+        "algorithm": recording.run.algorithm, "label": label, "colour": own.colour, "dark": own.dark, "dash": own.dash,
+        "outcome": recording.run.outcome,
+        "end_s": at(recording.run.summary, "/duration_s"),
         "rowColumns": MEASURED_COLUMNS + (TENSOR_COLUMNS if recording.tensors else ()),
         "rows": base64_of("f", (value for row in recording.rows() for value in row)),
         "counts": base64_of("H", (min(int(n), 65535) for row, of_row in zip(recording.shown, recording.contacts)
                                   for n in (len(of_row), colliding[row]))),
         "contactScales": scales,
         "contacts": base64_of("h", (round(value / scale) for c in flat for value, scale in zip(c, scales))),
-        "worst": worst_moments(recording.columns, recording.scenario),
+        "worst": worst_moments(recording.columns, recording.run.scenario),
         "sound": sound(recording.columns),
     }
 
@@ -148,7 +148,7 @@ def shell(run):
     """Points and normals, None with the reason where there are none to be had."""
     if at(run.scenario, "/environment/type") == "springs":
         return None, ""
-    return shell_of(run.directory / "scenario.effective.json")
+    return shell_of(run.folder / "scenario.effective.json")
 
 
 @lru_cache(maxsize=1)  # curves and replay of a page ask for the same one

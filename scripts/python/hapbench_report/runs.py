@@ -1,4 +1,4 @@
-"""The runs in a results directory, which is every directory with a summary.json: their table, and what produced them."""
+"""The runs in a results directory, which is every directory with a summary.json, and what produced them."""
 import json
 from functools import cached_property
 from pathlib import Path
@@ -6,53 +6,32 @@ from pathlib import Path
 from hapbench import results
 from hapbench.results import at, member, number_or_none
 
-from .markup import algorithm_name, cell, columns, filters, heading_cell, listed, named, number_cell, table, text
+from .markup import cell, heading_cell, table, text
 
 # Written for the replay, not as results of their own.
 REPLAY_DIRECTORY = "replay"
-# Metrics of summary.json in the table of all runs.
-METRICS = ("force_max_N", "velocity_total_variation_m_per_s", "force_reversals", "depth_max_m", "ratio_min", "ratio_max",
-           "colliding_mean", "rendered_mean")
 
 
 class Run(results.Run):
-    """A run as pages know it: `path` is that of its folder, relative to the results; one of several algorithms was
-    `compared`, and the scenario's expectations are about its own one."""
+    """A run as pages know it: `path` is that of its folder, relative to the results."""
 
-    def __init__(self, path, found, compared=False):
-        super().__init__(found.summary, found.scenario, found.tables, found.timing, found.trials, found.folder)
-        self.path, self.compared = path, compared
+    path = ""
 
     @property
     def name(self):
         return super().name or self.path
 
     @property
-    def directory(self):
-        return self.folder
-
-    @property
-    def group(self):
-        return self.path.split("/")[0]
-
-    @property
     def expected(self):
-        """True unless the scenario said that the run must end otherwise."""
-        return self.compared or self.summary.get("expected") is not False
-
-    @property
-    def anchor(self):
-        return "run-" + "".join(c if c.isalnum() else "-" for c in self.path)
+        """True unless the scenario said that the run must end otherwise; what it says is not about other algorithms that it is compared by."""
+        return self.summary.get("expected") is not False or (self.folder.resolve().parent / "comparison.csv").exists()
 
     def metric(self, key):
-        metrics = self.summary.get("metrics")
-        return number_or_none(metrics.get(key)) if isinstance(metrics, dict) else None
+        return number_or_none(self.metrics.get(key))
 
     def tolerance(self, section, key):
         """By how much a metric may be wrong; None where that is not known."""
-        found = self.summary.get("tolerances")
-        name = key if section == "metrics" else f"{section}.{key}"
-        return number_or_none(found.get(name)) if isinstance(found, dict) else None
+        return number_or_none(self.summary.get("tolerances", {}).get(key if section == "metrics" else f"{section}.{key}"))
 
     @cached_property
     def sections(self):
@@ -71,36 +50,11 @@ def load_runs(directory: Path, but=None):
 
 def load_run(directory, path):
     """The run of one directory, which is known as `path`."""
-    found = results.load_run(directory)
-    for key in ("metrics", "provenance", "targets"):
-        member(found.summary, key, dict, directory / results.SUMMARY)
-    return Run(path, found, (directory.resolve().parent / "comparison.csv").exists())
-
-
-def find_run(runs, name):
-    """The first run of that name, the thesis's own before comparisons; None when there is none."""
-    named = [run for run in runs if run.path.split("/")[-1] == name]
-    return min(named, key=lambda run: (run.group != "thesis", run.path), default=None)
-
-
-def runs_section(runs, links):
-    numbers, cells = columns(METRICS, [[run.metric(name) for name in METRICS] for run in runs],
-                             [[run.tolerance("metrics", name) for name in METRICS] for run in runs])
-    rows = []
-    for run, measured in zip(runs, cells):
-        outcome = text(run.outcome.replace("_", " ")) + ("" if run.expected else ' <b class="bad">✗ unexpected</b>')
-        rows.append([cell(f'<span id="{run.anchor}">{named(part_of(run))}</span>'), cell(f"{named(run.name)}<br>{listed('', links.of_run(run))}", classes="name"),
-                     cell(algorithm_name(run.algorithm), classes="name"), cell(outcome), number_cell(at(run.summary, "/steps")), *measured])
-    headings = [*map(heading_cell, ("Part", "Scenario", "Algorithm", "Outcome")), heading_cell("Steps", True), *numbers]
-    return ("<p>Click a heading to sort. The folder of a run, its part and its scenario here, holds the scenario with every default filled in, "
-            "which gives the same bytes again; <code>hapbench report FOLDER</code> shows it.</p>"
-            + filters("runs-table", [("Part", 0), ("Algorithm", 2), ("Outcome", 3)])
-            + table(headings, rows, "<b>All runs</b> Ratio: combined stiffness along a contact in units of K; colliding, rendered: "
-                    "mean numbers of points before and after the reduction", "sortable", "runs-table"))
-
-
-def part_of(run):
-    return run.path.rpartition("/")[0] or run.group
+    run = results.load_run(directory, Run)
+    for key in ("metrics", "provenance", "targets", "tolerances"):
+        member(run.summary, key, dict, directory / results.SUMMARY)
+    run.path = path
+    return run
 
 
 def plugin_text(run):
