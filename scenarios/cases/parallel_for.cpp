@@ -38,7 +38,7 @@ void for_each_job(std::size_t count, const JobOptions& options, const std::funct
       }
       lock.lock();
       if (!caught) {
-        bar.show(++done);
+        bar.show(++done, true);
       } else if (i < lowest) {
         lowest = i;
         error = caught;

@@ -84,9 +84,6 @@ CapturedOutput* captured_output() noexcept;
 /// explained why on standard error.
 void write_way(const std::filesystem::path& folder, const std::filesystem::path& file, bool quiet);
 
-/// Warns on standard error of results of more than 100 MB.
-void announce_large_output(double bytes);
-
 /// The names of a table's entries, or of what its pointers point to.
 template <class Table, class Name>
 std::vector<std::string> names_of(const Table& table, Name name) {

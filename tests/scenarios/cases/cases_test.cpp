@@ -130,7 +130,9 @@ TEST(Cases, AreThePointsOfAFile) {
   const test::TemporaryDirectory directory;
   const auto read = [&](const std::string& text) {
     test::write_plainly(directory / "points.csv", text);
-    return Cases({}, {}, read_points(directory / "points.csv"));
+    std::vector<Axis> axes;
+    Sampling sampling = read_points(directory / "points.csv", axes);
+    return Cases({}, {}, std::move(axes), std::move(sampling));
   };
   const Cases cases = read("environment.spacing_m,device\r\n2e-3,\"{\"\"type\"\": \"\"ideal\"\"}\"\n1e-3,x\n2e-3,x\n");
   ASSERT_EQ(cases.size(), 3u);

@@ -6,7 +6,7 @@
 #include <limits>
 #include <vector>
 
-#include "scenarios/cases/statistics.hpp"
+#include "scenarios/cases/league.hpp"
 
 namespace hapbench::league_test {
 namespace {
