@@ -170,7 +170,7 @@ struct Asked {
 /// The metrics of the league, or without one those of the table with --wide.
 std::vector<std::string> compared(const Asked& asked, const std::vector<Result>& reports) {
   if (asked.league) return asked.options.metrics;
-  std::vector<std::string> metrics = {"force_max_N", kToolVibrationPower};
+  std::vector<std::string> metrics = {kToolVibrationPower};
   for (const RunHeading& heading : kRunHeadings) metrics.emplace_back(heading.metric);
   if (have_reference(reports)) metrics.insert(metrics.end(), kFidelityMetrics, std::end(kFidelityMetrics) - 1);
   return metrics;

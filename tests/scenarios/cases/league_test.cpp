@@ -6,8 +6,6 @@
 #include <limits>
 #include <vector>
 
-#include "scenarios/cases/league.hpp"
-
 namespace hapbench::league_test {
 namespace {
 
