@@ -1,13 +1,19 @@
 #include "scenarios/cases/cases.hpp"
 
 #include <fmt/format.h>
+#include <oneapi/tbb/global_control.h>
+#include <oneapi/tbb/info.h>
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
 #include <map>
+#include <mutex>
 #include <nlohmann/json.hpp>
 #include <numeric>
 #include <set>
+#include <stdexcept>
+#include <thread>
 #include <utility>
 
 #include "results/io/columns.hpp"
@@ -16,6 +22,8 @@
 #include "scenarios/format/json_file.hpp"
 #include "scenarios/format/text_lines.hpp"
 #include "scenarios/format/writer.hpp"
+#include "scenarios/run/progress_bar.hpp"
+#include "scenarios/run/stop_signal.hpp"
 #include "sim/core/math.hpp"
 #include "sim/core/random.hpp"
 
@@ -373,6 +381,54 @@ LoadedScenario Cases::load(std::size_t i) const {
   for (std::size_t a = 0; a < axes_.size(); ++a)
     if (!axes_[a].along.empty()) loaded.scenario.time.stride *= axes_[a].along[place(i, a)].stride;
   return loaded;
+}
+
+std::size_t available_threads() {
+  return static_cast<std::size_t>(tbb::info::default_concurrency());
+}
+
+void for_each_job(std::size_t count, const JobOptions& options, const std::function<void(std::size_t)>& job) {
+  ProgressBar bar(options.label, count, !options.label.empty());
+  std::mutex mutex;  // of all below; unlocked only while a job runs
+  std::size_t begun = 0, done = 0, lowest = count;
+  std::exception_ptr error;  // of the lowest job that failed
+  const auto work = [&] {
+    std::unique_lock lock(mutex);
+    while (begun < count && !error && StopSignal::received() == 0) {
+      const std::size_t i = begun++;
+      std::exception_ptr caught;
+      lock.unlock();
+      try {
+        job(i);
+      } catch (...) {
+        caught = std::current_exception();
+      }
+      lock.lock();
+      if (!caught) {
+        bar.show(++done, true);
+      } else if (i < lowest) {
+        lowest = i;
+        error = caught;
+      }
+    }
+  };
+  const std::size_t threads = std::max(1u, options.threads);
+  // A job may itself use TBB: that gets no more threads than there are jobs at once.
+  const tbb::global_control within(tbb::global_control::max_allowed_parallelism,
+                                   std::min(threads, available_threads()));
+  std::unique_lock starting(mutex);  // no job begins before all threads are there
+  std::vector<std::jthread> others;
+  try {
+    while (others.size() + 1 < std::min(threads, count)) others.emplace_back(work);
+  } catch (const std::exception& reason) {
+    const std::string text = fmt::format("{}; if threads or memory ran short: fewer --jobs", reason.what());
+    error = std::make_exception_ptr(std::runtime_error(text));
+  }
+  starting.unlock();
+  work();
+  others.clear();
+  if (error) std::rethrow_exception(error);
+  if (done < count) throw_if_stopped();
 }
 
 }  // namespace hapbench

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "scenarios/cases/cases.hpp"
-#include "scenarios/cases/parallel_for.hpp"
 #include "scenarios/run/run_scenario.hpp"
 
 /// Scenes, each under the same laws and with the same number of seeds.

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "scenarios/cases/cases.hpp"
-#include "scenarios/cases/parallel_for.hpp"
 #include "scenarios/cases/table_file.hpp"
 
 /// Sweeps: cases that are checked first, then run, and the table that they leave, sweep.csv.

@@ -12,7 +12,6 @@
 #include "results/io/json_text.hpp"
 #include "scenarios/cases/cases.hpp"
 #include "scenarios/cases/league.hpp"
-#include "scenarios/cases/parallel_for.hpp"
 #include "scenarios/format/input_error.hpp"
 #include "scenarios/program/table.hpp"
 #include "scenarios/run/result_folder.hpp"

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "scenarios/cases/parallel_for.hpp"
+#include "scenarios/cases/cases.hpp"
 #include "scenarios/format/json_file.hpp"
 #include "scenarios/format/load_scenario.hpp"
 #include "scenarios/program/command_line.hpp"

@@ -7,7 +7,6 @@
 #include <optional>
 
 #include "scenarios/cases/league.hpp"
-#include "scenarios/cases/parallel_for.hpp"
 #include "scenarios/cases/run_sweep.hpp"
 #include "scenarios/format/bundled_scenarios.hpp"
 #include "scenarios/format/text_lines.hpp"

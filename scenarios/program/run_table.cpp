@@ -129,7 +129,7 @@ std::vector<std::string> run_warnings(std::span<const Result> reports) {
       const auto known = std::ranges::find(kinds, kind) - kinds.begin();
       if (known == std::ssize(kinds)) {
         kinds.push_back(kind);
-        texts.push_back(reports.size() == 1 ? text : fmt::format("{}: {} ({})", report.name, text, report.algorithm));
+        texts.push_back(report.name + ": " + text + (reports.size() > 1 ? " (" + report.algorithm + ")" : ""));
       } else if (std::string& told = texts[static_cast<std::size_t>(known)];
                  reports.size() > 1 && !told.ends_with(report.algorithm + ")")) {
         told.replace(told.size() - 1, 1, fmt::format(", {})", report.algorithm));
