@@ -106,9 +106,6 @@ Sampling read_points(const std::filesystem::path& file, std::vector<Axis>& axes)
 struct Shard {
   std::size_t index = 0;
   std::size_t count = 1;
-
-  /// Number of the cases that belong to it.
-  std::size_t size(std::size_t cases) const { return (cases + count - 1 - index) / count; }
 };
 
 /// Reads "i/n" with 0 <= i < n. Throws InputError.
