@@ -63,8 +63,8 @@ Comparison planned(const ComparisonQuestion& question);
 std::vector<Result> run_all(std::span<const Cases> cases, const JobOptions& jobs,
                             const std::function<std::filesystem::path(std::size_t run)>& folder = {});
 
-/// Removes what an earlier comparison of these scenes left in a folder: its tables, and the files of runs of any law and
-/// seed, so that laws are not shown beside those of another question. Other files stay.
+/// Removes what an earlier comparison of these scenes left in a folder: its tables, and the files of runs of any law
+/// and seed, so that laws are not shown beside those of another question. Other files stay.
 void remove_earlier_comparison(const std::filesystem::path& folder, const Comparison& comparison);
 
 }  // namespace hapbench

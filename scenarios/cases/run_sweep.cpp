@@ -191,7 +191,7 @@ using Condition = std::function<bool(const SweepRow& row)>;
 
 Condition condition_of(const std::string& text, const SweepTable& table) {
   static const std::map<std::string, std::function<bool(double, double)>> kSigns = {
-      {"<", std::less<>()},           {">", std::greater<>()}, {"<=", std::less_equal<>()},
+      {"<", std::less<>()},           {">", std::greater<>()},  {"<=", std::less_equal<>()},
       {">=", std::greater_equal<>()}, {"=", std::equal_to<>()}, {"!=", std::not_equal_to<>()}};
   const std::size_t begin = std::min(text.find_first_of("<>=!"), text.size());
   const std::size_t end = std::min(text.find_first_not_of("<>=!", begin), text.size());
@@ -297,8 +297,9 @@ SweepReport run_sweep(const SweepPlan& plan, const SweepOptions& options) {
   const auto keep = [&](std::size_t run, std::string_view text) {
     return stays(plan, options, run, text, columns.size());
   };
-  TableFile table({options.table(), fmt::format("{}", fmt::join(columns, ",")), plan.description(part), plan.cases.size()},
-                  options.resume ? TableFile::Keep(keep) : nullptr);
+  TableFile table(
+      {options.table(), fmt::format("{}", fmt::join(columns, ",")), plan.description(part), plan.cases.size()},
+      options.resume ? TableFile::Keep(keep) : nullptr);
   report.resumed = table.count();
   std::vector<std::size_t> left;  // in the order of runs
   for (std::size_t place = part.index; place < plan.cases.size(); place += part.count)

@@ -48,8 +48,8 @@ struct SweepOptions {
   std::filesystem::path directory = {};  ///< for all files; must exist
   JobOptions jobs = {};
   std::optional<Shard> shard = {};  ///< which runs; none: all
-  bool resume = false;              ///< keep the rows that an earlier sweep of this plan has, but for those of failed runs
-  bool keep_runs = false;           ///< write the files of each run into runs/NUMBER
+  bool resume = false;     ///< keep the rows that an earlier sweep of this plan has, but for those of failed runs
+  bool keep_runs = false;  ///< write the files of each run into runs/NUMBER
   std::function<void()> added = {};  ///< is called after each row of a finished run that the table gets
 
   /// sweep.csv, or that of a shard.

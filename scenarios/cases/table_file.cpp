@@ -118,8 +118,8 @@ std::size_t shards_in(const fs::path& folder) {
     if (std::sscanf(entry.path().filename().c_str(), "sweep.%zu_of_%zu.csv", &index, &of) != 2) continue;
     if (entry.path().filename() != table_name(Shard{index, of}) || of > kMostRuns) continue;
     if (count != 0 && of != count) {
-      fail_in_file(entry.path(), fmt::format("is one of {} shards, another one of {}; allowed: shards of one division",
-                                             of, count));
+      fail_in_file(entry.path(),
+                   fmt::format("is one of {} shards, another one of {}; allowed: shards of one division", of, count));
     }
     count = of;
   }
@@ -175,8 +175,7 @@ TableFile::TableFile(TableTitle title, const Keep& keep)
 /// Of a table that is under way, or else of the finished one.
 bool TableFile::is_of_this_definition() const {
   std::error_code ignored;
-  return definition_in(fs::exists(part_, ignored) ? about_part_ : beside(title_.file)) ==
-         title_.about.at("definition");
+  return definition_in(fs::exists(part_, ignored) ? about_part_ : beside(title_.file)) == title_.about.at("definition");
 }
 
 /// Finds the rows that are there, and leaves the part without its last line if that is torn.

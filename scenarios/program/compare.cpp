@@ -91,7 +91,8 @@ void report_errors(const League& league, const FinerRuns& finer, std::size_t sce
     const std::string& metric = league.metrics[m];
     const MetricNumbers found = numbers_of(league, &finer, scenario, m);
     const std::string says = held_text(found.numbers, league.algorithms, kSameRank);
-    Json& json = report.json()["errors"].emplace_back(Json{{"scenario", league.scenarios[scenario]}, {"metric", metric}});
+    Json& json =
+        report.json()["errors"].emplace_back(Json{{"scenario", league.scenarios[scenario]}, {"metric", metric}});
     json.update(numbers_json(found, league.algorithms));
     json["says"] = says;
     const auto* heading = std::ranges::find(kRunHeadings, metric, &RunHeading::metric);
@@ -117,7 +118,7 @@ std::string vibration_text(const League& league) {
   constexpr std::pair<const char*, double> kUnfelt[] = {{"force_rms_above_30Hz_N", 1e-4},  // [N]
                                                         {kToolVibrationPower, 1e-10}};     // [m2/s2]
   std::string says, failing;
-  std::size_t laws = 0;  // that do not fail
+  std::ptrdiff_t laws = 0;  // that do not fail
   for (std::size_t a = 0; a < league.algorithms.size(); ++a) {
     if (league.failures(0, a) == 0)
       ++laws;
@@ -130,7 +131,7 @@ std::string vibration_text(const League& league) {
     std::vector<NumberWithError> numbers = numbers_of(league, nullptr, 0, place).numbers;
     for (NumberWithError& number : numbers) *number.error += unfelt;
     says = fmt::format("{}: {}", metric, held_text(numbers, league.algorithms, kSameRank));
-    if (std::ranges::count_if(numbers, [](const auto& n) { return n.value.has_value(); }) == std::ptrdiff_t(laws)) break;
+    if (std::ranges::count_if(numbers, [](const auto& n) { return n.value.has_value(); }) == laws) break;
   }
   return "\n" + wrapped(fmt::format("{}{}; --errors tells whether finer runs agree", says, failing), 0);
 }
@@ -152,8 +153,7 @@ Comparison planned(const CompareOptions& options) {
   question.scenarios = find_scenarios(options.scenarios);
   question.overrides = options.overrides;
   const std::vector<std::string> all = algorithm_names();
-  question.algorithms =
-      question.algorithms.empty() ? all : chosen_names("--algorithms: got", question.algorithms, all);
+  question.algorithms = question.algorithms.empty() ? all : chosen_names("--algorithms: got", question.algorithms, all);
   return planned(question);
 }
 
@@ -231,7 +231,8 @@ int compare(const CompareOptions& options) {
     print_warnings(run_warnings(of_scene));
     std::vector<ComparedRun> runs;
     for (const Result& run : of_scene) runs.push_back({runs.size() % comparison.seeds, &run});
-    report.write((comparison.scene_folder(s) / "comparison.csv").c_str(), comparison_columns(comparison.seeds > 1), runs);
+    report.write((comparison.scene_folder(s) / "comparison.csv").c_str(), comparison_columns(comparison.seeds > 1),
+                 runs);
   }
   report.json() = summaries_json(asked, reports);
   if (asked.league || options.errors) report.json() = {{"runs", std::move(report.json())}};

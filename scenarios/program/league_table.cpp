@@ -63,9 +63,8 @@ std::vector<Standing> ranked(const League& league) {
     for (std::size_t m = 0; m < league.metrics.size(); ++m) {
       const auto first = static_cast<std::ptrdiff_t>(all.size());
       for (std::size_t a = 0; a < league.algorithms.size(); ++a) all.push_back(league.at(s, a, m));
-      std::stable_sort(all.begin() + first, all.end(), [](const Standing& x, const Standing& y) {
-        return x.rank && (!y.rank || *x.rank < *y.rank);
-      });
+      std::stable_sort(all.begin() + first, all.end(),
+                       [](const Standing& x, const Standing& y) { return x.rank && (!y.rank || *x.rank < *y.rank); });
     }
   }
   return all;

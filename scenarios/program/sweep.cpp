@@ -92,9 +92,8 @@ Json summary_json(const SweepTable& table) {
   const SweepCounts& counts = table.kept;
   Json outcomes = Json::object();
   for (const auto& [outcome, count] : counts.outcomes) outcomes[outcome] = count.runs;
-  Json json = {{"definition", table.about["definition"]}, {"runs", counts.runs},
-               {"outcomes", std::move(outcomes)},         {"unexpected", counts.unexpected},
-               {"failed", counts.failed},                 {"file", table.file.string()}};
+  Json json = {{"definition", table.about["definition"]}, {"runs", counts.runs},     {"outcomes", std::move(outcomes)},
+               {"unexpected", counts.unexpected},         {"failed", counts.failed}, {"file", table.file.string()}};
   if (counts.runs > SweepTable::kMostRows) return json;
   Json& rows = json["rows"] = Json::array();
   for (const SweepRow& row : table.rows) {
@@ -138,7 +137,8 @@ Cases cases_of(const SweepCommand& command) {
   std::vector<Axis> axes;
   std::optional<Sampling> sampling;
   if (!command.points.empty() && (!command.vary.empty() || !command.sample.empty()))
-    throw InputError("--points: got it beside --vary or --sample; allowed: the file alone, which has fields and values");
+    throw InputError(
+        "--points: got it beside --vary or --sample; allowed: the file alone, which has fields and values");
   for (const std::string& text : command.vary) axes.push_back(parse_axis(text, !command.sample.empty()));
   if (!command.points.empty()) sampling = read_points(command.points, axes);
   if (!command.sample.empty()) sampling = parse_sampling(command.sample, command.seed);
@@ -185,7 +185,8 @@ void print_sweep(const SweepCommand& command, const SweepTable& table, std::size
   if (resumed > 0) text += fmt::format("\n{} of the runs were done before\n", resumed);
   text += fmt::format("\nresults in {}\n", table.file.string());
   if (!command.where.empty())
-    text += fmt::format("{} of {} runs have {}\n", table.kept.runs, table.counts.runs, fmt::join(command.where, " and "));
+    text +=
+        fmt::format("{} of {} runs have {}\n", table.kept.runs, table.counts.runs, fmt::join(command.where, " and "));
   if (table.fields() > 1)
     text += fmt::format("\"hapbench plot {} --metric {}\" draws it\n", table.file.parent_path().string(), metric);
   print(command.output, text, {});
@@ -218,11 +219,11 @@ int sweep(const SweepCommand& command) {
   // All input is checked before anything runs or is written.
   Cases cases = cases_of(command);
   if (command.print) return print_row(command, cases);
-  SweepOptions options{.directory = results_directory(
-                           command.out, "sweep_" + cases.scenes().front().file.stem().string()),
-                       .jobs = job_options(command, "sweep"),
-                       .resume = command.resume,
-                       .keep_runs = command.keep_runs};
+  SweepOptions options{
+      .directory = results_directory(command.out, "sweep_" + cases.scenes().front().file.stem().string()),
+      .jobs = job_options(command, "sweep"),
+      .resume = command.resume,
+      .keep_runs = command.keep_runs};
   if (!command.shard.empty()) options.shard = parse_shard(command.shard);
   const SweepPlan plan = plan_sweep(std::move(cases), job_options(command, "checking"));
   chosen_metric(plan.metrics, command.metric);   // throws if there is none of that name

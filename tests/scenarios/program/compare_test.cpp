@@ -4,8 +4,8 @@
 #include "tests/scenarios/support/file_tree.hpp"
 #include "tests/scenarios/support/program.hpp"
 
-/// hapbench compare: of algorithms, of scenarios and seeds. What it prints is in tests/data/golden/sweep.txt, its numbers
-/// are in tests/known_answers.
+/// hapbench compare: of algorithms, of scenarios and seeds. What it prints is in tests/data/golden/sweep.txt, its
+/// numbers are in tests/known_answers.
 namespace hapbench::compare_test {
 namespace {
 
@@ -29,12 +29,11 @@ TEST_F(CompareCommand, EqualsARunOfEachAlgorithmAlone) {
 /// A round tip pressed onto a plane, from two heights.
 TEST_F(CompareCommand, GivesTheSameBytesWhateverTheJobs) {
   for (const auto& [name, height] : {std::pair{"press", "0.0001"}, {"poke", "0.0003"}}) {
-    test::write_plainly(
-        directory_ / (std::string(name) + ".json"),
-        std::string(R"({"time": {"step_s": 0.0005, "steps": 100}, "tool": {"tip": "round"},
+    test::write_plainly(directory_ / (std::string(name) + ".json"),
+                        std::string(R"({"time": {"step_s": 0.0005, "steps": 100}, "tool": {"tip": "round"},
                         "environment": {"type": "plane"}, "hand": {"type": "force", "z_N": -1},
                         "initial": {"position_m": [0, 0, )") +
-            height + "]}}");
+                            height + "]}}");
   }
   for (const char* jobs : {"1", "5"}) {
     hapbench({"compare", at("press.json"), at("poke.json"), "--algorithms", "mean, summation,proxy", "--seeds", "2",
