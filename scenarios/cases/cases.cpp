@@ -1,13 +1,19 @@
 #include "scenarios/cases/cases.hpp"
 
 #include <fmt/format.h>
+#include <oneapi/tbb/global_control.h>
+#include <oneapi/tbb/info.h>
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
 #include <map>
+#include <mutex>
 #include <nlohmann/json.hpp>
 #include <numeric>
 #include <set>
+#include <stdexcept>
+#include <thread>
 #include <utility>
 
 #include "results/io/columns.hpp"
@@ -16,6 +22,8 @@
 #include "scenarios/format/json_file.hpp"
 #include "scenarios/format/text_lines.hpp"
 #include "scenarios/format/writer.hpp"
+#include "scenarios/run/progress_bar.hpp"
+#include "scenarios/run/stop_signal.hpp"
 #include "sim/core/math.hpp"
 #include "sim/core/random.hpp"
 
@@ -58,17 +66,15 @@ double value_between(const Range& range, double i, double last) {
 void read_range(const std::string& text, std::string_view words, bool sampled, Axis& axis) {
   const Words parts = parts_of(words, ':');
   const std::size_t least = sampled ? 2 : 3;
-  if (sampled && parts.size() > 2 && whole_number(parts[2]))
-    refuse_axis(text, "got a number of values beside --sample, which has its own", "a:b or a:b:log");
-  if (!sampled && parts.size() == 2)
-    refuse_axis(text, "got 2 parts between colons", "a:b:n or a:b:n:log; a:b and a:b:log with --sample");
   if (parts.size() != least && parts.size() != least + 1) {
     refuse_axis(text, fmt::format("got {} parts between colons", parts.size()),
-                sampled ? "a:b or a:b:log" : "a:b:n or a:b:n:log");
+                sampled ? "a:b or a:b:log" : "a:b:n or a:b:n:log; a:b and a:b:log with --sample");
   }
   const Range range{range_end(text, parts[0]), range_end(text, parts[1]), parts.size() > least};
-  if (range.logarithmic && parts.back() != "log")
-    refuse_axis(text, fmt::format("got \"{}\"", parts.back()), "\"log\" or nothing");
+  if (range.logarithmic && parts.back() != "log") {
+    refuse_axis(text, fmt::format("got \"{}\"", parts.back()),
+                sampled ? "\"log\" or nothing, as --sample says how many" : "\"log\" or nothing");
+  }
   if (range.logarithmic && !(range.from > 0.0 && range.to > 0.0))
     refuse_axis(text, fmt::format("got ends {} and {} of a logarithmic range", range.from, range.to), "numbers > 0");
   axis.range = range;
@@ -79,34 +85,22 @@ void read_range(const std::string& text, std::string_view words, bool sampled, A
   axis.steps = *steps;
 }
 
-/// The parts between commas that stand outside of JSON's brackets and strings.
-Words listed_words(std::string_view list) {
-  Words words;
-  std::size_t begin = 0, depth = 0;
-  bool in_string = false;
-  for (std::size_t i = 0; i < list.size(); ++i) {
-    const char c = list[i];
-    if (in_string && c == '\\') {
-      ++i;
-    } else if (c == '"') {
-      in_string = !in_string;
-    } else if (in_string) {
-      continue;
-    } else if (c == '{' || c == '[') {
-      ++depth;
-    } else if ((c == '}' || c == ']') && depth > 0) {
-      --depth;
-    } else if (c == ',' && depth == 0) {
-      words.push_back(list.substr(begin, i - begin));
-      begin = i + 1;
-    }
-  }
-  words.push_back(list.substr(begin));
-  return words;
-}
-
 bool begins_json(std::string_view text) {
   return text.starts_with('{') || text.starts_with('[') || text.starts_with('"');
+}
+
+/// The parts between commas that stand outside of JSON.
+std::vector<std::string> listed_words(std::string_view list) {
+  std::vector<std::string> words;
+  bool is_whole = true;
+  for (const std::string_view part : parts_of(list, ',')) {
+    if (is_whole)
+      words.emplace_back(part);
+    else
+      words.back().append(",").append(part);
+    is_whole = !begins_json(words.back()) || Json::accept(words.back());
+  }
+  return words;
 }
 
 /// A value in the spelling that axes have. Throws InputError for text that begins as JSON and is none, and for no text.
@@ -117,11 +111,11 @@ std::string axis_value(std::string_view text) {
 }
 
 std::vector<std::string> listed_values(const std::string& text, std::string_view list) {
-  const Words words = listed_words(list);
+  const std::vector<std::string> words = listed_words(list);
   if (words.size() > kMostRuns)
     refuse_axis(text, fmt::format("got {} values", words.size()), fmt::format("at most {}", kMostRuns));
   std::vector<std::string> values;
-  for (const std::string_view word : words) {
+  for (const std::string& word : words) {
     try {
       values.push_back(axis_value(word));
     } catch (const InputError& error) {
@@ -241,10 +235,11 @@ Sampling parse_sampling(const std::string& text, std::uint64_t seed) {
     throw InputError(
         fmt::format("--sample: got \"{}\"; allowed: lhs:N or random:N with 1 <= N <= {}", text, kMostRuns));
   }
-  return {name == "lhs" ? SamplingMethod::latin_hypercube : SamplingMethod::random, *count, seed};
+  return {name == "lhs" ? SamplingMethod::latin_hypercube : SamplingMethod::random, *count, seed, {}};
 }
 
 std::vector<double> unit_sample(const Sampling& sampling, std::size_t axis) {
+  if (sampling.method == SamplingMethod::points) return sampling.of_file[axis];
   constexpr double kLast = 1.0 - 0x1.0p-53;  // rounding could move a point in the last stratum to 1
   Random random(Random::derive(sampling.seed, axis));
   std::vector<double> points(sampling.count);
@@ -261,34 +256,35 @@ std::vector<double> unit_sample(const Sampling& sampling, std::size_t axis) {
   return points;
 }
 
-PointTable read_points(const std::filesystem::path& file) {
+Sampling read_points(const std::filesystem::path& file, std::vector<Axis>& axes) {
   const std::string text = read_named_file(file);
   LineReader lines(text);
-  PointTable table;
-  for (const std::string& path : csv_cells(lines.next().value_or(""))) table.axes.push_back({path});
-  table.places.resize(table.axes.size());
-  std::vector<std::map<std::string, std::uint32_t>> known(table.axes.size());
+  for (const std::string& path : csv_cells(lines.next().value_or(""))) axes.push_back({path});
+  Sampling sampling{SamplingMethod::points, 0, 0, std::vector<std::vector<double>>(axes.size())};
+  std::vector<std::map<std::string, std::size_t>> known(axes.size());
   while (const auto line = lines.next()) {
     const std::vector<std::string> cells = csv_cells(*line);
-    if (cells.size() != known.size() || table.places[0].size() == kMostRuns) {
+    if (cells.size() != axes.size() || sampling.count == kMostRuns) {
       fail_in_line(file, lines.line(),
                    fmt::format("got {} values in row {}; allowed: {}, one of each field, in at most {} rows",
-                               cells.size(), table.places[0].size() + 1, known.size(), kMostRuns));
+                               cells.size(), sampling.count + 1, axes.size(), kMostRuns));
     }
+    ++sampling.count;
     try {
       for (std::size_t a = 0; a < cells.size(); ++a) {
         const std::string value = axis_value(cells[a]);
-        const auto place = static_cast<std::uint32_t>(known[a].size());
-        const auto [at, is_new] = known[a].emplace(value, place);
-        if (is_new) table.axes[a].values.push_back(value);
-        table.places[a].push_back(at->second);
+        const auto [at, is_new] = known[a].emplace(value, known[a].size());
+        if (is_new) axes[a].values.push_back(value);
+        sampling.of_file[a].push_back(static_cast<double>(at->second));
       }
     } catch (const InputError& error) {
       fail_in_line(file, lines.line(), error.problem());
     }
   }
-  if (table.places[0].empty()) fail_in_file(file, "has no rows; allowed: a header of fields, and rows of their values");
-  return table;
+  if (sampling.count == 0) fail_in_file(file, "has no rows; allowed: a header of fields, and rows of their values");
+  for (std::size_t a = 0; a < axes.size(); ++a)
+    for (double& place : sampling.of_file[a]) place = (place + 0.5) / static_cast<double>(axes[a].size());
+  return sampling;
 }
 
 Shard parse_shard(const std::string& text) {
@@ -307,40 +303,24 @@ std::string shard_text(const Shard& shard) {
 
 Cases::Cases(std::vector<ScenarioText> scenes, std::vector<std::string> sets, std::vector<Axis> axes,
              std::optional<Sampling> sampling)
-    : scenes_(std::move(scenes)), sets_(std::move(sets)), axes_(std::move(axes)), sampling_(sampling) {
-  check_paths();
+    : scenes_(std::move(scenes)), sets_(std::move(sets)), axes_(std::move(axes)), sampling_(std::move(sampling)) {
+  std::set<std::string> paths;
+  for (const Axis& axis : axes_)
+    if (!paths.insert(axis.path).second)
+      throw InputError(fmt::format("--vary: got \"{}\" twice; allowed: each field once", axis.path));
+  strides_.resize(axes_.size());
   if (sampling_) {
     size_ = sampling_->count;
     for (std::size_t a = 0; a < axes_.size(); ++a) unit_.push_back(unit_sample(*sampling_, a));
-    sort_runs();
-    return;
+    sampling_->of_file.clear();
+  } else {
+    double size = 1.0;  // a double, because the product may overflow integers
+    for (const Axis& axis : axes_) size *= static_cast<double>(axis.size());
+    if (size > static_cast<double>(kMostRuns))
+      throw InputError(fmt::format("--vary: got a grid of {:.7g} runs; allowed: at most {}", size, kMostRuns));
+    for (std::size_t a = axes_.size(); a-- > 0; size_ *= axes_[a].size()) strides_[a] = size_;
   }
-  double size = 1.0;  // a double, because the product may overflow integers
-  for (const Axis& axis : axes_) size *= static_cast<double>(axis.size());
-  if (size > static_cast<double>(kMostRuns))
-    throw InputError(fmt::format("--vary: got a grid of {:.7g} runs; allowed: at most {}", size, kMostRuns));
-  strides_.resize(axes_.size());
-  for (std::size_t a = axes_.size(); a-- > 0; size_ *= axes_[a].size()) strides_[a] = size_;
   sort_runs();
-}
-
-Cases::Cases(std::vector<ScenarioText> scenes, std::vector<std::string> sets, PointTable points)
-    : scenes_(std::move(scenes)),
-      sets_(std::move(sets)),
-      axes_(std::move(points.axes)),
-      sampling_(Sampling{SamplingMethod::points, points.places[0].size()}),
-      places_(std::move(points.places)),
-      size_(sampling_->count) {
-  check_paths();
-  sort_runs();
-}
-
-void Cases::check_paths() const {
-  std::set<std::string> paths;
-  for (const Axis& axis : axes_) {
-    if (paths.insert(axis.path).second) continue;
-    throw InputError(fmt::format("--vary: got \"{}\" twice; allowed: each field once", axis.path));
-  }
 }
 
 /// Each point of a sampled range has a value of its own, which no other case shares.
@@ -359,12 +339,11 @@ void Cases::sort_runs() {
 }
 
 std::size_t Cases::place(std::size_t i, std::size_t axis) const {
-  if (!sampling_) return i / strides_[axis] % axes_[axis].size();
-  return places_.empty() ? axes_[axis].place_at(unit_[axis][i]) : places_[axis][i];
+  return sampling_ ? axes_[axis].place_at(unit_[axis][i]) : i / strides_[axis] % axes_[axis].size();
 }
 
 std::string Cases::value(std::size_t i, std::size_t axis) const {
-  return unit_.empty() ? axes_[axis].value(place(i, axis)) : axes_[axis].value_at(unit_[axis][i]);
+  return sampling_ ? axes_[axis].value_at(unit_[axis][i]) : axes_[axis].value(place(i, axis));
 }
 
 std::vector<std::string> Cases::values(std::size_t i) const {
@@ -402,6 +381,54 @@ LoadedScenario Cases::load(std::size_t i) const {
   for (std::size_t a = 0; a < axes_.size(); ++a)
     if (!axes_[a].along.empty()) loaded.scenario.time.stride *= axes_[a].along[place(i, a)].stride;
   return loaded;
+}
+
+std::size_t available_threads() {
+  return static_cast<std::size_t>(tbb::info::default_concurrency());
+}
+
+void for_each_job(std::size_t count, const JobOptions& options, const std::function<void(std::size_t)>& job) {
+  ProgressBar bar(options.label, count, !options.label.empty());
+  std::mutex mutex;  // of all below; unlocked only while a job runs
+  std::size_t begun = 0, done = 0, lowest = count;
+  std::exception_ptr error;  // of the lowest job that failed
+  const auto work = [&] {
+    std::unique_lock lock(mutex);
+    while (begun < count && !error && StopSignal::received() == 0) {
+      const std::size_t i = begun++;
+      std::exception_ptr caught;
+      lock.unlock();
+      try {
+        job(i);
+      } catch (...) {
+        caught = std::current_exception();
+      }
+      lock.lock();
+      if (!caught) {
+        bar.show(++done, true);
+      } else if (i < lowest) {
+        lowest = i;
+        error = caught;
+      }
+    }
+  };
+  const std::size_t threads = std::max(1u, options.threads);
+  // A job may itself use TBB: that gets no more threads than there are jobs at once.
+  const tbb::global_control within(tbb::global_control::max_allowed_parallelism,
+                                   std::min(threads, available_threads()));
+  std::unique_lock starting(mutex);  // no job begins before all threads are there
+  std::vector<std::jthread> others;
+  try {
+    while (others.size() + 1 < std::min(threads, count)) others.emplace_back(work);
+  } catch (const std::exception& reason) {
+    const std::string text = fmt::format("{}; if threads or memory ran short: fewer --jobs", reason.what());
+    error = std::make_exception_ptr(std::runtime_error(text));
+  }
+  starting.unlock();
+  work();
+  others.clear();
+  if (error) std::rethrow_exception(error);
+  if (done < count) throw_if_stopped();
 }
 
 }  // namespace hapbench

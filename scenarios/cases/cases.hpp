@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -84,34 +85,27 @@ std::string_view sampling_name(SamplingMethod method);
 /// A sample of the unit cube. Equal samples have the same points to the last bit on every machine.
 struct Sampling {
   SamplingMethod method = SamplingMethod::latin_hypercube;
-  std::size_t count = 1;   ///< points
-  std::uint64_t seed = 1;  ///< of the shuffles, or the points themselves
+  std::size_t count = 1;                          ///< points
+  std::uint64_t seed = 1;                         ///< of the shuffles, or the points themselves
+  std::vector<std::vector<double>> of_file = {};  ///< by axis: the coordinates of the points of a file
 };
 
 /// Reads "lhs:N" or "random:N" with 1 <= N <= kMostRuns. Throws InputError.
 Sampling parse_sampling(const std::string& text, std::uint64_t seed);
 
 /// The coordinates in [0, 1) of each point along an axis, from a stream of random numbers of its own: one more axis
-/// does not change the others. Precondition: the points are not those of a file.
+/// does not change the others.
 std::vector<double> unit_sample(const Sampling& sampling, std::size_t axis);
 
-/// The points of a file, a row each: the columns are the axes, whose values are listed once.
-struct PointTable {
-  std::vector<Axis> axes;
-  std::vector<std::vector<std::uint32_t>> places;  ///< by axis: which of the axis's values a point has
-};
-
-/// Reads the table of --points: a header of fields' paths, and their values. Throws InputError with the line.
-PointTable read_points(const std::filesystem::path& file);
+/// Reads the table of --points: a header of fields' paths, which become axes that list each value once, and a row of
+/// values for each point. Throws InputError with the line.
+Sampling read_points(const std::filesystem::path& file, std::vector<Axis>& axes);
 
 /// A part of the cases: those whose place in the order of the runs leaves the remainder `index` when divided by
 /// `count`. By default all.
 struct Shard {
   std::size_t index = 0;
   std::size_t count = 1;
-
-  /// Number of the cases that belong to it.
-  std::size_t size(std::size_t cases) const { return (cases + count - 1 - index) / count; }
 };
 
 /// Reads "i/n" with 0 <= i < n. Throws InputError.
@@ -121,8 +115,8 @@ Shard parse_shard(const std::string& text);
 std::string shard_text(const Shard& shard);
 
 /// Scenes with overrides, of which fields vary: all combinations of the values of the axes, the last one fastest, or a
-/// sample of them. Numbered from 0. Memory: 8 bytes a case and axis of a sample, 8 bytes a case where scenes or fields
-/// of the environment vary, and the rows of a file.
+/// sample of them. Numbered from 0. Memory: 8 bytes a case and axis of a sample, and 8 bytes a case where scenes or
+/// fields of the environment vary.
 class Cases {
  public:
   /// A grid, or a sample of the box that the axes span. `scenes` has one, or one for each value of the axis kSceneAxis.
@@ -130,8 +124,6 @@ class Cases {
   /// kMostRuns combinations. Precondition: on a grid every axis has values.
   Cases(std::vector<ScenarioText> scenes, std::vector<std::string> sets, std::vector<Axis> axes,
         std::optional<Sampling> sampling = {});
-  /// The points of a file.
-  Cases(std::vector<ScenarioText> scenes, std::vector<std::string> sets, PointTable points);
 
   std::size_t size() const { return size_; }
   const std::vector<ScenarioText>& scenes() const { return scenes_; }
@@ -158,7 +150,6 @@ class Cases {
   std::size_t at(std::size_t place) const { return sorted_.empty() ? place : sorted_[place]; }
 
  private:
-  void check_paths() const;
   void sort_runs();
   std::string value(std::size_t i, std::size_t axis) const;
 
@@ -166,11 +157,26 @@ class Cases {
   std::vector<std::string> sets_;
   std::vector<Axis> axes_;
   std::optional<Sampling> sampling_;
-  std::vector<std::vector<double>> unit_;           ///< by axis: the coordinates of a random sample
-  std::vector<std::vector<std::uint32_t>> places_;  ///< by axis: of the points of a file
-  std::vector<std::size_t> strides_;  ///< of a grid: distance of cases with neighbouring values of an axis
-  std::vector<std::size_t> sorted_;   ///< in the order of runs; empty: as they are numbered
+  std::vector<std::vector<double>> unit_;  ///< by axis: the coordinates of a sample
+  std::vector<std::size_t> strides_;       ///< of a grid: distance of cases with neighbouring values of an axis
+  std::vector<std::size_t> sorted_;        ///< in the order of runs; empty: as they are numbered
   std::size_t size_ = 1;
 };
+
+/// Number of threads that this process may use at once.
+std::size_t available_threads();
+
+/// How for_each_job processes a list of jobs.
+struct JobOptions {
+  unsigned threads = 1;  ///< jobs at once; at least 1
+  std::string label;     ///< text before the progress bar; empty for no bar
+};
+
+/// Calls job(0) … job(count - 1), each once, on several threads. Jobs begin in this order and at most `threads` of them
+/// are under way. They must be independent: each writes to its own place, so that the result does not depend on the
+/// number of threads. After an exception no further job starts, and the exception of the lowest job is rethrown. A
+/// signal (stop_signal.hpp) ends the loop the same way. Throws std::runtime_error before any job begins when there are
+/// not so many threads to be had. Overhead: some microseconds a job, some tens a thread.
+void for_each_job(std::size_t count, const JobOptions& options, const std::function<void(std::size_t)>& job);
 
 }  // namespace hapbench

@@ -3,12 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
-#include "results/io/atomic_file.hpp"
-#include "results/io/json_text.hpp"
+#include "algorithms/registry.hpp"
 #include "scenarios/format/input_error.hpp"
-#include "scenarios/format/json_file.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/result_folder.hpp"
 #include "sim/core/random.hpp"
@@ -71,46 +68,6 @@ Cases cases_of(const ComparisonQuestion& question, const fs::path& file, std::ve
   return {{text}, question.overrides, std::move(axes)};
 }
 
-/// Returns true if a path stays below the directory when all links but its last part are followed.
-bool lies_below(const fs::path& directory, const fs::path& path) {
-  if (path.empty() || path.is_absolute()) return false;
-  std::error_code error;
-  const fs::path root = fs::canonical(directory, error);
-  if (error) return false;
-  const fs::path parent = fs::weakly_canonical(root / path.parent_path(), error);
-  if (error || path.filename() == ".." || path.filename() == "." || path.filename().empty()) return false;
-  return std::mismatch(root.begin(), root.end(), parent.begin(), parent.end()).first == root.end() &&
-         !fs::is_symlink(fs::symlink_status(root / path, error));
-}
-
-/// The paths that a command listed under a name, without those that lead elsewhere; none where the list cannot be read.
-std::vector<fs::path> listed(const fs::path& directory, const char* name) {
-  std::vector<fs::path> paths;
-  try {
-    const Json list = parse_json(read_text_file(directory / kResultListFile, kLargestJsonFile)).at(name);
-    if (!list.is_array()) return {};
-    for (const Json& path : list)
-      if (path.is_string() && lies_below(directory, path.get<std::string>()))
-        paths.emplace_back(path.get<std::string>());
-  } catch (const std::exception&) {
-    paths.clear();
-  }
-  return paths;
-}
-
-Json texts_of(const std::vector<fs::path>& paths) {
-  Json texts = Json::array();
-  for (const fs::path& path : paths) texts.push_back(path.generic_string());
-  return texts;
-}
-
-/// Removes the empty directories from `path` up to, but not including, `directory`.
-void remove_empty(const fs::path& directory, fs::path path) {
-  std::error_code error;
-  for (; !path.empty(); path = path.parent_path())
-    if (!fs::is_directory(directory / path, error) || !fs::remove(directory / path, error) || error) return;
-}
-
 }  // namespace
 
 Axis seed_axis(const Scenario& scenario, std::size_t seeds, double jitter) {
@@ -149,45 +106,42 @@ Comparison planned(const ComparisonQuestion& question) {
 
 std::vector<Result> run_all(std::span<const Cases> all, const JobOptions& jobs,
                             const std::function<fs::path(std::size_t)>& folder) {
-  struct Place {
+  struct Run {
     const Cases& cases;
-    std::size_t i, run;
+    std::size_t i, number;
   };
-  std::vector<Place> order;
+  std::vector<Run> runs;  // in their order
   for (const Cases& cases : all) {
-    const std::size_t first = order.size();
+    const std::size_t first = runs.size();
     for (std::size_t place = 0; place < cases.size(); ++place)
-      order.push_back({cases, cases.at(place), first + cases.at(place)});
+      runs.push_back({cases, cases.at(place), first + cases.at(place)});
   }
-  std::vector<Result> reports(order.size());
-  for_each_job(order.size(), jobs, [&](std::size_t place) {
-    const auto& [cases, i, run] = order[place];
-    reports[run] = run_scenario(cases.load(i), folder ? std::optional(folder(run)) : std::nullopt, false);
-    reports[run].targets.clear();
+  std::vector<Result> results(runs.size());
+  for_each_job(runs.size(), jobs, [&](std::size_t place) {
+    const auto& [cases, i, number] = runs[place];
+    results[number] = run_scenario(cases.load(i), folder ? std::optional(folder(number)) : std::nullopt, false);
+    results[number].targets.clear();
   });
-  return reports;
+  return results;
 }
 
-void replace_earlier_results(const fs::path& directory, const ResultList& now) {
-  for (const fs::path& run : listed(directory, "runs")) {
-    if (std::ranges::find(now.runs, run) != now.runs.end()) continue;
-    remove_run(directory / run);
-    remove_empty(directory, run);
-  }
+void remove_earlier_comparison(const fs::path& folder, const Comparison& comparison) {
   std::error_code ignored;
-  for (const fs::path& table : listed(directory, "tables"))
-    if (fs::remove(directory / table, ignored)) remove_empty(directory, table.parent_path());
-  write_file_atomically(directory / kResultListFile,
-                        json_text({{"runs", texts_of(now.runs)}, {"tables", texts_of(now.tables)}}));
-}
-
-void forget_results_if_none(const fs::path& directory) {
-  std::error_code ignored;
-  for (const char* name : {"runs", "tables"}) {
-    for (const fs::path& path : listed(directory, name))
-      if (fs::exists(directory / path, ignored) && !fs::is_empty(directory / path, ignored)) return;
+  fs::remove(folder / "league.csv", ignored);
+  for (std::size_t scene = 0; scene < comparison.scenes.size(); ++scene) {
+    const fs::path place = folder / comparison.scene_folder(scene);
+    fs::remove(place / "comparison.csv", ignored);
+    for (const std::string& law : algorithm_names()) {
+      std::vector<fs::path> runs = {place / law};
+      while (fs::exists(place / law / fmt::format("seed_{}", runs.size() - 1), ignored))
+        runs.push_back(place / law / fmt::format("seed_{}", runs.size() - 1));
+      for (; !runs.empty(); runs.pop_back()) {
+        if (!fs::is_directory(runs.back(), ignored)) continue;
+        remove_run(runs.back());
+        fs::remove(runs.back(), ignored);  // if it is empty now
+      }
+    }
   }
-  fs::remove(directory / kResultListFile, ignored);
 }
 
 }  // namespace hapbench

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <span>
@@ -8,7 +9,6 @@
 #include <vector>
 
 #include "scenarios/cases/cases.hpp"
-#include "scenarios/cases/parallel_for.hpp"
 #include "scenarios/run/run_scenario.hpp"
 
 /// Scenes, each under the same laws and with the same number of seeds.
@@ -24,7 +24,7 @@ struct ComparisonQuestion {
   std::vector<std::filesystem::path> scenarios;  ///< files
   std::vector<std::string> algorithms;
   std::vector<std::string> overrides = {};  ///< of all runs, as in --set
-  std::size_t seeds = 1;                    ///< repetition k has the scenario's seed + k
+  std::uint64_t seeds = 1;                  ///< repetition k has the scenario's seed + k
   double jitter = 0.0;                      ///< length of a random shift of the start [m]
 };
 
@@ -63,23 +63,8 @@ Comparison planned(const ComparisonQuestion& question);
 std::vector<Result> run_all(std::span<const Cases> cases, const JobOptions& jobs,
                             const std::function<std::filesystem::path(std::size_t run)>& folder = {});
 
-/// The files that a command with several runs writes into a directory, by relative paths.
-struct ResultList {
-  std::vector<std::filesystem::path> runs;    ///< directories of runs
-  std::vector<std::filesystem::path> tables;  ///< other files
-};
-
-/// The file in which a command keeps its list.
-inline constexpr const char* kResultListFile = "hapbench_results.json";
-
-/// Removes from `directory` the results of an earlier command, which are listed in kResultListFile, and replaces that
-/// list by `now`. Call it before the first run. Removes all listed tables, and the listed runs that `now` does not
-/// name: their result files (remove_run), and their directories if these are empty afterwards. Ignores entries that
-/// lead out of `directory`, by ".." or a link, and a list that cannot be read. Throws IoError when the new list cannot
-/// be written.
-void replace_earlier_results(const std::filesystem::path& directory, const ResultList& now);
-
-/// Removes the list if none of the files it names exists, for instance after a command was stopped in its first run.
-void forget_results_if_none(const std::filesystem::path& directory);
+/// Removes what an earlier comparison of these scenes left in a folder: its tables, and the files of runs of any law
+/// and seed, so that laws are not shown beside those of another question. Other files stay.
+void remove_earlier_comparison(const std::filesystem::path& folder, const Comparison& comparison);
 
 }  // namespace hapbench

@@ -5,10 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <limits>
 #include <utility>
 
 #include "results/summary/summary.hpp"
-#include "scenarios/cases/statistics.hpp"
 #include "scenarios/format/metric_sections.hpp"
 #include "scenarios/run/run_scenario.hpp"
 
@@ -63,26 +64,19 @@ Standing standing_of(const League& league, std::size_t s, std::size_t a, std::si
   return standing;
 }
 
-bool is_same(double a, double b) {
-  return std::abs(a - b) <= kSameRank * std::max(std::abs(a), std::abs(b));
-}
-
-bool is_better(const Standing* a, const Standing* b) {
-  return a->better == Better::more ? *a->mean > *b->mean : *a->mean < *b->mean;
-}
-
 /// Ranks the algorithms in one scenario by one metric.
 void rank_by_means(const std::vector<Standing*>& standings) {
-  if (standings.front()->better == Better::none) return;
-  const auto has_mean = [](const Standing* s) { return s->mean.has_value(); };
-  if (std::ranges::none_of(standings, has_mean)) return;
+  const Better better = standings.front()->better;
+  if (better == Better::none || std::ranges::none_of(standings, [](const auto* s) { return s->mean.has_value(); }))
+    return;
   std::vector<Standing*> order;
   for (Standing* s : standings)
     if (s->failed == 0 && s->mean) order.push_back(s);
-  std::ranges::stable_sort(order, is_better);
+  std::ranges::stable_sort(order, {}, [&](const Standing* s) { return better == Better::more ? -*s->mean : *s->mean; });
   std::size_t leader = 0;
   for (std::size_t i = 0; i < order.size(); ++i) {
-    if (!is_same(*order[leader]->mean, *order[i]->mean)) leader = i;
+    const double a = *order[leader]->mean, b = *order[i]->mean;
+    if (std::abs(a - b) > kSameRank * std::max(std::abs(a), std::abs(b))) leader = i;
     order[i]->rank = 1 + leader;
   }
   for (Standing* s : standings) {
@@ -100,13 +94,46 @@ LawStanding law_standing(const League& league, std::size_t a) {
   for (std::size_t s = 0; s < league.scenarios.size(); ++s) {
     for (std::size_t m = 0; m < league.metrics.size(); ++m)
       if (const auto rank = league.at(s, a, m).rank) ranks.push_back(static_cast<double>(*rank));
-    if (league.failures(s, a) > 0) law.fails.push_back(s);
+    if (league.failures(s, a) > 0) law.fails.push_back(league.scenarios[s]);
   }
   if (!ranks.empty()) law.mean_rank = mean_of(ranks);
   return law;
 }
 
 }  // namespace
+
+double mean_of(const std::vector<double>& values) {
+  double sum = 0.0;
+  for (const double value : values) sum += value;
+  return values.empty() ? std::nan("") : sum / static_cast<double>(values.size());
+}
+
+double standard_deviation(const std::vector<double>& values) {
+  if (values.size() < 2) return 0.0;
+  const double mean = mean_of(values);
+  double squares = 0.0;
+  for (const double value : values) squares += (value - mean) * (value - mean);
+  return std::sqrt(squares / static_cast<double>(values.size() - 1));
+}
+
+double standard_error(const std::vector<double>& values) {
+  return values.empty() ? 0.0 : standard_deviation(values) / std::sqrt(static_cast<double>(values.size()));
+}
+
+double paired_t(const std::vector<double>& a, const std::vector<double>& b) {
+  if (a.size() < 2) return 0.0;
+  std::vector<double> differences;
+  for (std::size_t i = 0; i < a.size(); ++i) differences.push_back(a[i] - b[i]);
+  const double mean = mean_of(differences), error = standard_error(differences);
+  if (error == 0.0) return mean == 0.0 ? 0.0 : std::copysign(std::numeric_limits<double>::infinity(), mean);
+  return mean / error;
+}
+
+double critical_t(std::size_t degrees) {
+  constexpr double kCritical[] = {12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228};
+  if (degrees == 0) return std::numeric_limits<double>::infinity();
+  return kCritical[std::min(degrees, std::size(kCritical)) - 1];
+}
 
 std::size_t League::failures(std::size_t scenario, std::size_t algorithm) const {
   return static_cast<std::size_t>(std::ranges::count_if(runs_of(scenario, algorithm), &LeagueRun::failed));

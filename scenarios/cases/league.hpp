@@ -11,8 +11,20 @@
 #include "results/io/columns.hpp"
 #include "scenarios/cases/comparison.hpp"
 
-/// Ranks algorithms by their metrics in each scenario and over all scenarios.
+/// Ranks algorithms by their metrics in each scenario and over all scenarios; means and what chance makes of them.
 namespace hapbench {
+
+/// NaN if empty.
+double mean_of(const std::vector<double>& values);
+/// Standard deviation of a sample, with n - 1 in the denominator; 0 for fewer than two values.
+double standard_deviation(const std::vector<double>& values);
+/// Standard error of the mean: standard deviation / sqrt(n); 0 for fewer than two values.
+double standard_error(const std::vector<double>& values);
+/// Student's t of a paired test; 0 for fewer than two pairs, infinite when all pairs have the same difference.
+double paired_t(const std::vector<double>& a, const std::vector<double>& b);
+/// Two-sided 5 % quantile of Student's t, to 5e-4; infinite for 0 degrees of freedom. Beyond 10 that of 10, which is a
+/// little strict: an experiment of the thesis has six subjects.
+double critical_t(std::size_t degrees);
 
 /// The data that the league takes from one run.
 struct LeagueRun {
@@ -49,7 +61,7 @@ struct Standing {
 struct LawStanding {
   std::string algorithm;
   std::optional<double> mean_rank;  ///< mean of its ranks, including those for failures
-  std::vector<std::size_t> fails;   ///< scenarios in which at least one seed failed
+  std::vector<std::string> fails;   ///< scenarios in which at least one seed failed
 };
 
 /// The runs of a comparison, and what rank() makes of them.

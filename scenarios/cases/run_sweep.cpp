@@ -19,8 +19,6 @@
 #include "results/io/json_text.hpp"
 #include "results/summary/provenance.hpp"
 #include "results/summary/summary.hpp"
-#include "scenarios/cases/parallel_for.hpp"
-#include "scenarios/cases/table_file.hpp"
 #include "scenarios/format/descriptions.hpp"
 #include "scenarios/format/input_error.hpp"
 #include "scenarios/format/json_file.hpp"
@@ -28,9 +26,7 @@
 #include "scenarios/format/text_lines.hpp"
 #include "scenarios/format/writer.hpp"
 #include "scenarios/run/assemble.hpp"
-#include "scenarios/run/progress_bar.hpp"
 #include "scenarios/run/run_scenario.hpp"
-#include "scenarios/run/stop_signal.hpp"
 #include "sim/core/hash.hpp"
 
 namespace hapbench {
@@ -161,22 +157,20 @@ std::string finished_row(const SweepPlan& plan, std::size_t run, const Result& s
   std::vector<std::string> cells = {std::string(outcome_name(summary.end.outcome)), summary.expected ? "true" : "false",
                                     std::to_string(summary.end.rows)};
   const MetricList& metrics = summary.metrics;
-  auto next = metrics.begin();  // the columns are in the same order, but some runs have more metrics than others
-  for (const std::string& name : plan.metrics) {
-    const bool is_it = next != metrics.end() && next->name == name;
-    cells.push_back(is_it ? cell_text(next->value) : "");
-    if (is_it) ++next;
-  }
-  if (next != metrics.end()) {
+  for (const Metric& metric : metrics) {
+    if (std::ranges::find(plan.metrics, metric.name) != plan.metrics.end()) continue;
     throw InputError(
         fmt::format("has the metric {}, for which no run that was checked before the first one has a column; allowed: "
                     "sweeps whose first runs record what the others record",
-                    next->name));
+                    metric.name));
+  }
+  for (const std::string& name : plan.metrics) {
+    const Metric* metric = find_metric(metrics, name);
+    cells.push_back(metric == nullptr ? "" : cell_text(metric->value));
   }
   for (const std::string& name : plan.bounded) {
     const Metric* metric = find_metric(metrics, name);
-    const auto tolerance = metric != nullptr ? metric->tolerance() : std::nullopt;
-    cells.push_back(tolerance ? cell_text(*tolerance) : "");
+    cells.push_back(metric == nullptr ? "" : cell_text(cell_if(metric->tolerance())));
   }
   cells.push_back(hash_text(summary.state_hash));
   return line_of(plan, run, cells);
@@ -192,83 +186,50 @@ bool stays(const SweepPlan& plan, const SweepOptions& options, std::size_t run, 
          (!options.keep_runs || fs::exists(run_folder(options, run) / "summary.json"));
 }
 
-struct Sign {
-  std::string_view text;
-  bool (*holds)(double a, double b);
-};
-
-/// Longer ones first.
-constexpr Sign kSigns[] = {
-    {"<=", [](double a, double b) { return a <= b; }}, {">=", [](double a, double b) { return a >= b; }},
-    {"!=", [](double a, double b) { return a != b; }}, {"<", [](double a, double b) { return a < b; }},
-    {">", [](double a, double b) { return a > b; }},   {"=", [](double a, double b) { return a == b; }}};
-
 /// Whether a row keeps a condition.
 using Condition = std::function<bool(const SweepRow& row)>;
 
-Condition condition_of(const std::string& text, const std::vector<std::string>& columns) {
-  const std::size_t end = std::min(text.find_first_of("<>=!"), text.size());
-  const std::string name = text.substr(0, end), rest = text.substr(end);
-  const auto* sign = std::ranges::find_if(kSigns, [&](const Sign& s) { return rest.starts_with(s.text); });
-  const std::string value = sign == std::end(kSigns) ? "" : rest.substr(sign->text.size());
+Condition condition_of(const std::string& text, const SweepTable& table) {
+  static const std::map<std::string, std::function<bool(double, double)>> kSigns = {
+      {"<", std::less<>()},           {">", std::greater<>()},  {"<=", std::less_equal<>()},
+      {">=", std::greater_equal<>()}, {"=", std::equal_to<>()}, {"!=", std::not_equal_to<>()}};
+  const std::size_t begin = std::min(text.find_first_of("<>=!"), text.size());
+  const std::size_t end = std::min(text.find_first_not_of("<>=!", begin), text.size());
+  const std::string name = text.substr(0, begin), sign = text.substr(begin, end - begin), value = text.substr(end);
   const auto number = finite_number(value);
-  if (value.empty() || (!number && sign->text != "=" && sign->text != "!=")) {
+  const auto holds = kSigns.find(sign);
+  if (holds == kSigns.end() || value.empty() || (!number && sign != "=" && sign != "!=")) {
     throw InputError(fmt::format(
         "--where: got \"{}\"; allowed: a column of sweep.csv, one of < <= > >= = !=, and a number (a text with = and !=), "
         "as inside_max_m<3e-4 or outcome=completes",
         text));
   }
-  require_valid_name("--where: got", name, columns);
-  const auto column = static_cast<std::size_t>(std::ranges::find(columns, name) - columns.begin());
-  return [=](const SweepRow& row) {
-    if (!number) return (row[column] == value) == (sign->text == "=");
+  require_valid_name("--where: got", name, table.columns);
+  return [=, compare = holds->second, column = table.place(name)](const SweepRow& row) {
+    if (!number) return (row[column] == value) == (sign == "=");
     const auto found = finite_number(row[column]);
-    return found && sign->holds(*found, *number);
+    return found && compare(*found, *number);
   };
 }
 
-/// The axis that sweep.json describes.
-Axis axis_of(const Json& json) {
-  Axis axis{.path = json.at("path")};
-  if (json.contains("values")) {
-    axis.values = json.at("values").get<std::vector<std::string>>();
-  } else if (json.contains("range")) {
-    axis.range = Range{json.at("range").at(0), json.at("range").at(1), json.at("scale") == "log"};
-    axis.steps = json.value("count", std::size_t{0});
-  }
-  return axis;
-}
-
-/// The table without its rows.
-SweepTable described_table(const fs::path& file) {
-  const fs::path about = fs::path(file).replace_extension(".json");
+/// The JSON beside a table.
+Json description_of(const fs::path& table) {
+  const fs::path file = fs::path(table).replace_extension(".json");
   try {
-    const Json json = parse_json(read_text_file(about, kLargestJsonFile));
-    SweepTable table;
-    table.file = file;
-    table.definition = json.at("definition");
-    for (const Json& axis : json.at("vary")) table.axes.push_back(axis_of(axis));
-    table.sampled = json.contains("sample");
-    table.cases = json.at("runs");
-    return table;
-  } catch (const Json::exception&) {
-    fail_in_file(about, "is not the description of a sweep");
+    Json about = parse_json(read_text_file(file, kLargestJsonFile));
+    if (about.contains("definition")) return about;
   } catch (const InputError& error) {
-    rethrow_with_file(error, about);
+    rethrow_with_file(error, file);
   }
-}
-
-/// Whether the columns are those of a sweep of these fields.
-bool has_columns_of_sweep(const SweepTable& table) {
-  const std::vector<std::string> first = leading_columns(table.axes);
-  return table.columns.size() > first.size() && table.columns.back() == "state_hash" &&
-         std::equal(first.begin(), first.end(), table.columns.begin());
+  fail_in_file(file, "is not the description of a sweep");
 }
 
 }  // namespace
 
 std::vector<std::string> SweepPlan::columns() const {
-  std::vector<std::string> columns = leading_columns(cases.axes());
+  std::vector<std::string> columns = {"index"};
+  for (const Axis& axis : cases.axes()) columns.push_back(axis.path);
+  columns.insert(columns.end(), {"outcome", "expected", "steps"});
   columns.insert(columns.end(), metrics.begin(), metrics.end());
   for (const std::string& metric : bounded) columns.push_back(std::string(kToleranceOf) + metric);
   columns.emplace_back("state_hash");
@@ -301,15 +262,14 @@ std::vector<std::size_t> runs_to_check(const Cases& cases) {
   return {runs.begin(), runs.end()};
 }
 
-SweepPlan plan_sweep(Cases cases, std::size_t jobs, bool progress) {
+SweepPlan plan_sweep(Cases cases, const JobOptions& jobs) {
   SweepPlan plan{
       .cases = std::move(cases), .warnings = {}, .metrics = {}, .bounded = {}, .content = {}, .definition = ""};
   const std::vector<std::size_t> runs = runs_to_check(plan.cases);
   Names metrics;
   std::map<std::string, std::string> plugins;
   std::vector<Point> points(runs.size());
-  for_each_job(runs.size(), {static_cast<unsigned>(jobs), progress ? "checking" : ""},
-               [&](std::size_t i) { points[i] = examine(plan, runs[i]); });
+  for_each_job(runs.size(), jobs, [&](std::size_t i) { points[i] = examine(plan, runs[i]); });
   Names files;                               // combinations of them
   std::vector<std::size_t> runs_with_files;  // the first one of each
   for (std::size_t i = 0; i < runs.size(); ++i) {
@@ -330,29 +290,22 @@ SweepPlan plan_sweep(Cases cases, std::size_t jobs, bool progress) {
   return plan;
 }
 
-fs::path table_of(const SweepOptions& options) {
-  return options.directory / table_name(options.shard);
-}
-
 SweepReport run_sweep(const SweepPlan& plan, const SweepOptions& options) {
-  const Shard part = options.part();
+  const Shard part = options.shard.value_or(Shard{});
   SweepReport report;
   const std::vector<std::string> columns = plan.columns();
   const auto keep = [&](std::size_t run, std::string_view text) {
     return stays(plan, options, run, text, columns.size());
   };
   TableFile table(
-      {table_of(options), fmt::format("{}", fmt::join(columns, ",")), plan.description(part), plan.cases.size()},
+      {options.table(), fmt::format("{}", fmt::join(columns, ",")), plan.description(part), plan.cases.size()},
       options.resume ? TableFile::Keep(keep) : nullptr);
   report.resumed = table.count();
-  const std::size_t size = part.size(plan.cases.size());
-  ProgressBar bar("sweep", size, options.progress);
-  bar.start_at(report.resumed);
   std::vector<std::size_t> left;  // in the order of runs
   for (std::size_t place = part.index; place < plan.cases.size(); place += part.count)
     if (const std::size_t run = plan.cases.at(place); !table.rows()[run]) left.push_back(run);
   std::mutex mutex;  // of table and report
-  const auto work = [&](std::size_t k) {
+  for_each_job(left.size(), options.jobs, [&](std::size_t k) {
     const std::size_t run = left[k];
     std::string row;
     std::optional<FailedRun> failed;
@@ -367,31 +320,11 @@ SweepReport run_sweep(const SweepPlan& plan, const SweepOptions& options) {
     }
     const std::lock_guard lock(mutex);
     table.add(run, row);
-    if (!failed) {
-      if (options.added) options.added();
-      bar.show(table.count(), true);
-    } else if (!report.failed || run < report.failed->run) {
-      report.failed = failed;
-    }
-  };
-  try {
-    for_each_job(left.size(), {static_cast<unsigned>(options.jobs), ""}, work);
-  } catch (const Stopped&) {
-    // It can be resumed.
-  }
-  report.done = table.count();
-  if (report.done < size)
-    report.signal = StopSignal::received();
-  else
-    table.finish();
+    if (failed && (!report.failed || run < report.failed->run)) report.failed = failed;
+    if (!failed && options.added) options.added();
+  });
+  table.finish();
   return report;
-}
-
-std::vector<std::string> leading_columns(const std::vector<Axis>& axes) {
-  std::vector<std::string> columns = {"index"};
-  for (const Axis& axis : axes) columns.push_back(axis.path);
-  columns.insert(columns.end(), {"outcome", "expected", "steps"});
-  return columns;
 }
 
 void SweepCounts::add(std::size_t run, const std::string& outcome, bool is_expected) {
@@ -406,15 +339,19 @@ void SweepCounts::add(std::size_t run, const std::string& outcome, bool is_expec
   if (!first_unexpected) first_unexpected = run;
 }
 
+std::size_t SweepTable::place(std::string_view column) const {
+  return static_cast<std::size_t>(std::ranges::find(columns, column) - columns.begin());
+}
+
 std::vector<std::string> SweepTable::metrics() const {
-  const auto first = columns.begin() + static_cast<std::ptrdiff_t>(outcome_place()) + 3;
+  const auto first = columns.begin() + static_cast<std::ptrdiff_t>(place("steps")) + 1;
   return {first,
           std::find_if(first, columns.end() - 1, [](const auto& name) { return name.starts_with(kToleranceOf); })};
 }
 
 std::optional<double> SweepTable::number(const SweepRow& row, std::string_view column) const {
-  const auto place = static_cast<std::size_t>(std::ranges::find(columns, column) - columns.begin());
-  return place < row.size() ? finite_number(row[place]) : std::nullopt;
+  const std::size_t at = place(column);
+  return at < row.size() ? finite_number(row[at]) : std::nullopt;
 }
 
 std::optional<double> SweepTable::tolerance(const SweepRow& row, std::string_view metric) const {
@@ -422,24 +359,26 @@ std::optional<double> SweepTable::tolerance(const SweepRow& row, std::string_vie
 }
 
 SweepTable read_sweep(const fs::path& file, const std::vector<std::string>& conditions) {
-  SweepTable table = described_table(file);
+  SweepTable table{.file = file, .about = description_of(file), .columns = {}, .rows = {}, .counts = {}, .kept = {}};
   std::ifstream in(file);
   std::string line;
   std::getline(in, line);
   table.columns = csv_cells(line);
-  if (!has_columns_of_sweep(table)) fail_in_file(file, "is not the table of the sweep that sweep.json describes");
+  const std::size_t outcome = table.place("outcome");
+  if (table.columns[0] != "index" || table.columns.back() != "state_hash" || table.place("expected") != outcome + 1 ||
+      table.place("steps") != outcome + 2)
+    fail_in_file(file, "is not the table of the sweep that sweep.json describes");
   std::vector<Condition> all;
-  for (const std::string& text : conditions) all.push_back(condition_of(text, table.columns));
+  for (const std::string& text : conditions) all.push_back(condition_of(text, table));
   while (std::getline(in, line)) {
     SweepRow row = csv_cells(line);
     const auto run = whole_number(row[0]);
     if (!run || row.size() != table.columns.size())
       fail_in_file(file, fmt::format("got the row \"{}\"; allowed: rows of this sweep", line.substr(0, 60)));
-    const std::string& outcome = table.outcome(row);
-    const bool is_expected = row[table.outcome_place() + 1] == "true";
-    table.counts.add(*run, outcome, is_expected);
+    const bool is_expected = row[outcome + 1] == "true";
+    table.counts.add(*run, row[outcome], is_expected);
     if (!std::ranges::all_of(all, [&row](const Condition& keeps) { return keeps(row); })) continue;
-    table.kept.add(*run, outcome, is_expected);
+    table.kept.add(*run, row[outcome], is_expected);
     if (table.kept.runs <= SweepTable::kMostRows) table.rows.push_back(std::move(row));
   }
   if (table.kept.runs > SweepTable::kMostRows) table.rows.clear();

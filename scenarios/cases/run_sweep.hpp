@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "scenarios/cases/cases.hpp"
+#include "scenarios/cases/table_file.hpp"
 
 /// Sweeps: cases that are checked first, then run, and the table that they leave, sweep.csv.
 namespace hapbench {
@@ -40,23 +41,20 @@ inline constexpr std::size_t kMostChecked = 1000;
 std::vector<std::size_t> runs_to_check(const Cases& cases);
 
 /// Loads the scenarios of the runs to check and reads the files they name, to find errors before anything is run or
-/// written; some 0.1 ms a run on each of `jobs` threads. Throws InputError, that of the run with the lowest number.
-SweepPlan plan_sweep(Cases cases, std::size_t jobs, bool progress);
+/// written; some 0.1 ms a run and thread. Throws InputError, that of the run with the lowest number, and Stopped.
+SweepPlan plan_sweep(Cases cases, const JobOptions& jobs);
 
 struct SweepOptions {
-  std::filesystem::path directory;  ///< for all files; must exist
-  std::size_t jobs = 1;             ///< runs at once
-  std::optional<Shard> shard;       ///< which runs; none: all
+  std::filesystem::path directory = {};  ///< for all files; must exist
+  JobOptions jobs = {};
+  std::optional<Shard> shard = {};  ///< which runs; none: all
   bool resume = false;     ///< keep the rows that an earlier sweep of this plan has, but for those of failed runs
   bool keep_runs = false;  ///< write the files of each run into runs/NUMBER
-  bool progress = false;   ///< allow a progress bar
   std::function<void()> added = {};  ///< is called after each row of a finished run that the table gets
 
-  Shard part() const { return shard.value_or(Shard{}); }
+  /// sweep.csv, or that of a shard.
+  std::filesystem::path table() const { return directory / table_name(shard); }
 };
-
-/// The table of a sweep or of one of its shards in a folder: sweep.csv, or sweep.0_of_4.csv.
-std::filesystem::path table_of(const SweepOptions& options);
 
 /// A run that an exception ended.
 struct FailedRun {
@@ -64,18 +62,15 @@ struct FailedRun {
   std::string problem;
 };
 
-/// The result of a sweep: how many of its runs have a row, and why others have none.
 struct SweepReport {
-  std::size_t done = 0;             ///< number of the shard's runs that have a row
   std::size_t resumed = 0;          ///< number of rows that were there before
   std::optional<FailedRun> failed;  ///< the failed run with the lowest number
-  int signal = 0;                   ///< the signal that stopped the sweep before there was a table, or 0
 };
 
-/// Runs the shard's part of a plan and writes its table and the JSON beside it, which depend neither on `jobs` nor on
+/// Runs the shard's part of a plan and writes its table and the JSON beside it, which depend neither on the jobs nor on
 /// interruptions. Runs in one environment share its shell. A killed sweep loses the runs in flight (table_file.hpp);
-/// SIGINT and SIGTERM end it after those. Throws InputError when with `resume` there is the table of another sweep, and
-/// IoError when something cannot be written.
+/// SIGINT and SIGTERM end it after those. Throws InputError where the table of another sweep would be resumed or that
+/// of this one lost, IoError when something cannot be written, and Stopped.
 SweepReport run_sweep(const SweepPlan& plan, const SweepOptions& options);
 
 // ---- What a sweep leaves
@@ -85,9 +80,6 @@ inline constexpr std::string_view kErrorOutcome = "error";
 
 /// Stands before the name of a metric in the heading of its tolerance, as in summary.json.
 inline constexpr std::string_view kToleranceOf = "tolerances.";
-
-/// The first columns of the table: the run's number, the fields, outcome, expected and steps.
-std::vector<std::string> leading_columns(const std::vector<Axis>& axes);
 
 /// The cells of a line.
 using SweepRow = std::vector<std::string>;
@@ -114,18 +106,17 @@ struct SweepTable {
   static constexpr std::size_t kMostRows = 10'000;
 
   std::filesystem::path file;
-  std::string definition;  ///< of the plan
-  std::vector<Axis> axes;  ///< the fields that vary; without their values for the points of a file
-  bool sampled = false;    ///< no grid
-  std::size_t cases = 0;   ///< of the whole sweep
+  Json about;  ///< sweep.json
   std::vector<std::string> columns;
   std::vector<SweepRow> rows;  ///< those that keep the conditions; none when they are more than kMostRows
   SweepCounts counts;          ///< of all rows
   SweepCounts kept;            ///< of those that keep the conditions
 
-  /// The place of `outcome`.
-  std::size_t outcome_place() const { return 1 + axes.size(); }
-  const std::string& outcome(const SweepRow& row) const { return row[outcome_place()]; }
+  /// The place of a column; the number of columns where it is none.
+  std::size_t place(std::string_view column) const;
+  /// Number of the fields that vary.
+  std::size_t fields() const { return place("outcome") - 1; }
+  const std::string& outcome(const SweepRow& row) const { return row[1 + fields()]; }
   std::vector<std::string> metrics() const;
   /// None for a column that there is not, and where a cell is no number.
   std::optional<double> number(const SweepRow& row, std::string_view column) const;

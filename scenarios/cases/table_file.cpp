@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cerrno>
 #include <fstream>
-#include <map>
 #include <utility>
 
 #include "results/io/atomic_file.hpp"
@@ -110,33 +109,21 @@ std::size_t put_in_order(const TableTitle& title, const std::vector<fs::path>& p
   return found;
 }
 
-/// The tables of shards in a folder, by their index. Throws InputError when they are not of one number of shards.
-std::map<std::size_t, fs::path> shards_in(const fs::path& folder, std::size_t& count) {
-  std::map<std::size_t, fs::path> shards;
+/// The number of shards that the tables of a folder are of; 0 without any. Throws InputError when they are not of one.
+std::size_t shards_in(const fs::path& folder) {
+  std::size_t count = 0;
   std::error_code ignored;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored)) {
     std::size_t index = 0, of = 0;
     if (std::sscanf(entry.path().filename().c_str(), "sweep.%zu_of_%zu.csv", &index, &of) != 2) continue;
-    if (entry.path().filename() != table_name(Shard{index, of})) continue;
-    if (!shards.empty() && of != count) {
-      fail_in_file(entry.path(), fmt::format("is one of {} shards, {} one of {}; allowed: shards of one division", of,
-                                             shards.begin()->second.string(), count));
+    if (entry.path().filename() != table_name(Shard{index, of}) || of > kMostRuns) continue;
+    if (count != 0 && of != count) {
+      fail_in_file(entry.path(),
+                   fmt::format("is one of {} shards, another one of {}; allowed: shards of one division", of, count));
     }
     count = of;
-    shards.emplace(index, entry.path());
   }
-  return shards;
-}
-
-/// Throws InputError that names the shards that are missing.
-void require_all(const fs::path& folder, const std::map<std::size_t, fs::path>& shards, std::size_t count) {
-  constexpr std::size_t kMostShown = 10;
-  std::vector<std::string> missing;
-  for (std::size_t i = 0; i < count && missing.size() < kMostShown; ++i)
-    if (!shards.contains(i)) missing.push_back(shard_text({i, count}));
-  if (missing.empty()) return;
-  throw InputError(fmt::format("{}: {} of {} shards missing: {}{}", folder.string(), count - shards.size(), count,
-                               fmt::join(missing, ", "), count - shards.size() > kMostShown ? ", ..." : ""));
+  return count;
 }
 
 }  // namespace
@@ -165,8 +152,15 @@ TableFile::TableFile(TableTitle title, const Keep& keep)
       about_part_(with_ending(beside(title_.file), ".part")),
       out_(nullptr, std::fclose),
       has_(title_.cases) {
-  if (keep) resume(keep);
   std::error_code error;
+  const std::size_t rows = rows_under_way(title_.file);
+  if (keep) {
+    resume(keep);
+  } else if (rows > 0 && is_of_this_definition()) {
+    fail_in_file(part_, fmt::format("holds {} finished runs of this sweep, which was interrupted; allowed: --resume to "
+                                    "go on from there, another --out, or to begin anew without this file",
+                                    rows));
+  }
   const bool is_new = !keep || !fs::exists(part_, error) || fs::file_size(part_, error) == 0;
   if (is_new) {
     fs::remove(part_, error);  // first: a kill must not leave its rows beside another description
@@ -178,12 +172,18 @@ TableFile::TableFile(TableTitle title, const Keep& keep)
   if (is_new) append(title_.header + "\n");
 }
 
+/// Of a table that is under way, or else of the finished one.
+bool TableFile::is_of_this_definition() const {
+  std::error_code ignored;
+  return definition_in(fs::exists(part_, ignored) ? about_part_ : beside(title_.file)) == title_.about.at("definition");
+}
+
 /// Finds the rows that are there, and leaves the part without its last line if that is torn.
 void TableFile::resume(const Keep& keep) {
   std::error_code error;
   const bool is_part = fs::exists(part_, error);
   if (!is_part && !fs::exists(title_.file, error)) return;
-  if (!is_of(title_.file, title_.about.at("definition"))) {
+  if (!is_of_this_definition()) {
     fail_in_file(
         is_part ? part_ : title_.file,
         "is not the table of this sweep; --resume needs the same scenario, --set, --vary, --shard, named files, "
@@ -207,12 +207,6 @@ void TableFile::resume(const Keep& keep) {
   count_ = static_cast<std::size_t>(std::count(has_.begin(), has_.end(), true));
   fs::resize_file(part_, lines.end(), error);
   if (error) throw IoError("write", part_, error);
-}
-
-bool TableFile::is_of(const fs::path& file, const std::string& definition) {
-  std::error_code ignored;
-  const bool is_part = fs::exists(with_ending(file, ".part"), ignored);
-  return definition_in(is_part ? with_ending(beside(file), ".part") : beside(file)) == definition;
 }
 
 std::size_t TableFile::rows_under_way(const fs::path& file) {
@@ -245,35 +239,37 @@ std::string table_name(const std::optional<Shard>& shard) {
 }
 
 bool join_shards(const fs::path& folder) {
-  std::size_t count = 0;
-  const std::map<std::size_t, fs::path> shards = shards_in(folder, count);
-  if (shards.empty()) return false;
-  const fs::path whole = folder / table_name(std::nullopt), first = shards.begin()->second;
+  constexpr std::size_t kMostShown = 10;
+  const std::size_t count = shards_in(folder);
+  const fs::path whole = folder / table_name(std::nullopt);
   std::error_code ignored;
-  const bool is_there = fs::exists(whole, ignored);
-  if (shards.size() < count && is_there) return false;
-  require_all(folder, shards, count);
-  TableTitle title{whole, "", parse_json(read_text_file(beside(first), kLargestJsonFile))};
+  std::vector<fs::path> shards;
+  std::vector<std::string> missing;
+  for (std::size_t i = 0; i < count; ++i) {
+    shards.push_back(folder / table_name(Shard{i, count}));
+    if (!fs::exists(shards.back(), ignored)) missing.push_back(shard_text({i, count}));
+  }
+  if (count == 0 || (!missing.empty() && fs::exists(whole, ignored))) return false;
+  if (const std::size_t lack = missing.size(); lack > 0) {
+    missing.resize(std::min(lack, kMostShown));
+    throw InputError(fmt::format("{}: {} of {} shards missing: {}{}", folder.string(), lack, count,
+                                 fmt::join(missing, ", "), lack > kMostShown ? ", ..." : ""));
+  }
+  TableTitle title{whole, "", parse_json(read_text_file(beside(shards[0]), kLargestJsonFile))};
   const std::string definition = title.about.value("definition", "");
-  const auto is_older = [&](const auto& shard) {
-    return fs::last_write_time(shard.second) <= fs::last_write_time(whole);
-  };
-  if (is_there && definition_in(beside(whole)) == definition && std::ranges::all_of(shards, is_older)) return true;
-  title.cases = std::min(title.about.value("runs", std::size_t{0}), kMostRuns);
-  title.about["shard"] = shard_text({});
-  TableLines header(first, 0);
-  header.next();
-  title.header = header.line();
-  std::vector<fs::path> parts;
-  for (const auto& [index, file] : shards) {
-    parts.push_back(file);
-    if (const std::string other = definition_in(beside(file)); other != definition) {
-      fail_in_file(file,
+  for (const fs::path& shard : shards) {
+    if (const std::string other = definition_in(beside(shard)); other != definition) {
+      fail_in_file(shard,
                    fmt::format("is of another sweep than {}: definition {}, there {}; allowed: shards of one sweep",
-                               first.string(), other, definition));
+                               shards[0].string(), other, definition));
     }
   }
-  if (const std::size_t found = put_in_order(title, parts, title.cases); found != title.cases) {
+  title.cases = std::min(title.about.value("runs", std::size_t{0}), kMostRuns);
+  title.about["shard"] = shard_text({});
+  TableLines first(shards[0], 0);
+  first.next();
+  title.header = first.line();
+  if (const std::size_t found = put_in_order(title, shards, title.cases); found != title.cases) {
     throw InputError(fmt::format("{}: the shards have {} of {} rows; allowed: complete tables", folder.string(), found,
                                  title.cases));
   }

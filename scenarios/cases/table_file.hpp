@@ -34,12 +34,11 @@ class TableFile {
   /// Whether a row that was written before stays; one that does not is written again. May throw.
   using Keep = std::function<bool(std::size_t i, std::string_view row)>;
 
-  /// Begins a table, over one that was under way. With `keep`, goes on with it, or with a finished one: a torn last
-  /// line is dropped. Throws InputError when that is another table or damaged, and IoError.
+  /// Begins a table, over another one that was under way. With `keep`, goes on with it, or with a finished one: a torn
+  /// last line is dropped. Throws InputError where a table that is under way would lose its rows without `keep`, or is
+  /// another one or damaged with it, and IoError.
   explicit TableFile(TableTitle title, const Keep& keep = {});
 
-  /// Whether a table that is under way, or else the finished one, is of this definition.
-  static bool is_of(const std::filesystem::path& file, const std::string& definition);
   /// Rows of a table that is under way.
   static std::size_t rows_under_way(const std::filesystem::path& file);
 
@@ -52,6 +51,7 @@ class TableFile {
   void finish();
 
  private:
+  bool is_of_this_definition() const;
   void resume(const Keep& keep);
   void append(const std::string& text);
 
@@ -65,9 +65,8 @@ class TableFile {
 /// The file of a sweep, sweep.csv, or of one of its shards, sweep.0_of_4.csv.
 std::string table_name(const std::optional<Shard>& shard);
 
-/// Joins the tables of all shards that are in a folder into sweep.csv, unless that is there and newer. False when there
-/// are none, or not all beside a whole table. Throws InputError for tables that are damaged, incomplete or not of one
-/// definition, and IoError.
+/// Joins the tables of all shards that are in a folder into sweep.csv. False when there are none, or not all beside a
+/// whole table. Throws InputError for tables that are damaged, incomplete or not of one definition, and IoError.
 bool join_shards(const std::filesystem::path& folder);
 
 }  // namespace hapbench

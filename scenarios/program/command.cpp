@@ -12,9 +12,7 @@
 #include "results/io/json_text.hpp"
 #include "scenarios/cases/cases.hpp"
 #include "scenarios/cases/league.hpp"
-#include "scenarios/cases/parallel_for.hpp"
 #include "scenarios/format/input_error.hpp"
-#include "scenarios/format/memory_limit.hpp"
 #include "scenarios/program/table.hpp"
 #include "scenarios/run/result_folder.hpp"
 
@@ -108,12 +106,6 @@ std::vector<std::string> first_few(std::vector<std::string> texts, std::size_t m
   texts.resize(most);
   texts.push_back(rest);
   return texts;
-}
-
-void announce_large_output(double bytes) {
-  constexpr double kLarge = 1e8;
-  if (bytes <= kLarge) return;
-  print_note(fmt::format("about {} will be written; \"--set record.every=10\" makes it a tenth", bytes_text(bytes)));
 }
 
 void require_names(std::string_view got, const std::vector<std::string>& names, const std::vector<std::string>& valid) {

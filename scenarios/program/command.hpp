@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "scenarios/cases/parallel_for.hpp"
+#include "scenarios/cases/cases.hpp"
 #include "scenarios/format/json_file.hpp"
 #include "scenarios/format/load_scenario.hpp"
 #include "scenarios/program/command_line.hpp"
@@ -83,9 +83,6 @@ CapturedOutput* captured_output() noexcept;
 /// Draws the run in a folder into a file, FILE.svg. Throws IoError when it cannot be made, after the Python tool has
 /// explained why on standard error.
 void write_way(const std::filesystem::path& folder, const std::filesystem::path& file, bool quiet);
-
-/// Warns on standard error of results of more than 100 MB.
-void announce_large_output(double bytes);
 
 /// The names of a table's entries, or of what its pointers point to.
 template <class Table, class Name>

@@ -3,10 +3,8 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 #include <optional>
-#include <set>
 #include <span>
 
 #include "algorithms/registry.hpp"
@@ -20,23 +18,14 @@
 #include "scenarios/program/league_table.hpp"
 #include "scenarios/program/report.hpp"
 #include "scenarios/program/run_table.hpp"
-#include "scenarios/run/result_folder.hpp"
 #include "scenarios/run/run_scenario.hpp"
-#include "scenarios/run/stop_signal.hpp"
 
 namespace hapbench {
 namespace {
 
 namespace fs = std::filesystem;
 
-// ---- Errors of --errors: which numbers are how sure, and which order of laws is larger than that
-
-/// The errors of a comparison's numbers, in words and as JSON.
-struct ComparedErrors {
-  FinerRuns finer;
-  std::string text = {};      ///< for each scenario a table and a sentence on each metric
-  Json json = Json::array();  ///< an object for each scenario and metric
-};
+// ---- How sure the numbers are, and which order of laws is larger than that
 
 /// The means of a metric in a scenario, by algorithm, and what is known of their errors.
 struct MetricNumbers {
@@ -93,22 +82,22 @@ Json numbers_json(const MetricNumbers& found, const std::vector<std::string>& al
   return {{"order", std::move(order)}, {"numbers", std::move(numbers)}};
 }
 
-/// Adds a table of the numbers of a scenario with their errors, and a sentence on each metric that it shows.
-void add_errors(const League& league, std::size_t scenario, bool all, ComparedErrors& errors) {
+/// Reports a table of the numbers of a scenario with their errors, and a sentence on each metric that it shows.
+void report_errors(const League& league, const FinerRuns& finer, std::size_t scenario, bool all, Report& report) {
   Columns<std::size_t> columns;  // a row is the place of an algorithm
   columns.print("algorithm", "", "", [&league](std::size_t a) { return league.algorithms[a]; });
-  const std::vector<RunHeading> headings = shown_headings();
   std::string sentences;
   for (std::size_t m = 0; m < league.metrics.size(); ++m) {
     const std::string& metric = league.metrics[m];
-    const MetricNumbers found = numbers_of(league, &errors.finer, scenario, m);
+    const MetricNumbers found = numbers_of(league, &finer, scenario, m);
     const std::string says = held_text(found.numbers, league.algorithms, kSameRank);
-    Json& json = errors.json.emplace_back(Json{{"scenario", league.scenarios[scenario]}, {"metric", metric}});
+    Json& json =
+        report.json()["errors"].emplace_back(Json{{"scenario", league.scenarios[scenario]}, {"metric", metric}});
     json.update(numbers_json(found, league.algorithms));
     json["says"] = says;
-    const auto heading = std::ranges::find(headings, metric, &RunHeading::metric);
-    const bool known = heading != headings.end();
-    if (!known && !all) continue;
+    const auto* heading = std::ranges::find(kRunHeadings, metric, &RunHeading::metric);
+    const bool known = heading != std::end(kRunHeadings);
+    if (!all && (!known || heading->wide)) continue;
     const double factor = known ? heading->factor : 1.0;
     columns.print(known ? heading->title : metric, "by name", "", [numbers = found.numbers, factor](std::size_t a) {
       const auto& [value, error] = numbers[a];
@@ -118,94 +107,54 @@ void add_errors(const League& league, std::size_t scenario, bool all, ComparedEr
   }
   std::vector<std::size_t> places(league.algorithms.size());
   std::iota(places.begin(), places.end(), std::size_t{0});
-  errors.text +=
-      fmt::format("\nhow sure: {}\n\n{}\n{}\n{}", league.scenarios[scenario], columns.table(places).text(prose_width()),
-                  sentences, wrapped(fmt::format("+-: {}", errors.finer.refined(scenario)), 0));
+  report.say(fmt::format("\nhow sure: {}\n\n{}\n{}\n{}", league.scenarios[scenario],
+                         columns.table(places).text(prose_width()), sentences,
+                         wrapped(fmt::format("+-: {}", finer.refined(scenario)), 0)));
 }
 
-// ---- Who does better, in a sentence
-
-/// "14 times less" or "3 % less", for a number below another one.
-std::string less_text(double less, double more) {
-  if (less * 1000.0 < more) return "over 1000 times less";
-  return less * 2.0 <= more ? fmt::format("{:.2g} times less", more / less)
-                            : fmt::format("{:.2g} % less", 100.0 * (1.0 - less / more));
-}
-
-/// "enters 3 % deeper"; empty where a depth is not known.
-std::string depth_text(const NumberWithError& here, const NumberWithError& there) {
-  if (!here.value || !there.value) return "";
-  const auto [less, more] = std::minmax(*here.value, *there.value);
-  const double error = here.error.value_or(more) + there.error.value_or(more);
-  if (more - less <= std::max(error, kSameRank * more)) return ", and enters as deep, within the error";
-  if (*here.value == less) return fmt::format(", and enters {} deep", less_text(less, more));
-  return more >= 2.0 * less ? fmt::format(", and enters {:.2g} times as deep", more / less)
-                            : fmt::format(", and enters {:.2g} % deeper", 100.0 * (more / less - 1.0));
-}
-
-/// Says which law of a scene vibrates least and how deep its tool enters, or that this is not decided. Where a law has
-/// no settled contact, as one that throws the tool out, the vibration is that of the tool.
-std::string scene_verdict(const League& league, const FinerRuns* finer) {
-  constexpr double kUnfelt = 1e-4, kUnfeltPower = 1e-10;  // [N], [m2/s2] of vibration, below what any hand feels
-  const auto numbers = [&](const char* metric, double least_error) {
-    const auto place = std::ranges::find(league.metrics, metric) - league.metrics.begin();
-    std::vector<NumberWithError> found = numbers_of(league, finer, 0, static_cast<std::size_t>(place)).numbers;
-    for (NumberWithError& number : found)
-      if (number.error) *number.error += least_error;
-    return found;
-  };
-  std::vector<std::string> failing, others;
-  for (std::size_t a = 0; a < league.algorithms.size(); ++a)
-    (league.failures(0, a) > 0 ? failing : others).push_back(league.algorithms[a]);
-  const std::size_t left = others.size();
-  const std::string fail = failing.empty() ? "" : fmt::format("; failing: {}", fmt::join(failing, ", "));
-  if (league.algorithms.size() < 2) return "";
-  if (left == 0) return "not decided: every law fails";
-  if (left == 1) return fmt::format("{} alone does not fail{}", others[0], fail);
-  std::vector<NumberWithError> vibrations = numbers("force_rms_above_30Hz_N", kUnfelt);
-  const auto has_value = [](const NumberWithError& number) { return number.value.has_value(); };
-  const bool of_force = static_cast<std::size_t>(std::ranges::count_if(vibrations, has_value)) == left;
-  if (!of_force) vibrations = numbers(kToolVibrationPower, kUnfeltPower);
-  const auto& [groups, unplaced] = held_order(vibrations, kSameRank);
-  if (groups.size() < 2 || groups[0].size() > 1 || !unplaced.empty()) {
-    return fmt::format("not decided, by the vibration of the {}: {}{}", of_force ? "force" : "tool",
-                       held_text(vibrations, league.algorithms, kSameRank), fail);
+/// Says of the laws of a scene which vibrate less than others by more than what hands feel. Where a law has no settled
+/// contact, as one that throws the tool out, the vibration is that of the tool.
+std::string vibration_text(const League& league) {
+  constexpr std::pair<const char*, double> kUnfelt[] = {{"force_rms_above_30Hz_N", 1e-4},  // [N]
+                                                        {kToolVibrationPower, 1e-10}};     // [m2/s2]
+  std::string says, failing;
+  std::ptrdiff_t laws = 0;  // that do not fail
+  for (std::size_t a = 0; a < league.algorithms.size(); ++a) {
+    if (league.failures(0, a) == 0)
+      ++laws;
+    else
+      failing += (failing.empty() ? "; failing: " : ", ") + league.algorithms[a];
   }
-  const std::size_t best = groups[0][0], next = groups[1][0];
-  const auto size = [&](std::size_t a) { return of_force ? *vibrations[a].value : std::sqrt(*vibrations[a].value); };
-  const std::vector<NumberWithError> depths = numbers("inside_max_m", 0.0);
-  return fmt::format("{} vibrates {} than {}{}{}{}{}{}", league.algorithms[best], less_text(size(best), size(next)),
-                     league.algorithms[next], left > 2 ? ", the next" : "",
-                     of_force ? "" : " (the tool above 30 Hz, as not all forces settle)",
-                     depth_text(depths[best], depths[next]), fail,
-                     finer != nullptr ? "" : "; --errors tells whether finer runs agree");
+  if (league.algorithms.size() < 2) return "";
+  for (const auto& [metric, unfelt] : kUnfelt) {
+    const auto place = static_cast<std::size_t>(std::ranges::find(league.metrics, metric) - league.metrics.begin());
+    std::vector<NumberWithError> numbers = numbers_of(league, nullptr, 0, place).numbers;
+    for (NumberWithError& number : numbers) *number.error += unfelt;
+    says = fmt::format("{}: {}", metric, held_text(numbers, league.algorithms, kSameRank));
+    if (std::ranges::count_if(numbers, [](const auto& n) { return n.value.has_value(); }) == laws) break;
+  }
+  return "\n" + wrapped(fmt::format("{}{}; --errors tells whether finer runs agree", says, failing), 0);
 }
 
 // ---- The command
 
 struct CompareOptions : CommonOptions {
-  std::vector<std::string> metrics;
-  unsigned seeds = 1;
-  double jitter = 0.0;
+  std::vector<std::string> scenarios, metrics;
+  ComparisonQuestion question;  ///< without algorithms: all
   bool errors = false;
-  std::vector<std::string> scenarios;
-  std::vector<std::string> algorithms;  ///< empty: all
 };
 
 Comparison planned(const CompareOptions& options) {
   if (!options.metrics.empty()) require_names("--by: got", options.metrics, metric_names());
   constexpr double kMostJitter = 1.0;
-  if (!(options.jitter >= 0.0 && options.jitter <= kMostJitter)) {
-    throw InputError(fmt::format("--jitter: got {}; allowed: 0 ... {} m", options.jitter, kMostJitter));
-  }
-  const std::vector<std::string>& algorithms = options.algorithms;
-  return planned(ComparisonQuestion{
-      .scenarios = find_scenarios(options.scenarios),
-      .algorithms =
-          algorithms.empty() ? algorithm_names() : chosen_names("--algorithms: got", algorithms, algorithm_names()),
-      .overrides = options.overrides,
-      .seeds = options.seeds,
-      .jitter = options.jitter});
+  ComparisonQuestion question = options.question;
+  if (!(question.jitter >= 0.0 && question.jitter <= kMostJitter))
+    throw InputError(fmt::format("--jitter: got {}; allowed: 0 ... {} m", question.jitter, kMostJitter));
+  question.scenarios = find_scenarios(options.scenarios);
+  question.overrides = options.overrides;
+  const std::vector<std::string> all = algorithm_names();
+  question.algorithms = question.algorithms.empty() ? all : chosen_names("--algorithms: got", question.algorithms, all);
+  return planned(question);
 }
 
 /// A comparison, where its files go, and whether there are several scenarios or seeds to rank over, or metrics to rank
@@ -213,100 +162,25 @@ Comparison planned(const CompareOptions& options) {
 struct Asked {
   const CompareOptions& options;
   const Comparison comparison = planned(options);
-  const bool league = comparison.scenes.size() > 1 || options.seeds > 1 || !options.metrics.empty();
+  const bool league = comparison.scenes.size() > 1 || comparison.seeds > 1 || !options.metrics.empty();
   const fs::path out =
       results_directory(options.out, comparison.scenes.size() > 1 ? "compare" : "compare_" + comparison.names[0]);
-
-  fs::path table(std::size_t scene) const { return comparison.scene_folder(scene) / "comparison.csv"; }
-  std::span<const Result> of(std::size_t scene, const std::vector<Result>& reports) const {
-    return std::span(reports).subspan(scene * comparison.each(), comparison.each());
-  }
 };
-
-/// Makes the directories and removes the results of an earlier comparison from them.
-void prepare(const Asked& asked) {
-  const Comparison& comparison = asked.comparison;
-  ResultList results;
-  double bytes = 0.0;
-  for (std::size_t i = 0; i < comparison.size(); ++i) results.runs.push_back(comparison.folder(i));
-  for (std::size_t s = 0; s < comparison.scenes.size(); ++s) {
-    results.tables.push_back(asked.table(s));
-    bytes += static_cast<double>(comparison.each()) * expected_output_bytes(comparison.scenes[s].load(0).scenario);
-  }
-  if (asked.league) results.tables.emplace_back("league.csv");
-  for (const fs::path& run : results.runs) require_writable_directory(asked.out / run);
-  replace_earlier_results(asked.out, results);
-  announce_large_output(bytes);
-}
 
 /// The metrics of the league, or without one those of the table with --wide.
 std::vector<std::string> compared(const Asked& asked, const std::vector<Result>& reports) {
   if (asked.league) return asked.options.metrics;
-  std::vector<std::string> metrics = {"force_max_N", kToolVibrationPower};
+  std::vector<std::string> metrics = {kToolVibrationPower};
   for (const RunHeading& heading : kRunHeadings) metrics.emplace_back(heading.metric);
   if (have_reference(reports)) metrics.insert(metrics.end(), kFidelityMetrics, std::end(kFidelityMetrics) - 1);
   return metrics;
 }
 
-/// What the runs gave, and more finely, where that was asked for.
-struct Answer {
-  std::vector<Result> reports;
-  League league = {};
-  std::optional<ComparedErrors> errors = {};
-};
-
-Answer answer_to(const Asked& asked) {
-  const CompareOptions& options = asked.options;
-  const JobOptions jobs = job_options(options, "compare");
+std::vector<Result> results_of(const Asked& asked, JobOptions jobs) {
   // The wide table of a single comparison shows times, which concurrent runs would lengthen.
-  const unsigned at_once = options.jobs > 0 || asked.league || !output_is_in_full() ? jobs.threads : 1;
-  try {
-    Answer answer{run_all(asked.comparison.scenes, {at_once, jobs.label},
-                          [&asked](std::size_t run) { return asked.out / asked.comparison.folder(run); })};
-    const League& league = answer.league = league_of(asked.comparison, answer.reports, compared(asked, answer.reports));
-    if (!options.errors) return answer;
-    ComparedErrors& errors = answer.errors.emplace(ComparedErrors{FinerRuns(asked.comparison, answer.reports, jobs)});
-    for (std::size_t s = 0; s < league.scenarios.size(); ++s)
-      add_errors(league, s, asked.league || output_is_in_full(), errors);
-    errors.text += "\n" + wrapped("<: less by more than both errors; ~: not so; ?: a finer run ends otherwise", 0);
-    return answer;
-  } catch (const Stopped&) {
-    forget_results_if_none(asked.out);
-    throw;
-  }
-}
-
-/// Widens the tolerances of the runs' metrics to what is known of their errors.
-void widen_tolerances(std::vector<Result>& reports, const ComparedErrors& errors) {
-  for (std::size_t i = 0; i < reports.size(); ++i) {
-    for (Metric& metric : reports[i].metrics)
-      if (const auto error = errors.finer.known_error(i, metric.name).sum()) metric.within(0.0, *error);
-  }
-}
-
-/// The tables of one scenario's runs, and who does better.
-std::string comparison_text(const Answer& answer) {
-  const std::vector<Result>& reports = answer.reports;
-  const std::string verdict = scene_verdict(answer.league, answer.errors ? &answer.errors->finer : nullptr);
-  return fmt::format("{}\n\n{}{}{}{}{}", reports.front().name, run_table(reports, false), fidelity_text(reports),
-                     unsettled_text(reports), verdict.empty() ? "" : "\n" + wrapped(verdict, 0),
-                     output_is_in_full() ? step_time_text(reports) : "");
-}
-
-/// Names the algorithms of a single scenario whose definition fixes a depth model, if others use another one. Each of
-/// their runs would warn of it.
-std::string own_depth_models_text(const Comparison& comparison) {
-  if (std::holds_alternative<SpringsEnvironment>(comparison.load(0).scenario.environment)) return "";
-  std::vector<std::string> own;
-  std::set<std::string> models;
-  for (std::size_t i = 0; i < comparison.size(); i += comparison.seeds) {
-    const auto [model, fixed] = std::pair(comparison.load(i).scenario.rendering.depth_model,
-                                          find_algorithm(comparison.algorithm(i))->fixed_depth_model);
-    models.insert(model);
-    if (!fixed.empty()) own.push_back(fmt::format("{} with {}", comparison.algorithm(i), model));
-  }
-  if (models.size() < 2) return "";
-  return wrapped(fmt::format("defined with a depth model of their own: {}", fmt::join(own, ", ")), 0);
+  if (asked.options.jobs == 0 && !asked.league && output_is_in_full()) jobs.threads = 1;
+  return run_all(asked.comparison.scenes, jobs,
+                 [&asked](std::size_t run) { return asked.out / asked.comparison.folder(run); });
 }
 
 Json summaries_json(const Asked& asked, const std::vector<Result>& reports) {
@@ -321,8 +195,9 @@ Json summaries_json(const Asked& asked, const std::vector<Result>& reports) {
 }
 
 /// Reports runs that diverge although their scenario does not expect it, the only expectation that concerns every
-/// algorithm: all of a single comparison, the first of a league.
+/// algorithm.
 void judge(const Asked& asked, const std::vector<Result>& reports, Report& report) {
+  constexpr std::size_t kMostShown = 15;
   std::vector<std::string> texts;
   for (std::size_t i = 0; i < reports.size(); ++i) {
     const Result& summary = reports[i];
@@ -333,9 +208,7 @@ void judge(const Asked& asked, const std::vector<Result>& reports, Report& repor
     texts.push_back(fmt::format("{}: {} diverges at step {}{}", loaded.file.string(), summary.algorithm, d.step,
                                 d.fault.empty() ? "" : ": " + d.fault));
   }
-  if (asked.league && !texts.empty())
-    texts = {fmt::format("{} of {} runs diverge, the first: {}", texts.size(), reports.size(), texts.front())};
-  for (const std::string& text : texts) report.fault(text, kUnexpectedOutcome);
+  for (const std::string& text : first_few(texts, kMostShown)) report.fault(text, kUnexpectedOutcome);
 }
 
 int compare(const CompareOptions& options) {
@@ -343,31 +216,40 @@ int compare(const CompareOptions& options) {
     throw InputError("compare: scenarios is required; \"hapbench compare --help\" explains");
   // All input is checked before anything runs or is written.
   const Asked asked{options};
-  print_warnings(asked.comparison.warnings);
-  prepare(asked);
-  Answer answer = answer_to(asked);
-  std::vector<Result>& reports = answer.reports;
+  const Comparison& comparison = asked.comparison;
+  print_warnings(comparison.warnings);
+  require_writable_directory(asked.out);
+  remove_earlier_comparison(asked.out, comparison);
+  for (std::size_t run = 0; run < comparison.size(); ++run)
+    require_writable_directory(asked.out / comparison.folder(run));
+  const JobOptions jobs = job_options(options, "compare");
+  const std::vector<Result> reports = results_of(asked, jobs);
+  const League league = league_of(comparison, reports, compared(asked, reports));
   Report report(options.output, asked.out);
-  for (std::size_t s = 0; s < asked.comparison.scenes.size(); ++s) {
-    print_warnings(run_warnings(asked.of(s, reports)));
+  for (std::size_t s = 0; s < comparison.scenes.size(); ++s) {
+    const auto of_scene = std::span(reports).subspan(s * comparison.each(), comparison.each());
+    print_warnings(run_warnings(of_scene));
     std::vector<ComparedRun> runs;
-    for (const Result& run : asked.of(s, reports)) runs.push_back({runs.size() % options.seeds, &run});
-    report.write(asked.table(s).c_str(), comparison_columns(options.seeds > 1), runs);
+    for (const Result& run : of_scene) runs.push_back({runs.size() % comparison.seeds, &run});
+    report.write((comparison.scene_folder(s) / "comparison.csv").c_str(), comparison_columns(comparison.seeds > 1),
+                 runs);
   }
   report.json() = summaries_json(asked, reports);
+  if (asked.league || options.errors) report.json() = {{"runs", std::move(report.json())}};
   if (asked.league) {
-    report.write("league.csv", league_columns(false), answer.league.standings);
-    report.say(league_text(answer.league));
-    report.json() = {{"runs", std::move(report.json())}};
-    report.json().update(league_json(answer.league));
+    report.write("league.csv", league_columns(false), league.standings);
+    report.say(league_text(league));
+    report.json().update(league_json(league));
   } else {
-    if (answer.errors) widen_tolerances(reports, *answer.errors);
-    report.say(comparison_text(answer) + own_depth_models_text(asked.comparison));
-    if (answer.errors) report.json() = {{"runs", std::move(report.json())}};
+    report.say(fmt::format("{}\n\n{}{}{}{}", reports.front().name, run_table(reports, false), fidelity_text(reports),
+                           options.errors ? "" : vibration_text(league),
+                           output_is_in_full() ? step_time_text(reports) : ""));
   }
-  if (answer.errors) {
-    report.say(answer.errors->text);
-    report.json()["errors"] = std::move(answer.errors->json);
+  if (options.errors) {
+    const FinerRuns finer(comparison, reports, jobs);
+    for (std::size_t s = 0; s < league.scenarios.size(); ++s)
+      report_errors(league, finer, s, asked.league || output_is_in_full(), report);
+    report.say("\n" + wrapped("<: less by more than both errors; ~: not so; ?: a finer run ends otherwise", 0));
   }
   report.say(fmt::format("\nresults in {}\n", asked.out.string()));
   judge(asked, reports, report);
@@ -381,11 +263,11 @@ void add_compare(CommandLine& line) {
       line.command("compare", "Run scenarios through several algorithms side by side; several scenarios give a league",
                    compare, "the folders of finished runs are kept, but no table is written");
   command.add("scenarios", options.scenarios, "scenario files, names of bundled scenarios, or of groups of them");
-  add_algorithms(command, options.algorithms, "all");
-  command.add("--seeds", options.seeds, "run each K times, time k with the scenario's seed + k (default: 1)",
+  add_algorithms(command, options.question.algorithms, "all");
+  command.add("--seeds", options.question.seeds, "run each K times, time k with the scenario's seed + k (default: 1)",
               {.range = {{1, 10'000}}});
   command.add(
-      "--jitter", options.jitter,
+      "--jitter", options.question.jitter,
       "shift the start by a vector of this length [m] whose direction depends on the seed and is the same for all "
       "algorithms: gives a spread where nothing else is random");
   command.add("--by", options.metrics,

@@ -7,7 +7,6 @@
 #include <optional>
 
 #include "scenarios/cases/league.hpp"
-#include "scenarios/cases/parallel_for.hpp"
 #include "scenarios/cases/run_sweep.hpp"
 #include "scenarios/format/bundled_scenarios.hpp"
 #include "scenarios/format/text_lines.hpp"
@@ -246,8 +245,7 @@ int converge(const ConvergeOptions& options) {
   const ScenarioText scenario = read_scenario_text(file);
   const LevelSweep levels = levels_of(options, scenario);
   const JobOptions jobs = job_options(options, "converge");
-  const SweepPlan plan =
-      plan_sweep(Cases({scenario}, options.overrides, {levels.axis}), jobs.threads, !options.output.quiet);
+  const SweepPlan plan = plan_sweep(Cases({scenario}, options.overrides, {levels.axis}), jobs);
   std::vector<std::string> metrics = options.metrics;
   if (metrics.empty()) metrics = {chosen_metric(plan.metrics, "")};
   require_names("--metric: got", metrics, plan.metrics);

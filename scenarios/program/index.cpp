@@ -292,7 +292,6 @@ constexpr Word kWords[] = {
      "rows of a sweep that is under way or was interrupted, from which --resume goes on"},
     {"sweep.I_of_N.csv", kResultFile,
      "rows of a shard of a sweep, which \"hapbench sweep FOLDER\" joins; columns as in sweep.csv"},
-    {"hapbench_results.json", kResultFile, "what a comparison wrote into its folder, which the next one there removes"},
     {"report.html", kResultFile, "a page to read and replay, of report or scripts/reproduce"},
     {"plot.svg", kResultFile, "the picture of plot"},
     {"figures.json", kResultFile,

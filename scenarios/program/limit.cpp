@@ -7,7 +7,7 @@
 #include <set>
 
 #include "algorithms/registry.hpp"
-#include "scenarios/cases/parallel_for.hpp"
+#include "scenarios/cases/cases.hpp"
 #include "scenarios/format/bundled_scenarios.hpp"
 #include "scenarios/format/input_error.hpp"
 #include "scenarios/format/metric_sections.hpp"

@@ -23,7 +23,8 @@ struct Shown {
   bool csv = true, json = true;
   /// Above the printed column, in two lines at most; empty: it is not printed.
   std::string heading = {};
-  int digits = 4;  ///< significant ones of a number without a tolerance
+  int digits = 4;     ///< significant ones of a number without a tolerance
+  bool wide = false;  ///< printed with --wide only
 };
 
 /// Columns that are not everywhere.
@@ -89,8 +90,9 @@ class Columns {
   }
   /// A column that is in no file; `unit` is empty for text.
   template <class Get>
-  void print(std::string heading, std::string unit, std::string meaning, Get get) {
-    add("", std::move(unit), std::move(meaning), std::move(get), {false, false, std::move(heading)});
+  void print(std::string heading, std::string unit, std::string meaning, Get get, bool wide = false) {
+    add("", std::move(unit), std::move(meaning), std::move(get),
+        {.csv = false, .json = false, .heading = std::move(heading), .wide = wide});
   }
 
   void write(const std::filesystem::path& file, std::span<const Row> rows, FileSet& files) const {
@@ -116,13 +118,13 @@ class Columns {
     return object;
   }
 
-  /// `gap`: blanks between columns.
+  /// As wide as the output is to be; `gap`: blanks between columns.
   Table table(std::span<const Row> rows, std::size_t gap = 2) const {
-    Table table(headings(), gap);
+    Table table(headings(output_is_in_full()), gap);
     for (const Row& row : rows) {
       std::vector<std::string> cells;
       for (const Entry& entry : entries_) {
-        if (entry.shown.heading.empty()) continue;
+        if (entry.shown.heading.empty() || (entry.shown.wide && !output_is_in_full())) continue;
         cells.push_back(printed(entry.cell(row), entry.shown, entry.tolerance ? entry.tolerance(row) : std::nullopt));
       }
       table.add(std::move(cells));
@@ -130,10 +132,10 @@ class Columns {
     return table;
   }
 
-  std::vector<Table::Column> headings() const {
+  std::vector<Table::Column> headings(bool wide = true) const {
     std::vector<Table::Column> headings;
     for (const Entry& entry : entries_) {
-      if (!entry.shown.heading.empty())
+      if (!entry.shown.heading.empty() && (wide || !entry.shown.wide))
         headings.push_back({entry.shown.heading, !entry.unit.empty(), entry.shown.csv ? entry.name : entry.meaning});
     }
     return headings;

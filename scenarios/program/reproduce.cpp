@@ -8,7 +8,7 @@
 
 #include "results/io/atomic_file.hpp"
 #include "results/io/json_text.hpp"
-#include "scenarios/cases/parallel_for.hpp"
+#include "scenarios/cases/cases.hpp"
 #include "scenarios/format/bundled_scenarios.hpp"
 #include "scenarios/format/json_file.hpp"
 #include "scenarios/format/load_scenario.hpp"

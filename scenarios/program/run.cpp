@@ -4,7 +4,6 @@
 #include "results/summary/summary.hpp"
 #include "scenarios/cases/cases.hpp"
 #include "scenarios/format/bundled_scenarios.hpp"
-#include "scenarios/format/json_file.hpp"
 #include "scenarios/program/command.hpp"
 #include "scenarios/program/report.hpp"
 #include "scenarios/program/run_table.hpp"
@@ -33,17 +32,6 @@ std::vector<fs::path> output_directories(const std::string& out, const std::vect
   return directories;
 }
 
-/// Tells users who try values of a field when the results of the previous value are about to be replaced.
-void note_replaced_run(const LoadedScenario& loaded, const fs::path& directory) {
-  const fs::path earlier = directory / "scenario.effective.json";
-  std::error_code ignored;
-  if (!fs::is_regular_file(earlier, ignored)) return;
-  // A text that is no JSON compares as different.
-  const Json before = Json::parse(read_text_file(earlier, kLargestJsonFile), nullptr, /*allow_exceptions=*/false);
-  if (before == effective_scenario(loaded.scenario, directory)) return;
-  print_note(fmt::format("replaces the run of other fields in {}; --out DIRECTORY keeps both", directory.string()));
-}
-
 int run(const RunOptions& options) {
   // All input is checked before anything runs or is written.
   std::vector<std::string> overrides = options.overrides;
@@ -56,13 +44,7 @@ int run(const RunOptions& options) {
   }
   const std::vector<fs::path> directories = output_directories(options.out, files);
   for (const LoadedScenario& scenario : scenarios) print_warnings(scenario, warnings_before_run(scenario));
-  if (options.out.empty() && !options.overrides.empty()) {
-    for (std::size_t i = 0; i < scenarios.size(); ++i) note_replaced_run(scenarios[i], directories[i]);
-  }
   for (const fs::path& directory : directories) require_writable_directory(directory);
-  double bytes = 0.0;
-  for (const LoadedScenario& loaded : scenarios) bytes += expected_output_bytes(loaded.scenario);
-  announce_large_output(bytes);
 
   const fs::path where = directories.size() == 1 ? directories[0] : directories[0].parent_path();
   Report report(options.output, where);
@@ -70,7 +52,6 @@ int run(const RunOptions& options) {
   std::vector<LatencyRow> latencies;
   std::vector<Result> results;
   std::string targets;
-  int status = kSuccess;
   for (std::size_t i = 0; i < scenarios.size(); ++i) {
     const Result& result = results.emplace_back(
         run_scenario(scenarios[i], directories[i], !options.output.quiet, nullptr, /*diagnose=*/true));
@@ -82,16 +63,15 @@ int run(const RunOptions& options) {
       summary["step_latency"] = step_latency_json(*result.timing.latency);
     }
     for (const std::string& unmet : result.unmet) {
-      print_error(fmt::format(R"({}: {} (field expect; --set expect={{"outcome":"{}"}} expects what came))",
-                              scenarios[i].file.string(), unmet, outcome_name(result.end.outcome)));
-      status = kUnexpectedOutcome;
+      report.fault(fmt::format(R"({}: {} (field expect; --set expect={{"outcome":"{}"}} expects what came))",
+                               scenarios[i].file.string(), unmet, outcome_name(result.end.outcome)),
+                   kUnexpectedOutcome);
     }
   }
   const std::string latency_text = options.latency ? "\n" + latency_columns().table(latencies).text() : "";
-  report.say(run_table(results, true) + fidelity_text(results) + unsettled_text(results) + step_time_text(results) +
-             targets + latency_text + diagnosis_text(results) + fmt::format("\nresults in {}\n", where.string()));
-  report.finish();
-  return status;
+  report.say(run_table(results, true) + fidelity_text(results) + step_time_text(results) + targets + latency_text +
+             diagnosis_text(results) + fmt::format("\nresults in {}\n", where.string()));
+  return report.finish();
 }
 
 }  // namespace

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <functional>
 #include <iterator>
-#include <limits>
 #include <string_view>
 #include <utility>
 
@@ -23,37 +22,13 @@ namespace {
 std::string cell(std::optional<double> value, int digits = 3) {
   if (value && digits < 3) value = std::stod(significant(*value, digits));
   if (value && std::abs(*value) >= 100.0 && std::abs(*value) < 1e6) return fmt::format("{:.0f}", *value);
-  return significant(value.value_or(std::numeric_limits<double>::quiet_NaN()) + 0.0, digits);
-}
-
-/// A time in microseconds of at most four characters, so that tables are as wide on a slow machine as on a fast one:
-/// "0.94", "1440", "23ms", "1.2s".
-std::string short_time(double seconds) {
-  const double us = 1e6 * seconds;
-  if (us < 0.995) return fmt::format("{:.2f}", us);
-  if (us < 9999.5) return cell(us, 2);
-  if (us < 99.5e3) return fmt::format("{:.0f}ms", 1e-3 * us);
-  return seconds < 9.95 ? fmt::format("{:.1f}s", seconds) : fmt::format("{:.0f}s", std::min(seconds, 999.0));
-}
-
-/// The same time with its unit, for a sentence.
-std::string time_text(double seconds) {
-  const std::string text = short_time(seconds);
-  return text.ends_with('s') ? text : text + " us";
+  return value ? significant(*value + 0.0, digits) : "-";
 }
 
 /// Runs of one scenario are told apart by their algorithms.
 std::string distinct_name(const Result& report, std::span<const Result> reports) {
   const bool one_scenario = reports.front().name == reports.back().name;
   return one_scenario ? report.algorithm : report.name;
-}
-
-/// The largest force, and of kRunHeadings the usual ones or all.
-std::vector<RunHeading> headings_of(bool all) {
-  std::vector<RunHeading> headings = {{"largest\nforce [N]", "force_max_N"}};
-  for (const RunHeading& heading : kRunHeadings)
-    if (all || heading.usual) headings.push_back(heading);
-  return headings;
 }
 
 using ListedRun = std::reference_wrapper<const Result>;
@@ -77,64 +52,59 @@ std::string ending_text(const Result& report) {
   }
 }
 
-template <class Headings>
-void add_metrics(Columns<ListedRun>& columns, const Headings& headings) {
-  for (const RunHeading& heading : headings) {
-    columns.print(heading.title, "1", heading.metric, [heading](const ListedRun& r) -> std::string {
-      const Metric* metric = find_metric(r.get().metrics, heading.metric);
-      const auto value = metric == nullptr ? std::nullopt : number_of(metric->value);
-      return value ? short_text(*value, metric->tolerance(), heading.factor) : "-";
-    });
-  }
+void add_metrics(Columns<ListedRun>& columns, std::span<const RunHeading> headings) {
+  add_metrics(
+      columns, headings, [](const Result& run, const char* metric) { return number_of(run.metrics, metric); },
+      [](const Result& run, const char* metric) {
+        const Metric* found = find_metric(run.metrics, metric);
+        return found == nullptr ? std::nullopt : found->tolerance();
+      });
 }
 
-Columns<ListedRun> run_columns(bool of_scenes, bool all) {
+Columns<ListedRun> run_columns(bool of_scenes) {
   Columns<ListedRun> columns;
   if (of_scenes) columns.print("scenario", "", "", [](const ListedRun& r) { return r.get().name; });
   columns.print("algorithm", "", "", [](const ListedRun& r) { return r.get().algorithm; });
   columns.print("how it ended", "", "outcome, and when, as far as that was before the last row", ending_text);
-  add_metrics(columns, all ? headings_of(true) : shown_headings());
-  if (!of_scenes || all) {
-    columns.print("tool shakes\n[mm/s rms]", "1", "root of vibration_power_above_30Hz_m2_per_s2, over all rows",
-                  [](const ListedRun& r) {
-                    const auto power = number_of(r.get().metrics, kToolVibrationPower);
-                    return power ? short_text(std::sqrt(*power), std::nullopt, 1e3) : "-";
-                  });
-  }
-  if (!all) return columns;
-  columns.print("stiffness\nratio", "1", "ratio_min", [](const ListedRun& r) {
-    const auto least = number_of(r.get().metrics, "ratio_min"), most = number_of(r.get().metrics, "ratio_max");
-    return least && most ? fmt::format("{}..{}", cell(least, 2), cell(most, 2)) : "-";
-  });
-  columns.print("half of the\nsteps [us]", "1", "step_p50_s", [](const ListedRun& r) {
-    const auto& median = r.get().timing.step_p50;
-    return median ? short_time(*median) : "-";
-  });
+  add_metrics(columns, kRunHeadings);
+  columns.print(
+      "tool shakes\n[mm/s rms]", "1", "root of vibration_power_above_30Hz_m2_per_s2, over all rows",
+      [](const ListedRun& r) {
+        const auto power = number_of(r.get().metrics, kToolVibrationPower);
+        return power ? short_text(std::sqrt(*power), std::nullopt, 1e3) : "-";
+      },
+      of_scenes);
+  columns.print(
+      "stiffness\nratio", "1", "ratio_min",
+      [](const ListedRun& r) {
+        const auto least = number_of(r.get().metrics, "ratio_min"), most = number_of(r.get().metrics, "ratio_max");
+        return least && most ? fmt::format("{}..{}", cell(least, 2), cell(most, 2)) : "-";
+      },
+      true);
+  columns.print(
+      "half of the\nsteps [us]", "1", "step_p50_s",
+      [](const ListedRun& r) { return short_text(r.get().timing.step_p50, std::nullopt, 1e6); }, true);
   return columns;
 }
 
 /// Of runs with a reference force: measured with the stroke, or ideal.
 constexpr RunHeading kFidelityHeadings[] = {
-    {"force\nerror [%]", "fidelity.force_error_relative", 100.0},
-    {"normal\n[N rms]", "fidelity.force_error_normal_rms_N"},
-    {"tangential\n[N rms]", "fidelity.force_error_tangential_rms_N"},
-    {"direction\n[deg]", "fidelity.force_direction_error_rad", 57.295779513082323},
-    {"artefacts\n[%]", "fidelity.force_artefact_share", 100.0},
-    {"lag\n[ms]", "fidelity.force_lag_s", 1e3}};
+    {"force\nerror [%]", "fidelity.force_error_relative", 100.0, false},
+    {"normal\n[N rms]", "fidelity.force_error_normal_rms_N", 1.0, false},
+    {"tangential\n[N rms]", "fidelity.force_error_tangential_rms_N", 1.0, false},
+    {"direction\n[deg]", "fidelity.force_direction_error_rad", 57.295779513082323, false},
+    {"artefacts\n[%]", "fidelity.force_artefact_share", 100.0, false},
+    {"lag\n[ms]", "fidelity.force_lag_s", 1e3, false}};
 
 }  // namespace
 
-std::vector<RunHeading> shown_headings() {
-  return headings_of(output_is_in_full());
-}
-
-std::string short_text(double value, const std::optional<double>& tolerance, double factor) {
-  return cell(factor * value, deserved_digits(value, tolerance, 3));
+std::string short_text(std::optional<double> value, const std::optional<double>& tolerance, double factor) {
+  return value ? cell(factor * *value, deserved_digits(*value, tolerance, 3)) : "-";
 }
 
 std::string run_table(std::span<const Result> reports, bool of_scenes) {
   const std::vector<ListedRun> runs(reports.begin(), reports.end());
-  return run_columns(of_scenes, output_is_in_full()).table(runs).text();
+  return run_columns(of_scenes).table(runs).text();
 }
 
 std::string fidelity_text(std::span<const Result> reports) {
@@ -152,29 +122,18 @@ std::string fidelity_text(std::span<const Result> reports) {
 }
 
 std::vector<std::string> run_warnings(std::span<const Result> reports) {
-  struct Told {
-    std::string kind, text;
-    std::vector<std::string> algorithms;
-  };
-  std::vector<Told> warnings;  // in the order of their first appearance
+  std::vector<std::string> kinds, texts;
   for (const Result& report : reports) {
     for (const auto& [kind, pointer, text] : report.warnings) {
       if (!pointer.empty()) continue;  // told before the run
-      auto known = std::ranges::find(warnings, kind, &Told::kind);
-      if (known == warnings.end()) known = warnings.insert(known, {kind, report.name + ": " + text, {}});
-      auto& algorithms = known->algorithms;
-      // The seeds of an algorithm follow each other.
-      if (algorithms.empty() || algorithms.back() != report.algorithm) algorithms.push_back(report.algorithm);
-    }
-  }
-  std::vector<std::string> texts;
-  for (const auto& [kind, text, algorithms] : warnings) {
-    if (reports.size() == 1) {
-      texts.push_back(text);
-    } else {
-      const auto others = std::span(algorithms).subspan(1);
-      texts.push_back(fmt::format("{} ({}{}{})", text, algorithms[0], others.empty() ? "" : "; likewise ",
-                                  fmt::join(others, ", ")));
+      const auto known = std::ranges::find(kinds, kind) - kinds.begin();
+      if (known == std::ssize(kinds)) {
+        kinds.push_back(kind);
+        texts.push_back(report.name + ": " + text + (reports.size() > 1 ? " (" + report.algorithm + ")" : ""));
+      } else if (std::string& told = texts[static_cast<std::size_t>(known)];
+                 reports.size() > 1 && !told.ends_with(report.algorithm + ")")) {
+        told.replace(told.size() - 1, 1, fmt::format(", {})", report.algorithm));
+      }
     }
   }
   return texts;
@@ -186,29 +145,12 @@ std::string step_time_text(std::span<const Result> reports) {
   if (p99(slowest) == 0.0) return "";
   const std::string whose = reports.size() == 1 ? "" : fmt::format(" ({})", distinct_name(slowest, reports));
   const double step = slowest.duration / static_cast<double>(slowest.end.rows);
-  const std::string longer =
-      p99(slowest) <= step
-          ? ""
-          : fmt::format(", longer than a step of {}: fewer points, rendering.reduction or a cheaper law",
-                        time_text(step));
-  return "\n" +
-         wrapped(fmt::format("99 % of the steps take at most {}{}{}", time_text(p99(slowest)), whose, longer), 0);
-}
-
-std::string unsettled_text(std::span<const Result> reports) {
-  std::vector<std::string> names;
-  bool landed = false;
-  for (const Result& report : reports) {
-    const MetricList& metrics = report.metrics;
-    if (number_of(metrics, "steps_in_contact") == 0.0 || number_of(metrics, "force_mean_in_contact_N")) continue;
-    names.push_back(distinct_name(report, reports));
-    landed = landed || number_of(metrics, "landing_force_max_N");
+  std::string text = fmt::format("99 % of the steps take at most {} us{}", cell(1e6 * p99(slowest), 2), whose);
+  if (p99(slowest) > step) {
+    text += fmt::format(", longer than a step of {} us: fewer points, rendering.reduction or a cheaper law",
+                        cell(1e6 * step, 2));
   }
-  if (names.empty()) return "";
-  // In runs without landings all contact counts already.
-  return "\n" + wrapped(fmt::format("without mean force and vibration, as under 1/30 s in settled contact: {}{}",
-                                    fmt::join(names, ", "), landed ? "; --set metrics.from_s=0 takes all contact" : ""),
-                        0);
+  return "\n" + wrapped(text, 0);
 }
 
 std::string diagnosis_text(std::span<const Result> reports) {
@@ -283,7 +225,7 @@ Columns<LatencyRow> latency_columns() {
 }
 
 std::vector<DescribedTable> run_tables() {
-  Columns<ListedRun> runs = run_columns(true, true);
+  Columns<ListedRun> runs = run_columns(true);
   add_metrics(runs, kFidelityHeadings);
   return {comparison_columns().described("comparison.csv", "of compare: one line per algorithm"), runs.described(),
           place_columns().described(), latency_columns().described()};

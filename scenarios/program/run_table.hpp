@@ -16,30 +16,38 @@ namespace hapbench {
 struct RunHeading {
   const char *title, *metric;
   double factor = 1.0;  ///< from the metric's unit to the heading's
-  bool usual = false;   ///< printed without --wide, too
+  bool wide = true;     ///< printed with --wide only
 };
 
-/// The figures that separate algorithms: the share of rows in contact, the largest force of landings, then of settled
-/// contact the mean force, 99 % of the force steps, rms above 30 Hz and reversals per second; then the largest depth
-/// below the surface.
-inline constexpr RunHeading kRunHeadings[] = {{"in contact\n[%]", "contact_share", 100.0},
-                                              {"landing\nforce [N]", "landing_force_max_N"},
-                                              {"mean\nforce [N]", "force_mean_in_contact_N", 1.0, true},
-                                              {"force step\n(99 %) [N]", "force_step_p99_N"},
-                                              {"vibration\n[N rms]", "force_rms_above_30Hz_N", 1.0, true},
-                                              {"reversals\n[1/s]", "force_reversals_per_s"},
-                                              {"deepest\ninside [mm]", "inside_max_m", 1e3, true}};
+/// The figures that separate algorithms: the largest force, the share of rows in contact, the largest force of
+/// landings, then of settled contact the mean force, 99 % of the force steps, rms above 30 Hz and reversals per second;
+/// then the largest depth below the surface.
+inline constexpr RunHeading kRunHeadings[] = {
+    {"largest\nforce [N]", "force_max_N", 1.0, false}, {"in contact\n[%]", "contact_share", 100.0},
+    {"landing\nforce [N]", "landing_force_max_N"},     {"mean\nforce [N]", "force_mean_in_contact_N", 1.0, false},
+    {"force step\n(99 %) [N]", "force_step_p99_N"},    {"vibration\n[N rms]", "force_rms_above_30Hz_N", 1.0, false},
+    {"reversals\n[1/s]", "force_reversals_per_s"},     {"deepest\ninside [mm]", "inside_max_m", 1e3, false}};
 
-/// What tables of runs show: the largest force, and of kRunHeadings the usual ones, or all with --wide.
-std::vector<RunHeading> shown_headings();
+/// A number with the digits that its tolerance leaves it, three at most; `factor`: to the unit that is shown. "-" for
+/// none.
+std::string short_text(std::optional<double> value, const std::optional<double>& tolerance, double factor);
 
-/// A number with the digits that its tolerance leaves it, three at most; `factor`: to the unit that is shown.
-std::string short_text(double value, const std::optional<double>& tolerance, double factor);
+/// Adds the columns of headings; `number` and `tolerance` give what a row has of a metric by its name.
+template <class Row, class Number, class Tolerance>
+void add_metrics(Columns<Row>& columns, std::span<const RunHeading> headings, Number number, Tolerance tolerance) {
+  for (const RunHeading& heading : headings) {
+    columns.print(
+        heading.title, "1", heading.metric,
+        [=](const Row& row) {
+          return short_text(number(row, heading.metric), tolerance(row, heading.metric), heading.factor);
+        },
+        heading.wide);
+  }
+}
 
-/// The printed table of runs, of seven columns: names, how they ended and when, shown_headings. Of several algorithms
-/// in one scene also the vibration of the tool, which runs without settled contact have, too. With --wide also the
-/// range of ratios, and what half of the steps take at most, by which the width of the table does not depend on times.
-/// `of_scenes`: of several, told apart by name.
+/// The printed table of runs, of seven columns: names, how they ended and when, kRunHeadings. Of several algorithms in
+/// one scene also the vibration of the tool, which runs without settled contact have, too. With --wide also the range
+/// of ratios, and what half of the steps take at most. `of_scenes`: of several, told apart by name.
 std::string run_table(std::span<const Result> reports, bool of_scenes);
 
 /// Its root is the vibration of the tool.
@@ -48,9 +56,6 @@ inline constexpr const char* kToolVibrationPower = "vibration_power_above_30Hz_m
 /// A paragraph on what 99 % of the steps take at most, in the slowest of the runs; empty when no run was long enough to
 /// tell. Precondition: there is a report.
 std::string step_time_text(std::span<const Result> reports);
-
-/// Names the runs that touched too shortly for metrics of settled contact; empty when there is none.
-std::string unsettled_text(std::span<const Result> reports);
 
 /// What is wrong with a run by the rules of its diagnosis, and what to try; of several runs a line each, with the names
 /// of the rules. Empty where nothing is.
@@ -64,7 +69,7 @@ std::string targets_text(const Result& report);
 std::string fidelity_text(std::span<const Result> reports);
 
 /// The warnings about runs that were made side by side, but for those that were known before. Warnings of one kind
-/// appear once, in the words of the first run and with the names of the other algorithms.
+/// appear once, in the words of the first run and with the names of the algorithms.
 std::vector<std::string> run_warnings(std::span<const Result> reports);
 
 /// The latencies [us] and missed deadlines of the steps of a run.

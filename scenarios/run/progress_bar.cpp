@@ -106,8 +106,8 @@ void ProgressBar::show(std::uint64_t done, bool counts) noexcept {
   fmt::memory_buffer numbers, line;
   fmt::format_to(fmt::appender(numbers), "{:3.0f} %", 100.0 * part);
   if (counts) fmt::format_to(fmt::appender(numbers), ", {}/{}", done, total_);
-  if (counts && done > first_) {
-    const double each = std::chrono::duration<double>(now - start_).count() / static_cast<double>(done - first_);
+  if (counts && done > 0) {
+    const double each = std::chrono::duration<double>(now - start_).count() / static_cast<double>(done);
     fmt::format_to(fmt::appender(numbers), ", ");
     add_time(numbers, each * static_cast<double>(total_ - done));
     fmt::format_to(fmt::appender(numbers), " left");

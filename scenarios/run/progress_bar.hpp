@@ -32,8 +32,6 @@ class ProgressBar {
   /// Shows how much is done, now and then. With `counts` also the numbers and the time that is left, if the rest takes
   /// as long for each as what was done since the bar was made.
   void show(std::uint64_t done, bool counts = false) noexcept;
-  /// Sets how much was done before, by an earlier process: it does not count as speed.
-  void start_at(std::uint64_t done) noexcept { first_ = done; }
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -41,7 +39,6 @@ class ProgressBar {
   const ProgressListener* listener_;  ///< may be null
   std::string label_;
   std::uint64_t total_;
-  std::uint64_t first_ = 0;
   bool enabled_;
   bool drawn_ = false;
   Clock::time_point start_;

@@ -6,7 +6,7 @@
 #include <map>
 
 #include "results/observe/target_metrics.hpp"
-#include "scenarios/cases/statistics.hpp"
+#include "scenarios/cases/league.hpp"
 #include "scenarios/thesis/claims.hpp"
 #include "sim/core/math.hpp"
 

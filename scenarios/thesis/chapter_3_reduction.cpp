@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "results/io/columns.hpp"
-#include "scenarios/cases/statistics.hpp"
+#include "scenarios/cases/league.hpp"
 #include "scenarios/thesis/claims.hpp"
 
 /// Claims of 3.3: the number of points before and after the reduction.

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "algorithms/registry.hpp"
-#include "scenarios/cases/statistics.hpp"
+#include "scenarios/cases/league.hpp"
 #include "scenarios/format/parts.hpp"
 #include "scenarios/thesis/claims.hpp"
 #include "scenarios/thesis/measurements.hpp"

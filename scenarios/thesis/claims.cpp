@@ -9,7 +9,7 @@
 #include <tuple>
 #include <utility>
 
-#include "scenarios/cases/statistics.hpp"
+#include "scenarios/cases/league.hpp"
 #include "scenarios/format/bundled_scenarios.hpp"
 #include "scenarios/format/input_error.hpp"
 #include "scenarios/format/json_file.hpp"

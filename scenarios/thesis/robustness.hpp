@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/cases/parallel_for.hpp"
+#include "scenarios/cases/cases.hpp"
 #include "scenarios/thesis/choices.hpp"
 #include "scenarios/thesis/claims.hpp"
 

@@ -14,7 +14,7 @@
 #include "device_model/theory/linear_loops.hpp"
 #include "device_model/theory/stiffness_limits.hpp"
 #include "results/observe/contact_forces.hpp"
-#include "scenarios/cases/parallel_for.hpp"
+#include "scenarios/cases/cases.hpp"
 #include "scenarios/format/input_error.hpp"
 #include "scenarios/format/text_lines.hpp"
 #include "scenarios/run/assemble.hpp"

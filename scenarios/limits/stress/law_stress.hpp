@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "algorithms/rendering_config.hpp"
-#include "scenarios/cases/parallel_for.hpp"
+#include "scenarios/cases/cases.hpp"
 #include "sim/geometry/point_shell.hpp"
 #include "sim/tool/cylinder.hpp"
 

@@ -9,7 +9,6 @@
 
 #include "device_model/theory/linear_loops.hpp"
 #include "scenarios/cases/comparison.hpp"
-#include "scenarios/cases/parallel_for.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/diagnosis.hpp"
 #include "scenarios/run/run_scenario.hpp"

@@ -85,6 +85,18 @@ TEST_F(ComparisonOf, WhatCannotBeComparedSaysWhichFile) {
   EXPECT_NE(refused(question).find("= 4000000 runs; allowed: at most 1000000"), std::string::npos);
 }
 
+TEST_F(ComparisonOf, ScenesRemovesWhatAnEarlierOneLeftAndNothingElse) {
+  const fs::path out = directory_ / "out";
+  for (const char* name : {"league.csv", "plane/comparison.csv", "plane/mean/seed_1/summary.json",
+                           "plane/proxy/summary.json", "plane/proxy/notes.txt", "plane/mine/summary.json"}) {
+    fs::create_directories((out / name).parent_path());
+    test::write_plainly(out / name, "x");
+  }
+  remove_earlier_comparison(out, planned(two_scenes()));
+  EXPECT_EQ(test::names_below(out), (std::vector<std::string>{"plane/mine/summary.json", "plane/proxy/notes.txt"}));
+  EXPECT_FALSE(fs::exists(out / "plane/mean"));
+}
+
 /// Two blocks of different grids, one of them twice with another start, however many runs each has and whoever comes
 /// first.
 TEST_F(ComparisonOf, AnyScenesBuildsEachDistinctShellOnce) {

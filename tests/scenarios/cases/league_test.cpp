@@ -6,8 +6,6 @@
 #include <limits>
 #include <vector>
 
-#include "scenarios/cases/statistics.hpp"
-
 namespace hapbench::league_test {
 namespace {
 

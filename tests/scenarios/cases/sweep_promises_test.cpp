@@ -7,7 +7,6 @@
 #include <fstream>
 
 #include "scenarios/cases/run_sweep.hpp"
-#include "scenarios/cases/table_file.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/run/stop_signal.hpp"
@@ -25,13 +24,7 @@ using test::read_file;
 SweepPlan plan_of(const Json& scenario, const std::vector<std::string>& vary, const fs::path& file) {
   std::vector<Axis> axes;
   for (const std::string& text : vary) axes.push_back(parse_axis(text));
-  return plan_sweep(Cases({{file, scenario}}, {}, std::move(axes)), 2, false);
-}
-
-SweepOptions options_in(const fs::path& directory) {
-  SweepOptions options;
-  options.directory = directory;
-  return options;
+  return plan_sweep(Cases({{file, scenario}}, {}, std::move(axes)), {2, ""});
 }
 
 /// Ends a sweep as its process would end: whatever is written stays.
@@ -51,22 +44,21 @@ class SweepPromises : public testing::Test {
     try {
       run_sweep(plan, options);
     } catch (const Killed&) {
+    } catch (const Stopped&) {
     }
     stop_work(0);
-    const fs::path file = table_of(options).string() + ".part";
+    const fs::path file = options.table().string() + ".part";
     if (way != 2 || !fs::exists(file)) return;
     std::string text = read_file(file);
     test::write_plainly(file, text.substr(0, text.size() - std::min<std::size_t>(random_.below(9), text.size())));
   }
   void run_part(const SweepPlan& plan, const fs::path& directory, const std::optional<Shard>& shard) {
-    SweepOptions options = options_in(directory);
-    options.shard = shard;
-    options.resume = true;
+    SweepOptions options{.directory = directory, .shard = shard, .resume = true};
     for (std::uint64_t times = random_.below(4); times-- > 0;) {
-      options.jobs = 1 + random_.below(4);
+      options.jobs.threads = 1 + static_cast<unsigned>(random_.below(4));
       interrupt(plan, options);
     }
-    EXPECT_EQ(run_sweep(plan, options).signal, 0);
+    run_sweep(plan, options);
   }
 
   test::TemporaryDirectory directory_;
@@ -81,7 +73,7 @@ TEST_F(SweepPromises, TheSameBytesWhateverTheJobsTheShardsAndTheKills) {
               directory_ / "scene.json");
   const fs::path whole = directory_ / "whole";
   fs::create_directory(whole);
-  ASSERT_FALSE(run_sweep(plan, options_in(whole)).failed);
+  ASSERT_FALSE(run_sweep(plan, {.directory = whole}).failed);
   ASSERT_EQ(test::lines_of(read_file(whole / "sweep.csv")).size(), 37u);
   for (int attempt = 0; attempt < 40; ++attempt) {
     const fs::path out = directory_ / "out";
@@ -103,11 +95,11 @@ TEST_F(SweepPromises, AFailedRunIsTriedAgain) {
   const SweepPlan plan = plan_of(test::minimal_scenario("point_shell"),
                                  {"environment.file=shell.csv", "time.steps=1,2,3"}, directory_ / "scene.json");
   for (const fs::path& folder : {out, whole}) fs::create_directory(folder);
-  run_sweep(plan, options_in(whole));
+  run_sweep(plan, {.directory = whole});
   fs::remove(shell);
-  SweepOptions options = options_in(out);
+  SweepOptions options{.directory = out};
   run_sweep(plan, options);
-  EXPECT_EQ(read_sweep(table_of(options)).counts.failed, 3u);
+  EXPECT_EQ(read_sweep(options.table()).counts.failed, 3u);
   restore();
   options.resume = true;
   EXPECT_FALSE(run_sweep(plan, options).failed);
@@ -126,9 +118,7 @@ double most_resident_bytes() {
 TEST_F(SlowSweepPromises, TheMemoryOfAThousandRunsForAHundredTimesAsMany) {
   const auto run = [&](const char* seeds) {
     const SweepPlan plan = plan_of(test::minimal_scenario("springs"), {seeds}, "springs.json");
-    SweepOptions options = options_in(directory_.path());
-    options.jobs = 2;
-    run_sweep(plan, options);
+    run_sweep(plan, {.directory = directory_.path(), .jobs = {2, ""}});
     return most_resident_bytes();
   };
   const double few = run("seed=1:1000:1000");
@@ -149,7 +139,7 @@ TEST_F(SlowSweepPromises, LittleMoreTimeThanTheSimulationsInWhicheverOrderTheAxe
   for (const auto& axes : vary) {
     const SweepPlan plan = plan_of(scene, axes, directory_ / "scene.json");
     const double begun = processor_seconds();
-    run_sweep(plan, options_in(directory_.path()));
+    run_sweep(plan, {.directory = directory_.path()});
     const double sweep = processor_seconds() - begun;
     double simulations = 0.0;
     for (std::size_t run = 0; run < plan.cases.size(); ++run) {

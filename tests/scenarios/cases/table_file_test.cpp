@@ -91,8 +91,7 @@ TEST_F(TableFiles, DamagedAtRandomAreReadOrRefused) {
 
 TEST_F(TableFiles, ThatAnotherProcessBeginsAnewEndWithAnError) {
   TableFile table(title());
-  table.add(1, "1,a");
-  left({});
+  left({"1,a"});
   EXPECT_THROW(table.finish(), IoError);
   EXPECT_FALSE(fs::exists(file_));
 }
@@ -135,9 +134,7 @@ TEST_F(TableFiles, OfShardsAreJoinedWhenAllAreThere) {
   EXPECT_EQ(read_file(file_), "index,a\n0,a\n1,c\n2,\"b,\"\n3,d\n");
   EXPECT_EQ(Json::parse(read_file(directory_ / "sweep.json"))["shard"], "0/1");
   EXPECT_EQ(directory_.entries().size(), 8u) << "nothing else is left";
-  EXPECT_TRUE(join()) << "it is there";
   write_shard(1, 3, {"3,new"});
-  fs::last_write_time(directory_ / "sweep.1_of_3.csv", fs::last_write_time(file_) + std::chrono::seconds(1));
   EXPECT_TRUE(join());
   EXPECT_EQ(read_file(file_), "index,a\n0,a\n1,c\n2,\"b,\"\n3,new\n");
   write_shard(0, 2, {"0,a"});
