@@ -220,8 +220,6 @@ LimitRow asked_row(const LimitOptions& options, const LimitTable& table, std::si
     row.asked = {&scene, std::move(overrides), loaded.scenario.rendering.algorithm, question};
     append_new(warnings, question.warnings);
     append_new(warnings, with_files(loaded, check_named_files(loaded)));
-    // A field of the rendering changes nothing of hand and device.
-    if (question.path.starts_with("rendering.")) row.asked.question.tremor = tremor_speeds(loaded);
   } catch (const InputError& error) {
     throw row.device != nullptr ? on_device(*row.device, error) : error;
   }

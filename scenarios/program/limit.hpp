@@ -54,7 +54,7 @@ struct LimitTable {
 };
 
 /// The answer in words: the linear edge, or the edge in runs, and what was tried between.
-std::string limit_answer(const FieldLimit& found, const LimitQuestion& question);
+std::string limit_answer(const FieldLimit& found, double resolution);
 
 /// Writes limit.csv and limit_runs.csv, and tells what was found.
 void tell_limits(const LimitTable& table, Report& report);

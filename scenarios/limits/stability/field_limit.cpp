@@ -165,7 +165,6 @@ class Search {
 
   FieldLimit limit() {
     FieldLimit limit;
-    limit.algorithm = asked_.algorithm;
     std::map<double, RunStability> runs;  // by value
     const auto run_ahead = [&](std::span<const double> parts) {
       std::vector<double> values;

@@ -18,6 +18,8 @@ namespace hapbench {
 
 /// Equal parts that a way is divided into before bisection.
 inline constexpr int kEdgeIntervals = 16;
+/// Relative width at which bisection on runs stops unless it is said otherwise.
+inline constexpr double kEdgeResolution = 1e-3;
 
 /// A range of values as a way from the end that is expected to be stable (part 0) to the other end (part 1).
 struct SearchWay {
@@ -26,7 +28,7 @@ struct SearchWay {
   bool whole = false;              ///< values are integers
   bool smallest = false;           ///< the way begins at the high end
   /// Width at which bisection stops: relative to the value in a logarithmic range, to the range in a linear one.
-  double resolution = 1e-3;
+  double resolution = kEdgeResolution;
 
   double value_at(double part) const;
   /// The part of the own value.
@@ -80,6 +82,8 @@ struct LimitQuestion : StabilityRule, SearchWay {
   std::vector<std::string> warnings = {};  ///< of the scenario with the field given
   bool between = true;                     ///< the interval is tried between its ends before it is an answer
   unsigned threads = 1;                    ///< runs at once; no result depends on it
+
+  const char* side() const { return smallest ? "smallest" : "largest"; }
 };
 
 /// A value and what a run with it came to.
@@ -99,9 +103,8 @@ struct IntervalEnd {
   }
 };
 
-/// The answer for one algorithm: the end that was asked for.
+/// The answer: the end that was asked for.
 struct FieldLimit : IntervalEnd {
-  std::string algorithm;
   IntervalEnd other;
   /// The same by the eigenvalues of a step, where the springs stay in contact; infinite (smallest: 0) when the whole
   /// range is stable, none where there is no theory or nothing is stable.
@@ -133,11 +136,8 @@ struct FieldLimit : IntervalEnd {
   /// True where the limit lies beyond `linear` by more than this, relative: then that is the one to quote, and contact
   /// at a stable value beyond it is intermittent.
   bool is_beyond_linear(double resolution) const { return value && linear && *value > (1.0 + resolution) * *linear; }
-  /// value / theory - 1; none without either.
-  std::optional<double> difference() const {
-    if (!value || !theory || !std::isfinite(*theory) || *theory == 0.0) return std::nullopt;
-    return *value / *theory - 1.0;
-  }
+  /// That of the loop alone, in theory or while contact lasts.
+  const std::optional<double>& linear_edge() const { return theory ? theory : linear; }
 };
 
 /// The scenario's own value at a path, or null.

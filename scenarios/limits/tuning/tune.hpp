@@ -79,6 +79,7 @@ struct TuneTrial : TuneSetting {
   double lambda_max = 0.0;  ///< largest eigenvalue of the mean S in the end of the own run: K lambda_max is rendered
 
   bool feasible() const { return binding.empty(); }
+  double rendered() const { return stiffness * lambda_max; }  ///< the stiffness that the hand meets [N/m]
   void fail(std::string constraint, std::string reason) {
     binding = std::move(constraint);
     why = std::move(reason);
@@ -102,8 +103,7 @@ struct TunedLaw {
   std::string binding, why;
   std::string relax;  ///< where nothing is feasible: which limit to relax, and by how much
   TuneMargins margins;
-  FieldLimit edge;  ///< of K in the scene as chosen, with its own hand: what `limit` finds for the question
-  LimitQuestion edge_question;
+  FieldLimit edge;  ///< of K in the scene as chosen, with its own hand: what `limit` finds
   /// How far half the step, half the distance of the points and a look at the depth in every row move the metrics of
   /// the own run, the largest of these; none of a metric that such a run does not have.
   TuneMetrics error;

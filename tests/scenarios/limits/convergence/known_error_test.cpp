@@ -24,20 +24,17 @@ bool is_less(const NumberWithError& a, const NumberWithError& b) {
   return difference > *a.error + *b.error && difference > kSame * std::max(std::abs(*a.value), std::abs(*b.value));
 }
 
-/// Whatever the numbers: each is less than all of the groups behind it and apart from none of its own group, something
-/// holds if any two are apart, and every number with an error is in one place.
+/// Whatever the numbers: each is less than all of the groups behind it, and every number with an error is in one place.
 TEST(HeldOrder, IsTrueOfEveryPair) {
   std::mt19937 random(1);
   std::uniform_real_distribution<double> value(-1.0, 1.0), share(0.0, 1.0);
   for (std::size_t round = 0; round < test::cases(20'000); ++round) {
     std::vector<NumberWithError> numbers(1 + random() % kNames.size());
     std::set<std::size_t> known;
-    bool any = false;
     for (std::size_t i = 0; i < numbers.size(); ++i) {
       if (share(random) < 0.9) numbers[i].value = value(random);
       if (share(random) < 0.9) numbers[i].error = share(random) * share(random);
       if (!numbers[i].value || !numbers[i].error) continue;
-      for (const std::size_t k : known) any = any || is_less(numbers[i], numbers[k]) || is_less(numbers[k], numbers[i]);
       known.insert(i);
     }
     const auto [groups, unplaced] = held_order(numbers, kSame);
@@ -47,16 +44,12 @@ TEST(HeldOrder, IsTrueOfEveryPair) {
       count += groups[g].size();
       placed.insert(groups[g].begin(), groups[g].end());
       for (const std::size_t a : groups[g]) {
-        for (std::size_t later = g; later < groups.size(); ++later)
-          for (const std::size_t b : groups[later]) EXPECT_EQ(is_less(numbers[a], numbers[b]), later > g);
+        for (std::size_t later = g + 1; later < groups.size(); ++later)
+          for (const std::size_t b : groups[later]) EXPECT_TRUE(is_less(numbers[a], numbers[b]));
       }
     }
     EXPECT_EQ(placed, known);
     EXPECT_EQ(count, known.size());
-    EXPECT_EQ(groups.size() > 1, any);
-    const std::string text = held_text(numbers, kNames, kSame);
-    EXPECT_EQ(text.starts_with("the order holds"), known.size() > 1 && groups.size() == known.size()) << text;
-    EXPECT_EQ(text.starts_with("no order holds"), known.size() > 1 && !any) << text;
   }
 }
 

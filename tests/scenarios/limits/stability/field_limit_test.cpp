@@ -155,8 +155,6 @@ TEST(FieldLimit, DoesNotBlameDryFrictionForVibration) {
   ASSERT_TRUE(limit.value && limit.beyond);
   EXPECT_EQ(limit.beyond->verdict, RunVerdict::vibrating);
   EXPECT_FALSE(limit.unstable_alone);
-  EXPECT_GT(limit.settled.touch_speed, 0.0);
-  EXPECT_GT(limit.settled.press, 0.25) << "more than friction alone holds";
 }
 
 TEST(FieldLimit, HasTwoEnds) {

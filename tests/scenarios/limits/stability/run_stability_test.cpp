@@ -178,34 +178,5 @@ TEST(StabilityOf, OfSlowBouncesThatGoOnIsVibrating) {
   }
 }
 
-/// A trembling hand drags a paddle with dry friction: sticking and slipping it shakes at 1.3 mm/s above 30 Hz whatever
-/// the wall, which is no fault of the wall's.
-TEST(StabilityOf, AllowsWhatATremorDoesWithoutAWall) {
-  const ScenarioText paddle =
-      read_scenario_text(installed_folder("scenarios/library") / "validation" / "epfl_paddle.json");
-  const auto at = [&](const char* stiffness) {
-    const std::vector<std::string> fields = {"device.coulomb_N=0.231",
-                                             "device.viscous_N_s_per_m=0.318",
-                                             "device.delay_samples=0.66",
-                                             "device.encoder_step_m=1.36e-5",
-                                             "hand.mass_kg=0.0257",
-                                             "hand.stiffness_N_per_m=919",
-                                             "hand.damping_N_s_per_m=1.27",
-                                             "hand.tremor.rms_m=[1.1e-4,0,0]",
-                                             "seed=3",
-                                             std::string("rendering.stiffness_N_per_m=") + stiffness};
-    return load_scenario(paddle, fields);
-  };
-  const TremorSpeeds alone = tremor_speeds(at("8000"));
-  EXPECT_GT(alone.handle, 1e-4);
-  EXPECT_LT(alone.handle, 0.2 * alone.target);
-  EXPECT_NEAR(alone.target, 4.0 * 2.0 * std::numbers::pi * 12.0 * 1.1e-4, 1e-9);
-  EXPECT_EQ(stability_of(at("300"), nullptr).verdict, RunVerdict::stable);
-  EXPECT_EQ(stability_of(at("8000"), nullptr).verdict, RunVerdict::stable);
-  EXPECT_EQ(stability_of(at("200000"), nullptr).verdict, RunVerdict::vibrating);
-  // Where everything beyond 1 mm/s counted, the finger's own sway at a soft wall would be called vibration.
-  EXPECT_EQ(stability_of(at("300"), nullptr, {.tremor = TremorSpeeds{}}).verdict, RunVerdict::vibrating);
-}
-
 }  // namespace
 }  // namespace hapbench::run_stability_test
