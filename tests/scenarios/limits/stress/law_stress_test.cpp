@@ -39,17 +39,6 @@ TEST(LawStress, ReachesTheBoundsThatCanBeReached) {
   }
 }
 
-TEST(LawStress, DoesNotDependOnTheNumberOfThreads) {
-  const auto one = stress_laws(3500, 7, {1, ""}), four = stress_laws(3500, 7, {4, ""});
-  for (std::size_t i = 0; i < one.size(); ++i) {
-    EXPECT_EQ(one[i].sets, 3500u);
-    EXPECT_EQ(one[i].in_contact, four[i].in_contact);
-    EXPECT_EQ(one[i].points_dropped, four[i].points_dropped);
-    EXPECT_EQ(one[i].largest_force, four[i].largest_force);
-    EXPECT_EQ(one[i].largest_share, four[i].largest_share);
-  }
-}
-
 TEST(ContactSets, HoldTheDegenerateCasesOfTheirNames) {
   std::map<std::string, std::size_t> seen;
   for (std::uint64_t i = 0; i < test::cases(20'000); ++i) {
