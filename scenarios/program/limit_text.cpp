@@ -36,7 +36,7 @@ std::string beyond_text(const FieldLimit& limit) {
   return limit.value ? "end of the range" : std::string(run_verdict_name(limit.runs.front().verdict));
 }
 const IntervalEnd& end_of(const LimitRow& r, bool low) {
-  return low == r.asked.question.smallest ? r.found : r.found.other;
+  return low == r.asked.smallest ? r.found : r.found.other;
 }
 
 /// A line of limit_runs.csv.
@@ -70,7 +70,7 @@ Columns<Row> place_columns(const LimitTable* table) {
                 },
                 {.heading = table->cases.axes()[i].path});
   }
-  columns.add("algorithm", "", "force algorithm", [](const LimitRow& r) { return r.asked.algorithm; },
+  columns.add("algorithm", "", "force algorithm", [](const LimitRow& r) { return r.algorithm(); },
               {.heading = "algorithm"});
   return columns;
 }
@@ -80,7 +80,7 @@ Columns<Row> place_columns(const LimitTable* table) {
 void add_ends(Columns<LimitRow>& columns, const LimitTable* table) {
   const auto add_end = [&](bool low, const std::string& end, const char* meaning, const std::string& outside,
                            const char* first) {
-    const bool shown = table == nullptr || low != table->first().asked.question.smallest;
+    const bool shown = table == nullptr || low != table->first().asked.smallest;
     columns.add(
         end, "by field", meaning, [low](const LimitRow& r) { return end_of(r, low).value; },
         {.heading = shown ? end + " end" : "", .digits = 6},
@@ -92,10 +92,10 @@ void add_ends(Columns<LimitRow>& columns, const LimitTable* table) {
     });
   };
   columns.add(
-      "field", "", "path of the field", [](const LimitRow& r) { return r.asked.question.path; }, only_csv());
+      "field", "", "path of the field", [](const LimitRow& r) { return r.asked.path; }, only_csv());
   columns.add(
       "side", "", "largest or smallest: the stable value that was asked for",
-      [](const LimitRow& r) { return r.asked.question.side(); }, only_csv());
+      [](const LimitRow& r) { return r.asked.side(); }, only_csv());
   columns.print("linear edge", "by field", "of limit: theory, or where there is none linear", [](const LimitRow& r) {
     const auto& edge = r.found.linear_edge();
     return edge && (std::isinf(*edge) || *edge == 0.0) ? "none" : significant(edge, 6);
@@ -116,15 +116,8 @@ void add_ends(Columns<LimitRow>& columns, const LimitTable* table) {
           "the first value above that is not stable; empty when the range ends stable");
 }
 
-void add_theory(Columns<LimitRow>& columns, bool with_inequality) {
+void add_theory(Columns<LimitRow>& columns) {
   columns.add("theory", "by field", "the limit in theory; empty where there is none", of_answer(&FieldLimit::theory));
-  if (with_inequality) {
-    columns.add(
-        "closed_form", "by field",
-        "the same where the integrator's inequality ends, of leapfrog 4 - 2 lambda B dt / M - lambda K dt^2 / M >= 0 "
-        "with lambda = lambda_max(S) (A.3); empty where it has none",
-        of_answer(&FieldLimit::closed_form));
-  }
   columns.add(
       "linear", "by field",
       "of a device at what only pushes: the largest value at which the loop of device, hand and surface is stable "
@@ -190,7 +183,7 @@ void add_settled(Columns<LimitRow>& columns) {
 
 Columns<LimitRunRow> run_columns(const LimitTable* table) {
   Columns<LimitRunRow> columns = place_columns<LimitRunRow>(table);
-  columns.add(table == nullptr ? "{field}" : table->first().asked.question.path, "by name", "value of the field",
+  columns.add(table == nullptr ? "{field}" : table->first().asked.path, "by name", "value of the field",
               [](const LimitRunRow& r) { return r.run.value; });
   columns.add("class", "", "what became of the run (describe stability)",
               [](const LimitRunRow& r) { return run_verdict_name(r.run.verdict); });
@@ -210,8 +203,7 @@ Json row_json(const Columns<LimitRow>& columns, const LimitRow& row) {
 Columns<LimitRow> limit_columns(const LimitTable* table) {
   Columns<LimitRow> columns = place_columns<LimitRow>(table);
   add_ends(columns, table);
-  const auto has_inequality = [](const LimitRow& row) { return row.found.closed_form.has_value(); };
-  add_theory(columns, table == nullptr || std::ranges::any_of(table->rows, has_inequality));
+  add_theory(columns);
   add_search(columns);
   if (table == nullptr || !table->devices.empty()) {
     columns.add("published_N_per_m", "N/m", "published largest stable stiffness of a wall on the device",
@@ -269,9 +261,9 @@ std::string none_text(const FieldLimit& limit) {
 /// Remarks on a limit that is not all of the answer.
 std::string remarks_text(const LimitRow& row) {
   const FieldLimit& limit = row.found;
-  const LimitQuestion& question = row.asked.question;
+  const LimitQuestion& question = row.asked;
   std::string text;
-  const auto say = [&](const std::string& what) { text += wrapped(row.asked.algorithm + ": " + what, 0); };
+  const auto say = [&](const std::string& what) { text += wrapped(row.algorithm() + ": " + what, 0); };
   if (limit.value && limit.own && !question.holds(limit.own->verdict)) {
     say(fmt::format("{} at the scenario's own {}: the edge is that of the first stable values from the {} end",
                     run_verdict_name(limit.own->verdict), significant(limit.own->value),
@@ -305,9 +297,7 @@ std::string notes_text(const LimitTable& table) {
     const auto* device = std::get_if<ImpedanceDeviceConfig>(&row.scenario.device);
     return device != nullptr && device->coulomb > 0.0;
   };
-  const auto is_beyond_linear = [](const LimitRow& row) {
-    return row.found.is_beyond_linear(row.asked.question.resolution);
-  };
+  const auto is_beyond_linear = [](const LimitRow& row) { return row.found.is_beyond_linear(row.asked.resolution); };
   const std::pair<bool, std::string> notes[] = {
       {table.is_grid() && any(is_beyond_linear),
        fmt::format("linear edge: of the loop of device, hand and surface while they touch; {}", kBeyondLinear)},
@@ -320,7 +310,7 @@ std::string notes_text(const LimitTable& table) {
            "preset with numbers of --set, of which nothing is published; [soft], [stiff]: the preset at either "
            "end of what nobody published of it ({}); [friction*2]: with its dry friction times a factor",
            kPresetRanges)},
-      {table.first().asked.question.path == kStiffness && any(is_on_device),
+      {table.first().asked.path == kStiffness && any(is_on_device),
        "which K to quote: device_model/README.md, \"Which K to quote?\""},
       {any(rubs),
        "dry friction holds a hand that presses slowly, and is ours in every preset: the limit is that of this approach, "
@@ -341,15 +331,14 @@ std::string limits_text(const LimitTable& table, const Columns<LimitRow>& column
   for (std::size_t i = 0; i < table.columns(); ++i) {
     const LimitRow& row = table.rows[i];
     if (i == 0 || row.scene() != table.rows[i - 1].scene())
-      text += question_text(row.asked.question, row.scenario, table.over() > 0);
+      text += question_text(row.asked, row.scenario, table.over() > 0);
     if (table.is_grid()) continue;
-    answers +=
-        wrapped(fmt::format("{}: {}", row.asked.algorithm, limit_answer(row.found, row.asked.question.resolution)), 0);
+    answers += wrapped(fmt::format("{}: {}", row.algorithm(), limit_answer(row.found, row.asked.resolution)), 0);
     remarks += remarks_text(row);
   }
   const LimitRow& first = table.first();
   return fmt::format("{}\n{}{}{}\n{}{}{}", text, answers, answers.empty() ? "" : "\n", columns.table(table.rows).text(),
-                     wrapped(rule_text(first.asked.question, is_moved(first.scenario)), 0), remarks, notes_text(table));
+                     wrapped(rule_text(first.asked, is_moved(first.scenario)), 0), remarks, notes_text(table));
 }
 
 }  // namespace
@@ -376,7 +365,7 @@ std::string limit_answer(const FieldLimit& found, double resolution) {
 }
 
 void tell_limits(const LimitTable& table, Report& report) {
-  const LimitQuestion& question = table.first().asked.question;
+  const LimitQuestion& question = table.first().asked;
   const Columns<LimitRow> columns = limit_columns(&table);
   std::vector<LimitRunRow> runs;
   Json limits = Json::array();

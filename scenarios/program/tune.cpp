@@ -307,10 +307,8 @@ TuneQuestion tune_question(const TuneOptions& options, const fs::path& file) {
     throw InputError(fmt::format("--margin: got {}; allowed: more than 1, at most 16", options.margin));
   question.margin = options.margin;
   for (const std::string& bound : options.bounds) add_bound(bound, question.limits);
-  const std::vector<std::string> families(std::begin(kFamilyNames), std::end(kFamilyNames));
-  if (!options.family.empty()) question.over.clear();
-  for (const std::string& name : chosen_names("--family: got", options.family, families))
-    question.over.push_back(static_cast<FamilyOver>(std::ranges::find(families, name) - families.begin()));
+  if (!options.family.empty())
+    question.families = chosen_names("--family: got", options.family, {std::begin(kFamilies), std::end(kFamilies)});
   if (const auto range = ratios_of("--damping-ratio", options.damping_ratio)) question.damping_ratio = *range;
   question.mass = ratios_of("--mass", options.mass);
   question.filters = options.filters;

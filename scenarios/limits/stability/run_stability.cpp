@@ -1,7 +1,6 @@
 #include "scenarios/limits/stability/run_stability.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -313,13 +312,7 @@ std::string rule_text(const StabilityRule& rule, bool moved) {
     if (bound.min) text += fmt::format(", {} >= {}", metric, *bound.min);
     if (bound.max) text += fmt::format(", {} <= {}", metric, *bound.max);
   }
-  std::vector<std::string_view> others;
-  for (std::size_t i = 0; i < run_verdict_texts().size(); ++i) {
-    const auto verdict = static_cast<RunVerdict>(i);
-    const bool of_bounds = verdict == RunVerdict::beyond_bound;
-    if (!rule.holds(verdict) && (!of_bounds || !rule.bounds.empty())) others.push_back(run_verdict_name(verdict));
-  }
-  return fmt::format("{}; not: {}", text, fmt::join(others, ", "));
+  return text;
 }
 
 RunStability stability_of(const LoadedScenario& loaded, std::shared_ptr<const PointShell> shell,

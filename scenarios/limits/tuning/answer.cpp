@@ -70,7 +70,7 @@ bool own_edge_is_near(Trials& trials, const TuneTrial& choice, TunedLaw& law) {
   LimitQuestion question = limit_question(scene, chosen, kTunedField, {});
   static_cast<StabilityRule&>(question) = rule_of(load_scenario(scene, chosen).scenario);
   question.threads = trials.question.threads;
-  law.edge = field_limit({&scene, chosen, trials.algorithm, question});
+  law.edge = field_limit(question);
   trials.runs += law.edge.runs.size();
   const double G_K = trials.question.margin * choice.stiffness;
   if (!law.edge.value) return refute(trials, choice, G_K, "stable values are scattered");

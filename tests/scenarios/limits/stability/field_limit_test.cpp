@@ -27,10 +27,12 @@ struct Asked {
 
 FieldLimit ask(const Asked& asked, const char* algorithm = "summation") {
   const ScenarioText scenario = read_scenario_text(find_scenario(asked.scenario));
-  LimitQuestion question = limit_question(scenario, asked.overrides, asked.field, asked.range);
+  Words overrides = asked.overrides;
+  overrides.push_back(std::string("rendering.algorithm=") + algorithm);
+  LimitQuestion question = limit_question(scenario, overrides, asked.field, asked.range);
   question.smallest = asked.smallest;
   static_cast<StabilityRule&>(question) = asked.rule;
-  return field_limit({&scenario, asked.overrides, algorithm, question});
+  return field_limit(question);
 }
 
 using Stable = std::function<bool(double value)>;
