@@ -22,8 +22,6 @@ struct TremorConfig {
   double low = 8.0, high = 12.0;     ///< band [Hz]
 
   static constexpr std::size_t kTones = 8;
-  /// Speed that the displacement of an axis never exceeds [m/s]: that of all its tones together.
-  double largest_speed() const { return std::sqrt(2.0 * kTones) * 2.0 * std::numbers::pi * high * rms.maxCoeff(); }
 };
 
 /// A displacement in that band: tones with random frequency and phase, one in each of equal parts of the band, so that

@@ -93,9 +93,8 @@ Columns<LevelRow> level_columns(const ConvergeStudy& study) {
               "with an order 1.25 |f - f*|, else the largest distance from a finer level or in the band", &Row::error);
   columns.print("error %", "1", "of converge: error over the result of the finest level",
                 [](const Row& r) { return r.share ? significant(100.0 * *r.share, 2) : "-"; });
-  columns.add("seconds", "s",
-              "of converge: processor time of the level's run [s]; of one under some milliseconds the least of five",
-              &Row::seconds, {.csv = false, .heading = "run s", .digits = 2});
+  columns.add("seconds", "s", "of converge: processor time of the level's run [s]", &Row::seconds,
+              {.csv = false, .heading = "run s", .digits = 2});
   return columns;
 }
 
@@ -103,7 +102,7 @@ Columns<LevelRow> level_columns(const ConvergeStudy& study) {
 Columns<LevelRow> time_columns() {
   Columns<LevelRow> columns;
   columns.add("value", "by field", "value of the field that is refined", &LevelRow::value);
-  columns.add("seconds", "s", "processor time of the run, of a short one the least of five", &LevelRow::seconds);
+  columns.add("seconds", "s", "processor time of the run", &LevelRow::seconds);
   return columns;
 }
 
@@ -210,16 +209,10 @@ double processor_seconds() {
 }
 
 LevelRun run_of(const LoadedScenario& loaded) {
-  constexpr double kShort = 0.005;  // [s] which noise would drown
   const auto shell = make_shell(loaded.scenario, loaded.files);
-  LevelRun run;
-  for (int i = 0; i == 0 || (i < 5 && run.seconds < kShort); ++i) {
-    const double before = processor_seconds();
-    run.result = run_with_shell(loaded, shell);
-    const double seconds = processor_seconds() - before;
-    run.seconds = i == 0 ? seconds : std::min(run.seconds, seconds);
-  }
-  return run;
+  const double before = processor_seconds();
+  Result result = run_with_shell(loaded, shell);
+  return {std::move(result), processor_seconds() - before};
 }
 
 /// The levels of a scene's field. Throws InputError where it has none.

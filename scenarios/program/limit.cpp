@@ -185,14 +185,17 @@ std::vector<ComparedDevice> chosen_devices(const std::vector<std::string>& given
 
 namespace {
 
-/// The question without its rows. Axes with the name of an option leave the field itself to --over. Throws InputError.
+/// The question without its rows. The axis of --device has no field's name, which it leaves to --over. Throws
+/// InputError.
 LimitTable asked_table(const LimitOptions& options) {
   if (options.devices.empty() && !options.friction.empty())
     throw InputError("--friction: got factors; allowed: with --device");
   const std::vector<fs::path> files = find_scenarios(options.scenarios);
   std::vector<ScenarioText> scenes;
   Axis scene{.path = kSceneAxis, .values = require_names_of_their_own(files, "each name once")},
-      algorithm{.path = "--algorithms", .values = {""}, .named = true};
+      algorithm{.path = options.algorithms.empty() ? "--algorithms" : "rendering.algorithm",
+                .values = {""},
+                .named = options.algorithms.empty()};
   std::transform(files.begin(), files.end(), std::back_inserter(scenes), read_scenario_text);
   std::vector<ComparedDevice> devices;
   if (!options.devices.empty()) devices = asked_devices(options);
@@ -205,10 +208,10 @@ LimitTable asked_table(const LimitOptions& options) {
   return {std::move(devices), Cases(std::move(scenes), options.overrides, std::move(axes))};
 }
 
-/// The case of that number with the scene's own algorithm. Warnings that are not among them yet are added.
+/// The case of that number. Warnings that are not among them yet are added.
 LimitRow asked_row(const LimitOptions& options, const LimitTable& table, std::size_t i,
                    std::vector<std::string>& warnings) {
-  LimitRow row;
+  LimitRow row{.values = table.cases.values(i)};
   if (!table.devices.empty()) row.device = &table.devices[table.cases.place(i, 0)];
   const ScenarioText& scene = table.cases.scene(i);
   try {
@@ -216,30 +219,13 @@ LimitRow asked_row(const LimitOptions& options, const LimitTable& table, std::si
     if (row.device != nullptr) overrides = overrides_on(*row.device, scene, overrides);
     const LoadedScenario loaded = load_scenario(scene, overrides);
     row.scenario = loaded.scenario;
-    const LimitQuestion question = question_of(options, scene, row.scenario, overrides);
-    row.asked = {&scene, std::move(overrides), loaded.scenario.rendering.algorithm, question};
-    append_new(warnings, question.warnings);
+    row.asked = question_of(options, scene, row.scenario, overrides);
+    append_new(warnings, row.asked.warnings);
     append_new(warnings, with_files(loaded, check_named_files(loaded)));
-    // A field of the rendering changes nothing of hand and device.
-    if (question.path.starts_with("rendering.")) row.asked.question.tremor = tremor_speeds(loaded);
   } catch (const InputError& error) {
     throw row.device != nullptr ? on_device(*row.device, error) : error;
   }
   return row;
-}
-
-/// Loads every case, and prints its warnings. Throws InputError.
-LimitTable limit_cases(const LimitOptions& options) {
-  LimitTable table = asked_table(options);
-  std::vector<std::string> warnings;
-  for (std::size_t i = 0; i < table.cases.size(); ++i) {
-    const bool is_asked = table.cases.place(i, table.over() + 2) > 0;  // with another algorithm
-    LimitRow& row = table.rows.emplace_back(is_asked ? table.rows.back() : asked_row(options, table, i, warnings));
-    row.values = table.cases.values(i);
-    if (const std::string& algorithm = row.values.back(); !algorithm.empty()) row.asked.algorithm = algorithm;
-  }
-  print_warnings(warnings);
-  return table;
 }
 
 /// Compares the limits by those of the first scene and algorithm.
@@ -255,10 +241,13 @@ void add_ratios(LimitTable& table) {
 }
 
 int limit(const LimitOptions& options) {
-  LimitTable table = limit_cases(options);
+  LimitTable table = asked_table(options);
+  std::vector<std::string> warnings;
+  for (std::size_t i = 0; i < table.cases.size(); ++i) table.rows.push_back(asked_row(options, table, i, warnings));
+  print_warnings(warnings);
   Report report(options, options.scenarios.size() > 1 ? "limit" : "limit_" + table.first().scene());
   std::vector<LimitRow>& rows = table.rows;
-  if (rows.size() == 1) rows[0].asked.question.threads = job_options(options, "").threads;
+  if (rows.size() == 1) rows[0].asked.threads = job_options(options, "").threads;
   {
     const WaitNotice notice("limit", !options.output.quiet && rows.size() == 1);
     for_each_job(rows.size(), job_options(options, rows.size() > 1 ? "limit" : ""),
@@ -305,19 +294,16 @@ void add_limit(CommandLine& line) {
               "relative width of the answer (default: 0.001); of the range when the range reaches 0 or below");
   add_common(command, options, "limit_NAME");
   command.footer(
-      "A run is stable when it comes to rest or dies out, the classes of \"hapbench describe stability\"; where a script moves the tool, when its handle does not vibrate. It is not "
-      "stable when it vibrates, diverges, goes through the surface, is thrown out (leaves the hole, or ends without contact "
-      "beyond the shell's box by more than the tool reaches), loses contact, is stuck, touches nothing, or does not keep a "
-      "--bound. Oscillations slower than a quarter of the run are not seen. "
+      "A run is stable when it comes to rest or dies out; where a script moves the tool, when its handle does not vibrate. \"hapbench describe stability\" "
+      "has all classes. Oscillations slower than a quarter of the run are not seen. "
       "The range is tried at 17 values. The first edge upwards of the scenario's own value (of the first stable value, "
       "if that one is not stable; with --smallest downwards, from the high end) is bisected, then the other end of the "
       "interval of stable values, below which a surface may be too soft; three values are tried "
       "on either side of the first edge, which may reveal an earlier edge. Of one scene and device the interval is then tried at 48 values between its ends and 8 "
       "just below its edge, and ends at the first that is not stable; where no 2 % of values are stable, there is no edge. The linear edge, of the loop in contact, is the answer "
-      "where stable runs beyond it are intermittent contact. The column inconsistent counts unstable values in the interval "
+      "where stable runs beyond it are intermittent contact. The column astray counts unstable values in the interval "
       "and stable ones outside of it. Where the hand is an impedance, a run without environment tells whether "
-      "hand and device alone are unstable beyond the edge. Where the springs stay in contact, the theoretical limit "
-      "stands beside the edge. A hand with a mass loses it on ideal and admittance, where the virtual mass stands for it. "
+      "hand and device alone are unstable beyond the edge. A hand with a mass loses it on ideal and admittance, where the virtual mass stands for it. "
       "limit_runs.csv has every run.");
 }
 

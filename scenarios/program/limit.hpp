@@ -27,7 +27,7 @@ struct LimitRow {
   std::vector<std::string> values = {};    ///< of the axes of LimitTable::cases
   const ComparedDevice* device = nullptr;  ///< none: the scene's own
   Scenario scenario = {};                  ///< as it is asked for, with its own value of the field
-  LimitCase asked = {};
+  LimitQuestion asked = {};
   FieldLimit found = {};
   /// The limit over that of the first scene and algorithm, all else equal, and the same of K lambda_max(S), the
   /// stiffness that the hand meets; none where either has no limit.
@@ -35,6 +35,7 @@ struct LimitRow {
 
   /// The name of the scene's file.
   const std::string& scene() const { return values[values.size() - 2]; }
+  const std::string& algorithm() const { return scenario.rendering.algorithm; }
 };
 
 /// A row for each case.
@@ -54,7 +55,7 @@ struct LimitTable {
 };
 
 /// The answer in words: the linear edge, or the edge in runs, and what was tried between.
-std::string limit_answer(const FieldLimit& found, const LimitQuestion& question);
+std::string limit_answer(const FieldLimit& found, double resolution);
 
 /// Writes limit.csv and limit_runs.csv, and tells what was found.
 void tell_limits(const LimitTable& table, Report& report);

@@ -4,10 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <span>
 
 #include "device_model/device_presets.hpp"
 #include "device_model/theory/stiffness_limits.hpp"
@@ -15,21 +13,18 @@
 #include "scenarios/limits/stability/run_stability.hpp"
 #include "scenarios/program/index.hpp"
 #include "scenarios/program/limit.hpp"
-#include "scenarios/run/scene_loop.hpp"
 
-/// The tables of `limit` and what is printed of them.
+/// The table of `limit` and what is printed of it.
 namespace hapbench {
 namespace {
 
 constexpr const char *kInconsistent = "inconsistent_runs", *kAstray = "astray";
+constexpr const char* kStiffness = "rendering.stiffness_N_per_m";
 
 /// What a member of the answer is, or a function of it gives.
 template <class Get>
 auto of_answer(Get get) {
-  return [get](const LimitRow& r) { return cell_of(std::invoke(get, r.found)); };
-}
-Cell verdict_cell(const std::optional<JudgedValue>& run) {
-  return run ? cell_of(run_verdict_name(run->verdict)) : Cell();
+  return [get](const LimitRow& r) { return std::invoke(get, r.found); };
 }
 Cell value_cell(const std::optional<JudgedValue>& run) {
   return run ? Cell(run->value) : Cell();
@@ -41,7 +36,7 @@ std::string beyond_text(const FieldLimit& limit) {
   return limit.value ? "end of the range" : std::string(run_verdict_name(limit.runs.front().verdict));
 }
 const IntervalEnd& end_of(const LimitRow& r, bool low) {
-  return low == r.asked.question.smallest ? r.found : r.found.other;
+  return low == r.asked.smallest ? r.found : r.found.other;
 }
 
 /// A line of limit_runs.csv.
@@ -61,43 +56,50 @@ Columns<Row> place_columns(const LimitTable* table) {
         "device", "",
         "ideal, admittance, the preset of an impedance device (* with numbers of --set, [soft] and [stiff] at the "
         "ends of what is not published), or a file's",
-        [](const LimitRow& r) { return r.device->name; });
+        [](const LimitRow& r) { return r.device->name; }, {.heading = "device"});
   }
   if (table == nullptr || !table->devices.empty() || table->cases.scenes().size() > 1) {
     columns.add("scenario", "", "name of the scene's file", [](const LimitRow& r) { return r.scene(); },
-                {.heading = table == nullptr ? "" : "scenario"});
+                {.heading = "scenario"});
   }
   for (std::size_t i = 1; table != nullptr && i <= table->over(); ++i) {
     columns.add(table->cases.axes()[i].path, "by name", "value of the field that varies besides",
                 [i](const LimitRow& r) {
-                  const std::string& value = r.values[i];
-                  const auto number = finite_number(value);
-                  return number ? Cell(*number) : Cell(value);
-                });
+                  const auto number = finite_number(r.values[i]);
+                  return number ? Cell(*number) : Cell(r.values[i]);
+                },
+                {.heading = table->cases.axes()[i].path});
   }
-  columns.add("algorithm", "", "force algorithm", of_answer(&FieldLimit::algorithm), {.heading = "algorithm"});
+  columns.add("algorithm", "", "force algorithm", [](const LimitRow& r) { return r.algorithm(); },
+              {.heading = "algorithm"});
   return columns;
 }
 
-/// The edge that was asked for and the ends of the interval that it ends. Printed is the end on the other side, too.
+/// The edge that was asked for and the ends of the interval that it ends. Printed are the linear edge, that in runs,
+/// and the end on the other side.
 void add_ends(Columns<LimitRow>& columns, const LimitTable* table) {
   const auto add_end = [&](bool low, const std::string& end, const char* meaning, const std::string& outside,
                            const char* first) {
-    const bool shown = table == nullptr || low != table->first().asked.question.smallest;
+    const bool shown = table == nullptr || low != table->first().asked.smallest;
     columns.add(
         end, "by field", meaning, [low](const LimitRow& r) { return end_of(r, low).value; },
         {.heading = shown ? end + " end" : "", .digits = 6},
         [low](const LimitRow& r) { return end_of(r, low).tolerance(); });
     columns.add(outside, "by field", first, [low](const LimitRow& r) { return value_cell(end_of(r, low).beyond); });
-    columns.add("class_" + outside, "", "what became of the run there",
-                [low](const LimitRow& r) { return verdict_cell(end_of(r, low).beyond); },
-                {.heading = shown ? outside + " it" : ""});
+    columns.add("class_" + outside, "", "what became of the run there", [low](const LimitRow& r) {
+      const auto& run = end_of(r, low).beyond;
+      return run ? cell_of(run_verdict_name(run->verdict)) : Cell();
+    });
   };
   columns.add(
-      "field", "", "path of the field", [](const LimitRow& r) { return r.asked.question.path; }, only_csv());
+      "field", "", "path of the field", [](const LimitRow& r) { return r.asked.path; }, only_csv());
   columns.add(
       "side", "", "largest or smallest: the stable value that was asked for",
-      [](const LimitRow& r) { return r.asked.question.smallest ? "smallest" : "largest"; }, only_csv());
+      [](const LimitRow& r) { return r.asked.side(); }, only_csv());
+  columns.print("linear edge", "by field", "of limit: theory, or where there is none linear", [](const LimitRow& r) {
+    const auto& edge = r.found.linear_edge();
+    return edge && (std::isinf(*edge) || *edge == 0.0) ? "none" : significant(edge, 6);
+  });
   columns.add("limit", "by field",
               "the last stable value before the first edge, by bisection on runs; empty when there is none",
               of_answer(&FieldLimit::value), {.heading = "first edge", .digits = 6},
@@ -114,31 +116,14 @@ void add_ends(Columns<LimitRow>& columns, const LimitTable* table) {
           "the first value above that is not stable; empty when the range ends stable");
 }
 
-void add_theory(Columns<LimitRow>& columns, bool with_inequality) {
+void add_theory(Columns<LimitRow>& columns) {
   columns.add("theory", "by field", "the limit in theory; empty where there is none", of_answer(&FieldLimit::theory));
-  if (with_inequality) {
-    columns.add(
-        "closed_form", "by field",
-        "the same where the integrator's inequality ends, of leapfrog 4 - 2 lambda B dt / M - lambda K dt^2 / M >= 0 "
-        "with lambda = lambda_max(S) (A.3); empty where it has none",
-        of_answer(&FieldLimit::closed_form));
-  }
   columns.add(
       "linear", "by field",
       "of a device at what only pushes: the largest value at which the loop of device, hand and surface is stable "
       "while they touch, without dry friction and encoder, by its eigenvalues; a limit beyond it is held up by "
       "bounces, dry friction or the end of the run; empty where there is a theory or no device",
       of_answer(&FieldLimit::linear));
-  columns.print("theory", "by field", "theory", [](const LimitRow& r) {
-    const auto& value = r.found.theory;
-    return value && (std::isinf(*value) || *value == 0.0) ? "none" : significant(value, 6);
-  });
-  columns.print("off theory %", "%", "first edge / theory - 1, in percent", [](const LimitRow& r) -> std::string {
-    const auto difference = r.found.difference(), tolerance = r.found.tolerance();
-    if (!difference) return "-";
-    return deserved_difference(100.0 * *difference,
-                               tolerance ? std::optional(100.0 * *tolerance / std::abs(*r.found.value)) : std::nullopt);
-  });
 }
 
 /// What the literature says of a wall on an impedance device.
@@ -198,7 +183,7 @@ void add_settled(Columns<LimitRow>& columns) {
 
 Columns<LimitRunRow> run_columns(const LimitTable* table) {
   Columns<LimitRunRow> columns = place_columns<LimitRunRow>(table);
-  columns.add(table == nullptr ? "{field}" : table->first().asked.question.path, "by name", "value of the field",
+  columns.add(table == nullptr ? "{field}" : table->first().asked.path, "by name", "value of the field",
               [](const LimitRunRow& r) { return r.run.value; });
   columns.add("class", "", "what became of the run (describe stability)",
               [](const LimitRunRow& r) { return run_verdict_name(r.run.verdict); });
@@ -218,74 +203,67 @@ Json row_json(const Columns<LimitRow>& columns, const LimitRow& row) {
 Columns<LimitRow> limit_columns(const LimitTable* table) {
   Columns<LimitRow> columns = place_columns<LimitRow>(table);
   add_ends(columns, table);
-  const auto has_inequality = [](const LimitRow& row) { return row.found.closed_form.has_value(); };
-  add_theory(columns, table == nullptr || std::ranges::any_of(table->rows, has_inequality));
+  add_theory(columns);
   add_search(columns);
   if (table == nullptr || !table->devices.empty()) {
     columns.add("published_N_per_m", "N/m", "published largest stable stiffness of a wall on the device",
-                [](const LimitRow& r) { return r.device->published_stiffness; });
+                [](const LimitRow& r) { return r.device->published_stiffness; }, {.heading = "published"});
   }
   if (table == nullptr || table->is_grid()) add_settled(columns);
   const auto has_closed_forms = [](const LimitRow& row) { return !row.found.closed_forms.empty(); };
   if (table == nullptr || std::ranges::any_of(table->rows, has_closed_forms)) add_closed_forms(columns);
-  columns.add("runs", "1", "runs of the search", [](const LimitRow& r) { return r.found.runs.size(); },
-              {.heading = "runs"});
+  columns.add("runs", "1", "runs of the search", [](const LimitRow& r) { return r.found.runs.size(); });
   const auto inconsistent = [](const LimitRow& r) { return r.found.inconsistent.size(); };
   columns.add(kInconsistent, "1", "runs that are unstable on the stable side of the limit, or stable beyond it",
-              inconsistent, {.heading = "inconsistent"});
-  columns.add(kAstray, "1", "the same as inconsistent_runs, by its former name", inconsistent);
+              inconsistent);
+  columns.add(kAstray, "1", "the same as inconsistent_runs, by its former name", inconsistent, {.heading = kAstray});
   return columns;
 }
 
-constexpr std::size_t kGridGap = 1;  // three scenes and two algorithms then fit into kTableWidth
 constexpr const char* kBeyondLinear =
     "beyond it stable runs are intermittent contact: bounces below 30 Hz, dry friction or the end of the run hold the "
     "tool, and one that rests on the surface may not be stable";
-constexpr double kNone = std::numeric_limits<double>::infinity();
 
-/// States the question of one scene.
-std::string question_text(const LimitQuestion& question, const Scenario& scenario) {
+std::string damping_text(const RenderingConfig& rendering) {
+  if (rendering.damping) return fmt::format("B = {} N s/m", significant(*rendering.damping));
+  if (rendering.damping_ratio == 0.0) return "no damping is rendered (damping_ratio 0): B = 0 at every K";
+  return fmt::format("B = 2 zeta sqrt(K m) with damping_ratio zeta = {} and rendering.mass_kg m = {}",
+                     significant(rendering.damping_ratio), significant(rendering.mass));
+}
+
+/// States the question of one scene; `over`: other fields vary, too.
+std::string question_text(const LimitQuestion& question, const Scenario& scenario, bool over) {
   const std::string width = question.whole ? "1"
                             : question.range.logarithmic
                                 ? fmt::format("{} %", 100.0 * question.resolution)
                                 : fmt::format("{} % of the range", 100.0 * question.resolution);
   const auto end = [&question](double value) { return significant(question.whole ? std::round(value) : value); };
-  return fmt::format("{}: {} stable {} between {} and {}, to {}; {} steps a run\n\n", scenario.name,
-                     question.smallest ? "smallest" : "largest", question.path, end(question.range.from),
-                     end(question.range.to), width, scenario.time.steps);
+  std::string text = fmt::format("{}: {} stable {} between {} and {}, to {}", scenario.name, question.side(),
+                                 question.path, end(question.range.from), end(question.range.to), width);
+  if (!over) text += fmt::format("; {} steps of {} s", scenario.time.steps, significant(scenario.time.step));
+  if (!over && question.path == kStiffness) text += "; " + damping_text(scenario.rendering);
+  return wrapped(text, 0);
 }
 
-std::string none_text(const FieldLimit& limit, const StabilityRule& rule) {
+/// Why there is no edge.
+std::string none_text(const FieldLimit& limit) {
   std::map<RunVerdict, std::size_t> counts;
   for (const JudgedValue& run : limit.runs) ++counts[run.verdict];
   std::vector<std::string> texts;
   for (const auto& [verdict, count] : counts) texts.push_back(fmt::format("{} {}", count, run_verdict_name(verdict)));
-  const std::string tried = fmt::format("{}", fmt::join(texts, ", "));
-  if (!limit.scattered) return fmt::format("none of {} values tried is stable: {}", limit.runs.size(), tried);
-  const auto stable = [&](const JudgedValue& run) { return rule.holds(run.verdict); };
-  const auto first = std::ranges::find_if(limit.runs, stable);
-  const auto last = std::ranges::find_if(limit.runs.rbegin(), limit.runs.rend(), stable);
-  return fmt::format("no edge: stable values are scattered from {} to {}, no stretch of {:g} % is stable: {}",
-                     significant(first->value, 3), significant(last->value, 3), 100.0 * kNear, tried);
-}
-
-std::string inconsistent_text(const FieldLimit& limit) {
-  std::vector<std::string> texts;
-  for (const JudgedValue& run : limit.inconsistent)
-    texts.push_back(fmt::format("{} at {}", run_verdict_name(run.verdict), significant(run.value)));
-  return fmt::format("{}: not one edge: {}\n", limit.algorithm, fmt::join(first_few(std::move(texts), 4), ", "));
-}
-
-bool is_beyond_linear(const LimitRow& row) {
-  return row.found.is_beyond_linear(row.asked.question.resolution);
+  return fmt::format("{} of {} values tried is stable: {}",
+                     limit.scattered
+                         ? fmt::format("no edge, stable values are scattered: no stretch of {:g} %", 100.0 * kNear)
+                         : "none",
+                     limit.runs.size(), fmt::join(texts, ", "));
 }
 
 /// Remarks on a limit that is not all of the answer.
 std::string remarks_text(const LimitRow& row) {
   const FieldLimit& limit = row.found;
-  const LimitQuestion& question = row.asked.question;
+  const LimitQuestion& question = row.asked;
   std::string text;
-  const auto say = [&](const std::string& what) { text += fmt::format("{}: {}\n", limit.algorithm, what); };
+  const auto say = [&](const std::string& what) { text += wrapped(row.algorithm() + ": " + what, 0); };
   if (limit.value && limit.own && !question.holds(limit.own->verdict)) {
     say(fmt::format("{} at the scenario's own {}: the edge is that of the first stable values from the {} end",
                     run_verdict_name(limit.own->verdict), significant(limit.own->value),
@@ -306,194 +284,80 @@ std::string remarks_text(const LimitRow& row) {
     say(fmt::format("at {} hand and device are unstable by themselves: the tool vibrates without contact, too",
                     significant((limit.beyond ? *limit.beyond : limit.runs.front()).value)));
   }
-  return limit.inconsistent.empty() ? text : text + inconsistent_text(limit);
+  return text;
 }
 
-bool has_dry_friction(const Scenario& scenario) {
-  const auto* device = std::get_if<ImpedanceDeviceConfig>(&scenario.device);
-  return device != nullptr && device->coulomb > 0.0;
-}
-
-std::string damping_text(const RenderingConfig& rendering) {
-  if (rendering.damping) return fmt::format("B = {} N s/m", significant(*rendering.damping));
-  if (rendering.damping_ratio == 0.0) return "no damping is rendered (damping_ratio 0): B = 0 at every K";
-  return fmt::format("B = 2 zeta sqrt(K m) with damping_ratio zeta = {} and rendering.mass_kg m = {}",
-                     significant(rendering.damping_ratio), significant(rendering.mass));
-}
-
-/// As the width of the search allows, or with three digits.
-std::string value_text(double value, const std::optional<double>& tolerance = {}) {
-  return deserved(value, tolerance ? tolerance : value * 5e-3);
-}
-
-/// "800", "120-800" where it is not stable below, "> 800" where the range ends stable; "800!" for the linear edge.
-std::string edge_text(const LimitRow& row) {
-  const FieldLimit& limit = row.found;
-  if (!limit.value) return "none";
-  const bool by_linear = is_beyond_linear(row);
-  if (by_linear && limit.other.beyond && *limit.linear < *limit.other.value) return "none!";
-  return fmt::format("{}{}{}{}{}",
-                     limit.other.beyond ? value_text(*limit.other.value, limit.other.tolerance()) + "-" : "",
-                     limit.beyond || by_linear ? "" : "> ",
-                     by_linear ? value_text(*limit.linear) : value_text(*limit.value, limit.tolerance()),
-                     by_linear ? "!" : "", limit.inconsistent.empty() || by_linear ? "" : " ~");
-}
-
-/// The delay in samples of each impedance device in the first scene, as "0 of touch; 1 (0.5 ms in steps of 0.5 ms) of
-/// mine"; empty when none has one. One in seconds is the same in every scene.
-std::string delays_text(const LimitTable& table) {
-  std::map<std::string, std::vector<std::string>> names;
-  for (std::size_t i = 0; i < table.rows.size(); i += table.columns()) {
-    const LimitRow& row = table.rows[i];
-    if (has_delay_in_samples(row.scenario) && !row.device->name.ends_with(']'))
-      append_new(names[delay_text(row.scenario)], {row.device->name});
-  }
-  std::vector<std::string> parts;
-  for (const auto& [delay, having] : names) parts.push_back(fmt::format("{} of {}", delay, fmt::join(having, ", ")));
-  if (names.empty() || names.rbegin()->first == "0") return "";
-  return wrapped(
-      fmt::format("delay_samples: {}; {}; none of a preset is published", fmt::join(parts, "; "), kWhoseSamples), 0);
-}
-
-constexpr const char* kWhichStiffness = "which K to quote: device_model/README.md, \"Which K to quote?\"";
-
-/// The approach that limits with dry friction belong to, over all cases.
-std::string approaches_text(const LimitTable& table) {
-  if (std::ranges::none_of(table.rows, [](const LimitRow& row) { return has_dry_friction(row.scenario); })) return "";
-  const auto range = [&](double SettledState::*of) {
-    double least = kNone, most = 0.0;
-    for (const LimitRow& row : table.rows) {
-      if (!row.found.value) continue;
-      least = std::min(least, row.found.settled.*of);
-      most = std::max(most, row.found.settled.*of);
-    }
-    const std::string low = significant(least, 2), high = significant(most, 2);
-    return low == high ? low : low + " to " + high;
-  };
-  return wrapped(
-      fmt::format(
-          "dry friction holds a hand that presses slowly, and is ours in every preset: the limit is that of this "
-          "approach (first touch at {} m/s, pressed with {} N), not of a device; --set device.coulomb_N=0 shows what is "
-          "left without",
-          range(&SettledState::touch_speed), range(&SettledState::press)),
-      0);
-}
-
-/// A line for each case, with the numbers of its search.
-std::string detailed_text(const LimitTable& table) {
-  std::string text, answers, remarks;
-  for (std::size_t i = 0; i < table.rows.size(); ++i) {
-    const LimitRow& row = table.rows[i];
-    if (i == 0 || row.scene() != table.rows[i - 1].scene()) text += question_text(row.asked.question, row.scenario);
-    answers += wrapped(fmt::format("{}: {}", row.found.algorithm, limit_answer(row.found, row.asked.question)), 0);
-    remarks += remarks_text(row);
-  }
-  text += answers + "\n";
-  const LimitRow& first = table.first();
-  text += limit_columns(&table).table(table.rows).text() + "\n" +
-          wrapped(rule_text(first.asked.question, is_moved(first.scenario)), 0) + remarks + approaches_text(table);
-  const bool on_device = std::holds_alternative<ImpedanceDeviceConfig>(first.scenario.device);
-  return text + (on_device && first.asked.question.path == "rendering.stiffness_N_per_m"
-                     ? std::string(kWhichStiffness) + "\n"
-                     : "");
-}
-
-/// A row is the first of those with all else equal.
-Columns<const LimitRow*> grid_columns(const LimitTable& table) {
-  Columns<const LimitRow*> columns;
-  if (!table.devices.empty()) columns.print("device", "", "", [](const LimitRow* r) { return r->device->name; });
-  for (std::size_t i = 1; i <= table.over(); ++i) {
-    columns.print(table.cases.axes()[i].path, "1", "", [i](const LimitRow* r) {
-      const auto number = finite_number(r->values[i]);
-      return number ? significant(*number) : r->values[i];
-    });
-  }
-  if (!table.devices.empty()) {
-    columns.print("pub-\nlished", "1", "", [](const LimitRow* r) {
-      const auto& published = r->device->published_stiffness;
-      return published ? value_text(*published) : "-";
-    });
-  }
-  for (std::size_t c = 0; c < table.columns(); ++c)
-    columns.print(table.rows[c].scene() + "\n" + table.rows[c].asked.algorithm, "1", "",
-                  [c](const LimitRow* r) { return edge_text(r[c]); });
-  return columns;
-}
-
-/// What the signs in the grid mean, as far as there are any, and what else is to be known of its numbers.
+/// What is to be known of the numbers, as far as it is of any.
 std::string notes_text(const LimitTable& table) {
   const auto any = [&](auto holds) { return std::ranges::any_of(table.rows, holds); };
-  const bool devices = !table.devices.empty();
-  const auto is_named = [&](char sign) {
-    return devices && any([sign](const LimitRow& row) { return row.device->name.find(sign) != std::string::npos; });
+  const auto is_on_device = [](const LimitRow& row) {
+    return std::holds_alternative<ImpedanceDeviceConfig>(row.scenario.device);
   };
-  const auto [least, most] = std::ranges::minmax(table.rows, {}, [](const LimitRow& r) { return r.found.runs.size(); });
-  const std::string fewest = std::to_string(least.found.runs.size()), all = std::to_string(most.found.runs.size());
+  const auto rubs = [](const LimitRow& row) {
+    const auto* device = std::get_if<ImpedanceDeviceConfig>(&row.scenario.device);
+    return device != nullptr && device->coulomb > 0.0;
+  };
+  const auto is_beyond_linear = [](const LimitRow& row) { return row.found.is_beyond_linear(row.asked.resolution); };
   const std::pair<bool, std::string> notes[] = {
-      {any([](const LimitRow& row) { return row.found.other.beyond.has_value(); }),
-       "a-b: stable from a on only; class_below in limit.csv says what becomes of the run below"},
-      {any([](const LimitRow& row) { return !row.found.value; }),
-       "none: no value tried is stable; limit_runs.csv says what becomes of each"},
-      {devices, "published: largest stable stiffness of a wall; \"hapbench describe DEVICE\" names its source"},
-      {devices, kWhichStiffness},
-      {is_named('*'), "*: a preset with numbers of --set, of which nothing is published"},
-      {is_named('['),
-       fmt::format("[soft], [stiff]: the preset at either end of what nobody published of it ({}); [friction*2]: with "
-                   "its dry friction times a factor",
-                   kPresetRanges)},
-      {any(is_beyond_linear),
-       fmt::format("!: the linear edge, of the loop of device, hand and surface while they touch; {} (limit in "
-                   "limit.csv is the edge in runs)",
-                   kBeyondLinear)},
-      {any([](const LimitRow& row) { return !row.found.inconsistent.empty(); }),
-       "~: some values below it are unstable, or some beyond it are stable: limit_runs.csv"},
-      {true, fmt::format("each edge was found at {} values, and nothing was tried between them; of one scene and "
-                         "device alone it is",
-                         fewest == all ? all : fewest + " to " + all)}};
+      {table.is_grid() && any(is_beyond_linear),
+       fmt::format("linear edge: of the loop of device, hand and surface while they touch; {}", kBeyondLinear)},
+      {table.is_grid(),
+       "nothing was tried between the values of a search; of one scene and device alone it is. astray: values that are "
+       "unstable before an edge or stable beyond it; limit_runs.csv has what becomes of each value"},
+      {!table.devices.empty(),
+       fmt::format(
+           "published: largest stable stiffness of a wall (\"hapbench describe DEVICE\" names its source); *: a "
+           "preset with numbers of --set, of which nothing is published; [soft], [stiff]: the preset at either "
+           "end of what nobody published of it ({}); [friction*2]: with its dry friction times a factor",
+           kPresetRanges)},
+      {table.first().asked.path == kStiffness && any(is_on_device),
+       "which K to quote: device_model/README.md, \"Which K to quote?\""},
+      {any(rubs),
+       "dry friction holds a hand that presses slowly, and is ours in every preset: the limit is that of this approach, "
+       "not of a device; --set device.coulomb_N=0 shows what is left without"}};
   std::string text;
   for (const auto& [holds, note] : notes)
     if (holds) text += wrapped(note, 0);
-  return text + (devices ? delays_text(table) : "") + approaches_text(table);
+  std::vector<std::string> delays;
+  if (table.over() == 0)
+    for (const LimitRow& row : table.rows) append_new(delays, {delay_note(row.scenario)});
+  for (const std::string& delay : delays) text += delay.empty() ? "" : wrapped(delay, 0);
+  return text;
 }
 
-/// The limits alone, a line for each device and value, and how they compare.
-std::string grid_text(const LimitTable& table) {
-  const LimitQuestion& question = table.first().asked.question;
-  std::string text = fmt::format("{} stable {}, to {:.3g} %\n", question.smallest ? "smallest" : "largest",
-                                 question.path, 100.0 * question.resolution);
-  const std::span over = std::span(table.cases.axes()).subspan(1, table.over());
-  const bool as_in_first_row = std::ranges::none_of(
-      over, [](const Axis& axis) { return axis.path.starts_with("rendering.") || axis.path.starts_with("time."); });
-  std::vector<std::string> rules;
-  for (std::size_t c = 0; as_in_first_row && c < table.columns(); ++c) {
-    const Scenario& scenario = table.rows[c].scenario;
-    append_new(rules, {fmt::format("{} steps of {} s; {}\n", scenario.time.steps, significant(scenario.time.step),
-                                   damping_text(scenario.rendering))});
+/// The question of each scene, the answers, and what is to be known of them.
+std::string limits_text(const LimitTable& table, const Columns<LimitRow>& columns) {
+  std::string text, answers, remarks;
+  for (std::size_t i = 0; i < table.columns(); ++i) {
+    const LimitRow& row = table.rows[i];
+    if (i == 0 || row.scene() != table.rows[i - 1].scene())
+      text += question_text(row.asked, row.scenario, table.over() > 0);
+    if (table.is_grid()) continue;
+    answers += wrapped(fmt::format("{}: {}", row.algorithm(), limit_answer(row.found, row.asked.resolution)), 0);
+    remarks += remarks_text(row);
   }
-  std::vector<const LimitRow*> firsts;
-  for (std::size_t i = 0; i < table.rows.size(); i += table.columns()) firsts.push_back(&table.rows[i]);
-  return text + fmt::format("{}", fmt::join(rules, "")) + "\n" + grid_columns(table).table(firsts, kGridGap).text() +
-         wrapped(rule_text(question, is_moved(table.first().scenario)), 0) + notes_text(table);
+  const LimitRow& first = table.first();
+  return fmt::format("{}\n{}{}{}\n{}{}{}", text, answers, answers.empty() ? "" : "\n", columns.table(table.rows).text(),
+                     wrapped(rule_text(first.asked, is_moved(first.scenario)), 0), remarks, notes_text(table));
 }
 
 }  // namespace
 
 std::vector<DescribedTable> limit_tables() {
-  DescribedTable limits = limit_columns(nullptr).described(
-      "limit.csv", "of limit: one line per device, values of --over, scene and algorithm");
-  limits.headings.push_back({"pub-\nlished", true, "published_N_per_m"});
-  return {limits, run_columns(nullptr).described("limit_runs.csv", "of limit: one line per run")};
+  return {limit_columns(nullptr).described("limit.csv",
+                                           "of limit: one line per device, values of --over, scene and algorithm"),
+          run_columns(nullptr).described("limit_runs.csv", "of limit: one line per run")};
 }
 
-std::string limit_answer(const FieldLimit& found, const LimitQuestion& question) {
-  if (!found.value) return none_text(found, question);
+std::string limit_answer(const FieldLimit& found, double resolution) {
+  if (!found.value) return none_text(found);
   std::string text = found.beyond
                          ? fmt::format("edge in runs {}", deserved(*found.value, found.tolerance()))
                          : fmt::format("stable in runs to the end of the range, {}", significant(*found.value, 6));
-  const auto& linear = found.theory ? found.theory : found.linear;
+  const auto& linear = found.linear_edge();
   if (linear && std::isfinite(*linear) && *linear > 0.0) {
     const std::string edge = fmt::format("linear edge {}; ", significant(*linear, 6));
-    text = edge + (found.is_beyond_linear(question.resolution) ? fmt::format("{} ({})", kBeyondLinear, text) : text);
+    text = edge + (found.is_beyond_linear(resolution) ? fmt::format("{} ({})", kBeyondLinear, text) : text);
   }
   if (found.tried_between == 0) return text;
   return text + fmt::format("; {} values between its ends are stable, too: at most {:.0f} % of them may fail (95 %)",
@@ -501,7 +365,7 @@ std::string limit_answer(const FieldLimit& found, const LimitQuestion& question)
 }
 
 void tell_limits(const LimitTable& table, Report& report) {
-  const LimitQuestion& question = table.first().asked.question;
+  const LimitQuestion& question = table.first().asked;
   const Columns<LimitRow> columns = limit_columns(&table);
   std::vector<LimitRunRow> runs;
   Json limits = Json::array();
@@ -511,9 +375,9 @@ void tell_limits(const LimitTable& table, Report& report) {
   }
   report.write("limit.csv", columns, table.rows);
   report.write("limit_runs.csv", run_columns(&table), runs);
-  report.say(table.is_grid() ? grid_text(table) : detailed_text(table));
+  report.say(limits_text(table, columns));
   report.json() = {{"field", question.path},
-                   {"side", question.smallest ? "smallest" : "largest"},
+                   {"side", question.side()},
                    {"from", question.range.from},
                    {"to", question.range.to},
                    {"resolution", question.resolution},

@@ -214,8 +214,4 @@ std::string deserved(double value, const std::optional<double>& tolerance, int d
   return last < 0 ? fmt::format("{:.{}f}", value, -last) : fmt::format("{:.0f}", std::round(value / unit) * unit);
 }
 
-std::string deserved_difference(double difference, const std::optional<double>& tolerance) {
-  return tolerance && std::abs(difference) <= *tolerance ? "0" : deserved(difference, tolerance, 2);
-}
-
 }  // namespace hapbench

@@ -77,7 +77,5 @@ int deserved_digits(double value, const std::optional<double>& tolerance, int mo
 /// A number with the digits that its tolerance (> 0) leaves it: down to the tolerance's leading one, and without an
 /// exponent above 1e-4. `digits` significant ones where no tolerance is known, or it is larger than the number.
 std::string deserved(double value, const std::optional<double>& tolerance, int digits = 4);
-/// The same of a difference: "0" where it is within the tolerance.
-std::string deserved_difference(double difference, const std::optional<double>& tolerance);
 
 }  // namespace hapbench

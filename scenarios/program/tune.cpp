@@ -14,6 +14,7 @@
 #include "scenarios/program/index.hpp"
 #include "scenarios/program/limit.hpp"
 #include "scenarios/program/report.hpp"
+#include "scenarios/program/run_table.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/progress_bar.hpp"
 #include "scenarios/run/scene_loop.hpp"
@@ -59,7 +60,7 @@ std::vector<std::size_t> ranking_of(const std::vector<TunedLaw>& laws) {
   const auto key = [&](std::size_t i) {
     const TuneTrial& choice = *laws[i].choice;
     const auto depth = choice.metrics.find("inside_settled_m");
-    return depth != choice.metrics.end() ? depth->second : -choice.stiffness * choice.lambda_max;
+    return depth != choice.metrics.end() ? depth->second : -choice.rendered();
   };
   std::ranges::stable_sort(order, {}, key);
   return order;
@@ -72,26 +73,10 @@ std::string stiffness_text(const TuneTrial& choice) {
   return deserved(choice.stiffness, 0.005 * choice.stiffness);
 }
 
-std::optional<double> value_in(const TuneMetrics& metrics, const char* name, double factor = 1.0) {
+std::optional<double> value_in(const TuneMetrics& metrics, std::string_view name, double factor = 1.0) {
   const auto found = metrics.find(name);
   return found == metrics.end() ? std::nullopt : std::optional(factor * found->second);
 }
-
-/// A metric of the choice with the digits that its error leaves it, one where that is not known.
-std::string metric_text(const TunedLaw& law, const char* name, double factor) {
-  const auto value = law.choice ? value_in(law.choice->metrics, name, factor) : std::nullopt;
-  return value ? significant(*value, deserved_digits(*value, value_in(law.error, name, factor), 1)) : "-";
-}
-
-/// A metric of the tuned scene as it is told.
-struct ToldMetric {
-  const char *name, *says;
-  double factor = 1.0;
-};
-constexpr ToldMetric kTold[] = {
-    {kTuneMetrics[0], "deepest inside [mm]", 1e3}, {kTuneMetrics[1], "force above 30 Hz [N rms]"},
-    {kTuneMetrics[2], "largest force step [N]"},   {kTuneMetrics[3], "settled inside [mm]", 1e3},
-    {kTuneMetrics[4], "mean force [N]"},           {kTuneMetrics[5], "landing force [N]"}};
 
 constexpr const char* kRatioColumn = "rendering.damping_ratio";
 
@@ -153,12 +138,15 @@ Columns<TunedLaw> law_columns() {
   columns.add("may_fail_share", "1", "share of what lies between K and G K that may not be, with 95 % confidence",
               [](const TunedLaw& l) { return l.verified > 0 ? Cell(may_fail_share(kTriedBetween)) : Cell(); });
   columns.add("runs", "1", "simulations in all", &TunedLaw::runs);
-  const auto add_metric = [&](const char* name, double factor, const char* heading) {
-    columns.print(heading, "by name", name, [=](const TunedLaw& l) { return metric_text(l, name, factor); });
+  const auto print_metric = [&](const char* heading, const char* name, double factor) {
+    columns.print(heading, "by name", name, [=](const TunedLaw& l) {
+      const auto value = l.choice ? value_in(l.choice->metrics, name, factor) : std::nullopt;
+      return value ? number_text(*value, value_in(l.error, name, factor)) : "-";
+    });
   };
-  add_metric("inside_settled_m", 1e3, "settled\ninside [mm]");
-  add_metric("force_rms_above_30Hz_N", 1.0, "vibration\n[N rms]");
-  add_metric("settled_force_step_max_N", 1.0, "largest\nstep [N]");
+  print_metric("settled\ninside [mm]", "inside_settled_m", 1e3);
+  print_metric("vibration\n[N rms]", "force_rms_above_30Hz_N", 1.0);
+  print_metric("largest\nstep [N]", "settled_force_step_max_N", 1.0);
   columns.print("binding", "", "of tune: what a larger K does not keep", &TunedLaw::binding);
   return columns;
 }
@@ -189,7 +177,7 @@ Json law_json(const TunedLaw& law) {
   for (const Margin& margin : kMargins) json["margins"][margin.key] = or_null(law.margins.*margin.of);
   json["metrics"] = law.choice ? law.choice->metrics : TuneMetrics();
   json["error"] = law.error;
-  json["linear_edge"] = law.choice ? or_null(law.edge.linear ? law.edge.linear : law.edge.theory) : Json();
+  json["linear_edge"] = law.choice ? or_null(law.edge.linear_edge()) : Json();
   json["edge_in_runs"] = law.choice ? or_null(law.edge.value) : Json();
   return json;
 }
@@ -217,28 +205,12 @@ Json tuning_json(const Tuning& tuning, const fs::path& tuned) {
           {"runs", tuning.runs()}};
 }
 
-/// The choice as a scenario that extends the scene; sections that --set or the device changed stand in it as a whole.
-Json tuned_scenario(const Tuning& tuning, const TunedLaw& law, const std::string& scene, const fs::path& out) {
+/// The choice in full.
+Json tuned_scenario(const Tuning& tuning, const TunedLaw& law, const fs::path& out) {
   const Scenario choice = load_scenario(tuning.question.scenario, law.overrides).scenario;
-  const Json effective = effective_scenario(choice, out);
-  const fs::path& file = tuning.question.scenario.file;
-  const bool bundled = !fs::exists(scene);
-  Json json = {
-      {"extends", bundled ? file.stem().string() : fs::relative(fs::absolute(file), fs::absolute(out)).string()},
-      {"name", file.stem().string() + "_tuned"},
-      {"description", fmt::format("{} tuned by hapbench tune: {}", choice.name, law.algorithm)}};
-  for (const std::string& override : tuning.question.overrides) {
-    const std::string section(overridden_path(override).substr(0, overridden_path(override).find('.')));
-    if (section != "name" && section != "expect") json[section] = effective.at(section);
-  }
-  if (!law.choice->filter.empty()) json["device"] = effective.at("device");
-  Json& rendering = json["rendering"];
-  for (const char* name : {"algorithm", "stiffness_N_per_m", "damping_ratio", "damping_N_s_per_m", "mass_kg"})
-    rendering[name] = effective.at("rendering").at(name);
-  if (!law.choice->damping_ratio) {
-    rendering.erase("damping_ratio");
-    rendering.erase("damping_N_s_per_m");
-  }
+  Json json = effective_scenario(choice, out);
+  json["name"] = tuning.question.scenario.file.stem().string() + "_tuned";
+  json["description"] = fmt::format("{} tuned by hapbench tune: {}", choice.name, law.algorithm);
   return json;
 }
 
@@ -273,22 +245,6 @@ std::string margins_text(const TuneMargins& margins) {
   return fmt::format("{}", fmt::join(texts, ", "));
 }
 
-/// What to expect of the recommended law, and of the next one if there is one.
-Columns<ToldMetric> expect_columns(const TunedLaw* best, const TunedLaw* next) {
-  Columns<ToldMetric> columns;
-  columns.print("expect", "", "of tune: a metric of the tuned scene's run", [](const ToldMetric& m) { return m.says; });
-  columns.print(best == nullptr ? "recommended" : best->algorithm, "1", "of tune: of the law to use",
-                [best](const ToldMetric& m) { return metric_text(*best, m.name, m.factor); });
-  columns.print("may be off by", "1",
-                "of tune: how far half the step, half the distance of the points or a look at the depth in every row "
-                "move it; - where such a run has no such number",
-                [best](const ToldMetric& m) { return significant(value_in(best->error, m.name, m.factor), 1); });
-  if (best != nullptr && next == nullptr) return columns;
-  columns.print(next == nullptr ? "next" : next->algorithm, "1", "of tune: of the next best law",
-                [next](const ToldMetric& m) { return metric_text(*next, m.name, m.factor); });
-  return columns;
-}
-
 std::string recommendation_text(const Tuning& tuning) {
   const TunedLaw* best = tuning.recommended();
   if (best == nullptr) return "nothing is feasible\n";
@@ -296,22 +252,20 @@ std::string recommendation_text(const Tuning& tuning) {
   const auto line = [&](const char* name, const std::string& what) { text += entry(name, what, 2, 14); };
   line("stops at", fmt::format("{}: {}", best->binding, best->why));
   line("margins", margins_text(best->margins));
-  const TunedLaw* next = tuning.ranking.size() > 1 ? &tuning.laws[tuning.ranking[1]] : nullptr;
-  if (next != nullptr) {
-    const double rendered = best->choice->stiffness * best->choice->lambda_max;
-    line("runner-up",
-         fmt::format("{}, {}: {} times the rendered stiffness", next->algorithm, choice_text(*next->choice),
-                     significant(next->choice->stiffness * next->choice->lambda_max / rendered, 2)));
+  if (tuning.ranking.size() > 1) {
+    const TunedLaw& next = tuning.laws[tuning.ranking[1]];
+    line("runner-up", fmt::format("{}, {}: {} times the rendered stiffness", next.algorithm, choice_text(*next.choice),
+                                  significant(next.choice->rendered() / best->choice->rendered(), 2)));
   }
-  line("K's edges", limit_answer(best->edge, best->edge_question));
+  line("K's edges", limit_answer(best->edge, kEdgeResolution));
   line("verified",
        fmt::format("by {} full-length runs between K and {:g} K, all settled: at most {:.0f} % of what lies "
                    "between may not be (95 %); {} runs in all",
                    best->verified, tuning.question.margin, 100.0 * may_fail_share(kTriedBetween), tuning.runs()));
-  std::vector<ToldMetric> told;
-  for (const ToldMetric& metric : kTold)
-    if (best->choice->metrics.contains(metric.name)) told.push_back(metric);
-  return text + "\n" + expect_columns(best, next).table(told).text();
+  line("expect", "+-: how far half the step, half the distance of the points or a look at every row move it");
+  for (const auto& [name, value] : best->choice->metrics)
+    line("", fmt::format("{} {}", name, with_error_text(value, value_in(best->error, name))));
+  return text;
 }
 
 std::string tuning_text(const Tuning& tuning) {
@@ -336,6 +290,15 @@ std::string device_text(const std::string& name, TuneQuestion& question) {
   return " on " + device.name;
 }
 
+/// A range of numbers above 0, which are searched by their ratios; none for an empty text. Throws InputError.
+std::optional<Range> ratios_of(const char* option, const std::string& text) {
+  std::optional<Range> range = range_of(option, text);
+  if (!range) return range;
+  if (!(range->from > 0.0)) throw InputError(fmt::format("{}: got \"{}\"; allowed: a:b with 0 < a < b", option, text));
+  range->logarithmic = true;
+  return range;
+}
+
 TuneQuestion tune_question(const TuneOptions& options, const fs::path& file) {
   TuneQuestion question;
   question.scenario = read_scenario_text(file);
@@ -344,16 +307,10 @@ TuneQuestion tune_question(const TuneOptions& options, const fs::path& file) {
     throw InputError(fmt::format("--margin: got {}; allowed: more than 1, at most 16", options.margin));
   question.margin = options.margin;
   for (const std::string& bound : options.bounds) add_bound(bound, question.limits);
-  const std::vector<std::string> families(std::begin(kFamilyNames), std::end(kFamilyNames));
-  if (!options.family.empty()) question.over.clear();
-  for (const std::string& name : chosen_names("--family: got", options.family, families))
-    question.over.push_back(static_cast<FamilyOver>(std::ranges::find(families, name) - families.begin()));
-  if (const auto range = range_of("--damping-ratio", options.damping_ratio)) question.damping_ratio = *range;
-  question.mass = range_of("--mass", options.mass);
-  for (const auto* range : {&question.damping_ratio, question.mass ? &*question.mass : &question.damping_ratio})
-    if (!(range->from > 0.0))
-      throw InputError("--damping-ratio and --mass: got a range that reaches 0; allowed: a:b with 0 < a < b");
-  if (question.mass) question.mass->logarithmic = true;
+  if (!options.family.empty())
+    question.families = chosen_names("--family: got", options.family, {std::begin(kFamilies), std::end(kFamilies)});
+  if (const auto range = ratios_of("--damping-ratio", options.damping_ratio)) question.damping_ratio = *range;
+  question.mass = ratios_of("--mass", options.mass);
   question.filters = options.filters;
   question.threads = job_options(options, "").threads;
   return question;
@@ -395,12 +352,11 @@ int tune(const TuneOptions& options) {
   for (const TunedLaw& law : tuning.laws) trials.insert(trials.end(), law.trials.begin(), law.trials.end());
   report.write("tune_trials.csv", trial_columns(), trials);
   report.say(tuning_text(tuning));
-  if (has_delay_in_samples(loaded.scenario) && delay_of(loaded.scenario) > 0.0)
-    report.say(wrapped(fmt::format("delay_samples: {}; {}", delay_text(loaded.scenario), kWhoseSamples), 0));
+  if (const std::string delay = delay_note(loaded.scenario); !delay.empty()) report.say(wrapped(delay, 0));
   fs::path tuned;
   if (const TunedLaw* law = tuning.recommended()) {
     tuned = out / (file.stem().string() + "_tuned.json");
-    report.files().write(tuned, json_text(tuned_scenario(tuning, *law, options.scenario, out)));
+    report.files().write(tuned, json_text(tuned_scenario(tuning, *law, out)));
     report.say(fmt::format("\"hapbench run {}\" gives these metrics\n", tuned.string()));
   }
   report.say(fmt::format("results in {0}\n\"hapbench plot {0}\" draws them\n", out.string()));
@@ -413,7 +369,6 @@ int tune(const TuneOptions& options) {
 std::vector<DescribedTable> tune_tables() {
   return {
       law_columns().described("tune.csv", "of tune: one line per algorithm"),
-      expect_columns(nullptr, nullptr).described(),
       trial_columns().described("tune_trials.csv", "of tune: one line per algorithm, setting and K that was tried")};
 }
 

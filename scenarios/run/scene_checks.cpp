@@ -324,13 +324,9 @@ double script_period(const Scenario& scenario) {
   return largest(scenario, period_of);
 }
 
-const TremorConfig* tremor_of(const Scenario& scenario) {
-  const ImpedanceHandFields* hand = spring_of(scenario.hand);
-  return hand != nullptr && hand->tremor ? &*hand->tremor : nullptr;
-}
-
 bool is_moved(const Scenario& scenario) {
-  return script_moves_until(scenario) > 0.0 || tremor_of(scenario) != nullptr;
+  const ImpedanceHandFields* hand = spring_of(scenario.hand);
+  return script_moves_until(scenario) > 0.0 || (hand != nullptr && hand->tremor);
 }
 
 std::optional<PointDistance> point_distance(const LoadedScenario& loaded) {

@@ -72,8 +72,6 @@ std::vector<Warning> tool_warnings(const RenderingConfig& rendering, const ToolS
 double script_moves_until(const Scenario& scenario);
 /// The longest period of what repeats in the scripts of hand and tool [s]; 0 where nothing does.
 double script_period(const Scenario& scenario);
-/// The tremor of the hand; null without.
-const TremorConfig* tremor_of(const Scenario& scenario);
 /// True when a script moves the hand or turns the tool: then the tool never comes to rest, and only what is above 30 Hz
 /// and 1 mm/s counts as motion, and once the script has ended all beyond 1 mm/s. A hand that trembles moves it, too.
 bool is_moved(const Scenario& scenario);

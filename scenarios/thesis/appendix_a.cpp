@@ -180,7 +180,7 @@ double largest_bounded(const Evidence& e, const std::string& field, const Range&
   question.bounded = true;
   question.resolution = kLimitResolution;
   question.between = false;
-  return field_limit({&scene, overrides, loaded.scenario.rendering.algorithm, question}).value.value_or(0.0);
+  return field_limit(question).value.value_or(0.0);
 }
 
 double largest_stiffness(const Evidence& e, std::vector<std::string> overrides = {}) {

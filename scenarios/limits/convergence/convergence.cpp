@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "algorithms/stages/damping_and_limits.hpp"
@@ -315,38 +316,6 @@ std::string FinerRuns::refined(std::size_t scene) const {
 
 namespace {
 
-/// Whether the first of two numbers is less by more than both errors and by more than rounding.
-using IsLess = std::function<bool(std::size_t, std::size_t)>;
-
-/// Cuts a sorted order wherever all to the left are less than all to the right.
-std::vector<std::vector<std::size_t>> cut(std::span<const std::size_t> order, const IsLess& is_less) {
-  std::vector<std::vector<std::size_t>> groups;
-  for (std::size_t k = 0; k < order.size(); ++k) {
-    const bool is_cut = std::ranges::all_of(order.first(k), [&](std::size_t a) {
-      return std::ranges::all_of(order.subspan(k), [&](std::size_t b) { return is_less(a, b); });
-    });
-    if (is_cut) groups.emplace_back();
-    groups.back().push_back(order[k]);
-  }
-  return groups;
-}
-
-/// The member of a group that is apart from the fewest others, of several the one with the largest error; none where
-/// no two are apart.
-std::optional<std::size_t> most_uncertain(const std::vector<std::size_t>& group,
-                                          std::span<const NumberWithError> numbers, const IsLess& is_less) {
-  std::optional<std::size_t> found;
-  std::ptrdiff_t fewest = 0, all = 0;
-  for (const std::size_t a : group) {
-    const auto apart = std::ranges::count_if(group, [&](std::size_t b) { return is_less(a, b) || is_less(b, a); });
-    all += apart;
-    if (found && (apart > fewest || (apart == fewest && *numbers[a].error <= *numbers[*found].error))) continue;
-    found = a;
-    fewest = apart;
-  }
-  return all > 0 ? found : std::nullopt;
-}
-
 std::string joined(std::span<const std::size_t> places, std::span<const std::string> names, const char* between) {
   std::vector<std::string> found;
   for (const std::size_t i : places) found.push_back(names[i]);
@@ -356,26 +325,28 @@ std::string joined(std::span<const std::size_t> places, std::span<const std::str
 }  // namespace
 
 HeldOrder held_order(std::span<const NumberWithError> numbers, double rounding) {
-  const IsLess is_less = [&](std::size_t a, std::size_t b) {
+  const auto is_less = [&](std::size_t a, std::size_t b) {
     const double apart = *numbers[b].value - *numbers[a].value;
     return apart > *numbers[a].error + *numbers[b].error &&
            apart > rounding * std::max(std::abs(*numbers[a].value), std::abs(*numbers[b].value));
   };
-  std::vector<std::size_t> sorted;
+  std::vector<std::size_t> order;
   for (std::size_t i = 0; i < numbers.size(); ++i)
-    if (numbers[i].value && numbers[i].error) sorted.push_back(i);
-  std::ranges::stable_sort(sorted, {}, [&](std::size_t i) { return *numbers[i].value; });
+    if (numbers[i].value && numbers[i].error) order.push_back(i);
+  std::ranges::stable_sort(order, {}, [&](std::size_t i) { return *numbers[i].value; });
   HeldOrder held;
-  for (bool again = true; again;) {
-    again = false;
-    held.groups = cut(sorted, is_less);
-    for (const std::vector<std::size_t>& group : held.groups) {
-      const auto uncertain = most_uncertain(group, numbers, is_less);
-      if (!uncertain) continue;
-      held.unplaced.push_back(*uncertain);
-      std::erase(sorted, *uncertain);
-      again = true;
-    }
+  const auto is_alike = [&](std::size_t a) {
+    return std::ranges::none_of(order, [&](std::size_t b) { return is_less(a, b) || is_less(b, a); });
+  };
+  std::ranges::copy_if(order, std::back_inserter(held.unplaced), is_alike);
+  if (held.unplaced.size() == order.size()) held.unplaced.clear();
+  std::erase_if(order, [&](std::size_t a) { return std::ranges::find(held.unplaced, a) != held.unplaced.end(); });
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    const std::span left = std::span(order).first(k), right = std::span(order).subspan(k);
+    const bool is_cut = std::ranges::all_of(
+        left, [&](std::size_t a) { return std::ranges::all_of(right, [&](std::size_t b) { return is_less(a, b); }); });
+    if (is_cut) held.groups.emplace_back();
+    held.groups.back().push_back(order[k]);
   }
   return held;
 }
@@ -391,11 +362,10 @@ std::string held_text(std::span<const NumberWithError> numbers, std::span<const 
   std::vector<std::size_t> unknown;
   for (std::size_t i = 0; i < numbers.size(); ++i)
     if (numbers[i].value && !numbers[i].error) unknown.push_back(i);
-  const char* says = placed < 2                                    ? "there is nothing to compare"
-                     : groups.size() == 1                          ? "no order holds: "
+  const char* says = groups.size() == 1                            ? "no order holds: "
                      : groups.size() == placed && unplaced.empty() ? "the order holds: "
                                                                    : "what holds is <: ";
-  std::string text = says + (placed < 2 ? "" : fmt::format("{}", fmt::join(parts, " < ")));
+  std::string text = placed < 2 ? "there is nothing to compare" : fmt::format("{}{}", says, fmt::join(parts, " < "));
   if (!unplaced.empty()) text += "; too uncertain for a place: " + joined(unplaced, names, ", ");
   if (!unknown.empty()) text += "; no error is known of " + joined(unknown, names, ", ");
   return text;

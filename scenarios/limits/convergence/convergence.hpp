@@ -124,11 +124,10 @@ struct NumberWithError {
 
 /// Places of numbers in the order that their errors leave.
 struct HeldOrder {
-  /// Each number of a group is less than every number of the groups behind it, and of none of its own, by more than
-  /// both errors and by more than rounding.
+  /// Each number of a group is less than every number of the groups behind it by more than both errors and by more than
+  /// rounding.
   std::vector<std::vector<std::size_t>> groups;
-  /// Numbers that would join groups which hold without them: their errors are too large for a place.
-  std::vector<std::size_t> unplaced;
+  std::vector<std::size_t> unplaced;  ///< numbers that are apart from no other, where others are
 };
 
 /// Numbers without a value or an error have no place. `rounding` is relative to the larger number.

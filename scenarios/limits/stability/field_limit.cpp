@@ -161,11 +161,10 @@ std::string override_text(const std::string& path, double value, bool whole) {
 /// Finds the limit of one case.
 class Search {
  public:
-  explicit Search(const LimitCase& asked) : asked_(asked), question_(asked.question) {}
+  explicit Search(const LimitQuestion& question) : question_(question) {}
 
   FieldLimit limit() {
     FieldLimit limit;
-    limit.algorithm = asked_.algorithm;
     std::map<double, RunStability> runs;  // by value
     const auto run_ahead = [&](std::span<const double> parts) {
       std::vector<double> values;
@@ -212,7 +211,6 @@ class Search {
         !question_.holds(suspect.verdict) && unstable_without_contact(at(suspect.value), question_.most_vibration);
     limit.theory = theory.edge();
     limit.theory_has_none = theory.has_none();
-    limit.closed_form = Theory(*this, has_closed_form, has_margin, kEdgeIntervals).edge();
     limit.undecided = static_cast<std::size_t>(
         std::count_if(runs.begin(), runs.end(), [](const auto& run) { return run.second.undecided; }));
     add_closed_forms(limit);
@@ -235,10 +233,9 @@ class Search {
   }
 
   LoadedScenario at(double value) const {
-    std::vector<std::string> overrides = asked_.overrides;
-    overrides.push_back("rendering.algorithm=" + asked_.algorithm);
+    std::vector<std::string> overrides = question_.overrides;
     overrides.push_back(override_text(question_.path, value, question_.whole));
-    return load_scenario(*asked_.scene, overrides);
+    return load_scenario(*question_.scene, overrides);
   }
 
   /// The edges of what is stable without a run, along the whole way.
@@ -334,15 +331,6 @@ class Search {
     });
   }
 
-  /// True where the integrator's inequality tells whether a step is stable.
-  static bool has_closed_form(const Scenario& scenario) {
-    return !has_device(scenario) && has_theory(scenario) && scenario.integrator.type->stability_margin != nullptr;
-  }
-  static bool has_margin(const Scenario& scenario) {
-    return *tool_on_spring(scenario, stiffness_eigenvalues(scenario)[2]).margin() >= 0.0;
-  }
-
-  const LimitCase& asked_;
   const LimitQuestion& question_;
 };
 
@@ -421,6 +409,8 @@ LimitQuestion limit_question(const ScenarioText& scenario, const std::vector<std
   const LoadedScenario last = load(range->to);
   range->logarithmic = range->from > 0.0;
   LimitQuestion question;
+  question.scene = &scenario;
+  question.overrides = overrides;
   question.path = path;
   question.warnings = with_files(last, last.warnings);
   question.range = *range;
@@ -431,9 +421,9 @@ LimitQuestion limit_question(const ScenarioText& scenario, const std::vector<std
   return question;
 }
 
-FieldLimit field_limit(const LimitCase& asked) {
-  if (asked.question.most_vibration) check_sampling(load_scenario(*asked.scene, asked.overrides));
-  return Search(asked).limit();
+FieldLimit field_limit(const LimitQuestion& question) {
+  if (question.most_vibration) check_sampling(load_scenario(*question.scene, question.overrides));
+  return Search(question).limit();
 }
 
 }  // namespace hapbench

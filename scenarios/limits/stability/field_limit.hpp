@@ -18,6 +18,8 @@ namespace hapbench {
 
 /// Equal parts that a way is divided into before bisection.
 inline constexpr int kEdgeIntervals = 16;
+/// Relative width at which bisection on runs stops unless it is said otherwise.
+inline constexpr double kEdgeResolution = 1e-3;
 
 /// A range of values as a way from the end that is expected to be stable (part 0) to the other end (part 1).
 struct SearchWay {
@@ -26,7 +28,7 @@ struct SearchWay {
   bool whole = false;              ///< values are integers
   bool smallest = false;           ///< the way begins at the high end
   /// Width at which bisection stops: relative to the value in a logarithmic range, to the range in a linear one.
-  double resolution = 1e-3;
+  double resolution = kEdgeResolution;
 
   double value_at(double part) const;
   /// The part of the own value.
@@ -74,12 +76,16 @@ FoundEdge find_tried_edge(const SearchWay& way, std::map<double, bool>& tried,
                           const std::function<bool(double)>& stable, bool near,
                           const std::function<void(std::span<const double>)>& ahead);
 
-/// The question: which limit of which field, and by which rule a run is stable.
+/// The question: which limit of which field of a scene, and by which rule a run is stable.
 struct LimitQuestion : StabilityRule, SearchWay {
-  std::string path;                        ///< of the field, dotted as in --set
+  const ScenarioText* scene = nullptr;  ///< has to outlive the question
+  std::vector<std::string> overrides = {};
+  std::string path = {};                   ///< of the field, dotted as in --set
   std::vector<std::string> warnings = {};  ///< of the scenario with the field given
   bool between = true;                     ///< the interval is tried between its ends before it is an answer
   unsigned threads = 1;                    ///< runs at once; no result depends on it
+
+  const char* side() const { return smallest ? "smallest" : "largest"; }
 };
 
 /// A value and what a run with it came to.
@@ -99,17 +105,13 @@ struct IntervalEnd {
   }
 };
 
-/// The answer for one algorithm: the end that was asked for.
+/// The answer: the end that was asked for.
 struct FieldLimit : IntervalEnd {
-  std::string algorithm;
   IntervalEnd other;
   /// The same by the eigenvalues of a step, where the springs stay in contact; infinite (smallest: 0) when the whole
   /// range is stable, none where there is no theory or nothing is stable.
   std::optional<double> theory;
   bool theory_has_none = false;  ///< by theory no value of the range is stable
-  /// The same by the integrator's inequality, of leapfrog 4 - 2 lambda B dt / M - lambda K dt^2 / M >= 0, where the
-  /// tool is alone with the springs; none under an integrator without one.
-  std::optional<double> closed_form;
   /// Of a device at what only pushes, where there is no theory: the edge of the loop of device, hand and the stiffness
   /// rendered at the limit while contact lasts, without dry friction and encoder; infinite when the whole range is
   /// stable. A limit beyond it is held up by what that loop leaves out.
@@ -133,11 +135,8 @@ struct FieldLimit : IntervalEnd {
   /// True where the limit lies beyond `linear` by more than this, relative: then that is the one to quote, and contact
   /// at a stable value beyond it is intermittent.
   bool is_beyond_linear(double resolution) const { return value && linear && *value > (1.0 + resolution) * *linear; }
-  /// value / theory - 1; none without either.
-  std::optional<double> difference() const {
-    if (!value || !theory || !std::isfinite(*theory) || *theory == 0.0) return std::nullopt;
-    return *value / *theory - 1.0;
-  }
+  /// That of the loop alone, in theory or while contact lasts.
+  const std::optional<double>& linear_edge() const { return theory ? theory : linear; }
 };
 
 /// The scenario's own value at a path, or null.
@@ -150,18 +149,10 @@ Json own_value(const Scenario& scenario, const std::string& path);
 LimitQuestion limit_question(const ScenarioText& scenario, const std::vector<std::string>& overrides,
                              const std::string& path, std::optional<Range> range);
 
-/// One case of a question: a scene with overrides and an algorithm.
-struct LimitCase {
-  const ScenarioText* scene = nullptr;
-  std::vector<std::string> overrides;
-  std::string algorithm;
-  LimitQuestion question;
-};
-
 /// Answers the question: find_edge with `beside`, of 17 values and the scenario's own, or find_tried_edge where the
 /// interval is to be tried between its ends. Some 35 to 120 runs, and between the ends 56 or more, as long as one
 /// fails. Throws InputError, with the file, for a scene without a free position or with fewer than 4 steps, and where
 /// vibration is asked for at a sampling rate of 60 Hz or less.
-FieldLimit field_limit(const LimitCase& asked);
+FieldLimit field_limit(const LimitQuestion& question);
 
 }  // namespace hapbench

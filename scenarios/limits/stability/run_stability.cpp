@@ -1,7 +1,6 @@
 #include "scenarios/limits/stability/run_stability.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -54,11 +53,9 @@ std::span<const RunVerdictText> run_verdict_texts() noexcept {
   return kTexts;
 }
 
-MotionClassifier MotionClassifier::of_moved_tool(std::uint64_t steps, double time_step, double still,
-                                                 const TremorSpeeds& tremor) {
+MotionClassifier MotionClassifier::of_moved_tool(std::uint64_t steps, double time_step, double still) {
   MotionClassifier classifier(steps);
   classifier.is_moved_ = true;
-  classifier.tremor_ = tremor;
   classifier.high_pass_ = vibration_filter(time_step);
   if (still <= 0.5 * static_cast<double>(steps)) classifier.still_ = static_cast<std::uint64_t>(std::ceil(still));
   return classifier;
@@ -95,8 +92,8 @@ MotionClass MotionClassifier::motion_class(Outcome outcome) const noexcept {
   if (outcome == Outcome::diverges) return MotionClass::diverged;
   if (at_rest()) return MotionClass::stable;
   // A hand that comes to rest may swing a little more for a while: below 30 Hz that is not called growth.
-  return std::max(all_.motion_class(is_moved_ ? kFelt + tremor_.handle : 0.0),
-                  std::min(held_.motion_class(kFelt + tremor_.target), MotionClass::vibrating));
+  return std::max(all_.motion_class(is_moved_ ? kFelt : 0.0),
+                  std::min(held_.motion_class(kFelt), MotionClass::vibrating));
 }
 
 MotionClass MotionClassifier::Stretch::motion_class(double felt) const noexcept {
@@ -196,12 +193,9 @@ class LastRows final : public Observer {
     if (const std::uint64_t quarter = record.step * 4 / steps_; quarter != quarter_) {
       quarter_ = quarter;
       rows_in_contact_ = contacts_ = 0;
-      press_sum_ = 0.0;
       S_sum_.setZero();
     }
     if (record.rendered->size() == 0) return;
-    if (!touch_speed_) touch_speed_ = record.handle.velocity.norm();
-    press_sum_ += record.hand.measured.norm();
     ++rows_in_contact_;
     contacts_ += record.rendered->size();
     S_sum_ += record.force.S;
@@ -219,12 +213,10 @@ class LastRows final : public Observer {
   SettledState state(bool rests) const {
     SettledState state;
     state.vibration = vibration_.value(judged_, rests);
-    state.touch_speed = touch_speed_.value_or(0.0);
     if (rows_in_contact_ == 0) return state;
     const auto rows = static_cast<double>(rows_in_contact_);
     state.contacts = static_cast<double>(contacts_) / rows;
     state.lambda_max = lambda_max(S_sum_ / rows);
-    state.press = press_sum_ / rows;
     return state;
   }
 
@@ -237,16 +229,13 @@ class LastRows final : public Observer {
   JudgedVibration vibration_;
   SlowBounces bounces_;
   std::uint64_t quarter_ = 0, rows_in_contact_ = 0, contacts_ = 0;
-  std::optional<double> touch_speed_;
-  double press_sum_ = 0.0;
   Mat3 S_sum_ = Mat3::Zero();
 };
 
-MotionClassifier classifier_of(const Scenario& scenario, const TremorSpeeds& tremor) {
+MotionClassifier classifier_of(const Scenario& scenario) {
   const auto steps = static_cast<std::uint64_t>(scenario.time.steps);
   if (!is_moved(scenario)) return MotionClassifier(steps);
-  return MotionClassifier::of_moved_tool(steps, scenario.time.step, script_moves_until(scenario) / scenario.time.step,
-                                         tremor);
+  return MotionClassifier::of_moved_tool(steps, scenario.time.step, script_moves_until(scenario) / scenario.time.step);
 }
 
 RunVerdict verdict_of(MotionClass motion, const SettledState& settled, std::optional<double> most_vibration) {
@@ -262,15 +251,6 @@ std::optional<RunVerdict> verdict_of(Outcome outcome) {
   return static_cast<RunVerdict>(found - texts.begin());
 }
 
-/// The class of the motion of hand and device without any environment.
-MotionClass classify_alone(const Scenario& scenario, const NamedFiles& files, const MotionClassifier& classifier,
-                           const std::vector<Observer*>& observers) {
-  constexpr double kCells = 1.0;  // [m], of the grid that local_average wants
-  const auto nothing = std::make_shared<const PointShell>(std::vector<SurfacePoint>{}, kCells);
-  Simulation simulation(simulation_config(scenario), assemble(scenario, files, nothing, {}), observers);
-  return classify(simulation, classifier);
-}
-
 /// True when the run, made once more to its end, keeps all bounds.
 bool keeps(const LoadedScenario& loaded, const std::shared_ptr<const PointShell>& shell,
            const std::map<std::string, MetricBound>& bounds) {
@@ -284,7 +264,7 @@ bool keeps(const LoadedScenario& loaded, const std::shared_ptr<const PointShell>
 RunStability judged_once(const LoadedScenario& loaded, const std::shared_ptr<const PointShell>& shell,
                          const StabilityRule& rule) {
   const Scenario& scenario = loaded.scenario;
-  MotionClassifier classifier = classifier_of(scenario, rule.tremor ? *rule.tremor : tremor_speeds(loaded));
+  MotionClassifier classifier = classifier_of(scenario);
   LastRows last(scenario);
   SimulationParts parts = assemble(scenario, loaded.files, shell, {});
   const std::shared_ptr<const ToolShape> tool = parts.tool;
@@ -313,8 +293,7 @@ RunStability judged_once(const LoadedScenario& loaded, const std::shared_ptr<con
 
 StabilityRule rule_of(const Scenario& scenario) {
   StabilityRule rule;
-  const bool can_tell = vibration_filter(scenario.time.step).has_value() && tremor_of(scenario) == nullptr;
-  if (can_tell && is_moved(scenario)) rule.most_vibration = kMostVibration;
+  if (vibration_filter(scenario.time.step) && is_moved(scenario)) rule.most_vibration = kMostVibration;
   return rule;
 }
 
@@ -329,35 +308,11 @@ std::string rule_text(const StabilityRule& rule, bool moved) {
   if (!rule.most_vibration && moved)
     text +=
         ", as far as it is above 30 Hz and 1 mm/s, because a script moves the tool; where that ends in the first half of a run, all beyond 1 mm/s from then on";
-  if (!rule.most_vibration && rule.tremor && rule.tremor->target > 0.0) {
-    text += fmt::format(
-        "; allowed besides is what the hand's tremor does without a wall, {:.2g} mm/s above 30 Hz, and the speed of its "
-        "target, {:.2g} mm/s, below",
-        1e3 * rule.tremor->handle, 1e3 * rule.tremor->target);
-  }
   for (const auto& [metric, bound] : rule.bounds) {
     if (bound.min) text += fmt::format(", {} >= {}", metric, *bound.min);
     if (bound.max) text += fmt::format(", {} <= {}", metric, *bound.max);
   }
-  std::vector<std::string_view> others;
-  for (std::size_t i = 0; i < run_verdict_texts().size(); ++i) {
-    const auto verdict = static_cast<RunVerdict>(i);
-    const bool of_bounds = verdict == RunVerdict::beyond_bound;
-    if (!rule.holds(verdict) && (!of_bounds || !rule.bounds.empty())) others.push_back(run_verdict_name(verdict));
-  }
-  return fmt::format("{}; not: {}", text, fmt::join(others, ", "));
-}
-
-TremorSpeeds tremor_speeds(const LoadedScenario& loaded) {
-  const TremorConfig* tremor = tremor_of(loaded.scenario);
-  if (tremor == nullptr) return {};
-  constexpr double kNothing = 1e-9;  // [N/m], of springs, which no shell takes away
-  Scenario scenario = loaded.scenario;
-  scenario.rendering.stiffness = kNothing;
-  scenario.rendering.damping = 0.0;
-  MotionClassifier classifier = classifier_of(scenario, {});
-  classify_alone(scenario, loaded.files, classifier, {&classifier});
-  return {tremor->largest_speed(), classifier.late_amplitude()};
+  return text;
 }
 
 RunStability stability_of(const LoadedScenario& loaded, std::shared_ptr<const PointShell> shell,
@@ -384,9 +339,13 @@ bool unstable_without_contact(const LoadedScenario& loaded, std::optional<double
   // Dry friction only takes energy. What its sticking and slipping leave of vibration is no fault of the loop.
   Scenario scenario = loaded.scenario;
   if (auto* device = std::get_if<ImpedanceDeviceConfig>(&scenario.device)) device->coulomb = 0.0;
-  MotionClassifier classifier = classifier_of(scenario, tremor_speeds(loaded));
+  MotionClassifier classifier = classifier_of(scenario);
   LastRows last(scenario, true);
-  const MotionClass motion = classify_alone(scenario, loaded.files, classifier, {&classifier, &last});
+  constexpr double kCells = 1.0;  // [m], of the grid that local_average wants
+  const auto nothing = std::make_shared<const PointShell>(std::vector<SurfacePoint>{}, kCells);
+  Simulation simulation(simulation_config(scenario), assemble(scenario, loaded.files, nothing, {}),
+                        {&classifier, &last});
+  const MotionClass motion = classify(simulation, classifier);
   return !is_stable(verdict_of(motion, last.state(classifier.at_rest()), most_vibration));
 }
 

@@ -65,12 +65,6 @@ inline std::string_view run_verdict_name(RunVerdict verdict) noexcept {
   return run_verdict_texts()[static_cast<std::size_t>(verdict)].name;
 }
 
-/// The largest speeds that the tremor of a hand causes without any wall; zeros without a tremor.
-struct TremorSpeeds {
-  double target = 0.0;  ///< of the hand's target [m/s]
-  double handle = 0.0;  ///< of the handle above 30 Hz, as where dry friction lets go of it [m/s]
-};
-
 /// Watches a run and classifies it. Constant memory.
 class MotionClassifier final : public Observer {
  public:
@@ -79,9 +73,8 @@ class MotionClassifier final : public Observer {
   /// For a tool that a script moves, which is never at rest: only the part of its velocity above 30 Hz counts (all of
   /// it when steps are longer than a 60th of a second), in the last quarter beyond 1 mm/s, about what a hand can feel
   /// there. Where the script ends in the first half of the run, at the row `still`, all motion from then on counts
-  /// besides, by quarters of what is left, beyond 1 mm/s. What a tremor of the hand does by itself is allowed.
-  static MotionClassifier of_moved_tool(std::uint64_t steps, double time_step, double still,
-                                        const TremorSpeeds& tremor = {});
+  /// besides, by quarters of what is left, beyond 1 mm/s.
+  static MotionClassifier of_moved_tool(std::uint64_t steps, double time_step, double still);
 
   void on_step(const StepRecord& record) noexcept override;
 
@@ -91,8 +84,6 @@ class MotionClassifier final : public Observer {
   /// True for a complete run that is too short to tell: it moves on in the last quarter, by 1 % of the first one's
   /// amplitude or more, and turns at most once there.
   bool is_undecided() const noexcept;
-  /// Largest speed in the second half of a complete run, as the class sees it [m/s].
-  double late_amplitude() const noexcept { return std::max(all_.quarters[2].amplitude, all_.quarters[3].amplitude); }
   /// Class of a complete run, or of one that was cut short because it came to rest.
   MotionClass motion_class(Outcome outcome) const noexcept;
 
@@ -114,7 +105,6 @@ class MotionClassifier final : public Observer {
 
   std::uint64_t steps_;
   bool is_moved_ = false;
-  TremorSpeeds tremor_;
   std::optional<HighPass> high_pass_;
   Stretch all_;
   std::optional<std::uint64_t> still_;  ///< row from which on the script does not move the tool
@@ -128,18 +118,13 @@ inline bool is_stable(RunVerdict verdict) noexcept {
   return verdict == RunVerdict::stable || verdict == RunVerdict::dying_out;
 }
 
-/// By a run of hand and device alone, with the scenario's first trial. Throws Stopped.
-TremorSpeeds tremor_speeds(const LoadedScenario& loaded);
-
-/// What a run settles to, in its last quarter unless said otherwise, and how the tool came to touch.
+/// What a run settles to, in its last quarter unless said otherwise.
 struct SettledState {
   /// Root mean square of the handle's speed above 30 Hz in the judged rows (JudgedRows), from a quarter of the contact
   /// on [m/s]; empty at sampling rates of 60 Hz or less.
   std::optional<double> vibration;
-  double contacts = 0.0;     ///< mean number of rendered contacts of the rows in contact
-  double lambda_max = 0.0;   ///< largest eigenvalue of their mean S: the stiffness rendered, in units of K
-  double touch_speed = 0.0;  ///< of the handle in the first row with a rendered contact [m/s]
-  double press = 0.0;        ///< mean force of the hand in rows in contact [N]
+  double contacts = 0.0;    ///< mean number of rendered contacts of the rows in contact
+  double lambda_max = 0.0;  ///< largest eigenvalue of their mean S: the stiffness rendered, in units of K
 };
 
 /// What a run has to do to be stable: the one rule of limits, maps of devices and comparisons.
@@ -151,8 +136,6 @@ struct StabilityRule {
   std::optional<double> most_vibration = {};
   /// Bounds on metrics of summary.json; a metric without a value keeps none.
   std::map<std::string, MetricBound> bounds = {};
-  /// tremor_speeds of all runs, where they are the same; otherwise each judged run finds its own.
-  std::optional<TremorSpeeds> tremor = {};
   bool bounded = false;  ///< a run that vibrates without growing is stable, too
 
   bool holds(RunVerdict verdict) const noexcept {
@@ -161,7 +144,7 @@ struct StabilityRule {
 };
 
 /// The rule where nobody asks for another: where a script moves the tool, which then is never at rest, what is felt
-/// decides (kMostVibration); not of a hand that trembles, nor at 60 Hz and less.
+/// decides (kMostVibration); not at 60 Hz and less.
 StabilityRule rule_of(const Scenario& scenario);
 
 /// The rule as one line; `moved`: a script moves the tool (is_moved).

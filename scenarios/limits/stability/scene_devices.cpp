@@ -38,9 +38,13 @@ Json massless_hand(const ScenarioText& scene) {
 
 }  // namespace
 
-std::string delay_text(const Scenario& scenario) {
+std::string delay_note(const Scenario& scenario) {
   const double delay = delay_of(scenario), step = 1e3 * scenario.time.step;
-  return delay > 0.0 ? fmt::format("{:.4g} ({:.3g} ms in steps of {:.3g} ms)", delay, delay * step, step) : "0";
+  if (!has_delay_in_samples(scenario) || delay == 0.0) return "";
+  return fmt::format(
+      "delay_samples: {:.4g} ({:.3g} ms in steps of {:.3g} ms); samples are time steps of the scene, not of the log that "
+      "a device was identified from",
+      delay, delay * step, step);
 }
 
 std::vector<ComparedDevice> compared_devices() {

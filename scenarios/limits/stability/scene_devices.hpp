@@ -10,10 +10,8 @@
 /// Devices that a scene is put on in place of its own: those of the program, and files.
 namespace hapbench {
 
-/// The delay of the scene's device, as "1.5 (0.75 ms in steps of 0.5 ms)", and what to say beside it.
-std::string delay_text(const Scenario& scenario);
-inline constexpr const char* kWhoseSamples =
-    "samples are time steps of the scene, not of the log that a device was identified from";
+/// What to know of a delay in samples, whose time depends on the scene's step; empty for other devices.
+std::string delay_note(const Scenario& scenario);
 
 /// A device that a scene is tried on.
 struct ComparedDevice {

@@ -2,9 +2,8 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <iterator>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <mutex>
@@ -44,17 +43,10 @@ Vec3 sign_of(Random& random, const Vec3& u) {
   return chance(random, 0.5) ? u : Vec3(-u);
 }
 
-/// Two unit vectors that make a right-handed frame with the axis.
-std::array<Vec3, 2> across(const Vec3& axis) {
-  const Vec3 first = axis.unitOrthogonal();
-  return {first, axis.cross(first)};
-}
-
 /// A point at radius and height along the axis, in a random direction.
 Vec3 at(Random& random, const ContactSet& set, double radius, double height) {
-  const auto [e, f] = across(set.pose.axis);
-  const Vec3 d = random.direction_in_plane();
-  return set.pose.position + height * set.pose.axis + radius * (d.x() * e + d.y() * f);
+  const Vec3 e = set.pose.axis.unitOrthogonal(), d = random.direction_in_plane();
+  return set.pose.position + height * set.pose.axis + radius * (d.x() * e + d.y() * set.pose.axis.cross(e));
 }
 
 Vec3 in_tool(Random& random, const ContactSet& set) {
@@ -62,96 +54,52 @@ Vec3 in_tool(Random& random, const ContactSet& set) {
   return at(random, set, radius, -set.tool.length() * random.uniform());
 }
 
-using Points = std::vector<SurfacePoint>;
+using Draw = std::function<Vec3()>;
 
-/// n points from a position and a normal each.
-template <class Position, class Normal>
-Points fill(std::size_t n, Position position, Normal normal) {
-  Points points(n);
-  for (SurfacePoint& point : points) point = {position(), normal()};
-  return points;
+/// Where the points of a set are.
+Draw positions(Random& random, const ContactSet& set) {
+  const double radius = set.tool.radius(), length = set.tool.length();
+  switch (random.below(5)) {
+    case 0:  // coincident
+      return [place = in_tool(random, set)] { return place; };
+    case 1: {  // on the axis, where no radial direction exists, or in the tip centre
+      const double height = chance(random, 0.3) ? 0.0 : length;
+      return [&, height] { return Vec3(set.pose.position - height * random.uniform() * set.pose.axis); };
+    }
+    case 2:  // on the side, in the tip plane, on its rim; the depth is 0 up to rounding, and the search drops those
+             // outside
+      return [&, radius, length] {
+        const double away = chance(random, 0.6) ? radius : radius * std::sqrt(random.uniform());
+        return at(random, set, away, chance(random, 0.6) ? 0.0 : -length * random.uniform());
+      };
+    case 3: {  // on both sides of the axis, from where gradients of shortest_distance cancel
+      const Vec3 wall = radius * log_uniform(random, 1e-16, 1.0) * set.pose.axis.unitOrthogonal();
+      return
+          [&, wall, length] { return Vec3(set.pose.position - 0.5 * length * set.pose.axis + sign_of(random, wall)); };
+    }
+    default:
+      return [&] { return in_tool(random, set); };
+  }
 }
 
-/// The same anywhere in the tool.
-template <class Normal>
-Points fill_tool(Random& random, const ContactSet& set, std::size_t n, Normal normal) {
-  return fill(
-      n, [&] { return in_tool(random, set); }, normal);
+/// Their normals.
+Draw normals(Random& random, const ContactSet& set) {
+  const Vec3 u = chance(random, 0.2) ? set.pose.axis : random.direction();
+  switch (random.below(5)) {
+    case 0: {  // some zero, or all
+      const double share = chance(random, 0.3) ? 1.0 : 0.5;
+      return [&, share] { return chance(random, share) ? Vec3(Vec3::Zero()) : random.direction(); };
+    }
+    case 1:
+      return [&, u] { return sign_of(random, u); };
+    case 2:
+      return [&, u] { return sign_of(random, nearly(random, u)); };
+    case 3:
+      return [&, u] { return nearly(random, u); };
+    default:
+      return [&] { return random.direction(); };
+  }
 }
-
-Points random_points(Random& random, const ContactSet& set, std::size_t n) {
-  return fill_tool(random, set, n, [&] { return random.direction(); });
-}
-
-Points zero_normals(Random& random, const ContactSet& set, std::size_t n) {
-  const double share = random.uniform() < 0.3 ? 1.0 : 0.5;
-  return fill_tool(random, set, n, [&]() -> Vec3 { return chance(random, share) ? Vec3::Zero() : random.direction(); });
-}
-
-Points coincident(Random& random, const ContactSet& set, std::size_t n) {
-  const Vec3 place = in_tool(random, set);
-  return fill(
-      n, [&] { return place; }, [&] { return random.direction(); });
-}
-
-/// Points on the axis, where no radial direction exists, the tip centre among them; normals along the axis or not.
-Points on_the_axis(Random& random, const ContactSet& set, std::size_t n) {
-  const double height = chance(random, 0.3) ? 0.0 : set.tool.length();
-  return fill(
-      n, [&]() -> Vec3 { return set.pose.position - height * random.uniform() * set.pose.axis; },
-      [&] { return chance(random, 0.5) ? random.direction() : sign_of(random, set.pose.axis); });
-}
-
-Points opposite(Random& random, const ContactSet& set, std::size_t n) {
-  const Vec3 u = random.direction();
-  std::size_t i = 0;
-  return fill_tool(random, set, n, [&] { return i++ % 2 == 0 ? u : Vec3(-u); });
-}
-
-Points nearly_opposite(Random& random, const ContactSet& set, std::size_t n) {
-  const Vec3 u = random.direction();
-  return fill_tool(random, set, n, [&] { return sign_of(random, nearly(random, u)); });
-}
-
-Points nearly_parallel(Random& random, const ContactSet& set, std::size_t n) {
-  const Vec3 u = random.direction();
-  return fill_tool(random, set, n, [&] { return nearly(random, u); });
-}
-
-/// Points on the side, in the tip plane, on its rim. Their depth is 0 up to rounding; the search drops those outside.
-Points on_the_surface(Random& random, const ContactSet& set, std::size_t n) {
-  const auto position = [&] {
-    const double radius = chance(random, 0.6) ? set.tool.radius() : set.tool.radius() * std::sqrt(random.uniform());
-    return at(random, set, radius, chance(random, 0.6) ? 0.0 : -set.tool.length() * random.uniform());
-  };
-  return fill(n, position, [&] { return random.direction(); });
-}
-
-/// Walls on both sides of the axis: gradients of shortest_distance that cancel.
-Points across_the_axis(Random& random, const ContactSet& set, std::size_t n) {
-  const Vec3 e = across(set.pose.axis)[0];
-  const Vec3 wall = set.tool.radius() * log_uniform(random, 1e-16, 1.0) * e;
-  return fill(
-      n, [&]() -> Vec3 { return set.pose.position - 0.5 * set.tool.length() * set.pose.axis + sign_of(random, wall); },
-      [&] { return sign_of(random, e); });
-}
-
-struct Family {
-  const char* name;
-  Points (*draw)(Random& random, const ContactSet& set, std::size_t n);
-};
-
-constexpr Family kFamilies[] = {
-    {"random", random_points},
-    {"zero_normals", zero_normals},
-    {"coincident", coincident},
-    {"on_the_axis", on_the_axis},
-    {"opposite", opposite},
-    {"nearly_opposite", nearly_opposite},
-    {"nearly_parallel", nearly_parallel},
-    {"on_the_surface", on_the_surface},
-    {"across_the_axis", across_the_axis},
-};
 
 void draw_tool(Random& random, ContactSet& set) {
   // A fifth of the scenes at each end of the scale, the others in between.
@@ -252,12 +200,15 @@ ContactSet stress_set(std::uint64_t seed, std::uint64_t i) {
   ContactSet set;
   draw_tool(random, set);
   draw_rendering(random, set.rendering);
-  const Family& family = kFamilies[random.below(std::size(kFamilies))];
-  set.family = family.name;
+  const Draw position = positions(random, set), normal = normals(random, set);
   // Every fifth set has one point. The other sizes are log-uniform, so that small sets, which are degenerate most
   // often, are common.
   const double n = chance(random, 0.2) ? 1.0 : log_uniform(random, 1.0, static_cast<double>(kMostContacts));
-  set.points = family.draw(random, set, static_cast<std::size_t>(n));
+  set.points.resize(static_cast<std::size_t>(n));
+  for (SurfacePoint& point : set.points) {
+    point.position = position();
+    point.normal = normal();
+  }
   return set;
 }
 

@@ -16,7 +16,6 @@ namespace hapbench {
 
 /// A tool among points that it touches, and how they are rendered.
 struct ContactSet {
-  const char* family = "";
   Cylinder tool;
   ToolPose pose;
   Vec3 velocity = Vec3::Zero();      ///< [m/s]
@@ -27,9 +26,9 @@ struct ContactSet {
 /// Most points of a set; the reduction of some keeps fewer (n_ext).
 inline constexpr std::size_t kMostContacts = 200;
 
-/// Set number `i` of the seed, by the numbers that the counts name, of a family drawn at random: points on the axis, on
-/// the surface, coincident; normals that are zero, equal, opposite, nearly so, or more different ones than n_ext;
-/// scenes of 1e-12 m and of 1e3 m.
+/// Set number `i` of the seed, by the numbers that the counts name: points on the axis, on the surface, coincident;
+/// normals that are zero, equal, opposite, nearly so, or more different ones than n_ext; scenes of 1e-12 m and of
+/// 1e3 m.
 ContactSet stress_set(std::uint64_t seed, std::uint64_t i);
 
 /// The counts of one algorithm over all sets.

@@ -67,10 +67,10 @@ bool fails_between(Trials& trials, const TuneTrial& choice, TunedLaw& law) {
 bool own_edge_is_near(Trials& trials, const TuneTrial& choice, TunedLaw& law) {
   const ScenarioText& scene = trials.question.scenario;
   const std::vector<std::string> chosen = trials.overrides(choice, choice.stiffness);
-  law.edge_question = limit_question(scene, chosen, kTunedField, {});
-  static_cast<StabilityRule&>(law.edge_question) = rule_of(load_scenario(scene, chosen).scenario);
-  law.edge_question.threads = trials.question.threads;
-  law.edge = field_limit({&scene, chosen, trials.algorithm, law.edge_question});
+  LimitQuestion question = limit_question(scene, chosen, kTunedField, {});
+  static_cast<StabilityRule&>(question) = rule_of(load_scenario(scene, chosen).scenario);
+  question.threads = trials.question.threads;
+  law.edge = field_limit(question);
   trials.runs += law.edge.runs.size();
   const double G_K = trials.question.margin * choice.stiffness;
   if (!law.edge.value) return refute(trials, choice, G_K, "stable values are scattered");
@@ -230,50 +230,15 @@ void explain_limits(Trials& trials, const TuneTrial& nearest, TunedLaw& law) {
     law.relax += "; a limit of your own, such as --bound force_rms_above_30Hz_N=0.05, takes the place of what is quiet";
 }
 
-/// Names the largest margin of a trial that is settled without the one asked for. False if there is no such trial.
-bool explain_margin(Trials& trials, TunedLaw& law) {
-  constexpr std::size_t kMostAsked = 8;
-  std::vector<TuneTrial> settled;
-  for (const auto& [key, trial] : trials.all)
-    if (trial.binding == "margin" && trial.settled) settled.push_back(trial);
-  const std::size_t asked = std::min(kMostAsked, settled.size());
-  double largest = 0.0;
-  for (std::size_t i = 0; i < asked; ++i) {
-    TuneTrial trial = settled[i * settled.size() / asked];
-    if (!trials.unsettled(trial, Strain{}).empty()) continue;
-    const double gain =
-        last_settled(trials, trial, {.range = {1.0, trials.question.margin, true}, .resolution = 0.02}, kByGain);
-    if (gain <= largest) continue;
-    const std::string why = trial.why;
-    trials.judge_limits(trial);
-    if (!trial.feasible()) continue;
-    largest = gain;
-    law.binding = "margin";
-    law.why = why;
-    law.relax = fmt::format("margin {:.3g} in place of {:g}; {}", std::floor(gain * 100.0) / 100.0,
-                            trials.question.margin, then_text(trial));
-  }
-  return largest > 0.0;
-}
-
-/// Where too soft and too stiff meet, at a setting where only the margin is missing if there is one.
+/// Where no limit is in the way: a trial that lacks the margin alone, or else the last one.
 void explain_motion(const Trials& trials, TunedLaw& law) {
-  const TuneTrial *soft = nullptr, *stiff = nullptr, *before = nullptr;
-  for (const auto& [key, trial] : trials.all) {
-    const bool meets =
-        before != nullptr && static_cast<const TuneSetting&>(*before) == trial && before->too_soft && !trial.too_soft;
-    if (meets && (stiff == nullptr || (!stiff->settled && trial.settled))) {
-      soft = before;
-      stiff = &trial;
-    }
-    before = &trial;
-  }
-  law.binding = "settled";
-  law.why = before != nullptr ? before->why : "nothing was tried";
-  if (soft != nullptr)
-    law.why = fmt::format("up to {:.4g} N/m too soft, {}; from there on too stiff, {}", soft->stiffness, soft->why,
-                          stiff->why);
-  law.relax = "no limit is to blame: a gentler hand, a wider tool or another device, or other runs with --family";
+  const auto lacks_margin = [](const auto& tried) { return tried.second.binding == "margin"; };
+  const auto found = std::ranges::find_if(trials.all, lacks_margin);
+  const TuneTrial& trial = found != trials.all.end() ? found->second : trials.all.rbegin()->second;
+  law.binding = trial.binding;
+  law.why = trial.why;
+  law.relax = law.binding == "margin" ? "a smaller --margin; else " : "no limit is to blame: ";
+  law.relax += " a gentler hand, a wider tool or another device, or other runs with --family";
 }
 
 }  // namespace
@@ -307,7 +272,7 @@ TuneMargins margins_of(Trials& trials, const TuneTrial& choice) {
 
 void explain(Trials& trials, TunedLaw& law) {
   if (const TuneTrial* nearest = trials.nearest()) return explain_limits(trials, *nearest, law);
-  if (!explain_margin(trials, law)) explain_motion(trials, law);
+  explain_motion(trials, law);
 }
 
 }  // namespace hapbench

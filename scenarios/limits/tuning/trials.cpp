@@ -116,23 +116,23 @@ void note_worst(TuneTrial& trial, const std::string& name, const MetricBound& bo
 
 }  // namespace
 
-std::vector<FamilyMember> family_of(const LoadedScenario& loaded, FamilyOver over) {
-  if (over == FamilyOver::hands) return hands_of(loaded.scenario);
-  return over == FamilyOver::seeds ? seeds_of(loaded) : speeds_of(loaded);
+std::vector<FamilyMember> family_of(const LoadedScenario& loaded, const std::string& family) {
+  if (family == "hands") return hands_of(loaded.scenario);
+  return family == "seeds" ? seeds_of(loaded) : speeds_of(loaded);
 }
 
 Trials::Trials(const TuneQuestion& asked, const std::string& law)
     : question(asked),
       algorithm(law),
       ranges(tune_ranges(asked, law)),
-      over_hands(std::ranges::find(asked.over, FamilyOver::hands) != asked.over.end()),
+      over_hands(std::ranges::find(asked.families, "hands") != asked.families.end()),
       is_quiet(asked.limits.empty()),
       limits(asked.limits),
       cap(ranges.stiffness.to) {
   const LoadedScenario own = load({}, ranges.stiffness.from, {});
   shell = make_shell(own.scenario, own.files);
-  for (const FamilyOver over : question.over)
-    for (FamilyMember& member : family_of(own, over)) family.push_back(std::move(member));
+  for (const std::string& of : question.families)
+    for (FamilyMember& member : family_of(own, of)) family.push_back(std::move(member));
   if (springs_stay(own.scenario)) springs_lambda = stiffness_eigenvalues(own.scenario)[2];
   for (const DiagnosisRule& rule : diagnosis_rules())
     if (is_quiet && rule.quiet) limits[rule.name].max = rule.threshold;

@@ -136,19 +136,10 @@ class TuneSearch {
   }
 
   void refine() {
-    for (double ratio = math::pow(10.0, 0.125); ratio > kFinest; ratio = std::sqrt(ratio)) {
-      for (bool better = true; better;) {
-        better = false;
-        for (const double step : {ratio, 1.0 / ratio}) {
-          for (const auto& [value, range] : searched()) {
-            if (!range) continue;
-            TuneSetting next = *best_;
-            next.*value = std::clamp(*(next.*value) * step, range->from, range->to);
-            better = improve(next) || better;
-          }
-        }
+    const auto is_better = [this](const TuneTrial& neighbour) { return improve(neighbour); };
+    for (double ratio = math::pow(10.0, 0.125); ratio > kFinest; ratio = std::sqrt(ratio))
+      while (std::ranges::any_of(neighbours(*best_, ratio), is_better)) {
       }
-    }
   }
 
   /// Where only limits are not kept, walks from the trial that is nearest to keeping them all towards them.

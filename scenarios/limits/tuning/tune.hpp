@@ -26,8 +26,7 @@ using TuneMetrics = std::map<std::string, double, std::less<>>;
 ///           impedance device's handle with 0.1 and 0.5 kg each
 ///   seeds   four further seeds, started 10 um away: less than a hand repeats a place
 ///   speeds  the script of hand and tool at half and twice its speed
-enum class FamilyOver { hands, seeds, speeds };
-inline constexpr const char* kFamilyNames[] = {"hands", "seeds", "speeds"};
+inline constexpr const char* kFamilies[] = {"hands", "seeds", "speeds"};
 
 struct FamilyMember {
   std::string name;                         ///< for people, as in "a hand of 0.5 kg and 1000 N/m"
@@ -35,7 +34,7 @@ struct FamilyMember {
 };
 
 /// Those runs; none where the scene has nothing to vary, as a hand whose force is a script.
-std::vector<FamilyMember> family_of(const LoadedScenario& loaded, FamilyOver over);
+std::vector<FamilyMember> family_of(const LoadedScenario& loaded, const std::string& family);
 
 struct TuneQuestion {
   ScenarioText scenario;
@@ -43,8 +42,8 @@ struct TuneQuestion {
   double margin = 2.0;  ///< G: settled up to G K
   /// On metrics of every run at K; without any, the own run has to be quiet by the rules of the diagnosis.
   std::map<std::string, MetricBound> limits = {};
-  std::vector<FamilyOver> over = {FamilyOver::hands};  ///< families, their runs together
-  Range damping_ratio = {0.01, 10.0, true};            ///< zeta; of an impedance device by the mass of its handle
+  std::vector<std::string> families = {"hands"};  ///< their runs together
+  Range damping_ratio = {0.01, 10.0, true};       ///< zeta; of an impedance device by the mass of its handle
   std::optional<Range> mass = {};  ///< of the virtual mass on an admittance device [kg]; none: half to twice the own
   bool filters = false;            ///< try velocity filters of an impedance device, too
   unsigned threads = 1;
@@ -79,6 +78,7 @@ struct TuneTrial : TuneSetting {
   double lambda_max = 0.0;  ///< largest eigenvalue of the mean S in the end of the own run: K lambda_max is rendered
 
   bool feasible() const { return binding.empty(); }
+  double rendered() const { return stiffness * lambda_max; }  ///< the stiffness that the hand meets [N/m]
   void fail(std::string constraint, std::string reason) {
     binding = std::move(constraint);
     why = std::move(reason);
@@ -102,8 +102,7 @@ struct TunedLaw {
   std::string binding, why;
   std::string relax;  ///< where nothing is feasible: which limit to relax, and by how much
   TuneMargins margins;
-  FieldLimit edge;  ///< of K in the scene as chosen, with its own hand: what `limit` finds for the question
-  LimitQuestion edge_question;
+  FieldLimit edge;  ///< of K in the scene as chosen, with its own hand: what `limit` finds
   /// How far half the step, half the distance of the points and a look at the depth in every row move the metrics of
   /// the own run, the largest of these; none of a metric that such a run does not have.
   TuneMetrics error;

@@ -61,7 +61,6 @@ const std::map<std::string, Words> kShorter = {
     {"compare", {"--set", "time.steps=20", "--set", "expect={}", "--algorithms", "mean"}},
     {"limit", {"--set", "time.steps=20", "--resolution", "0.5", "--algorithms", "mean"}},
     {"run", {"--set", "time.steps=20"}},
-    {"stability", {}},
     {"stress", {"--count", "100"}},
     {"sweep", {"--row", "0", "--print"}}};
 

@@ -7,6 +7,8 @@
 
 #include "scenarios/cases/comparison.hpp"
 #include "sim/loop/integrators/table.hpp"
+#include "tests/results/files.hpp"
+#include "tests/scenarios/support/file_tree.hpp"
 #include "tests/scenarios/support/scenarios.hpp"
 
 /// Observed orders of sequences whose order is known, and of such as have none; levels of scenes, and scenes that have
@@ -71,14 +73,6 @@ TEST(ObservedOrder, IsNotStatedWhereTheDifferencesShowNone) {
       {{1.1, 1.0 + 16 * ulp, 1.0 + 4 * ulp, 1.0 + 2 * ulp, 1.0 + ulp}, "rounding"},
       {{1.0, 2.0, 2.0, 3.0, 3.5}, "some of the last levels"}};
   for (const auto& [results, said] : kCases) expect_no_order(convergence_of(levels_with(results), 2.0, 1.0), said);
-}
-
-TEST(ObservedOrder, LeavesABandWhereThereIsNone) {
-  const Convergence c = convergence_of(levels_with({2.0, 1.0, 1.4, 1.2, 1.1}), 2.0, 1.0);
-  EXPECT_EQ(c.band, std::pair(1.1, 1.4));
-  EXPECT_NEAR(*c.errors[0], 1.0, 1e-12) << "from the second level";
-  EXPECT_NEAR(*c.errors[3], 0.3, 1e-12) << "the band is wider than what is left";
-  EXPECT_NEAR(*c.errors[4], 0.3, 1e-12);
 }
 
 TEST(ObservedOrder, IsNotStatedWhereContactsSwitch) {
@@ -193,39 +187,51 @@ TEST(Converge, KeepsTheLengthOfDelays) {
   EXPECT_EQ(levels.formal_order, 1.0);
 }
 
-TEST(Converge, HasNoNumberWhereARunHasNone) {
-  EXPECT_NE(studied(spring(0.2, "leapfrog")).of("inside_max_m").reason.find("has no value of the metric"),
-            std::string::npos);
-  // Without damping leapfrog bears K dt^2 / M < 4: dt < 0.02 s, so that of 0.064, 0.032, 0.016, ... the first two
-  // diverge.
-  Json scene = spring(0.0, "leapfrog");
-  scene["time"] = {{"step_s", 0.064}, {"steps", 400}};
-  const Study study = studied(scene);
-  for (const std::size_t i : {0u, 1u}) EXPECT_EQ(study.runs[i].end.outcome, Outcome::diverges);
-  EXPECT_FALSE(study.levels_of("force_max_N")[0].result);
-  const Convergence c = study.of("force_max_N");
-  EXPECT_FALSE(c.errors[0] || c.errors[1]);
-  EXPECT_TRUE(c.errors[2] && c.band);
-  const Convergence three = studied(scene, 4).of("force_max_N");
-  EXPECT_NE(three.reason.find("which leaves 2 levels"), std::string::npos) << three.reason;
+TEST(HeldOrder, SaysWhatHoldsAndOfWhatNoErrorIsKnown) {
+  const auto says = [](const std::vector<NumberWithError>& numbers) {
+    const std::vector<std::string> names = {"a", "b", "c", "d"};
+    return held_text(numbers, names, 1e-3);
+  };
+  EXPECT_EQ(says({{2.0, 0.1}, {1.0, 0.1}}), "the order holds: b < a");
+  EXPECT_EQ(says({{2.0, 0.1}, {1.0, 1.0}}), "no order holds: b ~ a");
+  EXPECT_EQ(says({{2.0, 0.1}, {1.0, 0.1}, {2.1, 0.1}, {9.0, std::nullopt}}),
+            "what holds is <: b < a ~ c; no error is known of d");
+  EXPECT_EQ(says({{2.0, 0.1}, {1.0, 0.1}, {1.5, 7.0}}), "what holds is <: b < a; too uncertain for a place: c");
+  EXPECT_EQ(says({{1.0, 0.1}, {1.5, 0.6}, {3.0, 0.1}}), "what holds is <: a ~ b < c");
+  EXPECT_EQ(says({{1.0, 0.0}, {1.0 + 1e-12, 0.0}}), "no order holds: a ~ b") << "rounding is no difference";
+  EXPECT_EQ(says({{std::nullopt, 0.1}, {1.0, 0.1}}), "there is nothing to compare");
 }
 
-TEST(Converge, SaysWhereAFieldHasNoEffect) {
-  const Convergence c = studied(spring(0.2, "leapfrog"), 3, "tool.diameter_m").of("force_max_N");
-  EXPECT_FALSE(c.order);
-  EXPECT_EQ(c.reason, "tool.diameter_m has no effect here: all runs are the same, bit for bit");
-}
-
-TEST(Converge, BeginsAMeshWithItsOwnPoints) {
-  const Json scene = test::minimal_scenario("mesh");
-  const LoadedScenario loaded = load_scenario(ScenarioText{test::data_directory() / "x.json", scene}, {});
-  // A cube of 10 mm: 8 vertices on 600 mm^2.
-  const double apart = std::sqrt(6e-4 / 8.0);
-  const LevelSweep levels = level_sweep(loaded, "environment.spacing_m", 3, 2.0);
-  EXPECT_NEAR(std::stod(levels.axis.values[0]), apart, 1e-9);
-  EXPECT_NEAR(std::stod(levels.axis.values[2]), apart / 4.0, 1e-9);
+/// A flat tip of radius 0.5 mm in a plane whose points are 0.4 mm apart: 5 of them lie within, 21 of those that are
+/// 0.2 mm apart and 69 at 0.1 mm. The 10/N rule is min(N, 10) springs stiff, and N springs in series with K_vc = 40 K
+/// are 40 N / (40 + N): 5 and 4.44 for 5 points, 10 and 13.8 for 21, 10 and 25.3 for 69.
+TEST(FinerRuns, LeaveNoOrderWhereTwoStiffnessesCrossAsPointsGrowDenser) {
+  constexpr double kDepth = 2e-5, kOne = 1000.0 * kDepth;  // [m], [N]
+  const Json scene = {
+      {"time", {{"step_s", 0.0005}, {"steps", 200}}},
+      {"environment", {{"type", "plane"}, {"size_m", 0.004}, {"spacing_m", 0.0004}}},
+      {"tool", {{"diameter_m", 0.001}, {"length_m", 0.01}, {"tip", "flat"}}},
+      {"motion", {{"position", {{"type", "prescribed"}, {"x_m", 0}, {"y_m", 0}, {"z_m", -kDepth}}}}},
+      {"rendering", {{"stiffness_N_per_m", 1000}, {"damping_N_s_per_m", 0}, {"virtual_coupling_N_per_m", 40'000}}}};
+  const test::TemporaryDirectory directory;
+  test::write_plainly(directory / "scene.json", scene.dump());
+  const std::vector<std::string> laws = {"mcneely", "virtual_coupling"};
+  const Comparison comparison = planned({.scenarios = {directory / "scene.json"}, .algorithms = laws});
+  const std::vector<Result> reports = run_all(comparison.scenes, {});
+  const FinerRuns finer(comparison, reports, {});
+  std::vector<KnownError> known;
+  std::vector<NumberWithError> numbers;
+  for (std::size_t i = 0; i < reports.size(); ++i) {
+    known.push_back(finer.known_error(i, "force_max_N"));
+    numbers.push_back({number_of(reports[i].metrics, "force_max_N"), known.back().sum()});
+  }
+  EXPECT_EQ(held_text(numbers, laws, 1e-3), "no order holds: virtual_coupling ~ mcneely");
+  EXPECT_NEAR(*numbers[0].value, 5.0 * kOne, 1e-12);
+  EXPECT_NEAR(*known[0].spacing, 5.0 * kOne, 1e-9) << "the plain difference: no order is seen";
+  EXPECT_GE(*known[1].spacing, (25.3 - 4.45) * kOne);
+  EXPECT_EQ(known[0].step, 0.0) << "the motion is prescribed";
+  EXPECT_EQ(finer.refined(0), "time.step_s 0.0005, 0.00025, 0.000125; environment.spacing_m 4e-04, 2e-04, 1e-04");
 }
 
 }  // namespace
-
 }  // namespace hapbench::convergence_test

@@ -38,21 +38,6 @@ TEST(MotionClassifier, OfNoMotionAndOfCreepingIsStable) {
   EXPECT_EQ(class_of([](double k) { return 1.0 + 0.001 * k; }), MotionClass::stable) << "falls, but does not oscillate";
 }
 
-TEST(MotionClassifier, OfASustainedOscillationIsVibrating) {
-  for (const double period : {2.0, 17.3, 100.0, 900.0}) {
-    EXPECT_EQ(class_of([&](double k) { return std::cos(2.0 * std::numbers::pi * k / period); }), MotionClass::vibrating)
-        << period;
-  }
-}
-
-TEST(MotionClassifier, SeesTurnsBetweenWhichDryFrictionHoldsAHandle) {
-  const auto sticking = [](double k) {
-    const int phase = static_cast<int>(k) % 40;
-    return phase == 0 ? 1.0 : (phase == 20 ? -1.0 : 0.0);
-  };
-  EXPECT_EQ(class_of(sticking), MotionClass::vibrating);
-}
-
 // An encoder makes jumps of the velocity of a handle that creeps.
 TEST(MotionClassifier, OfAHandleThatMovesTheToolTakesItsOwnVelocity) {
   MotionClassifier classifier(kSteps);
@@ -82,15 +67,6 @@ TEST(MotionClassifier, SeparatesClassesByWhatIsLostInAQuarter) {
   EXPECT_EQ(class_of_oscillation(1.0 - 0.9 * (1.0 - tenth)), MotionClass::vibrating);
   EXPECT_EQ(class_of_oscillation(1.0 + 0.8 * (growth - 1.0)), MotionClass::vibrating);
   EXPECT_EQ(class_of_oscillation(1.0 + 1.2 * (growth - 1.0)), MotionClass::diverged);
-}
-
-TEST(MotionClassifier, OfABeatThatEndsInATroughIsVibrating) {
-  // The last quarter has 70 % of the third's amplitude, which is the second's.
-  EXPECT_EQ(class_of([](double k) {
-              const double quarter = 4.0 * k / kSteps;
-              return (quarter < 3.0 ? 1.0 : 0.7) * std::cos(0.2 * std::numbers::pi * k);
-            }),
-            MotionClass::vibrating);
 }
 
 /// The class of a tool that a hand moves to and fro, 20 mm/s at 1 Hz, and that vibrates besides.
@@ -132,17 +108,6 @@ TEST(MotionClassifier, OfALimitCycleIsVibratingHoweverItBegan) {
   EXPECT_EQ(class_of([](double k) { return (1.0 + 9.0 * std::exp(-0.01 * k)) * std::sin(k); }), MotionClass::vibrating);
 }
 
-TEST(MotionClassifier, SeesAnOscillationAlongAnyAxis) {
-  for (int axis = 0; axis < 3; ++axis) {
-    const auto velocity = [axis](double k) {
-      Vec3 v = Vec3::Ones();  // a drift does not hide it
-      v[axis] = std::fmod(k, 2.0) == 0.0 ? 1.0 : -1.0;
-      return v;
-    };
-    EXPECT_EQ(class_by(MotionClassifier(kSteps), velocity), MotionClass::vibrating) << axis;
-  }
-}
-
 TEST(MotionClassifier, IsAtRestOnlyAfterManyQuietRows) {
   MotionClassifier classifier(kSteps);
   StepRecord record;
@@ -176,35 +141,6 @@ TEST(StabilityOf, OfSlowBouncesThatGoOnIsVibrating) {
     const LoadedScenario loaded = load_scenario(plane, fields);
     EXPECT_EQ(stability_of(loaded, make_shell(loaded.scenario, loaded.files), any_vibration).verdict, verdict) << zeta;
   }
-}
-
-/// A trembling hand drags a paddle with dry friction: sticking and slipping it shakes at 1.3 mm/s above 30 Hz whatever
-/// the wall, which is no fault of the wall's.
-TEST(StabilityOf, AllowsWhatATremorDoesWithoutAWall) {
-  const ScenarioText paddle =
-      read_scenario_text(installed_folder("scenarios/library") / "validation" / "epfl_paddle.json");
-  const auto at = [&](const char* stiffness) {
-    const std::vector<std::string> fields = {"device.coulomb_N=0.231",
-                                             "device.viscous_N_s_per_m=0.318",
-                                             "device.delay_samples=0.66",
-                                             "device.encoder_step_m=1.36e-5",
-                                             "hand.mass_kg=0.0257",
-                                             "hand.stiffness_N_per_m=919",
-                                             "hand.damping_N_s_per_m=1.27",
-                                             "hand.tremor.rms_m=[1.1e-4,0,0]",
-                                             "seed=3",
-                                             std::string("rendering.stiffness_N_per_m=") + stiffness};
-    return load_scenario(paddle, fields);
-  };
-  const TremorSpeeds alone = tremor_speeds(at("8000"));
-  EXPECT_GT(alone.handle, 1e-4);
-  EXPECT_LT(alone.handle, 0.2 * alone.target);
-  EXPECT_NEAR(alone.target, 4.0 * 2.0 * std::numbers::pi * 12.0 * 1.1e-4, 1e-9);
-  EXPECT_EQ(stability_of(at("300"), nullptr).verdict, RunVerdict::stable);
-  EXPECT_EQ(stability_of(at("8000"), nullptr).verdict, RunVerdict::stable);
-  EXPECT_EQ(stability_of(at("200000"), nullptr).verdict, RunVerdict::vibrating);
-  // Where everything beyond 1 mm/s counted, the finger's own sway at a soft wall would be called vibration.
-  EXPECT_EQ(stability_of(at("300"), nullptr, {.tremor = TremorSpeeds{}}).verdict, RunVerdict::vibrating);
 }
 
 }  // namespace

@@ -1,0 +1,183 @@
+#include <gtest/gtest.h>
+
+#include "tests/results/files.hpp"
+#include "tests/scenarios/support/file_tree.hpp"
+#include "tests/scenarios/support/program.hpp"
+
+/// hapbench limit, tune and converge: what they find and write. What they print is in tests/data/golden/studies.txt.
+namespace hapbench::decide_test {
+namespace {
+
+using Words = std::vector<std::string>;
+using test::hapbench;
+using test::lines_of;
+using test::ProgramRun;
+using test::read_file;
+
+class Decide : public testing::Test {
+ protected:
+  std::string file(const std::string& name) const { return (directory_ / name).string(); }
+  ProgramRun ask(Words words, const Words& more, const std::string& out = "out") const {
+    words.insert(words.end(), {"--out", file(out)});
+    words.insert(words.end(), more.begin(), more.end());
+    return hapbench(words);
+  }
+  test::TemporaryDirectory directory_;
+};
+
+class LimitCommand : public Decide {
+ protected:
+  LimitCommand() {
+    // A probe pressed on a plane of 49 points by a hand with a mass.
+    test::write_plainly(directory_ / "press.json",
+                        R"({"time": {"step_s": 0.001, "steps": 200}, "tool": {"diameter_m": 0.01, "length_m": 0.1},
+                            "environment": {"type": "plane", "size_m": 0.006, "spacing_m": 0.001},
+                            "hand": {"type": "mass_spring_damper", "mass_kg": 0.2, "stiffness_N_per_m": 300,
+                                     "damping_N_s_per_m": 6, "target": {"x_m": 0, "y_m": 0, "z_m": -0.003}},
+                            "device": {"type": "impedance", "preset": "omega.3"},
+                            "rendering": {"stiffness_N_per_m": 2000, "damping_ratio": 0,
+                                          "friction": {"mu_s_N_s_per_m": 0, "mu_f_s_per_m": 0}}})");
+  }
+  ProgramRun limit(const Words& more, const std::string& out = "out") const {
+    return ask({"limit", file("press.json")}, more, out);
+  }
+};
+
+TEST_F(LimitCommand, OnADeviceIsThatOfTheSceneWithIt) {
+  const Words question = {"--algorithms", "shaped_stiffness,summation", "--vibration", "0.002", "--resolution", "0.01",
+                          "--json"};
+  Words with_device = question;
+  with_device.insert(with_device.end(), {"--device", "omega.3", "--friction", "none"});
+  const Json rows = limit(with_device).json()["limits"], own = limit(question, "own").json()["limits"];
+  ASSERT_EQ(rows.size(), 2u);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    EXPECT_TRUE(rows[i]["limit"].is_number());
+    EXPECT_EQ(rows[i]["low"], own[i]["low"]);
+    // Asked for alone, the interval is tried between its ends: its edge may be lower, never higher.
+    EXPECT_LE(own[i]["limit"], rows[i]["limit"]);
+    EXPECT_EQ(own[i]["tried_between"], 48);
+    EXPECT_EQ(rows[i]["tried_between"], 0);
+    EXPECT_LE(rows[i]["vibration_m_per_s"], 0.002);
+    EXPECT_EQ(rows[i]["published_N_per_m"], 5000.0);
+    // Under the former name, too, for programs that read it.
+    EXPECT_EQ(rows[i].at("astray"), rows[i].at("inconsistent_runs"));
+  }
+  for (const char* name : {"out/limit.csv", "own/limit.csv"})
+    EXPECT_TRUE(lines_of(read_file(directory_ / name))[0].ends_with(",runs,inconsistent_runs,astray")) << name;
+}
+
+TEST_F(LimitCommand, GivesTheSameBytesWhateverTheJobs) {
+  for (const char* jobs : {"1", "2"})
+    EXPECT_EQ(limit({"--device", "ideal,admittance,touch", "--resolution", "0.5", "--jobs", jobs}, jobs).status, 0);
+  test::expect_same_files(directory_ / "1", directory_ / "2");
+}
+
+class TuneCommand : public Decide {
+ protected:
+  ProgramRun tune(const Words& more, const std::string& out = "out") const {
+    return ask({"tune", "tap_wall"}, more, out);
+  }
+};
+
+TEST_F(TuneCommand, ItsScenarioGivesTheMetricsThatWerePrinted) {
+  // Another device over the scene's, and one of its fields: sections that extending alone would mix.
+  const Json json = tune({"--device", "touch", "--set", "device.delay_samples=0.5", "--bound", "inside_max_m=0.01",
+                          "--algorithms", "shaped_stiffness,mean", "--json"})
+                        .json();
+  ASSERT_EQ(json["algorithms"].size(), 2u);
+  ASSERT_TRUE(json["recommended"].is_string()) << json.dump(1);
+  const Json* best = nullptr;
+  for (const Json& law : json["algorithms"])
+    if (law["algorithm"] == json["recommended"]) best = &law;
+  ASSERT_NE(best, nullptr);
+  EXPECT_TRUE((*best)["feasible"].get<bool>());
+  EXPECT_GE((*best)["margins"]["gain"].get<double>(), 2.0);
+  EXPECT_EQ(json["limits"]["inside_max_m"]["max"], 0.01);
+  const std::string tuned = file("out/tap_wall_tuned.json");
+  EXPECT_EQ(json["scenario"], tuned);
+  const Json run = hapbench({"run", tuned, "--json", "--out", file("run")}).json();
+  EXPECT_EQ(run[0]["algorithm"], json["recommended"]);
+  for (const auto& [name, value] : (*best)["metrics"].items()) EXPECT_EQ(run[0]["metrics"][name], value) << name;
+  const Json effective = Json::parse(read_file(file("run/scenario.effective.json")));
+  EXPECT_EQ(effective["rendering"]["stiffness_N_per_m"], (*best)["stiffness_N_per_m"]);
+  EXPECT_EQ(effective["device"]["delay_samples"], 0.5);
+  std::size_t runs = 0;
+  for (const Json& law : json["algorithms"]) runs += law["runs"].get<std::size_t>();
+  EXPECT_EQ(json["runs"], runs);
+  EXPECT_EQ(lines_of(read_file(file("out/tune.csv"))).size(), 3u);
+  EXPECT_GT(lines_of(read_file(file("out/tune_trials.csv"))).size(), 30u);
+}
+
+/// Recommended, linear edge and edge in runs: for one scene and device the same from tune, limit and the device table.
+TEST_F(TuneCommand, SaysTheEdgesThatLimitSays) {
+  const Json law = tune({"--device", "touch", "--json"}).json()["algorithms"][0];
+  ASSERT_TRUE(law["edge_in_runs"].is_number() && law["linear_edge"].is_number()) << law.dump(1);
+  const std::string tuned = file("out/tap_wall_tuned.json");
+  const auto asked = [&](Words words) {
+    words.insert(words.begin(), {"limit", tuned, "--json", "--out", file("limit")});
+    return hapbench(words).json()["limits"][0];
+  };
+  const Json limit = asked({}), in_table = asked({"--device", "touch", "--friction", "none"});
+  EXPECT_EQ(limit["limit"], law["edge_in_runs"]);
+  EXPECT_EQ(limit["linear"], law["linear_edge"]);
+  EXPECT_EQ(in_table["low"], limit["low"]);
+  EXPECT_NEAR(in_table["linear"].get<double>(), limit["linear"].get<double>(), 0.01 * limit["linear"].get<double>());
+  EXPECT_GE(in_table["limit"], limit["limit"]) << "a table tries nothing between";
+  EXPECT_GE(law["edge_in_runs"].get<double>(), 2.0 * law["stiffness_N_per_m"].get<double>());
+  EXPECT_GE(law["linear_edge"].get<double>(), 2.0 * law["stiffness_N_per_m"].get<double>());
+}
+
+/// Without limits the recommendation keeps what the diagnosis calls quiet.
+TEST_F(TuneCommand, RecommendsAQuietRun) {
+  tune({"--quiet"});
+  const Json run = hapbench({"run", file("out/tap_wall_tuned.json"), "--json", "--out", file("run")}).json();
+  for (const Json& finding : run[0]["diagnosis"])
+    for (const char* rule : {"buzz", "pop", "chatter", "energy"}) EXPECT_NE(finding["rule"], rule) << finding;
+}
+
+/// A limit is kept by as much as half the step, half the spacing and a look at every row move the metric.
+TEST_F(TuneCommand, KeepsALimitByTheErrorOfItsMetric) {
+  const Json law = tune({"--bound", "inside_max_m=5e-4", "--json"}).json()["algorithms"][0];
+  ASSERT_TRUE(law["feasible"].get<bool>()) << law.dump(1);
+  const double error = law["error"]["inside_max_m"].get<double>();
+  EXPECT_GT(error, 0.0);
+  EXPECT_LE(law["metrics"]["inside_max_m"].get<double>() + error, 0.5e-3);
+}
+
+TEST_F(TuneCommand, WritesTheSameBytesHoweverManyJobs) {
+  tune({"--jobs", "1", "--quiet"}, "a");
+  tune({"--jobs", "3", "--quiet"}, "b");
+  for (const char* name : {"tune.csv", "tune_trials.csv", "tap_wall_tuned.json"})
+    EXPECT_EQ(read_file(directory_ / "a" / name), read_file(directory_ / "b" / name)) << name;
+}
+
+class ConvergeCommand : public Decide {
+ protected:
+  ProgramRun converge(const Words& more, const std::string& out = "out") const {
+    return ask({"converge", "springs_oscillation"}, more, out);
+  }
+};
+
+TEST_F(ConvergeCommand, WritesTheSameBytesHoweverManyJobs) {
+  const Json json = converge({"--metric", "force_max_N,inside_max_m", "--json"}, "one").json();
+  ASSERT_EQ(json.size(), 2u);
+  for (const Json& level : json[0]["levels"]) EXPECT_GT(level["seconds"], 0.0);
+  EXPECT_TRUE(json[1]["order"].is_null() && json[1]["band"].is_null());
+  EXPECT_EQ(converge({"--metric", "force_max_N", "--json"}).json()["metric"], "force_max_N") << "one alone is no list";
+  converge({"--metric", "force_max_N,inside_max_m", "--jobs", "3", "--quiet"}, "three");
+  for (const char* name : {"converge.csv", "converge_levels.csv"})
+    EXPECT_EQ(read_file(directory_ / "one" / name), read_file(directory_ / "three" / name)) << name;
+}
+
+/// The error falls as the step, by a factor of two from level to level.
+TEST_F(ConvergeCommand, NamesTheCoarsestLevelThatIsEnough) {
+  for (const auto& [to, said] :
+       {std::pair{"0.01", "\nbelow 1 %: time.step_s = 0.00025 ("},
+        {"0.1%", "\nbelow 0.1 %: no level is; by this order time.step_s = 2.8e-05 would be"}}) {
+    const std::string out = converge({"--metric", "force_max_N", "--to", to}).out;
+    EXPECT_NE(out.find(said), std::string::npos) << out;
+  }
+}
+
+}  // namespace
+}  // namespace hapbench::decide_test
