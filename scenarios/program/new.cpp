@@ -74,22 +74,6 @@ double length_in(const char* option, const std::string& text) {
       fmt::format("{}: got \"{}\"; allowed: a length above 0 with its unit, mm, cm, m or in: 12mm", option, text));
 }
 
-/// The command as it was given, without --extent.
-std::string command_without_extent(const NewOptions& options) {
-  std::vector<std::string> words = {"hapbench", "new", options.kind};
-  const auto add = [&words](const char* name, const std::string& value) {
-    if (!value.empty()) words.insert(words.end(), {name, value});
-  };
-  add("--from", options.from);
-  add("--on", options.on);
-  if (options.side != "z") words.push_back("--side=" + options.side);
-  for (const std::string& point : options.path) add("--path", point);
-  add("--at", options.at);
-  if (options.preview) words.emplace_back("--preview");
-  add("--out", options.out);
-  return shell_line(words);
-}
-
 /// The options that say where the scene starts. Throws InputError for those that the kind has no use for.
 StartOptions start_options(const NewOptions& options, const StartKind& kind) {
   const std::string& name = kind.name;
@@ -114,7 +98,6 @@ StartOptions start_options(const NewOptions& options, const StartKind& kind) {
   start.side = options.side;
   for (const std::string& point : options.path) start.path.push_back(place_in("--path", point));
   if (!options.at.empty()) start.at = place_in("--at", options.at);
-  start.command = command_without_extent(options);
   return start;
 }
 

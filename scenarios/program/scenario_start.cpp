@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -15,10 +14,8 @@
 #include "scenarios/format/bundled_scenarios.hpp"
 #include "scenarios/format/load_scenario.hpp"
 #include "scenarios/format/parts.hpp"
-#include "scenarios/format/text_lines.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/scene_checks.hpp"
-#include "sim/core/math.hpp"
 #include "sim/core/types.hpp"
 #include "sim/geometry/point_shell.hpp"
 #include "sim/mesh/triangle_soup.hpp"
@@ -28,83 +25,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// ---- Guesses from a mesh: the tip of a tool, and where a tool that comes along -z starts over it
-
-/// Mean and variance of a surface.
-struct Spread {
-  Vec3 middle;
-  Mat3 variance;  ///< about the middle [m^2]
-};
-
-Spread spread_of(const TriangleSoup& mesh) {
-  double area = 0.0;
-  Vec3 sum = Vec3::Zero();
-  Mat3 second = Mat3::Zero();
-  for (const auto& [a, b, c] : mesh.triangles) {
-    const Vec3 &p = mesh.vertices[a], &q = mesh.vertices[b], &r = mesh.vertices[c];
-    const double weight = (q - p).cross(r - p).norm();
-    // The mean of a quadratic over a triangle is its mean over the middles of the sides.
-    for (const Vec3& place : {Vec3(0.5 * (p + q)), Vec3(0.5 * (q + r)), Vec3(0.5 * (r + p))}) {
-      sum += weight / 3.0 * place;
-      second += weight / 3.0 * place * place.transpose();
-    }
-    area += weight;
-  }
-  const Vec3 middle = sum / area;
-  return {middle, second / area - middle * middle.transpose()};
-}
-
-/// The direction along which a surface is clearly longest; a coordinate axis when it is near one.
-std::optional<Vec3> longest_direction(const Mat3& variance) {
-  constexpr double kStandsOut = 2.0;  // ratio of variances
-  // Cosine of 6 degrees: tools are modelled along an axis, but are seldom exactly symmetric about it.
-  constexpr double kNearAxis = 0.995;
-  const Eigen::SelfAdjointEigenSolver<Mat3> principal(variance);
-  if (principal.eigenvalues()[2] < kStandsOut * principal.eigenvalues()[1]) return std::nullopt;
-  const Vec3 direction = principal.eigenvectors().col(2);
-  Eigen::Index nearest = 0;
-  return direction.cwiseAbs().maxCoeff(&nearest) > kNearAxis ? Vec3(-Vec3::Unit(nearest)) : direction;
-}
-
-/// The end of a mesh along a direction.
-struct End {
-  Vec3 place;        ///< the middle of the last hundredth's vertices, moved to the very end
-  double thickness;  ///< mean distance of the last tenth's vertices from the line through the mesh's middle
-};
-
-End end_along(const TriangleSoup& mesh, const Vec3& direction, const Vec3& middle) {
-  double least = std::numeric_limits<double>::infinity(), most = -least;
-  for (const Vec3& vertex : mesh.vertices) {
-    least = std::min(least, direction.dot(vertex - middle));
-    most = std::max(most, direction.dot(vertex - middle));
-  }
-  Vec3 aside = Vec3::Zero();
-  double thickness = 0.0, in_tenth = 0.0, in_hundredth = 0.0;
-  for (const Vec3& vertex : mesh.vertices) {
-    const double along = direction.dot(vertex - middle), from_end = (most - along) / (most - least);
-    const Vec3 across = vertex - middle - along * direction;
-    if (from_end <= 0.1) thickness += across.norm(), in_tenth += 1.0;
-    if (from_end <= 0.01) aside += across, in_hundredth += 1.0;
-  }
-  return {middle + most * direction + aside / in_hundredth, thickness / in_tenth};
-}
-
-/// The guessed tip of a tool's mesh.
-struct TipOfMesh {
-  Vec3 place;      ///< the end of its longest direction where it is thinner [m]
-  Vec3 direction;  ///< out of the tip, a unit vector
-};
-
-/// Guesses a tool's tip. A mesh without a longest direction has it at its lowest place, along -z. Precondition: it has
-/// triangles.
-TipOfMesh guess_tip(const TriangleSoup& mesh) {
-  const auto [middle, variance] = spread_of(mesh);
-  const std::optional<Vec3> longest = longest_direction(variance);
-  const Vec3 direction = longest.value_or(-Vec3::UnitZ());
-  const End end = end_along(mesh, direction, middle), other = end_along(mesh, -direction, middle);
-  if (longest && other.thickness < end.thickness) return {other.place, -direction};
-  return {end.place, direction};
-}
+// ---- Where a tool that comes along -z starts over a surface
 
 /// The point nearest to the middle of those within `tolerance` of the top.
 Vec3 middle_of_the_top(const std::vector<SurfacePoint>& points, double top, double tolerance) {
@@ -258,11 +179,10 @@ class Start {
     const double longest = (box.max - box.min).maxCoeff() / 0.001;
     if (!options_.extent && (longest < kShortestObject || longest > kLongestObject)) {
       throw InputError(fmt::format(
-          "{}: the {} is {} long in metres, {} in millimetres; allowed: {} ... {}, or to state its size: \"{} --extent "
-          "{:.7g}mm\" or \"{} --extent {:.7g}m\"",
+          "{}: the {} is {} long in metres, {} in millimetres; allowed: {} ... {}, or its size, --extent {:.7g}mm or "
+          "--extent {:.7g}m",
           options_.on ? options_.on->string() : options_.source->string(), object, length_text(longest),
-          length_text(0.001 * longest), length_text(kShortestObject), length_text(kLongestObject), options_.command,
-          longest, options_.command, longest));
+          length_text(0.001 * longest), length_text(kShortestObject), length_text(kLongestObject), longest, longest));
     }
     const double scale = options_.extent ? std::stod(fmt::format("{:.6g}", *options_.extent / longest)) : 1.0;
     notes_.push_back(
@@ -395,42 +315,20 @@ class Start {
                                  length_text(scene_["environment"]["spacing_m"].get<double>())));
   }
 
-  /// Places the tool above the plane's middle.
+  /// Places the tool above the plane's middle. Its tip is where the format has it without more words.
   void place_mesh_tool() {
-    TriangleSoup surface = scenario().files.at(kToolFile).mesh().triangles();  // taken for millimetres
-    const double scale = choose_scale(box_of(surface.vertices), "tool");
+    const TriangleSoup surface = scenario().files.at(kToolFile).mesh().triangles();  // taken for millimetres
+    Box box = box_of(surface.vertices);
+    const double scale = choose_scale(box, "tool");
     scene_["tool"]["scale"] = scale;
-    for (Vec3& vertex : surface.vertices) vertex *= scale / 0.001;
-    const double touching = find_tip(surface);
-    pressed_ = to_micrometres(touching - kPressedBelow);
-    start_at({0.0, 0.0, to_micrometres(touching + kClearance)});
-  }
-
-  /// Takes the file's origin for the tip centre and -z for the tip's direction unless the tool then lies oddly; then
-  /// guesses both. Returns how far the tool reaches beyond its tip centre [m].
-  double find_tip(const TriangleSoup& surface) {
-    const Box box = box_of(surface.vertices);
-    const std::string odd = odd_frame(box);
-    if (odd.empty()) {
-      notes_.push_back(
-          "taken for its tip centre: the file's origin, the tip pointing along -z; if it is not, change tool.tip_m and "
-          "tool.tip_axis");
-      return -box.min.z();
-    }
-    const auto [place, direction] = guess_tip(surface);
-    const auto rounded_to = [](double digits, const Vec3& v) {
-      Json json = Json::array();
-      for (const double x : v) json.push_back(std::round(digits * x) / digits + 0.0);  // never -0
-      return json;
-    };
-    scene_["tool"]["tip_m"] = rounded_to(1e6, place);
-    scene_["tool"]["tip_axis"] = rounded_to(1e4, direction);
-    notes_.push_back(fmt::format("with the file's origin for tip centre and the tip along -z the tool {}", odd));
-    notes_.push_back(fmt::format(
-        "taken for its tip: its thinner end, x = {:.4g}, y = {:.4g}, z = {:.4g} mm, pointing along {}; if it is not, change "
-        "tool.tip_m and tool.tip_axis",
-        1e3 * place.x(), 1e3 * place.y(), 1e3 * place.z(), scene_["tool"]["tip_axis"].dump()));
-    return 0.0;  // the place is on the plane that touches the tool
+    box = {scale / 0.001 * box.min, scale / 0.001 * box.max};
+    notes_.emplace_back(
+        "taken for its tip centre: the file's origin, the tip pointing along -z; tool.tip_m and tool.tip_axis say "
+        "otherwise");
+    if (const std::string odd = odd_frame(box); !odd.empty())
+      warnings_.push_back(fmt::format("the tool {}: set tool.tip_m and tool.tip_axis", odd));
+    pressed_ = to_micrometres(-box.min.z() - kPressedBelow);
+    start_at({0.0, 0.0, to_micrometres(-box.min.z() + kClearance)});
   }
 
   /// Drags over four fifths of the way to where the surface ends.

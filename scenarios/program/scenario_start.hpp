@@ -34,7 +34,6 @@ struct StartOptions {
   std::string side = "z";                            ///< from which the tool comes: x, y, z, -x, -y or -z
   std::vector<Vec3> path = {};                       ///< of a drag, two points or more [m]
   std::optional<Vec3> at = {};                       ///< the tool starts over the surface's place nearest to it [m]
-  std::string command = {};                          ///< that asks for this start, for a refusal; without --extent
 };
 
 /// A start.
@@ -47,7 +46,7 @@ struct ScenarioStart {
 /// Makes a start for a file in `directory`. A mesh has the size that is stated, or is in metres. Its points are a tenth
 /// of the tool's diameter apart. The tool is 1 mm thick, or a fiftieth of a longer object, and starts 1 mm above the
 /// middle of the highest places; a drag starts where it has room and covers most of it. Normals of an open mesh that
-/// point away from the tool are turned round. Throws InputError when a file cannot be used, and for a mesh of no stated
+/// point away from the tool are turned round. The tip of a tool from a mesh is the file's origin. Throws InputError when a file cannot be used, and for a mesh of no stated
 /// size that is not 1 mm to 1 m long in metres, with its length in metres and in millimetres.
 ScenarioStart scenario_start(const StartKind& kind, const StartOptions& options,
                              const std::filesystem::path& directory);
