@@ -10,7 +10,7 @@
 #include "scenarios/format/load_scenario.hpp"
 #include "scenarios/format/text_lines.hpp"
 #include "scenarios/program/command.hpp"
-#include "scenarios/program/fields_text.hpp"
+#include "scenarios/program/index.hpp"
 #include "scenarios/program/scenario_start.hpp"
 #include "scenarios/program/table.hpp"
 #include "scenarios/run/assemble.hpp"

@@ -14,6 +14,7 @@
 #include "scenarios/format/bundled_scenarios.hpp"
 #include "scenarios/format/load_scenario.hpp"
 #include "scenarios/format/parts.hpp"
+#include "scenarios/format/text_lines.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/scene_checks.hpp"
 #include "sim/core/types.hpp"

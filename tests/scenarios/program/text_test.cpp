@@ -4,7 +4,7 @@
 
 #include "algorithms/registry.hpp"
 #include "scenarios/format/load_scenario.hpp"
-#include "scenarios/program/fields_text.hpp"
+#include "scenarios/program/index.hpp"
 #include "scenarios/program/table.hpp"
 #include "tests/scenarios/support/errors.hpp"
 #include "tests/scenarios/support/scenarios.hpp"
