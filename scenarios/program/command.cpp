@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -14,7 +15,6 @@
 #include "scenarios/cases/league.hpp"
 #include "scenarios/cases/parallel_for.hpp"
 #include "scenarios/format/input_error.hpp"
-#include "scenarios/format/memory_limit.hpp"
 #include "scenarios/program/table.hpp"
 #include "scenarios/run/result_folder.hpp"
 
@@ -110,28 +110,34 @@ std::vector<std::string> first_few(std::vector<std::string> texts, std::size_t m
   return texts;
 }
 
+std::string bytes_text(double bytes) {
+  if (bytes < 1e6) return fmt::format("{:.0f} kB", std::ceil(1e-3 * bytes));
+  return bytes < 1e9 ? fmt::format("{:.3g} MB", 1e-6 * bytes) : fmt::format("{:.3g} GB", 1e-9 * bytes);
+}
+
 void announce_large_output(double bytes) {
   constexpr double kLarge = 1e8;
   if (bytes <= kLarge) return;
   print_note(fmt::format("about {} will be written; \"--set record.every=10\" makes it a tenth", bytes_text(bytes)));
 }
 
-void require_names(std::string_view got, const std::vector<std::string>& names, const std::vector<std::string>& valid) {
+void require_names(std::string_view got, const std::vector<std::string>& names, const std::vector<std::string>& valid,
+                   std::string_view shown_by) {
   std::set<std::string> seen;
   for (const std::string& name : names) {
-    require_valid_name(got, name, valid);
+    require_valid_name(got, name, valid, shown_by);
     if (!seen.insert(name).second) throw InputError(fmt::format("{} \"{}\" twice; allowed: once", got, name));
   }
 }
 
 std::vector<std::string> chosen_names(std::string_view got, const std::vector<std::string>& given,
-                                      const std::vector<std::string>& all) {
+                                      const std::vector<std::string>& all, std::string_view shown_by) {
   if (given == std::vector<std::string>{"all"}) return all;
   if (std::find(given.begin(), given.end(), "all") != given.end())
     throw InputError(fmt::format("{} \"all\" beside other names; allowed: \"all\" alone", got));
   std::vector<std::string> valid = all;
   valid.insert(valid.begin(), "all");
-  require_names(got, given, valid);
+  require_names(got, given, valid, shown_by);
   return given;
 }
 

@@ -16,30 +16,6 @@ std::string spaced(const Json& value) {
   return text;
 }
 
-/// A field of scenarios, and the types that lead to it, as `hand.type "drag"`; empty where all types have it.
-struct PlacedField {
-  std::string path, types;
-  const FieldGuide* field;
-};
-
-/// Adds the fields of an object and of those in it. `at` is the path of the object with a dot behind it.
-void add_fields(std::vector<PlacedField>& all, const ValueGuide& object, const std::string& at,
-                const std::string& types) {
-  for (const ValueGuide& choice : object.choices) add_fields(all, choice, at, types);
-  const std::string type = object.type.empty() ? "" : fmt::format("{}type \"{}\"", at, object.type);
-  const std::string of = types + (types.empty() || type.empty() ? "" : " and ") + type;
-  for (const FieldGuide& field : object.fields) {
-    all.push_back({at + field.name, of, &field});
-    add_fields(all, field.value, at + field.name + ".", of);
-  }
-}
-
-std::vector<PlacedField> all_fields() {
-  std::vector<PlacedField> all;
-  add_fields(all, scenario_guide(), "", "");
-  return all;
-}
-
 /// True for an object whose fields are told one by one: not the bounds on metrics, which are more than all others.
 bool shows_fields(const ValueGuide& value) {
   constexpr std::size_t kMostShown = 50;
@@ -110,7 +86,7 @@ Description describe_types(const std::string& path) {
 Description describe_field(const std::string& path) {
   if (Description types = describe_types(path); !types.text.empty()) return types;
   std::vector<PlacedField> found;
-  for (const PlacedField& placed : all_fields()) {
+  for (const PlacedField& placed : placed_fields()) {
     if (placed.path != path) continue;
     const auto is_same = [&placed](const PlacedField& other) {
       return other.field->schema() == placed.field->schema();
@@ -152,7 +128,7 @@ Description describe_scenario_fields() {
 /// The types among which fields choose, those that are the same in several fields once.
 void add_types(Index& index) {
   std::vector<std::pair<std::string, const ValueGuide*>> types;
-  for (const PlacedField& placed : all_fields()) {
+  for (const PlacedField& placed : placed_fields()) {
     for (const ValueGuide& choice : placed.field->value.choices) {
       const auto is_same = [&choice](const auto& known) { return known.second->schema == choice.schema; };
       if (std::ranges::none_of(types, is_same)) types.emplace_back(placed.path, &choice);
@@ -201,7 +177,7 @@ void add_fields(Index& index) {
 }
 
 const FieldGuide* find_field(const std::string& path) {
-  const std::vector<PlacedField> all = all_fields();
+  const std::vector<PlacedField> all = placed_fields();
   const auto found = std::ranges::find(all, path, &PlacedField::path);
   return found == all.end() ? nullptr : found->field;
 }

@@ -22,7 +22,7 @@
 #include "scenarios/format/load_scenario.hpp"
 #include "scenarios/format/mesh_file.hpp"
 #include "scenarios/format/parts.hpp"
-#include "scenarios/format/recordings.hpp"
+#include "scenarios/format/named_files.hpp"
 #include "scenarios/limits/stability/scene_devices.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "sim/geometry/analytic_shells.hpp"
