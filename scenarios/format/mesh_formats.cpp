@@ -369,7 +369,10 @@ class PlyValues {
   void skip(std::size_t numbers, const PlyType& type) {
     const std::size_t left = is_text_ ? text_.words().size() - word_ : bytes_.left() / type.size;
     if (left < numbers) fail_cut_short();
-    is_text_ ? static_cast<void>(word_ += numbers) : bytes_.skip(numbers * type.size);
+    if (is_text_)
+      word_ += numbers;
+    else
+      bytes_.skip(numbers * type.size);
   }
 
   [[noreturn]] void fail(const std::string& problem) const {
