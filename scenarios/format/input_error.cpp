@@ -95,18 +95,19 @@ std::string nearest_name_hint(std::string_view given, std::span<const std::strin
   return name.empty() ? "" : fmt::format("; nearest valid name: \"{}\"", name);
 }
 
-void require_valid_name(std::string_view got, const std::string& name, std::span<const std::string> valid) {
+void require_valid_name(std::string_view got, const std::string& name, std::span<const std::string> valid,
+                        std::string_view shown_by) {
   if (std::find(valid.begin(), valid.end(), name) != valid.end()) return;
   throw InputError(
-      fmt::format("{} \"{}\"; allowed: {}{}", got, name, quoted_list(valid), nearest_name_hint(name, valid)));
+      fmt::format("{} \"{}\"; allowed: {}{}", got, name, quoted_list(valid, shown_by), nearest_name_hint(name, valid)));
 }
 
-std::string quoted_list(std::span<const std::string> names) {
-  constexpr std::size_t kMostNames = 50;  // longer lists are not readable
+std::string quoted_list(std::span<const std::string> names, std::string_view shown_by) {
   if (names.empty()) return "nothing";
-  const std::size_t more = names.size() - std::min(names.size(), kMostNames);
-  return fmt::format("\"{}\"{}", fmt::join(names.first(names.size() - more), "\", \""),
-                     more > 0 ? fmt::format(" and {} more", more) : "");
+  const std::size_t most = shown_by.empty() ? 50 : 8, more = names.size() - std::min(names.size(), most);
+  std::string text = fmt::format("\"{}\"", fmt::join(names.first(names.size() - more), "\", \""));
+  if (more > 0) text += fmt::format(" and {} more", more);
+  return more > 0 && !shown_by.empty() ? text + fmt::format(", which \"{}\" tells", shown_by) : text;
 }
 
 }  // namespace hapbench

@@ -67,10 +67,12 @@ std::string nearest_name(std::string_view given, std::span<const std::string> va
 /// `; nearest valid name: "x"`, or empty.
 std::string nearest_name_hint(std::string_view given, std::span<const std::string> valid);
 
-/// Throws an InputError, `got` before the name, when the name is not among the valid ones.
-void require_valid_name(std::string_view got, const std::string& name, std::span<const std::string> valid);
+/// Throws an InputError, `got` before the name, when the name is not among the valid ones. `shown_by`: see below.
+void require_valid_name(std::string_view got, const std::string& name, std::span<const std::string> valid,
+                        std::string_view shown_by = {});
 
-/// "a", "b", "c"; a long list ends with the number of names that are not shown.
-std::string quoted_list(std::span<const std::string> names);
+/// "a", "b", "c"; a list of more than 50 ends with the number of names that are not shown, and one of more than 8 where
+/// `shown_by` is a command that shows them all.
+std::string quoted_list(std::span<const std::string> names, std::string_view shown_by = {});
 
 }  // namespace hapbench

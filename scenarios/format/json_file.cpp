@@ -4,7 +4,6 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <cctype>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
@@ -19,42 +18,8 @@ namespace {
 constexpr int kDeepestNesting = 64;
 constexpr std::size_t kMostKeys = 10'000;
 
-/// Line and column, both from 1, of a byte offset.
-std::string line_and_column(const std::string& text, std::size_t byte) {
-  const auto end = text.begin() + static_cast<std::ptrdiff_t>(std::min(byte, text.size()));
-  const auto line = 1 + std::count(text.begin(), end, '\n');
-  const std::size_t start = text.rfind('\n', byte == 0 ? 0 : std::min(byte, text.size()) - 1);
-  const std::size_t column = start == std::string::npos || start >= byte ? byte : byte - start - 1;
-  return fmt::format("line {}, column {}", line, std::max<std::size_t>(column, 1));
-}
-
-/// A hint at the probable cause of a syntax error; may be empty. `byte` is the position, from 1, of the last byte that
-/// the parser read.
-std::string syntax_hint(const std::string& text, std::size_t byte) {
-  if (text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff")) return "; the text is UTF-16; allowed: UTF-8";
-  if (byte > text.size()) return "; the text ends too early";
-  std::size_t at = std::max<std::size_t>(byte, 1) - 1;
-  const char last = text[at];
-  // Go back to the beginning of the word or the string.
-  const auto is_letter = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; };
-  while (at > 0 && is_letter(last) && is_letter(text[at - 1])) --at;
-  if (const std::size_t quote = last == '"' ? text.rfind('"', byte - 2) : std::string::npos; quote < at) at = quote;
-  const std::size_t before = at == 0 ? std::string::npos : text.find_last_not_of(" \t\r\n", at - 1);
-  const char first = text[at], previous = before == std::string::npos ? '\0' : text[before];
-  const bool may_begin = previous == '\0' || std::strchr("{[,:", previous) != nullptr;
-  if ((last == '}' || last == ']') && previous == ',') return fmt::format("; a comma stands before \"{}\"", last);
-  if (last == '/' || last == '#' || previous == '/') return "; JSON has no comments";
-  if (may_begin && (last == '\'' || (std::isalpha(static_cast<unsigned char>(first)) && is_letter(last))))
-    return "; names and texts stand in double quotes";
-  if (last == '"' && !may_begin)
-    return fmt::format("; a {} is missing before it", previous == '"' ? "comma or colon" : "comma");
-  return "";
-}
-
-[[noreturn]] void refuse_syntax(const std::string& text, std::size_t byte) {
-  throw InputError(
-      InputError::Kind::shape, "",
-      fmt::format("is not JSON: syntax error at {}{}", line_and_column(text, byte), syntax_hint(text, byte)));
+[[noreturn]] void refuse_syntax(const std::string& problem) {
+  throw InputError(InputError::Kind::shape, "", "is not JSON: " + problem);
 }
 
 /// The number in the parser's message "… number overflow parsing '1e999'".
@@ -147,14 +112,17 @@ std::string read_text_file(const std::filesystem::path& file, std::uintmax_t lar
 }
 
 Json parse_json(const std::string& text) {
-  // The parser would stop at a zero byte.
-  if (const std::size_t zero = text.find('\0'); zero != std::string::npos) refuse_syntax(text, zero + 1);
+  // Where the parser would stop.
+  if (text.find('\0') != std::string::npos) refuse_syntax("has a zero byte; allowed: UTF-8");
   Guard guard;
   try {
     return Json::parse(
         text, [&guard](int depth, Json::parse_event_t event, Json& parsed) { return guard(depth, event, parsed); });
   } catch (const Json::parse_error& error) {
-    refuse_syntax(text, error.byte);
+    // "[json.exception.parse_error.101] parse error at line 2, column 5: syntax error while ...; last read: '...'"
+    const std::string said = error.what();
+    const std::size_t start = said.find("] ") + 2;
+    refuse_syntax(said.substr(start, said.find("; last read") - start));
   } catch (const Json::out_of_range& error) {
     guard.refuse_here(fmt::format("got {}; allowed: finite numbers", number_in(error.what())));
   }

@@ -63,18 +63,6 @@ class MeshLines {
     fail(fmt::format("got {} {}; allowed: an integer from 0", word < words_.size() ? quoted_word(words_[word]) : "no",
                      what));
   }
-  /// Adds face `index` of the file, described by the words from `first` on: the number of corners, then their vertices.
-  void add_face(std::size_t index, std::size_t first, TriangleSoup& soup) const {
-    const std::size_t corners = count(first, "corners");
-    if (corners < 3 || words_.size() <= first + corners)
-      fail(fmt::format("face {}: got {} corners; allowed: at least 3, and as many vertices", index, corners));
-    std::vector<std::uint32_t> vertices;
-    vertices.reserve(corners);
-    for (std::size_t k = 1; k <= corners; ++k)
-      vertices.push_back(static_cast<std::uint32_t>(count(first + k, "as a vertex")));
-    add_polygon(vertices, soup);
-  }
-
   [[noreturn]] void fail(const std::string& problem) const { fail_in_line(file_, lines_.line(), problem); }
 
  private:
@@ -133,15 +121,24 @@ TriangleSoup read_off_text(MeshLines& lines) {
   const std::size_t counts = lines.words().size() > 1 ? 1 : 0;
   if (counts == 0 && !lines.next()) lines.fail("the file ends before its counts of vertices, faces and edges");
   const std::size_t vertices = lines.count(counts, "vertices"), faces = lines.count(counts + 1, "faces");
+  const auto next = [&lines](std::size_t count, const char* what) {
+    if (!lines.next()) lines.fail(fmt::format("the file ends before its {} {}; allowed: a complete file", count, what));
+  };
   TriangleSoup soup;
   for (std::size_t i = 0; i < vertices; ++i) {
-    if (!lines.next())
-      lines.fail(fmt::format("the file ends before its {} vertices; allowed: a complete file", vertices));
+    next(vertices, "vertices");
     soup.vertices.push_back(lines.position(0));
   }
+  std::vector<std::uint32_t> corners;
   for (std::size_t i = 0; i < faces; ++i) {
-    if (!lines.next()) lines.fail(fmt::format("the file ends before its {} faces; allowed: a complete file", faces));
-    lines.add_face(i, 0, soup);
+    next(faces, "faces");
+    const std::size_t count = lines.count(0, "corners");
+    if (count < 3 || lines.words().size() <= count)
+      lines.fail(fmt::format("face {}: got {} corners; allowed: at least 3, and as many vertices", i, count));
+    corners.clear();
+    for (std::size_t k = 1; k <= count; ++k)
+      corners.push_back(static_cast<std::uint32_t>(lines.count(k, "as a vertex")));
+    add_polygon(corners, soup);
   }
   return soup;
 }
@@ -223,20 +220,15 @@ const PlyType* ply_type(std::string_view name) {
   return found == std::end(kPlyTypes) ? nullptr : found;
 }
 
-/// The use of a property.
-enum class Role : std::size_t { x, y, z, nx, ny, nz, corners, nothing };
-/// The names of those of a vertex.
+/// The numbers of a vertex. The role of a property is the place of one of them, or one of those below.
 constexpr std::array<std::string_view, 6> kOfVertex = {"x", "y", "z", "nx", "ny", "nz"};
-
-Role role_in_vertex(std::string_view name) {
-  const auto found = std::find(kOfVertex.begin(), kOfVertex.end(), name);
-  return found == kOfVertex.end() ? Role::nothing : static_cast<Role>(found - kOfVertex.begin());
-}
+constexpr std::size_t kCorners = 6, kNothing = 7;
+using Values = std::array<double, kOfVertex.size()>;
 
 struct Property {
   const PlyType* count;  ///< type of a list's length; null for a scalar
   const PlyType* type;
-  Role role = Role::nothing;
+  std::size_t role = kNothing;
 };
 
 struct Element {
@@ -246,10 +238,7 @@ struct Element {
   std::vector<Property> properties = {};
 
   bool is_vertex() const { return name == "vertex"; }
-  bool is_face() const { return name == "face"; }
-  auto count(Role role) const {
-    return std::count_if(properties.begin(), properties.end(), [role](const Property& p) { return p.role == role; });
-  }
+  auto count(std::size_t role) const { return std::ranges::count(properties, role, &Property::role); }
 };
 
 /// The use of a file: a surface by its faces, or points by its vertices, which then have normals.
@@ -258,11 +247,20 @@ enum class Wanted { faces, points };
 /// Reads the header of a PLY file, from "ply" to "end_header". Throws InputError that names file and line.
 class PlyHeader {
  public:
-  PlyHeader(LineReader& lines, Wanted wanted, const fs::path& file) : lines_(lines), wanted_(wanted), file_(file) {
+  PlyHeader(LineReader& lines, Wanted wanted, const fs::path& file)
+      : lines_(lines), numbers_(wanted == Wanted::points ? 6 : 3), file_(file) {
     while (read_line()) {
     }
     if (!format_) fail("allowed: a header with \"format\"");
-    check();
+    const std::string_view name = wanted == Wanted::points ? "vertex" : "face";
+    const auto last = std::ranges::find(elements_, name, &Element::name);
+    if (last == elements_.end()) fail(fmt::format("has no {}; allowed: \"element {} COUNT\"", name, name));
+    elements_.erase(last + 1, elements_.end());
+    check_vertices();
+    if (wanted == Wanted::faces && elements_.back().count(kCorners) != 1) {
+      fail_in_line(file_, elements_.back().line,
+                   "allowed for a face: one \"property list COUNT INDEX vertex_indices\"");
+    }
   }
 
   /// The elements up to those wanted; later ones are not read.
@@ -285,11 +283,12 @@ class PlyHeader {
     } else if (first == "format") {
       read_format(words);
     } else if (first == "element") {
-      if (!has_wanted()) add_element(words);
-      is_after_wanted_ = elements_.back().line != lines_.line();
+      const auto entries = words.size() == 3 ? whole_number(words[2]) : std::nullopt;
+      if (!entries) fail("allowed: \"element NAME COUNT\"");
+      elements_.push_back({words[1], lines_.line(), *entries});
     } else if (first == "property") {
       if (elements_.empty()) fail("got a property before an element; allowed: after one");
-      if (!is_after_wanted_) add_property(words, elements_.back());
+      elements_.back().properties.push_back(property(words));
     } else if (first != "comment" && first != "obj_info") {
       fail(
           fmt::format("got {}; allowed: format, comment, obj_info, element, property, end_header", quoted_word(first)));
@@ -305,198 +304,148 @@ class PlyHeader {
     format_ = words[1];
   }
 
-  bool has_wanted() const {
-    return !elements_.empty() &&
-           (wanted_ == Wanted::points ? elements_.back().is_vertex() : elements_.back().is_face());
-  }
-
-  void add_element(const Words& words) {
-    const auto entries = words.size() == 3 ? whole_number(words[2]) : std::nullopt;
-    if (!entries) fail("allowed: \"element NAME COUNT\"");
-    elements_.push_back({words[1], lines_.line(), *entries});
-  }
-
-  void add_property(const Words& words, Element& element) const {
-    const bool is_list = words.size() > 1 && words[1] == "list";
-    element.properties.push_back(is_list ? list(words, element.is_face()) : scalar(words, element.is_vertex()));
-  }
-
-  Property scalar(const Words& words, bool of_vertex) const {
-    const PlyType* type = words.size() == 3 ? ply_type(words[1]) : nullptr;
-    if (type == nullptr) fail("allowed: \"property TYPE NAME\" or \"property list COUNT TYPE NAME\"");
-    const Role role = role_in_vertex(words[2]);
-    if (!of_vertex || role > (wanted_ == Wanted::points ? Role::nz : Role::z)) return {nullptr, type};
-    if (wanted_ == Wanted::faces && !type->is_real) fail("allowed for a coordinate: float or double");
-    return {nullptr, type, role};
-  }
-
-  Property list(const Words& words, bool of_face) const {
-    const PlyType* count = words.size() == 5 ? ply_type(words[2]) : nullptr;
-    const PlyType* type = words.size() == 5 ? ply_type(words[3]) : nullptr;
-    const bool corners = of_face && words.size() == 5 && (words[4] == "vertex_indices" || words[4] == "vertex_index");
-    if (count == nullptr || type == nullptr || count->is_real || (corners && type->is_real)) {
-      fail(
-          "allowed: \"property list COUNT TYPE NAME\" with an integer type COUNT, for the vertices of a face an integer "
-          "TYPE, too");
+  /// A scalar, "property TYPE NAME", or a list, "property list COUNT TYPE NAME". A role is that of the last element.
+  Property property(const Words& words) const {
+    const bool is_list = words.size() == 5 && words[1] == "list";
+    const PlyType* count = is_list ? ply_type(words[2]) : nullptr;
+    const PlyType* type = is_list || words.size() == 3 ? ply_type(words[words.size() - 2]) : nullptr;
+    if (type == nullptr || (is_list && (count == nullptr || count->is_real)))
+      fail("allowed: \"property TYPE NAME\" or, with an integer COUNT, \"property list COUNT TYPE NAME\"");
+    const std::string_view name = words.back();
+    if (!is_list) {
+      const auto role = static_cast<std::size_t>(std::ranges::find(kOfVertex, name) - kOfVertex.begin());
+      return {nullptr, type, elements_.back().is_vertex() && role < numbers_ ? role : kNothing};
     }
-    return {count, type, corners ? Role::corners : Role::nothing};
+    const bool has_corners = elements_.back().name == "face" && (name == "vertex_indices" || name == "vertex_index");
+    if (has_corners && type->is_real) fail("allowed for the vertices of a face: an integer type");
+    return {count, type, has_corners ? kCorners : kNothing};
   }
 
-  void check() const {
-    if (!has_wanted()) {
-      fail(wanted_ == Wanted::points ? "has no vertices; allowed: \"element vertex COUNT\""
-                                     : "has no faces; allowed: \"element face COUNT\"");
-    }
-    return wanted_ == Wanted::points ? check_points(elements_.back()) : check_faces(elements_.back());
-  }
-
-  void check_points(const Element& vertices) const {
-    for (const std::string_view name : kOfVertex) {
-      if (const auto count = vertices.count(role_in_vertex(name)); count != 1)
-        fail(fmt::format("got {} vertex properties \"{}\"; allowed: one each of x, y, z, nx, ny, nz", count, name));
-    }
-  }
-
-  void check_faces(const Element& faces) const {
-    if (faces.count(Role::corners) != 1)
-      fail_in_line(file_, faces.line, "allowed for a face: one \"property list COUNT INDEX vertex_indices\"");
-    std::size_t vertices = 0, with_position = 0;
+  void check_vertices() const {
+    bool has_vertices = false;
     for (const Element& element : elements_) {
       if (!element.is_vertex()) continue;
-      ++vertices;
-      with_position += element.count(Role::x) == 1 && element.count(Role::y) == 1 && element.count(Role::z) == 1;
+      has_vertices = true;
+      for (std::size_t i = 0; i < numbers_; ++i) {
+        if (element.count(i) == 1) continue;
+        fail(fmt::format("got {} vertex properties \"{}\"; allowed: one each of {}", element.count(i), kOfVertex[i],
+                         fmt::join(kOfVertex.begin(), kOfVertex.begin() + numbers_, ", ")));
+      }
     }
-    if (vertices != 1 || with_position != 1)
-      fail_in_line(file_, faces.line, "allowed before the faces: vertices with one each of x, y and z");
+    if (!has_vertices) fail("allowed before the faces: vertices");
   }
 
   [[noreturn]] void fail(const std::string& problem) const { fail_in_line(file_, lines_.line(), problem); }
 
   LineReader& lines_;
-  Wanted wanted_;
+  std::size_t numbers_;  ///< of a vertex that are read: its place, or also its normal
   const fs::path& file_;
   std::optional<std::string_view> format_;
   std::vector<Element> elements_;
-  bool is_after_wanted_ = false;
 };
 
-/// The values of a vertex by their role; 0 for those that are not read.
-using Values = std::array<double, kOfVertex.size()>;
-
-struct Contents {
-  TriangleSoup soup;
-  std::vector<Vec3> normals;  ///< of the vertices, where points are wanted
-
-  void add_vertex(const Values& v, Wanted wanted) {
-    soup.vertices.emplace_back(v[0], v[1], v[2]);
-    if (wanted == Wanted::points) normals.emplace_back(v[3], v[4], v[5]);
-  }
-};
-
-/// Reads a text, in which each vertex and each face has a line. Values after the position or the corners are ignored.
-Contents read_ply_text(const std::vector<Element>& elements, Wanted wanted, MeshLines lines) {
-  Contents contents;
-  const auto add_vertex = [&](const Element& element) {
-    Values values{};
-    std::size_t word = 0;
-    for (const Property& p : element.properties) {
-      const std::size_t length = p.count ? 1 + lines.count(word, "entries") : 1;
-      if (lines.words().size() < word + length)
-        lines.fail(
-            fmt::format("got {} values; allowed: the {} of a vertex", lines.words().size(), element.properties.size()));
-      if (p.role != Role::nothing) values[static_cast<std::size_t>(p.role)] = lines.number(word);
-      word += length;
-    }
-    contents.add_vertex(values, wanted);
-  };
-  const auto add_face = [&](const Element& element, std::size_t i) {
-    std::size_t word = 0;
-    for (const Property& p : element.properties) {
-      if (p.role == Role::corners) return lines.add_face(i, word, contents.soup);
-      word += p.count ? 1 + lines.count(word, "entries") : 1;
-    }
-  };
-  for (const Element& element : elements) {
-    for (std::size_t i = 0; i < element.entries && !element.properties.empty(); ++i) {
-      if (!lines.next()) {
-        lines.fail(fmt::format("the file ends before its {} {}; allowed: a complete file", element.entries,
-                               quoted_word(element.name)));
-      }
-      if (element.is_vertex()) add_vertex(element);
-      if (element.is_face()) add_face(element, i);
-    }
-  }
-  return contents;
-}
-
-/// Reads the elements of a binary file entry by entry.
-class BinaryEntries {
+/// The values of the entries of a PLY file one after another: words of a text, in which each entry has a line, or
+/// numbers of a binary file.
+class PlyValues {
  public:
-  BinaryEntries(ByteReader reader, Wanted wanted, const fs::path& file)
-      : reader_(reader), wanted_(wanted), file_(file) {}
+  PlyValues(const LineReader& lines, const PlyHeader& header, const fs::path& file)
+      : is_text_(header.is_text()), text_(lines, file), bytes_(lines.rest(), header.byte_order()), file_(file) {}
 
-  Contents read(const std::vector<Element>& elements) {
-    for (const Element& element : elements)
-      for (std::size_t i = 0; i < element.entries && !element.properties.empty(); ++i) read_entry(element, i);
-    return std::move(contents_);
+  /// Goes to the next entry, which is one of `element`.
+  void begin(const Element& element) {
+    element_ = &element;
+    word_ = 0;
+    if (is_text_ && !text_.next()) fail_cut_short();
+  }
+  double number(const PlyType& type) {
+    if (!is_text_) return take(type);
+    skip(1, type);
+    return text_.number(word_ - 1);
+  }
+  /// A count or an index; `what` it counts is for the message.
+  std::int64_t whole(const PlyType& type, const char* what) {
+    return is_text_ ? static_cast<std::int64_t>(text_.count(word_++, what)) : static_cast<std::int64_t>(take(type));
+  }
+  void skip(std::size_t numbers, const PlyType& type) {
+    const std::size_t left = is_text_ ? text_.words().size() - word_ : bytes_.left() / type.size;
+    if (left < numbers) fail_cut_short();
+    if (is_text_)
+      word_ += numbers;
+    else
+      bytes_.skip(numbers * type.size);
+  }
+
+  [[noreturn]] void fail(const std::string& problem) const {
+    if (is_text_) text_.fail(problem);
+    fail_in_file(file_, problem);
   }
 
  private:
-  void read_entry(const Element& element, std::size_t i) {
-    Values values{};
-    for (const Property& p : element.properties) {
-      const std::size_t length = p.count ? list_length(element, p, i) : 1;
-      need(length, *p.type, element);
-      if (p.role == Role::nothing)
-        reader_.skip(length * p.type->size);
-      else if (p.role == Role::corners)
-        add_face(length, *p.type);
-      else
-        values[static_cast<std::size_t>(p.role)] = p.type->take(reader_);
-    }
-    if (element.is_vertex()) contents_.add_vertex(values, wanted_);
+  double take(const PlyType& type) {
+    if (bytes_.left() < type.size) fail_cut_short();
+    return type.take(bytes_);
+  }
+  [[noreturn]] void fail_cut_short() const {
+    if (is_text_ && !text_.words().empty())
+      text_.fail(fmt::format("got {} values; allowed: all of a {}", text_.words().size(), quoted_word(element_->name)));
+    fail(fmt::format("the file ends before its {} {}; allowed: a complete file", element_->entries,
+                     quoted_word(element_->name)));
   }
 
-  std::size_t list_length(const Element& element, const Property& property, std::size_t i) {
-    need(1, *property.count, element);
-    const double length = property.count->take(reader_);
-    if (property.role == Role::corners && length < 3.0)
-      fail_in_file(file_, fmt::format("face {}: got {} corners; allowed: at least 3", i, length));
-    if (length < 0.0) {
-      fail_in_file(file_, fmt::format("{} {}: got a list of {} entries; allowed: an integer from 0",
-                                      quoted_word(element.name), i, length));
-    }
-    return static_cast<std::size_t>(length);
-  }
-
-  void add_face(std::size_t corners, const PlyType& type) {
-    corners_.clear();
-    for (std::size_t k = 0; k < corners; ++k) {
-      const auto index = static_cast<std::int64_t>(type.take(reader_));
-      corners_.push_back(
-          static_cast<std::uint32_t>(index));  // a negative index becomes too large and is refused as such
-    }
-    add_polygon(corners_, contents_.soup);
-  }
-
-  void need(std::size_t numbers, const PlyType& type, const Element& element) const {
-    if (reader_.left() / type.size >= numbers) return;
-    fail_in_file(file_, fmt::format("the file ends before its {} {}; allowed: a complete file", element.entries,
-                                    quoted_word(element.name)));
-  }
-
-  ByteReader reader_;
-  Wanted wanted_;
+  bool is_text_;
+  MeshLines text_;
+  std::size_t word_ = 0;  ///< of the text's line, to be taken next
+  ByteReader bytes_;
+  const Element* element_ = nullptr;
   const fs::path& file_;
-  Contents contents_;
-  std::vector<std::uint32_t> corners_;  ///< of the current face
 };
+
+struct Contents {
+  Wanted wanted;
+  TriangleSoup soup = {};
+  std::vector<Vec3> normals = {};  ///< of the vertices, where points are wanted
+};
+
+/// Reads an entry, whose number is `i`. `corners` is room for those of a face.
+void read_entry(const Element& element, std::size_t i, PlyValues& values, std::vector<std::uint32_t>& corners,
+                Contents& contents) {
+  values.begin(element);
+  Values vertex{};
+  for (const Property& p : element.properties) {
+    const std::int64_t length = p.count ? values.whole(*p.count, "entries") : 1;
+    if (p.role == kCorners && length < 3)
+      values.fail(fmt::format("face {}: got {} corners; allowed: at least 3", i, length));
+    if (length < 0) {
+      values.fail(fmt::format("{} {}: got a list of {} entries; allowed: an integer from 0", quoted_word(element.name),
+                              i, length));
+    }
+    if (p.role == kNothing) {
+      values.skip(static_cast<std::size_t>(length), *p.type);
+    } else if (p.role == kCorners) {
+      corners.clear();
+      // A negative index of a binary file becomes too large and is refused as such.
+      for (std::int64_t k = 0; k < length; ++k)
+        corners.push_back(static_cast<std::uint32_t>(values.whole(*p.type, "as a vertex")));
+      add_polygon(corners, contents.soup);
+    } else {
+      vertex[p.role] = values.number(*p.type);
+    }
+  }
+  if (!element.is_vertex()) return;
+  contents.soup.vertices.emplace_back(vertex[0], vertex[1], vertex[2]);
+  if (contents.wanted == Wanted::points) contents.normals.emplace_back(vertex[3], vertex[4], vertex[5]);
+}
 
 Contents contents_of(std::string_view text, Wanted wanted, const fs::path& file) {
   LineReader lines(text);
   const PlyHeader header(lines, wanted, file);
-  if (header.is_text()) return read_ply_text(header.elements(), wanted, MeshLines(lines, file));
-  return BinaryEntries(ByteReader(lines.rest(), header.byte_order()), wanted, file).read(header.elements());
+  PlyValues values(lines, header, file);
+  std::vector<std::uint32_t> corners;
+  Contents contents{wanted};
+  for (const Element& element : header.elements())
+    for (std::size_t i = 0; i < element.entries && !element.properties.empty(); ++i)
+      read_entry(element, i, values, corners, contents);
+  return contents;
 }
 
 }  // namespace

@@ -12,7 +12,6 @@
 #include "scenarios/format/descriptions.hpp"
 #include "scenarios/format/input_error.hpp"
 #include "scenarios/format/mesh_file.hpp"
-#include "scenarios/format/recordings.hpp"
 #include "scenarios/format/text_lines.hpp"
 #include "scenarios/format/writer.hpp"
 #include "sim/core/hash.hpp"

@@ -212,21 +212,19 @@ class Reader final : public Fields {
       const std::vector<std::string> allowed(names.begin(), names.end());
       keep(InputError(InputError::Kind::shape, member(at(), entry.key()),
                       fmt::format("unknown field{}; allowed here: {}", nearest_name_hint(entry.key(), allowed),
-                                  first_names(allowed))));
+                                  quoted_list(allowed, described_by()))));
       meant_.push_back(nearest_name(entry.key(), allowed));
     }
     collect([&] { body(*this); });
     throw_errors();
   }
 
-  /// Eight of these names, and where the others are described.
-  std::string first_names(std::span<const std::string> names) const {
-    constexpr std::size_t kMost = 8;
-    if (names.size() <= kMost || at().empty()) return quoted_list(names);
+  /// The command that describes the object that is being read; empty for the whole file.
+  std::string described_by() const {
+    if (at().empty()) return "";
     std::string section = at().substr(1);
     std::replace(section.begin(), section.end(), '/', '.');
-    return fmt::format("{} and {} more, which \"hapbench describe {}\" tells", quoted_list(names.first(kMost)),
-                       names.size() - kMost, section);
+    return "hapbench describe " + section;
   }
 
   const Json& json_;

@@ -294,16 +294,15 @@ Json partial_schema(const ValueGuide& full, const std::string& at) {
   return schema;
 }
 
-void add_paths(std::vector<std::string>& paths, const std::string& prefix, const ValueGuide& guide) {
-  for (const ValueGuide& choice : guide.choices) {
-    const std::string type = prefix + kTypeField;
-    if (std::find(paths.begin(), paths.end(), type) == paths.end()) paths.push_back(type);
-    add_paths(paths, prefix, choice);
-  }
-  for (const FieldGuide& field : guide.fields) {
-    const std::string path = prefix + field.name;
-    if (std::find(paths.begin(), paths.end(), path) == paths.end()) paths.push_back(path);
-    add_paths(paths, path + ".", field.value);
+/// Adds the fields of an object and of those in it. `at` is the path of the object with a dot behind it.
+void add_fields(std::vector<PlacedField>& all, const ValueGuide& object, const std::string& at,
+                const std::string& types) {
+  for (const ValueGuide& choice : object.choices) add_fields(all, choice, at, types);
+  const std::string type = object.type.empty() ? "" : fmt::format("{}type \"{}\"", at, object.type);
+  const std::string of = types + (types.empty() || type.empty() ? "" : " and ") + type;
+  for (const FieldGuide& field : object.fields) {
+    all.push_back({at + field.name, of, &field});
+    add_fields(all, field.value, at + field.name + ".", of);
   }
 }
 
@@ -319,9 +318,21 @@ const ValueGuide& scenario_guide() {
   return built.back();
 }
 
+std::vector<PlacedField> placed_fields() {
+  std::vector<PlacedField> all;
+  add_fields(all, scenario_guide(), "", "");
+  return all;
+}
+
 std::vector<std::string> scenario_field_paths() {
   std::vector<std::string> paths;
-  add_paths(paths, "", scenario_guide());
+  const auto add = [&paths](const std::string& path) {
+    if (std::ranges::find(paths, path) == paths.end()) paths.push_back(path);
+  };
+  for (const PlacedField& placed : placed_fields()) {
+    add(placed.path);
+    if (!placed.field->value.choices.empty()) add(placed.path + "." + kTypeField);
+  }
   return paths;
 }
 

@@ -74,7 +74,16 @@ Json scenario_schema();
 /// once, and again after an algorithm has been added; references stay valid. For several threads.
 const ValueGuide& scenario_guide();
 
-/// The dotted paths of all fields of objects, as "rendering.limits.max_force_N"; those of list entries aside.
+/// A field of scenarios; those of list entries aside.
+struct PlacedField {
+  std::string path;   ///< dotted, as "rendering.limits.max_force_N"
+  std::string types;  ///< that lead to it, as `hand.type "drag"`; empty where all types have it
+  const FieldGuide* field = nullptr;
+};
+/// All of them, once for each type that has them.
+std::vector<PlacedField> placed_fields();
+
+/// Their paths, each once, and those of the fields "type".
 std::vector<std::string> scenario_field_paths();
 
 }  // namespace hapbench

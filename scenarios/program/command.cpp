@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -108,22 +109,23 @@ std::vector<std::string> first_few(std::vector<std::string> texts, std::size_t m
   return texts;
 }
 
-void require_names(std::string_view got, const std::vector<std::string>& names, const std::vector<std::string>& valid) {
+void require_names(std::string_view got, const std::vector<std::string>& names, const std::vector<std::string>& valid,
+                   std::string_view shown_by) {
   std::set<std::string> seen;
   for (const std::string& name : names) {
-    require_valid_name(got, name, valid);
+    require_valid_name(got, name, valid, shown_by);
     if (!seen.insert(name).second) throw InputError(fmt::format("{} \"{}\" twice; allowed: once", got, name));
   }
 }
 
 std::vector<std::string> chosen_names(std::string_view got, const std::vector<std::string>& given,
-                                      const std::vector<std::string>& all) {
+                                      const std::vector<std::string>& all, std::string_view shown_by) {
   if (given == std::vector<std::string>{"all"}) return all;
   if (std::find(given.begin(), given.end(), "all") != given.end())
     throw InputError(fmt::format("{} \"all\" beside other names; allowed: \"all\" alone", got));
   std::vector<std::string> valid = all;
   valid.insert(valid.begin(), "all");
-  require_names(got, given, valid);
+  require_names(got, given, valid, shown_by);
   return given;
 }
 

@@ -99,11 +99,12 @@ Json or_null(const std::optional<Value>& value) {
 }
 
 /// Throws InputError unless each name is among the valid ones and given once; `got` stands before the name in its
-/// message, as in "--only: got".
-void require_names(std::string_view got, const std::vector<std::string>& names, const std::vector<std::string>& valid);
+/// message, as in "--only: got". `shown_by`: a command that shows the valid ones, see quoted_list.
+void require_names(std::string_view got, const std::vector<std::string>& names, const std::vector<std::string>& valid,
+                   std::string_view shown_by = {});
 /// Checks the same way and returns the names, where "all" alone stands for all of them.
 std::vector<std::string> chosen_names(std::string_view got, const std::vector<std::string>& given,
-                                      const std::vector<std::string>& all);
+                                      const std::vector<std::string>& all, std::string_view shown_by = {});
 
 /// The metric that sweeps and levels show: the one asked for, or else the first of kDefaultMetrics that there is.
 /// Throws InputError when there is none of that name.

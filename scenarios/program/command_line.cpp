@@ -33,7 +33,7 @@ struct OldWords {
 
 /// By command, so that what one command lost stands together.
 constexpr OldWords kOldWords[] = {
-    {"*", "--memory", "ulimit -d KILOBYTES before the command; without it three quarters of what is free"},
+    {"*", "--memory", "ulimit -d KILOBYTES before the command; without it three quarters of the machine's"},
     {"*", "--plugin", "--module FILE.so, of commands that run laws"},
     {"", "complete completion", "scripts/completion, which prints a completion for bash"},
     {"", "diff", "hapbench report A B --tolerance 0, which says what differs, with status 3"},

@@ -1,11 +1,8 @@
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cctype>
-#include <functional>
 #include <iterator>
-#include <regex>
 
 #include "scenarios/format/bundled_scenarios.hpp"
 #include "scenarios/format/input_error.hpp"
@@ -43,23 +40,23 @@ Description describe_scenario(const std::filesystem::path& file) {
   std::string text = fmt::format("scenario {}\n", bold(stdout, scenario.name));
   if (!scenario.description.empty()) text += wrapped(scenario.description);
   text += fmt::format("\n  file    {}\n", file.string());  // whole, to be copied
-  text += facts_text({{"source", scenario.source}}, 10);
+  if (!scenario.source.empty()) text += entry("source", scenario.source, 2, 10);
   text += "\n  set (\"hapbench describe scenario\" explains the fields, --json has all with their defaults)\n";
   add_assignments(text, "", given.json);
   return {text, effective_scenario(scenario, scenario.directory)};
 }
 
-Named named_scenario(const BundledScenario& bundled, bool summary) {
+/// A fault of the file becomes its summary.
+Named named_scenario(const BundledScenario& bundled) {
   Named named{"scenario",
               bundled.name,
               "",
               [file = bundled.file] { return describe_scenario(file); },
               {{"group", bundled.group}, {"source", ""}}};
-  if (!summary) return named;
   try {
-    const Scenario scenario = load_scenario(bundled.file).scenario;
-    named.summary = scenario.description;
-    named.more["source"] = scenario.source;
+    const Json json = read_scenario_text(bundled.file).json;
+    named.summary = json.value("description", "");
+    named.more["source"] = json.value("source", "");
   } catch (const InputError& error) {
     named.summary = error.what();
   }
@@ -84,169 +81,28 @@ Json list_on_record(const std::string& list) {
   }
 }
 
-/// A value as text; numbers of an array are the ends of a range. Empty where there is none.
-std::string text_in(const Json& object, const char* field) {
-  const Json value = object.value(field, Json(""));
-  const auto text_of = [](const Json& one) { return one.is_string() ? one.get<std::string>() : one.dump(); };
-  if (!value.is_array()) return text_of(value);
-  std::vector<std::string> texts;
-  for (const Json& one : value) texts.push_back(text_of(one));
-  return fmt::format("{}", fmt::join(texts, !value.empty() && value.front().is_number() ? " ... " : ", "));
+/// What is on record of a claim or a choice.
+Named on_record(const char* kind, const Json& thing, const std::string& summary, Json more) {
+  const auto describe = [=] {
+    Json titled = {{"kind", fmt::format("{}, on record", kind)}, {"name", thing.at("id")}};
+    titled.update(thing);
+    titled.erase("id");
+    return Description{thing_text(titled), thing};
+  };
+  return {kind, thing.at("id"), summary, describe, std::move(more)};
 }
 
-/// Those of the fields that there are, each below the other.
-std::string said_of(const Json& object, std::initializer_list<const char*> fields) {
-  std::string text;
-  for (const char* field : fields) text += facts_text({{field, text_in(object, field)}}, 14);
-  return text;
-}
-
-Description describe_claim(const Json& claim) {
-  const std::string id = claim.at("id");
-  return {fmt::format("claim {}, verdict on record: {}\n{}\n", bold(stdout, id), text_in(claim, "verdict"),
-                      wrapped(text_in(claim, "claim"))) +
-              said_of(claim, {"place", "published", "measured", "rule", "why"}) +
-              facts_text({{"robustness", robustness_text(claim)}}, 14) + said_of(claim, {"scenarios"}) +
-              fmt::format("\njudge it again: {} ({} s)\n", text_in(claim, "command"), seconds_text(claim)),
-          claim};
-}
-
-Description describe_choice(const Json& choice) {
-  const std::string unit = text_in(choice, "unit");
-  std::string text = fmt::format("choice {}, on record\n{}\n", bold(stdout, choice.at("id").get<std::string>()),
-                                 wrapped(text_in(choice, "what")));
-  text += facts_text({{"value", text_in(choice, "value") + (unit.empty() ? "" : " " + unit)}}, 14) +
-          said_of(choice, {"thesis", "range", "options", "scale", "why"}) +
-          facts_text({{"chosen", text_in(choice, "chosen") + " results were seen"}}, 14);
-  for (const Json& field : choice.value("fields", Json::array())) {
-    const char* times = field.value("times", false) ? " (times)" : "";
-    text += facts_text(
-        {{"sets", fmt::format("{}{} of {}", text_in(field, "path"), times, text_in(field, "scenarios"))}}, 14);
-  }
-  return {text +
-              "\nwhat it does to the verdicts: results/reference/claims.md; \"hapbench reproduce --choices\" judges by "
-              "others\n",
-          choice};
-}
-
-/// What the folders beside the program hold: scenarios, studies, claims and choices on record. The files of scenarios
-/// are read unless `summaries` is false: a fault of one becomes its summary. Throws InputError.
-Index folder_index(bool summaries = true) {
+/// What the folders beside the program hold: scenarios, studies, claims and choices on record. Throws InputError.
+Index folder_index() {
   Index index;
-  for (const BundledScenario& bundled : bundled_scenarios()) index.push_back(named_scenario(bundled, summaries));
+  for (const BundledScenario& bundled : bundled_scenarios()) index.push_back(named_scenario(bundled));
   for (const BundledStudy& study : bundled_studies())
     index.push_back({"study", study.name, study.summary, [study] { return describe_study(study); }});
   for (const Json& claim : list_on_record("claims"))
-    index.push_back({"claim",
-                     claim.at("id"),
-                     claim.at("claim"),
-                     [claim] { return describe_claim(claim); },
-                     {{"verdict", claim.at("verdict")}, {"source", claim.at("place")}}});
-  for (const Json& choice : list_on_record("choices"))
-    index.push_back({"choice", choice.at("id"), "", [choice] { return describe_choice(choice); }});
+    index.push_back(on_record("claim", claim, claim.at("claim"),
+                              {{"verdict", claim.at("verdict")}, {"source", claim.at("place")}}));
+  for (const Json& choice : list_on_record("choices")) index.push_back(on_record("choice", choice, "", Json::object()));
   return index;
-}
-
-/// A place of the thesis: "Fig. A.2" is {"Fig.", "A.2"}.
-struct Place {
-  std::string kind;  ///< "Fig.", "Table" or "section"
-  std::string number;
-};
-
-/// The kind of place that a word announces; empty for any other word.
-std::string place_kind(const std::string& word) {
-  const std::string lower = lower_case(word);
-  if (lower == "fig" || lower == "figs" || lower == "figure") return "Fig.";
-  if (lower == "table" || lower == "tables") return "Table";
-  return lower == "section" ? "section" : "";
-}
-
-/// Reads a place, of any kind where none is given, also from the name of a figure's file such as
-/// figure_A.4_springs.svg. None when the name is not a place's.
-std::optional<Place> asked_place(const std::string& name) {
-  static const std::regex kPlace(
-      R"((?:(fig|figs|figure|table|section)[._ ]*)?((?:[a-f]\.)?\d+(?:\.\d+)*[a-d]?)(?:_[a-z_]+)?(?:\.(?:svg|png|pdf))?)",
-      std::regex::icase);
-  std::smatch parts;
-  if (!std::regex_match(name, parts, kPlace)) return std::nullopt;
-  Place place{parts[1].matched ? place_kind(parts[1]) : "", parts[2]};
-  // A plain number could mean anything.
-  if (place.kind.empty() && place.number.find('.') == std::string::npos) return std::nullopt;
-  if (place.number.find('.') == 1) place.number[0] = static_cast<char>(std::toupper(place.number[0]));
-  return place;
-}
-
-/// True for a source that names the place or a part of it, as "3.3, Fig. 4, C.2a" does: a kind holds until another word
-/// comes. Other numbers in the source are taken for places, too.
-bool names_place(const std::string& source, const Place& asked) {
-  static const std::regex kParts(R"(([A-F]\.\d+|\d+)(\.\d+)*[a-d]?\b|[A-Za-z]+)");
-  std::string kind = "section";
-  for (std::sregex_iterator found(source.begin(), source.end(), kParts), end; found != end; ++found) {
-    const std::string word = found->str();
-    if (!(*found)[1].matched) {
-      const std::string announced = place_kind(word);
-      if (word != "and") kind = announced.empty() ? "section" : announced;
-      continue;
-    }
-    if ((!asked.kind.empty() && kind != asked.kind) || !word.starts_with(asked.number)) continue;
-    const std::string part = word.substr(asked.number.size());
-    if (part.empty() || part[0] == '.' || std::isalpha(static_cast<unsigned char>(part[0]))) return true;
-  }
-  return false;
-}
-
-/// The pictures on record of a figure of the thesis, such as figure_A.2.svg of "A.2".
-std::vector<std::filesystem::path> pictures_of(const Place& place) {
-  const std::string figure = place.number.substr(0, place.number.find_last_not_of("abcd") + 1);
-  std::vector<std::filesystem::path> pictures;
-  std::error_code none;
-  for (const auto& entry :
-       std::filesystem::directory_iterator(installed_folder("results/reference") / "figures", none)) {
-    const std::string stem = entry.path().stem().string();
-    if (stem == "figure_" + figure || stem.starts_with("figure_" + figure + "_")) pictures.push_back(entry.path());
-  }
-  std::ranges::sort(pictures);
-  return pictures;
-}
-
-/// The pictures, and the commands that draw them anew.
-std::string pictures_text(const std::vector<std::filesystem::path>& pictures) {
-  std::string text;
-  for (const std::filesystem::path& picture : pictures) {
-    std::string id = picture.stem().string().substr(std::string_view("figure_").size());
-    std::replace(id.begin(), id.end(), '_', '-');
-    text += fmt::format("    {}\n    drawn anew by scripts/reproduce --figure {}\n", picture.string(), id);
-  }
-  return text;
-}
-
-/// The bundled scenarios and claims that name a place of the thesis, as "A.2", "Fig. A.2", "Table A.1" or
-/// "section 3.4"; a place includes its parts: 3.4 includes 3.4.1, Fig. 2 includes Fig. 2c. None when the name is no
-/// place's. Throws InputError for a place that nothing names.
-std::optional<Description> describe_place(const std::string& name) {
-  const std::optional<Place> place = asked_place(name);
-  if (!place) return std::nullopt;
-  const std::string title = place->kind + (place->kind.empty() ? "" : " ") + place->number;
-  std::string scenarios, claims;
-  Json json = {{"kind", "place"}, {"name", title}, {"scenarios", Json::array()}, {"claims", Json::array()}};
-  for (const Named& thing : folder_index()) {
-    const std::string source = thing.more.value("source", "");
-    if (!names_place(source, *place)) continue;
-    const bool is_claim = thing.kind == "claim";
-    (is_claim ? claims : scenarios) += is_claim
-                                           ? entry(thing.name, fmt::format("{} ({})", thing.summary, source), 4, 10)
-                                           : entry(thing.name, source, 4, 44);
-    json[is_claim ? "claims" : "scenarios"].push_back(thing.name);
-  }
-  const std::vector<std::filesystem::path> pictures =
-      place->kind == "Fig." || place->kind.empty() ? pictures_of(*place) : std::vector<std::filesystem::path>();
-  for (const std::filesystem::path& picture : pictures) json["pictures"].push_back(picture.string());
-  if (scenarios.empty() && claims.empty() && pictures.empty())
-    throw InputError(fmt::format("no bundled scenario and no claim names {} of the thesis", title));
-  return Description{fmt::format("{} of the thesis\n\n{}  scenarios\n{}\n  claims\n{}", bold(stdout, title),
-                                 pictures.empty() ? "" : "  picture\n" + pictures_text(pictures) + "\n",
-                                 scenarios.empty() ? "    none\n" : scenarios, claims.empty() ? "    none\n" : claims),
-                     json};
 }
 
 // ---- list
@@ -363,20 +219,6 @@ int list(const DescribeOptions& options) {
 
 // ---- describe
 
-/// True for a file's name, in which capital letters stand for any characters: stability_map_NAME.csv.
-bool is_named(std::string_view file, std::string_view name) {
-  const auto is_capital = [](unsigned char c) { return std::isupper(c) != 0; };
-  const auto first = std::find_if(file.begin(), file.end(), is_capital);
-  const auto last = std::find_if(file.rbegin(), file.rend(), is_capital).base();
-  if (first == file.end() || file == name) return file == name;
-  const std::string_view before(file.begin(), first), after(last, file.end());
-  return name.size() > before.size() + after.size() && name.starts_with(before) && name.ends_with(after);
-}
-
-bool is_called(const Named& thing, std::string_view name) {
-  return thing.kind.starts_with("file") ? is_named(thing.name, name) : thing.name == name;
-}
-
 /// A heading in lower case, without blanks and line breaks.
 std::string plain(std::string_view text) {
   std::string plain = lower_case(text);
@@ -391,13 +233,16 @@ bool is_heading(const Named& thing, std::string_view name) {
          (plain(name) == plain(title) || plain(name) == plain(title.substr(0, title.find('\n'))));
 }
 
-using Meant = std::function<bool(const Named&)>;
-
-std::vector<Description> described(const Index& index, const Meant& is_meant) {
+template <class IsMeant>
+std::vector<Description> described(const Index& index, const IsMeant& is_meant) {
   std::vector<Description> found;
   for (const Named& thing : index)
     if (is_meant(thing)) found.push_back(thing.describe());
   return found;
+}
+
+std::vector<Description> described_by_name(const Index& index, std::string_view name) {
+  return described(index, [name](const Named& thing) { return thing.kind != "heading" && thing.name == name; });
 }
 
 /// What the headings of that name mean, each meaning once.
@@ -405,10 +250,11 @@ std::vector<Description> described_headings(const Index& index, const std::strin
   std::vector<Description> found;
   for (const Named& heading : index) {
     if (!is_heading(heading, name)) continue;
-    const auto meant =
-        std::ranges::find_if(index, [&heading](const Named& thing) { return is_called(thing, heading.summary); });
-    Description meaning = meant == index.end() ? heading.describe() : meant->describe();
-    if (std::ranges::find(found, meaning.text, &Description::text) == found.end()) found.push_back(std::move(meaning));
+    std::vector<Description> meanings = described_by_name(index, heading.summary);
+    if (meanings.empty()) meanings.push_back(heading.describe());
+    for (Description& meaning : meanings)
+      if (std::ranges::find(found, meaning.text, &Description::text) == found.end())
+        found.push_back(std::move(meaning));
   }
   return found;
 }
@@ -421,24 +267,17 @@ std::vector<Description> described_headings(const Index& index, const std::strin
       if (thing.kind != "heading") names.push_back(thing.name);
   throw InputError(
       fmt::format("nothing is called \"{}\"{}; \"hapbench describe\" shows the names, \"hapbench describe scenario\" "
-                  "the fields of a scenario file",
+                  "the fields of a scenario file, --grep searches",
                   name, nearest_name_hint(name, names)));
-}
-
-std::vector<Description> own_meanings(const Index& index, const std::string& name) {
-  const std::vector<Description> found =
-      described(index, [&](const Named& thing) { return thing.kind != "heading" && is_called(thing, name); });
-  return found.empty() ? described_headings(index, name) : found;
 }
 
 /// What a name means that the program does not know by itself.
 std::vector<Description> other_meanings(const Index& index, const std::string& name) {
-  if (const std::optional<Description> place = describe_place(name)) return {*place};
   // Fields of that name in any section: "torque" for record.torque.
   std::vector<Description> found =
       described(index, [&](const Named& thing) { return thing.kind == "field" && thing.name.ends_with("." + name); });
   if (!found.empty()) return found;
-  const Index in_folders = folder_index(false);
+  const Index in_folders = folder_index();
   found = described(in_folders, [&](const Named& thing) {
     return thing.name == name || (thing.kind == "claim" && lower_case(thing.name) == lower_case(name));
   });
@@ -451,7 +290,8 @@ std::vector<Description> other_meanings(const Index& index, const std::string& n
 int describe(const DescribeOptions& options) {
   if (options.name.empty() || is_kind(options.name)) return list(options);
   const Index index = program_index();
-  std::vector<Description> meanings = own_meanings(index, options.name);
+  std::vector<Description> meanings = described_by_name(index, options.name);
+  if (meanings.empty()) meanings = described_headings(index, options.name);
   if (meanings.empty() && is_group(options.name)) return list(options);
   if (!options.grep.empty()) throw InputError("--grep: allowed: without a name, or with that of a list");
   if (meanings.empty()) meanings = other_meanings(index, options.name);
@@ -471,9 +311,10 @@ void add_describe(CommandLine& line) {
       "an algorithm, a depth model, an integrator, an environment, a hand, a device, a scenario, a study; a kind of these "
       "such as algorithms, or a group of scenarios such as thesis, for a list; a field such as rendering.limits, "
       "\"scenario\" (all fields), \"schema\", \"choices_schema\", \"stability\", \"diagnosis\"; a metric, \"metrics\" or "
-      "\"columns\" for all of them, a heading such as \">30Hz rms N\", or a file such as trajectory.csv; a claim such as C5, a "
-      "choice such as planar.first_tilt or a place such as \"Fig. A.2\"");
-  command.add("--grep", options.grep, "list only things with this text in their name, description or source");
+      "\"columns\" for all of them, a heading such as \">30Hz rms N\", or a file such as trajectory.csv; a claim such as C5 or "
+      "a choice such as planar.first_tilt");
+  command.add("--grep", options.grep,
+              "list only things with this text in their name, description or source, as \"Fig. A.2\"");
 }
 
 }  // namespace hapbench

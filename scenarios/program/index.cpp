@@ -16,7 +16,6 @@
 #include "scenarios/format/metric_sections.hpp"
 #include "scenarios/format/scenario.hpp"
 #include "scenarios/limits/stability/run_stability.hpp"
-#include "scenarios/program/fields_text.hpp"
 #include "scenarios/program/report.hpp"
 #include "scenarios/program/run_table.hpp"
 #include "scenarios/program/table.hpp"
@@ -27,13 +26,6 @@
 #include "sim/loop/integrators/table.hpp"
 
 namespace hapbench {
-
-std::string facts_text(std::initializer_list<std::pair<const char*, std::string>> facts, std::size_t column) {
-  std::string text;
-  for (const auto& [title, fact] : facts)
-    if (!fact.empty()) text += entry(title, fact, 2, column);
-  return text;
-}
 
 Description joined(const std::vector<Description>& meanings) {
   if (meanings.size() == 1) return meanings.front();
@@ -49,46 +41,100 @@ Description joined(const std::vector<Description>& meanings) {
 
 namespace {
 
-/// Appends the card of a parameter to the model's.
-void add_parameter(Description& d, const std::string& path, const char* unit, const char* meaning) {
-  const FieldGuide& field = *find_field(path);
-  const std::string initial = default_text(field), range = field.value.allowed;
-  d.text += card({.name = path, .initial = initial, .allowed = range, .meaning = meaning}, 4);
-  d.json["parameters"].push_back(
-      {{"name", path}, {"unit", unit}, {"default", initial}, {"range", range}, {"meaning", meaning}});
+std::string titled(const std::string& name, const std::string& unit) {
+  return unit.empty() ? name : fmt::format("{} [{}]", name, unit);
 }
 
-Description describe_model(const char* kind, const ModelInfo& info, std::span<const OwnParameter> own,
-                           const AlgorithmOrigin& origin) {
-  Description d;
-  d.text = fmt::format("{} {}\n{}\n", kind, bold(stdout, info.name), wrapped(info.summary)) +
-           facts_text({{"formula", info.formula}, {"source", info.source}, {"known failure", info.known_failure}}, 17);
-  d.json = {{"kind", kind},
-            {"name", info.name},
-            {"summary", info.summary},
-            {"formula", info.formula},
-            {"source", info.source},
-            {"known_failure", info.known_failure},
-            {"parameters", Json::array()}};
-  if (!origin.file.empty()) {
-    d.text += entry("plugin", fmt::format("{}, hash {}", origin.file, origin.hash), 2, 17);
-    d.json["plugin"] = {{"file", origin.file}, {"hash", origin.hash}};
+/// A value in a line: the entries of a list between commas, the members of an object behind their names.
+std::string line_of(const Json& value) {
+  if (value.is_string()) return value.get<std::string>();
+  if (!value.is_structured()) return value.is_null() ? "" : value.dump();
+  std::string line;
+  for (const auto& [key, part] : value.items())
+    line += (line.empty() ? "" : ", ") + (value.is_object() ? key + " " : "") + line_of(part);
+  return line;
+}
+
+/// Members that say in a sentence what a thing is.
+constexpr std::string_view kProse[] = {"summary", "meaning", "holds", "claim", "what"};
+/// Members of its first line.
+constexpr std::string_view kHead[] = {"kind", "name", "unit"};
+
+bool is_one_of(std::span<const std::string_view> names, std::string_view name) {
+  return std::ranges::find(names, name) != names.end();
+}
+
+Description described(const Json& thing) {
+  return {thing_text(thing), thing};
+}
+
+}  // namespace
+
+std::string thing_text(const Json& thing, std::size_t indent) {
+  std::string name = thing.value("name", "");
+  std::replace(name.begin(), name.end(), '\n', ' ');
+  const std::string kind = thing.value("kind", "");
+  std::string prose, facts, lists;
+  for (const auto& [key, value] : thing.items()) {
+    if (is_one_of(kHead, key)) continue;
+    std::string title = key;
+    std::replace(title.begin(), title.end(), '_', ' ');
+    if (value.is_array() && !value.empty() && value.front().is_object()) {
+      lists += fmt::format("\n{:{}}{}\n", "", indent + 2, title);
+      for (const Json& item : value) lists += thing_text(item, indent + 4);
+    } else if (const std::string line = line_of(value); !line.empty()) {
+      if (is_one_of(kProse, key))
+        prose += wrapped(line, indent + 2);
+      else
+        facts += entry(title, line, indent + 2, indent + 17);
+    }
   }
-  if (!info.parameters.empty() || !own.empty()) d.text += "\n  parameters\n";
+  std::string text;
+  if (!name.empty())
+    text = fmt::format("{:{}}{}{}{}\n", "", indent, bold(stdout, titled(name, thing.value("unit", ""))),
+                       kind.empty() ? "" : ": ", kind);
+  return text + prose + (facts.empty() || indent > 0 ? "" : "\n") + facts + lists;
+}
+
+namespace {
+
+/// A parameter of a model, which is a field of scenarios.
+Json parameter_json(const std::string& path, const char* unit, const char* meaning) {
+  const FieldGuide& field = *find_field(path);
+  const Json& initial = field.initial;
+  const std::string given = initial.is_number_float() ? fmt::format("{:g}", initial.get<double>()) : initial.dump();
+  return {{"name", path},
+          {"unit", unit},
+          {"default", field.presence == Presence::has_default ? given : "by scene"},
+          {"range", field.value.allowed},
+          {"meaning", meaning}};
+}
+
+Json model_json(const char* kind, const ModelInfo& info, std::span<const OwnParameter> own,
+                const AlgorithmOrigin& origin) {
+  Json parameters = Json::array();
   for (const auto& [parameter, meaning] : info.parameters)
-    add_parameter(d, parameter.field, parameter.range.unit, meaning);
+    parameters.push_back(parameter_json(parameter.field, parameter.range.unit, meaning));
   for (const OwnParameter& parameter : own) {
-    add_parameter(d, fmt::format("rendering.parameters.{}.{}", info.name, parameter.name), parameter.range.unit,
-                  parameter.meaning);
+    parameters.push_back(parameter_json(fmt::format("rendering.parameters.{}.{}", info.name, parameter.name),
+                                        parameter.range.unit, parameter.meaning));
   }
-  return d;
+  Json json = {{"kind", kind},
+               {"name", info.name},
+               {"summary", info.summary},
+               {"formula", info.formula},
+               {"source", info.source},
+               {"known_failure", info.known_failure},
+               {"parameters", std::move(parameters)}};
+  if (!origin.file.empty()) json["plugin"] = {{"file", origin.file}, {"hash", origin.hash}};
+  return json;
 }
 
 void add_models(Index& index) {
   const auto add = [&index](const char* kind, const ModelInfo& info, std::span<const OwnParameter> own = {},
                             const AlgorithmOrigin& origin = {}) {
     index.push_back({kind, info.name, info.summary,
-                     [kind, &info, own, origin] { return describe_model(kind, info, own, origin); }});
+                     [kind, &info, own, origin] { return described(model_json(kind, info, own, origin)); }});
   };
   for (const AlgorithmEntry& entry : algorithms()) add("algorithm", *entry.info, entry.own_parameters, entry.origin);
   for (const DepthModelEntry& entry : depth_models()) add("depth model", *entry.info);
@@ -123,44 +169,13 @@ Description describe_preset(const DevicePreset& preset) {
   return d;
 }
 
-/// The field at that path, once for each group of types that share it.
-Description describe_field(const std::string& path) {
-  if (const std::string values = types_text(path); !values.empty())
-    return {values, {{"field", path}, {"types", type_names(path.substr(0, path.rfind('.')))}}};
-  std::vector<Description> meanings;
-  for (const auto& [types, field] : typed_fields(path)) {
-    Json json = field->schema();
-    if (!types.empty()) json["of"] = types;
-    meanings.push_back({fields_text(path, *field, types), std::move(json)});
-  }
-  return joined(meanings);
-}
-
-Description describe_algorithms() {
-  Description d = describe_field("rendering.algorithm");
-  d.text += wrapped("\"hapbench describe algorithms\" shows them with what they do");
-  return d;
-}
-
-Description describe_profile() {
-  // Any field whose value is a function of time.
-  FieldGuide profile = *find_field("motion.orientation.tilt_rad");
-  profile.meaning = "a function of time: a number that does not change, or an object";
-  profile.presence = Presence::no_default;
-  return {fields_text("profile", profile), profile.schema()};
-}
-
 /// Explains how runs are judged to be stable, and what is known in theory.
 Description describe_stability() {
   Description d;
   d.json = {{"kind", "stability"}};
-  std::string limits;
-  for (const StiffnessLimit& limit : stiffness_limits()) {
-    limits += fmt::format("  {}\n{}", limit.name, entry("formula", limit.formula, 4, 10));
-    limits += entry("for", limit.applies, 4, 10) + entry("source", limit.source, 4, 10);
+  for (const StiffnessLimit& limit : stiffness_limits())
     d.json["limits"].push_back(
         {{"name", limit.name}, {"formula", limit.formula}, {"applies", limit.applies}, {"source", limit.source}});
-  }
   d.text = "stability\n" +
            wrapped(
                "A run is judged by its motion, quarter by quarter; the amplitude is the largest speed. One that is too "
@@ -184,7 +199,7 @@ Description describe_stability() {
   d.text += wrapped(
       "b is the handle's damping, c its Coulomb friction, q the encoder's step, m the moving mass, T the period, t_d = d T "
       "the delay. Each is written beside the edge where it applies.");
-  d.text += limits;
+  for (const Json& limit : d.json["limits"]) d.text += thing_text(limit, 2);
   return d;
 }
 
@@ -207,22 +222,8 @@ void add_sections(Index& index) {
   };
   add("choices_schema", [] { return Description{"", choices_schema()}; });
   add("diagnosis", describe_diagnosis);
-  add("profile", describe_profile);
-  add("scenario", [] { return Description{fields_text("scenario", scenario_guide()), scenario_guide().schema}; });
   add("schema", [] { return Description{"", scenario_schema()}; });
   add("stability", describe_stability);
-}
-
-void add_types(Index& index) {
-  const std::vector<FieldType> types = all_types();
-  for (const FieldType& found : types) {
-    const ValueGuide* type = found.type;
-    const auto has_the_name = [type](const FieldType& other) { return other.type->type == type->type; };
-    const std::string of = std::ranges::count_if(types, has_the_name) > 1 ? found.field : "";
-    index.push_back({found.field, type->type, type->summary, [type, of] {
-                       return Description{fields_text(type->type, *type, of), type->schema};
-                     }});
-  }
 }
 
 // ---- Names that results and printed tables have: metrics, files, columns, words, headings
@@ -232,31 +233,18 @@ constexpr Column kShellColumns[] = {
     {"z_m", "m", "z of a point of the shell"},         {"nx", "1", "x of the outward unit normal there"},
     {"ny", "1", "y of the outward unit normal there"}, {"nz", "1", "z of the outward unit normal there"}};
 
-std::string titled(std::string_view name, std::string_view unit) {
-  return unit.empty() ? std::string(name) : fmt::format("{} [{}]", name, unit);
-}
-
-/// Explains columns or metrics.
-template <class Entries>
-std::string entries_text(const Entries& entries) {
-  std::string text;
-  for (const auto& entry : entries) text += "  " + titled(entry.name, entry.unit) + "\n" + wrapped(entry.meaning, 6);
-  return text;
-}
-
 Description describe_metrics() {
-  const MetricList metrics = metrics_without_values();
-  return {"metrics of summary.json, which expect.metrics may bound; f is f_render, the force on the tool\n\n" +
-              entries_text(metrics),
-          {{"kind", "metrics"}, {"metrics", columns_json(metrics)}}};
+  const Json json = {{"kind", "metrics"}, {"metrics", columns_json(metrics_without_values())}};
+  return {"metrics of summary.json, which expect.metrics may bound; f is f_render, the force on the tool\n" +
+              thing_text(json),
+          json};
 }
 
 Description describe_table(const DescribedTable& table) {
   Json columns = Json::array();
   for (const auto& [name, unit, meaning] : table.columns)
     columns.push_back({{"name", name}, {"unit", unit}, {"meaning", meaning}});
-  return {fmt::format("{}: file\n{}\n{}", bold(stdout, table.file), wrapped(table.holds), entries_text(table.columns)),
-          {{"kind", "file"}, {"name", table.file}, {"holds", table.holds}, {"columns", std::move(columns)}}};
+  return described({{"kind", "file"}, {"name", table.file}, {"holds", table.holds}, {"columns", std::move(columns)}});
 }
 
 Description describe_tables() {
@@ -319,22 +307,14 @@ Json word_json(const Word& word) {
 }
 
 Description describe_words() {
-  Description d{"words that the program prints\n\n", {{"kind", "words"}, {"words", Json::array()}}};
-  for (const Word& word : all_words()) {
-    d.text += fmt::format("  {} ({})\n{}", word.name, word.kind, wrapped(word.meaning, 6));
-    d.json["words"].push_back(word_json(word));
-  }
-  return d;
+  Json json = {{"kind", "words"}, {"words", Json::array()}};
+  for (const Word& word : all_words()) json["words"].push_back(word_json(word));
+  return {"words that the program prints\n" + thing_text(json), json};
 }
 
-/// Adds a name with one meaning; `title` has its unit, `kind_text` also where it is.
-void add_term(Index& index, Json json, const std::string& title, const std::string& kind_text,
-              const std::string& summary) {
-  const std::string kind = json["kind"], name = json["name"], meaning = json["meaning"];
-  const auto describe = [=] {
-    return Description{fmt::format("{}: {}\n{}", bold(stdout, title), kind_text, wrapped(meaning)), json};
-  };
-  index.push_back({kind, name, summary, describe});
+/// Adds a name with one meaning.
+void add_term(Index& index, const Json& json, const std::string& summary = "") {
+  index.push_back({json["kind"], json["name"], summary, [json] { return described(json); }});
 }
 
 /// The columns of all files, those of one name and meaning once.
@@ -351,8 +331,7 @@ void add_columns(Index& index, const std::vector<DescribedTable>& tables) {
   }
   for (const auto& [column, files] : all) {
     const auto& [name, unit, meaning] = column;
-    add_term(index, {{"kind", "column"}, {"name", name}, {"unit", unit}, {"meaning", meaning}, {"files", files}},
-             titled(name, unit), fmt::format("column of {}", fmt::join(files, ", ")), "");
+    add_term(index, {{"kind", "column"}, {"name", name}, {"unit", unit}, {"meaning", meaning}, {"files", files}});
   }
 }
 
@@ -361,7 +340,7 @@ void add_results(Index& index, const std::vector<DescribedTable>& tables) {
   for (const char* name : {"metrics", "summary.json"}) index.push_back({"section", name, "", describe_metrics});
   for (const Metric& metric : metrics_without_values()) {
     add_term(index, {{"kind", "metric"}, {"name", metric.name}, {"unit", metric.unit}, {"meaning", metric.meaning}},
-             titled(metric.name, metric.unit), "metric", metric.meaning);
+             metric.meaning);
   }
   for (const char* name : {"columns", "columns.json"}) index.push_back({"section", name, "", describe_tables});
   for (const DescribedTable& table : tables)
@@ -372,22 +351,15 @@ void add_results(Index& index, const std::vector<DescribedTable>& tables) {
 /// Outcomes, classes of motion, verdicts and others that the program prints.
 void add_words(Index& index) {
   index.push_back({"section", "words", "", describe_words});
-  for (const Word& word : all_words()) {
-    const char* more = word.kind == kMotion ? "; in numbers: hapbench describe stability" : "";
-    add_term(index, word_json(word), std::string(word.name), std::string(word.kind) + more, "");
-  }
+  for (const Word& word : all_words()) add_term(index, word_json(word));
 }
 
 /// Headings of printed tables, whose `summary`, a name or a sentence, says what they mean.
 void add_headings(Index& index, const std::vector<DescribedTable>& tables) {
-  for (const DescribedTable& table : tables) {
-    for (const Table::Column& heading : table.headings) {
-      if (heading.meaning.empty()) continue;
-      const std::string title = heading.title.substr(0, heading.title.find_last_not_of(' ') + 1);
-      add_term(index, {{"kind", "heading"}, {"name", heading.title}, {"meaning", heading.meaning}},
-               fmt::format("\"{}\"", title), "heading", heading.meaning);
-    }
-  }
+  for (const DescribedTable& table : tables)
+    for (const Table::Column& heading : table.headings)
+      if (!heading.meaning.empty())
+        add_term(index, {{"kind", "heading"}, {"name", heading.title}, {"meaning", heading.meaning}}, heading.meaning);
 }
 
 }  // namespace
@@ -413,12 +385,9 @@ Index program_index() {
   add_models(index);
   for (const DevicePreset& preset : device_presets())
     index.push_back({"preset", preset.name, preset.device, [&preset] { return describe_preset(preset); }});
-  index.push_back({"section", "algorithm", "", describe_algorithms});
   add_results(index, tables);
-  for (const std::string& path : scenario_field_paths())
-    index.push_back({"field", path, "", [path] { return describe_field(path); }});
+  add_fields(index);
   add_sections(index);
-  add_types(index);
   add_words(index);
   add_headings(index, tables);
   return index;

@@ -1,19 +1,16 @@
 #pragma once
 
-#include <filesystem>
 #include <functional>
-#include <initializer_list>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "scenarios/format/json_file.hpp"
+#include "scenarios/format/writer.hpp"
 
-/// The index of names that users meet: `list` shows those of some kinds, `describe` explains each, and refusals take
-/// the nearest name from it. Every part is made of the table of its kind, so that a new entry there is known here.
+/// The index of names that users meet. `describe` lists those of some kinds and explains each, and refusals take the
+/// nearest name from it. Every part is made of the table of its kind, so that a new entry there is known here.
 namespace hapbench {
 
 struct DescribedTable;
@@ -25,6 +22,10 @@ struct Description {
 /// Several meanings of a name as one: their texts one after the other, their JSON as an array. Precondition: there is
 /// one.
 Description joined(const std::vector<Description>& meanings);
+
+/// The text of a thing that is described by its JSON: name, unit and kind in its first line, below it what it is, and
+/// its other members by their names; an array of objects is a list of such things.
+std::string thing_text(const Json& thing, std::size_t indent = 0);
 
 /// A name with one of its meanings.
 struct Named {
@@ -50,7 +51,13 @@ std::vector<DescribedTable> stress_tables();
 std::vector<DescribedTable> sweep_tables();
 std::vector<DescribedTable> tune_tables();
 
-/// Lines of a title and a text, which begins in `column`; those without a text are left out.
-std::string facts_text(std::initializer_list<std::pair<const char*, std::string>> facts, std::size_t column);
+// ---- The fields of scenario files. Their names are dotted paths, as "rendering.limits".
+
+/// Adds the fields, the types among which they choose, and the sections that are about fields.
+void add_fields(Index& index);
+/// The field at that path, of the first type that has it where types choose the fields; null when there is none.
+const FieldGuide* find_field(const std::string& path);
+/// The path and the meaning of each field that a scenario's JSON has, objects before their fields.
+std::vector<std::pair<std::string, std::string>> field_meanings(const Json& scenario);
 
 }  // namespace hapbench

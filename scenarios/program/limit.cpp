@@ -162,7 +162,7 @@ std::vector<ComparedDevice> chosen_devices(const std::vector<std::string>& given
   if (!unknown.empty()) {
     std::vector<std::string> names = names_of(compared_devices(), &ComparedDevice::name);
     names.insert(names.begin(), {"FILE.json", kPresets});
-    chosen_names("--device: got", unknown, names);
+    chosen_names("--device: got", unknown, names, "hapbench describe presets");
   }
   std::vector<ComparedDevice> chosen;
   for (const std::string& name : given) {

@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <sys/resource.h>
 #include <unistd.h>
 #ifdef __GLIBC__
 #include <malloc.h>
@@ -11,7 +12,6 @@
 #include <string>
 
 #include "scenarios/format/input_error.hpp"
-#include "scenarios/format/memory_limit.hpp"
 #include "scenarios/program/command.hpp"
 #include "scenarios/run/stop_signal.hpp"
 
@@ -42,6 +42,18 @@ void refuse_exit() {
   std::_Exit(hapbench::kInternalFault);
 }
 
+/// Beyond three quarters of the machine's memory an allocation throws std::bad_alloc, so that a file from outside ends
+/// in an error and not the machine. Never raises a limit that the system or the user has set.
+void limit_memory() {
+#ifndef HAPBENCH_SANITIZED  // the sanitizers' own maps of memory, terabytes of addresses, would count
+  const auto most = static_cast<rlim_t>(::sysconf(_SC_PHYS_PAGES)) * static_cast<rlim_t>(::sysconf(_SC_PAGESIZE));
+  rlimit limit = {};
+  if (::getrlimit(RLIMIT_DATA, &limit) != 0 || limit.rlim_cur < most / 4 * 3) return;
+  limit.rlim_cur = most / 4 * 3;
+  ::setrlimit(RLIMIT_DATA, &limit);
+#endif
+}
+
 /// Keeps memory that was freed for what comes next. glibc would give blocks of megabytes, by which meshes grow, back
 /// and fetch them anew page by page: a tenth of the time of a short run on a mesh.
 void keep_freed_memory() {
@@ -58,7 +70,7 @@ int main(int argc, char** argv) {
   std::signal(SIGXFSZ, SIG_IGN);
   std::atexit(refuse_exit);
   std::set_terminate(end_with_a_reason);
-  hapbench::limit_memory();
+  limit_memory();
   keep_freed_memory();
   const hapbench::StopSignal signals;
   const int status = hapbench::run_program_to_exit(argc, argv);

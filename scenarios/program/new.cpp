@@ -1,26 +1,74 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <functional>
+#include <limits>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <span>
+#include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
+#include "device_model/hands/drag_hand.hpp"
 #include "results/io/atomic_file.hpp"
 #include "results/io/json_text.hpp"
+#include "scenarios/format/bundled_scenarios.hpp"
+#include "scenarios/format/json_file.hpp"
 #include "scenarios/format/load_scenario.hpp"
+#include "scenarios/format/parts.hpp"
 #include "scenarios/format/text_lines.hpp"
 #include "scenarios/program/command.hpp"
-#include "scenarios/program/fields_text.hpp"
-#include "scenarios/program/scenario_start.hpp"
+#include "scenarios/program/index.hpp"
 #include "scenarios/program/table.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/progress_bar.hpp"
 #include "scenarios/run/run_scenario.hpp"
+#include "scenarios/run/scene_checks.hpp"
+#include "sim/core/types.hpp"
+#include "sim/geometry/point_shell.hpp"
+#include "sim/mesh/triangle_soup.hpp"
 
+/// The command `new`, which writes scenario files to start from: each scene runs at once and touches something, and has
+/// only the fields that a newcomer changes first.
 namespace hapbench {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr double kStep = 0.0005;  ///< of the scenes [s]
+
+/// A kind of start.
+struct StartKind {
+  std::string name;
+  std::string summary;
+  std::string source;  ///< what it is made from: "mesh", "shell" or "stroke"; empty for nothing
+  bool is_source_optional;
+  Json scene;  ///< with what does not depend on the source
+};
+
+/// All kinds, those of scenarios/library/starts.json, in the order in which they are shown. Throws InputError without
+/// that file.
+const std::vector<StartKind>& start_kinds() {
+  static const std::vector<StartKind> kinds = [] {
+    const Json json = parse_json(read_named_file(installed_folder("scenarios/library") / "starts.json"));
+    std::vector<StartKind> all;
+    for (const Json& kind : json.at("kinds")) {
+      all.push_back({kind.at("kind"), kind.at("summary"), kind.value("from", ""), kind.value("optional", false), {}});
+      Json& scene = all.back().scene;
+      scene = {{"description", kind.at("summary")},
+               {"time", {{"step_s", kStep}, {"steps", kind.value("steps", 2000)}}}};
+      for (const Json& part : kind.at("parts")) scene.update(json.at("parts").at(part.get<std::string>()));
+    }
+    return all;
+  }();
+  return kinds;
+}
+
+// ---- The options
 
 struct NewOptions {
   std::string kind;
@@ -74,24 +122,8 @@ double length_in(const char* option, const std::string& text) {
       fmt::format("{}: got \"{}\"; allowed: a length above 0 with its unit, mm, cm, m or in: 12mm", option, text));
 }
 
-/// The command as it was given, without --extent.
-std::string command_without_extent(const NewOptions& options) {
-  std::vector<std::string> words = {"hapbench", "new", options.kind};
-  const auto add = [&words](const char* name, const std::string& value) {
-    if (!value.empty()) words.insert(words.end(), {name, value});
-  };
-  add("--from", options.from);
-  add("--on", options.on);
-  if (options.side != "z") words.push_back("--side=" + options.side);
-  for (const std::string& point : options.path) add("--path", point);
-  add("--at", options.at);
-  if (options.preview) words.emplace_back("--preview");
-  add("--out", options.out);
-  return shell_line(words);
-}
-
-/// The options that say where the scene starts. Throws InputError for those that the kind has no use for.
-StartOptions start_options(const NewOptions& options, const StartKind& kind) {
+/// Throws InputError for options that the kind has no use for, and for files that are not there.
+void check_options(const NewOptions& options, const StartKind& kind) {
   const std::string& name = kind.name;
   const bool drags = name == "drag" || name == "bur", lands = drags || name == "mesh" || name == "shell";
   const bool has_mesh = !options.on.empty() || (kind.source == "mesh" && !options.from.empty());
@@ -107,16 +139,382 @@ StartOptions start_options(const NewOptions& options, const StartKind& kind) {
   require(options.extent.empty() || has_mesh, "--extent", "with the file of a mesh");
   if (std::error_code ignored; !options.on.empty() && !fs::exists(options.on, ignored))
     throw InputError(fmt::format("--on {}: cannot be read: no such file", options.on));
-  StartOptions start;
-  if (!options.from.empty()) start.source = options.from;
-  if (!options.on.empty()) start.on = options.on;
-  if (!options.extent.empty()) start.extent = length_in("--extent", options.extent);
-  start.side = options.side;
-  for (const std::string& point : options.path) start.path.push_back(place_in("--path", point));
-  if (!options.at.empty()) start.at = place_in("--at", options.at);
-  start.command = command_without_extent(options);
-  return start;
 }
+
+// ---- Where a tool that comes along -z starts over a surface
+
+/// The point nearest to the middle of those within `tolerance` of the top.
+Vec3 middle_of_the_top(const std::vector<SurfacePoint>& points, double top, double tolerance) {
+  std::vector<Vec3> high;
+  for (const SurfacePoint& point : points) {
+    if (point.position.z() >= top - tolerance) high.push_back(point.position);
+  }
+  Vec3 middle = Vec3::Zero();
+  for (const Vec3& place : high) middle += place;
+  middle /= static_cast<double>(high.size());
+  return *std::ranges::min_element(high, {}, [&middle](const Vec3& place) { return (place - middle).norm(); });
+}
+
+/// The highest of the points above or below the box's middle, to within `aside`; where there are none, as in a ring,
+/// the middle.
+Vec3 top_of_the_middle(const std::vector<SurfacePoint>& points, const Box& box, double aside) {
+  const Vec3 middle = 0.5 * (box.min + box.max);
+  Vec3 top(middle.x(), middle.y(), box.min.z());
+  for (const SurfacePoint& point : points) {
+    if ((point.position - middle).head<2>().norm() <= aside && point.position.z() > top.z()) top = point.position;
+  }
+  return top.z() > box.min.z() ? top : middle;
+}
+
+/// A way over a surface for a hand that drags.
+struct DragStart {
+  Vec3 position = Vec3::Zero();    ///< initial.position_m [m]
+  Vec3 direction = Vec3::UnitX();  ///< hand.direction
+  double smoothing = 0.0;          ///< hand.smoothing_m [m]
+  double room = 0.0;               ///< length of the way to where the surface ends or turns back [m]
+};
+
+/// Tries along x and y, forwards and back, from each of `positions`, then with twice and four times `smoothing`, until
+/// a way is at least `enough` long; else takes the longest. A later direction or place has to lead a tenth further, so
+/// that the choice does not depend on rounding. Makes a walk of some 10 ms for each combination. Preconditions: a point
+/// in the shell, a position.
+DragStart choose_drag(const PointShell& shell, std::span<const Vec3> positions, double smoothing, double enough) {
+  constexpr double kFurther = 1.1;
+  const Box box = shell.bounds();
+  const double furthest = diagonal(box);
+  DragStart best{positions.front(), Vec3::UnitX(), smoothing, 0.0};
+  for (const double radius : {smoothing, 2.0 * smoothing, 4.0 * smoothing}) {
+    const SmoothedSurface surface(shell, radius);
+    for (const Vec3& position : positions) {
+      for (const Vec3& direction : {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(-1, 0, 0), Vec3(0, -1, 0)}) {
+        const double room = SurfacePath::along(surface, position, direction, furthest).length();
+        if (room > kFurther * best.room) best = {position, direction, radius, room};
+      }
+      if (best.room >= enough) return best;
+    }
+  }
+  return best;
+}
+
+// ---- A start
+
+constexpr double kClearance = 0.001;      ///< between tool and surface at the start [m]
+constexpr double kDragSpeed = 5.0;        ///< in diameters of the tool [1/s]
+constexpr double kPressedBelow = 0.0035;  ///< the hand's target, 1 N below the surface with the spring of a press [m]
+
+/// Rounds to two significant digits, as people write lengths.
+double rounded(double value) {
+  return std::stod(fmt::format("{:.2g}", value));
+}
+
+Json list_of(const Vec3& v) {
+  return {v.x() + 0.0, v.y() + 0.0, v.z() + 0.0};  // never -0
+}
+
+/// The box of things at a place each.
+template <class Things, class Place = std::identity>
+Box box_of(const Things& things, Place place = {}) {
+  const Vec3 first = std::invoke(place, things.front());
+  Box box{first, first};
+  for (const auto& thing : things)
+    box = {box.min.cwiseMin(std::invoke(place, thing)), box.max.cwiseMax(std::invoke(place, thing))};
+  return box;
+}
+
+/// Rounds to the micrometre, as people write places.
+double to_micrometres(double metres) {
+  return std::round(1e6 * metres) / 1e6;
+}
+
+/// Makes a start for a file in `directory`: its values are determined one after the other. Places are found in the
+/// frame of the side from which the tool comes, in which that is z.
+///
+/// A mesh has the size that is stated, or is in metres. Its points are a tenth of the tool's diameter apart. The tool
+/// is 1 mm thick, or a fiftieth of a longer object, and starts 1 mm above the middle of the highest places; a drag
+/// starts where it has room and covers most of it. Normals of an open mesh that point away from the tool are turned
+/// round. The tip of a tool from a mesh is the file's origin. Throws InputError when a file cannot be used, and for a
+/// mesh of no stated size that is not 1 mm to 1 m long in metres, with its length in metres and in millimetres.
+class Start {
+ public:
+  Start(const StartKind& kind, const NewOptions& options, const fs::path& directory)
+      : scene_(kind.scene), options_(options), directory_(directory) {
+    if (!options.extent.empty()) extent_ = length_in("--extent", options.extent);
+    for (const std::string& point : options.path) path_.push_back(place_in("--path", point));
+    if (!options.at.empty()) at_ = place_in("--at", options.at);
+    const bool is_on_mesh =
+        !options.on.empty() || (kind.source == "mesh" && kind.is_source_optional && !options.from.empty());
+    if (is_on_mesh)
+      scene_["environment"] = std::ranges::find(start_kinds(), "mesh", &StartKind::name)->scene.at("environment");
+    turn_to_side();
+    name_files();
+    const bool is_placed = scene_.contains("initial") && scene_["initial"]["position_m"].is_null();
+    if (is_placed) scene_["initial"]["position_m"] = {0, 0, 0};
+    if (has_type("environment", "mesh")) scale_environment();
+    if (has_type("tool", "mesh")) {
+      place_mesh_tool();
+    } else if (is_placed) {
+      place_tool();
+    }
+    if (kind.source == "stroke") choose_stroke_steps();
+    note_spacing();
+  }
+
+  /// Of the scenario file.
+  const Json& scene() const { return scene_; }
+  /// Sizes and choices, a line each.
+  const std::vector<std::string>& notes() const { return notes_; }
+  const std::vector<std::string>& warnings() const { return warnings_; }
+
+ private:
+  bool has_type(const char* part, const char* type) const {
+    return scene_.contains(part) && scene_.at(part).value(kTypeField, "") == type;
+  }
+
+  /// Writes the names of the source and of the mesh below a stroke where they are used.
+  void name_files() {
+    const auto name = [this](Json& part, const fs::path& file) {
+      part["file"] = fs::proximate(file, directory_.empty() ? "." : directory_).generic_string();
+    };
+    if (scene_["environment"].contains("file")) name(scene_["environment"], mesh_file());
+    if (has_type("tool", "mesh")) name(scene_["tool"], options_.from);
+    if (scene_.contains("motion") && scene_["motion"].contains("position") && !options_.from.empty())
+      name(scene_["motion"]["position"], options_.from);
+  }
+
+  /// Puts the side's axes in the place of x, y and z.
+  void turn_to_side() {
+    const auto axis = static_cast<Eigen::Index>(options_.side.back() - 'x');
+    const Vec3 up = side_sign() * Vec3::Unit(axis), lean = Vec3::Unit(axis == 0 ? 1 : 0);
+    to_world_ << lean, up.cross(lean), up;
+    if (options_.side != "z" && has_type("hand", "impedance"))
+      scene_["motion"] = {{"orientation", {{"up", list_of(up)}, {"lean", list_of(lean)}}}};
+  }
+
+  /// The file of the environment, or of a tool.
+  const std::string& mesh_file() const { return options_.on.empty() ? options_.from : options_.on; }
+
+  LoadedScenario scenario() const { return read_scenario(scene_, directory_); }
+
+  /// The points of the scene in the side's frame.
+  std::vector<SurfacePoint> points() const {
+    const LoadedScenario loaded = scenario();
+    std::vector<SurfacePoint> points = make_shell(loaded.scenario, loaded.files)->points();
+    for (SurfacePoint& point : points)
+      point = {to_world_.transpose() * point.position, to_world_.transpose() * point.normal};
+    return points;
+  }
+
+  /// The scale that gives an object, which was first read as millimetres, its stated size. A file of which none is
+  /// stated is in metres. Throws InputError when it then is no object to be worked on.
+  double choose_scale(const Box& box, const char* object) {
+    const double longest = (box.max - box.min).maxCoeff() / 0.001;
+    if (!extent_ && (longest < kShortestObject || longest > kLongestObject)) {
+      throw InputError(fmt::format(
+          "{}: the {} is {} long in metres, {} in millimetres; allowed: {} ... {}, or its size, --extent {:.7g}mm or "
+          "--extent {:.7g}m",
+          mesh_file(), object, length_text(longest), length_text(0.001 * longest), length_text(kShortestObject),
+          length_text(kLongestObject), longest, longest));
+    }
+    const double scale = extent_ ? std::stod(fmt::format("{:.6g}", *extent_ / longest)) : 1.0;
+    notes_.push_back(
+        fmt::format("longest edge of the {}'s box: {}, with scale {}", object, length_text(longest * scale), scale));
+    return scale;
+  }
+
+  /// The tool is sized by the mesh, but for one that a stroke leads.
+  void scale_environment() {
+    const Box box = box_of(points(), &SurfacePoint::position);
+    const double scale = choose_scale(box, "mesh");
+    scene_["environment"]["scale"] = scale;
+    if (options_.on.empty()) choose_tool((box.max - box.min).maxCoeff() / 0.001 * scale);
+    scene_["environment"]["spacing_m"] = rounded(diameter_ / 10.0);
+    if (!options_.on.empty())
+      notes_.push_back(fmt::format("the mesh: {}", place_text(Box{box.min / 0.001 * scale, box.max / 0.001 * scale})));
+  }
+
+  void choose_tool(double longest) {
+    diameter_ = std::max(0.001, rounded(longest / 50.0));
+    if (scene_.contains("tool") && scene_["tool"].contains("diameter_m")) scene_["tool"]["diameter_m"] = diameter_;
+    if (scene_.contains("tool") && scene_["tool"].contains("length_m")) scene_["tool"]["length_m"] = 10.0 * diameter_;
+  }
+
+  /// Turns the normals of an open mesh round that point away from the side, about its highest place.
+  std::vector<SurfacePoint> facing_points() {
+    std::vector<SurfacePoint> shell = points();
+    const Box box = box_of(shell, &SurfacePoint::position);
+    longest_ = (box.max - box.min).maxCoeff();
+    choose_tool(longest_);
+    const Vec3 top = middle_of_the_top(shell, box.max.z(), 0.1 * diameter_);
+    const bool is_open =
+        !has_type("environment", "mesh") || !scenario().files.at(kEnvironmentFile).mesh().open_edges().empty();
+    double facing = 0.0;
+    for (const SurfacePoint& point : shell) {
+      const Vec3 from_top = point.position - top;
+      // Not those of the far side of a thin wall.
+      if (from_top.norm() <= 0.5 * diameter_ && from_top.z() >= -0.1 * diameter_) facing += point.normal.z();
+    }
+    if (facing >= 0.0 || !is_open) return shell;
+    const std::string side = options_.side.front() == '-' ? options_.side.substr(1) : "-" + options_.side;
+    const std::string found = fmt::format("its normals point away from side {}", options_.side);
+    if (!has_type("environment", "mesh")) {
+      throw InputError(fmt::format("--from {}: {}; allowed: normals turned round, or --side={}",
+                                   fs::path(options_.from).generic_string(), found, side));
+    }
+    scene_["environment"]["flip_normals"] = true;
+    notes_.push_back(fmt::format(
+        "{} and are turned round, environment.flip_normals; or press from the other side: --side={}", found, side));
+    return points();
+  }
+
+  void place_tool() {
+    const std::vector<SurfacePoint> shell = facing_points();
+    count_ = shell.size();
+    const bool is_mesh = has_type("environment", "mesh");
+    const std::string count = is_mesh ? "" : fmt::format("{} points; ", count_);
+    const Box box = box_of(shell, &SurfacePoint::position);
+    const Vec3 top = top_of(shell, box);
+    pressed_ = to_micrometres(side_sign() * (top.z() + 0.5 * diameter_ - kPressedBelow));
+    if (has_type("hand", "drag")) {
+      if (!is_mesh) notes_.push_back(fmt::format("{} points", count_));
+      if (!path_.empty()) return follow_path(top);
+      const Vec3 middle = at_ ? top : top_of_the_middle(shell, box, diameter_);
+      return choose_way(shell, {start_above(top), start_above(middle)});
+    }
+    start_at(start_above(top));
+    const Vec3 place = to_world_ * top;
+    notes_.push_back(
+        options_.side == "z" && !at_
+            ? fmt::format("{}the tool starts 1 mm above the highest, at x = {:.4g}, y = {:.4g} mm", count,
+                          1e3 * top.x(), 1e3 * top.y())
+            : fmt::format("{}the tool starts 1 mm off the surface at x = {:.4g}, y = {:.4g}, z = {:.4g} mm", count,
+                          1e3 * place.x(), 1e3 * place.y(), 1e3 * place.z()));
+  }
+
+  double side_sign() const { return options_.side.front() == '-' ? -1.0 : 1.0; }
+
+  /// The place over which the tool starts: what --at or --path names, else the highest.
+  Vec3 top_of(const std::vector<SurfacePoint>& shell, const Box& box) const {
+    if (!at_ && path_.empty()) return middle_of_the_top(shell, box.max.z(), 0.1 * diameter_);
+    const Vec3 named = to_world_.transpose() * (at_ ? *at_ : path_.front());
+    const auto facing = [&named](const SurfacePoint& point) {
+      return point.normal.z() > 0.0 ? (point.position - named).squaredNorm() : std::numeric_limits<double>::infinity();
+    };
+    return std::ranges::min_element(shell, {}, facing)->position;
+  }
+
+  /// The start of a tool whose round tip is to land at `place`.
+  Vec3 start_above(const Vec3& place) const {
+    return {to_micrometres(place.x()), to_micrometres(place.y()),
+            to_micrometres(place.z() + 0.5 * diameter_ + kClearance)};
+  }
+
+  void start_at(const Vec3& place) {
+    const Json world = list_of(to_world_ * place);
+    scene_["initial"]["position_m"] = world;
+    if (!has_type("hand", "impedance")) return;
+    Json& target = scene_["hand"]["target"];
+    target = {{"x_m", world[0]}, {"y_m", world[1]}, {"z_m", world[2]}};
+    Json& along = target[std::string(1, options_.side.back()) + "_m"];
+    along = {{kTypeField, "waypoints"},
+             {"points", Json::array({Json::array({0, along}), Json::array({0.5, pressed_})})},
+             {"interpolation", "cosine"}};
+  }
+
+  /// Leads the tool along the points of --path.
+  void follow_path(const Vec3& first) {
+    double way = 0.0;
+    Json& hand = scene_["hand"];
+    hand.erase("direction");
+    for (const Vec3& point : path_) hand["path_m"].push_back(list_of(point));
+    for (std::size_t i = 1; i < path_.size(); ++i) way += (path_[i] - path_[i - 1]).norm();
+    start_at(start_above(first));
+    drag_for(way, kDragSpeed * diameter_);
+    hand["smoothing_m"] = 0.5 * diameter_;
+    notes_.push_back(fmt::format("dragged over {}", length_text(way)));
+  }
+
+  void drag_for(double way, double speed) {
+    scene_["hand"]["speed_m_per_s"] = rounded(speed);
+    scene_["time"]["steps"] = static_cast<std::int64_t>(std::ceil(rounded(way / speed) / kStep));
+  }
+
+  /// Says how far apart a mesh's points are.
+  void note_spacing() {
+    if (!has_type("environment", "mesh")) return;
+    notes_.push_back(fmt::format("{} points, {} apart: a tenth of the tool's diameter",
+                                 count_ == 0 ? points().size() : count_,
+                                 length_text(scene_["environment"]["spacing_m"].get<double>())));
+  }
+
+  /// Places the tool above the plane's middle. Its tip is where the format has it without more words.
+  void place_mesh_tool() {
+    const TriangleSoup surface = scenario().files.at(kToolFile).mesh().triangles();  // taken for millimetres
+    Box box = box_of(surface.vertices);
+    const double scale = choose_scale(box, "tool");
+    scene_["tool"]["scale"] = scale;
+    box = {scale / 0.001 * box.min, scale / 0.001 * box.max};
+    notes_.emplace_back(
+        "taken for its tip centre: the file's origin, the tip pointing along -z; tool.tip_m and tool.tip_axis say "
+        "otherwise");
+    if (const std::string odd = odd_frame(box); !odd.empty())
+      warnings_.push_back(fmt::format("the tool {}: set tool.tip_m and tool.tip_axis", odd));
+    pressed_ = to_micrometres(-box.min.z() - kPressedBelow);
+    start_at({0.0, 0.0, to_micrometres(-box.min.z() + kClearance)});
+  }
+
+  /// Drags over four fifths of the way to where the surface ends.
+  void choose_way(const std::vector<SurfacePoint>& points, const std::vector<Vec3>& starts) {
+    const DragStart drag = choose_drag(PointShell(points, 0.0), starts, 0.5 * diameter_, 0.25 * longest_);
+    const double way = 0.8 * drag.room, speed = kDragSpeed * diameter_;
+    const bool has_room = way >= diameter_;
+    start_at(drag.position);
+    const Vec3 direction = to_world_ * drag.direction, start = to_world_ * drag.position;
+    Json along = Json::array();
+    for (const double part : direction) along.push_back(static_cast<int>(part));
+    scene_["hand"]["direction"] = along;
+    scene_["hand"]["smoothing_m"] = drag.smoothing;
+    drag_for(has_room ? way : 0.25 * longest_, speed);
+    if (!has_room) {
+      warnings_.push_back(
+          fmt::format("no way longer than {} was found over the surface along x or y, from its highest place or its "
+                      "middle: set hand.path_m to points on the surface, or initial.position_m and hand.direction",
+                      length_text(drag.room)));
+      return;
+    }
+    notes_.push_back(fmt::format(
+        "dragged from x = {:.4g}, y = {:.4g}{} mm on along [{}, {}, {}] for {}; the surface ends or turns after {}",
+        1e3 * start.x(), 1e3 * start.y(), options_.side == "z" ? "" : fmt::format(", z = {:.4g}", 1e3 * start.z()),
+        along[0].dump(), along[1].dump(), along[2].dump(), length_text(way), length_text(drag.room)));
+  }
+
+  void choose_stroke_steps() {
+    const LoadedScenario loaded = scenario();
+    const auto stroke = loaded.files.at(kMotionFile).stroke();
+    const auto samples = stroke->motion.samples();
+    const auto lower = [](const auto& a, const auto& b) { return a.position.z() < b.position.z(); };
+    const double lowest = std::min_element(samples.begin(), samples.end(), lower)->position.z();
+    const double last = samples.back().time;
+    scene_["time"]["steps"] = static_cast<std::int64_t>(std::max(1.0, std::ceil(last / kStep) + 1.0));
+    notes_.push_back(fmt::format("the stroke lasts from {:.4g} to {:.4g} s; its lowest tip is at z = {:.4g} mm{}",
+                                 samples.front().time, last, 1e3 * lowest,
+                                 options_.on.empty() ? ", the plane at 0" : ""));
+  }
+
+  Json scene_;
+  const NewOptions& options_;
+  fs::path directory_;
+  std::optional<double> extent_;      ///< of the mesh: longest edge of its box [m]
+  std::vector<Vec3> path_;            ///< of a drag, two points or more [m]
+  std::optional<Vec3> at_;            ///< the tool starts over the surface's place nearest to it [m]
+  Mat3 to_world_ = Mat3::Identity();  ///< from the side's frame
+  std::size_t count_ = 0;             ///< of the scene's points
+  double diameter_ = 0.001;           ///< [m]
+  double longest_ = 0.0;              ///< edge of the environment's box [m]
+  double pressed_ = 0.0;              ///< where a hand that presses leads the tool, along the side's axis [m]
+  std::vector<std::string> notes_, warnings_;
+};
+
+// ---- The command
 
 int list_kinds(const OutputOptions& output) {
   Table table({{"KIND", false}, {"what it starts with", false}});
@@ -150,30 +548,30 @@ int write_new(const NewOptions& options) {
     throw InputError(fmt::format("{} exists; choose another name with --out", picture.string()));
   if (fs::exists(out, ignored)) throw InputError(fmt::format("{} exists; choose another with --out", out.string()));
   const fs::path directory = out.parent_path();
-  const StartOptions chosen = start_options(options, kind);
-  const ScenarioStart start = [&] {
+  check_options(options, kind);
+  const Start start = [&] {
     const WaitNotice notice("trying the scene", !options.output.quiet);
-    return scenario_start(kind, chosen, directory);
+    return Start(kind, options, directory);
   }();
-  LoadedScenario loaded = read_scenario(start.scene, directory);
+  LoadedScenario loaded = read_scenario(start.scene(), directory);
   loaded.file = out;
   print_warnings(loaded, check_named_files(loaded));
   require_writable_directory(directory.empty() ? "." : directory);
-  write_file_atomically(out, json_text(start.scene));
+  write_file_atomically(out, json_text(start.scene()));
 
-  print_warnings(start.warnings);
+  print_warnings(start.warnings());
   if (options.preview) draw_preview(out, picture, options.output.quiet || options.output.json);
   std::string text = fmt::format("{}: {}\n", out.string(), kind.summary);
-  for (const std::string& note : start.notes) text += note + "\n";
+  for (const std::string& note : start.notes()) text += note + "\n";
   if (options.preview) text += fmt::format("picture of a run in {}\n", picture.string());
   text += "\n";
   Json fields = Json::object();
-  for (const auto& [path, meaning] : field_meanings(start.scene)) {
+  for (const auto& [path, meaning] : field_meanings(start.scene())) {
     text += entry(path, meaning, 0, 34);
     fields[path] = meaning;
   }
   text += fmt::format("\n\"hapbench describe scenario\" shows all fields; next: hapbench run {}\n", out.string());
-  Json said = {{"file", out.string()}, {"notes", start.notes}, {"fields", fields}};
+  Json said = {{"file", out.string()}, {"notes", start.notes()}, {"fields", fields}};
   if (options.preview) said["picture"] = picture.string();
   print(options.output, text, said);
   return kSuccess;

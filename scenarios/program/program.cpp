@@ -12,7 +12,6 @@
 #include "results/io/atomic_file.hpp"
 #include "results/summary/provenance.hpp"
 #include "scenarios/format/input_error.hpp"
-#include "scenarios/format/memory_limit.hpp"
 #include "scenarios/program/command.hpp"
 #include "scenarios/run/stop_signal.hpp"
 
@@ -155,7 +154,7 @@ int run_program_to_exit(int argc, char** argv) {
   } catch (const IoError& error) {
     return fail(error.what());
   } catch (const std::bad_alloc&) {
-    return fail("out of memory; allowed: " + memory_limit_text());
+    return fail("out of memory; allowed: three quarters of the machine's, or what \"ulimit -d\" sets");
   } catch (const std::exception& error) {
     return fail(one_line(fmt::format("internal fault: {}", error.what())));
   }

@@ -8,7 +8,6 @@
 #include "scenarios/format/bundled_scenarios.hpp"
 #include "scenarios/format/descriptions.hpp"
 #include "scenarios/format/load_scenario.hpp"
-#include "scenarios/format/memory_limit.hpp"
 #include "scenarios/format/mesh_file.hpp"
 #include "scenarios/format/parts.hpp"
 #include "scenarios/limits/stability/scene_devices.hpp"

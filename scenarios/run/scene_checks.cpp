@@ -249,10 +249,9 @@ std::vector<Warning> tool_warnings(const RenderingConfig& rendering, const ToolS
   if (const auto* mesh = dynamic_cast<const MeshTool*>(&tool)) {
     const Box box{mesh->grid().low(), mesh->grid().high()};
     if (const std::string odd = odd_frame(box); !odd.empty()) {
-      warnings.push_back({"tool_frame", "",
-                          fmt::format("the tool {} (from there {}): are tool.tip_m and tool.tip_axis right? \"hapbench "
-                                      "new tool\" guesses them",
-                                      odd, place_text(box))});
+      warnings.push_back(
+          {"tool_frame", "",
+           fmt::format("the tool {} (from there {}): are tool.tip_m and tool.tip_axis right?", odd, place_text(box))});
     }
   }
   return warnings;

@@ -158,27 +158,6 @@ Json ledger_json(const std::vector<JudgedClaim>& judged, const PublishedNumbers&
   return {{"headline", ledger_headline(claims)}, {"claims", std::move(claims)}};
 }
 
-std::string robustness_text(const Json& claim) {
-  const Json& robustness = claim.at("robustness");
-  if (robustness.is_null()) {
-    if (claim.at("timing").get<bool>()) return "not sampled: times of one machine";
-    if (verdict_of(claim) == Verdict::not_reproducible) return "not sampled: nothing to simulate";
-    return claim.at("choices_reach_it").get<bool>() ? "not sampled yet" : "not sampled: depends on no recorded choice";
-  }
-  const auto judged = robustness.at("judged").get<std::size_t>(), holds = robustness.at("holds").get<std::size_t>();
-  std::string text = fmt::format("{}: this verdict in {} of {} samples", text_at(claim, "sureness"), holds, judged);
-  for (const auto& [verdict, count] : robustness.at("verdicts").items())
-    if (verdict != text_at(claim, "verdict")) text += fmt::format(", {} in {}", verdict, count.get<std::size_t>());
-  const Json& decided_by = robustness.at("decided_by");
-  if (!decided_by.is_null()) {
-    text += fmt::format("; decided by {} (S = {:.2f})", text_at(decided_by, "choice"),
-                        decided_by.at("index").get<double>());
-  } else if (holds < judged) {
-    text += "; no single choice decides";
-  }
-  return text;
-}
-
 std::string seconds_text(const Json& claim) {
   const double seconds = claim.at("seconds").get<double>();
   return seconds < 1.0 ? "< 1" : fmt::format("{:.0f}", seconds);

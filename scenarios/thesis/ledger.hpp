@@ -18,9 +18,6 @@ Json ledger_json(const std::vector<JudgedClaim>& judged, const PublishedNumbers&
 
 // The functions below take a claim as ledger_json writes it.
 
-/// How sure its verdict is, in counts: "this verdict in 91 of 100 samples; decided by task2.hand_angle (S = 0.43)"; or
-/// why it was not sampled.
-std::string robustness_text(const Json& claim);
 /// The seconds that it takes to judge it: whole ones, "< 1" for less.
 std::string seconds_text(const Json& claim);
 /// How many claims have which verdict, and how many verdicts are steady.

@@ -8,7 +8,7 @@
 #include "scenarios/format/json_file.hpp"
 #include "scenarios/format/load_scenario.hpp"
 #include "scenarios/format/mesh_file.hpp"
-#include "scenarios/format/recordings.hpp"
+#include "scenarios/format/named_files.hpp"
 #include "tests/results/files.hpp"
 #include "tests/scenarios/support/mesh_texts.hpp"
 #include "tests/scenarios/support/mutation.hpp"

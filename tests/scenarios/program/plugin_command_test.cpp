@@ -38,7 +38,7 @@ TEST_F(PluginCommand, KnowsTheLawAndItsParametersEverywhere) {
   const ProgramRun described = hapbench({"--module", plugin("depth_weighted"), "describe", "depth_weighted"});
   EXPECT_EQ(described.status, 0) << described.err;
   EXPECT_NE(described.out.find("depth_weighted.so, hash "), std::string::npos);
-  EXPECT_NE(described.out.find("rendering.parameters.depth_weighted.power\n"), std::string::npos) << described.out;
+  EXPECT_NE(described.out.find("rendering.parameters.depth_weighted.power ["), std::string::npos) << described.out;
   const ProgramRun list = hapbench(
       {"describe", "algorithms", "--module", plugin("depth_weighted"), "--module", plugin("capped_summation")});
   EXPECT_NE(list.out.find("capped_summation"), std::string::npos) << list.err;

@@ -80,22 +80,6 @@ TEST_F(NewCommand, GivesAMeshItsStatedSize) {
   }
 }
 
-TEST_F(NewCommand, RefusesAMeshThatIsNoObjectInMetres) {
-  for (const auto& [length, readings] : {std::pair{86.0, "is 86 m long in metres, 86 mm in millimetres"},
-                                         std::pair{0.0005, "is 0.5 mm long in metres, 0.5 um in millimetres"}}) {
-    write_rod(directory_ / "rod.obj", length, 0.05 * length);
-    const ProgramRun refused = hapbench({"new", "mesh", "--from", path("rod.obj"), "--out", path("rod.json")});
-    EXPECT_EQ(refused.status, 2);
-    EXPECT_NE(refused.err.find(readings), std::string::npos) << refused.err;
-    const std::string command = "\"hapbench new mesh --from " + path("rod.obj") + " --out " + path("rod.json");
-    for (const char* unit : {"mm", "m"}) {
-      const std::string whole = fmt::format("{} --extent {}{}\"", command, length, unit);
-      EXPECT_NE(refused.err.find(whole), std::string::npos) << refused.err << whole;
-    }
-    EXPECT_FALSE(fs::exists(path("rod.json")));
-  }
-}
-
 /// An open sheet of 8 x 8 mm with a hump, its normals up or down.
 class NewOnASheet : public NewCommand {
  protected:

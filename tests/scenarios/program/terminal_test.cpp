@@ -11,7 +11,7 @@
 #include "scenarios/format/metric_sections.hpp"
 #include "scenarios/format/writer.hpp"
 #include "scenarios/limits/stability/run_stability.hpp"
-#include "scenarios/program/fields_text.hpp"
+#include "scenarios/program/index.hpp"
 #include "scenarios/program/run_table.hpp"
 #include "scenarios/thesis/claims.hpp"
 #include "sim/loop/integrators/table.hpp"
@@ -157,7 +157,7 @@ TEST(DescribeCommand, ExplainsEveryNameThereIs) {
   for (const AlgorithmEntry& entry : algorithms()) models.emplace_back(entry.info->name);
   for (const DepthModelEntry& entry : depth_models()) models.emplace_back(entry.info->name);
   for (const IntegratorEntry* integrator : kIntegrators) models.emplace_back(integrator->info.name);
-  for (const std::string& name : type_names("environment")) models.push_back(name);
+  for (const ValueGuide& type : find_field("environment")->value.choices) models.push_back(type.type);
   for (const BundledScenario& bundled : bundled_scenarios()) models.push_back(bundled.name);
   for (const std::string& name : models) EXPECT_TRUE(listed.contains(name)) << name;
   std::vector<std::string> names = scenario_field_paths();
@@ -179,16 +179,6 @@ TEST(DescribeCommand, ExplainsTheWordsAndHeadingsThatResultsHave) {
   for (const RunVerdictText& verdict : run_verdict_texts()) words.emplace_back(verdict.name);
   for (const RunHeading& heading : kRunHeadings) words.emplace_back(heading.title);
   for (const std::string& word : words) EXPECT_EQ(hapbench_here({"describe", word}).status, 0) << word;
-}
-
-TEST(DescribeCommand, ShowsWhatNamesAPlaceOfTheThesis) {
-  const auto claims = [](const char* name) { return hapbench_here({"describe", name, "--json"}).json()["claims"]; };
-  for (const char* name : {"Fig. A.2", "fig a.2", "figure_A.2", "figure_A.2_springs.svg"})
-    EXPECT_EQ(claims(name), Json::array({"A1"})) << name;
-  // Section A.2 is about the springs, and Fig. 2 has the parts 2c and 2d.
-  EXPECT_EQ(claims("section A.2"), Json::array({"A2", "A3"}));
-  EXPECT_EQ(claims("A.2"), Json::array({"A1", "A2", "A3", "D2"}));
-  EXPECT_EQ(claims("Fig. 2"), Json::array({"V1", "V2", "V2b", "S1"}));
 }
 
 /// As a test of all that a run can write.
