@@ -22,7 +22,7 @@ namespace {
 template <class Take>
 void for_contacts(const std::string& task, std::size_t every, Take take) {
   const TaskScene& scene = task_scene(task);
-  GridQuery query(*scene.shell, *scene.tool);
+  NeighbourListQuery query(*scene.shell, *scene.tool);
   const auto depth_model = make_depth_model("surface_normal");
   ContactBuffer here(query.capacity());
   for (std::size_t k = 0; k < scene.poses.size(); k += every) {

@@ -311,15 +311,15 @@ void rendering_benchmark(benchmark::State& state, RenderingConfig config, std::s
   state.counters["contacts"] = static_cast<double>(contacts);
 }
 
-/// A query in free air, which the clearance of the list answers, while the grid looks into its cells.
+/// A query in free air, which the clearance of the list answers, while brute force compares every point.
 void clearance_benchmark(benchmark::State& state, Skips skips) {
   const TaskScene& scene = task_scene("T1");
   const ToolPose pose{{0.0, 0.0, 0.002}, {0.0, 0.0, -1.0}};
   NeighbourListQuery list(*scene.shell, *scene.tool);
-  GridQuery grid(*scene.shell, *scene.tool);
-  ContactQuery& query = skips == Skips::on ? static_cast<ContactQuery&>(list) : grid;
+  ShellQuery brute(*scene.shell, *scene.tool);
+  ContactQuery& query = skips == Skips::on ? static_cast<ContactQuery&>(list) : brute;
   ContactBuffer contacts(query.capacity());
-  for (ContactQuery* each : {static_cast<ContactQuery*>(&list), static_cast<ContactQuery*>(&grid)}) {
+  for (ContactQuery* each : {static_cast<ContactQuery*>(&list), static_cast<ContactQuery*>(&brute)}) {
     each->contacts_at(pose, contacts);
     if (!contacts.empty()) return refute(state, "contacts in free air");
   }
