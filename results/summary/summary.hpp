@@ -108,13 +108,14 @@ struct Result {
   std::vector<MetricSection> sections;              ///< passivity, and others for which the scenario asks
   std::uint64_t state_hash = 0;                     ///< MetricsObserver::state_hash
   std::optional<ToolSummary> tool;                  ///< of a tool that is no cylinder
-  std::vector<Warning> warnings;                    ///< about the files that the scenario names, then about the run
+  std::vector<Warning> warnings;                    ///< about the scenario and its files, then about the run
   std::optional<std::vector<Diagnosed>> diagnosis;  ///< of a run that asked for it
   RunWork work;
   std::vector<TargetRow> targets;  ///< of a tracking hand, all subjects and trials
   RunTiming timing;
   Provenance provenance;
-  std::string scenario_hash;  ///< of the effective scenario
+  std::string scenario_hash;    ///< of the effective scenario
+  bool replaces_other = false;  ///< its directory had the results of another scenario
 
   bool has_section(std::string_view section) const {
     return std::ranges::find(sections, section, &MetricSection::name) != sections.end();

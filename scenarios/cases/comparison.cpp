@@ -7,6 +7,7 @@
 
 #include "results/io/atomic_file.hpp"
 #include "results/io/json_text.hpp"
+#include "scenarios/format/bundled_scenarios.hpp"
 #include "scenarios/format/input_error.hpp"
 #include "scenarios/format/json_file.hpp"
 #include "scenarios/run/assemble.hpp"
@@ -51,20 +52,19 @@ void check_seeds_and_jitter(const ComparisonQuestion& question, const LoadedScen
   }
 }
 
-/// The cases of a scene; adds its warnings, of those about its fields what all algorithms have: what only one of them
-/// reads has an effect here.
+/// The cases of a scene; adds those of its warnings that all algorithms have: what only one of them reads has an effect
+/// here.
 Cases cases_of(const ComparisonQuestion& question, const fs::path& file, std::vector<std::string>& warnings) {
   const ScenarioText text = read_scenario_text(file);
   std::vector<Axis> axes = {{"rendering.algorithm", question.algorithms}};
   const Cases alone({text}, question.overrides, axes);
-  const LoadedScenario first = alone.load(0);  // the files are those of the scenario, whatever the algorithm
+  const LoadedScenario first = checked(alone.load(0));
   check_seeds_and_jitter(question, first);
-  append_new(warnings, with_files(first, check_named_files(first)));
   if (question.seeds > 1 || question.jitter != 0.0)
     axes.push_back(seed_axis(first.scenario, question.seeds, question.jitter));
   std::vector<Warning> common = first.warnings;
   for (std::size_t a = 1; a < alone.size(); ++a) {
-    const std::vector<Warning> of_this = alone.load(a).warnings;
+    const std::vector<Warning> of_this = checked(alone.load(a)).warnings;
     std::erase_if(common, [&](const Warning& w) { return std::ranges::find(of_this, w) == of_this.end(); });
   }
   append_new(warnings, with_files(first, common));
@@ -135,7 +135,7 @@ fs::path Comparison::folder(std::size_t run) const {
 }
 
 Comparison planned(const ComparisonQuestion& question) {
-  const auto names = require_names_of_their_own(question.scenarios, "one of each name in a comparison");
+  const auto names = names_of_scenarios(question.scenarios);
   Comparison comparison{{}, names, question.algorithms, question.seeds};
   const std::size_t scenes = question.scenarios.size(), size = scenes * comparison.each();
   if (size > kMostRuns) {
@@ -162,7 +162,7 @@ std::vector<Result> run_all(std::span<const Cases> all, const JobOptions& jobs,
   std::vector<Result> reports(order.size());
   for_each_job(order.size(), jobs, [&](std::size_t place) {
     const auto& [cases, i, run] = order[place];
-    reports[run] = run_scenario(cases.load(i), folder ? std::optional(folder(run)) : std::nullopt, false);
+    reports[run] = run_scenario(checked(cases.load(i)), folder ? std::optional(folder(run)) : std::nullopt, false);
     reports[run].targets.clear();
   });
   return reports;

@@ -191,7 +191,7 @@ LimitTable asked_table(const LimitOptions& options) {
     throw InputError("--friction: got factors; allowed: with --device");
   const std::vector<fs::path> files = find_scenarios(options.scenarios);
   std::vector<ScenarioText> scenes;
-  Axis scene{.path = kSceneAxis, .values = require_names_of_their_own(files, "each name once")},
+  Axis scene{.path = kSceneAxis, .values = names_of_scenarios(files)},
       algorithm{.path = "--algorithms", .values = {""}, .named = true};
   std::transform(files.begin(), files.end(), std::back_inserter(scenes), read_scenario_text);
   std::vector<ComparedDevice> devices;
@@ -219,7 +219,7 @@ LimitRow asked_row(const LimitOptions& options, const LimitTable& table, std::si
     const LimitQuestion question = question_of(options, scene, row.scenario, overrides);
     row.asked = {&scene, std::move(overrides), loaded.scenario.rendering.algorithm, question};
     append_new(warnings, question.warnings);
-    append_new(warnings, with_files(loaded, check_named_files(loaded)));
+    append_new(warnings, with_files(loaded, checked(loaded).warnings));
     // A field of the rendering changes nothing of hand and device.
     if (question.path.starts_with("rendering.")) row.asked.question.tremor = tremor_speeds(loaded);
   } catch (const InputError& error) {
