@@ -108,7 +108,7 @@ struct Result {
   std::vector<MetricSection> sections;              ///< passivity, and others for which the scenario asks
   std::uint64_t state_hash = 0;                     ///< MetricsObserver::state_hash
   std::optional<ToolSummary> tool;                  ///< of a tool that is no cylinder
-  std::vector<Warning> warnings;                    ///< about the scenario and its files, then about the run
+  std::vector<Warning> warnings;                    ///< about the files that the scenario names, then about the run
   std::optional<std::vector<Diagnosed>> diagnosis;  ///< of a run that asked for it
   RunWork work;
   std::vector<TargetRow> targets;  ///< of a tracking hand, all subjects and trials

@@ -52,21 +52,22 @@ void check_seeds_and_jitter(const ComparisonQuestion& question, const LoadedScen
   }
 }
 
-/// The cases of a scene; adds those of its warnings that all algorithms have: what only one of them reads has an effect
-/// here.
+/// The cases of a scene; adds its warnings, of those about its fields what all algorithms have: what only one of them
+/// reads has an effect here.
 Cases cases_of(const ComparisonQuestion& question, const fs::path& file, std::vector<std::string>& warnings) {
   const ScenarioText text = read_scenario_text(file);
   std::vector<Axis> axes = {{"rendering.algorithm", question.algorithms}};
   const Cases alone({text}, question.overrides, axes);
-  const LoadedScenario first = checked(alone.load(0));
+  const LoadedScenario first = checked(alone.load(0));  // the files are those of the scenario, whatever the algorithm
   check_seeds_and_jitter(question, first);
   if (question.seeds > 1 || question.jitter != 0.0)
     axes.push_back(seed_axis(first.scenario, question.seeds, question.jitter));
   std::vector<Warning> common = first.warnings;
   for (std::size_t a = 1; a < alone.size(); ++a) {
-    const std::vector<Warning> of_this = checked(alone.load(a)).warnings;
+    const std::vector<Warning> of_this = alone.load(a).warnings;
     std::erase_if(common, [&](const Warning& w) { return std::ranges::find(of_this, w) == of_this.end(); });
   }
+  append_new(warnings, with_files(first, first.file_warnings));
   append_new(warnings, with_files(first, common));
   return {{text}, question.overrides, std::move(axes)};
 }

@@ -74,7 +74,7 @@ Json check_files(SweepPlan& plan, const std::vector<std::size_t>& runs, Names& m
   Json hashes = Json::array();
   for (const std::size_t run : runs) {
     LoadedScenario loaded = checked(plan.cases.load(run));
-    append_new(plan.warnings, with_files(loaded, loaded.warnings));
+    append_new(plan.warnings, with_files(loaded, loaded.file_warnings));
     if (std::holds_alternative<RecordedPosition>(loaded.scenario.motion.position)) {
       const bool has_force = loaded.files.at(kMotionFile).stroke()->force.has_value();
       add_names(metrics, metrics_without_values(loaded.scenario, has_force));

@@ -219,7 +219,7 @@ LimitRow asked_row(const LimitOptions& options, const LimitTable& table, std::si
     const LimitQuestion question = question_of(options, scene, row.scenario, overrides);
     row.asked = {&scene, std::move(overrides), loaded.scenario.rendering.algorithm, question};
     append_new(warnings, question.warnings);
-    append_new(warnings, with_files(loaded, checked(loaded).warnings));
+    append_new(warnings, with_files(loaded, checked(loaded).file_warnings));
     // A field of the rendering changes nothing of hand and device.
     if (question.path.starts_with("rendering.")) row.asked.question.tremor = tremor_speeds(loaded);
   } catch (const InputError& error) {

@@ -158,7 +158,7 @@ int write_new(const NewOptions& options) {
   LoadedScenario loaded = read_scenario(start.scene, directory);
   loaded.file = out;
   loaded = checked(std::move(loaded));
-  print_warnings(loaded, loaded.warnings);
+  print_warnings(loaded, loaded.file_warnings);
   require_writable_directory(directory.empty() ? "." : directory);
   write_file_atomically(out, json_text(start.scene));
 

@@ -43,6 +43,7 @@ int run(const RunOptions& options) {
     loaded = checked(std::move(loaded));
     loaded.scenario.rendering.skips = options.skips;
     print_warnings(loaded, loaded.warnings);
+    print_warnings(loaded, loaded.file_warnings);
   }
   for (const fs::path& directory : directories) require_writable_directory(directory);
   double bytes = 0.0;

@@ -385,6 +385,7 @@ int tune(const TuneOptions& options) {
       options.algorithms.empty() ? std::vector<std::string>{loaded.scenario.rendering.algorithm}
                                  : chosen_names("--algorithms: got", options.algorithms, algorithm_names());
   print_warnings(loaded, loaded.warnings);
+  print_warnings(loaded, loaded.file_warnings);
   tuning.scene = loaded.scenario.name + device;
   tuning.ranges = with_file(loaded, [&] { return tune_ranges(tuning.question, algorithms.front()); });
   Report report(options, "tune_" + file.stem().string());

@@ -149,6 +149,7 @@ int validate(const ValidateOptions& options) {
       }
       const LoadedScenario loaded = checked(load_scenario(file, options.overrides));
       print_warnings(loaded, loaded.warnings);
+      print_warnings(loaded, loaded.file_warnings);
       const SceneFacts facts = scene_facts(loaded);
       print_warnings(loaded, facts.warnings);
       if (!options.points.empty()) write_points(loaded, options.points);

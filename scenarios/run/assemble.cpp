@@ -109,7 +109,7 @@ LoadedScenario checked(LoadedScenario loaded) {
       const std::string place = file_of(loaded, file->pointer()).string() + ": " + file->pointer();
       throw InputError(InputError::Kind::relation, place, error.what());
     }
-    for (Warning& warning : file->warnings()) loaded.warnings.push_back(std::move(warning));
+    for (Warning& warning : file->warnings()) loaded.file_warnings.push_back(std::move(warning));
   }
   NamedFile* const file = loaded.files.find(kMotionFile);
   if (file == nullptr) return loaded;
@@ -118,7 +118,7 @@ LoadedScenario checked(LoadedScenario loaded) {
         InputError::Kind::relation, file_of(loaded, "/record/force_reference").string() + ": /record/force_reference",
         fmt::format("got true; allowed: false, because {} has no columns mfx_N,mfy_N,mfz_N", file->path().string()));
   }
-  if (auto warning = clock_warning(*file->stroke(), scenario.time)) loaded.warnings.push_back(std::move(*warning));
+  if (auto warning = clock_warning(*file->stroke(), scenario.time)) loaded.file_warnings.push_back(std::move(*warning));
   return loaded;
 }
 

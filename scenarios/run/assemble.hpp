@@ -9,8 +9,8 @@
 namespace hapbench {
 
 /// The scenario with the files that it names read and parsed, so that faults in them are found before anything is
-/// written. Its warnings have those about the files, too: a mesh that is open or was mended, a stroke outside the time
-/// of the run. Throws InputError.
+/// written. Its file_warnings tell of a mesh that is open or was mended, and of a stroke outside the time of the run.
+/// Throws InputError.
 LoadedScenario checked(LoadedScenario loaded);
 
 /// The numbers of the run: steps, start, integrator, bounds.

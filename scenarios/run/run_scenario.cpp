@@ -139,7 +139,7 @@ class Run {
     sections_.tell(result);
     result.state_hash = metrics_->state_hash();
     result.work = work_;
-    result.warnings = loaded_.warnings;
+    result.warnings = loaded_.file_warnings;
     for (Warning& warning : warnings_) {
       if (trials_ == 1) break;
       warning.text = fmt::format("in {} of {} trials, first in number {}: {}", with_warnings_, trials_,
