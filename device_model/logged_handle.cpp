@@ -1,4 +1,4 @@
-#include "device_model/logged_handle.hpp"
+#include "device_model/handle_motion.hpp"
 
 #include <cmath>
 #include <cstddef>

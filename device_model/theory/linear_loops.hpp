@@ -1,13 +1,14 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
+#include <limits>
 #include <span>
 #include <string>
 #include <variant>
 
 #include "device_model/admittance_device.hpp"
 #include "device_model/impedance_device.hpp"
-#include "sim/core/bisection.hpp"
 #include "sim/loop/integrators/spring_damper.hpp"
 
 /// The loops of device, hand and wall, whose step is a linear map of their state, and where they become unstable.
@@ -32,8 +33,19 @@ inline bool is_stable_step(const Eigen::MatrixXd& A) {
 /// compare the edges of random loops with their frequency responses, which show every crossing.
 template <class StepMatrix>
 double first_edge(double least, double most, StepMatrix step_matrix) {
+  constexpr double kNext = 1.1, kPrecision = 1e-11;
   const auto stable = [&](double value) { return is_stable_step(step_matrix(value)); };
-  return stable(least) ? largest_stable(least, 1e-11, stable, most, 1.1) : 0.0;
+  double low = 0.0, high = least;
+  for (; stable(high); high *= kNext) {
+    low = high;
+    if (kNext * high > most) return std::numeric_limits<double>::infinity();
+  }
+  if (low == 0.0) return 0.0;
+  while (high / low > 1.0 + kPrecision) {
+    const double middle = std::sqrt(low * high);
+    (stable(middle) ? low : high) = middle;
+  }
+  return low;
 }
 
 /// The loop of an impedance device at a wall, as a linear system along one axis in SI units: the loop without

@@ -35,8 +35,6 @@ void InsideDepths::add(const InsideDepths& trial) {
   max = std::max(max, trial.max);  // an empty optional is less than any number
   max_within = deepest - (1.0 + InsideSearch::kTolerance) * max.value_or(0.0);
   settled_within = std::max(settled_within, trial.settled_within);
-  at_most = std::max(at_most, trial.at_most);
-  if (at_most <= max) at_most.reset();
   settled.insert(settled.end(), trial.settled.begin(), trial.settled.end());
   rows += trial.rows;
   centre_inside += trial.centre_inside;
@@ -50,11 +48,12 @@ std::optional<double> InsideDepths::settled_median() const {
 }
 
 void InsideDepths::tell(Section& s, bool has_settled) const {
-  s.metric("inside_max_m", "m",
-           "largest distance below the environment's surface of any point of the tool in any row, with record.inside "
-           "in any recorded row; no row is deeper by more than 2 % of it and of the tool's half width, or a warning "
-           "tells by how much; none of springs and beyond the border of an open surface",
-           max, Better::less)
+  s.metric(
+       "inside_max_m", "m",
+       "largest distance below the environment's surface of any point of the tool in any row, with record.inside "
+       "in any recorded row; no row is deeper by more than 2 % of it and of the tool's half width, or its tolerance "
+       "tells by how much; none of springs and beyond the border of an open surface",
+       max, Better::less)
       .within(InsideSearch::kTolerance, max_within);
   s.metric("inside_settled_m", "m",
            "median of that distance over up to twelve rows in settled contact, evenly spread, or with record.inside "
@@ -185,26 +184,26 @@ InsideDepths InsideObserver::depths() {
   const double width = tool_->half_width(), error = search_.error();
   depths.max_within = depths.settled_within = InsideSearch::kTolerance * width + error;
   if (every_ > 0) return depths;
-  find_deepest(depths);
+  const double rest = find_deepest(depths);
   for (const auto& sample : settled_.all()) {
     if (const auto depth = search_.depth(sample.pose)) depths.settled.push_back(*depth);
   }
   for (const double depth : depths.settled) depths.max = std::max(depths.max, std::optional(depth));
-  if (depths.at_most)
-    depths.max_within = *depths.at_most - (1.0 + InsideSearch::kTolerance) * depths.max.value_or(0.0) + error;
+  if (rest > 0.0) depths.max_within = rest - (1.0 + InsideSearch::kTolerance) * depths.max.value_or(0.0) + error;
   return depths;
 }
 
 /// Branch and bound over the run: its parts are halved where they may be deeper than the deepest row known, those with
-/// the largest bound first, down to rows that hardly differ, of which one is searched.
-void InsideObserver::find_deepest(InsideDepths& depths) {
+/// the largest bound first, down to rows that hardly differ, of which one is searched. Returns how deep a row may be
+/// that could not be looked at [m]; 0 where none is deeper than the deepest row within its tolerance.
+double InsideObserver::find_deepest(InsideDepths& depths) {
   struct Stretch {
     std::size_t first, end;
     double way, bound;  ///< how far the rows are from the one in the middle, and how deep they are at most [m]
     bool operator<(const Stretch& other) const { return bound < other.bound; }
   };
   const std::vector<PoseSamples::Sample>& parts = deepest_.all();
-  if (parts.empty()) return;
+  if (parts.empty()) return 0.0;
   const double width = tool_->half_width();
   const auto search = [&](const ToolPose& pose, double way) {
     const double tolerance = InsideSearch::kTolerance - way / width;
@@ -249,7 +248,7 @@ void InsideObserver::find_deepest(InsideDepths& depths) {
     }
   }
   if (!open.empty()) rest = std::max(rest, open.top().bound);
-  if (rest > enough()) depths.at_most = rest;
+  return rest > enough() ? rest : 0.0;
 }
 
 }  // namespace hapbench

@@ -15,9 +15,8 @@ class MetricsObserver;
 
 /// How deep the tool was in the environment, in a trial or in several.
 struct InsideDepths {
-  std::optional<double> max;      ///< of any point of the tool in any row [m]
-  std::optional<double> at_most;  ///< no row is deeper [m]; empty if that is `max` within InsideSearch::kTolerance
-  std::vector<double> settled;    ///< of rows in settled contact [m]
+  std::optional<double> max;    ///< of any point of the tool in any row [m]
+  std::vector<double> settled;  ///< of rows in settled contact [m]
   /// How much `max` and `settled` may be too low, on top of InsideSearch::kTolerance of them [m].
   double max_within = 0.0, settled_within = 0.0;
   std::uint64_t rows = 0;  ///< with the tip centre where the inside is known
@@ -111,7 +110,7 @@ class InsideObserver final : public Observer {
   void march(const Vec3& place, double length, double time) noexcept;
   void search_row(const StepRecord& record, bool settled) noexcept;
   void note_core(const Vec3& place, const SurfaceDistance& phi, double time) noexcept;
-  void find_deepest(InsideDepths& depths);
+  double find_deepest(InsideDepths& depths);
 
   std::shared_ptr<const ToolShape> tool_;
   std::shared_ptr<const Solid> solid_;

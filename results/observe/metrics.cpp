@@ -18,28 +18,14 @@ std::optional<double> explicit_friction_limit(const IntegratorEntry& integrator,
   return mu_f > 0.0 ? std::optional((largest - mu_s) / mu_f) : std::nullopt;
 }
 
-void ReductionJumps::begin() noexcept {
-  last_.clear();
-  changed_ = false;
-}
-
 void ReductionJumps::add(const ContactBuffer& kept, double step_squared, bool settled) noexcept {
   const std::span now(kept.index.data(), kept.size());
   const bool same = std::is_permutation(now.begin(), now.end(), last_.begin(), last_.end());
   const bool changed = !same && !now.empty() && !last_.empty();
   if (changed) ++changes_;
   if (settled && changed) step_max_squared_ = std::max(step_max_squared_.value_or(0.0), step_squared);
-  if (settled && !changed && !changed_) {
-    step_max_squared_elsewhere_ = std::max(step_max_squared_elsewhere_, step_squared);
-  }
-  changed_ = changed;
   assert(now.size() <= last_.capacity());
   if (!same) last_.assign(now.begin(), now.end());
-}
-
-bool ReductionJumps::stand_out() const noexcept {
-  constexpr double kFarMore = 3.0;
-  return step_max().value_or(0.0) > kFarMore * step_max_elsewhere();
 }
 
 TrialContact TrialContact::operator+(const TrialContact& other) const noexcept {

@@ -38,7 +38,7 @@ class ReductionJumps {
   explicit ReductionJumps(std::size_t capacity) { last_.reserve(capacity); }
 
   /// Begins another trial, in which nothing has been touched yet.
-  void begin() noexcept;
+  void begin() noexcept { last_.clear(); }
   /// Adds the next row: the contacts that the reduction kept, its squared force step [N^2], and whether it is in
   /// settled contact.
   void add(const ContactBuffer& kept, double step_squared, bool settled) noexcept;
@@ -49,18 +49,11 @@ class ReductionJumps {
   std::optional<double> step_max() const noexcept {
     return step_max_squared_ ? std::optional(std::sqrt(*step_max_squared_)) : std::nullopt;
   }
-  /// The same over the other rows in settled contact [N], without the row after each change: there, the damping
-  /// responds to the jump of the velocity.
-  double step_max_elsewhere() const noexcept { return std::sqrt(step_max_squared_elsewhere_); }
-  /// True when the force steps more than three times as far where the points change as it does elsewhere.
-  bool stand_out() const noexcept;
 
  private:
   std::vector<std::uint32_t> last_;  ///< numbers of the points of the row before
-  bool changed_ = false;             ///< they were others than those before
   std::uint64_t changes_ = 0;
   std::optional<double> step_max_squared_;  ///< [N^2]
-  double step_max_squared_elsewhere_ = 0.0;
 };
 
 /// The contact of a trial.
@@ -107,10 +100,6 @@ class MetricsObserver final : public MetricObserver {
   std::uint64_t rows() const noexcept { return before_.rows + now_.rows; }
   /// The contact of the current trial: the one after the last `begin`.
   const TrialContact& trial() const noexcept { return now_; }
-  /// Nothing where friction cannot become unstable.
-  const std::optional<ExplicitFriction>& explicit_friction() const noexcept { return friction_; }
-  /// Nothing without a reduction.
-  const std::optional<ReductionJumps>& reduction() const noexcept { return reduction_; }
   /// Over the bit patterns of p, v and f_render of every row; of several trials the hash of their hashes.
   std::uint64_t state_hash() const noexcept;
 
@@ -145,9 +134,9 @@ class MetricsObserver final : public MetricObserver {
   std::optional<RatioRange> ratio_;  ///< of all rendered contacts
   std::uint64_t colliding_sum_ = 0, colliding_max_ = 0, rendered_sum_ = 0, rendered_max_ = 0;
   double friction_limit_squared_ = std::numeric_limits<double>::infinity();
-  std::optional<ExplicitFriction> friction_;
+  std::optional<ExplicitFriction> friction_;  ///< none where friction cannot become unstable
   ContactForces contact_forces_;
-  std::optional<ReductionJumps> reduction_;
+  std::optional<ReductionJumps> reduction_;  ///< none without a reduction
 };
 
 }  // namespace hapbench

@@ -114,7 +114,8 @@ struct Result {
   std::vector<TargetRow> targets;  ///< of a tracking hand, all subjects and trials
   RunTiming timing;
   Provenance provenance;
-  std::string scenario_hash;  ///< of the effective scenario
+  std::string scenario_hash;    ///< of the effective scenario
+  bool replaces_other = false;  ///< its directory had the results of another scenario
 
   bool has_section(std::string_view section) const {
     return std::ranges::find(sections, section, &MetricSection::name) != sections.end();

@@ -207,18 +207,6 @@ void append_new(std::vector<std::string>& texts, const std::vector<std::string>&
     if (std::find(texts.begin(), texts.end(), text) == texts.end()) texts.push_back(text);
 }
 
-std::vector<std::string> require_names_of_their_own(const std::vector<std::filesystem::path>& files,
-                                                    const std::string& allowed) {
-  std::vector<std::string> names;
-  for (const std::filesystem::path& file : files) {
-    const std::string name = file.stem().string();
-    if (std::ranges::find(names, name) != names.end())
-      throw InputError(fmt::format("{}: a second scenario named \"{}\"; allowed: {}", file.string(), name, allowed));
-    names.push_back(name);
-  }
-  return names;
-}
-
 std::string_view sampling_name(SamplingMethod method) {
   return kMethodNames[static_cast<std::size_t>(method)];
 }

@@ -64,11 +64,6 @@ Axis parse_axis(const std::string& text, bool sampled = false);
 /// Appends the texts, such as warnings of cases, that are not in the list yet.
 void append_new(std::vector<std::string>& texts, const std::vector<std::string>& more);
 
-/// The names of the files, after which results are named. Throws InputError when two are the same; `allowed` is for its
-/// message.
-std::vector<std::string> require_names_of_their_own(const std::vector<std::filesystem::path>& files,
-                                                    const std::string& allowed);
-
 /// The path of the axis whose values name scenes.
 inline constexpr const char* kSceneAxis = "scenario";
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "algorithms/registry.hpp"
+#include "scenarios/format/bundled_scenarios.hpp"
 #include "scenarios/format/input_error.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/result_folder.hpp"
@@ -54,9 +55,8 @@ Cases cases_of(const ComparisonQuestion& question, const fs::path& file, std::ve
   const ScenarioText text = read_scenario_text(file);
   std::vector<Axis> axes = {{"rendering.algorithm", question.algorithms}};
   const Cases alone({text}, question.overrides, axes);
-  const LoadedScenario first = alone.load(0);  // the files are those of the scenario, whatever the algorithm
+  const LoadedScenario first = checked(alone.load(0));  // the files are those of the scenario, whatever the algorithm
   check_seeds_and_jitter(question, first);
-  append_new(warnings, with_files(first, check_named_files(first)));
   if (question.seeds > 1 || question.jitter != 0.0)
     axes.push_back(seed_axis(first.scenario, question.seeds, question.jitter));
   std::vector<Warning> common = first.warnings;
@@ -64,6 +64,7 @@ Cases cases_of(const ComparisonQuestion& question, const fs::path& file, std::ve
     const std::vector<Warning> of_this = alone.load(a).warnings;
     std::erase_if(common, [&](const Warning& w) { return std::ranges::find(of_this, w) == of_this.end(); });
   }
+  append_new(warnings, with_files(first, first.file_warnings));
   append_new(warnings, with_files(first, common));
   return {{text}, question.overrides, std::move(axes)};
 }
@@ -92,7 +93,7 @@ fs::path Comparison::folder(std::size_t run) const {
 }
 
 Comparison planned(const ComparisonQuestion& question) {
-  const auto names = require_names_of_their_own(question.scenarios, "one of each name in a comparison");
+  const auto names = names_of_scenarios(question.scenarios);
   Comparison comparison{{}, names, question.algorithms, question.seeds};
   const std::size_t scenes = question.scenarios.size(), size = scenes * comparison.each();
   if (size > kMostRuns) {
@@ -119,7 +120,7 @@ std::vector<Result> run_all(std::span<const Cases> all, const JobOptions& jobs,
   std::vector<Result> results(runs.size());
   for_each_job(runs.size(), jobs, [&](std::size_t place) {
     const auto& [cases, i, number] = runs[place];
-    results[number] = run_scenario(cases.load(i), folder ? std::optional(folder(number)) : std::nullopt, false);
+    results[number] = run_scenario(checked(cases.load(i)), folder ? std::optional(folder(number)) : std::nullopt, false);
     results[number].targets.clear();
   });
   return results;

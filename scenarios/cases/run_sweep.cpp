@@ -67,11 +67,10 @@ void add_names(Names& names, const MetricList& metrics) {
 /// Reads the files that the scenarios of these runs name, adds their warnings to the plan and the metrics of what they
 /// measured, and returns their hashes.
 Json check_files(SweepPlan& plan, const std::vector<std::size_t>& runs, Names& metrics) {
-  constexpr std::size_t kMostScans = 8;  // whose shells are made before the runs
   Json hashes = Json::array();
   for (const std::size_t run : runs) {
-    LoadedScenario loaded = plan.cases.load(run);
-    append_new(plan.warnings, with_files(loaded, check_named_files(loaded, hashes.size() < kMostScans)));
+    LoadedScenario loaded = checked(plan.cases.load(run));
+    append_new(plan.warnings, with_files(loaded, loaded.file_warnings));
     if (std::holds_alternative<RecordedPosition>(loaded.scenario.motion.position)) {
       const bool has_force = loaded.files.at(kMotionFile).stroke()->force.has_value();
       add_names(metrics, metrics_without_values(loaded.scenario, has_force));
@@ -311,7 +310,7 @@ SweepReport run_sweep(const SweepPlan& plan, const SweepOptions& options) {
     std::optional<FailedRun> failed;
     try {
       const auto output = options.keep_runs ? std::optional(run_folder(options, run)) : std::nullopt;
-      row = finished_row(plan, run, run_scenario(plan.cases.load(run), output, false));
+      row = finished_row(plan, run, run_scenario(checked(plan.cases.load(run)), output, false));
     } catch (const IoError&) {
       throw;  // further runs could not be kept either; --resume goes on
     } catch (const std::exception& error) {

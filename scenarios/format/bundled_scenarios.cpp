@@ -115,4 +115,15 @@ std::vector<fs::path> find_scenarios(const std::vector<std::string>& arguments) 
   return files;
 }
 
+std::vector<std::string> names_of_scenarios(const std::vector<fs::path>& files) {
+  std::vector<std::string> names;
+  for (const fs::path& file : files) {
+    const std::string name = file.stem().string();
+    if (std::ranges::find(names, name) != names.end())
+      throw InputError(fmt::format("{}: a second scenario named \"{}\"; allowed: each name once", file.string(), name));
+    names.push_back(name);
+  }
+  return names;
+}
+
 }  // namespace hapbench

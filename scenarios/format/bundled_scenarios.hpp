@@ -35,4 +35,7 @@ std::filesystem::path find_scenario(const std::string& argument, const std::file
 /// name. A file of that name goes before the group. Throws InputError.
 std::vector<std::filesystem::path> find_scenarios(const std::vector<std::string>& arguments);
 
+/// The names of scenario files, after which results are named. Throws InputError when two are the same.
+std::vector<std::string> names_of_scenarios(const std::vector<std::filesystem::path>& files);
+
 }  // namespace hapbench

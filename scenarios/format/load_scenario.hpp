@@ -37,8 +37,9 @@ struct ScenarioText {
 struct LoadedScenario {
   Scenario scenario;
   std::filesystem::path file;
-  NamedFiles files;               ///< that the scenario names
-  std::vector<Warning> warnings;  ///< about given values without effect
+  NamedFiles files;                    ///< that the scenario names
+  std::vector<Warning> warnings;       ///< about given values without effect
+  std::vector<Warning> file_warnings;  ///< about the files, once they are checked (scenarios/run/assemble.hpp)
   /// The file and those it extends as they stand, overrides in the first; null when it extends none.
   std::shared_ptr<const std::vector<ScenarioLayer>> layers;
 };

@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <strings.h>
+
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -180,8 +183,10 @@ std::string ply_text(const std::vector<SurfacePoint>& points) {
 }  // namespace
 
 bool is_mesh_name(const fs::path& file) {
-  const std::string extension = lower_case(file.extension().string());
-  return extension == ".obj" || extension == ".ply" || extension == ".stl" || extension == ".off";
+  constexpr const char* kExtensions[] = {".obj", ".ply", ".stl", ".off"};
+  return std::ranges::any_of(kExtensions, [extension = file.extension()](const char* known) {
+    return ::strcasecmp(extension.c_str(), known) == 0;
+  });
 }
 
 std::string mesh_extension(const fs::path& file) {

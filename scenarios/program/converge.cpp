@@ -217,8 +217,7 @@ LevelRun run_of(const LoadedScenario& loaded) {
 
 /// The levels of a scene's field. Throws InputError where it has none.
 LevelSweep levels_of(const ConvergeOptions& options, const ScenarioText& scenario) {
-  const LoadedScenario loaded = load_scenario(scenario, options.overrides);
-  check_named_files(loaded);  // the plan tells its warnings
+  const LoadedScenario loaded = checked(load_scenario(scenario, options.overrides));  // the plan tells its warnings
   if (own_value(loaded.scenario, options.field).is_null()) {
     std::vector<std::string> given = options.overrides;
     given.push_back(options.field + "=1");

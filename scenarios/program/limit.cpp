@@ -192,7 +192,7 @@ LimitTable asked_table(const LimitOptions& options) {
     throw InputError("--friction: got factors; allowed: with --device");
   const std::vector<fs::path> files = find_scenarios(options.scenarios);
   std::vector<ScenarioText> scenes;
-  Axis scene{.path = kSceneAxis, .values = require_names_of_their_own(files, "each name once")},
+  Axis scene{.path = kSceneAxis, .values = names_of_scenarios(files)},
       algorithm{.path = options.algorithms.empty() ? "--algorithms" : "rendering.algorithm",
                 .values = {""},
                 .named = options.algorithms.empty()};
@@ -221,7 +221,7 @@ LimitRow asked_row(const LimitOptions& options, const LimitTable& table, std::si
     row.scenario = loaded.scenario;
     row.asked = question_of(options, scene, row.scenario, overrides);
     append_new(warnings, row.asked.warnings);
-    append_new(warnings, with_files(loaded, check_named_files(loaded)));
+    append_new(warnings, with_files(loaded, checked(loaded).file_warnings));
   } catch (const InputError& error) {
     throw row.device != nullptr ? on_device(*row.device, error) : error;
   }

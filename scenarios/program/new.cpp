@@ -555,7 +555,8 @@ int write_new(const NewOptions& options) {
   }();
   LoadedScenario loaded = read_scenario(start.scene(), directory);
   loaded.file = out;
-  print_warnings(loaded, check_named_files(loaded));
+  loaded = checked(std::move(loaded));
+  print_warnings(loaded, loaded.file_warnings);
   require_writable_directory(directory.empty() ? "." : directory);
   write_file_atomically(out, json_text(start.scene()));
 

@@ -13,7 +13,7 @@
 #include <system_error>
 #include <vector>
 
-#include "device_model/logged_handle.hpp"
+#include "device_model/handle_motion.hpp"
 #include "results/io/atomic_file.hpp"
 #include "scenarios/format/bundled_scenarios.hpp"
 #include "scenarios/format/input_error.hpp"

@@ -16,6 +16,7 @@
 #include "scenarios/program/command.hpp"
 #include "scenarios/program/index.hpp"
 #include "scenarios/program/report.hpp"
+#include "scenarios/run/assemble.hpp"
 #include "scenarios/run/progress_bar.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/thesis/ledger.hpp"
@@ -99,7 +100,7 @@ class ThesisRuns {
 
  private:
   std::vector<std::string> run(const BundledScenario& bundled) const {
-    const LoadedScenario loaded = load_scenario(bundled.file);
+    const LoadedScenario loaded = checked(load_scenario(bundled.file));
     if (!anew_ && is_current(directory_ / bundled.name, loaded)) return {};
     return run_scenario(loaded, directory_ / bundled.name, false).unmet;
   }

@@ -2,7 +2,6 @@
 #include <nlohmann/json.hpp>
 
 #include "results/summary/summary.hpp"
-#include "scenarios/cases/cases.hpp"
 #include "scenarios/format/bundled_scenarios.hpp"
 #include "scenarios/program/command.hpp"
 #include "scenarios/program/report.hpp"
@@ -25,7 +24,7 @@ struct RunOptions : CommonOptions {
 /// --out, one of results/out. Throws InputError when two files have the same name.
 std::vector<fs::path> output_directories(const std::string& out, const std::vector<fs::path>& files) {
   std::vector<fs::path> directories;
-  for (const std::string& name : require_names_of_their_own(files, "one of each name in a run")) {
+  for (const std::string& name : names_of_scenarios(files)) {
     const fs::path directory = results_directory(out, name);
     directories.push_back(out.empty() || files.size() == 1 ? directory : directory / name);
   }
@@ -38,12 +37,14 @@ int run(const RunOptions& options) {
   if (options.latency) overrides.emplace_back("record.timing=true");
   std::vector<LoadedScenario> scenarios;
   const std::vector<fs::path> files = find_scenarios(options.scenarios);
-  for (const fs::path& file : files) {
-    scenarios.push_back(load_scenario(file, overrides));
-    scenarios.back().scenario.rendering.skips = options.skips;
-  }
+  for (const fs::path& file : files) scenarios.push_back(load_scenario(file, overrides));
   const std::vector<fs::path> directories = output_directories(options.out, files);
-  for (const LoadedScenario& scenario : scenarios) print_warnings(scenario, warnings_before_run(scenario));
+  for (LoadedScenario& loaded : scenarios) {
+    loaded = checked(std::move(loaded));
+    loaded.scenario.rendering.skips = options.skips;
+    print_warnings(loaded, loaded.warnings);
+    print_warnings(loaded, loaded.file_warnings);
+  }
   for (const fs::path& directory : directories) require_writable_directory(directory);
 
   const fs::path where = directories.size() == 1 ? directories[0] : directories[0].parent_path();
@@ -55,6 +56,10 @@ int run(const RunOptions& options) {
   for (std::size_t i = 0; i < scenarios.size(); ++i) {
     const Result& result = results.emplace_back(
         run_scenario(scenarios[i], directories[i], !options.output.quiet, nullptr, /*diagnose=*/true));
+    // Users who try values of a field hear that the results of the value before are gone.
+    if (result.replaces_other && options.out.empty() && !options.overrides.empty())
+      print_note(
+          fmt::format("replaced the run of other fields in {}; --out DIRECTORY keeps both", directories[i].string()));
     targets += targets_text(result);
     print_warnings(run_warnings({&result, 1}));
     Json& summary = report.json().emplace_back(summary_json(result));

@@ -337,11 +337,12 @@ int tune(const TuneOptions& options) {
   Tuning tuning;
   tuning.question = tune_question(options, file);
   const std::string device = device_text(options.device, tuning.question);
-  const LoadedScenario loaded = load_scenario(tuning.question.scenario, tuning.question.overrides);
+  const LoadedScenario loaded = checked(load_scenario(tuning.question.scenario, tuning.question.overrides));
   const std::vector<std::string> algorithms =
       options.algorithms.empty() ? std::vector<std::string>{loaded.scenario.rendering.algorithm}
                                  : chosen_names("--algorithms: got", options.algorithms, algorithm_names());
-  print_warnings(loaded, warnings_before_run(loaded));
+  print_warnings(loaded, loaded.warnings);
+  print_warnings(loaded, loaded.file_warnings);
   tuning.scene = loaded.scenario.name + device;
   tuning.ranges = with_file(loaded, [&] { return tune_ranges(tuning.question, algorithms.front()); });
   Report report(options, "tune_" + file.stem().string());

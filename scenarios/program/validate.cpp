@@ -146,8 +146,9 @@ int validate(const ValidateOptions& options) {
         verdicts.push_back({{"file", argument}, {"valid", true}, {"kind", "device"}});
         continue;
       }
-      const LoadedScenario loaded = load_scenario(file, options.overrides);
-      print_warnings(loaded, warnings_before_run(loaded));
+      const LoadedScenario loaded = checked(load_scenario(file, options.overrides));
+      print_warnings(loaded, loaded.warnings);
+      print_warnings(loaded, loaded.file_warnings);
       const SceneFacts facts = scene_facts(loaded);
       print_warnings(loaded, facts.warnings);
       if (!options.points.empty()) write_points(loaded, options.points);

@@ -12,7 +12,6 @@
 #include "device_model/ideal_device.hpp"
 #include "device_model/impedance_device.hpp"
 #include "scenarios/run/load_module.hpp"
-#include "scenarios/run/scene_checks.hpp"
 #include "sim/contact/contact_source.hpp"
 #include "sim/contact/late_contacts.hpp"
 #include "sim/core/random.hpp"
@@ -62,6 +61,18 @@ std::vector<StopRule> stop_rules(const Scenario& scenario) {
   return rules;
 }
 
+/// A stroke outside the time of the run.
+std::optional<Warning> clock_warning(const Stroke& stroke, const TimeFields& time) {
+  const double start = stroke.motion.samples().front().time, stop = stroke.motion.samples().back().time;
+  const double end = time.step * static_cast<double>(time.steps - 1);
+  if (start <= end && stop >= 0.0) return std::nullopt;
+  return Warning{
+      "stroke_clock", std::string(kMotionFile),
+      fmt::format("the stroke's clock runs from {:.6g} to {:.6g} s and the run's from 0 to {:.6g} s: the tool "
+                  "stays at the {} sample; let the stroke begin at 0 or adapt time",
+                  start, stop, end, start > end ? "first" : "last")};
+}
+
 }  // namespace
 
 SurfaceArrays surface_arrays(const Scenario& scenario, const NamedFiles& files) {
@@ -86,30 +97,7 @@ SurfaceArrays surface_arrays(const Scenario& scenario, const NamedFiles& files) 
   return surface;
 }
 
-std::vector<Warning> named_file_warnings(const LoadedScenario& loaded) {
-  const Scenario& scenario = loaded.scenario;
-  std::vector<Warning> warnings;
-  for (const auto& file : loaded.files.all()) {
-    for (Warning& warning : file->warnings()) warnings.push_back(std::move(warning));
-  }
-  if (NamedFile* file = loaded.files.find(kMotionFile)) {
-    const auto recorded = file->stroke();
-    const auto stroke = recorded->motion.samples();
-    const double start = stroke.front().time, stop = stroke.back().time;
-    const double end = scenario.time.step * static_cast<double>(scenario.time.steps - 1);
-    if (start > end || stop < 0.0) {
-      warnings.push_back(
-          {"stroke_clock", std::string(kMotionFile),
-           fmt::format(
-               "the stroke's clock runs from {:.6g} to {:.6g} s and the run's from 0 to {:.6g} s: the tool stays "
-               "at the {} sample; let the stroke begin at 0 or adapt time",
-               start, stop, end, start > end ? "first" : "last")});
-    }
-  }
-  return warnings;
-}
-
-std::vector<Warning> check_named_files(const LoadedScenario& loaded, bool looks_at_scan) {
+LoadedScenario checked(LoadedScenario loaded) {
   const Scenario& scenario = loaded.scenario;
   if (scenario.rendering.contact_source == kContactPlugin)
     with_file(loaded, [&] { require_contacts_in(contact_library(scenario)); });
@@ -121,23 +109,17 @@ std::vector<Warning> check_named_files(const LoadedScenario& loaded, bool looks_
       const std::string place = file_of(loaded, file->pointer()).string() + ": " + file->pointer();
       throw InputError(InputError::Kind::relation, place, error.what());
     }
+    for (Warning& warning : file->warnings()) loaded.file_warnings.push_back(std::move(warning));
   }
-  if (NamedFile* file = loaded.files.find(kMotionFile);
-      file != nullptr && scenario.record.force_reference && !scenario.reference_force && !file->stroke()->force) {
+  NamedFile* const file = loaded.files.find(kMotionFile);
+  if (file == nullptr) return loaded;
+  if (scenario.record.force_reference && !scenario.reference_force && !file->stroke()->force) {
     throw InputError(
         InputError::Kind::relation, file_of(loaded, "/record/force_reference").string() + ": /record/force_reference",
         fmt::format("got true; allowed: false, because {} has no columns mfx_N,mfy_N,mfz_N", file->path().string()));
   }
-  std::vector<Warning> warnings = named_file_warnings(loaded);
-  if (!looks_at_scan) return warnings;
-  if (auto warning = with_file(loaded, [&] { return inverted_scan_warning(loaded); })) warnings.push_back(*warning);
-  return warnings;
-}
-
-std::vector<Warning> warnings_before_run(const LoadedScenario& loaded) {
-  std::vector<Warning> warnings = loaded.warnings;
-  for (Warning& warning : check_named_files(loaded)) warnings.push_back(std::move(warning));
-  return warnings;
+  if (auto warning = clock_warning(*file->stroke(), scenario.time)) loaded.file_warnings.push_back(std::move(*warning));
+  return loaded;
 }
 
 SimulationConfig simulation_config(const Scenario& scenario) {

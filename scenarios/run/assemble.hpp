@@ -8,17 +8,10 @@
 
 namespace hapbench {
 
-/// Reads and parses the files that the scenario names, so that faults in them are found before anything is written;
-/// `loaded.files` keeps them for the run. Returns named_file_warnings and, if it may make the shell for that,
-/// inverted_scan_warning. Throws InputError.
-std::vector<Warning> check_named_files(const LoadedScenario& loaded, bool looks_at_scan = true);
-
-/// Those of loading, then those of check_named_files: all that is known before a run.
-std::vector<Warning> warnings_before_run(const LoadedScenario& loaded);
-
-/// Warnings about the files that the scenario names: a mesh that is open or was mended, a stroke outside the time of
-/// the run. Precondition: the files can be used.
-std::vector<Warning> named_file_warnings(const LoadedScenario& loaded);
+/// The scenario with the files that it names read and parsed, so that faults in them are found before anything is
+/// written. Its file_warnings tell of a mesh that is open or was mended, and of a stroke outside the time of the run.
+/// Throws InputError.
+LoadedScenario checked(LoadedScenario loaded);
 
 /// The numbers of the run: steps, start, integrator, bounds.
 SimulationConfig simulation_config(const Scenario& scenario);

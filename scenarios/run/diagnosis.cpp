@@ -25,17 +25,6 @@ std::optional<double> force_limit(const Scenario& scenario) {
   return most;
 }
 
-/// True when the directions of two contacts are more than 120 degrees apart, or those of two in 64 of many contacts.
-bool has_opposed(const ContactBuffer& contacts) noexcept {
-  const std::size_t stride = contacts.size() / 64 + 1;
-  for (std::size_t i = 0; i < contacts.size(); i += stride) {
-    for (std::size_t j = 0; j < i; j += stride) {
-      if (contacts.gradient(i).dot(contacts.gradient(j)) < -0.5) return true;
-    }
-  }
-  return false;
-}
-
 using Number = std::optional<double>;
 
 /// A run, as rules see it.
@@ -43,7 +32,7 @@ struct DiagnosedRun {
   const LoadedScenario& loaded;
   const Result& result;
   const SeenRows& rows;
-  const ToolShape* tool;  ///< null for rules of a quiet run
+  const ToolShape* tool;  ///< null for rules of metrics alone
 
   const Scenario& scenario() const { return loaded.scenario; }
   bool ended(Outcome outcome) const { return result.end.outcome == outcome; }
@@ -220,17 +209,6 @@ std::string harder_never(const DiagnosedRun& run) {
          other_laws(run, {"shaped_stiffness", "mean"});
 }
 
-std::string turned_rows(const DiagnosedRun& run) {
-  if (run.rows.opposed == 0) return "";
-  const double percent = 100.0 * *share(run.rows.opposed, run.rows.turned);
-  return fmt::format(", with contacts from opposite sides in {:.0f} % of these rows", percent);
-}
-
-std::string against_chatter(const DiagnosedRun& run) {
-  if (2 * run.rows.opposed > run.rows.turned) return "less K, or " + other_laws(run, {"shaped_stiffness", "proxy"});
-  return "less K; \"hapbench compare --algorithms all\" shows which law turns least here";
-}
-
 std::string point_spacing(const DiagnosedRun& run) {
   return fmt::format(", {}", length_text(point_distance(run.loaded)->metres));
 }
@@ -255,10 +233,7 @@ struct Rule {
   Sentence attempt;
   Sentence more = "";  ///< further facts, behind what is wrong
   bool quiet = false;  ///< as that of DiagnosisRule
-  Diagnosed diagnosed(const DiagnosedRun& run, double number_found) const {
-    const std::string what = fmt::format(fmt::runtime(says), fmt::format("{:.3g}", number_found));
-    return {name, number, unit, number_found, threshold, what + more.text(run), attempt.text(run)};
-  }
+  bool warns = false;  ///< told as a warning of a run without a diagnosis; by metrics alone
 };
 
 constexpr Rule kRules[] = {
@@ -288,7 +263,8 @@ constexpr Rule kRules[] = {
      "", true},
     {"reduction", "largest force step where the kept contacts change, over the mean force in settled contact", "1", 0.1,
      "the force steps by {} of its mean when the kept contacts change",
-     [](const DiagnosedRun& r) { return of_mean_force(r, "reduction_force_step_max_N"); }, "rendering.reduction null"},
+     [](const DiagnosedRun& r) { return of_mean_force(r, "reduction_force_step_max_N"); }, "rendering.reduction null",
+     "", false, true},
     {"facets", "distance of the surface's points over that at which four are in contact, where the tool moves on them",
      "1", 1.15, "the surface is sampled coarsely: at {} times the distance that keeps four points in contact",
      coarseness, "half of environment.spacing_m or grid_m; \"compare --errors\" tells what depends on it",
@@ -308,7 +284,7 @@ constexpr Rule kRules[] = {
     {"friction", "rows beyond the force whose friction an explicit step bears", "1", 0.0,
      "explicit friction is unstable in {} rows: what follows is the integrator's doing",
      [](const DiagnosedRun& r) { return r.metric("explicit_friction_rows_beyond"); },
-     R"(smaller rendering.friction.mu_f_s_per_m, {"type": "dry"}, or a shorter step)"},
+     R"(smaller rendering.friction.mu_f_s_per_m, {"type": "dry"}, or a shorter step)", "", false, true},
     {"encoder", "force of one step of the encoder through B over the mean force", "1", 0.1,
      "each step of the encoder is a force of {} of the mean through the damping", encoder_force,
      "less zeta, a finer encoder, a low pass as device.velocity_filter or a lower cutoff_Hz of it"},
@@ -327,8 +303,8 @@ constexpr Rule kRules[] = {
      "more zeta or less K"},
     {"chatter", "turns of the force by more than 90 degrees a second in settled contact", "1/s", 10.0,
      "it chatters: the force turns round {} times a second",
-     [](const DiagnosedRun& r) { return if_completed(r, r.metric("force_reversals_per_s")); }, against_chatter,
-     turned_rows, true},
+     [](const DiagnosedRun& r) { return if_completed(r, r.metric("force_reversals_per_s")); },
+     "less K; \"hapbench compare --algorithms all\" shows which law turns least here", "", true},
     {"energy", "energy that the rendering created", "J", 1e-3, "the rendering created {} J",
      [](const DiagnosedRun& r) { return if_completed(r, r.metric("passivity.net_created_J")); },
      "less K; rendering.passivity_controller where it is off", "", true},
@@ -336,6 +312,20 @@ constexpr Rule kRules[] = {
      "1", 0.05, "it drifts by {} of its half width under a constant hand", drift,
      "rendering.friction {\"type\": \"dry\"} with enough mu; viscous friction never holds"},
 };
+
+/// What the rules find that have this mark, all with null; with `beyond_threshold` only where something is wrong.
+std::vector<Diagnosed> diagnosed(const DiagnosedRun& run, bool Rule::*mark, bool beyond_threshold) {
+  std::vector<Diagnosed> found;
+  for (const Rule& rule : kRules) {
+    if (mark != nullptr && !(rule.*mark)) continue;
+    const Number value = rule.value(run);
+    if (!value || (beyond_threshold && !(*value > rule.threshold))) continue;
+    const std::string says = fmt::format(fmt::runtime(rule.says), fmt::format("{:.3g}", *value));
+    found.push_back({rule.name, rule.number, rule.unit, *value, rule.threshold, says + rule.more.text(run),
+                     rule.attempt.text(run)});
+  }
+  return found;
+}
 
 }  // namespace
 
@@ -363,11 +353,7 @@ void DiagnosisObserver::add_contact(const StepRecord& record) noexcept {
   ++seen_.touching;
   if (force_limit_ && f.norm() >= kAtLimit * *force_limit_) ++seen_.at_force_limit;
   if (input_limit_ && record.hand.input.norm() >= kAtLimit * *input_limit_) ++seen_.at_limiter;
-  if (!touched_) return;
-  seen_.way_in_contact += (record.tool.pose.position - seen_.tip).norm();
-  if (!(f.dot(seen_.last_force) < 0.0)) return;
-  ++seen_.turned;
-  if (has_opposed(*record.rendered)) ++seen_.opposed;
+  if (touched_) seen_.way_in_contact += (record.tool.pose.position - seen_.tip).norm();
 }
 
 void DiagnosisObserver::add_to_quarter(const StepRecord& record) noexcept {
@@ -392,24 +378,18 @@ std::vector<DiagnosisRule> diagnosis_rules() {
 
 std::vector<Diagnosed> DiagnosisObserver::findings(const LoadedScenario& loaded, const Result& result,
                                                    const ToolShape& tool) const {
-  const DiagnosedRun run{loaded, result, seen_, &tool};
-  std::vector<Diagnosed> findings;
-  for (const Rule& rule : kRules) {
-    const Number value = rule.value(run);
-    if (value && *value > rule.threshold) findings.push_back(rule.diagnosed(run, *value));
-  }
-  return findings;
+  return diagnosed({loaded, result, seen_, &tool}, nullptr, /*beyond_threshold=*/true);
 }
 
 std::vector<Diagnosed> quiet_numbers(const LoadedScenario& loaded, const Result& result) {
-  const SeenRows rows;
-  const DiagnosedRun run{loaded, result, rows, nullptr};
-  std::vector<Diagnosed> found;
-  for (const Rule& rule : kRules) {
-    if (!rule.quiet) continue;
-    if (const Number value = rule.value(run)) found.push_back(rule.diagnosed(run, *value));
-  }
-  return found;
+  return diagnosed({loaded, result, {}, nullptr}, &Rule::quiet, /*beyond_threshold=*/false);
+}
+
+std::vector<Warning> rule_warnings(const LoadedScenario& loaded, const Result& result) {
+  std::vector<Warning> warnings;
+  for (Diagnosed& found : diagnosed({loaded, result, {}, nullptr}, &Rule::warns, /*beyond_threshold=*/true))
+    warnings.push_back({found.rule, "", fmt::format("{}; try: {}", found.says, found.attempt)});
+  return warnings;
 }
 
 }  // namespace hapbench

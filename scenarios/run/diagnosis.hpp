@@ -32,17 +32,18 @@ std::vector<DiagnosisRule> diagnosis_rules();
 /// What the rules of a quiet run find in this result, also below their thresholds; none where they have no number.
 std::vector<Diagnosed> quiet_numbers(const LoadedScenario& loaded, const Result& result);
 
+/// What is told of a run that nobody diagnoses, as one of many: that it is not the law which made its numbers.
+std::vector<Warning> rule_warnings(const LoadedScenario& loaded, const Result& result);
+
 /// What rules need of the rows of a run, of all its trials. The last quarter is that of the last trial, or the quarter
 /// in which that ended.
 struct SeenRows {
   std::uint64_t touching = 0;        ///< rows in contact; of these
   std::uint64_t at_force_limit = 0;  ///< with the largest force of device or rendering
   std::uint64_t at_limiter = 0;      ///< with as much hand force as the device's limiter lets in
-  std::uint64_t turned = 0;        ///< whose force is more than 90 degrees from that of the row before, in contact too
-  std::uint64_t opposed = 0;       ///< of those: with two contacts whose directions are more than 120 degrees apart
-  double way_in_contact = 0.0;     ///< of the tip [m]
-  double longest_step = 0.0;       ///< OutcomeObserver::longest_step [m]
-  Vec3 last_force = Vec3::Zero();  ///< rendered [N]
+  double way_in_contact = 0.0;       ///< of the tip [m]
+  double longest_step = 0.0;         ///< OutcomeObserver::longest_step [m]
+  Vec3 last_force = Vec3::Zero();    ///< rendered [N]
   struct Quarter {
     std::uint64_t rows = 0;
     bool touches = true;                        ///< in all of them

@@ -7,7 +7,6 @@
 #include <cfenv>
 #include <map>
 #include <mutex>
-#include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <utility>
 
@@ -53,32 +52,6 @@ std::string hash_of_file(const fs::path& file) {
     return hash_text(hash_of(read_text_file(file, kLargestModule)));
   } catch (const InputError& error) {
     fail_in_file(file, error.problem());
-  }
-}
-
-/// Texts of a law go to terminals, pages and JSON. Throws std::invalid_argument for control characters, of which a
-/// terminal's commands are made, and for what is no UTF-8.
-void require_printable(const AlgorithmEntry& entry) {
-  const auto require = [](std::string_view text, const std::string& what) {
-    bool printable = true;
-    for (std::size_t i = 0; i < text.size(); ++i) {
-      const auto byte = static_cast<unsigned char>(text[i]);
-      const bool c1 = byte == 0xc2 && i + 1 < text.size() && static_cast<unsigned char>(text[i + 1]) < 0xa0;
-      printable = printable && byte >= 0x20 && byte != 0x7f && !c1;
-    }
-    // As JSON, in which what is no UTF-8 is the replacement character.
-    const std::string shown = Json(std::string(text)).dump(-1, ' ', true, Json::error_handler_t::replace);
-    if (!printable || shown.find("\\ufffd") != std::string::npos)
-      throw std::invalid_argument(what + " has characters that cannot be printed: " + shown);
-  };
-  const ModelInfo& info = *entry.info;
-  require(info.summary, "its summary");
-  require(info.formula, "its formula");
-  require(info.source, "its source");
-  require(info.known_failure, "its known failure");
-  for (const OwnParameter& p : entry.own_parameters) {
-    require(p.meaning, fmt::format("the meaning of parameter \"{}\"", p.name));
-    require(p.range.unit, fmt::format("the unit of parameter \"{}\"", p.name));
   }
 }
 
@@ -172,7 +145,6 @@ void load_law(const fs::path& given) {
   const HapbenchModule& table = opened(file, HAPBENCH_LAW);
   try {
     AlgorithmEntry entry = law_entry(module_of(table, file), std::move(hash));
-    require_printable(entry);
     const std::string name = entry.info->name;
     for (const LoadedLaw& other : laws) {
       if (other.algorithm == name)

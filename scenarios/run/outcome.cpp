@@ -14,7 +14,6 @@
 #include "device_model/hands/tracking_hand.hpp"
 #include "results/observe/contact_forces.hpp"
 #include "scenarios/run/scene_checks.hpp"
-#include "sim/contact/grid_index.hpp"
 
 namespace hapbench {
 namespace {
@@ -22,68 +21,6 @@ namespace {
 std::string millimetres(const Vec3& place) {
   const Vec3 p = 1e3 * place;
   return fmt::format("({:.3g}, {:.3g}, {:.3g}) mm", p.x(), p.y(), p.z());
-}
-
-/// Notes when the tool touches an open mesh where it ends. Beyond such an edge there is nothing to touch, and a tool
-/// that reaches past it is held by too few points or by none.
-class OpenEdges {
- public:
-  /// A point of the shell counts as near an edge if it lies within `reach` [m] of one of `edges`, the middles of the
-  /// boundary edges, along each coordinate. O(n) and the points near edges.
-  OpenEdges(const PointShell& shell, const std::vector<Vec3>& edges, double reach)
-      : reach_(reach), is_near_edge_(shell.size(), false) {
-    const GridIndex grid(shell);
-    const Vec3 half = Vec3::Constant(reach);
-    for (const Vec3& edge : edges) {
-      const Box box{edge - half, edge + half};
-      grid.for_each_run(box, [&](std::uint32_t first, std::uint32_t last) {
-        for (std::uint32_t i = first; i < last; ++i) {
-          const Vec3 point(grid.x()[i], grid.y()[i], grid.z()[i]);
-          if (distance_to(box, point) == 0.0) is_near_edge_[grid.shell_index(i)] = true;
-        }
-      });
-    }
-  }
-
-  void add(const StepRecord& record) noexcept {
-    const ContactBuffer& contacts = *record.rendered;
-    for (std::size_t i = 0; i < contacts.size(); ++i) {
-      if (!is_near_edge_[contacts.index[i]]) continue;
-      if (rows_++ == 0) first_ = {record.time, contacts.point(i)};
-      return;
-    }
-  }
-
-  /// With the first contact at such a point; none when there was none.
-  std::optional<Warning> warning() const {
-    if (rows_ == 0) return std::nullopt;
-    return Warning{
-        "open_edge", "",
-        fmt::format("touched the mesh within {} of where it is open in {} rows, first at {:.4g} s near {}: beyond "
-                    "the edge there is no surface",
-                    length_text(reach_), rows_, first_.time, millimetres(first_.place))};
-  }
-
- private:
-  double reach_;
-  std::vector<bool> is_near_edge_;  ///< of each point of the shell
-  std::uint64_t rows_ = 0;          ///< with such a contact
-  Passage::Event first_{};
-};
-
-Vec3 target_at(const ImpedanceHandFields& hand, double time) {
-  return {hand.target[0](time), hand.target[1](time), hand.target[2](time)};
-}
-
-/// The least distance of the target of a hand's spring from the environment, at a thousand and one times of the run.
-double closest_target(const ImpedanceHandFields& hand, const TimeFields& time, const Box& environment) {
-  constexpr int kLooks = 1000;
-  double closest = std::numeric_limits<double>::infinity();
-  for (int i = 0; i <= kLooks; ++i) {
-    const double t = time.step * static_cast<double>(time.steps) * i / kLooks;
-    closest = std::min(closest, distance_to(environment, target_at(hand, t)));
-  }
-  return closest;
 }
 
 /// The way of the tip centre near the environment, and how close a tool came that touches nothing. A row costs some
@@ -115,8 +52,6 @@ class Approach {
   double longest_step() const { return longest_step_; }  ///< OutcomeObserver::longest_step [m]
   double distance() const { return distance_; }          ///< in the last row from the box; 0 within it [m]
   const Box& environment() const { return environment_; }
-  /// Of the tip centre to the environment's box before the first contact; 0 within it [m].
-  double closest_to_box() const { return std::ranges::min(looks_, {}, &Look::from_box).from_box; }
 
   struct Closest {
     double distance, time;  ///< of the tool from the nearest point [m], and when [s]
@@ -261,35 +196,6 @@ class Standstill {
   Stuck stuck_;
 };
 
-/// How a tool passed the surface, as one sentence.
-std::string passage_text(const InsideObserver& inside, double half_width, double inside_max, bool is_led) {
-  const Passage& p = inside.passage();
-  const char* const begins = p.began_inside ? "the tool began inside the environment"
-                             : is_led       ? "the script led the tool through the surface"
-                                            : "the tool went through the surface";
-  const std::string end =
-      p.left ? fmt::format("left on another side at {:.4g} s at {}", p.left->time, millimetres(p.left->place))
-      : p.last_depth > 0.0 ? fmt::format("{} below it in the end", length_text(p.last_depth))
-                           : std::string("not below it in the end");
-  if (p.deep) {
-    return fmt::format(
-        "{}: its tip centre was more than its half width, {}, below it at {:.4g} s at {}, {} at most, and {}", begins,
-        length_text(half_width), p.deep->time, millimetres(p.deep->place), length_text(p.deepest), end);
-  }
-  if (p.left) {
-    return fmt::format("{}: it entered at {} and left on another side, at {:.4g} s at {}", begins,
-                       millimetres(p.entered), p.left->time, millimetres(p.left->place));
-  }
-  if (p.ends_inside) return fmt::format("{}: its core ended inside, its tip centre {}", begins, end);
-  if (const auto& core = inside.core_passage().event(); core && inside_max <= half_width) {
-    return fmt::format("{}: its axis {} at {:.4g} s, from {} to {}", begins,
-                       core->at_once ? "crossed it from face to face" : "entered it and left on another side",
-                       core->time, millimetres(core->entered), millimetres(core->left));
-  }
-  return fmt::format("{}: a part of it was {} inside, more than its half width of {}, though its tip centre was not",
-                     begins, length_text(inside_max), length_text(half_width));
-}
-
 class OutcomeWatch final : public OutcomeObserver {
  public:
   OutcomeWatch(const Scenario& scenario, const NamedFiles& files, const SimulationParts& parts,
@@ -304,16 +210,11 @@ class OutcomeWatch final : public OutcomeObserver {
       inside_.emplace(parts.tool, std::move(solid), metrics, static_cast<std::uint64_t>(every), steps);
     }
     if (parts.shell && parts.shell->size() > 0) approach_.emplace(parts.shell, steps);
-    if (metrics != nullptr && approach_ && std::holds_alternative<MeshEnvironment>(scenario.environment) &&
-        scenario.rendering.contact_source == kOwnContacts) {
-      if (const auto& edges = files.at(kEnvironmentFile).mesh().open_edges(); !edges.empty())
-        open_edges_.emplace(*parts.shell, edges, tool_->half_width());
-    }
     const double width = 2.0 * tool_->half_width();
     if (drag_ != nullptr) course_.emplace(*drag_, width, scenario.time.step * static_cast<double>(steps));
     if (const ImpedanceHandFields* hand = spring_of(scenario.hand);
         hand != nullptr && position_is_free(scenario.motion))
-      standstill_.emplace([hand](double time) { return target_at(*hand, time); }, width);
+      standstill_.emplace([&to = hand->target](double t) { return Vec3(to[0](t), to[1](t), to[2](t)); }, width);
     if (const auto* hand = dynamic_cast<const TrackingHand*>(parts.hand.get()))
       standstill_.emplace([hand](double) { return hand->intended(); }, width);
   }
@@ -327,7 +228,6 @@ class OutcomeWatch final : public OutcomeObserver {
     if (approach_) approach_->add(record, !last_contact_);
     if (course_) course_->add(record.time);
     if (standstill_) standstill_->add(record);
-    if (open_edges_) open_edges_->add(record);
   }
 
   Outcome outcome(Outcome outcome) override {
@@ -340,28 +240,16 @@ class OutcomeWatch final : public OutcomeObserver {
 
   std::vector<Warning> warnings(Outcome outcome) override {
     std::vector<Warning> warnings;
-    const auto add = [&warnings](std::optional<Warning> warning) {
-      if (warning) warnings.push_back(std::move(*warning));
-    };
-    if (const InsideDepths* inside = depths(); inside != nullptr && inside->at_most) {
-      add(Warning{"inside_bound", "",
-                  fmt::format("inside_max_m, {}, may be too low: no row is deeper than {}; record.inside=true looks "
-                              "at every row",
-                              length_text(inside_max()), length_text(*inside->at_most))});
-    }
     if (!approach_) return warnings;
     for (const Condition& condition : kConditions) {
       if (condition.outcome != outcome) continue;
-      auto warning = (this->*condition.warning)();
-      if (warning)
-        warning->kind = std::string(outcome_name(outcome)) + (warning->kind.empty() ? "" : " ") + warning->kind;
-      add(std::move(warning));
+      if (std::string text = (this->*condition.text)(); !text.empty())
+        warnings.push_back({std::string(outcome_name(outcome)), "", std::move(text)});
     }
-    if (drag_lost() && outcome != Outcome::went_through) add(drag_lost_warning());
-    if (drag_ != nullptr) add(drag_short_warning());
-    if (std::holds_alternative<MeshToolFields>(scenario_.tool))
-      add(scale_warning(scenario_, *tool_, approach_->environment()));
-    if (open_edges_) add(open_edges_->warning());
+    if (drag_ == nullptr) return warnings;
+    if (auto ends = short_path_warning(std::get<DragHandFields>(scenario_.hand), drag_->path().length(),
+                                       drag_way_asked(), 2.0 * tool_->half_width()))
+      warnings.push_back(std::move(*ends));
     return warnings;
   }
 
@@ -373,12 +261,12 @@ class OutcomeWatch final : public OutcomeObserver {
   }
 
  private:
-  /// What makes another outcome of one that completes, and a warning that says what happened and the likely cause. The
-  /// kind of that is the outcome and what the warning has as its kind. The diagnosis says what to try.
+  /// What makes another outcome of one that completes, and a warning that says what happened and the likely cause;
+  /// empty where there is nothing to say. The diagnosis says what to try.
   struct Condition {
     Outcome outcome;
     bool (OutcomeWatch::*holds)();
-    std::optional<Warning> (OutcomeWatch::*warning)();
+    std::string (OutcomeWatch::*text)();
   };
   static const Condition kConditions[5];  ///< the first that holds counts
 
@@ -395,82 +283,79 @@ class OutcomeWatch final : public OutcomeObserver {
     return drag_ != nullptr && drag_->drag().force(time_) > 0.0 && last_contact_ &&
            time_ - *last_contact_ >= SettlingRule().time;
   }
-  Warning drag_lost_warning() const {
-    const SurfacePoint foot = drag_->path().at(drag_->nearest());
-    const double height = foot.normal.dot(place_ - foot.position);
-    return {"drag_lost", "",
-            fmt::format("the dragged tool lost the surface at {:.4g} s and ended {} {}", *last_contact_,
-                        length_text(std::abs(height)), height < 0.0 ? "below it, past an edge" : "above it")};
-  }
-  /// Of a path that ends early.
-  std::optional<Warning> drag_short_warning() const {
-    auto ends = short_path_warning(std::get<DragHandFields>(scenario_.hand), drag_->path().length(), drag_way_asked(),
-                                   2.0 * tool_->half_width());
-    if (ends)
-      ends->text +=
-          fmt::format("; the tool was at [{:.4g}, {:.4g}, {:.4g}] m in the end", place_.x(), place_.y(), place_.z());
-    return ends;
-  }
-
   std::optional<Stuck> stuck() const {
     if (course_) return course_->stuck();
     return standstill_ ? standstill_->stuck() : std::nullopt;
   }
 
-  /// A likely cause, or where to look when none suggests itself: its kind, and the end of a sentence.
-  std::pair<const char*, std::string> likely_cause(Outcome outcome) const {
-    const Box& environment = approach_->environment();
+  /// The likely cause, as a question where it is no more than likely, or where to look when none suggests itself.
+  std::string likely_cause() const {
     const double longest = approach_->longest_step();
-    if (std::string question = scale_question(scenario_, *tool_, environment); !question.empty())
-      return {"scale", std::move(question)};
+    if (std::string question = scale_question(scenario_, *tool_, approach_->environment()); !question.empty())
+      return question;
     if (longest > tool_->half_width()) {
-      return {"step",
-              fmt::format("near it the tool moved {} in one step, more than its half width of {}: is time.step_s "
-                          "too long?",
-                          length_text(longest), length_text(tool_->half_width()))};
+      return fmt::format(
+          "near it the tool moved {} in one step, more than its half width of {}: is time.step_s too long?",
+          length_text(longest), length_text(tool_->half_width()));
     }
-    const auto* mesh = std::get_if<MeshEnvironment>(&scenario_.environment);
-    if (outcome == Outcome::no_contact && mesh != nullptr && !mesh->spacing && approach_->closest_to_box() == 0.0)
-      return {"spacing", "only the mesh's vertices can be touched: is environment.spacing_m missing?"};
-    const bool recorded = std::holds_alternative<RecordedPosition>(scenario_.motion.position);
-    if (recorded && outcome == Outcome::no_contact && approach_->closest_to_box() > kUnitsApart * diagonal(environment))
-      return {"recording", "are the positions of motion.position.file in metres?"};
-    if (const ImpedanceHandFields* hand = spring_of(scenario_.hand)) {
-      const double closest = closest_target(*hand, scenario_.time, environment);
-      if (closest > 0.0)
-        return {"target",
-                fmt::format("hand.target stays {} away from it: does it lead to the surface?", length_text(closest))};
+    if (last_contact_) {
+      const bool is_constant = std::holds_alternative<ForceHandFields>(scenario_.hand) ||
+                               std::holds_alternative<PushHandFields>(scenario_.hand);
+      if (is_constant) return "a hand of constant force goes on pushing where there is no surface";
+      return fmt::format("the largest force was {:.3g} N", std::sqrt(metrics_->trial().force_max_squared));
     }
-    const bool is_free = position_is_free(scenario_.motion);
-    if (is_free && std::holds_alternative<NoHandFields>(scenario_.hand) && outcome == Outcome::no_contact)
-      return {"no_hand", "nothing pushes the tool: is hand missing?"};
-    if (outcome == Outcome::lost_contact && (std::holds_alternative<ForceHandFields>(scenario_.hand) ||
-                                             std::holds_alternative<PushHandFields>(scenario_.hand)))
-      return {"constant_force", "a hand of constant force goes on pushing where there is no surface"};
-    if (outcome == Outcome::lost_contact)
-      return {"force", fmt::format("the largest force was {:.3g} N", std::sqrt(metrics_->trial().force_max_squared))};
-    return {"start", is_free ? "is initial.position_m right?" : "is motion.position right?"};
+    if (!position_is_free(scenario_.motion)) return "is motion.position right?";
+    if (spring_of(scenario_.hand) != nullptr) return "does hand.target lead to the surface?";
+    return std::holds_alternative<NoHandFields>(scenario_.hand) ? "nothing pushes the tool: is hand missing?"
+                                                                : "is initial.position_m right?";
   }
 
   bool went_through() {
     return inside_ &&
            (inside_->passage().went_through() || inside_->core_passage().event() || inside_max() > tool_->half_width());
   }
-  std::optional<Warning> went_through_warning() {
-    const std::string question = scale_question(scenario_, *tool_, approach_->environment());
-    return Warning{"", "",
-                   passage_text(*inside_, tool_->half_width(), inside_max(), !position_is_free(scenario_.motion)) +
-                       (question.empty() ? "" : "; " + question)};
+  /// How the tool passed the surface, in one sentence.
+  std::string went_through_text() {
+    const bool is_scan = std::holds_alternative<MeshEnvironment>(scenario_.environment) ||
+                         std::holds_alternative<PointShellEnvironment>(scenario_.environment);
+    std::string question = scale_question(scenario_, *tool_, approach_->environment());
+    if (question.empty() && is_scan && inside_->passage().began_inside)
+      question = "are the normals of an open scan inverted (environment.flip_normals)?";
+    const char* const begins = inside_->passage().began_inside      ? "the tool began inside the environment"
+                               : position_is_free(scenario_.motion) ? "the tool went through the surface"
+                                                                    : "the script led the tool through the surface";
+    return fmt::format("{}: {}{}{}", begins, passage_text(), question.empty() ? "" : "; ", question);
+  }
+  std::string passage_text() {
+    const Passage& p = inside_->passage();
+    const double half_width = tool_->half_width();
+    const std::string end =
+        p.left ? fmt::format("left on another side at {:.4g} s at {}", p.left->time, millimetres(p.left->place))
+        : p.last_depth > 0.0 ? fmt::format("{} below it in the end", length_text(p.last_depth))
+                             : std::string("not below it in the end");
+    if (p.deep) {
+      return fmt::format(
+          "its tip centre was more than its half width, {}, below it at {:.4g} s at {}, {} at most, and {}",
+          length_text(half_width), p.deep->time, millimetres(p.deep->place), length_text(p.deepest), end);
+    }
+    if (p.left) return fmt::format("it entered at {} and {}", millimetres(p.entered), end);
+    if (p.ends_inside) return fmt::format("its core ended inside, its tip centre {}", end);
+    if (const auto& core = inside_->core_passage().event(); core && inside_max() <= half_width) {
+      return fmt::format("its axis {} at {:.4g} s, from {} to {}",
+                         core->at_once ? "crossed it from face to face" : "entered it and left on another side",
+                         core->time, millimetres(core->entered), millimetres(core->left));
+    }
+    return fmt::format("a part of it was {} inside, more than its half width of {}, though its tip centre was not",
+                       length_text(inside_max()), length_text(half_width));
   }
 
   bool never_touched() { return !last_contact_; }
-  std::optional<Warning> never_touched_warning() {
+  std::string never_touched_text() {
     const auto closest = approach_->closest_to_surface(*tool_);
-    const auto [cause, question] = likely_cause(Outcome::no_contact);
-    return Warning{cause, "",
-                   fmt::format("never in contact: the tool came as close as {} (at {:.4g} s) to the surface of the "
-                               "environment ({}); {}",
-                               length_text(closest.distance), closest.time, environment_text(), question)};
+    return fmt::format(
+        "never in contact: the tool came as close as {} (at {:.4g} s) to the surface of the environment "
+        "({}); {}",
+        length_text(closest.distance), closest.time, environment_text(), likely_cause());
   }
 
   /// As a tool that was thrown out or pushed past, or a dragged one past an edge.
@@ -478,17 +363,19 @@ class OutcomeWatch final : public OutcomeObserver {
     const bool is_far = approach_->distance() > diagonal(approach_->environment()) + tool_->reach();
     return (is_far && position_is_free(scenario_.motion)) || drag_lost();
   }
-  std::optional<Warning> lost_contact_warning() {
-    const double away = approach_->distance();
-    if (drag_lost() && away == 0.0) return std::nullopt;  // drag_lost_warning says all
+  std::string lost_contact_text() {
+    if (drag_lost()) {
+      const SurfacePoint foot = drag_->path().at(drag_->nearest());
+      const double height = foot.normal.dot(place_ - foot.position);
+      return fmt::format("the dragged tool lost the surface at {:.4g} s and ended {} {}", *last_contact_,
+                         length_text(std::abs(height)), height < 0.0 ? "below it, past an edge" : "above it");
+    }
     const TrialContact& contact = metrics_->trial();
     const double share = static_cast<double>(contact.in_contact) / static_cast<double>(contact.rows);
-    const auto [cause, question] = likely_cause(Outcome::lost_contact);
-    return Warning{
-        cause, "",
-        fmt::format("in contact for {:.3g} % of the run, last at {:.4g} s; ended {} away from the "
-                    "environment ({}); {}",
-                    100.0 * share, contact.last.value_or(0.0), length_text(away), environment_text(), question)};
+    return fmt::format(
+        "in contact for {:.3g} % of the run, last at {:.4g} s; ended {} away from the environment ({}); {}",
+        100.0 * share, contact.last.value_or(0.0), length_text(approach_->distance()), environment_text(),
+        likely_cause());
   }
 
   /// It was pressed on the surface, and its calm numbers tell nothing of a drag. The spring that leads a tool which
@@ -497,23 +384,20 @@ class OutcomeWatch final : public OutcomeObserver {
     const double width = 2.0 * tool_->half_width();
     return course_ && course_->way() < width && drag_way_asked() > 2.0 * width;
   }
-  std::optional<Warning> stands_warning() {
+  std::string stands_text() {
     const auto s = stuck();
-    if (!s) return std::nullopt;
-    return Warning{
-        "", "",
-        fmt::format("the tool stood still since {:.4g} s, coming {} further while its target went on by {}; "
-                    "it was at {} under a force of {:.3g} N in the end",
-                    s->since, length_text(s->way), length_text(s->target_way), millimetres(place_), force_.norm())};
+    if (!s) return "";
+    return fmt::format(
+        "the tool stood still since {:.4g} s, coming {} further while its target went on by {}; it was "
+        "at {} under a force of {:.3g} N in the end",
+        s->since, length_text(s->way), length_text(s->target_way), millimetres(place_), force_.norm());
   }
 
   bool is_stuck() { return stuck() || (course_ && course_->left_behind()); }
-  std::optional<Warning> stuck_warning() {
-    if (stuck()) return stands_warning();
-    return Warning{
-        "", "",
-        fmt::format("the dragged tool ended {} behind where its hand led it, {} along the path, at {}",
-                    length_text(*course_->left_behind()), length_text(course_->asked()), millimetres(place_))};
+  std::string stuck_text() {
+    if (stuck()) return stands_text();
+    return fmt::format("the dragged tool ended {} behind where its hand led it, {} along the path, at {}",
+                       length_text(*course_->left_behind()), length_text(course_->asked()), millimetres(place_));
   }
 
   std::string environment_text() const {
@@ -528,9 +412,8 @@ class OutcomeWatch final : public OutcomeObserver {
   std::optional<InsideDepths> depths_;
   std::optional<Approach> approach_;
   std::optional<Standstill> standstill_;
-  std::optional<OpenEdges> open_edges_;  ///< where contacts are numbered as the points of an open mesh
-  const DragHand* drag_;                 ///< null unless one drags the tool
-  std::optional<DragCourse> course_;     ///< of that
+  const DragHand* drag_;              ///< null unless one drags the tool
+  std::optional<DragCourse> course_;  ///< of that
   // In the last row.
   double time_ = 0.0;
   Vec3 place_ = Vec3::Zero(), force_ = Vec3::Zero();  ///< of the tip [m]; rendered [N]
@@ -538,11 +421,11 @@ class OutcomeWatch final : public OutcomeObserver {
 };
 
 constinit const OutcomeWatch::Condition OutcomeWatch::kConditions[] = {
-    {Outcome::went_through, &OutcomeWatch::went_through, &OutcomeWatch::went_through_warning},
-    {Outcome::no_contact, &OutcomeWatch::never_touched, &OutcomeWatch::never_touched_warning},
-    {Outcome::lost_contact, &OutcomeWatch::lost_contact, &OutcomeWatch::lost_contact_warning},
-    {Outcome::not_dragged, &OutcomeWatch::not_dragged, &OutcomeWatch::stands_warning},
-    {Outcome::stuck, &OutcomeWatch::is_stuck, &OutcomeWatch::stuck_warning}};
+    {Outcome::went_through, &OutcomeWatch::went_through, &OutcomeWatch::went_through_text},
+    {Outcome::no_contact, &OutcomeWatch::never_touched, &OutcomeWatch::never_touched_text},
+    {Outcome::lost_contact, &OutcomeWatch::lost_contact, &OutcomeWatch::lost_contact_text},
+    {Outcome::not_dragged, &OutcomeWatch::not_dragged, &OutcomeWatch::stands_text},
+    {Outcome::stuck, &OutcomeWatch::is_stuck, &OutcomeWatch::stuck_text}};
 
 }  // namespace
 

@@ -19,8 +19,7 @@ class OutcomeObserver : public Observer {
   /// The outcome of a run with a point shell that ended with `outcome`, which stays unless it is `completes`: then it
   /// is the first whose condition holds (kConditions in outcome.cpp; outcome_infos() says the same in words).
   virtual Outcome outcome(Outcome outcome) = 0;
-  /// After the run: warnings about its outcome, and about contacts at the edges of an open mesh. Precondition: there
-  /// are metrics.
+  /// After the run: warnings about its outcome and the path of a drag. Precondition: there are metrics.
   virtual std::vector<Warning> warnings(Outcome outcome) = 0;
   /// The longest way of the tip in one step near the environment: in one that began no further from the environment's
   /// box than it was long, so that it may have met the surface, or passed it; 0 without points [m].
@@ -31,8 +30,8 @@ class OutcomeObserver : public Observer {
   virtual const InsideDepths* depths() = 0;
 };
 
-/// Scenario and parts must outlive the observer; `metrics` observes before. Without it, what only warnings need is not
-/// watched.
+/// Scenario and parts must outlive the observer; `metrics` observes before, and may be null where nobody asks for
+/// warnings.
 std::unique_ptr<OutcomeObserver> outcome_observer(const Scenario& scenario, const NamedFiles& files,
                                                   const SimulationParts& parts,
                                                   const MetricsObserver* metrics = nullptr);

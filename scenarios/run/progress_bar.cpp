@@ -4,7 +4,6 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 #include <algorithm>
-#include <cmath>
 #include <condition_variable>
 #include <csignal>
 #include <cstdio>
@@ -17,17 +16,8 @@ namespace {
 
 constexpr auto kSilence = std::chrono::seconds(2);
 constexpr auto kRedraw = std::chrono::milliseconds(200);
-constexpr std::size_t kWidth = 40;
 
 thread_local const ProgressListener* thread_listener = nullptr;
-
-/// "95 s", "12 min", "30 h"
-void add_time(fmt::memory_buffer& line, double seconds) {
-  const auto [unit, name] = seconds >= 7200.0  ? std::pair(3600.0, "h")
-                            : seconds >= 120.0 ? std::pair(60.0, "min")
-                                               : std::pair(1.0, "s");
-  fmt::format_to(fmt::appender(line), "{:.0f} {}", seconds / unit, name);
-}
 
 /// Columns of the terminal behind standard error; 80 when it does not say.
 std::size_t columns() {
@@ -101,27 +91,19 @@ void ProgressBar::show(std::uint64_t done, bool counts) noexcept {
   if (now < next_ || (done == total_ && !is_terminal())) return;
   next_ = is_terminal() ? now + kRedraw : now + (now - start_);
   drawn_ = true;
-  const double part = static_cast<double>(done) / static_cast<double>(total_);
-  // A buffer on the stack for as long a line as any: the bar is drawn between steps, which allocate nothing.
-  fmt::memory_buffer numbers, line;
-  fmt::format_to(fmt::appender(numbers), "{:3.0f} %", 100.0 * part);
-  if (counts) fmt::format_to(fmt::appender(numbers), ", {}/{}", done, total_);
+  // A buffer on the stack for as long a line as any: it is shown between steps, which allocate nothing.
+  fmt::memory_buffer line;
+  const auto to = fmt::appender(line);
+  fmt::format_to(to, "{}: {:3.0f} %", label_, 100.0 * static_cast<double>(done) / static_cast<double>(total_));
+  if (counts) fmt::format_to(to, ", {}/{}", done, total_);
   if (counts && done > 0) {
     const double each = std::chrono::duration<double>(now - start_).count() / static_cast<double>(done);
-    fmt::format_to(fmt::appender(numbers), ", ");
-    add_time(numbers, each * static_cast<double>(total_ - done));
-    fmt::format_to(fmt::appender(numbers), " left");
+    const double seconds = each * static_cast<double>(total_ - done);
+    const auto [unit, name] = seconds >= 7200.0  ? std::pair(3600.0, "h")
+                              : seconds >= 120.0 ? std::pair(60.0, "min")
+                                                 : std::pair(1.0, "s");
+    fmt::format_to(to, ", {:.0f} {} left", seconds / unit, name);
   }
-  if (!is_terminal()) {
-    fmt::format_to(fmt::appender(line), "{}: {}", label_, std::string_view(numbers.data(), numbers.size()));
-    return show_status({line.data(), line.size()});
-  }
-  // The bar is what gives way to a narrow terminal.
-  const std::size_t others = label_.size() + numbers.size() + 5;
-  const std::size_t width = std::clamp<std::size_t>(columns() - std::min(columns(), others), 10, kWidth);
-  const auto filled = static_cast<std::size_t>(std::ceil(part * static_cast<double>(width)));
-  fmt::format_to(fmt::appender(line), "{} [{:#>{}}{:.>{}}] {}", label_, "", filled, "", width - filled,
-                 std::string_view(numbers.data(), numbers.size()));
   show_status({line.data(), line.size()});
 }
 

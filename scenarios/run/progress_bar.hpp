@@ -18,13 +18,14 @@ void report_progress_to(const ProgressListener* listener) noexcept;
 /// Tells this thread's listener, if there is one.
 void tell_progress(std::string_view label, std::uint64_t done, std::uint64_t total) noexcept;
 
-/// A progress bar on standard error for work that takes longer than two seconds; silent otherwise. Where standard error
-/// is no terminal, a line after 2 s, 4 s, 8 s and so on. Before a listener it tells that of every `show`.
+/// How much is done, as a line on standard error for work that takes longer than two seconds; silent otherwise. Where
+/// standard error is no terminal, a line after 2 s, 4 s, 8 s and so on. Before a listener it tells that of every
+/// `show`.
 class ProgressBar {
  public:
-  /// `label` stands before the bar; `enabled` false silences it (--quiet).
+  /// `label` begins the line; `enabled` false silences it (--quiet).
   ProgressBar(std::string label, std::uint64_t total, bool enabled);
-  /// Removes the bar.
+  /// Removes the line.
   ~ProgressBar();
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;

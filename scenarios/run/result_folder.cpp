@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <cmath>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <string_view>
 
@@ -33,7 +34,7 @@ struct RecorderEntry {
   bool has_every_row = false;  ///< which rows there are, says the source
 };
 
-// The observers that a table is made from are there: the same fields ask for them, and check_named_files has refused a
+// The observers that a table is made from are there: the same fields ask for them, and checked() has refused a
 // reference that is not measured.
 const RecorderEntry kRecorders[] = {
     {kTrajectoryTable, [](const RecordFields& f) { return f.trajectory; },
@@ -65,7 +66,7 @@ double lines_a_row(const ResultTable& table, const RecordFields& record) {
   return file == "ratios.csv" ? static_cast<double>(record.ratio_iterations.size()) : 1.0;
 }
 
-constexpr const char* kTrialDirectory = "subject_";
+constexpr const char *kTrialDirectory = "subject_", *kEffectiveFile = "scenario.effective.json";
 
 void create(NewDirectories& directories, const fs::path& directory) {
   std::error_code error;
@@ -173,7 +174,7 @@ fs::path ResultFolder::of_trial(Trial trial, std::size_t trials) {
   return directory;
 }
 
-void ResultFolder::write(const RecordFields& record, const WrittenScenario& scenario, const Result& result,
+bool ResultFolder::write(const RecordFields& record, const WrittenScenario& scenario, const Result& result,
                          const Recorders& recorders) {
   std::vector<ResultTable> tables = record_tables(record);
   FileSet files;
@@ -184,13 +185,17 @@ void ResultFolder::write(const RecordFields& record, const WrittenScenario& scen
     write_target_table(directory_ / kTargetTable.file, result.targets, &files);
   }
   const auto add = [&](const char* name, const std::string& text) { files.write(directory_ / name, text); };
-  add("scenario.effective.json", json_text(scenario.effective(directory_)));
+  const std::string effective = json_text(scenario.effective(directory_));
+  add(kEffectiveFile, effective);
+  std::ifstream earlier(directory_ / kEffectiveFile, std::ios::binary);
+  const std::string before{std::istreambuf_iterator<char>(earlier), {}};
   add("columns.json", json_text(columns_json(tables, result.metrics)));
   if (record.timing) add("timing.json", timing_text(result.timing, instruction_set(), provenance()));
   // The summary, which says that a run is there, is the first to go and the last to come.
   add("summary.json", summary_text(result));
   files.commit();
   remove_empty_trials(directory_);
+  return !before.empty() && before != effective;
 }
 
 void RunTables::write(const WrittenScenario& scenario, const Result& result, const Recorders& recorders) {
@@ -204,7 +209,7 @@ void remove_run(const fs::path& directory) {
   if (!fs::is_directory(directory, ignored)) return;
   FileSet files;
   remove_earlier_run(directory, files);
-  files.remove(directory / "scenario.effective.json");
+  files.remove(directory / kEffectiveFile);
   files.commit();
   remove_empty_trials(directory);
 }

@@ -83,8 +83,8 @@ class ResultFolder {
   std::filesystem::path of_trial(Trial trial, std::size_t trials);
 
   /// Writes the results in place of those of an earlier run: each file appears complete or not at all, the summary
-  /// last. Throws IoError.
-  void write(const RecordFields& record, const WrittenScenario& scenario, const Result& result,
+  /// last. Returns true when that was another scenario. Throws IoError.
+  bool write(const RecordFields& record, const WrittenScenario& scenario, const Result& result,
              const Recorders& recorders);
 
  private:

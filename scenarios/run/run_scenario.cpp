@@ -51,27 +51,6 @@ std::shared_ptr<const ReferenceForce> reference_force(const Scenario& scenario, 
   return nullptr;
 }
 
-/// Warnings about the forces of a run: it passed the limit of explicit friction, or the reduction makes its force jump
-/// (results/observe).
-std::vector<Warning> force_warnings(const MetricsObserver& metrics) {
-  std::vector<Warning> warnings;
-  if (const auto& friction = metrics.explicit_friction(); friction && friction->first_step) {
-    warnings.push_back(
-        {"friction", "",
-         fmt::format("beyond {:.3g} N of spring force, in {} of {} rows, first in step {}, the explicit "
-                     "step of friction is unstable; what follows is the integrator's doing, not the law's",
-                     friction->limit, friction->rows_beyond, metrics.rows(), *friction->first_step)});
-  }
-  if (const auto& jumps = metrics.reduction(); jumps && jumps->stand_out()) {
-    warnings.push_back(
-        {"reduction", "",
-         fmt::format("reduction: kept points change in {} of {} steps, force steps up to {:.2g} N there "
-                     "and {:.2g} N elsewhere; rendering.reduction=null keeps them all",
-                     jumps->changes(), metrics.rows(), jumps->step_max().value_or(0.0), jumps->step_max_elsewhere())});
-  }
-  return warnings;
-}
-
 /// Takes kAskEvery steps and times each; returns false once the run has ended.
 bool advance_timed(Simulation& simulation, StepTimes& times) {
   bool more = true;
@@ -160,13 +139,14 @@ class Run {
     sections_.tell(result);
     result.state_hash = metrics_->state_hash();
     result.work = work_;
-    result.warnings = named_file_warnings(loaded_);
+    result.warnings = loaded_.file_warnings;
     for (Warning& warning : warnings_) {
       if (trials_ == 1) break;
       warning.text = fmt::format("in {} of {} trials, first in number {}: {}", with_warnings_, trials_,
                                  first_with_warnings_, warning.text);
     }
-    for (const auto& more : {warnings_, force_warnings(*metrics_), tool_warnings(scenario_.rendering, *tool_)})
+    for (const auto& more : {warnings_, tool_warnings(scenario_.rendering, *tool_),
+                             diagnosis_ ? std::vector<Warning>() : rule_warnings(loaded_, result)})
       result.warnings.insert(result.warnings.end(), more.begin(), more.end());
     // The fields of a cylinder say all.
     if (!std::holds_alternative<CylinderFields>(scenario_.tool))
@@ -290,7 +270,7 @@ Result run_trials(const LoadedScenario& loaded, const std::shared_ptr<const Poin
   const WrittenScenario written(scenario, loaded.files);
   add_provenance(result);
   result.scenario_hash = written.hash();
-  if (folder) folder->write(scenario.record, written, result, run.recorders());
+  if (folder) result.replaces_other = folder->write(scenario.record, written, result, run.recorders());
   if (tables != nullptr) tables->write(written, result, run.recorders());
   return result;
 }

@@ -77,11 +77,8 @@ std::vector<Warning> stroke_warnings(const Stroke& stroke, const TimeFields& tim
                                      const Box& environment) {
   const auto samples = stroke.motion.samples();
   Box box{samples.front().position, samples.front().position};
-  double closest = std::numeric_limits<double>::infinity();
-  for (const RecordedMotion::Sample& sample : samples) {
+  for (const RecordedMotion::Sample& sample : samples)
     box = {box.min.cwiseMin(sample.position), box.max.cwiseMax(sample.position)};
-    closest = std::min(closest, distance_to(environment, sample.position));
-  }
   const double size = diagonal(environment), way = diagonal(box);
   const std::string of = fmt::format("the stroke's places are within {}", size_text(box));
   std::vector<Warning> warnings;
@@ -94,9 +91,6 @@ std::vector<Warning> stroke_warnings(const Stroke& stroke, const TimeFields& tim
     warn(fmt::format("{}, a hundredth of the tool's half width, {}: are they in metres?", of,
                      length_text(tool.half_width())));
   }
-  if (closest > kUnitsApart * size)
-    warn(fmt::format("the stroke stays {} away from the environment, {:.0f} times its size: are places in metres?",
-                     length_text(closest), closest / size));
   if (samples.size() < 2) return warnings;
   const double interval = (samples.back().time - samples.front().time) / static_cast<double>(samples.size() - 1);
   if (interval > kUnitsApart * time.step || interval * kUnitsApart < time.step) {
@@ -108,30 +102,24 @@ std::vector<Warning> stroke_warnings(const Stroke& stroke, const TimeFields& tim
   return warnings;
 }
 
-/// Says that a place of a tool is behind a surface by more than `least` [m], on the side away from its normals.
-std::optional<Warning> wrong_side_warning(const PointShell& shell, const Vec3& tip, double least) {
+/// Says that the foremost place of the tool's core is behind a surface, on the side away from its normals.
+std::optional<Warning> wrong_side_warning(const PointShell& shell, const ToolShape& tool, const ToolPose& pose) {
+  const Vec3 core = pose.position - way_to_core(tool) * pose.axis;
   std::size_t nearest = 0;
   double distance = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < shell.size(); ++i) {
-    const double d = (shell.point(i).position - tip).norm();
+    const double d = (shell.point(i).position - core).norm();
     if (d < distance) nearest = i, distance = d;
   }
   constexpr double kBehind = 0.7;  // cosine of 45 degrees: not beside an edge
   const SurfacePoint point = shell.point(nearest);
-  const double behind = point.normal.dot(point.position - tip);
-  if (behind <= least || behind < kBehind * distance) return std::nullopt;
+  const double behind = point.normal.dot(point.position - core);
+  if (behind <= 0.0 || behind < kBehind * distance) return std::nullopt;
   return Warning{
       "wrong_side", "",
       fmt::format("the tool starts {} behind the surface, on the side its normals point away from: does it start "
                   "inside, or are the normals of an open scan inverted (environment.flip_normals)?",
                   length_text(behind))};
-}
-
-/// An environment of files whose inside only its normals tell.
-bool is_open_scan(const Scenario& scenario, const NamedFiles& files) {
-  if (std::holds_alternative<PointShellEnvironment>(scenario.environment)) return true;
-  return std::holds_alternative<MeshEnvironment>(scenario.environment) &&
-         !files.at(kEnvironmentFile).mesh().open_edges().empty();
 }
 
 constexpr double kAlways = std::numeric_limits<double>::infinity();
@@ -185,6 +173,16 @@ Unit unit_for(double metres) {
   return size >= 1e-4 ? Unit{1e3, "mm"} : Unit{1e6, "um"};
 }
 
+std::optional<Warning> scale_warning(const Scenario& scenario, const ToolShape& tool, const Box& environment) {
+  const std::string question = scale_question(scenario, tool, environment);
+  if (question.empty()) return std::nullopt;
+  const bool is_mesh = std::holds_alternative<MeshToolFields>(scenario.tool);
+  return Warning{"scale", "",
+                 fmt::format("the tool is {} thick and reaches {}, the environment is {}: {}{}",
+                             length_text(2.0 * tool.half_width()), length_text(tool.reach()), size_text(environment),
+                             is_mesh ? "" : "are the tool's lengths in metres, or ", question)};
+}
+
 }  // namespace
 
 double way_to_cover(const DragHandFields& hand, double duration) {
@@ -214,16 +212,6 @@ std::string scale_question(const Scenario& scenario, const ToolShape& tool, cons
   if (size >= kTooSmall * 2.0 * tool.half_width() && size <= kTooLarge * tool.reach()) return "";
   if (std::holds_alternative<MeshToolFields>(scenario.tool)) return "are tool.scale and the environment's size right?";
   return size_question(scenario.environment);
-}
-
-std::optional<Warning> scale_warning(const Scenario& scenario, const ToolShape& tool, const Box& environment) {
-  const std::string question = scale_question(scenario, tool, environment);
-  if (question.empty()) return std::nullopt;
-  const bool is_mesh = std::holds_alternative<MeshToolFields>(scenario.tool);
-  return Warning{"scale", "",
-                 fmt::format("the tool is {} thick and reaches {}, the environment is {}: {}{}",
-                             length_text(2.0 * tool.half_width()), length_text(tool.reach()), size_text(environment),
-                             is_mesh ? "" : "are the tool's lengths in metres, or ", question)};
 }
 
 std::string odd_frame(const Box& tool) {
@@ -296,21 +284,8 @@ SceneFacts scene_facts(const LoadedScenario& loaded) {
         warn(std::move(warning));
     }
   }
-  // check_named_files has warned of an open scan.
-  if (!is_open_scan(scenario, loaded.files)) warn(wrong_side_warning(*shell, pose.position, tool.half_width()));
+  warn(wrong_side_warning(*shell, tool, pose));
   return facts;
-}
-
-std::optional<Warning> inverted_scan_warning(const LoadedScenario& loaded) {
-  const Scenario& scenario = loaded.scenario;
-  if (!is_open_scan(scenario, loaded.files)) return std::nullopt;
-  SimulationParts parts;
-  parts.tool = make_tool(scenario, loaded.files);
-  parts.shell = make_shell(scenario, loaded.files);
-  if (parts.shell->size() == 0) return std::nullopt;
-  add_hand_and_motion(scenario, loaded.files, {}, parts);
-  const ToolPose pose = first_pose(scenario, parts);
-  return wrong_side_warning(*parts.shell, pose.position - way_to_core(*parts.tool) * pose.axis, 0.0);
 }
 
 double script_moves_until(const Scenario& scenario) {

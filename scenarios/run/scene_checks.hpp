@@ -31,11 +31,6 @@ struct SceneFacts {
 /// Builds the environment and places the tool. Throws InputError when a named file cannot be used.
 SceneFacts scene_facts(const LoadedScenario& loaded);
 
-/// Says that the tool starts with its core behind an open scan, a mesh or points, whose normals may be inverted. None
-/// for other environments, which cost nothing. One pass over the points of the shell, some 4 ns each; the shell is the
-/// run's, made once in a process. Throws InputError when a named file cannot be used.
-std::optional<Warning> inverted_scan_warning(const LoadedScenario& loaded);
-
 // ---- Warnings about a scene. ----
 
 /// Lengths and times this far apart are of different units: mm for m is a factor of 1000, cm for m one of 100.
@@ -55,8 +50,6 @@ std::optional<Warning> short_path_warning(const DragHandFields& hand, double pat
 /// Whether the sizes of tool and environment are right, as a question about the likeliest field, where they are out of
 /// proportion; empty where they are not.
 std::string scale_question(const Scenario& scenario, const ToolShape& tool, const Box& environment);
-/// The warning with that question.
-std::optional<Warning> scale_warning(const Scenario& scenario, const ToolShape& tool, const Box& environment);
 
 /// The odd thing about the place of a tool that fills the box in its own frame, as the end of a sentence such as "lies
 /// across its axis"; empty when nothing is odd. Tools have their tip centre at the origin, and their tip points along

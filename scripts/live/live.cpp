@@ -52,9 +52,8 @@ constexpr std::size_t kRowNumbers = 1 + 5 * 3 + 2;
 class Session final : public Observer {
  public:
   /// If the pointer leads the run, call `aim` before the first row; if not, the scenario's own hand and motion do.
-  Session(LoadedScenario loaded, bool is_led) : loaded_(std::move(loaded)) {
+  Session(LoadedScenario loaded, bool is_led) : loaded_(checked(std::move(loaded))) {
     const Scenario& scenario = loaded_.scenario;
-    check_named_files(loaded_);
     parts_ = assemble(scenario, loaded_.files, make_shell(scenario, loaded_.files), {});
     shell_ = parts_.shell;
     tool_ = parts_.tool;

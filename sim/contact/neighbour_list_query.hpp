@@ -8,28 +8,6 @@
 
 namespace hapbench {
 
-/// Compares the points of the grid cells around the tool with the tool, anew at each pose. The cost does not depend on
-/// the tool's motion, so the worst case is the best of all searches. The answers are those of ShellQuery, bit by bit.
-/// O(points in the box around the tool).
-class GridQuery final : public ContactQuery {
- public:
-  /// Shell and tool must outlive the query. Builds the grid: O(n).
-  GridQuery(const PointShell& shell, const ToolShape& tool);
-
-  void contacts_at(const ToolPose& pose, ContactBuffer& contacts) noexcept override;
-  std::size_t capacity() const noexcept override { return shell_->size(); }
-  void reset() noexcept override { work_ = {}; }
-
- private:
-  void push_sorted(const ToolPose& pose, ContactBuffer& contacts) noexcept;
-
-  const PointShell* shell_;
-  const ToolShape* tool_;
-  GridIndex grid_;
-  GridScan scan_;
-  std::vector<std::uint32_t> found_;  ///< shell indices of the colliding points, if they have to be sorted
-};
-
 /// The contact search of a run: a list of the points within a skin around the tool, taken from a uniform grid and used
 /// until the tool has moved or turned further than the skin. The answers are those of ShellQuery, bit by bit.
 ///

@@ -13,14 +13,11 @@
 
 /// The force laws and the reduction on contacts of the tasks.
 namespace hapbench::bench {
-namespace {
 
-/// n contacts with depths and gradients before the reduction, from poses of T2 a tenth of a second apart, at most about
-/// 2000. Padded.
 ContactBuffer task_contacts(std::size_t n) {
   constexpr std::size_t kEvery = 205;  // 0.1 s
   const TaskScene& scene = task_scene("T2");
-  GridQuery query(*scene.shell, *scene.tool);
+  NeighbourListQuery query(*scene.shell, *scene.tool);
   const auto depth_model = make_depth_model("surface_normal");
   ContactBuffer here(query.capacity()), sample(n);
   for (std::size_t k = 0; k < scene.poses.size() && sample.size() < n; k += kEvery) {
@@ -32,6 +29,8 @@ ContactBuffer task_contacts(std::size_t n) {
   sample.pad();
   return sample;
 }
+
+namespace {
 
 /// n contacts for any n; beyond kRepeated, they repeat.
 constexpr std::size_t kRepeated = 1000;

@@ -19,11 +19,10 @@ namespace hapbench::bench {
 namespace {
 
 /// The searches that are compared.
-constexpr const char* kSearches[] = {"brute_force", "grid", "neighbour_list"};
+constexpr const char* kSearches[] = {"brute_force", "neighbour_list"};
 
 std::unique_ptr<ContactQuery> make_search(const std::string& search, const PointShell& shell, const ToolShape& tool) {
   if (search == "brute_force") return std::make_unique<ShellQuery>(shell, tool);
-  if (search == "grid") return std::make_unique<GridQuery>(shell, tool);
   return std::make_unique<NeighbourListQuery>(shell, tool);
 }
 

@@ -12,6 +12,7 @@
 #include "results/observe/metrics.hpp"
 #include "results/observe/step_times.hpp"
 #include "sim/contact/contact_source.hpp"
+#include "sim/contact/neighbour_list_query.hpp"
 #include "sim/loop/simulation.hpp"
 #include "sim/tool/cylinder.hpp"
 #include "sim/tool/mesh_tool.hpp"
@@ -20,7 +21,7 @@
 #include "tests/bench/task_scene.hpp"
 #include "tests/support/meshes.hpp"
 
-/// Whole steps: their mean time, single steps, and growth with the number of contacts.
+/// Whole steps: their mean time, single steps, growth with the number of contacts, and what each skip saves.
 namespace hapbench::bench {
 namespace {
 
@@ -282,12 +283,105 @@ void add_growth() {
   }
 }
 
+/// One force algorithm on fixed contacts.
+void rendering_benchmark(benchmark::State& state, RenderingConfig config, std::size_t contacts, Skips skips) {
+  const std::size_t capacity = std::max<std::size_t>(contacts, 1);
+  const auto made = [&](Skips s) {
+    config.skips = s;
+    auto algorithm = make_algorithm(config);
+    algorithm->prepare({.capacity = capacity});
+    algorithm->reset();
+    return algorithm;
+  };
+  const auto rendering = made(skips), other = made(skips == Skips::off ? Skips::on : Skips::off);
+  ContactBuffer buffer = task_contacts(capacity);
+  if (contacts == 0) buffer.clear();
+  const ToolState tool{{}, {0.001, -0.002, 0.003}};
+  ContactBuffer others = buffer;
+  RenderedForce force, expected;
+  rendering->compute(tool, buffer, force);
+  other->compute(tool, others, expected);
+  if (force.rendered != expected.rendered || force.spring != expected.spring) {
+    return refute(state, "the skip changes the force");
+  }
+  for (auto _ : state) {
+    rendering->compute(tool, buffer, force);
+    benchmark::DoNotOptimize(force);
+  }
+  state.counters["contacts"] = static_cast<double>(contacts);
+}
+
+/// A query in free air, which the clearance of the list answers, while brute force compares every point.
+void clearance_benchmark(benchmark::State& state, Skips skips) {
+  const TaskScene& scene = task_scene("T1");
+  const ToolPose pose{{0.0, 0.0, 0.002}, {0.0, 0.0, -1.0}};
+  NeighbourListQuery list(*scene.shell, *scene.tool);
+  ShellQuery brute(*scene.shell, *scene.tool);
+  ContactQuery& query = skips == Skips::on ? static_cast<ContactQuery&>(list) : brute;
+  ContactBuffer contacts(query.capacity());
+  for (ContactQuery* each : {static_cast<ContactQuery*>(&list), static_cast<ContactQuery*>(&brute)}) {
+    each->contacts_at(pose, contacts);
+    if (!contacts.empty()) return refute(state, "contacts in free air");
+  }
+  for (auto _ : state) query.contacts_at(pose, contacts);
+}
+
+/// T3 without observers. With the skip off, ratios and energies are computed nevertheless.
+void records_benchmark(benchmark::State& state, Skips skips) {
+  const Scenario& scenario = step_scenario("T3").scenario;
+  const auto run = [&scenario](Skips s) {
+    SimulationConfig config = simulation_config(scenario);
+    config.skips = s;
+    return Simulation(config, assemble(scenario, NamedFiles(scenario), block_shell(), {}), {});
+  };
+  Simulation simulation = run(skips), other = run(skips == Skips::off ? Skips::on : Skips::off);
+  for (int k = 0; k < 2048; ++k) {
+    simulation.step();
+    other.step();
+  }
+  if (simulation.tool().pose.position != other.tool().pose.position) return refute(state, "the skip changes the run");
+  constexpr benchmark::IterationCount kBatch = 16'384;
+  while (state.KeepRunningBatch(kBatch)) {
+    state.PauseTiming();
+    simulation.reset();
+    state.ResumeTiming();
+    for (benchmark::IterationCount k = 0; k < kBatch; ++k) simulation.step();
+  }
+}
+
+/// The drill of the thesis: shaping, reduction and friction.
+RenderingConfig task_rendering() {
+  RenderingConfig config;
+  config.reduction = ReductionConfig{};
+  config.mu_s = 5.0;
+  config.mu_f = 10.0;
+  return config;
+}
+
+void add_skips() {
+  RenderingConfig plain = task_rendering();
+  plain.reduction.reset();
+  plain.mu_s = plain.mu_f = 0.0;
+  for (const Skips skips : {Skips::on, Skips::off}) {
+    const auto add = [skips](const char* what, auto function, auto... arguments) {
+      const char* way = skips == Skips::on ? "taken" : "off";
+      benchmark::RegisterBenchmark(fmt::format("skip/{}/{}", what, way).c_str(), function, arguments..., skips);
+    };
+    add("clearance", clearance_benchmark);
+    add("no_contact", rendering_benchmark, task_rendering(), std::size_t{0});
+    add("reduction_of_one", rendering_benchmark, task_rendering(), std::size_t{1});
+    add("no_friction", rendering_benchmark, plain, std::size_t{1});
+    add("unwanted_records", records_benchmark);
+  }
+}
+
 }  // namespace
 
 void register_steps() {
   add_steps();
   add_latencies();
   add_growth();
+  add_skips();
 }
 
 }  // namespace hapbench::bench

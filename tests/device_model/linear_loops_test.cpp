@@ -97,9 +97,10 @@ double first_crossing(SampledLoop loop) {
     const std::complex<double> at = stiffness_at(high);
     if (before.imag() * at.imag() <= 0.0 && std::abs(before - at) < std::abs(at)) {  // no pole in between
       double a = low, b = high;
-      bisect(
-          a, b, [&](double theta) { return stiffness_at(theta).imag() * before.imag() > 0.0; },
-          [](double c, double d) { return 0.5 * (c + d); }, [](double c, double d) { return d - c > 1e-13; });
+      while (b - a > 1e-13) {
+        const double theta = 0.5 * (a + b);
+        (stiffness_at(theta).imag() * before.imag() > 0.0 ? a : b) = theta;
+      }
       const double K = stiffness_at(a).real();
       if (K > 0.0) first = std::min(first, K);
     }

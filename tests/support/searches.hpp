@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "sim/contact/contact_source.hpp"
+#include "sim/contact/neighbour_list_query.hpp"
 #include "sim/core/random.hpp"
 #include "sim/tool/cylinder.hpp"
 #include "tests/support/scale.hpp"
@@ -22,8 +23,7 @@ std::vector<SurfacePoint> random_shell(Random& random, double size);
 /// The next pose of a walk: mostly small steps, sometimes none, a jump, a turn on the spot, or far away.
 ToolPose next_pose(const ToolPose& pose, Random& random, double size, double step);
 
-/// A search and brute force side by side over one shell.
-template <class Query>
+/// The search of runs and brute force side by side over one shell.
 class SearchPair {
  public:
   SearchPair(const std::vector<SurfacePoint>& points, double cell_size, const Cylinder& tool)
@@ -42,14 +42,13 @@ class SearchPair {
     contacts_ += all_.size();
     return all_.size() <= search_.capacity() && same_contacts(found_, all_);
   }
-  void reset() { search_.reset(); }
   std::uint64_t contacts() const { return contacts_; }
   const SearchWork& work() const { return search_.work(); }
 
  private:
   std::shared_ptr<const ToolShape> tool_;
   PointShell shell_;
-  Query search_;
+  NeighbourListQuery search_;
   ShellQuery brute_;
   ContactBuffer found_, all_;
   std::uint64_t contacts_ = 0;
@@ -60,16 +59,15 @@ struct WalkTotals {
   std::uint64_t poses = 0, contacts = 0, lists_rebuilt = 0;
 };
 
-/// Walks tools, make_tool(random, size of the shell), over random shells, cases(1'000'000) poses in all, and expects a
-/// search to find at each what brute force finds.
-template <class Query, class MakeTool>
+/// Walks tools, make_tool(random, size of the shell), over random shells, cases(1'000'000) poses in all, and expects
+/// the search of runs to find at each what brute force finds.
+template <class MakeTool>
 void expect_agreement_with_brute_force(Random random, const MakeTool& make_tool, WalkTotals& totals) {
   const std::size_t shells = cases(2000);
   for (std::size_t s = 0; s < shells; ++s) {
     const double size = std::pow(10.0, random.uniform(-4.0, 0.0));
     const std::shared_ptr<const ToolShape> tool = make_tool(random, size);
-    SearchPair<Query> pair(random_shell(random, size), random.below(2) == 0 ? 0.0 : size * random.uniform(0.01, 1.0),
-                           tool);
+    SearchPair pair(random_shell(random, size), random.below(2) == 0 ? 0.0 : size * random.uniform(0.01, 1.0), tool);
     ToolPose pose{Vec3::Zero(), random.direction()};
     for (int k = 0; k < 500; ++k, ++totals.poses) {
       pose = next_pose(pose, random, size, 0.2 * tool->half_width());

@@ -251,7 +251,7 @@ Cases finer_cases(const LevelSweep& levels, const Cases& cases) {
   Cases finer(cases.scenes(), cases.sets(), std::move(axes));
   for (std::size_t i = 0; i < axis.values.size(); ++i) {
     try {
-      check_named_files(finer.load(i * cases.size()));
+      checked(finer.load(i * cases.size()));
     } catch (const InputError& error) {
       throw InputError(fmt::format("{} = {}: {}", axis.path, axis.values[i], error.problem()));
     }

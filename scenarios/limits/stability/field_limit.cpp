@@ -19,7 +19,6 @@
 #include "scenarios/format/text_lines.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/scene_loop.hpp"
-#include "sim/core/bisection.hpp"
 #include "sim/core/math.hpp"
 
 namespace hapbench {
@@ -59,9 +58,10 @@ FoundEdge find_edge(const SearchWay& way, std::map<double, bool>& tried, const s
   const std::optional<double> own = way.own_part();
   const double start = own && holds(*own) ? *own : 0.0;
   const auto narrow = [&](double& good, double& bad) {
-    bisect(
-        good, bad, holds, [](double a, double b) { return 0.5 * (a + b); },
-        [&](double a, double b) { return way.apart(a, b); });
+    while (way.apart(good, bad)) {
+      const double middle = 0.5 * (good + bad);
+      (holds(middle) ? good : bad) = middle;
+    }
   };
   const auto with_other_end = [&](FoundEdge edge) {
     if (!beside) return edge;

@@ -51,8 +51,9 @@ py::dict run(const std::string& scenario, const std::vector<std::string>& overri
   std::vector<std::string> warnings;
   const bool shown = progress.ptr() != Py_False;
   supervise(progress, [&] {
-    const LoadedScenario loaded = load_scenario(find_scenario(scenario), overrides);
-    warnings = with_files(loaded, warnings_before_run(loaded));
+    const LoadedScenario loaded = checked(load_scenario(find_scenario(scenario), overrides));
+    warnings = with_files(loaded, loaded.warnings);
+    for (std::string& warning : with_files(loaded, loaded.file_warnings)) warnings.push_back(std::move(warning));
     report = run_scenario(loaded, std::nullopt, shown, &tables);
     for (std::string& warning : run_warnings({&report, 1})) warnings.push_back(std::move(warning));
   });

@@ -50,16 +50,6 @@ TEST(HighPass, SettledAtAConstantGivesExactlyZero) {
   for (int k = 0; k < 100; ++k) ASSERT_EQ(filter.filter(value), Vec3::Zero());
 }
 
-TEST(HighPass, SettlingForgetsThePast) {
-  HighPass used(30.0, 2000.0);
-  used.settle_at(Vec3::Zero());
-  for (int k = 0; k < 10; ++k) used.filter({1.0, 2.0, 3.0});
-  used.settle_at(Vec3::UnitX());
-  HighPass fresh(30.0, 2000.0);
-  fresh.settle_at(Vec3::UnitX());
-  for (int k = 0; k < 10; ++k) ASSERT_EQ(used.filter(Vec3::UnitY()), fresh.filter(Vec3::UnitY()));
-}
-
 TEST(JudgedRows, BeginAQuarterIntoTheContactOrWholePeriodsBeforeTheEnd) {
   const auto begin = [](double period) {
     JudgedRows rows(1000, period);

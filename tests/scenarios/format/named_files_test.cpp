@@ -48,8 +48,7 @@ TEST_F(NamedFilesOfAScenario, AreThoseItNames) {
 // Whoever changes a file while a run is under way changes neither the run nor what it says of itself.
 TEST_F(NamedFilesOfAScenario, AreReadOnce) {
   for (const char* environment : {"mesh", "point_shell"}) {
-    const LoadedScenario loaded = load(environment, kStroke);
-    check_named_files(loaded);
+    const LoadedScenario loaded = checked(load(environment, kStroke));
     const Result report = run_scenario(loaded, directory_ / "out", false);
     for (const char* name : {"cube.obj", "shell.csv", "stroke.csv"})
       fs::rename(directory_ / name, directory_ / (std::string(name) + ".gone"));
@@ -67,9 +66,7 @@ TEST_F(NamedFilesOfAScenario, AreParsedOnceForAllLaws) {
   const std::size_t before = shared_cache().made();
   for (const AlgorithmEntry& algorithm : algorithms()) {
     Json patch = {{"environment", {{"scale", 0.00123}}}, {"rendering", {{"algorithm", algorithm.info->name}}}};
-    const LoadedScenario loaded = load("mesh", patch.dump().c_str());
-    check_named_files(loaded);
-    run_scenario(loaded, {}, false);
+    run_scenario(checked(load("mesh", patch.dump().c_str())), {}, false);
   }
   EXPECT_EQ(shared_cache().made() - before, 3u);
 }

@@ -62,11 +62,5 @@ const HapbenchModule* hapbench_module(uint32_t version) {
   if (is("no table")) module.parameters = NULL;
   if (is("no step")) module.step = NULL;
   if (is("many")) module.parameter_count = (size_t)1 << 40;
-  if (is("escape")) module.summary = "red: \033[31m";
-  if (is("csi"))
-    module.source =
-        "\xc2\x9b"
-        "31m";
-  parameters[0].meaning = is("latin") ? "caf\xe9" : "scales nothing";
   return &module;
 }

@@ -46,48 +46,6 @@ TEST(OneSpringDamper, FollowsEquationA2ToRounding) {
   EXPECT_LT(std::abs(expected.x), 1e-100);  // and comes to rest
 }
 
-TEST(OneUndampedSpring, SwingsForEverAsTheClosedFormSays) {
-  // x_(k+1) = (2 - kappa) x_k - x_(k-1) with x_1 = (1 - kappa) x_0: a sampled cosine of 2 cos theta = 2 - kappa.
-  const double K = 1.59e6, M = 0.1, dt = 0.0005, kappa = K * dt * dt / M, x0 = 1e-3;
-  const double cosine = 1.0 - kappa / 2.0, theta = std::acos(cosine), sine = std::sqrt(1.0 - cosine * cosine);
-  const auto rows = rows_of(bundled("single_spring_undamped"));
-  ASSERT_EQ(rows.size(), 2000u);
-  const double amplitude = x0 * (1.0 + (1.0 - kappa - cosine) / sine);
-  // Roundings of some eps of the amplitude a step add up over the steps and are amplified by 1 / sine; theta, known to
-  // eps / sine, is multiplied by k.
-  const double tolerance = 2000 * 8 * kEpsilon / sine * std::abs(amplitude);
-  double largest = 0.0;
-  for (std::size_t k = 0; k < rows.size(); ++k) {
-    const double angle = static_cast<double>(k) * theta;
-    const double expected = x0 * (std::cos(angle) + (1.0 - kappa - cosine) / sine * std::sin(angle));
-    ASSERT_NEAR(rows[k].tool.pose.position.x(), expected, tolerance) << k;
-    largest = std::max(largest, std::abs(rows[k].tool.pose.position.x()));
-  }
-  EXPECT_GT(largest, 0.9 * std::abs(amplitude));
-}
-
-TEST(ShapedSpringsOfTableA3, ActAsOneSpringDamperAlongEachAxis) {
-  const double K = 20000.0, M = 0.2, dt = 0.0005, B = 2.0 * 0.7 * std::sqrt(K * M);
-  const auto rows = rows_of(bundled("springs_unlimited_shaped_stiffness"));
-  ASSERT_EQ(rows.size(), 2000u);
-  Mat3 identity_in_plane = Mat3::Zero();
-  identity_in_plane.diagonal() << 1.0, 1.0, 0.0;
-  // 200 equal weights are summed, so that S is off by at most some 200 eps; K and B with it.
-  const double S_tolerance = 256 * kEpsilon;
-  // As above with the error of S in place of eps; rho = sqrt(1 - B dt / M) = 0.88, so that k rho^k stays below 3.
-  const double x_tolerance = 8 * 3 * 4 * 256 * kEpsilon * 5e-3, v_tolerance = x_tolerance / dt;
-  State x{-0.005, 0.0}, y{-0.005, 0.0};
-  for (std::size_t k = 0; k < rows.size(); ++k) {
-    ASSERT_LE((rows[k].force.S - identity_in_plane).cwiseAbs().maxCoeff(), S_tolerance) << k;
-    ASSERT_NEAR(rows[k].tool.pose.position.x(), x.x, x_tolerance) << k;
-    ASSERT_NEAR(rows[k].tool.pose.position.y(), y.x, x_tolerance) << k;
-    ASSERT_NEAR(rows[k].tool.velocity.x(), x.v, v_tolerance) << k;
-    ASSERT_NEAR(rows[k].tool.velocity.y(), y.v, v_tolerance) << k;
-    x = after_one_step(x, K, B, M, dt);
-    y = after_one_step(y, K, B, M, dt);
-  }
-}
-
 /// Steady response x_k of the integrator's spring-damper, (M/dt²)(x_(k+1) - 2 x_k + x_(k-1)) + (B/dt)(x_k - x_(k-1)) +
 /// K x_k = F_k, to F_k = mean + amplitude sin(w k dt): a geometric sequence answers a geometric sequence.
 double steady_response(double K, double B, double M, double dt, const Profile::Sine& force, double k) {

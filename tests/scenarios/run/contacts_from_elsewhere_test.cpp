@@ -104,9 +104,7 @@ TEST_F(Trace, OfARunGivesItsForcesBitForBit) {
       run_scenario(loaded(scene, overrides), first, false);
       overrides.emplace_back(R"(rendering.contact_source={"type":"trace","file":")" +
                              (first / "contact_trace.csv").string() + "\"}");
-      const LoadedScenario traced = loaded(scene, overrides);
-      check_named_files(traced);
-      run_scenario(traced, again, false);
+      run_scenario(checked(loaded(scene, overrides)), again, false);
       EXPECT_EQ(test::read_file(first / "trajectory.csv"), test::read_file(again / "trajectory.csv"));
       EXPECT_EQ(test::read_file(first / "contact_trace.csv"), test::read_file(again / "contact_trace.csv"));
     }

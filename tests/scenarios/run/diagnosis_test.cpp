@@ -138,19 +138,16 @@ TEST(Diagnosis, BlamesTheStepWhereThatIsTooLong) {
   EXPECT_EQ(far.warnings[0].text.find("time.step_s"), std::string::npos) << far.warnings[0].text;
 }
 
-/// Two sides of a hole push at once; a drag over a tooth has one side.
-TEST(Diagnosis, NamesOppositeSidesOnlyWhereTheyWereSeen) {
-  const Result hole = run({"peg_in_hole_2d_continuous_normal_projection"});
-  ASSERT_NE(finding(hole, "chatter"), nullptr);
-  EXPECT_NE(finding(hole, "chatter")->says.find("opposite sides in "), std::string::npos);
-  const Result drag = run({"drag_molar", {"rendering.algorithm=summation"}});
-  ASSERT_NE(finding(drag, "chatter"), nullptr);
-  EXPECT_EQ((finding(drag, "chatter")->says + finding(drag, "chatter")->attempt).find("opposite"), std::string::npos);
-}
-
-/// Only who asks pays for it.
-TEST(Diagnosis, IsNotThereUnlessItIsAskedFor) {
-  EXPECT_FALSE(run_scenario(load_scenario(find_scenario("single_spring"), {}), std::nullopt, false).diagnosis);
+/// Only who asks pays for it. Others are warned where numbers are not the law's doing.
+TEST(Diagnosis, OfARunThatNobodyDiagnosesIsAWarning) {
+  for (const auto& [override, rule] : {std::pair("rendering.friction.mu_f_s_per_m=1000", "friction"),
+                                       {R"(rendering.reduction={"threshold":0.9})", "reduction"}}) {
+    const Words overrides = {override};
+    const char* const scene = rule == std::string_view("friction") ? "drag_molar" : "mesh_molar";
+    const Result result = run_scenario(load_scenario(find_scenario(scene), overrides), std::nullopt, false);
+    EXPECT_FALSE(result.diagnosis);
+    EXPECT_EQ(std::ranges::count(result.warnings, rule, &Warning::kind), 1) << rule;
+  }
 }
 
 }  // namespace

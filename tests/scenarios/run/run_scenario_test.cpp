@@ -31,25 +31,6 @@ LoadedScenario study(const char* record = R"({"trajectory": false})") {
   return read_scenario(json, ".");
 }
 
-TEST(NewDirectories, RemovesWhatItMadeAndNobodyUsed) {
-  const TemporaryDirectory directory;
-  fs::create_directory(directory / "mine");
-  {
-    NewDirectories made;
-    std::error_code error;
-    for (const char* name : {"a/b/c", "a/used", "mine", "mine/below"}) {
-      made.create(directory / name, error);
-      EXPECT_FALSE(error) << name;
-      EXPECT_TRUE(fs::is_directory(directory / name)) << name;
-    }
-    test::write_plainly(directory / "a/used/file", "x");
-  }
-  EXPECT_TRUE(fs::exists(directory / "a/used/file"));
-  EXPECT_FALSE(fs::exists(directory / "a/b"));
-  EXPECT_TRUE(fs::exists(directory / "mine")) << "empty, but not its own";
-  EXPECT_FALSE(fs::exists(directory / "mine/below"));
-}
-
 TEST(Trials, EverySubjectDoesEveryTrialOnceAndDifferently) {
   const Result report = run_scenario(study(R"({"trajectory": false, "timing": true})"), std::nullopt, false);
   ASSERT_EQ(report.targets.size(), 8u);
@@ -136,23 +117,6 @@ class StopSignals : public testing::Test {
  private:
   void (*before_)(int);
 };
-
-TEST_F(StopSignals, AreRecordedAndForgotten) {
-  {
-    const StopSignal signals;
-    EXPECT_EQ(StopSignal::received(), 0);
-    EXPECT_NO_THROW(throw_if_stopped());
-    std::raise(SIGTERM);
-    EXPECT_EQ(StopSignal::received(), SIGTERM);
-    try {
-      throw_if_stopped();
-      FAIL() << "nothing was thrown";
-    } catch (const Stopped& stopped) {
-      EXPECT_EQ(stopped.signal, SIGTERM);
-    }
-  }
-  EXPECT_EQ(StopSignal::received(), 0);
-}
 
 TEST_F(StopSignals, EndARunOfWhichNothingIsLeft) {
   const test::TemporaryDirectory directory;

@@ -178,11 +178,5 @@ TEST(DeviceLoop, KnowsEveryFieldOfTheDevices) {
   EXPECT_EQ(unknown_to_theory(scenario), "");
 }
 
-TEST(DeviceLoop, HasTheWallOfTheSpringsInIt) {
-  const SampledLoop loop = std::get<SampledLoop>(device_loop(wall_on_handle(0.0, 1000.0), 0.5).loop);
-  EXPECT_EQ(loop.stiffness, 500.0);
-  EXPECT_EQ(loop.wall_damping, 2.5);
-}
-
 }  // namespace
 }  // namespace hapbench::scene_loop_test

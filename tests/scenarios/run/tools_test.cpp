@@ -105,20 +105,6 @@ TEST(ScenarioTool, WarnsThatTheProxyHasNoGuaranteeWhereItIsNotConvex) {
   }
 }
 
-TEST(ScenarioTool, OfAMeshAsksForItsScaleWhereItIsOutOfProportion) {
-  for (const auto& [scale, warnings] : {std::pair{"0.001", 0}, {"1", 1}}) {
-    Json json = scene(kCube);
-    json["tool"]["scale"] = Json::parse(scale);
-    json["tool"]["grid_m"] = nullptr;
-    const Result report = run_scenario(loaded(json), std::nullopt, false);
-    const auto asks = [](const Warning& warning) {
-      return warning.text.starts_with("the tool is ") &&
-             warning.text.ends_with("are tool.scale and the environment's size right?");
-    };
-    EXPECT_EQ(std::count_if(report.warnings.begin(), report.warnings.end(), asks), warnings) << scale;
-  }
-}
-
 TEST(ScenarioTool, IsInTheSummaryUnlessItIsACylinder) {
   EXPECT_FALSE(run_scenario(loaded(scene("{}")), std::nullopt, false).tool);
   const auto tool = run_scenario(loaded(scene(kHourglass)), std::nullopt, false).tool;

@@ -336,9 +336,8 @@ void expect_seen_without_record(const LoadedScenario& loaded) {
   EXPECT_EQ(few.max.has_value(), exact.max.has_value());
   EXPECT_EQ(few.centre_inside, exact.centre_inside);
   if (!exact.max) return;
-  const double half_width = make_tool(loaded.scenario)->half_width();
   EXPECT_LE(*few.max, *exact.max + 1e-12);
-  EXPECT_LE(*exact.max, few.at_most.value_or(*few.max + InsideSearch::kTolerance * (*few.max + half_width)) + 1e-12);
+  EXPECT_LE(*exact.max, (1.0 + InsideSearch::kTolerance) * *few.max + few.max_within + 1e-12);
   if (exact.settled_median() && few.settled_median()) {
     EXPECT_NEAR(*few.settled_median(), *exact.settled_median(), 0.2 * *exact.max);
   }
