@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cctype>
+#include <filesystem>
 #include <iterator>
+#include <optional>
+#include <regex>
 
 #include "scenarios/format/bundled_scenarios.hpp"
 #include "scenarios/format/input_error.hpp"
@@ -103,6 +106,110 @@ Index folder_index() {
                               {{"verdict", claim.at("verdict")}, {"source", claim.at("place")}}));
   for (const Json& choice : list_on_record("choices")) index.push_back(on_record("choice", choice, "", Json::object()));
   return index;
+}
+
+// ---- Places of the thesis
+
+/// A place of the thesis: "Fig. A.2" is {"Fig.", "A.2"}.
+struct Place {
+  std::string kind;  ///< "Fig.", "Table" or "section"
+  std::string number;
+};
+
+/// The kind of place that a word announces; empty for any other word.
+std::string place_kind(const std::string& word) {
+  const std::string lower = lower_case(word);
+  if (lower == "fig" || lower == "figs" || lower == "figure") return "Fig.";
+  if (lower == "table" || lower == "tables") return "Table";
+  return lower == "section" ? "section" : "";
+}
+
+/// Reads a place, of any kind where none is given, also from the name of a figure's file such as
+/// figure_A.4_springs.svg. None when the name is not a place's.
+std::optional<Place> asked_place(const std::string& name) {
+  static const std::regex kPlace(
+      R"((?:(fig|figs|figure|table|section)[._ ]*)?((?:[a-f]\.)?\d+(?:\.\d+)*[a-d]?)(?:_[a-z_]+)?(?:\.(?:svg|png|pdf))?)",
+      std::regex::icase);
+  std::smatch parts;
+  if (!std::regex_match(name, parts, kPlace)) return std::nullopt;
+  Place place{parts[1].matched ? place_kind(parts[1]) : "", parts[2]};
+  // A plain number could mean anything.
+  if (place.kind.empty() && place.number.find('.') == std::string::npos) return std::nullopt;
+  if (place.number.find('.') == 1) place.number[0] = static_cast<char>(std::toupper(place.number[0]));
+  return place;
+}
+
+/// True for a source that names the place or a part of it, as "3.3, Fig. 4, C.2a" does: a kind holds until another word
+/// comes. Other numbers in the source are taken for places, too.
+bool names_place(const std::string& source, const Place& asked) {
+  static const std::regex kParts(R"(([A-F]\.\d+|\d+)(\.\d+)*[a-d]?\b|[A-Za-z]+)");
+  std::string kind = "section";
+  for (std::sregex_iterator found(source.begin(), source.end(), kParts), end; found != end; ++found) {
+    const std::string word = found->str();
+    if (!(*found)[1].matched) {
+      const std::string announced = place_kind(word);
+      if (word != "and") kind = announced.empty() ? "section" : announced;
+      continue;
+    }
+    if ((!asked.kind.empty() && kind != asked.kind) || !word.starts_with(asked.number)) continue;
+    const std::string part = word.substr(asked.number.size());
+    if (part.empty() || part[0] == '.' || std::isalpha(static_cast<unsigned char>(part[0]))) return true;
+  }
+  return false;
+}
+
+/// The pictures on record of a figure of the thesis, such as figure_A.2.svg of "A.2".
+std::vector<std::filesystem::path> pictures_of(const Place& place) {
+  const std::string figure = place.number.substr(0, place.number.find_last_not_of("abcd") + 1);
+  std::vector<std::filesystem::path> pictures;
+  std::error_code none;
+  for (const auto& entry :
+       std::filesystem::directory_iterator(installed_folder("results/reference") / "figures", none)) {
+    const std::string stem = entry.path().stem().string();
+    if (stem == "figure_" + figure || stem.starts_with("figure_" + figure + "_")) pictures.push_back(entry.path());
+  }
+  std::ranges::sort(pictures);
+  return pictures;
+}
+
+/// The pictures, and the commands that draw them anew.
+std::string pictures_text(const std::vector<std::filesystem::path>& pictures) {
+  std::string text;
+  for (const std::filesystem::path& picture : pictures) {
+    std::string id = picture.stem().string().substr(std::string_view("figure_").size());
+    std::replace(id.begin(), id.end(), '_', '-');
+    text += fmt::format("    {}\n    drawn anew by scripts/reproduce --figure {}\n", picture.string(), id);
+  }
+  return text;
+}
+
+/// The bundled scenarios and claims that name a place of the thesis, as "A.2", "Fig. A.2", "Table A.1" or
+/// "section 3.4"; a place includes its parts: 3.4 includes 3.4.1, Fig. 2 includes Fig. 2c. None when the name is no
+/// place's. Throws InputError for a place that nothing names.
+std::optional<Description> describe_place(const std::string& name) {
+  const std::optional<Place> place = asked_place(name);
+  if (!place) return std::nullopt;
+  const std::string title = place->kind + (place->kind.empty() ? "" : " ") + place->number;
+  std::string scenarios, claims;
+  Json json = {{"kind", "place"}, {"name", title}, {"scenarios", Json::array()}, {"claims", Json::array()}};
+  for (const Named& thing : folder_index()) {
+    const std::string source = thing.more.value("source", "");
+    if (!names_place(source, *place)) continue;
+    const bool is_claim = thing.kind == "claim";
+    (is_claim ? claims : scenarios) += is_claim
+                                           ? entry(thing.name, fmt::format("{} ({})", thing.summary, source), 4, 10)
+                                           : entry(thing.name, source, 4, 44);
+    json[is_claim ? "claims" : "scenarios"].push_back(thing.name);
+  }
+  const std::vector<std::filesystem::path> pictures =
+      place->kind == "Fig." || place->kind.empty() ? pictures_of(*place) : std::vector<std::filesystem::path>();
+  for (const std::filesystem::path& picture : pictures) json["pictures"].push_back(picture.string());
+  if (scenarios.empty() && claims.empty() && pictures.empty())
+    throw InputError(fmt::format("no bundled scenario and no claim names {} of the thesis", title));
+  return Description{fmt::format("{} of the thesis\n\n{}  scenarios\n{}\n  claims\n{}", bold(stdout, title),
+                                 pictures.empty() ? "" : "  picture\n" + pictures_text(pictures) + "\n",
+                                 scenarios.empty() ? "    none\n" : scenarios, claims.empty() ? "    none\n" : claims),
+                     json};
 }
 
 // ---- list
@@ -273,6 +380,7 @@ std::vector<Description> described_headings(const Index& index, const std::strin
 
 /// What a name means that the program does not know by itself.
 std::vector<Description> other_meanings(const Index& index, const std::string& name) {
+  if (const std::optional<Description> place = describe_place(name)) return {*place};
   // Fields of that name in any section: "torque" for record.torque.
   std::vector<Description> found =
       described(index, [&](const Named& thing) { return thing.kind == "field" && thing.name.ends_with("." + name); });
@@ -311,10 +419,9 @@ void add_describe(CommandLine& line) {
       "an algorithm, a depth model, an integrator, an environment, a hand, a device, a scenario, a study; a kind of these "
       "such as algorithms, or a group of scenarios such as thesis, for a list; a field such as rendering.limits, "
       "\"scenario\" (all fields), \"schema\", \"choices_schema\", \"stability\", \"diagnosis\"; a metric, \"metrics\" or "
-      "\"columns\" for all of them, a heading such as \">30Hz rms N\", or a file such as trajectory.csv; a claim such as C5 or "
-      "a choice such as planar.first_tilt");
-  command.add("--grep", options.grep,
-              "list only things with this text in their name, description or source, as \"Fig. A.2\"");
+      "\"columns\" for all of them, a heading such as \">30Hz rms N\", or a file such as trajectory.csv; a claim such as C5, a "
+      "choice such as planar.first_tilt or a place such as \"Fig. A.2\"");
+  command.add("--grep", options.grep, "list only things with this text in their name, description or source");
 }
 
 }  // namespace hapbench

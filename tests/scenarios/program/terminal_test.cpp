@@ -181,6 +181,16 @@ TEST(DescribeCommand, ExplainsTheWordsAndHeadingsThatResultsHave) {
   for (const std::string& word : words) EXPECT_EQ(hapbench_here({"describe", word}).status, 0) << word;
 }
 
+TEST(DescribeCommand, ShowsWhatNamesAPlaceOfTheThesis) {
+  const auto claims = [](const char* name) { return hapbench_here({"describe", name, "--json"}).json()["claims"]; };
+  for (const char* name : {"Fig. A.2", "fig a.2", "figure_A.2", "figure_A.2_springs.svg"})
+    EXPECT_EQ(claims(name), Json::array({"A1"})) << name;
+  // Section A.2 is about the springs, and Fig. 2 has the parts 2c and 2d.
+  EXPECT_EQ(claims("section A.2"), Json::array({"A2", "A3"}));
+  EXPECT_EQ(claims("A.2"), Json::array({"A1", "A2", "A3", "D2"}));
+  EXPECT_EQ(claims("Fig. 2"), Json::array({"V1", "V2", "V2b", "S1"}));
+}
+
 /// As a test of all that a run can write.
 TEST(DescribeCommand, ExplainsEveryColumnOfEveryFileOfARun) {
   const test::TemporaryDirectory directory;
