@@ -210,7 +210,7 @@ std::unique_ptr<DepthModel> make_depth_model(const RenderingConfig& config) {
 
 std::unique_ptr<ForceLaw> make_law(std::string_view name, const RenderingConfig& config) {
   const AlgorithmEntry& entry = algorithm_entry(name);
-  if (!entry.make_law) refuse(std::string(name) + " is no force law");
+  if (!entry.make_law) refuse(std::string(name) + " is not a force law");
   return entry.make_law(config);
 }
 

@@ -19,7 +19,7 @@ Complex unit_pole(std::size_t k, std::size_t order) {
   return {-sine, cosine};
 }
 
-/// e^z - 1, to rounding for small z, too.
+/// e^z - 1, to rounding also for small z.
 Complex exponential_minus_one(const Complex& z) {
   const double grown = math::expm1(z.real()), half = math::sin(0.5 * z.imag());
   return {grown - 2.0 * (1.0 + grown) * half * half, (1.0 + grown) * math::sin(z.imag())};

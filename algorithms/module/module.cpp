@@ -70,7 +70,8 @@ const char* problem_of(const ContactBuffer& contacts, std::size_t i) {
   const Vec3 gradient = contacts.gradient(i);
   if (!contacts.point(i).allFinite() || !gradient.allFinite() || !std::isfinite(contacts.depth[i]))
     return "gives a contact that is not finite";
-  if (std::abs(gradient.norm() - 1.0) > kLargestLengthError) return "gives a contact whose gradient is no unit vector";
+  if (std::abs(gradient.norm() - 1.0) > kLargestLengthError)
+    return "gives a contact whose gradient is not a unit vector";
   return contacts.depth[i] < 0.0 ? "gives a contact with a negative depth" : nullptr;
 }
 

@@ -115,7 +115,7 @@ constexpr StiffnessLimit kLimits[] = {
      .formula = "b > max over theta of K T sin((d + 1/2) theta) / (2 sin(theta/2)) - B Re{F e^(-j (d + 1) theta)}",
      .source =
          "the general condition of Colgate and Schenkel for this wall, derived; F is the velocity filter, a filter of "
-         "the position is counted, too",
+         "the position also counts",
      .applies = "whole delays; passive for every passive hand",
      .largest = passive_with_delay},
     {.name = "stable_gil_hulin",

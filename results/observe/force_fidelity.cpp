@@ -208,7 +208,7 @@ void ForceFidelityObserver::tell_lag(Section& s) const {
   const auto lag = lag_between(kept_reference_, kept_rendered_, apart, kMostLag);
   s.metric("force_lag_s", "s",
            "time by which f follows f_m: where their correlation (Pearson's, all components) is greatest, within "
-           "0.1 s; of equally great ones, as of a periodic force, that nearest to 0; none where it is greatest at "
+           "0.1 s; of equally great ones, as of a periodic force, that nearest to 0; empty where it is greatest at "
            "the ends of this range or where a force does not vary; told to half the time between the rows that "
            "are compared",
            lag ? std::optional(lag->time) : std::nullopt)

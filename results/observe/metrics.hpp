@@ -134,7 +134,7 @@ class MetricsObserver final : public MetricObserver {
   std::optional<RatioRange> ratio_;  ///< of all rendered contacts
   std::uint64_t colliding_sum_ = 0, colliding_max_ = 0, rendered_sum_ = 0, rendered_max_ = 0;
   double friction_limit_squared_ = std::numeric_limits<double>::infinity();
-  std::optional<ExplicitFriction> friction_;  ///< none where friction cannot become unstable
+  std::optional<ExplicitFriction> friction_;  ///< empty where friction cannot become unstable
   ContactForces contact_forces_;
   std::optional<ReductionJumps> reduction_;  ///< none without a reduction
 };

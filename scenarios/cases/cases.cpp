@@ -163,7 +163,7 @@ std::string number_text(const Axis& axis, double value) {
   return cell_text(axis.whole ? std::round(value) : value);
 }
 
-/// By the method's number.
+/// Indexed by the number of the method.
 constexpr std::string_view kMethodNames[] = {"lhs", "random", "points"};
 
 /// How slowly an axis varies in the order of runs, the slowest first: what a shell depends on before all else.

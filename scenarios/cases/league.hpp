@@ -46,7 +46,7 @@ struct Standing {
   std::string outcome;                ///< how its runs ended: "completes", or with counts "completes 3; diverges 2"
   std::optional<double> mean = {};    ///< none when its runs failed or no run has the metric
   std::optional<double> spread = {};  ///< sample standard deviation; none for one seed or if seeds change nothing
-  /// By how much the mean may be wrong: the mean of what its numbers may be wrong by; none where none is known.
+  /// Error of the mean: the mean of the errors of its numbers; empty if none is known.
   std::optional<double> tolerance = {};
   /// 1 + the number of better algorithms. Those without failures come first, ordered by their means; means within
   /// kSameRank of the first of a group share its rank, and algorithms without a mean come last of these (a tool that is

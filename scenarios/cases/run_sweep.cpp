@@ -211,7 +211,7 @@ Condition condition_of(const std::string& text, const SweepTable& table) {
   };
 }
 
-/// The JSON beside a table.
+/// The JSON next to a table.
 Json description_of(const fs::path& table) {
   const fs::path file = fs::path(table).replace_extension(".json");
   try {

@@ -28,7 +28,7 @@ struct SweepPlan {
 
   /// The names of the columns of the table.
   std::vector<std::string> columns() const;
-  /// The JSON file beside the table of a shard, which says what it is about.
+  /// The JSON file next to the table of a shard, which says what it is about.
   Json description(const Shard& shard) const;
 };
 
@@ -67,8 +67,8 @@ struct SweepReport {
   std::optional<FailedRun> failed;  ///< the failed run with the lowest number
 };
 
-/// Runs the shard's part of a plan and writes its table and the JSON beside it, which depend neither on the jobs nor on
-/// interruptions. Runs in one environment share its shell. A killed sweep loses the runs in flight (table_file.hpp);
+/// Runs the shard's part of a plan and writes its table and the JSON next to it, which depend neither on the jobs nor
+/// on interruptions. Runs in one environment share its shell. A killed sweep loses the runs in flight (table_file.hpp);
 /// SIGINT and SIGTERM end it after those. Throws InputError where the table of another sweep would be resumed or that
 /// of this one lost, IoError when something cannot be written, and Stopped.
 SweepReport run_sweep(const SweepPlan& plan, const SweepOptions& options);
@@ -118,13 +118,13 @@ struct SweepTable {
   std::size_t fields() const { return place("outcome") - 1; }
   const std::string& outcome(const SweepRow& row) const { return row[1 + fields()]; }
   std::vector<std::string> metrics() const;
-  /// None for a column that there is not, and where a cell is no number.
+  /// Empty for a column that does not exist, and where a cell is not a number.
   std::optional<double> number(const SweepRow& row, std::string_view column) const;
-  /// By how much a metric may be wrong; none where that is not known.
+  /// Error of a metric; empty if it is not known.
   std::optional<double> tolerance(const SweepRow& row, std::string_view metric) const;
 };
 
-/// Reads the table of a sweep or of one of its shards, and the JSON file beside it. `conditions` are texts such as
+/// Reads the table of a sweep or of one of its shards, and the JSON file next to it. `conditions` are texts such as
 /// "inside_max_m<3e-4": a column, one of < <= > >= = !=, and a number, or with = and != a text; a row without a number
 /// in a column keeps no condition on numbers. Throws InputError.
 SweepTable read_sweep(const std::filesystem::path& file, const std::vector<std::string>& conditions = {});

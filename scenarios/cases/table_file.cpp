@@ -27,7 +27,7 @@ fs::path beside(fs::path table) {
   return table.replace_extension(".json");
 }
 
-/// The definition in the JSON beside a table; empty when there is none to be read.
+/// The definition in the JSON next to a table; empty when there is none to be read.
 std::string definition_in(const fs::path& about) {
   std::error_code ignored;
   if (!fs::is_regular_file(about, ignored)) return "";

@@ -18,7 +18,7 @@ namespace hapbench {
 /// The cells of a line, without their quotes and a carriage return at its end.
 std::vector<std::string> csv_cells(std::string_view line);
 
-/// The file of a table, its columns, and the JSON beside it, whose "definition" is equal for equal tables.
+/// The file of a table, its columns, and the JSON next to it, whose "definition" is equal for equal tables.
 struct TableTitle {
   std::filesystem::path file;
   std::string header;     ///< line without its end; the first column is the number of the case
@@ -26,7 +26,7 @@ struct TableTitle {
   std::size_t cases = 0;  ///< rows have numbers below
 };
 
-/// A table with a row for each case. It grows as FILE.part, with its JSON beside it, a row at a time and in any order,
+/// A table with a row for each case. It grows as FILE.part, with its JSON next to it, a row at a time and in any order,
 /// so that a killed process loses only the cases that were under way. When it is whole its rows are put in order and
 /// both files get their names. Memory: 8 bytes a case while they are put in order, before that a bit.
 class TableFile {

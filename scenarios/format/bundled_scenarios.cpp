@@ -56,7 +56,7 @@ fs::path installed_folder(const std::string& name) {
     if (!error && fs::is_directory(found, error)) return found;
   }
   throw InputError(
-      fmt::format("{}: is missing; allowed: the program where it was built or installed, with its folders beside it",
+      fmt::format("{}: is missing; allowed: the program where it was built or installed, with its folders next to it",
                   places.back().string()));
 }
 

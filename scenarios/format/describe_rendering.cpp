@@ -122,7 +122,7 @@ static void describe_hunt_crossley(Fields& f, double& chi) {
 
 static void describe(Fields& f, Lateness& late) {
   constexpr Choice<bool> kBetween[] = {{"hold", false}, {"linear", true}};
-  number(f, parameter::kEvery, late.every, "contacts are found in every so manieth row, from row 0 on");
+  number(f, parameter::kEvery, late.every, "contacts are found in every n-th row, from row 0 on");
   number(f, parameter::kDelay, late.delay, "rows from when contacts are found until they serve");
   f.choice("between", late.linear, kBetween, "kind of contacts between queries",
            "hold: depths as found; linear: depths follow the tool's motion along the gradients");

@@ -115,7 +115,7 @@ constexpr Rule kRules[] = {
     {"/motion/position/type", "got a prescribed position; allowed: \"free\" with hand \"drag\", which moves the tool",
      [](const Scenario& s) { return is<DragHandFields>(s.hand) && !is<FreePosition>(s.motion.position); }},
     {"/motion/orientation",
-     "got tilt_rad, azimuth_rad or roll_rad beside hand \"drag\", which turns the tool; allowed: without, or "
+     "got tilt_rad, azimuth_rad or roll_rad together with hand \"drag\", which turns the tool; allowed: without, or "
      "hand.tilt_rad null",
      [](const Scenario& s) {
        const auto* drag = std::get_if<DragHandFields>(&s.hand);
@@ -268,7 +268,7 @@ void warn_of_unread_rendering(const Scenario& scenario, const Json& json, std::v
   for (const char* field : {"damping_ratio", "damping_N_s_per_m"}) {
     const std::string pointer = std::string("/rendering/") + field;
     if (scenario.rendering.hunt_crossley && is_given(pointer))
-      warnings.push_back({kNoEffect, pointer, "has no effect beside rendering.damping"});
+      warnings.push_back({kNoEffect, pointer, "has no effect together with rendering.damping"});
   }
   constexpr const char* kCutoff = "/rendering/angular_velocity_cutoff_Hz";
   if (is_given(kCutoff) && !scenario.rendering.angular_damping)
@@ -537,7 +537,7 @@ void describe(Fields& f, Scenario& scenario) {
   f.object_if_any(
       "reference_force", scenario.reference_force,
       "the force an ideal rendering would give on a prescribed way; the metrics of fidelity are taken against it");
-  f.object("record", scenario.record, "what is written beside the summary");
+  f.object("record", scenario.record, "what is written besides the summary");
   f.object("metrics", scenario.metrics, "where metrics of settled contact begin");
   f.object("expect", scenario.expect, "what the run must show; each scenario is its own regression test");
   if (!f.reads()) return;

@@ -101,7 +101,7 @@ static void describe(Fields& f, Transmission& transmission) {
   f.number("motor_share", transmission.motor_share, {0.01, 0.99, "1"},
            "part of handle_mass_kg on the motors' side, where encoder and friction are (ours)");
   f.number("stiffness_N_per_m", transmission.stiffness, {1.0, 1e9, "N/m"}, "between motors and handle (ours)");
-  f.number("damping_N_s_per_m", transmission.damping, {0.0, 1e6, "N s/m"}, "beside that spring (ours)");
+  f.number("damping_N_s_per_m", transmission.damping, {0.0, 1e6, "N s/m"}, "parallel to that spring (ours)");
 }
 
 static void describe(Fields& f, ImpedanceDeviceConfig& device) {
@@ -169,9 +169,10 @@ void resolve_delay(Scenario& scenario) {
   // 1e-9 forgives the rounding of whoever wrote both.
   if (std::abs(given - samples) > 1e-9 * std::max(1.0, samples)) {
     fail_at("/device/delay_s",
-            fmt::format("got {} s beside delay_samples {}; allowed: one of the two, or both where they say the same: "
-                        "{} s are {:.6g} time steps of {} s",
-                        delay, given, delay, samples, scenario.time.step));
+            fmt::format(
+                "got {} s together with delay_samples {}; allowed: one of the two, or both where they say the same: "
+                "{} s are {:.6g} time steps of {} s",
+                delay, given, delay, samples, scenario.time.step));
   }
   device->delay_samples = samples;
 }

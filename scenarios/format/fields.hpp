@@ -131,7 +131,7 @@ class Fields {
   virtual void plain_or_object(bool is_object, Body plain, Body object) = 0;
   /// Any object, as JSON text: the program hands it on and does not look into it.
   virtual void any_object(std::string& json) = 0;
-  /// A value that is no list, or a list.
+  /// A single value, or a list.
   virtual void one_or_list(bool is_list, Body one, Body list) = 0;
   /// An object whose field "type" is one of `types` and chooses the other fields; `what` says of what kind. `held` is
   /// the index of the alternative to write. `fields` describes those of an alternative.

@@ -45,7 +45,7 @@ static void describe(Fields& f, TremorConfig& tremor) {
 
 static void describe_spring(Fields& f, ImpedanceHandFields& hand) {
   f.number("stiffness_N_per_m", hand.stiffness, {0.0, 1e9, "N/m"}, "of the spring from target to handle");
-  f.number("damping_N_s_per_m", hand.damping, {0.0, 1e9, "N s/m"}, "of the damper beside it");
+  f.number("damping_N_s_per_m", hand.damping, {0.0, 1e9, "N s/m"}, "of the damper parallel to it");
   f.group(
       "target", "where the hand wants the handle",
       [&hand](Fields& t) {
@@ -83,7 +83,7 @@ static void describe(Fields& f, DragHandFields& hand) {
            "of the axis from the normal, towards the direction of travel; null: motion.orientation turns the tool");
   f.number("azimuth_rad", hand.azimuth, kAngle, "turns that lean from the direction of travel, about the normal");
   f.number("stiffness_N_per_m", drag.stiffness, {0.0, 1e9, "N/m"}, "within the surface, towards the moving point");
-  f.number("damping_N_s_per_m", drag.damping, {0.0, 1e9, "N s/m"}, "within the surface, beside that spring");
+  f.number("damping_N_s_per_m", drag.damping, {0.0, 1e9, "N s/m"}, "within the surface, parallel to that spring");
   f.number("normal_damping_N_s_per_m", drag.normal_damping, {0.0, 1e9, "N s/m"},
            "along the normal; the tool is lowered at force_N / normal_damping_N_s_per_m");
   f.number("smoothing_m", hand.smoothing, {0.0, 1000.0, "m", true},
@@ -92,8 +92,9 @@ static void describe(Fields& f, DragHandFields& hand) {
 
 static void describe(Fields& f, Gauge& gauge) {
   f.number("cutoff_Hz", gauge.cutoff, {0.0, 1e6, "Hz", true}, "of the low-pass of the spring force it shows");
-  f.number("grace_s", gauge.grace, {0.0, 1000.0, "s"},
-           "how long it may show less than least_press_N without a break of the hold; without effect beside threshold");
+  f.number(
+      "grace_s", gauge.grace, {0.0, 1000.0, "s"},
+      "how long it may show less than least_press_N without a break of the hold; without effect together with threshold");
 }
 
 static void describe(Fields& f, Threshold& threshold) {

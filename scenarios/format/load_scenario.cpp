@@ -242,7 +242,7 @@ fs::path file_of(const LoadedScenario& loaded, const std::string& pointer) {
       }
     }
   } catch (const Json::exception&) {
-    // A place that is no pointer, such as the path of a mesh.
+    // A place that is not a pointer, such as the path of a mesh.
   }
   return loaded.file;
 }

@@ -61,7 +61,7 @@ LoadedScenario load_scenario(const ScenarioText& text, std::span<const std::stri
 /// Reads a scenario file and what it extends, applies overrides `path=value` (dotted path, value as
 /// JSON or else as text; later ones win) and checks it. Expectations of the file are about the run it describes: with
 /// any field overridden that changes the run, its bounds on metrics do not count, and the outcomes that count by
-/// default are allowed beside its own. Throws InputError whose message starts with the name of the file at fault.
+/// default are allowed as well as its own. Throws InputError whose message starts with the name of the file at fault.
 LoadedScenario load_scenario(const std::filesystem::path& file, std::span<const std::string> overrides = {});
 /// The same from JSON in memory, which extends nothing; `directory` is what relative paths start from.
 LoadedScenario read_scenario(const Json& json, const std::filesystem::path& directory);

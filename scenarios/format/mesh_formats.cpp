@@ -498,7 +498,7 @@ TriangleSoup read_stl(std::string_view text, const fs::path& file) {
   if (first_word == "solid" && is_text && !exact) return read_stl_text(text, file);
   if (!complete)
     fail_in_file(file,
-                 "is no STL file, or cut short; allowed: \"solid\" and text, or 84 bytes and 50 for each triangle");
+                 "is not an STL file, or cut short; allowed: \"solid\" and text, or 84 bytes and 50 for each triangle");
   return read_stl_binary(reader, triangles, file);
 }
 

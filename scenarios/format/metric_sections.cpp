@@ -17,7 +17,7 @@ struct SectionKind {
   std::size_t (*parts)(const Scenario& scenario, bool has_reference_force);
   /// The observer of a run of the scenario; without one, an observer that sees nothing and so documents the metrics.
   std::unique_ptr<MetricObserver> (*observe)(const Scenario* scenario, std::size_t parts);
-  bool merges = false;  ///< several trials have it, too
+  bool merges = false;  ///< several trials also have it
 };
 
 template <class Type>

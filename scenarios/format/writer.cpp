@@ -265,7 +265,7 @@ ValueGuide full_scenario(Json* definitions) {
   return guide;
 }
 
-/// Returns true if a part of what the schema allows is allowed, too.
+/// Returns true if a part of what the schema allows is also allowed.
 bool allows_parts(const Json& schema) {
   if (!schema.is_structured()) return true;
   if (schema.is_object() && (schema.contains("required") || schema.contains("oneOf"))) return false;

@@ -122,7 +122,7 @@ std::vector<std::string> chosen_names(std::string_view got, const std::vector<st
                                       const std::vector<std::string>& all, std::string_view shown_by) {
   if (given == std::vector<std::string>{"all"}) return all;
   if (std::find(given.begin(), given.end(), "all") != given.end())
-    throw InputError(fmt::format("{} \"all\" beside other names; allowed: \"all\" alone", got));
+    throw InputError(fmt::format("{} \"all\" together with other names; allowed: \"all\" alone", got));
   std::vector<std::string> valid = all;
   valid.insert(valid.begin(), "all");
   require_names(got, given, valid, shown_by);

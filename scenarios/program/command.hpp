@@ -27,7 +27,7 @@ enum ExitStatus : int {
 };
 
 /// Runs the command that argv[1], argv[2], ... name and returns the program's exit status. Reports on standard error
-/// when a signal (stop_signal.hpp) stopped the work. Throws InputError, also for words that are no command, and
+/// when a signal (stop_signal.hpp) stopped the work. Throws InputError, also for words that are not a command, and
 /// IoError.
 int run_program(int argc, char** argv);
 
@@ -75,7 +75,7 @@ struct CapturedOutput {
   std::vector<std::string> warnings, errors;  ///< notes are among the warnings
 };
 
-/// Redirects what the commands of this thread print into `output`, for a host that is no terminal; null ends that.
+/// Redirects what the commands of this thread print into `output`, for a host that is not a terminal; null ends that.
 void capture_output(CapturedOutput* output) noexcept;
 /// Returns the object that collects this thread's output, or null when it is printed.
 CapturedOutput* captured_output() noexcept;

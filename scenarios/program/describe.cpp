@@ -140,7 +140,7 @@ std::optional<Place> asked_place(const std::string& name) {
 }
 
 /// True for a source that names the place or a part of it, as "3.3, Fig. 4, C.2a" does: a kind holds until another word
-/// comes. Other numbers in the source are taken for places, too.
+/// comes. Other numbers in the source are also taken for places.
 bool names_place(const std::string& source, const Place& asked) {
   static const std::regex kParts(R"(([A-F]\.\d+|\d+)(\.\d+)*[a-d]?\b|[A-Za-z]+)");
   std::string kind = "section";

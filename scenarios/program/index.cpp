@@ -147,7 +147,7 @@ Description describe_preset(const DevicePreset& preset) {
   Description d;
   d.text = fmt::format("preset {}: {}\n{}", bold(stdout, preset.name), preset.device,
                        wrapped("of device.type \"impedance\": \"device\": {\"type\": \"impedance\", \"preset\": \"" +
-                               std::string(preset.name) + "\"}; fields beside it override its numbers")) +
+                               std::string(preset.name) + "\"}; fields next to it override its numbers")) +
            "\n";
   d.json = {{"kind", "preset"}, {"name", preset.name}, {"device", preset.device}, {"numbers", Json::object()}};
   const std::tuple<const char*, SourcedNumber, const char*> numbers[] = {

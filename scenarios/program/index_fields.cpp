@@ -143,7 +143,7 @@ void add_types(Index& index) {
   }
 }
 
-/// The object of the value's type; null when the value is no object with fields.
+/// The object of the value's type; null when the value is not an object with fields.
 const ValueGuide* object_of(const Json& value, const ValueGuide& guide) {
   if (!value.is_object()) return nullptr;
   if (guide.choices.empty()) return &guide;

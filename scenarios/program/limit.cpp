@@ -68,7 +68,7 @@ std::vector<ComparedDevice> asked_devices(const LimitOptions& options) {
           path));
     }
     if (path == "device.coulomb_N" && !options.friction.empty() && !none_other)
-      throw InputError("--friction: got it beside --set device.coulomb_N; allowed: either");
+      throw InputError("--friction: cannot be combined with --set device.coulomb_N; allowed: one of the two");
   }
   std::vector<ComparedDevice> devices;
   for (const ComparedDevice& chosen : chosen_devices(options.devices)) {
@@ -102,7 +102,8 @@ void set_rule(const LimitOptions& options, const Scenario& scenario, LimitQuesti
   question.bounded = options.stable == "bounded";
   if (!options.vibration.empty()) {
     if (!options.stable.empty() && options.stable != "still")
-      throw InputError(fmt::format("--vibration: got it beside --stable {}; allowed: with still", options.stable));
+      throw InputError(
+          fmt::format("--vibration: cannot be combined with --stable {}; allowed: with still", options.stable));
     question.most_vibration = number_between("--vibration", options.vibration, 1e-9, 1e3);
   } else if (options.stable.empty()) {
     question.most_vibration = rule_of(scenario).most_vibration;
@@ -278,18 +279,19 @@ void add_limit(CommandLine& line) {
   command.add("--friction", options.friction,
               "in place of these ends each device's dry friction times factors, such as 0,2; none: neither",
               {.comma_separated = true});
-  command.add("--over", options.over, "ask for each value of another field, too, as sweep --vary takes it; repeatable",
+  command.add("--over", options.over,
+              "ask for each value of another field, which it takes as sweep --vary does; repeatable",
               {.several = true});
   command.add(
       "--stable", options.stable,
-      "what a run has to do: be settled (come to rest), bounded (vibrating counts, too) or still (a handle that "
+      "what a run has to do: be settled (come to rest), bounded (vibrating also counts) or still (a handle that "
       "does not vibrate; default where a script moves the tool, elsewhere settled)",
       {.one_of = {"settled", "bounded", "still"}});
   command.add(
       "--vibration", options.vibration,
       fmt::format("of still: the largest vibration of the handle above 30 Hz [m/s rms] (default: {})", kMostVibration));
   command.add("--bound", options.bounds,
-              "a stable run keeps metric=most or metric=least:most, too, as inside_settled_m=3e-4; repeatable");
+              "a stable run also keeps metric=most or metric=least:most, as inside_settled_m=3e-4; repeatable");
   command.add("--resolution", options.resolution,
               "relative width of the answer (default: 0.001); of the range when the range reaches 0 or below");
   add_common(command, options, "limit_NAME");

@@ -11,7 +11,7 @@
 #include "scenarios/limits/stability/scene_devices.hpp"
 #include "scenarios/program/report.hpp"
 
-/// What `limit` finds, and options that other searches take, too.
+/// What `limit` finds, and options that other searches share.
 namespace hapbench {
 
 /// "a:b"; none for an empty text. Throws InputError that names the option.
@@ -30,7 +30,7 @@ struct LimitRow {
   LimitQuestion asked = {};
   FieldLimit found = {};
   /// The limit over that of the first scene and algorithm, all else equal, and the same of K lambda_max(S), the
-  /// stiffness that the hand meets; none where either has no limit.
+  /// stiffness that the hand meets; empty where either has no limit.
   std::optional<double> stiffness_ratio = {}, rendered_ratio = {};
 
   /// The name of the scene's file.

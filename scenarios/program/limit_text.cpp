@@ -231,7 +231,7 @@ std::string damping_text(const RenderingConfig& rendering) {
                      significant(rendering.damping_ratio), significant(rendering.mass));
 }
 
-/// States the question of one scene; `over`: other fields vary, too.
+/// States the question of one scene; `over`: other fields also vary.
 std::string question_text(const LimitQuestion& question, const Scenario& scenario, bool over) {
   const std::string width = question.whole ? "1"
                             : question.range.logarithmic
@@ -281,7 +281,7 @@ std::string remarks_text(const LimitRow& row) {
     say(fmt::format("{} has no effect here: the handle moves alike in all {} runs", question.path, limit.runs.size()));
   }
   if (limit.unstable_alone) {
-    say(fmt::format("at {} hand and device are unstable by themselves: the tool vibrates without contact, too",
+    say(fmt::format("at {} hand and device are unstable by themselves: the tool also vibrates without contact",
                     significant((limit.beyond ? *limit.beyond : limit.runs.front()).value)));
   }
   return text;
@@ -360,7 +360,7 @@ std::string limit_answer(const FieldLimit& found, double resolution) {
     text = edge + (found.is_beyond_linear(resolution) ? fmt::format("{} ({})", kBeyondLinear, text) : text);
   }
   if (found.tried_between == 0) return text;
-  return text + fmt::format("; {} values between its ends are stable, too: at most {:.0f} % of them may fail (95 %)",
+  return text + fmt::format("; {} values between its ends are also stable: at most {:.0f} % of them may fail (95 %)",
                             found.tried_between, 100.0 * may_fail_share(found.tried_between));
 }
 

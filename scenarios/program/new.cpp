@@ -259,7 +259,7 @@ class Start {
     note_spacing();
   }
 
-  /// Of the scenario file.
+  /// Folder of the scenario file.
   const Json& scene() const { return scene_; }
   /// Sizes and choices, a line each.
   const std::vector<std::string>& notes() const { return notes_; }
@@ -305,7 +305,7 @@ class Start {
   }
 
   /// The scale that gives an object, which was first read as millimetres, its stated size. A file of which none is
-  /// stated is in metres. Throws InputError when it then is no object to be worked on.
+  /// stated is in metres. Throws InputError when it then is not an object to be worked on.
   double choose_scale(const Box& box, const char* object) {
     const double longest = (box.max - box.min).maxCoeff() / 0.001;
     if (!extent_ && (longest < kShortestObject || longest > kLongestObject)) {

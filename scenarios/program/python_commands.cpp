@@ -56,7 +56,7 @@ std::string launch_line(const ProgramWords& package, const ProgramWords& given) 
                 std::error_code(errno, std::generic_category()));
 }
 
-/// Runs the line beside this process, and takes what it prints on standard output where `output` is given. Returns its
+/// Runs the line as another process, and takes what it prints on standard output where `output` is given. Returns its
 /// exit status.
 int run_beside(const std::string& line, std::string* output) {
   std::fflush(stdout);

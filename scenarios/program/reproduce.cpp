@@ -258,18 +258,19 @@ void add_reproduce(CommandLine& line) {
   command.add(
       "--only", options.only,
       "ids of claims, separated by commas; \"hapbench describe claims\" shows them, and scripts/reproduce --only draws their "
-      "figures, too",
+      "figures",
       {.comma_separated = true});
   command.add("--out", options.out, "directory of the results (default: results/out/reproduce)");
-  command.add("--ledger", options.ledger,
-              "file of the ledger, JSON, with a Markdown table beside it (default: OUT/claims.json; with --only none)");
+  command.add(
+      "--ledger", options.ledger,
+      "file of the ledger, JSON, with a Markdown table next to it (default: OUT/claims.json; with --only none)");
   command.flag("--anew", options.anew, "run every scenario again, even where results are current");
   add_jobs(command, options.jobs);
   command.add(
       "--choices", options.readings,
       "judge every claim again under each reading of FILE.csv, appendix D in the first quarter of them: a row each, a "
       "column for each choice that it reads otherwise than on record, as results/reference/readings.csv; writes "
-      "robustness.csv and .json beside the ledger, if there is one; with --only, .json keeps what it has of other "
+      "robustness.csv and .json next to the ledger, if there is one; with --only, .json keeps what it has of other "
       "claims");
   command.footer(
       "results/reference/choices.json has what the thesis leaves open; scripts/readings.py draws readings of it.\n"

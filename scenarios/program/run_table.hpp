@@ -46,7 +46,7 @@ void add_metrics(Columns<Row>& columns, std::span<const RunHeading> headings, Nu
 }
 
 /// The printed table of runs, of seven columns: names, how they ended and when, kRunHeadings. Of several algorithms in
-/// one scene also the vibration of the tool, which runs without settled contact have, too. With --wide also the range
+/// one scene also the vibration of the tool, which runs without settled contact also have. With --wide also the range
 /// of ratios, and what half of the steps take at most. `of_scenes`: of several, told apart by name.
 std::string run_table(std::span<const Result> reports, bool of_scenes);
 

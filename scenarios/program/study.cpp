@@ -16,7 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kAsk = "ask";
-/// What is said of a study, and is no option of its command.
+/// What is said of a study, and is not an option of its command.
 constexpr const char* kNoOptions[] = {kAsk, "scenarios", "summary", "source", "alone", "$schema"};
 
 fs::path studies_folder() {
@@ -85,7 +85,7 @@ std::vector<std::string> option_words(const std::string& option, const Json& val
   return words;
 }
 
-/// A scenario's file is looked for beside the study's first, and then as other words of a command are.
+/// A scenario's file is looked for next to the study's first, and then as other words of a command are.
 std::string scenario_beside(const fs::path& study, const std::string& name) {
   const fs::path file = study.parent_path() / name;
   std::error_code error;
@@ -107,7 +107,8 @@ Json study_json(const fs::path& file, const std::string& text) {
     fail_in_file(file, error.what());
   }
   fail_in_file(
-      file, R"(is no study; allowed: {"ask": COMMAND, "scenarios": [...], and the command's options by their names})");
+      file,
+      R"(is not a study; allowed: {"ask": COMMAND, "scenarios": [...], and the command's options by their names})");
 }
 
 }  // namespace

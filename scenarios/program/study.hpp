@@ -17,8 +17,8 @@
 ///
 /// Numbers, texts and true stand for themselves; two numbers of "between" for a range; a list for values separated by
 /// commas ("bound": for one option each); objects of "set", "over" and "vary" for fields by their paths, with a value,
-/// a list or a range with "from", "to", "count" and "log". A scenario that is a file is looked for beside the study
-/// first. "alone" is for scripts/reproduce: nothing runs beside what is about time.
+/// a list or a range with "from", "to", "count" and "log". A scenario that is a file is looked for next to the study
+/// first. "alone" is for scripts/reproduce: nothing runs at the same time as what is about time.
 namespace hapbench {
 
 /// A study that comes with the program.

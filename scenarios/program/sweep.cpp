@@ -28,7 +28,7 @@ std::string shown_value(const std::string& text) {
   return number ? significant(*number, 6) : text;
 }
 
-/// What is printed of a run, with the headings that run and compare have; the metric, too, where it is not among them.
+/// What is printed of a run, with the headings that run and compare have; also the metric where it is not among them.
 Columns<SweepRow> run_columns(const SweepTable& table, const std::string& metric) {
   Columns<SweepRow> columns;
   const bool single = table.fields() == 1, sampled = table.about.contains("sample");
@@ -126,7 +126,7 @@ std::vector<ScenarioText> scenes_of(const SweepCommand& command, const std::vect
   }
   if (!command.scenario.empty() || axis->range) {
     throw InputError(fmt::format("--vary: got \"{}\" as a {}; allowed: a list of scenarios, and none before it",
-                                 kSceneAxis, axis->range ? "range" : "field beside a scenario"));
+                                 kSceneAxis, axis->range ? "range" : "field together with a scenario"));
   }
   std::vector<ScenarioText> scenes;
   for (const std::string& name : axis->values) scenes.push_back(read_scenario_text(find_scenario(name)));
@@ -138,7 +138,7 @@ Cases cases_of(const SweepCommand& command) {
   std::optional<Sampling> sampling;
   if (!command.points.empty() && (!command.vary.empty() || !command.sample.empty()))
     throw InputError(
-        "--points: got it beside --vary or --sample; allowed: the file alone, which has fields and values");
+        "--points: cannot be combined with --vary or --sample; allowed: the file alone, which has fields and values");
   for (const std::string& text : command.vary) axes.push_back(parse_axis(text, !command.sample.empty()));
   if (!command.points.empty()) sampling = read_points(command.points, axes);
   if (!command.sample.empty()) sampling = parse_sampling(command.sample, command.seed);
@@ -199,7 +199,7 @@ int reprint(const SweepCommand& command) {
                     command.keep_runs || command.print;
   if (runs) {
     throw InputError(fmt::format(
-        "{}: holds a finished sweep, which is printed again; allowed beside it: --where, --metric, --json, --quiet",
+        "{}: holds a finished sweep, which is printed again; allowed with it: --where, --metric, --json, --quiet",
         command.scenario));
   }
   print_sweep(command, read_sweep(fs::path(command.scenario) / "sweep.csv", command.where));

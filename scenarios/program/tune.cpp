@@ -390,7 +390,7 @@ void add_tune(CommandLine& line) {
               "a:b, range of zeta; on an impedance device by the mass of its handle (default: 0.01:10)");
   command.add("--mass", options.mass,
               "a:b, range of the virtual mass on an admittance device [kg] (default: half to twice the scene's)");
-  command.flag("--filters", options.filters, "on an impedance device choose the velocity filter, too");
+  command.flag("--filters", options.filters, "on an impedance device also choose the velocity filter");
   add_common(command, options, "tune_NAME");
   command.footer(fmt::format(
       "For each law the largest K, over zeta (and virtual mass on an admittance device), at which the scene's own run and each of the "

@@ -104,7 +104,7 @@ LoadedScenario checked(LoadedScenario loaded) {
   for (const auto& file : loaded.files.all()) {
     try {
       file->check();
-      if (file->pointer() == kToolFile) make_tool(scenario, loaded.files);  // it must be closed, too
+      if (file->pointer() == kToolFile) make_tool(scenario, loaded.files);  // it must also be closed
     } catch (const InputError& error) {
       const std::string place = file_of(loaded, file->pointer()).string() + ": " + file->pointer();
       throw InputError(InputError::Kind::relation, place, error.what());

@@ -36,7 +36,7 @@ struct DiagnosedRun {
 
   const Scenario& scenario() const { return loaded.scenario; }
   bool ended(Outcome outcome) const { return result.end.outcome == outcome; }
-  /// None where the run has no such metric, or the metric has no value.
+  /// Empty where the run has no such metric, or the metric has no value.
   Number metric(std::string_view name) const { return number_of(result.metrics, name); }
 };
 
@@ -189,7 +189,7 @@ constexpr const char* kShorterStep = "a shorter time.step_s: in one step the too
 std::string against_sinking(const DiagnosedRun& run) {
   if (steps_too_far(run)) return kShorterStep;
   if (!is_free(run)) return "another motion.position, which leads the tool there";
-  return "more K or a gentler hand; another law where it is soft, too";
+  return "more K or a gentler hand; another law where it is also soft";
 }
 
 std::string against_loss(const DiagnosedRun& run) {
@@ -254,12 +254,12 @@ constexpr Rule kRules[] = {
      "less K, a shorter time.step_s, less delay or filter where there is one; \"hapbench tune\""},
     {"buzz", "force above 30 Hz over the mean force in settled contact", "1", 0.1,
      "it buzzes: the force above 30 Hz is {} of the mean force", buzz,
-     "less K; a velocity filter or less zeta where the encoder is felt, too; \"hapbench tune --bound force_rms_above_30Hz_N=0.05\"",
+     "less K; a velocity filter or less zeta where the encoder is also felt; \"hapbench tune --bound force_rms_above_30Hz_N=0.05\"",
      buzz_frequency, true},
     {"pop", "largest force step in settled contact over the mean force", "1", 0.5,
      "it pops: a step of the force is {} of the mean force",
      [](const DiagnosedRun& r) { return if_completed(r, of_mean_force(r, "settled_force_step_max_N")); },
-     "rendering.reduction null where it steps, too; \"hapbench compare --algorithms all\" shows which law steps least",
+     "rendering.reduction null where it also steps; \"hapbench compare --algorithms all\" shows which law steps least",
      "", true},
     {"reduction", "largest force step where the kept contacts change, over the mean force in settled contact", "1", 0.1,
      "the force steps by {} of its mean when the kept contacts change",

@@ -23,13 +23,13 @@ struct DiagnosisRule {
   const char* number;  ///< what it is
   const char* unit;    ///< "1" for pure numbers
   double threshold;    ///< something is wrong where the number is larger
-  bool quiet;          ///< a quiet run keeps it: what is felt beside the force, told by metrics alone
+  bool quiet;          ///< a quiet run keeps it: what is felt besides the force, told by metrics alone
 };
 
 /// In the order in which they are told: how the run ended, then why.
 std::vector<DiagnosisRule> diagnosis_rules();
 
-/// What the rules of a quiet run find in this result, also below their thresholds; none where they have no number.
+/// What the rules of a quiet run find in this result, also below their thresholds; empty where they have no number.
 std::vector<Diagnosed> quiet_numbers(const LoadedScenario& loaded, const Result& result);
 
 /// What is told of a run that nobody diagnoses, as one of many: that it is not the law which made its numbers.

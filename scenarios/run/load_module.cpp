@@ -73,7 +73,7 @@ decltype(&hapbench_module) entry_point(const fs::path& file, void* library) {
                                      "hapbench_module.h",
                                      old));
   }
-  fail_in_file(file, "is no module: it has no function \"hapbench_module\" (hapbench_module.h)");
+  fail_in_file(file, "is not a module: it has no function \"hapbench_module\" (hapbench_module.h)");
 }
 
 /// The table of a library, which stays open because its functions may be called at any time. Throws InputError.
@@ -84,7 +84,7 @@ const HapbenchModule& opened(const fs::path& file, std::uint32_t kind) {
     std::string problem = dlerror();
     const std::string again = file.string() + ": ";
     if (problem.starts_with(again)) problem.erase(0, again.size());
-    fail_in_file(file, "is no module: " + problem);
+    fail_in_file(file, "is not a module: " + problem);
   }
   const auto entry = entry_point(file, library);
   const HapbenchModule* table = nullptr;
@@ -130,7 +130,7 @@ const HapbenchModule& contacts_table(const fs::path& file) {
   hash_of_file(file);
   const HapbenchModule& table = opened(file, HAPBENCH_CONTACTS);
   if (table.name == nullptr || table.step == nullptr)
-    fail_in_file(file, "is no source of contacts that can be used: its name or its function \"step\" is missing");
+    fail_in_file(file, "is not a source of contacts that can be used: its name or its function \"step\" is missing");
   loaded.emplace(file, &table);
   return table;
 }
@@ -153,7 +153,7 @@ void load_law(const fs::path& given) {
     add_algorithm(std::move(entry));
     laws.push_back({file, name});
   } catch (const std::invalid_argument& problem) {
-    fail_in_file(file, fmt::format("is no law that can be used: {}", problem.what()));
+    fail_in_file(file, fmt::format("is not a law that can be used: {}", problem.what()));
   }
 }
 

@@ -126,8 +126,8 @@ class DragCourse {
   double way() const { return now_.way; }      ///< furthest that the tool came on the path [m]
   double asked() const { return now_.asked; }  ///< how far its hand led it [m]
   /// How far the tool ended behind where its hand led it [m], if that is further than a tenth of the way and than the
-  /// tool's half width. None where it had been half as far behind at half way: friction holds a tool back by as much as
-  /// the hand's spring gives, and it comes along.
+  /// tool's half width. Empty where it had been half as far behind at half way: friction holds a tool back by as much
+  /// as the hand's spring gives, and it comes along.
   std::optional<double> left_behind() const {
     const double most = std::max({kMovingShare * now_.asked, 0.5 * width_, 2.0 * behind_at_half_way_});
     return behind_ > most ? std::optional(behind_) : std::nullopt;
@@ -181,7 +181,7 @@ class Standstill {
     across_ = std::max(across_, across.norm());
   }
 
-  /// None where the tool moves in the end, or its target does not.
+  /// Empty where the tool moves in the end, or its target does not.
   std::optional<Stuck> stuck() const {
     return stuck_.target_way > width_ && across_ > width_ ? std::optional(stuck_) : std::nullopt;
   }

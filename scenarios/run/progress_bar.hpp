@@ -19,7 +19,7 @@ void report_progress_to(const ProgressListener* listener) noexcept;
 void tell_progress(std::string_view label, std::uint64_t done, std::uint64_t total) noexcept;
 
 /// How much is done, as a line on standard error for work that takes longer than two seconds; silent otherwise. Where
-/// standard error is no terminal, a line after 2 s, 4 s, 8 s and so on. Before a listener it tells that of every
+/// standard error is not a terminal, a line after 2 s, 4 s, 8 s and so on. Before a listener it tells that of every
 /// `show`.
 class ProgressBar {
  public:
@@ -47,7 +47,8 @@ class ProgressBar {
 };
 
 /// A line on standard error that says what takes so long, with the seconds, for work of unknown length that takes
-/// longer than two of them; silent otherwise. Where standard error is no terminal, lines after 2 s, 4 s, 8 s and so on.
+/// longer than two of them; silent otherwise. Where standard error is not a terminal, lines after 2 s, 4 s, 8 s and so
+/// on.
 class WaitNotice {
  public:
   /// `enabled` false silences it (--quiet).

@@ -215,7 +215,7 @@ std::string scale_question(const Scenario& scenario, const ToolShape& tool, cons
 }
 
 std::string odd_frame(const Box& tool) {
-  constexpr double kOdd = 2.0;  // as far this way as the other, or further, is no accident
+  constexpr double kOdd = 2.0;  // as far this way as the other, or further, is not an accident
   const Vec3 size = tool.max - tool.min;
   const double gap = distance_to(tool, Vec3::Zero());
   if (gap > 0.0) return fmt::format("lies {} away from its tip centre", length_text(gap));

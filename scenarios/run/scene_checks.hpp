@@ -66,7 +66,7 @@ double script_moves_until(const Scenario& scenario);
 /// The longest period of what repeats in the scripts of hand and tool [s]; 0 where nothing does.
 double script_period(const Scenario& scenario);
 /// True when a script moves the hand or turns the tool: then the tool never comes to rest, and only what is above 30 Hz
-/// and 1 mm/s counts as motion, and once the script has ended all beyond 1 mm/s. A hand that trembles moves it, too.
+/// and 1 mm/s counts as motion, and once the script has ended all beyond 1 mm/s. A hand that trembles also moves it.
 bool is_moved(const Scenario& scenario);
 
 /// What a handle may vibrate unless it is said otherwise [m/s rms above 30 Hz]. It is a speed because hand-transmitted
@@ -85,7 +85,7 @@ struct PointDistance {
   bool is_given = true;  ///< false: the mean distance of the vertices of a mesh that is taken as it is
 };
 
-/// None where no field sets it.
+/// Empty where no field sets it.
 std::optional<PointDistance> point_distance(const LoadedScenario& loaded);
 
 /// The place of a tool against the points of a surface.

@@ -52,7 +52,7 @@ DeviceLoop admittance_loop(const Scenario& scenario, const AdmittanceDeviceConfi
     loop.hand_stiffness = hand->stiffness;
     loop.hand_damping = hand->damping;
   } else if (!is_blind(scenario.hand)) {
-    result.no_theory = "the hand is no spring and damper";
+    result.no_theory = "the hand is not a spring and damper";
   }
   return result;
 }

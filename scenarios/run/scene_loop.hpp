@@ -49,7 +49,7 @@ Eigen::MatrixXd contact_step(const Scenario& scenario, double lambda);
 
 /// The maps of a step of the loop of device, hand and a wall of lambda K (contact_step), by the name of the hand, which
 /// is empty for the scene's own: with `over_hands`, on an impedance device that a hand holds, each of hand_family(),
-/// too. With dry friction also that of the tool which it holds. None where there is no contact_step.
+/// too. With dry friction also that of the tool which it holds. Empty where there is no contact_step.
 std::vector<std::pair<std::string, Eigen::MatrixXd>> contact_loops(const Scenario& scenario, double lambda,
                                                                    bool over_hands);
 

@@ -69,7 +69,7 @@ class Session final : public Observer {
 
   void on_step(const StepRecord& row) noexcept override {
     last_ = row.force.S;
-    Vec3 vibration = Vec3::Zero();  // the force above the cutoff; none where the sampling rate is too low for that
+    Vec3 vibration = Vec3::Zero();  // the force above the cutoff; zero where the sampling rate is too low for that
     if (high_pass_) {
       if (row.step == 0) high_pass_->settle_at(row.force.rendered);
       vibration = high_pass_->filter(row.force.rendered);

@@ -24,7 +24,7 @@
 namespace hapbench {
 namespace {
 
-/// Of the step. A device samples: between its samples the force is held, which is of the first order.
+/// Formal order in the step. A device samples: between its samples the force is held, which is of the first order.
 double order_in_step(const Scenario& scenario) {
   const IntegratorEntry& integrator = *scenario.integrator.type;
   if (has_device(scenario)) return 1.0;

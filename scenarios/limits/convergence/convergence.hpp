@@ -28,15 +28,15 @@ struct LevelSweep {
 
 /// The levels of a field. With shorter steps the run lasts as long, delays of devices keep their length, and metrics of
 /// motion, force and contact are taken at the times of the coarsest rows. A mesh without a spacing begins with the mean
-/// distance of its vertices. Throws InputError when the field is no number > 0 or an integer, and for a ratio of steps
-/// that is not whole.
+/// distance of its vertices. Throws InputError when the field is not a number > 0 or an integer, and for a ratio of
+/// steps that is not whole.
 LevelSweep level_sweep(const LoadedScenario& loaded, const std::string& path, std::size_t levels, double ratio);
 
 /// What a run at one level gave.
 struct LevelResult {
   std::string setting;           ///< the field's value, for reasons
   std::string outcome;           ///< how the run ended
-  std::optional<double> result;  ///< none where the run failed or has no such number
+  std::optional<double> result;  ///< empty where the run failed or has no such number
   /// Counts of contacts, by name; where they differ between levels, contacts have switched.
   std::vector<std::pair<std::string, double>> contacts = {};
   std::uint64_t state_hash = 0;  ///< equal for runs that are the same, bit for bit
@@ -44,10 +44,10 @@ struct LevelResult {
 
 /// The verdict on a metric.
 struct Convergence {
-  std::optional<double> order;         ///< observed at the three finest levels; none where none is credible
+  std::optional<double> order;         ///< observed at the three finest levels; empty where none is credible
   std::string reason;                  ///< why there is none, in a clause; empty with an order
   std::optional<double> extrapolated;  ///< Richardson's value; only with an order, as the next two
-  std::optional<double> gci;           ///< of the finest level, relative to its result; none where that is 0
+  std::optional<double> gci;           ///< of the finest level, relative to its result; empty where that is 0
   /// GCI_21 / (r^p GCI_32) is 1 within 0.1 at the three finest levels, and where a fourth one counts with the same p at
   /// the three before.
   bool asymptotic = false;
@@ -76,14 +76,14 @@ Convergence convergence_of(const LevelSweep& levels, std::span<const LevelResult
 /// The cases at the levels behind the first. Throws InputError where one of them cannot be run.
 Cases finer_cases(const LevelSweep& levels, const Cases& cases);
 
-/// Of a number, in its unit. By step and by spacing it is the error that convergence_of gives the coarsest of three
-/// levels: 1.25 |f - f*| with Richardson's value f* where an order is seen, else the largest plain difference.
+/// Error of a number, in its unit. By step and by spacing it is the error that convergence_of gives the coarsest of
+/// three levels: 1.25 |f - f*| with Richardson's value f* where an order is seen, else the largest plain difference.
 struct KnownError {
-  std::optional<double> step, spacing;  ///< none where a finer run ends otherwise or has no such number
+  std::optional<double> step, spacing;  ///< empty where a finer run ends otherwise or has no such number
   bool has_points = true;               ///< false: there is no spacing to be halved
   double tolerance = 0.0;               ///< of the metric itself, as that of a quantile of a histogram
 
-  /// All of it together; none where a part that there is to know is not known.
+  /// The whole error; empty if a part that can be known is not.
   std::optional<double> sum() const {
     if (!step || (has_points && !spacing)) return std::nullopt;
     return *step + spacing.value_or(0.0) + tolerance;
@@ -96,7 +96,7 @@ class FinerRuns {
   /// Runs them, without files. `reports` are those of `comparison`; both have to outlive this. Throws Stopped.
   FinerRuns(const Comparison& comparison, std::span<const Result> reports, const JobOptions& jobs);
 
-  /// Of a metric of the run with that number in the comparison; metrics are taken at the times of its own rows.
+  /// Error of a metric of the run with that number in the comparison; metrics are taken at the times of its own rows.
   KnownError known_error(std::size_t run, const std::string& metric) const;
 
   /// What was refined of a scene, and why something was not, in a clause.

@@ -109,7 +109,7 @@ struct IntervalEnd {
 struct FieldLimit : IntervalEnd {
   IntervalEnd other;
   /// The same by the eigenvalues of a step, where the springs stay in contact; infinite (smallest: 0) when the whole
-  /// range is stable, none where there is no theory or nothing is stable.
+  /// range is stable, empty where there is no theory or nothing is stable.
   std::optional<double> theory;
   bool theory_has_none = false;  ///< by theory no value of the range is stable
   /// Of a device at what only pushes, where there is no theory: the edge of the loop of device, hand and the stiffness
@@ -144,8 +144,8 @@ Json own_value(const Scenario& scenario, const std::string& path);
 
 /// The question about a field in a range, or by default between a thousandth and a thousandfold (2^10) of the
 /// scenario's own value, as far as the field allows. The range is logarithmic when both ends are above 0. Throws
-/// InputError when the field is no number, when the ends are none of its values, and, without a range, when its value
-/// is not above 0.
+/// InputError when the field is not a number, when the ends are none of its values, and, without a range, when its
+/// value is not above 0.
 LimitQuestion limit_question(const ScenarioText& scenario, const std::vector<std::string>& overrides,
                              const std::string& path, std::optional<Range> range);
 

@@ -336,7 +336,7 @@ bool unstable_without_contact(const LoadedScenario& loaded, std::optional<double
   if (spring_of(loaded.scenario.hand) == nullptr ||
       std::holds_alternative<SpringsEnvironment>(loaded.scenario.environment))
     return false;
-  // Dry friction only takes energy. What its sticking and slipping leave of vibration is no fault of the loop.
+  // Dry friction only takes energy. What its sticking and slipping leave of vibration is not the loop's fault.
   Scenario scenario = loaded.scenario;
   if (auto* device = std::get_if<ImpedanceDeviceConfig>(&scenario.device)) device->coulomb = 0.0;
   MotionClassifier classifier = classifier_of(scenario);

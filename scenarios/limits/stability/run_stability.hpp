@@ -136,7 +136,7 @@ struct StabilityRule {
   std::optional<double> most_vibration = {};
   /// Bounds on metrics of summary.json; a metric without a value keeps none.
   std::map<std::string, MetricBound> bounds = {};
-  bool bounded = false;  ///< a run that vibrates without growing is stable, too
+  bool bounded = false;  ///< a run that vibrates without growing is also stable
 
   bool holds(RunVerdict verdict) const noexcept {
     return is_stable(verdict) || (bounded && verdict == RunVerdict::vibrating);

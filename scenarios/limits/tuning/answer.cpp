@@ -166,7 +166,7 @@ double last_settled(Trials& trials, const TuneTrial& trial, const SearchWay& way
   }
 }
 
-/// The damping ratio of the least damped mode of the loop in contact; none where there is no loop.
+/// The damping ratio of the least damped mode of the loop in contact; empty where there is no loop.
 std::optional<double> least_damping_ratio(const Scenario& scenario, double lambda, bool over_hands) {
   std::optional<double> least;
   if (!(lambda > 0.0)) return least;
@@ -187,7 +187,7 @@ std::string then_text(const TuneTrial& trial) {
   return fmt::format("then K = {:.4g} N/m{}", trial.stiffness, setting_text(trial));
 }
 
-/// By how much a limit has to give way to a trial: what the user asked for, or what is quiet.
+/// How far a limit has to give way to a trial: what the user asked for, or what is quiet.
 std::string relaxed(const Trials& trials, const TuneTrial& trial, const std::string& name) {
   const auto worst = trial.worst.find(name);
   if (worst == trial.worst.end()) return fmt::format("drop the limit on {}, which has no value here", name);

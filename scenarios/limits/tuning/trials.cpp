@@ -21,7 +21,7 @@ std::vector<FamilyMember> hands_of(const Scenario& scenario) {
   const bool has_mass = std::holds_alternative<MassSpringDamperHandFields>(scenario.hand);
   if (!has_mass && spring_of(scenario.hand) == nullptr && !std::holds_alternative<DragHandFields>(scenario.hand))
     return {};
-  const auto family = hand_family().subspan(1);  // the first is no hand
+  const auto family = hand_family().subspan(1);  // the first is not a hand
   const auto [soft, stiff] = std::ranges::minmax(family, {}, &AttachedHand::stiffness);
   const auto [light, heavy] = std::ranges::minmax(family, {}, &AttachedHand::mass);
   std::vector<FamilyMember> hands;
@@ -85,7 +85,7 @@ std::string verdict_with(const RunStability& run, const FamilyMember& member) {
   return std::string(run_verdict_name(run.verdict)) + with(member);
 }
 
-/// The hand with which the loop is unstable somewhere from K to `gain` K; none where there is none.
+/// The hand with which the loop is unstable somewhere from K to `gain` K, if there is one.
 std::optional<std::string> unstable_loop(Scenario scenario, double lambda, double K, double gain, bool over_hands) {
   constexpr double kStride = 1.1;
   for (double at = gain * K; lambda > 0.0 && at * kStride > K; at /= kStride) {
@@ -96,7 +96,7 @@ std::optional<std::string> unstable_loop(Scenario scenario, double lambda, doubl
   return std::nullopt;
 }
 
-/// Notes the worst value of a limited metric over the family; none where it has none in some run.
+/// Notes the worst value of a limited metric over the family; empty where it has none in some run.
 void note_worst(TuneTrial& trial, const std::string& name, const MetricBound& bound,
                 std::span<const TuneMetrics> metrics, std::span<const FamilyMember> family) {
   for (std::size_t i = 0; i < metrics.size(); ++i) {

@@ -77,7 +77,7 @@ class TuneSearch {
     if (trials.question.filters && handle_moves_tool(own.device)) filters_ = kFilters;
   }
 
-  /// The best trial; none where nothing is feasible.
+  /// The best trial; empty where nothing is feasible.
   std::optional<TuneTrial> best() {
     best_.reset();
     for (const TuneSetting& setting : settings_) improve(setting);
@@ -187,7 +187,7 @@ class TuneSearch {
 
   Trials& trials_;
   std::vector<TuneSetting> settings_;
-  std::span<const char* const> filters_;  ///< that are searched, too
+  std::span<const char* const> filters_;  ///< that are also searched
   std::optional<TuneTrial> best_;
   TuneTrial beyond_;
 };

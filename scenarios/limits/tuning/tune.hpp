@@ -33,7 +33,7 @@ struct FamilyMember {
   std::vector<std::string> overrides = {};  ///< none: the scene's own run
 };
 
-/// Those runs; none where the scene has nothing to vary, as a hand whose force is a script.
+/// Those runs; empty where the scene has nothing to vary, as a hand whose force is a script.
 std::vector<FamilyMember> family_of(const LoadedScenario& loaded, const std::string& family);
 
 struct TuneQuestion {
@@ -45,12 +45,12 @@ struct TuneQuestion {
   std::vector<std::string> families = {"hands"};  ///< their runs together
   Range damping_ratio = {0.01, 10.0, true};       ///< zeta; of an impedance device by the mass of its handle
   std::optional<Range> mass = {};  ///< of the virtual mass on an admittance device [kg]; none: half to twice the own
-  bool filters = false;            ///< try velocity filters of an impedance device, too
+  bool filters = false;            ///< also try velocity filters of an impedance device
   unsigned threads = 1;
   std::function<void(std::size_t runs)> on_runs = {};  ///< hears how many runs were made, now and then
 };
 
-/// The fields that are chosen beside K; what is not searched keeps the scene's value.
+/// The fields that are chosen besides K; what is not searched keeps the scene's value.
 struct TuneSetting {
   std::optional<double> damping_ratio, mass;
   std::string filter;  ///< device.velocity_filter as JSON; empty: the scene's
@@ -85,8 +85,8 @@ struct TuneTrial : TuneSetting {
   }
 };
 
-/// What a choice can bear before the worst run of the family is not settled any more; none where it cannot be asked, as
-/// of the delay of an ideal device. At most kMostGain and kMostDelay.
+/// What a choice can bear before the worst run of the family is not settled any more; empty where it cannot be asked,
+/// as of the delay of an ideal device. At most kMostGain and kMostDelay.
 struct TuneMargins {
   std::optional<double> gain;           ///< factor on K
   std::optional<double> delay_samples;  ///< more delay of the device's force, or of an admittance device's servo
@@ -115,7 +115,7 @@ struct TunedLaw {
 /// Search of a law ends at so many simulations; margins, errors and verification take a few hundred more.
 inline constexpr std::size_t kMostTuneRuns = 6000;
 
-/// The range of zeta and of the virtual mass that are searched; none where they have no part.
+/// The range of zeta and of the virtual mass that are searched; empty where they have no part.
 struct TuneRanges {
   Range stiffness;
   std::optional<Range> damping_ratio, mass;

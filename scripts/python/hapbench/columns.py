@@ -51,7 +51,7 @@ def numbers_in(lines, columns, wanted):
 
 
 def fault_of(file, names):
-    """What is wrong with a table whose named columns are no numbers."""
+    """What is wrong with a table whose named columns are not numbers."""
     every, rows = read_rows(file)
     for line, row in enumerate(rows, start=2):
         for name in names:

@@ -90,7 +90,7 @@ def limit(scenarios: Scenario | Sequence[Scenario], overrides: Overrides = None,
 
 def command(*words: object, progress: Progress = None) -> Any:
     """A command of the program by its words, as `hapbench.command("describe", "mean")`: what it prints with --json, read;
-    None where it prints nothing. Raises ScenarioError for what the program refuses."""
+    Empty where it prints nothing. Raises ScenarioError for what the program refuses."""
     status, text, said, errors = _hapbench.command([*map(str, words), "--json"], progress)
     _warn(said + errors, status)
     return json.loads(text) if text else None
@@ -104,7 +104,7 @@ def algorithms() -> list[str]:
 def load_plugin(file: str | os.PathLike) -> None:
     """Take a law from a shared object with hapbench's C interface, as --module does; it then stands beside the others.
 
-    Raises ScenarioError for what is no law, and while another thread computes."""
+    Raises ScenarioError for what is not a law, and while another thread computes."""
     command("--module", os.fspath(file), "describe", "--quiet")
 
 
@@ -186,7 +186,7 @@ class _Scratch:
 
 
 def _named(file, is_scenario):
-    """A path that means the same from another folder. What is no file here may be the name of a bundled scenario."""
+    """A path that means the same from another folder. What is not a file here may be the name of a bundled scenario."""
     return file if is_scenario and not Path(file).is_file() else str(Path(file).absolute())
 
 

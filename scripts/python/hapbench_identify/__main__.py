@@ -117,7 +117,7 @@ def warnings_of(told, found, log):
     if told["offset_N"]["value"] is not None:
         warnings.append(f"a constant force of {told['offset_N']['value']:.3g} N acts besides the commands (weight, a cable): no device file has it")
     if found.misfit:
-        warnings.append(f"the residual, {found.rms:.3g} m, is no noise. The device has something that this model has not (a hand on it, elasticity, "
+        warnings.append(f"the residual, {found.rms:.3g} m, is not noise. The device has something that this model has not (a hand on it, elasticity, "
                         "friction that depends on the place): look at the picture. The parameters are those of pieces of 0.2 s, and the intervals "
                         "those of leaving out one twelfth of the log after another")
     return warnings

@@ -51,7 +51,7 @@ def travel_of(time, force, mass):
 
 def force_to_ask(kind, numbers):
     """The --force with which the signal reaches numbers["force"] [N], rounded up to two digits, though travel limits it: a larger one begins
-    at a higher frequency. None where there is none."""
+    at a higher frequency. Empty where there is none."""
     wanted = asked = numbers["force"]
     try:
         for _ in range(8):

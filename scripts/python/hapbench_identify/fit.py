@@ -272,7 +272,7 @@ def _spreads(J, places, encoder_step, rms):
 
 
 def _by_pieces(cost, found, scale):
-    """For a residual that is no noise: the fit on short pieces, and half of the intervals by leaving out one block of the log after
+    """For a residual that is not noise: the fit on short pieces, and half of the intervals by leaving out one block of the log after
     another, which assumes nothing about it."""
     found = least_squares(cost, found.x, scale, 60, 1e-8)
     units = _units(scale, found.x)

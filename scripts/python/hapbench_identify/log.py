@@ -17,7 +17,7 @@ class Log:
     force: np.ndarray     # commanded at that time and held until the next [N]
     position: np.ndarray  # [m]; NaN where the sample is missing
     step: float           # mean interval without a gap [s]
-    encoder_step: float   # 0: positions are no multiples of anything
+    encoder_step: float   # 0: positions are not multiples of anything
     warnings: list
 
 

@@ -16,7 +16,7 @@ matrix (r11, r12 ... r33, row by row); it turns the tool's frame into the world'
 added to the places of the tip [m]; force_by_tool=true, forces are the tool's on the object and are turned round; max_speed, faster \
 jumps are refused [m/s], default 5; max_gap, longer gaps are refused, not bridged [s], default 0.5; floats=true, hapi-binary has \
 numbers of four bytes.
-Rows with wrong numbers, times that do not increase, quaternions that are no unit and jumps are refused with their lines, and \
+Rows with wrong numbers, times that do not increase, quaternions not of unit length and jumps are refused with their lines, and \
 nothing is written.
   hapbench import stroke
   hapbench import stroke log.txt --preset hapi --smooth window=11,order=3 --out stroke.csv

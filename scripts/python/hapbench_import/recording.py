@@ -39,7 +39,7 @@ class Recording:
         else:
             cells = [row[column] if len(row) > column else b"" for row in self.rows]
             text = b"\n".join(cells)
-            # Otherwise float() may accept what is no number here, and cells are read one by one.
+            # Otherwise float() may accept what is not a number here, and cells are read one by one.
             usual = not text.translate(None, _NUMERIC) and text.count(b"+") == text.count(b"e+") + text.count(b"E+")
             try:
                 values = np.array([float(cell) for cell in cells] if usual else [finite_number(cell) for cell in cells])

@@ -69,10 +69,10 @@ def _warnings(report, found):
         warnings.append(f"{len(report.gaps)} gaps in all")
     extent = float(np.ptp(found["box_m"], axis=0).max())
     if not SHORTEST <= extent <= LONGEST:
-        warnings.append(f"the tip's places are within {extent:.4g} m, which is no stroke of a hand: is the scale right? "
+        warnings.append(f"the tip's places are within {extent:.4g} m, which is not a stroke of a hand: is the scale right? "
                         "(--scale position=0.001 is for millimetres)")
     if not USUAL_RATES[0] <= report.rate <= USUAL_RATES[1]:
-        warnings.append(f"{report.rate:.4g} samples a second are no usual rate: is the scale of time right? (--scale time=1e-3 is for "
+        warnings.append(f"{report.rate:.4g} samples a second is an unusual rate: is the scale of time right? (--scale time=1e-3 is for "
                         "milliseconds)")
     if found["tip_direction"][2] > 0.5:
         warnings.append("the tip points upwards in the mean: are --orientation (the order of a quaternion), tip_axis and --frame right?")

@@ -92,7 +92,7 @@ class Columns:
 
 
 class Rows:
-    """The rows of a recording as numbers; `problems` says, by row, why some are no samples."""
+    """The rows of a recording as numbers; `problems` says, by row, why some are not samples."""
 
     def __init__(self, recording, columns, options):
         self.problems, self.unit_deviation, self._recording = recording.problems(), 0.0, recording
@@ -158,7 +158,7 @@ class Rows:
             deviation = np.abs(m.transpose(0, 2, 1) @ m - np.eye(3)).max(axis=(1, 2))
             right_handed = np.einsum("ij,ij->i", m[:, 0], np.cross(m[:, 1], m[:, 2])) > 0.0
             self._refuse(~((deviation <= UNIT_TOLERANCE) & right_handed), lambda row: (
-                f"got a matrix that is no rotation; allowed: rows of length 1, perpendicular within {UNIT_TOLERANCE:g}, determinant 1"))
+                f"got a matrix that is not a rotation; allowed: rows of length 1, perpendicular within {UNIT_TOLERANCE:g}, determinant 1"))
         else:
             # No turn needs no axis.
             no_turn = (self.kind == "axis_angle") & (lengths == 0.0) & (values[:, 3] == 0.0)

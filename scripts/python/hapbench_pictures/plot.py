@@ -67,7 +67,7 @@ def window_of(options):
             raise InputError(f"{name}: got \"{text}\"; allowed: a time in seconds")
     window = float(options.start or -math.inf), float(options.end or math.inf)
     if not window[0] < window[1]:
-        raise InputError(f"--from {options.start} --to {options.end}: is no span of time; allowed: --from before --to")
+        raise InputError(f"--from {options.start} --to {options.end}: is not a span of time; allowed: --from before --to")
     return window
 
 

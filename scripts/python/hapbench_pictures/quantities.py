@@ -74,7 +74,7 @@ SHORT = {q.name: q for q in (
     Quantity("energy", "energy created by the rendering", "mJ", 1e3, "energy.csv", ("created_J",)),
     Quantity("input_energy", "energy put in by the hand", "mJ", 1e3, "energy.csv", ("input_J",)),
 )}
-PATH = "path"  # the tip's way in space, which is no function of time
+PATH = "path"  # the tip's way in space, which is not a function of time
 # Drawn by default, as far as a run recorded them.
 USUAL = ("force", "reference", "force_error", "depth", "ratio", "contacts", "energy", PATH)
 

@@ -90,7 +90,7 @@ class Sweep:
         return even[1] if values[0] > 0 and even[0] != even[1] else not even[0] and spread_logarithmically(values)
 
     def sensitivities(self):
-        """One for each field, over the runs that have the metric; None where there is none."""
+        """One for each field, over the runs that have the metric; empty where there is none."""
         ok = np.isfinite(self.values)
         found = []
         for i, entry in enumerate(self.axes):

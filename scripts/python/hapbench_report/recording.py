@@ -141,7 +141,7 @@ def base64_of(code, values):
 
 
 def sound(columns):
-    """Samples for the page, None where too few rows a second were recorded. One direction is heard, that in which the
+    """Samples for the page, empty where too few rows a second were recorded. One direction is heard, that in which the
     force above 30 Hz is strongest: its size alone would hide a force that turns round."""
     times = columns["time_s"][:LONGEST]
     if len(times) < 3 or not times[-1] > times[0]:

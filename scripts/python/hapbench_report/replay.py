@@ -137,7 +137,7 @@ def some(points, most):
 
 
 def surface_of(runs):
-    """Points and normals of the surface that all runs share; None where they do not, or there is none to be had."""
+    """Points and normals of the surface that all runs share; empty where they do not, or there is none to be had."""
     environments = [run.scenario.get("environment") for run in runs]
     if any(environment != environments[0] for environment in environments) or not environments[0]:
         return None

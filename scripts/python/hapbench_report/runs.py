@@ -30,7 +30,7 @@ class Run(results.Run):
         return number_or_none(self.metrics.get(key))
 
     def tolerance(self, section, key):
-        """By how much a metric may be wrong; None where that is not known."""
+        """By how much a metric may be wrong; empty where that is not known."""
         return number_or_none(self.summary.get("tolerances", {}).get(key if section == "metrics" else f"{section}.{key}"))
 
     @cached_property
