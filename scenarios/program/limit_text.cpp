@@ -116,8 +116,15 @@ void add_ends(Columns<LimitRow>& columns, const LimitTable* table) {
           "the first value above that is not stable; empty when the range ends stable");
 }
 
-void add_theory(Columns<LimitRow>& columns) {
+void add_theory(Columns<LimitRow>& columns, bool with_inequality) {
   columns.add("theory", "by field", "the limit in theory; empty where there is none", of_answer(&FieldLimit::theory));
+  if (with_inequality) {
+    columns.add(
+        "closed_form", "by field",
+        "the same where the integrator's inequality ends, of leapfrog 4 - 2 lambda B dt / M - lambda K dt^2 / M >= 0 "
+        "with lambda = lambda_max(S) (A.3); empty where it has none",
+        of_answer(&FieldLimit::closed_form));
+  }
   columns.add(
       "linear", "by field",
       "of a device at what only pushes: the largest value at which the loop of device, hand and surface is stable "
@@ -203,7 +210,8 @@ Json row_json(const Columns<LimitRow>& columns, const LimitRow& row) {
 Columns<LimitRow> limit_columns(const LimitTable* table) {
   Columns<LimitRow> columns = place_columns<LimitRow>(table);
   add_ends(columns, table);
-  add_theory(columns);
+  const auto has_inequality = [](const LimitRow& row) { return row.found.closed_form.has_value(); };
+  add_theory(columns, table == nullptr || std::ranges::any_of(table->rows, has_inequality));
   add_search(columns);
   if (table == nullptr || !table->devices.empty()) {
     columns.add("published_N_per_m", "N/m", "published largest stable stiffness of a wall on the device",

@@ -259,7 +259,7 @@ class Start {
     note_spacing();
   }
 
-  /// Folder of the scenario file.
+  /// Content of the scenario file.
   const Json& scene() const { return scene_; }
   /// Sizes and choices, a line each.
   const std::vector<std::string>& notes() const { return notes_; }

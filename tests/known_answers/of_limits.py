@@ -28,7 +28,7 @@ def limits_of_springs(bench):
     fine = Within("bisected to 1e-12, of eigenvalues near a double one to rounding", relative=1e-9)
     runs = Within("bisection ends at 1e-4; growth of 2e-6 a step is seen", relative=1.1e-4)
     wrong = ("of a single spring", [2 * value[0], 433731.0, 2 * value[2], 2 * value[3]])
-    for column, within in (("theory", fine), ("limit", runs)):
+    for column, within in (("closed_form", fine), ("theory", fine), ("limit", runs)):
         bench.add(f"limit.csv:{column}", np.concatenate([table[column] for table in tables]), value, "4 - 2 lam B dt / M - lam K dt^2 / M = 0", within, wrong)
     # |1 + z + z^2/2 + z^3/6 + z^4/24| = 1 at z = i 2 sqrt 2, and on the real axis at the root of z^3/24 + z^2/6 + z/2 + 1.
     rk4 = ("--set", "integrator.type=rk4")

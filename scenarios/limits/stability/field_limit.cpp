@@ -211,6 +211,7 @@ class Search {
         !question_.holds(suspect.verdict) && unstable_without_contact(at(suspect.value), question_.most_vibration);
     limit.theory = theory.edge();
     limit.theory_has_none = theory.has_none();
+    limit.closed_form = Theory(*this, has_closed_form, has_margin, kEdgeIntervals).edge();
     limit.undecided = static_cast<std::size_t>(
         std::count_if(runs.begin(), runs.end(), [](const auto& run) { return run.second.undecided; }));
     add_closed_forms(limit);
@@ -329,6 +330,14 @@ class Search {
       if (!has_device(scenario)) return tool_on_spring(scenario, lambda).is_stable();
       return lambda < kNoWall || is_stable_step(device_loop(scenario, lambda).state_matrix());
     });
+  }
+
+  /// True where the integrator's inequality tells whether a step is stable.
+  static bool has_closed_form(const Scenario& scenario) {
+    return !has_device(scenario) && has_theory(scenario) && scenario.integrator.type->stability_margin != nullptr;
+  }
+  static bool has_margin(const Scenario& scenario) {
+    return *tool_on_spring(scenario, stiffness_eigenvalues(scenario)[2]).margin() >= 0.0;
   }
 
   const LimitQuestion& question_;

@@ -112,6 +112,9 @@ struct FieldLimit : IntervalEnd {
   /// range is stable, empty where there is no theory or nothing is stable.
   std::optional<double> theory;
   bool theory_has_none = false;  ///< by theory no value of the range is stable
+  /// The same by the integrator's inequality, of leapfrog 4 - 2 lambda B dt / M - lambda K dt^2 / M >= 0, where the
+  /// tool is alone with the springs; empty under an integrator without one.
+  std::optional<double> closed_form;
   /// Of a device at what only pushes, where there is no theory: the edge of the loop of device, hand and the stiffness
   /// rendered at the limit while contact lasts, without dry friction and encoder; infinite when the whole range is
   /// stable. A limit beyond it is held up by what that loop leaves out.
