@@ -63,6 +63,12 @@ std::string tool_text(const LoadedScenario& loaded, const SceneFacts& facts) {
   return text + "\n";
 }
 
+/// An amount of data, as in "271 MB".
+std::string bytes_text(double bytes) {
+  if (bytes < 1e6) return fmt::format("{:.0f} kB", std::ceil(1e-3 * bytes));
+  return bytes < 1e9 ? fmt::format("{:.3g} MB", 1e-6 * bytes) : fmt::format("{:.3g} GB", 1e-9 * bytes);
+}
+
 std::string facts_text(const LoadedScenario& loaded, const SceneFacts& facts) {
   const Scenario& scenario = loaded.scenario;
   std::string text = facts.surface ? surface_text(*facts.surface, facts.is_closed) : "  environment  springs\n";
