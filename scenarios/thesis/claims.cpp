@@ -48,6 +48,7 @@ Finding Claim::finding(const Evidence& evidence) const {
   }
   if (finding.measured.empty()) finding.measured = numbers.fill(measured) + of_cases;
   finding.brief = numbers.fill(main.ours);
+  finding.cases = cases;
   return finding;
 }
 

@@ -109,6 +109,16 @@ std::string rows_with(const Json& claims, Verdict verdict) {
   return text;
 }
 
+/// The numbers of each case, lists where there are several.
+Json cases_json(const Measured& cases) {
+  Json json = Json::array();
+  for (const MeasuredCase& m : cases) {
+    Json& values = json.emplace_back(Json{{"name", m.name}})["values"];
+    for (const auto& [name, all] : m.values) values[name] = all.size() == 1 ? Json(all.front()) : Json(all);
+  }
+  return json;
+}
+
 }  // namespace
 
 Json robustness_on_record(const Json& record, const JudgedClaim& judged) {
@@ -144,6 +154,7 @@ Json ledger_json(const std::vector<JudgedClaim>& judged, const PublishedNumbers&
                                            {"robustness", std::move(counts)},
                                            {"choices_reach_it", !j.reach.empty()},
                                            {"why", j.finding.why},
+                                           {"cases", cases_json(j.finding.cases)},
                                            {"scenarios", j.scenarios},
                                            {"command", "hapbench reproduce --only " + j.claim.id},
                                            {"seconds", std::round(10.0 * j.seconds) / 10.0},

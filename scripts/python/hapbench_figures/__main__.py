@@ -9,9 +9,10 @@ from hapbench.errors import ResultError
 from hapbench.results import Files, MissingResult
 from hapbench_command import BAD_INPUT, INTERRUPTED, SUCCESS, Arguments, say_error, write
 
-from . import catalogue
+from . import catalogue, ledger
 
 NOTHING_DRAWN = 1
+ROWS = "rows.json"
 FORMATS = ("svg", "pdf", "png")
 PAGE = """# Figures on record
 
@@ -87,18 +88,21 @@ def write_index(directory, entries):
     return {entry["id"]: entry for entry in known}
 
 
-def record(directory, page, drawn):
-    """Copies figures into the directory `page` and writes figures.md about all that lie there."""
-    text = PAGE
+def record(directory, page, drawn, claims):
+    """Copies figures into the directory `page` and writes figures.md about all that lie there, and rows.json with what the ledger
+    measured for the claims that they draw."""
+    text, rows = PAGE, {}
     for figure in catalogue.FIGURES:
         on_record = page / f"{figure.stem}.svg"
         if figure.id not in drawn or not (figure.thesis or figure.on_record or on_record.is_file()):
             continue
         write(on_record, (directory / on_record.name).read_bytes())
+        rows[figure.id] = ledger.rows(figure, claims)
         name = f"Figure {figure.thesis}" if figure.thesis else "Ours"
         text += f"\n## {name}: {figure.title}\n\n![{figure.title}]({on_record.name})\n\n{drawn[figure.id]['caption']}"
         text += f" Differs: {figure.differs}\n" if figure.differs else "\n"
     write(page / "figures.md", text)
+    write(page / ROWS, json.dumps(rows, indent=1, ensure_ascii=False) + "\n")
 
 
 def main(argv=None):
@@ -123,7 +127,7 @@ def main(argv=None):
         entries = [entry for entry in drawn if entry]
         index = write_index(directory, entries)
         if chosen.record and entries:
-            record(directory, Path(chosen.record), index)
+            record(directory, Path(chosen.record), index, Files(chosen.results).json(ledger.LEDGER)["claims"])
     except OSError as error:
         say_error(f"{error.filename}: {error.strerror}")
         return BAD_INPUT

@@ -20,6 +20,7 @@ class Figure:
     caption: str
     differs: str  # from the thesis's figure, and why
     on_record: bool  # ours, and on record all the same
+    rows: tuple  # claims that it draws, beside those whose place names the thesis's figure
 
     @property
     def stem(self):
@@ -31,9 +32,10 @@ def entry(text, before):
     head, *lines = text.strip().split("\n")
     id_, thesis, module, function, argument, title = HEAD.fullmatch(head).groups()
     on_record = lines[-1:] == ["On record."]
-    caption, _, differs = " ".join(lines[:-1] if on_record else lines).partition(" Differs: ")
+    text, _, rows = " ".join(lines[:-1] if on_record else lines).partition(" Rows: ")
+    caption, _, differs = text.partition(" Differs: ")
     draw = partial(call, module, function, *([argument] if argument else []))
-    return Figure(id_, thesis.removeprefix("-"), draw, title, caption or before.caption, differs, on_record)
+    return Figure(id_, thesis.removeprefix("-"), draw, title, caption or before.caption, differs, on_record, tuple(rows.rstrip(".").split()))
 
 
 def call(module, function, *arguments_and_results):

@@ -1,43 +1,52 @@
 """Appendix D explained: success against what the task checks (ours)."""
-import numpy as np
+import json
 
 import hapbench_style as style
-from hapbench.columns import numbers
 
 from . import published
 
 TARGETS = (("vertical", 0, "D2", "centre"), ("vertical", 1, "D1", "0.52 mm aside"), ("rotational", 0, "D3", "3 mm high"),
            ("rotational", 1, "D4", "4 mm high"))
-GRACES = ((0.0, "-", "o"), (0.002, (0, (4, 1.2)), "s"), (0.005, (0, (1, 1)), "D"))
-EVERY_SAMPLE = 2048.0  # where a threshold without a filter is drawn [Hz]
+DP, HS = "original_averaging", "shaped_stiffness"
+
+
+def recorded(results, task, place, method):
+    """The success of all subjects as the scene checks the force: every sample of it."""
+    rows = results.records(f"thesis/{task}_peg_in_hole_{method}/targets.csv")
+    removed = [float(row["removed"]) for row in rows if float(row["place"]) == place]
+    return sum(removed) / len(removed)
+
+
+def checked(results, task, place):
+    """(cut-off [Hz] or None, grace [s], success) of the original algorithm under other thresholds."""
+    for row in results.records("checked_force/sweep.csv"):
+        if row["scenario"] == f"{task}_peg_in_hole_{DP}":
+            threshold = json.loads(row["hand.task.threshold"])
+            yield threshold["cutoff_Hz"], threshold["grace_s"], float(row[f"targets.{place}.success_rate.mean"])
 
 
 def threshold(results):
-    """Success of the original algorithm over the bandwidth of the force that is checked, beside stiffness shaping under every sample."""
+    """Success of the original algorithm over grace and bandwidth of the force that is checked, beside stiffness shaping."""
     figure, axes = style.panels(1, 4, 2.7, sharey=True)
-    said, table = [], results.records("checked_force/sweep.csv")
+    said = []
     for ax, (task, place, claim, title) in zip(axes[0], TARGETS):
-        rows = [row for row in table if row["scenario"] == f"{task}_peg_in_hole_original_averaging"]
-        cutoff = np.nan_to_num([float(r["hand.task.threshold.cutoff_Hz"].replace("null", "nan")) for r in rows], nan=EVERY_SAMPLE)
-        grace = numbers(rows, "hand.task.threshold.grace_s")
-        success = numbers(rows, f"targets.{place}.success_rate.mean")
-        for value, line, marker in GRACES:
-            own = np.flatnonzero(grace == value)[np.argsort(cutoff[grace == value])]
-            ax.plot(cutoff[own], success[own], color=style.look("original_averaging").colour, ls=line, marker=marker, ms=3,
-                    label=f"DP, grace {1e3 * value:g} ms")
-        targets = results.records(f"thesis/{task}_peg_in_hole_shaped_stiffness/targets.csv")
-        shaped = np.mean([float(row["removed"]) for row in targets if float(row["place"]) == place])
-        ax.axhline(shaped, color=style.look("shaped_stiffness").colour, label="HS, every sample")
-        for at, method in ((4500, "original_averaging"), (6500, "shaped_stiffness")):
+        every = recorded(results, task, place, DP)
+        others = list(checked(results, task, place))
+        graces = [(0.0, every)] + sorted((1e3 * grace, success) for cutoff, grace, success in others if cutoff is None)
+        slow = [(1e3 * grace, success) for cutoff, grace, success in others if cutoff is not None]
+        look = style.look(DP)
+        ax.plot(*zip(*graces), color=look.colour, marker="o", label="DP, every sample")
+        ax.plot(*zip(*slow), color=look.colour, marker="s", mfc="white", ls="none", ms=5, label="DP, 30 Hz")
+        ax.axhline(recorded(results, task, place, HS), color=style.look(HS).colour, label="HS, every sample")
+        for at, method in ((12, DP), (18, HS)):
             id_ = f"{claim}.success.{method}"
             ax.errorbar([at], [published.value(id_)], yerr=[published.spread(id_)], **style.PUBLISHED)
-        ax.set(xscale="log", title=title, xlabel="cut-off [Hz]", xlim=(22, 9000), ylim=(-0.05, 1.08))
-        ax.set_xticks([30, 100, EVERY_SAMPLE], ["30", "100", "every\nsample"], rotation=60)
+        ax.set_xscale("symlog", linthresh=1)
+        ax.set(title=title, xlabel="grace [ms]", xlim=(-0.3, 25), ylim=(-0.05, 1.08))
+        ax.set_xticks([0, 1, 2, 5], ["0", "1", "2", "5"])
         ax.minorticks_off()
-        every = cutoff == EVERY_SAMPLE
-        said.append(f"{title} {success[every & (grace == 0)][0]:.2f}, {success[every & (grace == GRACES[-1][0])][0]:.2f} and "
-                    f"{success[cutoff == 30].max():.2f}")
+        said.append(f"{title} {every:.2f}, {graces[-1][1]:.2f} and {max(success for _, success in slow):.2f}")
     axes[0, 0].set_ylabel("success rate")
-    axes[0, 0].legend(loc="lower left", fontsize=5.5, ncol=1)
+    axes[0, 3].legend(loc="lower right", fontsize=6)
     style.letter(axes[0])
     return figure, {"success": ", ".join(said)}
