@@ -41,7 +41,7 @@ def threshold(results):
         for at, method in ((12, DP), (18, HS)):
             id_ = f"{claim}.success.{method}"
             ax.errorbar([at], [published.value(id_)], yerr=[published.spread(id_)], **style.PUBLISHED)
-        ax.set_xscale("symlog", linthresh=1)
+        ax.set_xscale("symlog", linthresh=1, linscale=0.4)
         ax.set(title=title, xlabel="grace [ms]", xlim=(-0.3, 25), ylim=(-0.05, 1.08))
         ax.set_xticks([0, 1, 2, 5], ["0", "1", "2", "5"])
         ax.minorticks_off()
