@@ -84,6 +84,7 @@ Measured measure_density(const Evidence& e) {
   const auto add = [&](const std::string& name, RenderingConfig config) {
     MeasuredCase& m =
         measured.emplace_back(MeasuredCase{name, {{"updates", {static_cast<double>(config.iterations)}}}});
+    m.values["x40_reduced"] = {std::nan("")};  // of a law that has no reduction
     changes(m, config);
     config.reduction.reset();
     changes(m, config);

@@ -97,6 +97,7 @@ struct Claim {
   bool timing = false;  ///< the finding holds times, so no two runs agree
   bool ours = false;    ///< found on the way: no claim of the thesis, and not counted among those
   bool costly = false;  ///< takes long to measure: judged again for a part of a sample only (robustness.hpp)
+  bool drawn = false;   ///< a figure draws the numbers of its cases, which the ledger then holds
 
   /// A main result in a few words: claim, published and, with measured numbers, ours. Empty for other claims.
   struct Main {

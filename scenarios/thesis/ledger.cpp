@@ -154,12 +154,12 @@ Json ledger_json(const std::vector<JudgedClaim>& judged, const PublishedNumbers&
                                            {"robustness", std::move(counts)},
                                            {"choices_reach_it", !j.reach.empty()},
                                            {"why", j.finding.why},
-                                           {"cases", cases_json(j.finding.cases)},
                                            {"scenarios", j.scenarios},
                                            {"command", "hapbench reproduce --only " + j.claim.id},
                                            {"seconds", std::round(10.0 * j.seconds) / 10.0},
                                            {"timing", j.claim.timing},
                                            {"ours", j.claim.ours}});
+    if (j.claim.drawn) claim["cases"] = cases_json(j.finding.cases);
     if (!j.claim.main.claim.empty()) {
       claim["main"] = {{"claim", j.claim.main.claim},
                        {"published", published.fill(j.claim.main.published)},
