@@ -45,7 +45,9 @@ def column(choice, count, seed):
 def run(scenario, sets, folder):
     """The summary of a run, without its tables."""
     words = [word for text in ("record.trajectory=false", "record.ratio_iterations=[]", "expect={}", *sets) for word in ("--set", text)]
-    subprocess.run([PROGRAM, "run", scenario, *words, "--out", folder, "--quiet"], check=True, stdout=subprocess.DEVNULL)
+    done = subprocess.run([PROGRAM, "run", scenario, *words, "--out", folder, "--quiet"], capture_output=True, text=True)
+    if done.returncode not in (0, 3):  # 3: it ended otherwise than its scenario expects, as a short one may
+        sys.exit(done.stderr)
     return json.loads((Path(folder) / "summary.json").read_text(encoding="utf-8"))
 
 

@@ -165,6 +165,7 @@ Finding judge_springs_limited(const Measured& runs, const PublishedNumbers& p) {
 
 constexpr const char* kSpring = "single_spring";
 constexpr double kLimitResolution = 1e-4;
+constexpr double kSameEnergy = 1e-9;  // in the rule
 
 /// The largest value of a field at which the run of the spring, struck once, stays bounded.
 double largest_bounded(const Evidence& e, const std::string& field, const Range& range,
@@ -230,6 +231,33 @@ Finding judge_damping_at_limit(const Measured& measured, const PublishedNumbers&
           before ? "the damping that belongs to the largest stiffness is unstable by itself" : "stiffness comes first"};
 }
 
+// ---- A6: the largest energy of an undamped mass on a spring, in units of that at its release.
+
+Measured measure_energy(const Evidence& e) {
+  const LoadedScenario loaded = e.load(kSpring, {"rendering.damping_ratio=0"});
+  const RenderingConfig& rendering = loaded.scenario.rendering;
+  double start = 0.0, most = 0.0;
+  for_each_row(loaded, [&](const StepRecord& row) {
+    const double energy = 0.5 * (rendering.stiffness * row.tool.pose.position.squaredNorm() +
+                                 rendering.mass * row.tool.velocity.squaredNorm());
+    if (row.step == 0) start = energy;
+    most = std::max(most, energy);
+  });
+  const double half_turn = 0.5 * loaded.scenario.time.step * std::sqrt(rendering.stiffness / rendering.mass);
+  return {{"", {{"most", {most / start}}, {"bound", {1.0 / (1.0 - half_turn)}}}}};
+}
+
+Finding judge_energy(const Measured& measured, const PublishedNumbers&) {
+  const bool passive = measured.at(0)["most"] <= 1.0 + kSameEnergy;
+  return {
+      passive ? Verdict::reproduced : Verdict::refuted, "",
+      passive
+          ? "the spring gives no more than it was given"
+          : fmt::format(
+                "the energy oscillates and is bounded by 1 / (1 - ω Δt / 2) = {:.4f} of its start: stable, not passive",
+                measured.at(0)["bound"])};
+}
+
 }  // namespace
 
 std::vector<ClaimRule> appendix_a() {
@@ -239,6 +267,7 @@ std::vector<ClaimRule> appendix_a() {
       {"A3", measure_springs_limited, judge_springs_limited},
       {"A4", measure_stability_limits, judge_stability_limits},
       {"A5", measure_damping_at_limit, judge_damping_at_limit},
+      {"A6", measure_energy, judge_energy},
   };
 }
 

@@ -140,25 +140,32 @@ Finding judge_experiment(const Measured& measured, const PublishedNumbers& publi
 
 constexpr const char *kVertical = "vertical_peg_in_hole", *kRotational = "rotational_peg_in_hole";
 
-/// The side target, with how far the tip must go to reach it and how far it can go before the drill meets the wall [m].
-Measured measure_side_target(const Evidence& e) {
-  Measured measured = measure(e, kVertical, 1.0);
-  const Scenario scene = e.load(std::string(kVertical) + "_original_averaging").scenario;
-  const TargetRules& task = std::get<TrackingHandFields>(scene.hand).task;
-  const double hole = std::get<BlockEnvironment>(scene.environment).block.hole_diameter,
-               drill = std::get<CylinderFields>(scene.tool).diameter;
-  measured.front().values["reached_at"] = {task.places.at(1).head<2>().norm() - task.tolerance};
-  measured.front().values["wall_at"] = {0.5 * (hole - drill)};
+// ---- D7: what the wall does to either algorithm. A case for each target.
+
+Measured measure_wall(const Evidence& e) {
+  Measured measured = {measure(e, kVertical, 0.0).front(), measure(e, kVertical, 1.0).front()};
+  measured[0].name = "centre";
+  measured[1].name = "side";
   return measured;
 }
 
-Finding judge_side_target(const Measured& measured, const PublishedNumbers& published) {
-  Finding finding = judge_experiment(measured, published, "D1", true);
-  const double reached = 1e3 * measured.front()["reached_at"], wall = 1e3 * measured.front()["wall_at"];
-  finding.why +=
-      fmt::format("; the target is reached {:.3g} mm from the axis, {} the wall, which the drill meets at {:.3g} mm",
-                  reached, reached < wall ? "without" : "at", wall);
-  return finding;
+Finding judge_wall(const Measured& measured, const PublishedNumbers& published) {
+  bool direction = true, near = true;
+  std::string text;
+  for (const auto& [name, law] : {std::pair("original", "original_averaging"), std::pair("shaped", kProposedLaw)}) {
+    const std::vector<double>&centre = measured.at(0).all(name), &side = measured.at(1).all(name);
+    const auto number = [&](const char* id) { return published[std::string(id) + ".success." + law]; };
+    const double change = mean_of(side) - mean_of(centre), expected = number("D1").mean - number("D2").mean;
+    const double error = math::hypot(math::hypot(number("D1").spread, number("D2").spread),
+                                     math::hypot(standard_error(side), standard_error(centre)));
+    direction = direction && change * expected > 0.0;
+    near = near && std::abs(change - expected) <= kStandardErrors * error;
+    append_item(text, fmt::format("{} {:.2f} → {:.2f}", law, mean_of(centre), mean_of(side)));
+  }
+  return {decide(direction && near, direction), text,
+          fmt::format("the wall {}; the changes are {} the published ones",
+                      direction ? "helps stiffness shaping and hurts the original algorithm" : "does something else",
+                      near ? "near" : "not near")};
 }
 
 // ---- D6: success rates over places that the pilot experiments went through. A case for each place, with the subjects'
@@ -191,33 +198,30 @@ Measured measure_pilots(const Evidence& e) {
   return measured;
 }
 
+/// What the pilots of one kind show.
 struct PilotResult {
-  bool as_published = true;  ///< hardly any target beyond the published place, most at the easiest
-  bool somewhere = false;    ///< a place where hardly any is removed, but most with stiffness shaping
+  bool easy = false;       ///< most targets are removed somewhere
+  bool beyond = false;     ///< more than hardly any are removed beyond the published place
+  bool somewhere = false;  ///< a place where hardly any is removed, but most with stiffness shaping
 
-  const char* said() const { return as_published ? "as published" : somewhere ? "another threshold" : "no threshold"; }
+  bool as_published() const { return easy && !beyond; }
+  const char* said() const {
+    return as_published() ? "as published" : somewhere ? "another threshold" : "no threshold";
+  }
 };
 
-template <class IsHard>
-PilotResult pilot_result(const Measured& measured, const char* pilot, IsHard is_hard) {
-  PilotResult found;
-  double easiest = 0.0;
-  for (const MeasuredCase& m : measured) {
-    if (m.name != pilot) continue;
-    const bool hardly_any = m["original"] <= kHardlyAny;
-    if (is_hard(m["value"]) && !hardly_any) found.as_published = false;
-    if (hardly_any && m["shaped"] >= kMostTrials) found.somewhere = true;
-    easiest = std::max(easiest, m["original"]);
-  }
-  found.as_published = found.as_published && easiest >= kMostTrials;
-  return found;
-}
-
 Finding judge_pilots(const Measured& measured, const PublishedNumbers& published) {
-  const double furthest = published["D6.offset"].at_most, lowest = published["D6.height"].at_least;
-  const PilotResult offset = pilot_result(measured, "offset", [furthest](double x) { return x > furthest; });
-  const PilotResult height = pilot_result(measured, "height", [lowest](double z) { return z < lowest; });
-  return {decide(offset.as_published && height.as_published, offset.somewhere || height.somewhere), "",
+  PilotResult offset, height;
+  for (const MeasuredCase& m : measured) {
+    const bool hardly_any = m["original"] <= kHardlyAny, is_offset = m.name == "offset";
+    PilotResult& pilot = is_offset ? offset : height;
+    const bool hard =
+        is_offset ? m["value"] > published["D6.offset"].at_most : m["value"] < published["D6.height"].at_least;
+    pilot.easy = pilot.easy || m["original"] >= kMostTrials;
+    pilot.beyond = pilot.beyond || (hard && !hardly_any);
+    pilot.somewhere = pilot.somewhere || (hardly_any && m["shaped"] >= kMostTrials);
+  }
+  return {decide(offset.as_published() && height.as_published(), offset.somewhere || height.somewhere), "",
           fmt::format("offset: {}; height: {}", offset.said(), height.said())};
 }
 
@@ -225,7 +229,8 @@ Finding judge_pilots(const Measured& measured, const PublishedNumbers& published
 
 std::vector<ClaimRule> appendix_d_experiments() {
   return {
-      {"D1", measure_side_target, judge_side_target},
+      {"D1", [](const Evidence& e) { return measure(e, kVertical, 1.0); },
+       [](const Measured& m, const PublishedNumbers& p) { return judge_experiment(m, p, "D1", true); }},
       {"D2", [](const Evidence& e) { return measure(e, kVertical, 0.0); },
        [](const Measured& m, const PublishedNumbers& p) { return judge_experiment(m, p, "D2", false); }},
       {"D3", [](const Evidence& e) { return measure(e, kRotational, 0.0); },
@@ -233,6 +238,7 @@ std::vector<ClaimRule> appendix_d_experiments() {
       {"D4", [](const Evidence& e) { return measure(e, kRotational, 1.0); },
        [](const Measured& m, const PublishedNumbers& p) { return judge_experiment(m, p, "D4", true); }},
       {"D6", measure_pilots, judge_pilots},
+      {"D7", measure_wall, judge_wall},
   };
 }
 

@@ -104,35 +104,12 @@ Finding judge_tandpasta(const Measured& measured, const PublishedNumbers& p) {
           unchanged ? "keep" : "change", least > 1.0 ? "raise" : "do not raise")};
 }
 
-// ---- F3: the time that it takes for the most contacts of task 2, as a share of the step.
-
-Measured measure_tandpasta_cost(const Evidence& e) {
-  const Scenario scenario = e.load("task2_rotate_signed_distance").scenario;
-  const std::vector<ContactBuffer> most = {largest_of(contact_sets(scenario, 64))};
-  const std::size_t points = most.front().size();
-  MeasuredCase m{"", {{"points", {static_cast<double>(points)}}}};
-  for (const char* name : {"tandpasta", kProposedLaw}) {
-    const auto law = make_law(name, scenario.rendering);
-    law->prepare(points);
-    m.values[name] = {seconds_with(most, 100, [&](ContactBuffer& contacts) { law->evaluate(contacts); }) /
-                      scenario.time.step};
-  }
-  return {m};
-}
-
-Finding judge_tandpasta_cost(const Measured& measured, const PublishedNumbers& p) {
-  const MeasuredCase& m = measured.at(0);
-  return {decide(m["tandpasta"] >= threshold(p, "considerable"), m["tandpasta"] > m[kProposedLaw]), "",
-          "its sums over pairs cost n² inner products, as stiffness shaping does in the thesis's dense form"};
-}
-
 }  // namespace
 
 std::vector<ClaimRule> appendix_f_optional_algorithms() {
   return {
       {"F1", measure_normal_projection, judge_normal_projection},
       {"F2", measure_tandpasta, judge_tandpasta},
-      {"F3", measure_tandpasta_cost, judge_tandpasta_cost},
   };
 }
 

@@ -23,14 +23,14 @@ constexpr double kLanded = 0.5;
 /// that pops through has left the block at the end.
 MeasuredCase pressed(const Evidence& e, const std::string& name, const std::string& scene,
                      std::vector<std::string> overrides) {
-  MeasuredCase m{name, {{"depth", {}}}};
+  MeasuredCase m{name, {}};
   overrides.emplace_back();
   for (const double tilt : kPressedTilts) {
     overrides.back() = fmt::format("motion.orientation.tilt_rad={}", tilt);
     const LoadedScenario loaded = e.load(scene, overrides);
     IdealTrajectoryObserver ideal(std::get<BlockEnvironment>(loaded.scenario.environment).block,
                                   make_cylinder(loaded.scenario.tool));
-    double& deepest = m.values["depth"].emplace_back(0.0);
+    double& deepest = m.values[fmt::format("at_{}", tilt)].emplace_back(0.0);
     for_each_row(loaded, [&](const StepRecord& row) {
       if (row.step % kRowsBetweenLooks != 0 || row.time < kLanded) return;
       ideal.on_step(row);
@@ -45,26 +45,15 @@ MeasuredCase pressed_shaped(const Evidence& e) {
   return pressed(e, kProposedLaw, "press_towards_rim", {});
 }
 
-std::string depths_text(const Measured& measured) {
-  std::string text;
-  for (const MeasuredCase& m : measured) {
-    append_item(text, m.name + " ");
-    for (std::size_t i = 0; i < std::size(kPressedTilts); ++i)
-      text += fmt::format("{}{:.2f}", i == 0 ? "" : "/", 1e3 * m.all("depth")[i]);
-  }
-  return fmt::format("inside by at most, in mm, at {} rad: {}", fmt::join(kPressedTilts, "/"), text);
-}
-
 /// True if at every tilt `a` is at least `factor` times as deep as `b`.
 bool deeper(const MeasuredCase& a, const MeasuredCase& b, double factor) {
-  return std::equal(a.all("depth").begin(), a.all("depth").end(), b.all("depth").begin(),
-                    [factor](double deep, double other) { return deep >= factor * other; });
+  return std::ranges::all_of(a.values, [&](const auto& depth) { return a[depth.first] >= factor * b[depth.first]; });
 }
 
 /// Whether the drill sinks in easily with the second case's law, beside shaping, the first one.
 Finding judge_sinking(const Measured& m, const PublishedNumbers& p) {
   const bool easily = deeper(m.at(1), m.at(0), threshold(p, "easily")), more = deeper(m.at(1), m.at(0), 1.0);
-  return {decide(easily, more), depths_text(m),
+  return {decide(easily, more), "",
           fmt::format("with {} the drill sinks in {}", m.at(1).name,
                       easily ? "easily"
                       : more ? "further than with stiffness shaping, not easily"
@@ -77,12 +66,23 @@ Measured measure_averaging(const Evidence& e) {
           pressed(e, "mean after the reduction", "press_towards_rim", {"rendering.algorithm=mean"})};
 }
 
-// ---- B1b: the depth of a drill that is turned in the hole, as B.3.1 has it, while it is near the hole [m].
+// ---- B1b, B5: a drill that is turned in the hole, as B.3.1 has it, with the proposed algorithm and the original one
+// of appendix B: its depth while it is near the hole [m], and under which hands it goes through the block's surface.
+
+constexpr const char* kOriginalLaw = "original_averaging";
+
+Result turned(const Evidence& e, const std::string& law, double force) {
+  std::vector<std::string> overrides = {fmt::format("hand.force_N={}", force)};
+  if (law == kOriginalLaw)
+    overrides.insert(overrides.end(), {"rendering.algorithm=" + law, "rendering.depth_model=shortest_distance",
+                                       "rendering.local_average=false", "rendering.reduction=null"});
+  return e.run("task2_held", overrides);
+}
 
 Measured measure_original(const Evidence& e) {
   Measured measured;
-  for (const std::string law : {kProposedLaw, "original_averaging"}) {
-    const Result run = e.run("task2_held", {"rendering.algorithm=" + law});
+  for (const std::string law : {kProposedLaw, kOriginalLaw}) {
+    const Result run = turned(e, law, 1.0);
     const auto depth = number_of(run.metrics, "ideal_trajectory.gentle.interpenetration_max_m");
     measured.push_back({law, {{"depth", {depth.value_or(0.0)}}}});
   }
@@ -95,27 +95,21 @@ Finding judge_original(const Measured& m, const PublishedNumbers& p) {
           fmt::format("{:.2g} times as deep as with stiffness shaping", times)};
 }
 
-// ---- V2, V2b: virtual coupling as it stands on record; a coupling in space, of other stiffness, and what that is at
-// heart, least squares.
+constexpr double kHands[] = {0.5, 1.0, 2.0, 3.5};  ///< [N]
 
-constexpr double kCouplings[] = {5000.0, 20000.0, 40000.0};  ///< [N/m]
-
-Measured measure_couplings(const Evidence& e) {
-  Measured measured = {pressed_shaped(e)};
-  for (const double coupling : kCouplings) {
-    measured.push_back(pressed(e, fmt::format("K_vc = {:g} N/m", coupling), "press_coupled",
-                               {fmt::format("rendering.virtual_coupling_N_per_m={}", coupling),
-                                "rendering.parameters.virtual_coupling.along_sum=0"}));
-  }
-  measured.push_back(pressed(e, "least_squares", "press_coupled", {"rendering.algorithm=least_squares"}));
-  return measured;
+Measured measure_pop_through(const Evidence& e) {
+  MeasuredCase m{"", {{"hands", {static_cast<double>(std::size(kHands))}}}};
+  for (const std::string law : {kProposedLaw, kOriginalLaw})
+    m.values[law] = {static_cast<double>(std::ranges::count_if(
+        kHands, [&](double force) { return turned(e, law, force).end.outcome == Outcome::went_through; }))};
+  return {m};
 }
 
-Finding judge_couplings(const Measured& m, const PublishedNumbers&) {
-  const bool holds = deeper(m.at(1), m.at(2), 1.0) && deeper(m.at(2), m.at(3), 1.0);
-  return {found(holds), depths_text(m),
-          "the coupling's displacement is the translation that resolves all depths best; more points only bring every "
-          "direction nearer to K"};
+Finding judge_pop_through(const Measured& measured, const PublishedNumbers&) {
+  const double original = measured.at(0)[kOriginalLaw], proposed = measured.at(0)[kProposedLaw];
+  return {
+      decide(original > 0.0 && proposed == 0.0, original > proposed), "",
+      original > 0.0 ? "beyond the median line flipped gradients pull the drill on" : "the drill stays in the hole"};
 }
 
 // ---- S1: the plain sum of all points, in the planar peg and in the turn of task 2, beside stiffness shaping.
@@ -140,11 +134,11 @@ std::vector<ClaimRule> chapter_1_penetration() {
          return {pressed_shaped(e), pressed(e, "virtual coupling", "press_coupled", {})};
        },
        judge_sinking},
-      {"V2b", measure_couplings, judge_couplings},
       {"S1",
        [](const Evidence& e) { return vibrations_beside_shaping(e, "summation", "task2_held", {"metrics.from_s=0"}); },
        judge_summation},
       {"B1b", measure_original, judge_original},
+      {"B5", measure_pop_through, judge_pop_through},
   };
 }
 

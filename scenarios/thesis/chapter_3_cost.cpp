@@ -4,11 +4,12 @@
 #include <cmath>
 
 #include "algorithms/laws/shaped_stiffness.hpp"
+#include "algorithms/registry.hpp"
 #include "algorithms/stages/point_stage.hpp"
 #include "scenarios/thesis/claims.hpp"
 #include "scenarios/thesis/measurements.hpp"
 
-/// Claims of 2.8 and 3.4: what the points cost. Times of this machine, so no two ledgers agree in digits.
+/// Claims of 1.2, 2.8, 3.4 and F.2: what the points cost. Times of this machine, so no two ledgers agree in digits.
 namespace hapbench {
 namespace {
 
@@ -127,13 +128,45 @@ Finding judge_loop_load(const Measured& measured, const PublishedNumbers& p) {
                   m["tensor_reduced_3"] < m["tensor_unreduced_3"] ? "lowers" : "raises")};
 }
 
+// ---- P2, F3: what else takes long, in units of the step, and stiffness shaping: a proxy of the tool, in a step of
+// task 2; tandpasta, for the most contacts of task 2.
+
+Measured measure_proxy_cost(const Evidence& e) {
+  MeasuredCase m;
+  for (const std::string law : {"proxy", kProposedLaw}) {
+    const Result run = e.run("task2_held", {"rendering.algorithm=" + law, "record.ideal_trajectory=false"});
+    const double step = run.duration / static_cast<double>(run.timing.steps);
+    m.values[law == kProposedLaw ? "shaped" : "other"] = {run.timing.step_p50.value_or(std::nan("")) / step};
+  }
+  return {m};
+}
+
+Measured measure_tandpasta_cost(const Evidence& e) {
+  const Scenario scenario = e.load("task2_rotate_signed_distance").scenario;
+  const std::vector<ContactBuffer> most = {largest_of(contact_sets(scenario, 64))};
+  MeasuredCase m{"", {{"points", {static_cast<double>(most.front().size())}}}};
+  for (const auto& [name, value] : {std::pair("tandpasta", "other"), std::pair(kProposedLaw, "shaped")}) {
+    const auto law = make_law(name, scenario.rendering);
+    law->prepare(most.front().size());
+    m.values[value] = {seconds_with(most, 100, [&](ContactBuffer& contacts) { law->evaluate(contacts); }) /
+                       scenario.time.step};
+  }
+  return {m};
+}
+
+Finding judge_other_cost(const Measured& measured, const PublishedNumbers& p) {
+  const MeasuredCase& m = measured.at(0);
+  return {decide(m["other"] >= threshold(p, "considerable"), m["other"] > m["shaped"]), "",
+          fmt::format("{:.2g} times what stiffness shaping takes", m["other"] / m["shaped"])};
+}
+
 }  // namespace
 
 std::vector<ClaimRule> chapter_3_cost() {
   return {
-      {"T4", measure_deadline, judge_dense_deadline},
-      {"T4b", measure_deadline, judge_tensor_deadline},
-      {"T5", measure_loop_load, judge_loop_load},
+      {"T4", measure_deadline, judge_dense_deadline},   {"T4b", measure_deadline, judge_tensor_deadline},
+      {"T5", measure_loop_load, judge_loop_load},       {"P2", measure_proxy_cost, judge_other_cost},
+      {"F3", measure_tandpasta_cost, judge_other_cost},
   };
 }
 

@@ -16,16 +16,17 @@ namespace {
 // ideal line of Fig. 6, (measured force - weight) / K, rms over the largest one; onset: measured force from which the
 // displacement stays [N]; plateau_spread: (max - min) / mean beyond it.
 
-/// Displacement into the flat [m] and measured force [N] of a row with contact.
+/// Displacement of the tool and of the handle into the flat [m] and measured force [N] of a row with contact.
 struct FlatRow {
-  double depth, force;
+  double depth, handle, force;
 };
 
-std::vector<FlatRow> rows_on_flat(const Evidence& e, const char* scenario) {
+std::vector<FlatRow> rows_on_flat(const Evidence& e, const std::string& scenario) {
   const auto table = e.table(scenario, "trajectory.csv");
   std::vector<FlatRow> rows;
   for (std::size_t i = 0; i < table.at("pz_m").size(); ++i) {
-    if (table.at("colliding")[i] != 0.0) rows.push_back({-table.at("pz_m")[i], -table.at("fmeas_z_N")[i]});
+    if (table.at("colliding")[i] != 0.0)
+      rows.push_back({-table.at("pz_m")[i], -table.at("hz_m")[i], -table.at("fmeas_z_N")[i]});
   }
   return rows;
 }
@@ -36,17 +37,17 @@ Measured measure_force_limit(const Evidence& e) {
   double plateau = 0.0, onset = std::numeric_limits<double>::infinity();
   const std::size_t last = on.size() / 4;
   for (std::size_t i = on.size() - last; i < on.size(); ++i) plateau += on[i].depth / static_cast<double>(last);
-  for (const auto& [depth, force] : on)
+  for (const auto& [depth, handle, force] : on)
     if (depth >= 0.99 * plateau) onset = std::min(onset, force);
   double low = plateau, high = plateau;
-  for (const auto& [depth, force] : on) {
+  for (const auto& [depth, handle, force] : on) {
     if (force < onset + 0.2) continue;
     low = std::min(low, depth);
     high = std::max(high, depth);
   }
   const double stiffness = e.load("force_limit_off").scenario.rendering.stiffness;
   double squares = 0.0, deepest = 0.0;
-  for (const auto& [depth, force] : off) {
+  for (const auto& [depth, handle, force] : off) {
     const double apart = depth - (force - e.published["L1.offset"].mean) / stiffness;
     squares += apart * apart / static_cast<double>(off.size());
     deepest = std::max(deepest, depth);
@@ -65,6 +66,25 @@ Finding judge_force_limit(const Measured& measured, const PublishedNumbers& publ
   return {decide(proportional && onset && constant, proportional && constant), "",
           fmt::format("{} without the limit; {} with it; {}", proportional ? "proportional" : "not proportional",
                       constant ? "constant" : "not constant", onset ? "onset as published" : "onset elsewhere")};
+}
+
+// ---- L4: force over way of the handle, from the first touch to the hardest press [N/m].
+
+Measured measure_felt_stiffness(const Evidence& e) {
+  MeasuredCase m;
+  for (const std::string limit : {"off", "on"}) {
+    const std::vector<FlatRow> rows = rows_on_flat(e, "force_limit_" + limit);
+    const FlatRow &touch = rows.front(), &hardest = rows.back();
+    m.values[limit] = {(hardest.force - touch.force) / (hardest.handle - touch.handle)};
+  }
+  return {m};
+}
+
+Finding judge_felt_stiffness(const Measured& measured, const PublishedNumbers& p) {
+  const double times = measured.at(0)["on"] / measured.at(0)["off"];
+  return {
+      decide(times >= threshold(p, "heavier"), times > 1.0), "",
+      fmt::format("{:.2g} times as stiff with the limit; what is left are servo and structure, which are ours", times)};
 }
 
 // ---- L2: rows of task 2 in contact in which the hand's force is limited: all, and those whose reaction has reached
@@ -174,6 +194,7 @@ std::vector<ClaimRule> chapter_3_force_limit() {
       {"L1", measure_force_limit, judge_force_limit},
       {"L2", measure_saturated_motion, judge_saturated_motion},
       {"L3", measure_shaking, judge_shaking},
+      {"L4", measure_felt_stiffness, judge_felt_stiffness},
   };
 }
 

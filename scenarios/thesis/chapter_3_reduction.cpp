@@ -101,28 +101,6 @@ Finding judge_reduced_points(const Measured& counts, const PublishedNumbers& pub
   return {decide(all == counts.size(), means > 0), "", why};
 }
 
-// ---- T2b: the raw counts of task 2 over the force of a constant hand.
-
-constexpr double kHeldForces[] = {0.2, 0.5, 1.0, 1.8};  ///< [N]; the last one is about that of appendix D
-
-Measured measure_hands(const Evidence& e) {
-  Measured measured;
-  for (const double force : kHeldForces) {
-    const Result run = e.run("task2_held", {fmt::format("hand.force_N={}", force)});
-    const auto number = [&run](const char* metric) { return number_of(run.metrics, metric).value_or(0.0); };
-    measured.push_back(
-        {fmt::format("{} N", force),
-         {{"raw", {number("colliding_mean") / number("contact_share")}}, {"kept", {number("rendered_max")}}}});
-  }
-  return measured;
-}
-
-Finding judge_hands(const Measured& measured, const PublishedNumbers& p) {
-  const double most = p["T2.raw"].mean + p["T2.raw"].spread;
-  return {found(measured.front()["raw"] <= most && measured.back()["raw"] > most), "",
-          "the published counts fit a hand about ten times gentler than those of appendix D"};
-}
-
 }  // namespace
 
 std::vector<ClaimRule> chapter_3_reduction() {
@@ -130,7 +108,6 @@ std::vector<ClaimRule> chapter_3_reduction() {
       {"T1", [](const Evidence& e) { return measure_counts(e, "task1_flat"); }, judge_flat_reduction},
       {"T2", [](const Evidence& e) { return measure_counts(e, "task2_rotate"); },
        [](const Measured& m, const PublishedNumbers& p) { return judge_reduced_points(m, p, "T2"); }},
-      {"T2b", measure_hands, judge_hands},
       {"T3", [](const Evidence& e) { return measure_counts(e, "task3_spin"); },
        [](const Measured& m, const PublishedNumbers& p) { return judge_reduced_points(m, p, "T3"); }},
   };

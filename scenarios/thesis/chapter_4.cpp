@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "algorithms/registry.hpp"
+#include "algorithms/stages/point_stage.hpp"
 #include "scenarios/cases/league.hpp"
 #include "scenarios/format/parts.hpp"
 #include "scenarios/thesis/claims.hpp"
@@ -137,6 +138,35 @@ Finding judge_highest_depth(const Measured& m, const PublishedNumbers& p) {
               peg ? "vibrates" : "does not vibrate much more", task ? "vibrates" : "does not vibrate much more")};
 }
 
+// ---- C8: on a flat, in task 1, the force of the highest depth, as [3] has it, and that of the points that are left.
+
+constexpr double kIdentical = 1e-9;  // in the rule
+
+Measured measure_one_direction(const Evidence& e) {
+  const Scenario scenario = e.load("task1_flat_signed_distance").scenario;
+  const auto reduction = make_gradient_reduction({});
+  reduction->prepare({});
+  double apart = 0.0, largest = 0.0;
+  for (ContactBuffer& set : contact_sets(scenario, kRowsBetweenSamples)) {
+    const auto force_of = [&](const char* name) {
+      const auto law = make_law(name, scenario.rendering);
+      law->prepare(set.size());
+      return law->evaluate(set).spring;
+    };
+    const Vec3 highest = force_of("highest_depth");
+    reduction->process(set);
+    apart = std::max(apart, (force_of(kProposedLaw) - highest).norm());
+    largest = std::max(largest, highest.norm());
+  }
+  return {{"", {{"apart", {apart / largest}}}}};
+}
+
+Finding judge_one_direction(const Measured& measured, const PublishedNumbers&) {
+  const bool same = measured.at(0)["apart"] <= kIdentical;
+  return {decide(same, false), "",
+          same ? "the deepest of equal gradients is the one that is kept" : "the forces differ"};
+}
+
 // ---- C1: over-reduction.
 
 constexpr double kPointsLeft = 1.0, kFewestPoints = 10.0;  // in words in the rule
@@ -223,6 +253,7 @@ std::vector<ClaimRule> chapter_4() {
                                           {"time.duration_s=6", "record.ideal_trajectory=false"});
        },
        judge_highest_depth},
+      {"C8", measure_one_direction, judge_one_direction},
       {"C1", measure_over_reduction, judge_over_reduction},
       {"C2", [](const Evidence& e) { return measure_turn_into_wall(e, {}); }, judge_turn_into_wall},
       {"C7",

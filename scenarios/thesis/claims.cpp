@@ -48,6 +48,7 @@ Finding Claim::finding(const Evidence& evidence) const {
   }
   if (finding.measured.empty()) finding.measured = numbers.fill(measured) + of_cases;
   finding.brief = numbers.fill(main.ours);
+  finding.cases = cases;
   return finding;
 }
 
@@ -74,7 +75,8 @@ std::vector<Claim> all_claims() {
                         .each = row.value("each", ""),
                         .timing = row.value("timing", false),
                         .ours = row.value("ours", false),
-                        .costly = row.value("costly", false)});
+                        .costly = row.value("costly", false),
+                        .drawn = row.value("drawn", false)});
       Claim& claim = claims.back();
       if (const Json main = row.value("main", Json()); !main.is_null())
         claim.main = {main.at("claim"), main.at("published"), main.at("ours")};

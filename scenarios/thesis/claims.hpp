@@ -45,14 +45,6 @@ inline Verdict found(bool holds) {
   return holds ? Verdict::holds : Verdict::does_not_hold;
 }
 
-/// The result of judging a claim, computed from measured numbers.
-struct Finding {
-  Verdict verdict = Verdict::not_reproducible;
-  std::string measured;    ///< the numbers, for people; empty where rules.json has their text
-  std::string why;         ///< one sentence: which part of the rule decided
-  std::string brief = {};  ///< the deciding number, of a main result
-};
-
 /// The measurements in one case of a claim, such as a density or an algorithm: numbers by name, several under one name
 /// where each subject has its own.
 struct MeasuredCase {
@@ -66,6 +58,15 @@ struct MeasuredCase {
 
 /// All numbers that decide a claim beside the published ones, so that it can be judged again at any time.
 using Measured = std::vector<MeasuredCase>;
+
+/// The result of judging a claim, computed from measured numbers.
+struct Finding {
+  Verdict verdict = Verdict::not_reproducible;
+  std::string measured;    ///< the numbers, for people; empty where rules.json has their text
+  std::string why;         ///< one sentence: which part of the rule decided
+  std::string brief = {};  ///< the deciding number, of a main result
+  Measured cases = {};     ///< what was judged
+};
 
 /// Takes the deciding numbers from the results of scenarios, or computes them.
 using Measure = Measured (*)(const Evidence& evidence);
@@ -96,6 +97,7 @@ struct Claim {
   bool timing = false;  ///< the finding holds times, so no two runs agree
   bool ours = false;    ///< found on the way: no claim of the thesis, and not counted among those
   bool costly = false;  ///< takes long to measure: judged again for a part of a sample only (robustness.hpp)
+  bool drawn = false;   ///< a figure draws the numbers of its cases, which the ledger then holds
 
   /// A main result in a few words: claim, published and, with measured numbers, ours. Empty for other claims.
   struct Main {
@@ -139,16 +141,16 @@ struct ClaimRule {
 };
 
 // By chapter.
-std::vector<ClaimRule> chapter_1_penetration();           ///< V, S1, B1b
+std::vector<ClaimRule> chapter_1_penetration();           ///< V, S1, B1b, B5
 std::vector<ClaimRule> chapter_3_reduction();             ///< T1 to T3
-std::vector<ClaimRule> chapter_3_cost();                  ///< T4, T5
+std::vector<ClaimRule> chapter_3_cost();                  ///< T4, T5, P2, F3
 std::vector<ClaimRule> chapter_3_stiffness_ratios();      ///< R
 std::vector<ClaimRule> chapter_3_force_limit();           ///< L
-std::vector<ClaimRule> chapter_3_ideal_trajectory();      ///< J
-std::vector<ClaimRule> chapter_4();                       ///< G, B4, C1 to C3, C7
+std::vector<ClaimRule> chapter_3_ideal_trajectory();      ///< J, C5, T2b
+std::vector<ClaimRule> chapter_4();                       ///< G, B4, C1 to C3, C7, C8
 std::vector<ClaimRule> appendix_a();                      ///< A
 std::vector<ClaimRule> appendix_b_original_algorithm();   ///< B1 to B3
-std::vector<ClaimRule> appendix_c_proposed_algorithm();   ///< P, C5, C6
+std::vector<ClaimRule> appendix_c_proposed_algorithm();   ///< P1, C6
 std::vector<ClaimRule> appendix_d_experiments();          ///< D
 std::vector<ClaimRule> appendix_f_optional_algorithms();  ///< F
 

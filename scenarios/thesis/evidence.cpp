@@ -68,7 +68,10 @@ std::string PublishedNumbers::fill(const std::string& text) const {
                         : match[2] == "at_least" ? number.at_least
                                                  : number.at_most;
     const double scaled = match[3].matched ? part * finite_number(match[3].str()).value() : part;
-    filled += match[4].matched ? fmt::format(fmt::runtime("{:" + match[4].str() + "}"), scaled) : plain(scaled);
+    if (std::isnan(scaled))
+      filled += "none";
+    else
+      filled += match[4].matched ? fmt::format(fmt::runtime("{:" + match[4].str() + "}"), scaled) : plain(scaled);
   }
   return filled.append(end, text.end());
 }

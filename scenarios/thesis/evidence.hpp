@@ -32,7 +32,8 @@ class PublishedNumbers {
   const PublishedNumber& operator[](const std::string& id) const;
   /// The text with the numbers that it names by id: <T2.raw> becomes "37.8 ± 17.7", <T3.reduced.bound.at_most> "15".
   /// A part (mean, spread, at_least or at_most) may have a factor and a format, as <J1.depth.mean*1000:.2f>; without a
-  /// format it is written as `plain` writes it (claims.hpp). Throws InputError for an id that is not there.
+  /// format it is written as `plain` writes it (claims.hpp); no number is "none". Throws InputError for an id that is
+  /// not there.
   std::string fill(const std::string& text) const;
   /// Adds a number of ours that rules read as they read published ones: a threshold (choices.hpp).
   void set(const std::string& id, double value) { numbers_[id].mean = value; }

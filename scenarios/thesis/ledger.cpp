@@ -109,6 +109,16 @@ std::string rows_with(const Json& claims, Verdict verdict) {
   return text;
 }
 
+/// The numbers of each case, lists where there are several.
+Json cases_json(const Measured& cases) {
+  Json json = Json::array();
+  for (const MeasuredCase& m : cases) {
+    Json& values = json.emplace_back(Json{{"name", m.name}})["values"];
+    for (const auto& [name, all] : m.values) values[name] = all.size() == 1 ? Json(all.front()) : Json(all);
+  }
+  return json;
+}
+
 }  // namespace
 
 Json robustness_on_record(const Json& record, const JudgedClaim& judged) {
@@ -149,6 +159,7 @@ Json ledger_json(const std::vector<JudgedClaim>& judged, const PublishedNumbers&
                                            {"seconds", std::round(10.0 * j.seconds) / 10.0},
                                            {"timing", j.claim.timing},
                                            {"ours", j.claim.ours}});
+    if (j.claim.drawn) claim["cases"] = cases_json(j.finding.cases);
     if (!j.claim.main.claim.empty()) {
       claim["main"] = {{"claim", j.claim.main.claim},
                        {"published", published.fill(j.claim.main.published)},

@@ -13,7 +13,8 @@ namespace hapbench {
 /// same; else null. Throws InputError when it is no such record.
 Json robustness_on_record(const Json& record, const JudgedClaim& judged);
 
-/// claims.json: the headline and the claims. `robustness` has what robustness.json holds.
+/// claims.json: the headline and the claims; with the cases of those whose numbers a figure draws. `robustness` has
+/// what robustness.json holds.
 Json ledger_json(const std::vector<JudgedClaim>& judged, const PublishedNumbers& published, const Json& robustness);
 
 // The functions below take a claim as ledger_json writes it.

@@ -9,9 +9,10 @@ from hapbench.errors import InputError, ResultError
 from hapbench.results import Files, MissingResult, read_json
 from hapbench_command import BAD_INPUT, SUCCESS, Arguments, exit_status, say_error, write
 
-from . import catalogue
+from . import catalogue, ledger
 
 NOTHING_DRAWN = 1
+ROWS = "rows.json"
 FORMATS = ("svg", "pdf", "png")
 PAGE = """# Figures on record
 
@@ -67,18 +68,21 @@ def write_index(directory, entries):
     return known
 
 
-def record(directory, page, drawn):
-    """Copies figures into the directory `page` and writes figures.md about all that lie there."""
-    text = PAGE
+def record(directory, page, drawn, claims):
+    """Copies figures into the directory `page` and writes figures.md about all that lie there, and rows.json with what the ledger
+    measured for the claims that they draw."""
+    text, rows = PAGE, {}
     for figure in catalogue.FIGURES:
         on_record = page / f"{figure.stem}.svg"
         if figure.id not in drawn or not (figure.thesis or on_record.is_file()):
             continue
         write(on_record, (directory / on_record.name).read_bytes())
+        rows[figure.id] = ledger.rows(figure, claims)
         name = f"Figure {figure.thesis}" if figure.thesis else "Ours"
         text += f"\n## {name}: {figure.title}\n\n![{figure.title}]({on_record.name})\n\n{drawn[figure.id]['caption']}"
         text += f" Differs: {figure.differs}\n" if figure.differs else "\n"
     write(page / "figures.md", text)
+    write(page / ROWS, json.dumps(rows, indent=1, ensure_ascii=False) + "\n")
 
 
 def run(chosen):
@@ -106,7 +110,7 @@ def run(chosen):
             bad[f"figure {figure.id}: {', '.join(sorted(results.sources))}: {type(error).__name__}: {error}"] = None
     index = write_index(directory, entries)
     if chosen.record and entries:
-        record(directory, Path(chosen.record), index)
+        record(directory, Path(chosen.record), index, Files(chosen.results).json(ledger.LEDGER)["claims"])
     if skipped:
         print("figures: \"scripts/reproduce --figure ID\" makes what a figure needs, and draws it", file=sys.stderr)
     for line in bad:

@@ -19,6 +19,7 @@ class Figure:
     title: str
     caption: str
     differs: str  # from the thesis's figure, and why
+    rows: tuple  # claims that it draws, besides those whose place names the thesis's figure
 
     @property
     def stem(self):
@@ -29,9 +30,10 @@ def entry(text, before):
     """A figure; without a caption it has that of the one before it."""
     head, *lines = text.strip().split("\n")
     id_, thesis, module, function, argument, title = HEAD.fullmatch(head).groups()
-    caption, _, differs = " ".join(lines).partition(" Differs: ")
+    text, _, rows = " ".join(lines).partition(" Rows: ")
+    caption, _, differs = text.partition(" Differs: ")
     draw = partial(call, module, function, *([argument] if argument else []))
-    return Figure(id_, thesis.removeprefix("-"), draw, title, caption or before.caption, differs)
+    return Figure(id_, thesis.removeprefix("-"), draw, title, caption or before.caption, differs, tuple(rows.rstrip(".").split()))
 
 
 def call(module, function, *arguments_and_results):

@@ -9,6 +9,7 @@ from . import published
 
 HANDS = "task2_hands"  # a sweep of task 2 over the hand's force, tilted from upright to 1.047 rad and back
 MARKS = 40  # of a hand at most: more could not be told from their neighbours
+SLID = 0.9  # [mm] off the median line
 SETTLED = 0.5  # seconds: the drill starts above its place
 
 
@@ -20,6 +21,12 @@ def samples(results, run):
     if not own.any():
         raise MissingResult(f"no row at the compared tilts in {HANDS}/runs/{run:06d}")
     return {key: column[own] * (1 if key in ("time_s", "tilt_rad", "hand_force_N") else 1e3) for key, column in rows.items()}
+
+
+def on_the_wall(rows):
+    """Without the rows in which the drill has slid further off than any error of the others."""
+    own = np.abs(rows["lateral_m"] - rows["ideal_lateral_m"]) < SLID
+    return {key: column[own] for key, column in rows.items()}
 
 
 def ideal(rows_list):
@@ -50,14 +57,17 @@ def trajectory(results):
     bottom = 1e3 * environment["hole_depth_m"]
     drawn, errors = [], []
     for run, (hand, own) in enumerate(zip(hands, style.SERIES)):
-        rows = samples(results, run)
-        drawn.append(rows)
         force = float(hand["hand.force_N"])
+        rows = on_the_wall(samples(results, run))
+        drawn.append(rows)
         errors.append(f"{force:.2g} N {np.mean(rows['height_m'] - rows['ideal_height_m']):.2f}/"
                       f"{rows['interpenetration_m'].max():.2f} mm")
         pick = slice(None, None, max(1, len(rows["tilt_rad"]) // MARKS))
         thin = {key: column[pick] for key, column in rows.items()}
+        # The firmest hand is hollow and lies over its neighbour, whose places it shares.
         look = {"color": own.colour, "marker": own.marker, "ls": "none", "ms": 2.3, "mec": "none", "alpha": 0.7}
+        if force > published.value("J1.split"):
+            look |= {"ms": 4, "mec": own.colour, "mfc": "none", "mew": 0.6}
         section.plot(thin["lateral_m"], thin["height_m"], **look)
         height.plot(thin["tilt_rad"], thin["height_m"] + bottom, label=f"{force:.2g} N", **look)
         distance.plot(thin["tilt_rad"], np.abs(thin["lateral_m"]), **look)
@@ -66,7 +76,7 @@ def trajectory(results):
     height.plot(tilt, y + bottom, color=style.BLACK, label="ideal")
     distance.plot(tilt, np.abs(x), color=style.BLACK)
     inside = 1e3 * published.value("J1.lateral")
-    distance.fill_between(tilt, np.abs(x), np.abs(x) + inside, color=style.RED, alpha=0.13, lw=0)
+    distance.fill_between(tilt, np.abs(x) - inside, np.abs(x) + inside, color=style.RED, alpha=0.13, lw=0)
     height.set(title="height over the bottom", xlabel="tilt α [rad]", ylabel="height [mm]")
     distance.set(title="distance to the median line", xlabel="tilt α [rad]", ylabel="distance [mm]")
     section.set_title("section")

@@ -3,7 +3,7 @@ import numpy as np
 
 import hapbench_style as style
 
-from . import published
+from . import ledger, published
 
 TASKS = (
     ("T1", "task1_flat", "task 1: poke and drag"),
@@ -60,8 +60,12 @@ def loop_load(ax, results, task, duration):
     time = (np.arange(len(medians)) + 0.5) * duration / len(medians)
     load.plot(*thin(time, 100 * medians / PERIOD), ".", color=style.BLACK, ms=1.8)
     # Above the points, which share the panel.
-    load.set(yscale="log", ylim=(1e-5, 2), yticks=[0.1, 1])
-    load.set_yticklabels(["0.1", "1"])
+    load.set(yscale="log", ylim=(1e-9, 400), yticks=[0.1, 1, 10, 100])
+    load.set_yticklabels(["0.1", "1", "10", "100"])
+    if task == "task3_spin" and results.has(ledger.LEDGER):
+        dense = ledger.cases(results, "T5")[0]["values"]
+        for name in ("unreduced_3", "reduced_3"):
+            load.axhline(100 * dense[name], color=style.BLACK, ls="--", lw=0.8)
     load.minorticks_off()
     load.grid(visible=False)
     load.spines["right"].set_visible(True)

@@ -28,7 +28,8 @@ double value(const Panel& panel, const std::string& beginning, const char* name)
 
 /// The drill in the hole for half a turn, on a coarser wall.
 Scenario drill() {
-  return bundled("task2_rotate_signed_distance", {"time.duration_s=3", "environment.grid_m=0.0002"});
+  return bundled("task2_rotate_signed_distance",
+                 {"time.duration_s=3", "environment.grid_m=0.0002", "rendering.local_average=false"});
 }
 
 TEST(Integrators, ConvergeWithTheirOrdersToTheExactSolution) {
@@ -94,7 +95,8 @@ TEST(Reduction, OfNothingIsTheReference) {
 }
 
 TEST(Merging, DependsOnTheOrderOfTheContactsOnlyWhereTheyAreReduced) {
-  for (const Setting& setting : accuracy::merging(bundled("task2_rotate_signed_distance"))) {
+  for (const Setting& setting :
+       accuracy::merging(bundled("task2_rotate_signed_distance", {"rendering.local_average=false"}))) {
     const accuracy::Errors errors = setting.errors();
     const bool reduced = setting.name.find("reduced") != std::string::npos;
     EXPECT_EQ(errors["kept_mean"] < errors["contacts_mean"], reduced) << setting.name;
