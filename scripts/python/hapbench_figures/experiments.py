@@ -1,5 +1,4 @@
-"""The man-machine experiments of appendix D with simulated subjects: against the published means (figures D.7 and D.8), and their
-success against what the task checks (ours)."""
+"""The man-machine experiments with simulated subjects against the published means (figures D.7 and D.8)."""
 import warnings
 
 import numpy as np
@@ -7,7 +6,6 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 import hapbench_style as style
 from hapbench.columns import numbers
-from hapbench_pictures.over_axes import Axis, over_axes
 
 from . import published
 
