@@ -115,8 +115,11 @@ void report_errors(const League& league, const FinerRuns& finer, std::size_t sce
 /// Says of the laws of a scene which vibrate less than others by more than what hands feel. Where a law has no settled
 /// contact, as one that throws the tool out, the vibration is that of the tool.
 std::string vibration_text(const League& league) {
-  constexpr std::pair<const char*, double> kUnfelt[] = {{"force_rms_above_30Hz_N", 1e-4},  // [N]
-                                                        {kToolVibrationPower, 1e-10}};     // [m2/s2]
+  struct Vibration {
+    const char *of, *metric;
+    double unfelt;  ///< [unit of the metric]
+  };
+  constexpr Vibration kVibrations[] = {{"force", "force_rms_above_30Hz_N", 1e-4}, {"tool", kToolVibrationPower, 1e-10}};
   std::string says, failing;
   std::ptrdiff_t laws = 0;  // that do not fail
   for (std::size_t a = 0; a < league.algorithms.size(); ++a) {
@@ -126,11 +129,11 @@ std::string vibration_text(const League& league) {
       failing += (failing.empty() ? "; failing: " : ", ") + league.algorithms[a];
   }
   if (league.algorithms.size() < 2) return "";
-  for (const auto& [metric, unfelt] : kUnfelt) {
+  for (const auto& [of, metric, unfelt] : kVibrations) {
     const auto place = static_cast<std::size_t>(std::ranges::find(league.metrics, metric) - league.metrics.begin());
     std::vector<NumberWithError> numbers = numbers_of(league, nullptr, 0, place).numbers;
     for (NumberWithError& number : numbers) *number.error += unfelt;
-    says = fmt::format("{}: {}", metric, held_text(numbers, league.algorithms, kSameRank));
+    says = fmt::format("vibration of the {}: {}", of, held_text(numbers, league.algorithms, kSameRank));
     if (std::ranges::count_if(numbers, [](const auto& n) { return n.value.has_value(); }) == laws) break;
   }
   return "\n" + wrapped(fmt::format("{}{}; --errors tells whether finer runs agree", says, failing), 0);

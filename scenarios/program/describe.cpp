@@ -89,7 +89,8 @@ Named on_record(const char* kind, const Json& thing, const std::string& summary,
   const auto describe = [=] {
     Json titled = {{"kind", fmt::format("{}, on record", kind)}, {"name", thing.at("id")}};
     titled.update(thing);
-    titled.erase("id");
+    // The name has the id, and people are told what was measured in a sentence.
+    for (const char* member : {"id", "cases", "choices_reach_it", "ours", "robustness", "timing"}) titled.erase(member);
     return Description{thing_text(titled), thing};
   };
   return {kind, thing.at("id"), summary, describe, std::move(more)};
