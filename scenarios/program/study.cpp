@@ -60,8 +60,6 @@ std::string values_text(const Json& values) {
                        values.value("log", false) ? ":log" : "");
   }
   if (!values.is_array()) return text_of(values);
-  if (std::any_of(values.begin(), values.end(), [](const Json& value) { return value.is_structured(); }))
-    return values.dump();
   std::vector<std::string> texts;
   for (const Json& value : values) texts.push_back(text_of(value));
   return fmt::format("{}", fmt::join(texts, ","));
