@@ -120,7 +120,8 @@ std::vector<Result> run_all(std::span<const Cases> all, const JobOptions& jobs,
   std::vector<Result> results(runs.size());
   for_each_job(runs.size(), jobs, [&](std::size_t place) {
     const auto& [cases, i, number] = runs[place];
-    results[number] = run_scenario(checked(cases.load(i)), folder ? std::optional(folder(number)) : std::nullopt, false);
+    results[number] =
+        run_scenario(checked(cases.load(i)), folder ? std::optional(folder(number)) : std::nullopt, false);
     results[number].targets.clear();
   });
   return results;
@@ -133,13 +134,14 @@ void remove_earlier_comparison(const fs::path& folder, const Comparison& compari
     const fs::path place = folder / comparison.scene_folder(scene);
     fs::remove(place / "comparison.csv", ignored);
     for (const std::string& law : algorithm_names()) {
-      std::vector<fs::path> runs = {place / law};
-      while (fs::exists(place / law / fmt::format("seed_{}", runs.size() - 1), ignored))
-        runs.push_back(place / law / fmt::format("seed_{}", runs.size() - 1));
-      for (; !runs.empty(); runs.pop_back()) {
-        if (!fs::is_directory(runs.back(), ignored)) continue;
-        remove_run(runs.back());
-        fs::remove(runs.back(), ignored);  // if it is empty now
+      std::vector<fs::path> runs;
+      for (const auto& entry : fs::directory_iterator(place / law, ignored))
+        if (entry.path().filename().string().starts_with("seed_")) runs.push_back(entry.path());
+      runs.push_back(place / law);
+      for (const fs::path& run : runs) {
+        if (!fs::is_directory(run, ignored)) continue;
+        remove_run(run);
+        fs::remove(run, ignored);  // if it is empty now
       }
     }
   }

@@ -303,7 +303,7 @@ void add_limit(CommandLine& line) {
       "interval of stable values, below which a surface may be too soft; three values are tried "
       "on either side of the first edge, which may reveal an earlier edge. Of one scene and device the interval is then tried at 48 values between its ends and 8 "
       "just below its edge, and ends at the first that is not stable; where no 2 % of values are stable, there is no edge. The linear edge, of the loop in contact, is the answer "
-      "where stable runs beyond it are intermittent contact. The column astray counts unstable values in the interval "
+      "where stable runs beyond it are intermittent contact. The column inconsistent counts unstable values in the interval "
       "and stable ones outside of it. Where the hand is an impedance, a run without environment tells whether "
       "hand and device alone are unstable beyond the edge. A hand with a mass loses it on ideal and admittance, where the virtual mass stands for it. "
       "limit_runs.csv has every run.");

@@ -76,11 +76,11 @@ Columns<Row> place_columns(const LimitTable* table) {
 }
 
 /// The edge that was asked for and the ends of the interval that it ends. Printed are the linear edge, that in runs,
-/// and the end on the other side.
+/// and, of one case alone, the end on the other side.
 void add_ends(Columns<LimitRow>& columns, const LimitTable* table) {
   const auto add_end = [&](bool low, const std::string& end, const char* meaning, const std::string& outside,
                            const char* first) {
-    const bool shown = table == nullptr || low != table->first().asked.smallest;
+    const bool shown = table == nullptr || (!table->is_grid() && low != table->first().asked.smallest);
     columns.add(
         end, "by field", meaning, [low](const LimitRow& r) { return end_of(r, low).value; },
         {.heading = shown ? end + " end" : "", .digits = 6},
@@ -102,7 +102,7 @@ void add_ends(Columns<LimitRow>& columns, const LimitTable* table) {
   });
   columns.add("limit", "by field",
               "the last stable value before the first edge, by bisection on runs; empty when there is none",
-              of_answer(&FieldLimit::value), {.heading = "first edge", .digits = 6},
+              of_answer(&FieldLimit::value), {.heading = "edge in runs", .digits = 6},
               [](const LimitRow& r) { return r.found.tolerance(); });
   columns.add("beyond", "by field", "the first unstable value beyond it; empty when the range ends stable",
               [](const LimitRow& r) { return value_cell(r.found.beyond); });
@@ -223,8 +223,8 @@ Columns<LimitRow> limit_columns(const LimitTable* table) {
   columns.add("runs", "1", "runs of the search", [](const LimitRow& r) { return r.found.runs.size(); });
   const auto inconsistent = [](const LimitRow& r) { return r.found.inconsistent.size(); };
   columns.add(kInconsistent, "1", "runs that are unstable on the stable side of the limit, or stable beyond it",
-              inconsistent);
-  columns.add(kAstray, "1", "the same as inconsistent_runs, by its former name", inconsistent, {.heading = kAstray});
+              inconsistent, {.heading = "inconsistent"});
+  columns.add(kAstray, "1", "the same as inconsistent_runs, by its former name", inconsistent);
   return columns;
 }
 
@@ -248,7 +248,8 @@ std::string question_text(const LimitQuestion& question, const Scenario& scenari
   const auto end = [&question](double value) { return significant(question.whole ? std::round(value) : value); };
   std::string text = fmt::format("{}: {} stable {} between {} and {}, to {}", scenario.name, question.side(),
                                  question.path, end(question.range.from), end(question.range.to), width);
-  if (!over) text += fmt::format("; {} steps of {} s", scenario.time.steps, significant(scenario.time.step));
+  if (!over) text += fmt::format("; {} steps", scenario.time.steps);
+  if (!over && question.path != "time.step_s") text += fmt::format(" of {} s", significant(scenario.time.step));
   if (!over && question.path == kStiffness) text += "; " + damping_text(scenario.rendering);
   return wrapped(text, 0);
 }
@@ -310,7 +311,7 @@ std::string notes_text(const LimitTable& table) {
       {table.is_grid() && any(is_beyond_linear),
        fmt::format("linear edge: of the loop of device, hand and surface while they touch; {}", kBeyondLinear)},
       {table.is_grid(),
-       "nothing was tried between the values of a search; of one scene and device alone it is. astray: values that are "
+       "nothing was tried between the values of a search; of one scene and device alone it is. inconsistent: values that are "
        "unstable before an edge or stable beyond it; limit_runs.csv has what becomes of each value"},
       {!table.devices.empty(),
        fmt::format(

@@ -309,11 +309,13 @@ class Start {
   double choose_scale(const Box& box, const char* object) {
     const double longest = (box.max - box.min).maxCoeff() / 0.001;
     if (!extent_ && (longest < kShortestObject || longest > kLongestObject)) {
+      const std::string command = fmt::format("hapbench new {} {} {} --extent", options_.kind,
+                                              options_.on.empty() ? "--from" : "--on", mesh_file());
       throw InputError(fmt::format(
-          "{}: the {} is {} long in metres, {} in millimetres; allowed: {} ... {}, or its size, --extent {:.7g}mm or "
-          "--extent {:.7g}m",
+          "{}: the {} is {} long in metres, {} in millimetres; allowed: {} ... {}, or to state its size: \"{} {:.7g}mm\" or "
+          "\"{} {:.7g}m\"",
           mesh_file(), object, length_text(longest), length_text(0.001 * longest), length_text(kShortestObject),
-          length_text(kLongestObject), longest, longest));
+          length_text(kLongestObject), command, longest, command, longest));
     }
     const double scale = extent_ ? std::stod(fmt::format("{:.6g}", *extent_ / longest)) : 1.0;
     notes_.push_back(

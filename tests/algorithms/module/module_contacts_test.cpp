@@ -85,8 +85,8 @@ TEST(ModuleContacts, ThatCannotBeUsedAreRefused) {
   EXPECT_EQ(fault_of({0, {1, 2, kInfinity}, {0, 0, -1}, 1.0}), "a contact that is not finite");
   EXPECT_EQ(fault_of({0, {1, 2, 3}, {0, 0, -kInfinity}, 1.0}), "a contact that is not finite");
   EXPECT_EQ(fault_of({0, {1, 2, 3}, {0, 0, -1}, kInfinity}), "a contact that is not finite");
-  EXPECT_EQ(fault_of({0, {1, 2, 3}, {0, 0, -1.002}, 1.0}), "a contact whose gradient is no unit vector");
-  EXPECT_EQ(fault_of({0, {1, 2, 3}, {0, 0, 0}, 1.0}), "a contact whose gradient is no unit vector");
+  EXPECT_EQ(fault_of({0, {1, 2, 3}, {0, 0, -1.002}, 1.0}), "a contact whose gradient is not a unit vector");
+  EXPECT_EQ(fault_of({0, {1, 2, 3}, {0, 0, 0}, 1.0}), "a contact whose gradient is not a unit vector");
   EXPECT_EQ(fault_of({0, {1, 2, 3}, {0, 0, -1}, -1e-9}), "a contact with a negative depth");
   EXPECT_EQ(fault_of({0, {1, 2, 3}, {0, 0, -1}, 1.0}, 10), "11 contacts; allowed: at most 10");
 }

@@ -40,9 +40,9 @@ TEST(LoadModule, SaysWhatIsWrongWithAFile) {
   EXPECT_EQ(problem_with(fs::canonical(HAPBENCH_TEST_MODULES)), "is a directory, not a file");
   const test::TemporaryDirectory directory;
   std::ofstream(directory / "text.so") << "no library";
-  EXPECT_EQ(problem_with(fs::canonical(directory / "text.so")), "is no module: file too short");
+  EXPECT_EQ(problem_with(fs::canonical(directory / "text.so")), "is not a module: file too short");
   EXPECT_EQ(problem_with(module("no_entry_point")),
-            "is no module: it has no function \"hapbench_module\" (hapbench_module.h)");
+            "is not a module: it has no function \"hapbench_module\" (hapbench_module.h)");
   for (const char* old : {"law", "contacts"}) {
     const std::string header = old == std::string("law") ? "hapbench_plugin.h" : "hapbench_contacts.h";
     EXPECT_EQ(problem_with(module(std::string("old_") + old)),
@@ -66,7 +66,7 @@ TEST(LoadModule, SaysWhatIsWrongWithALaw) {
             "does not support version 1 of the interface; allowed: built with the hapbench_module.h of this program");
   EXPECT_EQ(hostile("version"), "is built for version 2 of the interface; allowed: 1");
   EXPECT_EQ(hostile("kind"), "its kind is 5; allowed: HAPBENCH_LAW or HAPBENCH_CONTACTS");
-  const std::string unusable = "is no law that can be used: ";
+  const std::string unusable = "is not a law that can be used: ";
   EXPECT_EQ(hostile("built in"), unusable + "\"mean\" is the name of a built-in algorithm");
   EXPECT_EQ(hostile("no table"), unusable + "its table of parameters is missing");
   EXPECT_EQ(hostile("no step"), unusable + "its function \"step\" is missing");
@@ -84,7 +84,7 @@ TEST(LoadModule, LoadsAFileOnceAndALawOnce) {
   const test::TemporaryDirectory directory;
   const fs::path copy = fs::canonical(directory.path()) / "copy.so";
   fs::copy_file(module("hostile"), copy);
-  EXPECT_EQ(problem_with(copy), "is no law that can be used: \"hostile\" is the name of the law in " +
+  EXPECT_EQ(problem_with(copy), "is not a law that can be used: \"hostile\" is the name of the law in " +
                                     fs::canonical(module("hostile")).string());
 }
 

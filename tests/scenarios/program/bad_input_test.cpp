@@ -99,7 +99,7 @@ const BadInput kInputs[] = {
      {"m.obj", [] { return test::obj_text(test::moebius_band(9)); }}},
     {"StlHugeCount",
      mesh<'s', 't', 'l'>,
-     "is no STL file, or cut short",
+     "is not an STL file, or cut short",
      {"m.stl",
       [] { return std::string(80, ' ') + "\xff\xff\xff\xff" + test::binary_stl_text(test::cube()).substr(84); }}},
     {"StlNanVertex",

@@ -396,7 +396,12 @@ TEST_F(ScenesMadeToFool, WithThinWallsOrAGapGetTheirTrueOutcome) {
 /// A drill that spins in a hole: its edge is in the wall by a fiftieth of its width, which a coarser search does not
 /// see.
 TEST(SettledDepth, OfEveryRowIsKnownToTheTolerance) {
-  const std::vector<std::string> changes = {"time.steps=400", "expect={}"};
+  const std::vector<std::string> changes = {"time.steps=400",
+                                            "expect={}",
+                                            "rendering.local_average=false",
+                                            "motion.orientation.tilt_rad=0.02",
+                                            "hand.target.x_m.amplitude=0.00126",
+                                            "hand.target.y_m.amplitude=0.00126"};
   const LoadedScenario loaded = load_scenario(find_scenario("task3_spin_signed_distance"), changes);
   const InsideDepths few = depths_of(loaded, 0), all = depths_of(loaded, 1);
   const double half_width = make_tool(loaded.scenario)->half_width();
