@@ -194,7 +194,7 @@ class Recordings(Given):
         for kind, cells, problem in (
                 ("quat_wxyz", "0.9,0,0,0", "line 1: got a quaternion of norm 0.9; allowed: 1 within 0.001"), ("quat_wxyz", "0.9991,0,0,0", None),
                 ("axis_angle", "0,0,0,1", "got a turn's axis of norm 0"), ("axis_angle", "0,0,0,0", None),
-                ("matrix", "1,0,0,0,1,0,0,0,-1", "no rotation"), ("axis", "0,0,0", "axis of length 0")):
+                ("matrix", "1,0,0,0,1,0,0,0,-1", "not a rotation"), ("axis", "0,0,0", "axis of length 0")):
             found = self.refusal(f"0,0,0,0,{cells}\n0.1,0,0,0,{cells}\n", "time=1,position=2,orientation=5", orientation=kind)
             self.assertTrue(problem in found if problem else found == "", (kind, cells, found))
 

@@ -58,7 +58,7 @@ def loop_load(ax, results, task, duration):
         return None
     load = ax.twinx()
     time = (np.arange(len(medians)) + 0.5) * duration / len(medians)
-    load.plot(*thin(time, 100 * medians / PERIOD), ".", color=style.BLACK, ms=1.8)
+    load.plot(*thin(time[::3], 100 * medians[::3] / PERIOD), ".", color=style.BLACK, ms=1.8)
     # Above the points, which share the panel.
     load.set(yscale="log", ylim=(1e-9, 400), yticks=[0.1, 1, 10, 100])
     load.set_yticklabels(["0.1", "1", "10", "100"])
