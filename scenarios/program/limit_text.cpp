@@ -96,13 +96,13 @@ void add_ends(Columns<LimitRow>& columns, const LimitTable* table) {
   columns.add(
       "side", "", "largest or smallest: the stable value that was asked for",
       [](const LimitRow& r) { return r.asked.side(); }, only_csv());
-  columns.print("linear edge", "by field", "of limit: theory, or where there is none linear", [](const LimitRow& r) {
+  columns.print("linear\nedge", "by field", "of limit: theory, or where there is none linear", [](const LimitRow& r) {
     const auto& edge = r.found.linear_edge();
     return edge && (std::isinf(*edge) || *edge == 0.0) ? "none" : significant(edge, 6);
   });
   columns.add("limit", "by field",
               "the last stable value before the first edge, by bisection on runs; empty when there is none",
-              of_answer(&FieldLimit::value), {.heading = "edge in runs", .digits = 6},
+              of_answer(&FieldLimit::value), {.heading = "edge in\nruns", .digits = 6},
               [](const LimitRow& r) { return r.found.tolerance(); });
   columns.add("beyond", "by field", "the first unstable value beyond it; empty when the range ends stable",
               [](const LimitRow& r) { return value_cell(r.found.beyond); });
