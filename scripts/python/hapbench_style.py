@@ -127,7 +127,9 @@ def picture(figure, kind, salt="hapbench", dpi=DPI):
 
 PLACES = re.compile(r'( (?:d|x|y)=")([^"]*)')  # attributes of an SVG that hold places
 DISC = re.compile(r'<path id="(\w+)" d="M 0 ([\d.]+) \nC[^"]*z\n"')
-DISCS = re.compile(r'<g( clip-path="[^"]*")? style="([^"]*)">\s*((?:<use xlink:href="#(\w+)" x="[^"]*" y="[^"]*"/>\s*)+)</g>')
+# Matplotlib gives the style to the group or, from some version on, to each disc.
+DISCS = re.compile(r'<g( clip-path="[^"]*")?(?: style="([^"]*)")?>\s*'
+                   r'((?:<use xlink:href="#(\w+)" x="[^"]*" y="[^"]*"(?: style="([^"]*)")?/>\s*)+)</g>')
 
 
 def as_dots(svg):
@@ -135,10 +137,12 @@ def as_dots(svg):
     radii = dict(DISC.findall(svg))
 
     def dots(group):
-        clip, look, uses, name = group.groups(default="")
-        look = dict(item.split(": ") for item in look.rstrip("; ").split("; "))
+        clip, look, uses, name, own = group.groups(default="")
+        if len(set(re.findall(r"#\w+|style=[^/]*", uses))) > (2 if own else 1) or not (look or own):
+            return group[0]
+        look = dict(item.split(": ") for item in (look or own).rstrip("; ").split("; "))
         fill, stroke = look.pop("fill", "#000000"), look.pop("stroke", "none")
-        if name not in radii or len(set(re.findall(r"#(\w+)", uses))) > 1 or stroke not in ("none", fill):
+        if name not in radii or stroke not in ("none", fill):
             return group[0]
         width = 2 * float(radii[name]) + (float(look.pop("stroke-width", 1)) if stroke == fill else 0)
         opacity = look.get("fill-opacity", look.get("opacity", "1"))
