@@ -116,7 +116,7 @@ constexpr Margin kMargins[] = {
     {"damping_margin", "1", "damping ratio of the least damped mode of the loop in contact; empty without one", "",
      "damping_ratio", "least damped mode {}", &TuneMargins::damping_ratio, 2.0}};
 
-Columns<TunedLaw> law_columns() {
+Columns<TunedLaw> tuned_columns() {
   Columns<TunedLaw> columns;
   columns.add("algorithm", "", "force algorithm", &TunedLaw::algorithm, {.heading = "algorithm"});
   columns.add("feasible", "", "false when nothing that was tried keeps all constraints",
@@ -173,7 +173,7 @@ Columns<TuneTrial> trial_columns() {
 }
 
 Json law_json(const TunedLaw& law) {
-  Json json = law_columns().json(law);
+  Json json = tuned_columns().json(law);
   for (const Margin& margin : kMargins) json["margins"][margin.key] = or_null(law.margins.*margin.of);
   json["metrics"] = law.choice ? law.choice->metrics : TuneMetrics();
   json["error"] = law.error;
@@ -270,7 +270,7 @@ std::string recommendation_text(const Tuning& tuning) {
 
 std::string tuning_text(const Tuning& tuning) {
   std::string text = wrapped(fmt::format("{}: {}", tuning.scene, limits_text(tuning)), 0) + "\n" +
-                     recommendation_text(tuning) + "\n" + law_columns().table(tuning.laws).text() + "\n";
+                     recommendation_text(tuning) + "\n" + tuned_columns().table(tuning.laws).text() + "\n";
   for (const TunedLaw& law : tuning.laws) {
     if (!law.choice)
       text += wrapped(fmt::format("{}: nothing is feasible, {}; {}", law.algorithm, law.why, law.relax), 0);
@@ -348,7 +348,7 @@ int tune(const TuneOptions& options) {
   Report report(options, "tune_" + file.stem().string());
   const fs::path& out = report.folder();
   tune_laws(algorithms, options.output.quiet, tuning);
-  report.write("tune.csv", law_columns(), tuning.laws);
+  report.write("tune.csv", tuned_columns(), tuning.laws);
   std::vector<TuneTrial> trials;
   for (const TunedLaw& law : tuning.laws) trials.insert(trials.end(), law.trials.begin(), law.trials.end());
   report.write("tune_trials.csv", trial_columns(), trials);
@@ -369,7 +369,7 @@ int tune(const TuneOptions& options) {
 
 std::vector<DescribedTable> tune_tables() {
   return {
-      law_columns().described("tune.csv", "of tune: one line per algorithm"),
+      tuned_columns().described("tune.csv", "of tune: one line per algorithm"),
       trial_columns().described("tune_trials.csv", "of tune: one line per algorithm, setting and K that was tried")};
 }
 
