@@ -172,7 +172,7 @@ TableFile::TableFile(TableTitle title, const Keep& keep)
   if (is_new) append(title_.header + "\n");
 }
 
-/// Of a table that is under way, or else of the finished one.
+/// True if the table under way, or else the finished one, has this definition.
 bool TableFile::is_of_this_definition() const {
   std::error_code ignored;
   return definition_in(fs::exists(part_, ignored) ? about_part_ : beside(title_.file)) == title_.about.at("definition");

@@ -112,7 +112,7 @@ std::string read_text_file(const std::filesystem::path& file, std::uintmax_t lar
 }
 
 Json parse_json(const std::string& text) {
-  // Where the parser would stop.
+  // The parser takes a zero byte for the end of the text.
   if (text.find('\0') != std::string::npos) refuse_syntax("has a zero byte; allowed: UTF-8");
   Guard guard;
   try {

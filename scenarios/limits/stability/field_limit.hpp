@@ -138,7 +138,7 @@ struct FieldLimit : IntervalEnd {
   /// True where the limit lies beyond `linear` by more than this, relative: then that is the one to quote, and contact
   /// at a stable value beyond it is intermittent.
   bool is_beyond_linear(double resolution) const { return value && linear && *value > (1.0 + resolution) * *linear; }
-  /// That of the loop alone, in theory or while contact lasts.
+  /// Edge of the linear loop: `theory`, or else `linear`.
   const std::optional<double>& linear_edge() const { return theory ? theory : linear; }
 };
 

@@ -118,7 +118,7 @@ inline bool is_stable(RunVerdict verdict) noexcept {
   return verdict == RunVerdict::stable || verdict == RunVerdict::dying_out;
 }
 
-/// What a run settles to, in its last quarter unless said otherwise.
+/// Means over the last quarter of a run, unless said otherwise.
 struct SettledState {
   /// Root mean square of the handle's speed above 30 Hz in the judged rows (JudgedRows), from a quarter of the contact
   /// on [m/s]; empty at sampling rates of 60 Hz or less.

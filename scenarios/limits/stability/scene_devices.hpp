@@ -10,7 +10,7 @@
 /// Devices that a scene is put on in place of its own: those of the program, and files.
 namespace hapbench {
 
-/// What to know of a delay in samples, whose time depends on the scene's step; empty for other devices.
+/// A note on a delay in samples, whose time depends on the scene's step; empty for devices without one.
 std::string delay_note(const Scenario& scenario);
 
 /// A device that a scene is tried on.

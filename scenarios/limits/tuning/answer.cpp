@@ -237,7 +237,7 @@ void explain_motion(const Trials& trials, TunedLaw& law) {
   const TuneTrial& trial = found != trials.all.end() ? found->second : trials.all.rbegin()->second;
   law.binding = trial.binding;
   law.why = trial.why;
-  law.relax = law.binding == "margin" ? "a smaller --margin; else " : "no limit is to blame: ";
+  law.relax = law.binding == "margin" ? "a smaller --margin; else" : "no limit is to blame:";
   law.relax += " a gentler hand, a wider tool or another device, or other runs with --family";
 }
 
