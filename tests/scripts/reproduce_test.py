@@ -18,6 +18,7 @@ class Reproduce(unittest.TestCase):
     def setUp(self):
         self.root = scratch_folder(self)
         (self.root / "results" / "reference").mkdir(parents=True)
+        (self.root / "scripts" / "python").mkdir(parents=True)
         self.put("scripts/reproduce", (SOURCE / "scripts" / "reproduce").read_text(encoding="utf-8"))
         for study in ("stability_z_width", "spring_stiffness"):
             self.put(f"scenarios/library/studies/{study}.json", '{\n  "ask": "limit"\n}\n')
@@ -46,6 +47,19 @@ class Reproduce(unittest.TestCase):
         self.assertEqual(status, 1)
         self.assertIn("FAILED: Run time against error (exit status 7)", out)
         self.assertIn("== Report", out)  # the others were done
+
+    def test_a_second_call_has_nothing_to_do(self):
+        self.put("scripts/report", "#!/bin/sh\n: >results/out/reproduce/report.html\n")
+        program = "#!/bin/sh\necho \"$@\" >>ran\n"
+        self.assertEqual(self.run_with(program)[0], 0)
+        made = (self.root / "ran").read_text().splitlines()
+        self.assertEqual(len(made), 3)
+        status, out, _ = self.run_with(program)
+        self.assertEqual((status, (self.root / "ran").read_text().splitlines()), (0, made))
+        self.assertIn("Nothing has changed", out)
+        self.put("scenarios/library/studies/spring_stiffness.json", '{\n  "ask": "limit", "summary": "another"\n}\n')
+        self.run_with(program)
+        self.assertEqual(sorted((self.root / "ran").read_text().splitlines()), sorted(2 * made))  # two at a time
 
     def test_a_figure_after_what_it_needs(self):
         """Figures that miss a scene of the thesis, and studies; the program writes what it is asked for."""
@@ -87,6 +101,7 @@ class Reproduce(unittest.TestCase):
         # Without a program of its own that would outlive the shell and write while the folder is removed.
         process = self.start(f"#!/bin/sh\n: >{shlex.quote(str(self.root))}/began\nexec sleep 50\n")
         while not (self.root / "began").exists():
+            self.assertIsNone(process.poll())
             time.sleep(0.02)
         process.send_signal(signal.SIGTERM)
         # Its pipes are closed when the parts are gone, too.
