@@ -29,34 +29,23 @@ class LocalAverage final : public PointStage {
     std::uint32_t cells = 0;
     for (const std::uint32_t cell : cell_of_point_) cells = std::max(cells, cell + 1);
     slot_of_cell_.assign(cells, kNone);
-    sum_.resize(scene.shell->size());
+    count_.assign(simd::padded(cells), 1.0);
   }
 
   void process(ContactBuffer& contacts) noexcept override {
     const std::size_t merged = gather(contacts);
-    std::size_t kept = 0;
-    for (std::size_t slot = 0; slot < merged; ++slot) {
-      slot_of_cell_[cell_of_point_[contacts.index[slot]]] = kNone;
-      const Vec3 mean = sum_[slot].vector / sum_[slot].count;
-      const double depth = mean.norm();
-      if (depth == 0.0) continue;
-      contacts.copy(slot, kept);
-      contacts.depth[kept] = depth;
-      contacts.set_gradient(kept, mean / depth);
-      ++kept;
-    }
-    contacts.shrink(kept);
+    for (std::size_t slot = 0; slot < merged; ++slot) slot_of_cell_[cell_of_point_[contacts.index[slot]]] = kNone;
+    contacts.shrink(merged);
+    const bool any_cancelled = average(contacts);
+    if (any_cancelled) drop_cancelled(contacts);
     contacts.pad();
   }
 
  private:
   static constexpr std::uint32_t kNone = 0xffffffff;
-  struct Sum {
-    Vec3 vector;
-    double count;
-  };
 
-  /// Moves the first contact of each cell to the front, sums d u per cell and returns the number of cells.
+  /// Moves the first contact of each cell to the front, sums d u per cell in its gradient, returns the number of
+  /// cells.
   std::size_t gather(ContactBuffer& contacts) noexcept {
     std::size_t cells = 0;
     for (std::size_t i = 0; i < contacts.size(); ++i) {
@@ -64,19 +53,46 @@ class LocalAverage final : public PointStage {
       std::uint32_t& slot = slot_of_cell_[cell_of_point_[contacts.index[i]]];
       if (slot == kNone) {
         slot = static_cast<std::uint32_t>(cells++);
-        sum_[slot] = {depth_vector, 1.0};
-        contacts.copy(i, slot);
+        if (slot != i) contacts.copy(i, slot);
+        contacts.set_gradient(slot, depth_vector);
+        count_[slot] = 1.0;
       } else {
-        sum_[slot].vector += depth_vector;
-        sum_[slot].count += 1.0;
+        contacts.set_gradient(slot, contacts.gradient(slot) + depth_vector);
+        count_[slot] += 1.0;
       }
     }
     return cells;
   }
 
+  /// Turns the sums into depths and gradients. Whether any contact has got no depth: its gradient is undefined.
+  bool average(ContactBuffer& contacts) const noexcept {
+    using simd::load, simd::Pack, simd::store;
+    unsigned cancelled = 0;
+    for (std::size_t i = 0; i < contacts.size(); i += simd::lanes) {
+      const Pack count = load(&count_[i]);
+      const Pack x = load(&contacts.ux[i]) / count, y = load(&contacts.uy[i]) / count,
+                 z = load(&contacts.uz[i]) / count;
+      const Pack depth = simd::sqrt(x * x + (y * y + z * z));  // in the order of Vec3::norm
+      const std::size_t n = std::min(simd::lanes, contacts.size() - i);
+      cancelled |= simd::bits(depth <= Pack(0.0)) & (0xffu >> (simd::lanes - n));
+      store(depth, &contacts.depth[i]);
+      store(x / depth, &contacts.ux[i]);
+      store(y / depth, &contacts.uy[i]);
+      store(z / depth, &contacts.uz[i]);
+    }
+    return cancelled != 0;
+  }
+
+  static void drop_cancelled(ContactBuffer& contacts) noexcept {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < contacts.size(); ++i)
+      if (contacts.depth[i] != 0.0) contacts.copy(i, kept++);
+    contacts.shrink(kept);
+  }
+
   std::vector<std::uint32_t> cell_of_point_;
   std::vector<std::uint32_t> slot_of_cell_;  ///< kNone between steps
-  std::vector<Sum> sum_;
+  AlignedDoubles count_;                     ///< contacts of each cell that has some, by slot
 };
 
 }  // namespace
