@@ -29,18 +29,21 @@
 /// avoids a false warning of g++ 12 (GCC bug 105593).
 namespace hapbench::simd {
 
+/// In large loops g++ calls these few instructions as functions, with their packs in memory.
+#define HAPBENCH_INLINE [[gnu::always_inline]] inline
+
 #if HAPBENCH_SIMD
 
 using Pack = std::experimental::simd<double, std::experimental::simd_abi::deduce_t<double, lanes>>;
 using Mask = Pack::mask_type;
 
-inline Pack load(const double* p) {
+HAPBENCH_INLINE Pack load(const double* p) {
   return Pack(p, std::experimental::overaligned<64>);
 }
-inline void store(const Pack& a, double* p) {
+HAPBENCH_INLINE void store(const Pack& a, double* p) {
   a.copy_to(p, std::experimental::overaligned<64>);
 }
-inline Pack select(const Mask& m, const Pack& yes, const Pack& no) {
+HAPBENCH_INLINE Pack select(const Mask& m, const Pack& yes, const Pack& no) {
 #ifdef __AVX512VL__
   // Compiled by clang, `where` of libstdc++ 12 selects the wrong lanes here.
   const auto mask = static_cast<__mmask8>(m.__to_bitset().to_ulong());
@@ -51,17 +54,17 @@ inline Pack select(const Mask& m, const Pack& yes, const Pack& no) {
   return r;
 #endif
 }
-inline Pack sqrt(const Pack& a) {
+HAPBENCH_INLINE Pack sqrt(const Pack& a) {
 #ifdef __AVX512VL__
   return Pack(_mm512_maskz_sqrt_pd(0xff, static_cast<__m512d>(a)));
 #else
   return std::experimental::sqrt(a);
 #endif
 }
-inline bool any(const Mask& m) {
+HAPBENCH_INLINE bool any(const Mask& m) {
   return std::experimental::any_of(m);
 }
-inline bool lane(const Mask& m, std::size_t i) {
+HAPBENCH_INLINE bool lane(const Mask& m, std::size_t i) {
   return m[i];
 }
 
@@ -138,7 +141,7 @@ inline bool lane(const Mask& m, std::size_t i) {
 #endif
 
 /// Bit i of the result is lane i of the mask.
-inline std::uint8_t bits(const Mask& m) {
+HAPBENCH_INLINE std::uint8_t bits(const Mask& m) {
 #if HAPBENCH_SIMD
   return static_cast<std::uint8_t>(m.__to_bitset().to_ulong());  // libstdc++'s name for C++26's to_bitset
 #else
@@ -169,7 +172,7 @@ void store_selected(std::uint8_t selected, const T* from, T* to) {
 #endif
 
 /// The lanes first … last - 1.
-inline Mask lanes_between(std::size_t first, std::size_t last) {
+HAPBENCH_INLINE Mask lanes_between(std::size_t first, std::size_t last) {
   alignas(64) static constexpr double kNumber[lanes] = {0, 1, 2, 3, 4, 5, 6, 7};
   const Pack number = load(kNumber);
   return number >= Pack(static_cast<double>(first)) && number < Pack(static_cast<double>(last));
@@ -182,12 +185,12 @@ inline std::size_t first(const Mask& m) {
   return i;
 }
 
-inline Pack abs(const Pack& a) {
+HAPBENCH_INLINE Pack abs(const Pack& a) {
   return select(a < Pack(0.0), -a, a);
 }
 
 /// b < a ? b : a, hence a if they are equal or one is NaN, exactly as the instruction does.
-inline Pack min(const Pack& a, const Pack& b) {
+HAPBENCH_INLINE Pack min(const Pack& a, const Pack& b) {
 #if HAPBENCH_SIMD && defined(__AVX512VL__)
   return Pack(_mm512_maskz_min_pd(0xff, static_cast<__m512d>(b), static_cast<__m512d>(a)));
 #else
@@ -195,7 +198,7 @@ inline Pack min(const Pack& a, const Pack& b) {
 #endif
 }
 /// a < b ? b : a
-inline Pack max(const Pack& a, const Pack& b) {
+HAPBENCH_INLINE Pack max(const Pack& a, const Pack& b) {
 #if HAPBENCH_SIMD && defined(__AVX512VL__)
   return Pack(_mm512_maskz_max_pd(0xff, static_cast<__m512d>(b), static_cast<__m512d>(a)));
 #else
@@ -204,7 +207,7 @@ inline Pack max(const Pack& a, const Pack& b) {
 }
 
 /// The eight partial sums added pairwise in one fixed order.
-inline double sum(const Pack& a) {
+HAPBENCH_INLINE double sum(const Pack& a) {
 #if HAPBENCH_SIMD && defined(__AVX512VL__)
   const auto v = static_cast<__m512d>(a);
   const __m256d half = __builtin_shufflevector(v, v, 0, 1, 2, 3) + __builtin_shufflevector(v, v, 4, 5, 6, 7);
@@ -229,5 +232,7 @@ inline double max_lane(const Pack& a) {
   for (double x : v) m = m < x ? x : m;
   return m;
 }
+
+#undef HAPBENCH_INLINE
 
 }  // namespace hapbench::simd
