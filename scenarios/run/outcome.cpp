@@ -57,20 +57,22 @@ class Approach {
     double distance, time;  ///< of the tool from the nearest point [m], and when [s]
   };
   /// In up to 256 rows before the first contact, of as many parts of the run those closest to the environment's box;
-  /// within a hundredth of the distance in these.
+  /// within a hundredth of the distance in these. Each search among all points tells how close the other rows can be at
+  /// the least, since no point of the tool comes closer than it moves: a straight approach takes two.
   Closest closest_to_surface(const ToolShape& tool) const {
     constexpr double kWithin = 0.99;
     Closest closest{std::numeric_limits<double>::infinity(), 0.0};
-    const Look* before = nullptr;
-    double gap = 0.0;
-    for (const Look& look : looks_) {
-      // No point of the tool comes closer than it moves.
-      if (before != nullptr && gap - tool.moved_at_most(before->pose, look.pose) > kWithin * closest.distance) continue;
-      before = &look;
-      gap = gap_between(tool, look.pose, *shell_).distance;
+    std::vector<double> least(looks_.size(), 0.0);
+    for (;;) {
+      const auto next = std::ranges::min_element(least);
+      if (next == least.end() || *next >= kWithin * closest.distance) return closest;
+      const Look& look = looks_[static_cast<std::size_t>(next - least.begin())];
+      const double gap = gap_between(tool, look.pose, *shell_).distance;
       if (gap < closest.distance) closest = {gap, look.time};
+      for (std::size_t i = 0; i < looks_.size(); ++i)
+        least[i] = std::max(least[i], gap - tool.moved_at_most(look.pose, looks_[i].pose));
+      *next = std::numeric_limits<double>::infinity();
     }
-    return closest;
   }
 
  private:
