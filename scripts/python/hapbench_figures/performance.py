@@ -73,7 +73,7 @@ def draw_panel(ax, results, title, beginnings, column, label, scale, per):
     found = knee(settings)
     ax.plot(found.time, found.error, "o", mfc="none", mec=style.RED, ms=10, mew=1.2)
     ax.set(xscale="log", yscale="log", title=f"{title}\nknee: {found.name}", ylabel=label,
-           xlabel="time of a simulated second [ms]" if per == "second" else f"time of a {per} [µs]")
+           xlabel="time per simulated s [ms]" if per == "second" else f"time of a {per} [µs]")
     ax.set(xlim=with_room(ax.dataLim.x0, ax.dataLim.x1), ylim=with_room(ax.dataLim.y0, ax.dataLim.y1, 4))
     style.number_ticks(ax.xaxis)
     style.number_ticks(ax.yaxis)
@@ -91,8 +91,8 @@ def run_time_against_error(results):
     for ax in drawn:
         handles, labels = ax.get_legend_handles_labels()
         if ax is drawn[1]:
-            axes[2, 1].legend(handles, labels, loc="center", ncol=4, fontsize=7, handletextpad=0.2, title="(b)").set_in_layout(False)
-        elif any(labels):
+            axes[2, 1].legend(handles, labels, loc="center", ncol=4, fontsize=7, handlelength=1.6, handletextpad=0.6, title="(b)").set_in_layout(False)
+        elif any(labels) and ax is not drawn[5]:  # whose curves have the looks of (a)
             ax.legend(fontsize=5.5, handlelength=1.8)
     said = "; ".join(f"({letter}) {found.name}" for letter, found in zip("abcdef", knees))
     time = {row["name"].split("/")[1]: row["seconds_per_step"] for row in results.json(ACCURACY)["benchmarks"] if row["name"].startswith("skips/")}

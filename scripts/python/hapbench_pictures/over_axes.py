@@ -185,7 +185,8 @@ def draw_over(found):
     over_axes(limit, x, Axis.of(axis(found.field), numbers(found.rows, "limit")), limits)
     limit.set_title("limit, by bisection")
     if ratio:
-        ratios = [(None, *of(name, numbers(rows, "limit") / numbers(rows, "theory"))) for name, rows in curves.items()]
+        finite = lambda theory: np.where(np.isfinite(theory), theory, np.nan)  # without an edge of theory there is no ratio
+        ratios = [(None, *of(name, numbers(rows, "limit") / finite(numbers(rows, "theory")))) for name, rows in curves.items()]
         over_axes(ratio, x, Axis("bisection / theory", np.array([])), ratios)
         low, high = min(ratio.dataLim.y0, 0.998), max(ratio.dataLim.y1, 1.002)
         room = 0.05 * (high - low)
