@@ -92,10 +92,14 @@ class Trace : public testing::Test {
 };
 
 TEST_F(Trace, OfARunGivesItsForcesBitForBit) {
-  for (const char* scene : {"plane_wiped_round", "cone_in_cone", "stroke_in_hole"}) {
-    for (const AlgorithmEntry& algorithm : algorithms()) {
+  for (const AlgorithmEntry& algorithm : algorithms()) {
+    if (!algorithm.reported_depth_model.empty()) continue;  // it finds its points itself
+    // A trace knows nothing of the law: other tools and motions are tried with one.
+    std::vector<const char*> scenes = {"plane_wiped_round"};
+    if (std::string_view(algorithm.info->name) == "shaped_stiffness")
+      scenes.insert(scenes.end(), {"cone_in_cone", "stroke_in_hole"});
+    for (const char* scene : scenes) {
       SCOPED_TRACE(testing::Message() << scene << " " << algorithm.info->name);
-      if (!algorithm.reported_depth_model.empty()) continue;  // it finds its points itself
       std::vector<std::string> overrides = {"rendering.algorithm=" + std::string(algorithm.info->name),
                                             "rendering.damping_ratio=0.7", "time.steps=200"};
       if (algorithm.may_reduce) overrides.emplace_back("rendering.reduction={}");

@@ -90,9 +90,9 @@ constexpr double kShared = 1e-5;
 class ProxyOverAWholeRun : public testing::TestWithParam<Run> {};
 INSTANTIATE_TEST_SUITE_P(Scenes, ProxyOverAWholeRun,
                          testing::Values(Run{"rotate_in_hole_proxy", 10'240, 1e-6},  // one period of the tilt
-                                         Run{"rotational_peg_in_hole_shaped_stiffness", 10'240, kShared},
-                                         Run{"vertical_peg_in_hole_shaped_stiffness", 10'240},
-                                         Run{"round_the_wall", 10'240}, Run{"recorded_stroke", 10'240},
+                                         Run{"rotational_peg_in_hole_shaped_stiffness", 5'120, kShared},
+                                         Run{"vertical_peg_in_hole_shaped_stiffness", 5'120},
+                                         Run{"round_the_wall", 5'120}, Run{"recorded_stroke", 5'120},
                                          Run{"drag_molar", 4'096}),
                          [](const auto& run) { return std::string(run.param.scenario); });
 

@@ -330,16 +330,21 @@ InsideDepths depths_of(const LoadedScenario& loaded, std::uint64_t every) {
   return inside.depths();
 }
 
-/// Without a record few rows are looked at.
-void expect_seen_without_record(const LoadedScenario& loaded) {
-  const InsideDepths few = depths_of(loaded, 0), exact = depths_of(loaded, 1);
-  EXPECT_EQ(few.max.has_value(), exact.max.has_value());
-  EXPECT_EQ(few.centre_inside, exact.centre_inside);
-  if (!exact.max) return;
-  EXPECT_LE(*few.max, *exact.max + 1e-12);
-  EXPECT_LE(*exact.max, (1.0 + InsideSearch::kTolerance) * *few.max + few.max_within + 1e-12);
-  if (exact.settled_median() && few.settled_median()) {
-    EXPECT_NEAR(*few.settled_median(), *exact.settled_median(), 0.2 * *exact.max);
+/// `exact`: of a run that looked at every row. Without a record few are looked at.
+void expect_seen_without_record(const LoadedScenario& loaded, const MetricList& exact) {
+  const InsideDepths few = depths_of(loaded, 0);
+  const auto max = number_of(exact, "inside_max_m"), settled = number_of(exact, "inside_settled_m");
+  EXPECT_EQ(few.max.has_value(), max.has_value());
+  const auto share = number_of(exact, "centre_inside_share");
+  EXPECT_EQ(share.has_value(), few.rows > 0);
+  if (share) {
+    EXPECT_EQ(*share, static_cast<double>(few.centre_inside) / static_cast<double>(few.rows));
+  }
+  if (!max) return;
+  EXPECT_LE(*few.max, *max + 1e-12);
+  EXPECT_LE(*max, (1.0 + InsideSearch::kTolerance) * *few.max + few.max_within + 1e-12);
+  if (settled && few.settled_median()) {
+    EXPECT_NEAR(*few.settled_median(), *settled, 0.2 * *max);
   }
 }
 
@@ -360,7 +365,7 @@ TEST_F(ScenesMadeToFool, GetTheirTrueOutcomeAndDepthAlsoWithoutARecord) {
     EXPECT_TRUE(outcome == Outcome::diverges || quiet == (outcome == Outcome::completes));
     if (c.depth)
       expect_true_depths(c, tables.trials[0].at("trajectory.csv"), number_of(report.metrics, "inside_max_m"));
-    expect_seen_without_record(loaded);
+    expect_seen_without_record(loaded, report.metrics);
   }
 }
 
