@@ -105,6 +105,10 @@ class Bench:
             given = given[:given.index("--from")]
         runs = given[0] != "sweep" or "--vary" in given and "--row" not in given
         shorter = SHORTER.get(given[0], []) if runs else []
+        if given[0] == "limit" and given[1].startswith("stability_") and not {"--device", "--algorithms"} & set(given):
+            shorter = [*shorter, "--algorithms", "shaped_stiffness"]  # of studies over all laws
+        if "--errors" in given:
+            shorter = [*shorter, "--set", "environment.spacing_m=4e-4"]  # half of that for the errors
         if "--resolution" in given:
             shorter = [word for word in shorter if word not in ("--resolution", "0.5")]
         found = []
