@@ -45,41 +45,30 @@ class LocalAverage final : public PointStage {
   static constexpr std::uint32_t kNone = 0xffffffff;
 
   /// Moves the first contact of each cell to the front, sums d u per cell in its gradient, returns the number of
-  /// cells. Points of a cell mostly follow each other: their sum waits in registers for the next cell.
+  /// cells. Points of a cell mostly follow each other: their sum stays in registers.
   std::size_t gather(ContactBuffer& contacts) noexcept {
-    std::size_t cells = 0, slot = 0;
-    std::uint32_t current = kNone;
-    Vec3 sum = Vec3::Zero();
-    double count = 0.0;
-    for (std::size_t i = 0; i < contacts.size(); ++i) {
-      const Vec3 depth_vector = contacts.depth[i] * contacts.gradient(i);
+    const auto depth_vector = [&](std::size_t i) { return Vec3(contacts.depth[i] * contacts.gradient(i)); };
+    std::size_t cells = 0;
+    for (std::size_t i = 0; i < contacts.size();) {
       const std::uint32_t cell = cell_of_point_[contacts.index[i]];
-      if (cell == current) {
-        sum += depth_vector;
-        count += 1.0;
-        continue;
-      }
-      if (current != kNone) keep(contacts, slot, sum, count);
-      current = cell;
-      if (slot_of_cell_[cell] == kNone) {
-        slot = cells++;
-        slot_of_cell_[cell] = static_cast<std::uint32_t>(slot);
+      std::uint32_t& slot = slot_of_cell_[cell];
+      Vec3 sum = depth_vector(i);
+      double count = 1.0;
+      if (slot == kNone) {
+        slot = static_cast<std::uint32_t>(cells++);
         if (slot != i) contacts.copy(i, slot);
-        sum = depth_vector;
-        count = 1.0;
       } else {
-        slot = slot_of_cell_[cell];
-        sum = contacts.gradient(slot) + depth_vector;
-        count = count_[slot] + 1.0;
+        sum = contacts.gradient(slot) + sum;
+        count += count_[slot];
       }
+      for (++i; i < contacts.size() && cell_of_point_[contacts.index[i]] == cell; ++i) {
+        sum += depth_vector(i);
+        count += 1.0;
+      }
+      contacts.set_gradient(slot, sum);
+      count_[slot] = count;
     }
-    if (current != kNone) keep(contacts, slot, sum, count);
     return cells;
-  }
-
-  void keep(ContactBuffer& contacts, std::size_t slot, const Vec3& sum, double count) noexcept {
-    contacts.set_gradient(slot, sum);
-    count_[slot] = count;
   }
 
   /// Turns the sums into depths and gradients. Whether any contact has got no depth: its gradient is undefined.
