@@ -126,12 +126,12 @@ class Identify(unittest.TestCase):
                 self.assertTrue(low <= true <= high, f"{kind} {name}: {true} in {low} ... {high}")
 
     def test_a_handful_of_the_study(self):
-        ones = [judged(seed) for seed in (0, 11, 25)]
+        ones = [judged(seed) for seed in (0, 10, 11, 16, 25, 43)]
         for one in ones:
             self.assertLessEqual(one["over"], 1.002, one)
             self.assertFalse(one["untold"], one)
         held = [holds for one in ones for holds in one["holds"].values()]
-        self.assertGreaterEqual(sum(held), 13)  # of 15 at 95 %; fewer once in 27 times, and these seeds are fixed
+        self.assertGreaterEqual(sum(held), 27)  # of 30 at 95 %; fewer once in 16 times, and these seeds are fixed
 
     def test_what_the_log_cannot_tell_has_no_value(self):
         m, b, c, _, q = TRUE.values()

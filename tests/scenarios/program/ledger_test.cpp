@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <map>
+#include <optional>
 
 #include "scenarios/thesis/robustness.hpp"
 #include "tests/results/files.hpp"
@@ -93,11 +94,21 @@ TEST(Ledger, IsNotWrittenOfSingleClaimsUnlessItIsSaidWhere) {
 
 using Verdicts = std::map<std::string, std::string>;
 
-/// The verdicts under the last reading of a file, without those on claims about times and those that take long to
-/// judge.
-Verdicts verdicts_under(const fs::path& file) {
+/// The ledger's verdicts by claim, without those on claims about times and those that take long to judge.
+Verdicts verdicts_on_record() {
+  Verdicts verdicts;
+  const Json ledger = Json::parse(test::read_file(kReference / "claims.json"));
+  for (const Json& entry : ledger.at("claims")) verdicts[entry.at("id")] = entry.at("verdict");
+  for (const Claim& claim : all_claims())
+    if (claim.timing || claim.costly) verdicts.erase(claim.id);
+  return verdicts;
+}
+
+/// The verdicts on these claims under a reading: the last one of a file, or that on record.
+Verdicts verdicts_under(const std::optional<fs::path>& file) {
   const Choices choices(kReference / "choices.json");
-  Readings readings{choices, PublishedNumbers(kReference / "published.json"), {}, read_readings(file, choices)};
+  Readings readings{choices, PublishedNumbers(kReference / "published.json"), {}, {choices.values_on_record()}};
+  if (file) readings.values = read_readings(*file, choices);
   for (const Claim& claim : all_claims())
     if (!claim.timing && !claim.costly) readings.claims.push_back({claim, {}});
   const test::TemporaryDirectory directory;
@@ -120,6 +131,11 @@ TEST(RobustnessOnRecord, HasTheVerdictsThatTheProgramMakesOfAReading) {
     EXPECT_TRUE(entry.at("robustness").at("verdicts").contains(made.at(id))) << id << ": " << made.at(id);
   }
   EXPECT_GT(sampled, 10u);
+}
+
+/// A reading gets its verdicts as the ledger does.
+TEST(RobustnessOnRecord, OfTheChoicesOnRecordIsTheLedger) {
+  EXPECT_EQ(verdicts_under(std::nullopt), verdicts_on_record());
 }
 
 }  // namespace
