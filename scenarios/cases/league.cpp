@@ -178,9 +178,8 @@ League league_of(const Comparison& comparison, std::span<const Result> reports,
       have_reference(reports) ? std::span<const std::string_view>(kFidelityMetrics) : kDefaultMetrics;
   League league{comparison.names, comparison.algorithms, metrics, {}, comparison.seeds, {}};
   if (metrics.empty()) league.metrics.assign(usual.begin(), usual.end());
-  const MetricList known = metrics_without_values();
   for (const std::string& name : league.metrics) {
-    const Metric* metric = find_metric(known, name);
+    const Metric* metric = find_metric(all_metrics(), name);
     league.better.push_back(metric == nullptr ? Better::none : metric->better);
   }
   for (std::size_t i = 0; i < reports.size(); ++i) {

@@ -486,12 +486,11 @@ static void describe(Fields& f, ReferenceForceFields& reference) {
 }
 
 static void describe(Fields& f, ExpectFields& expect) {
-  static const MetricList kMetrics = metrics_without_values();
   f.field("outcome", "how the run must end, or a list of ways", Presence::has_default,
           [&expect](Fields& value) { describe_outcomes(value, expect.outcomes); });
   f.group("metrics", "bounds on the run's metrics, min and max of each; \"hapbench describe metrics\" shows them",
           [&expect](Fields& metrics) {
-            for (const Metric& metric : kMetrics) {
+            for (const Metric& metric : all_metrics()) {
               const auto known = expect.metrics.find(metric.name);
               std::optional<MetricBound> bound;
               if (known != expect.metrics.end()) bound = known->second;

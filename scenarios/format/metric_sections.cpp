@@ -85,9 +85,14 @@ MetricList metrics_without_values(std::size_t places) {
   return list_without_values([places](const SectionKind&) { return places; });
 }
 
+const MetricList& all_metrics() {
+  static const MetricList all = metrics_without_values(2);
+  return all;
+}
+
 std::vector<std::string> metric_names() {
   std::vector<std::string> names;
-  for (Metric& metric : metrics_without_values()) names.push_back(std::move(metric.name));
+  for (const Metric& metric : all_metrics()) names.push_back(metric.name);
   return names;
 }
 

@@ -18,9 +18,10 @@ namespace hapbench {
 /// The metrics of a run of the scenario, in the order of the summary, with unit and meaning, without values.
 /// `has_reference_force`: the scenario gives a reference force or its stroke has a measured one.
 MetricList metrics_without_values(const Scenario& scenario, bool has_reference_force);
-/// The metrics of all sections: those that `expect` may bound. By default tasks have two places, as those of the
-/// thesis.
-MetricList metrics_without_values(std::size_t places = 2);
+/// The metrics of all sections, with so many places in tasks.
+MetricList metrics_without_values(std::size_t places);
+/// Those that `expect` may bound: tasks have two places, as those of the thesis. Made once.
+const MetricList& all_metrics();
 /// The same by their names.
 std::vector<std::string> metric_names();
 

@@ -234,7 +234,7 @@ constexpr Column kShellColumns[] = {
     {"ny", "1", "y of the outward unit normal there"}, {"nz", "1", "z of the outward unit normal there"}};
 
 Description describe_metrics() {
-  const Json json = {{"kind", "metrics"}, {"metrics", columns_json(metrics_without_values())}};
+  const Json json = {{"kind", "metrics"}, {"metrics", columns_json(all_metrics())}};
   return {"metrics of summary.json, which expect.metrics may bound; f is f_render, the force on the tool\n" +
               thing_text(json),
           json};
@@ -338,7 +338,7 @@ void add_columns(Index& index, const std::vector<DescribedTable>& tables) {
 /// Metrics, files, columns.
 void add_results(Index& index, const std::vector<DescribedTable>& tables) {
   for (const char* name : {"metrics", "summary.json"}) index.push_back({"section", name, "", describe_metrics});
-  for (const Metric& metric : metrics_without_values()) {
+  for (const Metric& metric : all_metrics()) {
     add_term(index, {{"kind", "metric"}, {"name", metric.name}, {"unit", metric.unit}, {"meaning", metric.meaning}},
              metric.meaning);
   }

@@ -251,9 +251,8 @@ Columns<ComparedRun> comparison_columns(bool seeds) {
   columns.add("outcome", "", "how the run ended",
               [](const ComparedRun& r) { return outcome_name(r.run->end.outcome); });
   columns.add("steps", "1", "rows of the run", [](const ComparedRun& r) { return r.run->end.rows; });
-  const MetricList metrics = metrics_without_values();
   for (const std::string_view name : words_of(kComparedMetrics)) {
-    const Metric& metric = *find_metric(metrics, name);
+    const Metric& metric = *find_metric(all_metrics(), name);
     columns.add(metric.name, metric.unit, metric.meaning, [name](const ComparedRun& r) {
       return std::visit([](const auto& value) { return Cell(value); }, value_of(r.run->metrics, name));
     });

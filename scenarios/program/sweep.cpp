@@ -239,14 +239,13 @@ int sweep(const SweepCommand& command) {
 }  // namespace
 
 std::vector<DescribedTable> sweep_tables() {
-  const MetricList metrics = metrics_without_values();
   DescribedTable table{"sweep.csv", "of sweep: one line per run", {}, count_columns().headings()};
   table.columns = {{"index", "1", "number of the run, from 0; the varied fields follow, by their paths"},
                    {"outcome", "", "how the run ended; \"error\" for one that could not be computed"},
                    {"expected", "", "true when it ended as the scenario's expect says"},
                    {"steps", "1", "rows of the run"}};
-  for (const Metric& metric : metrics) table.columns.push_back({metric.name, metric.unit, metric.meaning});
-  for (const Metric& metric : metrics)
+  for (const Metric& metric : all_metrics()) table.columns.push_back({metric.name, metric.unit, metric.meaning});
+  for (const Metric& metric : all_metrics())
     if (metric.bounded)
       table.columns.push_back(
           {std::string(kToleranceOf) + metric.name, metric.unit, "by how much the metric may be wrong"});

@@ -88,7 +88,7 @@ TEST(Outcome, NoContactTellsTheLikelyCause) {
 /// What is said of those that are not met is in tests/data/golden/ends.txt.
 TEST(Expectation, IncludesItsBoundsAndMayBoundEveryMetric) {
   Result run;
-  run.metrics = metrics_without_values();
+  run.metrics = all_metrics();
   ASSERT_EQ(run.metrics.front().name, "force_max_N");
   run.metrics.front().value = 2.0;
   const auto unmet = [&run](const std::string& name, const MetricBound& bound) {
