@@ -64,27 +64,26 @@ Standing standing_of(const League& league, std::size_t s, std::size_t a, std::si
   return standing;
 }
 
+NumberWithError number_of(const Standing& standing) {
+  return {standing.mean, standing.tolerance.value_or(0.0)};
+}
+
+/// True where the first algorithm failed less often, or had no failure and a better mean.
+bool is_better(const Standing& a, const Standing& b) {
+  if (a.failed != b.failed) return a.failed < b.failed;
+  if (a.failed > 0 || !a.mean) return false;
+  if (!b.mean) return true;
+  return a.better == Better::more ? is_less(number_of(b), number_of(a)) : is_less(number_of(a), number_of(b));
+}
+
 /// Ranks the algorithms in one scenario by one metric.
 void rank_by_means(const std::vector<Standing*>& standings) {
-  const Better better = standings.front()->better;
-  if (better == Better::none || std::ranges::none_of(standings, [](const auto* s) { return s->mean.has_value(); }))
+  if (standings.front()->better == Better::none ||
+      std::ranges::none_of(standings, [](const Standing* s) { return s->mean.has_value(); }))
     return;
-  std::vector<Standing*> order;
-  for (Standing* s : standings)
-    if (s->failed == 0 && s->mean) order.push_back(s);
-  std::ranges::stable_sort(order, {}, [&](const Standing* s) { return better == Better::more ? -*s->mean : *s->mean; });
-  std::size_t leader = 0;
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    const double a = *order[leader]->mean, b = *order[i]->mean;
-    if (std::abs(a - b) > kSameRank * std::max(std::abs(a), std::abs(b))) leader = i;
-    order[i]->rank = 1 + leader;
-  }
   for (Standing* s : standings) {
-    const auto has_fewer = [s](const Standing* other) { return other->failed < s->failed; };
-    if (s->failed > 0)
-      s->rank = 1 + static_cast<std::uint64_t>(std::ranges::count_if(standings, has_fewer));
-    else if (!s->mean)
-      s->rank = 1 + order.size();
+    const auto did_better = [s](const Standing* other) { return is_better(*other, *s); };
+    s->rank = 1 + static_cast<std::uint64_t>(std::ranges::count_if(standings, did_better));
   }
 }
 
@@ -133,6 +132,11 @@ double critical_t(std::size_t degrees) {
   constexpr double kCritical[] = {12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228};
   if (degrees == 0) return std::numeric_limits<double>::infinity();
   return kCritical[std::min(degrees, std::size(kCritical)) - 1];
+}
+
+bool is_less(const NumberWithError& a, const NumberWithError& b) {
+  const double apart = *b.value - *a.value;
+  return apart > *a.error + *b.error && apart > kSameRank * std::max(std::abs(*a.value), std::abs(*b.value));
 }
 
 std::size_t League::failures(std::size_t scenario, std::size_t algorithm) const {

@@ -35,9 +35,17 @@ struct LeagueRun {
   std::vector<std::optional<double>> tolerances;  ///< of these
 };
 
-/// Means whose relative difference is below this share a rank: the resolution of a table of ratios with three digits.
-/// Rounding errors, by which equivalent algorithms differ, are far smaller.
+/// Numbers whose relative difference is below this count as equal: the resolution of a table of ratios with three
+/// digits. Rounding errors, by which equivalent algorithms differ, are far smaller.
 inline constexpr double kSameRank = 1e-3;
+
+/// A number of a table and what is known of its error.
+struct NumberWithError {
+  std::optional<double> value, error;
+};
+/// True when the first number is less by more than both errors and by more than kSameRank of the larger one.
+/// Precondition: both have a value and an error.
+bool is_less(const NumberWithError& a, const NumberWithError& b);
 
 /// One algorithm in one scenario, judged by one metric over the common seeds of the scenario (League::common).
 struct Standing {
@@ -48,10 +56,9 @@ struct Standing {
   std::optional<double> spread = {};  ///< sample standard deviation; none for one seed or if seeds change nothing
   /// Error of the mean: the mean of the errors of its numbers; empty if none is known.
   std::optional<double> tolerance = {};
-  /// 1 + the number of better algorithms. Those without failures come first, ordered by their means; means within
-  /// kSameRank of the first of a group share its rank, and algorithms without a mean come last of these (a tool that is
-  /// thrown out at once has no settled force). The others follow by their number of failed seeds. None if no algorithm
-  /// has the metric, or no direction of it is better.
+  /// 1 + the number of algorithms that did better. Those without failures come first, by their means (is_less()), and
+  /// of these last algorithms without a mean (a tool that is thrown out at once has no settled force). The others
+  /// follow by their number of failed seeds. None if no algorithm has the metric, or no direction of it is better.
   std::optional<std::uint64_t> rank = {};
   std::uint64_t common_seeds = 1;
   Better better = Better::less;

@@ -75,7 +75,7 @@ Json numbers_json(const MetricNumbers& found, const std::vector<std::string>& al
                        {"error_of_step", or_null(found.known[a].step)},
                        {"error_of_spacing", or_null(found.known[a].spacing)}});
   }
-  for (const auto& group : held_order(found.numbers, kSameRank).groups) {
+  for (const auto& group : held_order(found.numbers).groups) {
     Json& names = order.emplace_back(Json::array());
     for (const std::size_t a : group) names.push_back(algorithms[a]);
   }
@@ -90,7 +90,7 @@ void report_errors(const League& league, const FinerRuns& finer, std::size_t sce
   for (std::size_t m = 0; m < league.metrics.size(); ++m) {
     const std::string& metric = league.metrics[m];
     const MetricNumbers found = numbers_of(league, &finer, scenario, m);
-    const std::string says = held_text(found.numbers, league.algorithms, kSameRank);
+    const std::string says = held_text(found.numbers, league.algorithms);
     Json& json =
         report.json()["errors"].emplace_back(Json{{"scenario", league.scenarios[scenario]}, {"metric", metric}});
     json.update(numbers_json(found, league.algorithms));
@@ -133,7 +133,7 @@ std::string vibration_text(const League& league) {
     const auto place = static_cast<std::size_t>(std::ranges::find(league.metrics, metric) - league.metrics.begin());
     std::vector<NumberWithError> numbers = numbers_of(league, nullptr, 0, place).numbers;
     for (NumberWithError& number : numbers) *number.error += unfelt;
-    says = fmt::format("vibration of the {}: {}", of, held_text(numbers, league.algorithms, kSameRank));
+    says = fmt::format("vibration of the {}: {}", of, held_text(numbers, league.algorithms));
     if (std::ranges::count_if(numbers, [](const auto& n) { return n.value.has_value(); }) == laws) break;
   }
   return "\n" + wrapped(fmt::format("{}{}; --errors tells whether finer runs agree", says, failing), 0);

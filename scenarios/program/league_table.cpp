@@ -5,8 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <nlohmann/json.hpp>
 
+#include "scenarios/program/command.hpp"
 #include "scenarios/program/index.hpp"
 
 namespace hapbench {
@@ -38,10 +40,11 @@ Columns<Standing> league_columns(bool seeds) {
   columns.add("spread", "by name",
               "standard deviation over these seeds; empty when there is one, or when seeds change nothing",
               &Standing::spread, {.heading = seeds ? "spread" : "", .digits = 2});
-  columns.add("rank", "1",
-              "1 + the number of algorithms that did better in this scenario by this metric, where means within 0.1 % "
-              "are equal; those with failures are last, by the number of these",
-              &Standing::rank, {.heading = "rank"});
+  columns.add(
+      "rank", "1",
+      "1 + the number of algorithms that did better in this scenario by this metric, by more than 0.1 % and both "
+      "errors; those with failures are last, by the number of these",
+      &Standing::rank, {.heading = "rank"});
   columns.add("common_seeds", "1",
               "seeds that mean and spread are over: those in which no algorithm failed that has any success in the "
               "scenario; if there are none, all seeds of the algorithms that never failed",
@@ -56,15 +59,22 @@ Columns<Standing> league_columns(bool seeds) {
 
 namespace {
 
-/// The standings by scenario and metric, best first, those without a rank last.
+/// True for the row that comes first in a table: by rank, of one rank by mean; those without a rank come last.
+bool comes_first(const Standing& a, const Standing& b) {
+  if (a.rank != b.rank) return a.rank && (!b.rank || *a.rank < *b.rank);
+  if (a.better == Better::none) return false;
+  if (!a.mean || !b.mean) return a.mean && !b.mean;
+  return a.better == Better::more ? *a.mean > *b.mean : *a.mean < *b.mean;
+}
+
+/// The standings by scenario and metric, best first.
 std::vector<Standing> ranked(const League& league) {
   std::vector<Standing> all;
   for (std::size_t s = 0; s < league.scenarios.size(); ++s) {
     for (std::size_t m = 0; m < league.metrics.size(); ++m) {
       const auto first = static_cast<std::ptrdiff_t>(all.size());
       for (std::size_t a = 0; a < league.algorithms.size(); ++a) all.push_back(league.at(s, a, m));
-      std::stable_sort(all.begin() + first, all.end(),
-                       [](const Standing& x, const Standing& y) { return x.rank && (!y.rank || *x.rank < *y.rank); });
+      std::stable_sort(all.begin() + first, all.end(), comes_first);
     }
   }
   return all;
@@ -82,17 +92,31 @@ Columns<LawStanding> law_columns() {
   return columns;
 }
 
-/// Says whether one law is first by all metrics, and where no spread is known.
-std::string verdict(const League& league) {
-  const LawStanding& best = league.laws.front();
-  std::size_t rankings = 0, first = 0;
-  for (const Standing& standing : league.standings) {
-    if (standing.algorithm != best.algorithm || !standing.rank) continue;
-    ++rankings;
-    first += *standing.rank == 1;
+/// Says which laws are first, alone or with others, in how many rankings.
+std::string firsts_text(const League& league) {
+  constexpr std::size_t kMostNamed = 5;
+  if (!league.laws.front().mean_rank) return "nothing is ranked: neither less nor more of these metrics is better";
+  std::size_t rankings = 0;
+  std::vector<std::pair<std::size_t, std::string>> firsts;
+  for (const LawStanding& law : league.laws) {
+    const auto is_ranked = [&law](const Standing& s) { return s.algorithm == law.algorithm && s.rank; };
+    const auto is_first = [&](const Standing& s) { return is_ranked(s) && *s.rank == 1; };
+    rankings = static_cast<std::size_t>(std::ranges::count_if(league.standings, is_ranked));
+    const auto first = static_cast<std::size_t>(std::ranges::count_if(league.standings, is_first));
+    if (first > 0) firsts.emplace_back(first, law.algorithm);
   }
-  std::string text = "nothing is ranked: neither less nor more of these metrics is better\n";
-  if (best.mean_rank) text = fmt::format("{} is first in {} of {} rankings\n", best.algorithm, first, rankings);
+  std::ranges::stable_sort(firsts, std::greater(), &std::pair<std::size_t, std::string>::first);
+  if (firsts.size() == 1 && firsts.front().first == rankings)
+    return fmt::format("{} alone is first in each of {} rankings", firsts.front().second, rankings);
+  std::vector<std::string> texts;
+  for (const auto& [first, algorithm] : firsts) texts.push_back(fmt::format("{} in {}", algorithm, first));
+  return fmt::format("no algorithm alone is first in each of {} rankings; first are {}", rankings,
+                     fmt::join(first_few(texts, kMostNamed), ", "));
+}
+
+/// Says who is first, and where no spread is known.
+std::string verdict(const League& league) {
+  const std::string text = wrapped(firsts_text(league), 0);
   if (league.seeds < 2) return text + "one seed: no spread is known; --seeds K gives one\n";
   std::vector<std::string> alike;
   for (std::size_t s = 0; s < league.scenarios.size(); ++s)

@@ -9,6 +9,7 @@
 
 #include "results/summary/summary.hpp"
 #include "scenarios/cases/comparison.hpp"
+#include "scenarios/cases/league.hpp"
 #include "scenarios/format/load_scenario.hpp"
 
 /// How far a number is from converged when a scene is sampled more finely in its step or in any field: observed order,
@@ -117,23 +118,17 @@ class FinerRuns {
   std::vector<Result> finer_;           ///< by part, then by level, then as in the comparison
 };
 
-/// A number of a table and what is known of its error.
-struct NumberWithError {
-  std::optional<double> value, error;
-};
-
 /// Places of numbers in the order that their errors leave.
 struct HeldOrder {
-  /// Each number of a group is less than every number of the groups behind it by more than both errors and by more than
-  /// rounding.
+  /// Each number of a group is less (is_less()) than every number of the groups behind it.
   std::vector<std::vector<std::size_t>> groups;
   std::vector<std::size_t> unplaced;  ///< numbers that are apart from no other, where others are
 };
 
-/// Numbers without a value or an error have no place. `rounding` is relative to the larger number.
-HeldOrder held_order(std::span<const NumberWithError> numbers, double rounding);
+/// Numbers without a value or an error have no place.
+HeldOrder held_order(std::span<const NumberWithError> numbers);
 
 /// The same in a sentence about named numbers: "the order holds: mean < proxy".
-std::string held_text(std::span<const NumberWithError> numbers, std::span<const std::string> names, double rounding);
+std::string held_text(std::span<const NumberWithError> numbers, std::span<const std::string> names);
 
 }  // namespace hapbench

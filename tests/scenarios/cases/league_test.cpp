@@ -32,13 +32,13 @@ TEST(CriticalT, IsStudentsQuantile) {
 using Values = std::vector<std::optional<double>>;
 
 /// One scene, metric and seed, or so many seeds; a value for each algorithm and seed. A negative one stands for a run
-/// that diverged.
-League league_of(const Values& values, Better better = Better::less, std::size_t seeds = 1) {
+/// that diverged. Each number may be wrong by `error`.
+League league_of(const Values& values, Better better = Better::less, std::size_t seeds = 1, double error = 0.0) {
   League league{{"scene"}, {}, {"force_max_N"}, {better}, seeds, {}};
   for (std::size_t a = 0; a < values.size() / seeds; ++a) league.algorithms.push_back("law_" + std::to_string(a));
   for (const auto& value : values) {
     const bool failed = value && *value < 0.0;
-    league.runs.push_back({failed ? "diverges" : "completes", failed, league.runs.size(), {value}, {std::nullopt}});
+    league.runs.push_back({failed ? "diverges" : "completes", failed, league.runs.size(), {value}, {error}});
   }
   league.rank();
   return league;
@@ -61,10 +61,11 @@ TEST(League, RanksByMeansThenThoseWithoutOneThenByFailedSeeds) {
   EXPECT_EQ(of_one_seed({0.5, 1.0, 0.25}, Better::more), (Ranks{2, 1, 3}));
   EXPECT_EQ(of_one_seed({1.0, 2.0}, Better::none), (Ranks{0, 0}));
   EXPECT_EQ(of_one_seed({2.0, 1.0, 2.0, 5.0}), (Ranks{2, 1, 2, 4}));
-  // 0.1 % of the larger of two is the limit, taken from the first of a group: 1.0009 is of the first, 1.0015 is not,
-  // though close to the one before.
-  EXPECT_EQ(of_one_seed({1.0 + 1e-15, 1.0, 1.0009, 1.0015}), (Ranks{1, 1, 1, 4}));
+  // 0.1 % of the larger of two is the limit: two are less than 1.0015 by more, the third is not.
+  EXPECT_EQ(of_one_seed({1.0 + 1e-15, 1.0, 1.0009, 1.0015}), (Ranks{1, 1, 1, 3}));
   EXPECT_EQ(of_one_seed({0.0, 1e-300, 0.0}), (Ranks{1, 3, 1})) << "nothing is like zero";
+  EXPECT_EQ(ranks(league_of({1.0, 1.3, 1.5}, Better::less, 1, 0.2)), (Ranks{1, 1, 2}))
+      << "only the third is worse than the first by more than both errors";
   EXPECT_EQ(of_one_seed({kNone, 2.0, 1.0, kNone}), (Ranks{3, 2, 1, 3}));
   EXPECT_EQ(of_one_seed({-1.0, kNone, 2.0}), (Ranks{3, 2, 1}));
   EXPECT_EQ(of_one_seed({7.0, -1.0, 3.0, -9.0}), (Ranks{2, 3, 1, 3})) << "however small the numbers of failures";
