@@ -195,7 +195,8 @@ std::string against_sinking(const DiagnosedRun& run) {
 std::string against_loss(const DiagnosedRun& run) {
   if (steps_too_far(run)) return kShorterStep;
   if (run.ended(Outcome::no_contact))
-    return "environment.scale, initial.position_m and the hand's direction: \"hapbench validate\" shows them";
+    return "environment.scale, initial.position_m and the hand's direction: \"hapbench validate\" shows them; more "
+           "time.steps where the tool came nearer to the end";
   return "less K where it is beyond the edge, or a hand whose way ends on the surface";
 }
 

@@ -39,6 +39,7 @@ class Approach {
     const double way = (place - place_).norm();
     if (distance_ <= way && std::isfinite(way)) longest_step_ = std::max(longest_step_, way);
     place_ = place;
+    time_ = record.time;
     distance_ = distance_to(environment_, place);
     if (!looks) return;
     const Look look{record.time, distance_, record.tool.pose};
@@ -55,6 +56,8 @@ class Approach {
 
   struct Closest {
     double distance, time;  ///< of the tool from the nearest point [m], and when [s]
+    /// Of a tool that came closest in the last row, how long it takes to the surface at its speed there [s].
+    std::optional<double> rest = {};
   };
   /// In up to 256 rows before the first contact, of as many parts of the run those closest to the environment's box;
   /// within a hundredth of the distance in these. Each search among all points tells how close the other rows can be at
@@ -65,7 +68,7 @@ class Approach {
     std::vector<double> least(looks_.size(), 0.0);
     for (;;) {
       const auto next = std::ranges::min_element(least);
-      if (next == least.end() || *next >= kWithin * closest.distance) return closest;
+      if (next == least.end() || *next >= kWithin * closest.distance) break;
       const Look& look = looks_[static_cast<std::size_t>(next - least.begin())];
       const double gap = gap_between(tool, look.pose, *shell_).distance;
       if (gap < closest.distance) closest = {gap, look.time};
@@ -73,6 +76,11 @@ class Approach {
         least[i] = std::max(least[i], gap - tool.moved_at_most(look.pose, looks_[i].pose));
       *next = std::numeric_limits<double>::infinity();
     }
+    if (closest.time != time_ || looks_.size() < 2) return closest;
+    const Look& before = *(looks_.end() - 2);
+    const double nearer = gap_between(tool, before.pose, *shell_).distance - closest.distance;
+    if (nearer > 0.0) closest.rest = closest.distance / nearer * (time_ - before.time);
+    return closest;
   }
 
  private:
@@ -84,6 +92,7 @@ class Approach {
   std::shared_ptr<const PointShell> shell_;
   Box environment_;
   Vec3 place_ = Vec3::Zero();  ///< in the last row
+  double time_ = 0.0;          ///< of the last row
   double distance_ = std::numeric_limits<double>::infinity(), longest_step_ = 0.0;
   std::uint64_t every_;
   std::vector<Look> looks_;
@@ -291,7 +300,9 @@ class OutcomeWatch final : public OutcomeObserver {
   }
 
   /// The likely cause, as a question where it is no more than likely, or where to look when none suggests itself.
-  std::string likely_cause() const {
+  /// `rest`: Approach::Closest.
+  std::string likely_cause(const std::optional<double>& rest = {}) const {
+    constexpr double kMostRest = 100.0;  // times as long as the run
     const double longest = approach_->longest_step();
     if (std::string question = scale_question(scenario_, *tool_, approach_->environment()); !question.empty())
       return question;
@@ -306,6 +317,8 @@ class OutcomeWatch final : public OutcomeObserver {
       if (is_constant) return "a hand of constant force goes on pushing where there is no surface";
       return fmt::format("the largest force was {:.3g} N", std::sqrt(metrics_->trial().force_max_squared));
     }
+    if (rest && *rest < kMostRest * scenario_.time.step * static_cast<double>(scenario_.time.steps))
+      return fmt::format("it came nearer to the end and would touch in {:.2g} s: is time.steps too small?", *rest);
     if (!position_is_free(scenario_.motion)) return "is motion.position right?";
     if (spring_of(scenario_.hand) != nullptr) return "does hand.target lead to the surface?";
     return std::holds_alternative<NoHandFields>(scenario_.hand) ? "nothing pushes the tool: is hand missing?"
@@ -357,7 +370,7 @@ class OutcomeWatch final : public OutcomeObserver {
     return fmt::format(
         "never in contact: the tool came as close as {} (at {:.4g} s) to the surface of the environment "
         "({}); {}",
-        length_text(closest.distance), closest.time, environment_text(), likely_cause());
+        length_text(closest.distance), closest.time, environment_text(), likely_cause(closest.rest));
   }
 
   /// As a tool that was thrown out or pushed past, or a dragged one past an edge.

@@ -77,6 +77,16 @@ TEST(Outcome, NoContactTellsTheLikelyCause) {
            {R"({"hand": null, "initial": null,
                "motion": {"position": {"type": "prescribed", "x_m": 0, "y_m": 0, "z_m": 0.003}}})",
             "; is motion.position right?"},
+           // 1.5 mm above the plane and 1 mm/s down, for 0.05 s.
+           {R"({"hand": null, "initial": null,
+               "motion": {"position": {"type": "prescribed", "x_m": 0, "y_m": 0,
+                                       "z_m": {"type": "waypoints", "points": [[0, 0.0015], [1, 0.0005]]}}}})",
+            "; it came nearer to the end and would touch in 1.5 s: is time.steps too small?"},
+           // A tenth as fast, even a run that is a hundred times as long would not do.
+           {R"({"hand": null, "initial": null,
+               "motion": {"position": {"type": "prescribed", "x_m": 0, "y_m": 0,
+                                       "z_m": {"type": "waypoints", "points": [[0, 0.0015], [1, 0.0014]]}}}})",
+            "; is motion.position right?"},
        }) {
     const Result run = run_of(patch);
     EXPECT_EQ(run.end.outcome, Outcome::no_contact) << cause;
