@@ -59,7 +59,8 @@ ACCURACY = [f"accuracy_{panel}" for panel in ("integrators", "shaping", "spacing
 SPRINGS = [f"spring_{field}" for field in ("stiffness", "damping", "time_step")]
 # By the beginning of a question's name and the column: how far the number may be off, relative. All others are the same.
 TOLERANCES = {
-    "map_": {**dict.fromkeys(("time.step_s", K, "stable_gil_hulin"), 1e-12),  # the same value of a range, whose ends are others
+    "map_": {**dict.fromkeys(("time.step_s", "rendering.damping_N_s_per_m", "hand.stiffness_N_per_m", K, "stable_gil_hulin"),
+                             1e-12),  # the same value of a range, whose ends are others
              **dict.fromkeys(("theory", "worst_hand"), 1e-9),  # an edge by eigenvalues, bisected from another range
              "limit": 2e-3},  # bisection on runs ends at 0.1 %
     "accuracy_reduction": dict.fromkeys(("kept_mean", "force_error_relative", "depth_error_max_m"), 1e-12),  # forces added up in another order
@@ -67,7 +68,9 @@ TOLERANCES = {
 
 
 def text_of(value):
-    """A cell as CSV files have it."""
+    """A cell as CSV files have it: of a list how long it is."""
+    if isinstance(value, list):
+        return str(len(value))
     return "" if value is None else str(value).lower() if isinstance(value, bool) else value if isinstance(value, str) else repr(value)
 
 
