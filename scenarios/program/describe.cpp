@@ -89,6 +89,10 @@ Named on_record(const char* kind, const Json& thing, const std::string& summary,
   const auto describe = [=] {
     Json titled = {{"kind", fmt::format("{}, on record", kind)}, {"name", thing.at("id")}};
     titled.update(thing);
+    if (const Json& counts = thing.value("robustness", Json()); !counts.is_null())
+      titled["sureness"] =
+          fmt::format("{}: {} of {} readings give this verdict", thing.at("sureness").get<std::string>(),
+                      counts.at("holds").dump(), counts.at("judged").dump());
     // The name has the id, and people are told what was measured in a sentence.
     for (const char* member : {"id", "cases", "choices_reach_it", "ours", "robustness", "timing"}) titled.erase(member);
     return Description{thing_text(titled), thing};
@@ -368,8 +372,7 @@ std::vector<Description> described_headings(const Index& index, const std::strin
 }
 
 [[noreturn]] void refuse(const std::string& name, const Index& index, const Index& in_folders) {
-  std::vector<std::string> names;
-  for (const char* kind : kListed) names.push_back(list_name(kind));
+  std::vector<std::string> names = names_of(kListed, list_name);
   for (const Index* known : {&index, &in_folders})
     for (const Named& thing : *known)
       if (thing.kind != "heading") names.push_back(thing.name);
