@@ -64,16 +64,12 @@ Standing standing_of(const League& league, std::size_t s, std::size_t a, std::si
   return standing;
 }
 
-NumberWithError number_of(const Standing& standing) {
-  return {standing.mean, standing.tolerance.value_or(0.0)};
-}
-
 /// True where the first algorithm failed less often, or had no failure and a better mean.
 bool is_better(const Standing& a, const Standing& b) {
   if (a.failed != b.failed) return a.failed < b.failed;
   if (a.failed > 0 || !a.mean) return false;
   if (!b.mean) return true;
-  return a.better == Better::more ? is_less(number_of(b), number_of(a)) : is_less(number_of(a), number_of(b));
+  return a.better == Better::more ? is_less(b.number(), a.number()) : is_less(a.number(), b.number());
 }
 
 /// Ranks the algorithms in one scenario by one metric.
@@ -172,8 +168,7 @@ bool is_failure(std::string_view outcome) {
 }
 
 bool have_reference(std::span<const Result> runs) {
-  const auto has = [](const Result& run) { return run.has_section("fidelity"); };
-  return std::ranges::all_of(runs, has);
+  return std::ranges::all_of(runs, [](const Result& run) { return run.has_section("fidelity"); });
 }
 
 League league_of(const Comparison& comparison, std::span<const Result> reports,

@@ -62,6 +62,8 @@ struct Standing {
   std::optional<std::uint64_t> rank = {};
   std::uint64_t common_seeds = 1;
   Better better = Better::less;
+
+  NumberWithError number() const { return {mean, tolerance.value_or(0.0)}; }
 };
 
 /// One algorithm over all scenarios and metrics.

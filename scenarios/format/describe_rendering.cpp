@@ -3,14 +3,13 @@
 #include "algorithms/parameters.hpp"
 #include "algorithms/registry.hpp"
 #include "scenarios/format/descriptions.hpp"
+#include "scenarios/format/text_lines.hpp"
 
 namespace hapbench {
 namespace {
 
 std::vector<std::string> depth_model_names() {
-  std::vector<std::string> names;
-  for (const DepthModelEntry& entry : depth_models()) names.emplace_back(entry.info->name);
-  return names;
+  return names_of(depth_models(), [](const DepthModelEntry& entry) { return entry.info->name; });
 }
 
 /// The field's name without the objects it lies in.

@@ -11,6 +11,7 @@
 #include "scenarios/format/descriptions.hpp"
 #include "scenarios/format/input_error.hpp"
 #include "scenarios/format/parts.hpp"
+#include "scenarios/format/text_lines.hpp"
 
 namespace hapbench {
 
@@ -84,8 +85,7 @@ static void describe(Fields& f, VelocityFilterConfig& filter) {
 /// name, because the numbers are what is simulated.
 static void describe_preset(Fields& f, ImpedanceDeviceConfig& device) {
   std::optional<std::string> preset;
-  std::vector<std::string> names;
-  for (const DevicePreset& known : device_presets()) names.emplace_back(known.name);
+  const std::vector<std::string> names = names_of(device_presets(), &DevicePreset::name);
   f.if_any("preset", preset,
            "a published device, whose numbers hold where the file gives none; \"hapbench describe presets\" shows them",
            [&names](Fields& n, std::string& name) { n.name(name, names, "preset"); });

@@ -90,12 +90,6 @@ const MetricList& all_metrics() {
   return all;
 }
 
-std::vector<std::string> metric_names() {
-  std::vector<std::string> names;
-  for (const Metric& metric : all_metrics()) names.push_back(metric.name);
-  return names;
-}
-
 SectionObservers::SectionObservers(const Scenario& scenario, bool has_reference_force) {
   for (std::size_t i = 0; i < std::size(kSections); ++i) {
     const std::size_t parts = kSections[i].parts(scenario, has_reference_force);

@@ -22,8 +22,6 @@ MetricList metrics_without_values(const Scenario& scenario, bool has_reference_f
 MetricList metrics_without_values(std::size_t places);
 /// Those that `expect` may bound: tasks have two places, as those of the thesis. Made once.
 const MetricList& all_metrics();
-/// The same by their names.
-std::vector<std::string> metric_names();
 
 /// The observers of a run for the sections that its scenario asks for.
 class SectionObservers {

@@ -7,6 +7,7 @@
 #include "results/summary/summary.hpp"
 #include "scenarios/format/fields.hpp"
 #include "scenarios/format/input_error.hpp"
+#include "scenarios/format/text_lines.hpp"
 #include "scenarios/format/writer.hpp"
 
 namespace hapbench {
@@ -124,7 +125,7 @@ class Reader final : public Fields {
                     FunctionRef<Fields&, std::size_t> fields) override {
     if (!json_.is_object())
       refuse([&](Fields& f) { f.alternatives(what, choices, untyped, held, fields); }, text_of_file_hint(json_));
-    const std::vector<std::string> types = names_of(choices);
+    const std::vector<std::string> types = names_of(choices, &TypeName::name);
     const auto type = json_.find(kTypeField);
     if (type == json_.end() && untyped == Untyped::refused)
       fail(fmt::format("missing field \"{}\"; allowed: {}: one of {}", kTypeField, what, quoted_list(types)));

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -31,6 +32,14 @@ std::string quoted_word(std::string_view word);
 
 /// The text with its ASCII letters in lower case.
 std::string lower_case(std::string_view text);
+
+/// The names of a table's entries, or of what its pointers point to.
+template <class Table, class Name>
+std::vector<std::string> names_of(const Table& table, Name name) {
+  std::vector<std::string> names;
+  for (const auto& entry : table) names.emplace_back(std::invoke(name, entry));
+  return names;
+}
 
 /// Returns the lines of a text one by one. The text must outlive it.
 class LineReader {

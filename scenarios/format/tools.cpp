@@ -6,6 +6,7 @@
 #include "scenarios/format/input_error.hpp"
 #include "scenarios/format/named_files.hpp"
 #include "scenarios/format/parts.hpp"
+#include "scenarios/format/text_lines.hpp"
 #include "scenarios/format/writer.hpp"
 #include "sim/tool/mesh_tool.hpp"
 #include "sim/tool/revolved.hpp"
@@ -108,7 +109,7 @@ void describe(Fields& f, ToolFields& tool) {
 }
 
 std::vector<std::string> tool_names() {
-  return names_of(kToolTypes);
+  return names_of(kToolTypes, &TypeName::name);
 }
 
 namespace {

@@ -10,14 +10,9 @@
 #include "scenarios/format/descriptions.hpp"
 #include "scenarios/format/input_error.hpp"
 #include "scenarios/format/load_scenario.hpp"
+#include "scenarios/format/text_lines.hpp"
 
 namespace hapbench {
-
-std::vector<std::string> names_of(std::span<const TypeName> types) {
-  std::vector<std::string> names;
-  for (const TypeName& type : types) names.emplace_back(type.name);
-  return names;
-}
 
 Json FieldGuide::schema() const {
   Json entry = value.schema;
@@ -163,7 +158,8 @@ class SchemaWriter final : public Fields {
   void one_or_list(bool, Body one, Body list) override { any_of(guide_of(one), guide_of(list)); }
   void alternatives(const char*, std::span<const TypeName> types, Untyped untyped, std::size_t,
                     FunctionRef<Fields&, std::size_t> fields) override {
-    guide_.allowed = fmt::format("an object whose \"{}\" is one of {}", kTypeField, quoted_list(names_of(types)));
+    guide_.allowed =
+        fmt::format("an object whose \"{}\" is one of {}", kTypeField, quoted_list(names_of(types, &TypeName::name)));
     if (extent_ == Extent::words) return;
     Json schemas = Json::array();
     for (std::size_t i = 0; i < types.size(); ++i) {
@@ -188,9 +184,7 @@ class SchemaWriter final : public Fields {
     }
     body(*this);
     if (guide_.schema["required"].empty()) guide_.schema.erase("required");
-    std::vector<std::string> names;
-    for (const FieldGuide& field : guide_.fields) names.push_back(field.name);
-    guide_.allowed = "an object with the fields " + quoted_list(names);
+    guide_.allowed = "an object with the fields " + quoted_list(names_of(guide_.fields, &FieldGuide::name));
   }
   void shared(const char* name, Body value) override {
     guide_ = guide_of(value);

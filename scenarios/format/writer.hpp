@@ -30,9 +30,6 @@ Json written_object(T value) {
   return json_of([&value](Fields& f) { f.object(value); });
 }
 
-/// The names of the types.
-std::vector<std::string> names_of(std::span<const TypeName> types);
-
 struct FieldGuide;
 
 /// The values that are allowed: as a JSON Schema (draft 7), in words for messages and documentation, and by the fields

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <filesystem>
-#include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -83,14 +82,6 @@ CapturedOutput* captured_output() noexcept;
 /// Draws the run in a folder into a file, FILE.svg. Throws IoError when it cannot be made, after the Python tool has
 /// explained why on standard error.
 void write_way(const std::filesystem::path& folder, const std::filesystem::path& file, bool quiet);
-
-/// The names of a table's entries, or of what its pointers point to.
-template <class Table, class Name>
-std::vector<std::string> names_of(const Table& table, Name name) {
-  std::vector<std::string> names;
-  for (const auto& entry : table) names.emplace_back(std::invoke(name, entry));
-  return names;
-}
 
 /// A value as JSON; null for none.
 template <class Value>

@@ -13,9 +13,9 @@
 #include "scenarios/cases/league.hpp"
 #include "scenarios/format/bundled_scenarios.hpp"
 #include "scenarios/format/metric_sections.hpp"
+#include "scenarios/format/text_lines.hpp"
 #include "scenarios/limits/convergence/convergence.hpp"
 #include "scenarios/program/command.hpp"
-#include "scenarios/program/league_table.hpp"
 #include "scenarios/program/report.hpp"
 #include "scenarios/program/run_table.hpp"
 #include "scenarios/run/run_scenario.hpp"
@@ -120,23 +120,22 @@ std::string vibration_text(const League& league) {
     double unfelt;  ///< [unit of the metric]
   };
   constexpr Vibration kVibrations[] = {{"force", "force_rms_above_30Hz_N", 1e-4}, {"tool", kToolVibrationPower, 1e-10}};
-  std::string says, failing;
-  std::ptrdiff_t laws = 0;  // that do not fail
-  for (std::size_t a = 0; a < league.algorithms.size(); ++a) {
-    if (league.failures(0, a) == 0)
-      ++laws;
-    else
-      failing += (failing.empty() ? "; failing: " : ", ") + league.algorithms[a];
-  }
   if (league.algorithms.size() < 2) return "";
+  std::string says;
+  std::vector<std::string> failing;
+  for (std::size_t a = 0; a < league.algorithms.size(); ++a)
+    if (league.failures(0, a) > 0) failing.push_back(league.algorithms[a]);
+  const std::size_t laws = league.algorithms.size() - failing.size();
   for (const auto& [of, metric, unfelt] : kVibrations) {
     const auto place = static_cast<std::size_t>(std::ranges::find(league.metrics, metric) - league.metrics.begin());
     std::vector<NumberWithError> numbers = numbers_of(league, nullptr, 0, place).numbers;
     for (NumberWithError& number : numbers) *number.error += unfelt;
     says = fmt::format("vibration of the {}: {}", of, held_text(numbers, league.algorithms));
-    if (std::ranges::count_if(numbers, [](const auto& n) { return n.value.has_value(); }) == laws) break;
+    const auto known = std::ranges::count_if(numbers, [](const auto& n) { return n.value.has_value(); });
+    if (static_cast<std::size_t>(known) == laws) break;
   }
-  return "\n" + wrapped(fmt::format("{}{}; --errors tells whether finer runs agree", says, failing), 0);
+  if (!failing.empty()) says += fmt::format("; failing: {}", fmt::join(failing, ", "));
+  return "\n" + wrapped(says + "; --errors tells whether finer runs agree", 0);
 }
 
 // ---- The command
@@ -148,7 +147,7 @@ struct CompareOptions : CommonOptions {
 };
 
 Comparison planned(const CompareOptions& options) {
-  if (!options.metrics.empty()) require_names("--by: got", options.metrics, metric_names());
+  if (!options.metrics.empty()) require_names("--by: got", options.metrics, names_of(all_metrics(), &Metric::name));
   constexpr double kMostJitter = 1.0;
   ComparisonQuestion question = options.question;
   if (!(question.jitter >= 0.0 && question.jitter <= kMostJitter))

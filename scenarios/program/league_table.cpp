@@ -1,15 +1,13 @@
-#include "scenarios/program/league_table.hpp"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <nlohmann/json.hpp>
 
 #include "scenarios/program/command.hpp"
 #include "scenarios/program/index.hpp"
+#include "scenarios/program/run_table.hpp"
 
 namespace hapbench {
 namespace {
@@ -96,22 +94,21 @@ Columns<LawStanding> law_columns() {
 std::string firsts_text(const League& league) {
   constexpr std::size_t kMostNamed = 5;
   if (!league.laws.front().mean_rank) return "nothing is ranked: neither less nor more of these metrics is better";
-  std::size_t rankings = 0;
-  std::vector<std::pair<std::size_t, std::string>> firsts;
+  std::size_t rankings = 0;  // as many of each law
+  std::vector<std::string> firsts;
   for (const LawStanding& law : league.laws) {
-    const auto is_ranked = [&law](const Standing& s) { return s.algorithm == law.algorithm && s.rank; };
-    const auto is_first = [&](const Standing& s) { return is_ranked(s) && *s.rank == 1; };
-    rankings = static_cast<std::size_t>(std::ranges::count_if(league.standings, is_ranked));
-    const auto first = static_cast<std::size_t>(std::ranges::count_if(league.standings, is_first));
-    if (first > 0) firsts.emplace_back(first, law.algorithm);
+    std::size_t first = rankings = 0;
+    for (const Standing& standing : league.standings) {
+      if (standing.algorithm != law.algorithm || !standing.rank) continue;
+      ++rankings;
+      first += *standing.rank == 1;
+    }
+    if (first > 0) firsts.push_back(fmt::format("{} in {}", law.algorithm, first));
   }
-  std::ranges::stable_sort(firsts, std::greater(), &std::pair<std::size_t, std::string>::first);
-  if (firsts.size() == 1 && firsts.front().first == rankings)
-    return fmt::format("{} alone is first in each of {} rankings", firsts.front().second, rankings);
-  std::vector<std::string> texts;
-  for (const auto& [first, algorithm] : firsts) texts.push_back(fmt::format("{} in {}", algorithm, first));
+  if (firsts.size() == 1)
+    return fmt::format("{} alone is first in each of {} rankings", league.laws.front().algorithm, rankings);
   return fmt::format("no algorithm alone is first in each of {} rankings; first are {}", rankings,
-                     fmt::join(first_few(texts, kMostNamed), ", "));
+                     fmt::join(first_few(firsts, kMostNamed), ", "));
 }
 
 /// Says who is first, and where no spread is known.

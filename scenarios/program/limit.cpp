@@ -142,7 +142,7 @@ std::optional<Range> range_of(const char* option, const std::string& text) {
 void add_bound(const std::string& text, std::map<std::string, MetricBound>& bounds) {
   const Words parts = parts_of(text, '=');
   if (parts.size() == 2) {
-    require_names("--bound: got", {std::string(parts[0])}, metric_names());
+    require_names("--bound: got", {std::string(parts[0])}, names_of(all_metrics(), &Metric::name));
     const Words ends = parts_of(parts[1], ':');
     const auto least = finite_number(ends.front()), most = finite_number(ends.back());
     if (ends.size() <= 2 && least && most && *least <= *most) {

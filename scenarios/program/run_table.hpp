@@ -6,10 +6,11 @@
 #include <vector>
 
 #include "results/observe/step_times.hpp"
+#include "scenarios/cases/league.hpp"
 #include "scenarios/program/report.hpp"
 #include "scenarios/run/run_scenario.hpp"
 
-/// Tables with a row for each run, as `run` and `compare` print and write them.
+/// Tables with a row for each run, as `run` and `compare` print and write them, and of a league.
 namespace hapbench {
 
 /// A printed column of a metric of runs.
@@ -89,6 +90,13 @@ struct ComparedRun {
 Columns<ComparedRun> comparison_columns(bool seeds = false);
 
 std::vector<DescribedTable> run_tables();
+
+/// league.csv, a row for each scenario, algorithm and metric; `seeds`: there are several.
+Columns<Standing> league_columns(bool seeds);
+/// A table of the standings, if that is short or with --wide, a line for each algorithm, and who is first in a
+/// sentence.
+std::string league_text(const League& league);
+Json league_json(const League& league);
 
 /// A number with the digits that its error leaves it: one where the error is larger, six where it is 0, four where it
 /// is not known.

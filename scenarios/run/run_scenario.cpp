@@ -13,6 +13,7 @@
 #include "scenarios/format/input_error.hpp"
 #include "scenarios/format/metric_sections.hpp"
 #include "scenarios/format/parts.hpp"
+#include "scenarios/format/text_lines.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/diagnosis.hpp"
 #include "scenarios/run/outcome.hpp"
@@ -282,12 +283,6 @@ std::string divergence_text(const SimulationResult& result) {
   return fmt::format(" ({} reached {:.4g} at step {}, beyond {:.4g})", d.quantity, d.magnitude, d.step, d.bound);
 }
 
-std::vector<std::string> names_of(const std::vector<Outcome>& outcomes) {
-  std::vector<std::string> names;
-  for (const Outcome outcome : outcomes) names.emplace_back(outcome_name(outcome));
-  return names;
-}
-
 }  // namespace
 
 Result run_scenario(const LoadedScenario& loaded, const std::optional<fs::path>& output, bool progress,
@@ -315,7 +310,7 @@ std::vector<std::string> unmet_expectations(const ExpectFields& expect, const Re
   std::vector<std::string> unmet;
   if (!outcome_is_expected(expect, run.end.outcome)) {
     unmet.push_back(fmt::format("outcome is \"{}\"{}; expected {}", outcome_name(run.end.outcome),
-                                divergence_text(run.end), quoted_list(names_of(expect.outcomes))));
+                                divergence_text(run.end), quoted_list(names_of(expect.outcomes, outcome_name))));
   }
   for (const auto& [name, bound] : expect.metrics) {
     const auto number = number_of(run.metrics, name);

@@ -87,9 +87,7 @@ Choices::Choices(const std::filesystem::path& file) {
 }
 
 std::vector<std::string> Choices::values_on_record() const {
-  std::vector<std::string> values;
-  for (const OpenChoice& choice : all_) values.push_back(choice.value);
-  return values;
+  return names_of(all_, &OpenChoice::value);
 }
 
 std::vector<std::string> Choices::overrides(const Scenario& scenario, std::span<const std::string> values) const {

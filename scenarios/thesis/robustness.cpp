@@ -177,8 +177,7 @@ std::optional<DecidingInput> deciding_input(const std::vector<std::vector<std::s
 std::vector<std::vector<std::string>> read_readings(const fs::path& file, const Choices& choices) {
   const std::string text = read_named_file(file);
   CsvReader csv{LineReader(text), file};
-  std::vector<std::string> ids;
-  for (const OpenChoice& choice : choices.all()) ids.push_back(choice.id);
+  const std::vector<std::string> ids = names_of(choices.all(), &OpenChoice::id);
   std::vector<std::size_t> places;  // of the columns, among the choices
   for (const std::string_view column : csv.columns()) {
     const std::string id(column);

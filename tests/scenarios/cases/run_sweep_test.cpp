@@ -80,7 +80,7 @@ TEST(SweepPlan, HasExactlyTheMetricsOfItsRuns) {
       EXPECT_NE(std::find(names.begin(), names.end(), bounded), names.end()) << bounded;
     all.insert(names.begin(), names.end());
   }
-  for (const std::string& name : metric_names()) EXPECT_TRUE(all.contains(name)) << name;
+  for (const Metric& metric : all_metrics()) EXPECT_TRUE(all.contains(metric.name)) << metric.name;
 }
 
 TEST(SweepPlan, HasAnotherDefinitionForEveryOtherContent) {

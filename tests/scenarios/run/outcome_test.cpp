@@ -108,8 +108,8 @@ TEST(Expectation, IncludesItsBoundsAndMayBoundEveryMetric) {
   };
   for (const MetricBound& bound : {MetricBound{2.0, 2.0}, MetricBound{{}, 2.0}, MetricBound{2.0, {}}, MetricBound{}})
     EXPECT_EQ(unmet("force_max_N", bound), 0u);
-  EXPECT_GE(metric_names().size(), 12u);
-  for (const std::string& name : metric_names()) EXPECT_EQ(unmet(name, {1e15, {}}), 1u) << name;
+  EXPECT_GE(all_metrics().size(), 12u);
+  for (const Metric& metric : all_metrics()) EXPECT_EQ(unmet(metric.name, {1e15, {}}), 1u) << metric.name;
 }
 
 Json scene() {
