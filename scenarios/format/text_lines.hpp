@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <iterator>
 #include <optional>
 #include <span>
 #include <string>
@@ -37,6 +38,7 @@ std::string lower_case(std::string_view text);
 template <class Table, class Name>
 std::vector<std::string> names_of(const Table& table, Name name) {
   std::vector<std::string> names;
+  names.reserve(std::size(table));
   for (const auto& entry : table) names.emplace_back(std::invoke(name, entry));
   return names;
 }
