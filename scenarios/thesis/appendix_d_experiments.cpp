@@ -154,9 +154,10 @@ Finding judge_wall(const Measured& measured, const PublishedNumbers& published) 
   std::string text;
   for (const auto& [name, law] : {std::pair("original", "original_averaging"), std::pair("shaped", kProposedLaw)}) {
     const std::vector<double>&centre = measured.at(0).all(name), &side = measured.at(1).all(name);
-    const auto number = [&](const char* id) { return published[std::string(id) + ".success." + law]; };
-    const double change = mean_of(side) - mean_of(centre), expected = number("D1").mean - number("D2").mean;
-    const double error = math::hypot(math::hypot(number("D1").spread, number("D2").spread),
+    const PublishedNumber at_side = published[std::string("D1.success.") + law],
+                          at_centre = published[std::string("D2.success.") + law];
+    const double change = mean_of(side) - mean_of(centre), expected = at_side.mean - at_centre.mean;
+    const double error = math::hypot(math::hypot(at_side.spread, at_centre.spread),
                                      math::hypot(standard_error(side), standard_error(centre)));
     direction = direction && change * expected > 0.0;
     near = near && std::abs(change - expected) <= kStandardErrors * error;
