@@ -20,7 +20,7 @@ namespace hapbench {
 MetricList metrics_without_values(const Scenario& scenario, bool has_reference_force);
 /// The metrics of all sections, with so many places in tasks.
 MetricList metrics_without_values(std::size_t places);
-/// Those that `expect` may bound: tasks have two places, as those of the thesis. Made once.
+/// The metrics that `expect` may bound, made once; tasks have two places, as those of the thesis.
 const MetricList& all_metrics();
 
 /// The observers of a run for the sections that its scenario asks for.

@@ -56,7 +56,7 @@ class Approach {
 
   struct Closest {
     double distance, time;  ///< of the tool from the nearest point [m], and when [s]
-    /// Of a tool that came closest in the last row, how long it takes to the surface at its speed there [s].
+    /// Time to reach the surface at the speed of the last rows [s]; empty unless the last row was the closest.
     std::optional<double> rest = {};
   };
   /// In up to 256 rows before the first contact, of as many parts of the run those closest to the environment's box;
@@ -300,7 +300,7 @@ class OutcomeWatch final : public OutcomeObserver {
   }
 
   /// The likely cause, as a question where it is no more than likely, or where to look when none suggests itself.
-  /// `rest`: Approach::Closest.
+  /// `rest`: the time to reach the surface that Approach::Closest has [s].
   std::string likely_cause(const std::optional<double>& rest = {}) const {
     constexpr double kMostRest = 100.0;  // times as long as the run
     const double longest = approach_->longest_step();
