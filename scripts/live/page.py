@@ -17,14 +17,12 @@ def scenario_files():
     return {file.stem: file for file in sorted(SCENARIOS.glob("*/*.json")) if file.parent.name not in ("studies", "presets")}
 
 
-def named_files(value):
-    """What a scenario names in fields called "file"."""
+def objects_in(value):
+    """Every object in a value of JSON, itself first."""
     if isinstance(value, dict):
-        for key, part in value.items():
-            yield from [part] if key == "file" and isinstance(part, str) else named_files(part)
-    elif isinstance(value, list):
-        for part in value:
-            yield from named_files(part)
+        yield value
+    for part in value.values() if isinstance(value, dict) else value if isinstance(value, list) else ():
+        yield from objects_in(part)
 
 
 def packed_files(scenes):
@@ -36,8 +34,7 @@ def packed_files(scenes):
         name = scene["scenario"]
         while name:
             scenario = json.loads(bundled[name].read_text(encoding="utf-8"))
-            for named in named_files(scenario):
-                file = bundled[name].parent / named
+            for file in (bundled[name].parent / part["file"] for part in objects_in(scenario) if isinstance(part.get("file"), str)):
                 files[place(file)] = file.read_text(encoding="utf-8")
             name = Path(scenario["extends"]).stem if "extends" in scenario else None
     return files
@@ -45,14 +42,7 @@ def packed_files(scenes):
 
 def values_of(schema, name):
     """Every value that the schema has for a property of this name."""
-    if isinstance(schema, dict):
-        if name in schema.get("properties", {}):
-            yield schema["properties"][name]
-        for part in schema.values():
-            yield from values_of(part, name)
-    elif isinstance(schema, list):
-        for part in schema:
-            yield from values_of(part, name)
+    return (part["properties"][name] for part in objects_in(schema) if name in part.get("properties", {}))
 
 
 def first_value(schema, name, key):

@@ -66,11 +66,11 @@ def panels(rows, columns, height, **keywords):
     return plt.subplots(rows, columns, figsize=(WIDTH, height), squeeze=False, **keywords)
 
 
-def number_ticks(axis):
-    """Further numbers along a logarithmic axis that shows too few powers of ten."""
+def number_ticks(axis, subs=()):
+    """Further numbers along a logarithmic axis that shows too few powers of ten, or at these multiples of each power."""
     low, high = axis.get_view_interval()
-    if axis.get_scale() == "log" and high / low < 60:
-        axis.set_major_locator(LogLocator(subs=(1, 2, 5) if high / low < 20 else (1, 3)))
+    if axis.get_scale() == "log" and (subs or high / low < 60):
+        axis.set_major_locator(LogLocator(subs=subs or ((1, 2, 5) if high / low < 20 else (1, 3))))
         axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
         axis.set_minor_formatter(NullFormatter())
 
@@ -93,11 +93,9 @@ def letter(axes):
         ax.set_title(f"({chr(ord('a') + i)}) {ax.get_title(loc='left')}", loc="left")
 
 
-def note(ax, x, y, text, colour=BLACK, **keywords):
+def note(ax, x, y, text, colour=BLACK, ha="left", va="top"):
     """A label inside the axes, at fractions of their sides, legible over lines."""
-    keywords.setdefault("ha", "left")
-    keywords.setdefault("va", "top")
-    return ax.text(x, y, text, transform=ax.transAxes, color=colour, fontsize=7, bbox=PLATE, **keywords)
+    ax.text(x, y, text, transform=ax.transAxes, color=colour, fontsize=7, bbox=PLATE, ha=ha, va=va)
 
 
 def fix_layout(figure):

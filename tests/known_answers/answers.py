@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "scripts"))
-from fixture import PROGRAM, SOURCE, ran  # noqa: E402  (the path comes first)
+from fixture import PROGRAM, SOURCE, must  # noqa: E402  (the path comes first)
 
 SCENES = {}
 
@@ -70,6 +70,7 @@ class Table:
     """A CSV file; columns as arrays of numbers (NaN for empty cells) or lists of texts."""
 
     def __init__(self, file):
+        self.name = Path(file).name
         with open(file, encoding="utf-8", newline="") as lines:
             self.rows = list(csv.DictReader(lines))
         self.names = list(self.rows[0]) if self.rows else []
@@ -123,9 +124,7 @@ class Bench:
         return name
 
     def hapbench(self, *words, statuses=(0,)):
-        done = ran(PROGRAM, *words, cwd=self.folder)
-        assert done.returncode in statuses, (words, done.returncode, done.stderr)
-        return done.stdout
+        return must(PROGRAM, *words, statuses=statuses, cwd=self.folder)
 
     def json(self, *words, statuses=(0,)):
         found = json.loads(self.hapbench(*words, "--json", statuses=statuses))
@@ -164,12 +163,12 @@ class Bench:
         self.add(f"run --json: tolerances.{metric}", printed, known, known_by, within, naive)
         self.add(f"run --json: tolerances.{metric}", abs(run.metric(metric) - exact) <= printed, True, "the metric differs by less", EXACT)
 
-    def columns(self, file, table, rows):
-        """The same for the columns of a file, whose known values are series."""
+    def columns(self, table, rows):
+        """The same for the columns of a table, whose known values are series."""
         for name, known, known_by, within, *naive in rows:
             known = np.broadcast_to(known, len(table.rows)) if np.ndim(known) == 0 and not isinstance(known, str) else known
             known = [known] * len(table.rows) if isinstance(known, str) else known
-            self.add(f"{file}:{name}", table[name], known, known_by, within, tuple(naive) or None)
+            self.add(f"{table.name}:{name}", table[name], known, known_by, within, tuple(naive) or None)
 
 
 def scene(function):

@@ -4,7 +4,7 @@ import math
 import numpy as np
 
 from answers import EXACT, ROUNDING, Within, norms, profile, rms, scene
-from physics import FILTERED, STEPPED, high_pass
+from physics import FILTERED, SPRING, STEPPED, SUMMED, high_pass
 
 
 @scene
@@ -68,7 +68,7 @@ def mean_of_two(bench):
             ("spring_J", onto(spring), by, STEPPED, rect, held(spring)), ("damping_J", onto(f - spring), by, STEPPED, rect, held(f - spring)),
             ("created_J", np.r_[0, np.cumsum(created)], by, STEPPED, rect, stored - stored[0] + held(spring)),
             ("script_J", script, "kinetic energy less the work of f", STEPPED, "without the kinetic energy", -onto(f))]
-    bench.columns("energy.csv", run.table("energy.csv"), rows)
+    bench.columns(run.table("energy.csv"), rows)
 
 
 @scene
@@ -78,10 +78,8 @@ def limited_hand(bench):
     B = 2 * 0.1 * math.sqrt(K * M)
     run = bench.run(bench.scenario(
         "limited_hand", time={"step_s": dt, "steps": n}, record={"energy": True}, initial={"position_m": [1e-3, 0, 0], "velocity_m_per_s": [0.02, 0, 0]},
-        environment={"type": "springs", "groups": [{"direction": [1, 0, 0], "count": 1}]},
-        hand={"type": "force", "x_N": {"type": "ramp", "start": 0.1, "rate_per_s": 3.0}}, device={"type": "ideal", "force_limit_N": limit},
-        rendering={"algorithm": "summation", "stiffness_N_per_m": K, "damping_ratio": 0.1, "mass_kg": M,
-                   "friction": {"mu_s_N_s_per_m": 0, "mu_f_s_per_m": 0}}))
+        environment=SPRING, hand={"type": "force", "x_N": {"type": "ramp", "start": 0.1, "rate_per_s": 3.0}},
+        device={"type": "ideal", "force_limit_N": limit}, rendering={**SUMMED, "stiffness_N_per_m": K, "damping_ratio": 0.1, "mass_kg": M}))
     x, v, t = np.zeros(n), np.zeros(n), np.arange(n) * dt
     hand = 0.1 + 3.0 * t
     given = np.minimum(hand, limit)
@@ -110,14 +108,13 @@ def limited_hand(bench):
     rounded = Within("300 roundings of terms up to 2 mJ", absolute=300 * 2e-3 * 2.0 ** -52)
     bench.metrics(run, [("energy.residual_max_J", 0.0, "the terms explain everything", rounded, "with the works along the displacement",
                          float(np.max(np.abs(kinetic - kinetic[0] - on(given - K * x - B * v)))))])
-    table = run.table("energy.csv")
-    bench.columns("energy.csv", table, [
+    bench.columns(run.table("energy.csv"), [
         *rows, ("kinetic_J", kinetic, "M v^2 / 2", held, "of the next row", np.r_[kinetic[1:], 0]),
         ("stored_J", stored, "K x^2 / 2", held, "of the next row", np.r_[stored[1:], 0]),
         ("created_J", np.zeros(n), "a linear spring", rounded, naive, stored - stored[0] + on(spring)),
         ("residual_J", np.zeros(n), "the terms explain everything", rounded, "with the works along the displacement",
          kinetic - kinetic[0] - on(given - K * x - B * v))])
-    bench.columns("trajectory.csv", run.table(), [
+    bench.columns(run.table(), [
         ("px_m", x, "recurrence", held, "explicit Euler's", x - v * dt), ("vx_m_per_s", v, "recurrence", held, "of the next row", np.r_[v[1:], 0]),
         ("fmeas_x_N", hand, "the ramp", ROUNDING, "the limited force", given), ("fin_x_N", given, "cut at 0.6 N", ROUNDING, "uncut", hand),
         *[(f"{name}_{y}_N", np.zeros(n), "the hand pushes along x", EXACT, "the same as along x", hand) for name in ("fmeas", "fin")
@@ -130,9 +127,8 @@ def handle_on_spring(bench):
     m, b, K, dt, n, push = 0.3, 2.0, 800.0, 0.002, 400, 0.5
     run = bench.run(bench.scenario(
         "handle_on_spring", time={"step_s": dt, "steps": n}, record={"energy": True}, initial={"position_m": [1e-3, 0, 0]},
-        environment={"type": "springs", "groups": [{"direction": [1, 0, 0], "count": 1}]}, hand={"type": "force", "x_N": push},
-        device={"type": "impedance", "handle_mass_kg": m, "viscous_N_s_per_m": b, "delay_samples": 1},
-        rendering={"algorithm": "summation", "stiffness_N_per_m": K, "damping_ratio": 0, "friction": {"mu_s_N_s_per_m": 0, "mu_f_s_per_m": 0}}))
+        environment=SPRING, hand={"type": "force", "x_N": push}, rendering={**SUMMED, "stiffness_N_per_m": K},
+        device={"type": "impedance", "handle_mass_kg": m, "viscous_N_s_per_m": b, "delay_samples": 1}))
     decay = math.exp(-b * dt / m)
     x, v, motors = np.zeros(n), np.zeros(n), np.zeros(n)
     x[0] = 1e-3
@@ -149,7 +145,7 @@ def handle_on_spring(bench):
     spring = -K * x
     work = total(spring[:-1] * way)
     zero = np.zeros(n)
-    bench.columns("energy.csv", run.table("energy.csv"), [
+    bench.columns(run.table("energy.csv"), [
         ("device_dissipated_J", -lost, "kinetic energy less the work of hand and motors", held, "-b v^2 dt", -total(b * v[:-1] ** 2 * dt)),
         ("device_stored_J", kinetic, "m v^2 / 2 of the exact speed", held, "of the measured speed", 0.5 * m * shown_v ** 2),
         ("hand_J", hand, "push times way", held, "with the measured speed a row late", total(push * shown_v[:-1] * dt)),
@@ -166,7 +162,7 @@ def handle_on_spring(bench):
         ("speed_max_m_per_s", np.abs(v).max(), "the handle's own speed", held, "the measured one, difference of positions", np.abs(shown_v).max()),
         ("passivity.energy_end_J", 0.5 * K * x[0] ** 2 - work[-1], "E_0 less the held work", held, "the energy stored at the end",
          0.5 * K * x[-1] ** 2)])
-    bench.columns("trajectory.csv", run.table(), [
+    bench.columns(run.table(), [
         ("hx_m", x, "exact motion of the handle", held, "Euler's", x + v * dt), ("vx_m_per_s", shown_v, "difference of positions", held, "the handle's own", v),
         ("fx_N", spring, "-K x of the row", held, "a row late", motors)])
 
@@ -182,8 +178,7 @@ def turned_into_point(bench):
         tool={"diameter_m": 2 * r, "length_m": 0.01, "tip": "flat"}, record={"energy": True, "torque": True, "contacts": True, "pose": True},
         motion={"orientation": {"up": [0, 0, 1], "lean": [1, 0, 0], "tilt_rad": turn, "azimuth_rad": 0},
                 "position": {"type": "prescribed", "x_m": 0, "y_m": 0, "z_m": 0}},
-        rendering={"algorithm": "summation", "depth_model": "shortest_distance", "stiffness_N_per_m": K, "damping_ratio": 0,
-                   "friction": {"mu_s_N_s_per_m": 0, "mu_f_s_per_m": 0}, "mass_kg": 0.1}))
+        rendering={**SUMMED, "depth_model": "shortest_distance", "stiffness_N_per_m": K}))
     t = np.arange(n) * dt
     tilt = 0.5 * t
     axis = -np.column_stack([np.sin(tilt), 0 * t, np.cos(tilt)])
@@ -204,12 +199,12 @@ def turned_into_point(bench):
          "none, as the force is conservative", 0.0),
         ("passivity.energy_end_J", works.sum(), "the turn's work, as the tip stands still", shape, "the stored energy", wedge[-1]),
         ("steps_in_contact", int(touching.sum()), "rows with r > distance to the axis", EXACT, "all rows", n)])
-    bench.columns("energy.csv", run.table("energy.csv"), [("rotation_J", np.r_[0, np.cumsum(works)], "trapezoidal rule of the torque over the turn",
+    bench.columns(run.table("energy.csv"), [("rotation_J", np.r_[0, np.cumsum(works)], "trapezoidal rule of the torque over the turn",
                                                            shape, "the stored energy", wedge)])
     k = np.flatnonzero(touching)
     sets = [(name, np.full(len(k), value), "the point of the file", ROUNDING, "seen from the tool", np.full(len(k), value) + axis[k, 0] * 1e-3 - 1e-5)
             for name, value in zip(("x_m", "y_m", "z_m", "nx", "ny", "nz"), (*at, -1.0, 0.0, 0.0))]
-    bench.columns("contacts.csv", run.table("contacts.csv"), [
+    bench.columns(run.table("contacts.csv"), [
         *sets, ("depth_m", d[k], "r less the distance to the axis", shape, "r - x", np.full(len(k), r - at[0]))] + [
         (f"gradient_{x}", u[k, i], "from the axis to the point", ROUNDING, "minus the normal", np.full(len(k), float(x == "x")) + (x == "y"))
         for i, x in enumerate("xyz")])
@@ -220,7 +215,7 @@ def turned_into_point(bench):
     for i, name in enumerate(("qx", "qy", "qz")):
         bench.add(f"trajectory.csv:{name}", turned[:, i], -axis[:, i], f"{'xyz'[i]} of where it turns the body's upward axis", ROUNDING,
                   ("the downward axis", axis[:, i] + (name == "qy")))
-    bench.columns("trajectory.csv", table, [
+    bench.columns(table, [
         (f"axis_{x}", axis[:, i], "-(sin a, 0, cos a)", ROUNDING, "up", -axis[:, i] + (x == "y")) for i, x in enumerate("xyz")] + [
         (f"t{x}_Nm", torque[:, i], "at x f", shape, "f x at", -torque[:, i] + (x != "y") * 1e-3) for i, x in enumerate("xyz")] + [
         (f"f{x}_N", f[:, i], "-K d u", shape, "along the normal", K * d * (x == "x") + (x == "y")) for i, x in enumerate("xyz")])

@@ -1,11 +1,10 @@
-"""Scenes behind the comparison with a reference force."""
+"""Scenes behind the comparison with a reference force, friction and stages, and forces of contacts that come late."""
 import math
 
 import numpy as np
 
 from answers import EXACT, ROUNDING, Within, norms, profile, rms, scene
-from physics import PLAIN, SPRING, STEPPED
-
+from physics import BELOW, SPRING, STEPPED, SUMMED, nearest_rank
 
 # Not periodic: one lag alone fits.
 STEPS = [[0, 0], [0.1, -1e-3], [0.18, -0.4e-3], [0.3, -1.6e-3], [0.36, -1.1e-3], [0.52, -2e-3], [0.6, -0.3e-3], [0.8, -0.9e-3], [1, -0.5e-3]]
@@ -22,8 +21,7 @@ def late_force(bench):
         "late_force", time={"step_s": dt, "steps": n}, motion={"position": {"type": "prescribed", **path}}, reference_force=reference,
         environment={"type": "springs", "groups": [{"direction": [0, 0, -1], "count": 1}, {"direction": [1, 0, 0], "count": 1}]},
         record={"force_reference": True},
-        rendering={"algorithm": "summation", "stiffness_N_per_m": K, "damping_ratio": 0.5, "mass_kg": 0.01,
-                   "friction": {"mu_s_N_s_per_m": 0, "mu_f_s_per_m": 0}}))
+        rendering={**SUMMED, "stiffness_N_per_m": K, "damping_ratio": 0.5, "mass_kg": 0.01}))
     t, B = np.arange(n) * dt, math.sqrt(K * 0.01)
     p = np.column_stack([profile(path[a], t) for a in ("x_m", "y_m", "z_m")])
     v = np.diff(p, axis=0, prepend=[2 * p[0] - p[1]]) / dt
@@ -67,8 +65,7 @@ def late_force(bench):
         ("fidelity.force_lag_s", lag, "numpy's correlation at every shift", fifth, "with the other sign", -lag),
         ("fidelity.force_lag_period_s", None, "the path repeats nothing", EXACT, "the ripple's period", 0.01)])
     bench.tolerance(run, "fidelity.force_lag_s", 0.5 * dt, "half a row", ROUNDING, ("a parabola's top is exact", 0.0), lag)
-    table = run.table("force_reference.csv")
-    bench.columns("force_reference.csv", table, [
+    bench.columns(run.table("force_reference.csv"), [
         ("step", np.arange(n), "0, 1, ...", EXACT, "from 1", np.arange(n) + 1), ("time_s", t, "k dt", EXACT, "after the step", t + dt)] + [
         (f"mf{x}_N", m[:, i], "the profile", ROUNDING, "f", f[:, i] + (x == "y")) for i, x in enumerate("xyz")] + [
         (f"force_error_{x}_N", error[:, i], formula, STEPPED, "f_m - f", -error[:, i] + (x == "y")) for i, x in enumerate("xyz")])
@@ -79,11 +76,9 @@ def periodic_force(bench):
     """A force in phase with a reference of 20 Hz: of many lags the nearest, and their spacing."""
     run = bench.run(bench.scenario(
         "periodic_force", time={"step_s": 0.0005, "steps": 2000}, reference_force={"z_N": {"type": "sine", "mean": 2, "amplitude": 1, "period_s": 0.05}},
-        environment={"type": "springs", "groups": [{"direction": [0, 0, -1], "count": 1}]},
+        environment=BELOW, rendering=SUMMED,
         motion={"position": {"type": "prescribed", "x_m": 0, "y_m": 0, "z_m": {"type": "sine", "mean": -2e-3, "amplitude": 1e-3, "period_s": 0.05,
-                                                                              "phase_rad": math.pi - 0.4}}},
-        rendering={"algorithm": "summation", "stiffness_N_per_m": 1000, "damping_ratio": 0,
-                   "friction": {"mu_s_N_s_per_m": 0, "mu_f_s_per_m": 0}}))
+                                                                              "phase_rad": math.pi - 0.4}}}))
     # -z follows by 0.4 rad.
     lag = Within("a parabola through three rows of a cosine finds its top to (omega dt)^2 / 24 of a row", absolute=1e-6)
     bench.metrics(run, [
@@ -101,8 +96,7 @@ def recorded_force(bench):
                 np.column_stack([t, 0 * t, 0 * t, place, 0 * t, 0 * t, 0 * t - 1, force]))
     run = bench.run(bench.scenario(
         "recorded_force", time={"step_s": dt, "steps": n}, motion={"position": {"type": "file", "file": "stroke.csv"}}, record={"force_reference": True},
-        environment={"type": "springs", "groups": [{"direction": [0, 0, -1], "count": 1}]},
-        rendering={"algorithm": "summation", "stiffness_N_per_m": K, "damping_ratio": 0, "friction": {"mu_s_N_s_per_m": 0, "mu_f_s_per_m": 0}}))
+        environment=BELOW, rendering={**SUMMED, "stiffness_N_per_m": K}))
     at = np.arange(n) * dt
     m = np.column_stack([np.interp(at, t, force[:, i]) for i in range(3)])
     f = np.column_stack([0 * at, 0 * at, -K * np.interp(at, t, place)])
@@ -115,8 +109,7 @@ def recorded_force(bench):
         ("fidelity.force_error_rms_N", rms(error), how, STEPPED, "over all rows", rms(f - m)),
         ("fidelity.force_artefact_share", rms(f[has] - np.sum(f * m, axis=1)[has, None] * m[has] / np.sum(m * m, axis=1)[has, None]) / rms(f[has]),
          "across f_m over f", STEPPED, "over all rows", rms(error) / rms(f))])
-    table = run.table("force_reference.csv")
-    bench.columns("force_reference.csv", table, [
+    bench.columns(run.table("force_reference.csv"), [
         (f"mf{x}_N", np.where(has, m[:, i], np.nan), how, STEPPED, "held beyond", m[:, i]) for i, x in enumerate("xyz")] + [
         (f"force_error_{x}_N", np.where(has, (f - m)[:, i], np.nan), how, STEPPED, "held beyond", (f - m)[:, i]) for i, x in enumerate("xyz")])
 
@@ -159,7 +152,7 @@ def bristle(bench):
             "z_m": {"type": "waypoints", "points": [[0, -1e-3], [1, -2e-3]]}}
     run = bench.run(bench.scenario(
         "bristle", time={"step_s": dt, "steps": n}, motion={"position": {"type": "prescribed", **path}},
-        environment={"type": "springs", "groups": [{"direction": [0, 0, -1], "count": 1}]}, record={"trajectory": True},
+        environment=BELOW, record={"trajectory": True},
         rendering={"algorithm": "summation", "stiffness_N_per_m": K, "damping_ratio": 0, "mass_kg": M,
                    "friction": {"type": "dry", "mu": mu, "stiffness_N_per_m": kt, "damping_ratio": zeta}}))
     t = np.arange(n) * dt
@@ -179,8 +172,7 @@ def bristle(bench):
     bench.metrics(run, [
         ("friction.stick_share", int(np.sum(~slides)) / n, law, EXACT, "rows with the force below mu N", float(np.mean(np.abs(force) < 0.99 * mu * load))),
         ("friction.slips_per_s", began / (n * dt), law, EXACT, "rows that slide", slides.sum() / (n * dt))])
-    rendered = run.table("trajectory.csv")
-    bench.columns("trajectory.csv", rendered, [("fx_N", force, law, STEPPED, "Coulomb's alone", -mu * load * np.sign(v))])
+    bench.columns(run.table("trajectory.csv"), [("fx_N", force, law, STEPPED, "Coulomb's alone", -mu * load * np.sign(v))])
 
 
 @scene
@@ -188,7 +180,7 @@ def tank(bench):
     """A mass on one spring whose energy tank holds a tenth of what the spring does: the stage's formula, row by row."""
     K, B, M, dt, n, capacity = 2000.0, 2.0, 0.1, 0.0005, 400, 1e-4
     run = bench.run(bench.scenario("tank", time={"step_s": dt, "steps": n}, environment=SPRING, initial={"position_m": [1e-3, 0, 0]}, rendering={
-        **PLAIN, "algorithm": "summation", "stiffness_N_per_m": K, "damping_N_s_per_m": B, "mass_kg": M,
+        **SUMMED, "stiffness_N_per_m": K, "damping_N_s_per_m": B, "mass_kg": M,
         "force_stage": {"type": "energy_tank", "capacity_J": capacity}}))
     x, v, energy, changed, taken, rendered = 1e-3, 0.0, 0.5 * K * 1e-6, 0, 0.0, []
     level = min(capacity, energy)
@@ -209,4 +201,26 @@ def tank(bench):
     bench.metrics(run, [
         ("force_stage.changed_share", changed / n, formula, EXACT, "rows in contact", 1.0),
         ("force_stage.taken_J", taken, formula, STEPPED, "the spring's energy less the tank's", 0.5 * K * 1e-6 - capacity)])
-    bench.columns("trajectory.csv", run.table("trajectory.csv"), [("fx_N", np.array(rendered), formula, STEPPED, "without the tank", -K * np.array(rendered))])
+    bench.columns(run.table("trajectory.csv"), [("fx_N", np.array(rendered), formula, STEPPED, "without the tank", -K * np.array(rendered))])
+
+
+@scene
+def late(bench):
+    """A mass on one spring whose contacts are asked for every fourth row, serve three rows later and are often lost."""
+    K, dt, n = 2000.0, 0.0005, 400
+    run = bench.run(bench.scenario(
+        "late", time={"step_s": dt, "steps": n}, environment=SPRING, initial={"position_m": [1e-3, 0, 0]},
+        rendering={**SUMMED, "stiffness_N_per_m": K, "damping_ratio": 0.2, "contacts": {"every": 4, "delay_samples": 3, "dropout": 0.3}}))
+    table = run.table()
+    place, pull = table["px_m"], table["fspring_x_N"]
+    asked = np.arange(0, n, 4)
+    used = [min((q for q in asked if q + 3 <= k), key=lambda q: abs(pull[k] + K * place[q])) for k in range(3, n)]
+    assert max(abs(pull[k] + K * place[q]) for k, q in zip(range(3, n), used)) < 1e-12  # no other place gives this force
+    age, lost = dt * (np.arange(3, n) - used), len(asked) - len(set(used))
+    how = "the place that the spring force is of"
+    bench.metrics(run, [
+        ("contacts.age_p50_s", nearest_rank(age, 0.5), how, ROUNDING, "the delay", 3 * dt),
+        ("contacts.age_p95_s", nearest_rank(age, 0.95), how, ROUNDING, "without losses", 6 * dt),
+        ("contacts.age_max_s", age.max(), how, ROUNDING, "without losses", 6 * dt),
+        ("contacts.asked", len(asked), "every fourth row", EXACT, "those that served", len(set(used))),
+        ("contacts.lost_share", lost / len(asked), "queries whose place is never used", ROUNDING, "their probability", 0.3)])

@@ -4,7 +4,7 @@ import math
 import numpy as np
 
 from answers import EXACT, ROUNDING, Table, Within, scene
-from physics import PLAIN, HeldLoop, bisected, class_of, grows, high_pass, motion_of
+from physics import PLAIN, SPRING, SUMMED, HeldLoop, bisected, class_of, grows, high_pass, motion_of
 
 
 @scene
@@ -44,9 +44,8 @@ def tuned(bench):
     """A handle on one spring, with a sample of delay: the largest edge of the held loop over B, over the margin, and what lies around it."""
     m, b, T, delay = 0.1, 0.5, 0.001, 1
     base = bench.scenario("tuned", time={"step_s": T, "steps": 8000}, initial={"position_m": [1e-3, 0, 0]},
-                          environment={"type": "springs", "groups": [{"direction": [1, 0, 0], "count": 1}]},
                           device={"type": "impedance", "handle_mass_kg": m, "viscous_N_s_per_m": b, "delay_samples": delay},
-                          rendering={**PLAIN, "algorithm": "summation", "stiffness_N_per_m": 1000, "mass_kg": m})
+                          environment=SPRING, rendering={**SUMMED, "mass_kg": m})
     out = bench.folder / "tune"
     printed = bench.json("tune", base, "--margin", "2", "--bound", "force_rms_above_30Hz_N=1e3", "--out", out)
     law, table, trials = printed["algorithms"][0], Table(out / "tune.csv"), Table(out / "tune_trials.csv")

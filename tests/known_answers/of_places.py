@@ -80,7 +80,7 @@ def beside_the_ideal(bench):
     bench.metrics(run, table)
     bench.metrics(run, [("ideal_trajectory.rows_without_ideal", int((~has).sum()), "tilts beyond 60 degrees", EXACT, "none", 0)])
     k = np.flatnonzero(has)
-    bench.columns("ideal_trajectory.csv", run.table("ideal_trajectory.csv"), [
+    bench.columns(run.table("ideal_trajectory.csv"), [
         ("step", k, "rows with an ideal", EXACT, "counted anew", k + 1), ("time_s", t[k], "k dt", EXACT, "after the step", t[k] + dt),
         ("tilt_rad", tilt[k], "of the file", split, "from the horizontal", math.pi / 2 - tilt[k]),
         ("height_m", place[k, 1], "of the file", split, "ideal", ideal[k, 1]), ("ideal_height_m", ideal[k, 1], "3.6's formula", split, "actual", place[k, 1]),
@@ -122,8 +122,7 @@ def pressed_ball(bench):
     few = bench.run(bench.folder / "pressed_ball.json", "--set", "record.inside=false", out="few", statuses=(0, 3))
     bench.tolerance(few, "inside_max_m", 0.02 * (inside.max() + a), two, Within("the deepest of the looked at rows for the deepest", relative=0.02),
                     ("2 % of it", 0.02 * inside.max()), inside.max())
-    bench.columns("trajectory.csv", run.table(), [("inside_m", inside, "radius less height", half, "depth of the deepest contact",
-                                                    run.table()["depth_max_m"])])
+    bench.columns(run.table(), [("inside_m", inside, "radius less height", half, "depth of the deepest contact", run.table()["depth_max_m"])])
 
 
 @scene
@@ -226,7 +225,7 @@ def one_subject(bench):
              ("time_s", [t for _, t, _ in found], how, ROUNDING, "the hold", np.ones(6)),
              ("rows_on_target", counts, how, EXACT, "with the last", counts + 1),
              ("model_force_N", [norms(f[on]).mean() for _, _, on in found], how, ROUNDING, "its vertical part", [f[on, 2].mean() for _, _, on in found])]
-    bench.columns("targets.csv", table, known)
+    bench.columns(table, known)
     bench.proven("targets.csv:speed_m_per_s", "tests/results/observe/target_metrics_test.cpp", "TargetMetrics.MeansAreOverTheRowsOnTheTargetOfTheTrial",
                  "EXPECT_EQ(observer.rows()[0].speed, 5.0)", "step(0.001, 100.0, 100.0);  // off the target")
     first = sorted(order) == [0, 0, 0, 1, 1, 1]

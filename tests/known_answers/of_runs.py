@@ -4,8 +4,7 @@ import math
 import numpy as np
 
 from answers import EXACT, ROUNDING, Within, norms, profile, rms, scene
-from physics import BINNED, FILTERED, STEPPED, Phases, high_pass, nearest_rank, settled_high_pass
-
+from physics import BELOW, BINNED, FILTERED, STEPPED, Phases, high_pass, nearest_rank, settled_high_pass
 
 # Two nearly parallel springs, of which the reduction keeps the deeper, one across, and five that are never reached.
 NEAR = 0.03
@@ -115,7 +114,7 @@ def touches(bench):
 
 def touch_tables(bench, run, r):
     """trajectory.csv, stiffness_tensor.csv, ratios.csv, contacts.csv and contact_trace.csv of the same run."""
-    table, rows, touching = run.table(), "the formula", r.contact
+    rows, touching = "the formula", r.contact
     columns = [("step", np.arange(1200.0), "0, 1, ...", EXACT, "from 1", np.arange(1200.0) + 1),
                ("time_s", r.t, "k dt", EXACT, "after the step", r.t + r.dt)]
     for i, x in enumerate("xyz"):
@@ -130,16 +129,15 @@ def touch_tables(bench, run, r):
     columns += [("colliding", r.touched.sum(axis=1), "springs with <p, u> > 0", EXACT, "those kept", r.kept.sum(axis=1)),
                 ("rendered", r.kept.sum(axis=1), "those that the reduction keeps", EXACT, "colliding", r.touched.sum(axis=1)),
                 ("depth_max_m", np.maximum(0, r.d.max(axis=1)), "largest <p, u>", STEPPED, "-z", np.maximum(0, -r.p[:, 2]))]
-    by_row = np.where(touching[:, None], r.ratios, np.nan)
     least, most = np.full(1200, np.nan), np.full(1200, np.nan)
-    least[touching], most[touching] = np.nanmin(by_row[touching], axis=1), np.nanmax(by_row[touching], axis=1)
+    least[touching], most[touching] = np.nanmin(r.ratios[touching], axis=1), np.nanmax(r.ratios[touching], axis=1)
     values = np.linalg.eigvalsh(r.S)
     columns += [("ratio_min", least, "u^T S u", ROUNDING, "eigenvalue of S", np.where(touching, values[:, 0], np.nan)),
                 ("ratio_max", most, "u^T S u", ROUNDING, "eigenvalue of S", np.where(touching, values[:, 2], np.nan))]
-    bench.columns("trajectory.csv", table, columns)
+    bench.columns(run.table(), columns)
     tensor = [(name, r.S[:, i, j], "sum u u^T", ROUNDING, "of all touched", 1 + r.S[:, i, j]) for name, i, j in
               (("sxx", 0, 0), ("sxy", 0, 1), ("sxz", 0, 2), ("syy", 1, 1), ("syz", 1, 2), ("szz", 2, 2))]
-    bench.columns("stiffness_tensor.csv", run.table("stiffness_tensor.csv"),
+    bench.columns(run.table("stiffness_tensor.csv"),
                   columns[:2] + tensor + [("lambda_max", values[:, 2], "numpy's eigenvalue", ROUNDING, "trace of S", values.sum(axis=1))])
     shaping_table(bench, run, r)
     contact_table(bench, run, r)
@@ -158,7 +156,7 @@ def shaping_table(bench, run, r):
     known = np.array(rows).T
     first = np.repeat(known[:, ::3], 3, axis=1)
     how = "c <- c / (A c) on the matrix A_ij = <u_i, u_j>^2"
-    bench.columns("ratios.csv", run.table("ratios.csv"), [
+    bench.columns(run.table("ratios.csv"), [
         (name, known[i], how, ROUNDING, "before any iteration" if i > 3 else "the next row's", first[i] if i > 3 else known[i] + 1)
         for i, name in enumerate(("step", "time_s", "iteration", "rendered", "ratio_min", "ratio_max", "lambda_max"))])
 
@@ -166,17 +164,16 @@ def shaping_table(bench, run, r):
 def contact_table(bench, run, r):
     k, i = np.nonzero(r.kept)
     U = DIRECTIONS[i]
-    table = run.table("contacts.csv")
     rows = [("step", k, "rows in contact", EXACT, "counted from 1", k + 1), ("time_s", r.t[k], "k dt", EXACT, "after the step", r.t[k] + r.dt),
             ("index", i, "of the spring", EXACT, "within the row", np.zeros(len(i))),
             ("depth_m", r.d[k, i], "<p, u>", STEPPED, "-z", -r.p[k, 2]), ("weight", np.ones(len(k)), "1 under summation", EXACT, "1 / n",
              1 / r.kept.sum(axis=1)[k])]
     for j, x in enumerate("xyz"):
         rows += [(f"gradient_{x}", U[:, j], "u of the spring", ROUNDING, "-u", -U[:, j] - (x == "y"))]
-    bench.columns("contacts.csv", table, rows)
+    bench.columns(run.table("contacts.csv"), rows)
     k, i = np.nonzero(r.touched)
     U = DIRECTIONS[i]
-    bench.columns("contact_trace.csv", run.table("contact_trace.csv"), [
+    bench.columns(run.table("contact_trace.csv"), [
         ("time_s", r.t[k], "k dt of what is touched", EXACT, "after the step", r.t[k] + r.dt),
         *[(f"{x}_m", r.p[k, j], "the tip", STEPPED, "the row after", r.p[np.minimum(k + 1, 1199), j]) for j, x in enumerate("xyz")],
         *[(f"u{x}", U[:, j], "u of the spring", ROUNDING, "-u", -U[:, j] - (x == "y")) for j, x in enumerate("xyz")],
@@ -190,7 +187,7 @@ def rubbed(bench):
     B = 2 * 0.3 * math.sqrt(K * M)
     push = {"type": "ramp", "start": 0.0, "rate_per_s": -150.0}
     run = bench.run(bench.scenario(
-        "rubbed", time={"step_s": dt, "steps": n}, environment={"type": "springs", "groups": [{"direction": [0, 0, -1], "count": 1}]},
+        "rubbed", time={"step_s": dt, "steps": n}, environment=BELOW,
         initial={"position_m": [0, 0, 0], "velocity_m_per_s": [0.01, 0, 0]}, hand={"type": "force", "z_N": push, "x_N": 0.2},
         rendering={"algorithm": "summation", "stiffness_N_per_m": K, "damping_ratio": 0.3, "mass_kg": M,
                    "friction": {"mu_s_N_s_per_m": mu_s, "mu_f_s_per_m": mu_f}}))
@@ -212,7 +209,7 @@ def rubbed(bench):
         ("explicit_friction_first_step", int(np.flatnonzero(beyond)[0]), "|f_spring| of the recurrence", EXACT, "|f| in place of |f_spring|",
          int(np.flatnonzero(norms(f) > limit)[0]))])
     held = Within("120 steps, of which the last enlarge rounding by up to |1 - (mu_s + mu_f |f|) dt / M| each", relative=1e-9, absolute=1e-15)
-    bench.columns("trajectory.csv", run.table(), [
+    bench.columns(run.table(), [
         (f"{name}{x}{unit}", series[:, i], "recurrence", held, *(("a row later", np.r_[series[1:, i], 0]) if x != "y" else ()))
         for name, unit, series in (("p", "_m", p), ("v", "_m_per_s", v), ("f", "_N", f)) for i, x in enumerate("xyz")])
 

@@ -7,18 +7,19 @@ from scipy import linalg, signal
 from answers import Within, norms
 
 PLAIN = {"stiffness_N_per_m": 1000, "damping_ratio": 0, "mass_kg": 0.1, "friction": {"mu_s_N_s_per_m": 0, "mu_f_s_per_m": 0}}
+SUMMED = {**PLAIN, "algorithm": "summation"}
 SPRING = {"type": "springs", "groups": [{"direction": [1, 0, 0], "count": 1}]}
+BELOW = {"type": "springs", "groups": [{"direction": [0, 0, -1], "count": 1}]}
 STEPPED = Within("velocities are differences of positions, known to 1e-17 m, over steps of 0.5 ms", relative=1e-11, absolute=1e-15)
 FILTERED = Within("scipy's second-order sections are ours in another order: rounding times the filter's memory of some hundred rows",
                   relative=1e-9, absolute=1e-15)
 BINNED = Within("a bin of the histogram of squares is a 32nd of a factor of two: half of sqrt(33/32) - 1", relative=0.0078)
 
 
-def high_pass(x, dt, cutoff=30.0, start=None):
-    """Butterworth's of fourth order, at rest at `start` (the first sample, if not given) before the first sample."""
-    sections = signal.butter(4, cutoff, "high", fs=1 / dt, output="sos")
-    start = x[0] if start is None else start
-    return signal.sosfilt(sections, x, axis=0, zi=signal.sosfilt_zi(sections)[:, :, None] * start[None, None, :])[0]
+def high_pass(x, dt):
+    """Butterworth's of fourth order at 30 Hz, at rest at the first sample before it."""
+    sections = signal.butter(4, 30.0, "high", fs=1 / dt, output="sos")
+    return signal.sosfilt(sections, x, axis=0, zi=signal.sosfilt_zi(sections)[:, :, None] * x[0][None, None, :])[0]
 
 
 class Phases:

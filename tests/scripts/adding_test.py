@@ -17,7 +17,8 @@ import tempfile
 import unittest
 from pathlib import Path
 
-SOURCE = Path(__file__).resolve().parents[2]
+from fixture import SOURCE, must, ran
+
 OPTIONS = argparse.Namespace(keep=False)
 
 
@@ -33,15 +34,15 @@ class Tree:
             (folder / name).parent.mkdir(parents=True, exist_ok=True)
             shutil.copy2(SOURCE / name, folder / name, follow_symlinks=False)
 
-    def edit(self, anchor, new, before=False, replace=False):
-        """Puts `new` behind the only place in a source that has `anchor`, before it or in its place. Returns the file's name."""
+    def edit(self, anchor, new, before=False):
+        """Puts `new` behind the only place in a source that has `anchor`, or before it. Returns the file's name."""
         found = [file for file in self.sources() if anchor in file.read_text()]
         if len(found) != 1:
             raise AssertionError(f"{anchor!r} stands in {[str(file) for file in found]}; wanted: one file")
         text = found[0].read_text()
         if text.count(anchor) != 1:
             raise AssertionError(f"{anchor!r} stands in {found[0]} {text.count(anchor)} times")
-        found[0].write_text(text.replace(anchor, new if replace else new + anchor if before else anchor + new))
+        found[0].write_text(text.replace(anchor, new + anchor if before else anchor + new))
         return str(found[0].relative_to(self.folder))
 
     def sources(self):
@@ -216,7 +217,8 @@ void add_twice(CommandLine& line) {
         tree.edit("add_validate;", "add_twice, ", before=True),
         tree.edit("constexpr AddCommand* kCommands[] = {", "add_twice, "),
         tree.edit("constexpr CommandGuide kGuides[] = {",
-                  '\n    {"look", "twice", "what is a word two times?", {"twice this", "twice that", "twice it"}},'),
+                  '\n    {"look", "twice", "what is a word two times?"},'),
+        tree.edit("constexpr std::string_view kExamples[] = {", '"twice this", '),
     }
 
 
@@ -254,16 +256,15 @@ ADDITIONS = {"law": (add_law, 3), "tool": (add_tool, 3), "environment": (add_env
              "trajectory column": (add_trajectory_column, 2), "command": (add_command, 3)}
 
 
-def scenario(**parts):
-    """A scenario that has all the new things."""
-    return {
-        "time": {"step_s": 0.0005, "steps": 20},
-        "environment": {"type": "ridge", "height_m": 0.001},
-        "initial": {"position_m": [0, 0, 0.00099]},
-        "tool": {"type": "taper", "width_m": 0.003},
-        "expect": {"outcome": ["completes", "no_contact", "lost_contact"]},
-        **parts,
-    }
+# All the new things.
+SCENARIO = {
+    "time": {"step_s": 0.0005, "steps": 20},
+    "environment": {"type": "ridge", "height_m": 0.001},
+    "initial": {"position_m": [0, 0, 0.00099]},
+    "tool": {"type": "taper", "width_m": 0.003},
+    "expect": {"outcome": ["completes", "no_contact", "lost_contact"]},
+}
+STROKE = "time_s,px_m,py_m,pz_m,axis_x,axis_y,axis_z\n0,0,0,0,0,0,-1\n"
 
 
 class Adding(unittest.TestCase):
@@ -278,10 +279,8 @@ class Adding(unittest.TestCase):
         configure = ["cmake", "-G", "Ninja", "-S", tree.folder, "-B", build, "-DCMAKE_BUILD_TYPE=Debug", "-DCMAKE_CXX_FLAGS_DEBUG=-O0",
                      "-DCMAKE_UNITY_BUILD=ON", "-DCMAKE_UNITY_BUILD_BATCH_SIZE=24", "-DHAPBENCH_BUILD_TESTS=OFF",
                      "-DHAPBENCH_BUILD_PYTHON=OFF", "-DHAPBENCH_INSTALL=OFF", "-DHAPBENCH_WERROR=ON"]
-        for command in (configure, ["cmake", "--build", build, "--target", "bin/hapbench"]):
-            done = subprocess.run(command, capture_output=True, text=True)
-            if done.returncode != 0:
-                raise AssertionError(f"{' '.join(map(str, command))}\n{done.stdout[-8000:]}{done.stderr[-2000:]}")
+        must(*configure)
+        must("cmake", "--build", build, "--target", "bin/hapbench")
         cls.program = build / "bin" / "hapbench"
 
     @classmethod
@@ -293,18 +292,16 @@ class Adding(unittest.TestCase):
 
     def setUp(self):
         self.folder = self.scratch / self.id().rpartition(".")[2]
-        shutil.rmtree(self.folder, ignore_errors=True)
         self.folder.mkdir()
 
     def hapbench(self, *words, status=0):
         """Standard output, or of a refusal standard error."""
-        done = subprocess.run([self.program, *map(str, words)], cwd=self.folder, capture_output=True, text=True,
-                              env={**os.environ, "NO_COLOR": "1"})
+        done = ran(self.program, *words, cwd=self.folder, env={**os.environ, "NO_COLOR": "1"})
         self.assertEqual(done.returncode, status, f"{words}\n{done.stdout}{done.stderr}")
         return done.stdout if status == 0 else done.stderr
 
     def write(self, **parts):
-        (self.folder / "scene.json").write_text(json.dumps(scenario(**parts)))
+        (self.folder / "scene.json").write_text(json.dumps(SCENARIO | parts))
 
     def test_each_thing_takes_few_files(self):
         for thing, (_, most) in ADDITIONS.items():
@@ -363,10 +360,9 @@ class Adding(unittest.TestCase):
     def test_a_named_file_is_read_checked_hashed_and_moved(self):
         self.write(hand={"type": "push", "force_N": 1, "file": "stroke.csv"})
         self.assertIn("scene.json: /hand/file: stroke.csv: ", self.hapbench("validate", "scene.json", status=2))
-        stroke = "time_s,px_m,py_m,pz_m,axis_x,axis_y,axis_z\n0,0,0,0,0,0,-1\n"
         summaries = []
         for more in ("", "1,0,0,0,0,0,-1\n"):
-            (self.folder / "stroke.csv").write_text(stroke + more)
+            (self.folder / "stroke.csv").write_text(STROKE + more)
             self.hapbench("run", "scene.json", "--out", "out/deep", "--quiet")
             summaries.append(json.loads((self.folder / "out/deep/summary.json").read_text()))
         self.assertEqual(len({summary["provenance"]["scenario_hash"] for summary in summaries}), 2)
@@ -426,15 +422,14 @@ class Adding(unittest.TestCase):
 
     def test_a_sweep_varies_them_and_is_defined_by_their_files(self):
         self.write(hand={"type": "push", "force_N": 1, "file": "stroke.csv"})
-        stroke = "time_s,px_m,py_m,pz_m,axis_x,axis_y,axis_z\n0,0,0,0,0,0,-1\n"
-        (self.folder / "stroke.csv").write_text(stroke)
+        (self.folder / "stroke.csv").write_text(STROKE)
         vary = ["--vary", "environment.height_m=0.001,0.0011", "--vary", "tool.width_m=0.002,0.003"]
         self.hapbench("sweep", "scene.json", *vary, "--shard", "0/2", "--out", "sweep", "--quiet")
         header, *rows = (self.folder / "sweep/sweep.0_of_2.csv").read_text().splitlines()
         self.assertIn("environment.height_m,tool.width_m", header)
         self.assertEqual(len(rows), 2)
         self.assertIn("missing.csv", self.hapbench("sweep", "scene.json", "--vary", "hand.file=stroke.csv,missing.csv", "--out", "bad", status=2))
-        (self.folder / "stroke.csv").write_text(stroke + "1,0,0,0,0,0,-1\n")
+        (self.folder / "stroke.csv").write_text(STROKE + "1,0,0,0,0,0,-1\n")
         self.hapbench("sweep", "scene.json", *vary, "--shard", "1/2", "--out", "sweep", "--quiet")
         self.assertIn("is of another sweep", self.hapbench("sweep", "sweep", status=2))
 

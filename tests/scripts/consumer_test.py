@@ -1,22 +1,19 @@
 """hapbench as a library: a project of its own finds it installed, and takes it in as a folder. Arguments: the program, cmake,
 the build tree."""
 import json
-import subprocess
 import sys
 import unittest
+from functools import partial
 from pathlib import Path
 
-from fixture import ENVIRONMENT, PROGRAM, SOURCE, main, must as any_must, scratch_folder
+from fixture import ENVIRONMENT, PROGRAM, SOURCE, main, must, ran, scratch_folder
 
 CMAKE, BUILD = sys.argv[2:4]
 CONSUMER = SOURCE / "tests" / "consumer"
 SCENARIO = "peg_in_hole_2d_mean"
 # A parent's flags are its own business; CMake would take these from the environment.
 BARE = {key: value for key, value in ENVIRONMENT.items() if key not in ("CXXFLAGS", "LDFLAGS", "CMAKE_BUILD_TYPE")}
-
-
-def must(*words, cwd=None):
-    return any_must(*words, cwd=cwd, env=BARE)
+must = partial(must, env=BARE)
 
 
 class Consumer(unittest.TestCase):
@@ -40,8 +37,7 @@ class Consumer(unittest.TestCase):
         source = self.folder / "bare.cpp"
         for header, complaint in (("sim/core/types.hpp", "EIGEN_DONT_VECTORIZE"), ("sim/core/simd.hpp", "hapbench's own")):
             source.write_text(f"#include <{header}>\n")
-            run = subprocess.run(["c++", "-std=c++20", "-fsyntax-only", "-isystem", "/usr/include/eigen3", "-I",
-                                  self.prefix / "include" / "hapbench", source], capture_output=True, text=True)
+            run = ran("c++", "-std=c++20", "-fsyntax-only", "-isystem", "/usr/include/eigen3", "-I", self.prefix / "include" / "hapbench", source)
             self.assertNotEqual(run.returncode, 0, header)
             self.assertIn(complaint, run.stderr)
 

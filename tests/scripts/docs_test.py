@@ -1,18 +1,19 @@
-"""The manuals keep what they promise: documented commands work, links lead somewhere, generated tables are those on
+"""The manuals keep what they promise: documented commands and examples work, links lead somewhere, generated tables are those on
 record, and the first page keeps its size."""
-import functools
 import json
 import math
 import os
 import re
 import shutil
-import subprocess
-import tempfile
+import sys
 import unittest
-from pathlib import Path
+from functools import cache, partial
 
-from fixture import PROGRAM, SOURCE, main, ran
+import numpy as np
 
+from fixture import PROGRAM, SOURCE, hapbench, main, must, ran, scratch_folder
+
+from hapbench.columns import read_columns
 from hapbench.errors import InputError
 from hapbench_docs import blocks
 from hapbench_docs.manuals import Manual, broken_links, manuals
@@ -21,6 +22,7 @@ RECORD = SOURCE / "results" / "reference"
 TUTORIALS = SOURCE / "scenarios" / "library" / "tutorials"
 MANUALS = [Manual(file) for file in manuals()]
 COMMANDS = [command for manual in MANUALS for command in manual.commands()]
+started = partial(ran, LC_ALL="C.UTF-8")
 # No option of the program is like it, so that no other is named as the one that may have been meant.
 UNKNOWN = "--zzzz"
 # Minutes long: parsed, not run.
@@ -28,10 +30,6 @@ LONG = {"reproduce", "stress"}
 FEW_STEPS = ["--set", 'time={"step_s": 0.0005, "steps": 40}']
 SHORTER = {"run": FEW_STEPS, "compare": FEW_STEPS, "sweep": FEW_STEPS, "converge": [*FEW_STEPS, "--levels", "3"], "limit": [*FEW_STEPS, "--resolution", "0.5"],
            "tune": [*FEW_STEPS, "--damping-ratio", "0.3:0.7"]}
-
-
-def started(words, directory="."):
-    return ran(*words, cwd=directory, LC_ALL="C.UTF-8")
 
 
 def of_program(command):
@@ -63,7 +61,7 @@ def write_log(file):
 def compile_law(file):
     """The example in C, by the manual's line."""
     line = re.search(r"^    (gcc .*) -o \S+$", (SOURCE / "algorithms/README.md").read_text(encoding="utf-8"), re.M)[1]
-    subprocess.run([*line.split(), "-o", file], cwd=SOURCE, check=True)
+    must(*line.split(), "-o", file, cwd=SOURCE)
 
 
 class Bench:
@@ -87,16 +85,12 @@ class Bench:
         for name in "abc":
             shutil.copy(folder / "my.json", folder / f"{name}.json")
         for shard in range(2):
-            self.sweep("--shard", f"{shard}/2", "--out", "shards")
+            self.must("sweep", "my.json", "--vary", "rendering.stiffness_N_per_m=1e3:2e3:2", *FEW_STEPS, "--shard", f"{shard}/2", "--out", "shards")
         for out in ("results/good/peg", "results/out/peg"):
             self.must("run", "peg_in_hole_2d_shaped_stiffness", *FEW_STEPS, "--out", out)
 
     def must(self, *words):
-        done = started([PROGRAM, *words, "--quiet"], self.folder)
-        assert done.returncode in (0, 3), done.stderr
-
-    def sweep(self, *words):
-        self.must("sweep", "my.json", "--vary", "rendering.stiffness_N_per_m=1e3:2e3:2", *FEW_STEPS, *words)
+        must(PROGRAM, *words, "--quiet", statuses=(0, 3), cwd=self.folder)
 
     def words(self, command):
         """The command's, shorter, and with patterns replaced by the files that they match."""
@@ -120,9 +114,6 @@ class Bench:
         root = SOURCE if pattern.startswith("scenarios/") else self.folder
         return [path if root == SOURCE else path.relative_to(root) for path in root.glob(pattern)]
 
-    def run(self, command):
-        return started([PROGRAM, *self.words(command)], self.folder)
-
 
 class Commands(unittest.TestCase):
     def test_there_are_some(self):
@@ -134,28 +125,26 @@ class Commands(unittest.TestCase):
             if command.words[1:2] == ("--version",):
                 continue  # whatever follows
             with self.subTest(str(command)):
-                done = started([PROGRAM, *command.words[1:], UNKNOWN])
+                done = started(PROGRAM, *command.words[1:], UNKNOWN)
                 self.assertEqual(done.returncode, 2, done.stderr)
                 unknown = set(re.findall(r"(?<![\w-])--[a-z-]+", done.stderr)) - {"--help"}
                 self.assertEqual(unknown, {UNKNOWN}, done.stderr)
 
     def test_short_ones_run(self):
-        with tempfile.TemporaryDirectory(prefix="hapbench-docs-") as scratch:
-            prepared = Path(scratch) / "prepared"
-            prepared.mkdir()
-            Bench(prepared).prepare()
-            for number, manual in enumerate(MANUALS):
-                if manual.file.is_relative_to(RECORD) or manual.file.is_relative_to(TUTORIALS):
-                    continue  # records of work of minutes; tutorials_test.py runs those in full
-                bench = Bench(Path(shutil.copytree(prepared, Path(scratch) / str(number))))
-                for command in manual.commands():
-                    if of_program(command) and not is_long(command):
-                        with self.subTest(str(command)):
-                            done = bench.run(command)
-                            self.assertIn(done.returncode, (0, 3), done.stderr)
+        prepared = scratch_folder(self)
+        Bench(prepared).prepare()
+        for manual in MANUALS:
+            if manual.file.is_relative_to(RECORD) or manual.file.is_relative_to(TUTORIALS):
+                continue  # records of work of minutes; tutorials_test.py runs those in full
+            bench = Bench(shutil.copytree(prepared, scratch_folder(self), dirs_exist_ok=True))
+            for command in manual.commands():
+                if of_program(command) and not is_long(command):
+                    with self.subTest(str(command)):
+                        done = started(PROGRAM, *bench.words(command), cwd=bench.folder)
+                        self.assertIn(done.returncode, (0, 3), done.stderr)
 
     def test_scripts_know_their_options(self):
-        help_of = functools.cache(lambda script: started([script, "--help"]).stdout)
+        help_of = cache(lambda script: started(script, "--help").stdout)
         for command in COMMANDS:
             if of_program(command):
                 continue
@@ -167,7 +156,7 @@ class Commands(unittest.TestCase):
                     self.assertRegex(says, rf"{option}\b")
 
     def test_commands_in_sentences_exist(self):
-        known = set(re.findall(r"^[a-z ]{8}([a-z]+) ", started([PROGRAM]).stdout, re.M))
+        known = set(re.findall(r"^[a-z ]{8}([a-z]+) ", started(PROGRAM).stdout, re.M))
         self.assertIn("run", known)
         for manual in MANUALS:
             for name in re.findall(r"`hapbench\s+([a-z]+)", manual.text):
@@ -175,12 +164,11 @@ class Commands(unittest.TestCase):
                     self.assertIn(name, known)
 
     def test_comments_continued_lines_and_redirections(self):
-        with tempfile.TemporaryDirectory() as scratch:
-            file = Path(scratch) / "x.md"
-            file.write_text("a\n\n    hapbench run x \\\n      --out y   # why\n\n```\n$ hapbench describe >z\nscripts/test --fast | cat\n```\n"
-                            "hapbench is prose\n", encoding="utf-8")
-            self.assertEqual([c.words for c in Manual(file).commands()],
-                             [("hapbench", "run", "x", "--out", "y"), ("hapbench", "describe"), ("scripts/test", "--fast")])
+        file = scratch_folder(self) / "x.md"
+        file.write_text("a\n\n    hapbench run x \\\n      --out y   # why\n\n```\n$ hapbench describe >z\nscripts/test --fast | cat\n```\n"
+                        "hapbench is prose\n", encoding="utf-8")
+        self.assertEqual([c.words for c in Manual(file).commands()],
+                         [("hapbench", "run", "x", "--out", "y"), ("hapbench", "describe"), ("scripts/test", "--fast")])
 
 
 class Pages(unittest.TestCase):
@@ -209,7 +197,7 @@ class Pages(unittest.TestCase):
         version = re.search(r"project\(hapbench VERSION (\S+)", (SOURCE / "CMakeLists.txt").read_text(encoding="utf-8"))[1]
         self.assertIn(f"\nversion: {version}\n", (SOURCE / "CITATION.cff").read_text(encoding="utf-8"))
         self.assertIn(f"\n## {version}", (SOURCE / "CHANGELOG.md").read_text(encoding="utf-8").replace("[", "").replace("]", ""))
-        self.assertIn(version, started([PROGRAM, "--version"]).stdout)
+        self.assertIn(version, started(PROGRAM, "--version").stdout)
 
 
 class Generated(unittest.TestCase):
@@ -233,6 +221,21 @@ class Generated(unittest.TestCase):
         self.assertTrue(blocks.same_but_for_times(levels, levels.replace("0.21", "0.34").replace("2.1 times", "3 times")))
         self.assertFalse(blocks.same_but_for_times(levels, levels.replace("1.02", "1.03")))
         self.assertFalse(blocks.same_but_for_times(old.replace("us/", "N/"), slower.replace("us/", "N/")))
+
+
+class Examples(unittest.TestCase):
+    def test_the_force_on_a_sphere_by_python_is_that_of_the_sphere(self):
+        """K times the depth, along the line of the centres."""
+        folder = scratch_folder(self)
+        must(sys.executable, SOURCE / "algorithms" / "module" / "examples" / "sphere_trace.py", folder)
+        hapbench("run", folder / "sphere.json", "--out", folder / "out", "--quiet")
+        rows = read_columns(folder / "out" / "trajectory.csv")
+        place, force = (np.column_stack([rows[name.format(x)] for x in "xyz"]) for name in ("p{}_m", "f{}_N"))
+        distance = np.linalg.norm(place, axis=1, keepdims=True)
+        known = 20000 * np.maximum(0, 0.0025 - distance) * place / distance
+        self.assertGreater(np.count_nonzero(known[:, 2]), 500)
+        # A few roundings of 2.5 mm, times K.
+        self.assertLess(np.abs(force - known).max(), 1e-13)
 
 
 if __name__ == "__main__":

@@ -1,18 +1,16 @@
 """scripts/figures on freshly made results."""
-import glob
 import json
 import re
 import shutil
 import unittest
 import xml.etree.ElementTree as xml
-from contextlib import redirect_stderr, redirect_stdout
-from io import StringIO
+from functools import partial
 from pathlib import Path
 from unittest import mock
 
-from fixture import PROGRAM, SOURCE, main, must, ran, scratch_folder
+from fixture import PROGRAM, SOURCE, in_process, main, must, ran, scratch_folder
 
-from hapbench_figures import __main__ as command, catalogue, ledger  # below scripts/python, which the fixture adds
+from hapbench_figures import __main__ as command, catalogue  # below scripts/python, which the fixture adds
 
 SVG = "{http://www.w3.org/2000/svg}"
 REFERENCE = SOURCE / "results" / "reference"
@@ -33,25 +31,8 @@ RUNS = (
 # Figures that between them use every way of drawing: thinned marks, shaded areas, arrows, rasterised marks, limits.
 # They are drawn by the command, in every format; the others as SVG only, which takes a third of the time.
 DRAWN_BY_COMMAND = "A.5,C.3,D.7,stability-z_width"
-
-
-def hapbench(*words):
-    must(PROGRAM, *words, statuses=(0, 3))
-
-
-def figures(*words, **environment):
-    return ran(SOURCE / "scripts" / "figures", *words, **environment)
-
-
-def figures_here(*words):
-    """Status and standard error of the command in this process: starting another takes longer than what it then does."""
-    said = StringIO()
-    with redirect_stdout(StringIO()), redirect_stderr(said):
-        try:
-            status = command.main([str(word) for word in words])
-        except SystemExit as end:
-            status = end.code
-    return status, said.getvalue()
+hapbench = partial(must, PROGRAM, statuses=(0, 3))
+figures = partial(ran, SOURCE / "scripts" / "figures")
 
 
 def ids():
@@ -60,25 +41,23 @@ def ids():
 
 def make_results(directory):
     for pattern, overrides in RUNS:
-        scenarios = sorted(glob.glob(str(SOURCE / "scenarios" / "library" / "thesis" / f"{pattern}.json")))
+        scenarios = sorted((SOURCE / "scenarios" / "library" / "thesis").glob(f"{pattern}.json"))
         assert scenarios, pattern
         # Only several scenarios get a directory each.
-        out = directory / "thesis" / (Path(scenarios[0]).stem if len(scenarios) == 1 else "")
+        out = directory / "thesis" / (scenarios[0].stem if len(scenarios) == 1 else "")
         hapbench("run", *scenarios, *(f"--set={text}" for text in overrides), "--out", out)
     name = "corner_continuous_normal_projection"
     hapbench("run", name, "--out", directory / "run_beyond" / name)
-    for ask, study, *words in (("compare", "stiffness_peg"), ("compare", "stiffness_wedge"), ("compare", "proxy_in_hole", "--set=time.duration_s=2", "--set=record.every=8"),
-                               ("limit", "hardware_paddle", "--resolution", "0.5")):
+    fields = ("time_step", "damping_ratio", "z_width", "delay", "velocity_filter", "hand", "integrators")
+    for ask, study, *words in (
+            ("compare", "stiffness_peg"), ("limit", "spring_stiffness"), ("limit", "spring_damping"), ("limit", "hardware_paddle", "--resolution=0.5"),
+            ("limit", "device_limits", "--device=touch,omega.3", "--resolution=0.5"),
+            ("sweep", "checked_force", "--set=hand.task.time_limit_s=1", "--set=hand.task.targets_per_place=1"),
+            *(("limit", f"stability_{field}", "--algorithms=shaped_stiffness", "--resolution=0.5") for field in fields)):
         hapbench(ask, study, *words, "--out", directory / study)
     make_accuracy(directory / "accuracy")
-    for study in ("time_step", "damping_ratio", "z_width", "delay", "velocity_filter", "hand", "integrators"):
-        hapbench("limit", f"stability_{study}", "--resolution", "0.5", "--algorithms", "shaped_stiffness", "--out", directory / f"stability_{study}")
-    for study in ("spring_stiffness", "spring_damping"):
-        hapbench("limit", study, "--out", directory / study)
-    hapbench("limit", "device_limits", "--device", "touch,omega.3", "--resolution", "0.5", "--out", directory / "device_limits")
     hapbench(*("sweep", "task2_rotate_signed_distance", "--vary=hand.force_N=0.2,3.5", "--set=time.duration_s=2", "--keep-runs"),
              *('--set=record={"ideal_trajectory":true,"every":8}', "--out", directory / "task2_hands"))
-    hapbench(*("sweep", "checked_force", "--set=hand.task.time_limit_s=1", "--set=hand.task.targets_per_place=1", "--out", directory / "checked_force"))
     shutil.copy(REFERENCE / "claims.json", directory)
     # The load of the loop is drawn where it is known.
     loop = directory / "step_latency" / "task2_rotate_signed_distance"
@@ -114,7 +93,7 @@ class Figures(unittest.TestCase):
         cls.results, cls.drawn = cls.directory / "results", cls.directory / "figures"
         make_results(cls.results)
         with mock.patch.object(command, "FORMATS", ("svg",)):
-            cls.status, cls.said = figures_here(cls.results, "--out", cls.drawn)
+            cls.status, _, cls.said = in_process(command.main, cls.results, "--out", cls.drawn)
 
     def index(self, directory=None):
         return json.loads(((directory or self.drawn) / "figures.json").read_text(encoding="utf-8"))["figures"]
@@ -146,7 +125,7 @@ class Figures(unittest.TestCase):
         drawn = json.loads((RECORD / command.ROWS).read_text(encoding="utf-8"))
         for figure in catalogue.FIGURES:
             if figure.id in drawn:
-                self.assertEqual(drawn[figure.id], ledger.rows(figure, claims), f"{figure.id}: draw it with scripts/figures --record")
+                self.assertEqual(drawn[figure.id], command.measured(figure, claims), f"{figure.id}: draw it with scripts/figures --record")
         self.assertEqual(set(drawn["D.7"]), {"D1", "D2"})
         self.assertEqual(set(drawn["density"]), {"P1"})
 
@@ -182,7 +161,7 @@ class Figures(unittest.TestCase):
     def test_missing_data_is_skipped_and_said(self):
         empty, out = self.directory / "empty", self.directory / "nothing"
         empty.mkdir()
-        status, said = figures_here(empty, "--out", out)
+        status, _, said = in_process(command.main, empty, "--out", out)
         self.assertEqual(status, 1)
         for id_ in ids():
             self.assertRegex(said, rf"skipped {re.escape(id_)} \(no .+\)")
@@ -193,7 +172,7 @@ class Figures(unittest.TestCase):
         occupied = self.drawn / "figures.json"
         for words in ([self.results, "--out", x, "--only", "99"], [self.directory / "nowhere", "--out", x], [], ["--no-such"],
                       [self.results, "--out", occupied, "--only", "6"]):
-            status, said = figures_here(*words)
+            status, _, said = in_process(command.main, *words)
             self.assertEqual((status, said.count("\n")), (2, 1), said)
             self.assertTrue(said.startswith("hapbench: error: "), said)
 

@@ -5,7 +5,10 @@ import subprocess
 import sys
 import tempfile
 import unittest
+from contextlib import redirect_stderr, redirect_stdout
+from io import StringIO
 from pathlib import Path
+from unittest import mock
 
 SOURCE = Path(__file__).resolve().parents[2]
 PROGRAM = Path(sys.argv[1] if len(sys.argv) > 1 else "hapbench").resolve()
@@ -34,11 +37,31 @@ def must(*words, statuses=(0,), **options):
     return done.stdout
 
 
-def hapbench(*words, locale="C", expected=0):
+def hapbench(*words, expected=0):
     """Standard output of the program, or what it says on standard error if another status than 0 is expected."""
-    done = ran(PROGRAM, *words, LC_ALL=locale)
+    done = ran(PROGRAM, *words, LC_ALL="C")
     assert done.returncode == expected, (words, done.returncode, done.stderr)
     return done.stderr if expected else done.stdout
+
+
+def in_process(command, *words, **environment):
+    """Status, standard output and standard error of the main function of a command, where starting another process takes longer."""
+    said, error = StringIO(), StringIO()
+    with redirect_stdout(said), redirect_stderr(error), mock.patch.dict(os.environ, environment):
+        try:
+            status = command([*map(str, words)])
+        except SystemExit as end:
+            status = end.code
+    return status, said.getvalue(), without_progress(error.getvalue())
+
+
+def assert_whole(test, page):
+    """A page refers to nothing outside itself, and each of its links to one place in it."""
+    for reference in re.findall(r'(?:src|href)="([^"]*)"', page):
+        test.assertRegex(reference, r"^(#|data:)")
+    names = re.findall(r'\bid="([^"]+)"', page)
+    test.assertEqual(len(names), len(set(names)))
+    test.assertLessEqual(set(re.findall(r'href="#([^"]+)"', page)), set(names))
 
 
 def scratch_folder(of):

@@ -40,13 +40,13 @@ PALE = """(() => {
 class Chromium:
     """One browser with one page, without network."""
 
-    def __init__(self, program, width=1280, height=900, dark=False):
+    def __init__(self, program):
         self.messages, self.buffer, self.last_id = [], b"", 0
         self.profile = tempfile.mkdtemp(prefix="hapbench-chromium-")
         to_browser, self.write_end = os.pipe()
         self.read_end, from_browser = os.pipe()
         options = ["--headless=new", "--remote-debugging-pipe", f"--user-data-dir={self.profile}", "--disable-gpu",
-                   "--no-first-run", "--hide-scrollbars", "--disable-dev-shm-usage", f"--window-size={width},{height}"]
+                   "--no-first-run", "--hide-scrollbars", "--disable-dev-shm-usage", "--window-size=1280,900"]
         # The sandbox does not start for root, and the page is our own.
         options += ["--no-sandbox"] if os.geteuid() == 0 else []
         # The browser reads from file descriptor 3 and writes to 4.
@@ -61,8 +61,6 @@ class Chromium:
         for domain in ("Page", "Runtime", "Log", "Network"):
             self.call(f"{domain}.enable")
         self.call("Network.emulateNetworkConditions", offline=True, latency=0, downloadThroughput=0, uploadThroughput=0)
-        self.size(width, height)
-        self.dark(dark)
 
     def close(self):
         self.process.kill()

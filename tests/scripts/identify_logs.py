@@ -1,23 +1,19 @@
-"""Synthetic logs of identifications, and whether what is told of them holds. With arguments, the program and the source tree, it is a
-test: the study of 200 logs, whose table device_model/README.md has."""
+"""Synthetic logs of identifications, and whether what is told of them holds. As a script it is a test: the
+study of 200 logs, whose table device_model/README.md has."""
 import os
 import sys
 import time
-from pathlib import Path
 
 import numpy as np
+from fixture import PROGRAM
 
-if __name__ == "__main__":
-    os.environ["HAPBENCH_PROGRAM"] = str(Path(sys.argv[1]).resolve())
-    sys.path.insert(0, str(Path(sys.argv[2]).resolve() / "scripts" / "python"))
-    sys.dont_write_bytecode = True
+from hapbench_identify.design import KINDS, design
+from hapbench_identify.fit import Cost, fit
+from hapbench_identify.log import log_of
+from hapbench_identify.model import NAMES, Simulator, positions
+from hapbench_import.faults import Faults
 
-from hapbench_identify.design import KINDS, design  # noqa: E402
-from hapbench_identify.fit import Cost, fit  # noqa: E402
-from hapbench_identify.log import log_of  # noqa: E402
-from hapbench_identify.model import NAMES, Simulator, positions  # noqa: E402
-from hapbench_import.faults import Faults  # noqa: E402
-
+os.environ["HAPBENCH_PROGRAM"] = str(PROGRAM)  # which simulates the logs
 LOGS = 200
 PARAMETERS = NAMES[:5]
 

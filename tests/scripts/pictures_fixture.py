@@ -1,27 +1,20 @@
 """Short runs, a comparison and a sweep for the tests of `hapbench plot` and `hapbench report`."""
-import os
 import shutil
 import tempfile
 import unittest
-from contextlib import redirect_stderr, redirect_stdout
 from functools import partial
-from io import StringIO
 from pathlib import Path
-from unittest import mock
 
-from fixture import PROGRAM, hapbench, scratch_folder, without_progress
+from fixture import PROGRAM, hapbench, in_process, scratch_folder
 
 from hapbench_pictures.__main__ import main as pictures
 
 
 def drawn(command, *words, expected=0):
-    """What `hapbench plot` or `report` prints, from this process, which has matplotlib loaded; of an error, if another status is
-    expected."""
-    said, error = StringIO(), StringIO()
-    with redirect_stdout(said), redirect_stderr(error), mock.patch.dict(os.environ, HAPBENCH_PROGRAM=str(PROGRAM)):
-        status = pictures([command, *map(str, words)])
-    assert status == expected, (words, status, error.getvalue())
-    return without_progress(error.getvalue()) if expected else said.getvalue()
+    """What `hapbench plot` or `report` prints, from this process, which has matplotlib loaded; on standard error if input is refused."""
+    status, said, error = in_process(pictures, command, *words, HAPBENCH_PROGRAM=str(PROGRAM))
+    assert status == expected, (words, status, error)
+    return error if expected == 2 else said
 
 
 plotted = partial(drawn, "plot")
@@ -39,6 +32,11 @@ def make_runs():
 
 
 class Given(unittest.TestCase):
+    def assert_shows(self, picture, *texts):
+        drawn = picture.read_text()
+        for text in texts:
+            self.assertIn(text, drawn)
+
     def copy(self, name):
         """A copy of a run to spoil."""
         directory = Path(tempfile.mkdtemp(dir=self.root)) / name

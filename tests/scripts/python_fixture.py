@@ -4,10 +4,11 @@ import json
 import sys
 import unittest
 import warnings
+from functools import partial
 from pathlib import Path
 
 from fixture import ENVIRONMENT as OF_TESTS
-from fixture import PROGRAM, SOURCE, main, ran, scratch_folder  # noqa: F401  (for the tests)
+from fixture import PROGRAM, SOURCE, hapbench as program, main, ran, scratch_folder  # noqa: F401  (for the tests)
 
 PACKAGES = Path(sys.argv[-1]).resolve()
 sys.path.insert(0, str(PACKAGES))
@@ -21,16 +22,7 @@ SHORT = {"time.steps": 300, "expect": "{}"}
 EVERYTHING = {"record.contacts": True, "record.stiffness_tensor": True, "record.energy": True, "record.torque": True,
               "record.pose": True, "record.ratio_iterations": "[0,3]"}
 ENVIRONMENT = {**OF_TESTS, "PYTHONPATH": str(PACKAGES)}
-
-
-def program(*words, expected=0):
-    done = ran(PROGRAM, *words)
-    assert done.returncode == expected, (words, done.returncode, done.stderr)
-    return done
-
-
-def python(*words, cwd=None):
-    return ran(sys.executable, *words, env=ENVIRONMENT, cwd=cwd)
+python = partial(ran, sys.executable, env=ENVIRONMENT)
 
 
 def words_of(overrides):

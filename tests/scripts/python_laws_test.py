@@ -1,10 +1,10 @@
 """Force laws in Python, and modules beside them. Arguments: those of python_fixture.py."""
 import json
-import subprocess
 import threading
 import traceback
 
 import numpy as np
+from fixture import must
 from python_fixture import PEG, SHORT, SOURCE, WEDGE, Scratch, main, python, words_of
 
 import hapbench
@@ -185,7 +185,7 @@ PLUGIN = SOURCE / "algorithms/module/examples/depth_weighted.c"
 
 class Plugins(Scratch):
     def test_stand_beside_laws_in_python(self):
-        subprocess.run(["cc", "-shared", "-fPIC", f"-I{SOURCE}/algorithms/module", "-o", self.root / "law.so", PLUGIN, "-lm"], check=True)
+        must("cc", "-shared", "-fPIC", f"-I{SOURCE}/algorithms/module", "-o", self.root / "law.so", PLUGIN, "-lm")
         before = set(hapbench.algorithms())
         hapbench.load_plugin(self.root / "law.so")
         (name,) = set(hapbench.algorithms()) - before
@@ -196,7 +196,7 @@ class Plugins(Scratch):
     def test_none_is_loaded_while_a_thread_computes(self):
         source = self.root / "other.c"
         source.write_text(PLUGIN.read_text().replace("depth_weighted", "other_law"))
-        subprocess.run(["cc", "-shared", "-fPIC", f"-I{SOURCE}/algorithms/module", "-o", self.root / "other.so", source, "-lm"], check=True)
+        must("cc", "-shared", "-fPIC", f"-I{SOURCE}/algorithms/module", "-o", self.root / "other.so", source, "-lm")
         begun, let_go = threading.Event(), threading.Event()
 
         def wait(*_):

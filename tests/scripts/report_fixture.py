@@ -1,11 +1,13 @@
 """Results to report on, made afresh by the built program, and the report."""
 import json
+from functools import partial
 from unittest import mock
 
 from fixture import PROGRAM, SOURCE, hapbench, ran
 
 from hapbench_report import __main__ as command
 
+report = partial(ran, SOURCE / "scripts" / "report")  # the finished process
 SCENARIOS = ("peg_in_hole_2d_mean", "single_spring")
 SVG = ('<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 90 60"><path d="M5 55 L45 5 L85 55" stroke="black"/></svg>')
 
@@ -47,8 +49,3 @@ def make_claims(file):
     claims[1] |= {"place": "A.3, Table A.2, Fig. A.5", "measured": "-1.2e-07 N, -0.5 to 2e+06", "scenarios": ["single_spring"]}
     claims[2] |= {"place": "A.2", "scenarios": ["single_spring", "not_among_these"]}
     file.write_text(json.dumps({"headline": "One verdict is steady.", "claims": claims}), encoding="utf-8")
-
-
-def report(*words):
-    """The finished process of scripts/report."""
-    return ran(SOURCE / "scripts" / "report", *words)

@@ -9,7 +9,7 @@ import subprocess
 import time
 import unittest
 
-from fixture import SOURCE, main, scratch_folder
+from fixture import SOURCE, main, must, scratch_folder
 
 NOTHING = "#!/bin/sh\nexit 0\n"
 
@@ -31,13 +31,13 @@ class Reproduce(unittest.TestCase):
         file.write_text(text, encoding="utf-8")
         file.chmod(0o755)
 
-    def start(self, program, *words, **environment):
+    def start(self, program, *words):
         self.put("build/release/bin/hapbench", program)
         return subprocess.Popen([self.root / "scripts" / "reproduce", *words], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-                                text=True, env={**os.environ, "PATH": f"{self.root / 'bin'}:{os.environ['PATH']}", **environment})
+                                text=True, env={**os.environ, "PATH": f"{self.root / 'bin'}:{os.environ['PATH']}"})
 
-    def run_with(self, program, *words, **environment):
-        process = self.start(program, *words, **environment)
+    def run_with(self, program, *words):
+        process = self.start(program, *words)
         out, err = process.communicate()
         return process.returncode, out, err
 
@@ -111,8 +111,7 @@ class Reproduce(unittest.TestCase):
 
 class Readings(unittest.TestCase):
     def test_lie_in_every_stratum_of_each_choice(self):
-        drawn = subprocess.run([SOURCE / "scripts" / "readings.py", "8"], stdout=subprocess.PIPE, text=True, check=True)
-        readings = list(csv.DictReader(drawn.stdout.splitlines()))
+        readings = list(csv.DictReader(must(SOURCE / "scripts" / "readings.py", "8").splitlines()))
         choices = json.loads((SOURCE / "results" / "reference" / "choices.json").read_text(encoding="utf-8"))["choices"]
         self.assertEqual(list(readings[0]), [choice["id"] for choice in choices])
         for choice in choices:

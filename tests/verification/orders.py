@@ -113,31 +113,29 @@ def hands():
 GAP, BOUNCES = 4e-4, 32  # [m]
 
 
-def of_bounce(phase):
-    """Part of a step by which contact begins later, and stiffness: where in a step it begins and ends, as by chance."""
-    return phase, K * (1.0 + 0.4 * (phase * 0.6180339887 * BOUNCES % 1.0))
+def stiffness_of_bounce(phase):
+    """By which it ends anywhere in a step, as by chance; `phase` is the part of a step by which it begins later."""
+    return K * (1.0 + 0.4 * (phase * 0.6180339887 * BOUNCES % 1.0))
 
 
 def bounce(step, phase):
     """Off a unilateral spring without damping, which takes half a period: the tool leaves as fast as it came."""
-    part, stiffness = of_bounce(phase)
-    t2 = GAP / V0 + part * step + math.pi / math.sqrt(stiffness / M)
+    t2 = GAP / V0 + phase * step + math.pi / math.sqrt(stiffness_of_bounce(phase) / M)
     return np.array([-V0 * (END_S - t2), -V0])
 
 
 def start_of_bounce(step, phase):
-    part, stiffness = of_bounce(phase)
-    return {"initial": {"position_m": [0, 0, -GAP - part * step * V0], "velocity_m_per_s": [0, 0, V0]},
-            "rendering": scene()["rendering"] | {"stiffness_N_per_m": stiffness}}
+    return {"initial": {"position_m": [0, 0, -GAP - phase * step * V0], "velocity_m_per_s": [0, 0, V0]},
+            "rendering": scene()["rendering"] | {"stiffness_N_per_m": stiffness_of_bounce(phase)}}
 
 
 def share_of(law):
     """The part of K that a law renders of one spring, of the first row of a run: couplings are in series with it."""
-    return first_row(scene(law=law))["fspring_z_N"] / (-K * X0)
+    row, _ = rows_of(scene(law=law, time={"step_s": 1e-3, "steps": 1}), 1)
+    return row["fspring_z_N"] / (-K * X0)
 
 
 def cases(laws):
-    ideal = {"device": {"type": "ideal"}}
     for integrator, orders in FORMAL.items():
         for B, order in zip((0.0, 20.0), orders):
             yield Case("integrator", f"{integrator}, B = {B:g}", order, scene(integrator, B), damped(K, B, M))
@@ -145,15 +143,13 @@ def cases(laws):
         share = share_of(law)
         yield Case("law", law, 4, scene("rk4", 20.0, law), damped(share * K, share * 20.0, M), f"renders {share:.4g} K of one spring" if abs(share - 1) > 1e-12 else "")
     for name, hand, exact, _ in hands():
+        why = "its force is sampled and held" if name in ("force, sine", "impedance") else ""
         for integrator, orders in FORMAL.items():
-            held = name in ("force, sine", "impedance")
-            yield Case("hand", f"{name}; {integrator}", 1 if held else orders[1], scene(integrator, 20.0, hand=hand, **ideal), exact(20.0, M),
-                       "its force is sampled and held" if held else "")
-        if name == "impedance":
-            continue  # it pulls the handle, which lags behind the virtual tool
-        steady = name == "none" or name == "force, steady" or name == "push"
-        yield Case("device", f"admittance; {name}", 1, scene("leapfrog", 20.0, hand=hand, device={"type": "admittance", "force_limit_N": None}),
-                   exact(20.0, M), "" if steady else "its force is sampled and held")
+            yield Case("hand", f"{name}; {integrator}", 1 if why else orders[1], scene(integrator, 20.0, hand=hand, device={"type": "ideal"}),
+                       exact(20.0, M), why)
+        if name != "impedance":  # it pulls the handle, which lags behind the virtual tool
+            yield Case("device", f"admittance; {name}", 1, scene("leapfrog", 20.0, hand=hand, device={"type": "admittance", "force_limit_N": None}),
+                       exact(20.0, M), why)
     for name, hand, exact, force in hands():
         device = {"type": "impedance", "handle_mass_kg": M, "viscous_N_s_per_m": 6.0}
         yield Case("device", f"impedance; {name}", 1, scene(B=0.0, hand=hand, device=device), exact(6.0, M), "the rendered force is held")
@@ -185,10 +181,6 @@ def rows_of(content, rows):
         with open(Path(folder) / "out" / "trajectory.csv", encoding="utf-8") as table:
             read = [{name: float(cell or "nan") for name, cell in row.items()} for row in csv.DictReader(table)]
         return (read[0], read[-1]) if len(read) == rows else None
-
-
-def first_row(content):
-    return rows_of(content | {"time": {"step_s": 1e-3, "steps": 1}}, 1)[0]
 
 
 def error_at(case, step, phase):

@@ -68,8 +68,7 @@ void stop_work_by(const pybind11::error_already_set& error);
 /// True from an error of Python to the end of the work that it stops. Precondition: the interpreter is held.
 bool is_work_stopped();
 
-/// Raises the error that stop_work_by has kept, if any. Precondition: the interpreter is held by a call that is under
-/// way.
+/// Raises the error that stop_work_by has kept, if any. Precondition: a call that is under way holds the interpreter.
 void raise_python_error();
 
 /// Runs `call` with the interpreter held, unless work is stopped. An exception becomes a Python error and stops all
@@ -93,8 +92,7 @@ bool runs_in_python(const Call& call) noexcept {
 /// True while a call is under way. Precondition: the interpreter is held.
 bool is_work_under_way();
 
-/// Ends the calls of daemon threads by SystemExit before the interpreter ends, or waits two seconds for it: each would
-/// ask for the interpreter then.
+/// Ends the calls of daemon threads, which would ask for the interpreter, by SystemExit before it ends, within 2 s.
 void end_work_before_interpreter();
 
 /// Makes loading of laws and computing by another thread exclude each other.

@@ -8,7 +8,7 @@
 #include "algorithms/registry.hpp"
 #include "bindings/bindings.hpp"
 #include "results/io/atomic_file.hpp"
-#include "results/io/json_text.hpp"
+#include "results/io/columns.hpp"
 #include "scenarios/format/bundled_scenarios.hpp"
 #include "scenarios/format/input_error.hpp"
 #include "scenarios/program/command.hpp"
@@ -87,7 +87,7 @@ py::tuple command(const std::vector<std::string>& words, const py::object& progr
   CapturedOutput output;
   int status = 0;
   supervise(progress, [&] {
-    capture_output(&output);
+    captured_output() = &output;
     status = call(run_program, words);
   });
   return py::make_tuple(status, output.text, output.warnings, output.errors);
@@ -109,7 +109,7 @@ PYBIND11_MODULE(_hapbench, module) {
   guard_law_loading();
   end_work_before_interpreter();
   module.def(
-      "set_program", [](const std::string& program) { set_this_program(program); }, py::arg("program"),
+      "set_program", [](const std::string& program) { this_program() = program; }, py::arg("program"),
       "Say which file is the program, for commands that name it.");
   module.def("run", run, py::arg("scenario"), py::arg("overrides"), py::arg("progress"),
              "Run a scenario and keep what it records in memory.");

@@ -53,8 +53,7 @@ struct Definition {
   }
 };
 
-/// The interpreter's state of a thread that Python has not made, for as long as a law lives: making one takes longer
-/// than a call.
+/// The interpreter's state of a thread of ours, kept as long as a law lives: making one takes longer than a call.
 class KeptThread {
  public:
   KeptThread() {

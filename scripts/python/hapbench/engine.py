@@ -46,7 +46,7 @@ def run(scenario: Scenario, overrides: Overrides = None, *, record: Iterable[str
     summary = json.loads(found["summary"])
     for warning in found["warnings"]:
         warnings.warn(warning, ScenarioWarning, stacklevel=2)
-    trials = [_tables(trial) for trial in found["trials"]]
+    trials = [{name: _table(name, given) for name, given in trial.items()} for trial in found["trials"]]
     only = dict(trials[0]) if len(trials) == 1 else {}
     if found["targets"] is not None:
         only["targets"] = _table("targets", found["targets"])
@@ -166,12 +166,12 @@ class _Scratch:
         if not isinstance(scenario, dict):
             return os.fspath(scenario)
         scenario = json.loads(json.dumps(scenario, default=_plain))
-        if isinstance(scenario.get("extends"), str):
-            scenario["extends"] = _named(scenario["extends"], is_scenario=True)
+        extended = scenario.get("extends")
+        if isinstance(extended, str) and Path(extended).is_file():  # else it may be the name of a bundled scenario
+            scenario["extends"] = str(Path(extended).absolute())
         _name_files(scenario)
         name = str(scenario.get("name") or "scenario").replace("/", "_")
-        folder = Path(tempfile.mkdtemp(dir=self.path))
-        file = folder / f"{name}.json"
+        file = Path(tempfile.mkdtemp(dir=self.path), f"{name}.json")
         file.write_text(json.dumps(scenario), encoding="utf-8")
         return str(file)
 
@@ -185,16 +185,11 @@ class _Scratch:
             raise ScenarioError([(fault.pointer, fault.problem) for fault in error.faults]) from None
 
 
-def _named(file, is_scenario):
-    """A path that means the same from another folder. What is not a file here may be the name of a bundled scenario."""
-    return file if is_scenario and not Path(file).is_file() else str(Path(file).absolute())
-
-
 def _name_files(part):
     """Makes the paths in a scenario absolute: a field "file", wherever it stands, is one, and no other field is."""
     for key, value in part.items() if isinstance(part, dict) else enumerate(part):
         if key == "file" and isinstance(value, str):
-            part[key] = _named(value, is_scenario=False)
+            part[key] = str(Path(value).absolute())
         elif isinstance(value, (dict, list)):
             _name_files(value)
 
@@ -244,7 +239,3 @@ def _table(name, given):
     names = [column for column, _, _ in columns]
     return Table(zip(names, numbers.T.copy()), {column: unit for column, unit, _ in columns},
                  {column: meaning for column, _, meaning in columns}, name)
-
-
-def _tables(given):
-    return {name: _table(name, table) for name, table in given.items()}

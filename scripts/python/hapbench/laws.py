@@ -47,19 +47,14 @@ def force_law(name: str, parameters: Mapping[str, Parameter | float] | None = No
 
     def add(law):
         is_class = inspect.isclass(law)
-        own = {key: _parameter(value) for key, value in (parameters or {}).items()}
+        own = {key: value if isinstance(value, Parameter) else Parameter(float(value), min(0.0, float(value)), 1e12)
+               for key, value in (parameters or {}).items()}
         texts = (_summary(law), formula or "as written in Python", source or _place(law), known_failure or "unknown")
         table = [(key, p.default, p.least, p.greatest, p.unit, p.meaning) for key, p in own.items()]
         _hapbench.add_force_law(name, law, is_class, _arguments(name, law, own), table, texts, depth_model or "", *_origin(law))
         return law
 
     return add
-
-
-def _parameter(value):
-    if isinstance(value, Parameter):
-        return value
-    return Parameter(float(value), min(0.0, float(value)), 1e12)
 
 
 def _arguments(name, law, own):

@@ -207,7 +207,7 @@ def load(folder: str | os.PathLike) -> "Run | Folder":
 def load_run(folder, kind=Run):
     """The run of one folder, of a class derived from Run."""
     folder = Path(folder)
-    trials = sorted(folder.glob("subject_*_trial_*"), key=_numbers_of)
+    trials = sorted(folder.glob("subject_*_trial_*"), key=lambda trial: [int(number) for number in re.findall(r"\d+", trial.name)])
     return kind(read_object(folder / SUMMARY), _optional(folder / SCENARIO), _tables_of(folder), timing=_optional(folder / "timing.json"),
                 folder=folder, trials=[Trial(_tables_of(trial, folder)) for trial in trials])
 
@@ -243,10 +243,6 @@ def _reader(file, described=None):
 
 def _optional(file):
     return read_object(file) if file.is_file() else {}
-
-
-def _numbers_of(path):
-    return [int(number) for number in re.findall(r"\d+", path.name)]
 
 
 class MissingResult(Exception):

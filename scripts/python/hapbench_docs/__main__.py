@@ -30,14 +30,6 @@ def arguments(words):
     return parser.parse_args(words)
 
 
-def renewed(manual, scratch, program):
-    """The manual's text with its blocks made anew."""
-    makers = dict(blocks.MAKERS)
-    if program:
-        makers["session"] = lambda old: blocks.session(old, program, scratch)
-    return blocks.renewed(manual.text, makers)
-
-
 def draw_gallery(program, scratch):
     """The pictures that manuals show below the commands that draw them."""
     pictures = [found for manual in map(Manual, manuals()) for found in ILLUSTRATED.findall(manual.text)]
@@ -49,27 +41,23 @@ def draw_gallery(program, scratch):
     print(f"drew {len(pictures)} pictures into {GALLERY.relative_to(ROOT)}")
 
 
-def differences(manual, text):
-    """A unified diff from the manual as it is to the given text."""
-    name = str(manual.file.relative_to(ROOT))
-    return "\n".join(difflib.unified_diff(manual.text.splitlines(), text.splitlines(), name, f"{name}, renewed", lineterm=""))
-
-
 def run(chosen):
     program, stale = None if chosen.tables else blocks.Program(chosen.program), False
     with tempfile.TemporaryDirectory(prefix="hapbench-docs-") as scratch:
         if chosen.gallery and program:
             draw_gallery(program, Path(scratch))
+        of_program = {"session": lambda old: blocks.session(old, program, Path(scratch))} if program else {}
         for manual in map(Manual, manuals()):
-            text = renewed(manual, Path(scratch), program)
+            text = blocks.renewed(manual.text, blocks.MAKERS | of_program)
             if text == manual.text:
                 continue
+            name = str(manual.file.relative_to(ROOT))
             if chosen.check:
-                print(differences(manual, text))
+                print("\n".join(difflib.unified_diff(manual.text.splitlines(), text.splitlines(), name, f"{name}, renewed", lineterm="")))
                 stale = True
             else:
                 write(manual.file, text)
-                print(f"renewed {manual.file.relative_to(ROOT)}")
+                print(f"renewed {name}")
     if stale:
         say_error("the manuals are not current; scripts/docs renews them")
     return FAILED if stale else SUCCESS

@@ -81,12 +81,7 @@ def robustness(_old=""):
         by = counts["decided_by"]
         decided = f"`{by['choice']}` ({by['index']:.2f})" if by else "no single choice"
         lines.append(f"| {claim['id']} | {claim['verdict']} | {counts['holds']} of {counts['judged']} | {decided} |")
-    return wrapped(lines)
-
-
-def wrapped(lines, width=110):
-    """Sentences in lines of that width; tables stay."""
-    return "\n".join(line if line.startswith("|") else "\n".join(textwrap.wrap(line, width)) for line in lines)
+    return "\n".join(line if line.startswith("|") else "\n".join(textwrap.wrap(line, 110)) for line in lines)
 
 
 class Program:

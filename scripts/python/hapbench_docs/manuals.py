@@ -59,10 +59,6 @@ class Manual:
                 end = next((i for i, word in enumerate(words) if ENDS.match(word)), len(words))
                 yield Command(self.file, number, tuple(words[:end]))
 
-    def links(self):
-        """Targets of links and pictures."""
-        return LINK.findall(self.text)
-
     def anchors(self):
         """Anchors of its headings, as GitHub makes them."""
         return {anchor(title) for title in HEADING.findall(self.text)}
@@ -74,12 +70,10 @@ def anchor(title):
 
 def broken_links(manual):
     """Relative links that lead nowhere."""
-    for link in manual.links():
+    for link in LINK.findall(manual.text):
         if re.match(r"^[a-z]+:", link):
             continue
         path, _, fragment = link.partition("#")
         target = (manual.file.parent / path) if path else manual.file
-        if not target.exists():
-            yield link
-        elif fragment and target.suffix == ".md" and fragment not in Manual(target).anchors():
+        if not target.exists() or fragment and target.suffix == ".md" and fragment not in Manual(target).anchors():
             yield link

@@ -1,5 +1,6 @@
 """Command line of scripts/figures."""
 import json
+import re
 import sys
 import time
 from pathlib import Path
@@ -9,10 +10,12 @@ from hapbench.errors import InputError, ResultError
 from hapbench.results import Files, MissingResult, read_json
 from hapbench_command import BAD_INPUT, SUCCESS, Arguments, exit_status, say_error, write
 
-from . import catalogue, ledger
+from . import catalogue
+from .published import LEDGER
 
 NOTHING_DRAWN = 1
 ROWS = "rows.json"
+NUMBER = re.compile(r"(?:[A-F]\.)?\d+")  # of a figure
 FORMATS = ("svg", "pdf", "png")
 PAGE = """# Figures on record
 
@@ -68,6 +71,17 @@ def write_index(directory, entries):
     return known
 
 
+def measured(figure, claims):
+    """What the ledger has for each claim that a figure draws, but for times: where that changes, the figure is stale."""
+    numbers = set(NUMBER.findall(figure.thesis))
+    drawn = {}
+    for claim in claims:
+        named = {number for part in claim["place"].split(", ") if part.startswith("Fig. ") for number in NUMBER.findall(part)}
+        if not claim["timing"] and (claim["id"] in figure.rows or named & numbers):
+            drawn[claim["id"]] = claim["measured"]
+    return drawn
+
+
 def record(directory, page, drawn, claims):
     """Copies figures into the directory `page` and writes figures.md about all that lie there, and rows.json with what the ledger
     measured for the claims that they draw."""
@@ -77,7 +91,7 @@ def record(directory, page, drawn, claims):
         if figure.id not in drawn or not (figure.thesis or on_record.is_file()):
             continue
         write(on_record, (directory / on_record.name).read_bytes())
-        rows[figure.id] = ledger.rows(figure, claims)
+        rows[figure.id] = measured(figure, claims)
         name = f"Figure {figure.thesis}" if figure.thesis else "Ours"
         text += f"\n## {name}: {figure.title}\n\n![{figure.title}]({on_record.name})\n\n{drawn[figure.id]['caption']}"
         text += f" Differs: {figure.differs}\n" if figure.differs else "\n"
@@ -110,7 +124,7 @@ def run(chosen):
             bad[f"figure {figure.id}: {', '.join(sorted(results.sources))}: {type(error).__name__}: {error}"] = None
     index = write_index(directory, entries)
     if chosen.record and entries:
-        record(directory, Path(chosen.record), index, Files(chosen.results).json(ledger.LEDGER)["claims"])
+        record(directory, Path(chosen.record), index, Files(chosen.results).json(LEDGER)["claims"])
     if skipped:
         print("figures: \"scripts/reproduce --figure ID\" makes what a figure needs, and draws it", file=sys.stderr)
     for line in bad:

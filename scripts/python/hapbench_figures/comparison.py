@@ -20,7 +20,8 @@ def settling(rows):
     return 1e3 * rows["time_s"][last[-1] + 1] if len(last) else 0.0
 
 
-def paths(results, kind, published):
+def paths(results, kind):
+    """Damping and force "limited" or "unlimited"."""
     figure, axes = style.panels(2, 4, 4.3, sharex=True, sharey=True)
     proposed = results.table(f"thesis/springs_{kind}_shaped_stiffness/trajectory.csv")
     own = [name for name in style.ALGORITHMS if results.has(f"thesis/springs_{kind}_{name}/trajectory.csv")]
@@ -41,14 +42,4 @@ def paths(results, kind, published):
         ax.set_xlabel("x [mm]")
     for ax in axes[:, 0]:
         ax.set_ylabel("y [mm]")
-    return figure, {"limits": published}
-
-
-def unlimited(results):
-    return paths(results, "unlimited", "not limited. Published: every algorithm reaches the origin; ours: what the panels say.")
-
-
-def limited(results):
-    return paths(results, "limited",
-                 "limited to 100 N s/m and 30 N. Published: the proposed algorithm keeps its performance, others "
-                 "become under-damped.")
+    return figure, {}

@@ -96,8 +96,7 @@ def implicit_plane(results):
 
 
 def force_limit(results):
-    figure, axes = style.panels(1, 1, 2.9)
-    ax = axes[0, 0]
+    figure, ((ax,),) = style.panels(1, 1, 2.9)
     stiffness = results.json("thesis/force_limit_on/scenario.effective.json")["rendering"]["stiffness_N_per_m"]
     offset, limit = published.value("L1.offset"), published.value("L1.threshold")
     ideal = np.array([offset, limit + offset, 5.8])

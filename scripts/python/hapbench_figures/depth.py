@@ -20,13 +20,13 @@ CONTINUOUS = (
     "run_beyond/corner_continuous_normal_projection", "continuous_normal_projection", "continuous (ours)", {"lw": 1.1})
 
 
-def draw_contacts(ax, sweep, tilt, colours=(style.AMBER, style.PETROL)):
-    """The peg and its depths; those with flipped gradients in the second colour."""
+def draw_contacts(ax, sweep, tilt):
+    """The peg and its depths, those with flipped gradients in petrol."""
     step = sweep.step_at(tilt)
     contacts, peg = sweep.contacts(step), sweep.peg(step)
     scene.draw_hole(ax, sweep.scenario["environment"])
     scene.draw_peg(ax, peg, median=True)
-    scene.draw_segments(ax, contacts, np.where(contacts.flipped(), colours[1], colours[0]))
+    scene.draw_segments(ax, contacts, np.where(contacts.flipped(), style.PETROL, style.AMBER))
     scene.frame(ax, (-1.9, 1.9), (-4.3, 1.0))
     return step
 
@@ -53,9 +53,8 @@ def gradient_flipping(results):
         style.note(ax, 0.03, 0.03, f"{np.linalg.norm(force):.1f} N", va="bottom")
         ax.set_title(title)
     axes[0, 1].set_ylabel("")
-    ax = axes[0, 2]
-    draw_flip_count(ax, sweep)
-    ax.set_title("over the tilt")
+    draw_flip_count(axes[0, 2], sweep)
+    axes[0, 2].set_title("over the tilt")
     style.letter(axes[0])
     return figure, {}
 
@@ -82,7 +81,7 @@ def draw_flip_count(ax, sweep):
 def underestimation(results):
     figure, axes = style.panels(1, 3, 3.0, gridspec_kw={"width_ratios": [0.85, 0.85, 1.3]})
     for ax, name, title in ((axes[0, 0], SHORTEST, "shortest distance"), (axes[0, 1], NORMAL, "surface normal")):
-        draw_contacts(ax, scene.Sweep(results, name), 0.3, (style.AMBER, style.PETROL))
+        draw_contacts(ax, scene.Sweep(results, name), 0.3)
         ax.set_title(title)
     axes[0, 1].set_ylabel("")
     draw_error(axes[0, 2], scene.Sweep(results, NORMAL))

@@ -1,8 +1,9 @@
-"""The man-machine experiments with simulated subjects against the published means (figures D.7 and D.8)."""
+"""The man-machine experiments with simulated subjects against the published means (figures D.7 and D.8), and how their success depends
+on what the task checks (ours)."""
+import json
 import warnings
 
 import numpy as np
-from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 import hapbench_style as style
 from hapbench.columns import numbers
@@ -15,7 +16,11 @@ MEASURES = (
     ("force", "model_force_N", "model force [N]", 1),
     ("speed", "speed_m_per_s", "velocity [mm/s]", 1e3),
 )
-METHODS = (("original_averaging", "DP"), ("shaped_stiffness", "HS"))
+# Of each task its two targets: place, claim, title.
+TARGETS = {"vertical": ((1, "D1", "side target (0.52 mm)"), (0, "D2", "central target")),
+           "rotational": ((0, "D3", "target at 3 mm"), (1, "D4", "target at 4 mm"))}
+DP, HS = "original_averaging", "shaped_stiffness"
+METHODS = ((DP, "DP"), (HS, "HS"))
 
 
 def subject_means(records, place, column):
@@ -75,10 +80,10 @@ def draw_measure(ax, tables, place, claim, measure):
     ax.text(0, 1.01, f"publ.: {published_test(f'{claim}.{name}')}", color=style.RED, **test)
 
 
-def experiment(results, task, targets, what):
+def experiment(results, task):
     tables = {method: results.records(f"thesis/{task}_peg_in_hole_{method}/targets.csv") for method, _ in METHODS}
     figure, axes = style.panels(2, 4, 5.0, sharex=True, sharey="col")
-    for row, (place, claim, title) in zip(axes, targets):
+    for row, (place, claim, title) in zip(axes, TARGETS[task]):
         for ax, measure in zip(row, MEASURES):
             draw_measure(ax, tables, place, claim, measure)
         row[0].set_ylabel(title)
@@ -89,18 +94,51 @@ def experiment(results, task, targets, what):
         column[0].set_ylim(-0.03 * top, top)
     # One subject who is thrown about is a hundred times as fast as the others.
     axes[0, 3].set_yscale("log")
-    axes[0, 3].yaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
-    axes[0, 3].yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-    axes[0, 3].yaxis.set_minor_formatter(NullFormatter())
+    style.number_ticks(axes[0, 3].yaxis, (1, 2, 5))
     style.letter(axes[0])
-    return figure, {"task": what}
+    return figure, {}
 
 
-def vertical(results):
-    return experiment(results, "vertical", ((1, "D1", "side target (0.52 mm)"), (0, "D2", "central target")),
-                      "Vertical peg-in-hole task")
+CHECKED = (("vertical", 0, "D2", "centre"), ("vertical", 1, "D1", "0.52 mm aside"), ("rotational", 0, "D3", "3 mm high"),
+           ("rotational", 1, "D4", "4 mm high"))
 
 
-def rotational(results):
-    return experiment(results, "rotational", ((0, "D3", "target at 3 mm"), (1, "D4", "target at 4 mm")),
-                      "Rotational peg-in-hole task")
+def recorded(results, task, place, method):
+    """The success of all subjects as the scene checks the force: every sample of it."""
+    rows = results.records(f"thesis/{task}_peg_in_hole_{method}/targets.csv")
+    return numbers([row for row in rows if row["place"] == str(place)], "removed").mean()
+
+
+def checked(results, task, place):
+    """(cut-off [Hz] or None, grace [s], success) of the original algorithm under other thresholds."""
+    for row in results.records("checked_force/sweep.csv"):
+        if row["scenario"] == f"{task}_peg_in_hole_{DP}":
+            threshold = json.loads(row["hand.task.threshold"])
+            yield threshold["cutoff_Hz"], threshold["grace_s"], float(row[f"targets.{place}.success_rate.mean"])
+
+
+def threshold(results):
+    """Success of the original algorithm over grace and bandwidth of the force that is checked, beside stiffness shaping."""
+    figure, axes = style.panels(1, 4, 2.7, sharey=True)
+    said = []
+    for ax, (task, place, claim, title) in zip(axes[0], CHECKED):
+        every = recorded(results, task, place, DP)
+        others = list(checked(results, task, place))
+        graces = [(0.0, every)] + sorted((1e3 * grace, success) for cutoff, grace, success in others if cutoff is None)
+        slow = [(1e3 * grace, success) for cutoff, grace, success in others if cutoff is not None]
+        look = style.look(DP)
+        ax.plot(*zip(*graces), color=look.colour, marker="o", label="DP, every sample")
+        ax.plot(*zip(*slow), color=look.colour, marker="s", mfc="white", ls="none", ms=5, label="DP, 30 Hz")
+        ax.axhline(recorded(results, task, place, HS), color=style.look(HS).colour, label="HS, every sample")
+        for at, method in ((12, DP), (18, HS)):
+            id_ = f"{claim}.success.{method}"
+            ax.errorbar([at], [published.value(id_)], yerr=[published.spread(id_)], **style.PUBLISHED)
+        ax.set_xscale("symlog", linthresh=1, linscale=0.4)
+        ax.set(title=title, xlabel="grace [ms]", xlim=(-0.3, 25), ylim=(-0.05, 1.08))
+        ax.set_xticks([0, 1, 2, 5], ["0", "1", "2", "5"])
+        ax.minorticks_off()
+        said.append(f"{title} {every:.2f}, {graces[-1][1]:.2f} and {max(success for _, success in slow):.2f}")
+    axes[0, 0].set_ylabel("success rate")
+    axes[0, 3].legend(loc="lower right", fontsize=6)
+    style.letter(axes[0])
+    return figure, {"success": ", ".join(said)}

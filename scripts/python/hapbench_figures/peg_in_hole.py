@@ -9,18 +9,13 @@ from . import scene
 def simulation_view(results):
     sweep = scene.Sweep(results, "tilt_sweep_shaped_stiffness")
     step = sweep.step_at(0.18)
-    contacts, peg, force = sweep.contacts(step), sweep.peg(step), sweep.force(step, "f")
-    figure, axes = style.panels(1, 1, 4.2)
-    ax = axes[0, 0]
-    scene.draw_hole(ax, sweep.scenario["environment"], points=True)
-    scene.draw_peg(ax, peg)
-    scene.draw_segments(ax, contacts, [style.AMBER] * len(contacts.depth))
-    scene.draw_arrow(ax, scene.MM * peg.tip, 0.35 * force, style.BLACK)
-    scene.frame(ax, (-3.6, 3.6), (-5.5, 2.1))
+    tip, force = scene.MM * sweep.peg(step).tip, sweep.force(step, "f")
+    figure, ((ax,),) = style.panels(1, 1, 4.2)
+    scene.draw_contacts(ax, sweep, step, (-3.6, 3.6), (-5.5, 2.1))
+    scene.draw_arrow(ax, tip, 0.35 * force, style.BLACK)
     ax.text(-3.4, -0.25, "point shell", color=style.PETROL, va="top")
     ax.text(0.75, -1.1, "contacts and depths", color=style.AMBER)
-    head = scene.MM * peg.tip + 0.35 * force
-    ax.annotate(f"rendered force, {np.linalg.norm(force):.1f} N", xy=head, xytext=(0.75, -1.9),
+    ax.annotate(f"rendered force, {np.linalg.norm(force):.1f} N", xy=tip + 0.35 * force, xytext=(0.75, -1.9),
                 arrowprops={"arrowstyle": "-", "color": style.BLACK, "lw": 0.6})
     ax.text(1.45, 1.35, "tool")
     return figure, {"tilt": sweep.tilt[step]}

@@ -3,6 +3,7 @@ import json
 from functools import lru_cache
 from pathlib import Path
 
+LEDGER = "claims.json"  # beside the results: what was measured for each claim
 FILE = Path(__file__).resolve().parents[3] / "results" / "reference" / "published.json"
 
 

@@ -109,9 +109,9 @@ def draw_peg(ax, peg, median=False, **keywords):
         ax.plot(*(ends * MM).T, color=style.GREY, lw=0.8, ls=(0, (6, 3)), zorder=3)
 
 
-def draw_segments(ax, contacts, colours, scale=1.0):
+def draw_segments(ax, contacts, colours):
     """From each contact along its gradient, as long as its depth: where it is taken to leave the tool."""
-    ends = contacts.point + scale * contacts.depth[:, None] * contacts.gradient
+    ends = contacts.point + contacts.depth[:, None] * contacts.gradient
     for colour in dict.fromkeys(colours):
         own = [c == colour for c in colours]
         # One line with gaps, and one row of marks: an SVG of them is much smaller.
@@ -131,7 +131,14 @@ def draw_arrow(ax, start, vector, colour, label=None, at=(3, 3), **keywords):
 
 def frame(ax, x, y):
     """The part of the scene that is shown, in millimetres."""
-    ax.set_xlim(*x)
-    ax.set_ylim(*y)
-    ax.set_xlabel("x [mm]")
-    ax.set_ylabel("y [mm]")
+    ax.set(xlim=x, ylim=y, xlabel="x [mm]", ylabel="y [mm]")
+
+
+def draw_contacts(ax, sweep, step, x, y):
+    """Hole, peg, and the contacts with their depths, which it returns, in this part of the scene."""
+    contacts = sweep.contacts(step)
+    draw_hole(ax, sweep.scenario["environment"], points=True)
+    draw_peg(ax, sweep.peg(step))
+    draw_segments(ax, contacts, [style.AMBER] * len(contacts.depth))
+    frame(ax, x, y)
+    return contacts

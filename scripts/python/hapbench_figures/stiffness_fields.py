@@ -15,6 +15,7 @@ PEG = "stiffness_peg"  # the same sweep under every algorithm
 TITLES = {"summation": "sum", "mean": "mean", "virtual_coupling": "coupling", "shaped_stiffness": "shaping"}
 PEG_TILT = 0.12  # of figure 2 and of all algorithms [rad]
 DIRECTIONS = np.linspace(0, 2 * np.pi, 73)
+FRAME = (-1.3, 1.3), (-4.2, 0.9)  # of the contacts [mm]
 # Half of a panel's side and the marks on it, in units of K.
 REACH, TICKS = 1.6, (-1, 0, 1)
 SUMMATION_REACH, SUMMATION_TICKS = 45, (-40, 0, 40)
@@ -46,22 +47,13 @@ def draw_field(ax, name, tensor, contacts, reach, ticks):
     return ratio
 
 
-def draw_contacts(ax, sweep, step):
-    contacts, peg = sweep.contacts(step), sweep.peg(step)
-    scene.draw_hole(ax, sweep.scenario["environment"], points=True)
-    scene.draw_peg(ax, peg)
-    scene.draw_segments(ax, contacts, [style.AMBER] * len(contacts.depth))
-    scene.frame(ax, (-1.3, 1.3), (-4.2, 0.9))
-    return contacts
-
-
 def of_four_laws(results, tilts, height):
     """A row for each tilt: the contacts, and the fields of four laws, the sum on a scale of its own; with what is drawn of each law."""
     sweep, drawn = scene.Sweep(results, SWEEP), []
     figure, axes = style.panels(len(tilts), 5, height, gridspec_kw={"width_ratios": [0.62, 1, 1, 1, 1]})
     for row, tilt in zip(axes, tilts):
         step = sweep.step_at(tilt)
-        contacts = draw_contacts(row[0], sweep, step)
+        contacts = scene.draw_contacts(row[0], sweep, step, *FRAME)
         for ax, (name, title) in zip(row[1:], TITLES.items()):
             tensor = rendered_tensor(results, f"{PEG}/{name}", step)
             reach = (SUMMATION_REACH, SUMMATION_TICKS) if name == "summation" else (REACH, TICKS)
@@ -108,7 +100,7 @@ def of_all_algorithms(results):
     lines = -(-(1 + len(names)) // columns)
     figure, axes = style.panels(lines, columns, 0.3 + 1.75 * lines)
     run = scene.Sweep(results, "shaped_stiffness", PEG)
-    draw_contacts(axes[0, 0], run, run.step_at(PEG_TILT))
+    scene.draw_contacts(axes[0, 0], run, run.step_at(PEG_TILT), *FRAME)
     for ax, name in zip(axes.flat[1:], names):
         run = scene.Sweep(results, name, PEG)
         step = run.step_at(PEG_TILT)

@@ -1,9 +1,9 @@
-"""The three evaluation tasks of 3.2 (figures 4, 5, C.2, C.4 and E.1 to E.4)."""
+"""The three evaluation tasks of 3.2 (figures 4, 5, C.2, C.4 and E.1 to E.4), and what the density of points does to task 2 (ours)."""
 import numpy as np
 
 import hapbench_style as style
 
-from . import ledger, published
+from . import published
 
 TASKS = (
     ("T1", "task1_flat", "task 1: poke and drag"),
@@ -27,6 +27,11 @@ def ratios(results, task, iteration, density="signed_distance"):
     return {name: column[own] for name, column in table.items()}
 
 
+def cases(results, id_):
+    """The cases of a claim in the ledger: name and numbers of each."""
+    return next(claim["cases"] for claim in results.json(published.LEDGER)["claims"] if claim["id"] == id_)
+
+
 def thin(*columns, count=80):
     """So many rows, evenly spread."""
     pick = np.unique(np.linspace(0, len(columns[0]) - 1, count).astype(int))
@@ -36,9 +41,7 @@ def thin(*columns, count=80):
 def published_count(ax, x, task, what):
     """Mean and standard deviation at the right edge of a time axis."""
     id_ = f"{task}.{what}"
-    entry = published.entries()[id_]
-    error = [[entry["std"]], [entry["std"]]] if "std" in entry else None
-    ax.errorbar([x], [published.value(id_)], yerr=error, **style.PUBLISHED, clip_on=False)
+    ax.errorbar([x], [published.value(id_)], yerr=published.entries()[id_].get("std"), **style.PUBLISHED, clip_on=False)
 
 
 def span(time, values, bins=BINS):
@@ -62,8 +65,8 @@ def loop_load(ax, results, task, duration):
     # Above the points, which share the panel.
     load.set(yscale="log", ylim=(1e-9, 400), yticks=[0.1, 1, 10, 100])
     load.set_yticklabels(["0.1", "1", "10", "100"])
-    if task == "task3_spin" and results.has(ledger.LEDGER):
-        dense = ledger.cases(results, "T5")[0]["values"]
+    if task == "task3_spin" and results.has(published.LEDGER):
+        dense = cases(results, "T5")[0]["values"]
         for name in ("unreduced_3", "reduced_3"):
             load.axhline(100 * dense[name], color=style.BLACK, ls="--", lw=0.8)
     load.minorticks_off()
@@ -107,16 +110,14 @@ def point_counts(results):
 
 def count_distribution(results):
     figure, axes = style.panels(1, 2, 2.9, sharey=True)
-    offsets = {"signed_distance": 0.2, "binary": 0.0}
-    markers = {"signed_distance": "o", "binary": "s"}
     for ax, column, what, title in ((axes[0, 0], "colliding", "raw", "before the reduction"),
                                     (axes[0, 1], "rendered", "reduced", "after the reduction")):
         for place, (id_, task, _) in enumerate(TASKS):
             y = len(TASKS) - place
-            for density, name in DENSITIES:
+            for (density, name), above, marker in zip(DENSITIES, (0.2, 0.0), "os"):
                 rows = trajectory(results, task, density)
                 values = rows[column][rows["colliding"] > 0]
-                draw_distribution(ax, y + offsets[density], values, markers[density], name if place == 0 else None)
+                draw_distribution(ax, y + above, values, marker, name if place == 0 else None)
             for k, suffix in enumerate(("", ".C3")):
                 if f"{id_}.{what}{suffix}" in published.entries():
                     entry = published.entries()[f"{id_}.{what}{suffix}"]
@@ -140,19 +141,16 @@ def draw_distribution(ax, y, values, marker, label):
     ax.plot([mean], [y], marker, color=style.PETROL, mec="white", ms=5, mew=0.6, label=label, ls="none")
 
 
-def quantiles(results, density="signed_distance", tasks=TASKS):
-    """Over all rows of the tasks, for each iteration: percentiles 0, 5, 50, 95, 100 of the greatest and least ratio."""
-    greatest, least = [], []
-    for iteration in ITERATIONS:
-        parts = [ratios(results, task, iteration, density) for _, task, _ in tasks]
-        greatest.append(np.percentile(np.concatenate([p["ratio_max"] for p in parts]), [0, 5, 50, 95, 100]))
-        least.append(np.percentile(np.concatenate([p["ratio_min"] for p in parts]), [0, 5, 50, 95, 100]))
-    return np.array(greatest), np.array(least)
+def quantiles(results, column, tasks, density):
+    """Percentiles 0, 5, 50, 95, 100 of a ratio over all rows of the tasks, a row for each number of iterations."""
+    values = (np.concatenate([ratios(results, task, iteration, density)[column] for _, task, _ in tasks]) for iteration in ITERATIONS)
+    return np.array([np.percentile(of_tasks, [0, 5, 50, 95, 100]) for of_tasks in values])
 
 
-def draw_quantiles(ax, results, **chosen):
+def draw_quantiles(ax, results, tasks, density="signed_distance"):
     """Of the greatest and of the least ratio, with the published range after one iteration at the left edge."""
-    for values, colour, marker, extreme in zip(quantiles(results, **chosen), (style.PETROL, style.AMBER), "os", (4, 0)):
+    for column, colour, marker, extreme in (("ratio_max", style.PETROL, "o", 4), ("ratio_min", style.AMBER, "s", 0)):
+        values = quantiles(results, column, tasks, density)
         ax.fill_between(ITERATIONS, values[:, 1], values[:, 3], color=colour, alpha=0.3, lw=0)
         ax.plot(ITERATIONS, values[:, 2], color=colour, marker=marker)
         ax.plot(ITERATIONS, values[:, extreme], color=colour, ls=":", lw=1.1)
@@ -164,7 +162,7 @@ def draw_quantiles(ax, results, **chosen):
 def convergence_by_task(results):
     figure, axes = style.panels(1, 3, 2.5, sharey=True)
     for ax, task in zip(axes[0], TASKS):
-        draw_quantiles(ax, results, tasks=(task,))
+        draw_quantiles(ax, results, (task,))
         ax.axhline(published.entries()["R1.bound"]["at_most"], **style.PUBLISHED_LINE)
         ax.set(xscale="log", title=task[2], xlabel="iterations", xlim=(0.7, 200), ylim=(0.4, 1.62))
         ax.set_xticks([1, 3, 10, 40, 160], ["1", "3", "10", "40", "160"])
@@ -180,7 +178,7 @@ def convergence_by_task(results):
 def convergence(results):
     figure, axes = style.panels(1, 2, 2.7, sharey=True)
     for ax, (density, name) in zip(axes[0], DENSITIES):
-        draw_quantiles(ax, results, density=density, tasks=TASKS[1:])
+        draw_quantiles(ax, results, TASKS[1:], density)
         ax.set(xscale="log", yscale="log", title=f"density: {name}", xlabel="iterations", xlim=(0.75, 200), ylim=(0.42, 1.6))
         ax.set_xticks(ITERATIONS, [str(i) if i in (1, 2, 3, 5, 10, 20, 40, 80, 160) else "" for i in ITERATIONS])
         ticks = (0.5, 0.6, 0.7, 0.8, 0.9, 1, 1.2, 1.4, 1.6)
@@ -193,9 +191,9 @@ def convergence(results):
     return figure, {}
 
 
-def over_time(results, draw, label, height=2.6, rows=1, **keywords):
-    """Panels over the time of the three tasks; `draw(ax, row, rows of the task)`."""
-    figure, axes = style.panels(rows, 3, height, sharey="row", sharex="col", **keywords)
+def over_time(draw, label, height=2.6, rows=1):
+    """Panels over the time of the three tasks; `draw(ax, row, task)`."""
+    figure, axes = style.panels(rows, 3, height, sharey="row", sharex="col")
     for j, (_, task, title) in enumerate(TASKS):
         for i in range(rows):
             draw(axes[i, j], i, task)
@@ -216,7 +214,7 @@ def positions(results):
             ax.plot(time, (low + high) / 2, color=colour, ls=line, lw=1.1, label=name)
             ax.fill_between(time, low, high, color=colour, alpha=0.3, lw=0)
 
-    figure, axes = over_time(results, draw, ["position of the tip [mm]"])
+    figure, axes = over_time(draw, ["position of the tip [mm]"])
     figure.get_layout_engine().set(rect=(0, 0, 1, 0.92))
     figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="upper center", ncol=3, handlelength=2)
     return figure, {}
@@ -231,7 +229,7 @@ def model_force(results):
         ax.plot(time, (low + high) / 2, color=style.PETROL, lw=0.9)
         ax.axhline(published.value("L1.threshold"), color=style.RED, ls="--", lw=0.9)
 
-    figure, axes = over_time(results, draw, ["model force [N]"])
+    figure, axes = over_time(draw, ["model force [N]"])
     # The taps of task 2 are ten times as strong as all else.
     axes[0, 0].set_yscale("symlog", linthresh=0.5, linscale=1.2)
     axes[0, 0].set_ylim(0, 1.15 * max(ax.dataLim.y1 for ax in axes[0]))
@@ -244,23 +242,24 @@ def model_force(results):
     return figure, {"spans": BINS}
 
 
-def _ratio_over_time(results, column, colour, word):
-    above = column == "ratio_max"
+def ratio_over_time(results, extreme):
+    """The "greatest" or the "least" of a step's contacts after each number of iterations."""
+    above = extreme == "greatest"
+    column, colour, published_end = ("ratio_max", style.PETROL, "at_most") if above else ("ratio_min", style.AMBER, "at_least")
 
     def draw(ax, i, task):
         rows = ratios(results, task, ITERATIONS[i])
         time, low, high = span(rows["time_s"], rows[column], FEW_BINS)
         ax.fill_between(time, low, high, color=colour, alpha=0.75, lw=0.4, edgecolor=colour)
         ax.axhline(1, color=style.BLACK, lw=0.7, ls="--")
-        once = published.entries()["R1.once"]["at_most" if column == "ratio_max" else "at_least"]
         # Tells the extreme even if the curve lies on the dashed line.
-        extreme = rows[column].max() if above else rows[column].min()
-        style.note(ax, 0.5, 0.8 if above else 0.15, f"{'≤' if above else '≥'} {extreme:.4g}", colour, ha="center", va="center")
+        said = f"≤ {rows[column].max():.4g}" if above else f"≥ {rows[column].min():.4g}"
+        style.note(ax, 0.5, 0.8 if above else 0.15, said, colour, ha="center", va="center")
         if ITERATIONS[i] == 1:
-            ax.axhline(once, **style.PUBLISHED_LINE)
+            ax.axhline(published.entries()["R1.once"][published_end], **style.PUBLISHED_LINE)
 
     labels = [f"{n}" for n in ITERATIONS]
-    figure, axes = over_time(results, draw, labels, height=7.6, rows=len(ITERATIONS))
+    figure, axes = over_time(draw, labels, height=7.6, rows=len(ITERATIONS))
     figure.supylabel("stiffness ratio after so many iterations", fontsize=8)
     for ax in axes.flat:
         ax.set_ylim((0.95, 1.4) if above else (0.4, 1.05))
@@ -268,12 +267,24 @@ def _ratio_over_time(results, column, colour, word):
         ax.grid(False)
     style.note(axes[0, 0], 0.98, 0.3 if above else 0.1, f"published: {'1.3' if above else '0.8'}", style.RED, ha="right",
                va="bottom")
-    return figure, {"word": word, "first": ', '.join(labels[:-1]), "last": labels[-1], "spans": FEW_BINS, "end": 'upper' if above else 'lower'}
+    return figure, {"first": ", ".join(labels[:-1]), "last": labels[-1], "spans": FEW_BINS}
 
 
-def greatest_ratio(results):
-    return _ratio_over_time(results, "ratio_max", style.PETROL, "greatest")
+TIMES = (40, 10, 4)  # the points, of which a curve each
 
 
-def least_ratio(results):
-    return _ratio_over_time(results, "ratio_min", style.AMBER, "least")
+def decoupling(results):
+    """How far stiffness shaping decouples the force from the density of points (P1; ours): error over the updates."""
+    shaped = [case["values"] for case in cases(results, "P1") if case["name"].startswith(("m = ", "shaped_stiffness"))]
+    shaped.sort(key=lambda values: values["updates"])
+    figure, ((ax,),) = style.panels(1, 1, 2.6)
+    figure.set_size_inches(3.8, 2.6)
+    for times, look in zip(TIMES, style.SERIES):
+        ax.plot([values["updates"] for values in shaped], [100 * values[f"x{times}"] for values in shaped], color=look.colour,
+                marker=look.marker, label=f"{times} times the points")
+    ax.set(xscale="log", yscale="log", xlabel="updates of the weights", ylabel="change of the force, rms [%]")
+    ax.axhline(5, color=style.GREY, ls="--", lw=0.9)
+    ax.axvline(3, color=style.RED, ls=(0, (1, 1.5)), lw=1)
+    ax.legend(loc="lower left", fontsize=6.5)
+    style.note(ax, 0.4, 0.97, "red: the thesis's three updates", style.RED)
+    return figure, {}

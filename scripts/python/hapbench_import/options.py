@@ -80,16 +80,12 @@ def options_of(asked):
 
 
 def list_of_presets():
-    return [{"preset": name, "description": _read_preset(_file_of(name)).get("description", ""), "file": _file_of(name)}
-            for name in _preset_names()]
+    return [{"preset": name, "description": _read_preset(file).get("description", ""), "file": file} for name, file in _presets().items()]
 
 
-def _preset_names():
-    return sorted(file.stem for file in PRESETS.glob("*.json"))
-
-
-def _file_of(name):
-    return str(PRESETS / f"{name}.json")
+def _presets():
+    """The files of the presets by their names."""
+    return {file.stem: str(file) for file in sorted(PRESETS.glob("*.json"))}
 
 
 def _read_preset(file):
@@ -110,8 +106,9 @@ def _read_preset(file):
 
 def _apply_preset(options, file):
     if not file.endswith(".json"):
-        require_name("preset: got", file, _preset_names())
-        file = _file_of(file)
+        presets = _presets()
+        require_name("preset: got", file, list(presets))
+        file = presets[file]
     try:
         for name, value in _read_preset(file).items():
             require_name("got field", name, list(_FIELDS))

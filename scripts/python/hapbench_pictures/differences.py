@@ -6,7 +6,7 @@ import json
 import math
 import zlib
 
-from hapbench.columns import read_rows
+from hapbench.columns import is_number, read_rows
 from hapbench.errors import InputError
 from hapbench.results import SCENARIO, SUMMARY, read_object
 
@@ -44,9 +44,8 @@ def results_below(folder):
 def of_runs(a, b):
     told = [read_object(folder / SUMMARY, parse_float=str, parse_int=str) for folder in (a, b)]
     tables = [(folder / TRAJECTORY).is_file() for folder in (a, b)]
-    hashes = [of.get("state_hash", "") for of in told]
     return {"field": changed(*map(fields_of, (a, b))), "result": changed(*map(results_of, told)),
-            "state hash": changed({"state_hash": hashes[0]}, {"state_hash": hashes[1]}),
+            "state hash": changed(*({"state_hash": of.get("state_hash", "")} for of in told)),
             TRAJECTORY: of_tables(a / TRAJECTORY, b / TRAJECTORY) if all(tables) else
             [(TRAJECTORY, *("there" if there else "-" for there in tables), NO_NUMBER, NO_NUMBER)] if any(tables) else []}
 
@@ -80,10 +79,7 @@ def changed(a, b):
 
 
 def number(text):
-    try:
-        return float(text)
-    except ValueError:
-        return math.nan
+    return float(text) if is_number(text) else math.nan
 
 
 def sizes(a, b, largest=0.0):

@@ -35,13 +35,11 @@ def given_runs(words):
     found = {}
     for word in words:
         folder = Path(word)
+        if folder.is_file() and (folder.parent / SUMMARY).is_file():
+            folder = folder.parent  # whoever types RUN/trajectory.csv means RUN
         if not folder.is_dir():
-            # Whoever types RUN/trajectory.csv means RUN.
-            if folder.is_file() and (folder.parent / SUMMARY).is_file():
-                folder = folder.parent
-            else:
-                raise InputError(f"{folder}: no such folder; allowed: a folder that \"hapbench run\", "
-                                 f"\"compare\" or \"sweep\" wrote{nearest(folder.name, [beside.name for beside in folder.parent.glob('*/')])}")
+            raise InputError(f"{folder}: no such folder; allowed: a folder that \"hapbench run\", "
+                             f"\"compare\" or \"sweep\" wrote{nearest(folder.name, [beside.name for beside in folder.parent.glob('*/')])}")
         runs = [load_run(folder, folder.name)] if (folder / SUMMARY).is_file() else compared(folder)
         if not runs:
             raise InputError(f"{folder}: holds neither {SUMMARY} nor folders with one nor {SWEEP}; allowed: a folder that "
@@ -58,8 +56,7 @@ def compared(folder):
     if not table.is_file():
         return runs
     named = [row.get("algorithm") for row in read_records(table)]
-    order = {name: i for i, name in reversed(list(enumerate(named)))}
-    return sorted((run for run in runs if run.algorithm in order), key=lambda run: order[run.algorithm])
+    return sorted((run for run in runs if run.algorithm in named), key=lambda run: named.index(run.algorithm))
 
 
 def labels(runs):

@@ -98,10 +98,8 @@ def look_of(algorithm, **more):
 class Limits:
     """limit.csv and limit_runs.csv: the limit of a field, over other ones where `limit --over` varied them."""
 
-    def __init__(self, files, folder="", **of):
-        """`of`: values of columns, which rows must have."""
-        self.rows, self.runs = ([row for row in files.records(f"{folder}{name}") if all(row[key] == value for key, value in of.items())]
-                                for name in (LIMIT, LIMIT_RUNS))
+    def __init__(self, files, folder):
+        self.rows, self.runs = (files.records(f"{folder}{name}") for name in (LIMIT, LIMIT_RUNS))
         self.field, given = self.rows[0]["field"], list(self.rows[0])
         self.over = [name for name in given[: given.index("algorithm")] if name not in ("scenario", "device")]
         if len(self.over) > 1:  # a curve for each value of the others
@@ -214,7 +212,7 @@ def class_legend(found):
     return entries
 
 
-def draw_devices(files, folder=""):
+def draw_devices(files, folder):
     """The limit on each device, a panel for each scene."""
     rows = files.records(f"{folder}{LIMIT}")
     devices, scenes, algorithms = (list(dict.fromkeys(row[name] for row in rows)) for name in ("device", "scenario", "algorithm"))
@@ -243,7 +241,7 @@ def with_room(low, high, above=1.0):
     return low / room, high * room * above
 
 
-def draw_converge(files, _=""):
+def draw_converge(files):
     """The relative error of each metric over the refined field, beside the line of the formal order, and over the time of a run:
     filled marks where an order is stated, hollow ones of what the levels show without."""
     orders, levels, times = files.records(ORDERS), files.records(LEVELS), numbers(files.records(TIMES), "seconds")
@@ -273,7 +271,7 @@ def draw_converge(files, _=""):
 STIFFNESS, DEPTH, VIBRATION = "stiffness_N_per_m", "inside_max_m", "force_rms_above_30Hz_N"
 
 
-def draw_tune(files, _=""):
+def draw_tune(files):
     """Stiffness against depth and against vibration, and the two against each other with the Pareto front of what is feasible; the
     choice of each law is ringed. Filled marks are feasible, hollow ones settled but without the margin or beyond a limit."""
     trials, laws = files.records(TRIALS), files.records(LAWS)
@@ -307,9 +305,9 @@ def draw_tune(files, _=""):
         number_ticks(ax.yaxis)
         ax.tick_params(axis="x", labelrotation=40)
     handles, labels = left.get_legend_handles_labels()
-    further = ((Line2D([], [], ls="none", marker="o", ms=8, color=BLACK, mfc="none"), "the choice"),
-               (Line2D([], [], ls="none", marker="s", color=GREY, mfc="white"), "not feasible"))
-    legend_above(figure, [*handles, *(handle for handle, _ in further)], [*labels, *(label for _, label in further)])
+    choice = Line2D([], [], ls="none", marker="o", ms=8, color=BLACK, mfc="none")
+    not_feasible = Line2D([], [], ls="none", marker="s", color=GREY, mfc="white")
+    legend_above(figure, [*handles, choice, not_feasible], [*labels, "the choice", "not feasible"])
     return figure
 
 

@@ -14,7 +14,6 @@ from hapbench_command import nearest
 from hapbench_report.markup import column
 from hapbench_report.recording import SETTLING_S, settled_rows
 
-
 TRAJECTORY = "trajectory.csv"
 REFERENCE = "force_reference.csv"
 # Tables of a row per recorded step, in which a column is looked for.
@@ -66,8 +65,7 @@ SHORT = {q.name: q for q in (
     Quantity("ratio", "stiffness ratio", "K", 1, TRAJECTORY, ("ratio_min", "ratio_max"), "band"),
     Quantity("contacts", "colliding points", "", 1, TRAJECTORY, ("colliding",)),
     Quantity("rendered", "rendered points", "", 1, TRAJECTORY, ("rendered",)),
-    Quantity("speed", "velocity of the tip", "m/s", 1, TRAJECTORY,
-             ("vx_m_per_s", "vy_m_per_s", "vz_m_per_s"), "norm"),
+    Quantity("speed", "velocity of the tip", "m/s", 1, TRAJECTORY, vector("v", "m_per_s"), "norm"),
     Quantity("x", "tip x", "mm", 1e3, TRAJECTORY, ("px_m",)),
     Quantity("y", "tip y", "mm", 1e3, TRAJECTORY, ("py_m",)),
     Quantity("z", "tip z", "mm", 1e3, TRAJECTORY, ("pz_m",)),
@@ -77,10 +75,6 @@ SHORT = {q.name: q for q in (
 PATH = "path"  # the tip's way in space, which is not a function of time
 # Drawn by default, as far as a run recorded them.
 USUAL = ("force", "reference", "force_error", "depth", "ratio", "contacts", "energy", PATH)
-
-
-def by_column(name, file):
-    return Quantity(name, *column(name, (1e-3,)), file, (name,))
 
 
 def chosen(names, runs):
@@ -97,7 +91,7 @@ def quantity(name, runs):
         for file in tables_of(run):
             for title in header(run.folder / file):
                 known.setdefault(title, file)
-    found = SHORT.get(name) or (by_column(name, known[name]) if name in known else None)
+    found = SHORT.get(name) or (Quantity(name, *column(name, (1e-3,)), known[name], (name,)) if name in known else None)
     if not found:
         hint = nearest(name, [*SHORT, PATH, *known]) or f": {', '.join(known)}"
         raise InputError(f"--y: got \"{name}\"; allowed: {', '.join([*SHORT, PATH])}, or a column of "

@@ -3,15 +3,14 @@ each quantity."""
 import base64
 import json
 import math
-import shlex
 from pathlib import Path
 
 import numpy as np
 from scipy import stats
 
 from hapbench.errors import InputError
-from hapbench.results import SCENARIO, SUMMARY, at, number_or_none
-from hapbench_command import DIFFERENT, SUCCESS, write
+from hapbench.results import SCENARIO, SUMMARY, at
+from hapbench_command import DIFFERENT, SUCCESS, shell_line, write
 from hapbench_looks import look
 from hapbench_report.markup import (cell, columns, command, deserved_digits, heading_cell, in_colour, named, number, number_cell, table,
                                     text)
@@ -105,12 +104,9 @@ def curves_section(runs, labels):
                        f"{q.axis} over time", spoken(q, samples, labels), xlabel="time [s]", xlim=span) for q in quantities]
     lacking = [SHORT[name] for name, section in (("energy", "metrics"), ("reference", "fidelity")) if any(section in run.sections for run in runs)]
     hints = "".join(f" <code>{switch_of(q.file)}</code> adds the {q.title}." for q in lacking if q not in quantities)
-    return (f"<p>{key(light)} Triangles and dotted lines: first touch. Outlines: the tool of the first run at four times.{hints}</p>"
+    names = " ".join(f"<b>{in_colour(one, text(one.label))}</b>" for one in light)
+    return (f"<p>{names} Triangles and dotted lines: first touch. Outlines: the tool of the first run at four times.{hints}</p>"
             f"<div class=curves>{''.join(figures)}</div>")
-
-
-def key(light):
-    return " ".join(f"<b>{in_colour(one, text(one.label))}</b>" for one in light)
 
 
 def spoken(quantity, samples, labels):
@@ -178,9 +174,11 @@ def summary_section(runs, labels):
 
 def first_table(runs, labels):
     shown = [name for name in FIRST if any(run.metric(name) is not None for run in runs)]
-    return table(*metric_rows(runs, labels, "metrics", shown, (heading_cell("Outcome"), [outcome_cell(run) for run in runs]),
-                              (heading_cell("In contact", True), [cell(contact_text(run), run.metric("contact_share") or 0, "number") for run in runs])),
-                 classes="sortable")
+    headings, cells = columns(shown, [[run.metric(name) for name in shown] for run in runs],
+                              [[run.tolerance("metrics", name) for name in shown] for run in runs])
+    rows = [[cell(named(label), classes="name"), outcome_cell(run), cell(contact_text(run), run.metric("contact_share") or 0, "number"), *own]
+            for run, label, own in zip(runs, labels, cells)]
+    return table([heading_cell("Run"), heading_cell("Outcome"), heading_cell("In contact", True), *headings], rows, classes="sortable")
 
 
 def outcome_cell(run):
@@ -195,11 +193,8 @@ def outcome_cell(run):
 
 
 def contact_text(run):
-    return f"{percent(run.metric('contact_share'))} of {number(at(run.summary, '/duration_s'), 4)} s"
-
-
-def percent(share):
-    return "–" if share is None else f"{number(100 * share, 3)} %"
+    share = run.metric("contact_share")
+    return f"{'–' if share is None else f'{number(100 * share, 3)} %'} of {number(at(run.summary, '/duration_s'), 4)} s"
 
 
 def warnings_section(runs, labels):
@@ -211,14 +206,6 @@ def diagnosis_section(runs, labels):
     """What is wrong by the rules of the program, and what to try; of runs that were asked for it."""
     said = [(label, found) for run, label in zip(runs, labels) for found in run.summary.get("diagnosis", ())]
     return said and "<ul>" + "".join(f"<li><b>{text(label)}:</b> {text(found['says'])} <i>try: {text(found['try'])}</i></li>" for label, found in said) + "</ul>"
-
-
-def metric_rows(runs, labels, section, names, *beside):
-    """Headings and rows of a table of metrics, a row for each run; `beside`: pairs of a heading and its cells."""
-    values = [[number_or_none(run.sections.get(section, {}).get(name)) for name in names] for run in runs]
-    headings, cells = columns(names, values, [[run.tolerance(section, name) for name in names] for run in runs])
-    rows = [[cell(named(label), classes="name"), *(of[i] for _, of in beside), *own] for i, (label, own) in enumerate(zip(labels, cells))]
-    return [heading_cell("Run"), *(heading for heading, _ in beside), *headings], rows
 
 
 def metrics_section(runs, labels):
@@ -270,9 +257,9 @@ def scenario_section(runs, labels):
 
 
 def commands_section(runs, words):
-    lines = [f"hapbench run {quoted(run.folder / 'scenario.effective.json')}{plugin_option(run)} "
-             f"--out {quoted(run.folder.name + '_again')}" for run in runs if run.scenario]
-    given = " ".join(quoted(word) for word in words)
+    lines = [f"hapbench run {shell_line(run.folder / 'scenario.effective.json')}{plugin_option(run)} "
+             f"--out {shell_line(run.folder.name + '_again')}" for run in runs if run.scenario]
+    given = shell_line(*words)
     return ((f"<p>Each run again, the same bytes:</p>{command(chr(10).join(lines))}" if lines else "")
             + f"<p>Pictures and this page:</p>{command(f'hapbench plot {given}{chr(10)}hapbench report {given}')}"
             + "<p class=note>The paths are those of the machine that wrote this page. Elsewhere, save a scenario from above as a file.</p>")
@@ -281,8 +268,4 @@ def commands_section(runs, words):
 def plugin_option(run):
     """The option that loads a plugin's law; results know it by its file's name."""
     file = at(run.summary, "/provenance/plugin/file")
-    return f" --module {quoted(file)}" if file else ""
-
-
-def quoted(path):
-    return shlex.quote(str(path))
+    return f" --module {shell_line(file)}" if file else ""

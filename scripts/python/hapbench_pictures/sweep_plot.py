@@ -25,8 +25,6 @@ FAILURES = ("diverges", "error")
 # The look of places without a number.
 NO_VALUE = {"facecolor": "#F4F4F4", "edgecolor": "#C8C8C8", "lw": 0.5}
 WIDTH = 100  # of text
-
-
 SIGNS = {"<": operator.lt, "<=": operator.le, ">": operator.gt, ">=": operator.ge, "=": operator.eq, "!=": operator.ne}
 PANELS_WIDE = 3
 MOST_COSINES, ROWS_PER_COSINE = 6, 10
@@ -73,9 +71,6 @@ class Sweep:
         texts = [row[field] for row in self.rows]
         return np.array([float(text) for text in texts]) if all(map(is_number, texts)) else texts
 
-    def axis(self, i):
-        return axis(self.fields[i], self.fields)
-
     def is_logarithmic(self, i):
         """As the field was varied: in equal ratios or steps; a list of other values by its span."""
         if "scale" in self.axes[i]:
@@ -111,7 +106,7 @@ class Sweep:
 
 def draw_sweep(sweep):
     with plt.rc_context(SETTINGS):
-        axes = [Axis.of(sweep.axis(i), sweep.column(field), sweep.is_logarithmic(i)) for i, field in enumerate(sweep.fields)]
+        axes = [Axis.of(axis(field, sweep.fields), sweep.column(field), sweep.is_logarithmic(i)) for i, field in enumerate(sweep.fields)]
         of_numbers = len(axes) == 2 and not any(of.names for of in axes)
         if sweep.is_cloud or of_numbers and on_grid(axes, sweep.values) is None:
             return draw_cloud(sweep, axes)

@@ -66,10 +66,6 @@ def run(options):
     print(f"{out}: {len(page.encode()) / 1e6:.1f} MB, {len(runs)} runs")
 
 
-def main(words=None):
-    options = arguments(words)
-    return exit_status("report", "writing the report", lambda: run(options))
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    asked_for = arguments(sys.argv[1:])
+    sys.exit(exit_status("report", "writing the report", lambda: run(asked_for)))

@@ -88,9 +88,9 @@ def table(headings, rows, caption="", classes="", element_id=""):
             f"<tbody>\n{body}\n</tbody></table></div>")
 
 
-def folded(summary, content, element_id="", classes=""):
+def folded(summary, content, classes=""):
     """Ready HTML that opens at a click, and when a link leads into it."""
-    attributes = (f' id="{element_id}"' if element_id else "") + (f' class="{classes}"' if classes else "")
+    attributes = f' class="{classes}"' if classes else ""
     return f"<details{attributes}><summary>{summary}</summary>{content}</details>"
 
 
@@ -131,9 +131,8 @@ def deserved_digits(value, tolerance, most):
     return max(1, min(most, math.floor(math.log10(abs(value))) - math.floor(math.log10(tolerance)) + 1))
 
 
-def columns(names, rows, tolerances=None):
+def columns(names, rows, tolerances):
     """Heading cells of numbers, and for each row its cells; `rows`: lists of numbers or None, of these names, `tolerances`: of them."""
-    tolerances = tolerances or [[None] * len(names)] * len(rows)
     heads = [column(name, [v for v in values if v is not None]) for name, values in zip(names, zip(*rows))]
     return ([heading_cell(text(title), True, unit) for title, unit, _ in heads],
             [[number_cell(None if v is None else v * factor, deserved_digits(v, t, 3)) for v, t, (_, _, factor) in zip(row, within, heads)]
