@@ -44,7 +44,8 @@ void PenaltyRendering::compute(const ToolState& tool, ContactBuffer& contacts, R
 void PenaltyRendering::render(const ToolState& tool, ContactBuffer& contacts, RenderedForce& out) noexcept {
   out.depth_max = contacts.largest_depth();
   if (local_average_) local_average_->process(contacts);
-  if (reduction_) reduce(contacts);
+  // A single contact cannot be similar to another one.
+  if (reduction_ && (contacts.size() > 1 || skips_ == Skips::off)) reduction_->process(contacts);
   if (contacts.empty() && skips_ == Skips::on) return;
 
   const LawForce& law = law_force_ = law_->evaluate(contacts);
@@ -55,14 +56,11 @@ void PenaltyRendering::render(const ToolState& tool, ContactBuffer& contacts, Re
   if (contacts.empty()) return;
   in_contact_ = true;
   Mat3 loads;  // not set where nothing reads it
-  if (damping_and_limits_.needs_loads()) loads = loads_of(contacts);
+  // Those of weighted springs; else the spring force as one load along itself.
+  if (damping_and_limits_.needs_loads())
+    loads = law_->gives_weights() ? Mat3(K_ * load_tensor(contacts)) : load_along(law.spring);
   out.rendered = damping_and_limits_.rendered_force(law.spring, law.S, velocity_at(contacts, tool), loads);
   out.friction = damping_and_limits_.friction_state();
-}
-
-/// The loads of weighted springs; else the spring force as one load along itself.
-Mat3 PenaltyRendering::loads_of(const ContactBuffer& contacts) const noexcept {
-  return law_->gives_weights() ? Mat3(K_ * load_tensor(contacts)) : load_along(law_force_.spring);
 }
 
 ContactVelocity PenaltyRendering::velocity_at(const ContactBuffer& contacts, const ToolState& tool) const noexcept {
@@ -73,11 +71,6 @@ ContactVelocity PenaltyRendering::velocity_at(const ContactBuffer& contacts, con
     velocity.normal += law_->turning_velocity(contacts, S, tool);
   }
   return velocity;
-}
-
-/// A single contact cannot be similar to another one.
-void PenaltyRendering::reduce(ContactBuffer& contacts) noexcept {
-  if (contacts.size() > 1 || skips_ == Skips::off) reduction_->process(contacts);
 }
 
 SpringState PenaltyRendering::spring_state(const ToolState& tool, const ContactBuffer& contacts) const noexcept {

@@ -29,8 +29,6 @@ class PenaltyRendering final : public ForceAlgorithm {
 
  private:
   void render(const ToolState& tool, ContactBuffer& contacts, RenderedForce& out) noexcept;
-  void reduce(ContactBuffer& contacts) noexcept;
-  Mat3 loads_of(const ContactBuffer& contacts) const noexcept;
   ContactVelocity velocity_at(const ContactBuffer& contacts, const ToolState& tool) const noexcept;
 
   std::unique_ptr<PointStage> local_average_;  ///< may be null

@@ -47,12 +47,6 @@ Table& table() {
 constexpr const ModelInfo* kStages[] = {&kLocalAverageInfo, &kGradientReductionInfo,        &kDampingAndLimitsInfo,
                                         &kEnergyTankInfo,   &kActuatorLimitedPassivityInfo, &kPassivityControllerInfo};
 
-AlgorithmEntry* find(std::string_view name) {
-  std::deque<AlgorithmEntry>& entries = table().entries;
-  const auto found = std::find_if(entries.begin(), entries.end(), [name](auto& e) { return e.info->name == name; });
-  return found == entries.end() ? nullptr : &*found;
-}
-
 const AlgorithmEntry& algorithm_entry(std::string_view name) {
   if (const AlgorithmEntry* entry = find_algorithm(name)) return *entry;
   throw std::invalid_argument("unknown algorithm " + std::string(name));
@@ -144,7 +138,9 @@ std::span<const ModelInfo* const> stages() {
 }
 
 const AlgorithmEntry* find_algorithm(std::string_view name) {
-  return find(name);
+  const std::deque<AlgorithmEntry>& entries = table().entries;
+  const auto found = std::find_if(entries.begin(), entries.end(), [name](auto& e) { return e.info->name == name; });
+  return found == entries.end() ? nullptr : &*found;
 }
 
 AlgorithmEntry checked_copy(AlgorithmEntry entry) {
@@ -172,18 +168,16 @@ AlgorithmEntry checked_copy(AlgorithmEntry entry) {
 void add_algorithm(AlgorithmEntry entry) {
   entry = checked_copy(std::move(entry));
   auto& [entries, built_in_size, names, count] = table();
-  AlgorithmEntry* same = find(entry.info->name);
-  if (same == nullptr) {
+  const auto same = std::find(names.begin(), names.end(), entry.info->name);
+  const auto place = static_cast<std::size_t>(same - names.begin());
+  if (place < built_in_size) refuse("\"" + *same + "\" is the name of a built-in algorithm");
+  ++count;
+  if (same == names.end()) {
     names.emplace_back(entry.info->name);
     entries.push_back(std::move(entry));
-    ++count;
-    return;
+  } else {
+    entries[place] = std::move(entry);
   }
-  const auto first_added = entries.begin() + static_cast<std::ptrdiff_t>(built_in_size);
-  if (std::none_of(first_added, entries.end(), [same](const AlgorithmEntry& e) { return &e == same; }))
-    refuse("\"" + std::string(entry.info->name) + "\" is the name of a built-in algorithm");
-  *same = std::move(entry);
-  ++count;
 }
 
 std::size_t additions() {

@@ -1,13 +1,10 @@
 #include "device_model/admittance_device.hpp"
 
-#include "device_model/ideal_device.hpp"
-
 namespace hapbench {
 
 void HandleMechanics::reset(const ToolState& tool) noexcept {
   carriage_ = handle_ = {tool.pose.position, tool.velocity};
-  work_ = {};
-  stored_at_reset_ = stored();
+  work_ = {.stored = -stored()};
 }
 
 // Midpoint velocities w solve, with the stretch s = x_c - x_h and a = k dt / 2 + c,
@@ -33,12 +30,6 @@ void HandleMechanics::advance(const Vec3& hand, const Vec3& actuator, double dt)
   work_.actuator += actuator.dot(w_c) * dt;
   work_.dissipated -=
       (config_.friction * w_c.squaredNorm() + config_.structure_damping * (w_c - w_h).squaredNorm()) * dt;
-}
-
-DeviceEnergy HandleMechanics::energy() const noexcept {
-  DeviceEnergy energy = work_;
-  energy.stored = stored() - stored_at_reset_;
-  return energy;
 }
 
 double HandleMechanics::stored() const noexcept {

@@ -60,15 +60,8 @@ constexpr DevicePreset kPresets[] = {
 }  // namespace
 
 const char* source_text(NumberSource source) noexcept {
-  switch (source) {
-    case NumberSource::chai3d:
-      return "CHAI3D 3.3.0, src/devices/CPhantomDevices.cpp and CDeltaDevices.cpp";
-    case NumberSource::data_sheet:
-      return "the maker's data sheet";
-    case NumberSource::ours:
-      break;
-  }
-  return "(ours)";
+  if (source == NumberSource::chai3d) return "CHAI3D 3.3.0, src/devices/CPhantomDevices.cpp and CDeltaDevices.cpp";
+  return source == NumberSource::data_sheet ? "the maker's data sheet" : "(ours)";
 }
 
 std::span<const DevicePreset> device_presets() noexcept {

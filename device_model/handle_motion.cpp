@@ -87,8 +87,7 @@ HandleMotion::HandleMotion(const ImpedanceDeviceConfig& device, const AttachedHa
 
 void HandleMotion::reset(const HandleState& handle) noexcept {
   handle_ = handle;
-  work_ = {};
-  stored_at_reset_ = 0.5 * handle_mass_ * handle_.velocity.squaredNorm();
+  work_ = {.stored = -stored()};
   take_hand(Vec3::Zero());
 }
 
@@ -138,12 +137,6 @@ void HandleMotion::move(Eigen::Index axis, double motors, double friction, const
   work_.hand += hand * way - 0.5 * hand_.stiffness * way * way - hand_.damping * squares -
                 0.5 * hand_.mass * (after * after - v * v);
   work_.dissipated += friction * way - viscous_ * squares;
-}
-
-DeviceEnergy HandleMotion::energy() const noexcept {
-  DeviceEnergy energy = work_;
-  energy.stored = 0.5 * handle_mass_ * handle_.velocity.squaredNorm() - stored_at_reset_;
-  return energy;
 }
 
 namespace {
@@ -238,8 +231,7 @@ ElasticMotion::Stretch ElasticMotion::stretch(double time) const {
 
 void ElasticMotion::reset(const HandleState& handle) noexcept {
   motor_ = handle_ = handle;
-  work_ = {};
-  stored_at_reset_ = stored();
+  work_ = {.stored = -stored()};
   take_hand(Vec3::Zero());
 }
 
@@ -338,12 +330,6 @@ double ElasticMotion::advance_to_change(Axis& axis, const Stretch& stretch, doub
 double ElasticMotion::stored() const noexcept {
   return 0.5 * motor_mass_ * motor_.velocity.squaredNorm() + 0.5 * handle_mass_ * handle_.velocity.squaredNorm() +
          0.5 * transmission_.stiffness * (motor_.position - handle_.position).squaredNorm();
-}
-
-DeviceEnergy ElasticMotion::energy() const noexcept {
-  DeviceEnergy energy = work_;
-  energy.stored = stored() - stored_at_reset_;
-  return energy;
 }
 
 }  // namespace hapbench

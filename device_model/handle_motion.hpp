@@ -72,11 +72,12 @@ class HandleMotion {
 
   const HandleState& handle() const noexcept { return handle_; }
   /// Energy of the handle without the mass of a fixed hand, whose inertia is part of the hand's work.
-  DeviceEnergy energy() const noexcept;
+  DeviceEnergy energy() const noexcept { return work_.plus_stored(stored()); }
 
  private:
   void advance_with_friction(Eigen::Index axis, double motors, const FreeMotion& stretch) noexcept;
   double hand_at_rest(Eigen::Index axis) const noexcept;
+  double stored() const noexcept { return 0.5 * handle_mass_ * handle_.velocity.squaredNorm(); }
   void move(Eigen::Index axis, double motors, double friction, const FreeMotion& by) noexcept;
 
   double handle_mass_, viscous_, coulomb_;
@@ -86,8 +87,7 @@ class HandleMotion {
   HandleState handle_;
   Vec3 origin_ = Vec3::Zero();  ///< position of the handle at the sample [m]
   Vec3 push_ = Vec3::Zero();    ///< force of the hand on a handle at rest there [N]
-  DeviceEnergy work_;           ///< `stored` is not used
-  double stored_at_reset_ = 0.0;
+  DeviceEnergy work_;           ///< `stored`: minus what was at the reset
 };
 
 /// An elastic transmission of an impedance device: a spring and a damper between its motors and its handle.
@@ -138,7 +138,7 @@ class ElasticMotion {
   /// The motors' side, which the encoder measures.
   const HandleState& motor() const noexcept { return motor_; }
   /// As HandleMotion::energy; `stored` counts both masses and the spring.
-  DeviceEnergy energy() const noexcept;
+  DeviceEnergy energy() const noexcept { return work_.plus_stored(stored()); }
 
  private:
   enum : Eigen::Index { kMotor, kMotorSpeed, kHandle, kHandleSpeed, kForce, kPush };  ///< of the state
@@ -166,8 +166,7 @@ class ElasticMotion {
   HandleState motor_, handle_;
   Vec3 origin_ = Vec3::Zero();  ///< position of the handle at the sample [m]
   Vec3 push_ = Vec3::Zero();    ///< force of the hand on a handle at rest there [N]
-  DeviceEnergy work_;           ///< `stored` is not used
-  double stored_at_reset_ = 0.0;
+  DeviceEnergy work_;           ///< `stored`: minus what was at the reset
 };
 
 /// One axis of an impedance device in open loop, as HandleMotion moves it: m x'' = u(t - delay) + offset - b x' - c

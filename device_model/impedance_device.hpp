@@ -88,8 +88,6 @@ class ImpedanceDevice final : public Device {
 
   void reset(const ToolState& tool) noexcept override;
   MeasuredForce measure(const Vec3& hand_force) noexcept override { return {hand_force, Vec3::Zero()}; }
-  /// Does nothing, because the handle moves the tool.
-  void advance(const ToolState&, const Vec3&, double) noexcept override {}
   HandleState handle() const noexcept override { return elastic_ ? elastic_->motion.handle() : motion_.handle(); }
   std::optional<DeviceEnergy> energy() const noexcept override {
     return elastic_ ? elastic_->motion.energy() : motion_.energy();

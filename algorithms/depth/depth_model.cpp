@@ -81,20 +81,13 @@ constexpr ModelInfo kContinuousNormalProjectionInfo = {
         "sideways still drops its whole depth at once",
 };
 
-/// Normal projection without the jump (thesis F.1, Fig. F.4). The depth lies between the shortest distance d_sd to the
-/// surface of the tool and the exit distance d_np along the gradient, and each point remembers it from step to step:
-///
-///   d = d_sd                                  when the point enters the tool, or the run starts
-///   d <- min(d_np, max(d_sd, d + <dx, u>))    while it stays
-///
-/// where dx = dp + turn x (x - p) is the motion of the tool's material at the point during the step.
+/// Normal projection without the jump (thesis F.1, Fig. F.4), by the formula above: dx is the motion of the tool's
+/// material at the point during the step, and each point remembers its depth from step to step.
 ///
 ///  - No depth grows by more than |dx| in a step. This includes entry: seen from the tool, the point has moved by dx,
-///  so
-///    d_sd <= |dx|. Depths of a tool at rest do not creep.
+///    so d_sd <= |dx|. Depths of a tool at rest do not creep.
 ///  - Moving the tool along u changes d_np by the same amount. A point that the tool has pressed along u since the
-///  first
-///    touch therefore has d = d_np, also beyond the median line, where d_sd saturates.
+///    first touch therefore has d = d_np, also beyond the median line, where d_sd saturates.
 ///  - The gain from <dx, u> is work done against the force -K d u. Energy is created by d_sd alone, as in depth model
 ///    surface_normal, never by the projection. Some is lost where a point leaves sideways.
 ///

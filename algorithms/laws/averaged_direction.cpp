@@ -11,30 +11,24 @@ namespace {
 /// Below this mean gradient the direction is rounding noise, and the force is zero.
 constexpr double kCancelledBelow = 1e-9;
 
-/// Its one spring is compressed by d_r. The laws define no point of application.
-class AveragedDirectionLaw : public SingleSpringLaw {
+/// The answer of one spring of stiffness K that is compressed by d_r = depth(|sum u_i|) [m]. Leaves weights of 1. The
+/// laws define no point of application.
+template <class Depth>
+LawForce force_along_mean(ContactBuffer& contacts, double K, const Depth& depth) noexcept {
+  set_weights(contacts, 1.0);
+  const Vec3 gradients = gradient_sum(contacts);
+  const double length = gradients.norm();
+  if (length <= kCancelledBelow * static_cast<double>(contacts.size())) return {};
+  const Vec3 u = gradients / length;
+  return {-K * depth(length) * u, u * u.transpose()};
+}
+
+class OriginalAveraging final : public SingleSpringLaw {
  public:
   using SingleSpringLaw::SingleSpringLaw;
 
- protected:
-  /// The law's answer with d_r = depth(|sum u_i|) [m]. Leaves weights of 1.
-  template <class Depth>
-  LawForce force_along_mean(ContactBuffer& contacts, const Depth& depth) const noexcept {
-    set_weights(contacts, 1.0);
-    const Vec3 gradients = gradient_sum(contacts);
-    const double length = gradients.norm();
-    if (length <= kCancelledBelow * static_cast<double>(contacts.size())) return {};
-    const Vec3 u = gradients / length;
-    return {-K_ * depth(length) * u, u * u.transpose()};
-  }
-};
-
-class OriginalAveraging final : public AveragedDirectionLaw {
- public:
-  using AveragedDirectionLaw::AveragedDirectionLaw;
-
   LawForce evaluate(ContactBuffer& contacts) noexcept override {
-    return force_along_mean(contacts, [&contacts](double length) {
+    return force_along_mean(contacts, K_, [&contacts](double length) {
       simd::Pack depths(0.0);
       for (std::size_t i = 0; i < contacts.padded_size(); i += simd::lanes) depths += simd::load(&contacts.depth[i]);
       return simd::sum(depths) / length;
@@ -42,12 +36,12 @@ class OriginalAveraging final : public AveragedDirectionLaw {
   }
 };
 
-class HighestDepth final : public AveragedDirectionLaw {
+class HighestDepth final : public SingleSpringLaw {
  public:
-  using AveragedDirectionLaw::AveragedDirectionLaw;
+  using SingleSpringLaw::SingleSpringLaw;
 
   LawForce evaluate(ContactBuffer& contacts) noexcept override {
-    return force_along_mean(contacts, [&contacts](double) {
+    return force_along_mean(contacts, K_, [&contacts](double) {
       const auto depths = contacts.depth.begin();
       return *std::max_element(depths, depths + static_cast<std::ptrdiff_t>(contacts.size()));
     });

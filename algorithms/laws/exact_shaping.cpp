@@ -173,10 +173,8 @@ void refine(const Tensors& tensors, Vec6 w, Pass pass) noexcept {
   }
 }
 
-/// Computes the weights that minimise ½|S - I|²_F + (epsilon/2)|c|², c >= 0, S = sum c_i a_i, into `tensors` and
-/// returns the number of Newton steps. Precondition: all weights are 1. At the optimum <a_i, S> = 1 - epsilon c_i where
-/// c_i > 0 and >= 1 where c_i = 0, and tr S >= |S|²_F for any tensors of trace 1, hence lambda_max(S) <= (1 + sqrt
-/// 3)/2.
+/// solve_exact_shaping for any tensors a_i of trace 1, S = sum c_i a_i, with <a_i, S> in place of rho_i. Precondition:
+/// all weights are 1.
 template <class Tensors>
 int solve(const Tensors& tensors) noexcept {
   // Every tensor is active at w = identity, because a_i . identity is its trace.

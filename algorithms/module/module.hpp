@@ -84,7 +84,6 @@ class ModuleContacts final : public ContactSource {
   void contacts_at(const ToolPose& pose, ContactBuffer& contacts) noexcept override;
   std::size_t capacity() const noexcept override { return capacity_; }
   void reset() noexcept override;
-  const SearchWork& work() const noexcept override { return work_; }
 
  private:
   void take(std::size_t n, ContactBuffer& contacts) noexcept;
@@ -92,7 +91,6 @@ class ModuleContacts final : public ContactSource {
   ModuleState state_;
   std::size_t capacity_;
   double tool_length_;
-  SearchWork work_;
 };
 
 /// The pose of a tool of HapbenchRun::tool_length [m] for a module.

@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -40,8 +41,8 @@ Violation largest_violation(const ContactBuffer& c, const Vec3& x, double tolera
   const double most = simd::max_lane(largest);
   if (!(most > tolerance)) return {};
   for (std::size_t i = 0; i < c.padded_size(); i += simd::lanes) {
-    const simd::Mask here = amount(i) >= Pack(most);
-    if (simd::any(here)) return {i + simd::first(here), most};
+    const std::uint8_t here = simd::bits(amount(i) >= Pack(most));
+    if (here != 0) return {i + static_cast<std::size_t>(std::countr_zero(here)), most};
   }
   return {};
 }
@@ -256,8 +257,8 @@ constexpr double kSamePlace = 1e-7;
 
 /// Distance from a point to the second nearest other place [m].
 double distance_to_second(const PointShell& shell, std::size_t from) {
-  const double same = kSamePlace * (shell.bounds().max - shell.bounds().min).norm(), same2 = same * same;
-  double first2 = std::numeric_limits<double>::infinity(), second2 = first2;
+  const double same = kSamePlace * shell.bounds().size().norm(), same2 = same * same;
+  double first2 = kNever, second2 = kNever;
   const Vec3 here = shell.point(from).position;
   Vec3 nearest = here;
   for (std::size_t i = 0; i < shell.size(); ++i) {
@@ -338,26 +339,17 @@ void ShellConstraints::constraints_at(const ToolPose& proxy, const Vec3& wanted,
 }
 
 void SpringConstraints::constraints_at(const ToolPose& proxy, const Vec3&, ContactBuffer& contacts) noexcept {
-  constexpr double never = -std::numeric_limits<double>::infinity();
   contacts.clear();
   for (std::size_t j = 0; j < springs_->gradients.size(); ++j) {
     const Vec3& u = springs_->gradients[j];
     const double depth = proxy.position.dot(u);
     // False for a position that is not finite, which compresses no spring.
-    if (depth > never) push_spring(j, proxy.position, depth, u, contacts);
-    if (springs_->bilateral && -depth > never) push_spring(j, proxy.position, -depth, -u, contacts);
+    if (depth > -kNever) push_spring(j, proxy.position, depth, u, contacts);
+    if (springs_->bilateral && -depth > -kNever) push_spring(j, proxy.position, -depth, -u, contacts);
   }
   contacts.pad();
   ++work_.queries;
   work_.points_tested += springs_->gradients.size();
-}
-
-std::size_t SpringConstraints::capacity() const noexcept {
-  return springs_->gradients.size() * (springs_->bilateral ? 2 : 1);
-}
-
-double SpringConstraints::margin() const noexcept {
-  return std::numeric_limits<double>::infinity();
 }
 
 }  // namespace hapbench

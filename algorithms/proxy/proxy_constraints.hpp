@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <memory>
 
 #include "sim/contact/contact_buffer.hpp"
@@ -65,8 +66,11 @@ class ProxyConstraints {
   /// True if the force of a constraint acts at the point of its contact, false if it acts at the tip, which does not
   /// move when the tool turns.
   virtual bool act_at_points() const noexcept = 0;
-  virtual void reset() noexcept = 0;
-  virtual const SearchWork& work() const noexcept = 0;
+  virtual void reset() noexcept { work_ = {}; }
+  virtual const SearchWork& work() const noexcept { return work_; }
+
+ protected:
+  SearchWork work_;  ///< of constraints that have no search
 };
 
 /// Constraints of the shell points within the margin of the tool (ToolShape::surface_constraints) and of the patches of
@@ -100,15 +104,12 @@ class SpringConstraints final : public ProxyConstraints {
   explicit SpringConstraints(const SpringSet& springs) : springs_(&springs) {}
 
   void constraints_at(const ToolPose& proxy, const Vec3& wanted, ContactBuffer& contacts) noexcept override;
-  std::size_t capacity() const noexcept override;
-  double margin() const noexcept override;
+  std::size_t capacity() const noexcept override { return springs_->gradients.size() * (springs_->bilateral ? 2 : 1); }
+  double margin() const noexcept override { return std::numeric_limits<double>::infinity(); }
   bool act_at_points() const noexcept override { return false; }
-  void reset() noexcept override { work_ = {}; }
-  const SearchWork& work() const noexcept override { return work_; }
 
  private:
   const SpringSet* springs_;
-  SearchWork work_;
 };
 
 /// Typical distance from a shell point to its neighbours [m], 0 for fewer than three points. It is the median, over

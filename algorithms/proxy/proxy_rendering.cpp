@@ -87,7 +87,7 @@ void ProxyRendering::compute(const ToolState& tool, ContactBuffer& contacts, Ren
     find_late(tool.pose, contacts.empty());
   hand_over_holding(contacts);
   out.spring = spring_;
-  out.S = held_;
+  out.S = allowed_.held;
   follow_directions();
   // Without contact, S = 0 would make the whole velocity tangential, so friction must not be applied.
   if (contacts.empty()) {
@@ -123,12 +123,9 @@ void ProxyRendering::find_late(const ToolPose& tool, bool free) noexcept {
   }
   if (!linear) return;
   move_planes(query->pose, tool);
-  const AllowedMove allowed = nearest_allowed(tool.position - base_, *near_contacts_);
-  work_.iterations += static_cast<std::uint64_t>(allowed.iterations);
-  held_ = allowed.held;
-  feasible_ = allowed.feasible;
-  share_ = allowed.share;
-  proxy_ = allowed.iterations == 0 ? tool.position : Vec3(base_ + allowed.move);
+  allowed_ = nearest_allowed(tool.position - base_, *near_contacts_);
+  work_.iterations += static_cast<std::uint64_t>(allowed_.iterations);
+  proxy_ = allowed_.iterations == 0 ? tool.position : Vec3(base_ + allowed_.move);
   spring_ = K_ * (proxy_ - tool.position);
 }
 
@@ -143,14 +140,15 @@ void ProxyRendering::move_planes(const ToolPose& from, const ToolPose& to) noexc
 /// Further states of an integrator within a row start from the row before, as the first did. A first contact counts at
 /// once.
 void ProxyRendering::follow_directions() noexcept {
-  damped_ = held_;
+  damped_ = allowed_.held;
   if (damping_time_ == 0.0) return;
   const bool first_of_row = row_ == nullptr || last_row_ != *row_;
   if (first_of_row) {
     before_ = damped_row_;
     if (row_ != nullptr) last_row_ = *row_;
   }
-  if (!held_.isZero(0.0) && !before_.isZero(0.0)) damped_ = before_ + dt_ / (damping_time_ + dt_) * (held_ - before_);
+  if (!allowed_.held.isZero(0.0) && !before_.isZero(0.0))
+    damped_ = before_ + dt_ / (damping_time_ + dt_) * (allowed_.held - before_);
   if (first_of_row) damped_row_ = damped_;
 }
 
@@ -180,11 +178,9 @@ ContactVelocity ProxyRendering::velocity_at(const ToolState& tool) const noexcep
 void ProxyRendering::place(const Vec3& position) noexcept {
   placed_ = true;
   proxy_ = base_ = position;
-  held_.setZero();
-  feasible_ = true;
+  allowed_ = {};
   clear_ = false;
   slowed_ = 1.0;
-  share_.setZero();
   near_contacts_->clear();
 }
 
@@ -220,16 +216,13 @@ bool ProxyRendering::follow(const ToolPose& tool) noexcept {
     const ToolPose proxy{proxy_, tool.axis, tool.roll};
     const Vec3 wanted = tool.position - proxy_;
     constraints_->constraints_at(proxy, wanted, *near_contacts_);
-    const AllowedMove allowed = next_move(wanted);
+    const AllowedMove& allowed = allowed_ = next_move(wanted);
     work_.iterations += static_cast<std::uint64_t>(allowed.iterations);
-    held_ = allowed.held;
-    feasible_ = allowed.feasible;
-    share_ = allowed.share;
     const double length = allowed.move.norm();
     const bool arrives = length <= margin;
     base_ = proxy_;
     proxy_ += arrives ? allowed.move : Vec3(margin / length * allowed.move);
-    if (!feasible_ || slowed_ < 1.0) {
+    if (!allowed.feasible || slowed_ < 1.0) {
       // Leaving takes many steps, so one pass in each step is enough.
       clear_ = false;
       return arrives;
@@ -255,7 +248,7 @@ bool ProxyRendering::follow(const ToolPose& tool) noexcept {
 
 /// lambda_i of a contact that holds the proxy back.
 double ProxyRendering::multiplier(std::size_t i) const noexcept {
-  return near_contacts_->weight[i] + share_.dot(near_contacts_->gradient(i));
+  return near_contacts_->weight[i] + allowed_.share.dot(near_contacts_->gradient(i));
 }
 
 /// Replaces the colliding points by those that hold the proxy back, as far as there is room; in a compromise, points
@@ -279,7 +272,7 @@ SpringState ProxyRendering::spring_state(const ToolState&, const ContactBuffer&)
   for_each_holding(*near_contacts_, [&](std::size_t i) {
     const double weight = near_contacts_->weight[i];
     // In the compromise, the violations also store energy.
-    if (!feasible_) state.energy += 0.5 * K_ * weight * weight;
+    if (!allowed_.feasible) state.energy += 0.5 * K_ * weight * weight;
     if (!constraints_->act_at_points()) return;
     // The stored energy depends on the scaled depth, so the moment of the point is scaled as well.
     const double scale = near_contacts_->depth[i] > 0.0 ? slowed_ : 1.0;
@@ -289,8 +282,8 @@ SpringState ProxyRendering::spring_state(const ToolState&, const ContactBuffer&)
 }
 
 ForceJacobian ProxyRendering::jacobian() const noexcept {
-  if (held_.isZero(0.0)) return {};
-  return {K_ * held_, damping_and_limits_.damping_matrix(spring_, damped_)};
+  if (allowed_.held.isZero(0.0)) return {};
+  return {K_ * allowed_.held, damping_and_limits_.damping_matrix(spring_, damped_)};
 }
 
 AlgorithmWork ProxyRendering::work() const noexcept {

@@ -89,17 +89,15 @@ class ProxyRendering final : public ForceAlgorithm {
 
   bool placed_ = false;  ///< false before the first step
   Vec3 proxy_ = Vec3::Zero();
-  Mat3 held_ = Mat3::Zero();
+  AllowedMove allowed_;                                     ///< of the last pass
   Mat3 damped_ = Mat3::Zero();                              ///< S as normal damping and friction see it
   Mat3 damped_row_ = Mat3::Zero(), before_ = Mat3::Zero();  ///< the same, of this row and of the row before
   std::optional<std::uint64_t> last_row_;
   const std::uint64_t* row_ = nullptr;  ///< null without a simulation; then each force is a row's
   double dt_ = 0.0;
-  bool feasible_ = true;
-  bool clear_ = false;         ///< no points are inside the proxy after the last pass
-  double recovery_ = 0.0;      ///< distance by which the deepest point may leave in a step [m]
-  double slowed_ = 1.0;        ///< factor of the depths of points inside in the last pass
-  Vec3 share_ = Vec3::Zero();  ///< AllowedMove::share of the last pass [m]
+  bool clear_ = false;     ///< no points are inside the proxy after the last pass
+  double recovery_ = 0.0;  ///< distance by which the deepest point may leave in a step [m]
+  double slowed_ = 1.0;    ///< factor of the depths of points inside in the last pass
   Vec3 spring_ = Vec3::Zero();
   AlgorithmWork work_;
 };

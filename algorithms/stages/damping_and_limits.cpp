@@ -15,11 +15,6 @@ SpringDamper bristle_of(const DryFrictionConfig& config, const RenderingConfig& 
 DryFriction::DryFriction(const DryFrictionConfig& config, const RenderingConfig& rendering)
     : mu_(config.mu), K_t_(bristle_of(config, rendering, 0.0).K), B_t_(bristle_of(config, rendering, 0.0).B) {}
 
-void DryFriction::prepare(const Scene& scene) noexcept {
-  dt_ = scene.dt;
-  row_ = scene.row;
-}
-
 void DryFriction::release() noexcept {
   bristle_.setZero();
   before_.setZero();
@@ -115,10 +110,6 @@ DampingAndLimits::DampingAndLimits(const RenderingConfig& config)
       max_force_(config.max_force),
       skips_(config.skips) {
   if (config.dry_friction) dry_friction_.emplace(*config.dry_friction, config);
-}
-
-void DampingAndLimits::prepare(const Scene& scene) noexcept {
-  if (dry_friction_) dry_friction_->prepare(scene);
 }
 
 double DampingAndLimits::limited_damping(const Mat3& S) const noexcept {

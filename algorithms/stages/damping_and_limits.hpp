@@ -7,7 +7,7 @@
 #include "sim/core/model_info.hpp"
 #include "sim/core/types.hpp"
 #include "sim/loop/force_algorithm.hpp"
-#include "sim/loop/integrators/spring_damper.hpp"
+#include "sim/loop/integrators/table.hpp"
 
 namespace hapbench {
 
@@ -30,7 +30,10 @@ class DryFriction {
  public:
   DryFriction(const DryFrictionConfig& config, const RenderingConfig& rendering);
 
-  void prepare(const Scene& scene) noexcept;
+  void prepare(const Scene& scene) noexcept {
+    dt_ = scene.dt;
+    row_ = scene.row;
+  }
   /// Forgets the bristle: at the start of a run and where no contact has load.
   void release() noexcept;
 
@@ -103,7 +106,9 @@ class DampingAndLimits {
  public:
   explicit DampingAndLimits(const RenderingConfig& config);
 
-  void prepare(const Scene& scene) noexcept;
+  void prepare(const Scene& scene) noexcept {
+    if (dry_friction_) dry_friction_->prepare(scene);
+  }
   /// At the start of a run, and in steps without contact.
   void release() noexcept {
     if (dry_friction_) dry_friction_->release();
@@ -122,8 +127,6 @@ class DampingAndLimits {
 
   double stored_energy() const noexcept { return dry_friction_ ? dry_friction_->energy() : 0.0; }  ///< of friction [J]
   Friction friction_state() const noexcept { return dry_friction_ ? dry_friction_->state() : Friction::none; }
-
-  double damping() const { return B_; }  ///< B [N s/m]
 
  private:
   /// B, or 1 for chi N_i, cut so that no eigenvalue of it times the tensor is above the limit.

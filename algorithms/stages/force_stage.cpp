@@ -5,15 +5,6 @@
 #include "algorithms/stages/damping_and_limits.hpp"
 
 namespace hapbench {
-namespace {
-
-/// The springs that a run begins with are energy to give back; the port of a stage is the tool's translation alone.
-SpringState energy_alone(SpringState springs) noexcept {
-  springs.moment.setZero();
-  return springs;
-}
-
-}  // namespace
 
 StagedRendering::StagedRendering(std::unique_ptr<ForceAlgorithm> algorithm, std::unique_ptr<ForceStage> stage,
                                  const RenderingConfig& config)
@@ -47,7 +38,8 @@ void StagedRendering::compute(const ToolState& tool, ContactBuffer& contacts, Re
   const bool first = !row_;
   row_ = row;
   for (ObservedEnergy* port : {&given_, &asked_}) port->move(tool, scene_.handle_moves_tool);
-  const SpringState springs = first ? energy_alone(algorithm_->spring_state(tool, contacts)) : SpringState{};
+  // The springs that a run begins with are energy to give back; the port of a stage is the tool's translation alone.
+  const SpringState springs{first ? algorithm_->spring_state(tool, contacts).energy : 0.0, Vec3::Zero()};
   asked_.answer(tool, out.rendered, springs);
   // Before its answer, the port has the energy that the row begins with.
   given_.answer(tool, Vec3::Zero(), springs);

@@ -30,7 +30,7 @@ class ForceStage {
   /// a device's handle or a script moves the tool.
   virtual void prepare(double time_step, double mass) = 0;
   /// Returns to t = 0, bit for bit.
-  virtual void reset() noexcept = 0;
+  virtual void reset() noexcept {}
   /// The force to render [N]; called once for each row.
   virtual Vec3 force(const StageStep& step) noexcept = 0;
 };
@@ -74,7 +74,6 @@ class ActuatorLimitedPassivity final : public ForceStage {
   explicit ActuatorLimitedPassivity(const ActuatorLimitedPassivityConfig& config) : config_(config) {}
 
   void prepare(double time_step, double mass) override;
-  void reset() noexcept override {}
   Vec3 force(const StageStep& step) noexcept override;
 
  private:

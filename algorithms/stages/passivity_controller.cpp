@@ -135,10 +135,6 @@ void PassivityController::render(const ToolState& tool, RenderedForce& out) cons
   out.rendered = cut_to(share_ * out.rendered - alpha_ * (tool.velocity + half_kick()), max_force_);
 }
 
-SpringState PassivityController::spring_state(const ToolState&, const ContactBuffer&) const noexcept {
-  return springs_;
-}
-
 ForceJacobian PassivityController::jacobian() const noexcept {
   const ForceJacobian inner = algorithm_->jacobian();
   return {share_ * inner.stiffness, share_ * inner.damping + alpha_ * Mat3::Identity()};

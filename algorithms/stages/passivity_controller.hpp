@@ -41,7 +41,7 @@ class PassivityController final : public ForceAlgorithm {
   void reset() noexcept override;
   /// Weakens f_spring and S with the springs.
   void compute(const ToolState& tool, ContactBuffer& contacts, RenderedForce& out) noexcept override;
-  SpringState spring_state(const ToolState& tool, const ContactBuffer& contacts) const noexcept override;
+  SpringState spring_state(const ToolState&, const ContactBuffer&) const noexcept override { return springs_; }
   ForceJacobian jacobian() const noexcept override;
   std::optional<double> angular_velocity_cutoff() const noexcept override {
     return algorithm_->angular_velocity_cutoff();

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <utility>
 
 namespace hapbench {
 namespace {
@@ -71,9 +70,7 @@ constexpr double kLeastProgress = 0.1;
 
 /// Interpolates between unit vectors.
 Vec3 between(const Vec3& a, const Vec3& b, double fraction) {
-  const Vec3 sum = a + fraction * (b - a);
-  const double norm = sum.norm();
-  return norm > 0.0 ? Vec3(sum / norm) : a;
+  return unit_or(a + fraction * (b - a), a);
 }
 
 SurfacePoint between(const SurfacePoint& a, const SurfacePoint& b, double fraction) {
@@ -183,9 +180,6 @@ Vec3 SurfacePath::direction(double s) const noexcept {
   return norm > 0.0 ? Vec3(within / norm) : normal.unitOrthogonal();
 }
 
-DragHand::DragHand(Drag drag, std::shared_ptr<const SurfacePath> path)
-    : drag_(std::move(drag)), path_(std::move(path)) {}
-
 Vec3 DragHand::force(double t, const HandView& view) noexcept {
   const auto& [x, v] = view.handle;
   // Moves half of the way to the foot of the perpendicular on the path. It arrives in a few steps and stays there on
@@ -198,22 +192,6 @@ Vec3 DragHand::force(double t, const HandView& view) noexcept {
   Vec3 pull = drag_.stiffness * (path_->at(s).position - x) - drag_.damping * v;
   if (s < path_->length()) pull += drag_.damping * drag_.speed * path_->direction(s);
   return pull - n.dot(pull) * n - (drag_.force(t) + drag_.normal_damping * n.dot(v)) * n;
-}
-
-DragOrientation::DragOrientation(std::shared_ptr<const SurfacePath> path, double speed, double tilt, double azimuth)
-    : path_(std::move(path)), speed_(speed), tilt_(tilt), azimuth_(azimuth) {}
-
-Orientation DragOrientation::frame_at(double t) const noexcept {
-  const double s = speed_ * t;
-  return {path_->at(s).normal, path_->direction(s), {}, {}};
-}
-
-Vec3 DragOrientation::axis_at(double t) const noexcept {
-  return tool_axis(frame_at(t), tilt_, azimuth_);
-}
-
-double DragOrientation::roll_at(double t) const noexcept {
-  return tool_roll(frame_at(t), tilt_, azimuth_, 0.0);
 }
 
 }  // namespace hapbench

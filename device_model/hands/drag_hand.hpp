@@ -3,12 +3,13 @@
 #include <array>
 #include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "sim/contact/grid_index.hpp"
 #include "sim/core/profile.hpp"
 #include "sim/geometry/point_shell.hpp"
-#include "sim/loop/hand.hpp"
+#include "sim/loop/device.hpp"
 #include "sim/tool/motion.hpp"
 
 namespace hapbench {
@@ -54,7 +55,6 @@ class SurfacePath {
   /// Largest distance between entries [m]: a tenth of the radius over which the surface is smoothed.
   static double spacing(double radius) { return 0.1 * radius; }
 
-  double spacing() const noexcept { return spacing_; }  ///< distance between entries [m]
   double length() const noexcept { return spacing_ * static_cast<double>(entries_.size() - 1); }
   /// Position and normal at arc length s [m]; constant beyond the ends.
   SurfacePoint at(double s) const noexcept;
@@ -80,7 +80,7 @@ class SurfacePath {
   Position position(double s) const noexcept;
 
   double radius_;
-  double spacing_;
+  double spacing_;                     ///< distance between entries [m]
   std::vector<SurfacePoint> entries_;  ///< at least one
   std::vector<Normals> normals_;       ///< for each entry, from right to left
 };
@@ -108,7 +108,7 @@ struct Drag {
 /// and allocates nothing.
 class DragHand final : public Hand {
  public:
-  DragHand(Drag drag, std::shared_ptr<const SurfacePath> path);
+  DragHand(Drag drag, std::shared_ptr<const SurfacePath> path) : drag_(std::move(drag)), path_(std::move(path)) {}
 
   void reset() noexcept override { nearest_ = 0.0; }
   Vec3 force(double t, const HandView& view) noexcept override;
@@ -130,15 +130,17 @@ class DragOrientation final : public Motion {
  public:
   /// The tool leans by `tilt` from the outward normal towards the direction of travel turned by `azimuth` about the
   /// normal [rad]; `speed` as in Drag.
-  DragOrientation(std::shared_ptr<const SurfacePath> path, double speed, double tilt, double azimuth);
+  DragOrientation(std::shared_ptr<const SurfacePath> path, double speed, double tilt, double azimuth)
+      : path_(std::move(path)), speed_(speed), tilt_(tilt), azimuth_(azimuth) {}
 
-  Vec3 axis_at(double t) const noexcept override;
-  double roll_at(double t) const noexcept override;
-  bool position_is_free() const noexcept override { return true; }
-  Vec3 position_at(double) const noexcept override { return Vec3::Zero(); }
+  Vec3 axis_at(double t) const noexcept override { return tool_axis(frame_at(t), tilt_, azimuth_); }
+  double roll_at(double t) const noexcept override { return tool_roll(frame_at(t), tilt_, azimuth_, 0.0); }
 
  private:
-  Orientation frame_at(double t) const noexcept;
+  Orientation frame_at(double t) const noexcept {
+    const double s = speed_ * t;
+    return {path_->at(s).normal, path_->direction(s), {}, {}};
+  }
 
   std::shared_ptr<const SurfacePath> path_;
   double speed_;

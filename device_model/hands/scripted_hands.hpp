@@ -10,7 +10,7 @@
 #include "sim/core/math.hpp"
 #include "sim/core/profile.hpp"
 #include "sim/core/random.hpp"
-#include "sim/loop/hand.hpp"
+#include "sim/loop/device.hpp"
 
 namespace hapbench {
 
@@ -69,7 +69,6 @@ class Tremor {
 /// A hand without force: nobody holds the handle.
 class NoHand final : public Hand {
  public:
-  void reset() noexcept override {}
   Vec3 force(double, const HandView&) noexcept override { return Vec3::Zero(); }
 };
 
@@ -79,7 +78,6 @@ class ForceHand final : public Hand {
   /// Components x, y, z in the world frame [N] over time.
   explicit ForceHand(std::array<Profile, 3> force) : force_(std::move(force)) {}
 
-  void reset() noexcept override {}
   Vec3 force(double t, const HandView&) noexcept override { return {force_[0](t), force_[1](t), force_[2](t)}; }
 
  private:
@@ -92,7 +90,6 @@ class PushHand final : public Hand {
   /// `direction` is a unit vector in the world frame, `force` its multiple over time [N].
   PushHand(Profile force, const Vec3& direction) : force_(std::move(force)), direction_(direction) {}
 
-  void reset() noexcept override {}
   Vec3 force(double t, const HandView&) noexcept override { return force_(t) * direction_; }
 
  private:
@@ -108,7 +105,6 @@ class ImpedanceHand final : public Hand {
   ImpedanceHand(double stiffness, double damping, std::array<Profile, 3> target, std::optional<Tremor> tremor = {})
       : stiffness_(stiffness), damping_(damping), target_(std::move(target)), tremor_(std::move(tremor)) {}
 
-  void reset() noexcept override {}
   Vec3 force(double t, const HandView& view) noexcept override {
     Vec3 position{target_[0](t), target_[1](t), target_[2](t)};
     Vec3 velocity{target_[0].rate(t), target_[1].rate(t), target_[2].rate(t)};

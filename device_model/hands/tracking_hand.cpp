@@ -87,15 +87,4 @@ double TrackingHand::coloured(double state) noexcept {
   return noise_memory_ * state + std::sqrt(1.0 - noise_memory_ * noise_memory_) * random_.normal();
 }
 
-HeldOrientation::HeldOrientation(Orientation orientation, const TrackingHand& hand)
-    : orientation_(std::move(orientation)), hand_(&hand) {}
-
-Vec3 HeldOrientation::axis_at(double t) const noexcept {
-  return tool_axis(orientation_, hand_->tilt(), orientation_.azimuth(t));
-}
-
-double HeldOrientation::roll_at(double t) const noexcept {
-  return tool_roll(orientation_, hand_->tilt(), orientation_.azimuth(t), orientation_.roll(t));
-}
-
 }  // namespace hapbench

@@ -1,11 +1,11 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
+#include <utility>
 #include <vector>
 
 #include "sim/core/random.hpp"
-#include "sim/loop/hand.hpp"
+#include "sim/loop/device.hpp"
 #include "sim/tool/motion.hpp"
 
 namespace hapbench {
@@ -88,13 +88,16 @@ class TrackingHand final : public Hand {
 class HeldOrientation final : public Motion {
  public:
   /// Takes the tilt from the hand, the rest from `orientation`. The hand must outlive the motion.
-  HeldOrientation(Orientation orientation, const TrackingHand& hand);
+  HeldOrientation(Orientation orientation, const TrackingHand& hand)
+      : orientation_(std::move(orientation)), hand_(&hand) {}
 
-  Vec3 axis_at(double t) const noexcept override;
-  double roll_at(double t) const noexcept override;
+  Vec3 axis_at(double t) const noexcept override {
+    return tool_axis(orientation_, hand_->tilt(), orientation_.azimuth(t));
+  }
+  double roll_at(double t) const noexcept override {
+    return tool_roll(orientation_, hand_->tilt(), orientation_.azimuth(t), orientation_.roll(t));
+  }
   bool scripts_roll() const noexcept override { return !orientation_.roll.is_constant(); }
-  bool position_is_free() const noexcept override { return true; }
-  Vec3 position_at(double) const noexcept override { return Vec3::Zero(); }
 
  private:
   Orientation orientation_;

@@ -14,10 +14,6 @@ Eigen::VectorXcd eigenvalues(const Eigen::MatrixXd& A) {
   return Eigen::EigenSolver<Eigen::MatrixXd>(A, false).eigenvalues();
 }
 
-double spectral_radius(const Eigen::MatrixXd& A) {
-  return std::sqrt(eigenvalues(A).cwiseAbs2().maxCoeff());
-}
-
 namespace {
 
 /// Range of K T^2 / m. For smaller values the eigenvalues are so close to 1 that rounding decides.

@@ -3,13 +3,14 @@
 #include <Eigen/Core>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <span>
 #include <string>
 #include <variant>
 
 #include "device_model/admittance_device.hpp"
 #include "device_model/impedance_device.hpp"
-#include "sim/loop/integrators/spring_damper.hpp"
+#include "sim/loop/integrators/table.hpp"
 
 /// The loops of device, hand and wall, whose step is a linear map of their state, and where they become unstable.
 namespace hapbench {
@@ -17,12 +18,9 @@ namespace hapbench {
 /// The eigenvalues of a square matrix, in no particular order.
 Eigen::VectorXcd eigenvalues(const Eigen::MatrixXd& A);
 
-/// Largest |eigenvalue| of a square matrix. Exact to rounding if its entries are of comparable size.
-double spectral_radius(const Eigen::MatrixXd& A);
-
-/// True if no eigenvalue leaves the unit circle by more than rounding.
+/// True if no eigenvalue leaves the unit circle by more than rounding, for entries of comparable size.
 inline bool is_stable_step(const Eigen::MatrixXd& A) {
-  return spectral_radius(A) <= 1.0 + 1e-13;
+  return std::sqrt(eigenvalues(A).cwiseAbs2().maxCoeff()) <= 1.0 + 1e-13;
 }
 
 /// The largest value from `least` to `most` up to which the step `step_matrix(value)` is stable, with a relative error
@@ -81,9 +79,8 @@ struct SampledLoop {
   ///   (x_k, T v_k, y'_{k-1}, modes of T w_{k-1} and of y_{k-1}, T^2/m f_{k-1}, T^2/m f_{k-2}, …),
   /// with the true velocity v of the handle, the moving mass m and as many forces as are on their way; a pair of poles
   /// has two components, a real pole or none has one. With a transmission x and v are the motors', and those of the
-  /// handle are the last two components. All components
-  /// are in metres, so that the eigenvalues are exact to rounding. The motion between samples is exact (matrix
-  /// exponential).
+  /// handle are the last two components. All components are in metres, so that the eigenvalues are exact to rounding.
+  /// The motion between samples is exact (matrix exponential).
   Eigen::MatrixXd state_matrix() const;
 };
 
@@ -91,12 +88,26 @@ struct SampledLoop {
 /// loop's other parameters. Zero if there is none above 1e-8 m / T^2. Takes about 0.5 ms.
 double eigenvalue_edge(SampledLoop loop);
 
-/// Typical hands (100 to 1000 N/m, 0.1 to 0.5 kg), and no hand. They add no damping, because a hand that does is
-/// safer.
+/// Typical hands (100 to 1000 N/m, 0.1 to 0.5 kg), and no hand. They add no damping, because a hand that does is safer.
 std::span<const AttachedHand> hand_family();
 
 /// The smallest eigenvalue_edge of the loop with each hand of the family in place of its own.
 double worst_hand_edge(SampledLoop loop);
+
+/// A limit from the literature of the stiffness K that an impedance device can render. In the texts, b is the damping
+/// of the handle, m the moving mass, t_d = d T.
+struct StiffnessLimit {
+  const char* name;  ///< name of its column and its curve
+  const char* formula;
+  const char* source;
+  const char* applies;  ///< conditions
+  /// The largest K [N/m], whatever the loop's own K is. No value if the limit does not apply, zero if it allows no K,
+  /// infinity if it allows every K.
+  std::optional<double> (*largest)(const SampledLoop& loop);
+};
+
+/// The table of limits, which everything that draws or writes limits reads.
+std::span<const StiffnessLimit> stiffness_limits();
 
 /// The loop of an AdmittanceDevice at a wall, as a linear system along one axis: the loop while neither the limiter of
 /// the input nor the servo saturates and the contact lasts. In each step, as in Simulation, the hand's force f = -k x_h

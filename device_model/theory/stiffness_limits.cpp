@@ -1,21 +1,16 @@
-#include "device_model/theory/stiffness_limits.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <complex>
 #include <limits>
 #include <numbers>
 
+#include "device_model/theory/linear_loops.hpp"
 #include "sim/core/math.hpp"
 
 namespace hapbench {
 namespace {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
-
-bool has_no_delay(const SampledLoop& loop) {
-  return loop.device.delay_samples == 0.0;
-}
 
 /// Elastic between motors and handle. For the conditions of passivity it is part of the hand, which they leave open;
 /// others count on one mass.
@@ -24,7 +19,7 @@ bool is_elastic(const SampledLoop& loop) {
 }
 
 std::optional<double> colgate_schenkel(const SampledLoop& loop) {
-  if (!has_no_delay(loop) || !loop.differentiates()) return std::nullopt;
+  if (loop.device.delay_samples != 0.0 || !loop.differentiates()) return std::nullopt;
   return std::max(0.0, 2.0 * (loop.device.viscous - std::abs(loop.wall_damping)) / loop.period);
 }
 
@@ -92,14 +87,15 @@ std::optional<double> gil_hulin(const SampledLoop& loop) {
 }
 
 std::optional<double> abbott_okamura(const SampledLoop& loop) {
-  if (!has_no_delay(loop) || loop.wall_damping != 0.0 || loop.device.encoder_step <= 0.0 || loop.device.position_filter)
+  if (loop.device.delay_samples != 0.0 || loop.wall_damping != 0.0 || loop.device.encoder_step <= 0.0 ||
+      loop.device.position_filter)
     return std::nullopt;
   return std::min(2.0 * loop.device.viscous / loop.period, 2.0 * loop.device.coulomb / loop.device.encoder_step);
 }
 
 std::optional<double> undamped_handle(const SampledLoop& loop) {
   const bool bare = loop.total_damping() == 0.0 && loop.hand.stiffness == 0.0;
-  if (is_elastic(loop) || !bare || !has_no_delay(loop) || !loop.differentiates()) return std::nullopt;
+  if (is_elastic(loop) || !bare || loop.device.delay_samples != 0.0 || !loop.differentiates()) return std::nullopt;
   const double m = loop.moving_mass(), T = loop.period, beta = loop.wall_damping * T / m;
   return std::max(0.0, 2.0 * beta * (2.0 - beta) / (2.0 + beta) * m / (T * T));
 }

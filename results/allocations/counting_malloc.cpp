@@ -45,12 +45,10 @@ void* memalign(std::size_t alignment, std::size_t size) noexcept {
   return __libc_memalign(alignment, size);
 }
 void* aligned_alloc(std::size_t alignment, std::size_t size) noexcept {
-  ++allocations_of_thread;
-  return __libc_memalign(alignment, size);
+  return memalign(alignment, size);
 }
 int posix_memalign(void** block, std::size_t alignment, std::size_t size) noexcept {
-  ++allocations_of_thread;
-  *block = __libc_memalign(alignment, size);
+  *block = memalign(alignment, size);
   return *block == nullptr ? ENOMEM : 0;
 }
 }

@@ -23,9 +23,8 @@ class FileSet;
 
 /// A file that appears under its final name complete or not at all.
 ///
-/// Bytes go to a hidden temporary, .NAME.tmp, in the same directory; `commit` gives it its final name. The temporary is
-/// locked (flock) while it is written: a second writer is refused. What a killed process left is overwritten by the
-/// next writer.
+/// Bytes go to a hidden temporary beside it, .NAME.tmp, which `commit` gives the final name. It is locked (flock) while
+/// it is written: a second writer is refused. What a killed process left is overwritten by the next writer.
 ///
 /// Safe against a killed process, not against a power cut: fsync would cost milliseconds for each of the thousands of
 /// files of a sweep, whose rows can be computed again.
@@ -38,13 +37,11 @@ class AtomicFile {
   AtomicFile(AtomicFile&& other) = default;
   AtomicFile& operator=(AtomicFile&&) = delete;
 
-  /// Adds bytes through a buffer of fixed size. Allocates nothing. The first error is kept for `commit`; bytes after it
-  /// are dropped.
+  /// Adds bytes through a buffer. Allocates nothing. Keeps the first error for `commit` and drops bytes after it.
   void append(std::string_view bytes) noexcept;
 
   /// Completes the file and renames it, which replaces an existing target, or leaves that to a set of files. Throws
-  /// IoError for the first error since the beginning (a full disk, say), and then leaves nothing behind. Call once,
-  /// last.
+  /// IoError for the first error so far (a full disk, say), and then leaves nothing behind. Call once, last.
   void commit(FileSet* together = nullptr);
 
  private:
@@ -74,8 +71,7 @@ class FileSet {
   void write(const std::filesystem::path& target, std::string_view contents) {
     files_.emplace_back(target).append(contents);
   }
-  /// The file, if there is one, goes when the others are complete and before any comes, which come in the order in
-  /// which they were taken.
+  /// The file, if there is one, goes when the others are complete and before any comes; they come in the order taken.
   void remove(std::filesystem::path file) { removed_.push_back(std::move(file)); }
   /// Throws IoError. Call once, last.
   void commit();

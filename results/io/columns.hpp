@@ -1,7 +1,10 @@
 #pragma once
 
+#include <array>
+#include <charconv>
 #include <cmath>
 #include <concepts>
+#include <cstddef>
 #include <cstdint>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
@@ -11,8 +14,30 @@
 #include <variant>
 #include <vector>
 
-/// Names, units and meanings of the numbers in result files: columns of CSV files and metrics of summary.json.
+/// The numbers in result files, columns of CSV files and metrics of summary.json: names, units, meanings and texts.
 namespace hapbench {
+
+/// A number as text, without allocation: integers in decimal, doubles as the shortest decimal that reads back as the
+/// same double ("0.1", "1e-05", "-0", "inf", "nan").
+class NumberText {
+ public:
+  template <class Number>
+  requires std::same_as<Number, double> || std::integral<Number>
+  explicit NumberText(Number value) noexcept {
+    size_ =
+        static_cast<std::size_t>(std::to_chars(text_.data(), text_.data() + text_.size(), value).ptr - text_.data());
+  }
+
+  operator std::string_view() const noexcept { return {text_.data(), size_}; }  // NOLINT: it is a text
+
+ private:
+  std::array<char, 32> text_{};  // the longest shortest double has 24 characters, an integer of 64 bits 20
+  std::size_t size_ = 0;
+};
+
+/// The text of a result file: keys in their order, two spaces of indentation, arrays of plain values on one line, a
+/// final newline. Doubles are as in NumberText, but null where they are not finite, for which JSON has no word.
+std::string json_text(const nlohmann::ordered_json& value);
 
 /// A column of a result file: what its header, `hapbench describe` and columns.json say of it.
 struct Column {
@@ -103,8 +128,7 @@ std::optional<double> number_of(const MetricList& list, std::string_view name);
 /// A text as a cell of a CSV file: in quotes where it has a comma, a quote or an end of a line (RFC 4180).
 std::string csv_cell(std::string_view text);
 
-/// columns.json, for other programs: for each file its columns, and for summary.json its metrics, each with name, unit
-/// and meaning.
+/// columns.json, for other programs: the columns of each file and the metrics of summary.json by name, unit, meaning.
 nlohmann::ordered_json columns_json(std::span<const ResultTable> tables, const MetricList& metrics);
 /// The entries of one file, or of the metrics alone.
 nlohmann::ordered_json columns_json(std::span<const Column> columns);

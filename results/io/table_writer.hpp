@@ -12,18 +12,15 @@
 #include <string_view>
 #include <utility>
 #include <variant>
-#include <vector>
 
 #include "results/io/atomic_file.hpp"
 #include "results/io/columns.hpp"
-#include "results/io/json_text.hpp"
 #include "sim/core/types.hpp"
 
 namespace hapbench {
 
-/// A comma-separated table with a header line, written row by row into an AtomicFile (RFC 4180, lines end in "\n").
-/// Numbers are the shortest decimals that read back as the same double; 0 and -0 differ, non-finite ones are "inf",
-/// "-inf" and "nan". Allocates in the constructor only; about 30 ns a number.
+/// A comma-separated table with a header line, written by rows into an AtomicFile (RFC 4180, lines end in "\n"), with
+/// numbers as in NumberText. Allocates in the constructor only; about 30 ns a number.
 class CsvWriter {
  public:
   /// `header` is the first line, column names separated by commas. Throws IoError.
@@ -44,8 +41,7 @@ class CsvWriter {
   /// Writes a row of cells whose types are known only at run time.
   void cells(std::span<const Cell> cells);
 
-  /// Puts the table under its final name, or leaves that to a set of files. Throws IoError, also for the errors of
-  /// earlier rows.
+  /// Puts the table under its final name, or leaves that to a set of files. Throws IoError, also for earlier rows.
   void finish(FileSet* together = nullptr) { file_.commit(together); }
 
  private:
@@ -78,8 +74,7 @@ class MemoryTable {
   MemoryTable(const MemoryTable&) = delete;
   MemoryTable& operator=(const MemoryTable&) = delete;
 
-  /// Adds a row of cells as CsvWriter::row takes them, without text. If there is no memory left the row is lost, and
-  /// require_complete throws.
+  /// Adds a row of cells as CsvWriter::row, without text. Without memory it is lost, and require_complete throws.
   template <class... Cells>
   void row(const Cells&... cells) noexcept {
     if (!reserve(columns_.size())) return;
@@ -141,8 +136,7 @@ class TableWriter {
     }
   }
 
-  /// Puts a file under its final name, or leaves that to a set of files. Throws IoError, also for the errors of earlier
-  /// rows, or std::bad_alloc.
+  /// As CsvWriter::finish. Throws IoError or, for a row that memory has lost, std::bad_alloc.
   void finish(FileSet* together = nullptr) {
     if (memory_ != nullptr) {
       memory_->require_complete();

@@ -10,13 +10,11 @@
 
 namespace hapbench {
 
-/// Counts numbers >= 0 by size, for quantiles in constant memory. A bin is the exponent and the first five bits of the
-/// mantissa of the number's square (norms come as squares): 32 bins to a factor of two. Adding costs a shift and an
-/// increment, and the result does not depend on the order.
+/// Counts numbers >= 0 by size, by a shift and an increment each: quantiles in constant memory. A bin is the exponent
+/// and the first five bits of the mantissa of the number's square (norms come as squares): 32 bins to a factor of two.
 class MagnitudeHistogram {
  public:
-  /// A quantile between kLeast and kMost has at most this relative error: a bin is sqrt(33 / 32) - 1 = 1.55 % wide, and
-  /// its middle represents it.
+  /// Largest relative error of a quantile between kLeast and kMost: half a bin of sqrt(33 / 32) - 1 = 1.55 %.
   static constexpr double kRelativeError = 0.0078;
   static constexpr double kLeast = 0x1p-30;  ///< smaller numbers count as 0
   static constexpr double kMost = 0x1p20;    ///< numbers from here on count as infinite
@@ -24,8 +22,7 @@ class MagnitudeHistogram {
   /// Counts the number whose square this is. Precondition: square >= 0; at most 2^32 - 1 numbers in all.
   void add_square(double square) noexcept { ++counts_[bin_of(square)]; }
 
-  /// The nearest-rank quantile: the smallest number that at least the share p of all do not exceed. Precondition:
-  /// 0 < p <= 1 and not empty.
+  /// The smallest number that at least the share p of all do not exceed. Precondition: 0 < p <= 1 and not empty.
   double quantile(double p) const noexcept;
 
  private:
@@ -68,8 +65,7 @@ class HighPass {
 /// the sense of touch is most sensitive well above.
 inline constexpr double kVibrationCutoff = 30.0;
 
-/// Returns the high-pass at kVibrationCutoff for one sample each `dt` seconds; nothing when the sampling rate is 60 Hz
-/// or less.
+/// The high-pass at kVibrationCutoff for a sample each `dt` seconds; nothing at a sampling rate of 60 Hz or less.
 std::optional<HighPass> vibration_filter(double dt);
 
 /// Root mean square of the handle's speed behind that high-pass in the last quarter of a run.
@@ -108,8 +104,7 @@ class JudgedRows {
   std::optional<std::uint64_t> begin_;
 };
 
-/// Root mean square of the handle's speed behind that high-pass in the judged rows of a run: what `limit --stable
-/// still` and `tune` judge a run by.
+/// Root mean square of the handle's speed behind that high-pass in the judged rows: for `limit --stable still`, `tune`.
 class JudgedVibration {
  public:
   /// Rows are `dt` seconds apart.
@@ -145,8 +140,7 @@ struct ForceChange {
 };
 
 /// Sorts the rows of a run into landing, settled contact and the rest, and adds up their forces. Constant memory; a few
-/// nanoseconds a row. The high-pass starts at the first settled row after each landing, at rest at that row's force, so
-/// that the impact does not ring in it.
+/// nanoseconds a row. The high-pass starts anew after each landing, at rest, so that the impact does not ring in it.
 class ContactForces {
  public:
   enum class Phase { away, landing, settled };

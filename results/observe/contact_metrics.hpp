@@ -45,8 +45,7 @@ class LostTorqueObserver final : public MetricObserver {
   double max_squared_ = 0.0;
 };
 
-/// Counts what dry friction (algorithms/stages/damping_and_limits.hpp) does: whether the tool goes by sticking or by
-/// sliding. Constant memory.
+/// Counts whether dry friction (algorithms/stages/damping_and_limits.hpp) sticks or slides. Constant memory.
 class FrictionObserver final : public MetricObserver {
  public:
   void begin(const TrialParts& trial) override;

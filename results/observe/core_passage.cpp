@@ -1,7 +1,6 @@
 #include "results/observe/core_passage.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <tuple>

@@ -27,8 +27,7 @@ inline bool look_away(const Vec3& a, const Vec3& b) noexcept {
 ///
 /// A row costs a look only while a contact is so deep that the core is close to the surface (looks_from_), or when the
 /// tool moves by a large part of its width in it; and then only once the core has moved by its distance from the
-/// surface. A look is some 20 distances, along the axis in steps on which it cannot meet the surface. No look follows
-/// the first passage. Allocates in the constructor only.
+/// surface. A look is some 20 distances, along the axis. None follows the first passage. Allocates when constructed.
 class CorePassage {
  public:
   struct Event {

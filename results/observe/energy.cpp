@@ -12,13 +12,8 @@ namespace {
 
 /// The number of elements of the sorted list `a` that are not in the sorted list `b`.
 std::size_t missing(const std::vector<std::uint32_t>& a, const std::vector<std::uint32_t>& b) noexcept {
-  std::size_t count = 0;
-  auto other = b.begin();
-  for (const std::uint32_t i : a) {
-    while (other != b.end() && *other < i) ++other;
-    if (other == b.end() || *other != i) ++count;
-  }
-  return count;
+  const auto is_missing = [&b](std::uint32_t i) { return !std::ranges::binary_search(b, i); };
+  return static_cast<std::size_t>(std::ranges::count_if(a, is_missing));
 }
 
 }  // namespace
@@ -157,13 +152,11 @@ void EnergyLedger::tell(Section& s) const {
 }
 
 void EnergyLedger::add_members(nlohmann::ordered_json& section) const {
-  using nlohmann::ordered_json;
-  const auto number = [](double value) { return std::isfinite(value) ? ordered_json(value) : ordered_json(nullptr); };
-  ordered_json& list = section["events"] = ordered_json::array();
+  nlohmann::ordered_json& list = section["events"] = nlohmann::ordered_json::array();
   for (const EnergyEvent& e : events()) {
     list.push_back({{"step", e.step},
-                    {"time_s", number(e.time)},
-                    {"created_J", number(e.created)},
+                    {"time_s", e.time},
+                    {"created_J", e.created},
                     {"colliding", {e.colliding_before, e.colliding_after}},
                     {"rendered", {e.rendered_before, e.rendered_after}},
                     {"appeared", e.appeared},

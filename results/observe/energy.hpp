@@ -18,9 +18,8 @@ namespace hapbench {
 ///   input = hand + actuator                                        (when the handle is the tool)
 ///   device.stored = device.hand + device.actuator + device.dissipated   (when it has mechanics of its own)
 ///
-/// Where the handle of a device moves the tool, there is no virtual mass: kinetic, input and residual are zero, the
-/// work of a force is the row's force times the displacement to the next row, and script is the work of the handle on
-/// the rendering.
+/// Where a handle moves the tool, there is no virtual mass: kinetic, input and residual are zero, a force works
+/// by the row's force times the displacement to the next row, and script is the work of the handle on the rendering.
 ///
 /// If the integrator holds the row's force over the step (leapfrog), the work of a force is the row's force times dt
 /// times the mean of the velocities before and after the step, which equals its contribution to the kinetic energy
@@ -38,9 +37,8 @@ struct EnergyBalance {
   /// transfer energy from the tool's rotation, which has no balance of its own, to the tip's translation.
   double damping = 0.0;
   double rotation = 0.0;  ///< work of the tool's rotation on the springs: a torque that the device cannot render
-  /// Energy stored in the springs beyond the work that translation and rotation did on them (trapezoidal rule). It is
-  /// zero for linear springs that stay in contact; contacts that appear, vanish or change their weight create or
-  /// destroy energy.
+  /// Energy stored in the springs beyond the work that translation and rotation did on them (trapezoidal rule): zero
+  /// for linear springs in lasting contact; contacts that appear, vanish or change their weight create or destroy it.
   double created = 0.0;
   /// Energy made by the integrator, or by holding a device's force: `spring` plus the work of translation on the
   /// springs (leapfrog and held forces).
@@ -68,8 +66,7 @@ class EnergyLedger final : public MetricObserver {
  public:
   static constexpr std::size_t kEvents = 10;
 
-  /// `mass` of the virtual tool [kg], `dt` time step [s], `capacity` the most contacts a row can have, `integrator` of
-  /// a free position.
+  /// `mass` of the virtual tool [kg], time step `dt` [s], most contacts of a row, `integrator` of a free position.
   EnergyLedger(double mass, double dt, bool position_is_free, std::size_t capacity,
                const IntegratorEntry& integrator = kLeapfrog);
   /// To be given all that by `begin`.
@@ -117,9 +114,8 @@ class EnergyLedger final : public MetricObserver {
   std::array<EnergyEvent, kEvents> events_{};  ///< largest first; unused entries have created = 0
 };
 
-/// Tells whether a run's rendering was passive: extremes of its observed energy E (sim/loop/observed_energy.hpp). Of
-/// several trials it tells those of the one that created the most energy, the first of equals. Constant memory; about
-/// 100 ns a row with a turning moment, 4 ns without force.
+/// Tells whether a rendering was passive: extremes of its observed energy E (sim/loop/observed_energy.hpp), of the
+/// first trial that created the most. Constant memory; about 100 ns a row with a turning moment, 4 ns without force.
 class PassivityObserver final : public MetricObserver {
  public:
   /// `dt`: time from row to row [s]; `position_is_free`: the motion is not prescribed. `begin` sets both.
@@ -130,8 +126,7 @@ class PassivityObserver final : public MetricObserver {
   void on_step(const StepRecord& record) noexcept override;
   void tell(Section& section) const override;
 
-  /// Energy that the rendering created in the trial that was begun last, max(0, -E_min) [J]; NaN if any rendered force
-  /// was NaN.
+  /// Energy that the rendering created in the trial begun last, max(0, -E_min) [J]; NaN if any rendered force was.
   double net_created() const noexcept { return now_.net_created(); }
 
  private:

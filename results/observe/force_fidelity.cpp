@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <stdexcept>
 
 #include "sim/core/math.hpp"
@@ -22,8 +23,7 @@ std::optional<Vec3> ReferenceForce::at(double t) const noexcept {
   if (const Ideal* ideal = std::get_if<Ideal>(&force_)) return Vec3((*ideal)[0](t), (*ideal)[1](t), (*ideal)[2](t));
   const std::vector<Sample>& samples = *std::get_if<std::vector<Sample>>(&force_);
   if (!(t >= samples.front().time && t <= samples.back().time)) return std::nullopt;
-  const auto next = std::upper_bound(samples.begin(), samples.end(), t,
-                                     [](double time, const Sample& sample) { return time < sample.time; });
+  const auto next = std::ranges::upper_bound(samples, t, {}, &Sample::time);
   if (next == samples.end()) return samples.back().force;
   const Sample& from = *(next - 1);
   return from.force + (t - from.time) / (next->time - from.time) * (next->force - from.force);
@@ -35,25 +35,18 @@ namespace {
 constexpr std::uint64_t kMostKept = 1u << 17;
 constexpr double kFinestLag = 5e-4;  // [s]
 
-/// The overlapping parts of two signals, one of them shifted.
-struct Overlap {
-  const Vec3* early;
-  const Vec3* late;
-  std::size_t size;
-};
-
-/// Pearson's coefficient over all components; none when either does not vary.
-std::optional<double> correlation(const Overlap& o) {
-  const double n = static_cast<double>(o.size);
+/// Pearson's coefficient over all components of two signals of equal length; none when either does not vary.
+std::optional<double> correlation(std::span<const Vec3> early, std::span<const Vec3> late) {
+  const double n = static_cast<double>(early.size());
   Vec3 early_sum = Vec3::Zero(), late_sum = Vec3::Zero();
-  for (std::size_t i = 0; i < o.size; ++i) {
-    early_sum += o.early[i];
-    late_sum += o.late[i];
+  for (std::size_t i = 0; i < early.size(); ++i) {
+    early_sum += early[i];
+    late_sum += late[i];
   }
   const Vec3 early_mean = early_sum / n, late_mean = late_sum / n;
   double both = 0.0, early_square = 0.0, late_square = 0.0;
-  for (std::size_t i = 0; i < o.size; ++i) {
-    const Vec3 a = o.early[i] - early_mean, b = o.late[i] - late_mean;
+  for (std::size_t i = 0; i < early.size(); ++i) {
+    const Vec3 a = early[i] - early_mean, b = late[i] - late_mean;
     both += a.dot(b);
     early_square += a.squaredNorm();
     late_square += b.squaredNorm();
@@ -109,8 +102,8 @@ std::optional<Lag> lag_between(const std::vector<Vec3>& early, const std::vector
   for (std::ptrdiff_t shift = -reach; shift <= reach; ++shift) {
     const auto by = static_cast<std::size_t>(std::abs(shift));
     if (n < by + 3) return std::nullopt;
-    const Overlap overlap{early.data() + (shift < 0 ? by : 0), late.data() + (shift > 0 ? by : 0), n - by};
-    const auto coefficient = correlation(overlap);
+    const auto coefficient = correlation(std::span(early).subspan(shift < 0 ? by : 0, n - by),
+                                         std::span(late).subspan(shift > 0 ? by : 0, n - by));
     if (!coefficient) return std::nullopt;
     found.push_back(*coefficient);
   }

@@ -29,9 +29,8 @@ struct TipPlace {
   double height = 0.0;   ///< above the hole's mouth, so negative in the hole [m]
 };
 
-/// The ideal trajectory of thesis 3.6, a formula for the thesis's drill: a flat-tipped cylinder. This file is about
-/// that tool alone and uses no ToolShape. A flat-tipped tool of radius r, tilted by alpha in a hole of radius R and
-/// depth H, touches the wall with the lower edge of its tip and the opposite rim with its side:
+/// The ideal trajectory of thesis 3.6: a flat-tipped cylinder of radius r, like the thesis's drill, tilted by alpha in
+/// a hole of radius R, touches the wall with the lower edge of its tip and the opposite rim with its side:
 ///
 ///   lateral = -R + r cos(alpha),  height = (r (1 + cos^2 alpha) - 2 R cos(alpha)) / sin(alpha)
 ///
@@ -51,8 +50,7 @@ struct TrajectoryError {
   double hand_force = 0.0;        ///< norm [N]
 };
 
-/// Compares rows 0, every, 2 every, … with the ideal trajectory and with the exact hole. Allocates nothing; about 2 us
-/// for each compared row.
+/// Compares rows 0, every, 2 every, … with the ideal trajectory and the exact hole. Allocates nothing; about 2 us each.
 class IdealTrajectoryObserver final : public MetricObserver {
  public:
   /// Precondition: every > 0.
@@ -67,8 +65,7 @@ class IdealTrajectoryObserver final : public MetricObserver {
   void tell(Section& section) const override;
 
  private:
-  /// Sums and extremes over the compared rows of one kind of hand [m, m^2]. Errors are actual minus ideal: a negative
-  /// height error means that the tool has sunk in.
+  /// Sums and extremes over the compared rows of one kind of hand [m, m^2], of actual minus ideal.
   struct Errors {
     std::uint64_t rows = 0;
     double height = 0.0, height_squares = 0.0, height_min = 0.0, height_max = 0.0;

@@ -2,13 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <queue>
 #include <tuple>
 #include <utility>
 
 #include "results/observe/metrics.hpp"
-#include "sim/contact/inside.hpp"
 
 namespace hapbench {
 namespace {
@@ -16,8 +14,7 @@ namespace {
 /// Relative to the tool's half width: the least step in which the core's way is looked at; relative to the depth: what
 /// a depth of the tip centre may be wrong by.
 constexpr double kLeastStep = 2e-3, kDepthWithin = 0.02;
-/// Parts of a run of which a row is kept, rows in settled contact whose deepest point is looked for after it, how well
-/// (InsideSearch).
+/// Parts of a run of which a row is kept, and rows in settled contact whose deepest point is looked for after it.
 constexpr std::size_t kParts = 16384, kSettled = 12;
 /// Look-ups for the deepest row; a solid in closed form answers ten times as fast.
 constexpr std::size_t kMostLooks = 8000, kMostLooksAtForms = 100000;

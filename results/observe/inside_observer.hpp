@@ -84,11 +84,10 @@ class PoseSamples {
   std::uint64_t rows_left_ = 0, rows_of_part_ = 1;  ///< rows to come of the last part
 };
 
-/// Watches how deep the tool is. A row costs some ten nanoseconds: a point cannot pass the surface before it has moved
-/// by its distance, so that few rows need a look. The deepest point of the tool is looked for after the run only: in
-/// the rows with the deepest contact or centre, in those that may be deeper still (InsideBound), and in some in settled
-/// contact; or in every `every`-th row when that is asked for. Allocates in the constructor and after the run only. It
-/// watches one trial, whose outcome depends on it; InsideDepths adds up trials.
+/// Watches how deep the tool is in one trial; InsideDepths adds up trials. A row costs some ten nanoseconds: a point
+/// cannot pass the surface before it has moved by its distance, so that few rows need a look. The deepest point of the
+/// tool is looked for after the run: in the rows with the deepest contact or centre, in those that may be deeper still
+/// (InsideBound), and in some in settled contact; or in every `every`-th row. Does not allocate during the run.
 class InsideObserver final : public Observer {
  public:
   /// `metrics`, if given, observes before this and tells which rows are in settled contact. `every`: 0 where no row is

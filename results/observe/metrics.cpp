@@ -2,11 +2,8 @@
 
 #include <algorithm>
 #include <cassert>
-#include <cmath>
 #include <span>
 #include <utility>
-
-#include "sim/loop/integrators/table.hpp"
 
 namespace hapbench {
 
@@ -33,16 +30,6 @@ TrialContact TrialContact::operator+(const TrialContact& other) const noexcept {
   return {rows + other.rows, in_contact + other.in_contact, std::max(last, other.last),
           std::max(force_max_squared, other.force_max_squared)};
 }
-
-namespace {
-
-void add(Hash64& hash, const Vec3& v) noexcept {
-  hash.real(v.x());
-  hash.real(v.y());
-  hash.real(v.z());
-}
-
-}  // namespace
 
 MetricsObserver::MetricsObserver(double dt, const MetricsConfig& config)
     : stride_(config.stride),
@@ -75,9 +62,8 @@ void MetricsObserver::on_step(const StepRecord& record) noexcept {
   add_contacts(record, add_force(record.force));
   ++now_.rows;
 
-  add(hash_, record.tool.pose.position);
-  add(hash_, record.tool.velocity);
-  add(hash_, record.force.rendered);
+  for (const Vec3* v : {&record.tool.pose.position, &record.tool.velocity, &record.force.rendered})
+    for (const double coordinate : *v) hash_.real(coordinate);
 }
 
 void MetricsObserver::add_motion(const Vec3& position, const Vec3& v) noexcept {

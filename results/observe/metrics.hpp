@@ -14,10 +14,9 @@
 
 namespace hapbench {
 
-/// How often a run left the range in which its integrator steps its friction stably. Friction is a damper with the
-/// coefficient mu_s + mu_f |f_spring|, which a stiff law makes arbitrarily strong; an explicit integrator is stable up
-/// to some coefficient only (leapfrog: 2 M / dt). Beyond it, each step reverses the sliding velocity and enlarges it:
-/// an artefact of the integrator, not of the law.
+/// How often a run left the range in which its integrator steps friction stably. Friction is a damper of coefficient
+/// mu_s + mu_f |f_spring|, which a stiff law makes arbitrarily strong; an explicit integrator is stable up to some only
+/// (leapfrog: 2 M / dt). Beyond it, which is no fault of the law, each step reverses and enlarges the sliding velocity.
 struct ExplicitFriction {
   double limit = 0.0;                            ///< largest |f_spring| whose friction is stepped stably [N]
   std::uint64_t rows_beyond = 0;                 ///< rows with a larger |f_spring|
@@ -39,8 +38,7 @@ class ReductionJumps {
 
   /// Begins another trial, in which nothing has been touched yet.
   void begin() noexcept { last_.clear(); }
-  /// Adds the next row: the contacts that the reduction kept, its squared force step [N^2], and whether it is in
-  /// settled contact.
+  /// Adds the next row: the contacts that the reduction kept, its squared force step [N^2], and whether it has settled.
   void add(const ContactBuffer& kept, double step_squared, bool settled) noexcept;
 
   /// Rows whose set of kept points is another than the row before's.
@@ -76,9 +74,8 @@ struct MetricsConfig {
   std::uint64_t stride = 1;                      ///< one row in so many counts, as if the others were not there
 };
 
-/// The metrics that every run has, while it goes on, in constant memory; about 20 ns a row, 24 ns with a reduction. Of
-/// several trials they are those of one long run: sums and means over the rows of all, and the last one's final
-/// position. The constructor allocates only for a reduction.
+/// The metrics that every run has, in constant memory; about 20 ns a row, 24 ns with a reduction, for which alone the
+/// constructor allocates. Of several trials they are those of one long run, with the last one's final position.
 class MetricsObserver final : public MetricObserver {
  public:
   /// `dt`: time between rows that count [s], > 0.

@@ -7,8 +7,7 @@
 namespace hapbench {
 namespace {
 
-/// Number of empty steps that are timed to measure the cost of timing: enough to make the first ones, with cold caches,
-/// irrelevant.
+/// Empty steps that are timed to measure the cost of timing: so many that the first, with cold caches, do not count.
 constexpr std::size_t kEmptySteps = 501;
 
 using Times = std::vector<std::uint64_t>;
@@ -19,11 +18,9 @@ std::uint64_t percentile(const Times& sorted, std::size_t per_mille) {
   return sorted[std::max<std::size_t>(rank, 1) - 1];
 }
 
-std::uint64_t longer_than(const Times& sorted, double seconds) {
-  const auto ns = [](std::uint64_t time) { return static_cast<double>(time); };
-  const auto first =
-      std::partition_point(sorted.begin(), sorted.end(), [&](std::uint64_t time) { return ns(time) <= seconds * 1e9; });
-  return static_cast<std::uint64_t>(sorted.end() - first);
+std::uint64_t longer_than(const Times& times, double seconds) {
+  const auto is_longer = [seconds](std::uint64_t time) { return static_cast<double>(time) > seconds * 1e9; };
+  return static_cast<std::uint64_t>(std::ranges::count_if(times, is_longer));
 }
 
 /// Bin k holds the times of k binary digits: 0, 1, 2 … 3, 4 … 7 and so on. The clock counts up to 63 of them.
@@ -44,9 +41,10 @@ Times medians_over_time(std::span<const std::uint64_t> times) {
   Times medians;
   for (std::size_t i = 0; i < spans; ++i) {
     const std::size_t first = i * times.size() / spans, last = (i + 1) * times.size() / spans;
-    Times span(times.begin() + static_cast<std::ptrdiff_t>(first), times.begin() + static_cast<std::ptrdiff_t>(last));
-    std::sort(span.begin(), span.end());
-    medians.push_back(percentile(span, 500));
+    const std::span<const std::uint64_t> part = times.subspan(first, last - first);
+    Times sorted(part.begin(), part.end());
+    std::sort(sorted.begin(), sorted.end());
+    medians.push_back(percentile(sorted, 500));
   }
   return medians;
 }

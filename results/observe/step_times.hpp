@@ -43,8 +43,7 @@ class StepTimes {
 /// law and device of the next. Attach `first` before and `last` after all other observers.
 ///
 /// Samples every step of a short run and at most kMostSamples of a long one, evenly spread: enough for a 99th
-/// percentile at a cost below a millisecond, as each takes two readings of the clock. Memory is allocated in the
-/// constructor.
+/// percentile at a cost below a millisecond, two readings of the clock each. Allocates in the constructor only.
 class StepSampler {
  public:
   static constexpr std::uint64_t kMostSamples = 1 << 13;
@@ -111,8 +110,7 @@ struct StepLatency {
   std::uint64_t overhead = 0;  ///< cost of reading the clock, already subtracted from each step [ns]
 };
 
-/// Computes the distribution of step times [ns] and stores `overhead` with it. All values are zero without steps.
-/// O(n log n).
+/// The distribution of step times [ns], with `overhead` beside it. All values are zero without steps. O(n log n).
 StepLatency step_latency(std::span<const std::uint64_t> nanoseconds, std::uint64_t overhead);
 
 }  // namespace hapbench

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <vector>
 
 #include "results/observe/metric_observer.hpp"
@@ -32,8 +31,7 @@ class TargetMetricsObserver final : public MetricObserver {
   void on_step(const StepRecord& record) noexcept override;
   void tell(Section& section) const override;
 
-  /// The trial that was begun last has come to nothing: the targets that have not ended are not removed, and take the
-  /// time limit.
+  /// The trial begun last has come to nothing: targets that have not ended are not removed and take the time limit.
   void fail_rest();
 
   /// One row for each target that has ended, trial by trial.

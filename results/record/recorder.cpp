@@ -325,15 +325,11 @@ RowSource ideal_trajectory_rows(const IdealTrajectoryObserver& observer) {
 
 RowSource force_reference_rows(const ForceFidelityObserver& observer) {
   const auto write = [&observer](const StepRecord& record, TableWriter& table) {
-    std::array<std::optional<double>, 6> cells;  // f_m and the error, empty where nothing was measured
-    if (const auto& measured = observer.reference()) {
-      const Vec3 error = record.force.rendered - *measured;
-      for (std::size_t i = 0; i < 3; ++i) {
-        cells[i] = (*measured)[static_cast<int>(i)];
-        cells[i + 3] = error[static_cast<int>(i)];
-      }
-    }
-    table.row(record.step, record.time, std::span<const std::optional<double>>(cells));
+    const auto& measured = observer.reference();
+    if (measured)
+      table.row(record.step, record.time, *measured, Vec3(record.force.rendered - *measured));
+    else
+      table.row(record.step, record.time, std::array<std::optional<double>, 6>{});
   };
   return {.columns = kForceReferenceColumns, .write = write};
 }
@@ -344,7 +340,7 @@ void write_target_table(TableTarget target, const std::vector<TargetRow>& rows, 
     const bool any = row.rows_on_target > 0;
     table.row(std::uint64_t{row.subject}, std::uint64_t{row.trial}, std::uint64_t{row.target},
               std::uint64_t{row.result.place}, std::uint64_t{row.result.removed}, row.result.time, row.rows_on_target,
-              any ? std::optional(row.model_force) : std::nullopt, any ? std::optional(row.speed) : std::nullopt);
+              if_any(any, row.model_force), if_any(any, row.speed));
   }
   table.finish(together);
 }

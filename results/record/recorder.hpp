@@ -42,8 +42,7 @@ class Recorder final : public Observer {
     if (record.step % every_ == 0) source_.write(record, writer_);
   }
 
-  /// After the run: puts the file under its final name, or leaves that to a set of files. Throws IoError, also for the
-  /// errors of earlier rows.
+  /// After the run: TableWriter::finish.
   void finish(FileSet* together = nullptr) { writer_.finish(together); }
 
  private:
@@ -80,8 +79,7 @@ RowSource energy_rows(const EnergyLedger& ledger);
 /// ideal_trajectory.csv: one line per row that `observer` compares and at whose tilt the ideal trajectory exists
 /// (thesis Fig. 7). The recorder must observe after `observer` and keep every row.
 RowSource ideal_trajectory_rows(const IdealTrajectoryObserver& observer);
-/// force_reference.csv: the reference force and the error of the rendered one, one line per row. The recorder must
-/// observe after `observer`.
+/// force_reference.csv: reference force and error of the rendered one. The recorder must observe after `observer`.
 RowSource force_reference_rows(const ForceFidelityObserver& observer);
 
 /// targets.csv: the result of every target of every subject's trials, in that order. Throws IoError.

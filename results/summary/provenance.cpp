@@ -20,11 +20,6 @@ Provenance provenance() {
           .cpu = cpu_model(cpuinfo)};
 }
 
-std::string Provenance::identity() const {
-  if (commit == "unknown" || commit.ends_with("-dirty")) return "";
-  return commit + ' ' + compiler + ' ' + build_type + ' ' + flags;
-}
-
 InstructionSet instruction_set() {
 #if defined(__AVX512F__)
   const char* widest = "avx512f";

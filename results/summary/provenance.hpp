@@ -5,9 +5,8 @@
 
 /// Identifies the program and the machine that computed a result.
 ///
-/// The instruction set (-march, SIMD on or off) is kept apart. Results do not depend on it, and summary.json is
-/// byte-identical between the scalar and the SIMD build of one tree; it could not be if it named the build. What
-/// depends on the instruction set is time, so timing.json names it.
+/// The instruction set (-march, SIMD on or off) is kept apart: only times depend on it, so timing.json names it, and
+/// summary.json is byte-identical between the scalar and the SIMD build of one tree.
 namespace hapbench {
 
 /// Part of summary.json. Unknown parts are "unknown".
@@ -21,9 +20,8 @@ struct Provenance {
   std::string plugin = {};  ///< file of the plugin whose algorithm was used; else empty
   std::string plugin_hash = {};  ///< of that file's content
 
-  /// The source and the build, for results that only the same program may go on with; empty when the commit does not
-  /// identify the source.
-  std::string identity() const;
+  /// True when the commit identifies the source.
+  bool identifies_source() const { return commit != "unknown" && !commit.ends_with("-dirty"); }
 };
 
 /// Returns the provenance of the running program. Reads /proc/cpuinfo.
@@ -31,10 +29,9 @@ Provenance provenance();
 
 /// Part of timing.json only.
 struct InstructionSet {
-  std::string march;  ///< value of -march; empty for the compiler's default
-  std::string
-      widest;  ///< widest vector extension the compiler was allowed: "avx512f", "avx2", "avx", "sse2" or "none known"
-  bool simd = false;  ///< false for the scalar reference
+  std::string march;   ///< value of -march; empty for the compiler's default
+  std::string widest;  ///< vector extension the compiler was allowed: "avx512f", "avx2", "avx", "sse2" or "none known"
+  bool simd = false;   ///< false for the scalar reference
 };
 
 InstructionSet instruction_set();

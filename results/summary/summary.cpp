@@ -1,10 +1,8 @@
 #include "results/summary/summary.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <iterator>
 
-#include "results/io/json_text.hpp"
 #include "sim/core/hash.hpp"
 
 namespace hapbench {
@@ -77,8 +75,7 @@ ordered_json vector_json(const Metric* xyz) {
   return {cell_json(xyz[0].value), cell_json(xyz[1].value), cell_json(xyz[2].value)};
 }
 
-/// Puts each metric into the object of its section, or into "metrics"; further dots lead into nested objects, and the
-/// three coordinates of a vector become an array.
+/// Puts each metric into the object of its section or "metrics"; dots lead into nested objects, vectors become arrays.
 void add_metrics(ordered_json& json, const MetricList& list) {
   for (std::size_t i = 0; i < list.size(); ++i) {
     std::string_view name = list[i].name;
@@ -141,8 +138,7 @@ std::string_view outcome_name(Outcome outcome) noexcept {
 }
 
 std::optional<Outcome> outcome_named(std::string_view name) noexcept {
-  const auto found = std::find_if(std::begin(kOutcomes), std::end(kOutcomes),
-                                  [name](const OutcomeInfo& outcome) { return outcome.name == name; });
+  const auto* found = std::ranges::find(kOutcomes, name, &OutcomeInfo::name);
   if (found == std::end(kOutcomes)) return std::nullopt;
   return static_cast<Outcome>(found - std::begin(kOutcomes));
 }

@@ -13,8 +13,8 @@
 #include "results/observe/step_times.hpp"
 #include "results/observe/target_metrics.hpp"
 #include "results/summary/provenance.hpp"
+#include "sim/core/types.hpp"
 #include "sim/loop/simulation.hpp"
-#include "sim/tool/profile_point.hpp"
 
 namespace hapbench {
 
@@ -92,8 +92,7 @@ struct RunTiming {
   std::uint64_t preemptions = 0;  ///< involuntary context switches during the step loop
 };
 
-/// The result of a run; of a tracking hand, of all its trials. summary.json, columns.json, timing.json and the printed
-/// tables are views of it.
+/// The result of a run, or of all trials of a tracking hand, of which the JSON files and printed tables are views.
 struct Result {
   std::string name;                ///< of the scenario
   std::string algorithm;           ///< as registered
@@ -132,9 +131,8 @@ std::string summary_text(const Result& run);
 /// A distribution for timing.json, in seconds; percentiles and maximum are null without steps.
 nlohmann::ordered_json step_latency_json(const StepLatency& latency);
 
-/// timing.json, separate from summary.json because no two runs take the same time. It names the build's instruction set
-/// and the CPU: times are comparable only for equal ones. The mean is null without steps, the latency when steps were
-/// not timed.
+/// timing.json, separate from summary.json because no two runs take the same time. Names the build's instruction set
+/// and the CPU, which make times comparable. The mean is null without steps, the latency when steps were not timed.
 std::string timing_text(const RunTiming& timing, const InstructionSet& instructions, const Provenance& provenance);
 
 }  // namespace hapbench

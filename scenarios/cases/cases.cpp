@@ -9,17 +9,13 @@
 #include <exception>
 #include <map>
 #include <mutex>
-#include <nlohmann/json.hpp>
 #include <numeric>
 #include <set>
 #include <stdexcept>
 #include <thread>
 #include <utility>
 
-#include "results/io/columns.hpp"
 #include "scenarios/cases/table_file.hpp"
-#include "scenarios/format/input_error.hpp"
-#include "scenarios/format/json_file.hpp"
 #include "scenarios/format/text_lines.hpp"
 #include "scenarios/format/writer.hpp"
 #include "scenarios/run/progress_bar.hpp"
@@ -52,14 +48,6 @@ double range_end(const std::string& text, std::string_view word) {
 double linear_value(double a, double b, double i, double last) {
   if (i == 0.0 || i == last) return i == 0.0 ? a : b;
   return std::clamp((a * (last - i) + b * i) / last, std::min(a, b), std::max(a, b));
-}
-
-double value_between(const Range& range, double i, double last) {
-  const double a = range.from, b = range.to;
-  if (!range.logarithmic || i == 0.0 || i == last) return linear_value(a, b, i, last);
-  // Decimal logarithms make decades exact.
-  return std::clamp(math::pow(10.0, linear_value(math::log10(a), math::log10(b), i, last)), std::min(a, b),
-                    std::max(a, b));
 }
 
 /// Reads "a:b", or "a:b:n" for a grid, optionally followed by ":log".
@@ -174,8 +162,11 @@ int speed(const Axis& axis) {
 
 }  // namespace
 
-double Range::value_at(double part) const {
-  return value_between(*this, part, 1.0);
+double Range::value_at(double part, double whole) const {
+  if (!logarithmic || part == 0.0 || part == whole) return linear_value(from, to, part, whole);
+  // Decimal logarithms make decades exact.
+  return std::clamp(math::pow(10.0, linear_value(math::log10(from), math::log10(to), part, whole)), std::min(from, to),
+                    std::max(from, to));
 }
 
 Axis parse_axis(const std::string& text, bool sampled) {
@@ -189,7 +180,7 @@ Axis parse_axis(const std::string& text, bool sampled) {
 }
 
 std::string Axis::value(std::size_t i) const {
-  return range ? number_text(*this, value_between(*range, static_cast<double>(i), static_cast<double>(steps - 1)))
+  return range ? number_text(*this, range->value_at(static_cast<double>(i), static_cast<double>(steps - 1)))
                : values[i];
 }
 
@@ -285,10 +276,6 @@ Shard parse_shard(const std::string& text) {
   return {*index, *count};
 }
 
-std::string shard_text(const Shard& shard) {
-  return fmt::format("{}/{}", shard.index, shard.count);
-}
-
 Cases::Cases(std::vector<ScenarioText> scenes, std::vector<std::string> sets, std::vector<Axis> axes,
              std::optional<Sampling> sampling)
     : scenes_(std::move(scenes)), sets_(std::move(sets)), axes_(std::move(axes)), sampling_(std::move(sampling)) {
@@ -324,14 +311,6 @@ void Cases::sort_runs() {
     const auto differs = std::ranges::find_if(slow, [&](std::size_t a) { return place(i, a) != place(j, a); });
     return differs != slow.end() && place(i, *differs) < place(j, *differs);
   });
-}
-
-std::size_t Cases::place(std::size_t i, std::size_t axis) const {
-  return sampling_ ? axes_[axis].place_at(unit_[axis][i]) : i / strides_[axis] % axes_[axis].size();
-}
-
-std::string Cases::value(std::size_t i, std::size_t axis) const {
-  return sampling_ ? axes_[axis].value_at(unit_[axis][i]) : axes_[axis].value(place(i, axis));
 }
 
 std::vector<std::string> Cases::values(std::size_t i) const {

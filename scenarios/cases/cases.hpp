@@ -23,9 +23,9 @@ struct Range {
   double to = 0.0;
   bool logarithmic = false;
 
-  /// The value at a fraction of the interval in [0, 1], measured in the logarithm if the range is logarithmic. Returns
-  /// both ends exactly and never a value outside.
-  double value_at(double part) const;
+  /// The value at a fraction part / whole of the interval in [0, 1], measured in the logarithm if the range is
+  /// logarithmic. Returns both ends exactly and never a value outside.
+  double value_at(double part, double whole = 1.0) const;
 };
 
 /// A field and its values: as in --set, numbers as shortest decimals, objects and lists as compact JSON.
@@ -107,7 +107,9 @@ struct Shard {
 Shard parse_shard(const std::string& text);
 
 /// "i/n"
-std::string shard_text(const Shard& shard);
+inline std::string shard_text(const Shard& shard) {
+  return std::to_string(shard.index) + "/" + std::to_string(shard.count);
+}
 
 /// Scenes with overrides, of which fields vary: all combinations of the values of the axes, the last one fastest, or a
 /// sample of them. Numbered from 0. Memory: 8 bytes a case and axis of a sample, and 8 bytes a case where scenes or
@@ -130,7 +132,9 @@ class Cases {
   // Precondition, here and below: i < size().
 
   /// Index of the value of an axis. Precondition: Axis::size() > 0.
-  std::size_t place(std::size_t i, std::size_t axis) const;
+  std::size_t place(std::size_t i, std::size_t axis) const {
+    return sampling_ ? axes_[axis].place_at(unit_[axis][i]) : i / strides_[axis] % axes_[axis].size();
+  }
   /// One value for each axis, computed anew at each call.
   std::vector<std::string> values(std::size_t i) const;
   /// The values as "path=value", then what goes along with them.
@@ -146,7 +150,9 @@ class Cases {
 
  private:
   void sort_runs();
-  std::string value(std::size_t i, std::size_t axis) const;
+  std::string value(std::size_t i, std::size_t axis) const {
+    return sampling_ ? axes_[axis].value_at(unit_[axis][i]) : axes_[axis].value(place(i, axis));
+  }
 
   std::vector<ScenarioText> scenes_;
   std::vector<std::string> sets_;

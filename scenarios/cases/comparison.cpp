@@ -6,7 +6,6 @@
 
 #include "algorithms/registry.hpp"
 #include "scenarios/format/bundled_scenarios.hpp"
-#include "scenarios/format/input_error.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/result_folder.hpp"
 #include "sim/core/random.hpp"
@@ -16,7 +15,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Largest seed of a scenario.
 constexpr std::int64_t kMostSeed = std::int64_t{1} << 53;
 /// Random stream of the start's shift, which keeps it independent of everything else that the scenario's seed
 /// determines.
@@ -26,8 +24,7 @@ bool lies_in_the_plane(const Environment& environment) {
   if (std::holds_alternative<Hole2d>(environment)) return true;
   const auto* springs = std::get_if<SpringsEnvironment>(&environment);
   if (springs == nullptr || (springs->random.count > 0 && !springs->random.planar)) return false;
-  return std::all_of(springs->groups.begin(), springs->groups.end(),
-                     [](const SpringGroup& group) { return group.direction.z() == 0.0; });
+  return std::ranges::all_of(springs->groups, [](const SpringGroup& group) { return group.direction.z() == 0.0; });
 }
 
 Vec3 start_shift(const Scenario& scenario, double length) {
@@ -81,10 +78,6 @@ Axis seed_axis(const Scenario& scenario, std::size_t seeds, double jitter) {
     axis.along.push_back({{fmt::format("initial.position_m=[{},{},{}]", start.x(), start.y(), start.z())}});
   }
   return axis;
-}
-
-fs::path Comparison::scene_folder(std::size_t scene) const {
-  return scenes.size() > 1 ? fs::path(names[scene]) : fs::path();
 }
 
 fs::path Comparison::folder(std::size_t run) const {

@@ -1,12 +1,6 @@
 #pragma once
 
-#include <cstddef>
-#include <cstdint>
-#include <filesystem>
-#include <functional>
 #include <span>
-#include <string>
-#include <vector>
 
 #include "scenarios/cases/cases.hpp"
 #include "scenarios/run/run_scenario.hpp"
@@ -46,7 +40,7 @@ struct Comparison {
   LoadedScenario load(std::size_t run) const { return scenes[scene(run)].load(run % each()); }
   /// Returns the folder of a scene's tables, relative to that of the comparison: SCENARIO if there are several scenes,
   /// else empty.
-  std::filesystem::path scene_folder(std::size_t scene) const;
+  std::filesystem::path scene_folder(std::size_t scene) const { return scenes.size() > 1 ? names[scene] : ""; }
   /// Returns the folder of a run's files, relative to that of the comparison: [SCENARIO/]ALGORITHM[/seed_K], the parts
   /// in brackets where there are several.
   std::filesystem::path folder(std::size_t run) const;

@@ -7,11 +7,8 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
-#include <utility>
 
-#include "results/summary/summary.hpp"
 #include "scenarios/format/metric_sections.hpp"
-#include "scenarios/run/run_scenario.hpp"
 
 namespace hapbench {
 namespace {
@@ -64,7 +61,6 @@ Standing standing_of(const League& league, std::size_t s, std::size_t a, std::si
   return standing;
 }
 
-/// True where the first algorithm failed less often, or had no failure and a better mean.
 bool is_better(const Standing& a, const Standing& b) {
   if (a.failed != b.failed) return a.failed < b.failed;
   if (a.failed > 0 || !a.mean) return false;
@@ -72,15 +68,15 @@ bool is_better(const Standing& a, const Standing& b) {
   return a.better == Better::more ? is_less(b.number(), a.number()) : is_less(a.number(), b.number());
 }
 
-/// Ranks the algorithms in one scenario by one metric.
-void rank_by_means(const std::vector<Standing*>& standings) {
-  if (standings.front()->better == Better::none ||
-      std::ranges::none_of(standings, [](const Standing* s) { return s->mean.has_value(); }))
-    return;
-  for (Standing* s : standings) {
-    const auto did_better = [s](const Standing* other) { return is_better(*other, *s); };
-    s->rank = 1 + static_cast<std::uint64_t>(std::ranges::count_if(standings, did_better));
+/// Standing::rank, from the standings of all algorithms.
+std::optional<std::uint64_t> rank_of(const League& league, std::size_t s, std::size_t a, std::size_t m) {
+  std::uint64_t rank = 1;
+  bool has_mean = false;
+  for (std::size_t other = 0; other < league.algorithms.size(); ++other) {
+    if (is_better(league.at(s, other, m), league.at(s, a, m))) ++rank;
+    has_mean |= league.at(s, other, m).mean.has_value();
   }
+  return has_mean && league.better[m] != Better::none ? std::optional(rank) : std::nullopt;
 }
 
 LawStanding law_standing(const League& league, std::size_t a) {
@@ -150,11 +146,9 @@ void League::rank() {
     const std::size_t first = standings.size();
     for (std::size_t a = 0; a < algorithms.size(); ++a)
       for (std::size_t m = 0; m < metrics.size(); ++m) standings.push_back(standing_of(*this, s, a, m));
-    for (std::size_t m = 0; m < metrics.size(); ++m) {
-      std::vector<Standing*> column;
-      for (std::size_t a = 0; a < algorithms.size(); ++a) column.push_back(&standings[first + a * metrics.size() + m]);
-      rank_by_means(column);
-    }
+    for (std::size_t a = 0; a < algorithms.size(); ++a)
+      for (std::size_t m = 0; m < metrics.size(); ++m)
+        standings[first + a * metrics.size() + m].rank = rank_of(*this, s, a, m);
   }
   for (std::size_t a = 0; a < algorithms.size(); ++a) laws.push_back(law_standing(*this, a));
   std::ranges::stable_sort(laws, [](const LawStanding& a, const LawStanding& b) {

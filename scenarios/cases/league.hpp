@@ -1,14 +1,5 @@
 #pragma once
 
-#include <cstddef>
-#include <cstdint>
-#include <optional>
-#include <span>
-#include <string>
-#include <string_view>
-#include <vector>
-
-#include "results/io/columns.hpp"
 #include "scenarios/cases/comparison.hpp"
 
 /// Ranks algorithms by their metrics in each scenario and over all scenarios; means and what chance makes of them.

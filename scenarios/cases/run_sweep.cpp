@@ -3,12 +3,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
 #include <exception>
 #include <fstream>
-#include <map>
 #include <mutex>
-#include <nlohmann/json.hpp>
 #include <numeric>
 #include <set>
 #include <utility>
@@ -16,13 +13,8 @@
 #include "algorithms/registry.hpp"
 #include "results/io/atomic_file.hpp"
 #include "results/io/columns.hpp"
-#include "results/io/json_text.hpp"
-#include "results/summary/provenance.hpp"
-#include "results/summary/summary.hpp"
-#include "scenarios/format/descriptions.hpp"
-#include "scenarios/format/input_error.hpp"
-#include "scenarios/format/json_file.hpp"
 #include "scenarios/format/metric_sections.hpp"
+#include "scenarios/format/parts.hpp"
 #include "scenarios/format/text_lines.hpp"
 #include "scenarios/format/writer.hpp"
 #include "scenarios/run/assemble.hpp"
@@ -84,19 +76,18 @@ Json check_files(SweepPlan& plan, const std::vector<std::size_t>& runs, Names& m
 /// The values of an axis; only the ends of a range that has very many.
 Json axis_content(const Axis& axis, bool of_a_file) {
   constexpr std::size_t kMostListed = 10'000;
-  if (of_a_file) return {{"path", axis.path}};
-  if (!axis.range || (axis.steps > 0 && axis.steps <= kMostListed)) {
-    Json values = Json::array();
-    for (std::size_t i = 0; i < axis.size(); ++i) values.push_back(axis.value(i));
-    Json content = {{"path", axis.path}, {"values", std::move(values)}};
-    for (const Axis::Along& along : axis.along)
-      content["along"].push_back({{"set", along.overrides}, {"metrics_every_rows", along.stride}});
+  Json content = {{"path", axis.path}};
+  if (of_a_file) return content;
+  if (axis.range && (axis.steps == 0 || axis.steps > kMostListed)) {
+    content["range"] = {axis.range->from, axis.range->to};
+    content["scale"] = axis.range->logarithmic ? "log" : "linear";
+    if (axis.steps > 0) content["count"] = axis.steps;
     return content;
   }
-  Json content = {{"path", axis.path},
-                  {"range", {axis.range->from, axis.range->to}},
-                  {"scale", axis.range->logarithmic ? "log" : "linear"}};
-  if (axis.steps > 0) content["count"] = axis.steps;
+  content["values"] = Json::array();
+  for (std::size_t i = 0; i < axis.size(); ++i) content["values"].push_back(axis.value(i));
+  for (const Axis::Along& along : axis.along)
+    content["along"].push_back({{"set", along.overrides}, {"metrics_every_rows", along.stride}});
   return content;
 }
 
@@ -113,14 +104,13 @@ Json content_of(const SweepPlan& plan, const Json& files, const Json& plugins) {
   const std::vector<ScenarioText>& scenes = plan.cases.scenes();
   const auto& sampling = plan.cases.sampling();
   const bool of_a_file = sampling && sampling->method == SamplingMethod::points;
-  Json vary = Json::array();
-  for (const Axis& axis : plan.cases.axes()) vary.push_back(axis_content(axis, of_a_file));
   Json content;
   if (scenes.size() == 1) content["scenario"] = scenes[0].json;
   if (scenes.size() > 1)
     for (const ScenarioText& scene : scenes) content["scenarios"].push_back(scene.json);
   content["set"] = plan.cases.sets();
-  content["vary"] = std::move(vary);
+  content["vary"] = Json::array();
+  for (const Axis& axis : plan.cases.axes()) content["vary"].push_back(axis_content(axis, of_a_file));
   if (sampling) content["sample"] = {{"method", sampling_name(sampling->method)}, {"runs", sampling->count}};
   if (of_a_file) content["sample"]["hash"] = hash_of_points(plan.cases);
   if (sampling && !of_a_file) content["sample"]["seed"] = sampling->seed;
@@ -163,10 +153,7 @@ std::string finished_row(const SweepPlan& plan, std::size_t run, const Result& s
                     "sweeps whose first runs record what the others record",
                     metric.name));
   }
-  for (const std::string& name : plan.metrics) {
-    const Metric* metric = find_metric(metrics, name);
-    cells.push_back(metric == nullptr ? "" : cell_text(metric->value));
-  }
+  for (const std::string& name : plan.metrics) cells.push_back(cell_text(value_of(metrics, name)));
   for (const std::string& name : plan.bounded) {
     const Metric* metric = find_metric(metrics, name);
     cells.push_back(metric == nullptr ? "" : cell_text(cell_if(metric->tolerance())));
@@ -175,17 +162,6 @@ std::string finished_row(const SweepPlan& plan, std::size_t run, const Result& s
   return line_of(plan, run, cells);
 }
 
-/// Whether the row of an earlier sweep stays. Throws InputError when it has not so many cells.
-bool stays(const SweepPlan& plan, const SweepOptions& options, std::size_t run, std::string_view row,
-           std::size_t columns) {
-  const std::vector<std::string> cells = csv_cells(row);
-  if (cells.size() != columns)
-    throw InputError(fmt::format("got the row \"{}\"; allowed: rows of this sweep", row.substr(0, 60)));
-  return cells[1 + plan.cases.axes().size()] != kErrorOutcome &&
-         (!options.keep_runs || fs::exists(run_folder(options, run) / "summary.json"));
-}
-
-/// Whether a row keeps a condition.
 using Condition = std::function<bool(const SweepRow& row)>;
 
 Condition condition_of(const std::string& text, const SweepTable& table) {
@@ -211,7 +187,6 @@ Condition condition_of(const std::string& text, const SweepTable& table) {
   };
 }
 
-/// The JSON next to a table.
 Json description_of(const fs::path& table) {
   const fs::path file = fs::path(table).replace_extension(".json");
   try {
@@ -262,13 +237,12 @@ std::vector<std::size_t> runs_to_check(const Cases& cases) {
 }
 
 SweepPlan plan_sweep(Cases cases, const JobOptions& jobs) {
-  SweepPlan plan{
-      .cases = std::move(cases), .warnings = {}, .metrics = {}, .bounded = {}, .content = {}, .definition = ""};
+  SweepPlan plan{std::move(cases)};
   const std::vector<std::size_t> runs = runs_to_check(plan.cases);
-  Names metrics;
-  std::map<std::string, std::string> plugins;
   std::vector<Point> points(runs.size());
   for_each_job(runs.size(), jobs, [&](std::size_t i) { points[i] = examine(plan, runs[i]); });
+  Names metrics;
+  std::map<std::string, std::string> plugins;
   Names files;                               // combinations of them
   std::vector<std::size_t> runs_with_files;  // the first one of each
   for (std::size_t i = 0; i < runs.size(); ++i) {
@@ -293,8 +267,12 @@ SweepReport run_sweep(const SweepPlan& plan, const SweepOptions& options) {
   const Shard part = options.shard.value_or(Shard{});
   SweepReport report;
   const std::vector<std::string> columns = plan.columns();
-  const auto keep = [&](std::size_t run, std::string_view text) {
-    return stays(plan, options, run, text, columns.size());
+  const auto keep = [&](std::size_t run, std::string_view row) {
+    const std::vector<std::string> cells = csv_cells(row);
+    if (cells.size() != columns.size())
+      throw InputError(fmt::format("got the row \"{}\"; allowed: rows of this sweep", row.substr(0, 60)));
+    return cells[1 + plan.cases.axes().size()] != kErrorOutcome &&
+           (!options.keep_runs || fs::exists(run_folder(options, run) / "summary.json"));
   };
   TableFile table(
       {options.table(), fmt::format("{}", fmt::join(columns, ",")), plan.description(part), plan.cases.size()},
@@ -338,10 +316,6 @@ void SweepCounts::add(std::size_t run, const std::string& outcome, bool is_expec
   if (!first_unexpected) first_unexpected = run;
 }
 
-std::size_t SweepTable::place(std::string_view column) const {
-  return static_cast<std::size_t>(std::ranges::find(columns, column) - columns.begin());
-}
-
 std::vector<std::string> SweepTable::metrics() const {
   const auto first = columns.begin() + static_cast<std::ptrdiff_t>(place("steps")) + 1;
   return {first,
@@ -351,10 +325,6 @@ std::vector<std::string> SweepTable::metrics() const {
 std::optional<double> SweepTable::number(const SweepRow& row, std::string_view column) const {
   const std::size_t at = place(column);
   return at < row.size() ? finite_number(row[at]) : std::nullopt;
-}
-
-std::optional<double> SweepTable::tolerance(const SweepRow& row, std::string_view metric) const {
-  return number(row, std::string(kToleranceOf) + std::string(metric));
 }
 
 SweepTable read_sweep(const fs::path& file, const std::vector<std::string>& conditions) {

@@ -1,15 +1,9 @@
 #pragma once
 
-#include <cstddef>
-#include <filesystem>
-#include <functional>
+#include <algorithm>
 #include <map>
 #include <optional>
-#include <string>
-#include <string_view>
-#include <vector>
 
-#include "scenarios/cases/cases.hpp"
 #include "scenarios/cases/table_file.hpp"
 
 /// Sweeps: cases that are checked first, then run, and the table that they leave, sweep.csv.
@@ -19,12 +13,12 @@ namespace hapbench {
 struct SweepPlan {
   Cases cases;
 
-  std::vector<std::string> warnings;  ///< of the runs that were checked, without duplicates
-  std::vector<std::string> metrics;   ///< that some of these runs have
-  std::vector<std::string> bounded;   ///< those of the metrics whose rows say by how much they may be wrong
+  std::vector<std::string> warnings = {};  ///< of the runs that were checked, without duplicates
+  std::vector<std::string> metrics = {};   ///< that some of these runs have
+  std::vector<std::string> bounded = {};   ///< those of the metrics whose rows say by how much they may be wrong
   /// Everything that determines the rows: scenes, overrides, points, hashes of the files the scenarios name, program.
-  Json content;
-  std::string definition;  ///< FNV-1a of the content, as 16 hexadecimal digits
+  Json content = {};
+  std::string definition = {};  ///< FNV-1a of the content, as 16 hexadecimal digits
 
   /// The names of the columns of the table.
   std::vector<std::string> columns() const;
@@ -113,7 +107,9 @@ struct SweepTable {
   SweepCounts kept;            ///< of those that keep the conditions
 
   /// The place of a column; the number of columns where it is none.
-  std::size_t place(std::string_view column) const;
+  std::size_t place(std::string_view column) const {
+    return static_cast<std::size_t>(std::ranges::find(columns, column) - columns.begin());
+  }
   /// Number of the fields that vary.
   std::size_t fields() const { return place("outcome") - 1; }
   const std::string& outcome(const SweepRow& row) const { return row[1 + fields()]; }
@@ -121,7 +117,9 @@ struct SweepTable {
   /// Empty for a column that does not exist, and where a cell is not a number.
   std::optional<double> number(const SweepRow& row, std::string_view column) const;
   /// Error of a metric; empty if it is not known.
-  std::optional<double> tolerance(const SweepRow& row, std::string_view metric) const;
+  std::optional<double> tolerance(const SweepRow& row, std::string_view metric) const {
+    return number(row, std::string(kToleranceOf) + std::string(metric));
+  }
 };
 
 /// Reads the table of a sweep or of one of its shards, and the JSON file next to it. `conditions` are texts such as

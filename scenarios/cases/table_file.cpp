@@ -9,9 +9,7 @@
 #include <utility>
 
 #include "results/io/atomic_file.hpp"
-#include "results/io/json_text.hpp"
-#include "scenarios/format/input_error.hpp"
-#include "scenarios/format/json_file.hpp"
+#include "results/io/columns.hpp"
 #include "scenarios/format/text_lines.hpp"
 
 namespace hapbench {

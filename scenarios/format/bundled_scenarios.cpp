@@ -81,8 +81,8 @@ fs::path find_scenario(const std::string& argument, const fs::path& directory) {
   const fs::path file = directory / argument;
   if (fs::exists(file, error)) {
     if (is_mesh_name(file) && !fs::is_directory(file, error))
-      throw InputError(fmt::format("{}: is a mesh; allowed: a scenario, as \"hapbench new mesh --from {}\" writes one",
-                                   argument, argument));
+      throw InputError(
+          fmt::format("{0}: is a mesh; allowed: a scenario, as \"hapbench new mesh --from {0}\" writes one", argument));
     return file;
   }
   std::vector<std::string> names;
@@ -90,14 +90,12 @@ fs::path find_scenario(const std::string& argument, const fs::path& directory) {
     if (bundled.name == argument) return bundled.file;
     names.push_back(bundled.name);
   }
-  if (fs::exists(file.string() + ".json", error))
-    throw InputError(fmt::format("{}: no such file and no bundled scenario; there is {}.json", argument, argument));
+  const std::string missing = argument + ": no such file and no bundled scenario";
+  if (fs::exists(file.string() + ".json", error)) throw InputError(missing + "; there is " + argument + ".json");
   if (argument.find('=') != std::string::npos)
-    throw InputError(
-        fmt::format("{}: no such file and no bundled scenario; a field is overridden by --set {}", argument, argument));
-  const std::string stem = fs::path(argument).stem().string();
-  throw InputError(fmt::format("{}: no such file and no bundled scenario{}; \"hapbench describe scenarios\" shows them",
-                               argument, nearest_name_hint(stem, names)));
+    throw InputError(missing + "; a field is overridden by --set " + argument);
+  throw InputError(missing + nearest_name_hint(fs::path(argument).stem().string(), names) +
+                   "; \"hapbench describe scenarios\" shows them");
 }
 
 std::vector<fs::path> find_scenarios(const std::vector<std::string>& arguments) {

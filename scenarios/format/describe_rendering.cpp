@@ -2,15 +2,11 @@
 
 #include "algorithms/parameters.hpp"
 #include "algorithms/registry.hpp"
-#include "scenarios/format/descriptions.hpp"
+#include "scenarios/format/parts.hpp"
 #include "scenarios/format/text_lines.hpp"
 
 namespace hapbench {
 namespace {
-
-std::vector<std::string> depth_model_names() {
-  return names_of(depth_models(), [](const DepthModelEntry& entry) { return entry.info->name; });
-}
 
 /// The field's name without the objects it lies in.
 std::string_view key(const Parameter& parameter) {
@@ -120,10 +116,9 @@ static void describe_hunt_crossley(Fields& f, double& chi) {
 }
 
 static void describe(Fields& f, Lateness& late) {
-  constexpr Choice<bool> kBetween[] = {{"hold", false}, {"linear", true}};
   number(f, parameter::kEvery, late.every, "contacts are found in every n-th row, from row 0 on");
   number(f, parameter::kDelay, late.delay, "rows from when contacts are found until they serve");
-  f.choice("between", late.linear, kBetween, "kind of contacts between queries",
+  f.choice("between", late.linear, {"hold", "linear"}, "kind of contacts between queries",
            "hold: depths as found; linear: depths follow the tool's motion along the gradients");
   number(f, parameter::kDropout, late.dropout, "probability that a query after the first is lost, by the seed");
 }
@@ -172,10 +167,9 @@ static void describe(Fields& f, ActuatorLimitedPassivityConfig& limited) {
 }
 
 static void describe(Fields& f, ForceStageConfig& stage) {
-  static constexpr TypeName kTypes[] = {
-      {"energy_tank", "gives away no more energy than it holds"},
-      {"actuator_limited_passivity", "time-domain passivity within the limits of each actuator"}};
-  f.variant(stage, "force stage", kTypes, [](Fields& fields, auto& held) { describe(fields, held); });
+  f.variant(stage, "force stage",
+            {{"energy_tank", "gives away no more energy than it holds"},
+             {"actuator_limited_passivity", "time-domain passivity within the limits of each actuator"}});
 }
 
 Scenario with_algorithm(Scenario scenario, std::string_view algorithm) {
@@ -185,7 +179,8 @@ Scenario with_algorithm(Scenario scenario, std::string_view algorithm) {
 }
 
 void describe(Fields& f, RenderingConfig& rendering) {
-  static const std::vector<std::string> kDepthModels = depth_model_names();
+  static const std::vector<std::string> kDepthModels =
+      names_of(depth_models(), [](const DepthModelEntry& entry) { return entry.info->name; });
   f.name("algorithm", rendering.algorithm, algorithm_names(), "algorithm", "force algorithm");
   // The stages that the algorithm fixes are the defaults of the fields below.
   if (f.reads()) rendering = with_fixed_stages(rendering);

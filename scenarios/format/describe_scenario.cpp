@@ -10,13 +10,14 @@
 #include "algorithms/registry.hpp"
 #include "algorithms/stages/damping_and_limits.hpp"
 #include "results/summary/summary.hpp"
-#include "scenarios/format/descriptions.hpp"
 #include "scenarios/format/input_error.hpp"
 #include "scenarios/format/json_file.hpp"
 #include "scenarios/format/load_scenario.hpp"
 #include "scenarios/format/metric_sections.hpp"
+#include "scenarios/format/parts.hpp"
+#include "scenarios/format/text_lines.hpp"
 #include "scenarios/format/writer.hpp"
-#include "sim/loop/integrators/spring_damper.hpp"
+#include "sim/loop/integrators/table.hpp"
 
 namespace hapbench {
 
@@ -66,13 +67,6 @@ bool is_zero(const Profile& profile) {
   return profile.is_constant() && profile(0.0) == 0.0;
 }
 
-/// True when the ideal trajectory and the exact depth in the hole are known (results/observe/ideal_trajectory.hpp).
-bool has_ideal_trajectory(const Scenario& scenario) {
-  const auto* cylinder = std::get_if<CylinderFields>(&scenario.tool);
-  return std::holds_alternative<BlockEnvironment>(scenario.environment) && cylinder != nullptr &&
-         cylinder->tip == Tip::flat;
-}
-
 bool has_other_contacts(const Scenario& scenario) {
   return scenario.rendering.contact_source != kOwnContacts;
 }
@@ -96,7 +90,11 @@ constexpr Rule kRules[] = {
      }},
     {"/record/ideal_trajectory",
      "got true; allowed: false, unless the environment is block_with_hole and the tool a cylinder with a flat tip",
-     [](const Scenario& s) { return s.record.ideal_trajectory && !has_ideal_trajectory(s); }},
+     [](const Scenario& s) {
+       const auto* cylinder = std::get_if<CylinderFields>(&s.tool);
+       const bool is_flat = cylinder != nullptr && cylinder->tip == Tip::flat;
+       return s.record.ideal_trajectory && !(is<BlockEnvironment>(s.environment) && is_flat);
+     }},
     {"/integrator/tolerance_s", "allowed for integrator.type \"event\" only",
      [](const Scenario& s) {
        return s.integrator.type != &kEvent && s.integrator.options.tolerance != IntegratorOptions{}.tolerance;
@@ -196,8 +194,7 @@ void check_tracking_hand(const Scenario& scenario, double steps) {
           fmt::format("got {:.3g} steps in all trials; allowed: at most {:.0g}", all_steps, kMostSteps));
 }
 
-/// Throws InputError for fields that contradict each other. `steps` is their number, which may be more than a scenario
-/// can hold.
+/// Throws InputError for fields that contradict each other. `steps` may be more than a scenario can hold.
 void check_relations(const Scenario& scenario, double steps) {
   check_sizes(scenario, steps);
   check_orientation(scenario.motion);
@@ -233,9 +230,8 @@ void warn_of_idle_device(const Scenario& scenario, std::vector<Warning>& warning
 
 /// True when the algorithm documents the field as one of its parameters.
 bool reads(const AlgorithmEntry& algorithm, std::string_view field) {
-  const auto& parameters = algorithm.info->parameters;
-  return std::any_of(parameters.begin(), parameters.end(),
-                     [field](const ParameterInfo& info) { return info.parameter.field == field; });
+  const auto is_field = [field](const ParameterInfo& info) { return info.parameter.field == field; };
+  return std::ranges::any_of(algorithm.info->parameters, is_field);
 }
 
 /// Warnings about values in `json`, other than the defaults, that the rendering does not read: parameters of other
@@ -265,8 +261,7 @@ void warn_of_unread_rendering(const Scenario& scenario, const Json& json, std::v
         {kNoEffect, pointer,
          fmt::format("has no effect on this algorithm; it is a parameter of {}", fmt::join(names, ", "))});
   }
-  for (const char* field : {"damping_ratio", "damping_N_s_per_m"}) {
-    const std::string pointer = std::string("/rendering/") + field;
+  for (const char* pointer : {"/rendering/damping_ratio", "/rendering/damping_N_s_per_m"}) {
     if (scenario.rendering.hunt_crossley && is_given(pointer))
       warnings.push_back({kNoEffect, pointer, "has no effect together with rendering.damping"});
   }
@@ -337,9 +332,6 @@ namespace {
 
 constexpr auto kMostStepsOrRows = static_cast<std::int64_t>(kMostSteps);
 
-constexpr Choice<StopCondition> kStopConditions[] = {{"leaves_hole", StopCondition::leaves_hole},
-                                                     {"tool_horizontal", StopCondition::tool_horizontal}};
-
 /// Returns the number of steps, which may be more than a scenario can hold.
 double describe_time(Fields& f, TimeFields& time) {
   std::optional<double> duration;
@@ -349,16 +341,17 @@ double describe_time(Fields& f, TimeFields& time) {
     d.number(value, {0.0, 1e9, "s", true});
   });
   f.list("stop_when", time.stop_when, {0, 2}, "end early: tip centre above height 0; axis in the horizontal plane",
-         [](Fields& s, StopCondition& value) { s.choice(value, kStopConditions, "stop condition"); });
+         [](Fields& s, StopCondition& value) {
+           s.choice(value, {"leaves_hole", "tool_horizontal"}, "stop condition");
+         });
   f.exactly_one_of("steps", "duration_s");
   return duration ? std::round(*duration / time.step) : static_cast<double>(time.steps);
 }
 
 /// One outcome, or a list of them.
 void describe_outcomes(Fields& f, std::vector<Outcome>& outcomes) {
-  std::vector<Choice<Outcome>> choices;
-  for (const OutcomeInfo& known : outcome_infos()) choices.push_back({known.name, *outcome_named(known.name)});
-  const auto outcome = [&choices](Fields& o, Outcome& value) { o.choice(value, choices, "outcome"); };
+  const std::vector<std::string> names = names_of(outcome_infos(), &OutcomeInfo::name);
+  const auto outcome = [&names](Fields& o, Outcome& value) { o.choice(value, names, "outcome"); };
   f.one_or_list(
       outcomes.size() != 1,
       [&](Fields& one) {
@@ -371,8 +364,7 @@ void describe_outcomes(Fields& f, std::vector<Outcome>& outcomes) {
       });
 }
 
-/// Puts the thesis's parameters of the scene (Tables A.1, A.2, B.1) in place of those of springs, which the structs
-/// have.
+/// Puts the thesis's parameters of the scene (Tables A.1, A.2, B.1) in place of the structs' own, those of springs.
 void set_scene_defaults(Scenario& scenario) {
   if (std::holds_alternative<SpringsEnvironment>(scenario.environment)) return;
   RenderingConfig& rendering = scenario.rendering;
@@ -430,10 +422,11 @@ static void describe(Fields& f, InitialFields& initial) {
 }
 
 static void describe(Fields& f, IntegratorFields& integrator) {
-  std::vector<Choice<const IntegratorEntry*>> choices;
-  for (const IntegratorEntry* entry : kIntegrators) choices.push_back({entry->info.name, entry});
-  f.choice("type", integrator.type, choices, "integrator",
-           "leapfrog is the thesis's; \"hapbench describe NAME\" explains each", Presence::required);
+  std::string type = integrator.type->info.name;
+  const auto names = names_of(kIntegrators, [](const IntegratorEntry* entry) { return entry->info.name; });
+  f.name("type", type, names, "integrator", "leapfrog is the thesis's; \"hapbench describe NAME\" explains each",
+         Presence::required);
+  if (f.reads()) integrator.type = *std::ranges::find(kIntegrators, type, [](auto* entry) { return entry->info.name; });
   f.number("tolerance_s", integrator.options.tolerance, {1e-15, 1.0, "s"},
            "of event: within which it finds the times of contact on and off; 1e-9 unless it is given",
            integrator.type == &kEvent ? Presence::no_default : Presence::left_out);

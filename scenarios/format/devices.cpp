@@ -6,9 +6,7 @@
 
 #include "device_model/admittance_device.hpp"
 #include "device_model/device_presets.hpp"
-#include "device_model/ideal_device.hpp"
 #include "device_model/impedance_device.hpp"
-#include "scenarios/format/descriptions.hpp"
 #include "scenarios/format/input_error.hpp"
 #include "scenarios/format/parts.hpp"
 #include "scenarios/format/text_lines.hpp"
@@ -177,14 +175,6 @@ void resolve_delay(Scenario& scenario) {
   device->delay_samples = samples;
 }
 
-/// The passive hand that is fixed to the handle and moves with it between samples; without mass, spring and damper for
-/// other hands.
-static AttachedHand attached_hand(const HandFields& hand) {
-  const auto* fields = std::get_if<MassSpringDamperHandFields>(&hand);
-  return fields == nullptr ? AttachedHand{}
-                           : AttachedHand{fields->mass, fields->spring.stiffness, fields->spring.damping};
-}
-
 std::unique_ptr<Device> make_device(const Scenario& scenario, Trial trial) {
   if (const auto* ideal = std::get_if<IdealDeviceFields>(&scenario.device)) {
     return std::make_unique<IdealDevice>(ideal->force_limit);
@@ -192,7 +182,10 @@ std::unique_ptr<Device> make_device(const Scenario& scenario, Trial trial) {
   if (const auto* impedance = std::get_if<ImpedanceDeviceConfig>(&scenario.device)) {
     ImpedanceDeviceConfig config = *impedance;
     config.seed = derived_seed(scenario, trial, RandomUse::position_noise);
-    return std::make_unique<ImpedanceDevice>(config, scenario.time.step, attached_hand(scenario.hand));
+    AttachedHand attached;  // moves with the handle between samples
+    if (const auto* hand = std::get_if<MassSpringDamperHandFields>(&scenario.hand))
+      attached = {hand->mass, hand->spring.stiffness, hand->spring.damping};
+    return std::make_unique<ImpedanceDevice>(config, scenario.time.step, attached);
   }
   AdmittanceDeviceConfig config = std::get<AdmittanceDeviceConfig>(scenario.device);
   if (scenario.motion.orientation) config.sensor.down = -scenario.motion.orientation->up.normalized();

@@ -1,13 +1,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "scenarios/format/descriptions.hpp"
 #include "scenarios/format/input_error.hpp"
-#include "scenarios/format/named_files.hpp"
 #include "scenarios/format/parts.hpp"
 #include "scenarios/format/writer.hpp"
 #include "sim/contact/grid_index.hpp"
@@ -33,13 +30,6 @@ constexpr TypeName kEnvironmentTypes[] = {
     {"conical_hole", "a hole that tapers to a point"},
 };
 
-constexpr Choice<BlockVertices> kVertices[] = {{"shared", BlockVertices::shared},
-                                               {"per_cell", BlockVertices::per_cell}};
-/// A vertex lies on an edge of four cells.
-constexpr double kCellsOfVertex = 4.0;
-
-constexpr Choice<Density> kDensities[] = {{"signed_distance", Density::signed_distance}, {"binary", Density::binary}};
-
 void refuse_too_many(double count, const std::string& at, const char* what) {
   if (count <= kMostPoints) return;
   fail_at(at, fmt::format("got {:.3g} {}; allowed: at most {:.0g}", count, what, kMostPoints));
@@ -61,13 +51,6 @@ void check_springs(const SpringsEnvironment& springs, const std::string& at) {
   fail_at(at + "/signed", "got false; allowed: true with \"bilateral\": false, whose depths are positive as they are");
 }
 
-double expected_points(const BlockEnvironment& block) {
-  const Vec3& size = block.block.size;
-  const double area = 2.0 * (size.x() * size.y() + size.y() * size.z() + size.z() * size.x());
-  const double copies = block.vertices == BlockVertices::per_cell ? kCellsOfVertex : 1.0;
-  return copies * area / (block.grid * block.grid);
-}
-
 void check_block(const BlockEnvironment& environment, const std::string& at) {
   const BlockWithHole& block = environment.block;
   const double grid = environment.grid;
@@ -76,7 +59,9 @@ void check_block(const BlockEnvironment& environment, const std::string& at) {
   const double longest = 1e5 * grid, thinnest = 3.0 * grid;
   const auto fail = [&at](const char* field, const std::string& problem) { fail_at(at + "/" + field, problem); };
   if (size.maxCoeff() > longest) fail("grid_m", fmt::format("got {}; allowed: at least size_m / 1e5", grid));
-  refuse_too_many(expected_points(environment), at, "shell points (from size_m, grid_m and vertices)");
+  const double area = 2.0 * (size.x() * size.y() + size.y() * size.z() + size.z() * size.x());
+  const double copies = environment.vertices == BlockVertices::per_cell ? 4.0 : 1.0;  // on an edge of four cells
+  refuse_too_many(copies * area / (grid * grid), at, "shell points (from size_m, grid_m and vertices)");
   if (block.hole_diameter > std::min(size.x(), size.y()) - 2.0 * thinnest || block.hole_diameter < thinnest) {
     fail("hole_diameter_m",
          fmt::format("got {}; allowed: at least 3 grid_m, leaving walls of 3 grid_m", block.hole_diameter));
@@ -144,9 +129,9 @@ static void describe(Fields& f, BlockEnvironment& environment) {
   f.number("hole_diameter_m", block.hole_diameter, kLength, "round blind hole");
   f.number("hole_depth_m", block.hole_depth, kLength, "below the top face");
   f.number("grid_m", environment.grid, kLength, "grid of the density field; its nodes lie at half-integer multiples");
-  f.choice("density", environment.density, kDensities, "density",
+  f.choice("density", environment.density, {"signed_distance", "binary"}, "density",
            "what the nodes store: minus the signed distance, or 1 and 0");
-  f.choice("vertices", environment.vertices, kVertices, "listing",
+  f.choice("vertices", environment.vertices, {"shared", "per_cell"}, "listing",
            "points of the shell: each vertex once, or once for each grid cell that has it on an edge (the thesis)");
   if (f.reads()) check_block(environment, f.at());
 }
@@ -174,8 +159,7 @@ void describe(Fields& f, Environment& environment) {
 
 namespace {
 
-/// The environment with every default filled in, with hashes of the contents of named files in place of their paths:
-/// equal for equal point shells. Throws InputError.
+/// The environment with every default and hashes of files in place of paths: equal for equal shells. Throws InputError.
 Json environment_content(const Scenario& scenario, const NamedFiles& files) {
   constexpr std::string_view kEnvironment = "/environment";
   Json json = written(scenario.environment);

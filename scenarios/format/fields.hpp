@@ -7,7 +7,6 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <type_traits>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -17,10 +16,9 @@
 #include "sim/core/model_info.hpp"
 #include "sim/core/types.hpp"
 
-/// The format of scenario files, described once. A function `describe(Fields&, T&)` for each struct names its fields
-/// with meaning, unit and range. Visitors use that to read files (read_value), to write them (json_of), to write the
-/// schema and explain the fields (guide_to) and to find the files that a scenario names (NamedFiles). So the
-/// program, the files it writes, the schema and the documentation cannot disagree.
+/// The format of scenario files, described once, so that program, files, schema and documentation cannot disagree. A
+/// function `describe(Fields&, T&)` for each struct names its fields with meaning, unit and range. Visitors use that to
+/// read files (read_value), to write them and find the files that they name (json_of) and to explain them (guide_to).
 namespace hapbench {
 
 struct Warning;
@@ -76,15 +74,6 @@ inline constexpr const char* kTypeField = "type";
 struct TypeName {
   const char* name;
   const char* summary;
-
-  constexpr TypeName(const char* type, const char* in_words = "") : name(type), summary(in_words) {}  // NOLINT
-};
-
-/// A name of a value of an enumeration.
-template <class Enum>
-struct Choice {
-  std::string_view name;
-  Enum value;
 };
 
 /// The content of a file that a scenario names, and how it is read.
@@ -173,16 +162,12 @@ class Fields {
     value = static_cast<Integer>(wide);
   }
 
+  /// A value of an enumeration; `names` are those of all its values, which count from 0.
   template <class Enum>
-  void choice(Enum& value, std::type_identity_t<std::span<const Choice<Enum>>> choices, const char* what) {
-    std::vector<std::string> names;
-    std::size_t index = choices.size();
-    for (const Choice<Enum>& choice : choices) {
-      if (choice.value == value) index = names.size();
-      names.emplace_back(choice.name);
-    }
+  void choice(Enum& value, const std::vector<std::string>& names, const char* what) {
+    auto index = static_cast<std::size_t>(value);
     name(index, names, what);
-    if (reads()) value = choices[index].value;
+    if (reads()) value = static_cast<Enum>(index);
   }
 
   void name(std::string& value, const std::vector<std::string>& names, const char* what) {
@@ -270,9 +255,9 @@ class Fields {
     field(name, doc, presence, [&](Fields& f) { f.integer(value, range); });
   }
   template <class Enum>
-  void choice(std::string_view name, Enum& value, std::type_identity_t<std::span<const Choice<Enum>>> choices,
-              const char* what, const char* doc, Presence presence = Presence::has_default) {
-    field(name, doc, presence, [&](Fields& f) { f.choice(value, choices, what); });
+  void choice(std::string_view name, Enum& value, const std::vector<std::string>& names, const char* what,
+              const char* doc, Presence presence = Presence::has_default) {
+    field(name, doc, presence, [&](Fields& f) { f.choice(value, names, what); });
   }
   template <class T>
   void object(std::string_view name, T& value, const char* doc, Presence presence = Presence::has_default) {

@@ -1,7 +1,6 @@
 #include "device_model/hands/drag_hand.hpp"
 #include "device_model/hands/scripted_hands.hpp"
 #include "device_model/hands/tracking_hand.hpp"
-#include "scenarios/format/descriptions.hpp"
 #include "scenarios/format/input_error.hpp"
 #include "scenarios/format/parts.hpp"
 #include "sim/core/random.hpp"
@@ -11,13 +10,6 @@ namespace {
 
 constexpr NumberRange kCoordinate = {-1000.0, 1000.0, "m"};
 constexpr NumberRange kAngle = {-6.3, 6.3, "rad"};  ///< a full turn either way
-
-constexpr Choice<TargetDisplay> kDisplays[] = {{"panel", TargetDisplay::panel}, {"height", TargetDisplay::height}};
-constexpr Choice<LowForce> kLowForces[] = {{"restarts", LowForce::restarts},
-                                           {"pauses", LowForce::pauses},
-                                           {"closes", LowForce::closes},
-                                           {"nothing", LowForce::nothing}};
-constexpr Choice<PressForce> kPressForces[] = {{"rendered", PressForce::rendered}, {"spring", PressForce::spring}};
 
 }  // namespace
 
@@ -98,17 +90,17 @@ static void describe(Fields& f, Gauge& gauge) {
 }
 
 static void describe(Fields& f, Threshold& threshold) {
-  f.choice("force", threshold.force, kPressForces, "force", "whose component along +z counts");
+  f.choice("force", threshold.force, {"rendered", "spring"}, "force", "whose component along +z counts");
   f.number("cutoff_Hz", threshold.cutoff, {0.0, 1e6, "Hz", true},
            "of a first-order low-pass; null: every sample counts");
   f.number("grace_s", threshold.grace, {0.0, 1000.0, "s"},
            "how long it may be less than least_press_N without a break of the hold");
-  f.choice("low", threshold.low, kLowForces, "effect",
+  f.choice("low", threshold.low, {"restarts", "pauses", "closes", "nothing"}, "effect",
            "of a longer dip: the hold restarts, or pauses, the target closes, or nothing");
 }
 
 static void describe(Fields& f, TargetRules& task) {
-  f.choice("display", task.display, kDisplays, "display",
+  f.choice("display", task.display, {"panel", "height"}, "display",
            "panel: x and y count, the orientation is scripted; height: z counts, the hand turns the tool");
   f.list(
       "places_m", task.places, {1, TrackingHandFields::kMostPlaces}, "where targets appear",
@@ -194,36 +186,29 @@ std::unique_ptr<TrackingHand> make_tracking_hand(const Scenario& scenario, const
                                         derived_seed(scenario, trial, RandomUse::motor_noise));
 }
 
-void add_drag(const Scenario& scenario, const DragHandFields& fields, const NamedFiles& files, SimulationParts& parts) {
+void add_drag(const Scenario& scenario, const DragHandFields& fields, SimulationParts& parts) {
   const SmoothedSurface surface(*parts.shell, fields.smoothing);
   const double length = fields.drag.speed * static_cast<double>(scenario.time.steps) * scenario.time.step;
   const auto path = std::make_shared<const SurfacePath>(
       fields.path ? SurfacePath::over(surface, *fields.path)
                   : SurfacePath::along(surface, scenario.initial.position, *fields.direction, length));
   parts.hand = std::make_unique<DragHand>(fields.drag, path);
-  if (fields.tilt) {
+  if (fields.tilt)
     parts.motion = std::make_unique<DragOrientation>(path, fields.drag.speed, *fields.tilt, fields.azimuth);
-  } else {
-    parts.motion = make_motion(scenario, files);
-  }
 }
 
 }  // namespace
 
 void add_hand_and_motion(const Scenario& scenario, const NamedFiles& files, Trial trial, SimulationParts& parts) {
-  if (const auto* fields = std::get_if<TrackingHandFields>(&scenario.hand)) {
-    auto hand = make_tracking_hand(scenario, *fields, trial);
-    if (fields->task.display == TargetDisplay::height) {
-      parts.motion = std::make_unique<HeldOrientation>(make_orientation(*scenario.motion.orientation), *hand);
-    } else {
-      parts.motion = make_motion(scenario, files);
-    }
-    parts.hand = std::move(hand);
-    return;
-  }
-  if (const auto* drag = std::get_if<DragHandFields>(&scenario.hand)) return add_drag(scenario, *drag, files, parts);
   parts.motion = make_motion(scenario, files);
-  if (const auto* force = std::get_if<ForceHandFields>(&scenario.hand)) {
+  if (const auto* tracking = std::get_if<TrackingHandFields>(&scenario.hand)) {
+    auto hand = make_tracking_hand(scenario, *tracking, trial);
+    if (tracking->task.display == TargetDisplay::height)
+      parts.motion = std::make_unique<HeldOrientation>(make_orientation(*scenario.motion.orientation), *hand);
+    parts.hand = std::move(hand);
+  } else if (const auto* drag = std::get_if<DragHandFields>(&scenario.hand)) {
+    add_drag(scenario, *drag, parts);
+  } else if (const auto* force = std::get_if<ForceHandFields>(&scenario.hand)) {
     parts.hand = std::make_unique<ForceHand>(force->force);
   } else if (const auto* push = std::get_if<PushHandFields>(&scenario.hand)) {
     parts.hand = std::make_unique<PushHand>(push->force, push_direction(push->angle, push->azimuth));

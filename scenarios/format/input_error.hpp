@@ -9,8 +9,7 @@
 
 namespace hapbench {
 
-/// Largest sizes of a scenario. Larger requests are refused before they take memory or disk. They are doubles because a
-/// request may exceed every integer.
+/// Largest sizes of a scenario; larger requests, which may exceed every integer, are refused before they take memory.
 inline constexpr double kMostPoints = 2e7;  ///< shell points or springs of an environment
 inline constexpr double kMostSteps = 1e9;   ///< steps of a run
 inline constexpr double kMostRows = 2e7;    ///< rows that a run may record
@@ -22,8 +21,7 @@ std::string one_line(std::string text);
 inline constexpr std::size_t kMostFaults = 20;
 
 /// Bad input: a file, an argument or a field the program refuses. Exit status 2. The message is one line that names the
-/// place, the value given, what is allowed and, for names, the nearest valid one. It may stand for several faults, of
-/// which the message is the first.
+/// place, the value given, what is allowed and, for names, the nearest valid one: the first of perhaps several faults.
 class InputError : public std::runtime_error {
  public:
   enum class Kind {
@@ -71,8 +69,7 @@ std::string nearest_name_hint(std::string_view given, std::span<const std::strin
 void require_valid_name(std::string_view got, const std::string& name, std::span<const std::string> valid,
                         std::string_view shown_by = {});
 
-/// "a", "b", "c"; a list of more than 50 ends with the number of names that are not shown, and one of more than 8 where
-/// `shown_by` is a command that shows them all.
+/// "a", "b", "c"; of more than 50 only how many more there are, of more than 8 where the command `shown_by` shows them.
 std::string quoted_list(std::span<const std::string> names, std::string_view shown_by = {});
 
 }  // namespace hapbench

@@ -19,9 +19,8 @@ inline constexpr std::uintmax_t kLargestJsonFile = 64 << 20;
 /// Reads a whole file. Throws InputError without a place when it cannot be read or is larger than `largest` bytes.
 std::string read_text_file(const std::filesystem::path& file, std::uintmax_t largest);
 
-/// Parses JSON that may be hostile. Throws InputError for syntax errors (with line, column and what was
-/// expected), nesting deeper than 64, objects with more than 10 000 keys, duplicate keys and
-/// numbers beyond the range of double.
+/// Parses JSON that may be hostile. Throws InputError for syntax errors (with line, column and what was expected),
+/// nesting deeper than 64, objects with more than 10 000 keys, duplicate keys and numbers beyond the range of double.
 Json parse_json(const std::string& text);
 
 /// The value as an error message shows it: JSON on one line, cut when long.

@@ -2,13 +2,11 @@
 
 #include <fmt/format.h>
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
-#include "results/io/json_text.hpp"
-#include "results/summary/summary.hpp"
+#include "results/io/columns.hpp"
 #include "scenarios/format/bundled_scenarios.hpp"
-#include "scenarios/format/descriptions.hpp"
-#include "scenarios/format/json_file.hpp"
+#include "scenarios/format/parts.hpp"
+#include "scenarios/format/text_lines.hpp"
 #include "scenarios/format/writer.hpp"
 #include "sim/core/hash.hpp"
 
@@ -24,9 +22,8 @@ constexpr std::pair<std::string_view, const char*> kEitherOr[] = {
 
 /// Takes out of `object` the field that excludes the one of this name.
 void drop_alternative(Json& object, std::string_view field) {
-  for (const auto& [given, other] : kEitherOr) {
+  for (const auto& [given, other] : kEitherOr)
     if (given == field) object.erase(other);
-  }
 }
 
 void merge(Json& base, const Json& more) {
@@ -114,33 +111,30 @@ void apply_override(Json& json, const std::string& text) {
   if (equals == 0 || equals == std::string::npos) {
     throw InputError("--set: got \"" + text + "\"; allowed: path=value, as in rendering.stiffness_N_per_m=40000");
   }
-  Json* node = &json;
-  std::string path = text.substr(0, equals);
-  constexpr std::ptrdiff_t kDeepestPath = 64;  // what walks through JSON goes down by a call for each
-  if (std::count(path.begin(), path.end(), '.') >= kDeepestPath)
+  const std::string path = text.substr(0, equals), value = text.substr(equals + 1);
+  const Words keys = parts_of(path, '.');
+  constexpr std::size_t kDeepestPath = 64;  // what walks through JSON goes down by a call for each
+  if (keys.size() > kDeepestPath)
     throw InputError(fmt::format("--set: got a path of more than {0} keys; allowed: at most {0}", kDeepestPath));
-  for (std::size_t start = 0; start != std::string::npos;) {
-    const std::size_t dot = path.find('.', start);
-    const std::string key = path.substr(start, dot == std::string::npos ? dot : dot - start);
-    start = dot == std::string::npos ? dot : dot + 1;
+  Json* node = &json;
+  for (const std::string_view& key : keys) {
     if (node->is_array()) {
-      const bool digits = !key.empty() && key.size() < 9 && key.find_first_not_of("0123456789") == std::string::npos;
-      if (!digits || std::stoul(key) >= node->size()) {
-        throw InputError(path + ": got list index \"" + key + "\"; allowed: " +
-                         (node->empty() ? "none, the list is empty" : "0 ... " + std::to_string(node->size() - 1)));
+      const auto index = whole_number(key);
+      if (!index || *index >= node->size()) {
+        throw InputError(
+            fmt::format("{}: got list index \"{}\"; allowed: {}", path, key,
+                        node->empty() ? "none, the list is empty" : fmt::format("0 ... {}", node->size() - 1)));
       }
-      node = &(*node)[std::stoul(key)];
+      node = &(*node)[*index];
     } else {
       if (!node->is_object()) *node = Json::object();  // null or a number gives way to an object
-      if (start == std::string::npos) drop_alternative(*node, key);
-      node = &(*node)[key];
+      if (&key == &keys.back()) drop_alternative(*node, key);
+      node = &(*node)[std::string(key)];
     }
   }
-  const std::string value = text.substr(equals + 1);
   *node = Json::accept(value) ? parse_json(value) : Json(value);
   // An effective scenario has the device's delay in seconds and in samples of the step that is no longer its own.
-  if (path == "time.step_s" && json.contains("device") && json["device"].is_object() &&
-      json["device"].contains("delay_s"))
+  if (path == "time.step_s" && json.contains(Json::json_pointer("/device/delay_s")))
     json["device"].erase("delay_samples");
 }
 
@@ -169,20 +163,13 @@ void expect_less(Json& expect) {
   expect["outcome"] = std::move(outcomes);
 }
 
-std::string last_name(const std::string& path, char separator) {
-  return path.substr(path.rfind(separator) + 1);
-}
-
 /// The hint for a field whose name resembles no field of its object: fields elsewhere with the nearest name.
 std::string hint_elsewhere(const std::string& place) {
-  const std::string field = last_name(place, '/');
   const std::vector<std::string> paths = scenario_field_paths();
-  std::vector<std::string> names, found;
-  for (const std::string& path : paths) names.push_back(last_name(path, '.'));
-  const std::string nearest = nearest_name(field, names);
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    if (names[i] == nearest) found.push_back(paths[i]);
-  }
+  const auto own_name = [](const std::string& path) { return parts_of(path, '.').back(); };
+  const std::string nearest = nearest_name(parts_of(place, '/').back(), names_of(paths, own_name));
+  std::vector<std::string> found;
+  std::ranges::copy_if(paths, std::back_inserter(found), [&](const auto& path) { return own_name(path) == nearest; });
   std::string typed = place.substr(1);
   std::replace(typed.begin(), typed.end(), '/', '.');
   if (std::find(found.begin(), found.end(), typed) != found.end()) return "; only an object of another type has it";
@@ -192,11 +179,11 @@ std::string hint_elsewhere(const std::string& place) {
 /// The fault with its file in front, and with hints.
 InputError in_file(const InputError& fault, const fs::path& file) {
   std::string problem = fault.problem();
-  if (problem.starts_with("unknown field") && problem.find("nearest valid name") == std::string::npos)
+  const bool has_hint = problem.find("nearest valid name") != std::string::npos;
+  if (problem.starts_with("unknown field") && !has_hint)
     problem += fault.place().starts_with("/rendering/parameters/") ? "; a law from outside brings its own with --module"
                                                                    : hint_elsewhere(fault.place());
-  if (fault.place() == "/rendering/algorithm" && problem.find("nearest valid name") == std::string::npos)
-    problem += "; a law from outside comes with --module";
+  if (fault.place() == "/rendering/algorithm" && !has_hint) problem += "; a law from outside comes with --module";
   const std::string place = fault.place().empty() ? file.string() : file.string() + ": " + fault.place();
   return {fault.kind(), place, problem};
 }

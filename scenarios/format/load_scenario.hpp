@@ -46,7 +46,6 @@ struct LoadedScenario {
 
 /// Reads a scenario file and, over and over, the one that its field "extends" names: a file, relative to the one that
 /// names it, or else a bundled scenario. The fields of each are merged over those of the scenario that it extends.
-///
 /// Objects merge field by field; anything else replaces what it meets, null too, which is a value like any other. An
 /// object replaces one of another "type", whose fields would mean nothing in it. Of two fields that exclude each other
 /// ("steps" and "duration_s") the one that is given drives out the other. "name" and "expect" are not taken over: they
@@ -92,15 +91,12 @@ auto with_file(const LoadedScenario& loaded, Work work) {
   }
 }
 
-/// A scenario with every default filled in, as JSON: what is written beside results and what its hash is taken from are
-/// this text with other names of files.
+/// A scenario with every default filled in, as JSON, of which effective_scenario and scenario_hash are made.
 class WrittenScenario {
  public:
   WrittenScenario(const Scenario& scenario, NamedFiles files);
 
-  /// effective_scenario
   Json effective(const std::filesystem::path& directory) const;
-  /// scenario_hash
   std::string hash() const;
 
  private:
@@ -108,8 +104,7 @@ class WrittenScenario {
   NamedFiles files_;
 };
 
-/// The scenario with every default filled in, as JSON: reading it again gives the same run. File paths are rewritten to
-/// start from `directory`.
+/// The scenario with every default filled in: reading it again gives the same run. Paths start from `directory`.
 Json effective_scenario(const Scenario& scenario, const std::filesystem::path& directory);
 
 /// Identifies what is simulated: FNV-1a over the effective scenario, with the contents of named files in place of their

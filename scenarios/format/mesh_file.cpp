@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <strings.h>
-
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -63,8 +61,7 @@ CheckedMesh connect(const TriangleSoup& soup, const fs::path& file) {
   }
 }
 
-/// The warnings contain the file's name without its directory, because they go into results, which must not depend on
-/// where the file lies.
+/// They name the file without its directory, because results, into which they go, must not depend on where it lies.
 std::vector<std::string> warnings_about(const MeshFindings& found, const fs::path& file) {
   std::vector<std::string> warnings;
   const auto warn = [&](const std::string& text) {
@@ -96,13 +93,6 @@ std::vector<std::string> warnings_about(const MeshFindings& found, const fs::pat
 /// A triangle mesh has half as many vertices as faces, more only in so far as it is open.
 constexpr double kMostFaces = 2.0 * kMostPoints;
 
-/// Refuses a spacing for which refining the mesh would take too much memory.
-void check_spacing(const HalfEdgeMesh& mesh, double spacing, const fs::path& file) {
-  if (refined_face_count(mesh, spacing, kMostFaces) <= kMostFaces) return;
-  fail_in_file(file, fmt::format("spacing_m {} would need more than {:.0g} points; allowed: a wider spacing", spacing,
-                                 kMostPoints));
-}
-
 /// Reads the surface in a file and does all checks.
 CheckedMesh surface_in(std::string_view bytes, const fs::path& file, const MeshSampling& sampling) {
   TriangleSoup soup = triangles_in(bytes, file);
@@ -119,14 +109,17 @@ CheckedMesh surface_in(std::string_view bytes, const fs::path& file, const MeshS
     fail_in_file(file, fmt::format("has {} vertices; allowed: at most {:.0g}", vertices, kMostPoints));
   if (vertices_with_normals(surface.mesh).empty())
     fail_in_file(file, "has no faces with an area; allowed: at least one");
-  if (sampling.spacing) check_spacing(surface.mesh, *sampling.spacing, file);
+  if (sampling.spacing && refined_face_count(surface.mesh, *sampling.spacing, kMostFaces) > kMostFaces) {
+    fail_in_file(file, fmt::format("spacing_m {} would need more than {:.0g} points; allowed: a wider spacing",
+                                   *sampling.spacing, kMostPoints));
+  }
   return surface;
 }
 
 constexpr const char* kCsvHeader = "x_m,y_m,z_m,nx,ny,nz";
 
 std::vector<SurfacePoint> csv_points_in(std::string_view text, const fs::path& file) {
-  const NumberTable table = number_table_in(text, file, kCsvHeader, static_cast<std::size_t>(kMostPoints));
+  const NumberTable table = number_table_in(text, file, {kCsvHeader}, static_cast<std::size_t>(kMostPoints));
   std::vector<SurfacePoint> points;
   points.reserve(table.rows());
   for (std::size_t i = 0; i < table.rows(); ++i) {
@@ -183,10 +176,8 @@ std::string ply_text(const std::vector<SurfacePoint>& points) {
 }  // namespace
 
 bool is_mesh_name(const fs::path& file) {
-  constexpr const char* kExtensions[] = {".obj", ".ply", ".stl", ".off"};
-  return std::ranges::any_of(kExtensions, [extension = file.extension()](const char* known) {
-    return ::strcasecmp(extension.c_str(), known) == 0;
-  });
+  constexpr std::string_view kExtensions[] = {".obj", ".ply", ".stl", ".off"};
+  return std::ranges::find(kExtensions, lower_case(file.extension().string())) != std::end(kExtensions);
 }
 
 std::string mesh_extension(const fs::path& file) {

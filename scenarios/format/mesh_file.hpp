@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "sim/geometry/point_shell.hpp"
-#include "sim/mesh/triangle_soup.hpp"
+#include "sim/geometry/triangle_tree.hpp"
 
 /// Files that hold the surface of an environment or a tool: triangle meshes, and point shells.
 namespace hapbench {
@@ -30,12 +30,10 @@ std::string mesh_extension(const std::filesystem::path& file);
 /// The surface in a mesh file (.obj, .ply, .stl, .off; PLY and STL also binary). Copies share it.
 class MeshFile {
  public:
-  /// `bytes` are the contents of the file; its name tells the format. Does all checks. Throws InputError that names the
-  /// file and says why it is refused.
+  /// `bytes` are the contents of the file, whose name tells the format. Checks all. Throws InputError that names it.
   MeshFile(std::string_view bytes, const std::filesystem::path& file, const MeshSampling& sampling);
 
-  /// Peculiarities of the mesh: it is open, or its winding had to be changed. Each warning names the file, without its
-  /// directory.
+  /// Peculiarities of the mesh: it is open, or its winding was changed. Each names the file without its directory.
   const std::vector<std::string>& warnings() const { return warnings_; }
   /// Midpoints of the edges where the surface ends [m]; empty when it is closed.
   const std::vector<Vec3>& open_edges() const;
@@ -69,8 +67,7 @@ TriangleSoup read_off(std::string_view text, const std::filesystem::path& file);
 TriangleSoup read_stl(std::string_view text, const std::filesystem::path& file);
 /// PLY, text or binary of either byte order. Elements and properties that are not part of the surface are ignored.
 TriangleSoup read_ply(std::string_view text, const std::filesystem::path& file);
-/// The vertices of a PLY file, which have the properties x, y, z [m], nx, ny, nz, of any type; everything after them,
-/// such as faces, is not read.
+/// The vertices of a PLY file, with properties x, y, z [m], nx, ny, nz of any type; what follows them is not read.
 std::vector<SurfacePoint> ply_points_in(std::string_view text, const std::filesystem::path& file);
 
 /// The extension of a point shell's file. Throws InputError when it is neither .csv nor .ply.

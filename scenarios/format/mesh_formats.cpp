@@ -97,8 +97,7 @@ class ByteReader {
 
 // ---- OBJ
 
-/// Index of the vertex that a corner of a face names. "7/1/3" is the seventh vertex of the file, which may come later;
-/// "-1" is the last of the `vertices` read so far.
+/// Index of the vertex that a face's corner names: "7/1/3" the file's seventh, "-1" the last of the `vertices` so far.
 std::uint32_t vertex_of(std::string_view word, std::size_t vertices, const MeshLines& lines) {
   const std::string_view number = word.substr(0, word.find('/'));
   int index = 0;
@@ -114,8 +113,7 @@ std::uint32_t vertex_of(std::string_view word, std::size_t vertices, const MeshL
 
 // ---- OFF
 
-/// Reads what follows the header's keyword. Normals, colours and texture coordinates come after the position or the
-/// corners and are ignored.
+/// Reads what follows the header's keyword. What comes after a position or corners, as normals or colours, is ignored.
 TriangleSoup read_off_text(MeshLines& lines) {
   // The counts may stand in the line of the header.
   const std::size_t counts = lines.words().size() > 1 ? 1 : 0;
@@ -322,17 +320,15 @@ class PlyHeader {
   }
 
   void check_vertices() const {
-    bool has_vertices = false;
     for (const Element& element : elements_) {
       if (!element.is_vertex()) continue;
-      has_vertices = true;
       for (std::size_t i = 0; i < numbers_; ++i) {
         if (element.count(i) == 1) continue;
         fail(fmt::format("got {} vertex properties \"{}\"; allowed: one each of {}", element.count(i), kOfVertex[i],
                          fmt::join(kOfVertex.begin(), kOfVertex.begin() + numbers_, ", ")));
       }
     }
-    if (!has_vertices) fail("allowed before the faces: vertices");
+    if (std::ranges::none_of(elements_, &Element::is_vertex)) fail("allowed before the faces: vertices");
   }
 
   [[noreturn]] void fail(const std::string& problem) const { fail_in_line(file_, lines_.line(), problem); }
@@ -344,8 +340,7 @@ class PlyHeader {
   std::vector<Element> elements_;
 };
 
-/// The values of the entries of a PLY file one after another: words of a text, in which each entry has a line, or
-/// numbers of a binary file.
+/// The values of a PLY file's entries in order: words of a text, a line for each entry, or numbers of a binary file.
 class PlyValues {
  public:
   PlyValues(const LineReader& lines, const PlyHeader& header, const fs::path& file)

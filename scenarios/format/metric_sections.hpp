@@ -1,7 +1,6 @@
 #pragma once
 
 #include <memory>
-#include <string>
 #include <vector>
 
 #include "results/observe/force_fidelity.hpp"
@@ -10,9 +9,8 @@
 #include "results/summary/summary.hpp"
 #include "scenarios/format/scenario.hpp"
 
-/// The metrics of runs: those that every run has, and those of the sections of a summary. The list of sections in
-/// metric_sections.cpp is the one place that says which there are; observers, summary.json, columns.json, tables of
-/// sweeps, `expect` and `describe` follow from it.
+/// The metrics of runs: those that every run has, and those of the sections of a summary. Observers, summary.json,
+/// columns.json, tables of sweeps, `expect` and `describe` follow from the list of sections in metric_sections.cpp.
 namespace hapbench {
 
 /// The metrics of a run of the scenario, in the order of the summary, with unit and meaning, without values.
@@ -42,8 +40,7 @@ class SectionObservers {
     return nullptr;
   }
 
-  /// Adds the sections and their metrics. Those that make no sense over several trials are left out when there were
-  /// some.
+  /// Adds the sections and their metrics, but of several trials those that make no sense over them.
   void tell(Result& result) const;
 
  private:

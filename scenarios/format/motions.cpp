@@ -1,4 +1,3 @@
-#include "scenarios/format/descriptions.hpp"
 #include "scenarios/format/input_error.hpp"
 #include "scenarios/format/json_file.hpp"
 #include "scenarios/format/parts.hpp"
@@ -7,9 +6,6 @@ namespace hapbench {
 namespace {
 
 constexpr double kLargestValue = 1e9;
-
-constexpr Choice<Profile::Interpolation> kInterpolations[] = {{"linear", Profile::Interpolation::linear},
-                                                              {"cosine", Profile::Interpolation::cosine}};
 
 using MovingShape = std::variant<Profile::Ramp, Profile::Sine, Profile::Waypoints>;
 
@@ -40,7 +36,7 @@ void describe_shape(Fields& f, Profile::Waypoints& waypoints, NumberRange range)
   };
   f.list("points", waypoints.points, {1, 1'000'000}, "[t, v] pairs, t increasing; held constant outside", point,
          Presence::required);
-  f.choice("interpolation", waypoints.interpolation, kInterpolations, "interpolation",
+  f.choice("interpolation", waypoints.interpolation, {"linear", "cosine"}, "interpolation",
            "between the points: straight, or cosine (at rest in each point)");
   if (f.reads()) check_times(waypoints, f.at());
 }
@@ -135,9 +131,8 @@ std::unique_ptr<Motion> make_motion(const Scenario& scenario, const NamedFiles& 
   if (std::holds_alternative<RecordedPosition>(scenario.motion.position))
     return std::make_unique<RecordedMotion>(files.at(kMotionFile).stroke()->motion);
   std::optional<std::array<Profile, 3>> position;
-  if (const auto* prescribed = std::get_if<PrescribedPosition>(&scenario.motion.position)) {
+  if (const auto* prescribed = std::get_if<PrescribedPosition>(&scenario.motion.position))
     position = prescribed->coordinates;
-  }
   return std::make_unique<ScriptedMotion>(make_orientation(*scenario.motion.orientation), std::move(position));
 }
 

@@ -5,13 +5,12 @@
 
 #include <algorithm>
 #include <ctime>
-#include <mutex>
 #include <optional>
 #include <thread>
 
-#include "scenarios/format/descriptions.hpp"
 #include "scenarios/format/input_error.hpp"
 #include "scenarios/format/mesh_file.hpp"
+#include "scenarios/format/parts.hpp"
 #include "scenarios/format/text_lines.hpp"
 #include "scenarios/format/writer.hpp"
 #include "sim/core/hash.hpp"
@@ -33,8 +32,7 @@ std::shared_ptr<const void> SharedCache::get_untyped(const std::string& key, con
 
 std::shared_ptr<SharedCache::Entry> SharedCache::entry_of(const std::string& key) {
   const std::lock_guard lock(mutex_);
-  const auto found =
-      std::find_if(entries_.begin(), entries_.end(), [&](const auto& entry) { return entry->key == key; });
+  const auto found = std::ranges::find(entries_, key, &Entry::key);
   if (found != entries_.end()) {
     entries_.splice(entries_.begin(), entries_, found);
   } else {
@@ -62,9 +60,8 @@ SharedCache& shared_cache() {
 
 namespace {
 
-/// A text that differs after a change of the file, so that a file that is known need not be read again. Nothing for a
-/// file that is not regular, and for one that changed so recently that the clock of the file system might not tell the
-/// next change.
+/// A text that differs after a change of the file, so that a known file need not be read again. Nothing for a file that
+/// is not regular, or that changed so recently that the clock of the file system might not tell the next change.
 std::optional<std::string> stamp_of(const std::filesystem::path& file) {
   struct stat s {};
   if (::stat(file.c_str(), &s) != 0 || !S_ISREG(s.st_mode)) return std::nullopt;
@@ -78,7 +75,8 @@ std::optional<std::string> stamp_of(const std::filesystem::path& file) {
 
 const NamedFile::Read& NamedFile::read() {
   if (read_) return *read_;
-  check_extension();
+  if (content_.kind == FileContent::Kind::point_shell) shell_extension(path_);
+  if (content_.kind == FileContent::Kind::mesh) mesh_extension(path_);
   std::string bytes;
   // Kept under the stamp of before the reading, which a file that changed meanwhile never has again.
   std::optional<std::string> state = stamp_of(path_);
@@ -96,11 +94,6 @@ const NamedFile::Read& NamedFile::read() {
   // A parsed mesh takes some times the space of its text.
   read_ = shared_cache().get<Read>(key, parse, [&bytes](const Read&) { return 4 * bytes.size(); });
   return *read_;
-}
-
-void NamedFile::check_extension() const {
-  if (content_.kind == FileContent::Kind::point_shell) shell_extension(path_);
-  if (content_.kind == FileContent::Kind::mesh) mesh_extension(path_);
 }
 
 NamedFile::Contents NamedFile::parsed(std::string_view bytes) const {
@@ -126,20 +119,15 @@ std::vector<Warning> NamedFile::warnings() {
   return warnings;
 }
 
-std::filesystem::path resolve_path(const Scenario& scenario, const std::string& file) {
-  return scenario.directory / file;  // an absolute `file` replaces the directory
-}
-
 NamedFiles::NamedFiles(Scenario scenario) {
   std::vector<FoundFile> found;
   json_of([&scenario](Fields& f) { f.object(scenario); }, &found);
   for (const FoundFile& file : found)
-    files_.push_back(std::make_shared<NamedFile>(file.pointer, resolve_path(scenario, file.path), file.content));
+    files_.push_back(std::make_shared<NamedFile>(file.pointer, scenario.directory / file.path, file.content));
 }
 
 NamedFile* NamedFiles::find(std::string_view pointer) const {
-  const auto found =
-      std::find_if(files_.begin(), files_.end(), [pointer](const auto& file) { return file->pointer() == pointer; });
+  const auto found = std::ranges::find(files_, pointer, &NamedFile::pointer);
   return found == files_.end() ? nullptr : found->get();
 }
 

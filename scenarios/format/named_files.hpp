@@ -21,12 +21,10 @@
 
 namespace hapbench {
 
-/// Values that take long to make, shared by the runs of a process: parsed files, point shells, distance grids. For
-/// several threads.
+/// Values that take long to make, for all runs of a process: parsed files, point shells, distance grids. Thread-safe.
 ///
 /// The values used last are kept, up to 128 of them and 512 MB. Twice as many as the machine has threads are kept in
-/// any case, so that runs side by side do not take each other's away. A value that was dropped lives on while a run
-/// holds it.
+/// any case, so that runs side by side do not take each other's away. A dropped value lives on while a run holds it.
 class SharedCache {
  public:
   /// The value of that key, which says all that the value depends on. It is made by `make`, which returns a
@@ -86,9 +84,8 @@ struct Stroke {
 Stroke stroke_in(std::string_view text, const std::filesystem::path& file);
 
 /// Reads a trace of contacts from the contents of a CSV file with the header time_s,x_m,y_m,z_m,ux,uy,uz,depth_m, a row
-/// for each contact. Times must not fall, depths must not be below 0, and gradients must have length 1 within 0.001;
-/// those further off than rounding are normalised, others stay as they are, bit for bit. Throws InputError that names
-/// the row, for more than 20 million contacts, and for more than 100 000 of one time.
+/// for each of at most 20 million contacts, 100 000 of one time. Times must not fall, depths must not be below 0, and
+/// gradients, normalised unless unit to rounding, must be unit to 0.001. Throws InputError that names the row.
 ContactTrace trace_in(std::string_view text, const std::filesystem::path& file);
 
 // Pointers of the files that have a use of their own.
@@ -136,7 +133,6 @@ class NamedFile {
     const Kind& kind = std::get<Kind>(read().contents);
     return {read_, &kind};
   }
-  void check_extension() const;
   const Read& read();
   Contents parsed(std::string_view bytes) const;
 
@@ -146,9 +142,8 @@ class NamedFile {
   std::shared_ptr<const Read> read_;  ///< null until something of it is asked for
 };
 
-/// Every file that a scenario names, in the order of its fields. This is the one list of them: what loads, checks,
-/// hashes or rewrites the files of a scenario goes through it. Copies share what was read, and must not be used by two
-/// threads at once.
+/// Every file that a scenario names, in the order of its fields: the one list, by which files are loaded, checked,
+/// hashed and rewritten. Copies share what was read, and must not be used by two threads at once.
 class NamedFiles {
  public:
   /// No files, for a scenario that names none.

@@ -8,10 +8,46 @@
 #include "sim/loop/simulation.hpp"
 #include "sim/tool/cylinder.hpp"
 
-/// Factories of the parts of a run. Each stands beside the description of its fields, in environments.cpp, tools.cpp,
-/// motions.cpp, hands.cpp and devices.cpp. All throw InputError when a named file cannot be used. `files` are those of
-/// the scenario; functions without `files` read them.
+/// The parts of a scenario: descriptions of their fields with meaning, unit, range and default, and factories of what
+/// they say, side by side in environments.cpp, tools.cpp, motions.cpp, hands.cpp and devices.cpp. Factories throw
+/// InputError when a named file cannot be used. `files` are those of the scenario; make_shell without them reads them.
 namespace hapbench {
+
+/// Range of the lengths in a scene.
+inline constexpr NumberRange kLength = {0.0, 1000.0, "m", true};
+/// Throws InputError at `at` when the direction is shorter than 1e-12.
+void require_direction(const Vec3& direction, const std::string& at);
+
+// Objects.
+void describe(Fields& f, Scenario& scenario);
+void describe(Fields& f, MotionFields& motion);
+void describe(Fields& f, RenderingConfig& rendering);
+
+// Objects whose type chooses the fields.
+void describe(Fields& f, Environment& environment);
+void describe(Fields& f, PositionFields& position);
+void describe(Fields& f, HandFields& hand);
+void describe(Fields& f, DeviceFields& device);
+void describe(Fields& f, ToolFields& tool);
+
+/// A field that holds a function of time with values in `unit`.
+void profile(Fields& f, std::string_view name, Profile& profile, const char* unit, const char* doc,
+             Presence presence = Presence::has_default);
+
+/// Three of them, which are x, y and z.
+void profiles(Fields& f, const char* const (&names)[3], std::array<Profile, 3>& profiles, const char* unit,
+              const char* doc, Presence presence = Presence::has_default);
+
+/// Makes samples of a device's delay in seconds. Throws InputError where given samples say something else.
+void resolve_delay(Scenario& scenario);
+
+/// The types of tools, in the variant's order.
+std::vector<std::string> tool_names();
+
+/// Warnings, each beginning with a JSON pointer, about values without effect in `json`, from which the scenario was
+/// read: a device's loop that no hand feels, and the first script of waypoints of hand and motion whose last leg begins
+/// only when the run is over. A shorter time step with the same number of steps does that unnoticed.
+std::vector<Warning> relation_warnings(const Scenario& scenario, const Json& json);
 
 /// One run of a scenario that has several: a simulated subject's trial. Both count from 0.
 struct Trial {
@@ -19,25 +55,16 @@ struct Trial {
   std::size_t number = 0;
 };
 
-/// The uses of randomness that differ from trial to trial.
-enum class RandomUse : std::uint64_t {
-  sensor_noise = 1,
-  motor_noise = 2,
-  target_order = 3,
-  position_noise = 4,
-  lost_queries = 5,
-  tremor = 6
-};
+/// The uses of randomness that differ from trial to trial, by numbers on which seeds depend.
+enum class RandomUse { sensor_noise = 1, motor_noise, target_order, position_noise, lost_queries, tremor };
 /// A seed of its own for each use in each trial: far apart in the 64 bits, whatever the scenario's seed.
 std::uint64_t derived_seed(const Scenario& scenario, Trial trial, RandomUse use);
 
-/// The point shell of the scenario's environment, as `hapbench validate --points` writes it; null for springs.
-/// Equal environments share one (SharedCache).
+/// The environment's points, as `validate --points` writes them; null for springs. Equal ones are shared (SharedCache).
 std::shared_ptr<const PointShell> make_shell(const Scenario& scenario, const NamedFiles& files);
 std::shared_ptr<const PointShell> make_shell(const Scenario& scenario);
 
-/// The inside of the scenario's environment, of its true surface and not of the shell; null for springs. Equal
-/// environments share one (SharedCache).
+/// The inside of the environment's true surface, not of its shell; null for springs. Equal ones are shared.
 std::shared_ptr<const Solid> make_solid(const Scenario& scenario, const NamedFiles& files);
 
 /// The springs, those with random directions from the seed. Precondition: the environment is springs.
@@ -45,7 +72,6 @@ SpringSet make_springs(const Scenario& scenario);
 
 /// The tool. The grid of a mesh takes seconds to make; equal ones are shared (SharedCache).
 std::shared_ptr<const ToolShape> make_tool(const Scenario& scenario, const NamedFiles& files);
-std::shared_ptr<const ToolShape> make_tool(const Scenario& scenario);
 /// The tool, for callers that need a cylinder. Throws InputError when it is none.
 Cylinder make_cylinder(const ToolFields& fields);
 

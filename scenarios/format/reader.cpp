@@ -167,7 +167,7 @@ class Reader final : public Fields {
   bool reads() const override { return names_ == nullptr && errors_.empty(); }
   std::string at() const override {
     if (parent_ == nullptr) return at_;
-    return is_entry_ ? element(parent_->at(), index_) : member(parent_->at(), std::string(name_));
+    return index_ ? element(parent_->at(), *index_) : member(parent_->at(), std::string(name_));
   }
   bool given(std::string_view name) const override { return names_ == nullptr && json_.contains(name); }
   void warn(const Warning& warning) override {
@@ -178,8 +178,7 @@ class Reader final : public Fields {
   /// Reads a field or an entry of the value that `parent` reads; both must outlive this reader, as must the name. The
   /// JSON pointer is built lazily: only errors need it, and sweeps read scenarios by the million.
   Reader(const Json& json, const Reader& parent, std::string_view name) : json_(json), parent_(&parent), name_(name) {}
-  Reader(const Json& json, const Reader& parent, std::size_t index)
-      : json_(json), parent_(&parent), index_(index), is_entry_(true) {}
+  Reader(const Json& json, const Reader& parent, std::size_t index) : json_(json), parent_(&parent), index_(index) {}
 
   [[noreturn]] void fail(const std::string& problem) const { throw InputError(InputError::Kind::shape, at(), problem); }
   /// Refuses the value: "got VALUE; allowed: ...", in the words that the schema writer has for `what`.
@@ -232,8 +231,7 @@ class Reader final : public Fields {
   std::string at_;  ///< JSON pointer of the value, for a reader without a parent
   const Reader* parent_ = nullptr;
   std::string_view name_;
-  std::size_t index_ = 0;
-  bool is_entry_ = false;
+  std::optional<std::size_t> index_;  ///< of an entry, which has no name
   std::vector<Warning>* warnings_ = nullptr;
   bool null_allowed_ = false;
   /// When not null, the body of an object is called only to collect the names of its fields.

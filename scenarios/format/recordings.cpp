@@ -12,10 +12,6 @@ namespace {
 
 constexpr std::size_t kMostSamples = 10'000'000;
 constexpr double kLargestNormError = 1e-3;  ///< of a quaternion: three decimals suffice
-constexpr std::string_view kHeaders[] = {"time_s,px_m,py_m,pz_m,axis_x,axis_y,axis_z",
-                                         "time_s,px_m,py_m,pz_m,qw,qx,qy,qz",
-                                         "time_s,px_m,py_m,pz_m,axis_x,axis_y,axis_z,mfx_N,mfy_N,mfz_N",
-                                         "time_s,px_m,py_m,pz_m,qw,qx,qy,qz,mfx_N,mfy_N,mfz_N"};
 constexpr std::size_t kForceColumns = 3;
 constexpr std::size_t kAxisPose = 7;  ///< columns of time, position and axis; a quaternion has one more
 
@@ -46,7 +42,12 @@ constexpr std::string_view kTraceHeader = "time_s,x_m,y_m,z_m,ux,uy,uz,depth_m";
 }  // namespace
 
 Stroke stroke_in(std::string_view text, const std::filesystem::path& file) {
-  const NumberTable table = number_table_in(text, file, kHeaders, kMostSamples);
+  const NumberTable table =
+      number_table_in(text, file,
+                      {"time_s,px_m,py_m,pz_m,axis_x,axis_y,axis_z", "time_s,px_m,py_m,pz_m,qw,qx,qy,qz",
+                       "time_s,px_m,py_m,pz_m,axis_x,axis_y,axis_z,mfx_N,mfy_N,mfz_N",
+                       "time_s,px_m,py_m,pz_m,qw,qx,qy,qz,mfx_N,mfy_N,mfz_N"},
+                      kMostSamples);
   if (table.rows() == 0) fail(file, 0, "no samples; allowed: at least one");
   const bool has_force = table.columns >= kAxisPose + kForceColumns;
   const std::size_t pose = table.columns - (has_force ? kForceColumns : 0);
@@ -74,7 +75,7 @@ Stroke stroke_in(std::string_view text, const std::filesystem::path& file) {
 }
 
 ContactTrace trace_in(std::string_view text, const std::filesystem::path& file) {
-  const NumberTable table = number_table_in(text, file, kTraceHeader, kMostContacts);
+  const NumberTable table = number_table_in(text, file, {kTraceHeader}, kMostContacts);
   ContactTrace trace;
   trace.contacts.reserve(table.rows());
   for (std::size_t i = 0; i < table.rows(); ++i) {

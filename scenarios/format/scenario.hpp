@@ -24,7 +24,6 @@
 #include "sim/loop/simulation.hpp"
 #include "sim/mesh/marching_cubes.hpp"
 #include "sim/tool/bur.hpp"
-#include "sim/tool/profile_point.hpp"
 
 /// A scenario file as plain structs, with every default in place: a default-constructed scenario is that of springs.
 /// Names, units and ranges of the file's fields: the functions `describe` of this folder.
@@ -37,8 +36,7 @@ struct TimeFields {
   double step = 0.0005;    ///< [s]
   std::int64_t steps = 1;  ///< rows
   std::vector<StopCondition> stop_when;
-  /// Steps from one row that the metrics take in to the next, so that finer steps are measured as often as coarse ones.
-  /// Not a field of the file.
+  /// Steps between rows that the metrics take in, so that finer steps are measured as often; not a field of the file.
   std::int64_t stride = 1;
 };
 
@@ -240,18 +238,13 @@ struct Scenario {
   SettlingRule metrics;
   ExpectFields expect;
 
-  std::filesystem::path directory;  ///< of the scenario file: what relative paths start from
+  std::filesystem::path directory;  ///< of the scenario file: what relative paths of the files it names start from
 };
 
-/// The number of runs of the scenario: one for each subject and trial of a tracking hand. A double, because a scenario
-/// may ask for more than any integer holds.
+/// Runs of the scenario: one for each subject and trial of a tracking hand. May be more than any integer holds.
 double trial_count(const HandFields& hand);
 
-/// The path of a file that the scenario names.
-std::filesystem::path resolve_path(const Scenario& scenario, const std::string& file);
-
-/// The scenario with another algorithm and the settings that the algorithm fixes: depth model and reduction.
-/// Precondition: the name is known.
+/// The scenario with another algorithm, whose name is known, and the depth model and reduction that it fixes.
 Scenario with_algorithm(Scenario scenario, std::string_view algorithm);
 
 }  // namespace hapbench

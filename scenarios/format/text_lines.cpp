@@ -114,7 +114,7 @@ std::string read_named_file(const std::filesystem::path& file) {
 }
 
 NumberTable number_table_in(std::string_view text, const std::filesystem::path& file,
-                            std::span<const std::string_view> headers, std::size_t most_rows) {
+                            std::initializer_list<std::string_view> headers, std::size_t most_rows) {
   const auto allowed = [headers] { return fmt::format("\"{}\"", fmt::join(headers, "\" or \"")); };
   if (text.empty()) fail_in_line(file, 1, fmt::format("the file is empty; allowed: header {} and rows", allowed()));
   CsvReader csv{LineReader(text), file};
@@ -134,11 +134,6 @@ NumberTable number_table_in(std::string_view text, const std::filesystem::path& 
     if (table.rows() > most_rows) fail_in_line(file, csv.line(), fmt::format("more than {} rows", most_rows));
   }
   return table;
-}
-
-NumberTable number_table_in(std::string_view text, const std::filesystem::path& file, std::string_view header,
-                            std::size_t most_rows) {
-  return number_table_in(text, file, std::span(&header, 1), most_rows);
 }
 
 }  // namespace hapbench

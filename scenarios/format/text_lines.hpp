@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <initializer_list>
 #include <iterator>
 #include <optional>
 #include <span>
@@ -60,12 +61,10 @@ class LineReader {
   std::size_t line_ = 0;
 };
 
-/// The rows of a comma-separated table, one by one. Cells have no quotes; white space around them, a carriage return at
-/// the end of the line included, does not belong to them.
+/// The rows of a comma-separated table, one by one. Cells have no quotes, and white space around them does not count.
 class CsvReader {
  public:
-  /// Takes the next line for the header; an empty one when there is none. The text and the path must outlive the
-  /// reader.
+  /// Takes the next line, if there is one, for the header. The text and the path must outlive the reader.
   CsvReader(LineReader lines, const std::filesystem::path& file);
 
   /// The header's line.
@@ -106,9 +105,6 @@ struct NumberTable {
 /// skipped, and lines may end with CR LF. Throws InputError that names file, line and column for another header, a
 /// wrong number of cells, a cell that is not a finite number, or more than `most_rows` rows.
 NumberTable number_table_in(std::string_view text, const std::filesystem::path& file,
-                            std::span<const std::string_view> headers, std::size_t most_rows);
-/// Same as above, with only one allowed header.
-NumberTable number_table_in(std::string_view text, const std::filesystem::path& file, std::string_view header,
-                            std::size_t most_rows);
+                            std::initializer_list<std::string_view> headers, std::size_t most_rows);
 
 }  // namespace hapbench

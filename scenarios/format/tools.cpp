@@ -2,9 +2,7 @@
 
 #include <stdexcept>
 
-#include "scenarios/format/descriptions.hpp"
 #include "scenarios/format/input_error.hpp"
-#include "scenarios/format/named_files.hpp"
 #include "scenarios/format/parts.hpp"
 #include "scenarios/format/text_lines.hpp"
 #include "scenarios/format/writer.hpp"
@@ -22,17 +20,6 @@ constexpr TypeName kToolTypes[] = {
     {"revolved", "a solid of revolution, given by its profile"},
     {"bur", "a dental or bone bur by the name of its shape, with its shank"},
     {"mesh", "a surface from an OBJ, PLY, STL or OFF file"},
-};
-
-constexpr Choice<Tip> kTips[] = {{"flat", Tip::flat}, {"round", Tip::round}};
-constexpr Choice<BurFamily> kFamilies[] = {
-    {"ball", BurFamily::ball},
-    {"cylinder", BurFamily::cylinder},
-    {"round_cylinder", BurFamily::round_cylinder},
-    {"tapered", BurFamily::tapered},
-    {"inverted_cone", BurFamily::inverted_cone},
-    {"pear", BurFamily::pear},
-    {"flame", BurFamily::flame},
 };
 
 /// Turns the objection of a shape to its fields into an InputError at `at`.
@@ -57,7 +44,7 @@ static void describe(Fields& f, CylinderFields& tool) {
   f.number("diameter_m", tool.diameter, kLength, "diameter of the cylinder; default 0.001", Presence::no_default);
   f.number("length_m", tool.length, kLength, "from the tip plane to the bottom; default 0.005 in hole_2d, else 0.01",
            Presence::no_default);
-  f.choice("tip", tool.tip, kTips, "tip", "round adds a half ball; default round in hole_2d, else flat",
+  f.choice("tip", tool.tip, {"flat", "round"}, "tip", "round adds a half ball; default round in hole_2d, else flat",
            Presence::no_default);
 }
 
@@ -71,7 +58,7 @@ static void describe(Fields& f, RevolvedFields& tool) {
                {-1000.0, 1000.0, "m"}, point.rho, {0.0, 1000.0, "m"});
       },
       Presence::required);
-  f.choice("tip", tool.tip, kTips, "tip", "round adds a half ball beyond the last corner");
+  f.choice("tip", tool.tip, {"flat", "round"}, "tip", "round adds a half ball beyond the last corner");
   if (f.reads()) {
     check_shape(f.at() + "/profile_m", "an outline from the far end to the tip that does not meet itself",
                 [&tool] { Revolved(tool.profile, tool.tip); });
@@ -79,7 +66,8 @@ static void describe(Fields& f, RevolvedFields& tool) {
 }
 
 static void describe(Fields& f, BurFields& tool) {
-  f.choice("family", tool.family, kFamilies, "family", "shape of the head", Presence::required);
+  f.choice("family", tool.family, {"ball", "cylinder", "round_cylinder", "tapered", "inverted_cone", "pear", "flame"},
+           "family", "shape of the head", Presence::required);
   f.number("diameter_m", tool.diameter, kLength, "of the head, where it is widest", Presence::required);
   f.number("length_m", tool.length, kLength, "of the head, its round end included; null: its diameter");
   f.number("shank_diameter_m", tool.shank_diameter, kLength,
@@ -114,17 +102,12 @@ std::vector<std::string> tool_names() {
 
 namespace {
 
-/// The mesh in the tool's own frame: tip centre at the origin, axis along -z.
-TriangleSoup tool_surface(const MeshToolFields& fields, const NamedFiles& files) {
+/// The signed distances from the surface in the tool's own frame: tip centre at the origin, axis along -z. Throws
+/// InputError that names the file when there is no grid of them.
+std::shared_ptr<const SignedDistanceGrid> make_grid(const MeshToolFields& fields, const NamedFiles& files) {
   TriangleSoup surface = files.at(kToolFile).mesh().triangles();
   const Mat3 to_file = ToolPose{.position = fields.tip, .axis = fields.tip_axis.normalized()}.rotation();
   for (Vec3& vertex : surface.vertices) vertex = to_file.transpose() * (vertex - fields.tip);
-  return surface;
-}
-
-/// The signed distances from the surface. Throws InputError that names the file when there is no grid of them.
-std::shared_ptr<const SignedDistanceGrid> make_grid(const MeshToolFields& fields, const NamedFiles& files) {
-  const TriangleSoup surface = tool_surface(fields, files);
   try {
     const double spacing = fields.grid.value_or(SignedDistanceGrid::suggested_spacing(surface.vertices));
     return std::make_shared<const SignedDistanceGrid>(surface.vertices, surface.triangles, spacing);
@@ -159,10 +142,6 @@ struct Make {
 
 std::shared_ptr<const ToolShape> make_tool(const Scenario& scenario, const NamedFiles& files) {
   return std::visit(Make{files}, scenario.tool);
-}
-
-std::shared_ptr<const ToolShape> make_tool(const Scenario& scenario) {
-  return make_tool(scenario, NamedFiles(scenario));
 }
 
 Cylinder make_cylinder(const ToolFields& fields) {

@@ -7,9 +7,9 @@
 #include <stdexcept>
 
 #include "algorithms/registry.hpp"
-#include "scenarios/format/descriptions.hpp"
 #include "scenarios/format/input_error.hpp"
 #include "scenarios/format/load_scenario.hpp"
+#include "scenarios/format/parts.hpp"
 #include "scenarios/format/text_lines.hpp"
 
 namespace hapbench {
@@ -102,9 +102,11 @@ enum class Extent { words, whole };
 /// Describes which values are allowed (guide_to).
 class SchemaWriter final : public Fields {
  public:
-  SchemaWriter(Json* definitions, Extent extent) : definitions_(definitions), extent_(extent) {}
-
-  ValueGuide guide() && { return std::move(guide_); }
+  static ValueGuide guide(Body value, Json* definitions, Extent extent) {
+    SchemaWriter writer(definitions, extent);
+    value(writer);
+    return std::move(writer.guide_);
+  }
 
   void number(double&, NumberRange range) override {
     guide_.schema = {
@@ -213,11 +215,9 @@ class SchemaWriter final : public Fields {
   }
 
  private:
-  ValueGuide guide_of(Body value) const {
-    SchemaWriter writer(definitions_, extent_);
-    value(writer);
-    return std::move(writer).guide();
-  }
+  SchemaWriter(Json* definitions, Extent extent) : definitions_(definitions), extent_(extent) {}
+
+  ValueGuide guide_of(Body value) const { return guide(value, definitions_, extent_); }
   /// One of two values, of which the second may be an object.
   void any_of(ValueGuide first, ValueGuide second) {
     guide_ = std::move(second);
@@ -237,15 +237,11 @@ Json json_of(Fields::Body value, std::vector<FoundFile>* files) {
 }
 
 ValueGuide guide_to(Fields::Body value, Json* definitions) {
-  SchemaWriter writer(definitions, Extent::whole);
-  value(writer);
-  return std::move(writer).guide();
+  return SchemaWriter::guide(value, definitions, Extent::whole);
 }
 
 std::string allowed_by(Fields::Body value) {
-  SchemaWriter writer(nullptr, Extent::words);
-  value(writer);
-  return std::move(writer).guide().allowed;
+  return SchemaWriter::guide(value, nullptr, Extent::words).allowed;
 }
 
 namespace {

@@ -14,8 +14,7 @@ struct FoundFile {
   FileContent content;
 };
 
-/// The JSON of what `value` describes, and the files that it names, in the order of its fields. Throws std::logic_error
-/// for a value that has no name.
+/// The JSON of what `value` describes, and the files it names in order. Throws std::logic_error for one without a name.
 Json json_of(Fields::Body value, std::vector<FoundFile>* files = nullptr);
 
 /// The JSON of a value, by its `describe`, which says of what kind it is.
@@ -32,8 +31,7 @@ Json written_object(T value) {
 
 struct FieldGuide;
 
-/// The values that are allowed: as a JSON Schema (draft 7), in words for messages and documentation, and by the fields
-/// of an object.
+/// The values that are allowed: as a JSON Schema (draft 7), in words, and by the fields of an object.
 struct ValueGuide {
   Json schema;
   std::string allowed;              ///< as in "a number > 0 and <= 10 [m]"

@@ -4,14 +4,10 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
-#include <nlohmann/json.hpp>
 #include <set>
-#include <utility>
 
-#include "results/io/json_text.hpp"
-#include "scenarios/cases/cases.hpp"
+#include "results/io/columns.hpp"
 #include "scenarios/cases/league.hpp"
 #include "scenarios/format/input_error.hpp"
 #include "scenarios/program/table.hpp"
@@ -23,13 +19,10 @@ namespace fs = std::filesystem;
 
 namespace {
 
-thread_local CapturedOutput* captured = nullptr;
-fs::path given_program;
-
 /// Prints a line on standard error, or adds it to what the host collects of that kind.
 void tell(std::vector<std::string> CapturedOutput::*kind, std::string_view head, std::string_view text) {
-  if (captured != nullptr) {
-    (captured->*kind).emplace_back(text);
+  if (CapturedOutput* host = captured_output()) {
+    (host->*kind).emplace_back(text);
     return;
   }
   std::fflush(stdout);  // keeps the order of printing where both streams go to one pipe
@@ -38,11 +31,8 @@ void tell(std::vector<std::string> CapturedOutput::*kind, std::string_view head,
 
 }  // namespace
 
-void capture_output(CapturedOutput* output) noexcept {
-  captured = output;
-}
-
-CapturedOutput* captured_output() noexcept {
+CapturedOutput*& captured_output() noexcept {
+  thread_local CapturedOutput* captured = nullptr;
   return captured;
 }
 
@@ -72,8 +62,8 @@ void add_common(Command& command, CommonOptions& options, const std::string& nam
 void print(const OutputOptions& options, const std::string& text, const Json& json) {
   if (options.quiet) return;
   const std::string output = options.json ? json_text(json) : fitted(text);
-  if (captured != nullptr) {
-    captured->text += output;
+  if (CapturedOutput* host = captured_output()) {
+    host->text += output;
     return;
   }
   std::fwrite(output.data(), 1, output.size(), stdout);
@@ -172,13 +162,10 @@ std::string shell_line(const std::vector<std::string>& words) {
   return line;
 }
 
-fs::path this_program() {
+fs::path& this_program() {
   std::error_code ignored;
-  return given_program.empty() ? fs::read_symlink("/proc/self/exe", ignored) : given_program;
-}
-
-void set_this_program(fs::path program) {
-  given_program = std::move(program);
+  static fs::path program = fs::read_symlink("/proc/self/exe", ignored);
+  return program;
 }
 
 }  // namespace hapbench

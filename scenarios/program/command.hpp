@@ -1,19 +1,28 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <functional>
+#include <map>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <variant>
 #include <vector>
 
 #include "scenarios/cases/cases.hpp"
 #include "scenarios/format/json_file.hpp"
 #include "scenarios/format/load_scenario.hpp"
-#include "scenarios/program/command_line.hpp"
-#include "sim/core/types.hpp"
 
-/// Shared by all commands: exit status, output, common options, names, directories of results, other programs.
+namespace CLI {
+class App;
+}
+
+/// Shared by all commands: exit status, the command line, output, common options, names, directories of results, other
+/// programs. The command line is a thin front of CLI11, so that command_line.cpp alone compiles that header.
 namespace hapbench {
 
 /// Exit status of the program.
@@ -33,6 +42,106 @@ int run_program(int argc, char** argv);
 /// Does the same, but reports exceptions on standard error: exit status 2 for InputError, 1 for all others.
 int run_program_to_exit(int argc, char** argv);
 
+// ---- The command line
+
+/// --quiet, --json and --wide, options of every command.
+struct OutputOptions {
+  bool quiet = false;  ///< nothing on standard output, no progress bar
+  bool json = false;   ///< JSON instead of tables on standard output
+};
+
+/// An option that means the same in every command that has it; `hapbench --help` explains it.
+std::string shared_option_help(const std::string& name);
+
+/// Throws an InputError that says what to write instead of a word that earlier versions took, such as the command
+/// "suite" or the option "--search" of the command "stability", which may have a value as NAME=VALUE. `command` is that
+/// of an option; empty for a command.
+void refuse_old_word(const std::string& command, const std::string& word);
+
+/// How an option or an argument may be given; its variable says of what kind the value is.
+struct Takes {
+  bool required = false;
+  bool several = false;          ///< it may be given several times, each time with one value
+  bool comma_separated = false;  ///< several values in one word; white space around them does not count
+  std::optional<std::pair<std::int64_t, std::int64_t>> range = {};  ///< refuses numbers outside
+  std::vector<std::string> one_of = {};                             ///< refuses other words
+};
+
+/// A subcommand that takes its options. The variables bound here are written while the command line is parsed and must
+/// live until then.
+class Command {
+ public:
+  template <class... Values>
+  using OneOf = std::variant<std::reference_wrapper<Values>...>;
+  /// The variable that an option writes.
+  using Variable = OneOf<std::string, std::vector<std::string>, int, unsigned, std::int64_t, std::uint64_t, double>;
+
+  explicit Command(CLI::App* app) : app_(app) {}
+
+  /// A name that begins with "--" is an option, another one an argument known by its place.
+  void add(const std::string& name, Variable variable, const std::string& help, const Takes& takes = {});
+  void flag(const std::string& name, bool& value, const std::string& help);
+  /// Refuses an option without another one, of which it has one at most. Precondition: both were added.
+  void needs(const std::string& option, const std::string& other);
+  /// Text below the list of options: paragraphs, which are wrapped.
+  void footer(const std::string& text);
+
+ private:
+  CLI::App* app_;
+};
+
+/// The error with what was typed as the place of each fault in a field that --set gave, and not the scene's file.
+InputError with_typed_places(const InputError& error, const std::vector<std::string>& overrides);
+
+/// The program's command line: every command adds itself, then `run` parses and runs the one that was chosen.
+class CommandLine {
+ public:
+  CommandLine();
+  ~CommandLine();
+
+  /// Adds a command and the options that `action` is called with when it is chosen; they live as long as the command
+  /// line, and their `output` is what its last options write. `when_stopped`: a note on its results for when Ctrl-C
+  /// stops it.
+  template <class Options>
+  std::pair<Command, Options&> command(const std::string& name, const std::string& summary,
+                                       int (*action)(const Options&),
+                                       const std::string& when_stopped = "incomplete results are removed") {
+    auto options = std::make_shared<Options>();
+    const auto run = [options, action] {
+      try {
+        return action(*options);
+      } catch (const InputError& error) {
+        if constexpr (requires { options->overrides; }) throw with_typed_places(error, options->overrides);
+        throw;
+      }
+    };
+    return {add(name, summary, options->output, run, when_stopped), *options};
+  }
+  /// Adds a command whose words behind its name, options and --help included, all go to `action` as they are.
+  void pass_on(const std::string& name, std::function<int(const std::vector<std::string>&)> action);
+  /// Replaces a study by its words (study.hpp), loads the modules that the words and HAPBENCH_MODULE_PATH name, then
+  /// runs the command. Returns its exit status; for a success during which a law or a source of contacts from outside
+  /// failed, kUnexpectedOutcome. Throws what the command throws, and InputError for a wrong usage and for modules.
+  int run(int argc, char** argv);
+  /// The chosen command's note on its results for when it is stopped.
+  const std::string& when_stopped() const { return when_stopped_; }
+
+ private:
+  Command add(const std::string& name, const std::string& summary, OutputOptions& output, std::function<int()> action,
+              const std::string& when_stopped);
+  void add_module_option(CLI::App& app);
+  int run(std::vector<std::string> words);
+
+  std::unique_ptr<CLI::App> app_;
+  std::function<int()> action_;  ///< of the chosen command
+  std::string when_stopped_;
+  std::vector<std::pair<CLI::App*, OutputOptions*>> outputs_;
+  std::vector<std::string> modules_;
+  std::map<std::string, std::function<int(const std::vector<std::string>&)>> passed_on_;
+};
+
+// ---- Options, output and names
+
 /// Options that most commands have.
 struct CommonOptions {
   std::vector<std::string> overrides;
@@ -41,15 +150,13 @@ struct CommonOptions {
   OutputOptions output;
 };
 
-/// Adds --set, repeatable.
+// Each adds an option, add_common all three of CommonOptions.
 void add_overrides(Command& command, std::vector<std::string>& overrides);
-/// Adds --jobs, at least 1. Zero means not given.
 void add_jobs(Command& command, unsigned& jobs, const std::string& help = shared_option_help("--jobs"));
-/// Adds --out; `name`: of the folder below results/out without it.
+/// `name`: of the folder below results/out without the option.
 void add_out(Command& command, std::string& out, const std::string& name);
-/// Adds --algorithms; `otherwise`: those without it.
+/// `otherwise`: those without the option.
 void add_algorithms(Command& command, std::vector<std::string>& algorithms, const std::string& otherwise);
-/// Adds --jobs, --out and --set.
 void add_common(Command& command, CommonOptions& options, const std::string& name);
 
 /// Prints `text`, as wide as the output is, or `json` under --json, or nothing under --quiet.
@@ -74,10 +181,8 @@ struct CapturedOutput {
   std::vector<std::string> warnings, errors;  ///< notes are among the warnings
 };
 
-/// Redirects what the commands of this thread print into `output`, for a host that is not a terminal; null ends that.
-void capture_output(CapturedOutput* output) noexcept;
-/// Returns the object that collects this thread's output, or null when it is printed.
-CapturedOutput* captured_output() noexcept;
+/// The object that collects what the commands of this thread print, for a host that is not a terminal; null: none does.
+CapturedOutput*& captured_output() noexcept;
 
 /// Draws the run in a folder into a file, FILE.svg. Throws IoError when it cannot be made, after the Python tool has
 /// explained why on standard error.
@@ -113,9 +218,7 @@ JobOptions job_options(const CommonOptions& options, const std::string& label);
 /// Quotes words for a POSIX shell: those with anything but letters, digits and "_-./:=,+@%" in single quotes.
 std::string shell_line(const std::vector<std::string>& words);
 
-/// The file of this program, or what set_this_program gave.
-std::filesystem::path this_program();
-/// Sets the answer of this_program, for a host that is another program.
-void set_this_program(std::filesystem::path program);
+/// The file of this program; a host that is another program sets it.
+std::filesystem::path& this_program();
 
 }  // namespace hapbench

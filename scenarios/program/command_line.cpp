@@ -1,29 +1,119 @@
-#include "scenarios/program/command_line.hpp"
-
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cerrno>
+#include <clocale>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
+#include <exception>
 #include <iterator>
-#include <string>
-#include <string_view>
 
 #include "algorithms/module/module.hpp"
-#include "scenarios/format/input_error.hpp"
+#include "results/io/atomic_file.hpp"
+#include "results/summary/provenance.hpp"
 #include "scenarios/format/text_lines.hpp"
 #include "scenarios/format/writer.hpp"
 #include "scenarios/program/command.hpp"
 #include "scenarios/program/study.hpp"
 #include "scenarios/program/table.hpp"
 #include "scenarios/run/load_module.hpp"
+#include "scenarios/run/stop_signal.hpp"
 
 namespace hapbench {
 
+using AddCommand = void(CommandLine& line);
+
+/// Every command, each defined in a source file of its own subject; those of Python packages stand together.
+AddCommand add_compare, add_converge, add_describe, add_limit, add_new, add_python_commands, add_reproduce, add_run,
+    add_stress, add_sweep, add_tune, add_validate;
+
 namespace {
 
-constexpr const char* kProgramName = "hapbench";
+constexpr const char *kProgramName = "hapbench", *kDescription = "an offline bench for haptic rendering";
+
+constexpr AddCommand* kCommands[] = {add_run,   add_compare,         add_stress,    add_tune,
+                                     add_limit, add_converge,        add_reproduce, add_sweep,
+                                     add_new,   add_python_commands, add_describe,  add_validate};
+
+/// A command in the program's help.
+struct CommandGuide {
+  std::string_view group, name, answers;  ///< the question that it answers
+};
+
+/// In the order of the help.
+constexpr CommandGuide kGuides[] = {
+    {"make", "new", "a scene to start from"},
+    {"make", "import", "my recording as a stroke; my device's log as a device"},
+    {"make", "validate", "is a scene right, and what is in it?"},
+    {"run", "run", "what happens, what is wrong with it, what to try?"},
+    {"run", "compare", "which law does better, over scenes and seeds?"},
+    {"run", "sweep", "how does it depend on fields?"},
+    {"decide", "limit", "how far may a field go, on which device, with which law?"},
+    {"decide", "tune", "which law, stiffness and damping?"},
+    {"decide", "converge", "how accurate is a number?"},
+    {"decide", "stress", "does any law break on degenerate contacts?"},
+    {"decide", "reproduce", "which claims of the thesis hold?"},
+    {"look", "describe", "what is a name? without one: what is there?"},
+    {"look", "plot", "a picture of results"},
+    {"look", "report", "a page of results with replay; of two: what differs"},
+};
+
+/// What the help of a command, which is the first word, ends with.
+constexpr std::string_view kExamples[] = {
+    "new",
+    "new drag --from my.stl --extent 12mm --preview",
+    "new hole --out mine.json",
+    "validate mine.json",
+    "validate mine.json --set environment.spacing_m=1e-4",
+    "validate drag_molar --points shell.csv",
+    "run drag_molar",
+    "run drag_molar --set rendering.algorithm=proxy --out results/proxy",
+    "run mine.json --latency",
+    "compare drag_molar",
+    "compare tap_wall tap_corner --algorithms mean,proxy --seeds 5",
+    "compare mine.json --algorithms mean,proxy --errors",
+    "sweep tap_wall --vary rendering.stiffness_N_per_m=1e3:1e5:9:log",
+    "sweep tap_wall --vary rendering.algorithm=all --vary seed=1,2,3",
+    "sweep results/out/sweep_tap_wall --where 'inside_max_m<3e-4'",
+    "limit tap_wall --device all",
+    "limit mine.json --algorithms mean,shaped_stiffness",
+    "limit tap_wall --vary time.step_s --between 1e-4:1e-2",
+    "tune tap_wall --device touch",
+    "tune mine.json --device log_device.json --algorithms mean,proxy",
+    "tune drag_molar --device omega.3 --bound inside_max_m=3e-4",
+    "converge drag_molar --metric force_max_N",
+    "converge mine.json --levels 5 --metric inside_max_m",
+    "converge drag_molar --vary environment.spacing_m",
+    "stress",
+    "stress --count 1000",
+    "stress --module ./my_law.so",
+    "reproduce",
+    "reproduce --only T2,R1b",
+    "reproduce --choices results/reference/readings.csv",
+    "describe",
+    "describe shaped_stiffness",
+    "describe scenarios --grep molar",
+};
+
+/// What --version prints.
+std::string version_text(bool as_json) {
+  const Provenance program = provenance();
+  if (!as_json) return fmt::format("hapbench {} ({})", program.version, program.commit);
+  const InstructionSet set = instruction_set();
+  Json json = {{"version", program.version},
+               {"commit", program.commit},
+               {"compiler", program.compiler},
+               {"build_type", program.build_type},
+               {"flags", program.flags},
+               {"instruction_set", {{"march", set.march}, {"widest", set.widest}, {"simd", set.simd}}}};
+  json["promise"] =
+      "Within a major version (before 1.0: a minor one) no field of scenarios, no file or column of results, no command, "
+      "option or exit status goes away or changes its meaning; there may be more of them. Computed numbers may change "
+      "with every version: results name the commit that made them.";
+  return json.dump(2);
+}
 
 struct OldWords {
   std::string_view command;  ///< of options; empty for commands, "*" for options of every command
@@ -76,12 +166,8 @@ constexpr OldWords kOldWords[] = {
     {"tune", "--over", "--family hands,seeds,speeds"},
 };
 
-struct SharedOption {
-  std::string_view name, help;
-};
-
 /// What commands have in common, as far as it means something to them.
-constexpr SharedOption kSharedOptions[] = {
+constexpr std::pair<std::string_view, std::string_view> kSharedOptions[] = {
     {"--set", "override a field of every scene: path=value, as in time.steps=100; repeatable"},
     {"--out", "where the results go (default: results/out/NAME); a command's help has its own"},
     {"--jobs", "runs at once; no result depends on it (default: one per thread)"},
@@ -95,103 +181,6 @@ constexpr SharedOption kSharedOptions[] = {
 /// The first things to do.
 constexpr const char* kFirst[] = {"hapbench run drag_molar", "hapbench new drag --from my.stl --extent 12mm",
                                   "hapbench describe"};
-
-}  // namespace
-
-std::string shared_option_help(const std::string& name) {
-  const auto* option = std::ranges::find(kSharedOptions, name, &SharedOption::name);
-  return option == std::end(kSharedOptions) ? "" : std::string(option->help);
-}
-
-void refuse_old_word(const std::string& command, const std::string& word) {
-  const std::string name = word.substr(0, word.find('='));
-  for (const OldWords& old : kOldWords) {
-    const Words words = words_of(old.words);
-    if (std::ranges::find(words, name) == words.end() || (old.command != command && old.command != "*")) continue;
-    throw InputError(fmt::format("{}\"{}\" is no longer known; instead: {}", command.empty() ? "" : command + ": ",
-                                 name, old.instead));
-  }
-}
-
-void Command::add_variable(const std::string& name, Variable variable, const std::string& help, const Takes& takes) {
-  CLI::Option* option = std::visit([&](auto* value) { return app_->add_option(name, *value, help); }, variable);
-  option->required(takes.required);
-  if (takes.several) option->allow_extra_args(false)->take_all();
-  if (takes.comma_separated)
-    option->delimiter(',')->transform([](const std::string& word) { return CLI::detail::trim_copy(word); });
-  // CLI11's own checks word the errors differently, and show in the help.
-  if (takes.range) {
-    const auto problem = [range = *takes.range](const std::string& word) -> std::string {
-      const auto [least, greatest] = range;
-      std::int64_t number = 0;
-      if (CLI::detail::lexical_cast(word, number) && number >= least && number <= greatest) return "";
-      return fmt::format("got {}; allowed: {} ... {}", word, least, greatest);
-    };
-    option->check(CLI::Validator(problem, ""));
-  }
-  if (!takes.one_of.empty()) {
-    const auto problem = [words = takes.one_of](const std::string& word) -> std::string {
-      if (std::ranges::find(words, word) != words.end()) return "";
-      return fmt::format("got \"{}\"; allowed: {}{}", word, quoted_list(words), nearest_name_hint(word, words));
-    };
-    option->check(CLI::Validator(problem, ""));
-  }
-}
-
-void Command::flag(const std::string& name, bool& value, const std::string& help) {
-  app_->add_flag(name, value, help);
-}
-
-void Command::flag(const std::string& name, std::function<void()> when_given, const std::string& help) {
-  app_->add_flag_callback(name, std::move(when_given), help);
-}
-
-void Command::needs(const std::string& option, const std::string& other) {
-  app_->get_option(option)->needs(app_->get_option(other));
-}
-
-void Command::footer(const std::string& text) {
-  app_->footer(text);
-}
-
-CommandLine::CommandLine(std::vector<CommandGuide> guides, const std::string& version,
-                         std::function<std::string()> version_json)
-    : guides_(std::move(guides)),
-      app_(std::make_unique<CLI::App>("an offline bench for haptic rendering", kProgramName)) {
-  CLI::Option* json = app_->add_flag("--json");
-  json->needs(app_->set_version_flag("--version", [=, version_json = std::move(version_json)] {
-    return json->count() > 0 ? version_json() : version;
-  }));
-  add_module_option(*app_);
-  app_->require_subcommand(1);
-}
-
-CommandLine::~CommandLine() = default;
-
-/// The program and each command have it, so that it may stand before or behind the command.
-void CommandLine::add_module_option(CLI::App& app) {
-  const auto add = [this](const std::vector<std::string>& files) {
-    modules_.insert(modules_.end(), files.begin(), files.end());
-  };
-  app.add_option_function<std::vector<std::string>>("--module", add, shared_option_help("--module"))
-      ->allow_extra_args(false)
-      ->take_all();
-}
-
-Command CommandLine::add(const std::string& name, const std::string& summary, ChosenCommand command) {
-  CLI::App* app = app_->add_subcommand(name, summary);
-  app->get_option("--help")->description(shared_option_help("--help"));
-  app->callback([this, command = std::move(command)] { chosen_ = command; });
-  add_module_option(*app);
-  return Command(app);
-}
-
-void CommandLine::pass_on(const std::string& name, std::function<int(const std::vector<std::string>&)> action) {
-  app_->add_subcommand(name);
-  passed_on_[name] = std::move(action);
-}
-
-namespace {
 
 std::string name_of(const CLI::Option& option) {
   return option.get_name(option.get_positional(), true);
@@ -239,9 +228,37 @@ std::string options_text(const CLI::App& app, bool arguments) {
 
 /// The help of a command, as wide as prose is.
 std::string help_text(const CLI::App& app) {
-  const std::string text =
-      wrapped(app.get_description(), 0) + usage(app) + options_text(app, true) + options_text(app, false);
-  return app.get_footer().empty() ? text : text + "\n" + wrapped(app.get_footer(), 0);
+  std::string text =
+      wrapped(app.get_description(), 0) + usage(app) + options_text(app, true) + options_text(app, false) + "\n";
+  if (!app.get_footer().empty()) text += wrapped(app.get_footer(), 0) + "\n";
+  for (const std::string_view example : kExamples)
+    if (words_of(example).front() == app.get_name()) text += fmt::format("  {} {}\n", kProgramName, example);
+  return text;
+}
+
+/// The commands in their groups, and what to do first.
+std::string front() {
+  std::string text = fmt::format("{}: {}\n\n", kProgramName, kDescription);
+  std::string_view group;
+  for (const CommandGuide& guide : kGuides) {
+    text += entry(fmt::format("{:8}{}", guide.group == group ? "" : guide.group, guide.name), guide.answers, 0, 19);
+    group = guide.group;
+  }
+  text += "\n";
+  for (const char* line : kFirst) text += fmt::format("{:8}{}\n", line == kFirst[0] ? "first" : "", line);
+  return text + fmt::format("\n\"{} COMMAND --help\" explains a command, \"{} --help\" what all share.\n", kProgramName,
+                            kProgramName);
+}
+
+std::string program_help() {
+  std::string text = front() + "\n" + bold(stdout, "Options:") + "\n";
+  for (const auto& [name, help] : kSharedOptions) text += entry(name, help, 2, 14);
+  return text + entry("--version", "print the version; with --json also what it was built from and promises", 2, 14) +
+         "\n" +
+         wrapped(
+             "Exit status: 0 success, 1 internal fault, 2 bad input or usage, 3 a run did not end as its scenario "
+             "expects, 130 stopped by Ctrl-C.",
+             0);
 }
 
 std::vector<std::string> option_names(const CLI::App& app) {
@@ -249,12 +266,6 @@ std::vector<std::string> option_names(const CLI::App& app) {
   for (const CLI::Option* option : app.get_options()) {
     for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
   }
-  return names;
-}
-
-std::vector<std::string> command_names(const CLI::App& app) {
-  std::vector<std::string> names;
-  for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
   return names;
 }
 
@@ -276,8 +287,9 @@ std::string problem_of(const std::string& word, const CLI::App& program, const C
     return fmt::format("unknown option \"{}\"{}", name, hint.empty() ? field_hint(name, known) : hint);
   }
   if (command != nullptr) return fmt::format("unexpected argument \"{}\"", word);
-  std::vector<std::string> names = command_names(program);
-  for (const std::string& option : option_names(program)) names.push_back(option);
+  std::vector<std::string> names;
+  for (const CLI::App* other : program.get_subcommands({})) names.push_back(other->get_name());
+  std::ranges::copy(option_names(program), std::back_inserter(names));
   return fmt::format("unknown command \"{}\"{}", word, nearest_name_hint(word, names));
 }
 
@@ -324,7 +336,102 @@ int status_with_faults(int status) {
   return status == kSuccess ? kUnexpectedOutcome : status;
 }
 
+int fail(std::string_view what) {
+  print_error(what);
+  return kInternalFault;
+}
+
 }  // namespace
+
+std::string shared_option_help(const std::string& name) {
+  for (const auto& [option, help] : kSharedOptions)
+    if (option == name) return std::string(help);
+  return "";
+}
+
+void refuse_old_word(const std::string& command, const std::string& word) {
+  const std::string name = word.substr(0, word.find('='));
+  for (const OldWords& old : kOldWords) {
+    const Words words = words_of(old.words);
+    if (std::ranges::find(words, name) == words.end() || (old.command != command && old.command != "*")) continue;
+    throw InputError(fmt::format("{}\"{}\" is no longer known; instead: {}", command.empty() ? "" : command + ": ",
+                                 name, old.instead));
+  }
+}
+
+void Command::add(const std::string& name, Variable variable, const std::string& help, const Takes& takes) {
+  CLI::Option* option = std::visit([&](auto value) { return app_->add_option(name, value.get(), help); }, variable);
+  option->required(takes.required);
+  if (takes.several) option->allow_extra_args(false)->take_all();
+  if (takes.comma_separated)
+    option->delimiter(',')->transform([](const std::string& word) { return CLI::detail::trim_copy(word); });
+  // CLI11's own checks word the errors differently, and show in the help.
+  if (takes.range) {
+    const auto problem = [range = *takes.range](const std::string& word) -> std::string {
+      const auto [least, greatest] = range;
+      std::int64_t number = 0;
+      if (CLI::detail::lexical_cast(word, number) && number >= least && number <= greatest) return "";
+      return fmt::format("got {}; allowed: {} ... {}", word, least, greatest);
+    };
+    option->check(CLI::Validator(problem, ""));
+  }
+  if (!takes.one_of.empty()) {
+    const auto problem = [words = takes.one_of](const std::string& word) -> std::string {
+      if (std::ranges::find(words, word) != words.end()) return "";
+      return fmt::format("got \"{}\"; allowed: {}{}", word, quoted_list(words), nearest_name_hint(word, words));
+    };
+    option->check(CLI::Validator(problem, ""));
+  }
+}
+
+void Command::flag(const std::string& name, bool& value, const std::string& help) {
+  app_->add_flag(name, value, help);
+}
+
+void Command::needs(const std::string& option, const std::string& other) {
+  app_->get_option(option)->needs(app_->get_option(other));
+}
+
+void Command::footer(const std::string& text) {
+  app_->footer(text);
+}
+
+CommandLine::CommandLine() : app_(std::make_unique<CLI::App>(kDescription, kProgramName)) {
+  CLI::Option* json = app_->add_flag("--json");
+  json->needs(app_->set_version_flag("--version", [json] { return version_text(json->count() > 0); }));
+  add_module_option(*app_);
+  app_->require_subcommand(1);
+}
+
+CommandLine::~CommandLine() = default;
+
+/// The program and each command have it, so that it may stand before or behind the command.
+void CommandLine::add_module_option(CLI::App& app) {
+  const auto add = [this](const std::vector<std::string>& files) {
+    modules_.insert(modules_.end(), files.begin(), files.end());
+  };
+  app.add_option_function<std::vector<std::string>>("--module", add, shared_option_help("--module"))
+      ->allow_extra_args(false)
+      ->take_all();
+}
+
+Command CommandLine::add(const std::string& name, const std::string& summary, OutputOptions& output,
+                         std::function<int()> action, const std::string& when_stopped) {
+  CLI::App* app = app_->add_subcommand(name, summary);
+  app->get_option("--help")->description(shared_option_help("--help"));
+  app->callback([=, this] {
+    action_ = action;
+    when_stopped_ = when_stopped;
+  });
+  add_module_option(*app);
+  outputs_.emplace_back(app, &output);
+  return Command(app);
+}
+
+void CommandLine::pass_on(const std::string& name, std::function<int(const std::vector<std::string>&)> action) {
+  app_->add_subcommand(name);
+  passed_on_[name] = std::move(action);
+}
 
 InputError with_typed_places(const InputError& error, const std::vector<std::string>& overrides) {
   constexpr std::size_t kMostTyped = 60;
@@ -349,45 +456,12 @@ InputError with_typed_places(const InputError& error, const std::vector<std::str
   return InputError::all(faults);
 }
 
-/// The commands in their groups, and what to do first.
-std::string CommandLine::front() const {
-  std::string text = fmt::format("{}: {}\n\n", kProgramName, app_->get_description());
-  std::string_view group;
-  for (const CommandGuide& guide : guides_) {
-    text += entry(fmt::format("{:8}{}", guide.group == group ? "" : guide.group, guide.name), guide.answers, 0, 19);
-    group = guide.group;
-  }
-  text += "\n";
-  for (const char* line : kFirst) text += fmt::format("{:8}{}\n", line == kFirst[0] ? "first" : "", line);
-  return text + fmt::format("\n\"{} COMMAND --help\" explains a command, \"{} --help\" what all share.\n", kProgramName,
-                            kProgramName);
-}
-
-std::string CommandLine::program_help() const {
-  std::string text = front() + "\n" + bold(stdout, "Options:") + "\n";
-  for (const SharedOption& option : kSharedOptions) text += entry(option.name, option.help, 2, 14);
-  return text + entry("--version", "print the version; with --json also what it was built from and promises", 2, 14) +
-         "\n" +
-         wrapped(
-             "Exit status: 0 success, 1 internal fault, 2 bad input or usage, 3 a run did not end as its scenario "
-             "expects, 130 stopped by Ctrl-C.",
-             0);
-}
-
-std::string CommandLine::examples_of(const std::string& command) const {
-  const auto guide = std::ranges::find(guides_, command, &CommandGuide::name);
-  std::string text = "\n";
-  if (guide != guides_.end())
-    for (const std::string_view example : guide->examples) text += fmt::format("  {} {}\n", kProgramName, example);
-  return text;
-}
-
 int CommandLine::run(int argc, char** argv) {
   std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
   const std::optional<StudyWords> study = StudyWords::in(words);
   if (!study) return run(std::move(words));
   try {
-    return run(study->words());
+    return run(study->words);
   } catch (const InputError& error) {
     throw study->located(error);
   }
@@ -398,14 +472,12 @@ int CommandLine::run(std::vector<std::string> words) {
     fmt::print("{}", front());
     return kSuccess;
   }
-  if (passed_on_.contains(words[0])) {
-    const auto& action = passed_on_[words[0]];
-    return action({words.begin() + 1, words.end()});
-  }
-  for (auto& [command, output] : outputs_) {
-    command.flag("--quiet", output->quiet, shared_option_help("--quiet"));
-    command.flag("--json", output->json, shared_option_help("--json"));
-    command.flag("--wide", output_in_full, shared_option_help("--wide"));
+  if (const auto passed = passed_on_.find(words[0]); passed != passed_on_.end())
+    return passed->second({words.begin() + 1, words.end()});
+  for (const auto& [app, output] : outputs_) {
+    app->add_flag("--quiet", output->quiet, shared_option_help("--quiet"));
+    app->add_flag("--json", output->json, shared_option_help("--json"));
+    app->add_flag_callback("--wide", output_in_full, shared_option_help("--wide"));
   }
   try {
     std::reverse(words.begin(), words.end());  // as CLI11 takes them
@@ -413,8 +485,7 @@ int CommandLine::run(std::vector<std::string> words) {
   } catch (const CLI::CallForHelp&) {
     const std::vector<CLI::App*> chosen = app_->get_subcommands();
     refuse_old_words(*app_, nullptr);
-    fmt::print("{}",
-               chosen.empty() ? program_help() : help_text(*chosen.front()) + examples_of(chosen.front()->get_name()));
+    fmt::print("{}", chosen.empty() ? program_help() : help_text(*chosen.front()));
     return kSuccess;
   } catch (const CLI::CallForVersion& version) {
     fmt::print("{}\n", version.what());
@@ -424,7 +495,41 @@ int CommandLine::run(std::vector<std::string> words) {
   }
   load_modules(modules_);
   take_module_faults();  // forgets those of an earlier command of this process
-  return status_with_faults(chosen_.action());
+  return status_with_faults(action_());
+}
+
+int run_program(int argc, char** argv) {
+  // Numbers are read and written without the language of a host such as Python, whose decimal point may be a comma.
+  const locale_t plain = ::newlocale(LC_ALL_MASK, "C", nullptr), before = ::uselocale(plain);
+  const std::shared_ptr<void> restored(nullptr, [=](void*) {
+    ::uselocale(before);
+    ::freelocale(plain);
+  });
+  CommandLine line;
+  for (AddCommand* add_command : kCommands) add_command(line);
+  try {
+    return line.run(argc, argv);
+  } catch (const Stopped& stop) {
+    print_note(fmt::format("stopped; {}", line.when_stopped()));
+    return kStopped + stop.signal;
+  }
+}
+
+int run_program_to_exit(int argc, char** argv) {
+  try {
+    const int status = run_program(argc, argv);
+    if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return status;
+    return fail(fmt::format("cannot write standard output: {}", std::strerror(errno)));
+  } catch (const InputError& error) {
+    print_errors(error);
+    return kBadInput;
+  } catch (const IoError& error) {
+    return fail(error.what());
+  } catch (const std::bad_alloc&) {
+    return fail("out of memory; allowed: three quarters of the machine's, or what \"ulimit -d\" sets");
+  } catch (const std::exception& error) {
+    return fail(one_line(fmt::format("internal fault: {}", error.what())));
+  }
 }
 
 }  // namespace hapbench

@@ -3,27 +3,186 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <optional>
 #include <span>
 
 #include "algorithms/registry.hpp"
 #include "results/summary/summary.hpp"
-#include "scenarios/cases/comparison.hpp"
-#include "scenarios/cases/league.hpp"
 #include "scenarios/format/bundled_scenarios.hpp"
 #include "scenarios/format/metric_sections.hpp"
 #include "scenarios/format/text_lines.hpp"
 #include "scenarios/limits/convergence/convergence.hpp"
-#include "scenarios/program/command.hpp"
-#include "scenarios/program/report.hpp"
+#include "scenarios/program/index.hpp"
 #include "scenarios/program/run_table.hpp"
-#include "scenarios/run/run_scenario.hpp"
 
 namespace hapbench {
 namespace {
 
-namespace fs = std::filesystem;
+// ---- comparison.csv
+
+/// Programs may read these by their place: append new ones.
+constexpr std::string_view kComparedMetrics =
+    "force_max_N velocity_total_variation_m_per_s force_reversals vibration_power_above_30Hz_m2_per_s2 depth_max_m "
+    "ratio_min ratio_max steps_in_contact contact_share landings landing_force_max_N landing_force_step_max_N settled_s "
+    "force_mean_in_contact_N settled_force_max_N force_step_p99_N settled_force_step_max_N force_rms_above_30Hz_N "
+    "force_reversals_per_s reduction_changes reduction_force_step_max_N inside_max_m inside_settled_m "
+    "centre_inside_share vibration_last_quarter_m_per_s fidelity.force_error_relative "
+    "fidelity.force_direction_error_rad fidelity.force_artefact_share";
+
+/// A line: a run, and the number of its repetition.
+struct ComparedRun {
+  std::uint64_t seed;
+  const Result* run;
+};
+
+/// Without times, so that equal comparisons give equal bytes; several seeds get a column in front.
+Columns<ComparedRun> comparison_columns(bool seeds) {
+  Columns<ComparedRun> columns;
+  if (seeds) columns.add("seed", "1", "number of the repetition", &ComparedRun::seed);
+  columns.add("algorithm", "", "force algorithm", [](const ComparedRun& r) { return r.run->algorithm; });
+  columns.add("outcome", "", "how the run ended",
+              [](const ComparedRun& r) { return outcome_name(r.run->end.outcome); });
+  columns.add("steps", "1", "rows of the run", [](const ComparedRun& r) { return r.run->end.rows; });
+  for (const std::string_view name : words_of(kComparedMetrics)) {
+    const Metric& metric = *find_metric(all_metrics(), name);
+    columns.add(metric.name, metric.unit, metric.meaning,
+                [name](const ComparedRun& r) { return value_of(r.run->metrics, name); });
+  }
+  return columns;
+}
+
+// ---- The league
+
+/// By how much the mean may be wrong: by what its numbers may be, or by what another choice of seeds gives; more digits
+/// than means of one rank have in common are not shown.
+std::optional<double> error_of_mean(const Standing& standing) {
+  if (!standing.spread) return standing.tolerance;
+  const double of_seeds = *standing.spread / std::sqrt(static_cast<double>(standing.common_seeds));
+  return std::max(
+      {standing.tolerance, std::optional(of_seeds), std::optional(0.1 * kSameRank * std::abs(*standing.mean))});
+}
+
+/// True for the row that comes first in a table: by rank, of one rank by mean; those without a rank come last.
+bool comes_first(const Standing& a, const Standing& b) {
+  if (a.rank != b.rank) return a.rank && (!b.rank || *a.rank < *b.rank);
+  if (a.better == Better::none) return false;
+  if (!a.mean || !b.mean) return a.mean && !b.mean;
+  return a.better == Better::more ? *a.mean > *b.mean : *a.mean < *b.mean;
+}
+
+/// The standings by scenario and metric, best first.
+std::vector<Standing> ranked(const League& league) {
+  std::vector<Standing> all;
+  for (std::size_t s = 0; s < league.scenarios.size(); ++s) {
+    for (std::size_t m = 0; m < league.metrics.size(); ++m) {
+      const auto first = static_cast<std::ptrdiff_t>(all.size());
+      for (std::size_t a = 0; a < league.algorithms.size(); ++a) all.push_back(league.at(s, a, m));
+      std::stable_sort(all.begin() + first, all.end(), comes_first);
+    }
+  }
+  return all;
+}
+
+Columns<LawStanding> law_columns() {
+  Columns<LawStanding> columns;
+  columns.add("algorithm", "", "", &LawStanding::algorithm, {.heading = "algorithm"});
+  columns.add("mean_rank", "1",
+              "mean of the algorithm's ranks over all metrics and scenarios, with those after failures",
+              &LawStanding::mean_rank, {.heading = "mean rank", .digits = 3});
+  columns.print("fails in", "", "scenarios in which a run failed", [](const LawStanding& l) {
+    return l.fails.empty() ? "-" : fmt::format("{}", fmt::join(l.fails, ", "));
+  });
+  return columns;
+}
+
+/// Says which laws are first, alone or with others, in how many rankings.
+std::string firsts_text(const League& league) {
+  constexpr std::size_t kMostNamed = 5;
+  if (!league.laws.front().mean_rank) return "nothing is ranked: neither less nor more of these metrics is better";
+  std::size_t rankings = 0;  // as many of each law
+  std::vector<std::string> firsts;
+  for (const LawStanding& law : league.laws) {
+    std::size_t first = rankings = 0;
+    for (const Standing& standing : league.standings) {
+      if (standing.algorithm != law.algorithm || !standing.rank) continue;
+      ++rankings;
+      first += *standing.rank == 1;
+    }
+    if (first > 0) firsts.push_back(fmt::format("{} in {}", law.algorithm, first));
+  }
+  if (firsts.size() == 1)
+    return fmt::format("{} alone is first in each of {} rankings", league.laws.front().algorithm, rankings);
+  return fmt::format("no algorithm alone is first in each of {} rankings; first are {}", rankings,
+                     fmt::join(first_few(firsts, kMostNamed), ", "));
+}
+
+/// Says who is first, and where no spread is known.
+std::string verdict(const League& league) {
+  const std::string text = wrapped(firsts_text(league), 0);
+  if (league.seeds < 2) return text + "one seed: no spread is known; --seeds K gives one\n";
+  std::vector<std::string> alike;
+  for (std::size_t s = 0; s < league.scenarios.size(); ++s)
+    if (!league.seeds_matter[s]) alike.push_back(league.scenarios[s]);
+  if (alike.empty()) return text + "\"hapbench report\" says what lies between laws, seed by seed\n";
+  return text + wrapped(fmt::format("nothing is random in {}: all seeds are one run, no spread is known; --jitter "
+                                    "METRES shifts the start",
+                                    fmt::join(alike, ", ")),
+                        0);
+}
+
+/// league.csv, a row for each scenario, algorithm and metric; `seeds`: there are several.
+Columns<Standing> league_columns(bool seeds) {
+  Columns<Standing> columns;
+  columns.add("scenario", "", "name of the scenario", &Standing::scenario, {.heading = "scenario"});
+  columns.add("algorithm", "", "force algorithm", &Standing::algorithm, {.heading = "algorithm"});
+  columns.add("metric", "", "name of the metric; its unit is part of the name", &Standing::metric,
+              {.heading = "metric"});
+  columns.add("seeds", "1", "seeds of the algorithm in the scenario", &Standing::seeds);
+  columns.add("failed", "1", "seeds that failed", &Standing::failed);
+  columns.add("outcome", "", "how the runs ended; of several ways with their numbers", &Standing::outcome,
+              {.heading = "how it ended"});
+  columns.add("mean", "by name", "mean of the metric over the common seeds; empty when there is none", &Standing::mean,
+              {.heading = "mean"}, error_of_mean);
+  columns.add("spread", "by name",
+              "standard deviation over these seeds; empty when there is one, or when seeds change nothing",
+              &Standing::spread, {.heading = seeds ? "spread" : "", .digits = 2});
+  columns.add(
+      "rank", "1",
+      "1 + the number of algorithms that did better in this scenario by this metric, by more than 0.1 % and both "
+      "errors; those with failures are last, by the number of these",
+      &Standing::rank, {.heading = "rank"});
+  columns.add("common_seeds", "1",
+              "seeds that mean and spread are over: those in which no algorithm failed that has any success in the "
+              "scenario; if there are none, all seeds of the algorithms that never failed",
+              &Standing::common_seeds);
+  columns.add("better", "",
+              "less or more, whichever is better of the metric; empty when neither is, and nothing is ranked",
+              [](const Standing& s) {
+                return s.better == Better::none ? Cell() : Cell(s.better == Better::less ? "less" : "more");
+              });
+  return columns;
+}
+
+/// A table of the standings, if that is short or with --wide, a line for each algorithm, and who is first in a
+/// sentence.
+std::string league_text(const League& league) {
+  constexpr std::size_t kMostPrinted = 60;
+  const std::string table =
+      league.standings.size() <= kMostPrinted || output_is_in_full()
+          ? league_columns(league.seeds > 1).table(ranked(league)).text()
+          : fmt::format("{} standings are in league.csv; --wide prints them\n", league.standings.size());
+  return fmt::format("{}\n{}\n{}", table, law_columns().table(league.laws).text(), verdict(league));
+}
+
+Json league_json(const League& league) {
+  Json rows = Json::array(), laws = Json::array();
+  const Columns<Standing> columns = league_columns(false);
+  for (const Standing& standing : league.standings) rows.push_back(columns.json(standing));
+  for (const LawStanding& law : league.laws) laws.emplace_back(law_columns().json(law))["fails"] = law.fails;
+  return {{"standings", std::move(rows)}, {"laws", std::move(laws)}};
+}
 
 // ---- How sure the numbers are, and which order of laws is larger than that
 
@@ -52,15 +211,13 @@ KnownError mean_error(const League& league, const FinerRuns& finer, std::size_t 
   return mean;
 }
 
-/// Without finer runs the errors are the metric's own tolerances. Laws that failed have no number.
-MetricNumbers numbers_of(const League& league, const FinerRuns* finer, std::size_t scenario, std::size_t metric) {
+/// Laws that failed have no number.
+MetricNumbers numbers_of(const League& league, const FinerRuns& finer, std::size_t scenario, std::size_t metric) {
   MetricNumbers found;
   for (std::size_t a = 0; a < league.algorithms.size(); ++a) {
     const Standing& standing = league.at(scenario, a, metric);
-    KnownError known{.step = 0.0, .spacing = 0.0, .tolerance = standing.tolerance.value_or(0.0)};
-    if (finer != nullptr) known = mean_error(league, *finer, scenario, a, standing.metric);
-    found.numbers.push_back({standing.failed > 0 ? std::nullopt : standing.mean, known.sum()});
-    found.known.push_back(known);
+    found.known.push_back(mean_error(league, finer, scenario, a, standing.metric));
+    found.numbers.push_back({standing.failed > 0 ? std::nullopt : standing.mean, found.known.back().sum()});
   }
   return found;
 }
@@ -89,7 +246,7 @@ void report_errors(const League& league, const FinerRuns& finer, std::size_t sce
   std::string sentences;
   for (std::size_t m = 0; m < league.metrics.size(); ++m) {
     const std::string& metric = league.metrics[m];
-    const MetricNumbers found = numbers_of(league, &finer, scenario, m);
+    const MetricNumbers found = numbers_of(league, finer, scenario, m);
     const std::string says = held_text(found.numbers, league.algorithms);
     Json& json =
         report.json()["errors"].emplace_back(Json{{"scenario", league.scenarios[scenario]}, {"metric", metric}});
@@ -125,14 +282,18 @@ std::string vibration_text(const League& league) {
   std::vector<std::string> failing;
   for (std::size_t a = 0; a < league.algorithms.size(); ++a)
     if (league.failures(0, a) > 0) failing.push_back(league.algorithms[a]);
-  const std::size_t laws = league.algorithms.size() - failing.size();
   for (const auto& [of, metric, unfelt] : kVibrations) {
     const auto place = static_cast<std::size_t>(std::ranges::find(league.metrics, metric) - league.metrics.begin());
-    std::vector<NumberWithError> numbers = numbers_of(league, nullptr, 0, place).numbers;
-    for (NumberWithError& number : numbers) *number.error += unfelt;
+    std::vector<NumberWithError> numbers;
+    std::size_t known = 0;
+    for (std::size_t a = 0; a < league.algorithms.size(); ++a) {
+      const Standing& standing = league.at(0, a, place);
+      numbers.push_back(
+          {standing.failed > 0 ? std::nullopt : standing.mean, standing.tolerance.value_or(0.0) + unfelt});
+      known += numbers.back().value.has_value();
+    }
     says = fmt::format("vibration of the {}: {}", of, held_text(numbers, league.algorithms));
-    const auto known = std::ranges::count_if(numbers, [](const auto& n) { return n.value.has_value(); });
-    if (static_cast<std::size_t>(known) == laws) break;
+    if (known + failing.size() == league.algorithms.size()) break;
   }
   if (!failing.empty()) says += fmt::format("; failing: {}", fmt::join(failing, ", "));
   return "\n" + wrapped(says + "; --errors tells whether finer runs agree", 0);
@@ -165,7 +326,7 @@ struct Asked {
   const CompareOptions& options;
   const Comparison comparison = planned(options);
   const bool league = comparison.scenes.size() > 1 || comparison.seeds > 1 || !options.metrics.empty();
-  const fs::path out =
+  const std::filesystem::path out =
       results_directory(options.out, comparison.scenes.size() > 1 ? "compare" : "compare_" + comparison.names[0]);
 };
 
@@ -233,8 +394,7 @@ int compare(const CompareOptions& options) {
     print_warnings(run_warnings(of_scene));
     std::vector<ComparedRun> runs;
     for (const Result& run : of_scene) runs.push_back({runs.size() % comparison.seeds, &run});
-    report.write((comparison.scene_folder(s) / "comparison.csv").c_str(), comparison_columns(comparison.seeds > 1),
-                 runs);
+    report.write(comparison.scene_folder(s) / "comparison.csv", comparison_columns(comparison.seeds > 1), runs);
   }
   report.json() = summaries_json(asked, reports);
   if (asked.league || options.errors) report.json() = {{"runs", std::move(report.json())}};
@@ -259,6 +419,13 @@ int compare(const CompareOptions& options) {
 }
 
 }  // namespace
+
+std::vector<DescribedTable> league_tables() {
+  return {comparison_columns(false).described("comparison.csv", "of compare: one line per algorithm"),
+          league_columns(true).described(
+              "league.csv", "of compare with several scenarios or seeds: one line per scenario, algorithm and metric"),
+          law_columns().described()};
+}
 
 void add_compare(CommandLine& line) {
   auto [command, options] =

@@ -6,23 +6,18 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "scenarios/cases/league.hpp"
 #include "scenarios/cases/run_sweep.hpp"
 #include "scenarios/format/bundled_scenarios.hpp"
 #include "scenarios/format/text_lines.hpp"
 #include "scenarios/limits/convergence/convergence.hpp"
 #include "scenarios/limits/stability/field_limit.hpp"
-#include "scenarios/program/command.hpp"
 #include "scenarios/program/index.hpp"
-#include "scenarios/program/report.hpp"
 #include "scenarios/program/run_table.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "sim/core/math.hpp"
 
 namespace hapbench {
 namespace {
-
-namespace fs = std::filesystem;
 
 constexpr const char *kOrders = "converge.csv", *kLevels = "converge_levels.csv",
                      *kTimes = "converge_levels_timing.csv";
@@ -184,12 +179,6 @@ std::string enough_text(const ConvergeStudy& study, double most) {
                              *finite_number(finest.value) / finer);
 }
 
-std::string study_text(const ConvergeStudy& study, std::optional<double> most) {
-  std::string text = level_columns(study).table(study.levels).text() + "\n" + wrapped(verdict_text(study), 0);
-  if (most) text += wrapped(enough_text(study, *most), 0);
-  return text + "\n";
-}
-
 // ---- Command
 
 double share_of(const std::string& text) {
@@ -233,7 +222,7 @@ int converge(const ConvergeOptions& options) {
   if (!(options.ratio > 1.0 && options.ratio <= kLargestRatio))
     throw InputError(fmt::format("--ratio: got {}; allowed: more than 1, at most {}", options.ratio, kLargestRatio));
   const auto most = options.to.empty() ? std::nullopt : std::optional(share_of(options.to));
-  const fs::path file = find_scenario(options.scenario);
+  const std::filesystem::path file = find_scenario(options.scenario);
   const ScenarioText scenario = read_scenario_text(file);
   const LevelSweep levels = levels_of(options, scenario);
   const JobOptions jobs = job_options(options, "converge");
@@ -252,7 +241,9 @@ int converge(const ConvergeOptions& options) {
   for (const std::string& metric : metrics) {
     const ConvergeStudy& study = studies.emplace_back(studied(levels, runs, metric));
     rows.insert(rows.end(), study.levels.begin(), study.levels.end());
-    report.say(study_text(study, most));
+    report.say(level_columns(study).table(study.levels).text() + "\n" + wrapped(verdict_text(study), 0));
+    if (most) report.say(wrapped(enough_text(study, *most), 0));
+    report.say("\n");
     report.json().push_back(study_json(study));
   }
   if (studies.size() == 1) report.json() = Json(report.json().front());

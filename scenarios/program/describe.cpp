@@ -2,14 +2,10 @@
 
 #include <algorithm>
 #include <cctype>
-#include <filesystem>
 #include <iterator>
-#include <optional>
 #include <regex>
 
 #include "scenarios/format/bundled_scenarios.hpp"
-#include "scenarios/format/input_error.hpp"
-#include "scenarios/format/load_scenario.hpp"
 #include "scenarios/format/text_lines.hpp"
 #include "scenarios/program/command.hpp"
 #include "scenarios/program/index.hpp"
@@ -85,7 +81,7 @@ Json list_on_record(const std::string& list) {
 }
 
 /// What is on record of a claim or a choice.
-Named on_record(const char* kind, const Json& thing, const std::string& summary, Json more) {
+Named on_record(const char* kind, const Json& thing) {
   const auto describe = [=] {
     Json titled = {{"kind", fmt::format("{}, on record", kind)}, {"name", thing.at("id")}};
     titled.update(thing);
@@ -97,7 +93,9 @@ Named on_record(const char* kind, const Json& thing, const std::string& summary,
     for (const char* member : {"id", "cases", "choices_reach_it", "ours", "robustness", "timing"}) titled.erase(member);
     return Description{thing_text(titled), thing};
   };
-  return {kind, thing.at("id"), summary, describe, std::move(more)};
+  Named named{kind, thing.at("id"), thing.value("claim", ""), describe};
+  if (thing.contains("claim")) named.more = {{"verdict", thing.at("verdict")}, {"source", thing.at("place")}};
+  return named;
 }
 
 /// What the folders beside the program hold: scenarios, studies, claims and choices on record. Throws InputError.
@@ -106,10 +104,8 @@ Index folder_index() {
   for (const BundledScenario& bundled : bundled_scenarios()) index.push_back(named_scenario(bundled));
   for (const BundledStudy& study : bundled_studies())
     index.push_back({"study", study.name, study.summary, [study] { return describe_study(study); }});
-  for (const Json& claim : list_on_record("claims"))
-    index.push_back(on_record("claim", claim, claim.at("claim"),
-                              {{"verdict", claim.at("verdict")}, {"source", claim.at("place")}}));
-  for (const Json& choice : list_on_record("choices")) index.push_back(on_record("choice", choice, "", Json::object()));
+  for (const Json& claim : list_on_record("claims")) index.push_back(on_record("claim", claim));
+  for (const Json& choice : list_on_record("choices")) index.push_back(on_record("choice", choice));
   return index;
 }
 
@@ -121,12 +117,12 @@ struct Place {
   std::string number;
 };
 
-/// The kind of place that a word announces; empty for any other word.
+/// The kind of place that a word announces; any other word ends those before it.
 std::string place_kind(const std::string& word) {
   const std::string lower = lower_case(word);
   if (lower == "fig" || lower == "figs" || lower == "figure") return "Fig.";
   if (lower == "table" || lower == "tables") return "Table";
-  return lower == "section" ? "section" : "";
+  return "section";
 }
 
 /// Reads a place, of any kind where none is given, also from the name of a figure's file such as
@@ -152,8 +148,7 @@ bool names_place(const std::string& source, const Place& asked) {
   for (std::sregex_iterator found(source.begin(), source.end(), kParts), end; found != end; ++found) {
     const std::string word = found->str();
     if (!(*found)[1].matched) {
-      const std::string announced = place_kind(word);
-      if (word != "and") kind = announced.empty() ? "section" : announced;
+      if (word != "and") kind = place_kind(word);
       continue;
     }
     if ((!asked.kind.empty() && kind != asked.kind) || !word.starts_with(asked.number)) continue;
@@ -165,6 +160,7 @@ bool names_place(const std::string& source, const Place& asked) {
 
 /// The pictures on record of a figure of the thesis, such as figure_A.2.svg of "A.2".
 std::vector<std::filesystem::path> pictures_of(const Place& place) {
+  if (!place.kind.empty() && place.kind != "Fig.") return {};
   const std::string figure = place.number.substr(0, place.number.find_last_not_of("abcd") + 1);
   std::vector<std::filesystem::path> pictures;
   std::error_code none;
@@ -175,17 +171,6 @@ std::vector<std::filesystem::path> pictures_of(const Place& place) {
   }
   std::ranges::sort(pictures);
   return pictures;
-}
-
-/// The pictures, and the commands that draw them anew.
-std::string pictures_text(const std::vector<std::filesystem::path>& pictures) {
-  std::string text;
-  for (const std::filesystem::path& picture : pictures) {
-    std::string id = picture.stem().string().substr(std::string_view("figure_").size());
-    std::replace(id.begin(), id.end(), '_', '-');
-    text += fmt::format("    {}\n    drawn anew by scripts/reproduce --figure {}\n", picture.string(), id);
-  }
-  return text;
 }
 
 /// The bundled scenarios and claims that name a place of the thesis, as "A.2", "Fig. A.2", "Table A.1" or
@@ -206,13 +191,17 @@ std::optional<Description> describe_place(const std::string& name) {
                                            : entry(thing.name, source, 4, 44);
     json[is_claim ? "claims" : "scenarios"].push_back(thing.name);
   }
-  const std::vector<std::filesystem::path> pictures =
-      place->kind == "Fig." || place->kind.empty() ? pictures_of(*place) : std::vector<std::filesystem::path>();
-  for (const std::filesystem::path& picture : pictures) json["pictures"].push_back(picture.string());
+  std::string pictures;
+  for (const std::filesystem::path& picture : pictures_of(*place)) {
+    std::string id = picture.stem().string().substr(std::string_view("figure_").size());
+    std::replace(id.begin(), id.end(), '_', '-');
+    pictures += fmt::format("    {}\n    drawn anew by scripts/reproduce --figure {}\n", picture.string(), id);
+    json["pictures"].push_back(picture.string());
+  }
   if (scenarios.empty() && claims.empty() && pictures.empty())
     throw InputError(fmt::format("no bundled scenario and no claim names {} of the thesis", title));
   return Description{fmt::format("{} of the thesis\n\n{}  scenarios\n{}\n  claims\n{}", bold(stdout, title),
-                                 pictures.empty() ? "" : "  picture\n" + pictures_text(pictures) + "\n",
+                                 pictures.empty() ? "" : "  picture\n" + pictures + "\n",
                                  scenarios.empty() ? "    none\n" : scenarios, claims.empty() ? "    none\n" : claims),
                      json};
 }
@@ -237,11 +226,6 @@ std::string group_of(const Named& thing) {
 /// True for the name of a kind's list. All metrics are told by a section of that name.
 bool is_kind(const std::string& name) {
   return name != "metrics" && std::ranges::any_of(kListed, [&](const char* kind) { return list_name(kind) == name; });
-}
-
-bool is_group(const std::string& name) {
-  const std::vector<BundledScenario> all = bundled_scenarios();
-  return std::ranges::find(all, name, &BundledScenario::group) != all.end();
 }
 
 /// What lists have, in their order.
@@ -283,14 +267,14 @@ std::string list_text(const Index& all, bool names_alone) {
       text += (title.empty() ? "" : "\n") + bold(stdout, of) + "\n";
     }
     title = of;
-    const bool is_claim = thing.kind == "claim";
     if (names_alone) {
       names += ", " + thing.name;
-    } else {
-      text +=
-          entry(is_claim ? fmt::format("{:<5}{}", thing.name, thing.more.at("verdict").get<std::string>()) : thing.name,
-                is_claim ? thing.summary : short_summary(thing.summary), 2, kColumn, output_width());
+      continue;
     }
+    const std::string verdict = thing.more.value("verdict", "");  // of a claim, which is told in full
+    text += verdict.empty()
+                ? entry(thing.name, short_summary(thing.summary), 2, kColumn, output_width())
+                : entry(fmt::format("{:<5}{}", thing.name, verdict), thing.summary, 2, kColumn, output_width());
   }
   end_list();
   return text;
@@ -404,7 +388,8 @@ int describe(const DescribeOptions& options) {
   const Index index = program_index();
   std::vector<Description> meanings = described_by_name(index, options.name);
   if (meanings.empty()) meanings = described_headings(index, options.name);
-  if (meanings.empty() && is_group(options.name)) return list(options);
+  const bool is_group = std::ranges::find(kScenarioGroups, options.name) != std::end(kScenarioGroups);
+  if (meanings.empty() && is_group) return list(options);
   if (!options.grep.empty()) throw InputError("--grep: allowed: without a name, or with that of a list");
   if (meanings.empty()) meanings = other_meanings(index, options.name);
   const Description d = joined(meanings);

@@ -1,7 +1,6 @@
 #include "scenarios/program/index.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <iterator>
@@ -10,11 +9,11 @@
 
 #include "algorithms/registry.hpp"
 #include "device_model/device_presets.hpp"
-#include "device_model/theory/stiffness_limits.hpp"
+#include "device_model/theory/linear_loops.hpp"
 #include "results/record/recorder.hpp"
 #include "results/summary/summary.hpp"
 #include "scenarios/format/metric_sections.hpp"
-#include "scenarios/format/scenario.hpp"
+#include "scenarios/format/text_lines.hpp"
 #include "scenarios/limits/stability/run_stability.hpp"
 #include "scenarios/program/report.hpp"
 #include "scenarios/program/run_table.hpp"
@@ -26,24 +25,7 @@
 #include "sim/loop/integrators/table.hpp"
 
 namespace hapbench {
-
-Description joined(const std::vector<Description>& meanings) {
-  if (meanings.size() == 1) return meanings.front();
-  Description all{"", Json::array()};
-  for (const Description& meaning : meanings) {
-    all.text += (all.text.empty() ? "" : "\n") + meaning.text;
-    // A meaning that has several itself adds each.
-    const Json list = meaning.json.is_array() ? meaning.json : Json::array({meaning.json});
-    all.json.insert(all.json.end(), list.begin(), list.end());
-  }
-  return all;
-}
-
 namespace {
-
-std::string titled(const std::string& name, const std::string& unit) {
-  return unit.empty() ? name : fmt::format("{} [{}]", name, unit);
-}
 
 /// A value in a line: the entries of a list between commas, the members of an object behind their names.
 std::string line_of(const Json& value) {
@@ -57,46 +39,10 @@ std::string line_of(const Json& value) {
 
 /// Members that say in a sentence what a thing is.
 constexpr std::string_view kProse[] = {"summary", "meaning", "holds", "claim", "what"};
-/// Members of its first line.
-constexpr std::string_view kHead[] = {"kind", "name", "unit"};
-
-bool is_one_of(std::span<const std::string_view> names, std::string_view name) {
-  return std::ranges::find(names, name) != names.end();
-}
 
 Description described(const Json& thing) {
   return {thing_text(thing), thing};
 }
-
-}  // namespace
-
-std::string thing_text(const Json& thing, std::size_t indent) {
-  std::string name = thing.value("name", "");
-  std::replace(name.begin(), name.end(), '\n', ' ');
-  const std::string kind = thing.value("kind", "");
-  std::string prose, facts, lists;
-  for (const auto& [key, value] : thing.items()) {
-    if (is_one_of(kHead, key)) continue;
-    std::string title = key;
-    std::replace(title.begin(), title.end(), '_', ' ');
-    if (value.is_array() && !value.empty() && value.front().is_object()) {
-      lists += fmt::format("\n{:{}}{}\n", "", indent + 2, title);
-      for (const Json& item : value) lists += thing_text(item, indent + 4);
-    } else if (const std::string line = line_of(value); !line.empty()) {
-      if (is_one_of(kProse, key))
-        prose += wrapped(line, indent + 2);
-      else
-        facts += entry(title, line, indent + 2, indent + 17);
-    }
-  }
-  std::string text;
-  if (!name.empty())
-    text = fmt::format("{:{}}{}{}{}\n", "", indent, bold(stdout, titled(name, thing.value("unit", ""))),
-                       kind.empty() ? "" : ": ", kind);
-  return text + prose + (facts.empty() || indent > 0 ? "" : "\n") + facts + lists;
-}
-
-namespace {
 
 /// A parameter of a model, which is a field of scenarios.
 Json parameter_json(const std::string& path, const char* unit, const char* meaning) {
@@ -176,25 +122,24 @@ Description describe_stability() {
   for (const StiffnessLimit& limit : stiffness_limits())
     d.json["limits"].push_back(
         {{"name", limit.name}, {"formula", limit.formula}, {"applies", limit.applies}, {"source", limit.source}});
-  d.text = "stability\n" +
-           wrapped(
-               "A run is judged by its motion, quarter by quarter; the amplitude is the largest speed. One that is too "
-               "short to tell is made up to 64 times as long.") +
-           "\n";
+  d.text = "stability\n";
+  d.text += wrapped(
+      "A run is judged by its motion, quarter by quarter; the amplitude is the largest speed. One that is too short to "
+      "tell is made up to 64 times as long.\n\n");
   for (std::size_t i = kMotionClasses; i-- > 0;)  // "all else" last
     d.text += entry(run_verdict_texts()[i].name, run_verdict_texts()[i].rule, 2, 13);
-  for (
-      const char* paragraph :
-      {"Limits count stable and dying out as stable: the tool comes to rest if the run goes on. A run that goes through "
-       "the surface, loses contact, is stuck or never touches (describe outcomes) has a class of its own and is not "
-       "stable, however calm it is.",
-       "The analytic limit, under leapfrog 4 - 2 lambda B dt / M - lambda K dt^2 / M = 0 with lambda = lambda_max(S), is "
-       "given where the tool is alone with springs that stay in contact and the force is -K S p. Under "
-       "velocity_verlet and rk4 it is that of the eigenvalues of a step; the implicit integrators have none. With a "
-       "device in the loop it is where the first eigenvalue of the loop of hand, handle and wall leaves the unit "
-       "circle, as long as nothing saturates and the contact lasts. With --stable bounded the edge by bisection is that of "
-       "\"diverged\"."})
-    d.text += "\n" + wrapped(paragraph);
+  d.text +=
+      "\n" +
+      wrapped(
+          "Limits count stable and dying out as stable: the tool comes to rest if the run goes on. A run that goes through "
+          "the surface, loses contact, is stuck or never touches (describe outcomes) has a class of its own and is not "
+          "stable, however calm it is.\n\n"
+          "The analytic limit, under leapfrog 4 - 2 lambda B dt / M - lambda K dt^2 / M = 0 with lambda = lambda_max(S), is "
+          "given where the tool is alone with springs that stay in contact and the force is -K S p. Under "
+          "velocity_verlet and rk4 it is that of the eigenvalues of a step; the implicit integrators have none. With a "
+          "device in the loop it is where the first eigenvalue of the loop of hand, handle and wall leaves the unit "
+          "circle, as long as nothing saturates and the contact lasts. With --stable bounded the edge by bisection is that of "
+          "\"diverged\".");
   d.text += "\nlimits of the stiffness K of a wall on an impedance device\n";
   d.text += wrapped(
       "b is the handle's damping, c its Coulomb friction, q the encoder's step, m the moving mass, T the period, t_d = d T "
@@ -217,13 +162,172 @@ Description describe_diagnosis() {
 
 /// Names that stand for no single thing of a list.
 void add_sections(Index& index) {
-  const auto add = [&index](const char* name, Description (*describe)()) {
-    index.push_back({"section", name, "", describe});
-  };
-  add("choices_schema", [] { return Description{"", choices_schema()}; });
-  add("diagnosis", describe_diagnosis);
-  add("schema", [] { return Description{"", scenario_schema()}; });
-  add("stability", describe_stability);
+  index.push_back({"section", "choices_schema", "", [] { return Description{"", choices_schema()}; }});
+  index.push_back({"section", "diagnosis", "", describe_diagnosis});
+  index.push_back({"section", "schema", "", [] { return Description{"", scenario_schema()}; }});
+  index.push_back({"section", "stability", "", describe_stability});
+}
+
+// ---- The fields of scenario files
+
+/// True for an object whose fields are told one by one: not the bounds on metrics, which are more than all others.
+bool shows_fields(const ValueGuide& value) {
+  constexpr std::size_t kMostShown = 50;
+  return value.choices.empty() && !value.fields.empty() && value.fields.size() <= kMostShown;
+}
+
+bool is_object(const ValueGuide& value) {
+  return value.choices.empty() && value.schema.is_object() && value.schema.contains("properties");
+}
+
+/// The default as JSON with blanks where a line may end; empty for none.
+std::string default_of(const FieldGuide& field) {
+  std::string text;
+  if (field.presence == Presence::has_default)
+    for (const char c : shown(field.initial)) text += c == ',' ? ", " : std::string(1, c);
+  return text;
+}
+
+/// The fields of an object and of those in it, each by its path from there, with what it may be and what it means.
+std::string field_cards(const std::string& prefix, const ValueGuide& object, std::size_t indent) {
+  std::string text;
+  for (const FieldGuide& field : object.fields) {
+    const bool nested = shows_fields(field.value);
+    const std::string initial = nested ? "" : default_of(field);
+    std::string facts = is_object(field.value) ? "" : field.value.allowed;
+    if (!initial.empty()) facts += (facts.empty() ? "default " : "; default ") + initial;
+    text += std::string(indent, ' ') + bold(stdout, prefix + field.name) + "\n";
+    if (!facts.empty()) text += wrapped(facts, indent + 4);
+    if (!field.meaning.empty()) text += wrapped(field.meaning, indent + 4);
+    if (nested) text += field_cards(prefix + field.name + ".", field.value, indent);
+  }
+  return text;
+}
+
+/// The value behind its title: its fields as cards; of a choice among objects those of each; a few lines for a plain
+/// value. `of` names the types or the field that have the value, where others have another of that title.
+std::string value_text(const std::string& title, const std::string& of, const std::string& meaning,
+                       const ValueGuide& value, const std::string& initial = "") {
+  std::string text = bold(stdout, title) + "\n";
+  if (!of.empty()) text += wrapped("of " + of);
+  if (!meaning.empty()) text += wrapped(meaning);
+  if (!is_object(value)) text += wrapped("allowed: " + value.allowed);
+  if (shows_fields(value)) return text + "\n" + field_cards("", value, 2);
+  if (is_object(value)) return value.fields.empty() ? text + "  no fields\n" : text;
+  if (!initial.empty()) text += wrapped("default: " + initial);
+  for (const ValueGuide& type : value.choices) {
+    text += fmt::format("\n  type \"{}\"{}{}\n{}", bold(stdout, type.type), type.summary.empty() ? "" : ": ",
+                        type.summary, field_cards("", type, 6));
+  }
+  return text;
+}
+
+/// The names of the types among which the field at a path such as "hand.type" chooses, with what they are; empty for a
+/// field that chooses no type.
+Description describe_types(const std::string& path) {
+  const std::string end = std::string(".") + kTypeField;
+  if (!path.ends_with(end)) return {};
+  const std::string field = path.substr(0, path.size() - end.size());
+  const FieldGuide* found = find_field(field);
+  if (found == nullptr || found->value.choices.empty()) return {};
+  std::string text = fmt::format("{}\n  chooses the fields of {}; \"hapbench describe {}\" shows those of each\n\n",
+                                 bold(stdout, path), field, field);
+  for (const ValueGuide& type : found->value.choices)
+    text += entry(fmt::format("\"{}\"", type.type), type.summary, 4, 24);
+  return {text, {{"field", path}, {"types", names_of(found->value.choices, &ValueGuide::type)}}};
+}
+
+/// The field at that path, once for each group of types that share it.
+Description describe_field(const std::string& path) {
+  if (Description types = describe_types(path); !types.text.empty()) return types;
+  std::vector<PlacedField> found;
+  for (const PlacedField& placed : placed_fields()) {
+    if (placed.path != path) continue;
+    const auto is_same = [&placed](const PlacedField& other) {
+      return other.field->schema() == placed.field->schema();
+    };
+    const auto same = std::ranges::find_if(found, is_same);
+    if (same == found.end())
+      found.push_back(placed);
+    else
+      same->types += (placed.types.empty() ? "" : ", ") + placed.types;
+  }
+  std::vector<Description> meanings;
+  for (const auto& [at, types, field] : found) {
+    Json json = field->schema();
+    if (!types.empty()) json["of"] = types;
+    meanings.push_back({value_text(at, types, field->meaning, field->value, default_of(*field)), std::move(json)});
+  }
+  return joined(meanings);
+}
+
+Description describe_algorithms() {
+  Description d = describe_field("rendering.algorithm");
+  d.text += wrapped("\"hapbench describe algorithms\" shows them with what they do");
+  return d;
+}
+
+Description describe_profile() {
+  const FieldGuide& any = *find_field("motion.orientation.tilt_rad");  // whose value is a function of time
+  Json schema = any.schema();
+  schema["description"] = "a function of time: a number that does not change, or an object";
+  schema.erase("default");
+  return {value_text("profile", "", schema["description"].get<std::string>(), any.value), schema};
+}
+
+Description describe_scenario_fields() {
+  const Json& schema = scenario_guide().schema;
+  return {value_text("scenario", "", schema["description"].get<std::string>(), scenario_guide()), schema};
+}
+
+/// The types among which fields choose, those that are the same in several fields once.
+void add_types(Index& index) {
+  std::vector<std::pair<std::string, const ValueGuide*>> types;
+  for (const PlacedField& placed : placed_fields()) {
+    for (const ValueGuide& choice : placed.field->value.choices) {
+      const auto is_same = [&choice](const auto& known) { return known.second->schema == choice.schema; };
+      if (std::ranges::none_of(types, is_same)) types.emplace_back(placed.path, &choice);
+    }
+  }
+  for (const auto& [field, type] : types) {
+    const auto has_the_name = [type = type](const auto& other) { return other.second->type == type->type; };
+    const std::string of = std::ranges::count_if(types, has_the_name) > 1 ? field : "";
+    index.push_back({field, type->type, type->summary, [type = type, of] {
+                       return Description{value_text(type->type, of, type->summary, *type), type->schema};
+                     }});
+  }
+}
+
+/// The object of the value's type; null when the value is not an object with fields.
+const ValueGuide* object_of(const Json& value, const ValueGuide& guide) {
+  if (!value.is_object()) return nullptr;
+  if (guide.choices.empty()) return &guide;
+  for (const ValueGuide& choice : guide.choices) {
+    if (value.value(kTypeField, choice.may_be_untyped ? choice.type : "") == choice.type) return &choice;
+  }
+  return nullptr;
+}
+
+using FieldMeanings = std::vector<std::pair<std::string, std::string>>;
+
+void add_meanings(FieldMeanings& meanings, const std::string& prefix, const Json& value, const ValueGuide& object) {
+  for (const auto& entry : value.items()) {
+    const auto field = std::ranges::find(object.fields, entry.key(), &FieldGuide::name);
+    if (field == object.fields.end()) continue;  // the type
+    meanings.emplace_back(prefix + entry.key(), field->meaning);
+    if (const ValueGuide* nested = object_of(entry.value(), field->value))
+      add_meanings(meanings, prefix + entry.key() + ".", entry.value(), *nested);
+  }
+}
+
+/// The fields, the types among which they choose, and the sections that are about fields.
+void add_fields(Index& index) {
+  for (const std::string& path : scenario_field_paths())
+    index.push_back({"field", path, "", [path] { return describe_field(path); }});
+  constexpr std::pair<const char*, Description (*)()> kSections[] = {
+      {"algorithm", describe_algorithms}, {"profile", describe_profile}, {"scenario", describe_scenario_fields}};
+  for (const auto& [name, describe] : kSections) index.push_back({"section", name, "", describe});
+  add_types(index);
 }
 
 // ---- Names that results and printed tables have: metrics, files, columns, words, headings
@@ -260,10 +364,7 @@ struct Word {
   const char* meaning;
 };
 
-constexpr const char* kOutcome = "outcome of a run";
-constexpr const char* kMotion = "class of motion, of limit and stability";
 constexpr const char* kTime = "number of timing.json";
-constexpr const char* kVerdict = "verdict on a claim";
 constexpr const char* kResultFile = "file of the results";
 
 /// Words that no enumeration has.
@@ -294,35 +395,35 @@ constexpr Word kWords[] = {
      "the step in which the recorded places come along an axis, seen in their differences (its row resolution, quantum_m of "
      "--json); K times it is the step of force that the recording alone makes"}};
 
-std::vector<Word> all_words() {
-  std::vector<Word> all(std::begin(kWords), std::end(kWords));
-  for (const OutcomeInfo& outcome : outcome_infos()) all.push_back({outcome.name, kOutcome, outcome.meaning});
-  for (const RunVerdictText& verdict : run_verdict_texts()) all.push_back({verdict.name, kMotion, verdict.meaning});
-  for (const auto& [name, meaning, mark] : kVerdicts) all.push_back({name, kVerdict, meaning});
+Json all_words() {
+  Json all = Json::array();
+  const auto add = [&all](std::string_view name, const char* kind, const char* meaning) {
+    all.push_back({{"kind", kind}, {"name", name}, {"meaning", meaning}});
+  };
+  for (const auto& [name, kind, meaning] : kWords) add(name, kind, meaning);
+  for (const OutcomeInfo& outcome : outcome_infos()) add(outcome.name, "outcome of a run", outcome.meaning);
+  for (const RunVerdictText& verdict : run_verdict_texts())
+    add(verdict.name, "class of motion, of limit and stability", verdict.meaning);
+  for (const auto& [name, meaning, mark] : kVerdicts) add(name, "verdict on a claim", meaning);
   return all;
 }
 
-Json word_json(const Word& word) {
-  return {{"kind", word.kind}, {"name", word.name}, {"meaning", word.meaning}};
-}
-
 Description describe_words() {
-  Json json = {{"kind", "words"}, {"words", Json::array()}};
-  for (const Word& word : all_words()) json["words"].push_back(word_json(word));
+  const Json json = {{"kind", "words"}, {"words", all_words()}};
   return {"words that the program prints\n" + thing_text(json), json};
 }
 
 /// Adds a name with one meaning.
-void add_term(Index& index, const Json& json, const std::string& summary = "") {
-  index.push_back({json["kind"], json["name"], summary, [json] { return described(json); }});
+void add_term(Index& index, const Json& json) {
+  index.push_back({json["kind"], json["name"], json["meaning"], [json] { return described(json); }});
 }
 
 /// The columns of all files, those of one name and meaning once.
 void add_columns(Index& index, const std::vector<DescribedTable>& tables) {
   std::vector<std::pair<DescribedTable::Entry, std::vector<std::string>>> all;
   for (const DescribedTable& table : tables) {
-    for (const DescribedTable::Entry& column :
-         table.file.empty() ? std::vector<DescribedTable::Entry>() : table.columns) {
+    if (table.file.empty()) continue;
+    for (const DescribedTable::Entry& column : table.columns) {
       const auto same = std::ranges::find_if(all, [&column](const auto& known) {
         return known.first.name == column.name && known.first.meaning == column.meaning;
       });
@@ -339,8 +440,7 @@ void add_columns(Index& index, const std::vector<DescribedTable>& tables) {
 void add_results(Index& index, const std::vector<DescribedTable>& tables) {
   for (const char* name : {"metrics", "summary.json"}) index.push_back({"section", name, "", describe_metrics});
   for (const Metric& metric : all_metrics()) {
-    add_term(index, {{"kind", "metric"}, {"name", metric.name}, {"unit", metric.unit}, {"meaning", metric.meaning}},
-             metric.meaning);
+    add_term(index, {{"kind", "metric"}, {"name", metric.name}, {"unit", metric.unit}, {"meaning", metric.meaning}});
   }
   for (const char* name : {"columns", "columns.json"}) index.push_back({"section", name, "", describe_tables});
   for (const DescribedTable& table : tables)
@@ -351,31 +451,70 @@ void add_results(Index& index, const std::vector<DescribedTable>& tables) {
 /// Outcomes, classes of motion, verdicts and others that the program prints.
 void add_words(Index& index) {
   index.push_back({"section", "words", "", describe_words});
-  for (const Word& word : all_words()) add_term(index, word_json(word));
+  for (const Json& word : all_words()) add_term(index, word);
 }
 
-/// Headings of printed tables, whose `summary`, a name or a sentence, says what they mean.
+/// Headings of printed tables; the meaning of one is a name or a sentence.
 void add_headings(Index& index, const std::vector<DescribedTable>& tables) {
   for (const DescribedTable& table : tables)
     for (const Table::Column& heading : table.headings)
       if (!heading.meaning.empty())
-        add_term(index, {{"kind", "heading"}, {"name", heading.title}, {"meaning", heading.meaning}}, heading.meaning);
+        add_term(index, {{"kind", "heading"}, {"name", heading.title}, {"meaning", heading.meaning}});
 }
 
 }  // namespace
 
+Description joined(const std::vector<Description>& meanings) {
+  if (meanings.size() == 1) return meanings.front();
+  Description all{"", Json::array()};
+  for (const Description& meaning : meanings) {
+    all.text += (all.text.empty() ? "" : "\n") + meaning.text;
+    // A meaning that has several itself adds each.
+    const Json list = meaning.json.is_array() ? meaning.json : Json::array({meaning.json});
+    all.json.insert(all.json.end(), list.begin(), list.end());
+  }
+  return all;
+}
+
+std::string thing_text(const Json& thing, std::size_t indent) {
+  std::string name = thing.value("name", "");
+  std::replace(name.begin(), name.end(), '\n', ' ');
+  const std::string kind = thing.value("kind", ""), unit = thing.value("unit", "");
+  std::string prose, facts, lists;
+  for (const auto& [key, value] : thing.items()) {
+    if (key == "kind" || key == "name" || key == "unit") continue;
+    std::string title = key;
+    std::replace(title.begin(), title.end(), '_', ' ');
+    if (value.is_array() && !value.empty() && value.front().is_object()) {
+      lists += fmt::format("\n{:{}}{}\n", "", indent + 2, title);
+      for (const Json& item : value) lists += thing_text(item, indent + 4);
+    } else if (const std::string line = line_of(value); !line.empty()) {
+      if (std::ranges::find(kProse, key) != std::end(kProse))
+        prose += wrapped(line, indent + 2);
+      else
+        facts += entry(title, line, indent + 2, indent + 17);
+    }
+  }
+  std::string text;
+  if (!name.empty()) {
+    if (!unit.empty()) name += fmt::format(" [{}]", unit);
+    text = fmt::format("{:{}}{}{}{}\n", "", indent, bold(stdout, name), kind.empty() ? "" : ": ", kind);
+  }
+  return text + prose + (facts.empty() || indent > 0 ? "" : "\n") + facts + lists;
+}
+
 std::vector<DescribedTable> result_tables() {
   std::vector<DescribedTable> tables;
-  const auto add = [&tables](const char* file, const char* holds, std::span<const Column> columns) {
-    DescribedTable& table = tables.emplace_back(DescribedTable{file, holds});
-    for (const auto& [name, unit, meaning] : columns) table.columns.push_back({name, unit, meaning});
+  const auto add = [&tables](const ResultTable& table) {
+    DescribedTable& added = tables.emplace_back(DescribedTable{table.file, table.holds});
+    for (const auto& [name, unit, meaning] : table.columns) added.columns.push_back({name, unit, meaning});
   };
-  for (const ResultTable& table : record_tables()) add(table.file, table.holds, table.columns);
-  add(kTargetTable.file, kTargetTable.holds, kTargetTable.columns);
+  for (const ResultTable& table : record_tables()) add(table);
+  add(kTargetTable);
   for (auto* tables_of : {run_tables, league_tables, limit_tables, converge_tables, tune_tables, claim_tables,
                           sweep_tables, stress_tables})
     std::ranges::move(tables_of(), std::back_inserter(tables));
-  add("shell.csv", "of validate --points: one line per point of the environment", kShellColumns);
+  add({"shell.csv", "of validate --points: one line per point of the environment", kShellColumns});
   return tables;
 }
 
@@ -391,6 +530,18 @@ Index program_index() {
   add_words(index);
   add_headings(index, tables);
   return index;
+}
+
+const FieldGuide* find_field(const std::string& path) {
+  const std::vector<PlacedField> all = placed_fields();
+  const auto found = std::ranges::find(all, path, &PlacedField::path);
+  return found == all.end() ? nullptr : found->field;
+}
+
+FieldMeanings field_meanings(const Json& scenario) {
+  FieldMeanings meanings;
+  add_meanings(meanings, "", scenario, scenario_guide());
+  return meanings;
 }
 
 }  // namespace hapbench

@@ -31,7 +31,7 @@ std::string thing_text(const Json& thing, std::size_t indent = 0);
 struct Named {
   std::string kind;  ///< such as "algorithm"; of a type the field that chooses it, such as "environment"
   std::string name;
-  std::string summary;  ///< what a list says of it; empty for kinds that no list has
+  std::string summary;  ///< what a list says of it; may be empty for kinds that no list has
   std::function<Description()> describe;
   Json more = Json::object();  ///< what a list's JSON has besides: of a scenario its group, of a claim its verdict
 };
@@ -53,8 +53,6 @@ std::vector<DescribedTable> tune_tables();
 
 // ---- The fields of scenario files. Their names are dotted paths, as "rendering.limits".
 
-/// Adds the fields, the types among which they choose, and the sections that are about fields.
-void add_fields(Index& index);
 /// The field at that path, of the first type that has it where types choose the fields; null when there is none.
 const FieldGuide* find_field(const std::string& path);
 /// The path and the meaning of each field that a scenario's JSON has, objects before their fields.

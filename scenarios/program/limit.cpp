@@ -7,9 +7,7 @@
 #include <set>
 
 #include "algorithms/registry.hpp"
-#include "scenarios/cases/cases.hpp"
 #include "scenarios/format/bundled_scenarios.hpp"
-#include "scenarios/format/input_error.hpp"
 #include "scenarios/format/metric_sections.hpp"
 #include "scenarios/format/text_lines.hpp"
 #include "scenarios/run/assemble.hpp"
@@ -18,18 +16,15 @@
 namespace hapbench {
 namespace {
 
-namespace fs = std::filesystem;
-
 struct LimitOptions : CommonOptions {
   std::vector<std::string> scenarios;
-  std::string field = "rendering.stiffness_N_per_m";
+  std::string field = kStiffnessPath;
   std::string between, resolution, stable, vibration;
   std::vector<std::string> bounds;
   bool smallest = false;
   std::vector<std::string> algorithms, devices, friction, over;
 };
 
-constexpr const char* kNoOthers = "none";      ///< for --friction
 constexpr const char* kPresets = "impedance";  ///< stands for all presets, which have that type
 
 bool is_file(const std::string& name) {
@@ -58,9 +53,11 @@ double number_between(const char* option, const std::string& text, double least,
 /// The devices, those with what --set changes marked, each with what else nobody published of it: both ends, or its dry
 /// friction times the factors.
 std::vector<ComparedDevice> asked_devices(const LimitOptions& options) {
-  const bool none_other = options.friction == std::vector<std::string>{kNoOthers};
+  const bool none_other = options.friction == std::vector<std::string>{"none"};
+  bool is_changed = false;
   for (const std::string& override : options.overrides) {
     const std::string_view path = overridden_path(override);
+    is_changed = is_changed || path.starts_with("device.");
     if (path == "device" || path == "device.type" || path == "device.preset") {
       throw InputError(fmt::format(
           "--set: got {} with --device; allowed: fields of the devices, such as device.delay_samples; a device "
@@ -71,15 +68,19 @@ std::vector<ComparedDevice> asked_devices(const LimitOptions& options) {
       throw InputError("--friction: cannot be combined with --set device.coulomb_N; allowed: one of the two");
   }
   std::vector<ComparedDevice> devices;
-  for (const ComparedDevice& chosen : chosen_devices(options.devices)) {
-    const ComparedDevice device = with_marked_name(chosen, options.overrides);
+  for (ComparedDevice device : chosen_devices(options.devices)) {
+    const bool is_end = device.name.ends_with(']');
+    if (is_changed && device.published_stiffness) {  // nothing is published of this one
+      device.name += '*';
+      device.published_stiffness.reset();
+    }
     devices.push_back(device);
     if (none_other) continue;
     for (const std::string& factor : options.friction) {
       if (const auto other = with_friction_times(device, number_between("--friction", factor, 0.0, 1e3)))
         devices.push_back(*other);
     }
-    if (!options.friction.empty() || chosen.name.ends_with(']')) continue;
+    if (!options.friction.empty() || is_end) continue;
     for (const ComparedDevice& end : with_unpublished_numbers(device)) devices.push_back(end);
   }
   return devices;
@@ -115,10 +116,9 @@ void set_rule(const LimitOptions& options, const Scenario& scenario, LimitQuesti
 
 LimitQuestion question_of(const LimitOptions& options, const ScenarioText& scene, const Scenario& scenario,
                           const std::vector<std::string>& overrides) {
-  if (options.field.find('=') != std::string::npos) {
+  if (options.field.find('=') != std::string::npos)
     throw InputError(
         fmt::format("--vary: got \"{}\"; allowed: a field alone, and its range as --between a:b", options.field));
-  }
   LimitQuestion question = limit_question(scene, overrides, options.field, range_of("--between", options.between));
   question.smallest = options.smallest;
   if (!options.resolution.empty()) question.resolution = number_between("--resolution", options.resolution, 1e-6, 0.5);
@@ -127,15 +127,92 @@ LimitQuestion question_of(const LimitOptions& options, const ScenarioText& scene
   return question;
 }
 
+/// The question without its rows. The axis of --device has no field's name, which it leaves to --over. Throws
+/// InputError.
+LimitTable asked_table(const LimitOptions& options) {
+  if (options.devices.empty() && !options.friction.empty())
+    throw InputError("--friction: got factors; allowed: with --device");
+  const std::vector<std::filesystem::path> files = find_scenarios(options.scenarios);
+  const Axis scene{.path = kSceneAxis, .values = names_of_scenarios(files)};
+  std::vector<ScenarioText> scenes;
+  std::transform(files.begin(), files.end(), std::back_inserter(scenes), read_scenario_text);
+  std::vector<ComparedDevice> devices;
+  std::vector<Axis> axes = {{.path = "--device", .values = {""}, .named = true}};
+  if (!options.devices.empty()) {
+    devices = asked_devices(options);
+    axes[0].values = names_of(devices, &ComparedDevice::name);
+  }
+  Axis algorithm{.path = "--algorithms", .values = {""}, .named = true};
+  if (!options.algorithms.empty())
+    algorithm = {"rendering.algorithm", chosen_names("--algorithms: got", options.algorithms, algorithm_names())};
+  for (const std::string& text : options.over) axes.push_back(parse_axis(text));
+  axes.insert(axes.end(), {scene, algorithm});
+  return {std::move(devices), Cases(std::move(scenes), options.overrides, std::move(axes))};
+}
+
+/// The case of that number. Warnings that are not among them yet are added.
+LimitRow asked_row(const LimitOptions& options, const LimitTable& table, std::size_t i,
+                   std::vector<std::string>& warnings) {
+  LimitRow row;
+  row.axis_values = table.cases.values(i);
+  if (!table.devices.empty()) row.device = &table.devices[table.cases.place(i, 0)];
+  const ScenarioText& scene = table.cases.scene(i);
+  try {
+    std::vector<std::string> overrides = table.cases.overrides(i);
+    if (row.device != nullptr) overrides = overrides_on(*row.device, scene, overrides);
+    const LoadedScenario loaded = load_scenario(scene, overrides);
+    row.scenario = loaded.scenario;
+    row.asked = question_of(options, scene, row.scenario, overrides);
+    append_new(warnings, row.asked.warnings);
+    append_new(warnings, with_files(loaded, checked(loaded).file_warnings));
+  } catch (const InputError& error) {
+    throw row.device != nullptr ? on_device(*row.device, error) : error;
+  }
+  return row;
+}
+
+/// One search runs on all threads; of several each has one.
+void find_limits(const LimitOptions& options, std::vector<LimitRow>& rows) {
+  const bool alone = rows.size() == 1;
+  if (alone) rows[0].asked.threads = job_options(options, "").threads;
+  const WaitNotice notice("limit", !options.output.quiet && alone);
+  for_each_job(rows.size(), job_options(options, alone ? "" : "limit"),
+               [&](std::size_t i) { static_cast<FieldLimit&>(rows[i]) = field_limit(rows[i].asked); });
+}
+
+/// Compares the limits by those of the first scene and algorithm.
+void add_ratios(LimitTable& table) {
+  for (std::size_t i = 0; i < table.rows.size(); ++i) {
+    LimitRow& row = table.rows[i];
+    const FieldLimit& reference = table.rows[i - i % table.columns()];
+    if (!row.value || !reference.value) continue;
+    row.stiffness_ratio = *row.value / *reference.value;
+    if (const double lambda = reference.settled.lambda_max; lambda > 0.0)
+      row.rendered_ratio = *row.stiffness_ratio * row.settled.lambda_max / lambda;
+  }
+}
+
+int limit(const LimitOptions& options) {
+  LimitTable table = asked_table(options);
+  std::vector<std::string> warnings;
+  for (std::size_t i = 0; i < table.cases.size(); ++i) table.rows.push_back(asked_row(options, table, i, warnings));
+  print_warnings(warnings);
+  Report report(options, options.scenarios.size() > 1 ? "limit" : "limit_" + table.first().scene());
+  find_limits(options, table.rows);
+  add_ratios(table);
+  tell_limits(table, report);
+  report.say(fmt::format("\nresults in {}\n", report.folder().string()));
+  return report.finish();
+}
+
 }  // namespace
 
 std::optional<Range> range_of(const char* option, const std::string& text) {
   if (text.empty()) return std::nullopt;
   const Words ends = parts_of(text, ':');
   const auto from = finite_number(ends.front()), to = finite_number(ends.back());
-  if (ends.size() != 2 || !from || !to || !(*from < *to)) {
+  if (ends.size() != 2 || !from || !to || !(*from < *to))
     throw InputError(fmt::format("{}: got \"{}\"; allowed: a:b with numbers a < b", option, text));
-  }
   return Range{*from, *to};
 }
 
@@ -177,90 +254,12 @@ std::vector<ComparedDevice> chosen_devices(const std::vector<std::string>& given
   for (const ComparedDevice& device : chosen) {
     if (names.insert(device.name).second) continue;
     throw InputError(
-        fmt::format("--device: got a second device named \"{}\"; allowed: each name once, and a file is "
-                    "named by what stands before .json",
+        fmt::format("--device: got a second device named \"{}\"; allowed: each name once, and a file is named by what "
+                    "stands before .json",
                     device.name));
   }
   return chosen;
 }
-
-namespace {
-
-/// The question without its rows. The axis of --device has no field's name, which it leaves to --over. Throws
-/// InputError.
-LimitTable asked_table(const LimitOptions& options) {
-  if (options.devices.empty() && !options.friction.empty())
-    throw InputError("--friction: got factors; allowed: with --device");
-  const std::vector<fs::path> files = find_scenarios(options.scenarios);
-  std::vector<ScenarioText> scenes;
-  Axis scene{.path = kSceneAxis, .values = names_of_scenarios(files)},
-      algorithm{.path = options.algorithms.empty() ? "--algorithms" : "rendering.algorithm",
-                .values = {""},
-                .named = options.algorithms.empty()};
-  std::transform(files.begin(), files.end(), std::back_inserter(scenes), read_scenario_text);
-  std::vector<ComparedDevice> devices;
-  if (!options.devices.empty()) devices = asked_devices(options);
-  std::vector<Axis> axes = {{.path = "--device", .values = names_of(devices, &ComparedDevice::name), .named = true}};
-  if (devices.empty()) axes[0].values = {""};
-  if (!options.algorithms.empty())
-    algorithm.values = chosen_names("--algorithms: got", options.algorithms, algorithm_names());
-  for (const std::string& text : options.over) axes.push_back(parse_axis(text));
-  axes.insert(axes.end(), {std::move(scene), std::move(algorithm)});
-  return {std::move(devices), Cases(std::move(scenes), options.overrides, std::move(axes))};
-}
-
-/// The case of that number. Warnings that are not among them yet are added.
-LimitRow asked_row(const LimitOptions& options, const LimitTable& table, std::size_t i,
-                   std::vector<std::string>& warnings) {
-  LimitRow row{.values = table.cases.values(i)};
-  if (!table.devices.empty()) row.device = &table.devices[table.cases.place(i, 0)];
-  const ScenarioText& scene = table.cases.scene(i);
-  try {
-    std::vector<std::string> overrides = table.cases.overrides(i);
-    if (row.device != nullptr) overrides = overrides_on(*row.device, scene, overrides);
-    const LoadedScenario loaded = load_scenario(scene, overrides);
-    row.scenario = loaded.scenario;
-    row.asked = question_of(options, scene, row.scenario, overrides);
-    append_new(warnings, row.asked.warnings);
-    append_new(warnings, with_files(loaded, checked(loaded).file_warnings));
-  } catch (const InputError& error) {
-    throw row.device != nullptr ? on_device(*row.device, error) : error;
-  }
-  return row;
-}
-
-/// Compares the limits by those of the first scene and algorithm.
-void add_ratios(LimitTable& table) {
-  for (std::size_t i = 0; i < table.rows.size(); ++i) {
-    LimitRow& row = table.rows[i];
-    const FieldLimit& reference = table.rows[i - i % table.columns()].found;
-    if (!row.found.value || !reference.value) continue;
-    row.stiffness_ratio = *row.found.value / *reference.value;
-    if (const double lambda = reference.settled.lambda_max; lambda > 0.0)
-      row.rendered_ratio = *row.stiffness_ratio * row.found.settled.lambda_max / lambda;
-  }
-}
-
-int limit(const LimitOptions& options) {
-  LimitTable table = asked_table(options);
-  std::vector<std::string> warnings;
-  for (std::size_t i = 0; i < table.cases.size(); ++i) table.rows.push_back(asked_row(options, table, i, warnings));
-  print_warnings(warnings);
-  Report report(options, options.scenarios.size() > 1 ? "limit" : "limit_" + table.first().scene());
-  std::vector<LimitRow>& rows = table.rows;
-  if (rows.size() == 1) rows[0].asked.threads = job_options(options, "").threads;
-  {
-    const WaitNotice notice("limit", !options.output.quiet && rows.size() == 1);
-    for_each_job(rows.size(), job_options(options, rows.size() > 1 ? "limit" : ""),
-                 [&](std::size_t i) { rows[i].found = field_limit(rows[i].asked); });
-  }
-  add_ratios(table);
-  tell_limits(table, report);
-  report.say(fmt::format("\nresults in {}\n", report.folder().string()));
-  return report.finish();
-}
-
-}  // namespace
 
 void add_limit(CommandLine& line) {
   auto [command, options] = line.command(

@@ -22,19 +22,18 @@ void add_bound(const std::string& text, std::map<std::string, MetricBound>& boun
 /// that end of what nobody published of it. Throws InputError.
 std::vector<ComparedDevice> chosen_devices(const std::vector<std::string>& given);
 
-/// A case of the question and, once it is found, its answer: a line of limit.csv.
-struct LimitRow {
-  std::vector<std::string> values = {};    ///< of the axes of LimitTable::cases
-  const ComparedDevice* device = nullptr;  ///< none: the scene's own
-  Scenario scenario = {};                  ///< as it is asked for, with its own value of the field
+/// The answer of a case, and what it was: a line of limit.csv.
+struct LimitRow : FieldLimit {
+  std::vector<std::string> axis_values = {};  ///< of LimitTable::cases
+  const ComparedDevice* device = nullptr;     ///< none: the scene's own
+  Scenario scenario = {};                     ///< as it is asked for, with its own value of the field
   LimitQuestion asked = {};
-  FieldLimit found = {};
   /// The limit over that of the first scene and algorithm, all else equal, and the same of K lambda_max(S), the
   /// stiffness that the hand meets; empty where either has no limit.
   std::optional<double> stiffness_ratio = {}, rendered_ratio = {};
 
   /// The name of the scene's file.
-  const std::string& scene() const { return values[values.size() - 2]; }
+  const std::string& scene() const { return axis_values[axis_values.size() - 2]; }
   const std::string& algorithm() const { return scenario.rendering.algorithm; }
 };
 

@@ -8,9 +8,8 @@
 #include <nlohmann/json.hpp>
 
 #include "device_model/device_presets.hpp"
-#include "device_model/theory/stiffness_limits.hpp"
+#include "device_model/theory/linear_loops.hpp"
 #include "scenarios/format/text_lines.hpp"
-#include "scenarios/limits/stability/run_stability.hpp"
 #include "scenarios/program/index.hpp"
 #include "scenarios/program/limit.hpp"
 
@@ -19,13 +18,7 @@ namespace hapbench {
 namespace {
 
 constexpr const char *kInconsistent = "inconsistent_runs", *kAstray = "astray";
-constexpr const char* kStiffness = "rendering.stiffness_N_per_m";
 
-/// What a member of the answer is, or a function of it gives.
-template <class Get>
-auto of_answer(Get get) {
-  return [get](const LimitRow& r) { return std::invoke(get, r.found); };
-}
 Cell value_cell(const std::optional<JudgedValue>& run) {
   return run ? Cell(run->value) : Cell();
 }
@@ -36,7 +29,7 @@ std::string beyond_text(const FieldLimit& limit) {
   return limit.value ? "end of the range" : std::string(run_verdict_name(limit.runs.front().verdict));
 }
 const IntervalEnd& end_of(const LimitRow& r, bool low) {
-  return low == r.asked.smallest ? r.found : r.found.other;
+  return low == r.asked.smallest ? r : r.other;
 }
 
 /// A line of limit_runs.csv.
@@ -65,8 +58,8 @@ Columns<Row> place_columns(const LimitTable* table) {
   for (std::size_t i = 1; table != nullptr && i <= table->over(); ++i) {
     columns.add(table->cases.axes()[i].path, "by name", "value of the field that varies besides",
                 [i](const LimitRow& r) {
-                  const auto number = finite_number(r.values[i]);
-                  return number ? Cell(*number) : Cell(r.values[i]);
+                  const auto number = finite_number(r.axis_values[i]);
+                  return number ? Cell(*number) : Cell(r.axis_values[i]);
                 },
                 {.heading = table->cases.axes()[i].path});
   }
@@ -97,17 +90,16 @@ void add_ends(Columns<LimitRow>& columns, const LimitTable* table) {
       "side", "", "largest or smallest: the stable value that was asked for",
       [](const LimitRow& r) { return r.asked.side(); }, only_csv());
   columns.print("linear\nedge", "by field", "of limit: theory, or where there is none linear", [](const LimitRow& r) {
-    const auto& edge = r.found.linear_edge();
+    const auto& edge = r.linear_edge();
     return edge && (std::isinf(*edge) || *edge == 0.0) ? "none" : significant(edge, 6);
   });
   columns.add("limit", "by field",
               "the last stable value before the first edge, by bisection on runs; empty when there is none",
-              of_answer(&FieldLimit::value), {.heading = "edge in\nruns", .digits = 6},
-              [](const LimitRow& r) { return r.found.tolerance(); });
+              &LimitRow::value, {.heading = "edge in\nruns", .digits = 6}, &LimitRow::tolerance);
   columns.add("beyond", "by field", "the first unstable value beyond it; empty when the range ends stable",
-              [](const LimitRow& r) { return value_cell(r.found.beyond); });
+              [](const LimitRow& r) { return value_cell(r.beyond); });
   columns.add("class_beyond", "", "what became of the run there (describe stability), or \"end of the range\"",
-              of_answer(beyond_text), {.heading = "beyond it"});
+              beyond_text, {.heading = "beyond it"});
   add_end(
       true, "low",
       "the low end of the interval of stable values that the limit ends: its smallest stable value, to the resolution",
@@ -117,40 +109,40 @@ void add_ends(Columns<LimitRow>& columns, const LimitTable* table) {
 }
 
 void add_theory(Columns<LimitRow>& columns, bool with_inequality) {
-  columns.add("theory", "by field", "the limit in theory; empty where there is none", of_answer(&FieldLimit::theory));
+  columns.add("theory", "by field", "the limit in theory; empty where there is none", &LimitRow::theory);
   if (with_inequality) {
     columns.add(
         "closed_form", "by field",
         "the same where the integrator's inequality ends, of leapfrog 4 - 2 lambda B dt / M - lambda K dt^2 / M >= 0 "
         "with lambda = lambda_max(S) (A.3); empty where it has none",
-        of_answer(&FieldLimit::closed_form));
+        &LimitRow::closed_form);
   }
   columns.add(
       "linear", "by field",
       "of a device at what only pushes: the largest value at which the loop of device, hand and surface is stable "
       "while they touch, without dry friction and encoder, by its eigenvalues; a limit beyond it is held up by "
       "bounces, dry friction or the end of the run; empty where there is a theory or no device",
-      of_answer(&FieldLimit::linear));
+      &LimitRow::linear);
 }
 
 /// What the literature says of a wall on an impedance device.
 void add_closed_forms(Columns<LimitRow>& columns) {
   for (std::size_t i = 0; i < stiffness_limits().size(); ++i) {
     const StiffnessLimit& known = stiffness_limits()[i];
-    columns.add(
-        known.name, "N/m", fmt::format("the K at which {}; for {} ({})", known.formula, known.applies, known.source),
-        [i](const LimitRow& r) { return r.found.closed_forms.empty() ? Cell() : cell_if(r.found.closed_forms[i]); });
+    columns.add(known.name, "N/m",
+                fmt::format("the K at which {}; for {} ({})", known.formula, known.applies, known.source),
+                [i](const LimitRow& r) { return r.closed_forms.empty() ? Cell() : cell_if(r.closed_forms[i]); });
   }
   columns.add("no_theory", "", "why the eigenvalues of the loop tell nothing; empty where they do",
-              of_answer(&FieldLimit::no_theory));
+              &LimitRow::no_theory);
   columns.add("worst_hand", "N/m",
               "least edge over passive hands of 100 to 1000 N/m and 0.1 to 0.5 kg, and none, by eigenvalues",
-              of_answer(&FieldLimit::worst_hand));
+              &LimitRow::worst_hand);
 }
 
 void add_search(Columns<LimitRow>& columns) {
   columns.add("limit_tolerance", "by field", "how far beyond the limit the edge may lie: beyond - limit",
-              of_answer(&FieldLimit::tolerance), only_json());
+              &LimitRow::tolerance, only_json());
   columns.add(
       "low_tolerance", "by field", "the same of the low end",
       [](const LimitRow& r) { return end_of(r, true).tolerance(); }, only_json());
@@ -158,31 +150,29 @@ void add_search(Columns<LimitRow>& columns) {
       "high_tolerance", "by field", "the same of the high end",
       [](const LimitRow& r) { return end_of(r, false).tolerance(); }, only_json());
   columns.add("undecided", "1", "runs that were too short to tell slow motion from rest, though lengthened",
-              of_answer(&FieldLimit::undecided));
+              &LimitRow::undecided);
   columns.add("unstable_without_contact", "", "true when hand and device alone are unstable beyond the edge",
-              of_answer(&FieldLimit::unstable_alone), only_json());
-  columns.add("has_effect", "", "false when the field changes no run", of_answer(&FieldLimit::has_effect), only_json());
-  columns.add("scattered", "", "true where stable values are scattered and there is no edge",
-              of_answer(&FieldLimit::scattered), only_json());
+              &LimitRow::unstable_alone, only_json());
+  columns.add("has_effect", "", "false when the field changes no run", &LimitRow::has_effect, only_json());
+  columns.add("scattered", "", "true where stable values are scattered and there is no edge", &LimitRow::scattered,
+              only_json());
   columns.add("tried_between", "1",
               "values between the ends of the interval that were tried, all stable; 0 in a table of devices or values",
-              of_answer(&FieldLimit::tried_between));
+              &LimitRow::tried_between);
   columns.add("may_fail_share", "1", "share of the interval that may be unstable for all that, with 95 % confidence",
-              [](const LimitRow& r) {
-                return r.found.tried_between > 0 ? Cell(may_fail_share(r.found.tried_between)) : Cell();
-              });
+              [](const LimitRow& r) { return r.tried_between > 0 ? Cell(may_fail_share(r.tried_between)) : Cell(); });
 }
 
 /// Numbers of the run at the limit, for cases to be compared by.
 void add_settled(Columns<LimitRow>& columns) {
-  const auto settled = [](const LimitRow& r, double value) { return r.found.value ? Cell(value) : Cell(); };
+  const auto settled = [](const LimitRow& r, double value) { return r.value ? Cell(value) : Cell(); };
   columns.add("vibration_m_per_s", "m/s",
               "at the limit: rms of the handle's speed above 30 Hz from a quarter of the contact on",
-              [](const LimitRow& r) { return r.found.value ? cell_if(r.found.settled.vibration) : Cell(); });
+              [](const LimitRow& r) { return r.value ? cell_if(r.settled.vibration) : Cell(); });
   columns.add("contacts", "1", "at the limit: mean number of rendered contacts there",
-              [=](const LimitRow& r) { return settled(r, r.found.settled.contacts); });
+              [=](const LimitRow& r) { return settled(r, r.settled.contacts); });
   columns.add("lambda_max", "1", "at the limit: largest eigenvalue of the mean S there",
-              [=](const LimitRow& r) { return settled(r, r.found.settled.lambda_max); });
+              [=](const LimitRow& r) { return settled(r, r.settled.lambda_max); });
   columns.add("stiffness_ratio", "1", "limit over that of the first scene with the first algorithm, all else equal",
               &LimitRow::stiffness_ratio);
   columns.add("rendered_ratio", "1", "the same of K lambda_max", &LimitRow::rendered_ratio);
@@ -197,20 +187,11 @@ Columns<LimitRunRow> run_columns(const LimitTable* table) {
   return columns;
 }
 
-Json row_json(const Columns<LimitRow>& columns, const LimitRow& row) {
-  Json json = columns.json(row);
-  Json inconsistent = Json::array();
-  for (const JudgedValue& run : row.found.inconsistent)
-    inconsistent.push_back({{"value", run.value}, {"class", run_verdict_name(run.verdict)}});
-  json[kInconsistent] = json[kAstray] = inconsistent;
-  return json;
-}
-
 /// The columns of limit.csv for this table; without one all that there may be, for `describe`.
 Columns<LimitRow> limit_columns(const LimitTable* table) {
   Columns<LimitRow> columns = place_columns<LimitRow>(table);
   add_ends(columns, table);
-  const auto has_inequality = [](const LimitRow& row) { return row.found.closed_form.has_value(); };
+  const auto has_inequality = [](const LimitRow& row) { return row.closed_form.has_value(); };
   add_theory(columns, table == nullptr || std::ranges::any_of(table->rows, has_inequality));
   add_search(columns);
   if (table == nullptr || !table->devices.empty()) {
@@ -218,10 +199,10 @@ Columns<LimitRow> limit_columns(const LimitTable* table) {
                 [](const LimitRow& r) { return r.device->published_stiffness; }, {.heading = "published"});
   }
   if (table == nullptr || table->is_grid()) add_settled(columns);
-  const auto has_closed_forms = [](const LimitRow& row) { return !row.found.closed_forms.empty(); };
+  const auto has_closed_forms = [](const LimitRow& row) { return !row.closed_forms.empty(); };
   if (table == nullptr || std::ranges::any_of(table->rows, has_closed_forms)) add_closed_forms(columns);
-  columns.add("runs", "1", "runs of the search", [](const LimitRow& r) { return r.found.runs.size(); });
-  const auto inconsistent = [](const LimitRow& r) { return r.found.inconsistent.size(); };
+  columns.add("runs", "1", "runs of the search", [](const LimitRow& r) { return r.runs.size(); });
+  const auto inconsistent = [](const LimitRow& r) { return r.inconsistent.size(); };
   columns.add(kInconsistent, "1", "runs that are unstable on the stable side of the limit, or stable beyond it",
               inconsistent, {.heading = "inconsistent"});
   columns.add(kAstray, "1", "the same as inconsistent_runs, by its former name", inconsistent);
@@ -239,6 +220,25 @@ std::string damping_text(const RenderingConfig& rendering) {
                      significant(rendering.damping_ratio), significant(rendering.mass));
 }
 
+/// The rule as one line.
+std::string rule_text(const StabilityRule& rule, const Scenario& scenario) {
+  std::string text =
+      rule.most_vibration
+          ? fmt::format(
+                "stable: at most {} m/s rms above {:.0f} Hz at the handle, from a quarter of the contact on, and no "
+                "bounces below that go on",
+                *rule.most_vibration, kVibrationCutoff)
+          : fmt::format("stable: comes to rest or dies out{}", rule.bounded ? ", or vibrates without growing" : "");
+  if (!rule.most_vibration && is_moved(scenario))
+    text +=
+        ", as far as it is above 30 Hz and 1 mm/s, because a script moves the tool; where that ends in the first half of a run, all beyond 1 mm/s from then on";
+  for (const auto& [metric, bound] : rule.bounds) {
+    if (bound.min) text += fmt::format(", {} >= {}", metric, *bound.min);
+    if (bound.max) text += fmt::format(", {} <= {}", metric, *bound.max);
+  }
+  return text;
+}
+
 /// States the question of one scene; `over`: other fields also vary.
 std::string question_text(const LimitQuestion& question, const Scenario& scenario, bool over) {
   const std::string width = question.whole ? "1"
@@ -250,7 +250,7 @@ std::string question_text(const LimitQuestion& question, const Scenario& scenari
                                  question.path, end(question.range.from), end(question.range.to), width);
   if (!over) text += fmt::format("; {} steps", scenario.time.steps);
   if (!over && question.path != "time.step_s") text += fmt::format(" of {} s", significant(scenario.time.step));
-  if (!over && question.path == kStiffness) text += "; " + damping_text(scenario.rendering);
+  if (!over && question.path == kStiffnessPath) text += "; " + damping_text(scenario.rendering);
   return wrapped(text, 0);
 }
 
@@ -269,7 +269,7 @@ std::string none_text(const FieldLimit& limit) {
 
 /// Remarks on a limit that is not all of the answer.
 std::string remarks_text(const LimitRow& row) {
-  const FieldLimit& limit = row.found;
+  const FieldLimit& limit = row;
   const LimitQuestion& question = row.asked;
   std::string text;
   const auto say = [&](const std::string& what) { text += wrapped(row.algorithm() + ": " + what, 0); };
@@ -278,21 +278,17 @@ std::string remarks_text(const LimitRow& row) {
                     run_verdict_name(limit.own->verdict), significant(limit.own->value),
                     question.smallest ? "high" : "low"));
   }
-  if (limit.theory_has_none) {
+  if (limit.theory_has_none)
     say(fmt::format("by the eigenvalues of a step no value of the range is stable{}",
                     limit.value ? ": the runs are too short for its growth" : ""));
-  }
-  if (limit.undecided > 0) {
+  if (limit.undecided > 0)
     say(fmt::format("{} runs were too short to tell slow motion from rest, though made up to 64 times as long",
                     limit.undecided));
-  }
-  if (!limit.has_effect) {
+  if (!limit.has_effect)
     say(fmt::format("{} has no effect here: the handle moves alike in all {} runs", question.path, limit.runs.size()));
-  }
-  if (limit.unstable_alone) {
+  if (limit.unstable_alone)
     say(fmt::format("at {} hand and device are unstable by themselves: the tool also vibrates without contact",
                     significant((limit.beyond ? *limit.beyond : limit.runs.front()).value)));
-  }
   return text;
 }
 
@@ -306,7 +302,7 @@ std::string notes_text(const LimitTable& table) {
     const auto* device = std::get_if<ImpedanceDeviceConfig>(&row.scenario.device);
     return device != nullptr && device->coulomb > 0.0;
   };
-  const auto is_beyond_linear = [](const LimitRow& row) { return row.found.is_beyond_linear(row.asked.resolution); };
+  const auto is_beyond_linear = [](const LimitRow& row) { return row.is_beyond_linear(row.asked.resolution); };
   const std::pair<bool, std::string> notes[] = {
       {table.is_grid() && any(is_beyond_linear),
        fmt::format("linear edge: of the loop of device, hand and surface while they touch; {}", kBeyondLinear)},
@@ -319,7 +315,7 @@ std::string notes_text(const LimitTable& table) {
            "preset with numbers of --set, of which nothing is published; [soft], [stiff]: the preset at either "
            "end of what nobody published of it ({}); [friction*2]: with its dry friction times a factor",
            kPresetRanges)},
-      {table.first().asked.path == kStiffness && any(is_on_device),
+      {table.first().asked.path == kStiffnessPath && any(is_on_device),
        "which K to quote: device_model/README.md, \"Which K to quote?\""},
       {any(rubs),
        "dry friction holds a hand that presses slowly, and is ours in every preset: the limit is that of this approach, "
@@ -342,12 +338,12 @@ std::string limits_text(const LimitTable& table, const Columns<LimitRow>& column
     if (i == 0 || row.scene() != table.rows[i - 1].scene())
       text += question_text(row.asked, row.scenario, table.over() > 0);
     if (table.is_grid()) continue;
-    answers += wrapped(fmt::format("{}: {}", row.algorithm(), limit_answer(row.found, row.asked.resolution)), 0);
+    answers += wrapped(fmt::format("{}: {}", row.algorithm(), limit_answer(row, row.asked.resolution)), 0);
     remarks += remarks_text(row);
   }
   const LimitRow& first = table.first();
   return fmt::format("{}\n{}{}{}\n{}{}{}", text, answers, answers.empty() ? "" : "\n", columns.table(table.rows).text(),
-                     wrapped(rule_text(first.asked, is_moved(first.scenario)), 0), remarks, notes_text(table));
+                     wrapped(rule_text(first.asked, first.scenario), 0), remarks, notes_text(table));
 }
 
 }  // namespace
@@ -379,8 +375,12 @@ void tell_limits(const LimitTable& table, Report& report) {
   std::vector<LimitRunRow> runs;
   Json limits = Json::array();
   for (const LimitRow& row : table.rows) {
-    limits.push_back(row_json(columns, row));
-    for (const JudgedValue& run : row.found.runs) runs.push_back({row, run});
+    Json inconsistent = Json::array();
+    for (const JudgedValue& run : row.inconsistent)
+      inconsistent.push_back({{"value", run.value}, {"class", run_verdict_name(run.verdict)}});
+    Json& limit = limits.emplace_back(columns.json(row));
+    limit[kInconsistent] = limit[kAstray] = inconsistent;
+    for (const JudgedValue& run : row.runs) runs.push_back({row, run});
   }
   report.write("limit.csv", columns, table.rows);
   report.write("limit_runs.csv", run_columns(&table), runs);
@@ -390,7 +390,7 @@ void tell_limits(const LimitTable& table, Report& report) {
                    {"from", question.range.from},
                    {"to", question.range.to},
                    {"resolution", question.resolution},
-                   {"rule", rule_text(question, is_moved(table.first().scenario))},
+                   {"rule", rule_text(question, table.first().scenario)},
                    {"limits", std::move(limits)}};
 }
 

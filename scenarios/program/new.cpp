@@ -1,36 +1,28 @@
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
-#include <functional>
 #include <limits>
-#include <nlohmann/json.hpp>
-#include <optional>
 #include <span>
-#include <string>
-#include <string_view>
 #include <utility>
-#include <vector>
 
 #include "device_model/hands/drag_hand.hpp"
 #include "results/io/atomic_file.hpp"
-#include "results/io/json_text.hpp"
+#include "results/io/columns.hpp"
 #include "scenarios/format/bundled_scenarios.hpp"
-#include "scenarios/format/json_file.hpp"
-#include "scenarios/format/load_scenario.hpp"
 #include "scenarios/format/parts.hpp"
 #include "scenarios/format/text_lines.hpp"
 #include "scenarios/program/command.hpp"
 #include "scenarios/program/index.hpp"
-#include "scenarios/program/table.hpp"
+#include "scenarios/program/report.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/progress_bar.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/run/scene_checks.hpp"
 #include "sim/core/types.hpp"
 #include "sim/geometry/point_shell.hpp"
-#include "sim/mesh/triangle_soup.hpp"
+#include "sim/geometry/triangle_tree.hpp"
 
 /// The command `new`, which writes scenario files to start from: each scene runs at once and touches something, and has
 /// only the fields that a newcomer changes first.
@@ -52,20 +44,23 @@ struct StartKind {
 
 /// All kinds, those of scenarios/library/starts.json, in the order in which they are shown. Throws InputError without
 /// that file.
-const std::vector<StartKind>& start_kinds() {
-  static const std::vector<StartKind> kinds = [] {
-    const Json json = parse_json(read_named_file(installed_folder("scenarios/library") / "starts.json"));
-    std::vector<StartKind> all;
-    for (const Json& kind : json.at("kinds")) {
-      all.push_back({kind.at("kind"), kind.at("summary"), kind.value("from", ""), kind.value("optional", false), {}});
-      Json& scene = all.back().scene;
-      scene = {{"description", kind.at("summary")},
-               {"time", {{"step_s", kStep}, {"steps", kind.value("steps", 2000)}}}};
-      for (const Json& part : kind.at("parts")) scene.update(json.at("parts").at(part.get<std::string>()));
-    }
-    return all;
-  }();
+std::vector<StartKind> start_kinds() {
+  const Json json = parse_json(read_named_file(installed_folder("scenarios/library") / "starts.json"));
+  std::vector<StartKind> kinds;
+  for (const Json& kind : json.at("kinds")) {
+    Json scene = {{"description", kind.at("summary")},
+                  {"time", {{"step_s", kStep}, {"steps", kind.value("steps", 2000)}}}};
+    for (const Json& part : kind.at("parts")) scene.update(json.at("parts").at(part.get<std::string>()));
+    kinds.push_back(
+        {kind.at("kind"), kind.at("summary"), kind.value("from", ""), kind.value("optional", false), scene});
+  }
   return kinds;
+}
+
+StartKind kind_named(const std::string& name) {
+  const std::vector<StartKind> kinds = start_kinds();
+  require_valid_name("KIND: got", name, names_of(kinds, &StartKind::name));
+  return *std::ranges::find(kinds, name, &StartKind::name);
 }
 
 // ---- The options
@@ -83,9 +78,10 @@ struct NewOptions {
   OutputOptions output;
 };
 
-const StartKind& kind_named(const std::string& name) {
-  require_valid_name("KIND: got", name, names_of(start_kinds(), &StartKind::name));
-  return *std::ranges::find(start_kinds(), name, &StartKind::name);
+void require_file(const char* option, const std::string& file) {
+  std::error_code ignored;
+  if (!file.empty() && !fs::exists(file, ignored))
+    throw InputError(fmt::format("{} {}: cannot be read: no such file", option, file));
 }
 
 void check_source(const StartKind& kind, const std::string& from) {
@@ -93,22 +89,17 @@ void check_source(const StartKind& kind, const std::string& from) {
     throw InputError(fmt::format("--from: missing; \"{}\" starts from a file", kind.name));
   if (kind.source.empty() && !from.empty())
     throw InputError(fmt::format("--from: got \"{}\"; \"{}\" starts from no file", from, kind.name));
-  std::error_code ignored;
-  if (!from.empty() && !fs::exists(from, ignored))
-    throw InputError(fmt::format("--from {}: cannot be read: no such file", from));
+  require_file("--from", from);
 }
 
 Vec3 place_in(const char* option, const std::string& text) {
-  const Words parts = parts_of(text, ',');
-  Vec3 place = Vec3::Zero();
-  bool is_place = parts.size() == 3;
-  for (std::size_t i = 0; is_place && i < parts.size(); ++i) {
-    const auto number = finite_number(parts[i]);
-    is_place = number.has_value();
-    if (number) place[static_cast<Eigen::Index>(i)] = *number;
+  std::vector<double> numbers;
+  for (const std::string_view part : parts_of(text, ',')) {
+    if (const auto number = finite_number(part)) numbers.push_back(*number);
   }
-  if (!is_place) throw InputError(fmt::format("{}: got \"{}\"; allowed: X,Y,Z in metres", option, text));
-  return place;
+  if (numbers.size() != 3 || std::ranges::count(text, ',') != 2)
+    throw InputError(fmt::format("{}: got \"{}\"; allowed: X,Y,Z in metres", option, text));
+  return Vec3(numbers.data());
 }
 
 double length_in(const char* option, const std::string& text) {
@@ -137,8 +128,7 @@ void check_options(const NewOptions& options, const StartKind& kind) {
   require(options.side == "z" || (lands && !options.from.empty()), "--side",
           "for mesh, shell, drag and bur with --from");
   require(options.extent.empty() || has_mesh, "--extent", "with the file of a mesh");
-  if (std::error_code ignored; !options.on.empty() && !fs::exists(options.on, ignored))
-    throw InputError(fmt::format("--on {}: cannot be read: no such file", options.on));
+  require_file("--on", options.on);
 }
 
 // ---- Where a tool that comes along -z starts over a surface
@@ -211,14 +201,8 @@ Json list_of(const Vec3& v) {
   return {v.x() + 0.0, v.y() + 0.0, v.z() + 0.0};  // never -0
 }
 
-/// The box of things at a place each.
-template <class Things, class Place = std::identity>
-Box box_of(const Things& things, Place place = {}) {
-  const Vec3 first = std::invoke(place, things.front());
-  Box box{first, first};
-  for (const auto& thing : things)
-    box = {box.min.cwiseMin(std::invoke(place, thing)), box.max.cwiseMax(std::invoke(place, thing))};
-  return box;
+double longest_edge(const Box& box) {
+  return (box.max - box.min).maxCoeff();
 }
 
 /// Rounds to the micrometre, as people write places.
@@ -237,18 +221,17 @@ double to_micrometres(double metres) {
 class Start {
  public:
   Start(const StartKind& kind, const NewOptions& options, const fs::path& directory)
-      : scene_(kind.scene), options_(options), directory_(directory) {
+      : scene(kind.scene), options_(options), directory_(directory) {
     if (!options.extent.empty()) extent_ = length_in("--extent", options.extent);
-    for (const std::string& point : options.path) path_.push_back(place_in("--path", point));
-    if (!options.at.empty()) at_ = place_in("--at", options.at);
+    for (const std::string& point : options.path) named_.push_back(place_in("--path", point));
+    if (!options.at.empty()) named_.push_back(place_in("--at", options.at));
     const bool is_on_mesh =
         !options.on.empty() || (kind.source == "mesh" && kind.is_source_optional && !options.from.empty());
-    if (is_on_mesh)
-      scene_["environment"] = std::ranges::find(start_kinds(), "mesh", &StartKind::name)->scene.at("environment");
+    if (is_on_mesh) scene["environment"] = kind_named("mesh").scene.at("environment");
     turn_to_side();
     name_files();
-    const bool is_placed = scene_.contains("initial") && scene_["initial"]["position_m"].is_null();
-    if (is_placed) scene_["initial"]["position_m"] = {0, 0, 0};
+    const bool is_placed = scene.contains("initial") && scene["initial"]["position_m"].is_null();
+    if (is_placed) scene["initial"]["position_m"] = {0, 0, 0};
     if (has_type("environment", "mesh")) scale_environment();
     if (has_type("tool", "mesh")) {
       place_mesh_tool();
@@ -256,18 +239,18 @@ class Start {
       place_tool();
     }
     if (kind.source == "stroke") choose_stroke_steps();
-    note_spacing();
+    if (!has_type("environment", "mesh")) return;
+    notes.push_back(fmt::format("{} points, {} apart: a tenth of the tool's diameter", points().size(),
+                                length_text(scene["environment"]["spacing_m"].get<double>())));
   }
 
-  /// Content of the scenario file.
-  const Json& scene() const { return scene_; }
-  /// Sizes and choices, a line each.
-  const std::vector<std::string>& notes() const { return notes_; }
-  const std::vector<std::string>& warnings() const { return warnings_; }
+  Json scene;                      ///< content of the scenario file
+  std::vector<std::string> notes;  ///< sizes and choices, a line each
+  std::vector<std::string> warnings;
 
  private:
   bool has_type(const char* part, const char* type) const {
-    return scene_.contains(part) && scene_.at(part).value(kTypeField, "") == type;
+    return scene.contains(part) && scene.at(part).value(kTypeField, "") == type;
   }
 
   /// Writes the names of the source and of the mesh below a stroke where they are used.
@@ -275,10 +258,10 @@ class Start {
     const auto name = [this](Json& part, const fs::path& file) {
       part["file"] = fs::proximate(file, directory_.empty() ? "." : directory_).generic_string();
     };
-    if (scene_["environment"].contains("file")) name(scene_["environment"], mesh_file());
-    if (has_type("tool", "mesh")) name(scene_["tool"], options_.from);
-    if (scene_.contains("motion") && scene_["motion"].contains("position") && !options_.from.empty())
-      name(scene_["motion"]["position"], options_.from);
+    if (scene["environment"].contains("file")) name(scene["environment"], mesh_file());
+    if (has_type("tool", "mesh")) name(scene["tool"], options_.from);
+    if (scene.contains("motion") && scene["motion"].contains("position") && !options_.from.empty())
+      name(scene["motion"]["position"], options_.from);
   }
 
   /// Puts the side's axes in the place of x, y and z.
@@ -287,13 +270,13 @@ class Start {
     const Vec3 up = side_sign() * Vec3::Unit(axis), lean = Vec3::Unit(axis == 0 ? 1 : 0);
     to_world_ << lean, up.cross(lean), up;
     if (options_.side != "z" && has_type("hand", "impedance"))
-      scene_["motion"] = {{"orientation", {{"up", list_of(up)}, {"lean", list_of(lean)}}}};
+      scene["motion"] = {{"orientation", {{"up", list_of(up)}, {"lean", list_of(lean)}}}};
   }
 
   /// The file of the environment, or of a tool.
   const std::string& mesh_file() const { return options_.on.empty() ? options_.from : options_.on; }
 
-  LoadedScenario scenario() const { return read_scenario(scene_, directory_); }
+  LoadedScenario scenario() const { return read_scenario(scene, directory_); }
 
   /// The points of the scene in the side's frame.
   std::vector<SurfacePoint> points() const {
@@ -307,7 +290,7 @@ class Start {
   /// The scale that gives an object, which was first read as millimetres, its stated size. A file of which none is
   /// stated is in metres. Throws InputError when it then is not an object to be worked on.
   double choose_scale(const Box& box, const char* object) {
-    const double longest = (box.max - box.min).maxCoeff() / 0.001;
+    const double longest = longest_edge(box) / 0.001;
     if (!extent_ && (longest < kShortestObject || longest > kLongestObject)) {
       const std::string command = fmt::format("hapbench new {} {} {} --extent", options_.kind,
                                               options_.on.empty() ? "--from" : "--on", mesh_file());
@@ -318,34 +301,33 @@ class Start {
           length_text(kLongestObject), command, longest, command, longest));
     }
     const double scale = extent_ ? std::stod(fmt::format("{:.6g}", *extent_ / longest)) : 1.0;
-    notes_.push_back(
+    notes.push_back(
         fmt::format("longest edge of the {}'s box: {}, with scale {}", object, length_text(longest * scale), scale));
     return scale;
   }
 
   /// The tool is sized by the mesh, but for one that a stroke leads.
   void scale_environment() {
-    const Box box = box_of(points(), &SurfacePoint::position);
+    const Box box = bounds_of(points());
     const double scale = choose_scale(box, "mesh");
-    scene_["environment"]["scale"] = scale;
-    if (options_.on.empty()) choose_tool((box.max - box.min).maxCoeff() / 0.001 * scale);
-    scene_["environment"]["spacing_m"] = rounded(diameter_ / 10.0);
+    scene["environment"]["scale"] = scale;
+    if (options_.on.empty()) choose_tool(longest_edge(box) / 0.001 * scale);
+    scene["environment"]["spacing_m"] = rounded(diameter_ / 10.0);
     if (!options_.on.empty())
-      notes_.push_back(fmt::format("the mesh: {}", place_text(Box{box.min / 0.001 * scale, box.max / 0.001 * scale})));
+      notes.push_back(fmt::format("the mesh: {}", place_text(Box{box.min / 0.001 * scale, box.max / 0.001 * scale})));
   }
 
   void choose_tool(double longest) {
     diameter_ = std::max(0.001, rounded(longest / 50.0));
-    if (scene_.contains("tool") && scene_["tool"].contains("diameter_m")) scene_["tool"]["diameter_m"] = diameter_;
-    if (scene_.contains("tool") && scene_["tool"].contains("length_m")) scene_["tool"]["length_m"] = 10.0 * diameter_;
+    if (scene.contains("tool") && scene["tool"].contains("diameter_m")) scene["tool"]["diameter_m"] = diameter_;
+    if (scene.contains("tool") && scene["tool"].contains("length_m")) scene["tool"]["length_m"] = 10.0 * diameter_;
   }
 
   /// Turns the normals of an open mesh round that point away from the side, about its highest place.
   std::vector<SurfacePoint> facing_points() {
     std::vector<SurfacePoint> shell = points();
-    const Box box = box_of(shell, &SurfacePoint::position);
-    longest_ = (box.max - box.min).maxCoeff();
-    choose_tool(longest_);
+    const Box box = bounds_of(shell);
+    choose_tool(longest_edge(box));
     const Vec3 top = middle_of_the_top(shell, box.max.z(), 0.1 * diameter_);
     const bool is_open =
         !has_type("environment", "mesh") || !scenario().files.at(kEnvironmentFile).mesh().open_edges().empty();
@@ -362,42 +344,43 @@ class Start {
       throw InputError(fmt::format("--from {}: {}; allowed: normals turned round, or --side={}",
                                    fs::path(options_.from).generic_string(), found, side));
     }
-    scene_["environment"]["flip_normals"] = true;
-    notes_.push_back(fmt::format(
+    scene["environment"]["flip_normals"] = true;
+    notes.push_back(fmt::format(
         "{} and are turned round, environment.flip_normals; or press from the other side: --side={}", found, side));
     return points();
   }
 
   void place_tool() {
     const std::vector<SurfacePoint> shell = facing_points();
-    count_ = shell.size();
-    const bool is_mesh = has_type("environment", "mesh");
-    const std::string count = is_mesh ? "" : fmt::format("{} points; ", count_);
-    const Box box = box_of(shell, &SurfacePoint::position);
+    const std::string count = has_type("environment", "mesh") ? "" : fmt::format("{} points", shell.size());
+    const Box box = bounds_of(shell);
     const Vec3 top = top_of(shell, box);
     pressed_ = to_micrometres(side_sign() * (top.z() + 0.5 * diameter_ - kPressedBelow));
     if (has_type("hand", "drag")) {
-      if (!is_mesh) notes_.push_back(fmt::format("{} points", count_));
-      if (!path_.empty()) return follow_path(top);
-      const Vec3 middle = at_ ? top : top_of_the_middle(shell, box, diameter_);
-      return choose_way(shell, {start_above(top), start_above(middle)});
+      if (!count.empty()) notes.push_back(count);
+      if (named_.size() > 1) return follow_path(top);
+      const Vec3 middle = named_.empty() ? top_of_the_middle(shell, box, diameter_) : top;
+      return choose_way(PointShell(shell, 0.0), {start_above(top), start_above(middle)});
     }
     start_at(start_above(top));
-    const Vec3 place = to_world_ * top;
-    notes_.push_back(
-        options_.side == "z" && !at_
-            ? fmt::format("{}the tool starts 1 mm above the highest, at x = {:.4g}, y = {:.4g} mm", count,
-                          1e3 * top.x(), 1e3 * top.y())
-            : fmt::format("{}the tool starts 1 mm off the surface at x = {:.4g}, y = {:.4g}, z = {:.4g} mm", count,
-                          1e3 * place.x(), 1e3 * place.y(), 1e3 * place.z()));
+    const bool is_on_top = options_.side == "z" && named_.empty();
+    notes.push_back(fmt::format("{}{}the tool starts 1 mm {} {}", count, count.empty() ? "" : "; ",
+                                is_on_top ? "above the highest, at" : "off the surface at", said(top, !is_on_top)));
+  }
+
+  /// A place in millimetres, with its height where that does not go without saying.
+  std::string said(const Vec3& place, bool with_height) const {
+    const Vec3 world = to_world_ * place;
+    return fmt::format("x = {:.4g}, y = {:.4g}{} mm", 1e3 * world.x(), 1e3 * world.y(),
+                       with_height ? fmt::format(", z = {:.4g}", 1e3 * world.z()) : "");
   }
 
   double side_sign() const { return options_.side.front() == '-' ? -1.0 : 1.0; }
 
-  /// The place over which the tool starts: what --at or --path names, else the highest.
+  /// The place over which the tool starts: the named one, else the highest.
   Vec3 top_of(const std::vector<SurfacePoint>& shell, const Box& box) const {
-    if (!at_ && path_.empty()) return middle_of_the_top(shell, box.max.z(), 0.1 * diameter_);
-    const Vec3 named = to_world_.transpose() * (at_ ? *at_ : path_.front());
+    if (named_.empty()) return middle_of_the_top(shell, box.max.z(), 0.1 * diameter_);
+    const Vec3 named = to_world_.transpose() * named_.front();
     const auto facing = [&named](const SurfacePoint& point) {
       return point.normal.z() > 0.0 ? (point.position - named).squaredNorm() : std::numeric_limits<double>::infinity();
     };
@@ -412,9 +395,9 @@ class Start {
 
   void start_at(const Vec3& place) {
     const Json world = list_of(to_world_ * place);
-    scene_["initial"]["position_m"] = world;
+    scene["initial"]["position_m"] = world;
     if (!has_type("hand", "impedance")) return;
-    Json& target = scene_["hand"]["target"];
+    Json& target = scene["hand"]["target"];
     target = {{"x_m", world[0]}, {"y_m", world[1]}, {"z_m", world[2]}};
     Json& along = target[std::string(1, options_.side.back()) + "_m"];
     along = {{kTypeField, "waypoints"},
@@ -425,107 +408,96 @@ class Start {
   /// Leads the tool along the points of --path.
   void follow_path(const Vec3& first) {
     double way = 0.0;
-    Json& hand = scene_["hand"];
+    Json& hand = scene["hand"];
     hand.erase("direction");
-    for (const Vec3& point : path_) hand["path_m"].push_back(list_of(point));
-    for (std::size_t i = 1; i < path_.size(); ++i) way += (path_[i] - path_[i - 1]).norm();
+    for (const Vec3& point : named_) hand["path_m"].push_back(list_of(point));
+    for (std::size_t i = 1; i < named_.size(); ++i) way += (named_[i] - named_[i - 1]).norm();
     start_at(start_above(first));
-    drag_for(way, kDragSpeed * diameter_);
+    drag_for(way);
     hand["smoothing_m"] = 0.5 * diameter_;
-    notes_.push_back(fmt::format("dragged over {}", length_text(way)));
+    notes.push_back(fmt::format("dragged over {}", length_text(way)));
   }
 
-  void drag_for(double way, double speed) {
-    scene_["hand"]["speed_m_per_s"] = rounded(speed);
-    scene_["time"]["steps"] = static_cast<std::int64_t>(std::ceil(rounded(way / speed) / kStep));
-  }
-
-  /// Says how far apart a mesh's points are.
-  void note_spacing() {
-    if (!has_type("environment", "mesh")) return;
-    notes_.push_back(fmt::format("{} points, {} apart: a tenth of the tool's diameter",
-                                 count_ == 0 ? points().size() : count_,
-                                 length_text(scene_["environment"]["spacing_m"].get<double>())));
+  void drag_for(double way) {
+    const double speed = kDragSpeed * diameter_;
+    scene["hand"]["speed_m_per_s"] = rounded(speed);
+    scene["time"]["steps"] = static_cast<std::int64_t>(std::ceil(rounded(way / speed) / kStep));
   }
 
   /// Places the tool above the plane's middle. Its tip is where the format has it without more words.
   void place_mesh_tool() {
     const TriangleSoup surface = scenario().files.at(kToolFile).mesh().triangles();  // taken for millimetres
-    Box box = box_of(surface.vertices);
+    Eigen::AlignedBox3d around;
+    for (const Vec3& vertex : surface.vertices) around.extend(vertex);
+    Box box{around.min(), around.max()};
     const double scale = choose_scale(box, "tool");
-    scene_["tool"]["scale"] = scale;
+    scene["tool"]["scale"] = scale;
     box = {scale / 0.001 * box.min, scale / 0.001 * box.max};
-    notes_.emplace_back(
+    notes.emplace_back(
         "taken for its tip centre: the file's origin, the tip pointing along -z; tool.tip_m and tool.tip_axis say "
         "otherwise");
     if (const std::string odd = odd_frame(box); !odd.empty())
-      warnings_.push_back(fmt::format("the tool {}: set tool.tip_m and tool.tip_axis", odd));
+      warnings.push_back(fmt::format("the tool {}: set tool.tip_m and tool.tip_axis", odd));
     pressed_ = to_micrometres(-box.min.z() - kPressedBelow);
     start_at({0.0, 0.0, to_micrometres(-box.min.z() + kClearance)});
   }
 
   /// Drags over four fifths of the way to where the surface ends.
-  void choose_way(const std::vector<SurfacePoint>& points, const std::vector<Vec3>& starts) {
-    const DragStart drag = choose_drag(PointShell(points, 0.0), starts, 0.5 * diameter_, 0.25 * longest_);
-    const double way = 0.8 * drag.room, speed = kDragSpeed * diameter_;
+  void choose_way(const PointShell& shell, const std::vector<Vec3>& starts) {
+    const double enough = 0.25 * longest_edge(shell.bounds());
+    const DragStart drag = choose_drag(shell, starts, 0.5 * diameter_, enough);
+    const double way = 0.8 * drag.room;
     const bool has_room = way >= diameter_;
     start_at(drag.position);
-    const Vec3 direction = to_world_ * drag.direction, start = to_world_ * drag.position;
+    const Vec3 direction = to_world_ * drag.direction;
     Json along = Json::array();
     for (const double part : direction) along.push_back(static_cast<int>(part));
-    scene_["hand"]["direction"] = along;
-    scene_["hand"]["smoothing_m"] = drag.smoothing;
-    drag_for(has_room ? way : 0.25 * longest_, speed);
+    scene["hand"]["direction"] = along;
+    scene["hand"]["smoothing_m"] = drag.smoothing;
+    drag_for(has_room ? way : enough);
     if (!has_room) {
-      warnings_.push_back(
+      warnings.push_back(
           fmt::format("no way longer than {} was found over the surface along x or y, from its highest place or its "
                       "middle: set hand.path_m to points on the surface, or initial.position_m and hand.direction",
                       length_text(drag.room)));
       return;
     }
-    notes_.push_back(fmt::format(
-        "dragged from x = {:.4g}, y = {:.4g}{} mm on along [{}, {}, {}] for {}; the surface ends or turns after {}",
-        1e3 * start.x(), 1e3 * start.y(), options_.side == "z" ? "" : fmt::format(", z = {:.4g}", 1e3 * start.z()),
-        along[0].dump(), along[1].dump(), along[2].dump(), length_text(way), length_text(drag.room)));
+    notes.push_back(fmt::format("dragged from {} on along [{}, {}, {}] for {}; the surface ends or turns after {}",
+                                said(drag.position, options_.side != "z"), along[0].dump(), along[1].dump(),
+                                along[2].dump(), length_text(way), length_text(drag.room)));
   }
 
   void choose_stroke_steps() {
     const LoadedScenario loaded = scenario();
     const auto stroke = loaded.files.at(kMotionFile).stroke();
     const auto samples = stroke->motion.samples();
-    const auto lower = [](const auto& a, const auto& b) { return a.position.z() < b.position.z(); };
-    const double lowest = std::min_element(samples.begin(), samples.end(), lower)->position.z();
-    const double last = samples.back().time;
-    scene_["time"]["steps"] = static_cast<std::int64_t>(std::max(1.0, std::ceil(last / kStep) + 1.0));
-    notes_.push_back(fmt::format("the stroke lasts from {:.4g} to {:.4g} s; its lowest tip is at z = {:.4g} mm{}",
-                                 samples.front().time, last, 1e3 * lowest,
-                                 options_.on.empty() ? ", the plane at 0" : ""));
+    const auto height = [](const auto& sample) { return sample.position.z(); };
+    const double lowest = height(*std::ranges::min_element(samples, {}, height)), last = samples.back().time;
+    scene["time"]["steps"] = static_cast<std::int64_t>(std::max(1.0, std::ceil(last / kStep) + 1.0));
+    notes.push_back(fmt::format("the stroke lasts from {:.4g} to {:.4g} s; its lowest tip is at z = {:.4g} mm{}",
+                                samples.front().time, last, 1e3 * lowest,
+                                options_.on.empty() ? ", the plane at 0" : ""));
   }
 
-  Json scene_;
   const NewOptions& options_;
   fs::path directory_;
   std::optional<double> extent_;      ///< of the mesh: longest edge of its box [m]
-  std::vector<Vec3> path_;            ///< of a drag, two points or more [m]
-  std::optional<Vec3> at_;            ///< the tool starts over the surface's place nearest to it [m]
+  std::vector<Vec3> named_;           ///< the tool starts over the surface's place nearest to it; then a drag's way [m]
   Mat3 to_world_ = Mat3::Identity();  ///< from the side's frame
-  std::size_t count_ = 0;             ///< of the scene's points
   double diameter_ = 0.001;           ///< [m]
-  double longest_ = 0.0;              ///< edge of the environment's box [m]
   double pressed_ = 0.0;              ///< where a hand that presses leads the tool, along the side's axis [m]
-  std::vector<std::string> notes_, warnings_;
 };
 
 // ---- The command
 
 int list_kinds(const OutputOptions& output) {
-  Table table({{"KIND", false}, {"what it starts with", false}});
+  Columns<StartKind> columns;
+  columns.add("kind", "", "", &StartKind::name, {.heading = "KIND"});
+  columns.add("summary", "", "", &StartKind::summary, {.heading = "what it starts with"});
+  const std::vector<StartKind> kinds = start_kinds();
   Json json = Json::array();
-  for (const StartKind& kind : start_kinds()) {
-    table.add({kind.name, kind.summary});
-    json.push_back({{"kind", kind.name}, {"summary", kind.summary}});
-  }
-  print(output, table.text(), json);
+  for (const StartKind& kind : kinds) json.push_back(columns.json(kind));
+  print(output, columns.table(kinds).text(), json);
   return kSuccess;
 }
 
@@ -539,7 +511,7 @@ void draw_preview(const fs::path& scenario, const fs::path& picture, bool quiet)
 
 int write_new(const NewOptions& options) {
   if (options.kind.empty()) return list_kinds(options.output);
-  const StartKind& kind = kind_named(options.kind);
+  const StartKind kind = kind_named(options.kind);
   check_source(kind, options.from);
   const fs::path source = options.from;
   const fs::path out =
@@ -555,26 +527,26 @@ int write_new(const NewOptions& options) {
     const WaitNotice notice("trying the scene", !options.output.quiet);
     return Start(kind, options, directory);
   }();
-  LoadedScenario loaded = read_scenario(start.scene(), directory);
+  LoadedScenario loaded = read_scenario(start.scene, directory);
   loaded.file = out;
   loaded = checked(std::move(loaded));
   print_warnings(loaded, loaded.file_warnings);
   require_writable_directory(directory.empty() ? "." : directory);
-  write_file_atomically(out, json_text(start.scene()));
+  write_file_atomically(out, json_text(start.scene));
 
-  print_warnings(start.warnings());
+  print_warnings(start.warnings);
   if (options.preview) draw_preview(out, picture, options.output.quiet || options.output.json);
   std::string text = fmt::format("{}: {}\n", out.string(), kind.summary);
-  for (const std::string& note : start.notes()) text += note + "\n";
+  for (const std::string& note : start.notes) text += note + "\n";
   if (options.preview) text += fmt::format("picture of a run in {}\n", picture.string());
   text += "\n";
   Json fields = Json::object();
-  for (const auto& [path, meaning] : field_meanings(start.scene())) {
+  for (const auto& [path, meaning] : field_meanings(start.scene)) {
     text += entry(path, meaning, 0, 34);
     fields[path] = meaning;
   }
   text += fmt::format("\n\"hapbench describe scenario\" shows all fields; next: hapbench run {}\n", out.string());
-  Json said = {{"file", out.string()}, {"notes", start.notes()}, {"fields", fields}};
+  Json said = {{"file", out.string()}, {"notes", start.notes}, {"fields", fields}};
   if (options.preview) said["picture"] = picture.string();
   print(options.output, text, said);
   return kSuccess;

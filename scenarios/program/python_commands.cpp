@@ -4,19 +4,14 @@
 
 #include <array>
 #include <cerrno>
-#include <cstddef>
 #include <cstdio>
 #include <cstdlib>
-#include <filesystem>
 #include <span>
-#include <string>
 #include <system_error>
-#include <vector>
 
 #include "device_model/handle_motion.hpp"
 #include "results/io/atomic_file.hpp"
 #include "scenarios/format/bundled_scenarios.hpp"
-#include "scenarios/format/input_error.hpp"
 #include "scenarios/format/text_lines.hpp"
 #include "scenarios/program/command.hpp"
 #include "scenarios/program/table.hpp"
@@ -29,19 +24,16 @@ namespace {
 
 using ProgramWords = std::vector<std::string>;
 
-struct PythonCommand {
-  std::string_view name;
-  std::string_view sentence;  ///< of a kind of import, for its help
-  ProgramWords words;         ///< for scripts/python/launch: the package, and what it takes before the user's words
+struct ImportKind {
+  std::string name, sentence, package;
 };
 
-const PythonCommand kPythonCommands[] = {
-    {"import stroke", "Make a stroke to play back from a recording: poses and measured forces", {"hapbench_import"}},
-    {"import device", "Make a device's file from its log: mass, friction, delay, encoder", {"hapbench_identify"}},
-    {"plot", "", {"hapbench_pictures", "plot"}},
-    {"report", "", {"hapbench_pictures", "report"}}};
+const ImportKind kImportKinds[] = {
+    {"stroke", "Make a stroke to play back from a recording: poses and measured forces", "hapbench_import"},
+    {"device", "Make a device's file from its log: mass, friction, delay, encoder", "hapbench_identify"}};
 
-/// The line of a shell that becomes the launcher, which finds a Python that has what the package needs.
+/// The line of a shell that becomes the launcher, which finds a Python that has what the package needs. `package`: its
+/// name, and what it takes before the user's words.
 std::string launch_line(const ProgramWords& package, const ProgramWords& given) {
   ProgramWords words = {"exec", (installed_folder("scripts/python") / "launch").string()};
   words.insert(words.end(), package.begin(), package.end());
@@ -114,11 +106,9 @@ int simulate_log_for_pipe() {
 }
 
 /// At a terminal this process becomes the launcher.
-int run(const PythonCommand& command, const ProgramWords& given) {
-  if (given.size() == 1 && given[0] == kSimulateLog && command.words[0] == "hapbench_identify")
-    return simulate_log_for_pipe();
-  for (const std::string& word : given) refuse_old_word(std::string(command.name), word);
-  const std::string line = launch_line(command.words, given);
+int run(const std::string& command, const ProgramWords& package, const ProgramWords& given) {
+  for (const std::string& word : given) refuse_old_word(command, word);
+  const std::string line = launch_line(package, given);
   if (CapturedOutput* host = captured_output()) return run_for(*host, line);
   ::execl("/bin/sh", "sh", "-c", line.c_str(), nullptr);
   fail_to_launch();
@@ -128,10 +118,10 @@ int run(const PythonCommand& command, const ProgramWords& given) {
 int run_import(const ProgramWords& given) {
   const std::string kind = given.empty() ? "" : given[0];
   std::string kinds;
-  for (const PythonCommand& command : kPythonCommands) {
-    if (!command.name.starts_with("import ")) continue;
-    if (command.name.substr(7) == kind) return run(command, {given.begin() + 1, given.end()});
-    kinds += entry(fmt::format("hapbench {} --help", command.name), std::string(command.sentence), 2, 34);
+  if (given == ProgramWords{"device", kSimulateLog}) return simulate_log_for_pipe();
+  for (const auto& [name, sentence, package] : kImportKinds) {
+    if (name == kind) return run("import " + name, {package}, {given.begin() + 1, given.end()});
+    kinds += entry(fmt::format("hapbench import {} --help", name), sentence, 2, 34);
   }
   if (kind == "-h" || kind == "--help") {
     print({}, "Usage: hapbench import stroke FILE | hapbench import device LOG\n\n" + kinds, {});
@@ -154,10 +144,8 @@ void write_way(const std::filesystem::path& folder, const std::filesystem::path&
 
 void add_python_commands(CommandLine& line) {
   line.pass_on("import", run_import);
-  for (const PythonCommand& command : kPythonCommands) {
-    if (command.name.starts_with("import ")) continue;
-    line.pass_on(std::string(command.name), [&command](const ProgramWords& given) { return run(command, given); });
-  }
+  for (const char* name : {"plot", "report"})
+    line.pass_on(name, [name](const ProgramWords& given) { return run(name, {"hapbench_pictures", name}, given); });
 }
 
 }  // namespace hapbench

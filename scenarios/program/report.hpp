@@ -118,9 +118,10 @@ class Columns {
     return object;
   }
 
-  /// As wide as the output is to be; `gap`: blanks between columns.
-  Table table(std::span<const Row> rows, std::size_t gap = 2) const {
-    Table table(headings(output_is_in_full()), gap);
+  /// As wide as the output is to be; `rows`: rows, or references to them.
+  template <class Rows>
+  Table table(const Rows& rows) const {
+    Table table(headings(output_is_in_full()));
     for (const Row& row : rows) {
       std::vector<std::string> cells;
       for (const Entry& entry : entries_) {
@@ -165,7 +166,7 @@ class Report {
   const std::filesystem::path& folder() const { return folder_; }
   void say(std::string_view text) { text_ += text; }
   template <class Row>
-  void write(const char* file, const Columns<Row>& columns, const std::vector<Row>& rows) {
+  void write(const std::filesystem::path& file, const Columns<Row>& columns, const std::vector<Row>& rows) {
     columns.write(folder_ / file, rows, files_);
   }
   FileSet& files() { return files_; }

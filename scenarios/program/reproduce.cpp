@@ -1,19 +1,12 @@
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <map>
-#include <optional>
 #include <set>
 
 #include "results/io/atomic_file.hpp"
-#include "results/io/json_text.hpp"
-#include "scenarios/cases/cases.hpp"
+#include "results/io/columns.hpp"
 #include "scenarios/format/bundled_scenarios.hpp"
-#include "scenarios/format/json_file.hpp"
-#include "scenarios/format/load_scenario.hpp"
 #include "scenarios/format/text_lines.hpp"
-#include "scenarios/program/command.hpp"
 #include "scenarios/program/index.hpp"
 #include "scenarios/program/report.hpp"
 #include "scenarios/run/assemble.hpp"
@@ -57,82 +50,76 @@ bool is_current(const fs::path& directory, const LoadedScenario& loaded) {
     const Json summary = parse_json(read_text_file(directory / "summary.json", kLargestJsonFile));
     const Json& made = summary.at("provenance");
     return made.at("scenario_hash") == scenario_hash(loaded.scenario, loaded.files) &&
-           made.at("commit") == provenance().commit && !provenance().identity().empty();
+           made.at("commit") == provenance().commit && provenance().identifies_source();
   } catch (const std::exception&) {
     return false;  // missing, damaged or of another version: run it
   }
 }
 
+/// A scenario of the thesis, and what came of it.
+struct ThesisRun : BundledScenario {
+  bool is_done = false;
+  std::vector<std::string> unmet = {};  ///< what the run did otherwise than the scenario expects
+  double seconds = 0.0;
+};
+
 /// Runs the thesis's scenarios into subdirectories, except those whose results are current.
 class ThesisRuns {
  public:
-  explicit ThesisRuns(const ReproduceOptions& options)
-      : directory_(options.folder() / "thesis"), anew_(options.anew), scenarios_(bundled_scenarios()) {
-    std::erase_if(scenarios_, [](const BundledScenario& bundled) { return bundled.group != "thesis"; });
+  explicit ThesisRuns(const ReproduceOptions& options) : directory_(options.folder() / "thesis"), anew_(options.anew) {
+    for (const BundledScenario& bundled : bundled_scenarios())
+      if (bundled.group == "thesis") runs_.push_back({bundled});
   }
 
   const fs::path& directory() const { return directory_; }
+  const std::vector<ThesisRun>& runs() const { return runs_; }
 
   /// Runs all of them on several threads.
   void run_all(const JobOptions& jobs) {
-    std::vector<std::vector<std::string>> unmet(scenarios_.size());
-    std::vector<double> seconds(scenarios_.size());
-    for_each_job(unmet.size(), jobs,
-                 [&](std::size_t i) { seconds[i] = seconds_of(1, [&] { unmet[i] = run(scenarios_[i]); }); });
-    for (std::size_t i = 0; i < unmet.size(); ++i) {
-      unmet_[scenarios_[i].name] = unmet[i];
-      seconds_[scenarios_[i].name] = seconds[i];
-    }
+    for_each_job(runs_.size(), jobs, [&](std::size_t i) { run(runs_[i]); });
   }
 
-  /// Runs one of them unless that has been done.
-  void provide(const std::string& name) {
-    const auto bundled = std::ranges::find(scenarios_, name, &BundledScenario::name);
-    if (bundled != scenarios_.end() && !unmet_.contains(name))
-      seconds_[name] = seconds_of(1, [&] { unmet_[name] = run(*bundled); });
+  /// Runs one of them unless that has been done. Returns the seconds that it took; 0 for a scenario of another group.
+  double provide(const std::string& name) {
+    const auto found = std::ranges::find(runs_, name, &ThesisRun::name);
+    if (found == runs_.end()) return 0.0;
+    if (!found->is_done) run(*found);
+    return found->seconds;
   }
-
-  /// Those that a run took; 0 for results that were current.
-  double seconds(const std::string& name) const { return seconds_.contains(name) ? seconds_.at(name) : 0.0; }
-
-  /// What runs did otherwise than their scenarios expect, by their names.
-  const std::map<std::string, std::vector<std::string>>& unmet() const { return unmet_; }
 
  private:
-  std::vector<std::string> run(const BundledScenario& bundled) const {
-    const LoadedScenario loaded = checked(load_scenario(bundled.file));
-    if (!anew_ && is_current(directory_ / bundled.name, loaded)) return {};
-    return run_scenario(loaded, directory_ / bundled.name, false).unmet;
+  void run(ThesisRun& made) const {
+    made.seconds = seconds_of(1, [&] {
+      const LoadedScenario loaded = checked(load_scenario(made.file));
+      if (anew_ || !is_current(directory_ / made.name, loaded))
+        made.unmet = run_scenario(loaded, directory_ / made.name, false).unmet;
+    });
+    made.is_done = true;
   }
 
   fs::path directory_;
   bool anew_;
-  std::vector<BundledScenario> scenarios_;
-  std::map<std::string, std::vector<std::string>> unmet_;
-  std::map<std::string, double> seconds_;
+  std::vector<ThesisRun> runs_;
 };
 
 /// Judges the claims by the thesis's runs.
 std::vector<JudgedClaim> judge(const std::vector<Claim>& claims, const PublishedNumbers& published,
                                const Choices& choices, ThesisRuns& runs, bool progress) {
-  std::set<std::string> used;  // scenarios of the current claim
-  const auto note = [&](const std::string& scenario) { used.insert(scenario); };
-  double providing = 0.0, running = 0.0;  // seconds of the current claim: for what others share, of its own runs
-  std::set<std::string> provided;
-  const auto provide = [&](const std::string& scenario) {
-    note(scenario);
-    providing += seconds_of(1, [&] { runs.provide(scenario); });
-    if (provided.insert(scenario).second) running += runs.seconds(scenario);
-  };
-  const Evidence evidence{published, runs.directory(), provide, {}, note};
   std::vector<JudgedClaim> judged;
   ProgressBar bar("claims", claims.size(), progress);
   for (const Claim& claim : claims) {
     bar.show(judged.size());
-    used.clear();
-    provided.clear();
-    providing = running = 0.0;
+    std::set<std::string> used, provided;   // scenarios
+    double providing = 0.0, running = 0.0;  // seconds: for what others share, of the claim's own runs
+    const auto note = [&](const std::string& scenario) { used.insert(scenario); };
+    const auto provide = [&](const std::string& scenario) {
+      note(scenario);
+      double seconds = 0.0;
+      providing += seconds_of(1, [&] { seconds = runs.provide(scenario); });
+      if (provided.insert(scenario).second) running += seconds;
+    };
     Finding finding;
+    const Evidence evidence{published, runs.directory(), provide, {}, note};
     const double measuring = seconds_of(1, [&] { finding = claim.finding(evidence); }) - providing;
     const std::vector<std::string> scenarios(used.begin(), used.end());
     judged.push_back({claim, std::move(finding), scenarios, choices.reach(scenarios, claim.rule), running + measuring});
@@ -146,10 +133,9 @@ Json read_record(const fs::path& file) {
   return parse_json(read_text_file(file, kLargestJsonFile));
 }
 
-/// Judges the claims again under the readings, and writes robustness.* into `directory` if one is given. Returns the
+/// Judges the claims again under the readings, and writes robustness.* next to the ledger, if there is one. Returns the
 /// content of robustness.json.
-Json judge_readings(const ReproduceOptions& options, const Readings& readings,
-                    const std::optional<fs::path>& directory) {
+Json judge_readings(const ReproduceOptions& options, const Readings& readings, const fs::path& ledger) {
   const fs::path scratch = options.folder() / "robustness";
   std::vector<ReadingVerdicts> judged(readings.values.size());
   for_each_job(judged.size(), job_options(options, "robustness"),
@@ -161,24 +147,21 @@ Json judge_readings(const ReproduceOptions& options, const Readings& readings,
     for (const std::string& problem : reading.problems) problems.push_back("not measured: " + one_line(problem));
   for (const std::string& problem : first_few(problems, 10)) print_error(problem);
   // Readings of single claims leave those of the others as they are.
-  const bool some = directory && !options.only.empty() && fs::exists(*directory / "robustness.json");
-  const Json record =
-      robustness_json(readings, judged, some ? read_record(*directory / "robustness.json") : Json::object());
-  if (directory) {
-    FileSet files;
-    if (!some) files.write(*directory / "robustness.csv", robustness_table(readings, judged));
-    files.write(*directory / "robustness.json", json_text(record));
-    files.commit();
-  }
+  const fs::path file = ledger.parent_path() / "robustness.json";
+  const bool some = !ledger.empty() && !options.only.empty() && fs::exists(file);
+  const Json record = robustness_json(readings, judged, some ? read_record(file) : Json::object());
+  if (ledger.empty()) return record;
+  FileSet files;
+  if (!some) files.write(ledger.parent_path() / "robustness.csv", robustness_table(readings, judged));
+  files.write(file, json_text(record));
+  files.commit();
   return record;
 }
 
-/// The file of the ledger. None for single claims unless --ledger is given: they would replace the ledger of all
+/// The file of the ledger. Empty for single claims unless --ledger is given: they would replace the ledger of all
 /// claims.
-std::optional<fs::path> ledger_file(const ReproduceOptions& options) {
-  if (!options.ledger.empty()) return options.ledger;
-  if (!options.only.empty()) return {};
-  return options.folder() / "claims.json";
+fs::path ledger_file(const ReproduceOptions& options) {
+  return options.ledger.empty() && options.only.empty() ? options.folder() / "claims.json" : fs::path(options.ledger);
 }
 
 /// States each claim and the reason for its verdict.
@@ -194,16 +177,14 @@ std::string claims_text(const std::vector<JudgedClaim>& judged) {
 /// The claims of the ledger.
 Columns<Json> claim_columns() {
   Columns<Json> columns;
-  const auto text_of = [](const char* key) {
-    return [key](const Json& claim) { return claim.at(key).get<std::string>(); };
+  const auto add = [&columns](const char* key, const char* meaning) {
+    columns.print(key, "", meaning, [key](const Json& claim) { return claim.at(key).get<std::string>(); });
   };
-  columns.print("id", "", "id of a claim, which describe explains", text_of("id"));
-  columns.print("verdict", "", "on the claim", text_of("verdict"));
-  columns.print("sureness", "",
-                "steady: more than half of the samples of the choices on record have the verdict; else fragile, or not "
-                "sampled",
-                text_of("sureness"));
-  columns.print("measured", "", "what the claim's verdict is about", text_of("measured"));
+  add("id", "id of a claim, which describe explains");
+  add("verdict", "on the claim");
+  add("sureness",
+      "steady: more than half of the samples of the choices on record have the verdict; else fragile, or not sampled");
+  add("measured", "what the claim's verdict is about");
   return columns;
 }
 
@@ -221,12 +202,12 @@ int reproduce(const ReproduceOptions& options) {
   if (options.only.empty()) runs.run_all(job_options(options, "thesis"));
 
   const std::vector<JudgedClaim> judged = judge(claims, published, choices, runs, !options.output.quiet);
-  const std::optional<fs::path> ledger = ledger_file(options);
+  const fs::path ledger = ledger_file(options);
   Json robustness = read_record(reference / "robustness.json");
   if (!readings.values.empty()) {
     readings.claims = judged;
     std::erase_if(readings.claims, [](const JudgedClaim& j) { return !j.can_be_sampled(); });
-    robustness = judge_readings(options, readings, ledger ? std::optional(ledger->parent_path()) : std::nullopt);
+    robustness = judge_readings(options, readings, ledger);
   }
 
   report.json() = ledger_json(judged, published, robustness);
@@ -234,15 +215,16 @@ int reproduce(const ReproduceOptions& options) {
   if (options.only.empty()) report.say(wrapped(json.at("headline").get<std::string>()) + "\n\n");
   report.say(claim_columns().table(json.at("claims").get<std::vector<Json>>()).text());
   if (!options.only.empty()) report.say(claims_text(judged));
-  if (ledger) {
-    report.files().write(*ledger, json_text(json));
-    report.files().write(fs::path(*ledger).replace_extension(".md"), ledger_markdown(json));
-    report.say(fmt::format("\nledger in {}\n", ledger->string()));
+  if (!ledger.empty()) {
+    report.files().write(ledger, json_text(json));
+    report.files().write(fs::path(ledger).replace_extension(".md"), ledger_markdown(json));
+    report.say(fmt::format("\nledger in {}\n", ledger.string()));
   } else {
     report.say("\nno ledger is written of single claims without --ledger FILE\n");
   }
-  for (const auto& [scenario, unmet] : runs.unmet())
-    for (const std::string& problem : unmet) report.fault(fmt::format("{}: {}", scenario, problem), kUnexpectedOutcome);
+  for (const ThesisRun& run : runs.runs())
+    for (const std::string& problem : run.unmet)
+      report.fault(fmt::format("{}: {}", run.name, problem), kUnexpectedOutcome);
   return report.finish();
 }
 
@@ -260,7 +242,7 @@ void add_reproduce(CommandLine& line) {
       "ids of claims, separated by commas; \"hapbench describe claims\" shows them, and scripts/reproduce --only draws their "
       "figures",
       {.comma_separated = true});
-  command.add("--out", options.out, "directory of the results (default: results/out/reproduce)");
+  add_out(command, options.out, "reproduce");
   command.add(
       "--ledger", options.ledger,
       "file of the ledger, JSON, with a Markdown table next to it (default: OUT/claims.json; with --only none)");

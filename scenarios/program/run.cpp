@@ -3,11 +3,8 @@
 
 #include "results/summary/summary.hpp"
 #include "scenarios/format/bundled_scenarios.hpp"
-#include "scenarios/program/command.hpp"
-#include "scenarios/program/report.hpp"
 #include "scenarios/program/run_table.hpp"
 #include "scenarios/run/assemble.hpp"
-#include "scenarios/run/result_folder.hpp"
 
 namespace hapbench {
 namespace {
@@ -16,8 +13,7 @@ namespace fs = std::filesystem;
 
 struct RunOptions : CommonOptions {
   std::vector<std::string> scenarios;
-  Skips skips = Skips::on;
-  bool latency = false;
+  bool latency = false, no_skip = false;
 };
 
 /// One directory per scenario: that of --out for a single one, a subdirectory named after the file for several; without
@@ -31,6 +27,25 @@ std::vector<fs::path> output_directories(const std::string& out, const std::vect
   return directories;
 }
 
+/// What is wrong with a run by the rules of its diagnosis, and what to try; of several runs a line each, with the names
+/// of the rules. Empty where nothing is.
+std::string diagnosis_text(std::span<const Result> reports) {
+  std::string text;
+  for (const Result& report : reports) {
+    std::string rules;
+    for (const Diagnosed& found : *report.diagnosis) {
+      rules += fmt::format("{}{} ({:.3g})", rules.empty() ? "" : ", ", found.rule, found.value);
+      if (reports.size() > 1) continue;
+      const std::string unit = found.unit == "1" ? "" : " " + found.unit;
+      text += wrapped(
+          fmt::format("{} (rule {}: {:.3g} > {:g}{})", found.says, found.rule, found.value, found.threshold, unit), 0);
+      text += wrapped("try: " + found.attempt, 2);
+    }
+    if (reports.size() > 1 && !rules.empty()) text += wrapped(fmt::format("wrong with {}: {}", report.name, rules), 0);
+  }
+  return text.empty() ? "" : "\n" + text;
+}
+
 int run(const RunOptions& options) {
   // All input is checked before anything runs or is written.
   std::vector<std::string> overrides = options.overrides;
@@ -41,7 +56,7 @@ int run(const RunOptions& options) {
   const std::vector<fs::path> directories = output_directories(options.out, files);
   for (LoadedScenario& loaded : scenarios) {
     loaded = checked(std::move(loaded));
-    loaded.scenario.rendering.skips = options.skips;
+    if (options.no_skip) loaded.scenario.rendering.skips = Skips::off;
     print_warnings(loaded, loaded.warnings);
     print_warnings(loaded, loaded.file_warnings);
   }
@@ -49,8 +64,6 @@ int run(const RunOptions& options) {
 
   const fs::path where = directories.size() == 1 ? directories[0] : directories[0].parent_path();
   Report report(options.output, where);
-  report.json() = Json::array();
-  std::vector<LatencyRow> latencies;
   std::vector<Result> results;
   std::string targets;
   for (std::size_t i = 0; i < scenarios.size(); ++i) {
@@ -63,17 +76,14 @@ int run(const RunOptions& options) {
     targets += targets_text(result);
     print_warnings(run_warnings({&result, 1}));
     Json& summary = report.json().emplace_back(summary_json(result));
-    if (options.latency) {
-      latencies.push_back({result.name, *result.timing.latency});
-      summary["step_latency"] = step_latency_json(*result.timing.latency);
-    }
+    if (options.latency) summary["step_latency"] = step_latency_json(*result.timing.latency);
     for (const std::string& unmet : result.unmet) {
       report.fault(fmt::format(R"({}: {} (field expect; --set expect={{"outcome":"{}"}} expects what came))",
                                scenarios[i].file.string(), unmet, outcome_name(result.end.outcome)),
                    kUnexpectedOutcome);
     }
   }
-  const std::string latency_text = options.latency ? "\n" + latency_columns().table(latencies).text() : "";
+  const std::string latency_text = options.latency ? "\n" + latency_columns().table(results).text() : "";
   report.say(run_table(results, true) + fidelity_text(results) + step_time_text(results) + targets + latency_text +
              diagnosis_text(results) + fmt::format("\nresults in {}\n", where.string()));
   return report.finish();
@@ -91,9 +101,7 @@ void add_run(CommandLine& line) {
   add_overrides(command, options.overrides);
   command.flag("--latency", options.latency,
                "time every step, as record.timing does, and print percentiles and missed deadlines");
-  command.flag(
-      "--no-skip", [&skips = options.skips] { skips = Skips::off; },
-      "compute everything by brute force, even what cannot change the results");
+  command.flag("--no-skip", options.no_skip, "compute everything by brute force, even what cannot change the results");
 }
 
 }  // namespace hapbench

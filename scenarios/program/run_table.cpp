@@ -1,19 +1,15 @@
 #include "scenarios/program/run_table.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
 #include <iterator>
-#include <string_view>
 #include <utility>
 
 #include "results/observe/target_metrics.hpp"
 #include "results/summary/summary.hpp"
-#include "scenarios/format/metric_sections.hpp"
-#include "scenarios/format/text_lines.hpp"
 
 namespace hapbench {
 namespace {
@@ -25,13 +21,10 @@ std::string cell(std::optional<double> value, int digits = 3) {
   return value ? significant(*value + 0.0, digits) : "-";
 }
 
-/// Runs of one scenario are told apart by their algorithms.
-std::string distinct_name(const Result& report, std::span<const Result> reports) {
-  const bool one_scenario = reports.front().name == reports.back().name;
-  return one_scenario ? report.algorithm : report.name;
+/// What tells runs apart: those of one scenario their algorithms.
+std::string Result::*distinct_name(std::span<const Result> reports) {
+  return reports.front().name == reports.back().name ? &Result::algorithm : &Result::name;
 }
-
-using ListedRun = std::reference_wrapper<const Result>;
 
 /// How a run ended, and when, as far as that was before its last row.
 std::string ending_text(const Result& report) {
@@ -52,38 +45,36 @@ std::string ending_text(const Result& report) {
   }
 }
 
-void add_metrics(Columns<ListedRun>& columns, std::span<const RunHeading> headings) {
-  add_metrics(
-      columns, headings, [](const Result& run, const char* metric) { return number_of(run.metrics, metric); },
-      [](const Result& run, const char* metric) {
-        const Metric* found = find_metric(run.metrics, metric);
-        return found == nullptr ? std::nullopt : found->tolerance();
-      });
+void add_metrics(Columns<Result>& columns, std::span<const RunHeading> headings) {
+  add_metrics(columns, headings, [](const Result& run, const char* metric) {
+    const Metric* found = find_metric(run.metrics, metric);
+    return found == nullptr ? NumberWithError{} : NumberWithError{number_of(found->value), found->tolerance()};
+  });
 }
 
-Columns<ListedRun> run_columns(bool of_scenes) {
-  Columns<ListedRun> columns;
-  if (of_scenes) columns.print("scenario", "", "", [](const ListedRun& r) { return r.get().name; });
-  columns.print("algorithm", "", "", [](const ListedRun& r) { return r.get().algorithm; });
+Columns<Result> run_columns(bool of_scenes) {
+  Columns<Result> columns;
+  if (of_scenes) columns.print("scenario", "", "", &Result::name);
+  columns.print("algorithm", "", "", &Result::algorithm);
   columns.print("how it ended", "", "outcome, and when, as far as that was before the last row", ending_text);
   add_metrics(columns, kRunHeadings);
   columns.print(
       "tool shakes\n[mm/s rms]", "1", "root of vibration_power_above_30Hz_m2_per_s2, over all rows",
-      [](const ListedRun& r) {
-        const auto power = number_of(r.get().metrics, kToolVibrationPower);
+      [](const Result& r) {
+        const auto power = number_of(r.metrics, kToolVibrationPower);
         return power ? short_text(std::sqrt(*power), std::nullopt, 1e3) : "-";
       },
       of_scenes);
   columns.print(
       "stiffness\nratio", "1", "ratio_min",
-      [](const ListedRun& r) {
-        const auto least = number_of(r.get().metrics, "ratio_min"), most = number_of(r.get().metrics, "ratio_max");
+      [](const Result& r) {
+        const auto least = number_of(r.metrics, "ratio_min"), most = number_of(r.metrics, "ratio_max");
         return least && most ? fmt::format("{}..{}", cell(least, 2), cell(most, 2)) : "-";
       },
       true);
   columns.print(
       "half of the\nsteps [us]", "1", "step_p50_s",
-      [](const ListedRun& r) { return short_text(r.get().timing.step_p50, std::nullopt, 1e6); }, true);
+      [](const Result& r) { return short_text(r.timing.step_p50, std::nullopt, 1e6); }, true);
   return columns;
 }
 
@@ -96,6 +87,24 @@ constexpr RunHeading kFidelityHeadings[] = {
     {"artefacts\n[%]", "fidelity.force_artefact_share", 100.0, false},
     {"lag\n[ms]", "fidelity.force_lag_s", 1e3, false}};
 
+Columns<PlaceMetrics> place_columns() {
+  Columns<PlaceMetrics> columns;
+  columns.print("place", "1", "number of the target, from 0", &PlaceMetrics::place);
+  const auto add = [&columns](const char* title, const char* meaning, SubjectMean PlaceMetrics::*of, double factor) {
+    columns.print(title, "1", meaning, [of, factor](const PlaceMetrics& p) {
+      const SubjectMean& m = p.*of;
+      if (m.subjects == 0) return std::string("-");
+      return fmt::format("{} +- {}", deserved(factor * m.mean, 0.1 * factor * m.standard_error, 3),
+                         significant(factor * m.standard_error, 2));
+    });
+  };
+  add("success rate", "targets.0.success_rate.mean", &PlaceMetrics::success_rate, 1.0);
+  add("completion [s]", "targets.0.completion_time_s.mean", &PlaceMetrics::completion_time, 1.0);
+  add("model force [N]", "targets.0.model_force_N.mean", &PlaceMetrics::model_force, 1.0);
+  add("speed [mm/s]", "targets.0.speed_m_per_s.mean", &PlaceMetrics::speed, 1e3);
+  return columns;
+}
+
 }  // namespace
 
 std::string short_text(std::optional<double> value, const std::optional<double>& tolerance, double factor) {
@@ -103,19 +112,17 @@ std::string short_text(std::optional<double> value, const std::optional<double>&
 }
 
 std::string run_table(std::span<const Result> reports, bool of_scenes) {
-  const std::vector<ListedRun> runs(reports.begin(), reports.end());
-  return run_columns(of_scenes).table(runs).text();
+  return run_columns(of_scenes).table(reports).text();
 }
 
 std::string fidelity_text(std::span<const Result> reports) {
-  std::vector<ListedRun> with_reference;
+  std::vector<std::reference_wrapper<const Result>> with_reference;
   for (const Result& report : reports)
     if (report.has_section("fidelity")) with_reference.emplace_back(report);
   if (with_reference.empty()) return "";
-  Columns<ListedRun> columns;
-  const bool one_scenario = reports.front().name == reports.back().name;
-  columns.print(one_scenario ? "algorithm" : "scenario", "", "",
-                [&](const ListedRun& r) { return distinct_name(r.get(), reports); });
+  Columns<Result> columns;
+  const auto name = distinct_name(reports);
+  columns.print(name == &Result::algorithm ? "algorithm" : "scenario", "", "", name);
   add_metrics(columns, kFidelityHeadings);
   return fmt::format("\nrendered force against the reference, measured or ideal\n\n{}",
                      columns.table(with_reference).text());
@@ -143,54 +150,14 @@ std::string step_time_text(std::span<const Result> reports) {
   const auto p99 = [](const Result& report) { return report.timing.step_p99.value_or(0.0); };
   const Result& slowest = *std::ranges::max_element(reports, {}, p99);
   if (p99(slowest) == 0.0) return "";
-  const std::string whose = reports.size() == 1 ? "" : fmt::format(" ({})", distinct_name(slowest, reports));
+  const std::string whose = reports.size() == 1 ? "" : fmt::format(" ({})", slowest.*distinct_name(reports));
   const double step = slowest.duration / static_cast<double>(slowest.end.rows);
   std::string text = fmt::format("99 % of the steps take at most {} us{}", cell(1e6 * p99(slowest), 2), whose);
-  if (p99(slowest) > step) {
+  if (p99(slowest) > step)
     text += fmt::format(", longer than a step of {} us: fewer points, rendering.reduction or a cheaper law",
                         cell(1e6 * step, 2));
-  }
   return "\n" + wrapped(text, 0);
 }
-
-std::string diagnosis_text(std::span<const Result> reports) {
-  std::string text;
-  for (const Result& report : reports) {
-    std::string rules;
-    for (const Diagnosed& found : *report.diagnosis) {
-      rules += fmt::format("{}{} ({:.3g})", rules.empty() ? "" : ", ", found.rule, found.value);
-      if (reports.size() > 1) continue;
-      const std::string unit = found.unit == "1" ? "" : " " + found.unit;
-      text += wrapped(
-          fmt::format("{} (rule {}: {:.3g} > {:g}{})", found.says, found.rule, found.value, found.threshold, unit), 0);
-      text += wrapped("try: " + found.attempt, 2);
-    }
-    if (reports.size() > 1 && !rules.empty()) text += wrapped(fmt::format("wrong with {}: {}", report.name, rules), 0);
-  }
-  return text.empty() ? "" : "\n" + text;
-}
-
-namespace {
-
-Columns<PlaceMetrics> place_columns() {
-  Columns<PlaceMetrics> columns;
-  columns.print("place", "1", "number of the target, from 0", &PlaceMetrics::place);
-  const auto add = [&columns](const char* title, const char* meaning, SubjectMean PlaceMetrics::*of, double factor) {
-    columns.print(title, "1", meaning, [of, factor](const PlaceMetrics& p) {
-      const SubjectMean& m = p.*of;
-      if (m.subjects == 0) return std::string("-");
-      return fmt::format("{} +- {}", deserved(factor * m.mean, 0.1 * factor * m.standard_error, 3),
-                         significant(factor * m.standard_error, 2));
-    });
-  };
-  add("success rate", "targets.0.success_rate.mean", &PlaceMetrics::success_rate, 1.0);
-  add("completion [s]", "targets.0.completion_time_s.mean", &PlaceMetrics::completion_time, 1.0);
-  add("model force [N]", "targets.0.model_force_N.mean", &PlaceMetrics::model_force, 1.0);
-  add("speed [mm/s]", "targets.0.speed_m_per_s.mean", &PlaceMetrics::speed, 1e3);
-  return columns;
-}
-
-}  // namespace
 
 std::string targets_text(const Result& report) {
   if (!report.has_section("targets")) return "";
@@ -198,16 +165,17 @@ std::string targets_text(const Result& report) {
                      place_columns().table(place_metrics(report.targets)).text());
 }
 
-Columns<LatencyRow> latency_columns() {
-  Columns<LatencyRow> columns;
+Columns<Result> latency_columns() {
+  Columns<Result> columns;
   const auto add_time = [&columns](const std::string& title, const std::string& meaning,
                                    std::uint64_t StepLatency::*time) {
-    columns.print(title, "us", meaning, [time](const LatencyRow& r) {
-      return r.latency.steps > 0 ? fmt::format("{:.3f}", static_cast<double>(r.latency.*time) / 1e3) : "-";
+    columns.print(title, "us", meaning, [time](const Result& r) {
+      const StepLatency& latency = *r.timing.latency;
+      return latency.steps > 0 ? fmt::format("{:.3f}", static_cast<double>(latency.*time) / 1e3) : "-";
     });
   };
-  columns.print("step latency", "", "of run --latency: the scene whose steps were timed", &LatencyRow::scenario);
-  columns.print("steps", "1", "", [](const LatencyRow& r) { return r.latency.steps; });
+  columns.print("step latency", "", "of run --latency: the scene whose steps were timed", &Result::name);
+  columns.print("steps", "1", "", [](const Result& r) { return r.timing.latency->steps; });
   for (const auto& [part, time] : {std::pair{"50", &StepLatency::p50},
                                    {"95", &StepLatency::p95},
                                    {"99", &StepLatency::p99},
@@ -218,46 +186,16 @@ Columns<LatencyRow> latency_columns() {
   add_time("max us", "the longest step [us]", &StepLatency::max);
   for (std::size_t i = 0; i < std::size(kStepDeadlines); ++i) {
     columns.print(fmt::format("> {:.3f} ms", 1e3 * kStepDeadlines[i]), "1", "number of steps that took longer",
-                  [i](const LatencyRow& r) { return r.latency.misses[i]; });
+                  [i](const Result& r) { return r.timing.latency->misses[i]; });
   }
   add_time("clock us", "what reading the clock takes, which is within each step's time [us]", &StepLatency::overhead);
   return columns;
 }
 
 std::vector<DescribedTable> run_tables() {
-  Columns<ListedRun> runs = run_columns(true);
+  Columns<Result> runs = run_columns(true);
   add_metrics(runs, kFidelityHeadings);
-  return {comparison_columns().described("comparison.csv", "of compare: one line per algorithm"), runs.described(),
-          place_columns().described(), latency_columns().described()};
-}
-
-namespace {
-
-/// Programs may read these by their place: append new ones.
-constexpr std::string_view kComparedMetrics =
-    "force_max_N velocity_total_variation_m_per_s force_reversals vibration_power_above_30Hz_m2_per_s2 depth_max_m "
-    "ratio_min ratio_max steps_in_contact contact_share landings landing_force_max_N landing_force_step_max_N settled_s "
-    "force_mean_in_contact_N settled_force_max_N force_step_p99_N settled_force_step_max_N force_rms_above_30Hz_N "
-    "force_reversals_per_s reduction_changes reduction_force_step_max_N inside_max_m inside_settled_m "
-    "centre_inside_share vibration_last_quarter_m_per_s fidelity.force_error_relative "
-    "fidelity.force_direction_error_rad fidelity.force_artefact_share";
-
-}  // namespace
-
-Columns<ComparedRun> comparison_columns(bool seeds) {
-  Columns<ComparedRun> columns;
-  if (seeds) columns.add("seed", "1", "number of the repetition", &ComparedRun::seed);
-  columns.add("algorithm", "", "force algorithm", [](const ComparedRun& r) { return r.run->algorithm; });
-  columns.add("outcome", "", "how the run ended",
-              [](const ComparedRun& r) { return outcome_name(r.run->end.outcome); });
-  columns.add("steps", "1", "rows of the run", [](const ComparedRun& r) { return r.run->end.rows; });
-  for (const std::string_view name : words_of(kComparedMetrics)) {
-    const Metric& metric = *find_metric(all_metrics(), name);
-    columns.add(metric.name, metric.unit, metric.meaning, [name](const ComparedRun& r) {
-      return std::visit([](const auto& value) { return Cell(value); }, value_of(r.run->metrics, name));
-    });
-  }
-  return columns;
+  return {runs.described(), place_columns().described(), latency_columns().described()};
 }
 
 std::string number_text(double value, const std::optional<double>& error) {

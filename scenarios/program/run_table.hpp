@@ -5,12 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "results/observe/step_times.hpp"
 #include "scenarios/cases/league.hpp"
 #include "scenarios/program/report.hpp"
 #include "scenarios/run/run_scenario.hpp"
 
-/// Tables with a row for each run, as `run` and `compare` print and write them, and of a league.
+/// Tables with a row for each run, as `run` and `compare` print and write them.
 namespace hapbench {
 
 /// A printed column of a metric of runs.
@@ -20,9 +19,7 @@ struct RunHeading {
   bool wide = true;     ///< printed with --wide only
 };
 
-/// The figures that separate algorithms: the largest force, the share of rows in contact, the largest force of
-/// landings, then of settled contact the mean force, 99 % of the force steps, rms above 30 Hz and reversals per second;
-/// then the largest depth below the surface.
+/// The figures that separate algorithms.
 inline constexpr RunHeading kRunHeadings[] = {
     {"largest\nforce [N]", "force_max_N", 1.0, false}, {"in contact\n[%]", "contact_share", 100.0},
     {"landing\nforce [N]", "landing_force_max_N"},     {"mean\nforce [N]", "force_mean_in_contact_N", 1.0, false},
@@ -33,16 +30,15 @@ inline constexpr RunHeading kRunHeadings[] = {
 /// none.
 std::string short_text(std::optional<double> value, const std::optional<double>& tolerance, double factor);
 
-/// Adds the columns of headings; `number` and `tolerance` give what a row has of a metric by its name.
-template <class Row, class Number, class Tolerance>
-void add_metrics(Columns<Row>& columns, std::span<const RunHeading> headings, Number number, Tolerance tolerance) {
+/// Adds the columns of headings; `figure_of` gives what a row has of a metric by its name, a NumberWithError.
+template <class Row, class Figure>
+void add_metrics(Columns<Row>& columns, std::span<const RunHeading> headings, Figure figure_of) {
   for (const RunHeading& heading : headings) {
-    columns.print(
-        heading.title, "1", heading.metric,
-        [=](const Row& row) {
-          return short_text(number(row, heading.metric), tolerance(row, heading.metric), heading.factor);
-        },
-        heading.wide);
+    const auto text = [=](const Row& row) {
+      const auto [value, error] = figure_of(row, heading.metric);
+      return short_text(value, error, heading.factor);
+    };
+    columns.print(heading.title, "1", heading.metric, text, heading.wide);
   }
 }
 
@@ -58,45 +54,21 @@ inline constexpr const char* kToolVibrationPower = "vibration_power_above_30Hz_m
 /// tell. Precondition: there is a report.
 std::string step_time_text(std::span<const Result> reports);
 
-/// What is wrong with a run by the rules of its diagnosis, and what to try; of several runs a line each, with the names
-/// of the rules. Empty where nothing is.
-std::string diagnosis_text(std::span<const Result> reports);
-
 /// The tables of thesis D.4 for a report with targets: mean and standard error over subjects, a line for each place.
 /// Empty for other reports.
 std::string targets_text(const Result& report);
 
-/// A table of the rendered force against the reference, for the reports that have one; empty without any.
+/// A table of the rendered force against the reference, for the reports that have one.
 std::string fidelity_text(std::span<const Result> reports);
 
-/// The warnings about runs that were made side by side, but for those that were known before. Warnings of one kind
-/// appear once, in the words of the first run and with the names of the algorithms.
+/// The warnings about runs side by side, but for those that were known before: those of one kind once, in the words of
+/// the first run and with the names of the algorithms.
 std::vector<std::string> run_warnings(std::span<const Result> reports);
 
-/// The latencies [us] and missed deadlines of the steps of a run.
-struct LatencyRow {
-  std::string scenario;
-  StepLatency latency;
-};
-Columns<LatencyRow> latency_columns();
-
-/// A line of comparison.csv.
-struct ComparedRun {
-  std::uint64_t seed;  ///< number of its repetition
-  const Result* run;
-};
-/// comparison.csv: algorithm, outcome, steps, and the metrics that separate algorithms, without times, so that equal
-/// comparisons give equal bytes; several seeds get a column in front.
-Columns<ComparedRun> comparison_columns(bool seeds = false);
+/// The latencies [us] and missed deadlines of the steps of runs that timed them.
+Columns<Result> latency_columns();
 
 std::vector<DescribedTable> run_tables();
-
-/// league.csv, a row for each scenario, algorithm and metric; `seeds`: there are several.
-Columns<Standing> league_columns(bool seeds);
-/// A table of the standings, if that is short or with --wide, a line for each algorithm, and who is first in a
-/// sentence.
-std::string league_text(const League& league);
-Json league_json(const League& league);
 
 /// A number with the digits that its error leaves it: one where the error is larger, six where it is 0, four where it
 /// is not known.

@@ -33,15 +33,15 @@ struct StudyFile {
 std::optional<StudyFile> find_study(const std::string& word) {
   std::error_code error;
   try {
-    if (word.ends_with(".json") && fs::is_regular_file(word, error)) {
-      std::string text = read_text_file(word, kLargestJsonFile);
-      if (text.find("\"ask\"") == std::string::npos) return std::nullopt;
-      return StudyFile{word, std::move(text)};
+    fs::path file = word;
+    if (!word.ends_with(".json") || !fs::is_regular_file(word, error)) {
+      if (word.empty() || word.find('/') != std::string::npos || fs::exists(word, error)) return std::nullopt;
+      file = studies_folder() / (word + ".json");
+      if (!fs::exists(file, error)) return std::nullopt;
     }
-    if (word.empty() || word.find('/') != std::string::npos || fs::exists(word, error)) return std::nullopt;
-    const fs::path file = studies_folder() / (word + ".json");
-    if (!fs::exists(file, error)) return std::nullopt;
-    return StudyFile{file, read_text_file(file, kLargestJsonFile)};
+    std::string text = read_text_file(file, kLargestJsonFile);
+    if (text.find("\"ask\"") == std::string::npos) return std::nullopt;
+    return StudyFile{file, std::move(text)};
   } catch (const InputError&) {
     return std::nullopt;
   }
@@ -130,15 +130,13 @@ std::optional<StudyWords> StudyWords::in(const std::vector<std::string>& words) 
     const std::optional<StudyFile> named = find_study(words[place]);
     if (!named) continue;
     const auto& [file, text] = *named;
-    StudyWords found;
-    found.file_ = file;
     const Json study = study_json(file, text);
     if (study[kAsk] != words[0]) {
       fail_in_line(file, line_of(text, kAsk),
                    fmt::format("is a question for \"hapbench {} {}\"", study[kAsk].get<std::string>(), words[place]));
     }
-    found.words_ = words;
-    found.words_.erase(found.words_.begin() + static_cast<std::ptrdiff_t>(place));
+    StudyWords found{file, words, {}};
+    found.words.erase(found.words.begin() + static_cast<std::ptrdiff_t>(place));
     std::vector<std::string> asked;
     for (const Json& scenario : study["scenarios"]) asked.push_back(scenario_beside(file, text_of(scenario)));
     for (const auto& [key, value] : study.items()) {
@@ -149,10 +147,10 @@ std::optional<StudyWords> StudyWords::in(const std::vector<std::string>& words) 
       if (std::ranges::find(kNoOptions, key) != std::end(kNoOptions)) continue;
       // What may be given several times adds up.
       if (!value.is_object() && std::any_of(words.begin(), words.end(), is_given)) continue;
-      found.lines_[option] = line_of(text, key);
-      for (std::string& word : option_words(option, value)) asked.push_back(std::move(word));
+      found.lines[option] = line_of(text, key);
+      std::ranges::move(option_words(option, value), std::back_inserter(asked));
     }
-    found.words_.insert(found.words_.begin() + 1, asked.begin(), asked.end());
+    found.words.insert(found.words.begin() + 1, asked.begin(), asked.end());
     return found;
   }
   return std::nullopt;
@@ -160,11 +158,11 @@ std::optional<StudyWords> StudyWords::in(const std::vector<std::string>& words) 
 
 InputError StudyWords::located(const InputError& error) const {
   const std::string text = error.what();
-  for (const auto& [option, line] : lines_) {
+  for (const auto& [option, line] : lines) {
     const std::size_t at = text.find(option);
     if (at == std::string::npos || text.substr(at + option.size(), 1).find_first_of("abcdefghijklmnopqrstuvwxyz-") == 0)
       continue;
-    return InputError(fmt::format("{}:{}: {}", file_.string(), line, text));
+    return InputError(fmt::format("{}:{}: {}", file.string(), line, text));
   }
   return error;
 }

@@ -29,22 +29,17 @@ struct BundledStudy {
 std::vector<BundledStudy> bundled_studies();
 
 /// The words of a command line in which a study stood, and where in its file they come from.
-class StudyWords {
- public:
+struct StudyWords {
   /// Replaces the first study behind the command by its scenarios and options; options that are given besides go before
   /// those of the study. `words`: without the program's name. Throws InputError for a study of another command.
   static std::optional<StudyWords> in(const std::vector<std::string>& words);
 
-  const std::vector<std::string>& words() const { return words_; }
   /// The error, about the line of the study that has the option which it names, if it names one.
   InputError located(const InputError& error) const;
 
- private:
-  StudyWords() = default;
-
-  std::filesystem::path file_;
-  std::vector<std::string> words_;
-  std::map<std::string, std::size_t> lines_;  ///< of options, as "--over"
+  std::filesystem::path file;
+  std::vector<std::string> words;
+  std::map<std::string, std::size_t> lines;  ///< of options, as "--over"
 };
 
 }  // namespace hapbench

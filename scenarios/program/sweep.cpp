@@ -7,13 +7,10 @@
 #include <optional>
 #include <utility>
 
-#include "scenarios/cases/league.hpp"
 #include "scenarios/cases/run_sweep.hpp"
 #include "scenarios/format/bundled_scenarios.hpp"
-#include "scenarios/format/input_error.hpp"
 #include "scenarios/format/metric_sections.hpp"
 #include "scenarios/format/text_lines.hpp"
-#include "scenarios/program/command.hpp"
 #include "scenarios/program/index.hpp"
 #include "scenarios/program/run_table.hpp"
 #include "scenarios/run/load_module.hpp"
@@ -23,11 +20,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string shown_value(const std::string& text) {
-  const auto number = finite_number(text);
-  return number ? significant(*number, 6) : text;
-}
-
 /// What is printed of a run, with the headings that run and compare have; also the metric where it is not among them.
 Columns<SweepRow> run_columns(const SweepTable& table, const std::string& metric) {
   Columns<SweepRow> columns;
@@ -36,7 +28,8 @@ Columns<SweepRow> run_columns(const SweepTable& table, const std::string& metric
     std::string title = table.columns[c];
     if (const std::size_t dot = title.rfind('.'); !single && dot != std::string::npos) title.insert(dot + 1, "\n");
     columns.print(title, "by name", table.columns[c], [c, rounds = sampled && c > 0](const SweepRow& row) {
-      return rounds ? shown_value(row[c]) : row[c];
+      const auto number = rounds ? finite_number(row[c]) : std::nullopt;
+      return number ? significant(*number, 6) : row[c];
     });
   }
   columns.print("outcome", "", "outcome", [&table](const SweepRow& row) { return table.outcome(row); });
@@ -48,9 +41,9 @@ Columns<SweepRow> run_columns(const SweepTable& table, const std::string& metric
     headings.push_back({metric.c_str(), metric.c_str(), 1.0, false});
   else
     has->wide = false;
-  add_metrics(
-      columns, headings, [&table](const SweepRow& row, const char* name) { return table.number(row, name); },
-      [&table](const SweepRow& row, const char* name) { return table.tolerance(row, name); });
+  add_metrics(columns, headings, [&table](const SweepRow& row, const char* name) {
+    return NumberWithError{table.number(row, name), table.tolerance(row, name)};
+  });
   return columns;
 }
 
@@ -82,9 +75,8 @@ std::string summary_text(const SweepTable& table, const std::string& metric) {
   }
   if (shown < rows.size() && single) text = fmt::format("the first {} of {} runs\n\n", shown, rows.size());
   rows.resize(shown);
-  const std::vector<OutcomeCount> outcomes(table.kept.outcomes.begin(), table.kept.outcomes.end());
   if (shown > 0) text += run_columns(table, metric).table(rows).text() + "\n";
-  return text + count_columns().table(outcomes).text();
+  return text + count_columns().table(table.kept.outcomes).text();
 }
 
 /// The counts, and the rows that the table has.
@@ -124,10 +116,9 @@ std::vector<ScenarioText> scenes_of(const SweepCommand& command, const std::vect
       throw InputError("sweep: got no scenario or no --vary; allowed: both, or the folder of a finished sweep");
     return {read_scenario_text(find_scenario(command.scenario))};
   }
-  if (!command.scenario.empty() || axis->range) {
+  if (!command.scenario.empty() || axis->range)
     throw InputError(fmt::format("--vary: got \"{}\" as a {}; allowed: a list of scenarios, and none before it",
                                  kSceneAxis, axis->range ? "range" : "field together with a scenario"));
-  }
   std::vector<ScenarioText> scenes;
   for (const std::string& name : axis->values) scenes.push_back(read_scenario_text(find_scenario(name)));
   return scenes;

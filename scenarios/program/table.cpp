@@ -18,14 +18,16 @@ namespace {
 
 /// A narrower output would not hold a name and its meaning.
 constexpr std::size_t kNarrowest = 40;
+constexpr std::size_t kWidestProse = 100;
+constexpr std::size_t kGap = 2;  ///< blanks between columns
 
 bool in_full = false;
 
 /// The upper and the lower line of a title; a single line is the lower one.
 std::array<std::string, 2> title_lines(const std::string& title) {
   const std::size_t end = title.find('\n');
-  return end == std::string::npos ? std::array<std::string, 2>{"", title}
-                                  : std::array<std::string, 2>{title.substr(0, end), title.substr(end + 1)};
+  if (end == std::string::npos) return {"", title};
+  return {title.substr(0, end), title.substr(end + 1)};
 }
 
 }  // namespace
@@ -42,7 +44,7 @@ std::size_t output_width() {
 }
 
 std::size_t prose_width() {
-  return std::min(output_width(), kTableWidth);
+  return std::min(output_width(), kWidestProse);
 }
 
 void output_in_full() {
@@ -78,12 +80,6 @@ std::string bold(std::FILE* stream, std::string_view text) {
   return fmt::format("\033[1m{}\033[0m", text);
 }
 
-Table::Table(std::vector<Column> columns, std::size_t gap) : columns_(std::move(columns)), gap_(gap) {}
-
-void Table::add(std::vector<std::string> cells) {
-  rows_.push_back(std::move(cells));
-}
-
 std::vector<std::size_t> Table::widths() const {
   std::vector<std::size_t> widths;
   for (std::size_t c = 0; c < columns_.size(); ++c) {
@@ -97,8 +93,8 @@ std::vector<std::size_t> Table::widths() const {
 
 std::size_t Table::width() const {
   std::size_t sum = 0;
-  for (const std::size_t width : widths()) sum += width + gap_;
-  return sum - gap_;
+  for (const std::size_t width : widths()) sum += width + kGap;
+  return sum - kGap;
 }
 
 std::string Table::block(const std::vector<std::size_t>& widths, const std::vector<std::size_t>& columns) const {
@@ -107,7 +103,7 @@ std::string Table::block(const std::vector<std::size_t>& widths, const std::vect
     for (const std::size_t c : columns) {
       const std::string cell = cell_of(c);
       text += columns_[c].number ? fmt::format("{:>{}}", cell, widths[c]) : fmt::format("{:<{}}", cell, widths[c]);
-      text.append(gap_, ' ');
+      text.append(kGap, ' ');
     }
     text.erase(text.find_last_not_of(' ') + 1);
     return text + "\n";
@@ -124,9 +120,8 @@ std::string Table::block(const std::vector<std::size_t>& widths, const std::vect
     }
     std::istringstream prose(wrapped(row[last], 0, widths[last]));
     bool first = true;
-    for (std::string part; std::getline(prose, part); first = false) {
+    for (std::string part; std::getline(prose, part); first = false)
       text += line([&](std::size_t c) { return c == last ? part : first ? row[c] : ""; });
-    }
   }
   return text;
 }
@@ -138,7 +133,7 @@ std::string Table::text(std::size_t most_width) const {
   if (full > most_width && columns_.size() > 1 && !columns_.back().number) {
     const std::size_t others = full - width_of.back();
     // In a block of its own the last column stands beside the first.
-    const std::size_t beside = others + kNarrowestProse <= most_width ? others : width_of[0] + gap_;
+    const std::size_t beside = others + kNarrowestProse <= most_width ? others : width_of[0] + kGap;
     const std::size_t rest = std::max(kNarrowestProse, most_width - std::min(most_width, beside));
     width_of.back() = std::min(width_of.back(), rest);
   }
@@ -146,13 +141,13 @@ std::string Table::text(std::size_t most_width) const {
   std::vector<std::size_t> columns = {0};
   std::size_t width = width_of[0];
   for (std::size_t c = 1; c < columns_.size(); ++c) {
-    if (columns.size() > 1 && width + gap_ + width_of[c] > most_width) {
+    if (columns.size() > 1 && width + kGap + width_of[c] > most_width) {
       text += block(width_of, columns) + "\n";
       columns = {0};
       width = width_of[0];
     }
     columns.push_back(c);
-    width += gap_ + width_of[c];
+    width += kGap + width_of[c];
   }
   return text + block(width_of, columns);
 }
@@ -207,9 +202,7 @@ std::string deserved(double value, const std::optional<double>& tolerance, int d
   const double size = std::abs(value);
   if (!tolerance || !(*tolerance > 0.0 && *tolerance < size) || !std::isfinite(size)) return significant(value, digits);
   const int last = static_cast<int>(std::floor(math::log10(*tolerance)));
-  if (size < 1e-4 || last < -12) {
-    return significant(value, deserved_digits(value, tolerance, 12));
-  }
+  if (size < 1e-4 || last < -12) return significant(value, deserved_digits(value, tolerance, 12));
   const double unit = math::pow(10.0, last);
   return last < 0 ? fmt::format("{:.{}f}", value, -last) : fmt::format("{:.0f}", std::round(value / unit) * unit);
 }

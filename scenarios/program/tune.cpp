@@ -6,18 +6,14 @@
 #include <nlohmann/json.hpp>
 
 #include "algorithms/registry.hpp"
-#include "results/io/json_text.hpp"
+#include "results/io/columns.hpp"
 #include "scenarios/format/bundled_scenarios.hpp"
-#include "scenarios/format/metric_sections.hpp"
-#include "scenarios/format/text_lines.hpp"
 #include "scenarios/limits/tuning/tune.hpp"
 #include "scenarios/program/index.hpp"
 #include "scenarios/program/limit.hpp"
-#include "scenarios/program/report.hpp"
 #include "scenarios/program/run_table.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/progress_bar.hpp"
-#include "scenarios/run/scene_loop.hpp"
 
 namespace hapbench {
 namespace {
@@ -25,14 +21,9 @@ namespace {
 namespace fs = std::filesystem;
 
 struct TuneOptions : CommonOptions {
-  std::string scenario;
-  std::string device;
-  std::vector<std::string> algorithms;
-  double margin = 2.0;
-  std::vector<std::string> bounds;
-  std::vector<std::string> family;
-  std::string damping_ratio, mass;
-  bool filters = false;
+  std::string scenario, device, damping_ratio, mass;
+  std::vector<std::string> algorithms, bounds, family;
+  TuneQuestion question;  ///< as far as options are its members
 };
 
 /// All that the command found.
@@ -41,9 +32,8 @@ struct Tuning {
   std::string scene;  ///< name of the scene, with that of the device
   TuneRanges ranges;  ///< of the first law
   std::vector<TunedLaw> laws;
-  std::vector<std::size_t> ranking;
+  std::vector<const TunedLaw*> ranking;  ///< those with a choice, best first
 
-  const TunedLaw* recommended() const { return ranking.empty() ? nullptr : &laws[ranking[0]]; }
   std::size_t runs() const {
     std::size_t sum = 0;
     for (const TunedLaw& law : laws) sum += law.runs;
@@ -51,19 +41,15 @@ struct Tuning {
   }
 };
 
-/// The places of the laws with a choice, best first: the least settled depth, where the scene has none the largest K
-/// lambda_max.
-std::vector<std::size_t> ranking_of(const std::vector<TunedLaw>& laws) {
-  std::vector<std::size_t> order;
-  for (std::size_t i = 0; i < laws.size(); ++i)
-    if (laws[i].choice) order.push_back(i);
-  const auto key = [&](std::size_t i) {
-    const TuneTrial& choice = *laws[i].choice;
-    const auto depth = choice.metrics.find("inside_settled_m");
-    return depth != choice.metrics.end() ? depth->second : -choice.rendered();
-  };
-  std::ranges::stable_sort(order, {}, key);
-  return order;
+/// Best is the least settled depth, where the scene has none the largest K lambda_max.
+std::vector<const TunedLaw*> ranking_of(const std::vector<TunedLaw>& laws) {
+  std::vector<const TunedLaw*> ranking;
+  for (const TunedLaw& law : laws)
+    if (law.choice) ranking.push_back(&law);
+  std::ranges::stable_sort(ranking, {}, [](const TunedLaw* law) {
+    return value_in(law->choice->metrics, "inside_settled_m").value_or(-law->choice->rendered());
+  });
+  return ranking;
 }
 
 // ---- Tables and JSON
@@ -71,11 +57,6 @@ std::vector<std::size_t> ranking_of(const std::vector<TunedLaw>& laws) {
 /// With the digits that the search leaves it.
 std::string stiffness_text(const TuneTrial& choice) {
   return deserved(choice.stiffness, 0.005 * choice.stiffness);
-}
-
-std::optional<double> value_in(const TuneMetrics& metrics, std::string_view name, double factor = 1.0) {
-  const auto found = metrics.find(name);
-  return found == metrics.end() ? std::nullopt : std::optional(factor * found->second);
 }
 
 constexpr const char* kRatioColumn = "rendering.damping_ratio";
@@ -195,7 +176,7 @@ Json tuning_json(const Tuning& tuning, const fs::path& tuned) {
   Json laws = Json::array();
   for (const TunedLaw& law : tuning.laws) laws.push_back(law_json(law));
   const auto name_of = [&](std::size_t place) {
-    return place < tuning.ranking.size() ? Json(tuning.laws[tuning.ranking[place]].algorithm) : Json();
+    return place < tuning.ranking.size() ? Json(tuning.ranking[place]->algorithm) : Json();
   };
   return {{"algorithms", std::move(laws)},
           {"recommended", name_of(0)},
@@ -246,16 +227,17 @@ std::string margins_text(const TuneMargins& margins) {
 }
 
 std::string recommendation_text(const Tuning& tuning) {
-  const TunedLaw* best = tuning.recommended();
-  if (best == nullptr) return "nothing is feasible\n";
+  if (tuning.ranking.empty()) return "nothing is feasible\n";
+  const TunedLaw* best = tuning.ranking[0];
   std::string text = bold(stdout, fmt::format("use {}, {}", best->algorithm, choice_text(*best->choice))) + "\n";
   const auto line = [&](const char* name, const std::string& what) { text += entry(name, what, 2, 14); };
   line("stops at", fmt::format("{}: {}", best->binding, best->why));
   line("margins", margins_text(best->margins));
   if (tuning.ranking.size() > 1) {
-    const TunedLaw& next = tuning.laws[tuning.ranking[1]];
-    line("runner-up", fmt::format("{}, {}: {} times the rendered stiffness", next.algorithm, choice_text(*next.choice),
-                                  significant(next.choice->rendered() / best->choice->rendered(), 2)));
+    const TunedLaw* next = tuning.ranking[1];
+    line("runner-up",
+         fmt::format("{}, {}: {} times the rendered stiffness", next->algorithm, choice_text(*next->choice),
+                     significant(next->choice->rendered() / best->choice->rendered(), 2)));
   }
   line("K's edges", limit_answer(best->edge, kEdgeResolution));
   line("verified",
@@ -300,18 +282,16 @@ std::optional<Range> ratios_of(const char* option, const std::string& text) {
 }
 
 TuneQuestion tune_question(const TuneOptions& options, const fs::path& file) {
-  TuneQuestion question;
+  TuneQuestion question = options.question;
   question.scenario = read_scenario_text(file);
   question.overrides = options.overrides;
-  if (!(options.margin > 1.0 && options.margin <= 16.0))
-    throw InputError(fmt::format("--margin: got {}; allowed: more than 1, at most 16", options.margin));
-  question.margin = options.margin;
+  if (!(question.margin > 1.0 && question.margin <= 16.0))
+    throw InputError(fmt::format("--margin: got {}; allowed: more than 1, at most 16", question.margin));
   for (const std::string& bound : options.bounds) add_bound(bound, question.limits);
   if (!options.family.empty())
     question.families = chosen_names("--family: got", options.family, {std::begin(kFamilies), std::end(kFamilies)});
   if (const auto range = ratios_of("--damping-ratio", options.damping_ratio)) question.damping_ratio = *range;
   question.mass = ratios_of("--mass", options.mass);
-  question.filters = options.filters;
   question.threads = job_options(options, "").threads;
   return question;
 }
@@ -355,9 +335,9 @@ int tune(const TuneOptions& options) {
   report.say(tuning_text(tuning));
   if (const std::string delay = delay_note(loaded.scenario); !delay.empty()) report.say(wrapped(delay, 0));
   fs::path tuned;
-  if (const TunedLaw* law = tuning.recommended()) {
+  if (!tuning.ranking.empty()) {
     tuned = out / (file.stem().string() + "_tuned.json");
-    report.files().write(tuned, json_text(tuned_scenario(tuning, *law, out)));
+    report.files().write(tuned, json_text(tuned_scenario(tuning, *tuning.ranking[0], out)));
     report.say(fmt::format("\"hapbench run {}\" gives these metrics\n", tuned.string()));
   }
   report.say(fmt::format("results in {0}\n\"hapbench plot {0}\" draws them\n", out.string()));
@@ -379,7 +359,7 @@ void add_tune(CommandLine& line) {
   command.add("scenario", options.scenario, "scenario file, or name of a bundled scenario", {.required = true});
   command.add("--device", options.device, "a preset, ideal, admittance, or a file NAME.json (default: the scene's)");
   add_algorithms(command, options.algorithms, "the scene's own");
-  command.add("--margin", options.margin, "settled up to so many times K (default: 2)");
+  command.add("--margin", options.question.margin, "settled up to so many times K (default: 2)");
   command.add("--bound", options.bounds,
               "what the choice has to keep: metric=most or metric=least:most, as inside_max_m=3e-4 [m], "
               "force_rms_above_30Hz_N=0.05 or settled_force_step_max_N=0.2; repeatable");
@@ -390,7 +370,7 @@ void add_tune(CommandLine& line) {
               "a:b, range of zeta; on an impedance device by the mass of its handle (default: 0.01:10)");
   command.add("--mass", options.mass,
               "a:b, range of the virtual mass on an admittance device [kg] (default: half to twice the scene's)");
-  command.flag("--filters", options.filters, "on an impedance device also choose the velocity filter");
+  command.flag("--filters", options.question.filters, "on an impedance device also choose the velocity filter");
   add_common(command, options, "tune_NAME");
   command.footer(fmt::format(
       "For each law the largest K, over zeta (and virtual mass on an admittance device), at which the scene's own run and each of the "

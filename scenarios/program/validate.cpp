@@ -1,15 +1,13 @@
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <cmath>
 #include <cstdio>
 
 #include "results/io/atomic_file.hpp"
 #include "scenarios/format/bundled_scenarios.hpp"
-#include "scenarios/format/descriptions.hpp"
-#include "scenarios/format/load_scenario.hpp"
 #include "scenarios/format/mesh_file.hpp"
 #include "scenarios/format/parts.hpp"
+#include "scenarios/format/text_lines.hpp"
 #include "scenarios/limits/stability/scene_devices.hpp"
 #include "scenarios/program/command.hpp"
 #include "scenarios/run/assemble.hpp"
@@ -41,10 +39,6 @@ const MeshTool* mesh_of(const SceneFacts& facts) {
   return dynamic_cast<const MeshTool*>(facts.tool.get());
 }
 
-Box box_of(const MeshTool& tool) {
-  return {tool.grid().low(), tool.grid().high()};
-}
-
 std::size_t triangles_of_tool(const LoadedScenario& loaded) {
   return loaded.files.at(kToolFile).mesh().triangles().triangles.size();
 }
@@ -57,7 +51,7 @@ std::string tool_text(const LoadedScenario& loaded, const SceneFacts& facts) {
   if (const MeshTool* mesh = mesh_of(facts)) {
     text += fmt::format(
         "\n               from its tip centre {}\n               {} triangles, closed; grid {}, depths right to {}",
-        place_text(box_of(*mesh)), triangles_of_tool(loaded), length_text(mesh->grid().nodes().spacing),
+        place_text(mesh->grid().box()), triangles_of_tool(loaded), length_text(mesh->grid().nodes().spacing),
         length_text(mesh->grid().error_bound()));
   }
   return text + "\n";
@@ -97,7 +91,7 @@ Json facts_json(const LoadedScenario& loaded, const SceneFacts& facts) {
   if (const MeshTool* mesh = mesh_of(facts)) {
     json["tool"]["triangles"] = triangles_of_tool(loaded);
     json["tool"]["closed"] = true;  // others are refused
-    json["tool"]["box_m"] = box_json(box_of(*mesh));
+    json["tool"]["box_m"] = box_json(mesh->grid().box());
     json["tool"]["grid_m"] = mesh->grid().nodes().spacing;
     json["tool"]["error_bound_m"] = mesh->grid().error_bound();
   }
@@ -106,12 +100,6 @@ Json facts_json(const LoadedScenario& loaded, const SceneFacts& facts) {
   if (facts.is_closed) json["environment"]["closed"] = *facts.is_closed;
   json["start"] = {{"gap_m", facts.surface->gap}, {"touching", facts.surface->touching}};
   return json;
-}
-
-Json messages(const InputError& error) {
-  Json texts = Json::array();
-  for (const InputError& fault : error.faults()) texts.push_back(fault.what());
-  return texts;
 }
 
 /// True for a file with the fields of a scenario's device alone, which `limit --device` takes.
@@ -142,6 +130,7 @@ int validate(const ValidateOptions& options) {
   Json verdicts = Json::array();
   int status = kSuccess;
   for (const std::string& argument : options.files) {
+    Json& verdict = verdicts.emplace_back(Json{{"file", argument}, {"valid", true}});
     try {
       const WaitNotice notice(argument, !options.output.quiet);
       const std::filesystem::path file = find_scenario(argument);
@@ -149,7 +138,7 @@ int validate(const ValidateOptions& options) {
         device_of_file(file);  // throws what is wrong with it
         text += fmt::format("{}: a valid device, not a scenario: {}\n", argument,
                             shell_line({"hapbench", "limit", "tap_wall", "--device", argument}));
-        verdicts.push_back({{"file", argument}, {"valid", true}, {"kind", "device"}});
+        verdict["kind"] = "device";
         continue;
       }
       const LoadedScenario loaded = checked(load_scenario(file, options.overrides));
@@ -159,14 +148,14 @@ int validate(const ValidateOptions& options) {
       print_warnings(loaded, facts.warnings);
       if (!options.points.empty()) write_points(loaded, options.points);
       text += fmt::format("{}: valid\n{}", argument, facts_text(loaded, facts));
-      verdicts.push_back({{"file", argument}, {"valid", true}});
-      verdicts.back().update(facts_json(loaded, facts));
+      verdict.update(facts_json(loaded, facts));
       if (options.points.empty()) continue;
       text += fmt::format("  points       in {}\n", options.points);
-      verdicts.back()["environment"]["points_file"] = options.points;
+      verdict["environment"]["points_file"] = options.points;
     } catch (const InputError& error) {
       print_errors(error);
-      verdicts.push_back({{"file", argument}, {"valid", false}, {"error", error.what()}, {"errors", messages(error)}});
+      const std::vector<std::string> messages = names_of(error.faults(), &InputError::what);
+      verdict = {{"file", argument}, {"valid", false}, {"error", error.what()}, {"errors", messages}};
       status = kBadInput;
     }
   }

@@ -3,20 +3,9 @@
 #include <fmt/format.h>
 #include <algorithm>
 
-#include "algorithms/depth/depth_model.hpp"
 #include "algorithms/registry.hpp"
-#include "device_model/admittance_device.hpp"
-#include "device_model/hands/drag_hand.hpp"
-#include "device_model/hands/scripted_hands.hpp"
-#include "device_model/hands/tracking_hand.hpp"
-#include "device_model/ideal_device.hpp"
-#include "device_model/impedance_device.hpp"
 #include "scenarios/run/load_module.hpp"
-#include "sim/contact/contact_source.hpp"
 #include "sim/contact/late_contacts.hpp"
-#include "sim/core/random.hpp"
-#include "sim/loop/simulation.hpp"
-#include "sim/mesh/marching_cubes.hpp"
 
 namespace hapbench {
 namespace {
@@ -24,13 +13,9 @@ namespace {
 /// Room for the contacts of a module, which need not come from triangles.
 constexpr std::size_t kMostModuleContacts = 10'000;
 
-void add(std::vector<double>& numbers, const Vec3& p) {
-  numbers.insert(numbers.end(), {p.x(), p.y(), p.z()});
-}
-
 /// The file of the library of rendering.contact_source.
 std::filesystem::path contact_library(const Scenario& scenario) {
-  return resolve_path(scenario, scenario.rendering.contact_file);
+  return scenario.directory / scenario.rendering.contact_file;
 }
 
 std::unique_ptr<ContactSource> make_module_contacts(const Scenario& scenario, const NamedFiles& files) {
@@ -52,8 +37,7 @@ std::unique_ptr<ContactSource> make_module_contacts(const Scenario& scenario, co
 /// The rules in a fixed order, whatever order the scenario names them in: the first that holds gives the run its
 /// outcome.
 std::vector<StopRule> stop_rules(const Scenario& scenario) {
-  const auto& wanted = scenario.time.stop_when;
-  const auto wants = [&wanted](StopCondition c) { return std::find(wanted.begin(), wanted.end(), c) != wanted.end(); };
+  const auto wants = [&](StopCondition rule) { return std::ranges::count(scenario.time.stop_when, rule) > 0; };
   const Vec3 up = scenario.motion.orientation ? scenario.motion.orientation->up.normalized() : Vec3(0.0, 0.0, 1.0);
   std::vector<StopRule> rules;
   if (wants(StopCondition::leaves_hole)) rules.push_back(when_tool_leaves_hole(up));
@@ -77,6 +61,7 @@ std::optional<Warning> clock_warning(const Stroke& stroke, const TimeFields& tim
 
 SurfaceArrays surface_arrays(const Scenario& scenario, const NamedFiles& files) {
   SurfaceArrays surface;
+  const auto add = [&surface](const Vec3& p) { surface.vertices.insert(surface.vertices.end(), p.begin(), p.end()); };
   const auto take = [&surface](const auto& triangles) {
     for (const auto& triangle : triangles)
       surface.triangles.insert(surface.triangles.end(), triangle.begin(), triangle.end());
@@ -84,15 +69,15 @@ SurfaceArrays surface_arrays(const Scenario& scenario, const NamedFiles& files) 
   if (const auto* block = std::get_if<BlockEnvironment>(&scenario.environment)) {
     const IsoSurface mesh =
         marching_cubes(density_field(block->block, block->grid, block->density), {.triangles = true});
-    for (const SurfacePoint& vertex : mesh.vertices) add(surface.vertices, vertex.position);
+    for (const SurfacePoint& vertex : mesh.vertices) add(vertex.position);
     take(mesh.triangles);
   } else if (std::holds_alternative<MeshEnvironment>(scenario.environment)) {
     const TriangleSoup mesh = files.at(kEnvironmentFile).mesh().triangles();
-    for (const Vec3& vertex : mesh.vertices) add(surface.vertices, vertex);
+    for (const Vec3& vertex : mesh.vertices) add(vertex);
     take(mesh.triangles);
   } else {
     const auto shell = make_shell(scenario, files);
-    for (std::size_t i = 0; i < shell->size(); ++i) add(surface.vertices, shell->point(i).position);
+    for (std::size_t i = 0; i < shell->size(); ++i) add(shell->point(i).position);
   }
   return surface;
 }

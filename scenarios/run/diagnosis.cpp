@@ -2,15 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "algorithms/stages/damping_and_limits.hpp"
 #include "device_model/velocity_filter.hpp"
-#include "results/observe/contact_forces.hpp"
 #include "scenarios/run/scene_checks.hpp"
 #include "scenarios/run/scene_loop.hpp"
-#include "sim/loop/integrators/table.hpp"
 
 namespace hapbench {
 namespace {
@@ -27,21 +24,6 @@ std::optional<double> force_limit(const Scenario& scenario) {
 
 using Number = std::optional<double>;
 
-/// A run, as rules see it.
-struct DiagnosedRun {
-  const LoadedScenario& loaded;
-  const Result& result;
-  const SeenRows& rows;
-  const ToolShape* tool;  ///< null for rules of metrics alone
-
-  const Scenario& scenario() const { return loaded.scenario; }
-  bool ended(Outcome outcome) const { return result.end.outcome == outcome; }
-  /// Empty where the run has no such metric, or the metric has no value.
-  Number metric(std::string_view name) const { return number_of(result.metrics, name); }
-};
-
-// ---- Numbers
-
 Number quotient(const Number& a, const Number& b) {
   return a && b && *b > 0.0 ? Number(*a / *b) : std::nullopt;
 }
@@ -50,45 +32,42 @@ Number share(std::uint64_t rows, std::uint64_t of) {
   return quotient(static_cast<double>(rows), static_cast<double>(of));
 }
 
-/// A metric over the mean force in settled contact, which short contacts do not have.
-Number of_mean_force(const DiagnosedRun& run, const char* metric) {
-  return quotient(run.metric(metric), run.metric("force_mean_in_contact_N"));
-}
+struct DiagnosedRun {
+  const LoadedScenario& loaded;
+  const Result& result;
+  const SeenRows& rows;
+  const ToolShape* tool;  ///< null for rules of metrics alone
+
+  const Scenario& scenario() const { return loaded.scenario; }
+  template <class... Outcomes>
+  bool ended(Outcomes... outcomes) const {
+    return ((result.end.outcome == outcomes) || ...);
+  }
+  /// Empty where the run has no such metric, or the metric has no value.
+  Number metric(std::string_view name) const { return number_of(result.metrics, name); }
+  /// A metric over the mean force in settled contact, which short contacts do not have.
+  Number of_mean_force(const char* name) const { return quotient(metric(name), metric("force_mean_in_contact_N")); }
+  Number half_width() const { return has_springs() ? std::nullopt : Number(tool->half_width()); }
+  bool vibrates() const { return metric("vibration_last_quarter_m_per_s").value_or(0.0) > kMostVibration; }
+  bool is_free() const { return position_is_free(scenario().motion); }
+  bool has_springs() const { return std::holds_alternative<SpringsEnvironment>(scenario().environment); }
+  /// Empty for runs whose numbers mean something else. Springs that come to rest have no force that a step of it could
+  /// be compared with.
+  Number if_completed(const Number& number) const {
+    if (has_springs() && !vibrates()) return std::nullopt;
+    return ended(Outcome::diverges, Outcome::went_through, Outcome::no_contact) ? std::nullopt : number;
+  }
+};
+
+// ---- Numbers
 
 template <Outcome... kOutcomes>
 Number ended(const DiagnosedRun& run) {
-  return (run.ended(kOutcomes) || ...) ? Number(1.0) : std::nullopt;
-}
-
-bool vibrates(const DiagnosedRun& run) {
-  return run.metric("vibration_last_quarter_m_per_s").value_or(0.0) > kMostVibration;
-}
-
-bool is_free(const DiagnosedRun& run) {
-  return position_is_free(run.scenario().motion);
-}
-
-bool has_springs(const DiagnosedRun& run) {
-  return std::holds_alternative<SpringsEnvironment>(run.scenario().environment);
-}
-
-/// False for runs whose numbers mean something else. Springs that come to rest have no force that a step of it could be
-/// compared with.
-bool completed(const DiagnosedRun& run) {
-  if (has_springs(run) && !vibrates(run)) return false;
-  return !run.ended(Outcome::diverges) && !run.ended(Outcome::went_through) && !run.ended(Outcome::no_contact);
-}
-
-Number if_completed(const DiagnosedRun& run, const Number& number) {
-  return completed(run) ? number : std::nullopt;
-}
-
-Number half_width(const DiagnosedRun& run) {
-  return has_springs(run) ? std::nullopt : Number(run.tool->half_width());
+  return run.ended(kOutcomes...) ? Number(1.0) : std::nullopt;
 }
 
 Number longest_step(const DiagnosedRun& run) {
-  return quotient(run.rows.longest_step, half_width(run));
+  return quotient(run.rows.longest_step, run.half_width());
 }
 
 bool steps_too_far(const DiagnosedRun& run) {
@@ -96,7 +75,7 @@ bool steps_too_far(const DiagnosedRun& run) {
 }
 
 Number buzz(const DiagnosedRun& run) {
-  return if_completed(run, of_mean_force(run, "force_rms_above_30Hz_N"));
+  return run.if_completed(run.of_mean_force("force_rms_above_30Hz_N"));
 }
 
 /// Half the sign changes of the strongest component of the force above 30 Hz in the last quarter, over its time.
@@ -114,7 +93,7 @@ std::string buzz_frequency(const DiagnosedRun& run) {
 Number share_of_edge(const DiagnosedRun& run) {
   const Number lambda = run.metric("ratio_max");
   const double K = run.scenario().rendering.stiffness;
-  if (!lambda || !(*lambda > 0.0) || !(K > 0.0) || !is_free(run)) return std::nullopt;
+  if (!lambda || !(*lambda > 0.0) || !(K > 0.0) || !run.is_free()) return std::nullopt;
   if (contact_step(run.scenario(), *lambda).size() == 0) return std::nullopt;
   constexpr double kLeast = 1e-9, kMost = 2.0;  // of K: beyond, nothing is wrong
   Scenario at = run.scenario();
@@ -127,7 +106,7 @@ Number share_of_edge(const DiagnosedRun& run) {
 
 /// Where the run vibrates as at an edge, left its bounds or was thrown off.
 Number edge(const DiagnosedRun& run) {
-  const bool shakes = run.ended(Outcome::diverges) || run.ended(Outcome::lost_contact) || vibrates(run);
+  const bool shakes = run.ended(Outcome::diverges, Outcome::lost_contact) || run.vibrates();
   return shakes || buzz(run).value_or(0.0) > 0.1 ? share_of_edge(run) : std::nullopt;
 }
 
@@ -136,7 +115,7 @@ Number coarseness(const DiagnosedRun& run) {
   const auto distance = point_distance(run.loaded);
   const Number contacts = quotient(run.metric("colliding_mean"), run.metric("contact_share"));
   if (!distance || !contacts || run.rows.way_in_contact < kLeastWay * distance->metres) return std::nullopt;
-  return if_completed(run, std::sqrt(kEnough / *contacts));
+  return run.if_completed(std::sqrt(kEnough / *contacts));
 }
 
 /// The largest force that a step of the encoder makes through B.
@@ -157,7 +136,7 @@ Number damping(const DiagnosedRun& run) {
   const Scenario& s = run.scenario();
   const auto* device = std::get_if<ImpedanceDeviceConfig>(&s.device);
   const Number lambda = run.metric("ratio_max");
-  if (!lambda || !is_free(run)) return std::nullopt;
+  if (!lambda || !run.is_free()) return std::nullopt;
   double B = *lambda * normal_damping(s.rendering);
   if (const auto& most = s.rendering.max_damping) B = std::min(B, *most);
   const double mass = device != nullptr ? device->handle_mass : s.rendering.mass;
@@ -168,9 +147,9 @@ Number drift(const DiagnosedRun& run) {
   constexpr std::uint64_t kLeastRows = 10;
   const SeenRows& rows = run.rows;
   const SeenRows::Quarter& last = rows.last_quarter;
-  if (last.rows < kLeastRows || !last.touches || is_moved(run.scenario()) || !is_free(run)) return std::nullopt;
+  if (last.rows < kLeastRows || !last.touches || is_moved(run.scenario()) || !run.is_free()) return std::nullopt;
   const Vec3 push = rows.last_force.normalized(), way = rows.tip - last.start;
-  return if_completed(run, quotient((way - way.dot(push) * push).norm(), half_width(run)));
+  return run.if_completed(quotient((way - way.dot(push) * push).norm(), run.half_width()));
 }
 
 // ---- What is said of some runs only
@@ -188,7 +167,7 @@ constexpr const char* kShorterStep = "a shorter time.step_s: in one step the too
 
 std::string against_sinking(const DiagnosedRun& run) {
   if (steps_too_far(run)) return kShorterStep;
-  if (!is_free(run)) return "another motion.position, which leads the tool there";
+  if (!run.is_free()) return "another motion.position, which leads the tool there";
   return "more K or a gentler hand; another law where it is also soft";
 }
 
@@ -259,12 +238,12 @@ constexpr Rule kRules[] = {
      buzz_frequency, true},
     {"pop", "largest force step in settled contact over the mean force", "1", 0.5,
      "it pops: a step of the force is {} of the mean force",
-     [](const DiagnosedRun& r) { return if_completed(r, of_mean_force(r, "settled_force_step_max_N")); },
+     [](const DiagnosedRun& r) { return r.if_completed(r.of_mean_force("settled_force_step_max_N")); },
      "rendering.reduction null where it also steps; \"hapbench compare --algorithms all\" shows which law steps least",
      "", true},
     {"reduction", "largest force step where the kept contacts change, over the mean force in settled contact", "1", 0.1,
      "the force steps by {} of its mean when the kept contacts change",
-     [](const DiagnosedRun& r) { return of_mean_force(r, "reduction_force_step_max_N"); }, "rendering.reduction null",
+     [](const DiagnosedRun& r) { return r.of_mean_force("reduction_force_step_max_N"); }, "rendering.reduction null",
      "", false, true},
     {"facets", "distance of the surface's points over that at which four are in contact, where the tool moves on them",
      "1", 1.15, "the surface is sampled coarsely: at {} times the distance that keeps four points in contact",
@@ -272,7 +251,7 @@ constexpr Rule kRules[] = {
      point_spacing},
     {"deep", "depth inside in settled contact over the tool's half width", "1", 0.75,
      "the tool sinks in by {} of its half width",
-     [](const DiagnosedRun& r) { return if_completed(r, quotient(r.metric("inside_settled_m"), half_width(r))); },
+     [](const DiagnosedRun& r) { return r.if_completed(quotient(r.metric("inside_settled_m"), r.half_width())); },
      "more K; \"hapbench tune --bound inside_max_m=3e-4\" tells whether the loop allows it"},
     {"soft", "K over the stiffness along the softest contact", "1", 3.0,
      "along some contact it is {} times as soft as K says",
@@ -299,15 +278,15 @@ constexpr Rule kRules[] = {
      "a gentler hand; device.force_limit_N is f_th of 2.7"},
     {"bounces", "landings a second of a tool that no script leads", "1/s", 8.0, "it bounces: {} landings a second",
      [](const DiagnosedRun& r) {
-       return is_free(r) ? quotient(r.metric("landings"), r.result.duration) : std::nullopt;
+       return r.is_free() ? quotient(r.metric("landings"), r.result.duration) : std::nullopt;
      },
      "more zeta or less K"},
     {"chatter", "turns of the force by more than 90 degrees a second in settled contact", "1/s", 10.0,
      "it chatters: the force turns round {} times a second",
-     [](const DiagnosedRun& r) { return if_completed(r, r.metric("force_reversals_per_s")); },
+     [](const DiagnosedRun& r) { return r.if_completed(r.metric("force_reversals_per_s")); },
      "less K; \"hapbench compare --algorithms all\" shows which law turns least here", "", true},
     {"energy", "energy that the rendering created", "J", 1e-3, "the rendering created {} J",
-     [](const DiagnosedRun& r) { return if_completed(r, r.metric("passivity.net_created_J")); },
+     [](const DiagnosedRun& r) { return r.if_completed(r.metric("passivity.net_created_J")); },
      "less K; rendering.passivity_controller where it is off", "", true},
     {"drift", "way across the force of a tool that a constant hand holds, in the last quarter, over its half width",
      "1", 0.05, "it drifts by {} of its half width under a constant hand", drift,

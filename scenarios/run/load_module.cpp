@@ -13,6 +13,7 @@
 #include "algorithms/module/module.hpp"
 #include "scenarios/format/input_error.hpp"
 #include "scenarios/format/json_file.hpp"
+#include "scenarios/format/text_lines.hpp"
 #include "sim/core/hash.hpp"
 
 namespace hapbench {
@@ -32,19 +33,6 @@ constexpr int kApart = RTLD_NOW | RTLD_LOCAL | RTLD_DEEPBIND;
 
 std::vector<LoadedLaw> laws;
 std::function<std::shared_ptr<void>()> guard_of_loading;
-
-/// Restores the floating-point environment. Loading a library that was linked with -ffast-math switches off subnormal
-/// numbers for the whole program, which would change the results of every algorithm.
-class KeptFloatingPoint {
- public:
-  KeptFloatingPoint() { std::fegetenv(&environment_); }
-  ~KeptFloatingPoint() { std::fesetenv(&environment_); }
-  KeptFloatingPoint(const KeptFloatingPoint&) = delete;
-  KeptFloatingPoint& operator=(const KeptFloatingPoint&) = delete;
-
- private:
-  std::fenv_t environment_{};
-};
 
 /// Also refuses a directory or a pipe before it would be opened as a library.
 std::string hash_of_file(const fs::path& file) {
@@ -78,7 +66,11 @@ decltype(&hapbench_module) entry_point(const fs::path& file, void* library) {
 
 /// The table of a library, which stays open because its functions may be called at any time. Throws InputError.
 const HapbenchModule& opened(const fs::path& file, std::uint32_t kind) {
-  const KeptFloatingPoint kept;
+  // Loading a library that was linked with -ffast-math switches off subnormal numbers for the whole program, which
+  // would change the results of every algorithm: the floating-point environment comes back in the end.
+  std::fenv_t environment{};
+  std::fegetenv(&environment);
+  const std::unique_ptr<std::fenv_t, int (*)(const std::fenv_t*)> restored(&environment, std::fesetenv);
   void* library = dlopen(file.c_str(), kApart);
   if (library == nullptr) {
     std::string problem = dlerror();
@@ -146,10 +138,8 @@ void load_law(const fs::path& given) {
   try {
     AlgorithmEntry entry = law_entry(module_of(table, file), std::move(hash));
     const std::string name = entry.info->name;
-    for (const LoadedLaw& other : laws) {
-      if (other.algorithm == name)
-        throw std::invalid_argument(fmt::format("\"{}\" is the name of the law in {}", name, other.file.string()));
-    }
+    if (const auto other = std::ranges::find(laws, name, &LoadedLaw::algorithm); other != laws.end())
+      throw std::invalid_argument(fmt::format("\"{}\" is the name of the law in {}", name, other->file.string()));
     add_algorithm(std::move(entry));
     laws.push_back({file, name});
   } catch (const std::invalid_argument& problem) {
@@ -158,10 +148,7 @@ void load_law(const fs::path& given) {
 }
 
 void load_laws_in(const std::string& what, const std::string& folders) {
-  for (std::size_t start = 0; start <= folders.size();) {
-    const std::size_t end = std::min(folders.find(':', start), folders.size());
-    const fs::path folder = folders.substr(start, end - start);
-    start = end + 1;
+  for (const fs::path folder : parts_of(folders, ':')) {
     if (folder.empty()) continue;
     std::error_code error;
     std::vector<fs::path> files;

@@ -10,9 +10,6 @@
 #include <string>
 #include <utility>
 
-#include "device_model/hands/drag_hand.hpp"
-#include "device_model/hands/tracking_hand.hpp"
-#include "results/observe/contact_forces.hpp"
 #include "scenarios/run/scene_checks.hpp"
 
 namespace hapbench {
@@ -329,7 +326,6 @@ class OutcomeWatch final : public OutcomeObserver {
     return inside_ &&
            (inside_->passage().went_through() || inside_->core_passage().event() || inside_max() > tool_->half_width());
   }
-  /// How the tool passed the surface, in one sentence.
   std::string went_through_text() {
     const bool is_scan = std::holds_alternative<MeshEnvironment>(scenario_.environment) ||
                          std::holds_alternative<PointShellEnvironment>(scenario_.environment);

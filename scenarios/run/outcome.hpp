@@ -7,8 +7,6 @@
 #include "results/observe/metrics.hpp"
 #include "results/summary/summary.hpp"
 #include "scenarios/format/parts.hpp"
-#include "scenarios/format/scenario.hpp"
-#include "sim/loop/observer.hpp"
 
 /// Outcomes of runs, and warnings about them.
 namespace hapbench {

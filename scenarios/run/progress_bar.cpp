@@ -11,7 +11,6 @@
 #include <utility>
 
 namespace hapbench {
-
 namespace {
 
 constexpr auto kSilence = std::chrono::seconds(2);

@@ -46,9 +46,8 @@ class ProgressBar {
   Clock::time_point next_;
 };
 
-/// A line on standard error that says what takes so long, with the seconds, for work of unknown length that takes
-/// longer than two of them; silent otherwise. Where standard error is not a terminal, lines after 2 s, 4 s, 8 s and so
-/// on.
+/// A line on standard error that says what takes so long, with the seconds, for work of unknown length; when, and where
+/// standard error is not a terminal, as ProgressBar does.
 class WaitNotice {
  public:
   /// `enabled` false silences it (--quiet).

@@ -7,24 +7,20 @@
 
 #include <cmath>
 #include <fstream>
-#include <nlohmann/json.hpp>
 #include <string_view>
 
 #include "algorithms/laws/shaped_stiffness.hpp"
-#include "results/io/json_text.hpp"
+#include "results/io/columns.hpp"
 
 namespace hapbench {
 namespace {
 
 namespace fs = std::filesystem;
 
-Mat3 start_shaping(ContactBuffer& contacts) noexcept {
-  return shape_weights(contacts, 0);
-}
-
 RowSource ratios(const RecordedTrial& t) {
   const auto& asked = t.fields.ratio_iterations;
-  return ratio_rows({asked.begin(), asked.end()}, {start_shaping, update_shaped_weights}, t.contact_capacity);
+  constexpr auto start = [](ContactBuffer& contacts) noexcept { return shape_weights(contacts, 0); };
+  return ratio_rows({asked.begin(), asked.end()}, {start, update_shaped_weights}, t.contact_capacity);
 }
 
 struct RecorderEntry {
@@ -53,8 +49,15 @@ const RecorderEntry kRecorders[] = {
     {kForceReferenceTable, [](const RecordFields& f) { return f.force_reference; },
      [](const RecordedTrial& t) { return force_reference_rows(*t.sections.find<ForceFidelityObserver>()); }}};
 
-std::span<const Column> columns_of(const RecorderEntry& entry, const RecordFields& fields) {
-  return &entry.table == &kTrajectoryTable ? trajectory_rows(fields).columns : entry.table.columns;
+/// The tables that a run with these fields writes.
+std::vector<ResultTable> tables_with(const RecordFields& fields) {
+  std::vector<ResultTable> tables;
+  for (const RecorderEntry& entry : kRecorders) {
+    if (!entry.is_wanted(fields)) continue;
+    tables.push_back(entry.table);
+    if (&entry.table == &kTrajectoryTable) tables.back().columns = trajectory_rows(fields).columns;
+  }
+  return tables;
 }
 
 constexpr double kBytesOfANumber = 12.0;  // between a zero and seventeen digits
@@ -121,18 +124,10 @@ std::vector<ResultTable> record_tables() {
   return tables;
 }
 
-std::vector<ResultTable> record_tables(const RecordFields& fields) {
-  std::vector<ResultTable> tables;
-  for (const RecorderEntry& entry : kRecorders) {
-    if (entry.is_wanted(fields)) tables.push_back({entry.table.file, entry.table.holds, columns_of(entry, fields)});
-  }
-  return tables;
-}
-
 double expected_output_bytes(const Scenario& scenario) {
   const RecordFields& record = scenario.record;
   double row = 0.0;
-  for (const ResultTable& table : record_tables(record))
+  for (const ResultTable& table : tables_with(record))
     row += lines_a_row(table, record) * kBytesOfANumber * static_cast<double>(table.columns.size());
   const double rows = std::ceil(static_cast<double>(scenario.time.steps) / static_cast<double>(record.every));
   return trial_count(scenario.hand) * rows * row;
@@ -176,7 +171,7 @@ fs::path ResultFolder::of_trial(Trial trial, std::size_t trials) {
 
 bool ResultFolder::write(const RecordFields& record, const WrittenScenario& scenario, const Result& result,
                          const Recorders& recorders) {
-  std::vector<ResultTable> tables = record_tables(record);
+  std::vector<ResultTable> tables = tables_with(record);
   FileSet files;
   remove_earlier_run(directory_, files);
   for (const auto& recorder : recorders) recorder->finish(&files);

@@ -1,19 +1,10 @@
 #pragma once
 
-#include <filesystem>
 #include <map>
-#include <memory>
 #include <optional>
-#include <string>
 #include <variant>
-#include <vector>
 
-#include "results/io/atomic_file.hpp"
-#include "results/io/columns.hpp"
-#include "results/io/table_writer.hpp"
-#include "results/observe/inside_observer.hpp"
 #include "results/record/recorder.hpp"
-#include "results/summary/summary.hpp"
 #include "scenarios/format/load_scenario.hpp"
 #include "scenarios/format/metric_sections.hpp"
 #include "scenarios/format/parts.hpp"
@@ -43,8 +34,6 @@ Recorders make_recorders(const RecordedTrial& trial, const RecordTarget& target)
 
 /// The tables of all recorders there are.
 std::vector<ResultTable> record_tables();
-/// The tables that a run with these fields writes.
-std::vector<ResultTable> record_tables(const RecordFields& fields);
 
 /// About how many bytes a run of the scenario will write [bytes]: rows times columns times 12 of what it records, all
 /// trials together. An upper estimate of the rows: every step is done, and for contacts.csv 30 contacts are in each of

@@ -3,16 +3,11 @@
 #include <fmt/format.h>
 #include <sys/resource.h>
 
-#include <algorithm>
 #include <chrono>
 
 #include "algorithms/registry.hpp"
 #include "results/allocations/allocations.hpp"
 #include "results/observe/step_times.hpp"
-#include "results/summary/summary.hpp"
-#include "scenarios/format/input_error.hpp"
-#include "scenarios/format/metric_sections.hpp"
-#include "scenarios/format/parts.hpp"
 #include "scenarios/format/text_lines.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/diagnosis.hpp"
@@ -59,7 +54,6 @@ bool advance_timed(Simulation& simulation, StepTimes& times) {
   return more;
 }
 
-/// Number of involuntary context switches of this process so far.
 std::uint64_t involuntary_context_switches() {
   rusage usage{};
   ::getrusage(RUSAGE_SELF, &usage);
@@ -130,7 +124,7 @@ class Run {
   }
 
   /// After the trials.
-  Result result(const RunTiming& timing) {
+  Result result() {
     Result result;
     result.name = scenario_.name;
     result.algorithm = scenario_.rendering.algorithm;
@@ -154,10 +148,8 @@ class Run {
       result.tool = ToolSummary{tool_->half_width(), tool_->reach(), tool_->convex(), tool_->outline()};
     if (const auto* targets = sections_.find<TargetMetricsObserver>()) result.targets = targets->rows();
     if (diagnosis_) result.diagnosis = diagnosis_->findings(loaded_, result, *tool_);
-    result.timing = timing;
-    result.timing.loop = loop_seconds_;
+    result.timing = timing_;
     result.timing.steps = worst_->rows;
-    result.timing.preemptions = preemptions_;
     add_step_times(step_nanoseconds_, result.timing);
     if (times_) result.timing.latency = step_latency(times_->nanoseconds(), times_->overhead());
     return result;
@@ -176,8 +168,8 @@ class Run {
       bar.show(simulation.next_row());
       return times_ ? advance_timed(simulation, *times_) : simulation.advance(kAskEvery);
     });
-    loop_seconds_ += std::chrono::duration<double>(Clock::now() - start).count();
-    preemptions_ += involuntary_context_switches() - preemptions_before;
+    timing_.loop += std::chrono::duration<double>(Clock::now() - start).count();
+    timing_.preemptions += involuntary_context_switches() - preemptions_before;
     work_ += work_of(simulation, heap_allocations() - allocations_before);
     return result;
   }
@@ -221,8 +213,7 @@ class Run {
   std::vector<Warning> warnings_;  ///< of the first trial that has some
   std::size_t trials_ = 0, with_warnings_ = 0, first_with_warnings_ = 0;
   RunWork work_;
-  double loop_seconds_ = 0.0;      ///< wall time of the step loop
-  std::uint64_t preemptions_ = 0;  ///< involuntary context switches in the loop
+  RunTiming timing_;  ///< of the step loop
   Recorders recorders_;
 };
 
@@ -231,25 +222,16 @@ std::vector<Trial> trials_of(const Scenario& scenario) {
   const auto* hand = std::get_if<TrackingHandFields>(&scenario.hand);
   if (hand == nullptr) return {Trial{}};
   std::vector<Trial> trials;
-  for (std::size_t subject = 0; subject < hand->subjects.size(); ++subject) {
-    for (std::size_t number = 0; number < static_cast<std::size_t>(hand->trials); ++number) {
+  for (std::size_t subject = 0; subject < hand->subjects.size(); ++subject)
+    for (std::size_t number = 0; number < static_cast<std::size_t>(hand->trials); ++number)
       trials.push_back({subject, number});
-    }
-  }
   return trials;
 }
 
-/// Says what made the results.
-void add_provenance(Result& result) {
-  result.provenance = provenance();
-  const AlgorithmOrigin& origin = find_algorithm(result.algorithm)->origin;
-  result.provenance.plugin = origin.file;
-  result.provenance.plugin_hash = origin.hash;
-}
-
 /// `tables`, if given, only without `output`.
-Result run_trials(const LoadedScenario& loaded, const std::shared_ptr<const PointShell>& shell, const RunTiming& timing,
-                  const std::optional<fs::path>& output, bool progress, RunTables* tables, bool diagnose) {
+Result run_trials(const LoadedScenario& loaded, const std::shared_ptr<const PointShell>& shell,
+                  const std::optional<fs::path>& output, bool progress, RunTables* tables, bool diagnose,
+                  double shell_seconds) {
   const Scenario& scenario = loaded.scenario;
   const std::vector<Trial> trials = trials_of(scenario);
   std::optional<ResultFolder> folder;
@@ -264,12 +246,16 @@ Result run_trials(const LoadedScenario& loaded, const std::shared_ptr<const Poin
     if (progress && trials.size() > 1) label += fmt::format(" {}/{}", i + 1, trials.size());
     run.make(trials[i], target, label);
   }
-  Result result = run.result(timing);
+  Result result = run.result();
+  result.timing.shell = shell_seconds;
   result.unmet = unmet_expectations(scenario.expect, result);
   result.expected = result.unmet.empty();
   if (!folder && tables == nullptr) return result;
   const WrittenScenario written(scenario, loaded.files);
-  add_provenance(result);
+  const AlgorithmOrigin& origin = find_algorithm(result.algorithm)->origin;
+  result.provenance = provenance();
+  result.provenance.plugin = origin.file;
+  result.provenance.plugin_hash = origin.hash;
   result.scenario_hash = written.hash();
   if (folder) result.replaces_other = folder->write(scenario.record, written, result, run.recorders());
   if (tables != nullptr) tables->write(written, result, run.recorders());
@@ -287,23 +273,19 @@ std::string divergence_text(const SimulationResult& result) {
 
 Result run_scenario(const LoadedScenario& loaded, const std::optional<fs::path>& output, bool progress,
                     RunTables* tables, bool diagnose) {
-  RunTiming timing;
+  double seconds = 0.0;
   const auto shell = [&] {
     const WaitNotice notice(loaded.scenario.name + ": building the shell", progress);
     const auto start = Clock::now();
     auto made = make_shell(loaded.scenario, loaded.files);
-    timing.shell = std::chrono::duration<double>(Clock::now() - start).count();
+    seconds = std::chrono::duration<double>(Clock::now() - start).count();
     return made;
   }();
-  return run_trials(loaded, shell, timing, output, progress, output ? nullptr : tables, diagnose);
+  return run_trials(loaded, shell, output, progress, output ? nullptr : tables, diagnose, seconds);
 }
 
 Result run_with_shell(const LoadedScenario& loaded, const std::shared_ptr<const PointShell>& shell) {
-  return run_trials(loaded, shell, {}, {}, false, nullptr, false);
-}
-
-bool outcome_is_expected(const ExpectFields& expect, Outcome outcome) {
-  return std::ranges::find(expect.outcomes, outcome) != expect.outcomes.end();
+  return run_trials(loaded, shell, {}, false, nullptr, false, 0.0);
 }
 
 std::vector<std::string> unmet_expectations(const ExpectFields& expect, const Result& run) {

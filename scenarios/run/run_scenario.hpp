@@ -1,14 +1,8 @@
 #pragma once
 
-#include <filesystem>
-#include <memory>
-#include <optional>
-#include <vector>
+#include <algorithm>
 
-#include "results/summary/summary.hpp"
-#include "scenarios/format/load_scenario.hpp"
 #include "scenarios/run/result_folder.hpp"
-#include "sim/geometry/point_shell.hpp"
 
 namespace hapbench {
 
@@ -31,6 +25,8 @@ Result run_with_shell(const LoadedScenario& loaded, const std::shared_ptr<const 
 std::vector<std::string> unmet_expectations(const ExpectFields& expect, const Result& run);
 
 /// True when `outcome` is among those the scenario expects.
-bool outcome_is_expected(const ExpectFields& expect, Outcome outcome);
+inline bool outcome_is_expected(const ExpectFields& expect, Outcome outcome) {
+  return std::ranges::find(expect.outcomes, outcome) != expect.outcomes.end();
+}
 
 }  // namespace hapbench

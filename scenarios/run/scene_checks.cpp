@@ -7,17 +7,15 @@
 #include <limits>
 #include <span>
 
-#include "device_model/hands/drag_hand.hpp"
 #include "results/observe/inside_observer.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/stop_signal.hpp"
-#include "sim/mesh/triangle_soup.hpp"
+#include "sim/geometry/triangle_tree.hpp"
 #include "sim/tool/mesh_tool.hpp"
 
 namespace hapbench {
 namespace {
 
-/// The tool's pose in the first row.
 ToolPose first_pose(const Scenario& scenario, const SimulationParts& parts) {
   parts.hand->reset();  // it may steer the orientation
   const bool is_free = parts.motion->position_is_free();
@@ -26,6 +24,8 @@ ToolPose first_pose(const Scenario& scenario, const SimulationParts& parts) {
 }
 
 constexpr double kUsualStep = 0.001;  ///< of haptic loops [s]
+/// Lengths and times this far apart are of different units: mm for m is a factor of 1000, cm for m one of 100.
+constexpr double kUnitsApart = 100.0;
 
 /// The question about the field that makes an environment as large as it is.
 const char* size_question(const Environment& environment) {
@@ -62,14 +62,12 @@ std::optional<Warning> spacing_warning(const LoadedScenario& loaded, const ToolS
 /// Where the tool starts, against its own size and the environment's.
 std::optional<Warning> start_warning(const ToolShape& tool, const SceneFacts::Surface& surface) {
   const double least = std::min(diagonal(surface.box), tool.reach());
-  if (surface.gap > kUnitsApart * least) {
-    return Warning{
-        "start", "",
-        fmt::format("the tool starts {} from the environment, {:.0f} times the size of {}: is its place in metres?",
-                    length_text(surface.gap), surface.gap / least,
-                    least == tool.reach() ? "the tool" : "the environment")};
-  }
-  return std::nullopt;
+  if (!(surface.gap > kUnitsApart * least)) return std::nullopt;
+  return Warning{
+      "start", "",
+      fmt::format("the tool starts {} from the environment, {:.0f} times the size of {}: is its place in metres?",
+                  length_text(surface.gap), surface.gap / least,
+                  least == tool.reach() ? "the tool" : "the environment")};
 }
 
 /// A recorded stroke, against the environment, the tool and the time step.
@@ -235,7 +233,7 @@ std::vector<Warning> tool_warnings(const RenderingConfig& rendering, const ToolS
          "gap"});
   }
   if (const auto* mesh = dynamic_cast<const MeshTool*>(&tool)) {
-    const Box box{mesh->grid().low(), mesh->grid().high()};
+    const Box& box = mesh->grid().box();
     if (const std::string odd = odd_frame(box); !odd.empty()) {
       warnings.push_back(
           {"tool_frame", "",
@@ -320,10 +318,6 @@ std::optional<PointDistance> point_distance(const LoadedScenario& loaded) {
         return std::nullopt;
       },
       environment);
-}
-
-double diagonal(const Box& box) {
-  return (box.max - box.min).norm();
 }
 
 Gap gap_between(const ToolShape& tool, const ToolPose& pose, const PointShell& shell) {

@@ -1,14 +1,11 @@
 #pragma once
 
-#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "scenarios/format/load_scenario.hpp"
-#include "sim/core/types.hpp"
-#include "sim/geometry/point_shell.hpp"
 #include "sim/tool/tool_shape.hpp"
 
 namespace hapbench {
@@ -32,9 +29,6 @@ struct SceneFacts {
 SceneFacts scene_facts(const LoadedScenario& loaded);
 
 // ---- Warnings about a scene. ----
-
-/// Lengths and times this far apart are of different units: mm for m is a factor of 1000, cm for m one of 100.
-inline constexpr double kUnitsApart = 100.0;
 
 /// Longest edges of what a hand works on, at least and at most [m]: those of others are likely of another unit.
 inline constexpr double kShortestObject = 0.001, kLongestObject = 1.0;
@@ -98,7 +92,9 @@ struct Gap {
 Gap gap_between(const ToolShape& tool, const ToolPose& pose, const PointShell& shell);
 
 /// The length of a box from corner to corner [m].
-double diagonal(const Box& box);
+inline double diagonal(const Box& box) {
+  return (box.max - box.min).norm();
+}
 
 // ---- Quantities as people read them. ----
 

@@ -4,17 +4,15 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
 #include "algorithms/stages/damping_and_limits.hpp"
-#include "scenarios/format/descriptions.hpp"
+#include "scenarios/format/parts.hpp"
 #include "scenarios/format/writer.hpp"
 #include "scenarios/run/assemble.hpp"
 
 namespace hapbench {
 namespace {
 
-/// Keeps the stiffness tensor of the last row.
 class LastTensor final : public Observer {
  public:
   void on_step(const StepRecord& record) noexcept override { S = record.force.S; }
@@ -92,10 +90,6 @@ bool springs_stay(const Scenario& scenario) {
          position_is_free(scenario.motion);
 }
 
-bool has_device(const Scenario& scenario) {
-  return !std::holds_alternative<IdealDeviceFields>(scenario.device);
-}
-
 Vec3 stiffness_eigenvalues(Scenario scenario) {
   scenario.time.steps = 1;
   scenario.bounds = {};
@@ -114,16 +108,6 @@ double delay_of(const Scenario& scenario) {
   if (const auto* impedance = std::get_if<ImpedanceDeviceConfig>(&scenario.device)) return impedance->delay_samples;
   const auto* admittance = std::get_if<AdmittanceDeviceConfig>(&scenario.device);
   return admittance != nullptr ? static_cast<double>(admittance->servo.delay) : 0.0;
-}
-
-bool has_delay_in_samples(const Scenario& scenario) {
-  const auto* device = std::get_if<ImpedanceDeviceConfig>(&scenario.device);
-  return device != nullptr && !device->delay;
-}
-
-const char* delay_path(const Scenario& scenario) {
-  const bool has_servo = std::holds_alternative<AdmittanceDeviceConfig>(scenario.device);
-  return has_servo ? "device.servo.delay_samples" : "device.delay_samples";
 }
 
 std::string unknown_to_theory(const Scenario& scenario) {

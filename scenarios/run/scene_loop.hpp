@@ -7,7 +7,7 @@
 
 #include "device_model/theory/linear_loops.hpp"
 #include "scenarios/format/scenario.hpp"
-#include "sim/loop/integrators/spring_damper.hpp"
+#include "sim/loop/integrators/table.hpp"
 
 /// The linear loop of a scenario: tool, device, hand and the springs of its wall, as they are while nothing saturates
 /// and the contact lasts. Along a direction in which the springs' tensor S has the eigenvalue lambda they act as one
@@ -20,7 +20,9 @@ namespace hapbench {
 bool springs_stay(const Scenario& scenario);
 
 /// True for a device that is part of the loop, and not ideal.
-bool has_device(const Scenario& scenario);
+inline bool has_device(const Scenario& scenario) {
+  return !std::holds_alternative<IdealDeviceFields>(scenario.device);
+}
 
 /// The eigenvalues of such a scenario's stiffness tensor S under its algorithm, in units of K, the largest last.
 Vec3 stiffness_eigenvalues(Scenario scenario);
@@ -38,9 +40,15 @@ std::string unknown_to_theory(const Scenario& scenario);
 
 /// The delay of the device's force, or of its servo [samples], and the field that sets it.
 double delay_of(const Scenario& scenario);
-const char* delay_path(const Scenario& scenario);
+inline const char* delay_path(const Scenario& scenario) {
+  const bool has_servo = std::holds_alternative<AdmittanceDeviceConfig>(scenario.device);
+  return has_servo ? "device.servo.delay_samples" : "device.delay_samples";
+}
 /// True for an impedance device whose delay is a number of samples, so that its time depends on the scene's step.
-bool has_delay_in_samples(const Scenario& scenario);
+inline bool has_delay_in_samples(const Scenario& scenario) {
+  const auto* device = std::get_if<ImpedanceDeviceConfig>(&scenario.device);
+  return device != nullptr && !device->delay;
+}
 
 /// The map of a step of the tool at a wall of lambda K and lambda B: by the device's loop, of an ideal device by the
 /// integrator alone. Empty for a loop that is too large to solve, and for a device with fields that are

@@ -7,7 +7,6 @@
 #include <string_view>
 
 namespace hapbench {
-
 namespace {
 
 constexpr int kSignals[] = {SIGINT, SIGTERM};

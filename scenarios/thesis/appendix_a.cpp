@@ -2,11 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <map>
 
 #include "scenarios/limits/stability/field_limit.hpp"
-#include "scenarios/thesis/claims.hpp"
 #include "scenarios/thesis/measurements.hpp"
 #include "sim/core/math.hpp"
 
@@ -30,7 +28,7 @@ Measured measure_peg_motion(const Evidence& e) {
 
 Finding judge_peg_motion(const Measured& measured, const PublishedNumbers& p) {
   const MeasuredCase &original = measured.at(0), &shaped = measured.at(1);
-  return {decide(vibrates_much_more(original, shaped, p), vibrates_more(original, shaped)), "",
+  return {decide(vibrates_much_more(original, shaped, p), vibrates_more(original, shaped)),
           fmt::format("without friction the original algorithm's velocity varies {:.3g} times as much, with the "
                       "trainer's friction {:.3g} times",
                       original["velocity_variation"] / shaped["velocity_variation"],
@@ -119,9 +117,10 @@ Finding judge_springs_unlimited(const Measured& measured, const PublishedNumbers
   for (const auto& [run, all] : all_smooth)
     if (all) (run.second == static_cast<double>(kPairs) ? published : fewer) = true;
   return {
-      decide(published, fewer), "pairs with which the way is smooth: " + text,
+      decide(published, fewer),
       "100 pairs of 88.5 N s/m are 17 700 N s/m, 22 times the 2 M / Δt = 800 N s/m that A.3 allows, so the plain sum "
-      "must diverge there"};
+      "must diverge there",
+      "pairs with which the way is smooth: " + text};
 }
 
 // With 100 pairs the plain sum has no smooth motion without limits to lose; with 4 it has (A2).
@@ -155,10 +154,11 @@ Finding judge_springs_limited(const Measured& runs, const PublishedNumbers& p) {
                                   without["arrives"] == 1.0 ? "" : " (does not arrive)", with["swings"],
                                   with["arrives"] == 1.0 ? "" : " (does not arrive)"));
   }
-  return {decide(keeps && published_pairs, keeps && !fluctuate.empty()), "swings without and with the limits: " + text,
+  return {decide(keeps && published_pairs, keeps && !fluctuate.empty()),
           fmt::format("the proposed algorithm {} its performance; {}", keeps ? "keeps" : "does not keep",
                       fluctuate.empty() ? "no other one is smooth without the limits and fluctuates with them"
-                                        : "smooth without the limits and fluctuating with them: " + fluctuate)};
+                                        : "smooth without the limits and fluctuating with them: " + fluctuate),
+          "swings without and with the limits: " + text};
 }
 
 // ---- A4: the stability limits. A case for each published figure, in their order.
@@ -170,14 +170,9 @@ constexpr double kSameEnergy = 1e-9;  // in the rule
 /// The largest value of a field at which the run of the spring, struck once, stays bounded.
 double largest_bounded(const Evidence& e, const std::string& field, const Range& range,
                        std::vector<std::string> overrides) {
-  const LoadedScenario loaded = e.load(kSpring, overrides);
-  if (e.overrides) {
-    const std::vector<std::string> chosen = e.overrides(load_scenario(loaded.file).scenario);
-    overrides.insert(overrides.begin(), chosen.begin(), chosen.end());
-  }
   overrides.insert(overrides.end(), {"time.steps=20000", "initial.velocity_m_per_s=[0.001,0,0]"});
-  const ScenarioText scene = read_scenario_text(loaded.file);
-  LimitQuestion question = limit_question(scene, overrides, field, range);
+  const Cases scene = e.scene(kSpring, overrides);
+  LimitQuestion question = limit_question(scene.scene(0), scene.sets(), field, range);
   question.bounded = true;
   question.resolution = kLimitResolution;
   question.between = false;
@@ -213,27 +208,26 @@ Finding judge_stability_limits(const Measured& measured, const PublishedNumbers&
   double worst = 0.0;
   for (std::size_t i = 0; i < measured.size(); ++i)
     worst = std::max(worst, std::abs(measured[i]["limit"] / published[kPublished[i]].mean - 1.0));
-  return {decide(worst <= threshold(published, "same_limit"), false), "",
+  return {decide(worst <= threshold(published, "same_limit"), false),
           fmt::format("the largest difference to the published figures is {:.2g} %", 100.0 * worst)};
 }
 
 /// The damping that the largest stiffness without damping would have, and the largest one alone [N s/m].
-Measured measure_damping_at_limit(const Evidence& e) {
-  return {{"", {{"alone", {largest_damping_alone(e)}}, {"there", {damping_at(e, largest_undamped_stiffness(e))}}}}};
+MeasuredValues measure_damping_at_limit(const Evidence& e) {
+  return {{"alone", {largest_damping_alone(e)}}, {"there", {damping_at(e, largest_undamped_stiffness(e))}}};
 }
 
-Finding judge_damping_at_limit(const Measured& measured, const PublishedNumbers& p) {
-  const MeasuredCase& m = measured.at(0);
+Finding judge_damping_at_limit(const MeasuredCase& m, const PublishedNumbers& p) {
   const double there = std::abs(m["there"] / p["A4.damping.undamped"].mean - 1.0);
   const double alone = std::abs(m["alone"] / p["A4.damping"].mean - 1.0);
   const bool before = m["there"] > m["alone"];
-  return {decide(before && std::max(there, alone) <= threshold(p, "same_limit"), before), "",
+  return {decide(before && std::max(there, alone) <= threshold(p, "same_limit"), before),
           before ? "the damping that belongs to the largest stiffness is unstable by itself" : "stiffness comes first"};
 }
 
 // ---- A6: the largest energy of an undamped mass on a spring, in units of that at its release.
 
-Measured measure_energy(const Evidence& e) {
+MeasuredValues measure_energy(const Evidence& e) {
   const LoadedScenario loaded = e.load(kSpring, {"rendering.damping_ratio=0"});
   const RenderingConfig& rendering = loaded.scenario.rendering;
   double start = 0.0, most = 0.0;
@@ -244,18 +238,18 @@ Measured measure_energy(const Evidence& e) {
     most = std::max(most, energy);
   });
   const double half_turn = 0.5 * loaded.scenario.time.step * std::sqrt(rendering.stiffness / rendering.mass);
-  return {{"", {{"most", {most / start}}, {"bound", {1.0 / (1.0 - half_turn)}}}}};
+  return {{"most", {most / start}}, {"bound", {1.0 / (1.0 - half_turn)}}};
 }
 
-Finding judge_energy(const Measured& measured, const PublishedNumbers&) {
-  const bool passive = measured.at(0)["most"] <= 1.0 + kSameEnergy;
+Finding judge_energy(const MeasuredCase& m, const PublishedNumbers&) {
+  const bool passive = m["most"] <= 1.0 + kSameEnergy;
   return {
-      passive ? Verdict::reproduced : Verdict::refuted, "",
+      passive ? Verdict::reproduced : Verdict::refuted,
       passive
           ? "the spring gives no more than it was given"
           : fmt::format(
                 "the energy oscillates and is bounded by 1 / (1 - ω Δt / 2) = {:.4f} of its start: stable, not passive",
-                measured.at(0)["bound"])};
+                m["bound"])};
 }
 
 }  // namespace
@@ -266,8 +260,8 @@ std::vector<ClaimRule> appendix_a() {
       {"A2", measure_springs_unlimited, judge_springs_unlimited},
       {"A3", measure_springs_limited, judge_springs_limited},
       {"A4", measure_stability_limits, judge_stability_limits},
-      {"A5", measure_damping_at_limit, judge_damping_at_limit},
-      {"A6", measure_energy, judge_energy},
+      single_case<measure_damping_at_limit, judge_damping_at_limit>("A5"),
+      single_case<measure_energy, judge_energy>("A6"),
   };
 }
 

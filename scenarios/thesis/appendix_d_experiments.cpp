@@ -2,10 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
-#include <map>
 
-#include "results/observe/target_metrics.hpp"
 #include "scenarios/cases/league.hpp"
 #include "scenarios/thesis/claims.hpp"
 #include "sim/core/math.hpp"
@@ -74,7 +71,6 @@ double half_a_digit(double printed) {
   return 0.5 * math::pow(10.0, -static_cast<double>(digits));
 }
 
-/// Comparison of one measure with the published one.
 struct Compared {
   bool agrees = false;  ///< significant or not, and in the direction, as published
   bool near = false;    ///< near the published ones; true of the force, which subjects regulate
@@ -84,8 +80,7 @@ struct Compared {
 
 Compared compare(const MeasuredCase& m, const PublishedNumbers& published, const std::string& id,
                  bool published_difference) {
-  const auto column = std::find_if(std::begin(kMeasures), std::end(kMeasures),
-                                   [&m](const MeasuredColumn& c) { return c.name == m.name; });
+  const auto* column = std::ranges::find(kMeasures, m.name, &MeasuredColumn::name);
   const std::vector<double>&original = m.all("original"), &shaped = m.all("shaped");
   const PublishedNumber& of_original = published[id + "." + column->published + ".original_averaging"];
   const PublishedNumber& of_shaped = published[id + "." + column->published + ".shaped_stiffness"];
@@ -130,12 +125,13 @@ Finding judge_experiment(const Measured& measured, const PublishedNumbers& publi
     append_item(text, fmt::format("{} {:.2g} ± {:.1g} vs {:.2g} ± {:.1g} (t = {:.3g})", m.name, mean_of(a),
                                   standard_error(a), mean_of(b), standard_error(b), c.t));
   }
-  return {decide(all, success), text,
+  return {decide(all, success),
           (deviating.empty() ? std::string("every measure agrees with the published one in direction and significance")
                              : "other than published: " + deviating) +
               fmt::format("; the {} differs most, by {:.2g} standard errors of the difference; subjects regulate the "
                           "gauge, so the mean force is nearly an input",
-                          farthest, most)};
+                          farthest, most),
+          text};
 }
 
 constexpr const char *kVertical = "vertical_peg_in_hole", *kRotational = "rotational_peg_in_hole";
@@ -163,10 +159,11 @@ Finding judge_wall(const Measured& measured, const PublishedNumbers& published) 
     near = near && std::abs(change - expected) <= kStandardErrors * error;
     append_item(text, fmt::format("{} {:.2f} → {:.2f}", law, mean_of(centre), mean_of(side)));
   }
-  return {decide(direction && near, direction), text,
+  return {decide(direction && near, direction),
           fmt::format("the wall {}; the changes are {} the published ones",
                       direction ? "helps stiffness shaping and hurts the original algorithm" : "does something else",
-                      near ? "near" : "not near")};
+                      near ? "near" : "not near"),
+          text};
 }
 
 // ---- D6: success rates over places that the pilot experiments went through. A case for each place, with the subjects'
@@ -222,7 +219,7 @@ Finding judge_pilots(const Measured& measured, const PublishedNumbers& published
     pilot.beyond = pilot.beyond || (hard && !hardly_any);
     pilot.somewhere = pilot.somewhere || (hardly_any && m["shaped"] >= kMostTrials);
   }
-  return {decide(offset.as_published() && height.as_published(), offset.somewhere || height.somewhere), "",
+  return {decide(offset.as_published() && height.as_published(), offset.somewhere || height.somewhere),
           fmt::format("offset: {}; height: {}", offset.said(), height.said())};
 }
 

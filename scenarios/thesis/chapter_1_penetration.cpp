@@ -2,10 +2,7 @@
 
 #include <algorithm>
 
-#include "results/io/columns.hpp"
 #include "results/observe/ideal_trajectory.hpp"
-#include "scenarios/run/assemble.hpp"
-#include "scenarios/thesis/claims.hpp"
 #include "scenarios/thesis/measurements.hpp"
 
 /// Claims of 1.1, 1.2 and B.3.1: how far a drill pressed into the hole sinks in under other ways to merge forces, and
@@ -53,11 +50,10 @@ bool deeper(const MeasuredCase& a, const MeasuredCase& b, double factor) {
 /// Whether the drill sinks in easily with the second case's law, beside shaping, the first one.
 Finding judge_sinking(const Measured& m, const PublishedNumbers& p) {
   const bool easily = deeper(m.at(1), m.at(0), threshold(p, "easily")), more = deeper(m.at(1), m.at(0), 1.0);
-  return {decide(easily, more), "",
-          fmt::format("with {} the drill sinks in {}", m.at(1).name,
-                      easily ? "easily"
-                      : more ? "further than with stiffness shaping, not easily"
-                             : "less than with stiffness shaping at some tilt")};
+  return {decide(easily, more), fmt::format("with {} the drill sinks in {}", m.at(1).name,
+                                            easily ? "easily"
+                                            : more ? "further than with stiffness shaping, not easily"
+                                                   : "less than with stiffness shaping at some tilt")};
 }
 
 Measured measure_averaging(const Evidence& e) {
@@ -91,24 +87,24 @@ Measured measure_original(const Evidence& e) {
 
 Finding judge_original(const Measured& m, const PublishedNumbers& p) {
   const double times = m.at(1)["depth"] / m.at(0)["depth"];
-  return {decide(times >= threshold(p, "easily"), times > 1.0), "",
+  return {decide(times >= threshold(p, "easily"), times > 1.0),
           fmt::format("{:.2g} times as deep as with stiffness shaping", times)};
 }
 
 constexpr double kHands[] = {0.5, 1.0, 2.0, 3.5};  ///< [N]
 
-Measured measure_pop_through(const Evidence& e) {
-  MeasuredCase m{"", {{"hands", {static_cast<double>(std::size(kHands))}}}};
+MeasuredValues measure_pop_through(const Evidence& e) {
+  MeasuredValues values = {{"hands", {static_cast<double>(std::size(kHands))}}};
   for (const std::string law : {kProposedLaw, kOriginalLaw})
-    m.values[law] = {static_cast<double>(std::ranges::count_if(
+    values[law] = {static_cast<double>(std::ranges::count_if(
         kHands, [&](double force) { return turned(e, law, force).end.outcome == Outcome::went_through; }))};
-  return {m};
+  return values;
 }
 
-Finding judge_pop_through(const Measured& measured, const PublishedNumbers&) {
-  const double original = measured.at(0)[kOriginalLaw], proposed = measured.at(0)[kProposedLaw];
+Finding judge_pop_through(const MeasuredCase& m, const PublishedNumbers&) {
+  const double original = m[kOriginalLaw], proposed = m[kProposedLaw];
   return {
-      decide(original > 0.0 && proposed == 0.0, original > proposed), "",
+      decide(original > 0.0 && proposed == 0.0, original > proposed),
       original > 0.0 ? "beyond the median line flipped gradients pull the drill on" : "the drill stays in the hole"};
 }
 
@@ -119,7 +115,7 @@ Finding judge_summation(const Measured& m, const PublishedNumbers& p) {
     return m.at(i)["diverges"] == 1.0 || vibrates_much_more(m.at(i), m.at(i + 1), p);
   };
   const bool peg = unstable(0), task = unstable(2);
-  return {decide(peg && task, peg || task), "",
+  return {decide(peg && task, peg || task),
           fmt::format("n points are up to n K: in the planar peg the sum is {}, in task 2 {}",
                       peg ? "unstable" : "stable", task ? "unstable" : "stable")};
 }
@@ -138,7 +134,7 @@ std::vector<ClaimRule> chapter_1_penetration() {
        [](const Evidence& e) { return vibrations_beside_shaping(e, "summation", "task2_held", {"metrics.from_s=0"}); },
        judge_summation},
       {"B1b", measure_original, judge_original},
-      {"B5", measure_pop_through, judge_pop_through},
+      single_case<measure_pop_through, judge_pop_through>("B5"),
   };
 }
 

@@ -1,12 +1,9 @@
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "algorithms/laws/shaped_stiffness.hpp"
-#include "algorithms/registry.hpp"
 #include "algorithms/stages/point_stage.hpp"
-#include "scenarios/thesis/claims.hpp"
 #include "scenarios/thesis/measurements.hpp"
 
 /// Claims of 1.2, 2.8, 3.4 and F.2: what the points cost. Times of this machine, so no two ledgers agree in digits.
@@ -54,45 +51,41 @@ ContactBuffer extreme_contacts(const Evidence& e) {
   return largest_of(contact_sets(loaded.scenario, 64));
 }
 
-Measured measure_deadline(const Evidence& e) {
+MeasuredValues measure_deadline(const Evidence& e) {
   const ContactBuffer all = extreme_contacts(e);
   ContactBuffer contacts = all;
   DenseShaping dense(all.size());
   const auto reduction = make_gradient_reduction({});
   reduction->prepare({});
-  return {{"",
-           {{"points", {static_cast<double>(all.size())}},
-            {"matrix", {seconds_of(kRepetitions, [&] { dense.shape(contacts, kIterations); })}},
-            {"tensor", {seconds_of(kRepetitions, [&] { shape_weights(contacts, kIterations); })}},
-            {"reduced", {seconds_of(kRepetitions, [&] {
-               contacts = all;
-               reduction->process(contacts);
-               dense.shape(contacts, kIterations);
-             })}}}}};
+  return {{"points", {static_cast<double>(all.size())}},
+          {"matrix", {seconds_of(kRepetitions, [&] { dense.shape(contacts, kIterations); })}},
+          {"tensor", {seconds_of(kRepetitions, [&] { shape_weights(contacts, kIterations); })}},
+          {"reduced", {seconds_of(kRepetitions, [&] {
+             contacts = all;
+             reduction->process(contacts);
+             dense.shape(contacts, kIterations);
+           })}}};
 }
 
-Finding judge_dense_deadline(const Measured& measured, const PublishedNumbers& published) {
-  const MeasuredCase& m = measured.at(0);
+Finding judge_dense_deadline(const MeasuredCase& m, const PublishedNumbers& published) {
   const double deadline = published["T4.step"].mean;
   const bool missed = m["matrix"] > deadline, met = m["reduced"] < deadline;
-  return {decide(missed && met, met), "",
+  return {decide(missed && met, met),
           missed ? fmt::format("in the dense form the thesis uses, {}",
                                met ? "the reduction is needed and suffices" : "even the reduction does not suffice")
                  : "this machine is fast enough for the dense form"};
 }
 
-Finding judge_tensor_deadline(const Measured& measured, const PublishedNumbers& published) {
-  const MeasuredCase& m = measured.at(0);
+Finding judge_tensor_deadline(const MeasuredCase& m, const PublishedNumbers& published) {
   const double deadline = published["T4.step"].mean;
   const bool met = m["tensor"] < deadline;
-  return {found(met), "",
-          met ? "through the 3 × 3 stiffness tensor all points are shaped in time without a reduction"
-              : "without the reduction the tensor form misses the deadline, too"};
+  return {found(met), met ? "through the 3 × 3 stiffness tensor all points are shaped in time without a reduction"
+                          : "without the reduction the tensor form misses the deadline, too"};
 }
 
 // ---- T5: one step's share of the period [1] for the contacts of task 3, in the dense form; and in the tensor form.
 
-Measured measure_loop_load(const Evidence& e) {
+MeasuredValues measure_loop_load(const Evidence& e) {
   const LoadedScenario task = e.load("task3_spin_signed_distance");
   std::vector<ContactBuffer> sets = contact_sets(task.scenario, 128);
   const std::size_t largest = largest_size(sets);
@@ -108,21 +101,16 @@ Measured measure_loop_load(const Evidence& e) {
   };
   const auto by_matrix = [&dense](int n) { return [&dense, n](ContactBuffer& contacts) { dense.shape(contacts, n); }; };
   const auto by_tensor = [](ContactBuffer& contacts) { shape_weights(contacts, kIterations); };
-  return {{"",
-           {{"points", {static_cast<double>(largest)}},
-            {"reduced_0", load(by_matrix(0), true)},
-            {"reduced_3", load(by_matrix(kIterations), true)},
-            {"unreduced_3", load(by_matrix(kIterations), false)},
-            {"tensor_reduced_3", load(by_tensor, true)},
-            {"tensor_unreduced_3", load(by_tensor, false)}}}};
+  return {{"points", {static_cast<double>(largest)}},        {"reduced_0", load(by_matrix(0), true)},
+          {"reduced_3", load(by_matrix(kIterations), true)}, {"unreduced_3", load(by_matrix(kIterations), false)},
+          {"tensor_reduced_3", load(by_tensor, true)},       {"tensor_unreduced_3", load(by_tensor, false)}};
 }
 
-Finding judge_loop_load(const Measured& measured, const PublishedNumbers& p) {
-  const MeasuredCase& m = measured.at(0);
+Finding judge_loop_load(const MeasuredCase& m, const PublishedNumbers& p) {
   const bool small = m["reduced_3"] - m["reduced_0"] <= threshold(p, "small_load");
   const bool falls = m["reduced_3"] < m["unreduced_3"];
   return {
-      decide(small && falls, small || falls), "",
+      decide(small && falls, small || falls),
       fmt::format("the iterations cost {}; the reduction {} the load of the dense form and {} that of the tensor form",
                   small ? "next to nothing" : "more than that", falls ? "lowers" : "raises",
                   m["tensor_reduced_3"] < m["tensor_unreduced_3"] ? "lowers" : "raises")};
@@ -131,32 +119,31 @@ Finding judge_loop_load(const Measured& measured, const PublishedNumbers& p) {
 // ---- P2, F3: what else takes long, in units of the step, and stiffness shaping: a proxy of the tool, in a step of
 // task 2; tandpasta, for the most contacts of task 2.
 
-Measured measure_proxy_cost(const Evidence& e) {
-  MeasuredCase m;
+MeasuredValues measure_proxy_cost(const Evidence& e) {
+  MeasuredValues values;
   for (const std::string law : {"proxy", kProposedLaw}) {
     const Result run = e.run("task2_held", {"rendering.algorithm=" + law, "record.ideal_trajectory=false"});
     const double step = run.duration / static_cast<double>(run.timing.steps);
-    m.values[law == kProposedLaw ? "shaped" : "other"] = {run.timing.step_p50.value_or(std::nan("")) / step};
+    values[law == kProposedLaw ? "shaped" : "other"] = {run.timing.step_p50.value_or(std::nan("")) / step};
   }
-  return {m};
+  return values;
 }
 
-Measured measure_tandpasta_cost(const Evidence& e) {
+MeasuredValues measure_tandpasta_cost(const Evidence& e) {
   const Scenario scenario = e.load("task2_rotate_signed_distance").scenario;
   const std::vector<ContactBuffer> most = {largest_of(contact_sets(scenario, 64))};
-  MeasuredCase m{"", {{"points", {static_cast<double>(most.front().size())}}}};
+  MeasuredValues values = {{"points", {static_cast<double>(most.front().size())}}};
   for (const auto& [name, value] : {std::pair("tandpasta", "other"), std::pair(kProposedLaw, "shaped")}) {
     const auto law = make_law(name, scenario.rendering);
     law->prepare(most.front().size());
-    m.values[value] = {seconds_with(most, 100, [&](ContactBuffer& contacts) { law->evaluate(contacts); }) /
-                       scenario.time.step};
+    values[value] = {seconds_with(most, 100, [&](ContactBuffer& contacts) { law->evaluate(contacts); }) /
+                     scenario.time.step};
   }
-  return {m};
+  return values;
 }
 
-Finding judge_other_cost(const Measured& measured, const PublishedNumbers& p) {
-  const MeasuredCase& m = measured.at(0);
-  return {decide(m["other"] >= threshold(p, "considerable"), m["other"] > m["shaped"]), "",
+Finding judge_other_cost(const MeasuredCase& m, const PublishedNumbers& p) {
+  return {decide(m["other"] >= threshold(p, "considerable"), m["other"] > m["shaped"]),
           fmt::format("{:.2g} times what stiffness shaping takes", m["other"] / m["shaped"])};
 }
 
@@ -164,9 +151,11 @@ Finding judge_other_cost(const Measured& measured, const PublishedNumbers& p) {
 
 std::vector<ClaimRule> chapter_3_cost() {
   return {
-      {"T4", measure_deadline, judge_dense_deadline},   {"T4b", measure_deadline, judge_tensor_deadline},
-      {"T5", measure_loop_load, judge_loop_load},       {"P2", measure_proxy_cost, judge_other_cost},
-      {"F3", measure_tandpasta_cost, judge_other_cost},
+      single_case<measure_deadline, judge_dense_deadline>("T4"),
+      single_case<measure_deadline, judge_tensor_deadline>("T4b"),
+      single_case<measure_loop_load, judge_loop_load>("T5"),
+      single_case<measure_proxy_cost, judge_other_cost>("P2"),
+      single_case<measure_tandpasta_cost, judge_other_cost>("F3"),
   };
 }
 

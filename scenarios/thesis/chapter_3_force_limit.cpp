@@ -31,7 +31,7 @@ std::vector<FlatRow> rows_on_flat(const Evidence& e, const std::string& scenario
   return rows;
 }
 
-Measured measure_force_limit(const Evidence& e) {
+MeasuredValues measure_force_limit(const Evidence& e) {
   const std::vector<FlatRow> off = rows_on_flat(e, "force_limit_off"), on = rows_on_flat(e, "force_limit_on");
   // The plateau is that of the last quarter; the onset where the displacement first reaches 99 % of it.
   double plateau = 0.0, onset = std::numeric_limits<double>::infinity();
@@ -52,38 +52,35 @@ Measured measure_force_limit(const Evidence& e) {
     squares += apart * apart / static_cast<double>(off.size());
     deepest = std::max(deepest, depth);
   }
-  return {{"",
-           {{"deviation", {std::sqrt(squares) / deepest}},
-            {"onset", {onset}},
-            {"plateau_spread", {(high - low) / plateau}}}}};
+  return {
+      {"deviation", {std::sqrt(squares) / deepest}}, {"onset", {onset}}, {"plateau_spread", {(high - low) / plateau}}};
 }
 
-Finding judge_force_limit(const Measured& measured, const PublishedNumbers& published) {
-  const MeasuredCase& m = measured.at(0);
+Finding judge_force_limit(const MeasuredCase& m, const PublishedNumbers& published) {
   const bool proportional = m["deviation"] <= threshold(published, "proportional");
   const bool onset = std::abs(m["onset"] - published["L1.measured"].mean) <= threshold(published, "onset");
   const bool constant = m["plateau_spread"] <= threshold(published, "proportional");
-  return {decide(proportional && onset && constant, proportional && constant), "",
+  return {decide(proportional && onset && constant, proportional && constant),
           fmt::format("{} without the limit; {} with it; {}", proportional ? "proportional" : "not proportional",
                       constant ? "constant" : "not constant", onset ? "onset as published" : "onset elsewhere")};
 }
 
 // ---- L4: force over way of the handle, from the first touch to the hardest press [N/m].
 
-Measured measure_felt_stiffness(const Evidence& e) {
-  MeasuredCase m;
+MeasuredValues measure_felt_stiffness(const Evidence& e) {
+  MeasuredValues values;
   for (const std::string limit : {"off", "on"}) {
     const std::vector<FlatRow> rows = rows_on_flat(e, "force_limit_" + limit);
     const FlatRow &touch = rows.front(), &hardest = rows.back();
-    m.values[limit] = {(hardest.force - touch.force) / (hardest.handle - touch.handle)};
+    values[limit] = {(hardest.force - touch.force) / (hardest.handle - touch.handle)};
   }
-  return {m};
+  return values;
 }
 
-Finding judge_felt_stiffness(const Measured& measured, const PublishedNumbers& p) {
-  const double times = measured.at(0)["on"] / measured.at(0)["off"];
+Finding judge_felt_stiffness(const MeasuredCase& m, const PublishedNumbers& p) {
+  const double times = m["on"] / m["off"];
   return {
-      decide(times >= threshold(p, "heavier"), times > 1.0), "",
+      decide(times >= threshold(p, "heavier"), times > 1.0),
       fmt::format("{:.2g} times as stiff with the limit; what is left are servo and structure, which are ours", times)};
 }
 
@@ -123,7 +120,7 @@ Measured measure_saturated_motion(const Evidence& e) {
 Finding judge_saturated_motion(const Measured& measured, const PublishedNumbers& p) {
   const double nearly_all = threshold(p, "nearly_all");
   const bool always = measured.at(0)["against"] >= nearly_all, reached = measured.at(1)["against"] >= nearly_all;
-  return {decide(always, reached), "",
+  return {decide(always, reached),
           always ? "the limit alone keeps the tool from going uphill"
           : reached
               ? "it needs a reaction that has reached the limit: before, the limited force still drives the tool in"
@@ -182,7 +179,7 @@ Finding judge_shaking(const Measured& measured, const PublishedNumbers& publishe
       normal = m["force"] < limit && std::abs(factor - 1.0) <= threshold(published, "same_mass");
     heavier = heavier || factor >= threshold(published, "heavier");
   }
-  return {decide(normal && heavier, heavier), "",
+  return {decide(normal && heavier, heavier),
           fmt::format("fast shaking {} like more mass; at {} Hz the force {}", heavier ? "feels" : "does not feel",
                       kNormalShaking, normal ? "stays below the limit and nothing changes" : "reaches the limit")};
 }
@@ -191,10 +188,10 @@ Finding judge_shaking(const Measured& measured, const PublishedNumbers& publishe
 
 std::vector<ClaimRule> chapter_3_force_limit() {
   return {
-      {"L1", measure_force_limit, judge_force_limit},
+      single_case<measure_force_limit, judge_force_limit>("L1"),
       {"L2", measure_saturated_motion, judge_saturated_motion},
       {"L3", measure_shaking, judge_shaking},
-      {"L4", measure_felt_stiffness, judge_felt_stiffness},
+      single_case<measure_felt_stiffness, judge_felt_stiffness>("L4"),
   };
 }
 

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "algorithms/laws/shaped_stiffness.hpp"
-#include "scenarios/thesis/claims.hpp"
 #include "scenarios/thesis/measurements.hpp"
 #include "sim/contact/stiffness_tensor.hpp"
 #include "sim/core/math.hpp"
@@ -53,7 +52,6 @@ Finding judge_ratios(const Measured& measured, const PublishedNumbers& published
   const bool bounded = any_max <= never_above;
   return {decide(inside >= threshold(published, "nearly_all") && bounded,
                  inside >= threshold(published, "most") && bounded),
-          "",
           fmt::format("{} {} throughout; in the worse task {:.0f} % of the rows lie within the published range",
                       bounded ? "below" : "not below", never_above, 100.0 * inside)};
 }
@@ -61,7 +59,7 @@ Finding judge_ratios(const Measured& measured, const PublishedNumbers& published
 // ---- R1b: the largest ratio after 160 iterations and at the exact limit, the projection of the identity on the cone
 // of contact tensors.
 
-Measured measure_convergence(const Evidence& e) {
+MeasuredValues measure_convergence(const Evidence& e) {
   double last_max = 1.0, limit_max = 1.0;
   for (const char* task : {"task2_rotate_signed_distance", "task3_spin_signed_distance"}) {
     const auto table = e.table(task, "ratios.csv");
@@ -74,13 +72,12 @@ Measured measure_convergence(const Evidence& e) {
       limit_max = std::max(limit_max, ratio_range(set, stiffness_tensor(set)).max);
     }
   }
-  return {{"", {{"last_max", {last_max}}, {"limit_max", {limit_max}}}}};
+  return {{"last_max", {last_max}}, {"limit_max", {limit_max}}};
 }
 
-Finding judge_convergence(const Measured& measured, const PublishedNumbers& p) {
-  const MeasuredCase& m = measured.at(0);
+Finding judge_convergence(const MeasuredCase& m, const PublishedNumbers& p) {
   const bool one = std::abs(m["limit_max"] - 1.0) <= threshold(p, "converged");
-  return {one ? Verdict::reproduced : Verdict::refuted, "",
+  return {one ? Verdict::reproduced : Verdict::refuted,
           one ? "the exact limit is 1 at every contact of these runs"
               : "the iteration converges to the projection of the identity on the cone of contact tensors, where the "
                 "ratio of a contact without weight stays above 1"};
@@ -186,7 +183,7 @@ Finding judge_guarantee(const Measured& measured, const PublishedNumbers& publis
   double largest = 0.0;
   for (const MeasuredCase& m : measured) largest = std::max(largest, m["lambda_max"]);
   const bool holds = largest <= guaranteed;
-  return {decide(holds, false), "",
+  return {decide(holds, false),
           !holds
               ? fmt::format("a set of contacts exceeds {}", guaranteed)
               : fmt::format(
@@ -202,7 +199,7 @@ std::vector<ClaimRule> chapter_3_stiffness_ratios() {
       {"R1", [](const Evidence& e) { return measure_ratios(e, e.published["ratios.one_iteration"].mean); },
        judge_ratios},
       {"R3", [](const Evidence& e) { return measure_ratios(e, e.published["R1.iterations"].mean); }, judge_ratios},
-      {"R1b", measure_convergence, judge_convergence},
+      single_case<measure_convergence, judge_convergence>("R1b"),
       {"R2", measure_guarantee, judge_guarantee},
   };
 }

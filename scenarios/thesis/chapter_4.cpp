@@ -3,11 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "algorithms/registry.hpp"
 #include "algorithms/stages/point_stage.hpp"
 #include "scenarios/cases/league.hpp"
 #include "scenarios/format/parts.hpp"
-#include "scenarios/thesis/claims.hpp"
 #include "scenarios/thesis/measurements.hpp"
 
 /// Claims of chapter 4: the thesis's two depth models (4.2), and what else it discusses as limits.
@@ -18,19 +16,17 @@ namespace {
 
 constexpr double kSameDirection = 0.999;
 
-Measured measure_median_line(const Evidence&) {
+MeasuredValues measure_median_line(const Evidence&) {
   const auto product = [](const char* model) {
     return wall_point(-0.0001, model).gradient(0).dot(wall_point(0.0001, model).gradient(0));
   };
-  return {
-      {"", {{"shortest_product", {product("shortest_distance")}}, {"normal_product", {product("surface_normal")}}}}};
+  return {{"shortest_product", {product("shortest_distance")}}, {"normal_product", {product("surface_normal")}}};
 }
 
-Finding judge_median_line(const Measured& measured, const PublishedNumbers&) {
-  const MeasuredCase& m = measured.at(0);
+Finding judge_median_line(const MeasuredCase& m, const PublishedNumbers&) {
   const bool flips = m["shortest_product"] < 0.0;
   const bool steady = m["normal_product"] > kSameDirection;
-  return {decide(flips && steady, flips), "",
+  return {decide(flips && steady, flips),
           fmt::format("the shortest distance {}, the surface normal {}", flips ? "flips" : "does not flip",
                       steady ? "does not" : "turns, too")};
 }
@@ -42,7 +38,7 @@ Finding judge_median_line(const Measured& measured, const PublishedNumbers&) {
 /// Rows between samples: about 30 a second.
 constexpr std::uint64_t kRowsBetweenSamples = 64;
 
-Measured measure_underestimation(const Evidence& e) {
+MeasuredValues measure_underestimation(const Evidence& e) {
   const double shallow = e.published["G1.negligible"].at_most;
   const LoadedScenario loaded = e.load("task2_rotate_signed_distance");
   const Cylinder tool = make_cylinder(loaded.scenario.tool);
@@ -78,21 +74,19 @@ Measured measure_underestimation(const Evidence& e) {
                  if (row.step % kRowsBetweenSamples != 0 || place >= way.size()) return;
                  distance += (row.tool.pose.position - way[place++]).squaredNorm();
                });
-  return {{"",
-           {{"contacts", {static_cast<double>(error.size())}},
-            {"depth_mean", {mean_of(error)}},
-            {"depth_95", {error.at(error.size() * 95 / 100)}},
-            {"depth_max", {error.back()}},
-            {"share", {mean_of(share)}},
-            {"force", {std::sqrt(apart / force)}},
-            {"way", {std::sqrt(distance / static_cast<double>(place))}}}}};
+  return {{"contacts", {static_cast<double>(error.size())}},
+          {"depth_mean", {mean_of(error)}},
+          {"depth_95", {error.at(error.size() * 95 / 100)}},
+          {"depth_max", {error.back()}},
+          {"share", {mean_of(share)}},
+          {"force", {std::sqrt(apart / force)}},
+          {"way", {std::sqrt(distance / static_cast<double>(place))}}};
 }
 
-Finding judge_underestimation(const Measured& measured, const PublishedNumbers& published) {
-  const MeasuredCase& m = measured.at(0);
+Finding judge_underestimation(const MeasuredCase& m, const PublishedNumbers& published) {
   const double small = threshold(published, "negligible"), shallow = published["G1.negligible"].at_most;
   const bool force = m["force"] <= small, way = m["way"] <= small * shallow, depth = m["depth_95"] <= small * shallow;
-  return {decide(force && way, force || way || depth), "",
+  return {decide(force && way, force || way || depth),
           fmt::format("the shortfall is {} of {} mm for 95 % of the contacts, and {} for the force and {} for the way",
                       depth ? "a negligible part" : "no negligible part", plain(1e3 * shallow),
                       force ? "negligible" : "not negligible", way ? "negligible" : "not negligible")};
@@ -103,7 +97,7 @@ Finding judge_underestimation(const Measured& measured, const PublishedNumbers& 
 
 constexpr int kRepetitions = 20;
 
-Measured measure_depth_cost(const Evidence& e) {
+MeasuredValues measure_depth_cost(const Evidence& e) {
   const std::vector<ContactBuffer> sets =
       contact_sets(e.load("task2_rotate_signed_distance").scenario, kRowsBetweenSamples);
   double contacts = 0.0;
@@ -115,14 +109,12 @@ Measured measure_depth_cost(const Evidence& e) {
         seconds_with(sets, kRepetitions, [&](ContactBuffer& set) { depth->evaluate(kDrill, kUpright, set); });
     return {std::max(0.0, seconds - copying) / contacts};
   };
-  return {
-      {"", {{"normal_projection", of_contact("normal_projection")}, {"surface_normal", of_contact("surface_normal")}}}};
+  return {{"normal_projection", of_contact("normal_projection")}, {"surface_normal", of_contact("surface_normal")}};
 }
 
-Finding judge_depth_cost(const Measured& measured, const PublishedNumbers& p) {
-  const MeasuredCase& m = measured.at(0);
+Finding judge_depth_cost(const MeasuredCase& m, const PublishedNumbers& p) {
   const double times = m["normal_projection"] / m["surface_normal"];
-  return {decide(times >= threshold(p, "huge"), times > 1.0), "",
+  return {decide(times >= threshold(p, "huge"), times > 1.0),
           fmt::format("{:.2g} times as much, for a cylinder; a mesh, which the thesis means besides, is not looked at",
                       times)};
 }
@@ -132,7 +124,7 @@ Finding judge_depth_cost(const Measured& measured, const PublishedNumbers& p) {
 
 Finding judge_highest_depth(const Measured& m, const PublishedNumbers& p) {
   const bool peg = vibrates_much_more(m.at(0), m.at(1), p), task = vibrates_much_more(m.at(2), m.at(3), p);
-  return {decide(peg || task, vibrates_more(m.at(0), m.at(1)) && vibrates_more(m.at(2), m.at(3))), "",
+  return {decide(peg || task, vibrates_more(m.at(0), m.at(1)) && vibrates_more(m.at(2), m.at(3))),
           fmt::format(
               "the averaged direction turns quickly where gradients cancel: it {} in the planar peg and {} in task 2",
               peg ? "vibrates" : "does not vibrate much more", task ? "vibrates" : "does not vibrate much more")};
@@ -142,7 +134,7 @@ Finding judge_highest_depth(const Measured& m, const PublishedNumbers& p) {
 
 constexpr double kIdentical = 1e-9;  // in the rule
 
-Measured measure_one_direction(const Evidence& e) {
+MeasuredValues measure_one_direction(const Evidence& e) {
   const Scenario scenario = e.load("task1_flat_signed_distance").scenario;
   const auto reduction = make_gradient_reduction({});
   reduction->prepare({});
@@ -158,20 +150,19 @@ Measured measure_one_direction(const Evidence& e) {
     apart = std::max(apart, (force_of(kProposedLaw) - highest).norm());
     largest = std::max(largest, highest.norm());
   }
-  return {{"", {{"apart", {apart / largest}}}}};
+  return {{"apart", {apart / largest}}};
 }
 
-Finding judge_one_direction(const Measured& measured, const PublishedNumbers&) {
-  const bool same = measured.at(0)["apart"] <= kIdentical;
-  return {decide(same, false), "",
-          same ? "the deepest of equal gradients is the one that is kept" : "the forces differ"};
+Finding judge_one_direction(const MeasuredCase& m, const PublishedNumbers&) {
+  const bool same = m["apart"] <= kIdentical;
+  return {decide(same, false), same ? "the deepest of equal gradients is the one that is kept" : "the forces differ"};
 }
 
 // ---- C1: over-reduction.
 
 constexpr double kPointsLeft = 1.0, kFewestPoints = 10.0;  // in words in the rule
 
-Measured measure_over_reduction(const Evidence& e) {
+MeasuredValues measure_over_reduction(const Evidence& e) {
   const char *reduced = "over_reduction_reduced", *unreduced = "over_reduction_unreduced";
   const auto a = e.table(reduced, "trajectory.csv"), b = e.table(unreduced, "trajectory.csv");
   double difference = 0.0, largest = 0.0;
@@ -181,17 +172,15 @@ Measured measure_over_reduction(const Evidence& e) {
     difference = std::max(difference, (with - without).norm());
     largest = std::max(largest, without.norm());
   }
-  return {{"",
-           {{"reduced_max", {e.number(reduced, "metrics.rendered_max")}},
-            {"unreduced_max", {e.number(unreduced, "metrics.rendered_max")}},
-            {"force_difference", {difference / largest}}}}};
+  return {{"reduced_max", {e.number(reduced, "metrics.rendered_max")}},
+          {"unreduced_max", {e.number(unreduced, "metrics.rendered_max")}},
+          {"force_difference", {difference / largest}}};
 }
 
-Finding judge_over_reduction(const Measured& measured, const PublishedNumbers& p) {
-  const MeasuredCase& m = measured.at(0);
+Finding judge_over_reduction(const MeasuredCase& m, const PublishedNumbers& p) {
   const bool collapsed = m["reduced_max"] == kPointsLeft && m["unreduced_max"] >= kFewestPoints;
   const bool matters = m["force_difference"] >= threshold(p, "over_reduced");
-  return {decide(collapsed && matters, collapsed), "",
+  return {decide(collapsed && matters, collapsed),
           collapsed ? "each point replaces its similar, shallower predecessor until one is left"
                     : "more than one point is left"};
 }
@@ -208,7 +197,7 @@ Finding judge_turn_into_wall(const Measured& measured, const PublishedNumbers& p
   const MeasuredCase &blind = measured.at(0), &seeing = measured.at(1);
   const double more = blind["velocity_variation"] / seeing["velocity_variation"];
   const bool reverses = blind["force_reversals"] > seeing["force_reversals"];
-  return {decide(more >= threshold(p, "turn") && reverses, more > 1.0), "",
+  return {decide(more >= threshold(p, "turn") && reverses, more > 1.0),
           fmt::format("the tip's velocity varies {:.2g} times as much as with damping that sees the turn", more)};
 }
 
@@ -222,21 +211,19 @@ Finding judge_slow_turn(const Measured& measured, const PublishedNumbers& p) {
 
 // ---- C3: a drill between two parallel faces.
 
-Measured measure_parallel_faces(const Evidence& e) {
+MeasuredValues measure_parallel_faces(const Evidence& e) {
   const Scenario scenario = e.load("parallel_faces").scenario;
   const double depth = e.number("parallel_faces", "metrics.depth_max_m");
-  return {{"",
-           {{"depth", {depth}},
-            {"radius", {make_cylinder(scenario.tool).radius()}},
-            {"force", {e.number("parallel_faces", "metrics.force_max_N")}},
-            {"one_wall_force", {scenario.rendering.stiffness * depth}}}}};
+  return {{"depth", {depth}},
+          {"radius", {make_cylinder(scenario.tool).radius()}},
+          {"force", {e.number("parallel_faces", "metrics.force_max_N")}},
+          {"one_wall_force", {scenario.rendering.stiffness * depth}}};
 }
 
-Finding judge_parallel_faces(const Measured& measured, const PublishedNumbers& p) {
-  const MeasuredCase& m = measured.at(0);
+Finding judge_parallel_faces(const MeasuredCase& m, const PublishedNumbers& p) {
   const bool sinks = m["depth"] >= threshold(p, "sinks_in") * m["radius"];
   const bool weightless = m["force"] < threshold(p, "no_force") * m["one_wall_force"];
-  return {decide(sinks && weightless, weightless), "",
+  return {decide(sinks && weightless, weightless),
           weightless ? "the forces of the two walls cancel" : "the walls push back"};
 }
 
@@ -244,24 +231,24 @@ Finding judge_parallel_faces(const Measured& measured, const PublishedNumbers& p
 
 std::vector<ClaimRule> chapter_4() {
   return {
-      {"G1", measure_median_line, judge_median_line},
-      {"G1b", measure_underestimation, judge_underestimation},
-      {"G2", measure_depth_cost, judge_depth_cost},
+      single_case<measure_median_line, judge_median_line>("G1"),
+      single_case<measure_underestimation, judge_underestimation>("G1b"),
+      single_case<measure_depth_cost, judge_depth_cost>("G2"),
       {"B4",
        [](const Evidence& e) {
          return vibrations_beside_shaping(e, "highest_depth", "task2_rotate_signed_distance",
                                           {"time.duration_s=6", "record.ideal_trajectory=false"});
        },
        judge_highest_depth},
-      {"C8", measure_one_direction, judge_one_direction},
-      {"C1", measure_over_reduction, judge_over_reduction},
+      single_case<measure_one_direction, judge_one_direction>("C8"),
+      single_case<measure_over_reduction, judge_over_reduction>("C1"),
       {"C2", [](const Evidence& e) { return measure_turn_into_wall(e, {}); }, judge_turn_into_wall},
       {"C7",
        [](const Evidence& e) {
          return measure_turn_into_wall(e, {"motion.orientation.tilt_rad.period_s=6", "time.duration_s=6"});
        },
        judge_slow_turn},
-      {"C3", measure_parallel_faces, judge_parallel_faces},
+      single_case<measure_parallel_faces, judge_parallel_faces>("C3"),
   };
 }
 

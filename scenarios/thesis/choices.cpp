@@ -2,12 +2,10 @@
 
 #include <fmt/format.h>
 #include <fnmatch.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 
 #include "results/io/columns.hpp"
-#include "results/io/json_text.hpp"
 #include "scenarios/format/bundled_scenarios.hpp"
 #include "scenarios/format/text_lines.hpp"
 #include "sim/core/hash.hpp"
@@ -27,8 +25,7 @@ OpenChoice choice_of(const Json& json) {
 }
 
 bool concerns(const ChosenField& field, const std::string& scenario) {
-  return std::any_of(field.scenarios.begin(), field.scenarios.end(),
-                     [&scenario](const std::string& pattern) { return names_scenario(pattern, scenario); });
+  return std::ranges::any_of(field.scenarios, [&](const auto& pattern) { return names_scenario(pattern, scenario); });
 }
 
 using Place = std::pair<std::string, Json*>;  ///< a dotted path, and the value there
@@ -123,8 +120,8 @@ std::string Choices::reach(std::span<const std::string> scenarios, const std::st
   std::string reaching;
   for (std::size_t i = 0; i < all_.size(); ++i) {
     const std::string name = "<" + all_[i].id;
-    const bool sets = std::any_of(all_[i].fields.begin(), all_[i].fields.end(), [&](const ChosenField& field) {
-      return std::any_of(scenarios.begin(), scenarios.end(), [&](const auto& s) { return concerns(field, s); });
+    const bool sets = std::ranges::any_of(all_[i].fields, [&](const ChosenField& field) {
+      return std::ranges::any_of(scenarios, [&](const auto& scenario) { return concerns(field, scenario); });
     });
     const bool named = rule.find(name + ">") != std::string::npos || rule.find(name + ".mean") != std::string::npos;
     if (sets || (all_[i].fields.empty() && named)) reaching += texts_[i];

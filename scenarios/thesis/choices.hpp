@@ -1,14 +1,10 @@
 #pragma once
 
-#include <filesystem>
 #include <optional>
 #include <span>
-#include <string>
 #include <utility>
-#include <vector>
 
-#include "scenarios/format/json_file.hpp"
-#include "scenarios/thesis/evidence.hpp"
+#include "scenarios/thesis/claims.hpp"
 
 /// Choices that the thesis leaves open and that the bundled scenarios make: results/reference/choices.json.
 /// choices.schema.json beside it says what each part means and what is allowed; a test checks the file by it.

@@ -1,16 +1,89 @@
 #pragma once
 
 #include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <limits>
 #include <map>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "scenarios/thesis/evidence.hpp"
+#include "scenarios/cases/cases.hpp"
+#include "scenarios/run/run_scenario.hpp"
 
 /// The claims of the thesis, and how each is judged. results/reference/rules.json has their texts, the file of their
 /// chapter what is measured and the rule, results/reference/published.json the published numbers.
 namespace hapbench {
+
+// ---- Published numbers, and what claims are measured by
+
+/// One number of results/reference/published.json. Parts that are not published have these values.
+struct PublishedNumber {
+  double mean = std::numeric_limits<double>::quiet_NaN();
+  double spread = 0.0;  ///< standard deviation or standard error, whichever is published
+  double at_least = -std::numeric_limits<double>::infinity();
+  double at_most = std::numeric_limits<double>::infinity();
+};
+
+/// The published numbers by id.
+class PublishedNumbers {
+ public:
+  /// None.
+  PublishedNumbers() = default;
+  /// Reads the file. Throws InputError.
+  explicit PublishedNumbers(const std::filesystem::path& file);
+  /// Throws InputError for an id that is not there.
+  const PublishedNumber& operator[](const std::string& id) const;
+  /// The text with the numbers that it names by id: <T2.raw> becomes "37.8 ± 17.7", <T3.reduced.bound.at_most> "15".
+  /// A part (mean, spread, at_least or at_most) may have a factor and a format, as <J1.depth.mean*1000:.2f>; without a
+  /// format it is written as `plain` writes it (claims.hpp); no number is "none". Throws InputError for an id that is
+  /// not there.
+  std::string fill(const std::string& text) const;
+  /// Adds a number of ours that rules read as they read published ones: a threshold (choices.hpp).
+  void set(const std::string& id, double value) { numbers_[id].mean = value; }
+
+ private:
+  std::map<std::string, PublishedNumber> numbers_;
+};
+
+/// The sources of the measurements by which claims are judged.
+struct Evidence {
+  PublishedNumbers published;
+  std::filesystem::path directory;  ///< of results, those of a scenario in a subdirectory of its name
+  /// Called with the scenario's name before results are read: runs it, if scenarios are run on demand.
+  std::function<void(const std::string& scenario)> provide;
+  /// Returns the overrides of a bundled scenario, as for load_scenario; empty for none.
+  std::function<std::vector<std::string>(const Scenario&)> overrides = {};
+  /// Called with the name of every bundled scenario that a claim loads by itself; may be empty.
+  std::function<void(const std::string& scenario)> used = {};
+
+  // Results of a scenario. Both throw InputError when the file is missing or none of ours.
+
+  /// A number of summary.json, as in "metrics.force_max_N"; NaN for null.
+  double number(const std::string& scenario, const std::string& path) const;
+  /// Columns of a CSV file, by name; a cell without a number is NaN.
+  std::map<std::string, std::vector<double>> table(const std::string& scenario, const std::string& file) const;
+
+  // Claims that compute something by themselves start from these functions. Both throw InputError.
+
+  /// A bundled scenario with `overrides`, and then with `more` overrides: a single case.
+  Cases scene(const std::string& name, const std::vector<std::string>& more = {}) const;
+  /// Loads it.
+  LoadedScenario load(const std::string& name, const std::vector<std::string>& more = {}) const {
+    return scene(name, more).load(0);
+  }
+  /// Runs it in memory.
+  Result run(const std::string& name, const std::vector<std::string>& more = {}) const {
+    return run_scenario(load(name, more), std::nullopt, false);
+  }
+};
+
+/// Runs a scenario in memory and calls `row` for each row, which has the contacts as they were found. Throws
+/// InputError.
+void for_each_row(const LoadedScenario& loaded, const std::function<void(const StepRecord&)>& row);
+
+// ---- Claims and verdicts
 
 /// The outcome of testing a published statement; the last two are those of findings of ours.
 enum class Verdict { reproduced, in_kind, not_reproduced, refuted, not_reproducible, holds, does_not_hold };
@@ -38,18 +111,21 @@ inline constexpr std::string_view verdict_name(Verdict verdict) {
 }
 
 /// The verdict of a rule for "reproduced" and a weaker one for "reproduced in kind".
-Verdict decide(bool reproduced, bool in_kind);
-
+inline Verdict decide(bool reproduced, bool in_kind) {
+  return reproduced ? Verdict::reproduced : in_kind ? Verdict::in_kind : Verdict::not_reproduced;
+}
 /// The verdict on a finding of ours.
 inline Verdict found(bool holds) {
   return holds ? Verdict::holds : Verdict::does_not_hold;
 }
 
-/// The measurements in one case of a claim, such as a density or an algorithm: numbers by name, several under one name
-/// where each subject has its own.
+/// Numbers by name, several under one name where each subject has its own.
+using MeasuredValues = std::map<std::string, std::vector<double>>;
+
+/// The measurements in one case of a claim, such as a density or an algorithm.
 struct MeasuredCase {
   std::string name;  ///< empty where the claim has a single case
-  std::map<std::string, std::vector<double>> values;
+  MeasuredValues values;
 
   /// The value of a name that has one. Throws std::out_of_range for other names.
   double operator[](const std::string& value) const { return all(value).at(0); }
@@ -62,10 +138,10 @@ using Measured = std::vector<MeasuredCase>;
 /// The result of judging a claim, computed from measured numbers.
 struct Finding {
   Verdict verdict = Verdict::not_reproducible;
-  std::string measured;    ///< the numbers, for people; empty where rules.json has their text
-  std::string why;         ///< one sentence: which part of the rule decided
-  std::string brief = {};  ///< the deciding number, of a main result
-  Measured cases = {};     ///< what was judged
+  std::string why = {};       ///< one sentence: which part of the rule decided
+  std::string measured = {};  ///< the numbers, for people; empty where rules.json has their text
+  std::string brief = {};     ///< the deciding number, of a main result
+  Measured cases = {};        ///< what was judged
 };
 
 /// Takes the deciding numbers from the results of scenarios, or computes them.
@@ -74,7 +150,10 @@ using Measure = Measured (*)(const Evidence& evidence);
 using Judge = Finding (*)(const Measured& measured, const PublishedNumbers& published);
 
 /// Appends an item to an enumeration in words.
-void append_item(std::string& list, std::string_view item, std::string_view separator = "; ");
+inline void append_item(std::string& list, std::string_view item, std::string_view separator = "; ") {
+  if (!list.empty()) list += separator;
+  list += item;
+}
 
 /// A number as the rules of claims write it, with six digits at most: "0.1", "15", "1e-9".
 std::string plain(double number);
@@ -135,23 +214,30 @@ inline constexpr const char* kProposedLaw = "shaped_stiffness";
 
 /// How a claim of rules.json is measured and judged. A constant that is no choice stands in the claim's text, too.
 struct ClaimRule {
-  const char* id;
-  Measure measure;
-  Judge judge;
+  const char* id = nullptr;
+  Measure measure = nullptr;
+  Judge judge = nullptr;
 };
 
+/// The rule of a claim with a single case.
+template <MeasuredValues (*kMeasure)(const Evidence&), Finding (*kJudge)(const MeasuredCase&, const PublishedNumbers&)>
+ClaimRule single_case(const char* id) {
+  return {id,
+          [](const Evidence& e) -> Measured {
+            return {{"", kMeasure(e)}};
+          },
+          [](const Measured& measured, const PublishedNumbers& p) { return kJudge(measured.at(0), p); }};
+}
+
 // By chapter.
-std::vector<ClaimRule> chapter_1_penetration();           ///< V, S1, B1b, B5
-std::vector<ClaimRule> chapter_3_reduction();             ///< T1 to T3
-std::vector<ClaimRule> chapter_3_cost();                  ///< T4, T5, P2, F3
-std::vector<ClaimRule> chapter_3_stiffness_ratios();      ///< R
-std::vector<ClaimRule> chapter_3_force_limit();           ///< L
-std::vector<ClaimRule> chapter_3_ideal_trajectory();      ///< J, C5, T2b
-std::vector<ClaimRule> chapter_4();                       ///< G, B4, C1 to C3, C7, C8
-std::vector<ClaimRule> appendix_a();                      ///< A
-std::vector<ClaimRule> appendix_b_original_algorithm();   ///< B1 to B3
-std::vector<ClaimRule> appendix_c_proposed_algorithm();   ///< P1, C6
-std::vector<ClaimRule> appendix_d_experiments();          ///< D
-std::vector<ClaimRule> appendix_f_optional_algorithms();  ///< F
+std::vector<ClaimRule> chapter_1_penetration();       ///< V, S1, B1b, B5
+std::vector<ClaimRule> chapter_3_tasks();             ///< T1 to T3, T2b, J, C5
+std::vector<ClaimRule> chapter_3_cost();              ///< T4, T5, P2, F3
+std::vector<ClaimRule> chapter_3_stiffness_ratios();  ///< R
+std::vector<ClaimRule> chapter_3_force_limit();       ///< L
+std::vector<ClaimRule> chapter_4();                   ///< G, B4, C1 to C3, C7, C8
+std::vector<ClaimRule> appendix_a();                  ///< A
+std::vector<ClaimRule> appendix_b_c_f();              ///< B1 to B3, P1, C6, F1, F2
+std::vector<ClaimRule> appendix_d_experiments();      ///< D
 
 }  // namespace hapbench

@@ -2,12 +2,10 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
 
 namespace hapbench {
 namespace {
@@ -74,6 +72,12 @@ std::string chapter_bars(const Json& claims) {
   return text;
 }
 
+/// The seconds that it takes to judge a claim: whole ones.
+std::string seconds_text(const Json& claim) {
+  const double seconds = claim.at("seconds").get<double>();
+  return seconds < 1.0 ? "< 1" : fmt::format("{:.0f}", seconds);
+}
+
 std::string main_results(const Json& claims) {
   std::string text =
       "| claim | place | published | ours | verdict | command | seconds |\n|---|---|---|---|---|---|---|\n";
@@ -91,7 +95,7 @@ constexpr const char* kRowHeading =
     "| id | claim | published | ours | verdict | sureness | command | seconds |\n|---|---|---|---|---|---|---|---|\n";
 
 std::string row_of(const Json& claim) {
-  constexpr std::size_t kClaim = 90, kPublished = 50;
+  constexpr std::size_t kClaim = 90, kPublished = 50, kLongestRow = 300;  // characters; `describe ID` says the rest
   const std::string before =
       fmt::format("| {} | {} | {} | ", text_at(claim, "id"), shortened(text_at(claim, "claim"), kClaim),
                   shortened(text_at(claim, "published"), kPublished));
@@ -117,6 +121,26 @@ Json cases_json(const Measured& cases) {
     for (const auto& [name, all] : m.values) values[name] = all.size() == 1 ? Json(all.front()) : Json(all);
   }
   return json;
+}
+
+/// How many claims have which verdict, and how many verdicts are steady.
+std::string headline_of(const Json& claims) {
+  std::map<Verdict, std::size_t> verdicts;
+  std::map<std::string, std::size_t> sure;
+  std::size_t all = 0;
+  for (const Json& claim : claims) {
+    if (is_ours(claim)) continue;
+    ++all;
+    ++verdicts[verdict_of(claim)];
+    ++sure[text_at(claim, "sureness")];
+  }
+  std::string counts;
+  for (const auto& [verdict, count] : verdicts)
+    append_item(counts, fmt::format("{} {}", count, verdict_name(verdict)), ", ");
+  return fmt::format(
+      "{} claims of the thesis: {}. {} of the verdicts are steady (more than half of the samples of the choices on "
+      "record have them), {} fragile, {} not sampled.",
+      all, counts, sure[kSteady], sure[kFragile], sure[kNotSampled]);
 }
 
 }  // namespace
@@ -166,31 +190,7 @@ Json ledger_json(const std::vector<JudgedClaim>& judged, const PublishedNumbers&
                        {"ours", j.finding.brief}};
     }
   }
-  return {{"headline", ledger_headline(claims)}, {"claims", std::move(claims)}};
-}
-
-std::string seconds_text(const Json& claim) {
-  const double seconds = claim.at("seconds").get<double>();
-  return seconds < 1.0 ? "< 1" : fmt::format("{:.0f}", seconds);
-}
-
-std::string ledger_headline(const Json& claims) {
-  std::map<Verdict, std::size_t> verdicts;
-  std::map<std::string, std::size_t> sure;
-  std::size_t all = 0;
-  for (const Json& claim : claims) {
-    if (is_ours(claim)) continue;
-    ++all;
-    ++verdicts[verdict_of(claim)];
-    ++sure[text_at(claim, "sureness")];
-  }
-  std::string counts;
-  for (const auto& [verdict, count] : verdicts)
-    append_item(counts, fmt::format("{} {}", count, verdict_name(verdict)), ", ");
-  return fmt::format(
-      "{} claims of the thesis: {}. {} of the verdicts are steady (more than half of the samples of the choices on "
-      "record have them), {} fragile, {} not sampled.",
-      all, counts, sure[kSteady], sure[kFragile], sure[kNotSampled]);
+  return {{"headline", headline_of(claims)}, {"claims", std::move(claims)}};
 }
 
 std::string ledger_markdown(const Json& ledger) {

@@ -1,10 +1,8 @@
 #include "scenarios/thesis/measurements.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "results/io/columns.hpp"
 #include "sim/core/math.hpp"
 
 namespace hapbench {
@@ -16,12 +14,6 @@ Scenario drill_in_hole(Scenario scenario) {
   scenario.time.steps = std::min(scenario.time.steps, rows);
   scenario.record = {};
   return scenario;
-}
-
-ContactBuffer copy_of(const ContactBuffer& contacts) {
-  ContactBuffer copy(contacts.size());
-  copy.assign(contacts);
-  return copy;
 }
 
 std::vector<ContactBuffer> contact_sets(const Scenario& scenario, std::uint64_t stride, Points points) {
@@ -36,15 +28,6 @@ std::vector<ContactBuffer> contact_sets(const Scenario& scenario, std::uint64_t 
     if (row.step % stride == 0 && !row.rendered->empty()) sets.push_back(copy_of(*row.rendered));
   });
   return sets;
-}
-
-ContactBuffer largest_of(const std::vector<ContactBuffer>& sets) {
-  return *std::max_element(sets.begin(), sets.end(),
-                           [](const ContactBuffer& a, const ContactBuffer& b) { return a.size() < b.size(); });
-}
-
-std::size_t largest_size(const std::vector<ContactBuffer>& sets) {
-  return sets.empty() ? 0 : largest_of(sets).size();
 }
 
 MeasuredCase vibration(const std::string& name, const Result& run) {
@@ -76,10 +59,6 @@ bool vibrates_much_more(const MeasuredCase& a, const MeasuredCase& b, const Publ
   const bool moves = a["velocity_variation"] >= more * b["velocity_variation"] &&
                      a["vibration_power"] >= more * more * b["vibration_power"];
   return moves || (vibrates_more(a, b) && a["force_reversals"] >= more * std::max(1.0, b["force_reversals"]));
-}
-
-bool vibrates_more(const MeasuredCase& a, const MeasuredCase& b) {
-  return a["velocity_variation"] > b["velocity_variation"] && a["vibration_power"] > b["vibration_power"];
 }
 
 std::optional<double> damping_ratio_of_swings(std::span<const double> x) {

@@ -1,17 +1,12 @@
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <cstdint>
 #include <optional>
-#include <span>
-#include <string>
-#include <vector>
 
 #include "algorithms/registry.hpp"
-#include "results/summary/summary.hpp"
-#include "scenarios/format/scenario.hpp"
 #include "scenarios/thesis/claims.hpp"
-#include "sim/contact/contact_buffer.hpp"
 #include "sim/tool/cylinder.hpp"
 
 /// Measurements and scenes that several claims share.
@@ -55,16 +50,24 @@ Scenario drill_in_hole(Scenario scenario);
 enum class Points { colliding, rendered };
 
 /// A buffer of just the size of these contacts.
-ContactBuffer copy_of(const ContactBuffer& contacts);
+inline ContactBuffer copy_of(const ContactBuffer& contacts) {
+  ContactBuffer copy(contacts.size());
+  copy.assign(contacts);
+  return copy;
+}
 
 /// The points of every `stride`-th row of drill_in_hole(scenario), with depth and gradient; rows without contact are
 /// left out.
 std::vector<ContactBuffer> contact_sets(const Scenario& scenario, std::uint64_t stride,
                                         Points points = Points::colliding);
 
-/// The largest set, and its size.
-ContactBuffer largest_of(const std::vector<ContactBuffer>& sets);
-std::size_t largest_size(const std::vector<ContactBuffer>& sets);
+/// The largest set, of at least one, and its size, 0 without any.
+inline ContactBuffer largest_of(const std::vector<ContactBuffer>& sets) {
+  return *std::ranges::max_element(sets, {}, &ContactBuffer::size);
+}
+inline std::size_t largest_size(const std::vector<ContactBuffer>& sets) {
+  return sets.empty() ? 0 : largest_of(sets).size();
+}
 
 /// Seconds of `work` with a copy of each set, one after the other, and of copying them.
 template <class Work>
@@ -90,7 +93,9 @@ Measured vibrations_beside_shaping(const Evidence& e, const std::string& law, co
 /// of it times the power; or more of both, and so many times the reversals of the force, which then turns to and fro.
 bool vibrates_much_more(const MeasuredCase& a, const MeasuredCase& b, const PublishedNumbers& p);
 /// True if `a` has more of both.
-bool vibrates_more(const MeasuredCase& a, const MeasuredCase& b);
+inline bool vibrates_more(const MeasuredCase& a, const MeasuredCase& b) {
+  return a["velocity_variation"] > b["velocity_variation"] && a["vibration_power"] > b["vibration_power"];
+}
 
 /// The damping ratio of a swing about zero [m], a value for each row, from the ratio q of successive extremes,
 /// zeta = -ln q / sqrt(pi^2 + ln^2 q). An extreme within a micrometre of zero ends the decay: rounding and grazing

@@ -2,17 +2,12 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <memory>
 #include <numeric>
 
-#include "results/io/atomic_file.hpp"
 #include "scenarios/format/text_lines.hpp"
-#include "scenarios/run/run_scenario.hpp"
 #include "sim/core/hash.hpp"
 #include "sim/core/random.hpp"
 
@@ -34,17 +29,14 @@ std::optional<DecidingInput> largest_index(const std::vector<std::vector<std::si
 
 /// A cell of a choice's column.
 std::string checked(const OpenChoice& choice, std::string_view cell, const fs::path& file, std::size_t line) {
-  if (!choice.range) {
-    if (std::find(choice.options.begin(), choice.options.end(), cell) == choice.options.end())
-      fail_in_line(file, line,
-                   fmt::format("{}: got \"{}\"; allowed: {}", choice.id, cell, quoted_list(choice.options)));
-  } else if (const auto number = finite_number(cell);
-             !number || *number < choice.range->first || *number > choice.range->second) {
-    fail_in_line(file, line,
-                 fmt::format("{}: got \"{}\"; allowed: a number of the range {} ... {}", choice.id, cell,
-                             choice.range->first, choice.range->second));
-  }
-  return std::string(cell);
+  const auto& range = choice.range;
+  const auto number = finite_number(cell);
+  const bool is_allowed = range ? number && *number >= range->first && *number <= range->second
+                                : std::ranges::find(choice.options, cell) != choice.options.end();
+  if (is_allowed) return std::string(cell);
+  const std::string allowed =
+      range ? fmt::format("a number of the range {} ... {}", range->first, range->second) : quoted_list(choice.options);
+  fail_in_line(file, line, fmt::format("{}: got \"{}\"; allowed: {}", choice.id, cell, allowed));
 }
 
 /// Runs a scenario for its results. Says what keeps them from being judged by; empty for nothing.
@@ -52,11 +44,10 @@ std::string problem_of_run(const Evidence& evidence, const std::string& name) {
   try {
     const LoadedScenario loaded = evidence.load(name);
     const Result run = run_scenario(loaded, evidence.directory / name, false);
-    const std::vector<Outcome>& expected = loaded.scenario.expect.outcomes;
     // A subject who loses the drill misses the remaining targets, which is a result.
     const bool diverged = run.end.outcome == Outcome::diverges &&
                           !std::holds_alternative<TrackingHandFields>(loaded.scenario.hand) &&
-                          std::find(expected.begin(), expected.end(), Outcome::diverges) == expected.end();
+                          !outcome_is_expected(loaded.scenario.expect, Outcome::diverges);
     return diverged ? name + ": diverged" : "";
   } catch (const InputError& error) {
     return error.what();
@@ -130,8 +121,7 @@ Json entry_of(const Readings& readings, const std::vector<ReadingVerdicts>& judg
 std::vector<std::size_t> equal_count_bins(std::span<const double> values, std::size_t bins) {
   std::vector<std::size_t> order(values.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(),
-                   [values](std::size_t a, std::size_t b) { return values[a] < values[b]; });
+  std::ranges::stable_sort(order, {}, [values](std::size_t i) { return values[i]; });
   std::vector<std::size_t> bin(values.size());
   for (std::size_t rank = 0; rank < order.size(); ++rank) bin[order[rank]] = rank * bins / order.size();
   return bin;

@@ -1,16 +1,8 @@
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
-#include <filesystem>
-#include <optional>
-#include <span>
-#include <string>
-#include <vector>
 
-#include "scenarios/cases/cases.hpp"
 #include "scenarios/thesis/choices.hpp"
-#include "scenarios/thesis/claims.hpp"
 
 /// Robustness of the verdicts: the claims judged again under other readings of what the thesis leaves open, and the
 /// choices that decide. A reading has one value for each choice on record. The values on record are the ledger's.

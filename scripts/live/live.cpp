@@ -45,8 +45,7 @@ nlohmann::json list(const Vec3& v) {
   return {v.x(), v.y(), v.z()};
 }
 
-/// Each row is sent to the page as so many numbers: time, five vectors, depth and number of contacts. ROW in
-/// page/engine.js has their places.
+/// Numbers of a row for the page: time, five vectors, depth, number of contacts. ROW in page/engine.js has the places.
 constexpr std::size_t kRowNumbers = 1 + 5 * 3 + 2;
 
 class Session final : public Observer {
@@ -197,8 +196,7 @@ EXPORTED(allocate) void* page_allocate(std::uint32_t size) {
   return std::malloc(size);
 }
 
-/// Makes the run of a file or bundled scenario, which the pointer leads or the scenario itself; `overrides` are lines
-/// "path=value" as for --set.
+/// Makes the run of a file or bundled scenario, perhaps led by the pointer; `overrides` are lines as for --set.
 EXPORTED(load) void page_load(const char* name, const char* overrides, std::uint32_t is_led) {
   std::vector<std::string> given;
   LineReader lines(overrides);

@@ -38,7 +38,7 @@ class ContactQuery {
   /// Upper bound of the number of contacts of a query.
   virtual std::size_t capacity() const noexcept = 0;
   /// Returns to t = 0, counters included.
-  virtual void reset() noexcept = 0;
+  virtual void reset() noexcept { work_ = {}; }
 
   const SearchWork& work() const noexcept { return work_; }
 
@@ -56,7 +56,6 @@ class ShellQuery final : public ContactQuery {
 
   void contacts_at(const ToolPose& pose, ContactBuffer& contacts) noexcept override;
   std::size_t capacity() const noexcept override { return shell_->size(); }
-  void reset() noexcept override { work_ = {}; }
 
  private:
   const PointShell* shell_;
@@ -81,16 +80,17 @@ class ContactSource {
   virtual std::size_t capacity() const noexcept = 0;
   /// Hands over the number of the present row, which changes before the first query of each row, to sources whose
   /// answer depends on more than the pose. Called once, before the first step, unless no Simulation steps the source.
-  virtual void follow(const std::uint64_t* row) { static_cast<void>(row); }
+  virtual void follow(const std::uint64_t* /*row*/) {}
   /// Returns to t = 0, counters included.
-  virtual void reset() noexcept = 0;
-  virtual const SearchWork& work() const noexcept = 0;
+  virtual void reset() noexcept { work_ = {}; }
+  virtual const SearchWork& work() const noexcept { return work_; }
   /// Description of a failure in external code since the last reset, which ends the run; null if there was none. Not
   /// virtual, because every step reads it.
   const char* fault() const noexcept { return fault_; }
 
  protected:
   const char* fault_ = nullptr;
+  SearchWork work_;  ///< of a source that has no search
 };
 
 /// Springs attached to the tool's position, all with natural length at the origin (thesis A.2). Spring j has the unit
@@ -111,12 +111,9 @@ class SpringSource final : public ContactSource {
 
   void contacts_at(const ToolPose& pose, ContactBuffer& contacts) noexcept override;
   std::size_t capacity() const noexcept override { return springs_->gradients.size(); }
-  void reset() noexcept override { work_ = {}; }
-  const SearchWork& work() const noexcept override { return work_; }
 
  private:
   std::shared_ptr<const SpringSet> springs_;
-  SearchWork work_;
 };
 
 /// Appends the contact of one spring at the tool's position. Precondition: there is room.
@@ -150,15 +147,12 @@ class TraceSource final : public ContactSource {
   void contacts_at(const ToolPose& pose, ContactBuffer& contacts) noexcept override;
   std::size_t capacity() const noexcept override { return capacity_; }
   void follow(const std::uint64_t* row) override { row_ = row; }
-  void reset() noexcept override { work_ = {}; }
-  const SearchWork& work() const noexcept override { return work_; }
 
  private:
   std::shared_ptr<const ContactTrace> trace_;
   double dt_;
   std::size_t capacity_;
-  const std::uint64_t* row_ = nullptr;
-  SearchWork work_;  ///< its queries count the rows where no Simulation does
+  const std::uint64_t* row_ = nullptr;  ///< null where no Simulation counts rows; then the queries do
 };
 
 }  // namespace hapbench

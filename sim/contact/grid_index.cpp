@@ -17,7 +17,7 @@ constexpr double kFewestCells = 4096.0;
 
 /// Distance between neighbours if the points were spread evenly over the faces of their box [m].
 double even_spacing(const Box& bounds, std::size_t n) {
-  const Vec3 extent = bounds.max - bounds.min;
+  const Vec3 extent = bounds.size();
   const double points = static_cast<double>(std::max<std::size_t>(1, n));
   const double area = 2.0 * (extent.x() * extent.y() + extent.y() * extent.z() + extent.z() * extent.x());
   return area > 0.0 ? std::sqrt(area / points) : extent.maxCoeff() / points;
@@ -53,16 +53,13 @@ void sum_windows(std::uint32_t* first, std::size_t count, std::size_t stride, st
 
 }  // namespace
 
-GridCells::GridCells(const Box& bounds, std::size_t points, double spacing)
-    : GridCells(bounds, points, Edge{kSpacingsPerCell * (spacing > 0.0 ? spacing : even_spacing(bounds, points))}) {}
-
-GridCells GridCells::of_edge(const Box& bounds, std::size_t points, double edge) {
-  return {bounds, points, Edge{edge}};
+GridCells GridCells::for_spacing(const Box& bounds, std::size_t points, double spacing) {
+  return {bounds, points, kSpacingsPerCell * (spacing > 0.0 ? spacing : even_spacing(bounds, points))};
 }
 
-GridCells::GridCells(const Box& bounds, std::size_t points, Edge edge)
-    : size_(edge.edge > 0.0 ? edge.edge : 1.0), origin_(bounds.min) {
-  const Vec3 extent = bounds.max - bounds.min;
+GridCells::GridCells(const Box& bounds, std::size_t points, double edge)
+    : size_(edge > 0.0 ? edge : 1.0), origin_(bounds.min) {
+  const Vec3 extent = bounds.size();
   const double number = static_cast<double>(std::max<std::size_t>(1, points));
   const auto cells = [&](int axis) { return std::floor(extent[axis] / size_) + 1.0; };
   while (cells(0) * cells(1) * cells(2) > std::max(kFewestCells, kCellsPerPoint * number)) size_ *= 1.25;
@@ -89,7 +86,7 @@ GridCells::Range GridCells::range(double low, double high, int axis) const {
 
 GridIndex::GridIndex(const PointShell& shell)
     : bounds_(shell.bounds()),
-      cells_(bounds_, shell.size(), shell.cell_size()),
+      cells_(GridCells::for_spacing(bounds_, shell.size(), shell.cell_size())),
       x_(shell.padded_size(), PointShell::kFarAway),
       y_(shell.padded_size(), PointShell::kFarAway),
       z_(shell.padded_size(), PointShell::kFarAway),
@@ -109,7 +106,7 @@ GridIndex::GridIndex(const PointShell& shell)
 }
 
 std::vector<std::uint32_t> grid_order(const std::vector<SurfacePoint>& points, double cell_size) {
-  const GridCells cells(bounds_of(points), points.size(), cell_size);
+  const GridCells cells = GridCells::for_spacing(bounds_of(points), points.size(), cell_size);
   return sorted_by_cell(cells, points.size(), [&](std::size_t i) { return points[i].position; }).order;
 }
 
@@ -157,7 +154,7 @@ std::size_t GridScan::list_hits(std::uint32_t* indices) const {
 std::size_t most_points_in(const PointShell& shell, const ToolShape::Cover& cover) {
   if (shell.size() == 0) return 0;
   // Slightly larger than the radius, so that an interval as long as the ball's diameter meets at most three cells.
-  const GridCells cells = GridCells::of_edge(shell.bounds(), shell.size(), cover.radius * (1.0 + 1e-6));
+  const GridCells cells(shell.bounds(), shell.size(), cover.radius * (1.0 + 1e-6));
   const auto window = static_cast<std::size_t>(std::floor(2.0 * cover.radius / cells.size())) + 2;
   std::vector<std::uint32_t> points(cells.count());
   for (std::size_t i = 0; i < shell.size(); ++i) ++points[cells.cell_of(shell.point(i).position)];

@@ -15,10 +15,10 @@ namespace hapbench {
 /// by 0.1 mm). Their number is at most a few times the number of points, whatever the extent.
 class GridCells {
  public:
-  /// `spacing` of neighbouring points [m]; 0 if it is unknown.
-  GridCells(const Box& bounds, std::size_t points, double spacing);
   /// Cells of the given edge [m], or larger ones if they would be too many.
-  static GridCells of_edge(const Box& bounds, std::size_t points, double edge);
+  GridCells(const Box& bounds, std::size_t points, double edge);
+  /// `spacing` of neighbouring points [m]; 0 if it is unknown.
+  static GridCells for_spacing(const Box& bounds, std::size_t points, double spacing);
 
   struct Range {
     std::size_t first = 1, last = 0;
@@ -34,11 +34,6 @@ class GridCells {
   double size() const { return size_; }
 
  private:
-  struct Edge {
-    double edge;
-  };
-  GridCells(const Box& bounds, std::size_t points, Edge edge);
-
   double size_;
   Vec3 origin_;
   std::size_t count_[3];

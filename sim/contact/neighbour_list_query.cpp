@@ -33,9 +33,6 @@ NeighbourListQuery::NeighbourListQuery(const PointShell& shell, const ToolShape&
       scan_(grid_),
       list_(simd::padded(capacity_) + simd::lanes) {}
 
-NeighbourListQuery::List::List(std::size_t room)
-    : index(room), x(room), y(room), z(room), nx(room), ny(room), nz(room) {}
-
 void NeighbourListQuery::reset() noexcept {
   work_ = {};
   has_list_ = false;
@@ -84,11 +81,7 @@ bool NeighbourListQuery::is_empty(const ToolPose& pose, double skin) noexcept {
 /// Fills the list with the points within `skin` of the tool, and some just beyond.
 void NeighbourListQuery::collect(const ToolPose& pose, double skin) noexcept {
   mark_near(pose, skin);
-  if (grid_.keeps_order()) {
-    take_marked();
-  } else {
-    take_marked_sorted();
-  }
+  grid_.keeps_order() ? take_marked() : take_marked_sorted();
   for (std::size_t k = list_size_; k < simd::padded(list_size_); ++k)
     list_.x[k] = list_.y[k] = list_.z[k] = PointShell::kFarAway;
 }
@@ -105,13 +98,8 @@ void NeighbourListQuery::take_marked() noexcept {
 void NeighbourListQuery::take_marked_sorted() noexcept {
   list_size_ = scan_.list_hits(list_.index.data());
   for (std::size_t k = 0; k < list_size_; ++k) {
-    const std::uint32_t i = list_.index[k];
-    list_.x[k] = shell_->x()[i];
-    list_.y[k] = shell_->y()[i];
-    list_.z[k] = shell_->z()[i];
-    list_.nx[k] = shell_->nx()[i];
-    list_.ny[k] = shell_->ny()[i];
-    list_.nz[k] = shell_->nz()[i];
+    const auto [position, normal] = shell_->point(list_.index[k]);
+    list_.set(k, position, normal);
   }
 }
 

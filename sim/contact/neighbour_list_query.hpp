@@ -49,10 +49,11 @@ class NeighbourListQuery final : public ContactQuery {
   double skin_ = 0.0;
   std::size_t list_size_ = 0;
   /// Has room for one pack more, because searches write whole packs behind the last point.
-  struct List {
-    explicit List(std::size_t room);
+  struct List : ShellColumns {
+    explicit List(std::size_t room) : ShellColumns(room), index(room) {
+      for (std::size_t k = 0; k < room; ++k) set(k, Vec3::Zero(), Vec3::Zero());
+    }
     std::vector<std::uint32_t> index;
-    AlignedDoubles x, y, z, nx, ny, nz;
   };
   List list_;
 };

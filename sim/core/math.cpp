@@ -206,24 +206,13 @@ SineCosine sine_cosine(double x) noexcept {
   if (!std::isfinite(x)) return {kNaN, kNaN};
   const Reduced r = reduced(x);
   const double sine = sine_of(r.rest), cosine = cosine_of(r.rest);
-  switch (r.quadrant) {
-    case 0:
-      return {sine, cosine};
-    case 1:
-      return {cosine, -sine};
-    case 2:
-      return {-sine, -cosine};
-    default:
-      return {-cosine, sine};
-  }
+  const SineCosine turned = r.quadrant % 2 == 0 ? SineCosine{sine, cosine} : SineCosine{cosine, -sine};
+  return r.quadrant < 2 ? turned : SineCosine{-turned.sine, -turned.cosine};
 }
 
 double tan(double x) noexcept {
-  if (x == 0.0) return x;
-  if (!std::isfinite(x)) return kNaN;
-  const Reduced r = reduced(x);
-  const double sine = sine_of(r.rest), cosine = cosine_of(r.rest);
-  return r.quadrant % 2 == 0 ? sine / cosine : -cosine / sine;
+  const auto [sine, cosine] = sine_cosine(x);
+  return sine / cosine;
 }
 
 double atan2(double y, double x) noexcept {

@@ -1,7 +1,6 @@
 #pragma once
 
-/// Loops over indices on all processors, by oneTBB; one after the other without threads, as in a page's
-/// worker.
+/// Loops over indices on all processors, by oneTBB; one after the other without threads, as in a page's worker.
 #ifdef __wasm__
 #include <functional>
 #else

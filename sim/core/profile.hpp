@@ -11,11 +11,17 @@ class Profile {
  public:
   struct Constant {
     double value = 0.0;
+
+    double at(double) const noexcept { return value; }
+    double rate(double) const noexcept { return 0.0; }
   };
   /// start + rate_per_s * t
   struct Ramp {
     double start = 0.0;
     double rate_per_s = 0.0;
+
+    double at(double t) const noexcept { return start + rate_per_s * t; }
+    double rate(double) const noexcept { return rate_per_s; }
   };
   /// mean + amplitude * sin(2 pi t / period_s + phase_rad)
   struct Sine {
@@ -23,12 +29,18 @@ class Profile {
     double amplitude = 0.0;
     double period_s = 1.0;
     double phase_rad = 0.0;
+
+    double at(double t) const noexcept;
+    double rate(double t) const noexcept;
   };
   enum class Interpolation { linear, cosine };
   /// (t [s], value) with strictly increasing times, held constant outside; `cosine` starts and ends each leg at rest.
   struct Waypoints {
     std::vector<std::pair<double, double>> points;
     Interpolation interpolation = Interpolation::linear;
+
+    double at(double t) const noexcept;
+    double rate(double t) const noexcept;
   };
   using Shape = std::variant<Constant, Ramp, Sine, Waypoints>;
 

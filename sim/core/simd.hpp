@@ -64,9 +64,6 @@ HAPBENCH_INLINE Pack sqrt(const Pack& a) {
 HAPBENCH_INLINE bool any(const Mask& m) {
   return std::experimental::any_of(m);
 }
-HAPBENCH_INLINE bool lane(const Mask& m, std::size_t i) {
-  return m[i];
-}
 
 #else
 
@@ -134,9 +131,6 @@ inline bool any(const Mask& m) {
   for (bool b : m.v) r |= b;
   return r;
 }
-inline bool lane(const Mask& m, std::size_t i) {
-  return m.v[i];
-}
 
 #endif
 
@@ -176,13 +170,6 @@ HAPBENCH_INLINE Mask lanes_between(std::size_t first, std::size_t last) {
   alignas(64) static constexpr double kNumber[lanes] = {0, 1, 2, 3, 4, 5, 6, 7};
   const Pack number = load(kNumber);
   return number >= Pack(static_cast<double>(first)) && number < Pack(static_cast<double>(last));
-}
-
-/// The lowest lane that is set. Precondition: any(m).
-inline std::size_t first(const Mask& m) {
-  std::size_t i = 0;
-  while (!lane(m, i)) ++i;
-  return i;
 }
 
 HAPBENCH_INLINE Pack abs(const Pack& a) {

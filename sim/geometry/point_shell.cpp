@@ -20,10 +20,7 @@ ShellColumns columns_of(const std::vector<SurfacePoint>& points) {
 Box bounds_of(const std::vector<SurfacePoint>& points) {
   if (points.empty()) return {};
   Box box{points[0].position, points[0].position};
-  for (const SurfacePoint& point : points) {
-    box.min = box.min.cwiseMin(point.position);
-    box.max = box.max.cwiseMax(point.position);
-  }
+  for (const SurfacePoint& point : points) box.add(point.position);
   return box;
 }
 
@@ -43,10 +40,6 @@ PointShell::PointShell(ShellColumns columns, std::size_t size, const Box& bounds
 PointShell::PointShell(const std::vector<SurfacePoint>& points, double cell_size, std::vector<std::uint32_t> cells)
     : PointShell(columns_of(points), points.size(), bounds_of(points), cell_size) {
   cells_ = std::move(cells);
-}
-
-SurfacePoint PointShell::point(std::size_t i) const {
-  return {{x()[i], y()[i], z()[i]}, {nx()[i], ny()[i], nz()[i]}};
 }
 
 std::vector<SurfacePoint> PointShell::points() const {

@@ -67,7 +67,7 @@ class PointShell {
   const double* ny() const { return columns_.ny.data(); }
   const double* nz() const { return columns_.nz.data(); }
 
-  SurfacePoint point(std::size_t i) const;
+  SurfacePoint point(std::size_t i) const { return {{x()[i], y()[i], z()[i]}, {nx()[i], ny()[i], nz()[i]}}; }
   std::vector<SurfacePoint> points() const;
 
   /// Number of each point's grid cell, 0 … cells - 1 in order of first appearance. The cells are those the shell was

@@ -17,8 +17,7 @@ Vec3 Solid::gradient(const Vec3& point, double step) const noexcept {
     const Vec3 aside = step * Vec3::Unit(k);
     gradient[k] = at(point + aside).value - at(point - aside).value;
   }
-  const double length = gradient.norm();
-  return length > 0.0 ? Vec3(gradient / length) : Vec3(Vec3::UnitZ());
+  return unit_or(gradient, Vec3::UnitZ());
 }
 
 namespace {
@@ -86,15 +85,11 @@ namespace {
 
 class MeshSolid final : public Solid {
  public:
-  MeshSolid(WeldedSurface surface, const Box& box, bool is_closed)
-      : Solid(box), surface_(std::move(surface)), tree_(surface_.vertices, surface_.triangles) {
+  MeshSolid(TriangleSoup surface, bool is_closed)
+      : Solid(box_of(surface.vertices)), surface_(std::move(surface)), tree_(surface_.vertices, surface_.triangles) {
     if (is_closed) return;
-    const std::vector<Side> sides = sides_by_edge();
-    for_each_edge(sides, [this](std::span<const Side> edge) {
-      int sum = 0;
-      for (const Side& side : edge) sum += side.direction;
-      closed_ = closed_ && sum == 0;
-    });
+    const std::vector<TriangleSide> sides = sides_by_edge(surface_.triangles);
+    for_each_edge(sides, [this](std::span<const TriangleSide> edge) { closed_ = closed_ && is_balanced(edge); });
     if (closed_) return;
     set_region({Vec3::Constant(-kFar), Vec3::Constant(kFar)});
     find_borders(sides);
@@ -137,43 +132,16 @@ class MeshSolid final : public Solid {
     return (q.array() < region().min.array()).any() || (q.array() > region().max.array()).any();
   }
 
-  /// A side of a triangle.
-  struct Side {
-    std::uint32_t low, high;  ///< its vertices
-    std::uint32_t triangle, corner;
-    int direction;  ///< 1 from low to high
-  };
-  std::vector<Side> sides_by_edge() const {
-    std::vector<Side> sides;
-    sides.reserve(3 * surface_.triangles.size());
-    for (std::uint32_t t = 0; t < surface_.triangles.size(); ++t) {
-      for (std::uint32_t k = 0; k < 3; ++k) {
-        const std::uint32_t a = surface_.triangles[t][k], b = surface_.triangles[t][(k + 1) % 3];
-        sides.push_back({std::min(a, b), std::max(a, b), t, k, a < b ? 1 : -1});
-      }
-    }
-    std::sort(sides.begin(), sides.end(),
-              [](const Side& a, const Side& b) { return std::pair(a.low, a.high) < std::pair(b.low, b.high); });
-    return sides;
-  }
-  template <class Use>
-  static void for_each_edge(std::span<const Side> sides, const Use& use) {
-    for (std::size_t i = 0, end = 0; i < sides.size(); i = end) {
-      for (end = i; end < sides.size() && sides[end].low == sides[i].low && sides[end].high == sides[i].high;) ++end;
-      use(sides.subspan(i, end - i));
-    }
-  }
-
   /// Finds the edges that only one triangle has, and the normals of all edges and vertices.
-  void find_borders(std::span<const Side> sides) {
+  void find_borders(std::span<const TriangleSide> sides) {
     vertex_normals_.assign(surface_.vertices.size(), Vec3::Zero());
     border_vertices_.assign(surface_.vertices.size(), false);
     edge_normals_.resize(surface_.triangles.size());
     at_border_.assign(surface_.triangles.size(), 0);
-    for_each_edge(sides, [this](std::span<const Side> edge) {
+    for_each_edge(sides, [this](std::span<const TriangleSide> edge) {
       Vec3 n = Vec3::Zero();
-      for (const Side& side : edge) n += normal(side.triangle);
-      for (const Side& side : edge) edge_normals_[side.triangle][side.corner] = n;
+      for (const TriangleSide& side : edge) n += normal(side.triangle);
+      for (const TriangleSide& side : edge) edge_normals_[side.triangle][side.corner] = n;
       if (edge.size() > 1) return;
       at_border_[edge[0].triangle] |= static_cast<std::uint8_t>(1u << edge[0].corner);
       border_vertices_[edge[0].low] = border_vertices_[edge[0].high] = true;
@@ -195,18 +163,10 @@ class MeshSolid final : public Solid {
   /// normal there, weighted by angles (J. A. Baerentzen and H. Aanaes, IEEE Trans. Vis. Comput. Graph. 11, 2005).
   Feature feature(const TriangleTree::Nearest& nearest) const {
     const std::size_t t = nearest.triangle;
-    switch (nearest.corners) {
-      case 7u:
-        return {normal(t), false};
-      case 3u:
-        return edge(t, 0);
-      case 6u:
-        return edge(t, 1);
-      case 5u:
-        return edge(t, 2);
-      default:
-        break;
-    }
+    if (nearest.corners == 7u) return {normal(t), false};
+    if (nearest.corners == 3u) return edge(t, 0);
+    if (nearest.corners == 6u) return edge(t, 1);
+    if (nearest.corners == 5u) return edge(t, 2);
     const std::uint32_t v = surface_.triangles[t][nearest.corners >> 1u];
     return {vertex_normals_[v], border_vertices_[v]};
   }
@@ -214,7 +174,7 @@ class MeshSolid final : public Solid {
     return {edge_normals_[t][k], ((unsigned{at_border_[t]} >> k) & 1u) != 0};
   }
 
-  WeldedSurface surface_;
+  TriangleSoup surface_;
   TriangleTree tree_;
   bool closed_ = true;
   // Filled for an open surface only:
@@ -229,7 +189,7 @@ class PointSolid final : public Solid {
   explicit PointSolid(const std::vector<SurfacePoint>& points)
       : Solid({Vec3::Constant(-kFar), Vec3::Constant(kFar)}),
         points_(points),
-        tree_(places(points), single_corners(points.size())),
+        tree_(tree_of(points)),
         spacing_(2.0 * usual_spacing()) {}
 
   SurfaceDistance at(const Vec3& q, const LookedUp*) const noexcept override {
@@ -246,15 +206,13 @@ class PointSolid final : public Solid {
   std::size_t bytes() const noexcept override { return 300 * points_.size(); }
 
  private:
-  static std::vector<Vec3> places(const std::vector<SurfacePoint>& points) {
-    std::vector<Vec3> places;
-    for (const SurfacePoint& point : points) places.push_back(point.position);
-    return places;
-  }
-  static std::vector<TriangleCorners> single_corners(std::size_t count) {
-    std::vector<TriangleCorners> corners;
-    for (std::uint32_t i = 0; i < count; ++i) corners.push_back({i, i, i});
-    return corners;
+  static TriangleTree tree_of(const std::vector<SurfacePoint>& points) {
+    TriangleSoup soup;
+    for (std::uint32_t i = 0; i < points.size(); ++i) {
+      soup.vertices.push_back(points[i].position);
+      soup.triangles.push_back({i, i, i});
+    }
+    return {soup.vertices, soup.triangles};
   }
   /// The median distance of some points from their nearest neighbours.
   double usual_spacing() const {
@@ -283,16 +241,11 @@ class PointSolid final : public Solid {
 
 std::unique_ptr<const Solid> make_solid(std::span<const Vec3> vertices, std::span<const TriangleCorners> triangles,
                                         bool is_closed) {
-  WeldedSurface surface;
-  if (is_closed) {
-    surface.vertices.assign(vertices.begin(), vertices.end());
-    surface.triangles.assign(triangles.begin(), triangles.end());
-  } else {
-    surface = welded(vertices, triangles);
-  }
-  Box box{surface.vertices.front(), surface.vertices.front()};
-  for (const Vec3& v : surface.vertices) box = {box.min.cwiseMin(v), box.max.cwiseMax(v)};
-  return std::make_unique<MeshSolid>(std::move(surface), box, is_closed);
+  if (!is_closed) return std::make_unique<MeshSolid>(welded(vertices, triangles), false);
+  TriangleSoup surface;
+  surface.vertices.assign(vertices.begin(), vertices.end());
+  surface.triangles.assign(triangles.begin(), triangles.end());
+  return std::make_unique<MeshSolid>(std::move(surface), true);
 }
 
 std::unique_ptr<const Solid> make_solid(const std::vector<SurfacePoint>& points) {

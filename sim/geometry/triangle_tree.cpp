@@ -227,36 +227,40 @@ std::optional<TriangleTree::Nearest> TriangleTree::nearest(const Vec3& point, do
   return best;
 }
 
-int TriangleTree::winding_number(const Vec3& point, std::span<const Vec3> vertices,
-                                 std::span<const TriangleCorners> triangles) const noexcept {
+template <class Enters, class Use>
+void TriangleTree::visit(const Enters& enters, const Use& use) const {
   std::array<std::uint32_t, kStack> stack;
   std::size_t size = 0;
   stack[size++] = 0;
-  int above = 0;
   while (size > 0) {
     const Node& node = nodes_[stack[--size]];
+    if (!enters(node)) continue;
+    for (std::uint32_t i = node.first; i < node.first + node.count; ++i) use(triangles_[i]);
+    if (node.count > 0) continue;
+    stack[size++] = node.first + 1;
+    stack[size++] = node.first;
+  }
+}
+
+int TriangleTree::winding_number(const Vec3& point, std::span<const Vec3> vertices,
+                                 std::span<const TriangleCorners> triangles) const noexcept {
+  int above = 0;
+  const auto enters = [&point](const Node& node) {
     const bool beside = (point.head<2>().array() < node.low.head<2>().array()).any() ||
                         (point.head<2>().array() > node.high.head<2>().array()).any();
-    if (beside || point.z() >= node.high.z()) continue;
-    for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
-      const auto& [a, b, c] = triangles[triangles_[i].number];
-      const auto met = vertical_crossing({vertices[a], vertices[b], vertices[c]}, point.x(), point.y());
-      if (met && met->z > point.z()) above += met->step;
-    }
-    if (node.count > 0) continue;
-    stack[size++] = node.first;
-    stack[size++] = node.first + 1;
-  }
+    return !beside && !(point.z() >= node.high.z());
+  };
+  visit(enters, [&](const Triangle& t) {
+    const auto& [a, b, c] = triangles[t.number];
+    const auto met = vertical_crossing({vertices[a], vertices[b], vertices[c]}, point.x(), point.y());
+    if (met && met->z > point.z()) above += met->step;
+  });
   return -above;
 }
 
 double TriangleTree::first_hit(const Vec3& origin, const Vec3& direction, double from) const noexcept {
-  std::array<std::uint32_t, kStack> stack;
-  std::size_t size = 0;
   double best = kFarthest;
-  stack[size++] = 0;
-  while (size > 0) {
-    const Node& node = nodes_[stack[--size]];
+  const auto enters = [&](const Node& node) {
     double enter = from, leave = best;
     for (int k = 0; k < 3; ++k) {
       // A ray along a face of the box divides 0 by 0; the comparisons then leave the interval as it is.
@@ -264,20 +268,16 @@ double TriangleTree::first_hit(const Vec3& origin, const Vec3& direction, double
       if (std::min(a, b) > enter) enter = std::min(a, b);
       if (std::max(a, b) < leave) leave = std::max(a, b);
     }
-    if (enter > leave) continue;
-    for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
-      const Triangle& t = triangles_[i];
-      const Vec3 normal = t.ab.cross(t.ac), to = t.a - origin;
-      const double slope = direction.dot(normal);
-      if (slope == 0.0) continue;
-      const Vec3 across = direction.cross(to);
-      const double u = -across.dot(t.ac) / slope, v = across.dot(t.ab) / slope, distance = to.dot(normal) / slope;
-      if (u >= 0.0 && v >= 0.0 && u + v <= 1.0 && distance > from) best = std::min(best, distance);
-    }
-    if (node.count > 0) continue;
-    stack[size++] = node.first + 1;
-    stack[size++] = node.first;
-  }
+    return !(enter > leave);
+  };
+  visit(enters, [&](const Triangle& t) {
+    const Vec3 normal = t.ab.cross(t.ac), to = t.a - origin;
+    const double slope = direction.dot(normal);
+    if (slope == 0.0) return;
+    const Vec3 across = direction.cross(to);
+    const double u = -across.dot(t.ac) / slope, v = across.dot(t.ab) / slope, distance = to.dot(normal) / slope;
+    if (u >= 0.0 && v >= 0.0 && u + v <= 1.0 && distance > from) best = std::min(best, distance);
+  });
   return best;
 }
 

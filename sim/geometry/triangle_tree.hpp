@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cstdint>
@@ -12,6 +13,18 @@
 namespace hapbench {
 
 using TriangleCorners = std::array<std::uint32_t, 3>;  ///< indices of its vertices
+
+/// Loose triangles, as in files: in any winding, with repeated or unused vertices.
+struct TriangleSoup {
+  using Triangle = TriangleCorners;
+  std::vector<Vec3> vertices;  ///< [m]
+  std::vector<Triangle> triangles;
+};
+
+/// Unit normal on the side from which the corners are counter-clockwise; zero for a triangle without area.
+inline Vec3 triangle_normal(const Vec3& a, const Vec3& b, const Vec3& c) {
+  return unit_or((b - a).cross(c - a), Vec3::Zero());
+}
 
 /// An order of places: by x, then y, then z.
 inline bool before(const Vec3& a, const Vec3& b) noexcept {
@@ -81,6 +94,9 @@ class TriangleTree {
     std::uint32_t number;
   };
   void split(std::size_t node, std::vector<Item>& items);
+  /// Calls `use` with the triangles of the leaves that are reached through nodes for which `enters(node)` is true.
+  template <class Enters, class Use>
+  void visit(const Enters& enters, const Use& use) const;
 
   std::vector<Triangle> triangles_;
   std::vector<Node> nodes_;

@@ -11,7 +11,6 @@
 namespace hapbench {
 
 class LateContacts;
-struct HandleState;
 
 /// The scene as known to a force algorithm before the first step. Everything pointed to outlives the algorithm.
 struct Scene {

@@ -136,11 +136,6 @@ void Simulation::move_tool_by_script() noexcept {
   tool_.pose.position = position;
 }
 
-void Simulation::move_tool_by_force() noexcept {
-  ForceWithinStep field(*this);
-  integrator_->step(tool_, record_.hand.input + record_.force.rendered, config_.mass, config_.dt, field);
-}
-
 void Simulation::put_tool_on_handle() noexcept {
   const HandleState sampled = parts_.device->sampled();
   tool_.pose.position = sampled.position;
@@ -184,7 +179,8 @@ bool Simulation::step() noexcept {
     parts_.device->drive(r.force.rendered, r.hand_force);
     put_tool_on_handle();
   } else if (position_is_free_) {
-    move_tool_by_force();
+    ForceWithinStep field(*this);
+    integrator_->step(tool_, r.hand.input + r.force.rendered, config_.mass, config_.dt, field);
   }
   ++row_;
   if (row_ == config_.steps) {

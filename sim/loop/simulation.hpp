@@ -10,7 +10,6 @@
 #include "sim/core/types.hpp"
 #include "sim/loop/device.hpp"
 #include "sim/loop/force_algorithm.hpp"
-#include "sim/loop/hand.hpp"
 #include "sim/loop/integrators/table.hpp"
 #include "sim/loop/observer.hpp"
 #include "sim/tool/motion.hpp"
@@ -122,7 +121,6 @@ class Simulation {
  private:
   class ForceWithinStep;
 
-  void move_tool_by_force() noexcept;
   void move_tool_by_script() noexcept;
   void put_tool_on_handle() noexcept;
   double roll_at(double t) const noexcept;

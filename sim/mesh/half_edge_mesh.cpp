@@ -5,13 +5,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <optional>
-#include <sstream>
+#include <span>
 #include <unordered_map>
 
 #include "sim/core/hash.hpp"
+#include "sim/tool/closed_surface.hpp"
+#include "sim/tool/refuse.hpp"
 
 namespace hapbench {
 namespace {
@@ -76,8 +77,7 @@ std::vector<SurfacePoint> all_vertices(const HalfEdgeMesh& mesh) {
     Vec3 sum = Vec3::Zero();
     for (auto face = mesh.cvf_iter(vertex); face.is_valid(); ++face)
       sum += face_normals[static_cast<std::size_t>(face->idx())];
-    const double length = sum.norm();
-    points.push_back({position(mesh, vertex), length > 0.0 ? Vec3(sum / length) : Vec3::Zero()});
+    points.push_back({position(mesh, vertex), unit_or(sum, Vec3::Zero())});
   }
   return points;
 }
@@ -185,13 +185,12 @@ std::vector<std::array<std::uint32_t, 3>> hinges_at_triangles(std::size_t triang
 
 /// The properties of a part that decide whether to turn it.
 struct Shape {
-  Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity());  ///< bounding box
-  Vec3 high = -low;
+  Box box = Box::nothing();
   double volume = 0.0;  ///< enclosed; negative if normals point inwards
 
-  double size() const { return (high - low).norm(); }
+  double size() const { return box.size().norm(); }
   bool holds(const Shape& other) const {
-    return (other.low.array() >= low.array()).all() && (other.high.array() <= high.array()).all();
+    return (other.box.min.array() >= box.min.array()).all() && (other.box.max.array() <= box.max.array()).all();
   }
   /// The threshold exceeds rounding, because two sheets back to back enclose nothing.
   bool is_inside_out() const { return volume < -1e-12 * size() * size() * size(); }
@@ -255,17 +254,13 @@ class MeshParts {
   std::size_t turn_outwards(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles) {
     std::vector<Shape> shapes(count());
     for (std::size_t t = 0; t < part_.size(); ++t) {
-      Shape& shape = shapes[part_[t]];
-      for (const std::uint32_t corner : triangles[t]) {
-        shape.low = shape.low.cwiseMin(vertices[corner]);
-        shape.high = shape.high.cwiseMax(vertices[corner]);
-      }
+      for (const std::uint32_t corner : triangles[t]) shapes[part_[t]].box.add(vertices[corner]);
     }
     for (std::size_t t = 0; t < part_.size(); ++t) {
       Shape& shape = shapes[part_[t]];
       // The tetrahedra have their tip at the part, because cancellation would spoil a sum about a distant origin.
       const auto& [i, j, k] = triangles[t];
-      const Vec3 a = vertices[i] - shape.low, b = vertices[j] - shape.low, c = vertices[k] - shape.low;
+      const Vec3 a = vertices[i] - shape.box.min, b = vertices[j] - shape.box.min, c = vertices[k] - shape.box.min;
       shape.volume += (turned_[t] ? -1.0 : 1.0) * a.dot(b.cross(c)) / 6.0;
     }
 
@@ -305,10 +300,8 @@ class MeshParts {
 /// More than in any sensible mesh; the time to find an edge is proportional to it.
 constexpr std::size_t kMostTrianglesAtVertex = 10'000;
 
-std::string text(const Vec3& p) {
-  std::ostringstream stream;
-  stream << "(" << p.x() << ", " << p.y() << ", " << p.z() << ") m";
-  return stream.str();
+std::string text(const Vec3& place) {
+  return "(" + coordinates(place) + ") m";
 }
 
 void require_finite(const TriangleSoup& soup) {
@@ -321,9 +314,6 @@ void require_finite(const TriangleSoup& soup) {
 std::vector<std::uint32_t> first_at_position(const std::vector<Vec3>& vertices) {
   std::vector<std::uint32_t> order(vertices.size()), first(vertices.size());
   std::iota(order.begin(), order.end(), 0u);
-  const auto before = [](const Vec3& a, const Vec3& b) {
-    return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
-  };
   std::stable_sort(order.begin(), order.end(),
                    [&](std::uint32_t a, std::uint32_t b) { return before(vertices[a], vertices[b]); });
   for (std::size_t i = 0; i < order.size(); ++i) {
@@ -345,46 +335,17 @@ std::vector<Triangle> welded_triangles(const TriangleSoup& soup) {
   return welded;
 }
 
-/// A side of a triangle, from corner i to the next one.
-struct Side {
-  std::uint32_t low, high;  ///< vertices, low < high
-  std::uint32_t triangle;
-  std::uint32_t corner;  ///< where it starts
-  bool forward;          ///< from low to high
-};
-
-/// All sides, sorted by edge.
-std::vector<Side> sides_by_edge(const std::vector<Triangle>& triangles) {
-  std::vector<Side> sides;
-  sides.reserve(3 * triangles.size());
-  for (std::uint32_t t = 0; t < triangles.size(); ++t) {
-    for (std::uint32_t i = 0; i < 3; ++i) {
-      const std::uint32_t from = triangles[t][i], to = triangles[t][(i + 1) % 3];
-      sides.push_back({std::min(from, to), std::max(from, to), t, i, from < to});
-    }
-  }
-  std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
-    return std::tie(a.low, a.high, a.triangle) < std::tie(b.low, b.high, b.triangle);
-  });
-  return sides;
-}
-
 /// The pairs of triangles at edges with two; adds the other edges to the findings.
-std::vector<Hinge> hinges_of(const std::vector<Side>& sides, const std::vector<Vec3>& vertices, MeshFindings& found) {
+std::vector<Hinge> hinges_of(const std::vector<Triangle>& triangles, const std::vector<Vec3>& vertices,
+                             MeshFindings& found) {
   std::vector<Hinge> hinges;
-  for (std::size_t i = 0, end = 0; i < sides.size(); i = end) {
-    const auto same_edge = [&](std::size_t j) {
-      return sides[j].low == sides[i].low && sides[j].high == sides[i].high;
-    };
-    for (end = i + 1; end < sides.size() && same_edge(end);) ++end;
-    const Vec3 middle = 0.5 * (vertices[sides[i].low] + vertices[sides[i].high]);
-    if (end - i == 1) found.open_edges.push_back(middle);
-    if (end - i > 2) found.crowded_edges.push_back(middle);
-    if (end - i == 2) {
-      const Side &a = sides[i], &b = sides[i + 1];
-      hinges.push_back({{a.triangle, b.triangle}, {a.corner, b.corner}, a.forward != b.forward});
-    }
-  }
+  for_each_edge(sides_by_edge(triangles), [&](std::span<const TriangleSide> edge) {
+    const TriangleSide &a = edge.front(), &b = edge.back();
+    const Vec3 middle = 0.5 * (vertices[a.low] + vertices[a.high]);
+    if (edge.size() == 1) found.open_edges.push_back(middle);
+    if (edge.size() > 2) found.crowded_edges.push_back(middle);
+    if (edge.size() == 2) hinges.push_back({{a.triangle, b.triangle}, {a.corner, b.corner}, a.forward != b.forward});
+  });
   return hinges;
 }
 
@@ -461,7 +422,7 @@ CheckedMesh mesh_from_triangles(const TriangleSoup& soup) {
   if (triangles.empty()) throw MeshError("has no faces; allowed: at least one, with three different corners");
   result.findings.degenerate_triangles = soup.triangles.size() - triangles.size();
 
-  const std::vector<Hinge> hinges = hinges_of(sides_by_edge(triangles), soup.vertices, result.findings);
+  const std::vector<Hinge> hinges = hinges_of(triangles, soup.vertices, result.findings);
   MeshParts parts(triangles.size(), hinges);
   if (const auto hinge = parts.contradiction()) {
     const Triangle& t = triangles[hinge->triangles[0]];

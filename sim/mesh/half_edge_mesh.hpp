@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "sim/geometry/point_shell.hpp"
-#include "sim/mesh/triangle_soup.hpp"
+#include "sim/geometry/triangle_tree.hpp"
 
 namespace hapbench {
 

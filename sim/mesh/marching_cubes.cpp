@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <iterator>
-#include <limits>
 #include <memory>
 #include <numeric>
 #include <utility>
@@ -14,13 +13,11 @@
 namespace hapbench {
 
 DensityField density_field(const BlockWithHole& block, double spacing, Density density) {
-  DensityField field;
-  field.signed_distance = [block](const Vec3& point) { return signed_distance(block, point); };
-  field.min = {-block.size.x() / 2, -block.size.y() / 2, -block.size.z()};
-  field.max = {block.size.x() / 2, block.size.y() / 2, 0.0};
-  field.spacing = spacing;
-  field.density = density;
-  return field;
+  return {.signed_distance = [block](const Vec3& point) { return signed_distance(block, point); },
+          .min = {-block.size.x() / 2, -block.size.y() / 2, -block.size.z()},
+          .max = {block.size.x() / 2, block.size.y() / 2, 0.0},
+          .spacing = spacing,
+          .density = density};
 }
 
 namespace {
@@ -39,10 +36,6 @@ void append(const SurfaceSlab& slab, const NodeGrid& grid, IsoSurface& all) {
 }
 
 using Numbers = std::vector<std::uint32_t>;
-
-/// The bounding box of no points.
-const Box kNothing{Vec3::Constant(std::numeric_limits<double>::infinity()),
-                   Vec3::Constant(-std::numeric_limits<double>::infinity())};
 
 void drop_those_without_normal(SurfaceLayer& layer) {
   std::size_t kept = 0;
@@ -66,7 +59,7 @@ class ShellBuilder {
       drop_those_without_normal(layers_[l]);
       boxes[l] = box_of(layers_[l]);
     });
-    Box all = kNothing;
+    Box all = Box::nothing();
     for (std::size_t l = 0; l < layers_.size(); ++l) {
       size_ += layers_[l].vertices.size();
       all = {all.min.cwiseMin(boxes[l].min), all.max.cwiseMax(boxes[l].max)};
@@ -75,7 +68,7 @@ class ShellBuilder {
   }
 
   PointShell build() {
-    const std::vector<Numbers> places = places_in(GridCells(bounds_, size_, grid_.spacing()));
+    const std::vector<Numbers> places = places_in(GridCells::for_spacing(bounds_, size_, grid_.spacing()));
     ShellColumns columns(size_);
     for_each_layer([&](std::size_t l) {
       for (std::size_t i = 0; i < places[l].size(); ++i)
@@ -92,12 +85,8 @@ class ShellBuilder {
   }
 
   Box box_of(const SurfaceLayer& layer) const {
-    Box box = kNothing;
-    for (const EdgeVertex& vertex : layer.vertices) {
-      const Vec3 point = position(grid_, vertex);
-      box.min = box.min.cwiseMin(point);
-      box.max = box.max.cwiseMax(point);
-    }
+    Box box = Box::nothing();
+    for (const EdgeVertex& vertex : layer.vertices) box.add(position(grid_, vertex));
     return box;
   }
 

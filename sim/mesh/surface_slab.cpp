@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "sim/core/parallel.hpp"
-#include "sim/mesh/triangle_soup.hpp"
+#include "sim/geometry/triangle_tree.hpp"
 
 namespace hapbench {
 namespace {
@@ -270,16 +270,13 @@ const std::vector<CutCase>& cut_cases() {
 }
 
 /// Two neighbouring layers of nodes, which a thread reuses for its slabs.
-struct LayerPair {
-  GridLayer low, high;
-  LayerPair(const DensityField& field, const NodeGrid& grid) : low(field, grid), high(field, grid) {}
-};
+using LayerPair = std::array<GridLayer, 2>;
 
 /// Makes a slab including the vertices in the layers of nodes at both ends, with sums of normals.
 class SlabBuilder {
  public:
   SlabBuilder(const NodeGrid& grid, KeptOfSurface kept, LayerPair& layers, SurfaceSlab& slab)
-      : grid_(grid), kept_(kept), low_(&layers.low), high_(&layers.high), slab_(slab) {}
+      : grid_(grid), kept_(kept), low_(&layers[0]), high_(&layers[1]), slab_(slab) {}
 
   /// Adds the cells between the layers of nodes first < last. Returns the number of vertices in layer `last`.
   std::size_t build(std::size_t first, std::size_t last) {
@@ -408,11 +405,6 @@ class SlabBuilder {
   std::size_t first_below_ = 0;  ///< number in the slab of the layer below's first vertex
 };
 
-void normalise(Vec3& normal) {
-  const double length = normal.norm();
-  if (length > 0.0) normal /= length;
-}
-
 /// Moves the vertices that two slabs share, `in_last` of each, to the upper one, and normalises all normals.
 void finish(std::vector<SurfaceSlab>& slabs, const std::vector<std::size_t>& in_last) {
   for (std::size_t s = 0; s + 1 < slabs.size(); ++s) {
@@ -424,7 +416,9 @@ void finish(std::vector<SurfaceSlab>& slabs, const std::vector<std::size_t>& in_
     last.normals.resize(own);
   }
   parallel_for(std::size_t{0}, slabs.size(), [&](std::size_t s) {
-    for (SurfaceLayer& layer : slabs[s].layers) std::ranges::for_each(layer.normals, normalise);
+    for (SurfaceLayer& layer : slabs[s].layers) {
+      for (Vec3& normal : layer.normals) normal = unit_or(normal, normal);
+    }
   });
 }
 
@@ -434,7 +428,7 @@ std::vector<SurfaceSlab> surface_slabs(const DensityField& field, const NodeGrid
   const std::size_t layers = grid.count(2) - 1, thickness = (layers + kMostSlabs - 1) / kMostSlabs;
   std::vector<SurfaceSlab> slabs((layers + thickness - 1) / thickness);
   std::vector<std::size_t> in_last(slabs.size());
-  PerThread<LayerPair> layer_pairs([&] { return LayerPair(field, grid); });
+  PerThread<LayerPair> layer_pairs([&] { return LayerPair{GridLayer(field, grid), GridLayer(field, grid)}; });
   parallel_for(std::size_t{0}, slabs.size(), [&](std::size_t s) {
     SlabBuilder builder(grid, kept, layer_pairs.local(), slabs[s]);
     in_last[s] = builder.build(s * thickness, std::min((s + 1) * thickness, layers));

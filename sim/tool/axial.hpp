@@ -3,12 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <span>
+#include <vector>
 
 #include "sim/contact/push_hits.hpp"
 #include "sim/core/math.hpp"
 #include "sim/core/simd.hpp"
-#include "sim/tool/axial.hpp"
 #include "sim/tool/tool_shape.hpp"
 #include "sim/tool/tool_state.hpp"
 
@@ -19,6 +20,17 @@ namespace hapbench {
 inline constexpr double kOnAxis = 1e-12;
 /// Exit distance along a ray that does not meet a surface [m].
 inline constexpr double kNever = std::numeric_limits<double>::infinity();
+
+/// Continues an outline that ends at {0, radius} with a quarter of a circle about the tip centre, as a polyline within
+/// 0.013 % of the radius.
+inline void add_round_tip(double radius, std::vector<ProfilePoint>& outline) {
+  constexpr int kLegs = 48;
+  for (int i = 1; i < kLegs; ++i) {
+    const double angle = std::numbers::pi / 2.0 * i / kLegs;
+    outline.push_back({radius * math::sin(angle), radius * math::cos(angle)});
+  }
+  outline.push_back({radius, 0.0});
+}
 
 /// Eight points in the tool's axial coordinates: x is relative to the tip centre, s its component along the axis,
 /// rho = x - s * axis the radial vector. Search and depths of solids of revolution both start from these numbers, so

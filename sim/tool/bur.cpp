@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <sstream>
-#include <stdexcept>
+#include <utility>
 
 #include "sim/core/math.hpp"
+#include "sim/tool/refuse.hpp"
 
 namespace hapbench {
 namespace {
@@ -16,10 +16,8 @@ constexpr double kShankPerDiameter = 10.0;
 constexpr double kNarrowEnd = 0.6;  ///< narrow end of tapered and inverted cones, relative to the diameter
 constexpr double kRearOfFlame = 1.0 / 3.0;
 
-[[noreturn]] void refuse(const char* what, double is, const char* has_to, double bound) {
-  std::ostringstream out;
-  out << what << " is " << is << " m and has to be " << has_to << ' ' << bound << " m";
-  throw std::invalid_argument(out.str());
+[[noreturn]] void refuse_length(const char* what, double is, const char* has_to, double bound) {
+  refuse(what, " is ", is, " m and has to be ", has_to, ' ', bound, " m");
 }
 
 /// A profile that grows from the shank's end to the tip.
@@ -84,7 +82,8 @@ BurProfile pear(double radius, double length, double neck) {
   const double begins = radius - length;
   const double distance = math::hypot(begins, neck);
   if (distance <= radius)
-    refuse("the length of a pear bur", length, "more than", radius + std::sqrt((radius - neck) * (radius + neck)));
+    refuse_length("the length of a pear bur", length, "more than",
+                  radius + std::sqrt((radius - neck) * (radius + neck)));
   const double touches = math::atan2(neck, begins) - math::acos(radius / distance);
   Outline outline(2.0 * radius, neck, begins);
   outline.line_to(radius * math::cos(touches), radius * math::sin(touches));
@@ -96,7 +95,7 @@ BurProfile pear(double radius, double length, double neck) {
 BurProfile flame(double radius, double length, double neck) {
   const double rear = kRearOfFlame * length, front = length - rear, rise = radius - neck;
   if (rise > rear || radius > front)
-    refuse("the length of a flame bur", length, "at least", 3.0 * std::max(rise, 0.5 * radius));
+    refuse_length("the length of a flame bur", length, "at least", 3.0 * std::max(rise, 0.5 * radius));
   Outline outline(2.0 * radius, neck, -length);
   const double rear_arc = (rear * rear + rise * rise) / (2.0 * rise);
   outline.arc_to(-front, radius - rear_arc, rear_arc, kAbreast + math::asin(rear / rear_arc), kAbreast,
@@ -110,7 +109,7 @@ BurProfile flame(double radius, double length, double neck) {
 
 BurProfile bur_profile(BurFamily family, double diameter, double length, double shank_diameter) {
   const auto needs_length = [](const char* what, double value) {
-    if (!(value > 0.0 && std::isfinite(value))) refuse(what, value, "more than", 0.0);
+    if (!(value > 0.0 && std::isfinite(value))) refuse_length(what, value, "more than", 0.0);
   };
   needs_length("the diameter of a bur", diameter);
   needs_length("the length of a bur", length);
@@ -118,12 +117,12 @@ BurProfile bur_profile(BurFamily family, double diameter, double length, double 
   const double radius = 0.5 * diameter, shank = 0.5 * shank_diameter;
   const bool swells = family == BurFamily::ball || family == BurFamily::pear || family == BurFamily::flame;
   if (swells && shank >= radius) {
-    refuse("the shank diameter of a ball, pear or flame bur", shank_diameter, "less than its head's,", diameter);
+    refuse_length("the shank diameter of a ball, pear or flame bur", shank_diameter, "less than its head's,", diameter);
   }
   switch (family) {
     case BurFamily::ball:
       if (std::abs(length - diameter) > 1e-9 * diameter)
-        refuse("the length of a ball bur", length, "its diameter,", diameter);
+        refuse_length("the length of a ball bur", length, "its diameter,", diameter);
       return ball(radius, shank);
     case BurFamily::cylinder:
       return frustum(diameter, length, radius, radius, shank);
@@ -132,7 +131,8 @@ BurProfile bur_profile(BurFamily family, double diameter, double length, double 
     case BurFamily::inverted_cone:
       return frustum(diameter, length, kNarrowEnd * radius, radius, shank);
     case BurFamily::round_cylinder:
-      if (length < radius) refuse("the length of a round cylinder bur", length, "at least half its diameter,", radius);
+      if (length < radius)
+        refuse_length("the length of a round cylinder bur", length, "at least half its diameter,", radius);
       return round_cylinder(radius, length, shank);
     case BurFamily::pear:
       return pear(radius, length, shank);

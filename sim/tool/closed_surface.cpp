@@ -4,11 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <optional>
-#include <sstream>
-#include <stdexcept>
+#include <string>
+#include <tuple>
+#include <utility>
 
 #include "sim/core/parallel.hpp"
+#include "sim/tool/refuse.hpp"
 
 namespace hapbench {
 namespace {
@@ -16,21 +17,14 @@ namespace {
 /// A closed surface that encloses less than this fraction of its bounding cube is flat up to rounding.
 constexpr double kFlat = 1e-12;
 
-struct Edge {
-  std::uint32_t low, high;  ///< its ends
-  int direction;            ///< 1 from low to high
-  bool same_place(const Edge& other) const { return low == other.low && high == other.high; }
-};
-
 }  // namespace
 
-WeldedSurface welded(std::span<const Vec3> vertices, std::span<const TriangleCorners> triangles) {
-  WeldedSurface surface;
+TriangleSoup welded(std::span<const Vec3> vertices, std::span<const TriangleCorners> triangles) {
+  TriangleSoup surface;
   std::vector<std::uint32_t> order(vertices.size()), place(vertices.size());
   std::iota(order.begin(), order.end(), 0u);
-  for (std::uint32_t i : order) {
-    if (!vertices[i].allFinite())
-      throw std::invalid_argument("vertex " + std::to_string(i) + " of the mesh is not finite");
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    if (!vertices[i].allFinite()) refuse("vertex ", i, " of the mesh is not finite");
   }
   std::sort(order.begin(), order.end(), [&](auto a, auto b) { return before(vertices[a], vertices[b]); });
   for (const std::uint32_t i : order) {
@@ -38,9 +32,8 @@ WeldedSurface welded(std::span<const Vec3> vertices, std::span<const TriangleCor
     place[i] = static_cast<std::uint32_t>(surface.vertices.size() - 1);
   }
   for (const TriangleCorners& t : triangles) {
-    if (std::max({t[0], t[1], t[2]}) >= vertices.size()) {
-      throw std::invalid_argument("a triangle of the mesh names a vertex that it has not");
-    }
+    if (std::max({t[0], t[1], t[2]}) >= vertices.size())
+      refuse("a triangle of the mesh names a vertex that it has not");
     const TriangleCorners corners{place[t[0]], place[t[1]], place[t[2]]};
     const bool degenerate = corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0];
     if (!degenerate) surface.triangles.push_back(corners);
@@ -48,67 +41,63 @@ WeldedSurface welded(std::span<const Vec3> vertices, std::span<const TriangleCor
   return surface;
 }
 
-ClosedSurface::ClosedSurface(std::span<const Vec3> vertices, std::span<const TriangleCorners> triangles) {
-  auto [welded_vertices, welded_triangles] = welded(vertices, triangles);
-  vertices_ = std::move(welded_vertices);
-  triangles_ = std::move(welded_triangles);
-  if (triangles_.empty()) throw std::invalid_argument("the mesh has no triangles");
+std::vector<TriangleSide> sides_by_edge(std::span<const TriangleCorners> triangles) {
+  std::vector<TriangleSide> sides;
+  sides.reserve(3 * triangles.size());
+  for (std::uint32_t t = 0; t < triangles.size(); ++t) {
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      const std::uint32_t from = triangles[t][k], to = triangles[t][(k + 1) % 3];
+      sides.push_back({std::min(from, to), std::max(from, to), t, k, from < to});
+    }
+  }
+  std::sort(sides.begin(), sides.end(), [](const TriangleSide& a, const TriangleSide& b) {
+    return std::tie(a.low, a.high, a.triangle) < std::tie(b.low, b.high, b.triangle);
+  });
+  return sides;
+}
+
+bool is_balanced(std::span<const TriangleSide> edge) {
+  return 2 * std::ranges::count(edge, true, &TriangleSide::forward) == std::ssize(edge);
+}
+
+ClosedSurface::ClosedSurface(std::span<const Vec3> vertices, std::span<const TriangleCorners> triangles)
+    : surface_(welded(vertices, triangles)) {
+  if (surface_.triangles.empty()) refuse("the mesh has no triangles");
   check_edges();
   measure();
 }
 
 void ClosedSurface::check_edges() const {
-  std::vector<Edge> edges;
-  edges.reserve(3 * triangles_.size());
-  for (const TriangleCorners& t : triangles_) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::uint32_t from = t[k], to = t[(k + 1) % 3];
-      edges.push_back({std::min(from, to), std::max(from, to), from < to ? 1 : -1});
-    }
-  }
-  std::sort(edges.begin(), edges.end(),
-            [](const Edge& a, const Edge& b) { return a.low != b.low ? a.low < b.low : a.high < b.high; });
   std::size_t open = 0, against = 0;
   Vec3 where = Vec3::Zero();
-  for (std::size_t i = 0, end = 0; i < edges.size(); i = end) {
-    int sum = 0;
-    for (end = i; end < edges.size() && edges[end].same_place(edges[i]); ++end) sum += edges[end].direction;
-    if (sum == 0) continue;
-    if (open + against == 0) where = 0.5 * (vertices_[edges[i].low] + vertices_[edges[i].high]);
-    ++((end - i) % 2 == 1 ? open : against);
-  }
+  for_each_edge(sides_by_edge(triangles()), [&](std::span<const TriangleSide> edge) {
+    if (is_balanced(edge)) return;
+    if (open + against == 0) where = 0.5 * (vertices()[edge[0].low] + vertices()[edge[0].high]);
+    ++(edge.size() % 2 == 1 ? open : against);
+  });
   if (open + against == 0) return;
-  std::ostringstream message;
-  message << "the mesh bounds no solid: " << open << " open edges (a triangle on one side only)";
-  if (against > 0) message << ", " << against << " edges whose triangles are wound against each other";
-  message << "; the first at [" << where.x() << ", " << where.y() << ", " << where.z() << "] m; close its holes";
-  throw std::invalid_argument(message.str());
+  const std::string wound =
+      against > 0 ? joined(", ", against, " edges whose triangles are wound against each other") : "";
+  refuse("the mesh bounds no solid: ", open, " open edges (a triangle on one side only)", wound, "; the first at [",
+         coordinates(where), "] m; close its holes");
 }
 
 void ClosedSurface::measure() {
-  low_ = high_ = vertices_[triangles_.front()[0]];
-  for (const TriangleCorners& t : triangles_) {
-    for (const Vec3& v : corners(t)) {
-      low_ = low_.cwiseMin(v);
-      high_ = high_.cwiseMax(v);
-    }
+  box_ = box_of(corners(triangles().front()));
+  for (const TriangleCorners& t : triangles()) {
+    for (const std::uint32_t v : t) box_.add(vertices()[v]);
   }
-  const Vec3 centre = 0.5 * (low_ + high_);
-  for (const TriangleCorners& t : triangles_) {
+  double volume = 0.0;
+  const Vec3 centre = 0.5 * (box_.min + box_.max);
+  for (const TriangleCorners& t : triangles()) {
     const auto [a, b, c] = corners(t);
-    volume_ += (a - centre).dot((b - centre).cross(c - centre)) / 6.0;
+    volume += (a - centre).dot((b - centre).cross(c - centre)) / 6.0;
   }
-  const double edge = (high_ - low_).maxCoeff();
-  std::ostringstream message;
-  if (!(std::abs(volume_) > kFlat * edge * edge * edge)) {
-    message << "the mesh encloses no volume (" << volume_ << " m^3, " << edge << " m long)";
-  } else if (volume_ < 0.0) {
-    message << "the mesh is inside out (volume " << volume_
-            << " m^3): turn its triangles counter-clockwise from outside";
-  } else {
-    return;
-  }
-  throw std::invalid_argument(message.str());
+  const double edge = box_.size().maxCoeff();
+  if (!(std::abs(volume) > kFlat * edge * edge * edge))
+    refuse("the mesh encloses no volume (", volume, " m^3, ", edge, " m long)");
+  if (volume < 0.0)
+    refuse("the mesh is inside out (volume ", volume, " m^3): turn its triangles counter-clockwise from outside");
 }
 
 namespace {

@@ -11,13 +11,30 @@
 
 namespace hapbench {
 
-/// Triangles whose vertices at the same place are one; those with two equal corners are left out.
-struct WeldedSurface {
-  std::vector<Vec3> vertices;
-  std::vector<TriangleCorners> triangles;
+/// The triangles with vertices at the same place made one, without those that have two equal corners. Throws
+/// std::invalid_argument if an index or a coordinate is invalid. O(n log n).
+TriangleSoup welded(std::span<const Vec3> vertices, std::span<const TriangleCorners> triangles);
+
+/// A side of a triangle, from one corner to the next.
+struct TriangleSide {
+  std::uint32_t low, high;         ///< its vertices, low < high
+  std::uint32_t triangle, corner;  ///< where it starts
+  bool forward;                    ///< from low to high
 };
-/// Throws std::invalid_argument if an index or a coordinate is invalid. O(n log n).
-WeldedSurface welded(std::span<const Vec3> vertices, std::span<const TriangleCorners> triangles);
+/// All sides, sorted by edge and, of one edge, by triangle.
+std::vector<TriangleSide> sides_by_edge(std::span<const TriangleCorners> triangles);
+
+/// Calls `use` with the sides of each edge. Precondition: they are sorted.
+template <class Use>
+void for_each_edge(std::span<const TriangleSide> sides, const Use& use) {
+  for (std::size_t i = 0, end = 0; i < sides.size(); i = end) {
+    for (end = i; end < sides.size() && sides[end].low == sides[i].low && sides[end].high == sides[i].high;) ++end;
+    use(sides.subspan(i, end - i));
+  }
+}
+
+/// True if as many triangles run along the edge in one direction as in the other.
+bool is_balanced(std::span<const TriangleSide> edge);
 
 /// A surface that bounds a solid: triangles counter-clockwise from outside, which run along every edge equally often in
 /// either direction.
@@ -29,23 +46,19 @@ class ClosedSurface {
   /// themselves are found by the grid that samples them (SignedDistanceGrid).
   ClosedSurface(std::span<const Vec3> vertices, std::span<const TriangleCorners> triangles);
 
-  const std::vector<Vec3>& vertices() const noexcept { return vertices_; }  ///< [m]
-  const std::vector<TriangleCorners>& triangles() const noexcept { return triangles_; }
+  const std::vector<Vec3>& vertices() const noexcept { return surface_.vertices; }  ///< [m]
+  const std::vector<TriangleCorners>& triangles() const noexcept { return surface_.triangles; }
   std::array<Vec3, 3> corners(const TriangleCorners& t) const {
-    return {vertices_[t[0]], vertices_[t[1]], vertices_[t[2]]};
+    return {vertices()[t[0]], vertices()[t[1]], vertices()[t[2]]};
   }
-  const Vec3& low() const noexcept { return low_; }  ///< corners of its bounding box [m]
-  const Vec3& high() const noexcept { return high_; }
-  double volume() const noexcept { return volume_; }  ///< [m^3], > 0
+  const Box& box() const noexcept { return box_; }  ///< around the triangles [m]
 
  private:
   void check_edges() const;
   void measure();
 
-  std::vector<Vec3> vertices_;
-  std::vector<TriangleCorners> triangles_;
-  Vec3 low_ = Vec3::Zero(), high_ = Vec3::Zero();
-  double volume_ = 0.0;
+  TriangleSoup surface_;
+  Box box_;
 };
 
 /// The nodes of a regular grid, stored column by column along z.

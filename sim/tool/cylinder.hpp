@@ -2,7 +2,6 @@
 
 #include <span>
 
-#include "sim/tool/profile_point.hpp"
 #include "sim/tool/tool_shape.hpp"
 
 namespace hapbench {

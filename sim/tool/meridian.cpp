@@ -1,10 +1,10 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <sstream>
-#include <stdexcept>
+#include <string>
 
 #include "sim/core/math.hpp"
+#include "sim/tool/refuse.hpp"
 #include "sim/tool/revolved.hpp"
 
 namespace hapbench {
@@ -43,7 +43,7 @@ class Checker {
 
   void check() const {
     if (points_.size() < 2) {
-      throw std::invalid_argument("a profile needs at least two points, from the shank's end to the tip");
+      hapbench::refuse("a profile needs at least two points, from the shank's end to the tip");
     }
     for (std::size_t i = 0; i < points_.size(); ++i) check_point(i);
     const std::size_t last = points_.size() - 1;
@@ -113,9 +113,8 @@ class Checker {
         const Edge a = all[j], b = all[k];
         if (a.to == b.from || a.from == b.from) continue;
         if (!meet(corner(a.from), corner(a.to), corner(b.from), corner(b.to))) continue;
-        std::ostringstream what;
-        what << "the " << name(b) << " meets the " << name(a) << ", so that the profile crosses or touches itself";
-        refuse(static_cast<std::size_t>(std::max<std::ptrdiff_t>(b.from, 0)), what.str());
+        refuse(static_cast<std::size_t>(std::max<std::ptrdiff_t>(b.from, 0)),
+               joined("the ", name(b), " meets the ", name(a), ", so that the profile crosses or touches itself"));
       }
     }
   }
@@ -123,15 +122,11 @@ class Checker {
   std::string name(const Edge& edge) const {
     if (edge.from < 0) return "disc that closes the shank's end";
     if (edge.to == static_cast<std::ptrdiff_t>(points_.size())) return "disc that closes the tip";
-    std::ostringstream out;
-    out << "line from profile[" << edge.from << "] to profile[" << edge.to << "]";
-    return out.str();
+    return joined("line from profile[", edge.from, "] to profile[", edge.to, "]");
   }
 
   [[noreturn]] void refuse(std::size_t i, const std::string& why) const {
-    std::ostringstream out;
-    out << "profile[" << i << "] = [" << points_[i].s << ", " << points_[i].rho << "] m: " << why;
-    throw std::invalid_argument(out.str());
+    hapbench::refuse("profile[", i, "] = [", points_[i].s, ", ", points_[i].rho, "] m: ", why);
   }
 
   const std::vector<ProfilePoint>& points_;
@@ -146,8 +141,7 @@ Meridian::Line line_between(const ProfilePoint& a, const ProfilePoint& b) {
 
 }  // namespace
 
-Meridian::Meridian(std::vector<ProfilePoint> points, Tip end)
-    : profile(std::move(points)), tip(end), convex(false), low(0.0), high(0.0), widest(0.0), reach(0.0), ball(0.0) {
+Meridian::Meridian(std::vector<ProfilePoint> points, Tip end) : profile(std::move(points)), tip(end) {
   Checker(profile, tip).check();
   low = high = profile.front().s;
   for (const ProfilePoint& p : profile) {
@@ -232,7 +226,7 @@ void Meridian::add_parts() {
   for (const std::size_t i : built[0].above) planes.push_back(lines[i]);
 }
 
-GrownProfile grown_profile(const Meridian& meridian, double margin) {
+std::pair<std::vector<ProfilePoint>, Tip> grown_profile(const Meridian& meridian, double margin) {
   const bool round = meridian.tip == Tip::round && meridian.widest <= meridian.ball;
   std::vector<ProfilePoint> corners;
   const auto add_square = [&](double s, double rho) {
@@ -246,15 +240,14 @@ GrownProfile grown_profile(const Meridian& meridian, double margin) {
 
   std::sort(corners.begin(), corners.end(),
             [](const ProfilePoint& a, const ProfilePoint& b) { return a.s < b.s || (a.s == b.s && a.rho < b.rho); });
-  GrownProfile grown{{}, round ? Tip::round : Tip::flat};
-  std::vector<ProfilePoint>& hull = grown.points;
+  std::vector<ProfilePoint> hull;
   for (const ProfilePoint& p : corners) {
     // Keeps the widest point at each s.
     while (!hull.empty() && hull.back().s == p.s) hull.pop_back();
     while (hull.size() >= 2 && cross(hull[hull.size() - 2], hull.back(), p) >= 0.0) hull.pop_back();
     hull.push_back(p);
   }
-  return grown;
+  return {std::move(hull), round ? Tip::round : Tip::flat};
 }
 
 }  // namespace hapbench

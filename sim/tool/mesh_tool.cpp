@@ -208,7 +208,7 @@ void MeshTool::mark_near(const ToolPose& pose, double margin, const PointArrays&
 Box MeshTool::box_near(const ToolPose& pose, double margin, const Box& bounds) const noexcept {
   const Mat3 rotation = pose.rotation();
   const Mat3 back = rotation.transpose();
-  const Box body{grid_->low() - Vec3::Constant(margin), grid_->high() + Vec3::Constant(margin)};
+  const Box body{grid_->box().min - Vec3::Constant(margin), grid_->box().max + Vec3::Constant(margin)};
   // Covers the rounding of the rotations.
   const double slack = 1e-12 * (reach() + margin + pose.position.cwiseAbs().maxCoeff());
   Box part = body, near = turned(body, rotation, pose.position);
@@ -226,7 +226,7 @@ Box MeshTool::box_near(const ToolPose& pose, double margin, const Box& bounds) c
 ToolShape::Cover MeshTool::cover(double margin) const {
   // With a, b and e as in mark_near, the place in the grid nearest to a marked point is within b + 3 e of the mesh, and
   // a + b <= sqrt(2) margin.
-  const Vec3 extent = grid_->high() - grid_->low() + Vec3::Constant(3.0 * margin + 4.0 * grid_->error_bound());
+  const Vec3 extent = grid_->box().size() + Vec3::Constant(3.0 * margin + 4.0 * grid_->error_bound());
   Eigen::Index longest = 0;
   const double length = extent.maxCoeff(&longest);
   const double across = math::hypot(extent[(longest + 1) % 3], extent[(longest + 2) % 3]);
@@ -254,11 +254,11 @@ std::vector<ProfilePoint> MeshTool::outline() const {
     }
   }
   // The far end is the body's highest place in its own frame.
-  std::vector<ProfilePoint> outline = {{-grid_->high().z(), 0.0}};
+  std::vector<ProfilePoint> outline = {{-grid_->box().max.z(), 0.0}};
   for (std::size_t k = nodes.count[2]; k-- > 0;) {
     if (widest[k] >= 0.0) outline.push_back({-nodes.coordinate(2, k), widest[k]});
   }
-  outline.push_back({-grid_->low().z(), 0.0});
+  outline.push_back({-grid_->box().min.z(), 0.0});
   return outline;
 }
 
@@ -266,9 +266,9 @@ ToolShape::Grown MeshTool::grown(double margin) const {
   const double e = grid_->error_bound();
   double radius2 = 0.0;
   for (const Vec3& v : grid_->vertices()) radius2 = std::max(radius2, v.head<2>().squaredNorm());
-  const double forward = -grid_->low().z() + margin;
+  const double forward = -grid_->box().min.z() + margin;
   const double radius = std::max(std::sqrt(radius2) + e + margin, 1e-9 * reach());
-  return {std::make_unique<Cylinder>(radius, grid_->high().z() - grid_->low().z() + 2.0 * margin, Tip::flat), forward};
+  return {std::make_unique<Cylinder>(radius, grid_->box().size().z() + 2.0 * margin, Tip::flat), forward};
 }
 
 void MeshTool::shortest_depths(const ToolPose& pose, ContactBuffer& contacts) const noexcept {

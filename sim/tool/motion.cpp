@@ -94,9 +94,8 @@ Vec3 RecordedMotion::axis_at(double t) const noexcept {
   const Leg leg = leg_at(t);
   if (leg.from->orientation) return axis_of(orientation_in(leg));
   const Vec3 axis = leg.from->axis + leg.fraction * (leg.to->axis - leg.from->axis);
-  const double norm = axis.norm();
   // Opposite neighbours pass through zero half-way; keeps the last direction there.
-  return norm > 0.0 ? Vec3(axis / norm) : leg.from->axis;
+  return unit_or(axis, leg.from->axis);
 }
 
 double RecordedMotion::roll_at(double t) const noexcept {

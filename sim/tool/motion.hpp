@@ -18,17 +18,14 @@ class Motion {
   /// Unit vector out of the tip at time t [s].
   virtual Vec3 axis_at(double t) const noexcept = 0;
   /// ToolPose::roll at time t [rad]; called only if something reads the roll.
-  virtual double roll_at(double t) const noexcept {
-    static_cast<void>(t);
-    return 0.0;
-  }
+  virtual double roll_at(double /*t*/) const noexcept { return 0.0; }
   /// True if the script turns the tool about its axis, so that the angular velocity even of a solid of revolution
   /// includes this turn; that of any other tool always does.
   virtual bool scripts_roll() const noexcept { return false; }
   /// True if the tip centre is integrated, false if position_at prescribes it.
-  virtual bool position_is_free() const noexcept = 0;
+  virtual bool position_is_free() const noexcept { return true; }
   /// Tip centre at time t [m]; called only if the position is not free.
-  virtual Vec3 position_at(double t) const noexcept = 0;
+  virtual Vec3 position_at(double /*t*/) const noexcept { return Vec3::Zero(); }
 };
 
 /// The tool leans by `tilt` from `up` towards lean', which is `lean` turned by `azimuth` about `up`:

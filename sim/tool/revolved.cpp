@@ -303,10 +303,10 @@ std::vector<ProfilePoint> Revolved::outline() const {
 }
 
 ToolShape::Grown Revolved::grown(double margin) const {
-  GrownProfile grown = grown_profile(meridian_, margin);
-  const double forward = grown.points.back().s;
-  for (ProfilePoint& p : grown.points) p.s -= forward;
-  return {std::make_unique<Revolved>(std::move(grown.points), grown.tip), forward};
+  auto [points, end] = grown_profile(meridian_, margin);
+  const double forward = points.back().s;
+  for (ProfilePoint& p : points) p.s -= forward;
+  return {std::make_unique<Revolved>(std::move(points), end), forward};
 }
 
 void Revolved::shortest_depths(const ToolPose& pose, ContactBuffer& contacts) const noexcept {

@@ -2,9 +2,9 @@
 
 #include <cstddef>
 #include <span>
+#include <utility>
 #include <vector>
 
-#include "sim/tool/profile_point.hpp"
 #include "sim/tool/tool_shape.hpp"
 
 namespace hapbench {
@@ -52,11 +52,11 @@ struct Meridian {
   std::vector<Part> parts;
   std::vector<Height> heights;
   std::vector<HalfPlane> planes;  ///< of a convex body: bounded by the profile's lines; without the discs
-  bool convex;                    ///< corners that turn inwards by less than 1e-12 rad count as straight
+  bool convex = false;            ///< corners that turn inwards by less than 1e-12 rad count as straight
   double low, high;               ///< range of s, without the ball of a round tip
-  double widest;                  ///< largest rho
-  double reach;                   ///< distance of the furthest place from the tip centre
-  double ball;                    ///< radius of a round tip; 0 for a flat one
+  double widest = 0.0;            ///< largest rho
+  double reach = 0.0;             ///< distance of the furthest place from the tip centre
+  double ball = 0.0;              ///< radius of a round tip; 0 for a flat one
 
  private:
   void add_lines();
@@ -65,11 +65,7 @@ struct Meridian {
 
 /// A convex profile around everything within `margin` >= 0 of the body: the convex hull of squares about the profile's
 /// points. It may reach beyond s = 0; a round tip stays round if the body is nowhere wider.
-struct GrownProfile {
-  std::vector<ProfilePoint> points;
-  Tip tip;
-};
-GrownProfile grown_profile(const Meridian& meridian, double margin);
+std::pair<std::vector<ProfilePoint>, Tip> grown_profile(const Meridian& meridian, double margin);
 
 /// A solid of revolution: burs, pins, cones, anything turned on a lathe. Its profile is a polyline in the axial half
 /// plane, s along the axis and rho away from it, from the shank's end to the tip. Where it ends off the axis, discs

@@ -5,15 +5,13 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <numbers>
-#include <sstream>
-#include <stdexcept>
 #include <utility>
 
 #include "sim/core/aligned.hpp"
 #include "sim/core/math.hpp"
 #include "sim/core/parallel.hpp"
 #include "sim/geometry/triangle_tree.hpp"
+#include "sim/tool/refuse.hpp"
 
 namespace hapbench {
 namespace {
@@ -70,12 +68,7 @@ std::vector<std::uint32_t> foremost_in_cell(const std::vector<Vec3>& points, std
 }  // namespace
 
 SupportTable::SupportTable(std::vector<Vec3> points) : points_(std::move(points)), starts_{0} {
-  Vec3 low = points_.front(), high = low;
-  for (const Vec3& p : points_) {
-    low = low.cwiseMin(p);
-    high = high.cwiseMax(p);
-  }
-  tie_ = kTie * (high - low).norm();
+  tie_ = kTie * box_of(points_).size().norm();
   std::vector<std::vector<std::uint32_t>> cells(kCells);
   parallel_for(std::size_t{0}, kCells, [&](std::size_t i) { cells[i] = foremost_in_cell(points_, i, 2.0 * tie_); });
   for (const auto& cell : cells) {
@@ -137,24 +130,6 @@ constexpr double kSameNormal = 1e-6;
 /// A flat tool slides on few faces, and the faces of a round one need no special treatment.
 constexpr std::size_t kMostFaces = 64;
 
-[[noreturn]] void refuse(const std::ostringstream& message) {
-  throw std::invalid_argument(message.str());
-}
-
-std::ostream& operator<<(std::ostream& out, const GridNodes& nodes) {
-  return out << nodes.count[0] << " x " << nodes.count[1] << " x " << nodes.count[2];
-}
-
-/// The edges of the bounding box [m].
-Vec3 extent_of(std::span<const Vec3> vertices) {
-  Vec3 low = vertices.front(), high = low;
-  for (const Vec3& v : vertices) {
-    low = low.cwiseMin(v);
-    high = high.cwiseMax(v);
-  }
-  return high - low;
-}
-
 double suggested_for(const Vec3& extent) {
   // Gives a cube 128 nodes along each edge: 121 over its extent and 7 in the margin around it. Each extent counts as at
   // least 1 % of the largest, or the grid of a flat box, which is mostly margin, would have too many nodes.
@@ -164,29 +139,23 @@ double suggested_for(const Vec3& extent) {
 /// The number of nodes along each axis; as doubles, because a spacing that is wrong by a factor of 1000 asks for more
 /// nodes than integers can count. Throws std::invalid_argument if they are too many.
 Vec3 node_counts(const Vec3& extent, double spacing) {
-  std::ostringstream message;
-  if (!(spacing > 0.0 && std::isfinite(spacing))) {
-    message << "the spacing of a grid must be > 0, not " << spacing << " m";
-    refuse(message);
-  }
+  if (!(spacing > 0.0 && std::isfinite(spacing))) refuse("the spacing of a grid must be > 0, not ", spacing, " m");
   const Vec3 wanted = (extent / spacing).array().ceil() + 2.0 * kBorder + 1.0;
   if (const double bytes = kBytesPerNode * wanted.prod(); !(bytes <= kMostBytes)) {
-    message << "a grid of " << wanted.x() << " x " << wanted.y() << " x " << wanted.z() << " nodes, " << spacing
-            << " m apart, would take " << bytes / kMostBytes << " GiB, more than 1; the mesh is " << extent.x() << " x "
-            << extent.y() << " x " << extent.z() << " m large: is that its scale? If so, set the nodes "
-            << suggested_for(extent) << " m apart";
-    refuse(message);
+    refuse("a grid of ", wanted.x(), " x ", wanted.y(), " x ", wanted.z(), " nodes, ", spacing, " m apart, would take ",
+           bytes / kMostBytes, " GiB, more than 1; the mesh is ", extent.x(), " x ", extent.y(), " x ", extent.z(),
+           " m large: is that its scale? If so, set the nodes ", suggested_for(extent), " m apart");
   }
   return wanted;
 }
 
 GridNodes nodes_around(const ClosedSurface& surface, double spacing) {
-  const Vec3 wanted = node_counts(surface.high() - surface.low(), spacing);
-  GridNodes nodes{surface.low() - Vec3::Constant(kBorder * spacing), spacing, {}};
+  const Vec3 wanted = node_counts(surface.box().size(), spacing);
+  GridNodes nodes{surface.box().min - Vec3::Constant(kBorder * spacing), spacing, {}};
   for (int k = 0; k < 3; ++k) nodes.count[static_cast<std::size_t>(k)] = static_cast<std::size_t>(wanted[k]);
   // Centred, so that the nodes of a symmetric mesh are symmetric.
   for (int k = 0; k < 3; ++k)
-    nodes.origin[k] = 0.5 * (surface.low()[k] + surface.high()[k] - (wanted[k] - 1.0) * spacing);
+    nodes.origin[k] = 0.5 * (surface.box().min[k] + surface.box().max[k] - (wanted[k] - 1.0) * spacing);
   return nodes;
 }
 
@@ -222,22 +191,18 @@ std::vector<Vec3> corners_of(const ClosedSurface& surface) {
 
 /// Refuses a surface that winds around a node neither once nor not at all.
 void check_winding(const std::vector<std::int8_t>& numbers, const GridNodes& nodes) {
-  std::size_t wrong = 0;
-  std::ostringstream message;
-  for (std::size_t i = 0; i < numbers.size(); ++i) {
-    if (numbers[i] == 0 || numbers[i] == 1 || wrong++ > 0) continue;
-    const std::size_t column = i / nodes.count[2];
-    const Vec3 place = nodes.place(column / nodes.count[1], column % nodes.count[1], i % nodes.count[2]);
-    message << "the mesh passes through itself: it encloses [" << place.x() << ", " << place.y() << ", " << place.z()
-            << "] m " << int{numbers[i]} << " times";
-  }
-  if (wrong == 0) return;
-  message << ", and so " << wrong << " of " << nodes << " nodes; unite its parts, all counter-clockwise from outside";
-  refuse(message);
+  const auto is_wrong = [](std::int8_t number) { return number != 0 && number != 1; };
+  const auto first = std::find_if(numbers.begin(), numbers.end(), is_wrong);
+  if (first == numbers.end()) return;
+  const auto i = static_cast<std::size_t>(first - numbers.begin()), column = i / nodes.count[2];
+  const Vec3 place = nodes.place(column / nodes.count[1], column % nodes.count[1], i % nodes.count[2]);
+  refuse("the mesh passes through itself: it encloses [", coordinates(place), "] m ", int{*first}, " times, and so ",
+         std::count_if(first, numbers.end(), is_wrong), " of ", nodes.count[0], " x ", nodes.count[1], " x ",
+         nodes.count[2], " nodes; unite its parts, all counter-clockwise from outside");
 }
 
-/// Fraction of the area from which another triangle lies inwards within less than `thickness`; refuses too much.
-double thin_share(const ClosedSurface& surface, const TriangleTree& tree, double thickness) {
+/// Refuses a surface from too much of which another triangle lies inwards within less than `thickness`.
+void check_thickness(const ClosedSurface& surface, const TriangleTree& tree, double thickness) {
   std::vector<double> thin(surface.triangles().size(), -1.0);
   std::vector<double> areas(thin.size());
   parallel_for(std::size_t{0}, thin.size(), [&](std::size_t i) {
@@ -258,15 +223,13 @@ double thin_share(const ClosedSurface& surface, const TriangleTree& tree, double
       where = i;
     }
   }
-  if (too_thin <= kMostThin * all) return too_thin / all;
+  if (too_thin <= kMostThin * all) return;
   const auto [a, b, c] = surface.corners(surface.triangles()[where]);
   const Vec3 place = (a + b + c) / 3.0;
-  std::ostringstream message;
-  message << "the mesh is thinner than its grid: " << std::round(100.0 * too_thin / all)
-          << " % of its surface is less than two spacings (" << thickness << " m) thick, the thinnest place "
-          << thinnest << " m at [" << place.x() << ", " << place.y() << ", " << place.z()
-          << "] m; set the nodes at most " << 0.5 * thinnest << " m apart, or take a thicker mesh";
-  refuse(message);
+  refuse("the mesh is thinner than its grid: ", std::round(100.0 * too_thin / all),
+         " % of its surface is less than two spacings (", thickness, " m) thick, the thinnest place ", thinnest,
+         " m at [", coordinates(place), "] m; set the nodes at most ", 0.5 * thinnest,
+         " m apart, or take a thicker mesh");
 }
 
 }  // namespace
@@ -277,25 +240,19 @@ SignedDistanceGrid::SignedDistanceGrid(std::span<const Vec3> vertices, std::span
 
 SignedDistanceGrid::SignedDistanceGrid(const ClosedSurface& surface, double spacing)
     : nodes_(nodes_around(surface, spacing)),
-      low_(surface.low() - Vec3::Constant(error_bound())),
-      high_(surface.high() + Vec3::Constant(error_bound())),
+      box_{surface.box().min - Vec3::Constant(error_bound()), surface.box().max + Vec3::Constant(error_bound())},
       reach_(furthest(surface) + error_bound()),
-      volume_(surface.volume()),
       vertices_(surface.vertices()),
       hull_(corners_of(surface)) {
   const TriangleTree tree(surface.vertices(), surface.triangles());
-  thin_share_ = hapbench::thin_share(surface, tree, 2.0 * spacing);
+  check_thickness(surface, tree, 2.0 * spacing);
   fill(surface, tree);
   classify();
   find_faces(surface);
 }
 
 double SignedDistanceGrid::suggested_spacing(std::span<const Vec3> vertices) {
-  return suggested_for(extent_of(vertices));
-}
-
-double SignedDistanceGrid::error_bound() const noexcept {
-  return 0.5 * std::numbers::sqrt3 * nodes_.spacing;
+  return suggested_for(box_of(vertices).size());
 }
 
 void SignedDistanceGrid::fill(const ClosedSurface& surface, const TriangleTree& tree) {
@@ -325,11 +282,9 @@ void SignedDistanceGrid::fill(const ClosedSurface& surface, const TriangleTree& 
     }
   });
   half_width_ = -*std::min_element(values_.begin(), values_.end());
-  if (half_width_ > 0.0) return;
-  std::ostringstream message;
-  message << "the mesh is so thin that none of its grid's nodes lies in it; set them less than " << nodes_.spacing
-          << " m apart";
-  refuse(message);
+  if (!(half_width_ > 0.0))
+    refuse("the mesh is so thin that none of its grid's nodes lies in it; set them less than ", nodes_.spacing,
+           " m apart");
 }
 
 void SignedDistanceGrid::classify() {

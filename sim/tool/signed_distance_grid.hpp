@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <numbers>
 #include <span>
 #include <vector>
 
@@ -68,16 +69,12 @@ class SignedDistanceGrid {
 
   double spacing() const noexcept { return nodes_.spacing; }  ///< [m]
   /// sqrt(3)/2 spacing [m].
-  double error_bound() const noexcept;
-  /// Corners of a box that contains the body, in the tool's frame [m].
-  const Vec3& low() const noexcept { return low_; }
-  const Vec3& high() const noexcept { return high_; }
+  double error_bound() const noexcept { return 0.5 * std::numbers::sqrt3 * nodes_.spacing; }
+  /// A box that contains the body, in the tool's frame [m].
+  const Box& box() const noexcept { return box_; }
   /// Depth of the deepest node: half the thickness of the body [m].
   double half_width() const noexcept { return half_width_; }
-  double reach() const noexcept { return reach_; }    ///< of the body's furthest point from the origin [m]
-  double volume() const noexcept { return volume_; }  ///< of the mesh [m^3]
-  /// Fraction of the mesh's area where the body is less than two spacings thick.
-  double thin_share() const noexcept { return thin_share_; }
+  double reach() const noexcept { return reach_; }  ///< of the body's furthest point from the origin [m]
 
   /// True if no vertex of the mesh lies in front of the plane of a triangle by more than 1 % of the spacing.
   bool convex() const noexcept { return convex_; }
@@ -102,13 +99,13 @@ class SignedDistanceGrid {
 
  private:
   SignedDistanceGrid(const ClosedSurface& surface, double spacing);
-  void fill(const ClosedSurface& surface, const class TriangleTree& tree);
+  void fill(const ClosedSurface& surface, const TriangleTree& tree);
   void classify();
   void find_faces(const ClosedSurface& surface);
 
   GridNodes nodes_;
-  Vec3 low_, high_;
-  double reach_, volume_, half_width_ = 0.0, thin_share_ = 0.0;
+  Box box_;
+  double reach_, half_width_ = 0.0;
   bool convex_ = false;
   std::vector<Vec3> vertices_;
   SupportTable hull_;

@@ -7,7 +7,6 @@
 
 #include "sim/contact/contact_buffer.hpp"
 #include "sim/core/types.hpp"
-#include "sim/tool/profile_point.hpp"
 #include "sim/tool/tool_state.hpp"
 
 namespace hapbench {

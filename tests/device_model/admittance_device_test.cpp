@@ -8,7 +8,6 @@
 #include <numbers>
 #include <vector>
 
-#include "device_model/ideal_device.hpp"
 #include "sim/core/random.hpp"
 
 /// The admittance device and its parts; AdmittanceLoop compares it with a linear map.

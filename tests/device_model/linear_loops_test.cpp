@@ -10,7 +10,6 @@
 #include "device_model/admittance_device.hpp"
 #include "device_model/hands/scripted_hands.hpp"
 #include "device_model/theory/linear_loops.hpp"
-#include "device_model/theory/stiffness_limits.hpp"
 #include "sim/core/random.hpp"
 #include "tests/support/fakes.hpp"
 

@@ -4,8 +4,8 @@
 #include <memory>
 #include <vector>
 
+#include "device_model/admittance_device.hpp"
 #include "device_model/hands/scripted_hands.hpp"
-#include "device_model/ideal_device.hpp"
 #include "sim/loop/simulation.hpp"
 #include "tests/support/setting.hpp"
 

@@ -5,9 +5,9 @@
 #include <memory>
 #include <utility>
 
+#include "sim/geometry/triangle_tree.hpp"
 #include "sim/mesh/half_edge_mesh.hpp"
 #include "sim/mesh/marching_cubes.hpp"
-#include "sim/mesh/triangle_soup.hpp"
 #include "sim/tool/mesh_tool.hpp"
 
 /// Surfaces to test with, as loose triangles. Closed ones are wound counter-clockwise from outside.

@@ -3,8 +3,8 @@
 #include <Eigen/Geometry>
 
 #include "algorithms/depth/depth_model.hpp"
+#include "device_model/admittance_device.hpp"
 #include "device_model/hands/scripted_hands.hpp"
-#include "device_model/ideal_device.hpp"
 #include "sim/contact/contact_source.hpp"
 
 namespace hapbench::test {

@@ -10,19 +10,17 @@
 #include <nlohmann/json.hpp>
 
 #include "algorithms/stages/damping_and_limits.hpp"
-#include "results/io/json_text.hpp"
-#include "results/summary/summary.hpp"
-#include "scenarios/format/input_error.hpp"
-#include "scenarios/format/metric_sections.hpp"
+#include "results/io/columns.hpp"
 #include "scenarios/limits/stability/field_limit.hpp"
 #include "scenarios/run/assemble.hpp"
-#include "scenarios/run/scene_checks.hpp"
 #include "scenarios/run/scene_loop.hpp"
 #include "sim/core/math.hpp"
 #include "sim/loop/integrators/table.hpp"
 
 namespace hapbench {
 namespace {
+
+// ---- Levels
 
 /// Formal order in the step. A device samples: between its samples the force is held, which is of the first order.
 double order_in_step(const Scenario& scenario) {
@@ -41,10 +39,9 @@ std::string noise_reason(const Scenario& scenario) {
 }
 
 LevelSweep step_levels(const Scenario& scenario, std::size_t levels, double ratio) {
-  if (ratio != std::round(ratio)) {
+  if (ratio != std::round(ratio))
     throw InputError(fmt::format(
         "--ratio: got {}; allowed for {}: whole numbers, so that the rows of all levels coincide", ratio, kStepPath));
-  }
   LevelSweep sweep{.axis = {kStepPath}, .formal_order = order_in_step(scenario), .no_order = noise_reason(scenario)};
   std::int64_t times = 1;
   for (std::size_t i = 0; i < levels; ++i, times *= static_cast<std::int64_t>(ratio)) {
@@ -71,23 +68,7 @@ double coarsest_value(const LoadedScenario& loaded, const std::string& path) {
                   path, own.is_null() ? "not given" : own.dump(), kStepPath));
 }
 
-}  // namespace
-
-LevelSweep level_sweep(const LoadedScenario& loaded, const std::string& path, std::size_t levels, double ratio) {
-  LevelSweep sweep;
-  if (path == kStepPath) {
-    sweep = step_levels(loaded.scenario, levels, ratio);
-  } else {
-    sweep.axis = {path};
-    double value = coarsest_value(loaded, path);
-    for (std::size_t i = 0; i < levels; ++i, value /= ratio)
-      sweep.axis.values.emplace_back(std::string_view(NumberText(value)));
-  }
-  sweep.ratio = ratio;
-  return sweep;
-}
-
-namespace {
+// ---- The order
 
 /// Smaller differences, relative to the results, are rounding errors of as many as 10^6 steps and say nothing about the
 /// order.
@@ -142,7 +123,46 @@ std::string incredible_reason(std::span<const double> f, std::span<const std::op
   return "";
 }
 
+// ---- Finer runs
+
+constexpr std::size_t kErrorLevels = 3;
+constexpr double kErrorRatio = 2.0;
+
+/// The levels of the distance between the points; or why there are none.
+LevelSweep spacing_levels(const LoadedScenario& loaded, bool has_points) {
+  const auto distance = point_distance(loaded);
+  if (!distance)
+    throw InputError(has_points ? "no field sets the distance of the points; only a finer file could tell"
+                                : "springs have no points");
+  LevelSweep levels = level_sweep(loaded, distance->path, kErrorLevels, kErrorRatio);
+  if (!distance->is_given) {
+    levels.no_order = "the mesh's own points are not as far apart everywhere as those of the other levels";
+    levels.axis.values.front() = "the mesh's own";
+  }
+  return levels;
+}
+
+std::string joined(std::span<const std::size_t> places, std::span<const std::string> names, const char* between) {
+  std::vector<std::string> found;
+  for (const std::size_t i : places) found.push_back(names[i]);
+  return fmt::format("{}", fmt::join(found, between));
+}
+
 }  // namespace
+
+LevelSweep level_sweep(const LoadedScenario& loaded, const std::string& path, std::size_t levels, double ratio) {
+  LevelSweep sweep;
+  if (path == kStepPath) {
+    sweep = step_levels(loaded.scenario, levels, ratio);
+  } else {
+    sweep.axis = {path};
+    double value = coarsest_value(loaded, path);
+    for (std::size_t i = 0; i < levels; ++i, value /= ratio)
+      sweep.axis.values.emplace_back(std::string_view(NumberText(value)));
+  }
+  sweep.ratio = ratio;
+  return sweep;
+}
 
 Convergence convergence_of(std::span<const LevelResult> levels, double ratio, double formal_order,
                            const std::string& no_order) {
@@ -221,27 +241,6 @@ Convergence convergence_of(const LevelSweep& levels, std::span<const LevelResult
                             : levels.no_order);
 }
 
-namespace {
-
-constexpr std::size_t kErrorLevels = 3;
-constexpr double kErrorRatio = 2.0;
-
-/// The levels of the distance between the points; or why there are none.
-LevelSweep spacing_levels(const LoadedScenario& loaded, bool has_points) {
-  const auto distance = point_distance(loaded);
-  if (!distance)
-    throw InputError(has_points ? "no field sets the distance of the points; only a finer file could tell"
-                                : "springs have no points");
-  LevelSweep levels = level_sweep(loaded, distance->path, kErrorLevels, kErrorRatio);
-  if (!distance->is_given) {
-    levels.no_order = "the mesh's own points are not as far apart everywhere as those of the other levels";
-    levels.axis.values.front() = "the mesh's own";
-  }
-  return levels;
-}
-
-}  // namespace
-
 Cases finer_cases(const LevelSweep& levels, const Cases& cases) {
   Axis axis = levels.axis;
   axis.values.erase(axis.values.begin());
@@ -278,9 +277,8 @@ FinerRuns::FinerRuns(const Comparison& comparison, std::span<const Result> repor
   for (const Cases& cases : comparison.scenes) {
     const LoadedScenario loaded = cases.load(0);
     const bool has_points = !std::holds_alternative<SpringsEnvironment>(loaded.scenario.environment);
-    has_points_.push_back(has_points);
-    steps_.push_back(part_of(cases, [&] { return level_sweep(loaded, kStepPath, kErrorLevels, kErrorRatio); }));
-    spacings_.push_back(part_of(cases, [&] { return spacing_levels(loaded, has_points); }));
+    scenes_.push_back({part_of(cases, [&] { return level_sweep(loaded, kStepPath, kErrorLevels, kErrorRatio); }),
+                       part_of(cases, [&] { return spacing_levels(loaded, has_points); }), has_points});
   }
   finer_ = run_all(finer, jobs);
 }
@@ -297,12 +295,10 @@ std::optional<double> FinerRuns::error_by(const Part& part, std::size_t run, con
 }
 
 KnownError FinerRuns::known_error(std::size_t run, const std::string& metric) const {
-  const std::size_t scene = comparison_.scene(run);
-  KnownError known{.step = error_by(steps_[scene], run, metric),
-                   .spacing = error_by(spacings_[scene], run, metric),
-                   .has_points = has_points_[scene]};
-  const MetricList& metrics = reports_[run].metrics;
-  if (const Metric* found = find_metric(metrics, metric)) known.tolerance = found->tolerance().value_or(0.0);
+  const auto& [step, spacing, has_points] = scenes_[comparison_.scene(run)];
+  KnownError known{error_by(step, run, metric), error_by(spacing, run, metric), has_points};
+  if (const Metric* found = find_metric(reports_[run].metrics, metric))
+    known.tolerance = found->tolerance().value_or(0.0);
   return known;
 }
 
@@ -311,18 +307,8 @@ std::string FinerRuns::refined(std::size_t scene) const {
     if (!part.why_not.empty()) return part.why_not;
     return fmt::format("{} {}", part.levels.axis.path, fmt::join(part.levels.axis.values, ", "));
   };
-  return fmt::format("{}; {}", text(steps_[scene]), text(spacings_[scene]));
+  return fmt::format("{}; {}", text(scenes_[scene].step), text(scenes_[scene].spacing));
 }
-
-namespace {
-
-std::string joined(std::span<const std::size_t> places, std::span<const std::string> names, const char* between) {
-  std::vector<std::string> found;
-  for (const std::size_t i : places) found.push_back(names[i]);
-  return fmt::format("{}", fmt::join(found, between));
-}
-
-}  // namespace
 
 HeldOrder held_order(std::span<const NumberWithError> numbers) {
   const auto comes_before = [&](std::size_t a, std::size_t b) { return is_less(numbers[a], numbers[b]); };

@@ -12,9 +12,8 @@
 #include "scenarios/cases/league.hpp"
 #include "scenarios/format/load_scenario.hpp"
 
-/// How far a number is from converged when a scene is sampled more finely in its step or in any field: observed order,
-/// Richardson's value and grid convergence index (Roache 1994; ASME V&V 20) at levels h, h/r, h/r^2, … of the field; or
-/// why no order can be stated.
+/// How far a number is from converged in a scene's step or any field: observed order, Richardson's value and grid
+/// convergence index (Roache 1994; ASME V&V 20) at levels h, h/r, h/r^2, … of the field; or why no order can be stated.
 namespace hapbench {
 
 inline constexpr const char* kStepPath = "time.step_s";
@@ -77,8 +76,7 @@ Convergence convergence_of(const LevelSweep& levels, std::span<const LevelResult
 /// The cases at the levels behind the first. Throws InputError where one of them cannot be run.
 Cases finer_cases(const LevelSweep& levels, const Cases& cases);
 
-/// Error of a number, in its unit. By step and by spacing it is the error that convergence_of gives the coarsest of
-/// three levels: 1.25 |f - f*| with Richardson's value f* where an order is seen, else the largest plain difference.
+/// Error of a number, in its unit: by step and by spacing the error of the coarsest of three levels (convergence_of).
 struct KnownError {
   std::optional<double> step, spacing;  ///< empty where a finer run ends otherwise or has no such number
   bool has_points = true;               ///< false: there is no spacing to be halved
@@ -109,13 +107,16 @@ class FinerRuns {
     std::size_t first = 0;     ///< number of the first finer run
     std::string why_not = {};  ///< why there are no levels; empty otherwise
   };
+  struct Scene {
+    Part step, spacing;
+    bool has_points;
+  };
   std::optional<double> error_by(const Part& part, std::size_t run, const std::string& metric) const;
 
   const Comparison& comparison_;
   std::span<const Result> reports_;
-  std::vector<Part> steps_, spacings_;  ///< of each scene
-  std::vector<bool> has_points_;        ///< of each scene
-  std::vector<Result> finer_;           ///< by part, then by level, then as in the comparison
+  std::vector<Scene> scenes_;
+  std::vector<Result> finer_;  ///< by part, then by level, then as in the comparison
 };
 
 /// Places of numbers in the order that their errors leave.

@@ -10,12 +10,7 @@
 #include <numbers>
 #include <utility>
 
-#include "algorithms/stages/damping_and_limits.hpp"
 #include "device_model/theory/linear_loops.hpp"
-#include "device_model/theory/stiffness_limits.hpp"
-#include "results/observe/contact_forces.hpp"
-#include "scenarios/cases/cases.hpp"
-#include "scenarios/format/input_error.hpp"
 #include "scenarios/format/text_lines.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/scene_loop.hpp"
@@ -147,203 +142,11 @@ FoundEdge find_tried_edge(const SearchWay& way, std::map<double, bool>& tried,
   }
 }
 
-namespace {
-
-// Theory costs a thousandth of a run: it is scanned so much finer, and bisected to rounding whatever the runs'
-// resolution.
-constexpr int kTheoryIntervals = 256;
-constexpr double kTheoryResolution = 1e-12;
-
-std::string override_text(const std::string& path, double value, bool whole) {
-  return whole ? fmt::format("{}={:.0f}", path, value) : fmt::format("{}={}", path, value);
+LoadedScenario LimitQuestion::at(double value) const {
+  std::vector<std::string> all = overrides;
+  all.push_back(whole ? fmt::format("{}={:.0f}", path, value) : fmt::format("{}={}", path, value));
+  return load_scenario(*scene, all);
 }
-
-/// Finds the limit of one case.
-class Search {
- public:
-  explicit Search(const LimitQuestion& question) : question_(question) {}
-
-  FieldLimit limit() {
-    FieldLimit limit;
-    std::map<double, RunStability> runs;  // by value
-    const auto run_ahead = [&](std::span<const double> parts) {
-      std::vector<double> values;
-      for (const double part : parts)
-        if (const double value = question_.value_at(part); runs.try_emplace(value).second) values.push_back(value);
-      for_each_job(values.size(), {question_.threads, ""},
-                   [&](std::size_t i) { runs.at(values[i]) = judged(values[i]); });
-    };
-    const auto at_part = [&](double part) {
-      return JudgedValue{question_.value_at(part), runs.at(question_.value_at(part)).verdict};
-    };
-    const auto judge = [&](double part) {
-      run_ahead({&part, 1});
-      return question_.holds(at_part(part).verdict);
-    };
-    const Theory theory(*this, has_theory, step_is_stable, kTheoryIntervals);
-    std::vector<double> first = theory.islands();
-    for (int i = 0; i <= kEdgeIntervals; ++i) first.push_back(static_cast<double>(i) / kEdgeIntervals);
-    run_ahead(first);
-    std::map<double, bool> tried;
-    for (const double part : first) tried[part] = judge(part);
-    const bool is_linear = theory.edge().has_value();
-    const FoundEdge edge = question_.between ? find_tried_edge(question_, tried, judge, !is_linear, run_ahead)
-                                             : find_edge(question_, tried, judge, true);
-    limit.scattered = edge.scattered;
-    if (edge.stable) {
-      limit.tried_between = question_.between ? kTriedBetween : 0;
-      limit.value = question_.value_at(*edge.stable);
-      limit.settled = runs.at(*limit.value).settled;
-    }
-    if (edge.beyond) limit.beyond = at_part(*edge.beyond);
-    if (edge.first) limit.other.value = question_.value_at(*edge.first);
-    if (edge.before) limit.other.beyond = at_part(*edge.before);
-    if (question_.own_part()) limit.own = at_part(*question_.own_part());
-    for (const auto& [value, run] : runs) {
-      limit.runs.push_back({value, run.verdict});
-      if (limit.value && question_.holds(run.verdict) != in_interval(value, limit))
-        limit.inconsistent.push_back(limit.runs.back());
-    }
-    limit.has_effect = std::any_of(runs.begin(), runs.end(),
-                                   [&runs](const auto& run) { return run.second.way != runs.begin()->second.way; });
-    const JudgedValue suspect = limit.beyond ? *limit.beyond : limit.runs.front();
-    limit.unstable_alone =
-        !question_.holds(suspect.verdict) && unstable_without_contact(at(suspect.value), question_.most_vibration);
-    limit.theory = theory.edge();
-    limit.theory_has_none = theory.has_none();
-    limit.closed_form = Theory(*this, has_closed_form, has_margin, kEdgeIntervals).edge();
-    limit.undecided = static_cast<std::size_t>(
-        std::count_if(runs.begin(), runs.end(), [](const auto& run) { return run.second.undecided; }));
-    add_closed_forms(limit);
-    if (!limit.theory && limit.settled.lambda_max > 0.0 && !question_.smallest)
-      limit.linear = linear_edge(limit.settled.lambda_max);
-    return limit;
-  }
-
- private:
-  bool in_interval(double value, const FieldLimit& limit) const {
-    const auto is_before = [this](double a, double b) { return question_.smallest ? a > b : a < b; };
-    return (!limit.beyond || is_before(value, limit.beyond->value)) &&
-           (!limit.other.beyond || is_before(limit.other.beyond->value, value));
-  }
-
-  RunStability judged(double value) const {
-    const LoadedScenario loaded = at(value);
-    return with_file(loaded,
-                     [&] { return stability_of(loaded, make_shell(loaded.scenario, loaded.files), question_); });
-  }
-
-  LoadedScenario at(double value) const {
-    std::vector<std::string> overrides = question_.overrides;
-    overrides.push_back(override_text(question_.path, value, question_.whole));
-    return load_scenario(*question_.scene, overrides);
-  }
-
-  /// The edges of what is stable without a run, along the whole way.
-  class Theory {
-   public:
-    using Predicate = std::function<bool(const Scenario&)>;
-    /// Empty unless it `applies` to the scene at both ends.
-    Theory(const Search& search, const Predicate& applies, Predicate stable, int intervals)
-        : search_(search), stable_(std::move(stable)) {
-      for (const double end : {0.0, 1.0}) {
-        if (!applies(search.at(search.question_.value_at(end)).scenario)) return;
-      }
-      tried_ = scanned(intervals, [this](double part) { return holds(part); });
-    }
-
-    /// The middles of all stretches of stable values, for runs to try: a stretch may lie between the values of a scan.
-    std::vector<double> islands() const {
-      std::vector<double> middles;
-      for (auto from = tried_.begin(); from != tried_.end();) {
-        const auto to = std::find_if(from, tried_.end(), [](const auto& tried) { return !tried.second; });
-        if (to != from) middles.push_back(0.5 * (from->first + std::prev(to)->first));
-        from = to == tried_.end() ? to : std::next(to);
-      }
-      return middles;
-    }
-    /// True where no value is stable.
-    bool has_none() const { return !tried_.empty() && islands().empty(); }
-    std::optional<double> edge() const {
-      if (tried_.empty()) return std::nullopt;
-      std::map<double, bool> tried = tried_;
-      const SearchWay& asked = search_.question_;
-      SearchWay way = asked;
-      way.resolution = kTheoryResolution;
-      const FoundEdge edge = find_edge(
-          way, tried, [this](double part) { return holds(part); }, false);
-      if (!edge.stable) return std::nullopt;
-      if (edge.beyond) return way.value_at(*edge.stable);
-      return way.smallest ? 0.0 : std::numeric_limits<double>::infinity();
-    }
-
-   private:
-    bool holds(double part) const { return stable_(search_.at(search_.question_.value_at(part)).scenario); }
-
-    const Search& search_;
-    Predicate stable_;
-    std::map<double, bool> tried_;
-  };
-
-  /// FieldLimit::closed_forms and worst_hand
-  void add_closed_forms(FieldLimit& limit) const {
-    const Scenario scenario = at(question_.value_at(0.0)).scenario;
-    if (question_.path != "rendering.stiffness_N_per_m" || question_.smallest || !springs_stay(scenario) ||
-        !std::holds_alternative<ImpedanceDeviceConfig>(scenario.device))
-      return;
-    if (!scenario.rendering.damping && scenario.rendering.damping_ratio != 0.0) return;  // B is not that of any K
-    const double lambda = stiffness_eigenvalues(scenario)[2];
-    const DeviceLoop start = device_loop(scenario, lambda);
-    const auto& sampled = std::get<SampledLoop>(start.loop);
-    limit.no_theory = start.no_theory;
-    if (start.no_theory.empty()) limit.worst_hand = worst_hand_edge(sampled) / lambda;
-    const bool is_known = unknown_to_theory(scenario).empty();
-    for (const StiffnessLimit& known : stiffness_limits()) {
-      const std::optional<double> K = is_known ? known.largest(sampled) : std::nullopt;
-      limit.closed_forms.push_back(K ? std::optional(*K / lambda) : std::nullopt);
-    }
-  }
-
-  /// FieldLimit::linear
-  std::optional<double> linear_edge(double lambda) const {
-    const auto applies = [lambda](const Scenario& scenario) {
-      return has_device(scenario) && contact_step(scenario, lambda).size() != 0;
-    };
-    const auto stable = [lambda](const Scenario& scenario) {
-      return std::ranges::all_of(contact_loops(scenario, lambda, false),
-                                 [](const auto& loop) { return is_stable_step(loop.second); });
-    };
-    return Theory(*this, applies, stable, 2 * kEdgeIntervals).edge();
-  }
-
-  /// True for springs that stay in contact, with a tool that is alone or a device whose loop is linear.
-  static bool has_theory(const Scenario& scenario) {
-    return springs_stay(scenario) && (has_device(scenario) ? device_loop(scenario, 1.0).no_theory.empty()
-                                                           : std::holds_alternative<NoHandFields>(scenario.hand));
-  }
-
-  /// True when no mode of the springs leaves the unit circle, alone or in the loop of the device.
-  static bool step_is_stable(const Scenario& scenario) {
-    const Vec3 lambdas = stiffness_eigenvalues(scenario);
-    return std::all_of(lambdas.begin(), lambdas.end(), [&](double lambda) {
-      constexpr double kNoWall = 1e-12;  // a direction without springs: the handle is free to go
-      if (!has_device(scenario)) return tool_on_spring(scenario, lambda).is_stable();
-      return lambda < kNoWall || is_stable_step(device_loop(scenario, lambda).state_matrix());
-    });
-  }
-
-  /// True where the integrator's inequality tells whether a step is stable.
-  static bool has_closed_form(const Scenario& scenario) {
-    return !has_device(scenario) && has_theory(scenario) && scenario.integrator.type->stability_margin != nullptr;
-  }
-  static bool has_margin(const Scenario& scenario) {
-    return *tool_on_spring(scenario, stiffness_eigenvalues(scenario)[2]).margin() >= 0.0;
-  }
-
-  const LimitQuestion& question_;
-};
-
-}  // namespace
 
 Json own_value(const Scenario& scenario, const std::string& path) {
   const Json effective = effective_scenario(scenario, scenario.directory);
@@ -354,14 +157,21 @@ Json own_value(const Scenario& scenario, const std::string& path) {
 
 namespace {
 
-/// The end nearest to 2^10 or 2^-10 times the value that the field allows.
-double allowed_end(double value, int sign, const std::function<bool(double)>& allowed) {
+// ---- The question
+
+/// The end nearest to 2^10 or 2^-10 times the own value that the field allows.
+double allowed_end(const LimitQuestion& question, double own, int sign) {
   constexpr int kDoublings = 10;
   for (int doublings = kDoublings; doublings > 0; --doublings) {
-    const double end = std::ldexp(value, sign * doublings);
-    if (allowed(end)) return end;
+    const double end = std::ldexp(own, sign * doublings);
+    try {
+      question.at(end);
+      return end;
+    } catch (const InputError&) {
+      continue;
+    }
   }
-  return value;
+  return own;
 }
 
 [[noreturn]] void refuse(const LoadedScenario& loaded, const char* place, const std::string& problem) {
@@ -370,9 +180,8 @@ double allowed_end(double value, int sign, const std::function<bool(double)>& al
 
 void check_scene(const LoadedScenario& loaded) {
   const Scenario& scenario = loaded.scenario;
-  if (!position_is_free(scenario.motion)) {
+  if (!position_is_free(scenario.motion))
     refuse(loaded, "/motion/position/type", "a prescribed tool cannot become unstable; allowed for limit: \"free\"");
-  }
   if (scenario.time.steps < 4)
     refuse(loaded, "/time/steps", fmt::format("got {}; allowed for limit: at least 4", scenario.time.steps));
 }
@@ -384,6 +193,132 @@ void check_sampling(const LoadedScenario& loaded) {
                      loaded.scenario.time.step, kVibrationCutoff, 0.5 / kVibrationCutoff));
 }
 
+// ---- Theory, which costs a thousandth of a run: it is scanned so much finer, and bisected to rounding whatever the
+// runs' resolution.
+
+constexpr int kTheoryIntervals = 256;
+constexpr double kTheoryResolution = 1e-12;
+
+/// True for springs that stay in contact, with a tool that is alone or a device whose loop is linear.
+bool has_theory(const Scenario& scenario) {
+  return springs_stay(scenario) && (has_device(scenario) ? device_loop(scenario, 1.0).no_theory.empty()
+                                                         : std::holds_alternative<NoHandFields>(scenario.hand));
+}
+
+/// True when no mode of the springs leaves the unit circle, alone or in the loop of the device.
+bool step_is_stable(const Scenario& scenario) {
+  const Vec3 lambdas = stiffness_eigenvalues(scenario);
+  return std::all_of(lambdas.begin(), lambdas.end(), [&](double lambda) {
+    constexpr double kNoWall = 1e-12;  // a direction without springs: the handle is free to go
+    if (!has_device(scenario)) return tool_on_spring(scenario, lambda).is_stable();
+    return lambda < kNoWall || is_stable_step(device_loop(scenario, lambda).state_matrix());
+  });
+}
+
+/// True where the integrator's inequality tells whether a step is stable.
+bool has_inequality(const Scenario& scenario) {
+  return !has_device(scenario) && has_theory(scenario) && scenario.integrator.type->stability_margin != nullptr;
+}
+bool keeps_inequality(const Scenario& scenario) {
+  return *tool_on_spring(scenario, stiffness_eigenvalues(scenario)[2]).margin() >= 0.0;
+}
+
+/// The edges of what is stable without a run, along the whole way.
+class Theory {
+ public:
+  using Predicate = std::function<bool(const Scenario&)>;
+  /// Empty unless it `applies` to the scene at both ends.
+  Theory(const LimitQuestion& question, const Predicate& applies, Predicate stable, int intervals)
+      : question_(question), stable_(std::move(stable)) {
+    for (const double end : {0.0, 1.0})
+      if (!applies(question.at(question.value_at(end)).scenario)) return;
+    tried_ = scanned(intervals, [this](double part) { return holds(part); });
+  }
+
+  /// The middles of all stretches of stable values, for runs to try: a stretch may lie between the values of a scan.
+  std::vector<double> islands() const {
+    std::vector<double> middles;
+    for (auto from = tried_.begin(); from != tried_.end();) {
+      const auto to = std::find_if(from, tried_.end(), [](const auto& tried) { return !tried.second; });
+      if (to != from) middles.push_back(0.5 * (from->first + std::prev(to)->first));
+      from = to == tried_.end() ? to : std::next(to);
+    }
+    return middles;
+  }
+  /// True where no value is stable.
+  bool has_none() const { return !tried_.empty() && islands().empty(); }
+  std::optional<double> edge() const {
+    if (tried_.empty()) return std::nullopt;
+    std::map<double, bool> tried = tried_;
+    SearchWay way = question_;
+    way.resolution = kTheoryResolution;
+    const FoundEdge edge = find_edge(
+        way, tried, [this](double part) { return holds(part); }, false);
+    if (!edge.stable) return std::nullopt;
+    if (edge.beyond) return way.value_at(*edge.stable);
+    return way.smallest ? 0.0 : std::numeric_limits<double>::infinity();
+  }
+
+ private:
+  bool holds(double part) const { return stable_(question_.at(question_.value_at(part)).scenario); }
+
+  const LimitQuestion& question_;
+  Predicate stable_;
+  std::map<double, bool> tried_;
+};
+
+/// FieldLimit::linear
+std::optional<double> edge_in_contact(const LimitQuestion& question, double lambda) {
+  const auto applies = [lambda](const Scenario& scenario) {
+    return has_device(scenario) && contact_step(scenario, lambda).size() != 0;
+  };
+  const auto stable = [lambda](const Scenario& scenario) {
+    return std::ranges::all_of(contact_loops(scenario, lambda, false),
+                               [](const auto& loop) { return is_stable_step(loop.second); });
+  };
+  return Theory(question, applies, stable, 2 * kEdgeIntervals).edge();
+}
+
+/// FieldLimit::closed_forms and worst_hand
+void add_closed_forms(const LimitQuestion& question, FieldLimit& limit) {
+  const Scenario scenario = question.at(question.value_at(0.0)).scenario;
+  if (question.path != kStiffnessPath || question.smallest || !springs_stay(scenario) ||
+      !std::holds_alternative<ImpedanceDeviceConfig>(scenario.device))
+    return;
+  if (!scenario.rendering.damping && scenario.rendering.damping_ratio != 0.0) return;  // B is not that of any K
+  const double lambda = stiffness_eigenvalues(scenario)[2];
+  const DeviceLoop start = device_loop(scenario, lambda);
+  const auto& sampled = std::get<SampledLoop>(start.loop);
+  limit.no_theory = start.no_theory;
+  if (start.no_theory.empty()) limit.worst_hand = worst_hand_edge(sampled) / lambda;
+  const bool is_known = unknown_to_theory(scenario).empty();
+  for (const StiffnessLimit& known : stiffness_limits()) {
+    const std::optional<double> K = is_known ? known.largest(sampled) : std::nullopt;
+    limit.closed_forms.push_back(K ? std::optional(*K / lambda) : std::nullopt);
+  }
+}
+
+// ---- The search
+
+/// True for a value in the interval of stable ones that the limit ends.
+bool is_in_interval(double value, const FieldLimit& limit, bool smallest) {
+  const auto is_before = [smallest](double a, double b) { return smallest ? a > b : a < b; };
+  return (!limit.beyond || is_before(value, limit.beyond->value)) &&
+         (!limit.other.beyond || is_before(limit.other.beyond->value, value));
+}
+
+/// What the runs say, by their values.
+void add_runs(const LimitQuestion& question, const std::map<double, RunStability>& runs, FieldLimit& limit) {
+  for (const auto& [value, run] : runs) {
+    limit.runs.push_back({value, run.verdict});
+    if (limit.value && question.holds(run.verdict) != is_in_interval(value, limit, question.smallest))
+      limit.inconsistent.push_back(limit.runs.back());
+    limit.undecided += run.undecided;
+  }
+  limit.has_effect = std::any_of(runs.begin(), runs.end(),
+                                 [&](const auto& run) { return run.second.way != runs.begin()->second.way; });
+}
+
 }  // namespace
 
 LimitQuestion limit_question(const ScenarioText& scenario, const std::vector<std::string>& overrides,
@@ -391,48 +326,79 @@ LimitQuestion limit_question(const ScenarioText& scenario, const std::vector<std
   const LoadedScenario loaded = load_scenario(scenario, overrides);
   check_scene(loaded);
   const Json own = own_value(loaded.scenario, path);
-  const auto load = [&](double value) {
-    std::vector<std::string> more = overrides;
-    more.push_back(override_text(path, value, own.is_number_integer()));
-    return load_scenario(scenario, more);
-  };
-  const auto allowed = [&](double value) {
-    try {
-      load(value);
-      return true;
-    } catch (const InputError&) {
-      return false;
-    }
-  };
-  if (!range) {
-    // A field that does not exist, or takes no number, says so itself.
-    if (!own.is_number()) load(1.0);
-    if (!own.is_number() || !(own.get<double>() > 0.0)) {
-      throw InputError(fmt::format("--vary {}: {} in the scenario; allowed without --between: a number > 0", path,
-                                   own.is_null() ? "not given" : own.dump()));
-    }
-    const double value = own.get<double>();
-    range = Range{allowed_end(value, -1, allowed), allowed_end(value, 1, allowed)};
-  }
-  load(range->from);
-  const LoadedScenario last = load(range->to);
-  range->logarithmic = range->from > 0.0;
   LimitQuestion question;
   question.scene = &scenario;
   question.overrides = overrides;
   question.path = path;
-  question.warnings = with_files(last, last.warnings);
-  question.range = *range;
-  if (own.is_number() && own.get<double>() >= range->from && own.get<double>() <= range->to) {
-    question.own = own.get<double>();
-  }
   question.whole = own.is_number_integer();
+  if (!range) {
+    // A field that does not exist, or takes no number, says so itself.
+    if (!own.is_number()) question.at(1.0);
+    if (!own.is_number() || !(own.get<double>() > 0.0))
+      throw InputError(fmt::format("--vary {}: {} in the scenario; allowed without --between: a number > 0", path,
+                                   own.is_null() ? "not given" : own.dump()));
+    const double value = own.get<double>();
+    range = Range{allowed_end(question, value, -1), allowed_end(question, value, 1)};
+  }
+  question.at(range->from);
+  const LoadedScenario last = question.at(range->to);
+  question.warnings = with_files(last, last.warnings);
+  question.range = {range->from, range->to, range->from > 0.0};
+  if (own.is_number() && own.get<double>() >= range->from && own.get<double>() <= range->to)
+    question.own = own.get<double>();
   return question;
 }
 
 FieldLimit field_limit(const LimitQuestion& question) {
   if (question.most_vibration) check_sampling(load_scenario(*question.scene, question.overrides));
-  return Search(question).limit();
+  std::map<double, RunStability> runs;  // by value
+  const auto run_ahead = [&](std::span<const double> parts) {
+    std::vector<double> values;
+    for (const double part : parts)
+      if (const double value = question.value_at(part); runs.try_emplace(value).second) values.push_back(value);
+    for_each_job(values.size(), {question.threads, ""}, [&](std::size_t i) {
+      const LoadedScenario loaded = question.at(values[i]);
+      const auto judged = [&] { return stability_of(loaded, make_shell(loaded.scenario, loaded.files), question); };
+      runs.at(values[i]) = with_file(loaded, judged);
+    });
+  };
+  const auto at_part = [&](double part) {
+    return JudgedValue{question.value_at(part), runs.at(question.value_at(part)).verdict};
+  };
+  const auto judge = [&](double part) {
+    run_ahead({&part, 1});
+    return question.holds(at_part(part).verdict);
+  };
+  FieldLimit limit;
+  const Theory theory(question, has_theory, step_is_stable, kTheoryIntervals);
+  limit.theory = theory.edge();
+  limit.theory_has_none = theory.has_none();
+  std::vector<double> first = theory.islands();
+  for (int i = 0; i <= kEdgeIntervals; ++i) first.push_back(static_cast<double>(i) / kEdgeIntervals);
+  run_ahead(first);
+  std::map<double, bool> tried;
+  for (const double part : first) tried[part] = judge(part);
+  const FoundEdge edge = question.between ? find_tried_edge(question, tried, judge, !limit.theory, run_ahead)
+                                          : find_edge(question, tried, judge, true);
+  limit.scattered = edge.scattered;
+  if (edge.stable) {
+    limit.tried_between = question.between ? kTriedBetween : 0;
+    limit.value = question.value_at(*edge.stable);
+    limit.settled = runs.at(*limit.value).settled;
+  }
+  if (edge.beyond) limit.beyond = at_part(*edge.beyond);
+  if (edge.first) limit.other.value = question.value_at(*edge.first);
+  if (edge.before) limit.other.beyond = at_part(*edge.before);
+  if (question.own_part()) limit.own = at_part(*question.own_part());
+  add_runs(question, runs, limit);
+  const JudgedValue suspect = limit.beyond ? *limit.beyond : limit.runs.front();
+  limit.unstable_alone =
+      !question.holds(suspect.verdict) && unstable_without_contact(question.at(suspect.value), question.most_vibration);
+  limit.closed_form = Theory(question, has_inequality, keeps_inequality, kEdgeIntervals).edge();
+  add_closed_forms(question, limit);
+  if (!limit.theory && limit.settled.lambda_max > 0.0 && !question.smallest)
+    limit.linear = edge_in_contact(question, limit.settled.lambda_max);
+  return limit;
 }
 
 }  // namespace hapbench

@@ -12,14 +12,12 @@
 #include "scenarios/format/load_scenario.hpp"
 #include "scenarios/limits/stability/run_stability.hpp"
 
-/// The search for the edge of the stable values of a field, whatever makes a value stable, and with it the largest or
-/// smallest value of a scenario's field at which its run is stable (run_stability.hpp).
+/// The search for the edge of stable values, whatever makes them stable, and with it the largest or smallest value of a
+/// scenario's field at which its run is stable (run_stability.hpp).
 namespace hapbench {
 
-/// Equal parts that a way is divided into before bisection.
-inline constexpr int kEdgeIntervals = 16;
-/// Relative width at which bisection on runs stops unless it is said otherwise.
-inline constexpr double kEdgeResolution = 1e-3;
+inline constexpr int kEdgeIntervals = 16;        ///< equal parts of a way before bisection
+inline constexpr double kEdgeResolution = 1e-3;  ///< relative width at which bisection on runs stops by default
 
 /// A range of values as a way from the end that is expected to be stable (part 0) to the other end (part 1).
 struct SearchWay {
@@ -31,28 +29,26 @@ struct SearchWay {
   double resolution = kEdgeResolution;
 
   double value_at(double part) const;
-  /// The part of the own value.
   std::optional<double> own_part() const;
   /// True while bisection has to go on between two parts.
   bool apart(double a, double b) const;
 };
 
-/// The result of a search, as parts of the way.
+/// The result of a search, as parts of the way: the interval of stable ones, from `first` to `stable`, and the unstable
+/// ones next to it, `before` and `beyond`.
 struct FoundEdge {
-  std::optional<double> stable = {};  ///< the last stable part
-  std::optional<double> beyond = {};  ///< the first unstable part beyond it
-  std::optional<double> first = {};   ///< the first stable part of the interval that ends with `stable`
-  std::optional<double> before = {};  ///< the last unstable part before it
-  bool scattered = false;             ///< there are stable parts, but no stretch of them as long as kNear
+  std::optional<double> stable = {}, beyond = {};
+  std::optional<double> first = {}, before = {};
+  bool scattered = false;  ///< there are stable parts, but no stretch of them as long as kNear
 };
 
 /// Which ends of so many equal parts of a way are stable, from its begin on.
 std::map<double, bool> scanned(int intervals, const std::function<bool(double)>& stable);
 
-/// The first edge behind the own value, or if that is not stable behind the first stable one of the parts `tried`,
-/// which hold at least both ends, and then what was tried besides; narrowed down by bisection. With `beside`, three
-/// values on either side are tried, and an edge before it that they show is narrowed down instead, up to five times;
-/// then the other end of the interval is.
+/// The first edge behind the own value, or if that is not stable behind the first stable one of the parts `tried` (at
+/// least both ends; those of the search are added), narrowed down by bisection. With `beside`, three values on either
+/// side are tried, and an edge before it that they show is narrowed down instead, up to five times; then the other end
+/// of the interval is.
 FoundEdge find_edge(const SearchWay& way, std::map<double, bool>& tried, const std::function<bool(double)>& stable,
                     bool beside);
 
@@ -76,6 +72,8 @@ FoundEdge find_tried_edge(const SearchWay& way, std::map<double, bool>& tried,
                           const std::function<bool(double)>& stable, bool near,
                           const std::function<void(std::span<const double>)>& ahead);
 
+inline constexpr const char* kStiffnessPath = "rendering.stiffness_N_per_m";
+
 /// The question: which limit of which field of a scene, and by which rule a run is stable.
 struct LimitQuestion : StabilityRule, SearchWay {
   const ScenarioText* scene = nullptr;  ///< has to outlive the question
@@ -86,6 +84,8 @@ struct LimitQuestion : StabilityRule, SearchWay {
   unsigned threads = 1;                    ///< runs at once; no result depends on it
 
   const char* side() const { return smallest ? "smallest" : "largest"; }
+  /// The scene with this value of the field. Throws InputError.
+  LoadedScenario at(double value) const;
 };
 
 /// A value and what a run with it came to.

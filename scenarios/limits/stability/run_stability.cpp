@@ -1,13 +1,10 @@
 #include "scenarios/limits/stability/run_stability.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "results/observe/metrics.hpp"
-#include "results/summary/summary.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/outcome.hpp"
 #include "scenarios/run/run_scenario.hpp"
@@ -28,86 +25,6 @@ RunVerdictText of_outcome(Outcome outcome) {
   const OutcomeInfo& info = outcome_infos()[static_cast<std::size_t>(outcome)];
   return {info.name, info.meaning};
 }
-
-}  // namespace
-
-std::span<const RunVerdictText> run_verdict_texts() noexcept {
-  // In the order of the enumeration.
-  static const RunVerdictText kTexts[] = {
-      {"stable", "at rest, died out or creeping", "all else: at rest, died out, creeping"},
-      {"dying_out", "still oscillates, but comes to rest if the run goes on",
-       "oscillates as much, but loses a tenth of its amplitude from the second quarter to the third and again to the "
-       "last"},
-      {"vibrating", "oscillates and does not decay",
-       "does not decay: oscillates in the last quarter with at least 1 % of the first quarter's amplitude"},
-      {"diverged", "left its bounds, or oscillates with a growing amplitude",
-       "left its bounds, or oscillates with an amplitude that grows by 1 % from each quarter to the next"},
-      {"thrown_out",
-       "the tool left the hole, or ended without contact beyond the environment's box by more than it reaches"},
-      {"no_contact", "the tool touched nothing in any row"},
-      of_outcome(Outcome::lost_contact),
-      of_outcome(Outcome::went_through),
-      of_outcome(Outcome::not_dragged),
-      of_outcome(Outcome::stuck),
-      {"beyond_bound", "stable but for a metric that a --bound does not allow"}};
-  return kTexts;
-}
-
-MotionClassifier MotionClassifier::of_moved_tool(std::uint64_t steps, double time_step, double still) {
-  MotionClassifier classifier(steps);
-  classifier.is_moved_ = true;
-  classifier.high_pass_ = vibration_filter(time_step);
-  if (still <= 0.5 * static_cast<double>(steps)) classifier.still_ = static_cast<std::uint64_t>(std::ceil(still));
-  return classifier;
-}
-
-void MotionClassifier::Stretch::add(std::uint64_t quarter, const Vec3& velocity) noexcept {
-  Quarter& here = quarters[std::min<std::uint64_t>(3, quarter)];
-  here.amplitude = std::max(here.amplitude, velocity.norm());
-  for (int i = 0; i < 3; ++i) {
-    if (velocity[i] == 0.0) continue;
-    here.turns[static_cast<std::size_t>(i)] += velocity[i] * last_velocity[i] < 0.0;
-    last_velocity[i] = velocity[i];
-  }
-}
-
-void MotionClassifier::on_step(const StepRecord& record) noexcept {
-  if (high_pass_ && record.step == 0) high_pass_->settle_at(record.body_velocity());
-  const Vec3 v = high_pass_ ? high_pass_->filter(record.body_velocity()) : record.body_velocity();
-  all_.add(record.step * 4 / steps_, v);
-  if (still_ && record.step >= *still_)
-    held_.add((record.step - *still_) * 4 / (steps_ - *still_), record.body_velocity());
-  const double speed = v.norm();
-  largest_speed_ = std::max(largest_speed_, speed);
-  rows_at_rest_ = speed <= kRest * largest_speed_ ? rows_at_rest_ + 1 : 0;
-}
-
-bool MotionClassifier::is_undecided() const noexcept {
-  const auto& q = all_.quarters;
-  return !is_moved_ && !at_rest() && !q[3].oscillates() && q[3].amplitude >= kLeft * q[0].amplitude &&
-         q[3].amplitude > 0.0;
-}
-
-MotionClass MotionClassifier::motion_class(Outcome outcome) const noexcept {
-  if (outcome == Outcome::diverges) return MotionClass::diverged;
-  if (at_rest()) return MotionClass::stable;
-  // A hand that comes to rest may swing a little more for a while: below 30 Hz that is not called growth.
-  return std::max(all_.motion_class(is_moved_ ? kFelt : 0.0),
-                  std::min(held_.motion_class(kFelt), MotionClass::vibrating));
-}
-
-MotionClass MotionClassifier::Stretch::motion_class(double felt) const noexcept {
-  const auto& q = quarters;
-  if (!q[3].oscillates() || q[3].amplitude < felt) return MotionClass::stable;
-  bool grows = true;
-  for (std::size_t i = 1; i < q.size(); ++i) grows = grows && q[i].amplitude > kGrowth * q[i - 1].amplitude;
-  if (grows) return MotionClass::diverged;
-  if (q[3].amplitude < kLeft * q[0].amplitude) return MotionClass::stable;
-  const bool decays = q[2].amplitude < kSustained * q[1].amplitude && q[3].amplitude < kSustained * q[2].amplitude;
-  return decays ? MotionClass::dying_out : MotionClass::vibrating;
-}
-
-namespace {
 
 /// Steps the simulation, which `classifier` observes, until it ends or comes to rest.
 MotionClass classify(Simulation& simulation, const MotionClassifier& classifier) {
@@ -251,16 +168,6 @@ std::optional<RunVerdict> verdict_of(Outcome outcome) {
   return static_cast<RunVerdict>(found - texts.begin());
 }
 
-/// True when the run, made once more to its end, keeps all bounds.
-bool keeps(const LoadedScenario& loaded, const std::shared_ptr<const PointShell>& shell,
-           const std::map<std::string, MetricBound>& bounds) {
-  const Result report = run_with_shell(loaded, shell);
-  ExpectFields expect;
-  expect.outcomes = {report.end.outcome};
-  expect.metrics = bounds;
-  return unmet_expectations(expect, report).empty();
-}
-
 RunStability judged_once(const LoadedScenario& loaded, const std::shared_ptr<const PointShell>& shell,
                          const StabilityRule& rule) {
   const Scenario& scenario = loaded.scenario;
@@ -291,28 +198,86 @@ RunStability judged_once(const LoadedScenario& loaded, const std::shared_ptr<con
 
 }  // namespace
 
+std::span<const RunVerdictText> run_verdict_texts() noexcept {
+  // In the order of the enumeration.
+  static const RunVerdictText kTexts[] = {
+      {"stable", "at rest, died out or creeping", "all else: at rest, died out, creeping"},
+      {"dying_out", "still oscillates, but comes to rest if the run goes on",
+       "oscillates as much, but loses a tenth of its amplitude from the second quarter to the third and again to the "
+       "last"},
+      {"vibrating", "oscillates and does not decay",
+       "does not decay: oscillates in the last quarter with at least 1 % of the first quarter's amplitude"},
+      {"diverged", "left its bounds, or oscillates with a growing amplitude",
+       "left its bounds, or oscillates with an amplitude that grows by 1 % from each quarter to the next"},
+      {"thrown_out",
+       "the tool left the hole, or ended without contact beyond the environment's box by more than it reaches"},
+      {"no_contact", "the tool touched nothing in any row"},
+      of_outcome(Outcome::lost_contact),
+      of_outcome(Outcome::went_through),
+      of_outcome(Outcome::not_dragged),
+      of_outcome(Outcome::stuck),
+      {"beyond_bound", "stable but for a metric that a --bound does not allow"}};
+  return kTexts;
+}
+
+MotionClassifier MotionClassifier::of_moved_tool(std::uint64_t steps, double time_step, double still) {
+  MotionClassifier classifier(steps);
+  classifier.is_moved_ = true;
+  classifier.high_pass_ = vibration_filter(time_step);
+  if (still <= 0.5 * static_cast<double>(steps)) classifier.still_ = static_cast<std::uint64_t>(std::ceil(still));
+  return classifier;
+}
+
+void MotionClassifier::Stretch::add(std::uint64_t quarter, const Vec3& velocity) noexcept {
+  Quarter& here = quarters[std::min<std::uint64_t>(3, quarter)];
+  here.amplitude = std::max(here.amplitude, velocity.norm());
+  for (int i = 0; i < 3; ++i) {
+    if (velocity[i] == 0.0) continue;
+    here.turns[static_cast<std::size_t>(i)] += velocity[i] * last_velocity[i] < 0.0;
+    last_velocity[i] = velocity[i];
+  }
+}
+
+void MotionClassifier::on_step(const StepRecord& record) noexcept {
+  if (high_pass_ && record.step == 0) high_pass_->settle_at(record.body_velocity());
+  const Vec3 v = high_pass_ ? high_pass_->filter(record.body_velocity()) : record.body_velocity();
+  all_.add(record.step * 4 / steps_, v);
+  if (still_ && record.step >= *still_)
+    held_.add((record.step - *still_) * 4 / (steps_ - *still_), record.body_velocity());
+  const double speed = v.norm();
+  largest_speed_ = std::max(largest_speed_, speed);
+  rows_at_rest_ = speed <= kRest * largest_speed_ ? rows_at_rest_ + 1 : 0;
+}
+
+bool MotionClassifier::is_undecided() const noexcept {
+  const auto& q = all_.quarters;
+  return !is_moved_ && !at_rest() && !q[3].oscillates() && q[3].amplitude >= kLeft * q[0].amplitude &&
+         q[3].amplitude > 0.0;
+}
+
+MotionClass MotionClassifier::motion_class(Outcome outcome) const noexcept {
+  if (outcome == Outcome::diverges) return MotionClass::diverged;
+  if (at_rest()) return MotionClass::stable;
+  // A hand that comes to rest may swing a little more for a while: below 30 Hz that is not called growth.
+  return std::max(all_.motion_class(is_moved_ ? kFelt : 0.0),
+                  std::min(held_.motion_class(kFelt), MotionClass::vibrating));
+}
+
+MotionClass MotionClassifier::Stretch::motion_class(double felt) const noexcept {
+  const auto& q = quarters;
+  if (!q[3].oscillates() || q[3].amplitude < felt) return MotionClass::stable;
+  bool grows = true;
+  for (std::size_t i = 1; i < q.size(); ++i) grows = grows && q[i].amplitude > kGrowth * q[i - 1].amplitude;
+  if (grows) return MotionClass::diverged;
+  if (q[3].amplitude < kLeft * q[0].amplitude) return MotionClass::stable;
+  const bool decays = q[2].amplitude < kSustained * q[1].amplitude && q[3].amplitude < kSustained * q[2].amplitude;
+  return decays ? MotionClass::dying_out : MotionClass::vibrating;
+}
+
 StabilityRule rule_of(const Scenario& scenario) {
   StabilityRule rule;
   if (vibration_filter(scenario.time.step) && is_moved(scenario)) rule.most_vibration = kMostVibration;
   return rule;
-}
-
-std::string rule_text(const StabilityRule& rule, bool moved) {
-  std::string text =
-      rule.most_vibration
-          ? fmt::format(
-                "stable: at most {} m/s rms above {:.0f} Hz at the handle, from a quarter of the contact on, and no "
-                "bounces below that go on",
-                *rule.most_vibration, kVibrationCutoff)
-          : fmt::format("stable: comes to rest or dies out{}", rule.bounded ? ", or vibrates without growing" : "");
-  if (!rule.most_vibration && moved)
-    text +=
-        ", as far as it is above 30 Hz and 1 mm/s, because a script moves the tool; where that ends in the first half of a run, all beyond 1 mm/s from then on";
-  for (const auto& [metric, bound] : rule.bounds) {
-    if (bound.min) text += fmt::format(", {} >= {}", metric, *bound.min);
-    if (bound.max) text += fmt::format(", {} <= {}", metric, *bound.max);
-  }
-  return text;
 }
 
 RunStability stability_of(const LoadedScenario& loaded, std::shared_ptr<const PointShell> shell,
@@ -327,8 +292,9 @@ RunStability stability_of(const LoadedScenario& loaded, std::shared_ptr<const Po
     run = judged_once(longer, shell, rule);
     run.way = way;  // of the scenario's own length, as that of other runs
   }
-  if (is_stable(run.verdict) && !rule.bounds.empty() && !keeps(loaded, shell, rule.bounds))
-    run.verdict = RunVerdict::beyond_bound;
+  if (!is_stable(run.verdict) || rule.bounds.empty()) return run;
+  const Result whole = run_with_shell(loaded, shell);
+  if (!unmet_expectations({{whole.end.outcome}, rule.bounds}, whole).empty()) run.verdict = RunVerdict::beyond_bound;
   return run;
 }
 

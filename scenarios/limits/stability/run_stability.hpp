@@ -21,16 +21,15 @@
 /// Judges whether a run is stable: first by its motion alone, without eigenvalues, tensors or knowledge of the law,
 /// then also by where its tool ends.
 ///
-/// The run is cut into quarters. The amplitude of a quarter is the largest speed of the tool in it (of the handle where
-/// the handle moves the tool, because an encoder turns its motion into jumps that nobody feels); a turn is a change of
-/// sign of a component of the velocity, two for each period of an oscillation, whether or not dry friction holds a
-/// handle at the turns. A quarter oscillates with two turns or more of one component. The rules of the classes are
-/// those of run_verdict_texts(); an irregular vibration may lose a tenth of its amplitude once, by chance.
+/// The run is cut into quarters. The amplitude of a quarter is the largest speed of the tool in it (of a handle that
+/// moves the tool: an encoder turns its motion into jumps that nobody feels); a turn is a change of sign of a component
+/// of the velocity, whether or not dry friction holds a handle there. A quarter oscillates with two turns or more of
+/// one component. The rules of the classes are those of run_verdict_texts().
 ///
-/// Both stable and dying_out come to rest in a longer run, so both count as stable where a limit is looked for. A
-/// damped oscillation dies out to 1 % within three quarters of n steps when it loses more than 6.1 / n of its amplitude
-/// in a step, and vibrates when it loses less than 0.42 / n: that is a thin strip below the limit of a damped linear
-/// system, all that is stable of an undamped one, and the limit cycles of a nonlinear one.
+/// Both stable and dying_out come to rest in a longer run and count as stable for limits. A damped oscillation dies out
+/// to 1 % within three quarters of n steps when it loses more than 6.1 / n of its amplitude in a step, and vibrates
+/// when it loses less than 0.42 / n: a thin strip below the limit of a damped linear system, all that is stable of an
+/// undamped one, and the limit cycles of a nonlinear one.
 namespace hapbench {
 
 /// The classes of motion, ends of a run that no motion tells (outcomes of the same name), and a bound that is not kept.
@@ -53,14 +52,13 @@ inline constexpr std::size_t kMotionClasses = 4;
 
 /// A verdict for people.
 struct RunVerdictText {
-  std::string_view name;  ///< also in result files
+  std::string_view name;  ///< also in result files: "stable", "dying_out", ...
   const char* meaning;
   const char* rule = "";  ///< by which a run belongs to a class of motion
 };
-/// Those of all verdicts, in the order of the enumeration.
+/// In the order of the enumeration.
 std::span<const RunVerdictText> run_verdict_texts() noexcept;
 
-/// "stable", "dying_out", ...
 inline std::string_view run_verdict_name(RunVerdict verdict) noexcept {
   return run_verdict_texts()[static_cast<std::size_t>(verdict)].name;
 }
@@ -70,10 +68,10 @@ class MotionClassifier final : public Observer {
  public:
   /// `steps`: rows the run will have. Precondition: steps >= 4.
   explicit MotionClassifier(std::uint64_t steps) : steps_(steps) {}
-  /// For a tool that a script moves, which is never at rest: only the part of its velocity above 30 Hz counts (all of
-  /// it when steps are longer than a 60th of a second), in the last quarter beyond 1 mm/s, about what a hand can feel
-  /// there. Where the script ends in the first half of the run, at the row `still`, all motion from then on counts
-  /// besides, by quarters of what is left, beyond 1 mm/s.
+  /// For a tool that a script moves, which is never at rest: what counts is its velocity above 30 Hz (all of it when
+  /// steps are longer than a 60th of a second), in the last quarter beyond 1 mm/s, about what a hand can feel there.
+  /// Where the script ends in the first half of the run, at the row `still`, all motion from then on counts, too, by
+  /// quarters of what is left, beyond 1 mm/s.
   static MotionClassifier of_moved_tool(std::uint64_t steps, double time_step, double still);
 
   void on_step(const StepRecord& record) noexcept override;
@@ -82,7 +80,7 @@ class MotionClassifier final : public Observer {
   /// run may be cut short.
   bool at_rest() const noexcept { return !is_moved_ && rows_at_rest_ >= kRowsAtRest; }
   /// True for a complete run that is too short to tell: it moves on in the last quarter, by 1 % of the first one's
-  /// amplitude or more, and turns at most once there.
+  /// amplitude or more, without oscillating.
   bool is_undecided() const noexcept;
   /// Class of a complete run, or of one that was cut short because it came to rest.
   MotionClass motion_class(Outcome outcome) const noexcept;
@@ -129,10 +127,9 @@ struct SettledState {
 
 /// What a run has to do to be stable: the one rule of limits, maps of devices and comparisons.
 struct StabilityRule {
-  /// Most vibration of the handle in the judged rows [m/s rms], which then decides between stable and vibrating in
-  /// place of the motion: a limit cycle that is too small to be felt is stable, motion that is felt is not, though it
-  /// may die out; nothing is stable where no vibration is measured. A tool that bounces more slowly than 30 Hz vibrates
-  /// while its bounces do not get lower by 1 %.
+  /// Most vibration of the handle in the judged rows [m/s rms], which then decides in place of the motion: a limit
+  /// cycle that is too small to be felt is stable, motion that is felt is not, though it may die out; nothing is stable
+  /// where no vibration is measured. A tool that bounces below 30 Hz vibrates while bounces do not get lower by 1 %.
   std::optional<double> most_vibration = {};
   /// Bounds on metrics of summary.json; a metric without a value keeps none.
   std::map<std::string, MetricBound> bounds = {};
@@ -143,12 +140,9 @@ struct StabilityRule {
   }
 };
 
-/// The rule where nobody asks for another: where a script moves the tool, which then is never at rest, what is felt
-/// decides (kMostVibration); not at 60 Hz and less.
+/// The rule where nobody asks for another: where a script moves the tool, what is felt decides (kMostVibration), but
+/// not at 60 Hz and less.
 StabilityRule rule_of(const Scenario& scenario);
-
-/// The rule as one line; `moved`: a script moves the tool (is_moved).
-std::string rule_text(const StabilityRule& rule, bool moved);
 
 struct RunStability {
   RunVerdict verdict = RunVerdict::stable;

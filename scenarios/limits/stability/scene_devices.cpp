@@ -2,11 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "device_model/device_presets.hpp"
-#include "scenarios/format/descriptions.hpp"
+#include "scenarios/format/parts.hpp"
 #include "scenarios/format/writer.hpp"
 #include "scenarios/run/scene_loop.hpp"
 
@@ -16,10 +15,9 @@ namespace {
 /// The device of a file that is one, or of a scenario, of which nothing else is looked at.
 DeviceFields read_device(const Json& file) {
   const bool is_scenario = file.contains("device");
-  if (!is_scenario && !file.contains("type")) {
+  if (!is_scenario && !file.contains("type"))
     throw InputError(
         R"(got no device; allowed: an object such as {"type": "impedance", "handle_mass_kg": 0.1}, or a scenario with "device")");
-  }
   DeviceFields device;
   read_value(is_scenario ? file["device"] : file, is_scenario ? "/device" : "",
              [&device](Fields& f) { describe(f, device); });
@@ -49,10 +47,9 @@ std::string delay_note(const Scenario& scenario) {
 
 std::vector<ComparedDevice> compared_devices() {
   std::vector<ComparedDevice> devices = {{"ideal", R"({"type":"ideal"})"}, {"admittance", R"({"type":"admittance"})"}};
-  for (const DevicePreset& preset : device_presets()) {
+  for (const DevicePreset& preset : device_presets())
     devices.push_back({preset.name, fmt::format(R"({{"type":"impedance","preset":"{}"}})", preset.name), true,
                        preset.max_stiffness.value});
-  }
   return devices;
 }
 
@@ -63,16 +60,6 @@ ComparedDevice device_of_file(const std::filesystem::path& file) {
   place.layers = text.layers;
   const DeviceFields device = with_file(place, [&text] { return read_device(text.json); });
   return {file.stem().string(), written(device).dump(), handle_moves_tool(device)};
-}
-
-ComparedDevice with_marked_name(ComparedDevice device, const std::vector<std::string>& overrides) {
-  const bool is_changed = std::any_of(overrides.begin(), overrides.end(), [](const std::string& override) {
-    return overridden_path(override).starts_with("device.");
-  });
-  if (!device.published_stiffness || !is_changed) return device;
-  device.name += '*';
-  device.published_stiffness.reset();
-  return device;
 }
 
 std::optional<ComparedDevice> with_friction_times(ComparedDevice device, double factor) {

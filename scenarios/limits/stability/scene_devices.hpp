@@ -28,10 +28,6 @@ std::vector<ComparedDevice> compared_devices();
 /// an object as its `device`. Throws InputError with file and pointer.
 ComparedDevice device_of_file(const std::filesystem::path& file);
 
-/// A preset with a field of `device` overridden is another device: its name ends in '*', and nothing is published of
-/// it.
-ComparedDevice with_marked_name(ComparedDevice device, const std::vector<std::string>& overrides);
-
 /// The same with its dry friction times a factor, named touch[friction*2]; nothing for a device that has none.
 std::optional<ComparedDevice> with_friction_times(ComparedDevice device, double factor);
 

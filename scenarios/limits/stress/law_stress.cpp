@@ -125,11 +125,6 @@ void draw_rendering(Random& random, RenderingConfig& config) {
 constexpr double kForceRounding = 1e-6;
 constexpr std::uint64_t kSetsOfAJob = 1000;
 
-bool finite(const RenderedForce& force) {
-  return force.spring.allFinite() && force.rendered.allFinite() && force.S.allFinite() &&
-         std::isfinite(force.depth_max);
-}
-
 /// Damping is B S v, and friction is off: |f_render| <= |f_spring| + B lambda_max(S) |v|.
 bool damping_in_bound(const ContactSet& set, const RenderedForce& force) {
   const double B = 2.0 * set.rendering.damping_ratio * std::sqrt(set.rendering.stiffness * set.rendering.mass);
@@ -158,11 +153,12 @@ void count_set(const ContactSet& set, std::uint64_t number, const PointShell& sh
                bound = bound_of == nullptr
                            ? std::numeric_limits<double>::infinity()
                            : config.stiffness * bound_of(config, set.tool, contacts.size(), force.depth_max);
-  const bool is_finite = finite(force);
+  const bool is_finite =
+      force.spring.allFinite() && force.rendered.allFinite() && force.S.allFinite() && std::isfinite(force.depth_max);
   const bool in_bound = is_finite && size <= (1.0 + kForceRounding) * bound && force.depth_max >= 0.0 &&
                         force.depth_max <= (1.0 + kForceRounding) * set.tool.longest_exit() &&
                         damping_in_bound(set, force);
-  if (!in_bound && counts.non_finite + counts.out_of_bound == 0) counts.first_bad = number;
+  if (!in_bound && !counts.first_bad) counts.first_bad = number;
   counts.non_finite += !is_finite;
   counts.out_of_bound += is_finite && !in_bound;
   if (!(unit > 0.0)) return;
@@ -182,8 +178,7 @@ std::vector<StressCounts> no_counts() {
 
 /// Adds the counts of other sets, in whatever order they come.
 void add(const StressCounts& other, StressCounts& all) {
-  const bool bad = all.non_finite + all.out_of_bound > 0, other_bad = other.non_finite + other.out_of_bound > 0;
-  if (other_bad) all.first_bad = bad ? std::min(all.first_bad, other.first_bad) : other.first_bad;
+  if (other.first_bad) all.first_bad = std::min(*other.first_bad, all.first_bad.value_or(*other.first_bad));
   all.sets += other.sets;
   all.in_contact += other.in_contact;
   all.non_finite += other.non_finite;

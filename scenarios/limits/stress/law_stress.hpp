@@ -42,7 +42,7 @@ struct StressCounts {
   double largest_force = 0.0;        ///< largest |f_spring| in units of K d, d the deepest point of the set
   /// Largest |f_spring| in units of its bound (AlgorithmTheory::force_bound); none for algorithms without one.
   std::optional<double> largest_share;
-  std::uint64_t first_bad = 0;  ///< number of the first set that was counted as bad; meaningful when there is one
+  std::optional<std::uint64_t> first_bad;  ///< number of the first set that is not finite or out of bound
 };
 
 /// Sends sets 0 … count - 1 of the seed through every algorithm of the registry; one entry each, in its order. The same

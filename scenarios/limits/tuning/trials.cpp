@@ -7,7 +7,6 @@
 #include <nlohmann/json.hpp>
 #include <span>
 
-#include "device_model/theory/linear_loops.hpp"
 #include "scenarios/cases/comparison.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/diagnosis.hpp"
@@ -85,10 +84,10 @@ std::string verdict_with(const RunStability& run, const FamilyMember& member) {
   return std::string(run_verdict_name(run.verdict)) + with(member);
 }
 
-/// The hand with which the loop is unstable somewhere from K to `gain` K, if there is one.
-std::optional<std::string> unstable_loop(Scenario scenario, double lambda, double K, double gain, bool over_hands) {
+/// The hand with which the loop is unstable at some stiffness from K to `most`, if there is one.
+std::optional<std::string> unstable_loop(Scenario scenario, double lambda, double K, double most, bool over_hands) {
   constexpr double kStride = 1.1;
-  for (double at = gain * K; lambda > 0.0 && at * kStride > K; at /= kStride) {
+  for (double at = most; lambda > 0.0 && at * kStride > K; at /= kStride) {
     scenario.rendering.stiffness = at;
     for (const auto& [hand, step] : contact_loops(scenario, lambda, over_hands))
       if (!is_stable_step(step)) return hand;
@@ -100,17 +99,17 @@ std::optional<std::string> unstable_loop(Scenario scenario, double lambda, doubl
 void note_worst(TuneTrial& trial, const std::string& name, const MetricBound& bound,
                 std::span<const TuneMetrics> metrics, std::span<const FamilyMember> family) {
   for (std::size_t i = 0; i < metrics.size(); ++i) {
-    const auto found = metrics[i].find(name);
-    if (found == metrics[i].end()) {
+    const auto value = value_in(metrics[i], name);
+    if (!value) {
       trial.worst.erase(name);
       trial.worst_text[name] = name + " has no value" + with(family[i]);
       return;
     }
-    const auto [worst, is_first] = trial.worst.try_emplace(name, found->second);
-    const bool is_worse = bound.max ? found->second > worst->second : found->second < worst->second;
+    const auto [worst, is_first] = trial.worst.try_emplace(name, *value);
+    const bool is_worse = bound.max ? *value > worst->second : *value < worst->second;
     if (!is_first && !is_worse) continue;
-    worst->second = found->second;
-    trial.worst_text[name] = fmt::format("{} {:.4g}{}", name, found->second, with(family[i]));
+    worst->second = *value;
+    trial.worst_text[name] = fmt::format("{} {:.4g}{}", name, *value, with(family[i]));
   }
 }
 
@@ -150,7 +149,7 @@ std::vector<std::string> Trials::overrides(const TuneSetting& setting, double st
   }
   if (setting.mass) words.push_back(fmt::format("rendering.mass_kg={}", *setting.mass));
   if (!setting.filter.empty()) words.push_back("device.velocity_filter=" + setting.filter);
-  words.push_back(fmt::format("{}={}", kTunedField, stiffness));
+  words.push_back(fmt::format("{}={}", kStiffnessPath, stiffness));
   return words;
 }
 
@@ -185,20 +184,23 @@ void Trials::measure(TuneTrial& trial) {
   });
 }
 
-std::string Trials::unsettled(const TuneTrial& trial, const FamilyMember& member, const Strain& strain) const {
-  const LoadedScenario loaded = load(trial, strain.gain * trial.stiffness, member, strain.more);
-  const double lambda = springs_lambda.value_or(trial.lambda_max);
-  if (unstable_loop(loaded.scenario, lambda, trial.stiffness, strain.gain, over_hands))
-    return "unstable in contact" + with(member);
-  const RunStability run = stability_of(loaded, shell, rule_of(loaded.scenario));
-  return is_stable(run.verdict) ? "" : verdict_with(run, member);
-}
-
-std::string Trials::unsettled(const TuneTrial& trial, const Strain& strain) {
-  std::vector<std::string> why(family.size());
-  in_parallel(family.size(), [&](std::size_t i) { why[i] = unsettled(trial, family[i], strain); });
-  const auto first = std::ranges::find_if(why, [](const std::string& one) { return !one.empty(); });
-  return first == why.end() ? "" : *first;
+std::optional<Failing> Trials::first_failing(const TuneTrial& trial, std::size_t count,
+                                             const std::function<std::string(std::size_t)>& more) {
+  const double lambda = springs_lambda.value_or(trial.lambda_max), K = trial.stiffness;
+  std::vector<std::string> why(count);
+  in_parallel(count, [&](std::size_t i) {
+    const FamilyMember& member = family[i % family.size()];
+    const LoadedScenario loaded = load(trial, K, member, more(i));
+    if (unstable_loop(loaded.scenario, lambda, K, loaded.scenario.rendering.stiffness, over_hands)) {
+      why[i] = "unstable in contact" + with(member);
+      return;
+    }
+    const RunStability run = stability_of(loaded, shell, rule_of(loaded.scenario));
+    if (!is_stable(run.verdict)) why[i] = verdict_with(run, member);
+  });
+  for (std::size_t i = 0; i < count; ++i)
+    if (!why[i].empty()) return Failing{i, why[i]};
+  return std::nullopt;
 }
 
 // ---- Trials
@@ -247,7 +249,8 @@ void Trials::judge_motion(TuneTrial& trial, std::size_t first, std::size_t last)
 /// False where the loop in contact of a member is unstable up to the margin.
 bool Trials::judge_loop(TuneTrial& trial, std::size_t member, double lambda, const std::string& own_hand) const {
   const Scenario scenario = load(trial, trial.stiffness, family[member]).scenario;
-  const auto hand = unstable_loop(scenario, lambda, trial.stiffness, question.margin, over_hands);
+  const double K = trial.stiffness;
+  const auto hand = unstable_loop(scenario, lambda, K, question.margin * K, over_hands);
   if (!hand) return true;
   trial.fail("margin", fmt::format("below {:g} K the loop in contact is unstable with {}", question.margin,
                                    hand->empty() ? own_hand : *hand));
@@ -288,12 +291,11 @@ void Trials::judge_worst(TuneTrial& trial) const {
 
 double Trials::times_limit(const TuneTrial& trial, const std::string& name, const MetricBound& bound) const {
   constexpr double kBeyond = std::numeric_limits<double>::infinity();
-  const auto found = trial.worst.find(name);
-  if (found == trial.worst.end()) return is_quiet ? 0.0 : kBeyond;
-  const double value = found->second;
+  const auto value = value_in(trial.worst, name);
+  if (!value) return is_quiet ? 0.0 : kBeyond;
   const auto times = [](double far, double near) { return far > 0.0 && near > 0.0 ? far / near : kBeyond; };
-  if (bound.max && value > *bound.max) return std::max(times(value, *bound.max), std::nextafter(1.0, 2.0));
-  if (bound.min && value < *bound.min) return std::max(times(*bound.min, value), std::nextafter(1.0, 2.0));
+  if (bound.max && *value > *bound.max) return std::max(times(*value, *bound.max), std::nextafter(1.0, 2.0));
+  if (bound.min && *value < *bound.min) return std::max(times(*bound.min, *value), std::nextafter(1.0, 2.0));
   return 1.0;
 }
 

@@ -10,18 +10,16 @@
 #include <vector>
 
 #include "results/summary/summary.hpp"
-#include "scenarios/limits/stability/run_stability.hpp"
 #include "scenarios/limits/tuning/tune.hpp"
 
 namespace hapbench {
 
-inline constexpr const char* kTunedField = "rendering.stiffness_N_per_m";
 inline constexpr double kTuneResolution = 5e-3;  ///< of K
 
-/// A factor on the stiffness of a trial, and a further override.
-struct Strain {
-  double gain = 1.0;
-  std::string more = {};
+/// A run that is not settled.
+struct Failing {
+  std::size_t run;  ///< its number
+  std::string why;
 };
 
 /// The trials of one law: settings at stiffnesses, each judged by the runs of the family when it is first asked for.
@@ -50,9 +48,10 @@ struct Trials {
   /// Finds that limit anew. Precondition: judge_limits.
   void judge_worst(TuneTrial& trial) const;
 
-  /// Why the run of a member, or of any, is not settled when it is strained; empty where it is.
-  std::string unsettled(const TuneTrial& trial, const FamilyMember& member, const Strain& strain) const;
-  std::string unsettled(const TuneTrial& trial, const Strain& strain);
+  /// The first of so many runs of a trial, the family taking turns, that is not settled under a further override, such
+  /// as a larger K, up to which the loop in contact has to be stable, too.
+  std::optional<Failing> first_failing(const TuneTrial& trial, std::size_t count,
+                                       const std::function<std::string(std::size_t run)>& more);
 
   /// How many times its limit the worst value is; at most 1 where it is kept, infinite without a value, but 0 in a run
   /// that is to be quiet.
@@ -83,15 +82,5 @@ struct Trials {
   void judge_motion(TuneTrial& trial, std::size_t first, std::size_t last);
   bool judge_loop(TuneTrial& trial, std::size_t member, double lambda, const std::string& own_hand) const;
 };
-
-// ---- What is known of a choice, or of there being none.
-
-/// True where the choice does not hold (tuned_law). Then no trial that reaches what failed is feasible any more.
-bool is_refuted(Trials& trials, TuneTrial& choice, TunedLaw& law);
-
-TuneMargins margins_of(Trials& trials, const TuneTrial& choice);
-
-/// Where nothing is feasible: what is in the way, and what to relax.
-void explain(Trials& trials, TunedLaw& law);
 
 }  // namespace hapbench

@@ -5,25 +5,27 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "scenarios/format/load_scenario.hpp"
 #include "scenarios/limits/stability/field_limit.hpp"
 
-/// Which stiffness and damping to use: for a force law in a scene the largest K, over damping ratio and, on request or
-/// on an admittance device, velocity filter and virtual mass, at which the worst run of a family is settled with a gain
-/// margin and keeps limits on its metrics.
+/// Which stiffness and damping to use: for a force law in a scene the largest K, over damping ratio, velocity filter
+/// and virtual mass, at which the worst run of a family is settled with a gain margin and keeps limits on its metrics.
 namespace hapbench {
 
 /// The metrics of a choice, in the order of tables; the first three are those that one bounds most.
 inline constexpr std::array kTuneMetrics = {"inside_max_m",     "force_rms_above_30Hz_N",  "settled_force_step_max_N",
                                             "inside_settled_m", "force_mean_in_contact_N", "landing_force_max_N"};
 using TuneMetrics = std::map<std::string, double, std::less<>>;
+/// The value of that name times a factor, if there is one.
+std::optional<double> value_in(const TuneMetrics& metrics, std::string_view name, double factor = 1.0);
 
 /// What the runs differ in that a setting has to hold in besides the scene's own:
-///   hands   that are springs: the ends of hand_family(), 100 and 1000 N/m, with the damping of the scene's own; on an
-///           impedance device's handle with 0.1 and 0.5 kg each
+///   hands   that are springs with the scene's damping: the ends of hand_family(), 100 and 1000 N/m, on an impedance
+///           device's handle with 0.1 and 0.5 kg each
 ///   seeds   four further seeds, started 10 um away: less than a hand repeats a place
 ///   speeds  the script of hand and tool at half and twice its speed
 inline constexpr const char* kFamilies[] = {"hands", "seeds", "speeds"};

@@ -1,9 +1,6 @@
-#include <cmath>
 #include <tuple>
 #include <utility>
 
-#include "sim/core/math.hpp"
-#include "sim/loop/integrators/spring_damper.hpp"
 #include "sim/loop/integrators/table.hpp"
 
 namespace hapbench {

@@ -1,7 +1,7 @@
-#include "sim/loop/integrators/spring_damper.hpp"
-
 #include <Eigen/LU>
 #include <cmath>
+
+#include "sim/loop/integrators/table.hpp"
 
 namespace hapbench {
 namespace {

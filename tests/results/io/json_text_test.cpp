@@ -1,4 +1,4 @@
-#include "results/io/json_text.hpp"
+#include "results/io/columns.hpp"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>

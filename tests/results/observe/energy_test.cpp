@@ -7,8 +7,8 @@
 #include <optional>
 
 #include "algorithms/registry.hpp"
+#include "device_model/admittance_device.hpp"
 #include "device_model/hands/scripted_hands.hpp"
-#include "device_model/ideal_device.hpp"
 #include "tests/support/scenes.hpp"
 #include "tests/support/setting.hpp"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <ctime>
 
-#include "results/io/json_text.hpp"
+#include "results/io/columns.hpp"
 #include "scenarios/format/json_file.hpp"
 #include "scenarios/format/load_scenario.hpp"
 #include "scenarios/format/mesh_file.hpp"

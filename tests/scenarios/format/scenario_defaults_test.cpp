@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "algorithms/registry.hpp"
-#include "results/io/json_text.hpp"
+#include "results/io/columns.hpp"
 #include "scenarios/format/bundled_scenarios.hpp"
 #include "scenarios/format/json_file.hpp"
 #include "scenarios/format/load_scenario.hpp"

@@ -4,7 +4,7 @@
 #include <set>
 #include <string>
 
-#include "results/io/json_text.hpp"
+#include "results/io/columns.hpp"
 #include "scenarios/format/bundled_scenarios.hpp"
 #include "scenarios/format/json_file.hpp"
 #include "scenarios/format/load_scenario.hpp"

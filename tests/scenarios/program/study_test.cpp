@@ -35,13 +35,13 @@ TEST_F(Study, IsTheWordsOfItsCommand) {
              "device": [{"type": "ideal"}]}})");
   const auto words = StudyWords::in({"limit", "--quiet", mine, "--resolution=0.5"});
   ASSERT_TRUE(words);
-  EXPECT_EQ(fmt::format("{}", fmt::join(words->words(), " ")),
+  EXPECT_EQ(fmt::format("{}", fmt::join(words->words, " ")),
             "limit a b.json --between 100:1e+05 --smallest --algorithms mean,proxy --bound x=1 --bound y=2 "
             R"(--set hand={"mass_kg":1} --set seed=3 --over device.delay_samples=0:8:5:log )"
             R"(--over integrator.type=rk4,event --over device={"type":"ideal"} --quiet --resolution=0.5)")
       << "an option that is given goes before the study's";
   test::write_plainly(directory_ / "b.json", "{}");
-  EXPECT_EQ(StudyWords::in({"limit", mine})->words()[2], (directory_ / "b.json").string()) << "beside the study";
+  EXPECT_EQ(StudyWords::in({"limit", mine})->words[2], (directory_ / "b.json").string()) << "beside the study";
   EXPECT_FALSE(StudyWords::in({"limit", "single_spring"}));
   EXPECT_FALSE(StudyWords::in({"describe", "stability_z_width"}));
 }

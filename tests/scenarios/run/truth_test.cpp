@@ -409,7 +409,7 @@ TEST(SettledDepth, OfEveryRowIsKnownToTheTolerance) {
                                             "hand.target.y_m.amplitude=0.00126"};
   const LoadedScenario loaded = load_scenario(find_scenario("task3_spin_signed_distance"), changes);
   const InsideDepths few = depths_of(loaded, 0), all = depths_of(loaded, 1);
-  const double half_width = make_tool(loaded.scenario)->half_width();
+  const double half_width = make_tool(loaded.scenario, loaded.files)->half_width();
   const double least = *std::min_element(all.settled.begin(), all.settled.end());
   ASSERT_GT(least, 1.5 * InsideSearch::kTolerance * half_width);
   EXPECT_GE(*std::min_element(few.settled.begin(), few.settled.end()),

@@ -125,7 +125,7 @@ ProgramRun hapbench(const std::vector<std::string>& arguments, const ProgramOpti
 }
 
 ProgramRun hapbench_here(const std::vector<std::string>& arguments) {
-  set_this_program(hapbench_program());
+  this_program() = hapbench_program();
   std::vector<std::string> words = {hapbench_program().string()};
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<char*> argv;

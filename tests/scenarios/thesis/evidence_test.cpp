@@ -1,4 +1,4 @@
-#include "scenarios/thesis/evidence.hpp"
+#include "scenarios/thesis/claims.hpp"
 
 #include <gtest/gtest.h>
 

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "sim/core/random.hpp"
-#include "sim/loop/integrators/spring_damper.hpp"
 #include "sim/loop/integrators/table.hpp"
 #include "tests/support/fakes.hpp"
 

@@ -19,8 +19,8 @@ TEST(LawStress, NoForceIsInfiniteOrOutOfBound) {
   for (const StressCounts& c : all) {
     EXPECT_EQ(c.sets, count) << c.algorithm;
     EXPECT_GT(c.in_contact, count * 9 / 10) << c.algorithm;
-    EXPECT_EQ(c.non_finite, 0u) << c.algorithm << ", first in set " << c.first_bad;
-    EXPECT_EQ(c.out_of_bound, 0u) << c.algorithm << ", first in set " << c.first_bad;
+    EXPECT_EQ(c.non_finite, 0u) << c.algorithm << ", first in set " << c.first_bad.value_or(0);
+    EXPECT_EQ(c.out_of_bound, 0u) << c.algorithm << ", first in set " << c.first_bad.value_or(0);
     // n_ext overflows wherever there is a reduction.
     EXPECT_EQ(c.points_dropped > 0, find_algorithm(c.algorithm)->may_reduce) << c.algorithm;
     EXPECT_EQ(c.largest_share.has_value(), find_algorithm(c.algorithm)->theory.force_bound != nullptr) << c.algorithm;

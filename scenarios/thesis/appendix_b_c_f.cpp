@@ -1,0 +1,338 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "scenarios/thesis/measurements.hpp"
+#include "sim/core/math.hpp"
+
+/// Claims of appendices B, what is wrong with the original algorithm, C, what the proposed one does to point density
+/// and damping, and F, the optional ones.
+namespace hapbench {
+namespace {
+
+// ---- B1: <f, n>, the force on the tool along the surface normal of a point beyond the tool's median line.
+
+MeasuredValues measure_flipped_gradient(const Evidence&) {
+  const auto force_along_normal = [](const char* depth_model) {
+    ContactBuffer contacts = wall_point(0.0001, depth_model);
+    return make_law("original_averaging", {})->evaluate(contacts).spring.x();
+  };
+  return {{"with_shortest_distance", {force_along_normal("shortest_distance")}},
+          {"with_surface_normal", {force_along_normal("surface_normal")}}};
+}
+
+Finding judge_flipped_gradient(const MeasuredCase& m, const PublishedNumbers&) {
+  const bool pulled = m["with_shortest_distance"] < 0.0;
+  const bool pushed = m["with_surface_normal"] > 0.0;
+  return {decide(pulled && pushed, pulled), pulled ? "beyond the median line the original algorithm pulls the tool in"
+                                                   : "the original algorithm pushes the tool out here"};
+}
+
+// ---- B2: a mass that a hand presses into a groove of two springs and that starts beside its bottom. A case for each
+// half angle between the contacts' gradients, with the damping ratios of the swings across the groove; no number where
+// the mass does not swing, and what does not swing is not under-damped.
+
+constexpr double kHalfAngles[] = {10.0, 20.0, 30.0, 40.0, 50.0, 60.0, 70.0, 80.0};
+
+Measured measure_groove(const Evidence& e) {
+  Measured measured;
+  for (const double degrees : kHalfAngles) {
+    const double angle = degrees * std::numbers::pi / 180.0, s = math::sin(angle), c = math::cos(angle);
+    MeasuredCase& m = measured.emplace_back(MeasuredCase{fmt::format("{}°", degrees), {}});
+    for (const std::string scene : {"groove_friction", "groove_swing"}) {
+      for (const std::string algorithm : {"original_averaging", "shaped_stiffness"}) {
+        const LoadedScenario loaded = e.load(scene, {fmt::format("environment.groups.0.direction=[{},{},0]", -s, -c),
+                                                     fmt::format("environment.groups.1.direction=[{},{},0]", s, -c),
+                                                     "rendering.algorithm=" + algorithm});
+        std::vector<double> across;
+        for_each_row(loaded, [&](const StepRecord& row) { across.push_back(row.tool.pose.position.x()); });
+        m.values["given"] = {loaded.scenario.rendering.damping_ratio};
+        m.values[scene + "_" + algorithm] = {damping_ratio_of_swings(across).value_or(std::nan(""))};
+      }
+    }
+  }
+  return measured;
+}
+
+Finding judge_groove(const Measured& measured, const PublishedNumbers& p) {
+  const auto under_damped = std::count_if(measured.begin(), measured.end(), [&](const MeasuredCase& m) {
+    return m["groove_friction_original_averaging"] <= threshold(p, "under_damped") * m["given"];
+  });
+  return {
+      decide(static_cast<double>(under_damped) > threshold(p, "most") * static_cast<double>(measured.size()),
+             under_damped > 0),
+      fmt::format("the original algorithm damps along the merged direction only; across it friction does, and it is "
+                  "under-damped at {} of {} angles",
+                  under_damped, measured.size())};
+}
+
+// ---- B3: the merged depth before and after two more points, in units of the common depth.
+
+constexpr std::size_t kPoints = 10;
+constexpr double kExact = 1e-9;
+
+MeasuredValues measure_added_points(const Evidence&) {
+  const auto merged = [](std::size_t one_way) {
+    ContactBuffer contacts(2 * kPoints + 3);
+    for (std::size_t i = 0; i < kPoints + 1 + one_way; ++i) {
+      contacts.push(static_cast<std::uint32_t>(i), Vec3::Zero(), Vec3::UnitX());
+      contacts.set_gradient(i, i <= kPoints ? Vec3(-Vec3::UnitX()) : Vec3(Vec3::UnitX()));
+      contacts.depth[i] = 1.0;
+    }
+    contacts.pad();
+    RenderingConfig config;
+    config.stiffness = 1.0;
+    return make_law("original_averaging", config)->evaluate(contacts).spring;
+  };
+  const Vec3 before = merged(kPoints), after = merged(kPoints + 2);
+  return {{"depth_before", {before.norm()}},
+          {"depth_after", {after.norm()}},
+          {"direction_product", {before.normalized().dot(after.normalized())}}};
+}
+
+Finding judge_added_points(const MeasuredCase& m, const PublishedNumbers&) {
+  const auto n = static_cast<double>(kPoints);
+  const bool depths =
+      std::abs(m["depth_before"] - (2.0 * n + 1.0)) <= kExact && std::abs(m["depth_after"] - (2.0 * n + 3.0)) <= kExact;
+  const bool turned = m["direction_product"] <= -1.0 + kExact;
+  return {decide(depths && turned, turned),
+          depths && turned ? "exact, as the formula says" : "another depth or direction than the formula's"};
+}
+
+/// The laws that P1 compares; the thesis's is first.
+constexpr const char* kLaws[] = {"shaped_stiffness", "original_averaging", "summation", "mean",
+                                 "virtual_coupling", "least_squares"};
+
+constexpr std::size_t kWallDensities[] = {4, 10, 40};
+/// Gradients less steep than this belong to the wall.
+constexpr double kWall = 0.5;
+
+/// The contacts with so many points in place of each point of the wall.
+ContactBuffer crowded(const ContactBuffer& contacts, std::size_t times) {
+  ContactBuffer more(contacts.size() * times);
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    const Vec3 gradient = contacts.gradient(i);
+    for (std::size_t k = 0; k < (std::abs(gradient.z()) < kWall ? times : 1); ++k) {
+      more.push(static_cast<std::uint32_t>(more.size()), contacts.point(i), contacts.normal(i));
+      more.set_gradient(more.size() - 1, gradient);
+      more.depth[more.size() - 1] = contacts.depth[i];
+    }
+  }
+  more.pad();
+  return more;
+}
+
+/// The spring forces of an algorithm for sets of contacts with depths and gradients, of which each point of the wall is
+/// there so many times, under a tool at rest.
+std::vector<Vec3> forces_of(const RenderingConfig& config, const Scene& scene, const std::vector<ContactBuffer>& sets,
+                            std::size_t times = 1) {
+  const auto algorithm = make_algorithm(config);
+  algorithm->prepare(scene);
+  ToolState tool;
+  tool.pose = kUpright;
+  std::vector<Vec3> forces;
+  for (const ContactBuffer& set : sets) {
+    ContactBuffer contacts = times == 1 ? set : crowded(set, times);
+    RenderedForce force;
+    algorithm->compute(tool, contacts, force);
+    forces.push_back(force.spring);
+  }
+  return forces;
+}
+
+/// How much the second spring forces differ from the first, rms over rms.
+double change_of_force(const std::vector<Vec3>& first, const std::vector<Vec3>& second) {
+  double difference = 0.0, force = 0.0;
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    difference += (second[i] - first[i]).squaredNorm();
+    force += first[i].squaredNorm();
+  }
+  return std::sqrt(difference / force);
+}
+
+// ---- P1: how much the spring force of contacts of task 2 changes, rms over rms, if every point of the wall is there
+// many times: with all points, and after the reduction. A case for each law; of ours, another for each number of
+// updates, whose limit decouples.
+
+constexpr int kUpdates[] = {1, 10, 100, 1000};
+
+Measured measure_density(const Evidence& e) {
+  const LoadedScenario loaded = e.load("task2_rotate_signed_distance", {"rendering.local_average=false"});
+  const std::vector<ContactBuffer> sets = contact_sets(loaded.scenario, 256);
+  Scene scene;
+  scene.capacity = largest_size(sets) * kWallDensities[std::size(kWallDensities) - 1];
+  const auto changes = [&](MeasuredCase& m, const RenderingConfig& config) {
+    const std::vector<Vec3> once = forces_of(config, scene, sets);
+    for (const std::size_t times : kWallDensities)
+      m.values[fmt::format("x{}{}", times, config.reduction ? "_reduced" : "")] = {
+          change_of_force(once, forces_of(config, scene, sets, times))};
+  };
+  Measured measured;
+  const auto add = [&](const std::string& name, RenderingConfig config) {
+    MeasuredCase& m =
+        measured.emplace_back(MeasuredCase{name, {{"updates", {static_cast<double>(config.iterations)}}}});
+    m.values["x40_reduced"] = {std::nan("")};  // of a law that has no reduction
+    changes(m, config);
+    config.reduction.reset();
+    changes(m, config);
+  };
+  for (const char* law : kLaws) add(law, with_algorithm(loaded.scenario, law).rendering);
+  for (const int updates : kUpdates) {
+    RenderingConfig config = loaded.scenario.rendering;
+    config.iterations = updates;
+    add(fmt::format("m = {}", updates), config);
+  }
+  return measured;
+}
+
+Finding judge_density(const Measured& measured, const PublishedNumbers& p) {
+  const double all = measured.front()["x40"], reduced = measured.front()["x40_reduced"], limit = measured.back()["x40"],
+               small = threshold(p, "negligible");
+  return {
+      decide(all <= small, std::min(reduced, limit) <= small),
+      fmt::format("{} updates of stiffness shaping {}; its limit {}; the reduction {}", measured.front()["updates"],
+                  all <= small ? "decouple the force from density" : "are too few to decouple the force from density",
+                  limit <= small ? "decouples" : "does not", reduced <= small ? "does" : "does not")};
+}
+
+// ---- C6: the damping ratio of one, two, … springs in parallel, whose stiffness ratio is their number.
+
+constexpr double kCounts[] = {1.0, 2.0, 4.0, 8.0};
+constexpr double kSpringDamping = 0.1;  ///< small enough for many swings
+
+Measured measure_relative_damping(const Evidence& e) {
+  Measured measured;
+  for (const double count : kCounts) {
+    const std::vector<std::string> overrides = {
+        fmt::format(R"(environment.groups=[{{"direction":[1,0,0],"count":{}}}])", count),
+        "initial.position_m=[-0.005,0,0]", fmt::format("rendering.damping_ratio={}", kSpringDamping),
+        // With a tenth of the step the integrator's own damping is negligible.
+        "time.step_s=0.00005", "time.steps=10000"};
+    std::vector<double> way;
+    for_each_row(e.load("springs_unlimited_summation", overrides),
+                 [&](const StepRecord& row) { way.push_back(row.tool.pose.position.x()); });
+    measured.push_back(
+        {fmt::format("{}", count),
+         {{"count", {count}}, {"damping_ratio", {damping_ratio_of_swings(way).value_or(std::nan(""))}}}});
+  }
+  return measured;
+}
+
+Finding judge_relative_damping(const Measured& measured, const PublishedNumbers& p) {
+  bool same = true;
+  double worst = 0.0;
+  for (const MeasuredCase& m : measured) {
+    const double expected = kSpringDamping * std::sqrt(m["count"]);
+    const double off = std::abs(m["damping_ratio"] / expected - 1.0);
+    same = same && off <= threshold(p, "same_damping");  // no ratio is another one
+    worst = std::max(worst, off);
+  }
+  return {decide(same, false), fmt::format("√ρ times that of one spring to {:.2g} %", 100.0 * worst)};
+}
+
+// ---- F1: the largest force step at a corner [N], and the depth rendered for a press into a flat [m].
+
+MeasuredValues measure_normal_projection(const Evidence& e) {
+  const auto z = e.table("flat_press_normal_projection", "trajectory.csv").at("pz_m");
+  return {{"step", {e.number("corner_normal_projection", "metrics.force_step_max_N")}},
+          {"step_shortest", {e.number("corner_shaped_stiffness", "metrics.force_step_max_N")}},
+          {"pressed", {-z.back()}},
+          {"depth", {e.number("flat_press_normal_projection", "metrics.depth_max_m")}},
+          {"depth_shortest", {e.number("flat_press_shaped_stiffness", "metrics.depth_max_m")}}};
+}
+
+Finding judge_normal_projection(const MeasuredCase& m, const PublishedNumbers& p) {
+  const bool jumps = m["step"] >= threshold(p, "jumps") * m["step_shortest"];
+  const bool faithful = std::abs(m["depth"] / m["pressed"] - 1.0) <= threshold(p, "proportional");
+  const bool saturates = m["depth_shortest"] < threshold(p, "saturated") * m["pressed"];
+  return {decide(jumps && faithful && saturates, jumps),
+          fmt::format("the force {} at the corner; on the flat the normal projection {}, the shortest distance {}",
+                      jumps ? "jumps" : "does not jump", faithful ? "does not saturate" : "does not follow",
+                      saturates ? "does" : "does not")};
+}
+
+// ---- F2: the energy of the weighed over the plain springs; at some tilts of the planar peg, prescribed, the outward
+// force over that of the plain springs in the same pose; and in a converged run without friction (a hundredth of the
+// step) the time until the peg leaves [s].
+
+constexpr double kEnergyKept = 1e-9;
+constexpr double kBoostTilts[] = {0.08, 0.12, 0.2, 0.4};
+
+/// The ratio furthest from 1 among the contact sets that give a force.
+double tandpasta_energy_ratio(const Evidence& e) {
+  const auto law = make_law("tandpasta", {});
+  double ratio = 1.0;
+  for (ContactBuffer& set : contact_sets(e.load("task2_rotate_signed_distance").scenario, 64)) {
+    law->prepare(set.capacity());
+    law->evaluate(set);
+    double weighed = 0.0, unweighed = 0.0;
+    for (std::size_t i = 0; i < set.size(); ++i) {
+      weighed += set.weight[i] * set.depth[i] * set.depth[i];
+      unweighed += set.depth[i] * set.depth[i];
+    }
+    if (weighed > 0.0 && std::abs(weighed / unweighed - 1.0) > std::abs(ratio - 1.0)) ratio = weighed / unweighed;
+  }
+  return ratio;
+}
+
+/// The outward force over that of the plain springs, at the first row beyond each tilt.
+std::vector<double> outward_boosts(const Evidence& e) {
+  const LoadedScenario loaded = e.load("tilt_sweep_tandpasta");
+  const double stiffness = loaded.scenario.rendering.stiffness;
+  std::vector<double> boosts;
+  for_each_row(loaded, [&](const StepRecord& row) {
+    if (boosts.size() == std::size(kBoostTilts) || row.rendered->empty()) return;
+    const double tilt = math::acos(-row.tool.pose.axis.y());
+    if (tilt < kBoostTilts[boosts.size()]) return;
+    Vec3 plain = Vec3::Zero();
+    for (std::size_t i = 0; i < row.rendered->size(); ++i) plain -= row.rendered->depth[i] * row.rendered->gradient(i);
+    boosts.push_back(row.force.spring.y() / (stiffness * plain.y()));
+  });
+  return boosts;
+}
+
+MeasuredValues measure_tandpasta(const Evidence& e) {
+  MeasuredValues values = {{"energy_ratio", {tandpasta_energy_ratio(e)}}, {"boosts", outward_boosts(e)}};
+  for (const std::string algorithm : {"tandpasta", "summation", kProposedLaw}) {
+    const std::vector<std::string> converged = {"time.step_s=5e-6", "time.steps=200000",
+                                                "rendering.friction.mu_s_N_s_per_m=0",
+                                                "rendering.friction.mu_f_s_per_m=0", "record.ratio_iterations=[]"};
+    values[algorithm] = {e.run("peg_in_hole_2d_" + algorithm, converged).duration};
+  }
+  return values;
+}
+
+Finding judge_tandpasta(const MeasuredCase& m, const PublishedNumbers& p) {
+  const std::vector<double>& boosts = m.all("boosts");
+  const double least = boosts.empty() ? 0.0 : *std::min_element(boosts.begin(), boosts.end());
+  const bool unchanged = std::abs(m["energy_ratio"] - 1.0) <= kEnergyKept;
+  return {
+      decide(unchanged && least >= threshold(p, "boosted"), unchanged && least > 1.0),
+      fmt::format(
+          "the weights {} the elastic energy and {} the outward force; that the peg leaves after 5 steps at the "
+          "thesis's step is explicit friction blowing up, not the law",
+          unchanged ? "keep" : "change", least > 1.0 ? "raise" : "do not raise"),
+      fmt::format("energy ratio {:.12g}; outward force at tilts of {} rad {:.1f} times that of the plain springs; in a "
+                  "converged run the peg leaves after {:.3f} s, with summation after {:.3f}, with stiffness shaping "
+                  "after {:.3f}",
+                  m["energy_ratio"], fmt::join(kBoostTilts, ", "), fmt::join(boosts, ", "), m["tandpasta"],
+                  m["summation"], m["shaped_stiffness"])};
+}
+
+}  // namespace
+
+std::vector<ClaimRule> appendix_b_c_f() {
+  return {
+      single_case<measure_flipped_gradient, judge_flipped_gradient>("B1"),
+      {"B2", measure_groove, judge_groove},
+      single_case<measure_added_points, judge_added_points>("B3"),
+      {"P1", measure_density, judge_density},
+      {"C6", measure_relative_damping, judge_relative_damping},
+      single_case<measure_normal_projection, judge_normal_projection>("F1"),
+      single_case<measure_tandpasta, judge_tandpasta>("F2"),
+  };
+}
+
+}  // namespace hapbench
