@@ -21,6 +21,13 @@
 
 namespace hapbench {
 
+Scenario::Scenario() = default;
+Scenario::Scenario(const Scenario&) = default;
+Scenario::Scenario(Scenario&&) noexcept = default;
+Scenario& Scenario::operator=(const Scenario&) = default;
+Scenario& Scenario::operator=(Scenario&&) noexcept = default;
+Scenario::~Scenario() = default;
+
 // ---- Rules between the fields of a scenario, which a schema cannot express. ----
 
 namespace {

@@ -219,6 +219,14 @@ struct ExpectFields {
 };
 
 struct Scenario {
+  // Defined in one source: each that copied the alternatives below would compile the copies anew.
+  Scenario();
+  Scenario(const Scenario&);
+  Scenario(Scenario&&) noexcept;
+  Scenario& operator=(const Scenario&);
+  Scenario& operator=(Scenario&&) noexcept;
+  ~Scenario();
+
   std::string name;
   std::string description;
   std::string source;
