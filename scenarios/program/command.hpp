@@ -17,7 +17,7 @@
 #include "scenarios/format/json_file.hpp"
 #include "scenarios/format/load_scenario.hpp"
 
-namespace CLI {
+namespace CLI {  // NOLINT(readability-identifier-naming): of CLI11
 class App;
 }
 
