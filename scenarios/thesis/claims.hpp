@@ -220,13 +220,13 @@ struct ClaimRule {
 };
 
 /// The rule of a claim with a single case.
-template <MeasuredValues (*kMeasure)(const Evidence&), Finding (*kJudge)(const MeasuredCase&, const PublishedNumbers&)>
+template <MeasuredValues (*measure)(const Evidence&), Finding (*judge)(const MeasuredCase&, const PublishedNumbers&)>
 ClaimRule single_case(const char* id) {
   return {id,
           [](const Evidence& e) -> Measured {
-            return {{"", kMeasure(e)}};
+            return {{"", measure(e)}};
           },
-          [](const Measured& measured, const PublishedNumbers& p) { return kJudge(measured.at(0), p); }};
+          [](const Measured& measured, const PublishedNumbers& p) { return judge(measured.at(0), p); }};
 }
 
 // By chapter.
