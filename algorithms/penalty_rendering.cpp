@@ -56,7 +56,7 @@ void PenaltyRendering::render(const ToolState& tool, ContactBuffer& contacts, Re
   if (contacts.empty()) return;
   in_contact_ = true;
   Mat3 loads;  // not set where nothing reads it
-  // Those of weighted springs; else the spring force as one load along itself.
+  // A law without weights has a single load, its spring force.
   if (damping_and_limits_.needs_loads())
     loads = law_->gives_weights() ? Mat3(K_ * load_tensor(contacts)) : load_along(law.spring);
   out.rendered = damping_and_limits_.rendered_force(law.spring, law.S, velocity_at(contacts, tool), loads);

@@ -18,8 +18,8 @@ namespace hapbench {
 ///   input = hand + actuator                                        (when the handle is the tool)
 ///   device.stored = device.hand + device.actuator + device.dissipated   (when it has mechanics of its own)
 ///
-/// Where a handle moves the tool, there is no virtual mass: kinetic, input and residual are zero, a force works
-/// by the row's force times the displacement to the next row, and script is the work of the handle on the rendering.
+/// A tool that a handle moves has no virtual mass: kinetic, input and residual are zero, the work of a force is the
+/// row's force times the displacement to the next row, and script is the work of the handle on the rendering.
 ///
 /// If the integrator holds the row's force over the step (leapfrog), the work of a force is the row's force times dt
 /// times the mean of the velocities before and after the step, which equals its contribution to the kinetic energy

@@ -190,7 +190,7 @@ Condition condition_of(const std::string& text, const SweepTable& table) {
 Json description_of(const fs::path& table) {
   const fs::path file = fs::path(table).replace_extension(".json");
   try {
-    Json about = parse_json(read_text_file(file, kLargestJsonFile));
+    Json about = read_json(file);
     if (about.contains("definition")) return about;
   } catch (const InputError& error) {
     rethrow_with_file(error, file);

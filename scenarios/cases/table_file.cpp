@@ -30,7 +30,7 @@ std::string definition_in(const fs::path& about) {
   std::error_code ignored;
   if (!fs::is_regular_file(about, ignored)) return "";
   try {
-    return parse_json(read_text_file(about, kLargestJsonFile)).value("definition", "");
+    return read_json(about).value("definition", "");
   } catch (const std::exception&) {
     return "";
   }
@@ -253,7 +253,7 @@ bool join_shards(const fs::path& folder) {
     throw InputError(fmt::format("{}: {} of {} shards missing: {}{}", folder.string(), lack, count,
                                  fmt::join(missing, ", "), lack > kMostShown ? ", ..." : ""));
   }
-  TableTitle title{whole, "", parse_json(read_text_file(beside(shards[0]), kLargestJsonFile))};
+  TableTitle title{whole, "", read_json(beside(shards[0]))};
   const std::string definition = title.about.value("definition", "");
   for (const fs::path& shard : shards) {
     if (const std::string other = definition_in(beside(shard)); other != definition) {

@@ -200,7 +200,6 @@ void add_drag(const Scenario& scenario, const DragHandFields& fields, Simulation
 }  // namespace
 
 void add_hand_and_motion(const Scenario& scenario, const NamedFiles& files, Trial trial, SimulationParts& parts) {
-  parts.motion = make_motion(scenario, files);
   if (const auto* tracking = std::get_if<TrackingHandFields>(&scenario.hand)) {
     auto hand = make_tracking_hand(scenario, *tracking, trial);
     if (tracking->task.display == TargetDisplay::height)
@@ -219,6 +218,7 @@ void add_hand_and_motion(const Scenario& scenario, const NamedFiles& files, Tria
   } else {
     parts.hand = std::make_unique<NoHand>();
   }
+  if (!parts.motion) parts.motion = make_motion(scenario, files);
 }
 
 }  // namespace hapbench

@@ -127,6 +127,10 @@ Json parse_json(const std::string& text) {
   }
 }
 
+Json read_json(const std::filesystem::path& file) {
+  return parse_json(read_text_file(file, kLargestJsonFile));
+}
+
 std::string shown(const Json& json) {
   constexpr std::size_t kLongest = 80;
   // Printing all of a large value could take long.

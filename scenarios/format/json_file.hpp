@@ -23,6 +23,9 @@ std::string read_text_file(const std::filesystem::path& file, std::uintmax_t lar
 /// nesting deeper than 64, objects with more than 10 000 keys, duplicate keys and numbers beyond the range of double.
 Json parse_json(const std::string& text);
 
+/// Parses a file of at most kLargestJsonFile bytes. Throws InputError of both, without the file's name.
+Json read_json(const std::filesystem::path& file);
+
 /// The value as an error message shows it: JSON on one line, cut when long.
 std::string shown(const Json& json);
 std::string shown(double value);

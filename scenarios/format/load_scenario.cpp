@@ -59,9 +59,7 @@ void check_chain(const std::vector<ScenarioLayer>& layers, const fs::path& next)
     chain += layer.file.string() + " -> ";
     again = again || fs::equivalent(layer.file, next, ignored);
   }
-  if (!again) return;
-  fail_at(fmt::format("/{}", kExtends),
-          fmt::format("got a circle, {}{}; allowed: a chain that ends", chain, next.string()));
+  if (again) throw InputError(fmt::format("got a circle, {}{}; allowed: a chain that ends", chain, next.string()));
 }
 
 /// The file that `json`, read from `file`, extends.
@@ -72,14 +70,13 @@ fs::path base_file(const Json& json, const fs::path& file, const std::vector<Sce
     throw InputError(InputError::Kind::shape, at,
                      fmt::format("got {}; allowed: a scenario file or the name of a bundled scenario", shown(name)));
   }
-  fs::path base;
   try {
-    base = find_scenario(name.get<std::string>(), file.parent_path());
+    const fs::path base = find_scenario(name.get<std::string>(), file.parent_path());
+    check_chain(layers, base);
+    return base;
   } catch (const InputError& error) {
     fail_at(at, error.problem());
   }
-  check_chain(layers, base);
-  return base;
 }
 
 /// Appends the file and those it extends to `layers`; returns the fields of all.
@@ -87,7 +84,7 @@ Json read_extended(const fs::path& file, std::vector<ScenarioLayer>& layers) {
   Json json;
   fs::path base;
   try {
-    json = parse_json(read_text_file(file, kLargestJsonFile));
+    json = read_json(file);
     layers.push_back({file, json});
     if (json.contains(kExtends)) base = base_file(json, file, layers);
     if (layers.size() > 1 && !json.is_object())
@@ -224,9 +221,8 @@ fs::path file_of(const LoadedScenario& loaded, const std::string& pointer) {
   try {
     // A field that no file has is at its default; the object around it is the nearest place to name.
     for (Json::json_pointer at(pointer); !at.empty(); at = at.parent_pointer()) {
-      for (const ScenarioLayer& layer : *loaded.layers) {
+      for (const ScenarioLayer& layer : *loaded.layers)
         if (layer.json.contains(at)) return layer.file;
-      }
     }
   } catch (const Json::exception&) {
     // A place that is not a pointer, such as the path of a mesh.

@@ -11,7 +11,6 @@
 #include "sim/mesh/half_edge_mesh.hpp"
 
 namespace hapbench {
-
 namespace {
 
 namespace fs = std::filesystem;

@@ -74,7 +74,7 @@ Description describe_study(const BundledStudy& study) {
 Json list_on_record(const std::string& list) {
   const std::filesystem::path file = installed_folder("results/reference") / (list + ".json");
   try {
-    return parse_json(read_text_file(file, kLargestJsonFile)).at(list);
+    return read_json(file).at(list);
   } catch (const InputError& error) {
     rethrow_with_file(error, file);
   }
@@ -117,7 +117,7 @@ struct Place {
   std::string number;
 };
 
-/// The kind of place that a word announces; any other word ends those before it.
+/// The kind of place that a word announces. Numbers behind any other word are sections.
 std::string place_kind(const std::string& word) {
   const std::string lower = lower_case(word);
   if (lower == "fig" || lower == "figs" || lower == "figure") return "Fig.";

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -44,23 +43,25 @@ struct StartKind {
 
 /// All kinds, those of scenarios/library/starts.json, in the order in which they are shown. Throws InputError without
 /// that file.
-std::vector<StartKind> start_kinds() {
-  const Json json = parse_json(read_named_file(installed_folder("scenarios/library") / "starts.json"));
-  std::vector<StartKind> kinds;
-  for (const Json& kind : json.at("kinds")) {
-    Json scene = {{"description", kind.at("summary")},
-                  {"time", {{"step_s", kStep}, {"steps", kind.value("steps", 2000)}}}};
-    for (const Json& part : kind.at("parts")) scene.update(json.at("parts").at(part.get<std::string>()));
-    kinds.push_back(
-        {kind.at("kind"), kind.at("summary"), kind.value("from", ""), kind.value("optional", false), scene});
-  }
+const std::vector<StartKind>& start_kinds() {
+  static const std::vector<StartKind> kinds = [] {
+    const Json json = parse_json(read_named_file(installed_folder("scenarios/library") / "starts.json"));
+    std::vector<StartKind> all;
+    for (const Json& kind : json.at("kinds")) {
+      Json scene = {{"description", kind.at("summary")},
+                    {"time", {{"step_s", kStep}, {"steps", kind.value("steps", 2000)}}}};
+      for (const Json& part : kind.at("parts")) scene.update(json.at("parts").at(part.get<std::string>()));
+      all.push_back(
+          {kind.at("kind"), kind.at("summary"), kind.value("from", ""), kind.value("optional", false), scene});
+    }
+    return all;
+  }();
   return kinds;
 }
 
-StartKind kind_named(const std::string& name) {
-  const std::vector<StartKind> kinds = start_kinds();
-  require_valid_name("KIND: got", name, names_of(kinds, &StartKind::name));
-  return *std::ranges::find(kinds, name, &StartKind::name);
+const StartKind& kind_named(const std::string& name) {
+  require_valid_name("KIND: got", name, names_of(start_kinds(), &StartKind::name));
+  return *std::ranges::find(start_kinds(), name, &StartKind::name);
 }
 
 // ---- The options
@@ -202,7 +203,7 @@ Json list_of(const Vec3& v) {
 }
 
 double longest_edge(const Box& box) {
-  return (box.max - box.min).maxCoeff();
+  return box.size().maxCoeff();
 }
 
 /// Rounds to the micrometre, as people write places.
@@ -240,7 +241,7 @@ class Start {
     }
     if (kind.source == "stroke") choose_stroke_steps();
     if (!has_type("environment", "mesh")) return;
-    notes.push_back(fmt::format("{} points, {} apart: a tenth of the tool's diameter", points().size(),
+    notes.push_back(fmt::format("{} points, {} apart: a tenth of the tool's diameter", shell()->size(),
                                 length_text(scene["environment"]["spacing_m"].get<double>())));
   }
 
@@ -278,10 +279,14 @@ class Start {
 
   LoadedScenario scenario() const { return read_scenario(scene, directory_); }
 
+  std::shared_ptr<const PointShell> shell() const {
+    const LoadedScenario loaded = scenario();
+    return make_shell(loaded.scenario, loaded.files);
+  }
+
   /// The points of the scene in the side's frame.
   std::vector<SurfacePoint> points() const {
-    const LoadedScenario loaded = scenario();
-    std::vector<SurfacePoint> points = make_shell(loaded.scenario, loaded.files)->points();
+    std::vector<SurfacePoint> points = shell()->points();
     for (SurfacePoint& point : points)
       point = {to_world_.transpose() * point.position, to_world_.transpose() * point.normal};
     return points;
@@ -427,9 +432,7 @@ class Start {
   /// Places the tool above the plane's middle. Its tip is where the format has it without more words.
   void place_mesh_tool() {
     const TriangleSoup surface = scenario().files.at(kToolFile).mesh().triangles();  // taken for millimetres
-    Eigen::AlignedBox3d around;
-    for (const Vec3& vertex : surface.vertices) around.extend(vertex);
-    Box box{around.min(), around.max()};
+    Box box = box_of(surface.vertices);
     const double scale = choose_scale(box, "tool");
     scene["tool"]["scale"] = scale;
     box = {scale / 0.001 * box.min, scale / 0.001 * box.max};
@@ -511,7 +514,7 @@ void draw_preview(const fs::path& scenario, const fs::path& picture, bool quiet)
 
 int write_new(const NewOptions& options) {
   if (options.kind.empty()) return list_kinds(options.output);
-  const StartKind kind = kind_named(options.kind);
+  const StartKind& kind = kind_named(options.kind);
   check_source(kind, options.from);
   const fs::path source = options.from;
   const fs::path out =

@@ -47,7 +47,7 @@ std::vector<Claim> chosen_claims(const std::vector<std::string>& ids) {
 /// Returns true if the directory holds results of exactly this scenario, computed by exactly this program.
 bool is_current(const fs::path& directory, const LoadedScenario& loaded) {
   try {
-    const Json summary = parse_json(read_text_file(directory / "summary.json", kLargestJsonFile));
+    const Json summary = read_json(directory / "summary.json");
     const Json& made = summary.at("provenance");
     return made.at("scenario_hash") == scenario_hash(loaded.scenario, loaded.files) &&
            made.at("commit") == provenance().commit && provenance().identifies_source();
@@ -130,7 +130,7 @@ std::vector<JudgedClaim> judge(const std::vector<Claim>& claims, const Published
 /// The content of robustness.json; an empty record when there is no such file.
 Json read_record(const fs::path& file) {
   if (!fs::exists(file)) return {{"claims", Json::array()}};
-  return parse_json(read_text_file(file, kLargestJsonFile));
+  return read_json(file);
 }
 
 /// Judges the claims again under the readings, and writes robustness.* next to the ledger, if there is one. Returns the

@@ -180,7 +180,7 @@ double largest_bounded(const Evidence& e, const std::string& field, const Range&
 }
 
 double largest_stiffness(const Evidence& e, std::vector<std::string> overrides = {}) {
-  return largest_bounded(e, "rendering.stiffness_N_per_m", {1e3, 1e9, true}, std::move(overrides));
+  return largest_bounded(e, kStiffnessPath, {1e3, 1e9, true}, std::move(overrides));
 }
 double largest_undamped_stiffness(const Evidence& e) {
   return largest_stiffness(e, {"rendering.damping_ratio=0"});

@@ -69,7 +69,7 @@ bool names_scenario(const std::string& pattern, const std::string& scenario) {
 Choices::Choices(const std::filesystem::path& file) {
   std::string at = "/choices";
   try {
-    const Json json = parse_json(read_text_file(file, kLargestJsonFile));
+    const Json json = read_json(file);
     hash_ = hash_text(hash_of(json_text(json)));
     for (const Json& choice : json.at("choices")) {
       at = element("/choices", all_.size());
@@ -130,7 +130,7 @@ std::string Choices::reach(std::span<const std::string> scenarios, const std::st
 }
 
 Json choices_schema() {
-  return parse_json(read_text_file(installed_folder("results/reference") / "choices.schema.json", kLargestJsonFile));
+  return read_json(installed_folder("results/reference") / "choices.schema.json");
 }
 
 }  // namespace hapbench

@@ -30,7 +30,7 @@ PublishedNumber number_of(const Json& value) {
 
 PublishedNumbers::PublishedNumbers(const fs::path& file) {
   try {
-    const Json json = parse_json(read_text_file(file, kLargestJsonFile));
+    const Json json = read_json(file);
     for (const Json& value : json.at("values")) numbers_[value.at("id")] = number_of(value);
   } catch (const InputError& error) {
     rethrow_with_file(error, file);
@@ -77,7 +77,7 @@ double Evidence::number(const std::string& scenario, const std::string& path) co
   provide(scenario);
   std::string pointer = "/" + path;
   std::replace(pointer.begin(), pointer.end(), '.', '/');
-  const Json summary = parse_json(read_text_file(directory / scenario / "summary.json", kLargestJsonFile));
+  const Json summary = read_json(directory / scenario / "summary.json");
   const Json value = summary.value(Json::json_pointer(pointer), Json());
   return value.is_number() ? value.get<double>() : std::nan("");
 }
@@ -157,7 +157,7 @@ std::vector<Claim> all_claims() {
   const std::filesystem::path file = installed_folder("results/reference") / "rules.json";
   std::vector<Claim> claims;
   try {
-    const Json json = parse_json(read_text_file(file, kLargestJsonFile));
+    const Json json = read_json(file);
     for (const Json& row : json.at("claims")) {
       claims.push_back({.id = row.at("id"),
                         .place = row.at("place"),

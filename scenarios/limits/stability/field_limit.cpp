@@ -307,7 +307,7 @@ bool is_in_interval(double value, const FieldLimit& limit, bool smallest) {
          (!limit.other.beyond || is_before(limit.other.beyond->value, value));
 }
 
-/// What the runs say, by their values.
+/// Adds the runs of the search to the limit, and which of them contradict it.
 void add_runs(const LimitQuestion& question, const std::map<double, RunStability>& runs, FieldLimit& limit) {
   for (const auto& [value, run] : runs) {
     limit.runs.push_back({value, run.verdict});

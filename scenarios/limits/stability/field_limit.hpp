@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "algorithms/parameters.hpp"
 #include "scenarios/cases/cases.hpp"
 #include "scenarios/format/load_scenario.hpp"
 #include "scenarios/limits/stability/run_stability.hpp"
@@ -72,7 +73,7 @@ FoundEdge find_tried_edge(const SearchWay& way, std::map<double, bool>& tried,
                           const std::function<bool(double)>& stable, bool near,
                           const std::function<void(std::span<const double>)>& ahead);
 
-inline constexpr const char* kStiffnessPath = "rendering.stiffness_N_per_m";
+inline constexpr const char* kStiffnessPath = parameter::kStiffness.field;
 
 /// The question: which limit of which field of a scene, and by which rule a run is stable.
 struct LimitQuestion : StabilityRule, SearchWay {

@@ -70,8 +70,8 @@ class MotionClassifier final : public Observer {
   explicit MotionClassifier(std::uint64_t steps) : steps_(steps) {}
   /// For a tool that a script moves, which is never at rest: what counts is its velocity above 30 Hz (all of it when
   /// steps are longer than a 60th of a second), in the last quarter beyond 1 mm/s, about what a hand can feel there.
-  /// Where the script ends in the first half of the run, at the row `still`, all motion from then on counts, too, by
-  /// quarters of what is left, beyond 1 mm/s.
+  /// If the script ends at the row `still` in the first half of the run, the motion from then on is judged as well, by
+  /// quarters of what is left: all of it that is faster than 1 mm/s counts.
   static MotionClassifier of_moved_tool(std::uint64_t steps, double time_step, double still);
 
   void on_step(const StepRecord& record) noexcept override;

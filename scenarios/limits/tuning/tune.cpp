@@ -421,8 +421,8 @@ std::string relaxations(const Trials& trials, const TuneTrial& nearest) {
   return fmt::format("{}; {}", fmt::join(texts, "; "), then_text(nearest));
 }
 
-/// Where nothing is feasible: what is in the way, and what to relax. Where no limit is to blame, it is about a trial
-/// that lacks the margin alone, or else about the last one.
+/// Explains why nothing is feasible: what is in the way, and which limit to relax. If no limit is in the way, explains
+/// a trial that lacks only the margin, or else the last trial.
 void explain(Trials& trials, TunedLaw& law) {
   const TuneTrial* nearest = trials.nearest();
   const auto lacks_margin = [](const auto& tried) { return tried.second.binding == "margin"; };
