@@ -1,14 +1,12 @@
-"""A headless Chromium for tests, driven over a pipe by the DevTools protocol, and what every page has to keep.
-HAPBENCH_CHROMIUM names the browser."""
-import base64
+"""A headless Chromium for tests, and what every page has to keep. HAPBENCH_CHROMIUM names the browser, chromedriver stands in the
+path (scripts/setup --browser)."""
 import json
 import os
-import select
-import shutil
-import subprocess
-import tempfile
 import time
 import unittest
+
+from selenium import webdriver
+from selenium.webdriver.chrome.service import Service
 
 PATIENCE_S = 300
 UNNAMED = """[...document.querySelectorAll('button, select, input, canvas, img')].filter((e) =>
@@ -41,60 +39,26 @@ class Chromium:
     """One browser with one page, without network."""
 
     def __init__(self, program):
-        self.messages, self.buffer, self.last_id = [], b"", 0
-        self.profile = tempfile.mkdtemp(prefix="hapbench-chromium-")
-        to_browser, self.write_end = os.pipe()
-        self.read_end, from_browser = os.pipe()
-        options = ["--headless=new", "--remote-debugging-pipe", f"--user-data-dir={self.profile}", "--disable-gpu",
-                   "--no-first-run", "--hide-scrollbars", "--disable-dev-shm-usage", "--window-size=1280,900"]
+        options = webdriver.ChromeOptions()
+        options.binary_location = program
         # The sandbox does not start for root, and the page is our own.
-        options += ["--no-sandbox"] if os.geteuid() == 0 else []
-        # The browser reads from file descriptor 3 and writes to 4.
-        self.process = subprocess.Popen(
-            ["sh", "-c", f'exec "$@" 3<&{to_browser} 4>&{from_browser}', "sh", program, *options, "about:blank"],
-            pass_fds=(to_browser, from_browser), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        os.close(to_browser)
-        os.close(from_browser)
-        self.session = None
-        target = next(t for t in self.call("Target.getTargets")["targetInfos"] if t["type"] == "page")
-        self.session = self.call("Target.attachToTarget", targetId=target["targetId"], flatten=True)["sessionId"]
-        for domain in ("Page", "Runtime", "Log", "Network"):
-            self.call(f"{domain}.enable")
-        self.call("Network.emulateNetworkConditions", offline=True, latency=0, downloadThroughput=0, uploadThroughput=0)
+        sandbox = ["--no-sandbox"] if os.geteuid() == 0 else []
+        for option in ["--headless=new", "--disable-gpu", "--hide-scrollbars", "--disable-dev-shm-usage", *sandbox]:
+            options.add_argument(option)
+        options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
+        self.driver = webdriver.Chrome(service=Service("chromedriver"), options=options)
+        self.driver.set_script_timeout(PATIENCE_S)
+        self.driver.set_network_conditions(offline=True, latency=0, throughput=0)
 
     def close(self):
-        self.process.kill()
-        self.process.wait()
-        os.close(self.write_end)
-        os.close(self.read_end)
-        shutil.rmtree(self.profile, ignore_errors=True)
+        self.driver.quit()
 
     def call(self, method, **parameters):
-        """The result of a DevTools method; what the browser reports meanwhile is kept in `messages`."""
-        self.last_id += 1
-        message = {"id": self.last_id, "method": method, "params": parameters}
-        if self.session:
-            message["sessionId"] = self.session
-        os.write(self.write_end, json.dumps(message).encode() + b"\0")
-        while (answer := self.next_message()).get("id") != self.last_id:
-            self.messages.append(answer)
-        if "error" in answer:
-            raise RuntimeError(f"{method}: {answer['error']}")
-        return answer["result"]
-
-    def next_message(self):
-        while b"\0" not in self.buffer:
-            if not select.select([self.read_end], [], [], PATIENCE_S)[0]:
-                raise TimeoutError("Chromium does not answer")
-            part = os.read(self.read_end, 1 << 20)
-            if not part:
-                raise RuntimeError("Chromium has ended")
-            self.buffer += part
-        message, self.buffer = self.buffer.split(b"\0", 1)
-        return json.loads(message)
+        """A method of the DevTools protocol."""
+        return self.driver.execute_cdp_cmd(method, parameters)
 
     def open(self, url):
-        self.call("Page.navigate", url=url)
+        self.driver.get(url)
         self.wait_for(f"document.readyState === 'complete' && location.href === {json.dumps(url)}")
 
     def wait_for(self, expression):
@@ -105,23 +69,19 @@ class Chromium:
             time.sleep(0.05)
 
     def evaluate(self, expression):
-        result = self.call("Runtime.evaluate", expression=expression, returnByValue=True, awaitPromise=True)
-        if "exceptionDetails" in result:
-            raise RuntimeError(result["exceptionDetails"])
-        return result["result"].get("value")
+        """Its value, of a promise the one that it keeps."""
+        return self.driver.execute_script(f"return ({expression})")
 
     def complaints(self):
-        """Errors and warnings of console and browser, uncaught exceptions, and requests for anything outside the file."""
-        found = []
-        self.evaluate("0")
-        for message in self.messages:
-            method, about = message.get("method"), message.get("params", {})
-            if method == "Runtime.exceptionThrown" or (method == "Runtime.consoleAPICalled" and about["type"] != "log"):
-                found.append(about)
-            elif method == "Log.entryAdded" and about["entry"]["level"] != "verbose":
-                found.append(about["entry"])
-            elif method == "Network.requestWillBeSent" and not about["request"]["url"].startswith(("file:", "data:", "blob:")):
-                found.append(about["request"]["url"])
+        """Since the last call: errors and warnings of console and browser, uncaught exceptions, and requests for anything outside the
+        file."""
+        found = [entry for entry in self.driver.get_log("browser") if entry["level"] in ("WARNING", "SEVERE")]
+        for entry in self.driver.get_log("performance"):
+            message = json.loads(entry["message"])["message"]
+            if message["method"] == "Network.requestWillBeSent":
+                url = message["params"]["request"]["url"]
+                if not url.startswith(("file:", "data:", "blob:", "about:")):
+                    found.append(url)
         return found
 
     def size(self, width, height, scale=1):
@@ -134,8 +94,8 @@ class Chromium:
         self.call("Input.dispatchMouseEvent", type=kind, x=x, y=y, **more)
 
     def screenshot(self):
-        """The visible part, as PNG."""
-        return base64.b64decode(self.call("Page.captureScreenshot", format="png")["data"])
+        """The visible part, as PNG in base 64."""
+        return self.driver.get_screenshot_as_base64()
 
 
 class Page(unittest.TestCase):
@@ -148,7 +108,7 @@ class Page(unittest.TestCase):
         unittest.addModuleCleanup(cls.browser.close)
 
     def setUp(self):
-        self.browser.messages.clear()
+        self.browser.complaints()
         self.browser.size(1280, 900)
         self.browser.dark(False)
         self.open()
