@@ -80,13 +80,14 @@ std::string seconds_text(const Json& claim) {
 
 std::string main_results(const Json& claims) {
   std::string text =
-      "| claim | place | published | ours | verdict | command | seconds |\n|---|---|---|---|---|---|---|\n";
+      "| claim | place | published | ours | verdict | sureness | command | seconds |\n|---|---|---|---|---|---|---|---|\n";
   for (const Json& claim : claims) {
     if (!claim.contains("main")) continue;
     const Json& main = claim.at("main");
-    text += fmt::format("| {} | {} | {} | {} | {} | `{}` | {} |\n", text_at(main, "claim"), text_at(claim, "place"),
-                        text_at(main, "published"), text_at(main, "ours"), text_at(claim, "verdict"),
-                        text_at(claim, "command"), seconds_text(claim));
+    text +=
+        fmt::format("| {} | {} | {} | {} | {} | {} | `{}` | {} |\n", text_at(main, "claim"), text_at(claim, "place"),
+                    text_at(main, "published"), text_at(main, "ours"), text_at(claim, "verdict"),
+                    text_at(claim, "sureness"), text_at(claim, "command"), seconds_text(claim));
   }
   return text;
 }

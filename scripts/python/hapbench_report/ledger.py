@@ -64,10 +64,10 @@ def summary_section(runs, claims, headline, figures):
 def main_results(claims):
     """The results that a reader should have seen, with the command of each."""
     rows = [[cell(f"{claim_link(claim)} {typeset(claim['main']['claim'])}", classes="prose"), cell(text(claim["place"])),
-             cell(typeset(claim["main"]["published"])), cell(typeset(claim["main"]["ours"])), cell(verdict_mark(claim["verdict"])),
+             cell(typeset(claim["main"]["published"])), cell(typeset(claim["main"]["ours"])), cell(verdict_mark(claim["verdict"])), cell(text(sureness(claim))),
              cell(f"<code>{text(claim['command'])}</code>"), cell(text("< 1" if claim["seconds"] < 1 else f"{claim['seconds']:.0f}"))]
             for claim in claims if claim.get("main")]
-    headings = [heading_cell(title) for title in ("Claim", "Place", "Published", "Ours", "Verdict", "Command", "Seconds")]
+    headings = [heading_cell(title) for title in ("Claim", "Place", "Published", "Ours", "Verdict", "Sureness", "Command", "Seconds")]
     return table(headings, rows, "<b>Main results</b>", "stack", "main-results") if rows else ""
 
 
