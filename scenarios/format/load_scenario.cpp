@@ -71,7 +71,7 @@ fs::path base_file(const Json& json, const fs::path& file, const std::vector<Sce
                      fmt::format("got {}; allowed: a scenario file or the name of a bundled scenario", shown(name)));
   }
   try {
-    const fs::path base = find_scenario(name.get<std::string>(), file.parent_path());
+    fs::path base = find_scenario(name.get<std::string>(), file.parent_path());
     check_chain(layers, base);
     return base;
   } catch (const InputError& error) {
