@@ -303,22 +303,26 @@ std::string notes_text(const LimitTable& table) {
     return device != nullptr && device->coulomb > 0.0;
   };
   const auto is_beyond_linear = [](const LimitRow& row) { return row.is_beyond_linear(row.asked.resolution); };
+  const auto is_published = [](const ComparedDevice& device) { return device.published_stiffness.has_value(); };
+  std::string names;
+  for (const ComparedDevice& device : table.devices) names += device.name + " ";
+  const auto is_marked = [&names](const char* mark) { return names.find(mark) != std::string::npos; };
   const std::pair<bool, std::string> notes[] = {
       {table.is_grid() && any(is_beyond_linear),
        fmt::format("linear edge: of the loop of device, hand and surface while they touch; {}", kBeyondLinear)},
       {table.is_grid(),
        "nothing was tried between the values of a search; of one scene and device alone it is. inconsistent: values that are "
        "unstable before an edge or stable beyond it; limit_runs.csv has what becomes of each value"},
-      {!table.devices.empty(),
-       fmt::format(
-           "published: largest stable stiffness of a wall (\"hapbench describe DEVICE\" names its source); *: a "
-           "preset with numbers of --set, of which nothing is published; [soft], [stiff]: the preset at either "
-           "end of what nobody published of it ({}); [friction*2]: with its dry friction times a factor",
-           kPresetRanges)},
+      {std::ranges::any_of(table.devices, is_published),
+       "published: largest stable stiffness of a wall (\"hapbench describe DEVICE\" names its source)"},
+      {is_marked("* "), "*: a preset with numbers of --set, of which nothing is published"},
+      {is_marked("[soft]"),
+       fmt::format("[soft], [stiff]: the preset at either end of what nobody published of it ({})", kPresetRanges)},
+      {is_marked("[friction*"), "[friction*2]: with its dry friction times a factor"},
       {table.first().asked.path == kStiffnessPath && any(is_on_device),
        "which K to quote: device_model/README.md, \"Which K to quote?\""},
       {any(rubs),
-       "dry friction holds a hand that presses slowly, and is ours in every preset: the limit is that of this approach, "
+       "dry friction, which is ours in every preset, holds a hand that presses slowly: the limit is that of this approach, "
        "not of a device; --set device.coulomb_N=0 shows what is left without"}};
   std::string text;
   for (const auto& [holds, note] : notes)

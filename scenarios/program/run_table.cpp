@@ -138,8 +138,7 @@ std::vector<std::string> run_warnings(std::span<const Result> reports) {
         kinds.push_back(kind);
         texts.push_back(report.name + ": " + text + (reports.size() > 1 ? " (" + report.algorithm + ")" : ""));
       } else if (std::string& told = texts[static_cast<std::size_t>(known)];
-                 reports.size() > 1 && !told.ends_with("(" + report.algorithm + ")") &&
-                 !told.ends_with(" " + report.algorithm + ")")) {
+                 reports.size() > 1 && told.substr(told.find_last_of("( ") + 1) != report.algorithm + ")") {
         told.replace(told.size() - 1, 1, fmt::format(", {})", report.algorithm));
       }
     }
