@@ -311,8 +311,8 @@ std::string notes_text(const LimitTable& table) {
       {table.is_grid() && any(is_beyond_linear),
        fmt::format("linear edge: of the loop of device, hand and surface while they touch; {}", kBeyondLinear)},
       {table.is_grid(),
-       "nothing was tried between the values of a search; of one scene and device alone it is. inconsistent: values that are "
-       "unstable before an edge or stable beyond it; limit_runs.csv has what becomes of each value"},
+       "a table tries no values between those of its searches, as the limit of one scene does. inconsistent: values that "
+       "are unstable before an edge or stable beyond it; limit_runs.csv has what becomes of each value"},
       {std::ranges::any_of(table.devices, is_published),
        "published: largest stable stiffness of a wall (\"hapbench describe DEVICE\" names its source)"},
       {is_marked("* "), "*: a preset with numbers of --set, of which nothing is published"},
