@@ -73,16 +73,14 @@ class Chromium:
         return self.driver.execute_script(f"return ({expression})")
 
     def complaints(self):
-        """Since the last call: errors and warnings of console and browser, uncaught exceptions, and requests for anything outside the
-        file."""
-        found = [entry for entry in self.driver.get_log("browser") if entry["level"] in ("WARNING", "SEVERE")]
-        for entry in self.driver.get_log("performance"):
-            message = json.loads(entry["message"])["message"]
-            if message["method"] == "Network.requestWillBeSent":
-                url = message["params"]["request"]["url"]
-                if not url.startswith(("file:", "data:", "blob:", "about:")):
-                    found.append(url)
-        return found
+        """Since the last call: what console and browser say, but for console.log, uncaught exceptions, and requests for anything outside
+        the file."""
+        # Allowed are console.log (INFO, as console.info) and what the browser itself says at its lowest level.
+        found = [entry for entry in self.driver.get_log("browser")
+                 if entry["level"] != ("INFO" if entry["source"] == "console-api" else "DEBUG")]
+        told = [json.loads(entry["message"])["message"] for entry in self.driver.get_log("performance")]
+        urls = [message["params"]["request"]["url"] for message in told if message["method"] == "Network.requestWillBeSent"]
+        return found + [url for url in urls if not url.startswith(("file:", "data:", "blob:"))]
 
     def size(self, width, height, scale=1):
         self.call("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=scale, mobile=False)
