@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <exception>
 
-#include "results/summary/provenance.hpp"
+#include "results/summary/summary.hpp"
 
 namespace hapbench::bench {
 
@@ -22,7 +22,7 @@ int run_benchmarks(const char* program, int argc, char** argv, Add add) {
     benchmark::AddCustomContext("cpu", made_by.cpu);
     benchmark::AddCustomContext("compiler", made_by.compiler);
     benchmark::AddCustomContext("flags", made_by.build_type + " " + made_by.flags);
-    benchmark::AddCustomContext("instruction_set", instruction_set().widest);
+    benchmark::AddCustomContext("instruction_set", made_by.widest);
     add();
     return benchmark::RunSpecifiedBenchmarks() == 0 ? 2 : 0;
   } catch (const std::exception& error) {

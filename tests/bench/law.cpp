@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "algorithms/depth/depth_model.hpp"
+#include "algorithms/penalty_rendering.hpp"
 #include "algorithms/registry.hpp"
-#include "algorithms/stages/point_stage.hpp"
 #include "sim/contact/neighbour_list_query.hpp"
 #include "tests/bench/bench.hpp"
 #include "tests/bench/task_scene.hpp"

@@ -19,6 +19,7 @@
 #include "sim/tool/revolved.hpp"
 #include "tests/bench/bench.hpp"
 #include "tests/bench/task_scene.hpp"
+#include "tests/results/told.hpp"
 #include "tests/support/meshes.hpp"
 
 /// Whole steps: their mean time, single steps, growth with the number of contacts, and what each skip saves.

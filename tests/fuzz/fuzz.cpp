@@ -16,14 +16,14 @@
 #include <vector>
 
 #include "algorithms/module/module.hpp"
-#include "scenarios/cases/table_file.hpp"
+#include "scenarios/cases/run_sweep.hpp"
 #include "scenarios/format/input_error.hpp"
 #include "scenarios/format/json_file.hpp"
 #include "scenarios/format/load_scenario.hpp"
 #include "scenarios/format/mesh_file.hpp"
 #include "scenarios/format/named_files.hpp"
 #include "scenarios/format/parts.hpp"
-#include "scenarios/limits/stability/scene_devices.hpp"
+#include "scenarios/limits/stability/field_limit.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "sim/geometry/analytic_shells.hpp"
 

@@ -44,6 +44,37 @@ void write_plainly(const fs::path& path, const std::string& contents) {
   std::ofstream(path, std::ios::binary) << contents;
 }
 
+std::map<std::string, std::string> files_below(const fs::path& directory) {
+  std::map<std::string, std::string> files;
+  for (const auto& entry : fs::recursive_directory_iterator(directory)) {
+    if (!entry.is_regular_file()) continue;
+    files[entry.path().lexically_relative(directory).generic_string()] = read_file(entry.path());
+  }
+  return files;
+}
+
+std::vector<std::string> names_below(const fs::path& directory) {
+  std::vector<std::string> names;
+  for (const auto& [name, contents] : files_below(directory)) names.push_back(name);
+  return names;
+}
+
+void expect_same_files(const fs::path& a, const fs::path& b, const std::vector<std::string>& ignored) {
+  auto in_a = files_below(a), in_b = files_below(b);
+  for (auto* files : {&in_a, &in_b}) {
+    std::erase_if(*files, [&ignored](const auto& file) {
+      const std::string name = fs::path(file.first).filename().string();
+      return std::find(ignored.begin(), ignored.end(), name) != ignored.end();
+    });
+  }
+  EXPECT_FALSE(in_a.empty());
+  for (const auto& [name, contents] : in_a) {
+    ASSERT_TRUE(in_b.contains(name)) << name << " is only in " << a;
+    EXPECT_TRUE(in_b[name] == contents) << name << " differs";  // not EXPECT_EQ, which would print megabytes
+  }
+  for (const auto& [name, contents] : in_b) EXPECT_TRUE(in_a.contains(name)) << name << " is only in " << b;
+}
+
 namespace {
 
 std::vector<std::string> split(const std::string& text, char separator) {
@@ -86,6 +117,20 @@ FileSizeLimit::~FileSizeLimit() {
   limit.rlim_cur = before_;
   ::setrlimit(RLIMIT_FSIZE, &limit);
   std::signal(SIGXFSZ, handler_before_);
+}
+
+EnvironmentVariable::EnvironmentVariable(std::string name, const std::optional<std::string>& value)
+    : name_(std::move(name)) {
+  if (const char* before = std::getenv(name_.c_str())) before_ = before;
+  set(value);
+}
+
+void EnvironmentVariable::set(const std::optional<std::string>& value) const {
+  if (value) {
+    ::setenv(name_.c_str(), value->c_str(), 1);
+  } else {
+    ::unsetenv(name_.c_str());
+  }
 }
 
 }  // namespace hapbench::test

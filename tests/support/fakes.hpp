@@ -119,7 +119,7 @@ inline void leapfrog(ToolState& tool, const Vec3& force, double mass, double dt)
     Vec3 force_at(double, const Vec3&, const Vec3&) noexcept override { return Vec3::Zero(); }
     ForceJacobian jacobian() const noexcept override { return {}; }
   } field;
-  kLeapfrog.make({})->step(tool, force, mass, dt, field);
+  kLeapfrog.step(tool, force, mass, dt, field, kEventTolerance);
 }
 
 }  // namespace hapbench::test

@@ -209,7 +209,7 @@ TriangleSoup scaled(TriangleSoup soup, double factor, const Vec3& shift) {
 }
 
 std::shared_ptr<const SignedDistanceGrid> grid_of(const TriangleSoup& soup, double spacing) {
-  return std::make_shared<const SignedDistanceGrid>(soup.vertices, soup.triangles, spacing);
+  return std::make_shared<const SignedDistanceGrid>(ClosedSurface(soup.vertices, soup.triangles), spacing);
 }
 
 double exact_distance(const TriangleSoup& soup, const Vec3& point) {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "sim/tool/bur.hpp"
+#include "sim/tool/revolved.hpp"
 
 namespace hapbench::test {
 namespace {

@@ -1,5 +1,3 @@
-#include "algorithms/stages/force_stage.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -7,9 +5,11 @@
 #include <functional>
 #include <limits>
 
+#include "algorithms/stages/controllers.hpp"
+#include "algorithms/stages/damping_and_limits.hpp"
 #include "sim/core/random.hpp"
 #include "tests/support/fakes.hpp"
-#include "tests/support/scenes.hpp"
+#include "tests/support/setting.hpp"
 
 namespace hapbench::force_stage_test {
 namespace {
@@ -217,6 +217,179 @@ TEST(StagedRendering, TellsTheRowAndCutsTheAnswerToTheForceLimit) {
   EXPECT_EQ(row.force.spring, damped_spring(row.tool));
   EXPECT_EQ(last.force, damped_spring(row.tool));
   EXPECT_EQ(last.velocity, row.tool.velocity);
+}
+
+constexpr double kEps = std::numeric_limits<double>::epsilon();
+
+/// Dyadic values, so that products below are exact: B = 2 zeta sqrt(K M) = 2 * 0.75 * 64 = 96.
+RenderingConfig dyadic() {
+  RenderingConfig config;
+  config.stiffness = 8192.0;
+  config.mass = 0.5;
+  config.damping_ratio = 0.75;
+  return config;
+}
+
+const Mat3 kS = Vec3(1.0, 0.5, 0.0).asDiagonal();
+const Vec3 kSpring(-4.0, 8.0, 0.0);
+const Vec3 kVelocity(0.5, 0.25, -2.0);
+
+/// The rendered force for a tool that does not turn.
+Vec3 rendered(const RenderingConfig& config, const Vec3& spring = kSpring, const Mat3& S = kS,
+              const Vec3& v = kVelocity) {
+  return DampingAndLimits(config).rendered_force(spring, S, {v, S * v});
+}
+
+TEST(Damping, ActsOnTheNormalVelocityOfTheContactsWhereItIsGiven) {
+  RenderingConfig config = dyadic();
+  config.mu_s = 3.0;
+  // v_t = (1, 2, 3) - (0.5, 0, 1).
+  const ContactVelocity velocity{{1.0, 2.0, 3.0}, {0.5, 0.0, 1.0}};
+  const Vec3 force = DampingAndLimits(config).rendered_force(kSpring, kS, velocity);
+  EXPECT_EQ(force, Vec3(kSpring - 96 * velocity.normal - 3.0 * Vec3(0.5, 2.0, 2.0)));
+  config.max_damping = 24.0;
+  EXPECT_EQ(DampingAndLimits(config).rendered_force(kSpring, kS, velocity),
+            Vec3(kSpring - 24 * velocity.normal - 3.0 * Vec3(0.5, 2.0, 2.0)));
+}
+
+TEST(MaxDamping, CutsTheNormalDampingInTheStiffestDirectionOfS) {
+  RenderingConfig config = dyadic();
+  config.max_damping = 24.0;
+  const Mat3 S = Vec3(1.0, 4.0, 2.0).asDiagonal();  // lambda_max(B S) = 4 * 96
+  EXPECT_EQ(rendered(config, Vec3::Zero(), S, {1, 1, 1}), Vec3(-6.0, -24.0, -12.0));
+}
+
+TEST(MaxForce, ScalesTheRenderedForceToItsLength) {
+  RenderingConfig config = dyadic();
+  config.mu_s = 3.0;
+  const Vec3 without = rendered(config);
+  config.max_force = 10.0;
+  EXPECT_NEAR(rendered(config).norm(), 10.0, 4 * kEps * 10);
+  EXPECT_LE((rendered(config).normalized() - without.normalized()).norm(), 4 * kEps);
+}
+
+RenderingConfig rendering(double mu, std::optional<double> stiffness = {}, double damping_ratio = 1.0) {
+  RenderingConfig config;
+  config.mass = 0.1;
+  config.dry_friction = DryFrictionConfig{mu, stiffness, damping_ratio};
+  return config;
+}
+
+DryFriction friction_of(const RenderingConfig& config) {
+  return {*config.dry_friction, config};
+}
+
+Mat3 load(const Vec3& u, double newtons) {
+  return newtons * u * u.transpose();
+}
+
+/// The work that the tool does against friction is at least what the bristle stores more, in every step, for any
+/// motion, loads and normals. The tolerance is rounding: some 50 operations on energies of the size of K_t e^2.
+TEST(DryFriction, IsPassiveForAnyMotionLoadsAndNormals) {
+  Random random(1);
+  for (int run = 0; run < 400; ++run) {
+    const double K_t = std::pow(10.0, random.uniform(2.0, 5.5));
+    DryFriction friction = friction_of(rendering(random.uniform(0.0, 1.5), K_t, random.uniform(0.0, 2.0)));
+    Vec3 u = random.direction();
+    for (int step = 0; step < 200; ++step) {
+      Mat3 loads = Mat3::Zero();
+      if (random.below(10) == 0) u = random.direction();
+      for (std::uint64_t n = random.below(4); n > 0; --n) {
+        loads += load((u + 0.8 * random.direction()).normalized(), random.uniform(0.0, 5.0));
+      }
+      const Vec3 way = random.uniform(0.0, 2e-4) * random.direction();
+      const double before = friction.energy();
+      const Vec3 force = friction.force(loads, way / kDt);
+      const double scale = before + friction.energy() + force.norm() * way.norm();
+      ASSERT_GE(-force.dot(way), friction.energy() - before - 50 * 2.3e-16 * scale) << run << " " << step;
+    }
+  }
+}
+
+TEST(DryFriction, SlidingIsCoulombsForceOnAFaceASlotAndTheLineOfAWedge) {
+  const Vec3 along = Vec3::UnitX();
+  const Vec3 left = Vec3(0.0, 0.8, 0.6), right = Vec3(0.0, -0.8, 0.6);
+  for (const Mat3& loads : {load(Vec3::UnitZ(), 3.0), Mat3(load(Vec3::UnitZ(), 1.0) + load(-Vec3::UnitZ(), 2.0)),
+                            Mat3(load(left, 1.0) + load(right, 2.0))}) {
+    DryFriction friction = friction_of(rendering(0.3));
+    Vec3 force;
+    for (int step = 0; step < 400; ++step) force = friction.force(loads, 0.1 * along);
+    EXPECT_LE((force + 0.9 * along).norm(), 1e-14);
+    EXPECT_EQ(friction.state(), Friction::slides);
+  }
+}
+
+TEST(DryFriction, ForgetsItsBristleWithoutLoad) {
+  DryFriction friction = friction_of(rendering(0.5));
+  friction.force(load(Vec3::UnitZ(), 1.0), {0.01, 0.0, 0.0});
+  EXPECT_GT(friction.energy(), 0.0);
+  EXPECT_EQ(friction.force(Mat3::Zero(), {0.01, 0.0, 0.0}), Vec3(Vec3::Zero()));
+  EXPECT_EQ(friction.energy(), 0.0);
+  EXPECT_EQ(friction.state(), Friction::none);
+}
+
+/// Integrators that try several states in a row must not move the bristle more than once.
+TEST(DryFriction, TheBristleMovesOnceARow) {
+  std::uint64_t row = 0;
+  Scene scene;
+  scene.row = &row;
+  DryFriction once = friction_of(rendering(0.5)), often = friction_of(rendering(0.5));
+  once.prepare(scene);
+  often.prepare(scene);
+  for (; row < 100; ++row) {
+    const Vec3 v(0.01 * std::sin(0.1 * static_cast<double>(row)), 0.0, 0.0);
+    EXPECT_EQ(once.force(load(Vec3::UnitZ(), 1.0), v), often.force(load(Vec3::UnitZ(), 1.0), v));
+    often.force(load(Vec3::UnitZ(), 1.0), -v);
+    EXPECT_EQ(once.energy(), often.energy());
+  }
+}
+
+/// f_dn = -chi K d <v, u> u on one spring. Its restitution solves chi u0 - ln(1 + chi u0) = -chi u1 - ln(1 - chi u1).
+TEST(HuntCrossley, BouncesAsItsClosedFormSays) {
+  for (const double chi : {0.5, 5.0, 50.0}) {
+    RenderingConfig config;
+    config.stiffness = 1000.0;
+    config.mass = 0.1;
+    config.hunt_crossley = chi;
+    DampingAndLimits stage(config);
+    const double u0 = 0.2;
+    const auto acceleration = [&](double d, double v) {
+      if (d <= 0.0) return 0.0;
+      const Vec3 spring(0.0, 0.0, -config.stiffness * d), velocity(0.0, 0.0, v);
+      const Mat3 S = load(Vec3::UnitZ(), 1.0);
+      return stage.rendered_force(spring, S, {velocity, S * velocity}, config.stiffness * d * S).z() / config.mass;
+    };
+    double d = 0.0, v = u0;
+    const double dt = 1e-5;
+    while (d >= 0.0) {  // classical Runge-Kutta
+      const double a1 = acceleration(d, v), v2 = v + 0.5 * dt * a1, a2 = acceleration(d + 0.5 * dt * v, v2);
+      const double v3 = v + 0.5 * dt * a2, a3 = acceleration(d + 0.5 * dt * v2, v3);
+      const double v4 = v + dt * a3, a4 = acceleration(d + dt * v3, v4);
+      d += dt / 6.0 * (v + 2.0 * v2 + 2.0 * v3 + v4);
+      v += dt / 6.0 * (a1 + 2.0 * a2 + 2.0 * a3 + a4);
+    }
+    const double u1 = -v, left = chi * u0 - std::log1p(chi * u0), right = -chi * u1 - std::log1p(-chi * u1);
+    // The last step ends outside by less than dt u1, where the force, K dt u1, has hardly begun: 1e-6 of u1.
+    EXPECT_NEAR(left, right, 1e-5 * left) << chi;
+    EXPECT_LT(u1, u0);
+  }
+}
+
+TEST(HuntCrossley, NeverPullsWhileTheToolIsSlowerThanOneOverChiAndKeepsTheLimit) {
+  RenderingConfig config;
+  config.stiffness = 1000.0;
+  config.hunt_crossley = 10.0;
+  const Mat3 S = load(Vec3::UnitZ(), 1.0);
+  for (const double depth : {1e-6, 1e-3}) {
+    const Vec3 spring(0.0, 0.0, -1000.0 * depth), out(0.0, 0.0, -0.099);
+    DampingAndLimits stage(config);
+    EXPECT_LT(stage.rendered_force(spring, S, {out, S * out}, 1000.0 * depth * S).z(), 0.0);
+    EXPECT_NEAR(stage.damping_matrix(spring, S)(2, 2), 10.0 * 1000.0 * depth, 1e-12);
+  }
+  config.max_damping = 2.0;
+  DampingAndLimits limited(config);
+  const Vec3 v(0.0, 0.0, 0.1);
+  EXPECT_NEAR(limited.rendered_force(Vec3::Zero(), S, {v, S * v}, 1.0 * S).z(), -2.0 * 0.1, 1e-15);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "algorithms/stages/passivity_controller.hpp"
+#include "algorithms/stages/controllers.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "tests/support/fakes.hpp"
-#include "tests/support/scenes.hpp"
+#include "tests/support/setting.hpp"
 
 namespace hapbench::passivity_controller_test {
 namespace {

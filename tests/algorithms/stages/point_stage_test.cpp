@@ -6,7 +6,7 @@
 #include <numbers>
 #include <optional>
 
-#include "algorithms/stages/point_stage.hpp"
+#include "algorithms/penalty_rendering.hpp"
 #include "sim/contact/contact_source.hpp"
 #include "tests/support/contact_sets.hpp"
 #include "tests/support/fakes.hpp"

@@ -4,10 +4,9 @@
 #include <cmath>
 #include <numeric>
 
-#include "algorithms/laws/shaped_stiffness.hpp"
+#include "algorithms/penalty_rendering.hpp"
 #include "algorithms/registry.hpp"
-#include "algorithms/stages/point_stage.hpp"
-#include "scenarios/thesis/measurements.hpp"
+#include "scenarios/thesis/claims.hpp"
 #include "sim/core/random.hpp"
 #include "tests/bench/accuracy/accuracy.hpp"
 

@@ -1,4 +1,4 @@
-#include "results/observe/core_passage.hpp"
+#include "results/observe/inside_observer.hpp"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,6 @@
 
 #include "results/observe/inside_observer.hpp"
 #include "sim/geometry/solid.hpp"
-#include "sim/tool/bur.hpp"
 #include "sim/tool/cylinder.hpp"
 #include "sim/tool/mesh_tool.hpp"
 #include "sim/tool/revolved.hpp"

@@ -6,7 +6,7 @@
 #include <set>
 
 #include "tests/results/files.hpp"
-#include "tests/scenarios/support/errors.hpp"
+#include "tests/scenarios/support/scenarios.hpp"
 
 /// What is refused of axes, samples and shards is in tests/data/golden/refused_sweeps.txt.
 namespace hapbench::cases_test {
@@ -79,7 +79,7 @@ TEST(Axis, OfAllNamesOfAField) {
 // ---- Samples
 
 TEST(Sampling, HasItsPointsInTheUnitCubeAndMeansWhatItsSeedSays) {
-  for (const SamplingMethod method : {SamplingMethod::latin_hypercube, SamplingMethod::random}) {
+  for (const std::string_view method : {kLatinHypercube, kRandomPoints}) {
     std::set<std::vector<double>> different;
     for (const std::uint64_t seed : {1u, 2u}) {
       for (std::size_t axis = 0; axis < 12; ++axis) {
@@ -90,7 +90,7 @@ TEST(Sampling, HasItsPointsInTheUnitCubeAndMeansWhatItsSeedSays) {
           EXPECT_TRUE(x >= 0.0 && x < 1.0);
           strata.insert(static_cast<std::size_t>(x * 100.0));
         }
-        EXPECT_EQ(strata.size() == 100u, method == SamplingMethod::latin_hypercube) << "one point in each stratum";
+        EXPECT_EQ(strata.size() == 100u, method == kLatinHypercube) << "one point in each stratum";
         EXPECT_EQ(unit_sample({method, 100, seed}, axis), points);
         different.insert(points);
       }
@@ -175,8 +175,8 @@ TEST(Cases, OfOneEnvironmentFollowEachOther) {
 }
 
 TEST(Cases, OfASampleFollowEachOtherByTheListedFields) {
-  const Cases cases = cases_of({"environment.file=x.stl,y.stl", "environment.scale=1:2", "a=1:2"},
-                               Sampling{SamplingMethod::latin_hypercube, 40, 1});
+  const Cases cases =
+      cases_of({"environment.file=x.stl,y.stl", "environment.scale=1:2", "a=1:2"}, Sampling{kLatinHypercube, 40, 1});
   const Numbers order = order_of(cases);
   EXPECT_EQ(std::set<std::size_t>(order.begin(), order.end()).size(), 40u);
   for (std::size_t i = 0; i < 40; ++i) EXPECT_EQ(cases.values(order[i])[0], i < 20 ? "x.stl" : "y.stl");

@@ -1,16 +1,21 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <charconv>
+#include <cstdlib>
+#include <filesystem>
+#include <map>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <regex>
 #include <set>
+#include <sstream>
 
 #include "scenarios/format/bundled_scenarios.hpp"
 #include "scenarios/format/load_scenario.hpp"
+#include "sim/core/hash.hpp"
 #include "tests/results/files.hpp"
-#include "tests/scenarios/support/file_tree.hpp"
 #include "tests/scenarios/support/program.hpp"
-#include "tests/scenarios/support/recorded_numbers.hpp"
 #include "tests/support/scale.hpp"
 
 /// Every scenario that comes with the program, run by the program, and the numbers on record.
@@ -18,8 +23,159 @@ namespace hapbench::bundled_scenarios_test {
 namespace {
 
 namespace fs = std::filesystem;
+using test::cells_of;
 using test::lines_of;
 using test::ProgramRun;
+using test::read_file;
+
+// The numbers on record, in tests/data/numbers.txt: for each bundled scenario and for some commands a line
+// "name file hash …" for each file with numbers, below the last line "columns file column …" of the file. They show
+// that a change of the code has changed no number; no text is in them. They hold for every processor and compiler.
+//
+// This renews the record after a change that is meant to change numbers, to be committed with it:
+//
+//     HAPBENCH_RENEW_NUMBERS=1 build/release/bin/program_test --gtest_filter='*OnRecord*'
+
+/// By file and column the hash of the numbers of the column, from top to bottom; words are left out. Files of one name
+/// in several folders of a result count as one. summary.json has its groups of metrics in place of columns and, of a
+/// single run, the state_hash.
+using RecordedNumbers = std::map<std::string, std::map<std::string, std::string>>;
+using NumbersByName = std::map<std::string, RecordedNumbers>;
+
+constexpr const char* kRenew = "HAPBENCH_RENEW_NUMBERS";
+
+fs::path record_file() {
+  return fs::path(HAPBENCH_TEST_DATA) / "numbers.txt";
+}
+
+NumbersByName read_record() {
+  NumbersByName record;
+  std::map<std::string, std::vector<std::string>> columns;
+  for (const std::string& text : lines_of(read_file(record_file()))) {
+    std::istringstream words(text);
+    std::string name, file, word;
+    words >> name >> file;
+    if (name == "columns") columns[file].clear();
+    for (std::size_t i = 0; words >> word; ++i) {
+      if (name == "columns")
+        columns[file].push_back(word);
+      else
+        record[name][file][columns[file].at(i)] = word;
+    }
+  }
+  return record;
+}
+
+bool is_command(const std::string& name) {
+  return name.find(':') != std::string::npos;
+}
+
+void renew(bool of_commands, const NumbersByName& found) {
+  NumbersByName record = read_record();
+  std::erase_if(record, [&](const auto& line) { return is_command(line.first) == of_commands; });
+  record.insert(found.begin(), found.end());
+  std::string text;
+  std::map<std::string, std::string> headings;
+  for (const auto& [name, files] : record) {
+    for (const auto& [file, columns] : files) {
+      std::string heading = "columns " + file, hashes = name + " " + file;
+      for (const auto& [column, hash] : columns) {
+        heading += " " + column;
+        hashes += " " + hash;
+      }
+      if (heading != headings[file]) text += heading + "\n";
+      headings[file] = heading;
+      text += hashes + "\n";
+    }
+  }
+  test::write_plainly(record_file(), text);
+}
+
+using Hashes = std::map<std::string, std::map<std::string, Hash64>>;
+
+void add_table(std::map<std::string, Hash64>& hashes, const std::string& text) {
+  const std::vector<std::string> lines = lines_of(text);
+  const std::vector<std::string> columns = lines.empty() ? std::vector<std::string>() : cells_of(lines[0]);
+  for (std::size_t i = 1; i < lines.size(); ++i) {
+    const std::vector<std::string> cells = cells_of(lines[i]);
+    for (std::size_t j = 0; j < cells.size(); ++j) {
+      double number = 0.0;
+      const auto [end, error] = std::from_chars(cells[j].data(), cells[j].data() + cells[j].size(), number);
+      if (error == std::errc() && end == cells[j].data() + cells[j].size()) hashes[columns.at(j)].real(number);
+    }
+  }
+}
+
+void add_numbers(Hash64& hash, const Json& json) {
+  if (json.is_number()) hash.real(json.get<double>());
+  if (!json.is_structured()) return;
+  for (const Json& value : json) add_numbers(hash, value);
+}
+
+/// "file column" with the hash, for all of a name.
+std::map<std::string, std::string> flat(const NumbersByName& numbers, const std::string& name) {
+  std::map<std::string, std::string> all;
+  const auto found = numbers.find(name);
+  if (found == numbers.end()) return all;
+  for (const auto& [file, columns] : found->second)
+    for (const auto& [column, hash] : columns) all[file + " " + column] = hash;
+  return all;
+}
+
+/// What differs, a line each.
+std::string differences(const NumbersByName& found, const NumbersByName& record) {
+  std::string text;
+  NumbersByName names = found;
+  names.insert(record.begin(), record.end());
+  for (const auto& [name, unused] : names) {
+    const auto now = flat(found, name), before = flat(record, name);
+    for (const auto& [place, hash] : now) {
+      const auto known = before.find(place);
+      if (known == before.end() || known->second != hash)
+        text += "  " + name + ": " + place + (known == before.end() ? " is not on record\n" : " has OTHER numbers\n");
+    }
+    for (const auto& [place, hash] : before)
+      if (!now.contains(place)) text += "  " + name + ": " + place + " is on record only\n";
+  }
+  return text;
+}
+
+/// The numbers of a directory of results: of all CSV files, and of the metrics in files summary.json.
+RecordedNumbers numbers_below(const fs::path& directory) {
+  RecordedNumbers numbers;
+  Hashes hashes;
+  for (const auto& [name, contents] : test::files_below(directory)) {
+    const std::string file = fs::path(name).filename().string();
+    if (file.ends_with(".csv")) {
+      add_table(hashes[file], contents);
+    } else if (file == "summary.json") {
+      const Json summary = Json::parse(contents);
+      for (const auto& [group, metrics] : summary.at("metrics").items()) add_numbers(hashes[file][group], metrics);
+      if (name == file) numbers[file]["state_hash"] = summary.at("state_hash");
+    }
+  }
+  // Half of each hash: a change that it does not see has a chance of 2^-32.
+  for (const auto& [file, columns] : hashes)
+    for (const auto& [column, hash] : columns) numbers[file][column] = hash_text(hash.value()).substr(0, 8);
+  return numbers;
+}
+
+/// Compares numbers by name with those on record; fails where any differs, is missing or, among names that do or do not
+/// contain a colon as `of_commands` says, is left over, and names its file and column. `some`: names may be left over.
+void expect_recorded(bool of_commands, const NumbersByName& found, bool some = false) {
+  ASSERT_FALSE(found.empty());
+  if (std::getenv(kRenew) != nullptr) {
+    renew(of_commands, found);
+    return;
+  }
+  NumbersByName record = read_record();
+  std::erase_if(record, [&](const auto& line) {
+    return is_command(line.first) != of_commands || (some && !found.contains(line.first));
+  });
+  EXPECT_EQ(differences(found, record), "")
+      << "other numbers than those on record; if they are meant to change, renew " << record_file() << " with "
+      << kRenew << "=1, and say in the commit which change and why.";
+}
 
 /// Arguments that make a scenario of many steps a matter of milliseconds; none for the others. The tasks of the thesis
 /// touch the block within these steps.
@@ -79,7 +235,7 @@ TEST_F(BundledScenarios, EndAsTheirExpectBlocksSayAndAllocateNothingInTheirStepL
     EXPECT_TRUE(line.starts_with("hapbench: warning: ") || line.starts_with("hapbench: about ")) << line;
   }
   for (const BundledScenario& bundled : in_full_) {
-    const Json summary = Json::parse(test::read_file(*directory_ / "full" / bundled.name / "summary.json"));
+    const Json summary = Json::parse(read_file(*directory_ / "full" / bundled.name / "summary.json"));
     EXPECT_EQ(summary["expected"], true) << bundled.name;
     EXPECT_EQ(summary["name"], bundled.name) << "the name in the file is the file's";
     EXPECT_EQ(summary["work"]["allocations"], 0) << bundled.name;
@@ -87,10 +243,10 @@ TEST_F(BundledScenarios, EndAsTheirExpectBlocksSayAndAllocateNothingInTheirStepL
 }
 
 TEST_F(BundledScenarios, HaveTheNumbersOnRecord) {
-  test::NumbersByName numbers;
+  NumbersByName numbers;
   for (const BundledScenario& bundled : in_full_)
-    numbers[bundled.name] = test::numbers_below(*directory_ / "full" / bundled.name);
-  test::expect_recorded(false, numbers, in_full_.size() < bundled_scenarios().size());
+    numbers[bundled.name] = numbers_below(*directory_ / "full" / bundled.name);
+  expect_recorded(false, numbers, in_full_.size() < bundled_scenarios().size());
 }
 
 /// Warnings, each once, without the file that a warning about a field names.
@@ -153,8 +309,8 @@ TEST_F(BundledScenarios, GiveTheSameBytesInTheScalarBuildWithoutSkipsFromTheirEf
   test::expect_same_files(first, again, {"summary.json", "timing.json"});
   std::uint64_t tested_first = 0, tested_again = 0, skipped = 0;
   for (const BundledScenario& bundled : compared) {
-    const Json a = Json::parse(test::read_file(first / bundled.name / "summary.json")),
-               b = Json::parse(test::read_file(again / bundled.name / "summary.json"));
+    const Json a = Json::parse(read_file(first / bundled.name / "summary.json")),
+               b = Json::parse(read_file(again / bundled.name / "summary.json"));
     EXPECT_EQ(summary_without_work(a), summary_without_work(b)) << bundled.name;
     EXPECT_EQ(b["work"]["steps_skipped"], 0) << bundled.name;
     EXPECT_EQ(b["work"]["lists_rebuilt"], 0) << bundled.name;
@@ -191,7 +347,7 @@ TEST(Commands, HaveTheNumbersOnRecord) {
       {"stress:sets", {"stress", "--count", "3000"}},
   };
   const test::TemporaryDirectory directory;
-  test::NumbersByName numbers;
+  NumbersByName numbers;
   for (const auto& [name, words] : commands) {
     std::vector<std::string> arguments = words;
     const fs::path out = directory / name;
@@ -199,9 +355,9 @@ TEST(Commands, HaveTheNumbersOnRecord) {
     const ProgramRun run = test::hapbench(arguments);
     // 3: a run that diverges, as summation does in places.
     EXPECT_TRUE(run.status == 0 || run.status == 3) << name << ": " << run.err;
-    numbers[name] = test::numbers_below(out);
+    numbers[name] = numbers_below(out);
   }
-  test::expect_recorded(true, numbers);
+  expect_recorded(true, numbers);
 }
 
 }  // namespace

@@ -10,9 +10,8 @@
 #include <optional>
 #include <thread>
 
-#include "scenarios/cases/table_file.hpp"
+#include "scenarios/cases/run_sweep.hpp"
 #include "tests/results/files.hpp"
-#include "tests/scenarios/support/file_tree.hpp"
 #include "tests/scenarios/support/program.hpp"
 
 /// Commands that are killed or stopped while they compute, and sweeps that go on.
@@ -171,7 +170,7 @@ TEST_F(InterruptedCommand, EndsWith130AndLeavesWhatWasThereBefore) {
   EXPECT_EQ(test::files_below(out_), before);
 }
 
-/// Sweeps that are killed and go on; every way to end one is in sweep_promises_test.cpp.
+/// Sweeps that are killed and go on; every way to end one is in cases/sweep_test.cpp.
 class KilledSweep : public testing::Test {
  protected:
   /// Runs of some milliseconds, 180 of them or more.

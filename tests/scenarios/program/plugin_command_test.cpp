@@ -5,7 +5,6 @@
 #include <filesystem>
 
 #include "tests/results/files.hpp"
-#include "tests/scenarios/support/environment_variable.hpp"
 #include "tests/scenarios/support/program.hpp"
 
 /// Laws from outside in the program.

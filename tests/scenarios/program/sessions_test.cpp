@@ -8,7 +8,6 @@
 #include <stdexcept>
 
 #include "tests/results/files.hpp"
-#include "tests/scenarios/support/file_tree.hpp"
 #include "tests/scenarios/support/program.hpp"
 #include "tests/scenarios/support/scenarios.hpp"
 

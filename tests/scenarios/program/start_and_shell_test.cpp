@@ -8,7 +8,6 @@
 #include "scenarios/format/mesh_file.hpp"
 #include "sim/geometry/analytic_shells.hpp"
 #include "tests/results/files.hpp"
-#include "tests/scenarios/support/file_tree.hpp"
 #include "tests/scenarios/support/mesh_texts.hpp"
 #include "tests/scenarios/support/program.hpp"
 #include "tests/scenarios/support/scenarios.hpp"

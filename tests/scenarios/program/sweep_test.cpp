@@ -1,23 +1,31 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <fstream>
+#include <map>
+#include <set>
 
+#include "scenarios/format/bundled_scenarios.hpp"
 #include "scenarios/format/text_lines.hpp"
+#include "scenarios/program/command.hpp"
 #include "tests/results/files.hpp"
-#include "tests/scenarios/support/file_tree.hpp"
 #include "tests/scenarios/support/program.hpp"
 
-/// hapbench sweep: what a sweep computes, writes and shows, whole and in shards.
 namespace hapbench::sweep_test {
 namespace {
 
 namespace fs = std::filesystem;
-using Words = std::vector<std::string>;
 using test::cells_of;
 using test::hapbench;
 using test::lines_of;
 using test::ProgramRun;
 using test::read_file;
+
+// hapbench sweep: what a sweep computes, writes and shows, whole and in shards.
+
+using Words = std::vector<std::string>;
 
 class SweepCommand : public testing::Test {
  protected:
@@ -190,6 +198,107 @@ TEST(Memory, ThatIsNotThereEndsACommandWithAReason) {
   EXPECT_EQ(run.signal, 0);
   EXPECT_EQ(run.status, 1);
   EXPECT_NE(run.err.find("out of memory; allowed: "), std::string::npos) << run.err;
+}
+
+// hapbench compare: of algorithms, of scenarios and seeds. What it prints is in tests/data/golden/sweep.txt, its
+// numbers are in tests/known_answers.
+
+class CompareCommand : public testing::Test {
+ protected:
+  std::string at(const std::string& name) const { return (directory_ / name).string(); }
+
+  test::TemporaryDirectory directory_;
+};
+
+TEST_F(CompareCommand, EqualsARunOfEachAlgorithmAlone) {
+  const std::string scene = "peg_in_hole_2d_shaped_stiffness";
+  hapbench({"compare", scene, "--algorithms", "mean", "--out", at("out")});
+  hapbench({"run", scene, "--set", "rendering.algorithm=mean", "--out", at("run")});
+  // The run misses the expectations of another algorithm, which compare does not ask about; the numbers are the same.
+  test::expect_same_files(directory_ / "out/mean", directory_ / "run", {"summary.json"});
+}
+
+/// A round tip pressed onto a plane, from two heights.
+TEST_F(CompareCommand, GivesTheSameBytesWhateverTheJobs) {
+  for (const auto& [name, height] : {std::pair{"press", "0.0001"}, {"poke", "0.0003"}}) {
+    test::write_plainly(directory_ / (std::string(name) + ".json"),
+                        std::string(R"({"time": {"step_s": 0.0005, "steps": 100}, "tool": {"tip": "round"},
+                        "environment": {"type": "plane"}, "hand": {"type": "force", "z_N": -1},
+                        "initial": {"position_m": [0, 0, )") +
+                            height + "]}}");
+  }
+  for (const char* jobs : {"1", "5"}) {
+    hapbench({"compare", at("press.json"), at("poke.json"), "--algorithms", "mean, summation,proxy", "--seeds", "2",
+              "--jitter", "1e-5", "--jobs", jobs, "--quiet", "--out", at(jobs)});
+  }
+  for (const char* name :
+       {"league.csv", "press/comparison.csv", "poke/comparison.csv", "poke/proxy/seed_1/summary.json"})
+    EXPECT_TRUE(std::filesystem::exists(directory_ / "1" / name)) << name;
+  test::expect_same_files(directory_ / "1", directory_ / "5");
+}
+
+// Studies: questions as files.
+
+class Study : public testing::Test {
+ protected:
+  std::string file(const std::string& text) {
+    test::write_plainly(directory_ / "mine.json", text);
+    return (directory_ / "mine.json").string();
+  }
+  test::TemporaryDirectory directory_;
+};
+
+TEST_F(Study, IsTheWordsOfItsCommand) {
+  const std::string mine = file(R"({
+    "ask": "limit", "scenarios": ["a", "b.json"], "summary": "s", "between": [1e2, 1e5], "smallest": true, "resolution": 0.01,
+    "algorithms": ["mean", "proxy"], "bound": ["x=1", "y=2"], "set": {"hand": {"mass_kg": 1}, "seed": 3},
+    "over": {"device.delay_samples": {"from": 0, "to": 8, "count": 5, "log": true}, "integrator.type": ["rk4", "event"],
+             "device": [{"type": "ideal"}]}})");
+  const auto words = StudyWords::in({"limit", "--quiet", mine, "--resolution=0.5"});
+  ASSERT_TRUE(words);
+  EXPECT_EQ(fmt::format("{}", fmt::join(words->words, " ")),
+            "limit a b.json --between 100:1e+05 --smallest --algorithms mean,proxy --bound x=1 --bound y=2 "
+            R"(--set hand={"mass_kg":1} --set seed=3 --over device.delay_samples=0:8:5:log )"
+            R"(--over integrator.type=rk4,event --over device={"type":"ideal"} --quiet --resolution=0.5)")
+      << "an option that is given goes before the study's";
+  test::write_plainly(directory_ / "b.json", "{}");
+  EXPECT_EQ(StudyWords::in({"limit", mine})->words[2], (directory_ / "b.json").string()) << "beside the study";
+  EXPECT_FALSE(StudyWords::in({"limit", "single_spring"}));
+  EXPECT_FALSE(StudyWords::in({"describe", "stability_z_width"}));
+}
+
+TEST_F(Study, IsRefusedByAnotherCommandAndAtTheLineOfItsFault) {
+  const std::string mine = file("{\n\"ask\": \"limit\",\n\"scenarios\": [\"single_spring\"],\n\"stable\": \"never\"}");
+  const test::ProgramRun other = test::hapbench({"sweep", mine});
+  EXPECT_EQ(other.status, 2);
+  EXPECT_NE(other.err.find("line 2: is a question for \"hapbench limit "), std::string::npos) << other.err;
+  const test::ProgramRun wrong = test::hapbench({"limit", mine, "--out", (directory_ / "out").string()});
+  EXPECT_EQ(wrong.status, 2);
+  EXPECT_NE(wrong.err.find(mine + ":4: limit: --stable: "), std::string::npos) << wrong.err;
+}
+
+/// What makes a question of a command a matter of a second.
+const std::map<std::string, Words> kShorter = {
+    {"compare", {"--set", "time.steps=20", "--set", "expect={}", "--algorithms", "mean"}},
+    {"limit", {"--set", "time.steps=20", "--resolution", "0.5", "--algorithms", "mean"}},
+    {"run", {"--set", "time.steps=20"}},
+    {"stress", {"--count", "100"}},
+    {"sweep", {"--row", "0", "--print"}}};
+
+TEST_F(Study, OfTheProgramHasANameOfItsOwnAndIsAnswered) {
+  std::set<std::string> scenes;
+  for (const BundledScenario& scene : bundled_scenarios()) scenes.insert(scene.name);
+  ASSERT_GT(bundled_studies().size(), 5u);
+  for (const BundledStudy& study : bundled_studies()) {
+    EXPECT_FALSE(scenes.contains(study.name)) << study.name;
+    EXPECT_FALSE(study.summary.empty()) << study.name;
+    Words words = {study.ask, study.name, "--out", (directory_ / study.name).string(), "--quiet"};
+    const Words& shorter = kShorter.at(study.ask);
+    words.insert(words.end(), shorter.begin(), shorter.end());
+    const test::ProgramRun run = test::hapbench(words);
+    // How shortened runs end is not asked.
+    EXPECT_TRUE(run.status == 0 || (study.ask == "run" && run.status == 3)) << study.name << ": " << run.err;
+  }
 }
 
 }  // namespace

@@ -6,16 +6,22 @@
 #include <limits>
 #include <numbers>
 
+#include "algorithms/proxy/proxy_rendering.hpp"
+#include "scenarios/format/bundled_scenarios.hpp"
+#include "scenarios/run/assemble.hpp"
 #include "scenarios/run/run_scenario.hpp"
+#include "sim/contact/contact_source.hpp"
 #include "tests/scenarios/support/bundled.hpp"
+#include "tests/support/scale.hpp"
 
-/// Bundled scenarios against closed forms: bilateral springs against the linear recurrence that they are (one
-/// spring-damper under the integrator is (x, v) <- A (x, v) with the matrix A of Eq. A.2), and ten minutes in contact.
 namespace hapbench::closed_forms_test {
 namespace {
 
 using test::bundled;
 using test::rows_of;
+
+// Bundled scenarios against closed forms: bilateral springs against the linear recurrence that they are (one
+// spring-damper under the integrator is (x, v) <- A (x, v) with the matrix A of Eq. A.2), and ten minutes in contact.
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
@@ -74,6 +80,219 @@ TEST(TenMinutesInContact, EndWhereTheClosedFormSaysAndMakeNoEnergy) {
 
   // Energy made in a step is the rounding of the ledger's sums of terms up to 3 mJ: 1e-18 J, 1.2 million times.
   EXPECT_LE(number_of(report.metrics, "energy.created_sum_J").value(), 1.2e-12);
+}
+
+// Scenes of dry friction against their closed forms.
+
+std::string number(const char* field, double value) {
+  return std::string(field) + "=" + std::to_string(value);
+}
+
+/// Points of the wall stand at y = 0, +-0.1, ... mm, as deep in the peg as their distance from its axis falls short of
+/// the radius, and `mean` gives each 1/n: the loads add up to K times their mean depth.
+TEST(PegThatJams, SlipsAtMuTimesTheLoadsOfBothWalls) {
+  for (const double gap : {0.00085, 0.0009, 0.00096}) {
+    double sum = 0.0, n = 0.0;
+    for (int i = -5; i <= 5; ++i) {
+      const double depth = 0.0005 - std::hypot(0.5 * gap, 1e-4 * i);
+      if (depth > 0.0) sum += depth, ++n;
+    }
+    for (const double mu : {0.1, 0.3, 0.5}) {
+      SCOPED_TRACE(testing::Message() << gap << " " << mu);
+      const double slips_at = mu * 20000.0 * sum / n / 0.6;  // the push grows by 0.6 N/s
+      const auto rows =
+          rows_of(bundled("peg_jams_dry", {number("environment.gap_m", gap), number("rendering.friction.mu", mu),
+                                           number("time.duration_s", slips_at + 0.05)}));
+      double slipped = 0.0;
+      for (const StepRecord& row : rows) {
+        if (row.force.friction == Friction::slides && slipped == 0.0) slipped = row.time;
+      }
+      // The bristle's damper bears 0.6 N/s B_t / K_t, less than 1 mN, or 2 ms; with it and a row of the ramp:
+      EXPECT_NEAR(slipped, slips_at, 0.003);
+      // It creeps by what the bristle gives, mu N / K_t, and then goes.
+      const double until = slips_at - 0.005;
+      for (const StepRecord& row : rows) {
+        if (row.time < until) {
+          ASSERT_GE(row.tool.pose.position.z(), -0.004 - mu * sum / n * 1.05) << row.time;
+        }
+      }
+      EXPECT_LT(rows.back().tool.pose.position.z(), -0.004 - 1.1 * mu * sum / n);
+    }
+  }
+}
+
+/// A peg pushed into a taper of the half angle w and let go stays iff mu > sin w / cos^2 w: its loads N push it out by
+/// N sin w, and friction, whose P has cos^2 w along the way out, holds mu N cos^2 w. Coulomb on each face would hold
+/// from tan w on: the bristle of the whole tool never holds more.
+TEST(PegInATaper, LocksItselfFromTheClosedFormOn) {
+  for (const double w : {0.1, 0.2, 0.4}) {
+    const double locks = std::sin(w) / (std::cos(w) * std::cos(w));
+    EXPECT_GT(locks, std::tan(w));
+    for (const double factor : {0.97, 1.03}) {
+      SCOPED_TRACE(testing::Message() << w << " " << factor);
+      const std::string c = std::to_string(std::cos(w)), s = std::to_string(std::sin(w));
+      const auto rows = rows_of(bundled(
+          "stick_slip_dry",
+          {R"(environment={"type":"springs","bilateral":false,"groups":[{"direction":[)" + c + ",0,-" + s +
+               R"(],"count":1},{"direction":[-)" + c + ",0,-" + s + R"(],"count":1}]})",
+           "initial.position_m=[0,0,0]", "rendering.algorithm=summation", "time.duration_s=1.5",
+           number("rendering.friction.mu", factor * locks),
+           R"(hand={"type":"force","z_N":{"type":"waypoints","points":[[0,0],[0.3,-5],[0.6,0]],"interpolation":"cosine"}})"}));
+      EXPECT_EQ(rows.back().tool.pose.position.z() < -1e-6, factor > 1.0) << rows.back().tool.pose.position.z();
+    }
+  }
+}
+
+/// Drawn by a spring whose end goes at V, the block slips when the spring pulls with mu N, goes by V (1 - cos w t), and
+/// so comes to stand every 2 pi sqrt(M/k). Damped by nothing but the bristle while it sticks, it slips on at once: one
+/// coefficient of friction has no further rest.
+TEST(StickSlip, HasThePeriodOfSpringAndMass) {
+  for (const double k : {100.0, 200.0, 400.0}) {
+    for (const double mass : {0.05, 0.1}) {
+      SCOPED_TRACE(testing::Message() << k << " " << mass);
+      const double deep = k * 0.01 / (20000.0 + k), load = 20000.0 * deep, V = 0.01;
+      const auto rows =
+          rows_of(bundled("stick_slip_dry", {number("hand.stiffness_N_per_m", k), number("rendering.mass_kg", mass),
+                                             "initial.position_m=[0,0,-" + std::to_string(deep) + "]"}));
+      const double slips_at = 0.3 * load / (k * V), period = 2.0 * std::numbers::pi * std::sqrt(mass / k);
+      std::vector<double> stands;
+      for (std::size_t i = 1; i + 1 < rows.size(); ++i) {
+        const double v = rows[i].tool.velocity.x();
+        if (rows[i].time > slips_at + 0.3 * period && v <= rows[i - 1].tool.velocity.x() &&
+            v < rows[i + 1].tool.velocity.x())
+          stands.push_back(rows[i].time);
+        ASSERT_LE(v, 2.05 * V);
+      }
+      ASSERT_GT(stands.size(), 5u);
+      // Each is known to a row; the bristle's give, mu N / K_t of the spring's way mu N / k, shifts the first.
+      EXPECT_NEAR(stands.front(), slips_at + period, 0.02 * slips_at + 0.001);
+      EXPECT_NEAR((stands.back() - stands.front()) / static_cast<double>(stands.size() - 1), period,
+                  0.001 / static_cast<double>(stands.size() - 1) + 1e-4 * period);
+      for (const StepRecord& row : rows) {
+        if (row.time < 0.98 * slips_at) {
+          ASSERT_NE(row.force.friction, Friction::slides) << row.time;
+        }
+      }
+    }
+  }
+}
+
+// The guarantees of the proxy, over whole runs.
+
+LoadedScenario with_algorithm(const char* scenario, const char* algorithm) {
+  const std::vector<std::string> overrides = {std::string("rendering.algorithm=") + algorithm};
+  return load_scenario(find_scenario(scenario), overrides);
+}
+
+/// The rounding of a proxy's place, and what a move of a millimetre at most may violate (kViolationTolerance).
+constexpr double kOutside = 1e-9;
+/// Deeper than this, the drill's proxy leaves slowly [m]: a step at kRecoverySpeed.
+constexpr double kRecovery = 1e-5;
+
+/// Looks for points in the proxy by brute force. Its place follows from the spring: p + f_spring / K.
+class PointsInProxy final : public Observer {
+ public:
+  PointsInProxy(const PointShell& shell, const SimulationParts& parts, double K)
+      : query_(shell, *parts.tool),
+        contacts_(query_.capacity()),
+        tool_(parts.tool.get()),
+        algorithm_(parts.algorithm.get()),
+        K_(K) {}
+
+  void on_step(const StepRecord& record) noexcept override {
+    const ToolPose proxy{record.tool.pose.position + record.force.spring / K_, record.tool.pose.axis};
+    query_.contacts_at(proxy, contacts_);
+    tool_->shortest_depths(proxy, contacts_);
+    const double depth = contacts_.largest_depth();
+    if (cleared) deepest = std::max(deepest, depth);
+    steps_until_clear += !cleared;
+    if (last_depth_ > kRecovery) fastest = std::max(fastest, (proxy.position - last_).norm() / algorithm_dt);
+    last_depth_ = depth;
+    cleared = cleared || depth <= kOutside;
+    last_ = proxy.position;
+    stiffest = std::max(stiffest, lambda_max(record.force.S));
+    largest_force = std::max(largest_force, record.force.spring.norm());
+    const std::uint64_t passes = algorithm_->work().search.queries;
+    most_passes = std::max(most_passes, passes - passes_);
+    passes_ = passes;
+  }
+
+  double algorithm_dt = 1.0;
+  bool cleared = false;  ///< no point was inside once
+  std::uint64_t steps_until_clear = 0, most_passes = 0;
+  double deepest = 0.0;  ///< since then [m]
+  double fastest = 0.0;  ///< proxy that leaves slowly [m/s]
+  double stiffest = 0.0, largest_force = 0.0;
+
+ private:
+  ShellQuery query_;
+  ContactBuffer contacts_;
+  const ToolShape* tool_;
+  const ForceAlgorithm* algorithm_;
+  double K_;
+  std::uint64_t passes_ = 0;
+  Vec3 last_ = Vec3::Zero();
+  double last_depth_ = 0.0;
+};
+
+PointsInProxy watch(const char* name, std::int64_t steps) {
+  Scenario scenario = with_algorithm(name, "proxy").scenario;
+  scenario.time.steps = std::min(scenario.time.steps, steps);
+  const auto shell = make_shell(scenario);
+  SimulationParts parts = assemble(scenario, NamedFiles(scenario), shell, {});
+  PointsInProxy points(*shell, parts, scenario.rendering.stiffness);
+  points.algorithm_dt = scenario.time.step;
+  Simulation simulation(simulation_config(scenario), std::move(parts), {&points});
+  simulation.run();
+  return points;
+}
+
+struct Run {
+  const char* scenario;
+  std::int64_t steps;
+  double allowed = kOutside;  ///< [m]
+};
+/// In a corner, patches may leave no room where the points do; they are at most this deep then, and share it with the
+/// points: a tenth of the spacing.
+constexpr double kShared = 1e-5;
+class ProxyOverAWholeRun : public testing::TestWithParam<Run> {};
+INSTANTIATE_TEST_SUITE_P(Scenes, ProxyOverAWholeRun,
+                         testing::Values(Run{"rotate_in_hole_proxy", 10'240, 1e-6},  // one period of the tilt
+                                         Run{"rotational_peg_in_hole_shaped_stiffness", 5'120, kShared},
+                                         Run{"vertical_peg_in_hole_shaped_stiffness", 5'120},
+                                         Run{"round_the_wall", 5'120}, Run{"recorded_stroke", 5'120},
+                                         Run{"drag_molar", 4'096}),
+                         [](const auto& run) { return std::string(run.param.scenario); });
+
+TEST_P(ProxyOverAWholeRun, NeitherEntersTheShellNorGetsStifferThanOneSpringNorTakesManyPasses) {
+  const PointsInProxy points =
+      watch(GetParam().scenario, GetParam().steps / static_cast<std::int64_t>(test::sanitized(16)));
+  EXPECT_TRUE(points.cleared);
+  // The hands of the pegs start up to 22 um deep, and leave by 10 um a step.
+  EXPECT_LE(points.steps_until_clear, 10u);
+  EXPECT_LE(points.deepest, GetParam().allowed);
+  EXPECT_LE(points.stiffest, 1.0 + 1e-12);
+  EXPECT_LE(points.most_passes, 10u);
+}
+
+/// 0.4 mm deep in both walls of a hole as wide as the peg, which tilted fits nowhere.
+TEST(ProxyInATightHole, LeavesSlowly) {
+  const PointsInProxy points = watch("peg_in_hole_2d_shaped_stiffness", 2'000);
+  // A move is only nearly proportional to the depths.
+  EXPECT_LE(points.fastest, 1.1 * 0.02);
+  EXPECT_LE(points.largest_force, 2.0);
+}
+
+TEST(ProxyInHole, IsFiveTimesNearerToTheIdealTrajectoryThanShapingAndVibratesLess) {
+  const auto summary = [](const char* algorithm) {
+    return run_scenario(with_algorithm("rotate_in_hole_proxy", algorithm), std::nullopt, false);
+  };
+  const Result proxy = summary("proxy"), shaped = summary("shaped_stiffness");
+  const char* height_rms = "ideal_trajectory.firm.height_error_rms_m";
+  EXPECT_LE(number_of(proxy.metrics, height_rms).value(), 0.00015);
+  EXPECT_GE(number_of(shaped.metrics, height_rms).value(), 5.0 * number_of(proxy.metrics, height_rms).value());
+  for (const char* name : {"vibration_power_above_30Hz_m2_per_s2", "velocity_total_variation_m_per_s"})
+    EXPECT_LE(number_of(proxy.metrics, name).value(), number_of(shaped.metrics, name).value()) << name;
 }
 
 }  // namespace

@@ -1,24 +1,28 @@
-#include "scenarios/run/run_scenario.hpp"
-
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <set>
 
 #include "scenarios/format/load_scenario.hpp"
 #include "scenarios/run/assemble.hpp"
-#include "scenarios/run/result_folder.hpp"
+#include "scenarios/run/run_scenario.hpp"
+#include "scenarios/run/scene_loop.hpp"
 #include "scenarios/run/stop_signal.hpp"
+#include "sim/core/random.hpp"
 #include "tests/results/files.hpp"
+#include "tests/scenarios/support/bundled.hpp"
 #include "tests/scenarios/support/scenarios.hpp"
 
-/// A run with its trials, its files and its end: complete, diverged or stopped.
 namespace hapbench::run_scenario_test {
 namespace {
 
 namespace fs = std::filesystem;
 using test::TemporaryDirectory;
+
+// A run with its trials, its files and its end: complete, diverged or stopped.
 
 /// Two subjects, two trials of two targets each, on a plane: quick.
 LoadedScenario study(const char* record = R"({"trajectory": false})") {
@@ -130,6 +134,175 @@ TEST_F(StopSignals, EndARunOfWhichNothingIsLeft) {
   }
   run_scenario(loaded, directory / "out/below", false);
   EXPECT_TRUE(std::filesystem::exists(directory / "out/below/summary.json"));
+}
+
+// The linear loops of scenarios against the simulation that they are run by.
+
+Scenario single_spring(const std::vector<std::string>& overrides = {}) {
+  return test::bundled("single_spring", overrides);
+}
+
+TEST(StiffnessEigenvalues, AreThoseOfTheSpringsUnderTheAlgorithm) {
+  const struct {
+    const char *groups, *algorithm;
+    double lambda;
+  } kCases[] = {
+      {R"([{"direction":[1,0,0],"count":7},{"direction":[0,-1,0],"count":3}])", "summation", 7.0},
+      // Three at 60 degrees: S = 3/2 I in the plane.
+      {R"([{"direction":[1,0,0],"count":1},{"direction":[0.5,0.8660254037844386,0],"count":1},
+           {"direction":[-0.5,0.8660254037844386,0],"count":1}])",
+       "summation", 1.5},
+      {R"([{"direction":[1,0,0],"count":10},{"direction":[-1,0,0],"count":10}])", "shaped_stiffness", 1.0},
+      {R"([{"direction":[1,0,0],"count":4}])", "virtual_coupling", 0.8},  // in series: 1 / (1 + 1 / 4)
+  };
+  for (const auto& c : kCases) {
+    const Scenario scenario = single_spring(
+        {std::string("environment.groups=") + c.groups, std::string("rendering.algorithm=") + c.algorithm});
+    EXPECT_NEAR(stiffness_eigenvalues(scenario)[2], c.lambda, 1e-12) << c.algorithm << " " << c.groups;
+  }
+}
+
+TEST(SpringsStay, OnlyWhereTheyDo) {
+  EXPECT_TRUE(springs_stay(single_spring()));
+  for (const char* override :
+       {R"(environment={"type":"plane"})", "environment.bilateral=false", "environment.signed=false",
+        "rendering.friction.mu_s_N_s_per_m=1", "rendering.friction.mu_f_s_per_m=1",
+        "rendering.limits.max_damping_N_s_per_m=1", "rendering.limits.max_force_N=1",
+        "rendering.passivity_controller=true", R"(motion={"position":{"type":"prescribed","x_m":0,"y_m":0,"z_m":0}})"})
+    EXPECT_FALSE(springs_stay(single_spring({override}))) << override;
+}
+
+Scenario struck(Scenario scenario) {
+  scenario.time.steps = 60;
+  scenario.initial.velocity.x() = 0.02;
+  return scenario;
+}
+
+Scenario wall_on_handle(double delay, double K) {
+  const std::vector<std::string> overrides = {fmt::format("device.delay_samples={}", delay),
+                                              fmt::format("rendering.stiffness_N_per_m={}", K)};
+  return struck(test::bundled("wall_on_handle", overrides));
+}
+
+/// A hand on the admittance device, on a wall from both sides.
+Scenario admittance_on_wall(double delay) {
+  Scenario scenario = test::bundled("single_spring");
+  ImpedanceHandFields hand;
+  hand.stiffness = 2000.0;
+  scenario.hand = hand;
+  AdmittanceDeviceConfig device;
+  device.servo.delay = static_cast<std::size_t>(delay);
+  scenario.device = device;
+  return struck(scenario);
+}
+
+/// Some sixty steps of rounding, of a state that need not decay.
+constexpr double kRounding = 1e-12;
+
+void expect_same_motion(const Scenario& scenario) {
+  const Eigen::MatrixXd A = device_loop(scenario, 1.0).state_matrix();
+  const double T = scenario.time.step, x = scenario.initial.position.x();
+  Eigen::VectorXd state = Eigen::VectorXd::Zero(A.rows());
+  state.head(3) << x, T * scenario.initial.velocity.x(), x;  // and the filter at rest
+  const std::vector<StepRecord> rows = test::rows_of(scenario);
+  double scale = state.norm();
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    scale = std::max(scale, state.norm());
+    ASSERT_NEAR(rows[k].tool.pose.position.x(), state[0], kRounding * scale) << k;
+    ASSERT_NEAR(rows[k].handle.position.x(), state[0], kRounding * scale) << k;
+    ASSERT_NEAR(rows[k].handle.velocity.x() * T, state[1], kRounding * scale) << k;
+    state = A * state;
+  }
+}
+
+TEST(DeviceLoop, OfAnImpedanceDeviceIsTheSimulationsLinearMap) {
+  Random random(1);
+  for (const double delay : {0.0, 0.25, 1.0, 2.5}) {
+    for (const bool filtered : {false, true}) {
+      for (const bool held : {false, true}) {
+        Scenario scenario = wall_on_handle(delay, 5000.0 * random.uniform());
+        auto& device = std::get<ImpedanceDeviceConfig>(scenario.device);
+        device.viscous = random.uniform();
+        device.handle_mass = 0.05 + random.uniform();
+        if (filtered) device.velocity_filter = LowPassFilter{200.0 * random.uniform()};
+        if (held) {
+          MassSpringDamperHandFields hand;
+          hand.mass = random.uniform();
+          hand.spring = {1000.0 * random.uniform(), 10.0 * random.uniform(), {}, {}};
+          scenario.hand = hand;
+        }
+        SCOPED_TRACE(testing::Message() << delay << " " << filtered << " " << held);
+        expect_same_motion(scenario);
+      }
+    }
+  }
+}
+
+TEST(DeviceLoop, OfTheAdmittanceDeviceIsTheSimulationsLinearMap) {
+  for (const IntegratorEntry* integrator : kIntegrators) {
+    for (const double delay : {0.0, 1.0, 3.0}) {
+      Scenario scenario = admittance_on_wall(delay);
+      auto& device = std::get<AdmittanceDeviceConfig>(scenario.device);
+      device.force_limit.reset();
+      device.servo.max_force = 1e9;
+      scenario.integrator.type = integrator;
+      scenario.initial.position.x() = 1e-3;
+      const Eigen::MatrixXd A = device_loop(scenario, 1.0).state_matrix();
+      const double x = 1e-3, Tv = scenario.time.step * 0.02;
+      Eigen::VectorXd state = Eigen::VectorXd::Zero(A.rows());
+      state.head(6) << x, Tv, x, Tv, x, Tv;
+      const std::vector<StepRecord> rows = test::rows_of(scenario);
+      double scale = state.norm();
+      for (std::size_t k = 0; k < rows.size(); ++k) {
+        scale = std::max(scale, state.norm());
+        ASSERT_NEAR(rows[k].tool.pose.position.x(), state[0], kRounding * scale) << integrator->info.name << " " << k;
+        ASSERT_NEAR(rows[k].handle.position.x(), state[4], kRounding * scale) << integrator->info.name << " " << k;
+        state = A * state;
+      }
+    }
+  }
+}
+
+TEST(DeviceLoop, SaysWhatIsNotLinear) {
+  const Scenario linear = wall_on_handle(0.0, 1000.0);
+  EXPECT_EQ(device_loop(linear, 1.0).no_theory, "");
+  Scenario scenario = linear;
+  std::get<ImpedanceDeviceConfig>(scenario.device).velocity_filter = AdaptiveWindowFilter{};
+  EXPECT_NE(device_loop(scenario, 1.0).no_theory, "");
+  scenario = linear;
+  scenario.hand = ImpedanceHandFields{};
+  EXPECT_NE(device_loop(scenario, 1.0).no_theory, "") << "held between samples";
+  Scenario dry = linear;
+  std::get<ImpedanceDeviceConfig>(dry.device).coulomb = 0.02;
+  EXPECT_NE(device_loop(dry, 1.0).no_theory, "");
+}
+
+/// Of a virtual mass M with an undamped bristle, stable up to K_t = 4 M / dt^2.
+TEST(ContactLoops, HaveThatOfAToolHeldByFriction) {
+  for (const double factor : {0.99, 1.01}) {
+    Scenario scenario = test::bundled("drag_molar_dry");
+    const double edge = 4.0 * scenario.rendering.mass / (scenario.time.step * scenario.time.step);
+    scenario.rendering.dry_friction = DryFrictionConfig{0.3, factor * edge, 0.0};
+    const auto loops = contact_loops(scenario, 1.0, false);
+    ASSERT_EQ(loops.size(), 2u);
+    EXPECT_TRUE(is_stable_step(loops[0].second));
+    EXPECT_EQ(loops[1].first, "the tool held by friction");
+    EXPECT_EQ(is_stable_step(loops[1].second), factor < 1.0);
+  }
+}
+
+TEST(DeviceLoop, KnowsEveryFieldOfTheDevices) {
+  Scenario scenario;
+  const LowPassFilter filter{50.0, 3};
+  for (const VelocityFilterConfig& velocity :
+       {VelocityFilterConfig(filter), VelocityFilterConfig(AdaptiveWindowFilter{2e-5})}) {
+    scenario.device = ImpedanceDeviceConfig{0.1, 0.2,  0.3,   1e-5,   1.5,  1.5e-3, velocity,
+                                            5.0, 0.01, 100.0, filter, 1e-6, 9,      Transmission{0.3, 2000.0, 2.0}};
+    EXPECT_EQ(unknown_to_theory(scenario), "");
+  }
+  scenario.device = AdmittanceDeviceConfig{
+      {1.0, Vec3::UnitX(), false, 0.1, 7}, 3.0, {1e4, 100.0, 20.0, 3}, {1.0, 2.0, 3.0, 4.0, 5.0}};
+  EXPECT_EQ(unknown_to_theory(scenario), "");
 }
 
 }  // namespace

@@ -17,6 +17,8 @@
 #include "scenarios/limits/stability/run_stability.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/run_scenario.hpp"
+#include "tests/results/files.hpp"
+#include "tests/scenarios/support/mesh_texts.hpp"
 #include "tests/support/meshes.hpp"
 #include "tests/support/scale.hpp"
 
@@ -54,11 +56,7 @@ struct Case {
 };
 
 void write(const std::string& name, const TriangleSoup& soup) {
-  std::ofstream out(fs::path(testing::TempDir()) / name);
-  out.precision(17);
-  out << "OFF\n" << soup.vertices.size() << " " << soup.triangles.size() << " 0\n";
-  for (const Vec3& v : soup.vertices) out << v.x() << " " << v.y() << " " << v.z() << "\n";
-  for (const auto& t : soup.triangles) out << "3 " << t[0] << " " << t[1] << " " << t[2] << "\n";
+  test::write_plainly(fs::path(testing::TempDir()) / name, test::off_text(soup));
 }
 
 TriangleSoup sheet() {

@@ -17,7 +17,7 @@
 #include <thread>
 
 #include "scenarios/program/command.hpp"
-#include "tests/scenarios/support/environment_variable.hpp"
+#include "tests/results/files.hpp"
 
 namespace hapbench::test {
 namespace {
@@ -126,15 +126,10 @@ ProgramRun hapbench(const std::vector<std::string>& arguments, const ProgramOpti
 
 ProgramRun hapbench_here(const std::vector<std::string>& arguments) {
   this_program() = hapbench_program();
-  std::vector<std::string> words = {hapbench_program().string()};
-  words.insert(words.end(), arguments.begin(), arguments.end());
-  std::vector<char*> argv;
-  for (std::string& word : words) argv.push_back(word.data());
-  argv.push_back(nullptr);
   ProgramRun run;
   testing::internal::CaptureStdout();
   testing::internal::CaptureStderr();
-  run.status = run_program_to_exit(static_cast<int>(words.size()), argv.data());
+  run.status = run_program_to_exit(arguments);
   std::fflush(stdout);
   run.out = testing::internal::GetCapturedStdout();
   run.err = without_progress(testing::internal::GetCapturedStderr());

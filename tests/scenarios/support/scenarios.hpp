@@ -1,13 +1,17 @@
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "scenarios/format/input_error.hpp"
 #include "scenarios/format/json_file.hpp"
 
-/// Scenarios to test with.
+/// Scenarios to test with, and what is said of wrong ones.
 namespace hapbench::test {
 
 struct NamedScenario {
@@ -29,5 +33,17 @@ std::vector<NamedScenario> bundled_scenario_files();
 
 /// tests/data
 std::filesystem::path data_directory();
+
+/// The InputError that `work` throws; none, and a failed test, when it throws nothing. Other exceptions go through.
+template <class Work>
+std::optional<InputError> input_error_of(Work work) {
+  try {
+    work();
+  } catch (const InputError& error) {
+    return error;
+  }
+  ADD_FAILURE() << "nothing was refused";
+  return std::nullopt;
+}
 
 }  // namespace hapbench::test

@@ -1,16 +1,98 @@
-#include "scenarios/thesis/claims.hpp"
-
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <set>
 
 #include "scenarios/format/json_file.hpp"
 #include "scenarios/format/text_lines.hpp"
 #include "scenarios/thesis/choices.hpp"
+#include "scenarios/thesis/claims.hpp"
+#include "tests/results/files.hpp"
+#include "tests/scenarios/support/scenarios.hpp"
 
 namespace hapbench::claims_test {
 namespace {
+
+/// x = exp(-zeta t) cos(sqrt(1 - zeta^2) t), a hundred samples a unit of time.
+std::optional<double> measured(double zeta) {
+  std::vector<double> x;
+  for (int i = 0; i < 3000; ++i) {
+    const double t = 0.01 * i;
+    x.push_back(std::exp(-zeta * t) * std::cos(std::sqrt(1.0 - zeta * zeta) * t));
+  }
+  return damping_ratio_of_swings(x);
+}
+
+TEST(DampingRatioOfSwings, IsThatOfADampedOscillation) {
+  // Sampling misses an extreme by at most half a step: a relative error of its height of (0.005)^2 / 2 ~ 1e-5, which
+  // is small beside ln q = pi zeta / sqrt(1 - zeta^2) >= 0.15.
+  for (const double zeta : {0.05, 0.1, 0.3, 0.5}) EXPECT_NEAR(measured(zeta).value(), zeta, 1e-3 * zeta) << zeta;
+}
+
+TEST(DampingRatioOfSwings, IsZeroForSwingsThatGrow) {
+  EXPECT_EQ(measured(-0.01), 0.0);
+}
+
+TEST(DampingRatioOfSwings, IsNoneWithoutSwings) {
+  EXPECT_FALSE(damping_ratio_of_swings(std::vector<double>(3000, 1.0)));
+  EXPECT_FALSE(measured(1.0)) << "it creeps";
+}
+
+// The files that claims are judged by.
+
+class ResultFile : public testing::Test {
+ protected:
+  Evidence evidence() {
+    std::filesystem::create_directories(directory_ / "scene");
+    return {{}, directory_.path(), [this](const std::string& name) { asked_for_ += name + " "; }};
+  }
+  std::map<std::string, std::vector<double>> table_of(const std::string& text) {
+    const Evidence e = evidence();
+    test::write_plainly(directory_ / "scene/trajectory.csv", text);
+    return e.table("scene", "trajectory.csv");
+  }
+
+  test::TemporaryDirectory directory_;
+  std::string asked_for_;
+};
+
+TEST_F(ResultFile, IsReadByColumn) {
+  const auto table = table_of("time_s,outcome,force_N\n0,completes,1.5\n0.5,,\n");
+  EXPECT_EQ(asked_for_, "scene ");
+  ASSERT_EQ(table.size(), 3u);
+  EXPECT_EQ(table.at("time_s"), (std::vector<double>{0.0, 0.5}));
+  EXPECT_EQ(table.at("force_N")[0], 1.5);
+  EXPECT_TRUE(std::isnan(table.at("force_N")[1]));
+  EXPECT_TRUE(std::isnan(table.at("outcome")[0]));
+}
+
+TEST_F(ResultFile, WithARowThatIsCutOffIsRefusedAndNotPassedOver) {
+  const auto error = test::input_error_of([&] { table_of("a,b\n1,2\n3\n"); });
+  ASSERT_TRUE(error);
+  EXPECT_NE(std::string(error->what()).find("trajectory.csv, line 3: "), std::string::npos) << error->what();
+  EXPECT_TRUE(test::input_error_of([&] { table_of(""); }));
+}
+
+TEST_F(ResultFile, GivesNumbersOfItsSummary) {
+  const Evidence e = evidence();
+  test::write_plainly(directory_ / "scene/summary.json", R"({"metrics": {"a": 2, "b": null}, "steps": 7})");
+  EXPECT_EQ(e.number("scene", "metrics.a"), 2.0);
+  EXPECT_TRUE(std::isnan(e.number("scene", "metrics.b")));
+  EXPECT_EQ(e.number("scene", "steps"), 7.0);
+  EXPECT_EQ(asked_for_, "scene scene scene ");
+}
+
+TEST(PublishedNumbers, FillTextsThatNameThem) {
+  const test::TemporaryDirectory directory;
+  test::write_plainly(directory / "some.json", R"({"values": [
+    {"id": "A.raw", "mean": 37.8, "std": 17.7}, {"id": "B", "value": 0.00025, "at_most": 15}]})");
+  const PublishedNumbers numbers(directory / "some.json");
+  EXPECT_EQ(numbers.fill("raw <A.raw>, <B*1000 mm"), "raw 37.8 ± 17.7, <B*1000 mm");
+  EXPECT_EQ(numbers.fill("<B.mean*1000> mm, <B.at_most>"), "0.25 mm, 15");
+  EXPECT_EQ(numbers.fill("<A.raw.spread:.2f>"), "17.70");
+  EXPECT_THROW(numbers.fill("<C>"), InputError);
+}
 
 const Claim& claim(std::string_view id) {
   static const std::vector<Claim> claims = all_claims();

@@ -1,10 +1,14 @@
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
+#include <cmath>
 #include <limits>
+#include <numbers>
+#include <set>
 
 #include "sim/contact/contact_buffer.hpp"
 #include "sim/contact/contact_source.hpp"
-#include "sim/contact/stiffness_tensor.hpp"
+#include "sim/loop/simulation.hpp"
 #include "tests/support/contact_sets.hpp"
 #include "tests/support/scale.hpp"
 
@@ -114,6 +118,192 @@ TEST(SpringSource, HasTheContactsOfItsKindOfSprings) {
     source.reset();
     EXPECT_EQ(source.work().queries, 0u);
   }
+}
+
+// Contacts that come late, against their definition written down anew: from all poses of a run, without rings and
+// buffers.
+
+/// Contacts that are a function of the pose, in number, too.
+class PoseSource final : public ContactSource {
+ public:
+  void contacts_at(const ToolPose& pose, ContactBuffer& contacts) noexcept override {
+    Random random(static_cast<std::uint64_t>(1e6 * std::abs(pose.position.x())));
+    contacts.clear();
+    for (std::uint64_t n = random.below(capacity() + 1), i = 0; i < n; ++i) {
+      contacts.push(static_cast<std::uint32_t>(i), pose.position + 0.001 * random.direction(), random.direction());
+      contacts.depth[i] = random.uniform(0.0, 1e-4);
+      contacts.set_gradient(i, random.direction());
+    }
+    contacts.pad();
+    ++work_.queries;
+  }
+  std::size_t capacity() const noexcept override { return 20; }
+  void reset() noexcept override { work_ = {}; }
+  const SearchWork& work() const noexcept override { return work_; }
+
+ private:
+  SearchWork work_;
+};
+
+std::vector<ToolPose> random_way(std::uint64_t seed, std::size_t rows, bool rolls) {
+  Random random(seed);
+  std::vector<ToolPose> way(rows);
+  for (std::size_t k = 0; k < rows; ++k) {
+    const Vec3 axis = (k == 0 ? random.direction() : way[k - 1].axis) + 0.1 * random.direction();
+    way[k] = {1e-3 * random.direction(), axis.normalized(), rolls ? random.uniform(-3.0, 3.0) : 0.0};
+  }
+  return way;
+}
+
+/// Q of LateContacts: the smallest turn between the axes, then the difference of roll.
+Mat3 smallest_turn(const ToolPose& from, const ToolPose& to) {
+  const Vec3 across = from.axis.cross(to.axis);
+  const double angle = std::atan2(across.norm(), from.axis.dot(to.axis));
+  const Mat3 turn =
+      across.norm() > 0.0 ? Eigen::AngleAxisd(angle, across.normalized()).toRotationMatrix() : Mat3(Mat3::Identity());
+  return Eigen::AngleAxisd(to.roll - from.roll, to.axis).toRotationMatrix() * turn;
+}
+
+TEST(TurnMatrix, IsTheSmallestTurnFollowedByTheRoll) {
+  Random random(3);
+  for (int i = 0; i < 1000; ++i) {
+    const ToolPose from{{}, random.direction(), random.uniform(-3.0, 3.0)};
+    const ToolPose near{{}, (from.axis + 1e-7 * random.direction()).normalized(), from.roll};
+    const ToolPose to = i % 2 == 0 ? near : ToolPose{{}, random.direction(), random.uniform(-3.0, 3.0)};
+    // The product of matrices of rounded unit vectors, and of a turn by up to pi from an angle.
+    EXPECT_TRUE(turn_matrix(from, to).isApprox(smallest_turn(from, to), 1e-12));
+    EXPECT_EQ(turn_matrix(from, {Vec3::Ones(), from.axis, from.roll}), Mat3(Mat3::Identity()));
+    const Mat3 over = turn_matrix(from, {{}, -from.axis, from.roll});
+    EXPECT_TRUE((over * from.axis).isApprox(-from.axis, 1e-12));
+    EXPECT_NEAR(over.determinant(), 1.0, 1e-12);
+  }
+}
+
+/// The rows of the queries that serve, from the rows of those that are not lost; -1 before the first.
+std::vector<std::int64_t> rows_that_serve(const Lateness& late, const std::set<std::int64_t>& lost, std::size_t rows) {
+  std::vector<std::int64_t> serve(rows, -1);
+  for (std::size_t k = 0; k < rows; ++k)
+    for (std::int64_t q = 0; q + late.delay <= static_cast<std::int64_t>(k); q += late.every)
+      if (!lost.contains(q)) serve[k] = q;
+  return serve;
+}
+
+struct Case {
+  Lateness late;
+  bool rolls;
+};
+
+class LateContactsOfAnyWay : public testing::TestWithParam<Case> {};
+INSTANTIATE_TEST_SUITE_P(Some, LateContactsOfAnyWay,
+                         testing::Values(Case{{.every = 1, .delay = 0, .dropout = 0.5}, false},
+                                         Case{{.every = 4}, false}, Case{{.every = 1, .delay = 9}, false},
+                                         Case{{.every = 4, .delay = 3, .linear = true}, false},
+                                         Case{{.every = 3, .delay = 14, .linear = true, .dropout = 0.2}, false},
+                                         Case{{.every = 5, .delay = 5, .linear = true}, true},
+                                         Case{{.every = 7, .delay = 2, .dropout = 1.0}, true}));
+
+TEST_P(LateContactsOfAnyWay, AreTheFreshOnesOfTheQueryMovedAsTheToolWas) {
+  const auto& [late, rolls] = GetParam();
+  constexpr std::size_t kRows = 300;
+  const std::vector<ToolPose> way = random_way(7, kRows, rolls);
+  // Which queries are lost: one number each after the first.
+  std::set<std::int64_t> lost;
+  Random random(42);
+  for (std::int64_t q = late.every; late.dropout > 0.0 && q < static_cast<std::int64_t>(kRows); q += late.every)
+    if (random.uniform() < late.dropout) lost.insert(q);
+  const auto serve = rows_that_serve(late, lost, kRows);
+
+  LateContacts source(std::make_unique<PoseSource>(), late, false, 42);
+  std::uint64_t row = 0;
+  source.follow(&row);
+  PoseSource fresh;
+  ContactBuffer contacts(source.capacity()), asked(source.capacity());
+  std::size_t moved = 0, dropped = 0;
+  for (int again = 0; again < 2; ++again, source.reset()) {
+    for (row = 0; row < kRows; ++row) {
+      source.contacts_at(way[row], contacts);
+      ASSERT_EQ(source.used() == nullptr, serve[row] < 0);
+      if (serve[row] < 0) {
+        EXPECT_TRUE(contacts.empty());
+        continue;
+      }
+      const ToolPose &then = way[static_cast<std::size_t>(serve[row])], &now = way[row];
+      ASSERT_EQ(source.used()->row, static_cast<std::uint64_t>(serve[row]));
+      fresh.contacts_at(then, asked);
+      std::size_t next = 0;
+      for (std::size_t i = 0; i < asked.size(); ++i) {
+        const Vec3 x = asked.point(i);
+        const Vec3 delta =
+            now.position - then.position + smallest_turn(then, now) * (x - then.position) - (x - then.position);
+        const double depth = asked.depth[i] + (late.linear ? asked.gradient(i).dot(delta) : 0.0);
+        if (late.linear && depth <= 0.0) {
+          ++dropped;
+          continue;
+        }
+        ASSERT_LT(next, contacts.size());
+        EXPECT_EQ(contacts.index[next], asked.index[i]);
+        EXPECT_EQ(contacts.point(next), x);
+        EXPECT_EQ(contacts.gradient(next), asked.gradient(i));
+        // A few roundings of lengths of a millimetre.
+        EXPECT_NEAR(contacts.depth[next], depth, 1e-16);
+        moved += static_cast<std::size_t>(depth != asked.depth[i]);
+        ++next;
+      }
+      EXPECT_EQ(contacts.size(), next);
+      // Within the step: the same query.
+      ContactBuffer before = contacts;
+      source.contacts_at(now, contacts);
+      EXPECT_EQ(before.size(), contacts.size());
+    }
+    EXPECT_EQ(source.asked(), 1 + (kRows - 1) / static_cast<std::uint64_t>(late.every));
+    EXPECT_EQ(source.lost(), lost.size());
+  }
+  EXPECT_EQ(moved > 0, late.linear);
+  EXPECT_EQ(dropped > 0, late.linear);
+}
+
+/// Springs that pull keep their negative depths, so linear contacts of springs are the fresh ones.
+TEST(LateContacts, OfSpringsThatPullAreFreshWhenLinear) {
+  const auto springs = std::make_shared<SpringSet>();
+  Random random(1);
+  for (int i = 0; i < 20; ++i) springs->gradients.push_back(random.direction());
+  LateContacts late(std::make_unique<SpringSource>(springs), {.every = 8, .linear = true}, true, 1);
+  SpringSource fresh(springs);
+  ContactBuffer a(20), b(20);
+  for (const ToolPose& pose : random_way(5, 50, false)) {
+    late.contacts_at(pose, a);
+    fresh.contacts_at(pose, b);
+    ASSERT_EQ(a.size(), 20u);
+    for (std::size_t i = 0; i < 20; ++i) EXPECT_NEAR(a.depth[i], b.depth[i], 1e-18);
+  }
+}
+
+TEST(TraceSource, GivesEachRowTheContactsOfTheNearestTimeWithinHalfAStep) {
+  const auto trace = std::make_shared<ContactTrace>();
+  const auto add = [&](double time, std::size_t n) {
+    trace->times.push_back({time, trace->contacts.size()});
+    for (std::size_t i = 0; i < n; ++i) trace->contacts.push_back({Vec3::UnitX(), -Vec3::UnitZ(), time});
+  };
+  add(-0.3, 1), add(0.9, 2), add(1.05, 3), add(1.4, 1), add(3.5, 4), add(9.0, 1);
+  TraceSource source(trace, 1.0);
+  EXPECT_EQ(source.capacity(), 4u);
+  std::uint64_t row = 0;
+  source.follow(&row);
+  ContactBuffer contacts(4);
+  const double times[] = {-0.3, 1.05, 0.0, 3.5, 3.5, 0.0, 0.0};
+  const std::size_t sizes[] = {1, 3, 0, 4, 4, 0, 0};
+  for (row = 0; row < 7; ++row) {
+    source.contacts_at({}, contacts);
+    ASSERT_EQ(contacts.size(), sizes[row]) << row;
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
+      EXPECT_EQ(contacts.index[i], i);
+      EXPECT_EQ(contacts.depth[i], times[row]);
+      EXPECT_EQ(contacts.normal(i), Vec3::UnitZ());
+    }
+  }
+  TraceSource empty(std::make_shared<ContactTrace>(), 1.0);
+  empty.contacts_at({}, contacts);
+  EXPECT_TRUE(contacts.empty());
 }
 
 }  // namespace

@@ -1,11 +1,13 @@
-#include "sim/geometry/solid.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "sim/contact/inside.hpp"
 #include "sim/core/random.hpp"
+#include "sim/geometry/solid.hpp"
+#include "sim/tool/revolved.hpp"
 #include "tests/support/meshes.hpp"
+#include "tests/support/tool_kinds.hpp"
 
 namespace hapbench::solid_test {
 namespace {
@@ -130,6 +132,162 @@ TEST(Solid, OfPointsIsThatOfTheirPlanesAndUnknownBeyondThem) {
     }
     EXPECT_FALSE(solid->at({0.0045, 0.002, z}).known) << z;
     EXPECT_FALSE(solid->at({0.01, -0.01, z}).known) << z;
+  }
+}
+
+constexpr double kRadius = 0.0005;
+
+Revolved ball() {
+  const BurProfile profile = bur_profile(BurFamily::ball, 2.0 * kRadius, 2.0 * kRadius, 0.6 * kRadius);
+  return Revolved(profile.profile, profile.tip);
+}
+
+ToolPose at(const Vec3& position) {
+  ToolPose pose;
+  pose.position = position;
+  return pose;
+}
+
+TEST(Inside, OfABallInAPlaneIsItsDepthAtAnyDepth) {
+  const Revolved tool = ball();
+  const auto plane = make_solid(Plane{0.01, 0.0001});
+  InsideSearch search(tool, *plane);
+  for (const double h : {-0.001, 0.0, 1e-7, 2.5e-5, 0.0004, 0.0009, 0.0021, 0.02}) {
+    const auto depth = search.depth(at({0.0012, -0.0007, kRadius - h}));
+    ASSERT_TRUE(depth);
+    EXPECT_NEAR(*depth, std::max(0.0, h), 1e-12);
+  }
+  EXPECT_FALSE(search.depth(at({0.006, 0.0, -0.002}))) << "beyond the border, nobody knows";
+  EXPECT_NEAR(search.depth(at({0.0052, 0.0, -0.002})).value_or(0.0), 0.002 + std::sqrt(kRadius * kRadius - 4e-8), 2e-5)
+      << "the part within the border";
+}
+
+TEST(Inside, OfAToolOverABorderIsNeverNothing) {
+  const Revolved tool = ball();
+  const TriangleSoup soup = test::sheet(8, 8, [](int i, int j) { return Vec3(0.0005 * i, 0.0005 * j, 0.0); });
+  auto sheet = make_solid(soup.vertices, soup.triangles);
+  const double up = sheet->at({0.002, 0.002, 0.001}).value > 0.0 ? 1.0 : -1.0;
+  InsideSearch search(tool, *sheet);
+  ToolPose pose = at({0.002, 0.002, up * (kRadius - 0.0001)});
+  pose.axis = {0.0, 0.0, -up};
+  EXPECT_NEAR(search.depth(pose).value_or(0.0), 0.0001, 1e-12);
+  pose.position = {0.006, 0.002, -up * 0.003};
+  EXPECT_FALSE(search.depth(pose));
+  pose.position = {0.002, 0.002, up * 0.003};
+  EXPECT_EQ(search.depth(pose).value_or(1.0), 0.0);
+}
+
+/// The deepest of the nodes of a grid that lie in the tool, and of points on its surface.
+double dense_depth(const test::DefinedTool& tool, const ToolPose& pose, const Solid& solid, double step) {
+  const Box box = tool.shape->box_near(pose, 0.0, solid.region());
+  const Vec3 low = box.min.cwiseMax(solid.region().min), high = box.max.cwiseMin(solid.region().max);
+  double deepest = 0.0;
+  for (double x = low.x(); x <= high.x(); x += step) {
+    for (double y = low.y(); y <= high.y(); y += step) {
+      for (double z = low.z(); z <= high.z(); z += step) {
+        const Vec3 q(x, y, z);
+        const SurfaceDistance phi = solid.at(q);
+        if (!phi.known || -phi.value <= deepest) continue;
+        if (tool.slack(pose, q.cast<long double>()) >= 0.0) deepest = -phi.value;
+      }
+    }
+  }
+  return deepest;
+}
+
+struct Place {
+  const char* name;
+  std::unique_ptr<const Solid> solid;
+  double tilt;
+};
+
+/// Tools of every kind pressed into every kind of solid, against a dense sample of the tool: the answer is the depth of
+/// some point of the tool, so that the sample's deepest is at most the tolerance deeper, and it lies within half a
+/// diagonal of the sample's grid of a sample that is in the tool, or nearly so.
+TEST(Inside, AgreesWithADenseSampleOfTheTool) {
+  const TriangleSoup box = test::cube(0.001, {0.0, 0.0, -0.001});
+  const TriangleSoup plate = test::cube(0.001, {0.0, 0.0, 0.0});
+  TriangleSoup thin = plate;
+  for (Vec3& v : thin.vertices) v = {3.0 * v.x(), 3.0 * v.y(), 0.1 * v.z() - 0.0001};
+  std::vector<Place> places;
+  places.push_back({"plane", make_solid(Plane{0.01, 0.0001}), 0.0});
+  places.push_back({"plane, leaning", make_solid(Plane{0.01, 0.0001}), 0.7});
+  places.push_back({"block", make_solid(BlockWithHole{{0.006, 0.006, 0.004}, 0.0008, 0.001}), 0.4});
+  places.push_back({"cone", make_solid(ConicalHole{0.5, 0.001, 0.0001}), 0.2});
+  places.push_back({"slot", make_solid(Slot{0.0006, 0.002, 0.004, 0.0001}), 0.1});
+  places.push_back({"cube", make_solid(box.vertices, box.triangles), 0.3});
+  places.push_back({"plate", make_solid(thin.vertices, thin.triangles), 0.5});
+  Random random(7);
+  int deep = 0;
+  double most = 0.0;
+  for (const test::ToolKind& kind : test::tool_kinds()) {
+    for (const Place& place : places) {
+      const test::DefinedTool tool = kind.make(random, 0.001);
+      const double width = tool.shape->half_width();
+      ToolPose pose;
+      pose.position = {0.0006 * random.uniform(), 0.0006 * random.uniform(), width * (1.2 - 3.0 * random.uniform())};
+      const double tilt = place.tilt * random.uniform();
+      pose.axis = {-std::sin(tilt), 0.0, -std::cos(tilt)};
+      InsideSearch search(*tool.shape, *place.solid);
+      const auto depth = search.depth(pose);
+      const double step = std::max(0.00002, 0.05 * width), sample = dense_depth(tool, pose, *place.solid, step);
+      if (!depth) {
+        EXPECT_EQ(sample, 0.0) << kind.name << " in " << place.name;
+        continue;
+      }
+      EXPECT_LE(sample, *depth + InsideSearch::kTolerance * (width + *depth)) << kind.name << " in " << place.name;
+      // A point of the tool may have no sample of the tool within half a diagonal only at sharp edges.
+      EXPECT_LE(*depth, sample + 2.0 * std::sqrt(3.0) * step) << kind.name << " in " << place.name;
+      most = std::max(most, sample - *depth);
+      deep += *depth > 0.0 ? 1 : 0;
+      // Neither here nor at a pose from which this one is not far may the bound be lower.
+      InsideBound bound(*tool.shape, *place.solid);
+      EXPECT_GE(std::max(0.0, bound.at(pose, 0.0, 0.0, 0.0, true)), *depth - 1e-12)
+          << kind.name << " in " << place.name;
+      EXPECT_GE(std::max(0.0, bound.at(pose, 0.0, 0.0, 0.0, false)), *depth - 1e-12)
+          << kind.name << " in " << place.name;
+      ToolPose beside = pose;
+      beside.position += Vec3(0.0001 * random.uniform(), 0.0, 0.0002 * random.uniform());
+      beside.axis = Vec3(-std::sin(tilt + 0.05), 0.0, -std::cos(tilt + 0.05));
+      const double moved = (beside.position - pose.position).norm(), turned = (beside.axis - pose.axis).norm();
+      EXPECT_GE(std::max(0.0, bound.at(beside, moved, turned, 0.0, true)), *depth - 1e-12)
+          << kind.name << " in " << place.name;
+      EXPECT_GE(std::max(0.0, bound.roughly_at(beside, moved, turned)), *depth - 1e-12)
+          << kind.name << " in " << place.name;
+      // A bound that is known already spares the search, not the answer.
+      EXPECT_EQ(search.depth(pose, *depth).value_or(-1.0), *depth) << kind.name << " in " << place.name;
+    }
+  }
+  EXPECT_GT(deep, 20);
+  RecordProperty("largest_shortfall_um", std::to_string(1e6 * most));
+}
+
+/// A round tip lies in one ball, a tenth of the tolerance larger for rounding; a leaning flat one touches a ball about
+/// a place behind it along the normal, where two of the tried ones may be a factor of two apart.
+TEST(Inside, HasATightBoundOverAMesh) {
+  const TriangleSoup cube = test::cube(0.004, {0.0, 0.0, -0.004});
+  const auto solid = make_solid(cube.vertices, cube.triangles);
+  const Revolved round = ball();
+  const Cylinder flat(kRadius, 0.01, Tip::flat);
+  for (const double tilt : {0.0, 0.1, 0.3, 0.6}) {
+    ToolPose pose = at({0.0003, 0.0002, kRadius - 0.0001});
+    pose.axis = {-std::sin(tilt), 0.0, -std::cos(tilt)};
+    EXPECT_NEAR(InsideBound(round, *solid).at(pose, 0.0, 0.0, 0.0, true), 0.0001, 2e-3 * kRadius) << tilt;
+    pose.position.z() = kRadius * std::sin(tilt) - 0.0001;
+    EXPECT_NEAR(InsideBound(flat, *solid).at(pose, 0.0, 0.0, 0.0, true), 0.0001, 0.1 * kRadius) << tilt;
+  }
+}
+
+TEST(Inside, OfAMeshToolIsThatOfItsMesh) {
+  const auto grid = test::grid_of(test::cylinder_mesh(0.0005, 0.002, 48), 0.00003);
+  const MeshTool tool(grid);
+  const auto plane = make_solid(Plane{0.01, 0.0001});
+  InsideSearch search(tool, *plane);
+  for (const double tilt : {0.0, 0.3}) {
+    ToolPose pose = at({0.0, 0.0, -0.0001});
+    pose.axis = {-std::sin(tilt), 0.0, -std::cos(tilt)};
+    // The lowest corner of the mesh; its 48 sides have one at the front.
+    EXPECT_NEAR(search.depth(pose).value_or(0.0), 0.0001 + 0.0005 * std::sin(tilt), grid->error_bound()) << tilt;
   }
 }
 

@@ -106,7 +106,7 @@ TEST(Integrators, AskForTheForceAsOftenAsTheySay) {
   for (const IntegratorEntry* integrator : kIntegrators) {
     SpringField field(20000.0, 5.0);
     ToolState tool{{Vec3(0.001, 0.0, -0.002), -Vec3::UnitZ()}, Vec3(0.3, -0.1, 0.0)};
-    integrator->make({})->step(tool, Vec3::UnitX(), kMass, 0.0005, field);
+    integrator->step(tool, Vec3::UnitX(), kMass, 0.0005, field, kEventTolerance);
     EXPECT_EQ(field.calls, integrator->forces - 1) << integrator->info.name << " beside the row's";
     EXPECT_EQ(tool.pose.axis, Vec3(-Vec3::UnitZ()));
   }
@@ -132,14 +132,13 @@ class OneSidedSpring final : public ForceField {
 /// of contact after it touched.
 std::pair<double, double> bounce(const IntegratorEntry& integrator, double dt, double tolerance) {
   constexpr double kSpeed = 0.2, kGap = 4.13e-4;
-  const auto stepper = integrator.make({.tolerance = tolerance});
   OneSidedSpring field;
   ToolState tool;
   tool.pose.position = Vec3(-kGap, 0.0, 0.0);
   tool.velocity = Vec3(kSpeed, 0.0, 0.0);
   double time = 0.0;
   for (; tool.velocity.x() > 0.0 || tool.pose.position.x() > -kGap; time += dt)
-    stepper->step(tool, field.force_at(0.0, tool.pose.position, tool.velocity), kMass, dt, field);
+    integrator.step(tool, field.force_at(0.0, tool.pose.position, tool.velocity), kMass, dt, field, tolerance);
   const double late = (-kGap - tool.pose.position.x()) / -tool.velocity.x();  // since it passed the start
   const double contact = time - late - kGap / kSpeed - kGap / -tool.velocity.x();
   return {-tool.velocity.x() / kSpeed - 1.0,
@@ -183,7 +182,7 @@ TEST(LinearlyImplicit, CopesWithDampingThatDrives) {
     tool.velocity = random.direction();
     const Vec3 force = 1e3 * random.direction(), v = tool.velocity;
     HeldJacobian field(jacobian);
-    kImplicitEuler.make({})->step(tool, force, kMass, 0.0005, field);
+    kImplicitEuler.step(tool, force, kMass, 0.0005, field, kEventTolerance);
     // Never more than twice what the explicit step would make of the same impulse.
     const Vec3 impulse = 0.0005 * (force - 0.0005 * (jacobian.stiffness * v));
     ASSERT_TRUE(tool.velocity.allFinite());
@@ -195,7 +194,7 @@ TEST(LinearlyImplicit, AnswersAnInfiniteJacobianWithTheExplicitStep) {
   for (const double bad : {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()}) {
     ToolState tool;
     HeldJacobian field({Mat3::Zero(), Mat3::Constant(bad)});
-    kImplicitMidpoint.make({})->step(tool, {1, 0, 0}, 0.5, 0.25, field);
+    kImplicitMidpoint.step(tool, {1, 0, 0}, 0.5, 0.25, field, kEventTolerance);
     EXPECT_EQ(tool.velocity, Vec3(0.5, 0, 0));
   }
 }
@@ -219,12 +218,11 @@ TEST(IntegratorInTheLoop, MovesTheToolAsItDoesAlone) {
     const auto law = [](const ToolState& t) { return Vec3(-20000.0 * t.pose.position - 50.0 * t.velocity); };
     Simulation(config, test::fake_parts(law), {&recorder}).run();
     ToolState tool = recorder.rows[0].tool;
-    const auto stepper = integrator->make({});
     for (const StepRecord& row : recorder.rows) {
       EXPECT_EQ(row.tool.pose.position, tool.pose.position);
       EXPECT_EQ(row.tool.velocity, tool.velocity);
       EXPECT_EQ(row.force.rendered, law(tool)) << "rows are evaluated at their own states";
-      stepper->step(tool, row.force.rendered, config.mass, config.dt, field);
+      integrator->step(tool, row.force.rendered, config.mass, config.dt, field, kEventTolerance);
     }
   }
 }

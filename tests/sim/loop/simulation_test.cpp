@@ -1,12 +1,16 @@
-#include "sim/loop/simulation.hpp"
-
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <string>
 
 #include "sim/geometry/analytic_shells.hpp"
+#include "sim/loop/observed_energy.hpp"
+#include "sim/loop/simulation.hpp"
 #include "sim/tool/cylinder.hpp"
-#include "sim/tool/tool_state.hpp"
+#include "sim/tool/motion.hpp"
 #include "tests/support/bits.hpp"
 #include "tests/support/fakes.hpp"
 #include "tests/support/meshes.hpp"
@@ -304,6 +308,195 @@ TEST(Roll, IsInTheAngularVelocityWhereItIsScriptedOrTheToolIsNotRound) {
   for (std::size_t k = 1; k < led.size(); ++k) {
     EXPECT_EQ(led[k].tool.angular_velocity, Vec3(turn(led[k - 1].tool.pose.axis, led[k].tool.pose.axis) / kDt));
   }
+}
+
+/// A weightless tool that rises at 1 m/s along `up` from 10.5 steps below height 0.
+SimulationConfig rising(const Vec3& up) {
+  SimulationConfig config;
+  config.steps = 100;
+  config.velocity = up;
+  config.position = -10.5 * config.dt * up;
+  return config;
+}
+
+SimulationResult run(const SimulationConfig& config, SimulationParts parts, Recorder& recorder) {
+  return Simulation(config, std::move(parts), {&recorder}).run();
+}
+
+TEST(StopConditions, LeavesTheHoleAtTheFirstRowAboveHeightZeroWhichIsRecorded) {
+  for (const Vec3& up : {Vec3(0, 0, 1), Vec3(0, 1, 0)}) {
+    SimulationConfig config = rising(up);
+    config.stop_when = {{Outcome::leaves_hole, up}};
+    // Row 11 is half a step above; a stop on the last row is still a stop.
+    for (const std::uint64_t steps : {100u, 12u}) {
+      config.steps = steps;
+      Recorder recorder;
+      const SimulationResult result = run(config, fake_parts(test::weightless), recorder);
+      EXPECT_EQ(result.outcome, Outcome::leaves_hole);
+      EXPECT_EQ(result.rows, 12u);
+      ASSERT_EQ(recorder.rows.size(), 12u);
+      EXPECT_GT(recorder.rows[11].tool.pose.position.dot(up), 0.0);
+      EXPECT_LT(recorder.rows[10].tool.pose.position.dot(up), 0.0);
+    }
+  }
+}
+
+SimulationParts tilting(const Vec3& up, double start, double rate_per_s) {
+  SimulationParts parts = fake_parts(test::weightless);
+  parts.motion = std::make_unique<ScriptedMotion>(
+      Orientation{up, {1, 0, 0}, Profile::Shape(Profile::Ramp{start, rate_per_s}), {}}, std::nullopt);
+  return parts;
+}
+
+TEST(StopConditions, ToolIsHorizontalAtTheFirstRowWhereItsAxisReachesThePlaneWhichIsRecorded) {
+  for (const Vec3& up : {Vec3(0, 0, 1), Vec3(0, 1, 0)}) {
+    SimulationConfig config;
+    config.steps = 10000;
+    config.stop_when = {{Outcome::tool_horizontal, up}};
+    Recorder recorder;
+    const SimulationResult result = Simulation(config, tilting(up, 0.1, 1.2), {&recorder}).run();
+    EXPECT_EQ(result.outcome, Outcome::tool_horizontal);
+    // 0.1 + 1.2 k dt = pi / 2.
+    const double k = std::ceil((std::numbers::pi / 2 - 0.1) / 1.2 / config.dt);
+    EXPECT_EQ(static_cast<double>(result.rows), k + 1);
+    ASSERT_EQ(recorder.rows.size(), result.rows);
+    EXPECT_GE(recorder.rows.back().tool.pose.axis.dot(up), 0.0);
+    EXPECT_LT(recorder.rows[recorder.rows.size() - 2].tool.pose.axis.dot(up), 0.0);
+  }
+}
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInf = std::numeric_limits<double>::infinity();
+
+SimulationConfig at_rest(std::uint64_t steps) {
+  SimulationConfig config;
+  config.steps = steps;
+  return config;
+}
+
+/// No force before the tool has been asked `steps` times, then the given one.
+test::FakeAlgorithm::Law after(int steps, const Vec3& force) {
+  return [=, k = 0](const ToolState&) mutable { return k++ < steps ? Vec3(Vec3::Zero()) : force; };
+}
+
+TEST(Divergence, StopsAtTheRowWhoseForceIsNotFiniteAndKeepsTheRowsBefore) {
+  for (const double bad : {kNaN, kInf, -kInf}) {
+    Recorder recorder;
+    Simulation simulation(at_rest(100), fake_parts(after(5, {0, bad, 0})), {&recorder});
+    const SimulationResult result = simulation.run();
+    EXPECT_EQ(result.outcome, Outcome::diverges);
+    EXPECT_EQ(result.rows, 5u);
+    ASSERT_EQ(recorder.rows.size(), 5u);
+    for (const StepRecord& row : recorder.rows) EXPECT_TRUE(row.force.rendered.allFinite());
+    EXPECT_EQ(result.divergence.step, 5u);
+    EXPECT_EQ(result.divergence.time, 5 * SimulationConfig{}.dt);
+    EXPECT_EQ(result.divergence.quantity, std::string("rendered force"));
+    EXPECT_FALSE(std::isfinite(result.divergence.magnitude));
+    EXPECT_EQ(result.divergence.bound, DivergenceBounds{}.force);
+    EXPECT_FALSE(simulation.step());
+  }
+}
+
+TEST(Divergence, IsReportedForEachQuantityThatLeavesItsBound) {
+  const struct {
+    Vec3 velocity;
+    double force;
+    const char* quantity;
+    std::uint64_t step;
+    double magnitude, bound;
+  } kCases[] = {{{0, 0, 3}, 0.0, "position", 2, 0.75, 0.5},  // 0.375 m a step
+                {{0, 0, 5}, 0.0, "velocity", 0, 5.0, 4.0},
+                {{0, 0, 0}, 17.0, "rendered force", 0, 17.0, 16.0}};
+  for (const auto& c : kCases) {
+    SimulationConfig config = at_rest(100);
+    config.bounds = {0.5, 4.0, 16.0};
+    config.dt = 0.125;
+    config.velocity = c.velocity;
+    Recorder recorder;
+    const SimulationResult result = run(config, fake_parts(after(0, {0, 0, c.force})), recorder);
+    EXPECT_EQ(recorder.rows.size(), result.rows);
+    EXPECT_EQ(result.rows, c.step);
+    EXPECT_EQ(result.divergence.step, c.step);
+    EXPECT_EQ(result.divergence.quantity, std::string(c.quantity));
+    EXPECT_EQ(result.divergence.magnitude, c.magnitude);
+    EXPECT_EQ(result.divergence.bound, c.bound);
+  }
+}
+
+constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+constexpr double kStep = 0.001, kMass = 0.2, kK = 5000.0;
+
+/// One spring and damper along x under leapfrog, observed for `rows` rows; the tool afterwards.
+ToolState run_spring(ObservedEnergy& observed, double damping, double position, double velocity, int rows) {
+  ToolState tool{{{position, 0, 0}, {0, 0, -1}}, {velocity, 0, 0}};
+  for (int k = 0; k < rows; ++k) {
+    const double x = tool.pose.position.x();
+    observed.move(tool);
+    const Vec3 force{-kK * x - damping * tool.velocity.x(), 0, 0};
+    observed.answer(tool, force, {0.5 * kK * x * x, Vec3::Zero()});
+    if (k + 1 < rows) test::leapfrog(tool, force, kMass, kStep);
+  }
+  return tool;
+}
+
+/// Work is what the force adds to the kinetic energy, so E_n - E_0 is what the tool has lost.
+TEST(ObservedEnergy, IsWhatALoneToolHasLost) {
+  ObservedEnergy observed(kStep);
+  const ToolState end = run_spring(observed, 20.0, 0.003, 0.4, 300);
+  const double given = 0.5 * kK * 0.003 * 0.003 + 0.5 * kMass * 0.4 * 0.4;
+  EXPECT_NEAR(observed.energy(), given - 0.5 * kMass * end.velocity.squaredNorm(), 300 * 10 * kEpsilon * given);
+}
+
+/// Half of a turn belongs to the row before, half to the row after: the trapezoidal rule.
+TEST(ObservedEnergy, AMomentThatAppearsOrGoesCountsForHalfATurn) {
+  ObservedEnergy observed(kStep);
+  double angle = 0.0;
+  const auto row = [&](double moment) {
+    ToolState tool;
+    tool.pose.axis = {std::sin(angle), 0, -std::cos(angle)};
+    observed.move(tool);
+    observed.answer(tool, Vec3::Zero(), {0.0, {0, moment, 0}});
+    angle += 0.1;
+  };
+  row(0.0);
+  row(0.0);
+  EXPECT_EQ(observed.energy(), 0.0);
+  row(4.0);
+  EXPECT_NEAR(observed.energy(), 0.2, 1e-15);
+  row(0.0);
+  EXPECT_NEAR(observed.energy(), 0.4, 1e-15);
+  row(0.0);
+  EXPECT_NEAR(observed.energy(), 0.4, 1e-15);
+}
+
+/// A moment after a rest is turned against from the row before, as without the short cut.
+TEST(ObservedEnergy, ARowOfRestIsARowWithoutForceAndMoment) {
+  ObservedEnergy resting(kStep), asked(kStep);
+  for (int k = 0; k < 30; ++k) {
+    ToolState tool{{Vec3::Zero(), {std::sin(0.1 * k), 0, -std::cos(0.1 * k)}}, {1.0, 0.1 * k, 0}};
+    const bool acts = k % 7 == 3 || k % 7 == 4;
+    const Vec3 force = acts ? Vec3(2, 1, 0) : Vec3(0, 0, 0);
+    const SpringState springs{0.0, acts ? Vec3(0, 1.0 + k, 0) : Vec3(0, 0, 0)};
+    EXPECT_EQ(resting.rests(force, springs), k != 0 && !acts && k % 7 != 5);
+    if (resting.rests(force, springs)) {
+      resting.rest(tool);
+    } else {
+      resting.move(tool);
+      resting.answer(tool, force, springs);
+    }
+    asked.move(tool);
+    asked.answer(tool, force, springs);
+    EXPECT_EQ(resting.energy(), asked.energy());
+  }
+}
+
+TEST(ObservedEnergy, ResetForgetsEverything) {
+  ObservedEnergy observed(kStep), fresh(kStep);
+  run_spring(observed, 3.0, 0.01, -0.2, 50);
+  observed.reset();
+  run_spring(observed, 1.0, 0.002, 0.1, 50);
+  run_spring(fresh, 1.0, 0.002, 0.1, 50);
+  EXPECT_EQ(observed.energy(), fresh.energy());
 }
 
 }  // namespace

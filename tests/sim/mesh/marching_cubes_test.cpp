@@ -11,7 +11,6 @@
 
 #include "sim/contact/grid_index.hpp"
 #include "sim/core/random.hpp"
-#include "sim/mesh/surface_slab.hpp"
 #include "tests/support/meshes.hpp"
 #include "tests/support/scale.hpp"
 
@@ -85,8 +84,9 @@ TEST_P(MarchingCubesOfDensity, BlockIsClosedHasNoHandlesAndTheRightVolume) {
 
 TEST_P(MarchingCubesOfDensity, NormalsAreThoseOfTheMesh) {
   // OpenMesh sums the same unit normals in another order: up to a dozen terms, each right to a few roundings.
-  const IsoSurface surface = surface_of(density_field(small_block(), 0.0002, GetParam()));
-  const std::vector<SurfacePoint> expected = all_vertices(test::half_edge_mesh(surface));
+  IsoSurface surface = surface_of(density_field(small_block(), 0.0002, GetParam()));
+  const std::vector<SurfacePoint> expected = vertices_with_normals(test::half_edge_mesh(surface));
+  std::erase_if(surface.vertices, [](const SurfacePoint& vertex) { return vertex.normal.isZero(0.0); });
   ASSERT_EQ(surface.vertices.size(), expected.size());
   for (std::size_t i = 0; i < expected.size(); ++i)
     ASSERT_LE((surface.vertices[i].normal - expected[i].normal).norm(), 1e-14) << i;

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "sim/geometry/point_shell.hpp"
 #include "tests/support/scale.hpp"
 #include "tests/support/tool_kinds.hpp"
 
@@ -54,17 +55,14 @@ std::vector<bool> marked(const ContactBuffer& contacts, Mark mark) {
   return found;
 }
 
-std::vector<bool> inside(const ToolShape& tool, const ToolPose& pose, const ContactBuffer& contacts) {
-  return marked(contacts, [&](auto points, auto ranges, auto marks) { tool.mark_inside(pose, points, ranges, marks); });
-}
-
 /// The contacts that a search would find and pass to a depth model.
-ContactBuffer colliding(const DefinedTool& tool, const ToolPose& pose, const ContactBuffer& contacts) {
-  const std::vector<bool> found = inside(*tool.shape, pose, contacts);
+ContactBuffer colliding(const ToolShape& tool, const ToolPose& pose, ContactBuffer contacts) {
   ContactBuffer in(contacts.size());
-  for (std::size_t i = 0; i < contacts.size(); ++i) {
-    if (found[i]) in.push_copy_of(contacts, i);
-  }
+  for (std::size_t i = contacts.size(); i < contacts.padded_size(); ++i) contacts.x[i] = PointShell::kFarAway;
+  tool.push_inside(pose,
+                   {contacts.index.data(), contacts.x.data(), contacts.y.data(), contacts.z.data(), contacts.nx.data(),
+                    contacts.ny.data(), contacts.nz.data()},
+                   contacts.padded_size() / simd::lanes, in);
   return in;
 }
 
@@ -72,27 +70,17 @@ TEST_P(EveryTool, HoldsThePointsOfItsDefinition) {
   std::size_t held = 0, missed = 0;
   for_tools(2000, [&](const DefinedTool& tool, const ToolPose& pose, Random& random) {
     const ContactBuffer contacts = contacts_around(tool, pose, random, 100);
-    const std::vector<bool> found = inside(*tool.shape, pose, contacts);
-    ContactBuffer pushed(contacts.size() + simd::lanes);
-    const PackRange all{0, contacts.padded_size() / simd::lanes, 0xff,
-                        static_cast<std::uint8_t>(0xffu >> (contacts.padded_size() - contacts.size()))};
-    tool.shape->push_inside(pose,
-                            {contacts.index.data(), contacts.x.data(), contacts.y.data(), contacts.z.data(),
-                             contacts.nx.data(), contacts.ny.data(), contacts.nz.data()},
-                            {&all, 1}, pushed);
+    const ContactBuffer found = colliding(*tool.shape, pose, contacts);
     std::size_t next = 0;
     for (std::size_t i = 0; i < contacts.size(); ++i) {
       const double slack = slack_at(tool, pose, contacts.point(i));
-      if (std::abs(slack) > kRounding) {
-        ASSERT_EQ(found[i], slack > 0.0) << slack;
-        ++(found[i] ? held : missed);
-      }
-      if (found[i]) {
-        ASSERT_LT(next, pushed.size());
-        ASSERT_EQ(pushed.index[next++], i);
-      }
+      const bool holds = next < found.size() && found.index[next] == i;
+      next += holds;
+      if (std::abs(slack) <= kRounding) continue;
+      ASSERT_EQ(holds, slack > 0.0) << slack;
+      ++(holds ? held : missed);
     }
-    ASSERT_EQ(next, pushed.size());
+    ASSERT_EQ(next, found.size());
   });
   EXPECT_GT(held, cases(2000) * 5);
   EXPECT_GT(missed, cases(2000) * 5);
@@ -100,7 +88,7 @@ TEST_P(EveryTool, HoldsThePointsOfItsDefinition) {
 
 TEST_P(EveryTool, HasDepthsThatAreDistancesToItsSurface) {
   for_tools(2000, [&](const DefinedTool& tool, const ToolPose& pose, Random& random) {
-    ContactBuffer in = colliding(tool, pose, contacts_around(tool, pose, random, 48));
+    ContactBuffer in = colliding(*tool.shape, pose, contacts_around(tool, pose, random, 48));
     tool.shape->shortest_depths(pose, in);
     tool.shape->shortest_gradients(pose, in);
     for (std::size_t i = 0; i < in.size(); ++i) {
@@ -117,7 +105,7 @@ TEST_P(EveryTool, HasDepthsThatAreDistancesToItsSurface) {
 TEST_P(EveryTool, HasExitsWhereRaysFirstGoOut) {
   std::size_t rays = 0, back_in = 0;
   for_tools(1000, [&](const DefinedTool& tool, const ToolPose& pose, Random& random) {
-    ContactBuffer in = colliding(tool, pose, contacts_around(tool, pose, random, 24));
+    ContactBuffer in = colliding(*tool.shape, pose, contacts_around(tool, pose, random, 24));
     for (std::size_t i = 0; i < in.size(); ++i) in.set_gradient(i, -in.normal(i));
     std::vector<double> exits(in.size());
     tool.shape->exit_distances(pose, in, exits.data());
@@ -155,11 +143,11 @@ TEST_P(EveryTool, MarksAsNearWhateverLiesWithinTheMargin) {
     const Box bounds{contacts.point(0).cwiseMin(contacts.point(1)), contacts.point(0).cwiseMax(contacts.point(1))};
     const Box box = tool.shape->box_near(pose, margin + kRounding, bounds);
     const ToolShape::Grown grown = tool.shape->grown(margin + kRounding);
-    const std::vector<bool> held =
-        inside(*grown.shape, {pose.position + grown.forward * pose.axis, pose.axis, pose.roll}, contacts);
+    const ContactBuffer held =
+        colliding(*grown.shape, {pose.position + grown.forward * pose.axis, pose.axis, pose.roll}, contacts);
+    ASSERT_EQ(held.size(), contacts.size());
     for (std::size_t i = 0; i < contacts.size(); ++i) {
       ASSERT_TRUE(near[i]);
-      ASSERT_TRUE(held[i]);
       if (i < 2) {
         ASSERT_EQ(distance_to(box, contacts.point(i)), 0.0);
       }
@@ -246,7 +234,7 @@ TEST_P(EveryTool, KeepsPointsOutByConstraintsIfItIsConvex) {
 /// Everything that a tool answers about contacts: depths, gradients, exits, constraints, foremost places.
 std::vector<double> answers(const DefinedTool& tool, const ToolPose& pose, const ContactBuffer& contacts,
                             const Vec3& move, double slack) {
-  ContactBuffer in = colliding(tool, pose, contacts);
+  ContactBuffer in = colliding(*tool.shape, pose, contacts);
   std::vector<double> all, exits(in.size());
   for (const std::uint32_t index : in.index) all.push_back(index);
   tool.shape->shortest_depths(pose, in);
@@ -277,7 +265,7 @@ TEST_P(EveryTool, TwiceAsLargeHasAnswersTwiceAsLarge) {
     const std::vector<double> once = answers(tool, pose, contacts, move, 1e-5);
     const std::vector<double> all = answers(large, {2.0 * pose.position, pose.axis}, twice, 2.0 * move, 2e-5);
     ASSERT_EQ(once.size(), all.size());
-    const std::size_t indices = colliding(tool, pose, contacts).index.size();
+    const std::size_t indices = colliding(*tool.shape, pose, contacts).index.size();
     for (std::size_t k = 0; k < once.size(); ++k) ASSERT_EQ(all[k], (k < indices ? 1.0 : 2.0) * once[k]) << k;
   }
 }

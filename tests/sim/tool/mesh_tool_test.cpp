@@ -307,12 +307,11 @@ TEST_P(MeshToolOf, MarksAsNearWhateverLiesWithinTheMargin) {
       ASSERT_TRUE((point.array() >= box.min.array()).all() && (point.array() <= box.max.array()).all());
     }
     const ToolShape::Grown grown = tool_.grown(margin + rounding);
-    const ContactBuffer at = contacts_at({point});
-    const PackRange one{0, 1, 1, 1};
-    std::uint8_t marks = 0;
-    grown.shape->mark_inside({pose.position + grown.forward * pose.axis, pose.axis, pose.roll},
-                             {at.x.data(), at.y.data(), at.z.data()}, {&one, 1}, &marks);
-    ASSERT_EQ(marks, 1);
+    const PointShell shell({{point, Vec3::UnitZ()}}, 0.0);
+    ShellQuery query(shell, *grown.shape);
+    ContactBuffer found(1);
+    query.contacts_at({pose.position + grown.forward * pose.axis, pose.axis, pose.roll}, found);
+    ASSERT_EQ(found.size(), 1u);
   }
   EXPECT_GT(outside, cases(5000) / 10);
   EXPECT_FALSE(near(tool_, kHome, 0.1, {0.0, 0.0, 100.0}));

@@ -8,7 +8,6 @@
 #include <stdexcept>
 
 #include "sim/core/random.hpp"
-#include "sim/tool/tool_state.hpp"
 #include "tests/support/contact_sets.hpp"
 
 namespace hapbench::motion_test {

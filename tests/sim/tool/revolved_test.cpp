@@ -1,5 +1,3 @@
-#include "sim/tool/revolved.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -8,16 +6,49 @@
 #include <string>
 
 #include "sim/contact/contact_buffer.hpp"
-#include "sim/tool/bur.hpp"
+#include "sim/core/random.hpp"
+#include "sim/tool/cylinder.hpp"
+#include "sim/tool/revolved.hpp"
+#include "tests/support/scale.hpp"
 
 namespace hapbench::revolved_test {
 namespace {
 
-std::uint8_t inside(const ToolShape& tool, const ToolPose& pose, const ContactBuffer& contacts) {
-  const PackRange one{0, 1};
-  std::uint8_t marks = 0;
-  tool.mark_inside(pose, {contacts.x.data(), contacts.y.data(), contacts.z.data()}, {&one, 1}, &marks);
-  return marks;
+using test::cases;
+
+// Properties of cylinders alone; EveryTool tests those of any tool.
+
+TEST(LargestSquareWithin, IsTheLastSquareWhoseRootDoesNotExceedTheRadius) {
+  Random random(3);
+  constexpr double up = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < cases(100000); ++i) {
+    const double r = std::pow(10.0, random.uniform(-9.0, 3.0));
+    const double square = largest_square_within(r);
+    ASSERT_LE(std::sqrt(square), r);
+    ASSERT_GT(std::sqrt(std::nextafter(square, up)), r);
+  }
+}
+
+TEST(CylinderConstraints, OnTheAxisTakeSomeNearestPlace) {
+  const Cylinder tool{0.0005, 0.01, Tip::flat};
+  ContactBuffer contacts(2);
+  for (const double height : {0.005, 0.0001}) contacts.push(0, {0, 0, height}, Vec3::UnitZ());
+  tool.surface_constraints({}, Vec3::Zero(), 0.0, contacts);
+  EXPECT_EQ(contacts.depth[0], 0.0005);
+  EXPECT_NEAR(contacts.gradient(0).norm(), 1.0, 1e-15);
+  EXPECT_EQ(contacts.gradient(0).z(), 0.0);
+  EXPECT_EQ(contacts.depth[1], 0.0001);
+  EXPECT_EQ(contacts.gradient(1), Vec3(-Vec3::UnitZ()));
+}
+
+/// How many of the first sixteen places of the columns are inside.
+std::size_t inside(const ToolShape& tool, const ToolPose& pose, const ContactBuffer& contacts) {
+  ContactBuffer found(16);
+  tool.push_inside(pose,
+                   {contacts.index.data(), contacts.x.data(), contacts.y.data(), contacts.z.data(), contacts.nx.data(),
+                    contacts.ny.data(), contacts.nz.data()},
+                   2, found);
+  return found.size();
 }
 
 TEST(Revolved, PointsOnItsSurfaceCollideWithDepthZero) {
@@ -29,12 +60,8 @@ TEST(Revolved, PointsOnItsSurfaceCollideWithDepthZero) {
   const auto add = [&](double s, double rho) { contacts.push(0, u * Vec3(rho, 0.0, -s), Vec3::UnitZ()); };
   add(-16, 1), add(-16, 2), add(-12, 2), add(-8, 2), add(-6, 6), add(-4, 6), add(-4, 4), add(-4, 3), add(-2, 3),
       add(0, 1);
-  const PackRange all{0, 2};
-  std::uint8_t marks[2];
   for (std::size_t i = contacts.size(); i < 16; ++i) contacts.x[i] = 1.0;
-  tool.mark_inside({}, {contacts.x.data(), contacts.y.data(), contacts.z.data()}, {&all, 1}, marks);
-  EXPECT_EQ(marks[0], 0xff);
-  EXPECT_EQ(marks[1], 0x03);
+  EXPECT_EQ(inside(tool, {}, contacts), contacts.size());
   tool.shortest_depths({}, contacts);
   for (std::size_t i = 0; i < contacts.size(); ++i) EXPECT_EQ(contacts.depth[i], 0.0) << i;
 }
@@ -51,12 +78,12 @@ TEST(Revolved, FallsBackToTheInwardNormalWhereNoPlaceIsNearest) {
 TEST(Revolved, OfAPoseThatIsNotFiniteHoldsNothing) {
   for (const Tip tip : {Tip::flat, Tip::round}) {
     const Revolved tool({{-0.01, 0.0005}, {-0.005, 0.0003}, {0.0, 0.0005}}, tip);
-    ContactBuffer contacts(8);
-    for (std::uint32_t i = 0; i < 8; ++i) contacts.push(i, {0, 0, 0.001}, Vec3::UnitZ());
-    EXPECT_EQ(inside(tool, {}, contacts), 0xff);
+    ContactBuffer contacts(16);
+    for (std::uint32_t i = 0; i < 16; ++i) contacts.push(i, {0, 0, 0.001}, Vec3::UnitZ());
+    EXPECT_EQ(inside(tool, {}, contacts), 16u);
     for (const double bad : {std::nan(""), HUGE_VAL}) {
-      EXPECT_EQ(inside(tool, {{bad, 0, 0}, {0, 0, -1}}, contacts), 0);
-      EXPECT_EQ(inside(tool, {{0, 0, 0}, {0, bad, -1}}, contacts), 0);
+      EXPECT_EQ(inside(tool, {{bad, 0, 0}, {0, 0, -1}}, contacts), 0u);
+      EXPECT_EQ(inside(tool, {{0, 0, 0}, {0, bad, -1}}, contacts), 0u);
     }
   }
 }

@@ -8,7 +8,6 @@
 #include "scenarios/cases/comparison.hpp"
 #include "sim/loop/integrators/table.hpp"
 #include "tests/results/files.hpp"
-#include "tests/scenarios/support/file_tree.hpp"
 #include "tests/scenarios/support/scenarios.hpp"
 
 /// Observed orders of sequences whose order is known, and of such as have none; levels of scenes, and scenes that have

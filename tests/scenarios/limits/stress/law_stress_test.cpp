@@ -23,7 +23,7 @@ TEST(LawStress, NoForceIsInfiniteOrOutOfBound) {
     EXPECT_EQ(c.out_of_bound, 0u) << c.algorithm << ", first in set " << c.first_bad.value_or(0);
     // n_ext overflows wherever there is a reduction.
     EXPECT_EQ(c.points_dropped > 0, find_algorithm(c.algorithm)->may_reduce) << c.algorithm;
-    EXPECT_EQ(c.largest_share.has_value(), find_algorithm(c.algorithm)->theory.force_bound != nullptr) << c.algorithm;
+    EXPECT_EQ(c.largest_share.has_value(), find_algorithm(c.algorithm)->force_bound != nullptr) << c.algorithm;
   }
 }
 

@@ -1,0 +1,347 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <unsupported/Eigen/MatrixFunctions>
+
+#include "algorithms/registry.hpp"
+#include "algorithms/stages/damping_and_limits.hpp"
+#include "results/observe/ideal_trajectory.hpp"
+#include "results/observe/metrics.hpp"
+#include "results/summary/summary.hpp"
+#include "scenarios/run/assemble.hpp"
+#include "scenarios/thesis/claims.hpp"
+#include "sim/loop/integrators/table.hpp"
+#include "tests/bench/accuracy/accuracy.hpp"
+#include "tests/results/told.hpp"
+
+/// Panels whose settings are runs of a scene.
+namespace hapbench::accuracy {
+namespace {
+
+/// The scene's time step is divided by these: three decades.
+constexpr int kDivisions[] = {1, 2, 5, 10, 20, 50, 100, 200, 500, 1000};
+
+/// Keeps the tensor of the first row, which springs never change.
+class FirstTensor final : public Observer {
+ public:
+  void on_step(const StepRecord& record) noexcept override {
+    if (record.step == 0) S = record.force.S;
+  }
+  Mat3 S = Mat3::Zero();
+};
+
+struct Exact {
+  Mat3 S;
+  std::vector<Vec3> positions;  ///< at the steps of the scene [m]
+};
+
+/// M x'' = -K S x - B S x' - F (I - S) x', the equation of bilateral springs with constant weights, by the matrix
+/// exponential: exact to rounding.
+Exact exact_solution(const Scenario& scenario) {
+  FirstTensor first;
+  sampled_run(scenario, nullptr, 1, {&first});
+  const Mat3& S = first.S;
+  const RenderingConfig& r = scenario.rendering;
+  const double K = r.stiffness, M = r.mass, B = normal_damping(r);
+  Eigen::Matrix<double, 6, 6> A = Eigen::Matrix<double, 6, 6>::Zero();
+  A.topRightCorner<3, 3>() = Mat3::Identity();
+  A.bottomLeftCorner<3, 3>() = -K / M * S;
+  A.bottomRightCorner<3, 3>() = -(B * S + r.mu_s * (Mat3::Identity() - S)) / M;
+  const Eigen::Matrix<double, 6, 6> advance = (A * scenario.time.step).exp();
+  Eigen::Matrix<double, 6, 1> state;
+  state << scenario.initial.position, scenario.initial.velocity;
+  Exact exact{S, {}};
+  for (std::int64_t i = 0; i < scenario.time.steps; ++i) {
+    exact.positions.emplace_back(state.head<3>());
+    state = advance * state;
+  }
+  return exact;
+}
+
+/// The mechanical energy of a run on springs of constant S, without the contacts: M v^2 / 2 + K p S p / 2.
+class SpringEnergy final : public Observer {
+ public:
+  SpringEnergy(const RenderingConfig& rendering, const Mat3& S) : K_(rendering.stiffness), M_(rendering.mass), S_(S) {}
+  void on_step(const StepRecord& record) noexcept override {
+    const Vec3& p = record.tool.pose.position;
+    const double energy = 0.5 * (M_ * record.tool.velocity.squaredNorm() + K_ * p.dot(S_ * p));
+    if (record.step == 0) first_ = energy;
+    last_ = energy;
+    largest_ = std::max(largest_, std::abs(energy - first_));
+  }
+  /// (E_end - E_0) / E_0 and the largest |E - E_0| / E_0.
+  double gain() const { return (last_ - first_) / first_; }
+  double swing() const { return largest_ / first_; }
+
+ private:
+  double K_, M_;
+  Mat3 S_;
+  double first_ = 0.0, last_ = 0.0, largest_ = 0.0;
+};
+
+Errors errors_of(const Scenario& run, int division, const Exact& exact) {
+  const SampledRun sampled = sampled_run(run, nullptr, static_cast<std::uint64_t>(division));
+  const Distance d = distance(sampled.positions, exact.positions);
+  const bool whole = sampled.positions.size() == exact.positions.size();
+  Scenario undamped = run;
+  undamped.rendering.damping = undamped.rendering.mu_s = 0.0;
+  SpringEnergy energy(run.rendering, exact.S);
+  const bool kept = sampled_run(undamped, nullptr, 1, {&energy}).result.outcome == Outcome::completes;
+  return {std::string(outcome_name(sampled.result.outcome)),
+          {{"step_s", run.time.step},
+           {"error_final_m", if_any(whole, d.final)},
+           {"error_rms_m", if_any(whole, d.rms)},
+           {"error_max_m", if_any(whole, d.max)},
+           {"undamped_energy_gain_relative", if_any(kept, energy.gain())},
+           {"undamped_energy_swing_relative", if_any(kept, energy.swing())}}};
+}
+
+}  // namespace
+
+Panel integrators(const Scenario& springs) {
+  const auto exact = once([springs] { return exact_solution(springs); });
+  Panel panel;
+  for (const IntegratorEntry* integrator : kIntegrators) {
+    for (const int division : kDivisions) {
+      Scenario run = springs;
+      run.integrator.type = integrator;
+      run.time.step = springs.time.step / division;
+      run.time.steps = springs.time.steps * division;
+      panel.push_back({fmt::format("integrators/{} dt={}", integrator->info.name, run.time.step), "step",
+                       [=] { return errors_of(run, division, exact()); }, [=] { return bare_run(run, nullptr); }});
+    }
+  }
+  return panel;
+}
+
+// Panels of a drill that a hand presses into a hole while it turns.
+
+namespace {
+
+constexpr double kShellSpacings[] = {0.0004, 0.0002, 0.0001, 0.00005, 0.000025};
+constexpr std::pair<const char*, Density> kDensities[] = {{"signed_distance", Density::signed_distance},
+                                                          {"binary", Density::binary}};
+
+/// The algorithms of the thesis, whose angular damping is compared with damping of the tip's velocity alone.
+constexpr const char* kAngularlyDamped[] = {"original_averaging", "shaped_stiffness"};
+
+/// The algorithms that create energy while a peg sticks in a hole; the passivity controller leaves others alone.
+constexpr const char* kCreateEnergy[] = {"original_averaging", "summation", "tandpasta", "normal_projection",
+                                         "mcneely"};
+
+/// Off the ideal trajectory, over the rows in which the hand is gentle, if it ever is; and the largest change of the
+/// force in a step of all rows.
+Errors off_the_ideal(const Scenario& scenario, std::shared_ptr<const PointShell> shell) {
+  IdealTrajectoryObserver ideal(std::get<BlockEnvironment>(scenario.environment).block, make_cylinder(scenario.tool));
+  MetricsObserver motion(scenario.time.step);
+  const SampledRun run = sampled_run(scenario, std::move(shell), 1, {&ideal, &motion});
+  const MetricList metrics = told(ideal);
+  const std::string hand = number_of(metrics, "gentle.rows") > 0.0 ? "gentle." : "firm.";
+  const auto error = [&](const char* name) { return number_of(metrics, hand + name).value_or(0.0); };
+  return {std::string(outcome_name(run.result.outcome)),
+          {{"ideal_height_error_rms_m", error("height_error_rms_m")},
+           {"ideal_height_error_max_m", std::max(-error("height_error_min_m"), error("height_error_max_m"))},
+           {"ideal_lateral_error_rms_m", error("lateral_error_rms_m")},
+           {"interpenetration_max_m", error("interpenetration_max_m")},
+           {"force_step_max_N", told(motion, "force_step_max_N").value_or(0.0)}}};
+}
+
+}  // namespace
+
+Panel spacing(const Scenario& drill) {
+  Panel panel;
+  for (const auto& [name, density] : kDensities) {
+    for (const double grid : kShellSpacings) {
+      Scenario run = drill_in_hole(drill);
+      auto& block = std::get<BlockEnvironment>(run.environment);
+      block.density = density;
+      block.grid = grid;
+      const auto shell = once([run] { return make_shell(run); });
+      const auto errors = [=] {
+        Errors off = off_the_ideal(run, shell());
+        off.values.insert(off.values.begin(),
+                          {{"spacing_m", grid},
+                           {"points", static_cast<double>(shell()->size())},
+                           {"shell_bytes", static_cast<double>(shell()->padded_size() * 6 * sizeof(double))}});
+        return off;
+      };
+      panel.push_back(
+          {fmt::format("spacing/{} {}", name, grid), "step", errors, [=] { return bare_run(run, shell()); }});
+    }
+  }
+  return panel;
+}
+
+Panel algorithms(const Scenario& drill) {
+  const Scenario scenario = drill_in_hole(drill);
+  const auto shell = once([scenario] { return make_shell(scenario); });
+  Panel panel;
+  const auto add = [&](const std::string& setting, const RenderingConfig& config) {
+    Scenario run = scenario;
+    run.rendering = with_fixed_stages(config);
+    panel.push_back({"algorithms/" + setting, "step", [=] { return off_the_ideal(run, shell()); },
+                     [=] { return bare_run(run, shell()); }});
+  };
+  RenderingConfig config = scenario.rendering;
+  // Off, except in the settings that are named after them.
+  config.angular_damping = config.passivity_controller = false;
+  for (const AlgorithmEntry& algorithm : hapbench::algorithms()) {
+    config.algorithm = algorithm.info->name;
+    add(config.algorithm, config);
+  }
+  for (const char* algorithm : kAngularlyDamped) {
+    config.algorithm = algorithm;
+    config.angular_damping = true;
+    add(config.algorithm + " + angular_damping", config);
+  }
+  config.angular_damping = false;
+  for (const char* algorithm : kCreateEnergy) {
+    config.algorithm = algorithm;
+    config.passivity_controller = true;
+    add(config.algorithm + " + passivity_controller", config);
+  }
+  return panel;
+}
+
+// Panels of a free tool whose contacts are found too late: in some rows only, or anywhere between two rows.
+
+namespace {
+
+constexpr std::int64_t kQueryEvery[] = {1, 2, 4, 8, 16, 32};
+/// [s]; later two ways are apart because the scene is chaotic, whatever parted them.
+constexpr double kTogether = 0.2;
+
+/// Steps of the bounce, in steps of the scene.
+constexpr double kStepFactors[] = {4.0, 2.0, 1.0, 0.5, 0.25, 0.125};
+
+Scenario briefly_free(Scenario scenario) {
+  scenario.device = IdealDeviceFields{input_force_limit(scenario.device)};
+  scenario.time.steps = std::min<std::int64_t>(scenario.time.steps, std::llround(kTogether / scenario.time.step));
+  scenario.record = {};
+  return scenario;
+}
+
+Errors off_the_fresh(const Scenario& run, const std::shared_ptr<const PointShell>& shell,
+                     const std::vector<Vec3>& fresh) {
+  MetricsObserver metrics(run.time.step, {});
+  const SampledRun late = sampled_run(run, shell, 1, {&metrics});
+  const double every = run.rendering.late ? static_cast<double>(run.rendering.late->every) : 1.0;
+  return {std::string(outcome_name(late.result.outcome)),
+          {{"rate_Hz", 1.0 / (run.time.step * every)},
+           {"error_rms_m", distance(late.positions, fresh).rms},
+           {"force_rms_above_30Hz_N", told(metrics, "force_rms_above_30Hz_N")}}};
+}
+
+/// M v^2 / 2 and what the springs store, at the first and the last row [J], and how often contact began or ended.
+class MechanicalEnergy final : public Observer {
+ public:
+  explicit MechanicalEnergy(double mass) : mass_(mass) {}
+  bool wants_springs() const noexcept override { return true; }
+  void on_step(const StepRecord& record) noexcept override {
+    last_ = 0.5 * mass_ * record.tool.velocity.squaredNorm() + record.springs.energy;
+    if (record.step == 0) first_ = last_;
+    const bool touches = record.colliding > 0;
+    switches_ += record.step > 0 && touches != touched_ ? 1 : 0;
+    touched_ = touches;
+  }
+  double first() const { return first_; }
+  double created() const { return last_ - first_; }
+  double switches() const { return switches_; }
+
+ private:
+  double mass_, first_ = 0.0, last_ = 0.0, switches_ = 0.0;
+  bool touched_ = false;
+};
+
+/// A free tool without hand, damping and friction keeps its energy, unless law or sampling change it.
+Scenario bouncing(Scenario scenario) {
+  scenario.hand = NoHandFields{};
+  scenario.device = IdealDeviceFields{};
+  RenderingConfig& r = scenario.rendering;
+  r.damping = 0.0;
+  r.mu_s = r.mu_f = 0.0;
+  r.dry_friction.reset();
+  r.hunt_crossley.reset();
+  r.passivity_controller = false;
+  scenario.record = {};
+  return scenario;
+}
+
+Scenario with(const Scenario& scenario, const IntegratorEntry& integrator, double factor) {
+  Scenario run = with_step(scenario, factor);
+  run.integrator.type = &integrator;
+  return run;
+}
+
+}  // namespace
+
+Panel late_contacts(const Scenario& free) {
+  const Scenario scenario = briefly_free(free);
+  const auto shell = once([scenario] { return make_shell(scenario); });
+  Panel panel;
+  for (const AlgorithmEntry& algorithm : hapbench::algorithms()) {
+    Scenario run = with_algorithm(scenario, algorithm.info->name);
+    run.rendering.late.reset();
+    const auto fresh = once([=] { return sampled_run(run, shell(), 1).positions; });
+    for (const bool linear : {false, true}) {
+      for (const std::int64_t every : kQueryEvery) {
+        run.rendering.late = Lateness{};
+        run.rendering.late->every = every;
+        run.rendering.late->linear = linear;
+        panel.push_back({fmt::format("late_contacts/{} {} {}", algorithm.info->name, linear ? "linear" : "hold", every),
+                         "step", [=] { return off_the_fresh(run, shell(), fresh()); },
+                         [=] { return bare_run(run, shell()); }});
+      }
+    }
+  }
+  return panel;
+}
+
+Panel skips(const Scenario& free) {
+  Scenario scenario = briefly_free(free);
+  const auto shell = once([scenario] { return make_shell(scenario); });
+  const auto fresh = once([=] { return sampled_run(scenario, shell(), 1).positions; });
+  Panel panel;
+  for (const Skips skips : {Skips::on, Skips::off}) {
+    scenario.rendering.skips = skips;
+    panel.push_back({skips == Skips::on ? "skips/taken" : "skips/off", "step",
+                     [=] { return off_the_fresh(scenario, shell(), fresh()); },
+                     [=] { return bare_run(scenario, shell()); }});
+  }
+  return panel;
+}
+
+Panel events(const Scenario& thrown) {
+  const Scenario scenario = bouncing(thrown);
+  const auto shell = once([scenario] { return make_shell(scenario); });
+  const auto measured = [shell](const Scenario& run) {
+    MechanicalEnergy energy(run.rendering.mass);
+    const Outcome outcome = sampled_run(run, shell(), 1, {&energy}).result.outcome;
+    return std::pair(outcome, energy);
+  };
+  // The law's own part: that of the integrator which finds the events inside a step.
+  const auto reference =
+      once([=] { return measured(with(scenario, kEvent, kStepFactors[std::size(kStepFactors) - 1])).second; });
+  Panel panel;
+  for (const IntegratorEntry* integrator : kIntegrators) {
+    for (const double factor : kStepFactors) {
+      const Scenario run = with(scenario, *integrator, factor);
+      const auto errors = [=]() -> Errors {
+        const auto [outcome, energy] = measured(run);
+        const bool complete = outcome != Outcome::diverges;
+        return {std::string(outcome_name(outcome)),
+                {{"step_s", run.time.step},
+                 {"created_J", if_any(complete, energy.created())},
+                 {"created_by_sampling_J", if_any(complete, energy.created() - reference().created())},
+                 {"created_share", if_any(complete, energy.created() / reference().first())},
+                 {"contact_on_off", energy.switches()}}};
+      };
+      panel.push_back({fmt::format("events/{} dt={}", integrator->info.name, run.time.step), "step", errors,
+                       [=] { return bare_run(run, shell()); }});
+    }
+  }
+  return panel;
+}
+
+}  // namespace hapbench::accuracy

@@ -1,0 +1,220 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "algorithms/registry.hpp"
+#include "scenarios/format/bundled_scenarios.hpp"
+#include "scenarios/format/json_file.hpp"
+#include "scenarios/format/load_scenario.hpp"
+#include "scenarios/run/assemble.hpp"
+#include "scenarios/run/run_scenario.hpp"
+#include "sim/contact/contact_source.hpp"
+#include "tests/results/files.hpp"
+#include "tests/scenarios/support/bundled.hpp"
+
+namespace hapbench::contacts_test {
+namespace {
+
+namespace fs = std::filesystem;
+using test::bundled;
+using test::rows_of;
+
+// Runs whose contacts come late, from a file, or from a library of the user's own.
+
+using Rows = std::vector<StepRecord>;
+
+void expect_same_bits(const Rows& a, const Rows& b) {
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t k = 0; k < a.size(); ++k) {
+    ASSERT_EQ(a[k].tool.pose.position, b[k].tool.pose.position) << k;
+    ASSERT_EQ(a[k].force.rendered, b[k].force.rendered) << k;
+  }
+}
+
+std::vector<std::string> late(std::int64_t every, std::int64_t delay, const char* between) {
+  return {"rendering.contacts.every=" + std::to_string(every),
+          "rendering.contacts.delay_samples=" + std::to_string(delay),
+          std::string("rendering.contacts.between=") + between};
+}
+
+// Linear contacts of a plane are fresh.
+
+TEST(LinearContacts, OfAPlaneAreFreshForEveryAlgorithm) {
+  // The tool is in contact from row 6 on, and what was found in row 7 serves from row 11 on.
+  constexpr std::size_t kInContact = 11;
+  for (const AlgorithmEntry& algorithm : algorithms()) {
+    SCOPED_TRACE(algorithm.info->name);
+    const std::vector<std::string> pressed = {
+        "rendering.algorithm=" + std::string(algorithm.info->name),
+        // The exit along the normal: other depths of points at the rim do not follow the tool.
+        "rendering.depth_model=normal_projection", R"(hand={"type":"none"})", "time.duration_s=0.05",
+        R"(motion.position={"type":"prescribed","x_m":0,"y_m":0,"z_m":{"type":"ramp","start":1e-6,"rate_per_s":-4e-4}})"};
+    auto overrides = late(7, 4, "linear");
+    overrides.insert(overrides.end(), pressed.begin(), pressed.end());
+    const auto fresh = rows_of(bundled("poke_plane", pressed)), linear = rows_of(bundled("poke_plane", overrides));
+    ASSERT_EQ(fresh.size(), linear.size());
+    // Not of a model with a memory of the steps, nor of depths to the nearest side.
+    const bool depths_are_the_normals =
+        algorithm.fixed_depth_model.empty() || algorithm.fixed_depth_model == "normal_projection";
+    for (std::size_t k = 0; k < fresh.size(); ++k) {
+      if (k < 4) {
+        EXPECT_EQ(linear[k].force.spring, Vec3(Vec3::Zero()));
+      } else if (k >= kInContact && depths_are_the_normals) {
+        // Solvers of the laws stop at 1e-6 of the force and better.
+        ASSERT_NEAR((linear[k].force.spring - fresh[k].force.spring).norm(), 0.0, 1e-6 * fresh[k].force.spring.norm())
+            << k;
+      }
+    }
+  }
+}
+
+/// The contacts of every row, by way of the held ones: a chance of 1e-300 loses none.
+TEST(LateContacts, OfEveryRowChangeNoBitForAnyAlgorithm) {
+  for (const AlgorithmEntry& algorithm : algorithms()) {
+    SCOPED_TRACE(algorithm.info->name);
+    const std::vector<std::string> law = {"rendering.algorithm=" + std::string(algorithm.info->name),
+                                          "time.duration_s=0.2", "rendering.angular_damping=true"};
+    auto none = law, held = law;
+    none.emplace_back("rendering.contacts={}");
+    held.emplace_back("rendering.contacts.dropout=1e-300");
+    const auto fresh = rows_of(bundled("drag_molar", law));
+    const Scenario defaults = bundled("drag_molar", none);
+    EXPECT_EQ(dynamic_cast<const LateContacts*>(assemble(defaults).source.get()), nullptr);
+    expect_same_bits(fresh, rows_of(defaults));
+    expect_same_bits(fresh, rows_of(bundled("drag_molar", held)));
+  }
+}
+
+// A trace.
+
+class Trace : public testing::Test {
+ protected:
+  LoadedScenario loaded(const std::string& scene, const std::vector<std::string>& overrides) {
+    return load_scenario(find_scenario(scene), overrides);
+  }
+  const test::TemporaryDirectory folder_;
+  const fs::path directory_ = folder_.path();
+};
+
+TEST_F(Trace, OfARunGivesItsForcesBitForBit) {
+  for (const AlgorithmEntry& algorithm : algorithms()) {
+    if (!algorithm.reported_depth_model.empty()) continue;  // it finds its points itself
+    // A trace knows nothing of the law: other tools and motions are tried with one.
+    std::vector<const char*> scenes = {"plane_wiped_round"};
+    if (std::string_view(algorithm.info->name) == "shaped_stiffness")
+      scenes.insert(scenes.end(), {"cone_in_cone", "stroke_in_hole"});
+    for (const char* scene : scenes) {
+      SCOPED_TRACE(testing::Message() << scene << " " << algorithm.info->name);
+      std::vector<std::string> overrides = {"rendering.algorithm=" + std::string(algorithm.info->name),
+                                            "rendering.damping_ratio=0.7", "time.steps=200"};
+      if (algorithm.may_reduce) overrides.emplace_back("rendering.reduction={}");
+      overrides.emplace_back("record.contacts=true");
+      const fs::path first = directory_ / "first", again = directory_ / "again";
+      run_scenario(loaded(scene, overrides), first, false);
+      overrides.emplace_back(R"(rendering.contact_source={"type":"trace","file":")" +
+                             (first / "contact_trace.csv").string() + "\"}");
+      run_scenario(checked(loaded(scene, overrides)), again, false);
+      EXPECT_EQ(test::read_file(first / "trajectory.csv"), test::read_file(again / "trajectory.csv"));
+      EXPECT_EQ(test::read_file(first / "contact_trace.csv"), test::read_file(again / "contact_trace.csv"));
+    }
+  }
+}
+
+// A library.
+
+TEST(ContactPlugin, OfASphereGivesTheForceOfASphere) {
+  const std::string source = R"(rendering.contact_source={"type":"plugin","file":")" HAPBENCH_TEST_MODULES
+                             R"(/sphere.so","config":{"radius_m":0.002}})";
+  const Scenario scenario =
+      bundled("plane_wiped_round",
+              {source, "rendering.friction.mu_s_N_s_per_m=0", "rendering.friction.mu_f_s_per_m=0",
+               R"(motion.position={"type":"prescribed","x_m":{"type":"ramp","start":-0.001,"rate_per_s":0.002},)"
+               R"("y_m":0,"z_m":0.0024})"});
+  const auto rows = rows_of(scenario);
+  std::size_t in_contact = 0;
+  for (const StepRecord& row : rows) {
+    const double depth = std::max(0.0, 0.0025 - row.tool.pose.position.norm());
+    in_contact += static_cast<std::size_t>(depth > 0.0);
+    const Vec3 force = 20000.0 * depth * row.tool.pose.position.normalized();
+    ASSERT_TRUE(row.force.rendered.isApprox(force, 1e-12) || (row.force.rendered - force).norm() < 1e-12)
+        << row.tool.pose.position;
+  }
+  EXPECT_GT(in_contact, 500u);
+}
+
+TEST(ContactPlugin, SaysWhatItMisses) {
+  const auto said = [](const std::string& file, const std::string& config) -> std::string {
+    try {
+      assemble(bundled("plane_wiped_round", {"rendering.contact_source={\"type\":\"plugin\",\"file\":\"" + file +
+                                             "\",\"config\":" + config + "}"}));
+    } catch (const std::exception& error) {
+      return error.what();
+    }
+    return "";
+  };
+  const std::string folder = HAPBENCH_TEST_MODULES "/";
+  EXPECT_EQ(said(folder + "sphere.so", "{\"radius\":1}"),
+            "sphere (sphere.so) fails in create: its config has no number radius_m");
+  EXPECT_NE(said(folder + "none.so", "{}").find("cannot be loaded as a source of contacts: No such file"),
+            std::string::npos);
+  EXPECT_NE(said(folder + "depth_weighted.so", "{}").find("holds a law, not a source of contacts; name it in --module"),
+            std::string::npos);
+  EXPECT_NE(said(folder + "sphere.so", "3").find("config: got 3; allowed: an object"), std::string::npos);
+}
+
+// Skipped work must not change results: with every skip off, a run writes the same bytes, but for the counted work.
+// The bundled scenarios are tested in tests/scenarios/program/bundled_scenarios_test.cpp.
+
+/// summary.json without the counted work, which goes out in `work`; still text, so that every digit counts.
+std::string summary_without_work(const fs::path& file, Json& work) {
+  Json summary = Json::parse(test::read_file(file));
+  work = summary["work"];
+  summary.erase("work");
+  return summary.dump();
+}
+
+class WithAndWithoutSkips : public testing::Test {
+ protected:
+  void expect_same_results(const Json& scenario) {
+    LoadedScenario loaded = read_scenario(scenario, directory_.path());
+    const fs::path taken = directory_ / "taken", off = directory_ / "off";
+    for (const fs::path& old : {taken, off}) fs::remove_all(old);
+    run_scenario(loaded, taken, false);
+    loaded.scenario.rendering.skips = Skips::off;
+    run_scenario(loaded, off, false);
+    test::expect_same_files(taken, off, {"summary.json", "timing.json"});
+    Json work_taken, work_off;
+    EXPECT_EQ(summary_without_work(taken / "summary.json", work_taken),
+              summary_without_work(off / "summary.json", work_off));
+    EXPECT_EQ(work_off["steps_skipped"], 0);
+    EXPECT_EQ(work_off["lists_rebuilt"], 0);
+    EXPECT_EQ(work_off["allocations"], work_taken["allocations"]);
+    skipped_ += work_taken["steps_skipped"].get<std::uint64_t>();
+  }
+
+  test::TemporaryDirectory directory_;
+  std::uint64_t skipped_ = 0;
+};
+
+// Free air, touch and free air again, through every algorithm with and without damping and friction.
+TEST_F(WithAndWithoutSkips, EveryAlgorithmGivesTheSameBytes) {
+  for (const AlgorithmEntry& algorithm : algorithms()) {
+    for (const char* friction : {"0", "5"}) {
+      SCOPED_TRACE(std::string(algorithm.info->name) + " with friction " + friction);
+      Json json = Json::parse(std::string(R"({
+          "time": {"step_s": 0.0005, "steps": 600}, "environment": {"type": "hole_2d"},
+          "initial": {"position_m": [0.0001, 0.001, 0], "velocity_m_per_s": [0, -0.05, 0]},
+          "motion": {"orientation": {"tilt_rad": {"type": "ramp", "start": 0.3, "rate_per_s": -1}}},
+          "hand": {"type": "force", "y_N": {"type": "sine", "mean": 0, "amplitude": 2, "period_s": 0.1}},
+          "record": {"contacts": true},
+          "rendering": {"friction": {"mu_s_N_s_per_m": )") +
+                              friction + R"(, "mu_f_s_per_m": )" + friction + "}}}");
+      json["rendering"]["algorithm"] = algorithm.info->name;
+      expect_same_results(json);
+    }
+  }
+  EXPECT_GT(skipped_, 0u);
+}
+
+}  // namespace
+}  // namespace hapbench::contacts_test
