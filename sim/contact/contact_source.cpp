@@ -1,8 +1,8 @@
 #include "sim/contact/contact_source.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
+#include <numeric>
 
 #include "sim/contact/neighbour_list_query.hpp"
 
@@ -14,21 +14,15 @@ std::unique_ptr<ContactQuery> make_contact_query(const PointShell& shell, const 
 }
 
 ShellQuery::ShellQuery(const PointShell& shell, const ToolShape& tool)
-    : shell_(&shell), tool_(&tool), marks_(shell.padded_size() / simd::lanes) {}
+    : shell_(&shell), tool_(&tool), numbers_(shell.padded_size()) {
+  std::iota(numbers_.begin(), numbers_.end(), 0u);
+}
 
 void ShellQuery::contacts_at(const ToolPose& pose, ContactBuffer& contacts) noexcept {
   const PointShell& shell = *shell_;
-  const PackRange all{0, marks_.size()};
-  tool_->mark_inside(pose, {shell.x(), shell.y(), shell.z()}, {&all, 1}, marks_.data());
-
+  const PointColumns points{numbers_.data(), shell.x(), shell.y(), shell.z(), shell.nx(), shell.ny(), shell.nz()};
   contacts.clear();
-  for (std::size_t pack = 0; pack < marks_.size(); ++pack) {
-    for (std::uint8_t hits = marks_[pack]; hits != 0; hits &= static_cast<std::uint8_t>(hits - 1)) {
-      const std::size_t i = pack * simd::lanes + static_cast<std::size_t>(std::countr_zero(hits));
-      const SurfacePoint point = shell.point(i);
-      contacts.push(static_cast<std::uint32_t>(i), point.position, point.normal);
-    }
-  }
+  tool_->push_inside(pose, points, shell.padded_size() / simd::lanes, contacts);
   ++work_.queries;
   work_.points_tested += shell.size();
 }
@@ -77,6 +71,66 @@ void TraceSource::contacts_at(const ToolPose&, ContactBuffer& contacts) noexcept
       const auto& [point, gradient, depth] = trace_->contacts[i];
       push_spring(i - at->first, point, depth, gradient, contacts);
     }
+  }
+  contacts.pad();
+}
+
+LateContacts::LateContacts(std::unique_ptr<ContactSource> source, const Lateness& lateness, bool may_pull,
+                           std::uint64_t seed)
+    : source_(std::move(source)),
+      lateness_(lateness),
+      may_pull_(may_pull),
+      seed_(seed),
+      random_(seed),
+      waiting_(static_cast<std::size_t>(lateness.delay / lateness.every) + 1),
+      found_(source_->capacity()) {
+  source_->follow(&used_.row);
+}
+
+void LateContacts::reset() noexcept {
+  source_->reset();
+  fault_ = nullptr;
+  random_ = Random(seed_);
+  calls_ = asked_ = lost_ = 0;
+  last_row_.reset();
+  first_ = count_ = 0;
+  serves_ = false;
+  found_.clear();
+}
+
+/// Sends the query of the row, if it has one, and takes up the answer that comes due. At most one does, because each
+/// query takes as long.
+void LateContacts::begin_row(std::uint64_t row, const ToolPose& pose) noexcept {
+  if (row % static_cast<std::uint64_t>(lateness_.every) == 0) {
+    const bool is_lost = asked_++ > 0 && lateness_.dropout > 0.0 && random_.uniform() < lateness_.dropout;
+    if (is_lost)
+      ++lost_;
+    else
+      waiting_[(first_ + count_++) % waiting_.size()] = {pose, row};
+  }
+  if (count_ == 0 || waiting_[first_].row + static_cast<std::uint64_t>(lateness_.delay) > row) return;
+  used_ = waiting_[first_];
+  first_ = (first_ + 1) % waiting_.size();
+  --count_;
+  serves_ = true;
+  source_->contacts_at(used_.pose, found_);
+  fault_ = source_->fault();
+}
+
+void LateContacts::contacts_at(const ToolPose& pose, ContactBuffer& contacts) noexcept {
+  const std::uint64_t row = row_ != nullptr ? *row_ : calls_++;
+  if (row != last_row_) begin_row(row, pose);
+  last_row_ = row;
+  if (!lateness_.linear || found_.empty()) return contacts.assign(found_);
+  contacts.clear();
+  const Vec3 moved = pose.position - used_.pose.position;
+  const Mat3 turned = turn_matrix(used_.pose, pose) - Mat3::Identity();
+  for (std::size_t i = 0; i < found_.size(); ++i) {
+    const Vec3 way = moved + turned * (found_.point(i) - used_.pose.position);
+    const double depth = found_.depth[i] + found_.gradient(i).dot(way);
+    if (!(depth > 0.0) && !may_pull_) continue;
+    contacts.push_copy_of(found_, i);
+    contacts.depth[contacts.size() - 1] = depth;
   }
   contacts.pad();
 }

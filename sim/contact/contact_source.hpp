@@ -2,10 +2,12 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "sim/contact/contact_buffer.hpp"
+#include "sim/core/random.hpp"
 #include "sim/geometry/point_shell.hpp"
 #include "sim/tool/tool_shape.hpp"
 
@@ -46,9 +48,8 @@ class ContactQuery {
   SearchWork work_;
 };
 
-/// Compares every point of the shell with the tool, eight at a time: the reference for the faster searches
-/// (neighbour_list_query.hpp), and fast enough for planar scenes. O(shell size), about 0.3 ns a point with 512-bit
-/// registers.
+/// Compares every point of the shell with the tool, eight at a time: the reference for NeighbourListQuery. O(shell
+/// size), about 0.3 ns a point with 512-bit registers.
 class ShellQuery final : public ContactQuery {
  public:
   /// Shell and tool must outlive the query.
@@ -60,7 +61,7 @@ class ShellQuery final : public ContactQuery {
  private:
   const PointShell* shell_;
   const ToolShape* tool_;
-  std::vector<std::uint8_t> marks_;
+  std::vector<std::uint32_t> numbers_;  ///< 0, 1, … of the points
 };
 
 /// The search used by runs: neighbour lists, or brute force with Skips::off. Shell and tool must outlive it.
@@ -80,7 +81,7 @@ class ContactSource {
   virtual std::size_t capacity() const noexcept = 0;
   /// Hands over the number of the present row, which changes before the first query of each row, to sources whose
   /// answer depends on more than the pose. Called once, before the first step, unless no Simulation steps the source.
-  virtual void follow(const std::uint64_t* /*row*/) {}
+  void follow(const std::uint64_t* row) { row_ = row; }
   /// Returns to t = 0, counters included.
   virtual void reset() noexcept { work_ = {}; }
   virtual const SearchWork& work() const noexcept { return work_; }
@@ -90,7 +91,8 @@ class ContactSource {
 
  protected:
   const char* fault_ = nullptr;
-  SearchWork work_;  ///< of a source that has no search
+  const std::uint64_t* row_ = nullptr;  ///< null where no Simulation counts rows
+  SearchWork work_;                     ///< of a source that has no search
 };
 
 /// Springs attached to the tool's position, all with natural length at the origin (thesis A.2). Spring j has the unit
@@ -146,13 +148,74 @@ class TraceSource final : public ContactSource {
 
   void contacts_at(const ToolPose& pose, ContactBuffer& contacts) noexcept override;
   std::size_t capacity() const noexcept override { return capacity_; }
-  void follow(const std::uint64_t* row) override { row_ = row; }
 
  private:
   std::shared_ptr<const ContactTrace> trace_;
   double dt_;
   std::size_t capacity_;
-  const std::uint64_t* row_ = nullptr;  ///< null where no Simulation counts rows; then the queries do
+};
+
+/// How late contacts come: a slow loop finds them while a fast one renders (multi-rate rendering).
+struct Lateness {
+  std::int64_t every = 1;  ///< contacts are found at rows 0, every, 2 every, …
+  std::int64_t delay = 0;  ///< rows from a query until its contacts serve
+  bool linear = false;     ///< depths follow the tool until the next answer; else they are held
+  double dropout = 0.0;    ///< probability that a query after the first is lost
+
+  /// False where every row has its own contacts.
+  bool any() const { return every > 1 || delay > 0 || dropout > 0.0; }
+};
+
+/// The contacts of another source, found in some rows only and used until newer ones come; none before the first.
+///
+/// Held contacts keep depth, point and gradient. Linear ones keep point and gradient, and their depth grows by the move
+/// of the tool's material at x_i since the query at p_q, with Q = turn_matrix of the two poses:
+///
+///   d_i + <u_i, (p - p_q) + (Q - I)(x_i - p_q)>.
+///
+/// Those not above 0 are left out, except springs that pull. Integrators that ask within a step get the row's contacts,
+/// held or moved to where they ask.
+///
+/// The source is asked when its answer comes due, for the pose of the query: queries on their way keep no contacts, and
+/// sources with a memory still see them in order.
+class LateContacts final : public ContactSource {
+ public:
+  struct Query {
+    ToolPose pose;
+    std::uint64_t row = 0;
+  };
+
+  /// `may_pull`: depths below 0 are springs that pull. Precondition: every >= 1, delay >= 0.
+  LateContacts(std::unique_ptr<ContactSource> source, const Lateness& lateness, bool may_pull, std::uint64_t seed);
+
+  void contacts_at(const ToolPose& pose, ContactBuffer& contacts) noexcept override;
+  std::size_t capacity() const noexcept override { return source_->capacity(); }
+  void reset() noexcept override;
+  const SearchWork& work() const noexcept override { return source_->work(); }
+
+  const Lateness& lateness() const { return lateness_; }
+  /// The query whose contacts serve in the present row; null before the first.
+  const Query* used() const { return serves_ ? &used_ : nullptr; }
+  std::uint64_t asked() const { return asked_; }  ///< queries, those that were lost included
+  std::uint64_t lost() const { return lost_; }
+
+ private:
+  void begin_row(std::uint64_t row, const ToolPose& pose) noexcept;
+
+  std::unique_ptr<ContactSource> source_;
+  Lateness lateness_;
+  bool may_pull_;
+  std::uint64_t seed_;
+  Random random_;
+  std::uint64_t calls_ = 0;                ///< rows so far of a source that no Simulation steps
+  std::optional<std::uint64_t> last_row_;  ///< that has begun
+
+  std::vector<Query> waiting_;  ///< ring of queries on their way
+  std::size_t first_ = 0, count_ = 0;
+  bool serves_ = false;
+  Query used_;
+  ContactBuffer found_;  ///< contacts of `used_`
+  std::uint64_t asked_ = 0, lost_ = 0;
 };
 
 }  // namespace hapbench

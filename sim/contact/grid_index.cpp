@@ -1,7 +1,6 @@
 #include "sim/contact/grid_index.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <numeric>
 #include <utility>
@@ -115,40 +114,6 @@ std::vector<SurfacePoint> in_grid_order(const std::vector<SurfacePoint>& points,
   ordered.reserve(points.size());
   for (const std::uint32_t i : grid_order(points, cell_size)) ordered.push_back(points[i]);
   return ordered;
-}
-
-// A run of n points meets at most n / 8 + 2 packs.
-GridScan::GridScan(const GridIndex& grid)
-    : grid_(&grid), packs_(grid.columns()), marks_(grid.size() / simd::lanes + 2 * grid.columns()) {}
-
-std::size_t GridScan::select(const Box& box) noexcept {
-  std::size_t points = 0;
-  runs_ = 0;
-  grid_->for_each_run(box, [&](std::uint32_t first, std::uint32_t last) {
-    const std::size_t end = (last + simd::lanes - 1) / simd::lanes;
-    // The first and the last pack may reach into neighbouring columns.
-    packs_[runs_++] = {first / simd::lanes, end, static_cast<std::uint8_t>(0xffu << first % simd::lanes),
-                       static_cast<std::uint8_t>(0xffu >> (end * simd::lanes - last))};
-    points += last - first;
-  });
-  return points;
-}
-
-bool GridScan::any_hit() const {
-  std::size_t packs = 0;
-  for (const PackRange& run : this->packs()) packs += run.last - run.first;
-  return std::any_of(marks_.begin(), marks_.begin() + static_cast<std::ptrdiff_t>(packs),
-                     [](std::uint8_t hits) { return hits != 0; });
-}
-
-std::size_t GridScan::list_hits(std::uint32_t* indices) const {
-  std::uint32_t* end = indices;
-  for_each_hit([&](std::uint8_t hits, std::size_t i) {
-    for (unsigned rest = hits; rest != 0; rest &= rest - 1)
-      *end++ = grid_->shell_index(i + static_cast<std::size_t>(std::countr_zero(rest)));
-  });
-  std::sort(indices, end);
-  return static_cast<std::size_t>(end - indices);
 }
 
 std::size_t most_points_in(const PointShell& shell, const ToolShape::Cover& cover) {

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "sim/core/aligned.hpp"
@@ -92,46 +91,9 @@ std::vector<std::uint32_t> grid_order(const std::vector<SurfacePoint>& points, d
 /// The points in that order: searches in a shell of them need not sort (GridIndex::keeps_order).
 std::vector<SurfacePoint> in_grid_order(const std::vector<SurfacePoint>& points, double cell_size);
 
-/// The points of a grid in a box, as ranges of packs for one call of a ToolShape, with the marks it writes.
-class GridScan {
- public:
-  /// Allocates for the largest box. The grid must outlive the scan.
-  explicit GridScan(const GridIndex& grid);
-  GridScan(const GridScan&) = delete;
-  GridScan& operator=(const GridScan&) = delete;
-
-  /// Lists the points in the cells that meet the box and returns their number. Allocates nothing.
-  std::size_t select(const Box& box) noexcept;
-
-  PointArrays points() const noexcept { return {grid_->x(), grid_->y(), grid_->z()}; }
-  std::span<const PackRange> packs() const noexcept { return {packs_.data(), runs_}; }
-  std::uint8_t* marks() noexcept { return marks_.data(); }
-
-  /// True if some point is marked.
-  bool any_hit() const;
-  /// Calls `take(hits, i)` where some of the eight points from i on are marked, in ascending order of the grid.
-  template <class Take>
-  void for_each_hit(Take take) const {
-    const std::uint8_t* marks = marks_.data();
-    for (const PackRange& run : packs()) {
-      for (std::size_t pack = run.first; pack < run.last; ++pack) {
-        if (const std::uint8_t hits = *marks++; hits != 0) take(hits, pack * simd::lanes);
-      }
-    }
-  }
-  /// Writes the shell indices of the marked points in ascending order and returns their number.
-  std::size_t list_hits(std::uint32_t* indices) const;
-
- private:
-  const GridIndex* grid_;
-  std::size_t runs_ = 0;
-  std::vector<PackRange> packs_;
-  std::vector<std::uint8_t> marks_;
-};
-
-/// Upper bound of the number of shell points that can lie in the balls at once, wherever the balls are; it determines
-/// the capacity of buffers. It is the number of balls times the points in the fullest cube that holds such a ball, grid
-/// cells rounded up: for the thesis's drill a sixth of the block's points. O(shell size).
+/// Upper bound of the number of shell points that can lie in the balls at once, wherever the balls are, for the
+/// capacity of buffers: their number times the points in the fullest cube that holds such a ball, grid cells rounded
+/// up; for the thesis's drill a sixth of the block's points. O(shell size).
 std::size_t most_points_in(const PointShell& shell, const ToolShape::Cover& cover);
 
 }  // namespace hapbench

@@ -19,6 +19,12 @@ constexpr std::size_t kMostLooks = 20000;
 /// beyond the border.
 constexpr double kOnTool = 1e-9, kCoarse = 0.25;
 
+/// Relative to the half width: stretches this short are not halved, ones this long have one ball only; what outlines
+/// made of polylines leave out of round bodies.
+constexpr double kShort = 0.02, kLong = 1.0, kPolyline = 2e-4;
+/// Centres to try around that of the smallest ball, in half widths.
+constexpr double kBeside[] = {0.25, -0.25, 0.5, -0.5, 1.0, -1.0, 2.0, -2.0, 4.0, -4.0, 8.0};
+
 }  // namespace
 
 InsideSearch::InsideSearch(const ToolShape& tool, const Solid& solid)
@@ -108,8 +114,7 @@ void InsideSearch::look(const ToolPose& pose, const Cell* parents, std::size_t c
     }
     if (cells_.size() < kMostCells) cells_.push_back(cell);
   }
-  std::sort(cells_.begin() + static_cast<std::ptrdiff_t>(first), cells_.end(),
-            [](const Cell& a, const Cell& b) { return a.bound < b.bound; });
+  std::ranges::sort(cells_.begin() + static_cast<std::ptrdiff_t>(first), cells_.end(), {}, &Cell::bound);
 }
 
 /// Moves a point near the tool into it, unless it is there. The distances of a mesh are approximate.
@@ -151,16 +156,6 @@ void InsideSearch::improve(const ToolPose& pose, Vec3 place) noexcept {
   }
 }
 
-namespace {
-
-/// Relative to the half width: stretches this short are not halved, ones this long have one ball only; what outlines
-/// made of polylines leave out of round bodies.
-constexpr double kShort = 0.02, kLong = 1.0, kPolyline = 2e-4;
-/// Centres to try around that of the smallest ball, in half widths.
-constexpr double kBeside[] = {0.25, -0.25, 0.5, -0.5, 1.0, -1.0, 2.0, -2.0, 4.0, -4.0, 8.0};
-
-}  // namespace
-
 InsideBound::InsideBound(const ToolShape& tool, const Solid& solid)
     : tool_(tool),
       solid_(solid),
@@ -168,8 +163,7 @@ InsideBound::InsideBound(const ToolShape& tool, const Solid& solid)
       outline_(tool.outline()),
       // The outline of a tool on a grid may leave out a cell's diagonal.
       margin_(kPolyline * half_width_ + 2.0 * tool.surface_error()) {
-  const auto [far, tip] = std::minmax_element(outline_.begin(), outline_.end(),
-                                              [](const ProfilePoint& a, const ProfilePoint& b) { return a.s < b.s; });
+  const auto [far, tip] = std::ranges::minmax_element(outline_, {}, &ProfilePoint::s);
   stretches_.push_back({far->s, tip->s});
 }
 

@@ -17,10 +17,9 @@ inline constexpr double kNormalsOver = 1e-3;  ///< share of a tool's half width 
 ///
 /// phi changes by at most the way between two points, so in a box of half diagonal R about c nothing is deeper than
 /// R - phi(c). Boxes that the tool meets are halved until none can hold a point deeper by more than the tolerance than
-/// the deepest one known. That one is improved from where it was found: -grad phi leads to the tool's foremost place in
-/// this direction, from which the way back is halved until the place is deeper; it begins at the tip centre. So the
-/// answer is the exact depth of some point of the tool, as a rule the deepest; none is deeper by more than the
-/// tolerance.
+/// the deepest one known. That one, at first the tip centre, is improved from where it was found: -grad phi leads to
+/// the tool's foremost place in this direction, from which the way back is halved until the place is deeper. So the
+/// answer is the exact depth of some point of the tool, as a rule the deepest.
 ///
 /// Allocates in the constructor only. Some 100 to 1000 distances.
 class InsideSearch {
@@ -79,9 +78,8 @@ class InsideBound {
 
   /// No point of the tool in this pose is deeper [m], nor in any other whose tip centre lies within `moved` [m] of this
   /// one's and whose axis differs by at most `turned` in length; negative where all are outside. A bound that is
-  /// `enough` is not improved, nor, unless `best` is wanted, one of which it is clear that it will not be. Places of
-  /// which nobody knows whether they are inside count as outside. Allocates when it looks at a stretch for the first
-  /// time.
+  /// `enough` is not improved, nor, unless `best` is wanted, one that clearly will not be. Unknown places count as
+  /// outside. Allocates when it looks at a stretch for the first time.
   double at(const ToolPose& pose, double moved, double turned, double enough, bool best);
   /// The same by the ball around the whole tool alone.
   double roughly_at(const ToolPose& pose, double moved, double turned);

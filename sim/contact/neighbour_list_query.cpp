@@ -1,11 +1,11 @@
 #include "sim/contact/neighbour_list_query.hpp"
 
 #include <algorithm>
+#include <bit>
 
-#include "sim/contact/push_hits.hpp"
+#include "sim/core/simd.hpp"
 
 namespace hapbench {
-
 namespace {
 
 /// Skin in half widths of the tool. A thicker skin makes every step test more points, a thinner one makes more lists.
@@ -30,8 +30,11 @@ NeighbourListQuery::NeighbourListQuery(const PointShell& shell, const ToolShape&
       skin_wanted_(kSkinPerHalfWidth * tool.half_width()),
       capacity_(most_points_in(shell, tool.cover(margin_of(skin_wanted_, largest_scale(shell, tool))))),
       grid_(shell),
-      scan_(grid_),
-      list_(simd::padded(capacity_) + simd::lanes) {}
+      // A run of n points meets at most n / 8 + 2 packs.
+      marks_(grid_.size() / simd::lanes + 2 * grid_.columns()),
+      list_(simd::padded(capacity_) + simd::lanes) {
+  runs_.reserve(grid_.columns());
+}
 
 void NeighbourListQuery::reset() noexcept {
   work_ = {};
@@ -45,7 +48,10 @@ void NeighbourListQuery::contacts_at(const ToolPose& pose, ContactBuffer& contac
   const bool list_holds = has_list_ && tool_->moved_at_most(list_pose_, pose) * (1.0 + kSlack) <= skin_;
   if (!list_holds) rebuild(pose);
   if (list_size_ > 0) {
-    test_list(pose, contacts);
+    const PointColumns points{list_.index.data(), list_.x.data(),  list_.y.data(), list_.z.data(),
+                              list_.nx.data(),    list_.ny.data(), list_.nz.data()};
+    tool_->push_inside(pose, points, simd::padded(list_size_) / simd::lanes, contacts);
+    work_.points_tested += list_size_;
   } else if (list_holds) {
     ++work_.skipped;
   }
@@ -56,9 +62,14 @@ void NeighbourListQuery::rebuild(const ToolPose& pose) noexcept {
   has_list_ = true;
   list_pose_ = pose;
   skin_ = skin_wanted_;
-  collect(pose, skin_);
-  if (list_size_ > 0) return;
-  for (int i = 0; i < kMostDoublings && is_empty(pose, 2.0 * skin_); ++i) skin_ *= 2.0;
+  mark_near(pose, skin_);
+  take_marked();
+  bool is_empty = list_size_ == 0;
+  for (int i = 0; i < kMostDoublings && is_empty; ++i) {
+    mark_near(pose, 2.0 * skin_);
+    for_each_hit([&](std::uint8_t, std::size_t) { is_empty = false; });
+    if (is_empty) skin_ *= 2.0;
+  }
 }
 
 /// Search margin [m] that covers rounding, so that no point within the skin is lost; `scale` is the largest coordinate.
@@ -69,46 +80,51 @@ double NeighbourListQuery::margin_of(double skin, double scale) const noexcept {
 /// Marks the points within `skin` of the tool, and some just beyond.
 void NeighbourListQuery::mark_near(const ToolPose& pose, double skin) noexcept {
   const double margin = margin_of(skin, pose.position.cwiseAbs().maxCoeff() + tool_->reach());
-  work_.points_tested += scan_.select(tool_->box_near(pose, margin, grid_.bounds()));
-  tool_->mark_near(pose, margin, scan_.points(), scan_.packs(), scan_.marks());
+  runs_.clear();
+  grid_.for_each_run(tool_->box_near(pose, margin, grid_.bounds()), [this](std::uint32_t first, std::uint32_t last) {
+    const std::size_t end = (last + simd::lanes - 1) / simd::lanes;
+    // The first and the last pack may reach into neighbouring columns.
+    runs_.push_back({first / simd::lanes, end, static_cast<std::uint8_t>(0xffu << first % simd::lanes),
+                     static_cast<std::uint8_t>(0xffu >> (end * simd::lanes - last))});
+    work_.points_tested += last - first;
+  });
+  tool_->mark_near(pose, margin, {grid_.x(), grid_.y(), grid_.z()}, runs_, marks_.data());
 }
 
-bool NeighbourListQuery::is_empty(const ToolPose& pose, double skin) noexcept {
-  mark_near(pose, skin);
-  return !scan_.any_hit();
-}
-
-/// Fills the list with the points within `skin` of the tool, and some just beyond.
-void NeighbourListQuery::collect(const ToolPose& pose, double skin) noexcept {
-  mark_near(pose, skin);
-  grid_.keeps_order() ? take_marked() : take_marked_sorted();
-  for (std::size_t k = list_size_; k < simd::padded(list_size_); ++k)
-    list_.x[k] = list_.y[k] = list_.z[k] = PointShell::kFarAway;
-}
-
-/// Takes whole packs at a time. Precondition: the grid keeps the shell's order.
-void NeighbourListQuery::take_marked() noexcept {
-  const PointColumns points{grid_.shell_indices(), shell_->x(),  shell_->y(), shell_->z(),
-                            shell_->nx(),          shell_->ny(), shell_->nz()};
-  list_size_ = 0;
-  scan_.for_each_hit(
-      [&, this](std::uint8_t hits, std::size_t i) { list_size_ += copy_hits(hits, points, i, list_, list_size_); });
-}
-
-void NeighbourListQuery::take_marked_sorted() noexcept {
-  list_size_ = scan_.list_hits(list_.index.data());
-  for (std::size_t k = 0; k < list_size_; ++k) {
-    const auto [position, normal] = shell_->point(list_.index[k]);
-    list_.set(k, position, normal);
+/// Calls `take(hits, i)` where some of the eight points from i on are marked, in ascending order of the grid.
+template <class Take>
+void NeighbourListQuery::for_each_hit(const Take& take) const {
+  const std::uint8_t* marks = marks_.data();
+  for (const PackRange& run : runs_) {
+    for (std::size_t pack = run.first; pack < run.last; ++pack) {
+      if (const std::uint8_t hits = *marks++; hits != 0) take(hits, pack * simd::lanes);
+    }
   }
 }
 
-void NeighbourListQuery::test_list(const ToolPose& pose, ContactBuffer& contacts) noexcept {
-  const PointColumns points{list_.index.data(), list_.x.data(),  list_.y.data(), list_.z.data(),
-                            list_.nx.data(),    list_.ny.data(), list_.nz.data()};
-  const PackRange all{0, simd::padded(list_size_) / simd::lanes};
-  tool_->push_inside(pose, points, {&all, 1}, contacts);
-  work_.points_tested += list_size_;
+/// Fills the list with the marked points.
+void NeighbourListQuery::take_marked() noexcept {
+  list_size_ = 0;
+  if (grid_.keeps_order()) {
+    // Whole packs at a time.
+    const PointColumns points{grid_.shell_indices(), shell_->x(),  shell_->y(), shell_->z(),
+                              shell_->nx(),          shell_->ny(), shell_->nz()};
+    for_each_hit([&, this](std::uint8_t hits, std::size_t i) {
+      list_size_ += simd::copy_selected(hits, points, i, list_, list_size_);
+    });
+  } else {
+    for_each_hit([this](std::uint8_t hits, std::size_t i) {
+      for (unsigned rest = hits; rest != 0; rest &= rest - 1)
+        list_.index[list_size_++] = grid_.shell_indices()[i + static_cast<std::size_t>(std::countr_zero(rest))];
+    });
+    std::sort(list_.index.begin(), list_.index.begin() + static_cast<std::ptrdiff_t>(list_size_));
+    for (std::size_t k = 0; k < list_size_; ++k) {
+      const auto [position, normal] = shell_->point(list_.index[k]);
+      list_.set(k, position, normal);
+    }
+  }
+  for (std::size_t k = list_size_; k < simd::padded(list_size_); ++k)
+    list_.x[k] = list_.y[k] = list_.z[k] = PointShell::kFarAway;
 }
 
 }  // namespace hapbench

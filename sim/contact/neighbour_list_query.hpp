@@ -12,8 +12,8 @@ namespace hapbench {
 /// until the tool has moved or turned further than the skin. The answers are those of ShellQuery, bit by bit.
 ///
 /// Why no point is missed: every point of the tool lies within ToolShape::moved_at_most of where it was when the list
-/// was made, so a shell point that the tool touches is in the list as long as that distance is at most the skin. When
-/// it exceeds the skin, the list is made anew. The slow loop of thesis 2.2 thus only saves work here.
+/// was made, so a shell point that the tool touches is in the list as long as that is at most the skin, beyond which
+/// the list is made anew. The slow loop of thesis 2.2 thus only saves work here.
 ///
 /// Clearance: if a search finds no point near, it looks in ever larger skins. The largest empty one tells how far the
 /// tool may go before the next search: in free air a step costs one comparison.
@@ -30,18 +30,17 @@ class NeighbourListQuery final : public ContactQuery {
   void rebuild(const ToolPose& pose) noexcept;
   double margin_of(double skin, double scale) const noexcept;
   void mark_near(const ToolPose& pose, double skin) noexcept;
-  bool is_empty(const ToolPose& pose, double skin) noexcept;
-  void collect(const ToolPose& pose, double skin) noexcept;
+  template <class Take>
+  void for_each_hit(const Take& take) const;
   void take_marked() noexcept;
-  void take_marked_sorted() noexcept;
-  void test_list(const ToolPose& pose, ContactBuffer& contacts) noexcept;
 
   const PointShell* shell_;
   const ToolShape* tool_;
   double skin_wanted_;  ///< [m]
   std::size_t capacity_;
   GridIndex grid_;
-  GridScan scan_;
+  std::vector<PackRange> runs_;      ///< of the grid's points near the tool
+  std::vector<std::uint8_t> marks_;  ///< of the packs of the runs
 
   // The list: its pose, how far it reaches, and its points in ascending shell index, padded to whole packs.
   bool has_list_ = false;

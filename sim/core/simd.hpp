@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -68,19 +69,20 @@ HAPBENCH_INLINE bool any(const Mask& m) {
 #else
 
 /// The reference: plain loops over eight lanes.
+template <class Result, class Arg, class F>
+Result lane_by_lane(const Arg& a, const Arg& b, F f) {
+  Result r;
+  for (std::size_t i = 0; i < lanes; ++i) r.v[i] = f(a.v[i], b.v[i]);
+  return r;
+}
+
 struct Mask {
   std::array<bool, lanes> v;
 
-  template <class Arg, class F>
-  static Mask of(const Arg& a, const Arg& b, F f) {
-    Mask r;
-    for (std::size_t i = 0; i < lanes; ++i) r.v[i] = f(a.v[i], b.v[i]);
-    return r;
-  }
-  friend Mask operator&&(const Mask& a, const Mask& b) { return of(a, b, std::logical_and()); }
-  friend Mask operator||(const Mask& a, const Mask& b) { return of(a, b, std::logical_or()); }
+  friend Mask operator&&(const Mask& a, const Mask& b) { return lane_by_lane<Mask>(a, b, std::logical_and()); }
+  friend Mask operator||(const Mask& a, const Mask& b) { return lane_by_lane<Mask>(a, b, std::logical_or()); }
   friend Mask operator!(const Mask& a) {
-    return of(a, a, [](bool x, bool) { return !x; });
+    return lane_by_lane<Mask>(a, a, [](bool x, bool) { return !x; });
   }
 };
 
@@ -90,22 +92,16 @@ struct Pack {
   Pack() = default;
   Pack(double a) { v.fill(a); }  // NOLINT: implicit, as for the library type
 
-  template <class F>
-  static Pack of(const Pack& a, const Pack& b, F f) {
-    Pack r;
-    for (std::size_t i = 0; i < lanes; ++i) r.v[i] = f(a.v[i], b.v[i]);
-    return r;
-  }
-  friend Pack operator+(const Pack& a, const Pack& b) { return of(a, b, std::plus()); }
-  friend Pack operator-(const Pack& a, const Pack& b) { return of(a, b, std::minus()); }
-  friend Pack operator*(const Pack& a, const Pack& b) { return of(a, b, std::multiplies()); }
-  friend Pack operator/(const Pack& a, const Pack& b) { return of(a, b, std::divides()); }
+  friend Pack operator+(const Pack& a, const Pack& b) { return lane_by_lane<Pack>(a, b, std::plus()); }
+  friend Pack operator-(const Pack& a, const Pack& b) { return lane_by_lane<Pack>(a, b, std::minus()); }
+  friend Pack operator*(const Pack& a, const Pack& b) { return lane_by_lane<Pack>(a, b, std::multiplies()); }
+  friend Pack operator/(const Pack& a, const Pack& b) { return lane_by_lane<Pack>(a, b, std::divides()); }
   friend Pack operator-(const Pack& a) {
-    return of(a, a, [](double x, double) { return -x; });
+    return lane_by_lane<Pack>(a, a, [](double x, double) { return -x; });
   }
   Pack& operator+=(const Pack& b) { return *this = *this + b; }
-  friend Mask operator<(const Pack& a, const Pack& b) { return Mask::of(a, b, std::less()); }
-  friend Mask operator<=(const Pack& a, const Pack& b) { return Mask::of(a, b, std::less_equal()); }
+  friend Mask operator<(const Pack& a, const Pack& b) { return lane_by_lane<Mask>(a, b, std::less()); }
+  friend Mask operator<=(const Pack& a, const Pack& b) { return lane_by_lane<Mask>(a, b, std::less_equal()); }
   friend Mask operator>(const Pack& a, const Pack& b) { return b < a; }
   friend Mask operator>=(const Pack& a, const Pack& b) { return b <= a; }
 };
@@ -124,7 +120,7 @@ inline Pack select(const Mask& m, const Pack& yes, const Pack& no) {
   return r;
 }
 inline Pack sqrt(const Pack& a) {
-  return Pack::of(a, a, [](double x, double) { return std::sqrt(x); });
+  return lane_by_lane<Pack>(a, a, [](double x, double) { return std::sqrt(x); });
 }
 inline bool any(const Mask& m) {
   bool r = false;
@@ -164,6 +160,22 @@ void store_selected(std::uint8_t selected, const T* from, T* to) {
   }
 }
 #endif
+
+/// The same for points in columns: copies those among the eight from i on to the places from k on, and returns their
+/// number. Copies column by column, because point by point takes longer than the search. Always inline: searches would
+/// otherwise save and restore the packs in their registers around the call. Precondition: i is a multiple of eight.
+template <class From, class To>
+HAPBENCH_INLINE std::size_t copy_selected(std::uint8_t selected, const From& from, std::size_t i, To& to,
+                                          std::size_t k) {
+  store_selected(selected, &from.index[i], &to.index[k]);
+  store_selected(selected, &from.x[i], &to.x[k]);
+  store_selected(selected, &from.y[i], &to.y[k]);
+  store_selected(selected, &from.z[i], &to.z[k]);
+  store_selected(selected, &from.nx[i], &to.nx[k]);
+  store_selected(selected, &from.ny[i], &to.ny[k]);
+  store_selected(selected, &from.nz[i], &to.nz[k]);
+  return static_cast<std::size_t>(std::popcount(selected));
+}
 
 /// The lanes first … last - 1.
 HAPBENCH_INLINE Mask lanes_between(std::size_t first, std::size_t last) {

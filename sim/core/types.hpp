@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <span>
 
 #ifndef EIGEN_DONT_VECTORIZE
 #error "EIGEN_DONT_VECTORIZE is missing, on which layouts depend: link hapbench::sim, which brings it"
@@ -64,11 +65,40 @@ struct ProfilePoint {
   bool operator==(const ProfilePoint&) const = default;
 };
 
-/// Whether a run may skip work that cannot change its results. The output must be identical either way; `off` exists to
-/// test that. It is therefore no field of a scenario file, although a scenario in memory carries it (RenderingConfig).
-enum class Skips {
-  on,  ///< compute only what the results depend on
-  off  ///< compute everything, by brute force, even if nothing reads it
+/// Whether a run may skip work that cannot change its results; `off` computes everything, by brute force, even if
+/// nothing reads it, and exists to test that the output is identical. Therefore no field of a scenario file, although a
+/// scenario in memory carries it (RenderingConfig).
+enum class Skips { on, off };
+
+/// Allowed values of a number given by a user; bounds are included unless stated otherwise. The unit is shown to
+/// people: an SI unit, "1" for a dimensionless number, empty if it is the unit of another number.
+struct NumberRange {
+  double min;
+  double max;
+  const char* unit = "";
+  bool above_min = false;  ///< min itself is excluded
+};
+
+/// A parameter: the scenario field that sets it, with unit and range.
+struct Parameter {
+  const char* field;
+  NumberRange range;
+};
+
+/// The meaning of a parameter in a model.
+struct ParameterInfo {
+  Parameter parameter;
+  const char* meaning;
+};
+
+/// The documented parameter block at the top of each model's source file; `hapbench describe NAME` prints it.
+struct ModelInfo {
+  const char* name;
+  const char* summary;
+  const char* formula;
+  const char* source;  ///< place in the thesis, or the paper
+  const char* known_failure;
+  std::span<const ParameterInfo> parameters = {};
 };
 
 }  // namespace hapbench

@@ -1,6 +1,5 @@
 #include "sim/geometry/point_shell.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
@@ -19,7 +18,7 @@ ShellColumns columns_of(const std::vector<SurfacePoint>& points) {
 
 Box bounds_of(const std::vector<SurfacePoint>& points) {
   if (points.empty()) return {};
-  Box box{points[0].position, points[0].position};
+  Box box{points.front().position, points.front().position};
   for (const SurfacePoint& point : points) box.add(point.position);
   return box;
 }
@@ -30,11 +29,7 @@ ShellColumns::ShellColumns(std::size_t points) {
 
 PointShell::PointShell(ShellColumns columns, std::size_t size, const Box& bounds, double cell_size)
     : size_(size), cell_size_(cell_size), bounds_(bounds), columns_(std::move(columns)) {
-  auto& [x, y, z, nx, ny, nz] = columns_;
-  for (UnsetDoubles* column : {&x, &y, &z})
-    std::fill(column->begin() + static_cast<std::ptrdiff_t>(size), column->end(), kFarAway);
-  for (UnsetDoubles* column : {&nx, &ny, &nz})
-    std::fill(column->begin() + static_cast<std::ptrdiff_t>(size), column->end(), 0.0);
+  for (std::size_t i = size; i < padded_size(); ++i) columns_.set(i, Vec3::Constant(kFarAway), Vec3::Zero());
 }
 
 PointShell::PointShell(const std::vector<SurfacePoint>& points, double cell_size, std::vector<std::uint32_t> cells)

@@ -10,16 +10,6 @@
 #include "sim/tool/closed_surface.hpp"
 
 namespace hapbench {
-
-Vec3 Solid::gradient(const Vec3& point, double step) const noexcept {
-  Vec3 gradient;
-  for (int k = 0; k < 3; ++k) {
-    const Vec3 aside = step * Vec3::Unit(k);
-    gradient[k] = at(point + aside).value - at(point - aside).value;
-  }
-  return unit_or(gradient, Vec3::UnitZ());
-}
-
 namespace {
 
 constexpr double kFar = 1e4;  ///< beyond every scene [m]
@@ -52,36 +42,6 @@ class ShapeSolid final : public Solid {
 
   Shape shape_;
 };
-
-}  // namespace
-
-std::unique_ptr<const Solid> make_solid(const Plane& plane) {
-  const double half = plane.size / 2;
-  return std::make_unique<ShapeSolid<Plane>>(plane, Box{{-half, -half, -kFar}, {half, half, 0.0}});
-}
-
-std::unique_ptr<const Solid> make_solid(const Slot& slot) {
-  const double half = slot.length / 2;
-  return std::make_unique<ShapeSolid<Slot>>(slot, Box{{-kFar, -half, -slot.depth}, {kFar, half, 0.0}});
-}
-
-std::unique_ptr<const Solid> make_solid(const Hole2d& hole) {
-  const double half = hole.width / 2 + hole.mouth;
-  return std::make_unique<ShapeSolid<Hole2d>>(hole, Box{{-half, -kFar, -kFar}, {half, kFar, kFar}});
-}
-
-std::unique_ptr<const Solid> make_solid(const ConicalHole& cone) {
-  const double radius = cone.depth * math::tan(cone.half_angle);
-  return std::make_unique<ShapeSolid<ConicalHole>>(cone, Box{{-radius, -radius, -kFar}, {radius, radius, 0.0}});
-}
-
-std::unique_ptr<const Solid> make_solid(const BlockWithHole& block) {
-  const Vec3 half = block.size / 2;
-  return std::make_unique<ShapeSolid<BlockWithHole>>(
-      block, Box{{-half.x(), -half.y(), -block.size.z()}, {half.x(), half.y(), 0.0}});
-}
-
-namespace {
 
 class MeshSolid final : public Solid {
  public:
@@ -238,6 +198,41 @@ class PointSolid final : public Solid {
 };
 
 }  // namespace
+
+Vec3 Solid::gradient(const Vec3& point, double step) const noexcept {
+  Vec3 gradient;
+  for (int k = 0; k < 3; ++k) {
+    const Vec3 aside = step * Vec3::Unit(k);
+    gradient[k] = at(point + aside).value - at(point - aside).value;
+  }
+  return unit_or(gradient, Vec3::UnitZ());
+}
+
+std::unique_ptr<const Solid> make_solid(const Plane& plane) {
+  const double half = plane.size / 2;
+  return std::make_unique<ShapeSolid<Plane>>(plane, Box{{-half, -half, -kFar}, {half, half, 0.0}});
+}
+
+std::unique_ptr<const Solid> make_solid(const Slot& slot) {
+  const double half = slot.length / 2;
+  return std::make_unique<ShapeSolid<Slot>>(slot, Box{{-kFar, -half, -slot.depth}, {kFar, half, 0.0}});
+}
+
+std::unique_ptr<const Solid> make_solid(const Hole2d& hole) {
+  const double half = hole.width / 2 + hole.mouth;
+  return std::make_unique<ShapeSolid<Hole2d>>(hole, Box{{-half, -kFar, -kFar}, {half, kFar, kFar}});
+}
+
+std::unique_ptr<const Solid> make_solid(const ConicalHole& cone) {
+  const double radius = cone.depth * math::tan(cone.half_angle);
+  return std::make_unique<ShapeSolid<ConicalHole>>(cone, Box{{-radius, -radius, -kFar}, {radius, radius, 0.0}});
+}
+
+std::unique_ptr<const Solid> make_solid(const BlockWithHole& block) {
+  const Vec3 half = block.size / 2;
+  return std::make_unique<ShapeSolid<BlockWithHole>>(
+      block, Box{{-half.x(), -half.y(), -block.size.z()}, {half.x(), half.y(), 0.0}});
+}
 
 std::unique_ptr<const Solid> make_solid(std::span<const Vec3> vertices, std::span<const TriangleCorners> triangles,
                                         bool is_closed) {

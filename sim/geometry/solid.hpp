@@ -64,9 +64,8 @@ std::unique_ptr<const Solid> make_solid(const ConicalHole& cone);
 std::unique_ptr<const Solid> make_solid(const BlockWithHole& block);
 
 /// The inside of a mesh. `is_closed`: it has no border, and no edge has more than two triangles; false when it is not
-/// known. If it is closed, phi < 0 where it winds around a point at least once; if it is open, where the
-/// nearest place has its normal on the other side, and phi is known where that place is not on the border. A query
-/// takes some 0.3 us; O(n log n) to make.
+/// known. phi < 0 where a closed mesh winds around a point at least once, or where the nearest place of an open one has
+/// its normal on the other side; known where that place is not on the border. A query takes 0.3 us; made in O(n log n).
 std::unique_ptr<const Solid> make_solid(std::span<const Vec3> vertices, std::span<const TriangleCorners> triangles,
                                         bool is_closed = false);
 

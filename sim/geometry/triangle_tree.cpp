@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <functional>
 #include <limits>
 #include <utility>
 
@@ -152,6 +153,34 @@ void TriangleTree::split(std::size_t node, std::vector<Item>& items) {
   nodes_.push_back({low, high, first + count / 2, count - count / 2});
 }
 
+/// Calls `use` with the triangles of the leaves, nearer boxes first, without the boxes whose distance `may_be_nearer`
+/// refuses when their turn comes. `distance_to(node)` gives the distance of a box, `is_less` compares two.
+template <class DistanceTo, class IsLess, class MayBeNearer, class Use>
+[[gnu::always_inline]] inline void TriangleTree::visit_nearest_first(const DistanceTo& distance_to,
+                                                                     const IsLess& is_less,
+                                                                     const MayBeNearer& may_be_nearer,
+                                                                     const Use& use) const {
+  using Distance = decltype(distance_to(nodes_[0]));
+  struct Waiting {
+    Distance distance;
+    std::uint32_t node;
+  };
+  std::array<Waiting, kStack> stack;
+  std::size_t size = 0;
+  stack[size++] = {distance_to(nodes_[0]), 0};
+  while (size > 0) {
+    const Waiting next = stack[--size];
+    if (!may_be_nearer(next.distance)) continue;
+    const Node& node = nodes_[next.node];
+    for (std::uint32_t i = node.first; i < node.first + node.count; ++i) use(triangles_[i]);
+    if (node.count > 0) continue;
+    Waiting near{distance_to(nodes_[node.first]), node.first}, far{distance_to(nodes_[node.first + 1]), node.first + 1};
+    if (is_less(far.distance, near.distance)) std::swap(near, far);
+    stack[size++] = far;
+    stack[size++] = near;
+  }
+}
+
 void TriangleTree::lower_to_squared_distances(const double* x, const double* y, const double* z,
                                               double* distances2) const noexcept {
   // The foot of the perpendicular, a + u ab + v ac, is nearest if it is within the triangle, else a place of its sides.
@@ -167,62 +196,28 @@ void TriangleTree::lower_to_squared_distances(const double* x, const double* y, 
                                     squared_distance_to_side(p - t.ab, t.ac - t.ab, along_bc, t.per_bc2));
     return simd::select(within, height * height, to_sides);
   };
-  struct Waiting {
-    Pack distance2;
-    std::uint32_t node;
-  };
-  std::array<Waiting, kStack> stack;
-  std::size_t size = 0;
   const Packs points{simd::load(x), simd::load(y), simd::load(z)};
   Pack best = simd::load(distances2);
-  stack[size++] = {Pack(0.0), 0};
-  while (size > 0) {
-    const Waiting next = stack[--size];
-    if (!simd::any(next.distance2 < best)) continue;
-    const Node& node = nodes_[next.node];
-    for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
-      best = simd::min(best, squared_distance(triangles_[i], points));
-    }
-    if (node.count > 0) continue;
-    Waiting near{squared_distance_to_box(nodes_[node.first].low, nodes_[node.first].high, points), node.first};
-    Waiting far{squared_distance_to_box(nodes_[node.first + 1].low, nodes_[node.first + 1].high, points),
-                node.first + 1};
-    if (std::popcount(simd::bits(far.distance2 < near.distance2)) > 4) std::swap(near, far);
-    stack[size++] = far;
-    stack[size++] = near;
-  }
+  visit_nearest_first([&](const Node& node) { return squared_distance_to_box(node.low, node.high, points); },
+                      [](const Pack& a, const Pack& b) { return std::popcount(simd::bits(a < b)) > 4; },
+                      [&](const Pack& distance2) { return simd::any(distance2 < best); },
+                      [&](const Triangle& t) { best = simd::min(best, squared_distance(t, points)); });
   simd::store(best, distances2);
 }
 
 std::optional<TriangleTree::Nearest> TriangleTree::nearest(const Vec3& point, double at_most) const noexcept {
-  struct Waiting {
-    double distance2;
-    std::uint32_t node;
-  };
-  std::array<Waiting, kStack> stack;
-  std::size_t size = 0;
   Nearest best{at_most * at_most, 0, 0, Vec3::Zero()};
-  const auto to_box = [&](std::uint32_t node) {
-    const Vec3 inside = point.cwiseMax(nodes_[node].low).cwiseMin(nodes_[node].high);
-    return Waiting{(point - inside).squaredNorm(), node};
-  };
-  stack[size++] = to_box(0);
-  while (size > 0) {
-    const Waiting next = stack[--size];
-    if (next.distance2 >= best.distance2) continue;
-    const Node& node = nodes_[next.node];
-    for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
-      const Triangle& t = triangles_[i];
-      const PlaceOfTriangle place = nearest_place(point - t.a, t.ab, t.ac, t.ab2, t.abac, t.ac2);
-      const double distance2 = (point - t.a - place.from_a).squaredNorm();
-      if (distance2 < best.distance2) best = {distance2, t.number, place.corners, t.a + place.from_a};
-    }
-    if (node.count > 0) continue;
-    Waiting near = to_box(node.first), far = to_box(node.first + 1);
-    if (far.distance2 < near.distance2) std::swap(near, far);
-    stack[size++] = far;
-    stack[size++] = near;
-  }
+  visit_nearest_first(
+      [&](const Node& node) {
+        const Vec3 inside = point.cwiseMax(node.low).cwiseMin(node.high);
+        return (point - inside).squaredNorm();
+      },
+      std::less(), [&](double distance2) { return !(distance2 >= best.distance2); },
+      [&](const Triangle& t) {
+        const PlaceOfTriangle place = nearest_place(point - t.a, t.ab, t.ac, t.ab2, t.abac, t.ac2);
+        const double distance2 = (point - t.a - place.from_a).squaredNorm();
+        if (distance2 < best.distance2) best = {distance2, t.number, place.corners, t.a + place.from_a};
+      });
   if (best.corners == 0) return std::nullopt;
   return best;
 }

@@ -94,6 +94,9 @@ class TriangleTree {
     std::uint32_t number;
   };
   void split(std::size_t node, std::vector<Item>& items);
+  template <class DistanceTo, class IsLess, class MayBeNearer, class Use>
+  void visit_nearest_first(const DistanceTo& distance_to, const IsLess& is_less, const MayBeNearer& may_be_nearer,
+                           const Use& use) const;
   /// Calls `use` with the triangles of the leaves that are reached through nodes for which `enters(node)` is true.
   template <class Enters, class Use>
   void visit(const Enters& enters, const Use& use) const;

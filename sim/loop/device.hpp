@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "sim/task/target_task.hpp"
-#include "sim/tool/tool_state.hpp"
+#include "sim/tool/motion.hpp"
 
 namespace hapbench {
 

@@ -10,8 +10,6 @@
 
 namespace hapbench {
 
-class LateContacts;
-
 /// The scene as known to a force algorithm before the first step. Everything pointed to outlives the algorithm.
 struct Scene {
   std::size_t capacity = 0;            ///< maximum number of contacts in a step
@@ -41,20 +39,19 @@ struct RenderedForce {
   Friction friction = Friction::none;  ///< none without load or without dry friction
 };
 
-/// Elastic energy of the penalty springs of one step, and the torque that they would exert.
-///
-/// moment = sum r_i x f_i about the tip centre, over the rendered contacts, whose contributions f_i add up to f_spring:
+/// Elastic energy of the penalty springs of one step, and the torque that they would exert: moment = sum r_i x f_i
+/// about the tip centre, over the rendered contacts, whose contributions f_i add up to f_spring:
 ///   - laws with weights: f_i = -K c_i d_i u_i;
 ///   - virtual_coupling, least_squares: the penalty springs as relieved by the coupling,
 ///     f_i = -K_p (d_i + <u_i, s>) u_i, s the stretch of the coupling, K_p = K or K / eps. They push and pull against
 ///     each other, so that the moment may be far larger than force and arms suggest;
 ///   - original_averaging, highest_depth: their one spring has no place; each of n contacts has f_spring / n;
 ///   - proxy: f_i = -K lambda_i m_i of the points that hold the proxy, r_i from the proxy's tip centre; reduced, as its
-///     motion is, for points inside the proxy, which it leaves slowly. If several points hold it equally well, it uses
-///     any of them, so that its force is unique but its moment need not be;
+///     motion is, for points inside the proxy, which it leaves slowly. Of several that hold it equally well it uses
+///     any, so that its force is unique but its moment need not be;
 ///   - a passivity controller scales all contributions like the springs.
-/// Damping, friction and force limits act on the tool as a whole and do not contribute. Springs without a place (the
-/// environment springs) act at the tip centre.
+/// Damping, friction and force limits act on the tool as a whole and do not contribute. Environment springs act at the
+/// tip centre.
 struct SpringState {
   double energy = 0.0;         ///< elastic energy [J]
   Vec3 moment = Vec3::Zero();  ///< on the tool about its tip centre [N m]; the device renders none
@@ -93,8 +90,7 @@ struct AlgorithmWork {
   }
 };
 
-/// A force algorithm computes the force on the tool from the contacts and the tool's state. One object is the state of
-/// one run.
+/// Computes the force on the tool from the contacts and the tool's state. One object is the state of one run.
 class ForceAlgorithm {
  public:
   virtual ~ForceAlgorithm() = default;

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "sim/loop/force_algorithm.hpp"
-#include "sim/tool/tool_state.hpp"
+#include "sim/tool/motion.hpp"
 
 namespace hapbench {
 
@@ -14,16 +14,14 @@ namespace hapbench {
 /// the energy ledger. A rendering that only stores energy in springs and dissipates never has E_k < 0; max(0, -min E_k)
 /// is created energy. Dissipation counts as absorbed, so it can hide energy created later.
 ///
+/// If the handle of a device moves the tool, the work is that of the force held while the tool moves on,
+/// f_render_k . (p_(k+1) - p_k), and E is that of the display, including the energy created by sampling and holding. A
+/// prescribed motion holds nothing: its work is the integral along the way by the trapezoidal rule,
+/// (f_k + f_(k+1))/2 . (p_(k+1) - p_k), which is off by up to K d^2 / 8 where a contact of stiffness K begins or ends
+/// between two rows d apart.
+///
 /// A row is `move`, then `answer`. Observer and controller share this code, so that they agree to the last bit.
 /// Without force and moment a row costs a few comparisons and the copy of a pose.
-///
-/// If the handle of a device moves the tool, the work is that of the force held while the tool moves on,
-/// f_render_k . (p_(k+1) - p_k), and E is that of the display (Hannaford and Ryu), including the energy created by
-/// sampling and holding.
-///
-/// A prescribed motion is not moved by the force, so nothing is held: its work is the integral along the way by the
-/// trapezoidal rule, (f_k + f_(k+1))/2 . (p_(k+1) - p_k). Where a contact of stiffness K begins or ends between two
-/// rows d apart, the rule is off by up to K d^2 / 8.
 class ObservedEnergy {
  public:
   explicit ObservedEnergy(double dt, bool position_is_free = true) : dt_(dt), free_(position_is_free) {}

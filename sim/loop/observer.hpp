@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "sim/contact/stiffness_tensor.hpp"
+#include "sim/contact/contact_buffer.hpp"
 #include "sim/loop/device.hpp"
 #include "sim/loop/force_algorithm.hpp"
 

@@ -4,20 +4,12 @@
 #include <numbers>
 #include <utility>
 
-#include "sim/contact/late_contacts.hpp"
+#include "sim/contact/contact_source.hpp"
 #include "sim/core/hash.hpp"
 #include "sim/core/math.hpp"
-#include "sim/tool/tool_state.hpp"
+#include "sim/tool/motion.hpp"
 
 namespace hapbench {
-namespace {
-
-/// True for a solid of revolution.
-bool is_round(const ToolShape& tool) {
-  return tool.moved_at_most(ToolPose{}, ToolPose{.roll = 1.0}) == 0.0;
-}
-
-}  // namespace
 
 /// The force between row k and row k + 1, for the integrator. Reuses the contact buffer, which is not read any more
 /// once the observers have seen the row.
@@ -54,7 +46,6 @@ class Simulation::ForceWithinStep final : public ForceField {
 Simulation::Simulation(SimulationConfig config, SimulationParts parts, std::vector<Observer*> observers)
     : config_(std::move(config)),
       parts_(std::move(parts)),
-      integrator_(config_.integrator->make(config_.integrator_options)),
       observers_(std::move(observers)),
       contacts_(parts_.source->capacity()) {
   ratio_wanted_ = springs_wanted_ = energy_wanted_ = config_.skips == Skips::off;
@@ -69,7 +60,8 @@ Simulation::Simulation(SimulationConfig config, SimulationParts parts, std::vect
   handle_is_apart_ = parts_.device->energy().has_value();
   handle_moves_tool_ = position_is_free_ && parts_.device->moves_tool();
   angular_velocity_cutoff_ = parts_.algorithm->angular_velocity_cutoff();
-  tool_rolls_ = parts_.tool && !is_round(*parts_.tool);
+  // A turn about the axis moves no point of a solid of revolution.
+  tool_rolls_ = parts_.tool && parts_.tool->moved_at_most(ToolPose{}, ToolPose{.roll = 1.0}) != 0.0;
   turn_rolls_ = tool_rolls_ || parts_.motion->scripts_roll();
   roll_wanted_ |= tool_rolls_ || (turn_rolls_ && angular_velocity_cutoff_);
   parts_.source->follow(&record_.step);
@@ -100,7 +92,6 @@ void Simulation::reset() noexcept {
   parts_.algorithm->reset();
   parts_.device->reset(tool_);
   if (handle_moves_tool_) put_tool_on_handle();
-  integrator_->reset();
 }
 
 double Simulation::roll_at(double t) const noexcept {
@@ -180,7 +171,8 @@ bool Simulation::step() noexcept {
     put_tool_on_handle();
   } else if (position_is_free_) {
     ForceWithinStep field(*this);
-    integrator_->step(tool_, r.hand.input + r.force.rendered, config_.mass, config_.dt, field);
+    config_.integrator->step(tool_, r.hand.input + r.force.rendered, config_.mass, config_.dt, field,
+                             config_.event_tolerance);
   }
   ++row_;
   if (row_ == config_.steps) {
@@ -242,7 +234,9 @@ bool Simulation::check_bounds() noexcept {
 
 bool Simulation::check_stop_rules() noexcept {
   for (const StopRule& rule : config_.stop_when) {
-    if (!rule.holds(tool_)) continue;
+    const bool holds = rule.outcome == Outcome::leaves_hole ? tool_.pose.position.dot(rule.up) > 0.0
+                                                            : tool_.pose.axis.dot(rule.up) >= 0.0;
+    if (!holds) continue;
     end(rule.outcome);
     return true;
   }
@@ -253,14 +247,6 @@ bool Simulation::check_stop_rules() noexcept {
 void Simulation::end(Outcome outcome) noexcept {
   ended_ = true;
   result_.outcome = outcome;
-}
-
-StopRule when_tool_leaves_hole(const Vec3& up) {
-  return {Outcome::leaves_hole, [up](const ToolState& tool) { return tool.pose.position.dot(up) > 0.0; }};
-}
-
-StopRule when_tool_is_horizontal(const Vec3& up) {
-  return {Outcome::tool_horizontal, [up](const ToolState& tool) { return tool.pose.axis.dot(up) >= 0.0; }};
 }
 
 }  // namespace hapbench

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -20,8 +19,8 @@ namespace hapbench {
 /// The end of a run, from the best to the worst; the outcome of several trials is that of the worst.
 enum class Outcome {
   completes,        ///< all steps done, or the hand has finished its task
-  leaves_hole,      ///< when_tool_leaves_hole
-  tool_horizontal,  ///< when_tool_is_horizontal
+  leaves_hole,      ///< by a StopRule
+  tool_horizontal,  ///< by a StopRule
   not_dragged,      ///< all steps done, but a dragging hand did not move the tool (judged by scenarios/run)
   stuck,            ///< all steps done, but a dragged tool came to stand (judged by scenarios/run)
   no_contact,       ///< all steps done, but the tool never touched the environment (judged by scenarios/run)
@@ -30,18 +29,13 @@ enum class Outcome {
   diverges          ///< a value was not finite or left its bound
 };
 
-/// Ends a run early: after the first row for whose tool `holds` is true.
+/// Ends a run early, with `outcome`, after the first row for which that holds (the ends of the thesis's peg-in-hole
+/// runs, A.1.2): leaves_hole, the tip centre has risen above height 0, where the hole's mouth is; tool_horizontal, the
+/// tool's axis, which points down at first, has reached the plane perpendicular to `up`.
 struct StopRule {
   Outcome outcome;
-  std::function<bool(const ToolState& tool)> holds;
+  Vec3 up;  ///< unit vector against gravity
 };
-
-// The ends of the thesis's peg-in-hole runs (A.1.2). `up` is the unit vector against gravity.
-
-/// The tip centre has risen above height 0, where the hole's mouth is.
-StopRule when_tool_leaves_hole(const Vec3& up);
-/// The tool's axis, which points down at first, has reached the plane perpendicular to `up`.
-StopRule when_tool_is_horizontal(const Vec3& up);
 
 /// A run beyond these bounds is stopped as diverged. They are absurd for a dental drill, but far from overflow.
 struct DivergenceBounds {
@@ -56,7 +50,7 @@ struct SimulationConfig {
   std::uint64_t steps = 0;                         ///< rows 0 … steps - 1
   double mass = 0.2;                               ///< of the virtual tool, if there is one [kg]
   const IntegratorEntry* integrator = &kLeapfrog;  ///< of a virtual tool whose position is free; never null
-  IntegratorOptions integrator_options;
+  double event_tolerance = kEventTolerance;        ///< of the integrator `event` [s]
   Vec3 position = Vec3::Zero();     ///< of the tip centre at t = 0 [m]; ignored if the motion prescribes it
   Vec3 velocity = Vec3::Zero();     ///< at t = 0 [m/s]
   std::vector<StopRule> stop_when;  ///< the first one that holds counts
@@ -132,7 +126,6 @@ class Simulation {
 
   SimulationConfig config_;
   SimulationParts parts_;
-  std::unique_ptr<Integrator> integrator_;
   std::vector<Observer*> observers_;
   bool ratio_wanted_ = false;
   bool springs_wanted_ = false;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <numeric>
 #include <optional>
 #include <span>
@@ -40,19 +41,10 @@ struct HashOfPlace {
   }
 };
 
-Vec3 cube_of(const Vec3& position, double spacing) {
-  return (position / spacing + Vec3::Constant(0.5)).array().floor();
-}
-
-Place place_of(const SurfacePoint& point, double spacing) {
-  const Vec3 cube = cube_of(point.position, spacing);
+Place place_of(const Vec3& cube, const Vec3& normal) {
   Eigen::Index axis = 0;
-  point.normal.cwiseAbs().maxCoeff(&axis);
-  return {cube.x(), cube.y(), cube.z(), static_cast<double>(axis), point.normal[axis] < 0.0 ? -1.0 : 1.0};
-}
-
-double distance_from_centre(const SurfacePoint& point, double spacing) {
-  return (point.position - spacing * cube_of(point.position, spacing)).norm();
+  normal.cwiseAbs().maxCoeff(&axis);
+  return {cube.x(), cube.y(), cube.z(), static_cast<double>(axis), normal[axis] < 0.0 ? -1.0 : 1.0};
 }
 
 using SquaredLengths = std::array<double, 3>;
@@ -72,90 +64,6 @@ void reserve_faces(HalfEdgeMesh& mesh, double faces) {
   const auto with = [more](std::size_t now, double each) { return now + static_cast<std::size_t>(each * more); };
   mesh.reserve(with(mesh.n_vertices(), 0.5), with(mesh.n_edges(), 1.5), with(mesh.n_faces(), 1.0));
 }
-
-}  // namespace
-
-std::vector<SurfacePoint> all_vertices(const HalfEdgeMesh& mesh) {
-  std::vector<Vec3> face_normals;
-  face_normals.reserve(mesh.n_faces());
-  for (const auto face : mesh.faces()) face_normals.push_back(unit_normal(mesh, face));
-
-  std::vector<SurfacePoint> points;
-  points.reserve(mesh.n_vertices());
-  for (const auto vertex : mesh.vertices()) {
-    Vec3 sum = Vec3::Zero();
-    for (auto face = mesh.cvf_iter(vertex); face.is_valid(); ++face)
-      sum += face_normals[static_cast<std::size_t>(face->idx())];
-    points.push_back({position(mesh, vertex), unit_or(sum, Vec3::Zero())});
-  }
-  return points;
-}
-
-std::vector<SurfacePoint> vertices_with_normals(const HalfEdgeMesh& mesh) {
-  std::vector<SurfacePoint> points = all_vertices(mesh);
-  std::erase_if(points, [](const SurfacePoint& point) { return point.normal.isZero(0.0); });
-  return points;
-}
-
-void refine(HalfEdgeMesh& mesh, double longest_edge) {
-  constexpr double kMost = 1e7;  // faces that are worth counting
-  reserve_faces(mesh, std::min(kMost, refined_face_count(mesh, longest_edge, kMost)));
-  OpenMesh::Subdivider::Uniform::LongestEdgeT<HalfEdgeMesh, double> subdivider;
-  subdivider.set_max_edge_length(longest_edge);
-  subdivider(mesh, 1);
-}
-
-double refined_face_count(const HalfEdgeMesh& mesh, double longest_edge, double most) {
-  const double largest = longest_edge * longest_edge;
-  double area = 0.0, count = 0.0;
-  for (const auto face : mesh.faces()) area += mesh.calc_face_area(face);
-  // The equilateral triangle is the largest.
-  const double fewest = area / (std::sqrt(3.0) / 4.0 * largest);
-  if (fewest > most) return fewest;
-  std::vector<SquaredLengths> open;
-  for (const auto face : mesh.faces()) {
-    open.push_back(squared_lengths(mesh, face));
-    count += 1.0;
-    while (!open.empty() && count <= most) {
-      auto [a, b, c] = open.back();
-      open.pop_back();
-      if (b > a) std::swap(a, b);
-      if (c > a) std::swap(a, c);
-      if (a <= largest) continue;
-      // The median to the longest edge cuts the triangle, independently of its neighbours: the longest edge of all is
-      // the longest of both its triangles.
-      const double median = (2.0 * b + 2.0 * c - a) / 4.0;
-      open.push_back({a / 4.0, b, median});
-      open.push_back({a / 4.0, c, median});
-      count += 1.0;
-    }
-    if (count > most) break;
-  }
-  return count;
-}
-
-std::vector<SurfacePoint> thinned(const std::vector<SurfacePoint>& points, double spacing) {
-  struct Nearest {
-    std::size_t index;
-    double distance;  ///< from the centre of the cube [m]
-  };
-  std::unordered_map<Place, Nearest, HashOfPlace> nearest;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const Nearest here{i, distance_from_centre(points[i], spacing)};
-    const auto [entry, is_new] = nearest.try_emplace(place_of(points[i], spacing), here);
-    if (!is_new && here.distance < entry->second.distance) entry->second = here;
-  }
-  std::vector<std::size_t> kept;
-  kept.reserve(nearest.size());
-  for (const auto& [place, point] : nearest) kept.push_back(point.index);
-  std::sort(kept.begin(), kept.end());
-  std::vector<SurfacePoint> thin;
-  thin.reserve(kept.size());
-  for (const std::size_t index : kept) thin.push_back(points[index]);
-  return thin;
-}
-
-namespace {
 
 using Triangle = TriangleSoup::Triangle;
 
@@ -262,8 +170,7 @@ class MeshParts {
 
     std::vector<std::uint32_t> largest_first(count()), outermost;
     std::iota(largest_first.begin(), largest_first.end(), 0u);
-    std::stable_sort(largest_first.begin(), largest_first.end(),
-                     [&](std::uint32_t p, std::uint32_t q) { return shapes[p].size() > shapes[q].size(); });
+    std::ranges::stable_sort(largest_first, std::greater(), [&](std::uint32_t p) { return shapes[p].size(); });
     std::vector<bool> inside_out(count(), false);
     for (const std::uint32_t p : largest_first) {
       if (!closed_[p]) continue;
@@ -410,6 +317,82 @@ HalfEdgeMesh connected(const std::vector<Vec3>& vertices, const std::vector<Tria
 }
 
 }  // namespace
+
+std::vector<SurfacePoint> vertices_with_normals(const HalfEdgeMesh& mesh) {
+  std::vector<Vec3> face_normals;
+  face_normals.reserve(mesh.n_faces());
+  for (const auto face : mesh.faces()) face_normals.push_back(unit_normal(mesh, face));
+
+  std::vector<SurfacePoint> points;
+  points.reserve(mesh.n_vertices());
+  for (const auto vertex : mesh.vertices()) {
+    Vec3 sum = Vec3::Zero();
+    for (auto face = mesh.cvf_iter(vertex); face.is_valid(); ++face)
+      sum += face_normals[static_cast<std::size_t>(face->idx())];
+    if (const Vec3 normal = unit_or(sum, Vec3::Zero()); !normal.isZero(0.0))
+      points.push_back({position(mesh, vertex), normal});
+  }
+  return points;
+}
+
+void refine(HalfEdgeMesh& mesh, double longest_edge) {
+  constexpr double kMost = 1e7;  // faces that are worth counting
+  reserve_faces(mesh, std::min(kMost, refined_face_count(mesh, longest_edge, kMost)));
+  OpenMesh::Subdivider::Uniform::LongestEdgeT<HalfEdgeMesh, double> subdivider;
+  subdivider.set_max_edge_length(longest_edge);
+  subdivider(mesh, 1);
+}
+
+double refined_face_count(const HalfEdgeMesh& mesh, double longest_edge, double most) {
+  const double largest = longest_edge * longest_edge;
+  double area = 0.0, count = 0.0;
+  for (const auto face : mesh.faces()) area += mesh.calc_face_area(face);
+  // The equilateral triangle is the largest.
+  const double fewest = area / (std::sqrt(3.0) / 4.0 * largest);
+  if (fewest > most) return fewest;
+  std::vector<SquaredLengths> open;
+  for (const auto face : mesh.faces()) {
+    open.push_back(squared_lengths(mesh, face));
+    count += 1.0;
+    while (!open.empty() && count <= most) {
+      auto [a, b, c] = open.back();
+      open.pop_back();
+      if (b > a) std::swap(a, b);
+      if (c > a) std::swap(a, c);
+      if (a <= largest) continue;
+      // The median to the longest edge cuts the triangle, independently of its neighbours: the longest edge of all is
+      // the longest of both its triangles.
+      const double median = (2.0 * b + 2.0 * c - a) / 4.0;
+      open.push_back({a / 4.0, b, median});
+      open.push_back({a / 4.0, c, median});
+      count += 1.0;
+    }
+    if (count > most) break;
+  }
+  return count;
+}
+
+std::vector<SurfacePoint> thinned(const std::vector<SurfacePoint>& points, double spacing) {
+  struct Nearest {
+    std::size_t index;
+    double distance;  ///< from the centre of the cube [m]
+  };
+  std::unordered_map<Place, Nearest, HashOfPlace> nearest;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Vec3 cube = (points[i].position / spacing + Vec3::Constant(0.5)).array().floor();
+    const Nearest here{i, (points[i].position - spacing * cube).norm()};
+    const auto [entry, is_new] = nearest.try_emplace(place_of(cube, points[i].normal), here);
+    if (!is_new && here.distance < entry->second.distance) entry->second = here;
+  }
+  std::vector<bool> is_kept(points.size(), false);
+  for (const auto& [place, point] : nearest) is_kept[point.index] = true;
+  std::vector<SurfacePoint> thin;
+  thin.reserve(nearest.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (is_kept[i]) thin.push_back(points[i]);
+  }
+  return thin;
+}
 
 CheckedMesh mesh_from_triangles(const TriangleSoup& soup) {
   require_finite(soup);

@@ -17,10 +17,8 @@ struct HalfEdgeMeshTraits : OpenMesh::DefaultTraits {
 /// A triangle mesh that knows its neighbours; double precision, coordinates in m, faces counter-clockwise from outside.
 using HalfEdgeMesh = OpenMesh::TriMesh_ArrayKernelT<HalfEdgeMeshTraits>;
 
-/// All vertices of the mesh in order, with outward normals: the normalised, unweighted mean of the unit normals of the
-/// adjacent faces (thesis C.1). The normal is zero where no adjacent face has a positive area.
-std::vector<SurfacePoint> all_vertices(const HalfEdgeMesh& mesh);
-/// The same without the vertices that have no normal.
+/// The vertices of the mesh in order, with outward normals: the normalised, unweighted mean of the unit normals of the
+/// adjacent faces (thesis C.1). Omits vertices without an adjacent face that has a positive area.
 std::vector<SurfacePoint> vertices_with_normals(const HalfEdgeMesh& mesh);
 
 /// Splits the longest edges in two until none is longer than `longest_edge` [m], > 0. Does not change the surface.
@@ -32,7 +30,7 @@ double refined_face_count(const HalfEdgeMesh& mesh, double longest_edge, double 
 
 /// Keeps one point for each cube between half-integer multiples of `spacing` [m] and each of six main directions of the
 /// normal, so that both sides of a thin wall remain: the point nearest to the cube's centre, or the first of equals.
-/// Keeps the order. O(n), and O(n log n) in the points kept.
+/// Keeps the order. O(n).
 std::vector<SurfacePoint> thinned(const std::vector<SurfacePoint>& points, double spacing);
 
 /// Repairs and irregularities of triangles that make a surface.

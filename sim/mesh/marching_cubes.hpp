@@ -51,10 +51,10 @@ struct KeptOfSurface {
 /// The surface of the solid by marching cubes with linear interpolation along the edges of the grid: closed and
 /// manifold. On an ambiguous face of a cell the inside corners are separated, identically from both sides.
 ///
-/// Evaluates the field near the surface only: squares of nodes in a layer are skipped if the distance at their middle
-/// shows that they are all inside or all outside. Cost and memory grow with the surface (some 100 ns and, besides the
-/// result, 40 bytes a vertex), apart from a few layers of the grid and a few operations for every 64 nodes. Runs on
-/// oneTBB's threads; the result does not depend on their number.
+/// Evaluates the field near the surface only: skips squares of nodes in a layer that are all inside or all outside by
+/// the distance at their middle. Cost and memory grow with the surface (some 100 ns and, besides the result, 40 bytes a
+/// vertex), apart from a few layers of the grid and a few operations for every 64 nodes. Runs on oneTBB's threads; the
+/// result does not depend on their number.
 IsoSurface marching_cubes(const DensityField& field, KeptOfSurface kept = {});
 
 /// The block as a density field for marching cubes, with the spacing of its grid [m], > 0.
@@ -70,5 +70,14 @@ PointShell surface_shell(const DensityField& field);
 /// a cell in that of its edges. Omits vertices without a normal. `spacing` of the grid [m]. O(vertices). Precondition:
 /// the surface was made with its cells.
 ShellPoints points_by_cell(const IsoSurface& surface, double spacing);
+
+/// A triangle of marching cubes, derived instead of copied from a table. The bits of a cell's corner c are its
+/// coordinates (bit 0: x, bit 1: y, bit 2: z); edge 3 c + axis starts at corner c, whose bit `axis` is 0, and runs
+/// along that axis.
+using CubeTriangle = std::array<int, 3>;  ///< edges, counter-clockwise from outside
+
+/// The triangles of the case in which bit c of `inside` is set if corner c is inside. Neighbouring cells agree about
+/// their common face in all cases.
+std::vector<CubeTriangle> cube_triangles(unsigned inside);
 
 }  // namespace hapbench

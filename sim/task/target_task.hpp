@@ -9,11 +9,9 @@
 
 namespace hapbench {
 
-/// The display's view of the tip and a target (thesis Fig. D.5): a panel of the hole's bottom, or a height meter.
-enum class TargetDisplay {
-  panel,  ///< x and y
-  height  ///< z
-};
+/// The display's view of the tip and a target (thesis Fig. D.5): x and y on a panel of the hole's bottom, or z on a
+/// height meter.
+enum class TargetDisplay { panel, height };
 
 /// A force gauge as a display, on which a person cannot read single samples: the spring force along +z through a
 /// first-order low-pass. Unless the rules have a Threshold, its reading is also what the task checks.
@@ -22,11 +20,8 @@ struct Gauge {
   double grace = 0.1;    ///< time for which the reading may stay below least_press without breaking the hold [s]
 };
 
-/// A force of the algorithm.
-enum class PressForce {
-  rendered,  ///< f_render, the model reaction force
-  spring     ///< f_spring
-};
+/// A force of the algorithm: f_render, the model reaction force, or f_spring.
+enum class PressForce { rendered, spring };
 
 /// What a force that falls below least_press, for longer than the grace, does to the time on the target.
 enum class LowForce {
@@ -68,9 +63,8 @@ struct TargetResult {
 
 /// One trial: targets appear one at a time in a pseudo-random order, every place equally often. A target waits until
 /// the subject presses, which activates it and starts the time limit. It is removed when the tip has stayed on it and
-/// pressed for the holding time, apart from dips of the force within the grace. A target that is not
-/// activated also disappears after the time limit, so that a trial ends (our choice; the thesis does not say).
-/// Allocates in the constructor only.
+/// pressed for the holding time, apart from dips of the force within the grace. A target that is not activated also
+/// disappears after the time limit, so that a trial ends (our choice). Allocates in the constructor only.
 class TargetTask {
  public:
   /// Preconditions: at least one place, targets_per_place > 0. The order is a function of the seed.

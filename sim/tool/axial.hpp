@@ -7,11 +7,11 @@
 #include <span>
 #include <vector>
 
-#include "sim/contact/push_hits.hpp"
+#include "sim/contact/contact_buffer.hpp"
 #include "sim/core/math.hpp"
 #include "sim/core/simd.hpp"
+#include "sim/tool/motion.hpp"
 #include "sim/tool/tool_shape.hpp"
-#include "sim/tool/tool_state.hpp"
 
 /// Solids of revolution in packs of eight points. For source files only (see simd.hpp).
 namespace hapbench {
@@ -21,15 +21,18 @@ inline constexpr double kOnAxis = 1e-12;
 /// Exit distance along a ray that does not meet a surface [m].
 inline constexpr double kNever = std::numeric_limits<double>::infinity();
 
-/// Continues an outline that ends at {0, radius} with a quarter of a circle about the tip centre, as a polyline within
-/// 0.013 % of the radius.
-inline void add_round_tip(double radius, std::vector<ProfilePoint>& outline) {
+/// The outline of a body whose profile in the axial half plane is given: closed at its ends, a round tip by a quarter
+/// of a circle about the tip centre, as a polyline within 0.013 % of the radius.
+inline std::vector<ProfilePoint> closed_outline(std::vector<ProfilePoint> outline, Tip tip) {
+  if (outline.front().rho > 0.0) outline.insert(outline.begin(), {outline.front().s, 0.0});
+  const auto [s, radius] = outline.back();
   constexpr int kLegs = 48;
-  for (int i = 1; i < kLegs; ++i) {
+  for (int i = 1; tip == Tip::round && i < kLegs; ++i) {
     const double angle = std::numbers::pi / 2.0 * i / kLegs;
     outline.push_back({radius * math::sin(angle), radius * math::cos(angle)});
   }
-  outline.push_back({radius, 0.0});
+  if (radius > 0.0) outline.push_back({tip == Tip::round ? radius : s, 0.0});
+  return outline;
 }
 
 /// Eight points in the tool's axial coordinates: x is relative to the tip centre, s its component along the axis,
@@ -105,18 +108,13 @@ void mark(const ToolPose pose, const PointArrays points, std::span<const PackRan
   }
 }
 
-/// Appends the points of the ranges that pass the test. By value for the same reason.
+/// Appends the points of the packs that pass the test. By value for the same reason.
 template <class Test>
-void push(const ToolPose pose, const PointColumns points, std::span<const PackRange> ranges, ContactBuffer& contacts,
-          const Test test) {
+void push(const ToolPose pose, const PointColumns points, std::size_t packs, ContactBuffer& contacts, const Test test) {
   std::size_t size = contacts.size();
-  for (const PackRange range : ranges) {
-    for (std::size_t pack = range.first; pack < range.last; ++pack) {
-      const std::size_t i = pack * simd::lanes;
-      const std::uint8_t hits = simd::bits(test(AxialPack(pose, points.x + i, points.y + i, points.z + i)));
-      if (hits == 0) continue;
-      if (const std::uint8_t own = range.own(hits, pack); own != 0) size += copy_hits(own, points, i, contacts, size);
-    }
+  for (std::size_t i = 0; i < packs * simd::lanes; i += simd::lanes) {
+    const std::uint8_t hits = simd::bits(test(AxialPack(pose, points.x + i, points.y + i, points.z + i)));
+    if (hits != 0) size += simd::copy_selected(hits, points, i, contacts, size);
   }
   contacts.extend(size - contacts.size());
 }
@@ -156,15 +154,6 @@ inline Box box_around(const AxisPart& part, const ToolPose& pose, double radius)
 inline ToolShape::Cover row_of_balls(double radius, double length) {
   const double balls = std::ceil(length / (2.0 * radius));
   return {static_cast<std::size_t>(balls), (1.0 + 1e-9) * math::hypot(radius, length / balls / 2.0)};
-}
-
-/// ToolShape::moved_at_most of a solid of revolution. The shortest rotation from one axis to the other moves a point by
-/// at most |a' - a| times its distance from the tip centre; a turn about the axis maps the body to itself.
-inline double axis_moved_at_most(const ToolPose& from, const ToolPose& to, double reach) noexcept {
-  const double moved = (to.position - from.position).norm();
-  // Most steps of most scenes do not turn the tool; adding a turn of zero would change no bit.
-  if (to.axis == from.axis) return moved;
-  return moved + (to.axis - from.axis).norm() * reach;
 }
 
 }  // namespace hapbench

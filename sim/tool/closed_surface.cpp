@@ -17,6 +17,16 @@ namespace {
 /// A closed surface that encloses less than this fraction of its bounding cube is flat up to rounding.
 constexpr double kFlat = 1e-12;
 
+/// The range of nodes of a row within [low, high].
+std::pair<std::size_t, std::size_t> nodes_within(const GridNodes& nodes, int axis, double low, double high) {
+  // One more on each side covers the rounding of the division.
+  const double first = std::floor((low - nodes.origin[axis]) / nodes.spacing) - 1.0;
+  const double last = std::ceil((high - nodes.origin[axis]) / nodes.spacing) + 1.0;
+  const auto count = static_cast<double>(nodes.count[static_cast<std::size_t>(axis)]);
+  return {static_cast<std::size_t>(std::clamp(first, 0.0, count)),
+          static_cast<std::size_t>(std::clamp(last + 1.0, 0.0, count))};
+}
+
 }  // namespace
 
 TriangleSoup welded(std::span<const Vec3> vertices, std::span<const TriangleCorners> triangles) {
@@ -99,20 +109,6 @@ void ClosedSurface::measure() {
   if (volume < 0.0)
     refuse("the mesh is inside out (volume ", volume, " m^3): turn its triangles counter-clockwise from outside");
 }
-
-namespace {
-
-/// The range of nodes of a row within [low, high].
-std::pair<std::size_t, std::size_t> nodes_within(const GridNodes& nodes, int axis, double low, double high) {
-  // One more on each side covers the rounding of the division.
-  const double first = std::floor((low - nodes.origin[axis]) / nodes.spacing) - 1.0;
-  const double last = std::ceil((high - nodes.origin[axis]) / nodes.spacing) + 1.0;
-  const auto count = static_cast<double>(nodes.count[static_cast<std::size_t>(axis)]);
-  return {static_cast<std::size_t>(std::clamp(first, 0.0, count)),
-          static_cast<std::size_t>(std::clamp(last + 1.0, 0.0, count))};
-}
-
-}  // namespace
 
 std::vector<std::int8_t> winding_numbers(const ClosedSurface& surface, const GridNodes& nodes) {
   // The triangles met by each layer of columns.

@@ -40,10 +40,9 @@ bool is_balanced(std::span<const TriangleSide> edge);
 /// either direction.
 class ClosedSurface {
  public:
-  /// Merges vertices at the same place and omits triangles with two equal corners. Throws std::invalid_argument with
-  /// the measured values if an index or a coordinate is invalid, edges are open or their neighbours wound against each
-  /// other (their number and the first place), or the volume is not positive. O(n log n). Surfaces that pass through
-  /// themselves are found by the grid that samples them (SignedDistanceGrid).
+  /// Of the `welded` triangles. Throws std::invalid_argument with the measured values if an index or a coordinate is
+  /// invalid, edges are open or their neighbours wound against each other (their number and the first place), or the
+  /// volume is not positive. O(n log n). The grid that samples surfaces finds those that pass through themselves.
   ClosedSurface(std::span<const Vec3> vertices, std::span<const TriangleCorners> triangles);
 
   const std::vector<Vec3>& vertices() const noexcept { return surface_.vertices; }  ///< [m]
@@ -80,10 +79,9 @@ struct GridNodes {
 /// Winding number of the surface around each node: 0 outside, 1 inside a sound solid, concave or not; other values
 /// where parts overlap or are inside out.
 ///
-/// For a closed surface it is the sum of the signed crossings of any ray, here the ray from below along z
-/// (vertical_crossing), so one pass over each column of nodes suffices, without normals of edges and vertices. Runs on
-/// oneTBB's threads; the result does not depend on their number. Cost: triangles times the columns they cover, plus the
-/// nodes.
+/// It is the sum of the signed crossings of any ray, here that from below along z (vertical_crossing), so one pass over
+/// each column of nodes suffices. Runs on oneTBB's threads; the result does not depend on their number. Cost: triangles
+/// times the columns they cover, plus the nodes.
 std::vector<std::int8_t> winding_numbers(const ClosedSurface& surface, const GridNodes& nodes);
 
 }  // namespace hapbench

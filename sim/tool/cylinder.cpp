@@ -101,32 +101,16 @@ Cylinder::Cylinder(double radius, double length, Tip tip)
       radius2_(largest_square_within(radius)) {}
 
 std::vector<ProfilePoint> Cylinder::outline() const {
-  std::vector<ProfilePoint> outline = {{-length_, 0.0}, {-length_, radius_}, {0.0, radius_}};
-  if (tip_ == Tip::flat) {
-    outline.push_back({0.0, 0.0});
-  } else {
-    add_round_tip(radius_, outline);
-  }
-  return outline;
+  return closed_outline({{-length_, radius_}, {0.0, radius_}}, tip_);
 }
 
-/// Calls `use` with a function that tests which points of a pack lie in the body.
-template <class Use>
-void Cylinder::with_test(const Use& use) const {
+void Cylinder::push_inside(const ToolPose& pose, const PointColumns& points, std::size_t packs,
+                           ContactBuffer& contacts) const noexcept {
   const Pack bottom(-length_), radius2(radius2_), zero(0.0);
   const auto in_cylinder = [=](const AxialPack& q) { return q.s <= zero && q.s >= bottom && q.rho2 <= radius2; };
-  if (tip_ == Tip::flat) return use(in_cylinder);
-  use([=](const AxialPack& q) { return in_cylinder(q) || (q.s > zero && q.distance2() <= radius2); });
-}
-
-void Cylinder::mark_inside(const ToolPose& pose, const PointArrays& points, std::span<const PackRange> ranges,
-                           std::uint8_t* marks) const noexcept {
-  with_test([&](const auto& test) { mark(pose, points, ranges, marks, test); });
-}
-
-void Cylinder::push_inside(const ToolPose& pose, const PointColumns& points, std::span<const PackRange> ranges,
-                           ContactBuffer& contacts) const noexcept {
-  with_test([&](const auto& test) { push(pose, points, ranges, contacts, test); });
+  if (tip_ == Tip::flat) return push(pose, points, packs, contacts, in_cylinder);
+  push(pose, points, packs, contacts,
+       [=](const AxialPack& q) { return in_cylinder(q) || (q.s > zero && q.distance2() <= radius2); });
 }
 
 void Cylinder::mark_near(const ToolPose& pose, double margin, const PointArrays& points,
@@ -146,10 +130,6 @@ Box Cylinder::box_near(const ToolPose& pose, double margin, const Box& bounds) c
 ToolShape::Cover Cylinder::cover(double margin) const {
   const double radius = radius_ + margin;
   return row_of_balls(radius, length_ + margin + (tip_ == Tip::round ? radius : margin));
-}
-
-double Cylinder::moved_at_most(const ToolPose& from, const ToolPose& to) const noexcept {
-  return axis_moved_at_most(from, to, reach());
 }
 
 ToolShape::Grown Cylinder::grown(double margin) const {

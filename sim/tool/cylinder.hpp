@@ -27,9 +27,7 @@ class Cylinder final : public ToolShape {
 
   bool convex() const noexcept override { return true; }
   std::vector<ProfilePoint> outline() const override;
-  void mark_inside(const ToolPose& pose, const PointArrays& points, std::span<const PackRange> ranges,
-                   std::uint8_t* marks) const noexcept override;
-  void push_inside(const ToolPose& pose, const PointColumns& points, std::span<const PackRange> ranges,
+  void push_inside(const ToolPose& pose, const PointColumns& points, std::size_t packs,
                    ContactBuffer& contacts) const noexcept override;
   /// Marks up to sqrt(2) margin at the edges of a flat tip and of the bottom, as `grown` does.
   void mark_near(const ToolPose& pose, double margin, const PointArrays& points, std::span<const PackRange> ranges,
@@ -37,7 +35,6 @@ class Cylinder final : public ToolShape {
   Box box_near(const ToolPose& pose, double margin, const Box& bounds) const noexcept override;
   /// A row of balls along the axis.
   Cover cover(double margin) const override;
-  double moved_at_most(const ToolPose& from, const ToolPose& to) const noexcept override;
   /// d = min(r - |rho|, -s, L + s), u = rho / |rho|, axis, -axis (B.1); with a round tip, for s > 0, d = r - |x| and
   /// u = x / |x|.
   void shortest_depths(const ToolPose& pose, ContactBuffer& contacts) const noexcept override;
@@ -53,9 +50,6 @@ class Cylinder final : public ToolShape {
   Grown grown(double margin) const override;
 
  private:
-  template <class Use>
-  void with_test(const Use& use) const;
-
   double radius_;
   double length_;
   Tip tip_;

@@ -4,27 +4,182 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <cstring>
 #include <numbers>
 #include <utility>
 
-#include "sim/contact/push_hits.hpp"
 #include "sim/core/math.hpp"
+#include "sim/core/simd.hpp"
 #include "sim/tool/cylinder.hpp"
-#include "sim/tool/grid_spline.hpp"
 
 namespace hapbench {
 namespace {
 
-using simd::Pack;
+using simd::Mask, simd::Pack;
+
+/// Weights of the three nodes along an axis at t in [-1/2, 1/2] from the middle one; never negative.
+struct QuadraticWeights {
+  Pack below, here, above;
+  explicit QuadraticWeights(const Pack& t)
+      : below(Pack(0.5) * (Pack(0.5) - t) * (Pack(0.5) - t)),
+        here(Pack(0.75) - t * t),
+        above(Pack(0.5) * (Pack(0.5) + t) * (Pack(0.5) + t)) {}
+};
+
+/// Maps the world to the coordinates of a grid's nodes at one pose: u = turn (x - position) + shift.
+struct GridFrame {
+  Mat3 turn;
+  Vec3 position, shift;
+  Vec3 last;  ///< largest coordinates with 27 nodes around the nearest one; the smallest are 1
+  double spacing;
+  double row, layer;  ///< difference between the indices of neighbours along y and x
+
+  GridFrame(const SignedDistanceGrid& grid, const ToolPose& pose)
+      : turn(pose.rotation().transpose() / grid.nodes().spacing),
+        position(pose.position),
+        shift(-grid.nodes().origin / grid.nodes().spacing),
+        spacing(grid.nodes().spacing),
+        row(static_cast<double>(grid.nodes().count[2])),
+        layer(static_cast<double>(grid.nodes().count[1] * grid.nodes().count[2])) {
+    for (int k = 0; k < 3; ++k) last[k] = static_cast<double>(grid.nodes().count[static_cast<std::size_t>(k)]) - 2.0;
+  }
+};
+
+/// Eight points in the coordinates of the nodes.
+struct GridPack {
+  Pack u, v, w;
+  Mask within;  ///< in the grid; false for coordinates that are not finite
+
+  GridPack(const GridFrame& f, const double* px, const double* py, const double* pz) {
+    const Pack x = simd::load(px) - Pack(f.position.x()), y = simd::load(py) - Pack(f.position.y()),
+               z = simd::load(pz) - Pack(f.position.z());
+    const auto along = [&](int k) {
+      return Pack(f.turn(k, 0)) * x + Pack(f.turn(k, 1)) * y + Pack(f.turn(k, 2)) * z + Pack(f.shift[k]);
+    };
+    u = along(0);
+    v = along(1);
+    w = along(2);
+    const Pack one(1.0);
+    within =
+        u >= one && u <= Pack(f.last.x()) && v >= one && v <= Pack(f.last.y()) && w >= one && w <= Pack(f.last.z());
+  }
+
+  /// Moves the points to the nearest places in the grid, NaN to its first corner. Returns the squared distances
+  /// [spacings^2].
+  Pack clamp(const GridFrame& f) {
+    Pack out2(0.0);
+    const auto clamp_one = [&out2](Pack& coordinate, double last) {
+      const Pack to = simd::select(coordinate > Pack(1.0), simd::min(coordinate, Pack(last)), Pack(1.0));
+      out2 = out2 + (coordinate - to) * (coordinate - to);
+      coordinate = to;
+    };
+    clamp_one(u, f.last.x());
+    clamp_one(v, f.last.y());
+    clamp_one(w, f.last.z());
+    within = u >= Pack(1.0);
+    return out2;
+  }
+};
+
+/// Rounds numbers in [0, 2^51] to the nearest integer, halves to even: adding 1.5 * 2^52 leaves no bit for a fraction.
+Pack nearest_whole(const Pack& a) {
+  const Pack big(0x1.8p52);
+  return (a + big) - big;
+}
+
+/// The nodes nearest to eight points; the grid's first node for points that are not `within` it.
+struct NearestNodes {
+  Pack i, j, k;
+
+  NearestNodes(const GridFrame& f, const GridPack& q)
+      : i(nearest_whole(q.u)), j(nearest_whole(q.v)), k(nearest_whole(q.w)) {
+    const Pack number = i * Pack(f.layer) + j * Pack(f.row) + k;
+    // The low bits of a double above 2^52 are the integer itself, which saves a conversion.
+    simd::store(simd::select(q.within, number, Pack(0.0)) + Pack(0x1p52), numbers_);
+  }
+  std::size_t operator[](std::size_t lane) const {
+    return static_cast<std::uint32_t>(std::bit_cast<std::uint64_t>(numbers_[lane]));
+  }
+
+ private:
+  alignas(64) double numbers_[simd::lanes];
+};
+
+struct FieldValue {
+  double value;   ///< phi_h [m]
+  Vec3 gradient;  ///< with respect to the coordinates of the nodes [m]
+};
+
+/// phi_h at eight points within the grid. Computes the weights of all points at once and the sums point by point: rows
+/// of three nodes are contiguous, so nine loads of four suffice for a point, while a gather would load all 27 nodes of
+/// the eight points one by one.
+class GridSpline {
+ public:
+  GridSpline(const SignedDistanceGrid& grid, const GridPack& q, const NearestNodes& nearest)
+      : values_(grid.values()), row_(grid.nodes().count[2]), layer_(grid.nodes().count[1] * row_) {
+    const Pack t[] = {q.u - nearest.i, q.v - nearest.j, q.w - nearest.k};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const QuadraticWeights weights(t[axis]);
+      simd::store(weights.below, weights_[axis][0]);
+      simd::store(weights.here, weights_[axis][1]);
+      simd::store(weights.above, weights_[axis][2]);
+      simd::store(t[axis], t_[axis]);
+    }
+  }
+
+  /// phi_h [m]; `node` is the one nearest to the point.
+  double value(std::size_t lane, std::size_t node) const {
+    const double* const corner = values_ + node - layer_ - row_ - 1;
+    Four sum = {};
+    for (std::size_t a = 0; a < 3; ++a) {
+      Four layer = {};
+      for (std::size_t b = 0; b < 3; ++b) {
+        Four row;
+        std::memcpy(&row, corner + a * layer_ + b * row_, sizeof(row));
+        layer += weights_[1][b][lane] * row;
+      }
+      sum += weights_[0][a][lane] * layer;
+    }
+    return along_row(lane, sum);
+  }
+
+  FieldValue value_and_gradient(std::size_t lane, std::size_t node) const {
+    const double x = t_[0][lane], y = t_[1][lane], z = t_[2][lane];
+    const double slopes_x[] = {x - 0.5, -2.0 * x, x + 0.5}, slopes_y[] = {y - 0.5, -2.0 * y, y + 0.5};
+    const double* const corner = values_ + node - layer_ - row_ - 1;
+    Four sum = {}, by_x = {}, by_y = {};
+    for (std::size_t a = 0; a < 3; ++a) {
+      Four layer = {}, slope = {};
+      for (std::size_t b = 0; b < 3; ++b) {
+        Four row;
+        std::memcpy(&row, corner + a * layer_ + b * row_, sizeof(row));
+        layer += weights_[1][b][lane] * row;
+        slope += slopes_y[b] * row;
+      }
+      sum += weights_[0][a][lane] * layer;
+      by_x += slopes_x[a] * layer;
+      by_y += weights_[0][a][lane] * slope;
+    }
+    const double by_z = (z - 0.5) * sum[0] - 2.0 * z * sum[1] + (z + 0.5) * sum[2];
+    return {along_row(lane, sum), {along_row(lane, by_x), along_row(lane, by_y), by_z}};
+  }
+
+ private:
+  /// Four numbers, added and multiplied element by element in every build.
+  using Four [[gnu::vector_size(4 * sizeof(double))]] = double;
+
+  double along_row(std::size_t lane, const Four& row) const {
+    return weights_[2][0][lane] * row[0] + weights_[2][1][lane] * row[1] + weights_[2][2][lane] * row[2];
+  }
+
+  const double* values_;
+  std::size_t row_, layer_;
+  alignas(64) double weights_[3][3][simd::lanes];  ///< by axis, node and point
+  alignas(64) double t_[3][simd::lanes];
+};
 
 /// Number of times that box_near shrinks its box; further passes hardly shrink it.
 constexpr int kShrinks = 3;
-
-/// Calls `use` with the number of each bit that is set.
-template <class Use>
-void for_each_bit(std::uint8_t bits, const Use& use) {
-  for (unsigned rest = bits; rest != 0; rest &= rest - 1) use(static_cast<std::size_t>(std::countr_zero(rest)));
-}
 
 /// Tests which of eight points lie in the body.
 std::uint8_t inside_bits(const SignedDistanceGrid& grid, const GridFrame& frame, const double* x, const double* y,
@@ -40,18 +195,11 @@ std::uint8_t inside_bits(const SignedDistanceGrid& grid, const GridFrame& frame,
   }
   if (mixed == 0) return static_cast<std::uint8_t>(inside);
   const GridSpline spline(grid, q, nearest);
-  for_each_bit(static_cast<std::uint8_t>(mixed),
-               [&](std::size_t k) { inside |= (spline.value(k, nearest[k]) <= 0.0 ? 1u : 0u) << k; });
-  return static_cast<std::uint8_t>(inside);
-}
-
-/// Writes the marks of the packs of all ranges; `test(i)` returns those of the eight points from i on.
-template <class Test>
-void mark(std::span<const PackRange> ranges, std::uint8_t* marks, const Test& test) {
-  for (const PackRange range : ranges) {
-    for (std::size_t pack = range.first; pack < range.last; ++pack)
-      *marks++ = range.own(test(pack * simd::lanes), pack);
+  for (; mixed != 0; mixed &= mixed - 1) {
+    const auto k = static_cast<std::size_t>(std::countr_zero(mixed));
+    inside |= (spline.value(k, nearest[k]) <= 0.0 ? 1u : 0u) << k;
   }
+  return static_cast<std::uint8_t>(inside);
 }
 
 Box intersection(const Box& a, const Box& b) {
@@ -170,22 +318,12 @@ Vec3 outwards(const GridFrame& frame, const Vec3& by_nodes, const Vec3& otherwis
 MeshTool::MeshTool(std::shared_ptr<const SignedDistanceGrid> grid)
     : ToolShape(grid->half_width(), grid->reach()), grid_(std::move(grid)) {}
 
-void MeshTool::mark_inside(const ToolPose& pose, const PointArrays& points, std::span<const PackRange> ranges,
-                           std::uint8_t* marks) const noexcept {
-  const GridFrame frame(*grid_, pose);
-  mark(ranges, marks,
-       [&](std::size_t i) { return inside_bits(*grid_, frame, points.x + i, points.y + i, points.z + i); });
-}
-
-void MeshTool::push_inside(const ToolPose& pose, const PointColumns& points, std::span<const PackRange> ranges,
+void MeshTool::push_inside(const ToolPose& pose, const PointColumns& points, std::size_t packs,
                            ContactBuffer& contacts) const noexcept {
   const GridFrame frame(*grid_, pose);
-  for (const PackRange range : ranges) {
-    for (std::size_t pack = range.first; pack < range.last; ++pack) {
-      const std::size_t i = pack * simd::lanes;
-      const std::uint8_t hits = range.own(inside_bits(*grid_, frame, points.x + i, points.y + i, points.z + i), pack);
-      if (hits != 0) push_hits(hits, points, i, contacts);
-    }
+  for (std::size_t i = 0; i < packs * simd::lanes; i += simd::lanes) {
+    const std::uint8_t hits = inside_bits(*grid_, frame, points.x + i, points.y + i, points.z + i);
+    if (hits != 0) contacts.extend(simd::copy_selected(hits, points, i, contacts, contacts.size()));
   }
 }
 
@@ -193,15 +331,18 @@ void MeshTool::mark_near(const ToolPose& pose, double margin, const PointArrays&
                          std::span<const PackRange> ranges, std::uint8_t* marks) const noexcept {
   const GridFrame frame(*grid_, pose);
   const Pack slack(2.0 * grid_->error_bound()), margin2(margin * margin), spacing2(frame.spacing * frame.spacing);
-  mark(ranges, marks, [&](std::size_t i) {
-    GridPack q(frame, points.x + i, points.y + i, points.z + i);
-    const Pack out2 = q.clamp(frame);
-    const NearestNodes nearest(frame, q);
-    alignas(64) double values[simd::lanes];
-    for (std::size_t k = 0; k < simd::lanes; ++k) values[k] = grid_->values()[nearest[k]];
-    const Pack least = simd::max(simd::load(values) - slack, Pack(0.0));
-    return simd::bits(out2 * spacing2 + least * least <= margin2);
-  });
+  for (const PackRange range : ranges) {
+    for (std::size_t pack = range.first; pack < range.last; ++pack) {
+      const std::size_t i = pack * simd::lanes;
+      GridPack q(frame, points.x + i, points.y + i, points.z + i);
+      const Pack out2 = q.clamp(frame);
+      const NearestNodes nearest(frame, q);
+      alignas(64) double values[simd::lanes];
+      for (std::size_t k = 0; k < simd::lanes; ++k) values[k] = grid_->values()[nearest[k]];
+      const Pack least = simd::max(simd::load(values) - slack, Pack(0.0));
+      *marks++ = range.own(simd::bits(out2 * spacing2 + least * least <= margin2), pack);
+    }
+  }
 }
 
 // Restricts the bounds to what is near the tool's box and the tool's box to what is near that, alternately.

@@ -25,12 +25,10 @@ class MeshTool final : public ToolShape {
   const SignedDistanceGrid& grid() const noexcept { return *grid_; }
   bool convex() const noexcept override { return grid_->convex(); }
   double surface_error() const noexcept override { return grid_->error_bound(); }
-  /// Computed from the nodes in the body and their depths: at most a spacing too narrow.
+  /// From the nodes in the body and their depths: at most a spacing too narrow.
   std::vector<ProfilePoint> outline() const override;
 
-  void mark_inside(const ToolPose& pose, const PointArrays& points, std::span<const PackRange> ranges,
-                   std::uint8_t* marks) const noexcept override;
-  void push_inside(const ToolPose& pose, const PointColumns& points, std::span<const PackRange> ranges,
+  void push_inside(const ToolPose& pose, const PointColumns& points, std::size_t packs,
                    ContactBuffer& contacts) const noexcept override;
   /// Uses the nearest node alone. Let e = error_bound(). A point y of the grid within m of the body is within m of a
   /// place with phi_h <= 0, hence phi <= e; so phi(y) <= m + e, and its nearest node, which is within e, has

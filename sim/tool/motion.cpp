@@ -1,15 +1,58 @@
 #include "sim/tool/motion.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <stdexcept>
 #include <utility>
 
 #include "sim/core/math.hpp"
-#include "sim/tool/tool_state.hpp"
 
 namespace hapbench {
-
 namespace {
+
+/// The turn about a unit axis, right-handed [rad].
+Eigen::Quaterniond turn_about(const Vec3& axis, double angle) noexcept {
+  const auto [sine, cosine] = math::sine_cosine(0.5 * angle);
+  Eigen::Quaterniond q;
+  q.w() = cosine;
+  q.vec() = sine * axis;
+  return q;
+}
+
+/// The angle of the turn of a unit quaternion in (-pi, pi], about q.vec(), whose length is `sine` > 0.
+double angle_of(const Eigen::Quaterniond& q, double sine) noexcept {
+  return 2.0 * math::atan2(q.w() < 0.0 ? -sine : sine, std::abs(q.w()));
+}
+
+/// The matrix of the shortest turn of -z to a unit vector, by Rodrigues' formula I + [v] + [v]^2 (1 - c) / |v|^2 with
+/// v = -z x axis, the turn's axis times its sine, and its cosine c = <-z, axis>.
+Mat3 shortest_turn(const Vec3& axis) noexcept {
+  const Vec3 v(axis.y(), -axis.x(), 0.0);
+  const double sine2 = v.squaredNorm(), cosine = -axis.z();
+  if (sine2 == 0.0) return cosine > 0.0 ? Mat3(Mat3::Identity()) : Mat3(Vec3(1.0, -1.0, -1.0).asDiagonal());
+  Mat3 cross;
+  cross << 0.0, 0.0, v.y(), 0.0, 0.0, -v.x(), -v.y(), v.x(), 0.0;
+  return Mat3::Identity() + cross + (1.0 - cosine) / sine2 * cross * cross;
+}
+
+/// The straight or curved way from one waypoint to the next.
+struct Leg {
+  double start, rise, duration;
+  double share;  ///< of the duration that has passed
+};
+
+/// Before the first and after the last waypoint nothing rises.
+Leg leg_at(const Profile::Waypoints& w, double t) {
+  const auto& p = w.points;
+  if (p.empty()) return {0.0, 0.0, 1.0, 0.0};
+  if (!(t >= p.front().first)) return {p.front().second, 0.0, 1.0, 0.0};
+  if (t >= p.back().first) return {p.back().second, 0.0, 1.0, 0.0};
+  const auto next = std::upper_bound(p.begin(), p.end(), t, [](double time, const auto& q) { return time < q.first; });
+  const auto last = next - 1;
+  const double duration = next->first - last->first;
+  return {last->second, next->second - last->second, duration, (t - last->first) / duration};
+}
 
 /// The axis reversed, and the lean, turned as `up` is to it.
 struct Leaning {
@@ -23,7 +66,73 @@ Leaning leaning(const Orientation& orientation, double tilt, double azimuth) noe
   return {cosine * orientation.up + sine * lean, cosine * lean - sine * orientation.up};
 }
 
+Vec3 axis_of(const Eigen::Quaterniond& orientation) noexcept {
+  return (orientation * -Vec3::UnitZ()).normalized();
+}
+
 }  // namespace
+
+Mat3 ToolPose::rotation() const noexcept {
+  return turn_about(axis, roll).toRotationMatrix() * shortest_turn(axis);
+}
+
+double roll_towards(const Vec3& axis, const Vec3& side) noexcept {
+  const Vec3 x = shortest_turn(axis).col(0);
+  return math::atan2(axis.cross(x).dot(side), x.dot(side));
+}
+
+Mat3 turn_matrix(const ToolPose& from, const ToolPose& to) noexcept {
+  const Vec3 v = from.axis.cross(to.axis);
+  const double cosine = from.axis.dot(to.axis);
+  Mat3 cross;
+  cross << 0.0, -v.z(), v.y(), v.z(), 0.0, -v.x(), -v.y(), v.x(), 0.0;
+  Mat3 turn = Mat3::Identity() + cross + cross * cross / (1.0 + cosine);
+  if (v.squaredNorm() == 0.0 && cosine < 0.0) {  // half a turn, about any axis across
+    const Vec3 across = from.axis.unitOrthogonal();
+    turn = 2.0 * across * across.transpose() - Mat3::Identity();
+  }
+  if (to.roll == from.roll) return turn;
+  return turn_about(to.axis, to.roll - from.roll).toRotationMatrix() * turn;
+}
+
+Vec3 turn(const ToolPose& from, const ToolPose& to) noexcept {
+  if (from.roll == 0.0 && to.roll == 0.0) return turn(from.axis, to.axis);
+  const Eigen::Quaterniond whole(Mat3(to.rotation() * from.rotation().transpose()));
+  const double sine = whole.vec().norm();  // of half the angle
+  if (sine == 0.0) return Vec3::Zero();
+  return whole.vec() * (angle_of(whole, sine) / sine);
+}
+
+double Profile::Sine::at(double t) const noexcept {
+  return mean + amplitude * math::sin(2.0 * std::numbers::pi * t / period_s + phase_rad);
+}
+
+double Profile::Sine::rate(double t) const noexcept {
+  const double omega = 2.0 * std::numbers::pi / period_s;
+  return amplitude * omega * math::cos(omega * t + phase_rad);
+}
+
+double Profile::Waypoints::at(double t) const noexcept {
+  const Leg leg = leg_at(*this, t);
+  if (leg.rise == 0.0) return leg.start;
+  if (interpolation == Interpolation::linear) return leg.start + leg.share * leg.rise;
+  return leg.start + (0.5 - 0.5 * math::cos(std::numbers::pi * leg.share)) * leg.rise;
+}
+
+double Profile::Waypoints::rate(double t) const noexcept {
+  const Leg leg = leg_at(*this, t);
+  if (leg.rise == 0.0) return 0.0;
+  if (interpolation == Interpolation::linear) return leg.rise / leg.duration;
+  return 0.5 * std::numbers::pi * math::sin(std::numbers::pi * leg.share) * leg.rise / leg.duration;
+}
+
+double Profile::operator()(double t) const noexcept {
+  return std::visit([t](const auto& shape) { return shape.at(t); }, shape_);
+}
+
+double Profile::rate(double t) const noexcept {
+  return std::visit([t](const auto& shape) { return shape.rate(t); }, shape_);
+}
 
 Vec3 tool_axis(const Orientation& orientation, double tilt, double azimuth) noexcept {
   return -leaning(orientation, tilt, azimuth).up;
@@ -32,10 +141,6 @@ Vec3 tool_axis(const Orientation& orientation, double tilt, double azimuth) noex
 double tool_roll(const Orientation& orientation, double tilt, double azimuth, double roll) noexcept {
   const auto [up, side] = leaning(orientation, tilt, azimuth);
   return roll_towards(-up, side) + roll;
-}
-
-static Vec3 axis_of(const Eigen::Quaterniond& orientation) noexcept {
-  return (orientation * -Vec3::UnitZ()).normalized();
 }
 
 ScriptedMotion::ScriptedMotion(Orientation orientation, std::optional<std::array<Profile, 3>> position)
@@ -75,8 +180,7 @@ RecordedMotion::RecordedMotion(std::vector<Sample> samples) : samples_(std::move
 }
 
 RecordedMotion::Leg RecordedMotion::leg_at(double t) const noexcept {
-  const auto next = std::upper_bound(samples_.begin(), samples_.end(), t,
-                                     [](double time, const Sample& sample) { return time < sample.time; });
+  const auto next = std::ranges::upper_bound(samples_, t, {}, &Sample::time);
   if (next == samples_.begin()) return {&samples_.front(), &samples_.front(), 0.0};
   if (next == samples_.end()) return {&samples_.back(), &samples_.back(), 0.0};
   const Sample& from = *(next - 1);

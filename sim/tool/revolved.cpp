@@ -235,22 +235,11 @@ Revolved::Revolved(Meridian meridian)
       widest2_(largest_square_within(meridian_.widest)),
       ball2_(largest_square_within(meridian_.ball)) {}
 
-/// Calls `use` with a function that tests which points of a pack lie in the body.
-template <class Use>
-void Revolved::with_test(const Use& use) const {
-  const InProfile in_profile{meridian_, Pack(meridian_.low), Pack(meridian_.high), Pack(widest2_)};
-  if (meridian_.tip == Tip::flat) return use(in_profile);
-  use(InProfileOrBall{in_profile, Pack(ball2_)});
-}
-
-void Revolved::mark_inside(const ToolPose& pose, const PointArrays& points, std::span<const PackRange> ranges,
-                           std::uint8_t* marks) const noexcept {
-  with_test([&](const auto& test) { mark(pose, points, ranges, marks, test); });
-}
-
-void Revolved::push_inside(const ToolPose& pose, const PointColumns& points, std::span<const PackRange> ranges,
+void Revolved::push_inside(const ToolPose& pose, const PointColumns& points, std::size_t packs,
                            ContactBuffer& contacts) const noexcept {
-  with_test([&](const auto& test) { push(pose, points, ranges, contacts, test); });
+  const InProfile in_profile{meridian_, Pack(meridian_.low), Pack(meridian_.high), Pack(widest2_)};
+  if (meridian_.tip == Tip::flat) return push(pose, points, packs, contacts, in_profile);
+  push(pose, points, packs, contacts, InProfileOrBall{in_profile, Pack(ball2_)});
 }
 
 void Revolved::mark_near(const ToolPose& pose, double margin, const PointArrays& points,
@@ -287,26 +276,8 @@ ToolShape::Cover Revolved::cover(double margin) const {
   return row_of_balls(meridian_.widest + margin, length);
 }
 
-double Revolved::moved_at_most(const ToolPose& from, const ToolPose& to) const noexcept {
-  return axis_moved_at_most(from, to, reach());
-}
-
 std::vector<ProfilePoint> Revolved::outline() const {
-  std::vector<ProfilePoint> outline = profile();
-  if (outline.front().rho > 0.0) outline.insert(outline.begin(), {outline.front().s, 0.0});
-  if (tip() == Tip::round) {
-    add_round_tip(outline.back().rho, outline);
-  } else if (outline.back().rho > 0.0) {
-    outline.push_back({outline.back().s, 0.0});
-  }
-  return outline;
-}
-
-ToolShape::Grown Revolved::grown(double margin) const {
-  auto [points, end] = grown_profile(meridian_, margin);
-  const double forward = points.back().s;
-  for (ProfilePoint& p : points) p.s -= forward;
-  return {std::make_unique<Revolved>(std::move(points), end), forward};
+  return closed_outline(profile(), tip());
 }
 
 void Revolved::shortest_depths(const ToolPose& pose, ContactBuffer& contacts) const noexcept {

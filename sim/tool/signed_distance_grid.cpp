@@ -65,58 +65,6 @@ std::vector<std::uint32_t> foremost_in_cell(const std::vector<Vec3>& points, std
   return found;
 }
 
-}  // namespace
-
-SupportTable::SupportTable(std::vector<Vec3> points) : points_(std::move(points)), starts_{0} {
-  tie_ = kTie * box_of(points_).size().norm();
-  std::vector<std::vector<std::uint32_t>> cells(kCells);
-  parallel_for(std::size_t{0}, kCells, [&](std::size_t i) { cells[i] = foremost_in_cell(points_, i, 2.0 * tie_); });
-  for (const auto& cell : cells) {
-    listed_.insert(listed_.end(), cell.begin(), cell.end());
-    starts_.push_back(static_cast<std::uint32_t>(listed_.size()));
-  }
-}
-
-std::span<const std::uint32_t> SupportTable::candidates(const Vec3& direction) const noexcept {
-  const std::size_t cell = cell_of(direction);
-  return {listed_.data() + starts_[cell], listed_.data() + starts_[cell + 1]};
-}
-
-double SupportTable::support(const Vec3& direction) const noexcept {
-  double most = -std::numeric_limits<double>::infinity();
-  for (const std::uint32_t i : candidates(direction)) most = std::max(most, direction.dot(points_[i]));
-  return most;
-}
-
-Vec3 SupportTable::foremost(const Vec3& direction, const Vec3& abreast) const noexcept {
-  const double least = support(direction) - tie_;
-  const Vec3* nearest = nullptr;
-  double distance2 = std::numeric_limits<double>::infinity();
-  for (const std::uint32_t i : candidates(direction)) {
-    if (direction.dot(points_[i]) < least) continue;
-    const double d2 = (points_[i] - abreast).squaredNorm();
-    if (nearest == nullptr || d2 < distance2) {
-      nearest = &points_[i];
-      distance2 = d2;
-    }
-  }
-  if (nearest == nullptr) return points_.front();  // a direction that is not finite
-  // Approaches the other foremost points as long as that comes nearer to `abreast`, twice for faces. Means of foremost
-  // places are foremost as well.
-  Vec3 place = *nearest;
-  for (int pass = 0; pass < 2; ++pass) {
-    for (const std::uint32_t i : candidates(direction)) {
-      if (direction.dot(points_[i]) < least) continue;
-      const Vec3 way = points_[i] - place;
-      const double length2 = way.squaredNorm();
-      if (length2 > 0.0) place += std::clamp((abreast - place).dot(way) / length2, 0.0, 1.0) * way;
-    }
-  }
-  return place;
-}
-
-namespace {
-
 /// Nodes between the mesh and the border on each side; with three, the 27 nodes around any border point are outside.
 constexpr double kBorder = 3.0;
 constexpr double kMostBytes = 1024.0 * 1024.0 * 1024.0;
@@ -234,9 +182,53 @@ void check_thickness(const ClosedSurface& surface, const TriangleTree& tree, dou
 
 }  // namespace
 
-SignedDistanceGrid::SignedDistanceGrid(std::span<const Vec3> vertices, std::span<const TriangleCorners> triangles,
-                                       double spacing)
-    : SignedDistanceGrid(ClosedSurface(vertices, triangles), spacing) {}
+SupportTable::SupportTable(std::vector<Vec3> points) : points_(std::move(points)), starts_{0} {
+  tie_ = kTie * box_of(points_).size().norm();
+  std::vector<std::vector<std::uint32_t>> cells(kCells);
+  parallel_for(std::size_t{0}, kCells, [&](std::size_t i) { cells[i] = foremost_in_cell(points_, i, 2.0 * tie_); });
+  for (const auto& cell : cells) {
+    listed_.insert(listed_.end(), cell.begin(), cell.end());
+    starts_.push_back(static_cast<std::uint32_t>(listed_.size()));
+  }
+}
+
+std::span<const std::uint32_t> SupportTable::candidates(const Vec3& direction) const noexcept {
+  const std::size_t cell = cell_of(direction);
+  return {listed_.data() + starts_[cell], listed_.data() + starts_[cell + 1]};
+}
+
+double SupportTable::support(const Vec3& direction) const noexcept {
+  double most = -std::numeric_limits<double>::infinity();
+  for (const std::uint32_t i : candidates(direction)) most = std::max(most, direction.dot(points_[i]));
+  return most;
+}
+
+Vec3 SupportTable::foremost(const Vec3& direction, const Vec3& abreast) const noexcept {
+  const double least = support(direction) - tie_;
+  const Vec3* nearest = nullptr;
+  double distance2 = std::numeric_limits<double>::infinity();
+  for (const std::uint32_t i : candidates(direction)) {
+    if (direction.dot(points_[i]) < least) continue;
+    const double d2 = (points_[i] - abreast).squaredNorm();
+    if (nearest == nullptr || d2 < distance2) {
+      nearest = &points_[i];
+      distance2 = d2;
+    }
+  }
+  if (nearest == nullptr) return points_.front();  // a direction that is not finite
+  // Approaches the other foremost points as long as that comes nearer to `abreast`, twice for faces. Means of foremost
+  // places are foremost as well.
+  Vec3 place = *nearest;
+  for (int pass = 0; pass < 2; ++pass) {
+    for (const std::uint32_t i : candidates(direction)) {
+      if (direction.dot(points_[i]) < least) continue;
+      const Vec3 way = points_[i] - place;
+      const double length2 = way.squaredNorm();
+      if (length2 > 0.0) place += std::clamp((abreast - place).dot(way) / length2, 0.0, 1.0) * way;
+    }
+  }
+  return place;
+}
 
 SignedDistanceGrid::SignedDistanceGrid(const ClosedSurface& surface, double spacing)
     : nodes_(nodes_around(surface, spacing)),

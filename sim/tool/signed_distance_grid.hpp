@@ -40,8 +40,8 @@ class SupportTable {
 ///
 /// The field is the mean of 27 nodes by the weights of a quadratic B-spline about the nearest one,
 ///
-///     phi_h(x) = sum_k w_k(x) phi(x_k),   w >= 0,  sum w_k = 1,  sum w_k x_k = x,  sum w_k (x_k - x)^2 = h^2 / 4 an
-///     axis,
+///     phi_h(x) = sum_k w_k(x) phi(x_k),   w >= 0,  sum w_k = 1,  sum w_k x_k = x,
+///     sum w_k (x_k - x)^2 = h^2 / 4 an axis,
 ///
 /// with phi exact at the nodes. A point beyond the grid, which contains the body, has the value of the nearest place in
 /// the grid plus the distance to it. Tricubic interpolation would need 64 nodes, and its negative weights overshoot at
@@ -53,16 +53,13 @@ class SupportTable {
 /// - phi_h >= phi for convex bodies, by Jensen's inequality: the body lies in the mesh, with edges rounded from within;
 /// - phi_h between the smallest and the largest of its 27 nodes, so that most points need no evaluation (kinds()).
 ///
-/// Immutable. Made by oneTBB's threads, with the same bytes for any number of them; the exact distance of a node takes
-/// O(log triangles).
+/// Immutable. Made by oneTBB's threads, with the same bytes for any number of them; a node takes O(log triangles).
 class SignedDistanceGrid {
  public:
-  /// The triangles counter-clockwise from outside, in the tool's frame [m]; `spacing` of the nodes [m].
-  ///
-  /// Throws std::invalid_argument with measured values and advice if the mesh is not a closed surface (ClosedSurface),
-  /// it encloses a node more than once or inside out (parts that overlap; not detected between nodes), more than a
-  /// tenth of its surface is less than two spacings thick, or the nodes would take more than 1 GiB.
-  SignedDistanceGrid(std::span<const Vec3> vertices, std::span<const TriangleCorners> triangles, double spacing);
+  /// The surface in the tool's frame [m]; `spacing` of the nodes [m]. Throws std::invalid_argument with measured values
+  /// and advice if the surface encloses a node more than once (parts that overlap; not detected between nodes), more
+  /// than a tenth of it is less than two spacings thick, or the nodes would take more than 1 GiB.
+  SignedDistanceGrid(const ClosedSurface& surface, double spacing);
 
   /// The spacing that gives the bounding box of a mesh about 128^3 nodes with margins: 20 MB, some seconds at most.
   static double suggested_spacing(std::span<const Vec3> vertices);
@@ -89,7 +86,7 @@ class SignedDistanceGrid {
   /// The mesh's vertices [m], each once.
   std::span<const Vec3> vertices() const noexcept { return vertices_; }
 
-  // For kernels (sim/tool/grid_spline.hpp).
+  // For kernels (sim/tool/mesh_tool.cpp).
 
   const GridNodes& nodes() const noexcept { return nodes_; }
   const double* values() const noexcept { return values_.data(); }  ///< phi of each node [m], and one more number
@@ -98,7 +95,6 @@ class SignedDistanceGrid {
   const std::uint8_t* kinds() const noexcept { return kinds_.data(); }
 
  private:
-  SignedDistanceGrid(const ClosedSurface& surface, double spacing);
   void fill(const ClosedSurface& surface, const TriangleTree& tree);
   void classify();
   void find_faces(const ClosedSurface& surface);

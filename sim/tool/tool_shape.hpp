@@ -7,22 +7,20 @@
 
 #include "sim/contact/contact_buffer.hpp"
 #include "sim/core/types.hpp"
-#include "sim/tool/tool_state.hpp"
+#include "sim/tool/motion.hpp"
 
 namespace hapbench {
 
-/// Points as one array per coordinate, aligned and padded to whole packs of eight (sim/core/simd.hpp).
+/// Points as one array per coordinate, aligned and padded to whole packs of eight (sim/core/simd.hpp), and the same for
+/// output.
 struct PointArrays {
   const double *x, *y, *z;
 };
-
-/// The same, for output.
 struct PlaceArrays {
   double *x, *y, *z;
 };
 
-/// A run of points in such arrays: packs first … last - 1. Some points of the first and the last pack may not belong to
-/// the run.
+/// A run of points in such arrays: packs first … last - 1, without some points of the first and the last one.
 struct PackRange {
   std::size_t first, last;
   std::uint8_t own_in_first = 0xff;  ///< bit k: point k of the first pack belongs to the run
@@ -41,17 +39,16 @@ struct PackRange {
 inline constexpr double kFlush = 0.9945;
 
 /// The solid that touches the environment: the geometry that contact search, depth models, the proxy and metrics need.
-/// Code outside the shapes uses this interface alone and knows neither a radius nor a tip. README.md says how to add a
-/// shape; sim/tool/cylinder.hpp is the model to follow.
+/// Code outside the shapes uses this interface alone and knows neither a radius nor a tip.
 ///
-/// Frames and units. Poses and points are given in the world frame, lengths in metres. The pose's position is the tip
-/// centre. A shape that is not a solid of revolution uses the pose's rotation().
+/// Poses and points are given in the world frame, lengths in metres. The pose's position is the tip centre. A shape
+/// that is not a solid of revolution uses the pose's rotation().
 ///
-/// Cost. Each call handles many points, so that its virtual dispatch is paid once per query or step and never per
-/// point. All functions except `outline`, `grown` and `cover` are called in the step loop and allocate nothing. Shapes
-/// are immutable and may be shared between runs and threads.
+/// Each call handles many points, so that its virtual dispatch is paid once per query or step. All functions except
+/// `outline`, `grown` and `cover` are called in the step loop and allocate nothing. Shapes are immutable and may be
+/// shared between runs and threads.
 ///
-/// Rounding. Search and depths must agree about points on the surface: a point that `mark_inside` marks has a depth >=
+/// Search and depths must agree about points on the surface: a point that `push_inside` finds has a depth >=
 /// 0 up to rounding, so both should use the same operations in the same order.
 class ToolShape {
  public:
@@ -71,19 +68,16 @@ class ToolShape {
 
   // Contact search.
 
-  /// Marks the points of the ranges that lie in the body or on its surface: bit k of a mark stands for point k of a
-  /// pack. Writes a mark for each pack of the ranges, range after range. For a pose that is not finite all marks are 0.
-  virtual void mark_inside(const ToolPose& pose, const PointArrays& points, std::span<const PackRange> ranges,
-                           std::uint8_t* marks) const noexcept = 0;
-  /// Appends the points that `mark_inside` would mark, in order and in one pass, because most steps need just this.
-  /// Precondition: `contacts` has room.
-  virtual void push_inside(const ToolPose& pose, const PointColumns& points, std::span<const PackRange> ranges,
+  /// Appends the points of the first `packs` packs that lie in the body or on its surface, in order; none for a pose
+  /// that is not finite. Precondition: `contacts` has room.
+  virtual void push_inside(const ToolPose& pose, const PointColumns& points, std::size_t packs,
                            ContactBuffer& contacts) const noexcept = 0;
-  /// Marks every point of the ranges within `margin` >= 0 of the body, and possibly some a little further away.
+  /// Marks every point of the ranges within `margin` >= 0 of the body, and possibly some a little further away: bit k
+  /// of a mark stands for point k of a pack. Writes a mark for each pack of the ranges, range after range.
   virtual void mark_near(const ToolPose& pose, double margin, const PointArrays& points,
                          std::span<const PackRange> ranges, std::uint8_t* marks) const noexcept = 0;
-  /// A box that contains every point of `bounds` within `margin` of the body; ideally the box around the part of the
-  /// body near `bounds`, because most of a tool sticks out of the environment. Empty if no part is near.
+  /// A box that contains every point of `bounds` within `margin` of the body, ideally around the part of the body near
+  /// `bounds` alone. Empty if no part is near.
   virtual Box box_near(const ToolPose& pose, double margin, const Box& bounds) const noexcept = 0;
   /// Number and radius [m] of balls that together contain the body and everything that `mark_near` marks with this
   /// margin. Many small balls bound the number of points that the body can touch (most_points_in, grid_index.hpp) more
@@ -93,16 +87,23 @@ class ToolShape {
     double radius;
   };
   virtual Cover cover(double margin) const { return {1, (1.0 + 1e-9) * (reach_ + 2.0 * margin)}; }
-  /// Upper bound of the distance by which a move from one pose to the other moves any point of the body [m].
-  virtual double moved_at_most(const ToolPose& from, const ToolPose& to) const noexcept = 0;
+  /// Upper bound of the distance by which a move from one pose to the other moves any point of the body [m]. This
+  /// default is that of a solid of revolution: the shortest rotation from one axis to the other moves a point by at
+  /// most |a' - a| times its distance from the tip centre; a turn about the axis maps the body to itself.
+  virtual double moved_at_most(const ToolPose& from, const ToolPose& to) const noexcept {
+    const double moved = (to.position - from.position).norm();
+    // Most steps of most scenes do not turn the tool; adding a turn of zero would change no bit.
+    if (to.axis == from.axis) return moved;
+    return moved + (to.axis - from.axis).norm() * reach_;
+  }
 
   // Depth models. Precondition: the contacts lie in the body or on its surface.
 
-  /// Writes each contact's distance to the nearest place of the surface as its depth. Changes nothing else; may write
-  /// the whole last pack.
+  /// Writes each contact's distance to the nearest place of the surface as its depth. May write the whole last pack, as
+  /// the following.
   virtual void shortest_depths(const ToolPose& pose, ContactBuffer& contacts) const noexcept = 0;
   /// Writes the unit vector to that place as each contact's gradient; the contact's inverse normal if no single place
-  /// is nearest, as on a cylinder's axis. May write the whole last pack.
+  /// is nearest, as on a cylinder's axis.
   virtual void shortest_gradients(const ToolPose& pose, ContactBuffer& contacts) const noexcept = 0;
   /// Writes to exits[i], i < size(), the distance from contact i to where the ray along its gradient leaves the body.
   /// Finite and >= 0, also for points on the surface.
@@ -127,8 +128,7 @@ class ToolShape {
   virtual void surface_constraints(const ToolPose& pose, const Vec3& wanted, double slack,
                                    ContactBuffer& contacts) const noexcept = 0;
   /// Writes the place of the body that is foremost against each contact's normal: the support point in the direction
-  /// -n_i, argmin <q, n_i> over the body. If there are several, the one abreast of the contact. May write the whole
-  /// last pack.
+  /// -n_i, argmin <q, n_i> over the body. If there are several, the one abreast of the contact.
   virtual void foremost_places(const ToolPose& pose, const ContactBuffer& contacts,
                                const PlaceArrays& places) const noexcept = 0;
 

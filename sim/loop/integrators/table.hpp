@@ -4,13 +4,11 @@
 #include <array>
 #include <cstdint>
 #include <limits>
-#include <memory>
 #include <optional>
-#include <type_traits>
 
-#include "sim/core/model_info.hpp"
+#include "sim/core/types.hpp"
 #include "sim/loop/force_algorithm.hpp"
-#include "sim/tool/tool_state.hpp"
+#include "sim/tool/motion.hpp"
 
 namespace hapbench {
 
@@ -29,37 +27,19 @@ class ForceField {
   virtual ForceJacobian jacobian() const noexcept = 0;
 };
 
-/// Turns forces into motion. One object is the state of one run. The classes in explicit.cpp and implicit.cpp document
-/// formula, order, stability and energy.
-class Integrator {
- public:
-  virtual ~Integrator() = default;
-  /// Returns to t = 0: clears the state kept between steps.
-  virtual void reset() noexcept {}
-  /// One step of dt [s]: moves position and velocity of the tool of `mass` [kg], on which `force` [N] acts at the row.
-  /// Leaves the axis alone. Allocates nothing.
-  virtual void step(ToolState& tool, const Vec3& force, double mass, double dt, ForceField& field) noexcept = 0;
-};
-
-struct IntegratorOptions {
-  double tolerance = 1e-9;  ///< within which `event` finds the times of contact on and off [s]
-};
-
-template <class T>
-std::unique_ptr<Integrator> make_integrator(const IntegratorOptions& options) {
-  if constexpr (std::is_constructible_v<T, IntegratorOptions>)
-    return std::make_unique<T>(options);
-  else
-    return std::make_unique<T>();
-}
+/// Default of the tolerance within which `event` finds the times of contact on and off [s].
+inline constexpr double kEventTolerance = 1e-9;
 
 struct SpringDamper;
 
-/// Description of an integrator. The theory is that of one spring-damper; functions without a closed form are null, and
-/// callers then use steps of the integrator itself.
+/// An integrator: turns forces into motion. The functions in table.cpp document stability and energy.
+/// The theory is that of one spring-damper; functions without a closed form are null, and callers then use steps of the
+/// integrator itself.
 struct IntegratorEntry {
   ModelInfo info;
-  std::unique_ptr<Integrator> (*make)(const IntegratorOptions&);
+  /// One step of dt [s]: moves position and velocity of the tool of `mass` [kg], on which `force` [N] acts at the row.
+  /// Leaves the axis alone, keeps nothing for the next step and allocates nothing. `tolerance`: of `event`.
+  void (*step)(ToolState& tool, const Vec3& force, double mass, double dt, ForceField& field, double tolerance);
   int order = 1;         ///< of convergence on undamped springs
   int damped_order = 1;  ///< of convergence with damping
   int forces = 1;        ///< rendered forces a step, including the row's; of `event`, without a contact on or off
@@ -73,8 +53,7 @@ struct IntegratorEntry {
   double damper_limit = std::numeric_limits<double>::infinity();
 };
 
-// The table. To add an integrator, define its entry in explicit.cpp, implicit.cpp or a new file, and add two lines
-// here.
+// The table. To add an integrator, define its entry in table.cpp or a new file, and add two lines here.
 extern const IntegratorEntry kLeapfrog;
 extern const IntegratorEntry kVelocityVerlet;
 extern const IntegratorEntry kRk4;
@@ -101,8 +80,8 @@ struct SpringDamper {
   Eigen::Matrix2d step_matrix() const;
   /// The change of (x, v) in a step for each newton of a force held over the step, from the integrator itself.
   Eigen::Vector2d input_step() const;
-  /// True while no eigenvalue leaves the unit circle by more than rounding. Uses trace and determinant, because
-  /// eigenvalues near -1 have errors of the order of the square root of rounding.
+  /// True while no eigenvalue leaves the unit circle by more than rounding. By trace and determinant, because computed
+  /// eigenvalues near -1 are off by the square root of rounding.
   bool is_stable() const;
   /// Positive if a step is stable (leapfrog: 4 - 2 lambda B dt / M - lambda K dt^2 / M); nullopt if the integrator has
   /// no closed form.

@@ -1,0 +1,275 @@
+#include "sim/loop/integrators/table.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <cmath>
+#include <tuple>
+#include <utility>
+
+namespace hapbench {
+namespace {
+
+/// The integrator that the thesis calls leapfrog (Eq. A.1), which is semi-implicit, symplectic Euler.
+void leapfrog(ToolState& tool, const Vec3& force, double mass, double dt, ForceField&, double) noexcept {
+  tool.velocity += force / mass * dt;
+  tool.pose.position += tool.velocity * dt;
+}
+
+/// Eq. A.2.
+Eigen::Matrix2d step_matrix(const SpringDamper& s) {
+  const double k = s.lambda * s.K * s.dt / s.M, b = s.lambda * s.B * s.dt / s.M;
+  Eigen::Matrix2d A;
+  A << 1.0 - k * s.dt, s.dt - b * s.dt, -k, 1.0 - b;
+  return A;
+}
+
+double margin(const SpringDamper& s) {
+  return 4.0 - 2.0 * s.lambda * s.B * s.dt / s.M - s.lambda * s.K * s.dt * s.dt / s.M;
+}
+
+/// Velocity Verlet: half a kick with the row's force, drift, half a kick with the force at the new position and the
+/// velocity after the first half, so that damping sees velocities of half a step before. With k = K dt^2 / M,
+/// b = B dt / M and c = 1 - b/2 it is stable on one spring-damper while b < 4 and k (1 + c) < 4 (1 + c^2): k < 4 for
+/// B = 0, as with leapfrog, and b < 4 for K = 0, twice as far. Symplectic on undamped springs: the energy swings by a
+/// fraction of k/4 about its value and does not drift. Two forces a step, because the next row needs the force at the
+/// final velocity.
+void velocity_verlet(ToolState& tool, const Vec3& force, double mass, double dt, ForceField& field, double) noexcept {
+  const Vec3 half = tool.velocity + force / mass * (0.5 * dt);
+  tool.pose.position += half * dt;
+  tool.velocity = half + field.force_at(1.0, tool.pose.position, half) / mass * (0.5 * dt);
+}
+
+/// A piece of a step by the classical Runge-Kutta method of order 4: from the part `from` of the step of dt on, `h`
+/// long [s], with the force at its begin. Calls `stage` after each force but the first. Returns position and velocity.
+template <class Stage>
+std::pair<Vec3, Vec3> runge_kutta(const Vec3& p, const Vec3& v1, const Vec3& force, double mass, double from, double h,
+                                  double dt, ForceField& field, const Stage& stage) noexcept {
+  const double half = 0.5 * h;
+  const auto acceleration = [&](double time, const Vec3& position, const Vec3& velocity) {
+    const Vec3 a = field.force_at(from + time / dt, position, velocity) / mass;
+    stage();
+    return a;
+  };
+  const Vec3 a1 = force / mass;
+  const Vec3 v2 = v1 + a1 * half, a2 = acceleration(half, p + v1 * half, v2);
+  const Vec3 v3 = v1 + a2 * half, a3 = acceleration(half, p + v2 * half, v3);
+  const Vec3 v4 = v1 + a3 * h, a4 = acceleration(h, p + v3 * h, v4);
+  return {p + (v1 + 2.0 * v2 + 2.0 * v3 + v4) * (h / 6.0), v1 + (a1 + 2.0 * a2 + 2.0 * a3 + a4) * (h / 6.0)};
+}
+
+/// The classical Runge-Kutta method of order 4 (the axis at t, t + dt/2 and t + dt), the reference for smooth forces;
+/// contacts that come and go within a step, and the held force f_in, reduce it to order 1.
+///
+/// An undamped spring is stable while K dt^2 / M < 8 and loses the fraction (K dt^2 / M)^3 / 72 of its energy in a
+/// step.
+void rk4(ToolState& tool, const Vec3& force, double mass, double dt, ForceField& field, double) noexcept {
+  std::tie(tool.pose.position, tool.velocity) =
+      runge_kutta(tool.pose.position, tool.velocity, force, mass, 0.0, dt, dt, field, [] {});
+}
+
+/// Rk4 in pieces in which the same contacts act: where a piece meets a contact on or off, it is halved until it is
+/// shorter than the tolerance, and the next piece begins behind the event. A reference for how contacts begin and end:
+/// the energy that an explicit step creates there is of first order in the step, here in the tolerance. f_in is held.
+///
+/// Each event costs about 10 log2(dt / tolerance) forces. A step of more than kMostPieces goes on without looking.
+void event(ToolState& tool, const Vec3& force, double mass, double dt, ForceField& field, double tolerance) noexcept {
+  constexpr int kMostPieces = 10'000;
+  Vec3 acting = force;
+  std::uint64_t set = field.contact_set();
+  double done = 0.0, h = dt;
+  for (int piece = 0; done < dt; ++piece) {
+    const bool last = h >= dt - done;
+    if (last) h = dt - done;
+    bool same = true;
+    const auto look = [&] { same = same && field.contact_set() == set; };
+    const auto [p, v] = runge_kutta(tool.pose.position, tool.velocity, acting, mass, done / dt, h, dt, field, look);
+    const double end = last ? 1.0 : (done + h) / dt;
+    const Vec3 force_then = field.force_at(end, p, v);
+    look();
+    if (!same && h > tolerance && piece < kMostPieces) {
+      h *= 0.5;
+      continue;
+    }
+    tool.pose.position = p;
+    tool.velocity = v;
+    acting = force_then;
+    set = field.contact_set();
+    done = last ? dt : done + h;
+    if (!same) h = dt;  // behind the event
+  }
+}
+
+/// The end of the stability region |1 + z + z^2/2 + z^3/6 + z^4/24| <= 1 on the real axis.
+constexpr double kRk4Damper = 2.785293563405282;
+
+// The implicit integrators solve for the velocity at the end of the step with a linearised force,
+// f(p + dp, v + dv) = f - K dp - D dv, K and D from the algorithm's Jacobian (K S; B S and friction). A step costs one
+// 3x3 solve and the row's force. They do not foresee contacts that are absent at the row, changes of S, turns of the
+// tool or force limits. Directions in which D drives the tool (friction on a law whose S exceeds 1) are integrated as
+// by leapfrog.
+
+/// Solves (M I + resistance) dv = impulse for a symmetric `resistance` [kg], the impulse in N s; finite for finite
+/// arguments whose quotients by M are finite.
+Vec3 velocity_change(const Mat3& resistance, const Vec3& impulse, double mass) noexcept {
+  const Mat3 A = Mat3::Identity() + resistance / mass;
+  const Vec3 explicit_change = impulse / mass;
+  if (!A.allFinite()) return explicit_change;
+  // Forces that hold the tool make every eigenvalue at least 1 up to rounding, which is nearly always the case.
+  if (Eigen::LLT<Mat3>(A - 0.5 * Mat3::Identity()).info() == Eigen::Success) return A.llt().solve(explicit_change);
+  const Eigen::SelfAdjointEigenSolver<Mat3> modes(A);
+  const Mat3& axes = modes.eigenvectors();
+  return axes * (axes.transpose() * explicit_change).cwiseQuotient(modes.eigenvalues().cwiseMax(1.0));
+}
+
+/// On springs and dampers it is the backward Euler method: stable for every K, B and dt; an undamped spring loses the
+/// fraction k / (1 + k), k = K dt^2 / M, of its energy in every step, so that stiff springs come to rest at once.
+void implicit_euler(ToolState& tool, const Vec3& force, double mass, double dt, ForceField& field, double) noexcept {
+  const auto [K, D] = field.jacobian();
+  tool.velocity += velocity_change(dt * D + dt * dt * K, dt * (force - dt * (K * tool.velocity)), mass);
+  tool.pose.position += dt * tool.velocity;
+}
+
+/// On springs and dampers it is the implicit midpoint rule (also the trapezoidal one): stable for every K, B and dt;
+/// undamped springs keep their energy up to rounding. Modes much stiffer than M / dt^2 are not damped but change sign
+/// from step to step.
+void implicit_midpoint(ToolState& tool, const Vec3& force, double mass, double dt, ForceField& field, double) noexcept {
+  const auto [K, D] = field.jacobian();
+  const double half = 0.5 * dt;
+  const Vec3 change = velocity_change(half * D + half * half * K, dt * (force - half * (K * tool.velocity)), mass);
+  tool.pose.position += dt * (tool.velocity + 0.5 * change);
+  tool.velocity += change;
+}
+
+/// The force of the spring-damper plus a force held over the step.
+class LinearForce final : public ForceField {
+ public:
+  LinearForce(const SpringDamper& s, const Vec3& held)
+      : jacobian_{s.lambda * s.K * Mat3::Identity(), s.lambda * s.B * Mat3::Identity()}, held_(held) {}
+
+  Vec3 force_at(double, const Vec3& position, const Vec3& velocity) noexcept override {
+    return held_ - jacobian_.stiffness * position - jacobian_.damping * velocity;
+  }
+  ForceJacobian jacobian() const noexcept override { return jacobian_; }
+
+ private:
+  ForceJacobian jacobian_;
+  Vec3 held_;
+};
+
+/// The result of one step from (x, v) with a held force [N].
+Eigen::Vector2d stepped(const SpringDamper& s, double x, double v, double held) {
+  LinearForce field(s, held * Vec3::UnitX());
+  ToolState tool;
+  tool.pose.position = x * Vec3::UnitX();
+  tool.velocity = v * Vec3::UnitX();
+  const Vec3 force = field.force_at(0.0, tool.pose.position, tool.velocity);
+  s.integrator->step(tool, force, s.M, s.dt, field, kEventTolerance);
+  return {tool.pose.position.x(), tool.velocity.x()};
+}
+
+}  // namespace
+
+const IntegratorEntry kLeapfrog = {
+    .info = {.name = "leapfrog",
+             .summary = "semi-implicit Euler, the thesis's integrator: order 1, one force a step",
+             .formula = "v += f/M dt; p += v dt",
+             .source = "thesis Eq. A.1",
+             .known_failure = "blows up where 4 - 2 B dt / M - K dt^2 / M < 0; the energy of an undamped spring swings "
+                              "but does not drift"},
+    .step = leapfrog,
+    .holds_force = true,
+    .step_matrix = step_matrix,
+    .stability_margin = margin,
+    .damper_limit = 2.0,
+};
+
+const IntegratorEntry kVelocityVerlet = {
+    .info = {.name = "velocity_verlet",
+             .summary = "half a kick, drift, half a kick: order 2 without damping, two forces a step",
+             .formula = "v' = v + f/M dt/2; p += v' dt; v = v' + f(p, v')/M dt/2",
+             .source = "L. Verlet 1967, W. C. Swope et al. 1982",
+             .known_failure = "no stiffer springs than leapfrog without damping, K < 4 M / dt^2; order 1 with damping"},
+    .step = velocity_verlet,
+    .order = 2,
+    .forces = 2,
+    .damper_limit = 4.0,
+};
+
+const IntegratorEntry kRk4 = {
+    .info = {.name = "rk4",
+             .summary = "classical Runge-Kutta method, the reference on smooth forces: order 4, four forces a step",
+             .formula = "v, p += dt/6 (k1 + 2 k2 + 2 k3 + k4)",
+             .source = "W. Kutta 1901",
+             .known_failure =
+                 "blows up at K > 8 M / dt^2; order 1 where contacts come and go within a step; dissipates a little"},
+    .step = rk4,
+    .order = 4,
+    .damped_order = 4,
+    .forces = 4,
+    .damper_limit = kRk4Damper,
+};
+
+const IntegratorEntry kEvent = {
+    .info = {.name = "event",
+             .summary = "rk4 in pieces between contacts on and off, which it finds inside a step: a reference",
+             .formula = "rk4 from event to event; events to tolerance_s by halving",
+             .source = "ours; event location as in L. F. Shampine, S. Thompson 2000",
+             .known_failure = "slow where many points touch and leave: some hundred forces for each of them; "
+                              "blows up at K > 8 M / dt^2"},
+    .step = event,
+    .order = 4,
+    .damped_order = 4,
+    .forces = 5,
+    .damper_limit = kRk4Damper,
+};
+
+const IntegratorEntry kImplicitEuler = {
+    .info = {.name = "implicit_euler",
+             .summary = "linearly implicit Euler: order 1, never unstable on springs, one force and one 3x3 solve a "
+                        "step",
+             .formula = "(M I + dt D + dt^2 K S) dv = dt (f - dt K S v); v += dv; p += v dt",
+             .source = "J. C. Butcher, Numerical Methods for Ordinary Differential Equations; D. Baraff and A. Witkin "
+                       "1998",
+             .known_failure = "takes energy out of every oscillation, all of it where K dt^2 / M is large; sees no "
+                              "contact before it is there"},
+    .step = implicit_euler,
+};
+
+const IntegratorEntry kImplicitMidpoint = {
+    .info = {.name = "implicit_midpoint",
+             .summary = "linearly implicit midpoint rule: order 2, never unstable on springs, one force and one 3x3 "
+                        "solve a step",
+             .formula = "(M I + dt/2 D + dt^2/4 K S) dv = dt (f - dt/2 K S v); p += dt (v + dv/2); v += dv",
+             .source = "J. C. Butcher, Numerical Methods for Ordinary Differential Equations",
+             .known_failure = "keeps the energy of undamped springs, so springs much stiffer than M / dt^2 swing from "
+                              "step to step; sees no contact before it is there"},
+    .step = implicit_midpoint,
+    .order = 2,
+    .damped_order = 2,
+};
+
+Eigen::Matrix2d SpringDamper::step_matrix() const {
+  if (integrator->step_matrix != nullptr) return integrator->step_matrix(*this);
+  Eigen::Matrix2d A;
+  A << stepped(*this, 1.0, 0.0, 0.0), stepped(*this, 0.0, 1.0, 0.0);
+  return A;
+}
+
+Eigen::Vector2d SpringDamper::input_step() const {
+  return stepped(*this, 0.0, 0.0, 1.0);
+}
+
+bool SpringDamper::is_stable() const {
+  constexpr double kRounding = 1e-12;
+  const Eigen::Matrix2d A = step_matrix();
+  const double trace = A.trace(), determinant = A.determinant();
+  return std::abs(determinant) <= 1.0 + kRounding && std::abs(trace) <= 1.0 + determinant + kRounding;
+}
+
+std::optional<double> SpringDamper::margin() const {
+  if (integrator->stability_margin == nullptr) return std::nullopt;
+  return integrator->stability_margin(*this);
+}
+
+}  // namespace hapbench
