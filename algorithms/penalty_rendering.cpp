@@ -4,12 +4,9 @@
 #include <utility>
 
 namespace hapbench {
-namespace {
 
 /// Copied in each step. Constructing it there would write zeros one by one, and reading them in pairs would stall.
-const RenderedForce kNoForce;
-
-}  // namespace
+static const RenderedForce kNoForce;
 
 PenaltyRendering::PenaltyRendering(std::unique_ptr<ForceLaw> law, const RenderingConfig& config)
     : local_average_(config.local_average ? make_local_average() : nullptr),
@@ -17,8 +14,7 @@ PenaltyRendering::PenaltyRendering(std::unique_ptr<ForceLaw> law, const Renderin
       law_(std::move(law)),
       damping_and_limits_(config),
       skips_(config.skips),
-      K_(config.stiffness),
-      angular_velocity_cutoff_(config.angular_velocity_read()) {}
+      K_(config.stiffness) {}
 
 void PenaltyRendering::prepare(const Scene& scene) {
   if (local_average_) local_average_->prepare(scene);
@@ -66,7 +62,7 @@ void PenaltyRendering::render(const ToolState& tool, ContactBuffer& contacts, Re
 ContactVelocity PenaltyRendering::velocity_at(const ContactBuffer& contacts, const ToolState& tool) const noexcept {
   const Mat3& S = law_force_.S;
   ContactVelocity velocity{tool.velocity, S * tool.velocity};
-  if (angular_velocity_cutoff_ && tool.angular_velocity != Vec3::Zero()) {
+  if (angular_velocity_cutoff() && tool.angular_velocity != Vec3::Zero()) {
     velocity.mean += tool.angular_velocity.cross(mean_arm(contacts, tool.pose.position));
     velocity.normal += law_->turning_velocity(contacts, S, tool);
   }
@@ -84,10 +80,6 @@ ForceJacobian PenaltyRendering::jacobian() const noexcept {
   if (!in_contact_) return {};
   const auto& [spring, S] = law_force_;
   return {K_ * S, damping_and_limits_.damping_matrix(spring, S)};
-}
-
-AlgorithmWork PenaltyRendering::work() const noexcept {
-  return {law_->iterations(), reduction_ ? reduction_->dropped() : 0};
 }
 
 }  // namespace hapbench

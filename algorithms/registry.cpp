@@ -1,14 +1,11 @@
 #include "algorithms/registry.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <set>
 #include <stdexcept>
 
 #include "algorithms/penalty_rendering.hpp"
-#include "algorithms/stages/force_stage.hpp"
-#include "algorithms/stages/passivity_controller.hpp"
-#include "algorithms/stages/point_stage.hpp"
+#include "algorithms/stages/controllers.hpp"
 
 /// The algorithms in the order of lists. For each row, a source file in laws/ or proxy/ defines
 /// `AlgorithmEntry <name>_entry()`.
@@ -56,23 +53,23 @@ const AlgorithmEntry& algorithm_entry(std::string_view name) {
   throw std::invalid_argument(problem);
 }
 
-/// True for a name that can be a field and a word of a list on the command line.
-bool is_name(const char* text) {
-  if (text == nullptr) return false;
-  const std::string_view name = text;
+/// A name can be a field and a word of a list on the command line.
+void require_name(const std::string& what, const char* text) {
+  const std::string_view name = text == nullptr ? "" : text;
   constexpr std::size_t kLongest = 64;
-  return !name.empty() && name.size() <= kLongest && name[0] >= 'a' && name[0] <= 'z' &&
-         name.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_") == name.npos;
+  const bool is_name = !name.empty() && name.size() <= kLongest && name[0] >= 'a' && name[0] <= 'z';
+  if (!is_name ||
+      name.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_") != name.npos)
+    refuse(what + " is called \"" + std::string(name) +
+           "\"; allowed: letters, digits and \"_\", a small letter first, at most 64");
 }
 
 void require_text(const char* text, const std::string& what) {
   if (text == nullptr || *text == '\0') refuse(what + " is missing");
 }
 
-constexpr const char* kNames = "allowed: letters, digits and \"_\", a small letter first, at most 64";
-
 void check(const OwnParameter& p) {
-  if (!is_name(p.name)) refuse(std::string("a parameter is called \"") + (p.name ? p.name : "") + "\"; " + kNames);
+  require_name("a parameter", p.name);
   const std::string which = "parameter \"" + std::string(p.name) + "\": ";
   require_text(p.range.unit, which + "its unit");
   require_text(p.meaning, which + "its meaning");
@@ -86,8 +83,7 @@ void check(const OwnParameter& p) {
 /// Throws std::invalid_argument.
 void check(const AlgorithmEntry& entry) {
   const ModelInfo& info = *entry.info;
-  if (!is_name(info.name))
-    refuse(std::string("an algorithm is called \"") + (info.name ? info.name : "") + "\"; " + kNames);
+  require_name("an algorithm", info.name);
   // `--algorithms all` means all of them.
   if (info.name == std::string_view("all")) refuse("an algorithm is called \"all\", which means all of them");
   for (const auto& [what, text] :
@@ -102,18 +98,18 @@ void check(const AlgorithmEntry& entry) {
   }
 }
 
+std::unique_ptr<ForceStage> make_force_stage(const ForceStageConfig& config) {
+  if (const auto* tank = std::get_if<EnergyTankConfig>(&config)) return std::make_unique<EnergyTank>(*tank);
+  return std::make_unique<ActuatorLimitedPassivity>(std::get<ActuatorLimitedPassivityConfig>(config));
+}
+
 /// Owns the targets of `info` and `own_parameters` of an added algorithm.
 struct Texts {
   std::deque<std::string> all;
   ModelInfo info = {};
-  std::vector<ParameterInfo> parameters;
   std::vector<OwnParameter> own;
 
   const char* copy(const char* text) { return all.emplace_back(text).c_str(); }
-  NumberRange copy(NumberRange range) {
-    range.unit = copy(range.unit);
-    return range;
-  }
 };
 
 }  // namespace
@@ -147,18 +143,13 @@ AlgorithmEntry checked_copy(AlgorithmEntry entry) {
   check(entry);
   auto texts = std::make_shared<Texts>();
   Texts& t = *texts;
-  const ModelInfo& info = *entry.info;
-  for (const auto& [parameter, meaning] : info.parameters)
-    t.parameters.push_back({{t.copy(parameter.field), t.copy(parameter.range)}, t.copy(meaning)});
-  for (const OwnParameter& p : entry.own_parameters)
-    t.own.push_back(
-        {.name = t.copy(p.name), .range = t.copy(p.range), .initial = p.initial, .meaning = t.copy(p.meaning)});
-  t.info = {.name = t.copy(info.name),
-            .summary = t.copy(info.summary),
-            .formula = t.copy(info.formula),
-            .source = t.copy(info.source),
-            .known_failure = t.copy(info.known_failure),
-            .parameters = t.parameters};
+  for (OwnParameter p : entry.own_parameters) {
+    for (const char** text : {&p.name, &p.range.unit, &p.meaning}) *text = t.copy(*text);
+    t.own.push_back(p);
+  }
+  t.info = *entry.info;
+  for (const char** text : {&t.info.name, &t.info.summary, &t.info.formula, &t.info.source, &t.info.known_failure})
+    *text = t.copy(*text);
   entry.info = &t.info;
   entry.own_parameters = t.own;
   entry.texts = std::move(texts);

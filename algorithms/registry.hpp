@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <deque>
 #include <functional>
 #include <memory>
@@ -11,8 +12,7 @@
 #include "algorithms/depth/depth_model.hpp"
 #include "algorithms/laws/force_law.hpp"
 #include "algorithms/rendering_config.hpp"
-#include "sim/core/math.hpp"
-#include "sim/core/model_info.hpp"
+#include "sim/core/types.hpp"
 
 /// The table of algorithms. An algorithm of this tree is a source file that defines its AlgorithmEntry and a row in
 /// registry.cpp; `add_algorithm` adds one from outside while the program runs.
@@ -30,26 +30,11 @@ struct OwnParameter {
 /// The value in `config`, or the default.
 double own_value(const RenderingConfig& config, const char* algorithm, const OwnParameter& parameter);
 
-/// Stiffness in a wedge, in units of K; both directions are axes of the tensor. Two faces stand at the half angle w
-/// [rad], 0 < w < pi/2, from the middle plane of the wedge; the way out is +y, across is x. The contact gradients
-/// (+-cos w, -sin w, 0) have the inner product -cos 2w.
-struct WedgeStiffness {
-  double along = 0.0;   ///< along the way out
-  double across = 0.0;  ///< from face to face
-};
-
-/// The wedge under weights that add up to `weight` on either face: S = weight (u1 u1^T + u2 u2^T).
-inline WedgeStiffness wedge_of_weight(double weight, double half_angle) {
-  return {2.0 * weight * math::square(math::sin(half_angle)), 2.0 * weight * math::square(math::cos(half_angle))};
+/// AlgorithmEntry::force_bound of springs that pull at most like `Most` of them.
+template <int Most>
+double bound_of_springs(const RenderingConfig&, const ToolShape&, std::size_t n, double depth) {
+  return std::min<double>(Most, static_cast<double>(n)) * depth;
 }
-
-/// Known properties of an algorithm; null if unknown. Each derivation stands with its algorithm.
-struct AlgorithmTheory {
-  /// The largest |f_spring| / K [m] that n contacts, the deepest of them by `depth` [m], may cause in one step.
-  double (*force_bound)(const RenderingConfig& config, const ToolShape& tool, std::size_t n, double depth) = nullptr;
-  /// Closed form for a wedge with as many points on either face, all equally deep. Precondition: K > 0.
-  WedgeStiffness (*wedge_stiffness)(const RenderingConfig& config, double half_angle, double points_per_face) = nullptr;
-};
 
 /// The file that an algorithm from outside was loaded from, for the provenance of results.
 struct AlgorithmOrigin {
@@ -57,22 +42,22 @@ struct AlgorithmOrigin {
   std::string hash;  ///< hash of its content
 };
 
-/// An algorithm: documentation, how to make it, theory. Either `make_law` or `make` is given.
+/// An algorithm: documentation, how to make it, bound of its force. Either `make_law` or `make` is given.
 struct AlgorithmEntry {
   const ModelInfo* info;
   /// Makes a force law for one run, which PenaltyRendering uses.
   std::function<std::unique_ptr<ForceLaw>(const RenderingConfig&)> make_law = {};
   /// Makes an algorithm that is not a force law, for one run.
   std::function<std::unique_ptr<ForceAlgorithm>(const RenderingConfig&)> make = {};
-  AlgorithmTheory theory = {};
+  /// The largest |f_spring| / K [m] that n contacts, the deepest of them by `depth` [m], may cause in one step; null if
+  /// unknown. The derivation stands with the algorithm.
+  double (*force_bound)(const RenderingConfig& config, const ToolShape& tool, std::size_t n, double depth) = nullptr;
   /// The depth model that is part of the algorithm's definition; empty if the scenario chooses.
   std::string_view fixed_depth_model = {};
   /// False if the algorithm's definition excludes the reduction.
   bool may_reduce = true;
   /// The depth model of contacts whose depths the algorithm only reports; empty if it renders them.
   std::string_view reported_depth_model = {};
-  /// True if the algorithm creates energy while a peg sticks in a hole; the passivity controller leaves others alone.
-  bool creates_energy = false;
   std::span<const OwnParameter> own_parameters = {};
   AlgorithmOrigin origin = {};             ///< empty for a built-in algorithm
   std::shared_ptr<const void> texts = {};  ///< owns the targets of `info` and `own_parameters` of an added algorithm
@@ -94,8 +79,9 @@ std::span<const ModelInfo* const> stages();
 /// Null if there is no algorithm of that name.
 const AlgorithmEntry* find_algorithm(std::string_view name);
 
-/// Returns the entry with copies of its texts, which it owns. Throws std::invalid_argument, which says what is wrong,
-/// for a name that a scenario cannot hold, missing texts, and parameters without a valid range.
+/// Returns the entry with copies of its texts, which it owns, but for `info->parameters`. Throws std::invalid_argument,
+/// which says what is wrong, for a name that a scenario cannot hold, missing texts, and parameters without a valid
+/// range.
 AlgorithmEntry checked_copy(AlgorithmEntry entry);
 
 /// Adds a checked copy of an algorithm from outside; it replaces one that was added earlier under the same name. Must

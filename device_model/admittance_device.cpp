@@ -2,11 +2,6 @@
 
 namespace hapbench {
 
-void HandleMechanics::reset(const ToolState& tool) noexcept {
-  carriage_ = handle_ = {tool.pose.position, tool.velocity};
-  work_ = {.stored = -stored()};
-}
-
 // Midpoint velocities w solve, with the stretch s = x_c - x_h and a = k dt / 2 + c,
 //
 //   (2 m_c / dt + b + a) w_c - a w_h = u - k s + 2 m_c / dt v_c
@@ -32,15 +27,6 @@ void HandleMechanics::advance(const Vec3& hand, const Vec3& actuator, double dt)
       (config_.friction * w_c.squaredNorm() + config_.structure_damping * (w_c - w_h).squaredNorm()) * dt;
 }
 
-double HandleMechanics::stored() const noexcept {
-  return 0.5 * config_.carriage_mass * carriage_.velocity.squaredNorm() +
-         0.5 * config_.handle_mass * handle_.velocity.squaredNorm() +
-         0.5 * config_.structure_stiffness * (carriage_.position - handle_.position).squaredNorm();
-}
-
-AdmittanceDevice::AdmittanceDevice(const AdmittanceDeviceConfig& config)
-    : force_limit_(config.force_limit), sensor_(config.sensor), servo_(config.servo), mechanics_(config.mechanics) {}
-
 void AdmittanceDevice::reset(const ToolState& tool) noexcept {
   sensor_.reset();
   servo_.reset();
@@ -49,14 +35,12 @@ void AdmittanceDevice::reset(const ToolState& tool) noexcept {
 
 MeasuredForce AdmittanceDevice::measure(const Vec3& hand_force) noexcept {
   const Vec3 measured = sensor_.read(hand_force);
-  const Vec3 input = sensor_.compensated(measured);
-  return {measured, force_limit_ ? limit_input_force(input, *force_limit_) : input};
+  return {measured, limit_input_force(sensor_.compensated(measured), force_limit_)};
 }
 
 void AdmittanceDevice::advance(const ToolState& tool, const Vec3& hand_force, double dt) noexcept {
   const HandleState& carriage = mechanics_.carriage();
-  const Vec3 actuator = servo_.force(tool, carriage.position, carriage.velocity);
-  mechanics_.advance(hand_force, actuator, dt);
+  mechanics_.advance(hand_force, servo_.force(tool, carriage.position, carriage.velocity), dt);
 }
 
 }  // namespace hapbench

@@ -10,11 +10,11 @@
 
 namespace hapbench {
 
-/// Input force limiting (thesis 2.7, C.4.4): scales the measured force [N] down to the limit if its norm exceeds it.
-/// Once the hand pushes harder than the limit, the virtual tool penetrates no further, which feels infinitely stiff.
-inline Vec3 limit_input_force(const Vec3& measured, double limit) noexcept {
-  const double length = measured.norm();
-  return length <= limit ? measured : Vec3(measured * (limit / length));
+/// Input force limiting (thesis 2.7, C.4.4): scales the measured force [N] down to the limit, if there is one and its
+/// norm exceeds it. Once the hand pushes harder, the virtual tool penetrates no further, which feels infinitely stiff.
+inline Vec3 limit_input_force(const Vec3& measured, std::optional<double> limit) noexcept {
+  const double length = limit ? measured.norm() : 0.0;
+  return !limit || length <= *limit ? measured : Vec3(measured * (*limit / length));
 }
 
 /// A device without dynamics: it measures the force of the hand exactly, and its handle is the tool.
@@ -25,7 +25,7 @@ class IdealDevice final : public Device {
 
   void reset(const ToolState& tool) noexcept override { handle_ = {tool.pose.position, tool.velocity}; }
   MeasuredForce measure(const Vec3& hand_force) noexcept override {
-    return {hand_force, force_limit_ ? limit_input_force(hand_force, *force_limit_) : hand_force};
+    return {hand_force, limit_input_force(hand_force, force_limit_)};
   }
   void advance(const ToolState& tool, const Vec3&, double) noexcept override { reset(tool); }
   HandleState handle() const noexcept override { return handle_; }
@@ -49,8 +49,8 @@ struct ForceSensorConfig {
 /// The force sensor under the handle: f_meas = f_hand + weight + noise.
 ///
 /// The thesis logs f_meas including the weight, and its limit of 2 N acts at 2.7 N of the logged force (3.5, Fig. 6),
-/// so the weight must be subtracted before the force drives the virtual mass. With `compensated = false`, which is the
-/// literal reading of 2.7, the weight pulls the virtual tool down, and the limit acts at 2 N of f_meas.
+/// so the weight must be subtracted first. With `compensated = false`, which is the literal reading of 2.7, the weight
+/// pulls the virtual tool down, and the limit acts at 2 N of f_meas.
 class ForceSensor {
  public:
   explicit ForceSensor(const ForceSensorConfig& config) : config_(config), random_(config.seed) {}
@@ -130,14 +130,16 @@ struct HandleMechanicsConfig {
 };
 
 /// Two masses connected by a spring and a damper, independently in each axis, integrated by the implicit midpoint rule,
-/// which is stable for every step size and, for this linear system, conserves the energy balance exactly. Gravity is
-/// assumed to be compensated.
+/// which is stable for every step and here keeps the energy balance exactly. Gravity is assumed to be compensated.
 class HandleMechanics {
  public:
   explicit HandleMechanics(const HandleMechanicsConfig& config) : config_(config) {}
 
   /// Places carriage and handle at the tool, with the tool's velocity and the structure unstretched.
-  void reset(const ToolState& tool) noexcept;
+  void reset(const ToolState& tool) noexcept {
+    carriage_ = handle_ = {tool.pose.position, tool.velocity};
+    work_ = {.stored = -stored()};
+  }
   /// One step of dt seconds under constant forces of the hand (on the handle) and the actuators (on the carriage) [N].
   void advance(const Vec3& hand, const Vec3& actuator, double dt) noexcept;
 
@@ -146,7 +148,11 @@ class HandleMechanics {
   DeviceEnergy energy() const noexcept { return work_.plus_stored(stored()); }
 
  private:
-  double stored() const noexcept;
+  double stored() const noexcept {
+    return 0.5 * config_.carriage_mass * carriage_.velocity.squaredNorm() +
+           0.5 * config_.handle_mass * handle_.velocity.squaredNorm() +
+           0.5 * config_.structure_stiffness * (carriage_.position - handle_.position).squaredNorm();
+  }
 
   HandleMechanicsConfig config_;
   HandleState carriage_;
@@ -168,7 +174,8 @@ struct AdmittanceDeviceConfig {
 /// The virtual mass is the simulation's tool; the servo follows it one step behind the force that moved it.
 class AdmittanceDevice final : public Device {
  public:
-  explicit AdmittanceDevice(const AdmittanceDeviceConfig& config);
+  explicit AdmittanceDevice(const AdmittanceDeviceConfig& config)
+      : force_limit_(config.force_limit), sensor_(config.sensor), servo_(config.servo), mechanics_(config.mechanics) {}
 
   void reset(const ToolState& tool) noexcept override;
   MeasuredForce measure(const Vec3& hand_force) noexcept override;

@@ -77,11 +77,12 @@ double time_of_rest(const MotionLaw& law, double v, double g) noexcept {
   return d * t < 1e-8 ? t : math::atanh(d * t) / d;
 }
 
+HeldHandle::HeldHandle(const ImpedanceDeviceConfig& device, const AttachedHand& hand)
+    : viscous_(device.viscous), coulomb_(device.coulomb), hand_(hand) {}
+
 HandleMotion::HandleMotion(const ImpedanceDeviceConfig& device, const AttachedHand& hand)
-    : handle_mass_(device.handle_mass),
-      viscous_(device.viscous),
-      coulomb_(device.coulomb),
-      hand_(hand),
+    : HeldHandle(device, hand),
+      handle_mass_(device.handle_mass),
       mass_(device.handle_mass + hand.mass),
       law_{(device.viscous + hand.damping) / mass_, hand.stiffness / mass_} {}
 
@@ -89,11 +90,6 @@ void HandleMotion::reset(const HandleState& handle) noexcept {
   handle_ = handle;
   work_ = {.stored = -stored()};
   take_hand(Vec3::Zero());
-}
-
-void HandleMotion::take_hand(const Vec3& force) noexcept {
-  origin_ = handle_.position;
-  push_ = force + hand_.damping * handle_.velocity;
 }
 
 void HandleMotion::advance(const Vec3& motors, const FreeMotion& stretch) noexcept {
@@ -139,50 +135,41 @@ void HandleMotion::move(Eigen::Index axis, double motors, double friction, const
   work_.dissipated += friction * way - viscous_ * squares;
 }
 
-namespace {
-
 using PieceMatrix = ElasticMotion::Matrix;
 
-constexpr double kLargestPiece = 0.25;  ///< of the fastest motion [rad]; the terms of its series then reach rounding
-constexpr int kPieceTerms = 20;
+// The longest piece is kLargest radians of the fastest motion.
 constexpr std::size_t kFinest = 40;  ///< halvings of such a piece, which locate a change
 constexpr std::size_t kGrain = 12;   ///< halvings of the least that passes after a change before the next
 constexpr std::size_t kMostHalvings = 52;
 
 /// Integral of u^T form u over the time, u the state that moves with `rates`, by the power series in time.
-PieceMatrix integral(const PieceMatrix& rates, const PieceMatrix& form, double time) {
+static PieceMatrix integral(const PieceMatrix& rates, const PieceMatrix& form, double time) {
   PieceMatrix term = form * time, sum = term;
-  for (int n = 2; n <= kPieceTerms; ++n) {
-    const PieceMatrix next = (rates.transpose() * term + term * rates) * (time / n);
-    term = next;
+  for (int n = 2; n <= kTerms; ++n) {
+    term = ((rates.transpose() * term + term * rates) * (time / n)).eval();
     sum += term;
   }
   return sum;
 }
 
-PieceMatrix exponential(const PieceMatrix& rates, double time) {
+static PieceMatrix exponential(const PieceMatrix& rates, double time) {
   PieceMatrix term = PieceMatrix::Identity(), sum = term;
-  for (int n = 1; n <= kPieceTerms; ++n) {
-    const PieceMatrix next = term * rates * (time / n);
-    term = next;
+  for (int n = 1; n <= kTerms; ++n) {
+    term = (term * rates * (time / n)).eval();
     sum += term;
   }
   return sum;
 }
 
-ElasticMotion::Piece doubled(const ElasticMotion::Piece& p) {
+static ElasticMotion::Piece doubled(const ElasticMotion::Piece& p) {
   return {p.map * p.map, p.dissipated + p.map.transpose() * p.dissipated * p.map,
           p.hand + p.map.transpose() * p.hand * p.map};
 }
 
-}  // namespace
-
 ElasticMotion::ElasticMotion(const ImpedanceDeviceConfig& device, const Transmission& transmission,
                              const AttachedHand& hand)
-    : viscous_(device.viscous),
-      coulomb_(device.coulomb),
+    : HeldHandle(device, hand),
       transmission_(transmission),
-      hand_(hand),
       motor_mass_(transmission.motor_share * device.handle_mass),
       handle_mass_((1.0 - transmission.motor_share) * device.handle_mass) {}
 
@@ -212,7 +199,7 @@ ElasticMotion::Stretch ElasticMotion::stretch(double time) const {
   double size = (-moving(kMotorSpeed, kMotorSpeed) - moving(kHandleSpeed, kHandleSpeed) +
                  std::sqrt(-moving(kMotorSpeed, kMotor) - moving(kHandleSpeed, kHandle))) *
                 time;
-  for (; size > kLargestPiece && stretch.first < kMostHalvings; size *= 0.5) ++stretch.first;
+  for (; size > kLargest && stretch.first < kMostHalvings; size *= 0.5) ++stretch.first;
   const auto halved = [&](const Matrix& law) {
     const std::size_t halvings = coulomb_ == 0.0 ? 0 : std::min(kFinest, kMostHalvings - stretch.first);
     std::vector<Piece> pieces(stretch.first + halvings + 1);
@@ -233,11 +220,6 @@ void ElasticMotion::reset(const HandleState& handle) noexcept {
   motor_ = handle_ = handle;
   work_ = {.stored = -stored()};
   take_hand(Vec3::Zero());
-}
-
-void ElasticMotion::take_hand(const Vec3& force) noexcept {
-  origin_ = handle_.position;
-  push_ = force + hand_.damping * handle_.velocity;
 }
 
 void ElasticMotion::advance(const Vec3& motors, const Stretch& stretch) noexcept {
@@ -330,6 +312,78 @@ double ElasticMotion::advance_to_change(Axis& axis, const Stretch& stretch, doub
 double ElasticMotion::stored() const noexcept {
   return 0.5 * motor_mass_ * motor_.velocity.squaredNorm() + 0.5 * handle_mass_ * handle_.velocity.squaredNorm() +
          0.5 * transmission_.stiffness * (motor_.position - handle_.position).squaredNorm();
+}
+
+namespace {
+
+/// x = v S + a P and x' = v + (a - rate v) S after a time, for x'' = a - rate x'.
+struct Coast {
+  double S, P;
+};
+
+Coast coast(double rate, double time) noexcept {
+  const double z = rate * time;
+  if (z < 0.05) {
+    // The next terms are below 1e-14 of the sums.
+    const double P =
+        0.5 - z * (1.0 / 6 - z * (1.0 / 24 - z * (1.0 / 120 - z * (1.0 / 720 - z * (1.0 / 5040 - z / 40320)))));
+    return {time * (1.0 - z * P), time * time * P};
+  }
+  const double S = -math::expm1(-z) / rate;
+  return {S, (time - S) / rate};
+}
+
+/// State of the axis, accelerations in place of forces.
+struct Axis {
+  double rate, grip;
+  double x, v;
+
+  void leave_rest(double push, double time) noexcept {
+    v = 0.0;
+    if (std::abs(push) <= grip || time <= 0.0) return;
+    const double net = push - std::copysign(grip, push);
+    const Coast by = coast(rate, time);
+    x += net * by.P;
+    v = net * by.S;
+  }
+
+  void advance(double push, double time) noexcept {
+    if (v == 0.0) return leave_rest(push, time);
+    const double net = push - std::copysign(grip, v);
+    const Coast by = coast(rate, time);
+    const double after = v + (net - rate * v) * by.S;
+    if (grip == 0.0 || after * v >= 0.0) {
+      x += v * by.S + net * by.P;
+      v = after;
+      return;
+    }
+    const double without = v / (rate * v - net);  // when it stops, were there no viscous friction to change on the way
+    const double share = rate * without,
+                 stops = share > 1e-9 ? 2.0 * math::atanh(share / (2.0 - share)) / rate : without;
+    const Coast to_stop = coast(rate, stops);
+    x += v * to_stop.S + net * to_stop.P;
+    leave_rest(push, time - stops);
+  }
+};
+
+}  // namespace
+
+void simulate_log(const LoggedHandle& handle, std::span<const double> times, std::span<const double> forces,
+                  std::span<double> positions) noexcept {
+  Axis axis{handle.viscous / handle.mass, handle.coulomb / handle.mass, 0.0, handle.velocity};
+  double push = handle.offset / handle.mass;
+  std::size_t next = 0;  // the force that arrives next
+  for (std::size_t k = 0; k < times.size(); ++k) {
+    positions[k] = axis.x;
+    if (k + 1 == times.size()) break;
+    double now = times[k];
+    for (; times[next] + handle.delay < times[k + 1]; ++next) {
+      const double arrives = times[next] + handle.delay;
+      if (arrives > now) axis.advance(push, arrives - now), now = arrives;
+      push = (forces[next] + handle.offset) / handle.mass;
+    }
+    axis.advance(push, times[k + 1] - now);
+  }
 }
 
 }  // namespace hapbench

@@ -15,9 +15,8 @@ struct ImpedanceDeviceConfig;
 ///
 ///   f_hand = f_k - stiffness (x - x_k) - damping (x' - x'_k) - mass x''
 ///
-/// with the force f_k at the sample. All parameters are zero for a hand whose force is sampled and held. Otherwise the
-/// hand is a mass, fixed to the handle, on a spring and a damper towards a target with position and velocity of the
-/// sample.
+/// with the force f_k at the sample: a mass, fixed to the handle, on a spring and a damper towards a target with the
+/// position and velocity of the sample. All are zero for a hand whose force is sampled and held.
 struct AttachedHand {
   double mass = 0.0;       ///< [kg]
   double stiffness = 0.0;  ///< [N/m]
@@ -48,16 +47,35 @@ FreeMotion free_motion(const MotionLaw& law, double time) noexcept;
 /// The first time after the start at which the velocity is zero [s], by the closed form; infinity if there is none.
 double time_of_rest(const MotionLaw& law, double v, double g) noexcept;
 
+/// What the motions below share: the friction of the device and the force of the hand on its handle.
+class HeldHandle {
+ public:
+  /// Takes the force of the hand at a sample [N], which holds until the next call.
+  void take_hand(const Vec3& force) noexcept {
+    origin_ = handle_.position;
+    push_ = force + hand_.damping * handle_.velocity;
+  }
+  const HandleState& handle() const noexcept { return handle_; }
+
+ protected:
+  HeldHandle(const ImpedanceDeviceConfig& device, const AttachedHand& hand);
+
+  double viscous_, coulomb_;
+  AttachedHand hand_;
+  HandleState handle_;
+  Vec3 origin_ = Vec3::Zero();  ///< position of the handle at the sample [m]
+  Vec3 push_ = Vec3::Zero();    ///< force of the hand on a handle at rest there [N]
+  DeviceEnergy work_;           ///< `stored`: minus what was at the reset
+};
+
 /// A handle with friction under held forces, in each axis separately and without discretisation error:
 ///
 ///   m x'' = f - b x' - c sign(x') + f_hand
 ///
-/// with m = handle_mass, b = viscous, c = coulomb of the device. f_hand is also held, or the force of a hand fixed to
-/// the handle. Coulomb friction is exact: the closed form gives the instant at which the handle stops. There it sticks
-/// while the other forces sum up to at most c, and otherwise leaves in their direction. It stops once between two
-/// changes of a force, and once more in each half period if a hand with a spring oscillates, so a step has at most 2 +
-/// w T / pi stops, w the angular frequency.
-class HandleMotion {
+/// with m = handle_mass, b = viscous, c = coulomb of the device. Coulomb friction is exact: the closed form gives the
+/// instant at which the handle stops. There it sticks while the other forces sum up to at most c, and otherwise leaves
+/// in their direction. A step has at most 2 + w T / pi stops, w the angular frequency of a hand with a spring.
+class HandleMotion : public HeldHandle {
  public:
   HandleMotion(const ImpedanceDeviceConfig& device, const AttachedHand& hand);
 
@@ -65,12 +83,9 @@ class HandleMotion {
   const MotionLaw& law() const noexcept { return law_; }
 
   void reset(const HandleState& handle) noexcept;
-  /// Takes the force of the hand at a sample [N], which holds until the next call.
-  void take_hand(const Vec3& force) noexcept;
   /// Advances by `stretch.time` under a constant force of the motors [N]. Allocates nothing.
   void advance(const Vec3& motors, const FreeMotion& stretch) noexcept;
 
-  const HandleState& handle() const noexcept { return handle_; }
   /// Energy of the handle without the mass of a fixed hand, whose inertia is part of the hand's work.
   DeviceEnergy energy() const noexcept { return work_.plus_stored(stored()); }
 
@@ -80,14 +95,9 @@ class HandleMotion {
   double stored() const noexcept { return 0.5 * handle_mass_ * handle_.velocity.squaredNorm(); }
   void move(Eigen::Index axis, double motors, double friction, const FreeMotion& by) noexcept;
 
-  double handle_mass_, viscous_, coulomb_;
-  AttachedHand hand_;
+  double handle_mass_;
   double mass_;  ///< handle and hand [kg]
   MotionLaw law_;
-  HandleState handle_;
-  Vec3 origin_ = Vec3::Zero();  ///< position of the handle at the sample [m]
-  Vec3 push_ = Vec3::Zero();    ///< force of the hand on a handle at rest there [N]
-  DeviceEnergy work_;           ///< `stored`: minus what was at the reset
 };
 
 /// An elastic transmission of an impedance device: a spring and a damper between its motors and its handle.
@@ -107,7 +117,7 @@ struct Transmission {
 /// as in HandleMotion. With Coulomb friction the motors stop, stick while the other forces sum up to at most c, and
 /// leave. No closed form gives these instants; they are located to rounding between points a quarter radian of the
 /// fastest motion apart, so that two of them within such a piece may be overlooked.
-class ElasticMotion {
+class ElasticMotion : public HeldHandle {
  public:
   /// (x_m, v_m, x_h, v_h, forces on motors and handle), positions relative to the handle's at the sample.
   using State = Eigen::Matrix<double, 6, 1>;
@@ -129,12 +139,9 @@ class ElasticMotion {
   Stretch stretch(double time) const;
 
   void reset(const HandleState& handle) noexcept;
-  /// Takes the force of the hand at a sample [N], which holds until the next call.
-  void take_hand(const Vec3& force) noexcept;
   /// Advances by the stretch's time under a constant force of the motors [N]. Allocates nothing.
   void advance(const Vec3& motors, const Stretch& stretch) noexcept;
 
-  const HandleState& handle() const noexcept { return handle_; }
   /// The motors' side, which the encoder measures.
   const HandleState& motor() const noexcept { return motor_; }
   /// As HandleMotion::energy; `stored` counts both masses and the spring.
@@ -159,14 +166,9 @@ class ElasticMotion {
   double advance_to_change(Axis& axis, const Stretch& stretch, double left, std::size_t skip) noexcept;
   double stored() const noexcept;
 
-  double viscous_, coulomb_;
   Transmission transmission_;
-  AttachedHand hand_;
   double motor_mass_, handle_mass_;  ///< without the hand's [kg]
-  HandleState motor_, handle_;
-  Vec3 origin_ = Vec3::Zero();  ///< position of the handle at the sample [m]
-  Vec3 push_ = Vec3::Zero();    ///< force of the hand on a handle at rest there [N]
-  DeviceEnergy work_;           ///< `stored`: minus what was at the reset
+  HandleState motor_;
 };
 
 /// One axis of an impedance device in open loop, as HandleMotion moves it: m x'' = u(t - delay) + offset - b x' - c
@@ -182,8 +184,7 @@ struct LoggedHandle {
 
 /// Simulates a log: the positions [m] at `times` [s] of a handle that starts at 0, under forces [N] that are commanded
 /// at these times, arrive late and are held; before the first arrives there is none. Exact, stops and rests included.
-/// Precondition: times increase, and there are as many forces, times and positions. Takes 20 ns for each time; a
-/// simulation is one of some thousand that a least-squares fit needs.
+/// Precondition: times increase, and there are as many forces, times and positions. Takes 20 ns for each time.
 void simulate_log(const LoggedHandle& handle, std::span<const double> times, std::span<const double> forces,
                   std::span<double> positions) noexcept;
 

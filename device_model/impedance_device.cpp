@@ -2,19 +2,129 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+
+#include "sim/core/math.hpp"
 
 namespace hapbench {
 
-Vec3 rounded_to(const Vec3& v, double step) noexcept {
+using Complex = std::complex<double>;
+
+/// A pole of the filter of cut-off 1 rad/s; the k-th in the upper half of the plane, the last of an odd order real.
+static Complex unit_pole(std::size_t k, std::size_t order) {
+  if (2 * k + 1 == order) return {-1.0, 0.0};
+  const auto [sine, cosine] =
+      math::sine_cosine(std::numbers::pi * static_cast<double>(2 * k + 1) / static_cast<double>(2 * order));
+  return {-sine, cosine};
+}
+
+/// e^z - 1, to rounding also for small z.
+static Complex exponential_minus_one(const Complex& z) {
+  const double grown = math::expm1(z.real()), half = math::sin(0.5 * z.imag());
+  return {grown - 2.0 * (1.0 + grown) * half * half, (1.0 + grown) * math::sin(z.imag())};
+}
+
+// H(s) is the product of p_i / (p_i - s), which is the sum of share_i p_i / (p_i - s).
+std::vector<LowPassMode> low_pass_modes(const LowPassFilter& filter, double dt) {
+  std::vector<Complex> poles;
+  const std::size_t order = filter.order, upper = (order + 1) / 2;
+  for (std::size_t k = 0; k < upper; ++k) poles.push_back(unit_pole(k, order));
+  for (std::size_t k = 0; k < order / 2; ++k) poles.push_back(std::conj(poles[k]));
+  std::vector<LowPassMode> modes;
+  for (std::size_t i = 0; i < upper; ++i) {
+    const bool is_real = poles[i].imag() == 0.0;
+    Complex share = is_real ? 1.0 : 2.0;
+    for (std::size_t j = 0; j < order; ++j) {
+      if (j == i) continue;
+      const Complex apart = poles[j] - poles[i];
+      share *= poles[j] * std::conj(apart) / std::norm(apart);
+    }
+    const double angle = -2.0 * std::numbers::pi * filter.cutoff * dt;  // negative, as in expm1(-2 pi f T)
+    const Complex taken = -exponential_minus_one(-angle * poles[i]);
+    modes.push_back(is_real ? LowPassMode{share.real(), -math::expm1(angle)} : LowPassMode{share, taken});
+  }
+  return modes;
+}
+
+std::complex<double> LowPassMode::response(double theta) const {
+  const auto [sine, cosine] = math::sine_cosine(theta);
+  const Complex back(cosine, -sine);
+  const auto of = [&back](const Complex& s, const Complex& t) { return t * s / (1.0 - (1.0 - t) * back); };
+  return 0.5 * (of(share, taken) + of(std::conj(share), std::conj(taken)));
+}
+
+SampledLowPass::SampledLowPass(const LowPassFilter& filter, double dt) {
+  for (const LowPassMode& mode : low_pass_modes(filter, dt)) {
+    terms_.push_back({.mode = mode});
+    passes_all_ = passes_all_ && mode.taken == 1.0;
+  }
+}
+
+void SampledLowPass::settle_at(const Vec3& value) noexcept {
+  for (Term& term : terms_) {
+    term.real = term.mode.share.real() * value;
+    term.imaginary = term.mode.share.imag() * value;
+  }
+}
+
+Vec3 SampledLowPass::filter(const Vec3& sample) noexcept {
+  if (passes_all_) return sample;
+  Vec3 output = Vec3::Zero();
+  for (auto& [mode, real, imaginary] : terms_) {
+    const Vec3 to_real = mode.share.real() * sample - real, to_imaginary = mode.share.imag() * sample - imaginary;
+    real += mode.taken.real() * to_real - mode.taken.imag() * to_imaginary;
+    imaginary += mode.taken.real() * to_imaginary + mode.taken.imag() * to_real;
+    output += real;
+  }
+  return output;
+}
+
+VelocityFilter::VelocityFilter(const VelocityFilterConfig& config, double dt) : config_(config), dt_(dt) {
+  if (const auto* low_pass = std::get_if<LowPassFilter>(&config)) low_pass_.emplace(*low_pass, dt);
+}
+
+void VelocityFilter::reset(const Vec3& position) noexcept {
+  samples_[0] = position;
+  next_ = known_ = 1;
+  velocity_.setZero();
+  if (low_pass_) low_pass_->settle_at(velocity_);
+}
+
+Vec3 VelocityFilter::read(const Vec3& position) noexcept {
+  samples_[next_] = position;
+  next_ = (next_ + 1) % samples_.size();
+  known_ = std::min(known_ + 1, samples_.size());
+  if (const auto* window = std::get_if<AdaptiveWindowFilter>(&config_)) {
+    for (Eigen::Index axis = 0; axis < 3; ++axis) velocity_[axis] = end_fit(axis, window->noise);
+    return velocity_;
+  }
+  const Vec3 difference = (position - sample(1)) / dt_;
+  velocity_ = low_pass_ ? low_pass_->filter(difference) : difference;
+  return velocity_;
+}
+
+double VelocityFilter::end_fit(Eigen::Index axis, double noise) const noexcept {
+  const double now = sample(0)[axis];
+  double rise = 0.0;  // of the line per sample
+  for (std::size_t n = 1; n < known_; ++n) {
+    const double longer = (now - sample(n)[axis]) / static_cast<double>(n);
+    for (std::size_t i = 1; i < n; ++i) {
+      if (std::abs(now - longer * static_cast<double>(i) - sample(i)[axis]) > noise) return rise / dt_;
+    }
+    rise = longer;
+  }
+  return rise / dt_;
+}
+
+/// Every component as the nearest multiple of `step`, halves away from zero; `v` itself for the step 0.
+static Vec3 rounded_to(const Vec3& v, double step) noexcept {
   if (step == 0.0) return v;
   return {std::round(v.x() / step) * step, std::round(v.y() / step) * step, std::round(v.z() / step) * step};
 }
 
 // The ring holds the commands of this period, of the whole periods of the delay, and one more for a fraction of it.
 ForcePath::ForcePath(const ImpedanceDeviceConfig& config, double dt)
-    : step_(config.force_step),
-      max_(config.force_max),
-      slew_(config.force_slew),
+    : config_(config),
       largest_change_(config.force_slew.value_or(0.0) * dt),
       switch_part_(config.delay_samples - std::floor(config.delay_samples)),
       commands_(static_cast<std::size_t>(config.delay_samples) + 2, Vec3::Zero()) {}
@@ -32,11 +142,11 @@ HeldForce ForcePath::hold(const Vec3& rendered) noexcept {
 }
 
 Vec3 ForcePath::command(const Vec3& rendered) const noexcept {
-  Vec3 force = rounded_to(rendered, step_);
-  if (max_) {
-    if (const double norm = force.norm(); norm > *max_) force *= *max_ / norm;
+  Vec3 force = rounded_to(rendered, config_.force_step);
+  if (const auto& most = config_.force_max) {
+    if (const double norm = force.norm(); norm > *most) force *= *most / norm;
   }
-  if (slew_) {
+  if (config_.force_slew) {
     const Vec3 change = force - last_;
     if (const double norm = change.norm(); norm > largest_change_) force = last_ + change * (largest_change_ / norm);
   }
@@ -44,10 +154,8 @@ Vec3 ForcePath::command(const Vec3& rendered) const noexcept {
 }
 
 ImpedanceDevice::ImpedanceDevice(const ImpedanceDeviceConfig& config, double dt, const AttachedHand& hand)
-    : encoder_step_(config.encoder_step),
+    : config_(config),
       filter_(config.velocity_filter, dt),
-      noise_(config.position_noise),
-      seed_(config.seed),
       random_(config.seed),
       path_(config, dt),
       motion_(config, hand),
@@ -64,7 +172,7 @@ void ImpedanceDevice::reset(const ToolState& tool) noexcept {
   motion_.reset({tool.pose.position, tool.velocity});
   if (elastic_) elastic_->motion.reset({tool.pose.position, tool.velocity});
   path_.reset();
-  if (noise_ > 0.0) random_ = Random(seed_);
+  if (config_.position_noise > 0.0) random_ = Random(config_.seed);
   sampled_ = {read_position(), Vec3::Zero()};
   filter_.reset(sampled_.position);
   if (position_filter_) position_filter_->settle_at(sampled_.position);
@@ -72,9 +180,9 @@ void ImpedanceDevice::reset(const ToolState& tool) noexcept {
 
 Vec3 ImpedanceDevice::read_position() noexcept {
   Vec3 position = elastic_ ? elastic_->motion.motor().position : motion_.handle().position;
-  if (noise_ > 0.0)
-    for (double& axis : position) axis += noise_ * random_.normal();
-  return rounded_to(position, encoder_step_);
+  if (config_.position_noise > 0.0)
+    for (double& axis : position) axis += config_.position_noise * random_.normal();
+  return rounded_to(position, config_.encoder_step);
 }
 
 void ImpedanceDevice::drive(const Vec3& rendered, const Vec3& hand_force) noexcept {
@@ -88,6 +196,79 @@ void ImpedanceDevice::drive(const Vec3& rendered, const Vec3& hand_force) noexce
   sampled_.position = read_position();
   sampled_.velocity = filter_.read(sampled_.position);
   if (position_filter_) sampled_.position = position_filter_->filter(sampled_.position);
+}
+
+namespace {
+
+constexpr SourcedNumber chai(double value) {
+  return {value, kFromChai3d};
+}
+constexpr SourcedNumber sheet(double value) {
+  return {value, kFromDataSheet};
+}
+// An estimate of an unpublished number, and the factors that bound it (kPresetRanges). They are wide: no measured
+// friction of these devices was found, and a paddle whose motor's data sheet says 0.04 N s/m took 3 to 4
+// (scenarios/library/validation).
+struct Factors {
+  double low, high;
+};
+constexpr Factors kMass = {1.0 / 1.3, 1.3}, kViscous = {1.0, 10.0}, kCoulomb = {0.0, 2.0}, kEncoder = {0.5, 2.0};
+constexpr SourcedNumber ours(double value, const Factors& may_be) {
+  return {value, kOurEstimate, may_be.low * value, may_be.high * value};
+}
+
+// clang-format off
+constexpr DevicePreset kPresets[] = {
+  {.name = "touch",       .device = "3D Systems Touch",             .handle_mass = sheet(0.045), .viscous = ours(0.1, kViscous), .coulomb = ours(0.2, kCoulomb),
+   .encoder_step = sheet(0.055e-3), .force_max = chai(3.3), .max_stiffness = chai(400),  .max_damping = chai(4)},
+  {.name = "omni",        .device = "SensAble Phantom Omni",        .handle_mass = ours(0.045, kMass),  .viscous = ours(0.1, kViscous), .coulomb = ours(0.2, kCoulomb),
+   .encoder_step = ours(0.055e-3, kEncoder),  .force_max = chai(3.3), .max_stiffness = chai(700),  .max_damping = chai(5)},
+  {.name = "desktop",     .device = "SensAble Phantom Desktop",     .handle_mass = ours(0.045, kMass),  .viscous = ours(0.1, kViscous), .coulomb = ours(0.06, kCoulomb),
+   .encoder_step = ours(0.025e-3, kEncoder),  .force_max = chai(7.9), .max_stiffness = chai(1000), .max_damping = chai(5)},
+  {.name = "premium_1.5", .device = "SensAble Phantom Premium 1.5", .handle_mass = ours(0.075, kMass),  .viscous = ours(0.1, kViscous), .coulomb = ours(0.04, kCoulomb),
+   .encoder_step = ours(0.03e-3, kEncoder),   .force_max = chai(8.5), .max_stiffness = chai(800),  .max_damping = chai(5)},
+  {.name = "premium_3.0", .device = "SensAble Phantom Premium 3.0", .handle_mass = ours(0.16, kMass),   .viscous = ours(0.2, kViscous), .coulomb = ours(0.2, kCoulomb),
+   .encoder_step = ours(0.02e-3, kEncoder),   .force_max = chai(22),  .max_stiffness = chai(1000), .max_damping = chai(5)},
+  {.name = "falcon",      .device = "Novint Falcon",                .handle_mass = ours(0.1, kMass),    .viscous = ours(0.5, kViscous), .coulomb = ours(0.5, kCoulomb),
+   .encoder_step = ours(0.06e-3, kEncoder),   .force_max = chai(8),   .max_stiffness = chai(3000), .max_damping = chai(20)},
+  {.name = "omega.3",     .device = "Force Dimension omega.3",      .handle_mass = ours(0.2, kMass),    .viscous = ours(0.5, kViscous), .coulomb = ours(0.3, kCoulomb),
+   .encoder_step = sheet(0.01e-3),  .force_max = chai(12),  .max_stiffness = chai(5000), .max_damping = chai(30)},
+  {.name = "omega.6",     .device = "Force Dimension omega.6",      .handle_mass = ours(0.3, kMass),    .viscous = ours(0.5, kViscous), .coulomb = ours(0.3, kCoulomb),
+   .encoder_step = ours(0.01e-3, kEncoder),   .force_max = chai(12),  .max_stiffness = chai(5000), .max_damping = chai(30)},
+  {.name = "omega.7",     .device = "Force Dimension omega.7",      .handle_mass = ours(0.35, kMass),   .viscous = ours(0.5, kViscous), .coulomb = ours(0.3, kCoulomb),
+   .encoder_step = ours(0.01e-3, kEncoder),   .force_max = chai(12),  .max_stiffness = chai(5000), .max_damping = chai(30)},
+  {.name = "delta.3",     .device = "Force Dimension delta.3",      .handle_mass = ours(0.3, kMass),    .viscous = ours(0.5, kViscous), .coulomb = ours(0.5, kCoulomb),
+   .encoder_step = ours(0.02e-3, kEncoder),   .force_max = chai(20),  .max_stiffness = chai(5000), .max_damping = chai(30)},
+  {.name = "sigma.7",     .device = "Force Dimension sigma.7",      .handle_mass = ours(0.4, kMass),    .viscous = ours(0.5, kViscous), .coulomb = ours(0.4, kCoulomb),
+   .encoder_step = ours(0.01e-3, kEncoder),   .force_max = chai(12),  .max_stiffness = chai(4000), .max_damping = chai(30)},
+  {.name = "lambda.7",    .device = "Force Dimension lambda.7",     .handle_mass = ours(0.4, kMass),    .viscous = ours(0.5, kViscous), .coulomb = ours(0.4, kCoulomb),
+   .encoder_step = ours(0.01e-3, kEncoder),   .force_max = chai(12),  .max_stiffness = chai(8000), .max_damping = chai(30)},
+};
+// clang-format on
+
+}  // namespace
+
+std::span<const DevicePreset> device_presets() noexcept {
+  return kPresets;
+}
+
+const DevicePreset* find_device_preset(std::string_view name) noexcept {
+  const auto* found = std::ranges::find(kPresets, name, &DevicePreset::name);
+  return found == std::end(kPresets) ? nullptr : found;
+}
+
+ImpedanceDeviceConfig config_of(const DevicePreset& preset, PresetEnd end) {
+  const auto at = [end](const SourcedNumber& number) {
+    return end == PresetEnd::own ? number.value : end == PresetEnd::soft ? number.low : number.high;
+  };
+  ImpedanceDeviceConfig config;
+  config.handle_mass = at(preset.handle_mass);
+  config.viscous = at(preset.viscous);
+  config.coulomb = at(preset.coulomb);
+  const SourcedNumber& step = preset.encoder_step;
+  config.encoder_step = end == PresetEnd::own ? step.value : end == PresetEnd::soft ? step.high : step.low;
+  config.force_max = preset.force_max.value;
+  return config;
 }
 
 }  // namespace hapbench

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "sim/core/simd.hpp"
-#include "sim/tool/tool_state.hpp"
+#include "sim/tool/motion.hpp"
 
 /// The depth models, each with its documentation, and the source that applies one.
 namespace hapbench {
@@ -81,21 +81,18 @@ constexpr ModelInfo kContinuousNormalProjectionInfo = {
         "sideways still drops its whole depth at once",
 };
 
-/// Normal projection without the jump (thesis F.1, Fig. F.4), by the formula above: dx is the motion of the tool's
-/// material at the point during the step, and each point remembers its depth from step to step.
+/// Normal projection without the jump (thesis F.1, Fig. F.4): each point remembers its depth from step to step.
 ///
 ///  - No depth grows by more than |dx| in a step. This includes entry: seen from the tool, the point has moved by dx,
 ///    so d_sd <= |dx|. Depths of a tool at rest do not creep.
 ///  - Moving the tool along u changes d_np by the same amount. A point that the tool has pressed along u since the
 ///    first touch therefore has d = d_np, also beyond the median line, where d_sd saturates.
 ///  - The gain from <dx, u> is work done against the force -K d u. Energy is created by d_sd alone, as in depth model
-///    surface_normal, never by the projection. Some is lost where a point leaves sideways.
+///    surface_normal. Some is lost where a point leaves sideways.
 ///
-/// A depth that is a function of the pose cannot have both properties: continuity at entry requires 0 on the whole
-/// surface of the tool, and no saturation requires the whole diameter there for a point that was pressed across the
-/// tool. Hence the memory of 16 bytes for each point of the shell. Subtracting the depth that a point has at entry is
-/// no alternative: a tool that slides over a flat, where points keep entering from the side, would lose its support.
-/// O(n) per step.
+/// A function of the pose cannot have both: continuity at entry requires depth 0 on the whole surface of the tool, and
+/// no saturation the whole diameter there for a point that was pressed across it. Nor can the depth at entry be
+/// subtracted: a tool that slides over a flat, where points keep entering from the side, would lose its support. O(n).
 class ContinuousNormalProjection final : public DepthModel {
  public:
   void prepare(const PointShell& shell) override {
@@ -160,8 +157,7 @@ std::span<const DepthModelEntry> depth_models() {
 }
 
 const DepthModelEntry* find_depth_model(std::string_view name) {
-  const auto found = std::find_if(std::begin(kDepthModels), std::end(kDepthModels),
-                                  [name](const DepthModelEntry& entry) { return entry.info->name == name; });
+  const auto* found = std::ranges::find(kDepthModels, name, [](const auto& entry) { return entry.info->name; });
   return found == std::end(kDepthModels) ? nullptr : found;
 }
 

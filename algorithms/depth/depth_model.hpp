@@ -5,7 +5,6 @@
 #include <string_view>
 
 #include "sim/contact/contact_source.hpp"
-#include "sim/core/model_info.hpp"
 #include "sim/core/types.hpp"
 #include "sim/geometry/point_shell.hpp"
 #include "sim/tool/tool_shape.hpp"

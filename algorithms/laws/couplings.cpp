@@ -1,14 +1,32 @@
 #include <Eigen/Cholesky>
-#include <algorithm>
 #include <cmath>
 
-#include "algorithms/parameters.hpp"
 #include "algorithms/registry.hpp"
 #include "sim/core/simd.hpp"
 
 /// Laws with a coupling spring between the tool and its contacts: virtual_coupling, least_squares and static_coupling.
 namespace hapbench {
 namespace {
+
+/// Energy and moment about `tip` of springs of stiffness K [N/m] with the weights in the buffer, whose ends have moved
+/// by `shift` [m], so the depths are d_i + <u_i, shift>. O(n).
+SpringState shifted_springs(const ContactBuffer& contacts, const Vec3& shift, const Vec3& tip, double K) noexcept {
+  using simd::load, simd::Pack;
+  const Pack sx(shift.x()), sy(shift.y()), sz(shift.z());
+  const Pack tip_x(tip.x()), tip_y(tip.y()), tip_z(tip.z());
+  Pack energy(0.0), mx(0.0), my(0.0), mz(0.0);
+  for (std::size_t i = 0; i < contacts.padded_size(); i += simd::lanes) {
+    const Pack ux = load(&contacts.ux[i]), uy = load(&contacts.uy[i]), uz = load(&contacts.uz[i]);
+    const Pack d = load(&contacts.depth[i]) + (ux * sx + uy * sy + uz * sz);
+    const Pack x = load(&contacts.x[i]) - tip_x, y = load(&contacts.y[i]) - tip_y, z = load(&contacts.z[i]) - tip_z;
+    const Pack cd = load(&contacts.weight[i]) * d;
+    energy += cd * d;
+    mx += cd * (y * uz - z * uy);
+    my += cd * (z * ux - x * uz);
+    mz += cd * (x * uy - y * ux);
+  }
+  return {0.5 * K * simd::sum(energy), -K * Vec3(simd::sum(mx), simd::sum(my), simd::sum(mz))};
+}
 
 /// f = -K M^-1 sum d_i u_i, S = M^-1 S_sum with M = shift I + scale S_sum, S_sum = sum u u^T.
 class SeriesLaw : public ForceLaw {
@@ -90,39 +108,6 @@ double virtual_coupling_bound(const RenderingConfig&, const ToolShape&, std::siz
   return 0.5 * std::sqrt(static_cast<double>(n)) * depth;
 }
 
-/// The summed stiffness in series with K_vc, along each axis separately.
-WedgeStiffness virtual_coupling_wedge(const RenderingConfig& config, double w, double n) {
-  const double k = config.virtual_coupling.value_or(config.stiffness) / config.stiffness;
-  const auto in_series = [k](double x) { return k * x / (k + x); };
-  const auto [along, across] = wedge_of_weight(n, w);
-  return {in_series(along), in_series(across)};
-}
-
-}  // namespace
-
-AlgorithmEntry virtual_coupling_entry() {
-  static constexpr ParameterInfo kParameters[] = {
-      kStiffnessParameter,
-      {parameter::kVirtualCoupling, "K_vc: stiffness of the coupling spring; null: K"},
-  };
-  static constexpr ModelInfo kInfo = {
-      .name = "virtual_coupling",
-      .summary = "all springs in series with one quasi-static coupling spring",
-      .formula =
-          "f = -K_vc (K_vc I + K S_sum)^-1 K sum d_i u_i, S = K_vc (K_vc I + K S_sum)^-1 S_sum, S_sum = sum u u^T; along "
-          "the sum g of the depths alone: f = -q K g, S = q S_sum, q = K_vc / (K_vc + K <u, S_sum u>), u = g / |g|",
-      .source = "thesis Fig. 2d",
-      .known_failure = "bounds the stiffness, but the force still follows the direction with most points",
-      .parameters = kParameters,
-  };
-  return {.info = &kInfo,
-          .make_law = law_of<VirtualCoupling>,
-          .theory = {.force_bound = virtual_coupling_bound, .wedge_stiffness = virtual_coupling_wedge},
-          .own_parameters = kAlongSum};
-}
-
-namespace {
-
 /// The energy of the law is that of its mechanical equivalent: penalty springs of stiffness K / eps in series with one
 /// coupling spring of stiffness K. E = K / (2 eps) min over x of sum (d_i - <u_i, x>)^2 + eps |x|^2; its gradient with
 /// respect to the position of the tool is K x = -f. Depths and velocities are resolved alike.
@@ -140,40 +125,6 @@ class LeastSquares final : public SeriesLaw {
 double least_squares_bound(const RenderingConfig& config, const ToolShape&, std::size_t n, double depth) {
   return 0.5 * std::sqrt(static_cast<double>(n) / config.regularisation) * depth;
 }
-
-/// The stiffness along an axis of S_sum with eigenvalue s is s / (eps + s).
-WedgeStiffness least_squares_wedge(const RenderingConfig& config, double w, double n) {
-  const auto resolved = [eps = config.regularisation](double s) { return s / (eps + s); };
-  const auto [along, across] = wedge_of_weight(n, w);
-  return {resolved(along), resolved(across)};
-}
-
-}  // namespace
-
-AlgorithmEntry least_squares_entry() {
-  static constexpr ParameterInfo kParameters[] = {
-      kStiffnessParameter,
-      {parameter::kRegularisation, "eps: weight of a short translation against resolving the depths"},
-  };
-  static constexpr ModelInfo kInfo = {
-      .name = "least_squares",
-      .summary = "one spring along the one translation that best resolves all depths",
-      .formula =
-          "x = argmin sum (d_i - <u_i, x>)^2 + eps |x|^2 = (eps I + S_sum)^-1 sum d_i u_i, f = -K x, "
-          "S = (eps I + S_sum)^-1 S_sum, S_sum = sum u u^T; always without reduction",
-      .source = "ours (Tikhonov's regularised least squares); virtual_coupling with stiffness K / eps is the same law",
-      .known_failure =
-          "a small eps makes S jump as the first contact along a direction comes or the last one goes, and contacts that "
-          "nearly oppose push the tool out by up to 1 / (2 sqrt eps) times the norm of their depths",
-      .parameters = kParameters,
-  };
-  return {.info = &kInfo,
-          .make_law = law_of<LeastSquares>,
-          .theory = {.force_bound = least_squares_bound, .wedge_stiffness = least_squares_wedge},
-          .may_reduce = false};
-}
-
-namespace {
 
 constexpr OwnParameter kSaturation[] = {{"saturation_N",
                                          {1e-6, 1e12, "N"},
@@ -307,6 +258,47 @@ double static_coupling_bound(const RenderingConfig& config, const ToolShape&, st
 
 }  // namespace
 
+AlgorithmEntry virtual_coupling_entry() {
+  static constexpr ParameterInfo kParameters[] = {
+      kStiffnessParameter,
+      {parameter::kVirtualCoupling, "K_vc: stiffness of the coupling spring; null: K"},
+  };
+  static constexpr ModelInfo kInfo = {
+      .name = "virtual_coupling",
+      .summary = "all springs in series with one quasi-static coupling spring",
+      .formula =
+          "f = -K_vc (K_vc I + K S_sum)^-1 K sum d_i u_i, S = K_vc (K_vc I + K S_sum)^-1 S_sum, S_sum = sum u u^T; along "
+          "the sum g of the depths alone: f = -q K g, S = q S_sum, q = K_vc / (K_vc + K <u, S_sum u>), u = g / |g|",
+      .source = "thesis Fig. 2d",
+      .known_failure = "bounds the stiffness, but the force still follows the direction with most points",
+      .parameters = kParameters,
+  };
+  return {.info = &kInfo,
+          .make_law = law_of<VirtualCoupling>,
+          .force_bound = virtual_coupling_bound,
+          .own_parameters = kAlongSum};
+}
+
+AlgorithmEntry least_squares_entry() {
+  static constexpr ParameterInfo kParameters[] = {
+      kStiffnessParameter,
+      {parameter::kRegularisation, "eps: weight of a short translation against resolving the depths"},
+  };
+  static constexpr ModelInfo kInfo = {
+      .name = "least_squares",
+      .summary = "one spring along the one translation that best resolves all depths",
+      .formula =
+          "x = argmin sum (d_i - <u_i, x>)^2 + eps |x|^2 = (eps I + S_sum)^-1 sum d_i u_i, f = -K x, "
+          "S = (eps I + S_sum)^-1 S_sum, S_sum = sum u u^T; always without reduction",
+      .source = "ours (Tikhonov's regularised least squares); virtual_coupling with stiffness K / eps is the same law",
+      .known_failure =
+          "a small eps makes S jump as the first contact along a direction comes or the last one goes, and contacts that "
+          "nearly oppose push the tool out by up to 1 / (2 sqrt eps) times the norm of their depths",
+      .parameters = kParameters,
+  };
+  return {.info = &kInfo, .make_law = law_of<LeastSquares>, .force_bound = least_squares_bound, .may_reduce = false};
+}
+
 AlgorithmEntry static_coupling_entry() {
   static constexpr ParameterInfo kParameters[] = {
       kStiffnessParameter,
@@ -327,7 +319,7 @@ AlgorithmEntry static_coupling_entry() {
   };
   return {.info = &kInfo,
           .make_law = law_of<StaticCoupling>,
-          .theory = {.force_bound = static_coupling_bound},
+          .force_bound = static_coupling_bound,
           .may_reduce = false,
           .own_parameters = kSaturation};
 }

@@ -1,5 +1,3 @@
-#include <algorithm>
-
 #include "algorithms/registry.hpp"
 
 /// Laws that give every contact the same weight c, which depends on the number n of contacts alone:
@@ -22,31 +20,6 @@ double summation_bound(const RenderingConfig&, const ToolShape&, std::size_t n, 
   return static_cast<double>(n) * depth;
 }
 
-WedgeStiffness summation_wedge(const RenderingConfig&, double w, double n) {
-  return wedge_of_weight(n, w);
-}
-
-}  // namespace
-
-AlgorithmEntry summation_entry() {
-  static constexpr ModelInfo kInfo = {
-      .name = "summation",
-      .summary = "all penalty springs added",
-      .formula = "c_i = 1",
-      .source = "thesis 1.2, Fig. 2b",
-      .known_failure =
-          "stiffness and damping grow with the number of points: unstable once lambda_max(S) K passes the "
-          "integrator's limit (thesis A.3)",
-      .parameters = kStiffnessAlone,
-  };
-  return {.info = &kInfo,
-          .make_law = law_of<Summation>,
-          .theory = {.force_bound = summation_bound, .wedge_stiffness = summation_wedge},
-          .creates_energy = true};
-}
-
-namespace {
-
 class Mean final : public ForceLaw {
  public:
   using ForceLaw::ForceLaw;
@@ -56,33 +29,6 @@ class Mean final : public ForceLaw {
     return weighted_force(contacts, K_);
   }
 };
-
-/// |sum c d u| <= d sum c, and c = 1 / n.
-double mean_bound(const RenderingConfig&, const ToolShape&, std::size_t n, double depth) {
-  return std::min(1.0, static_cast<double>(n)) * depth;
-}
-
-WedgeStiffness mean_wedge(const RenderingConfig&, double w, double) {
-  return wedge_of_weight(0.5, w);
-}
-
-}  // namespace
-
-AlgorithmEntry mean_entry() {
-  static constexpr ModelInfo kInfo = {
-      .name = "mean",
-      .summary = "penalty springs averaged over the number of points",
-      .formula = "c_i = 1/n",
-      .source = "thesis Fig. 2c",
-      .known_failure =
-          "directions with few points get almost no stiffness: the tool sinks in where most points are parallel",
-      .parameters = kStiffnessAlone,
-  };
-  return {
-      .info = &kInfo, .make_law = law_of<Mean>, .theory = {.force_bound = mean_bound, .wedge_stiffness = mean_wedge}};
-}
-
-namespace {
 
 constexpr OwnParameter kPoints[] = {
     {"points", {1.0, 1e5, "1"}, 10.0, "most springs that add up before they are scaled"}};
@@ -110,11 +56,35 @@ double mcneely_bound(const RenderingConfig& config, const ToolShape&, std::size_
   return std::min(static_cast<double>(n), points_of(config)) * depth;
 }
 
-WedgeStiffness mcneely_wedge(const RenderingConfig& config, double w, double n) {
-  return wedge_of_weight(std::min(n, 0.5 * points_of(config)), w);
+}  // namespace
+
+AlgorithmEntry summation_entry() {
+  static constexpr ModelInfo kInfo = {
+      .name = "summation",
+      .summary = "all penalty springs added",
+      .formula = "c_i = 1",
+      .source = "thesis 1.2, Fig. 2b",
+      .known_failure =
+          "stiffness and damping grow with the number of points: unstable once lambda_max(S) K passes the "
+          "integrator's limit (thesis A.3)",
+      .parameters = kStiffnessAlone,
+  };
+  return {.info = &kInfo, .make_law = law_of<Summation>, .force_bound = summation_bound};
 }
 
-}  // namespace
+AlgorithmEntry mean_entry() {
+  static constexpr ModelInfo kInfo = {
+      .name = "mean",
+      .summary = "penalty springs averaged over the number of points",
+      .formula = "c_i = 1/n",
+      .source = "thesis Fig. 2c",
+      .known_failure =
+          "directions with few points get almost no stiffness: the tool sinks in where most points are parallel",
+      .parameters = kStiffnessAlone,
+  };
+  // |sum c d u| <= d sum c, and c = 1 / n.
+  return {.info = &kInfo, .make_law = law_of<Mean>, .force_bound = bound_of_springs<1>};
+}
 
 AlgorithmEntry mcneely_entry() {
   static constexpr ModelInfo kInfo = {
@@ -130,9 +100,8 @@ AlgorithmEntry mcneely_entry() {
   };
   return {.info = &kInfo,
           .make_law = law_of<McNeely>,
-          .theory = {.force_bound = mcneely_bound, .wedge_stiffness = mcneely_wedge},
+          .force_bound = mcneely_bound,
           .may_reduce = false,
-          .creates_energy = true,
           .own_parameters = kPoints};
 }
 

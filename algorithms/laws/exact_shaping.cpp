@@ -1,26 +1,21 @@
-#include "algorithms/laws/shaped_stiffness.hpp"
-
 #include <Eigen/Cholesky>
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
 #include <numbers>
-#include <vector>
 
 #include "algorithms/registry.hpp"
 #include "sim/core/simd.hpp"
 
 namespace hapbench {
+namespace {
 
 /// The solver behind exact_shaping and merged_shaping: the projection of the identity onto a cone of tensors.
 namespace cone_projection {
-namespace {
 
 using Vec6 = Eigen::Matrix<double, 6, 1>;
 using Mat6 = Eigen::Matrix<double, 6, 6>;
 
-/// epsilon of the definition.
 constexpr double kEps = kExactShapingEpsilon;
 /// Newton steps tried for the final epsilon; nearly all scenes need one or two.
 constexpr int kDirectSteps = 6;
@@ -200,10 +195,7 @@ int solve(const Tensors& tensors) noexcept {
   return steps;
 }
 
-}  // namespace
 }  // namespace cone_projection
-
-namespace {
 
 using simd::load, simd::Pack;
 
@@ -213,24 +205,12 @@ struct GradientTensors {
   std::size_t size, padded_size;
   double* weight;
 
-  explicit GradientTensors(ContactBuffer& c)
-      : contacts(c), size(c.size()), padded_size(c.padded_size()), weight(c.weight.data()) {}
-
   cone_projection::TensorPack pack(std::size_t i) const {
     const Pack x = load(&contacts.ux[i]), y = load(&contacts.uy[i]), z = load(&contacts.uz[i]);
     const Pack root2(std::numbers::sqrt2);
     return {{x * x, y * y, z * z, root2 * x * y, root2 * x * z, root2 * y * z}};
   }
 };
-
-}  // namespace
-
-int solve_exact_shaping(ContactBuffer& contacts) noexcept {
-  set_weights(contacts, 1.0);
-  return cone_projection::solve(GradientTensors(contacts));
-}
-
-namespace {
 
 class ExactShaping final : public ForceLaw {
  public:
@@ -241,16 +221,6 @@ class ExactShaping final : public ForceLaw {
     return weighted_force(contacts, K_);
   }
 };
-
-/// |f| / K <= sum c d = tr S d, and tr S <= 3 because at the optimum tr S >= |S|^2_F >= (tr S)^2 / 3.
-double exact_shaping_bound(const RenderingConfig&, const ToolShape&, std::size_t n, double depth) {
-  return std::min(3.0, static_cast<double>(n)) * depth;
-}
-
-/// The limit of the shaping iteration, but for epsilon = 1e-6. Under merged_shaping each face is a group.
-WedgeStiffness exact_shaping_wedge(const RenderingConfig&, double w, double) {
-  return wedge_of_weight(shaped_wedge_weight(w), w);
-}
 
 /// Cells along an edge of each face of the cube of directions: 1350 cells of about 6 degrees, the angle that the
 /// reduction calls similar. Odd, so that the axes lie in the middle of cells.
@@ -304,15 +274,12 @@ struct Groups {
 ///
 /// Contacts whose gradients lie in the same of 1350 fixed cells of the sphere of directions (gradients away from a
 /// cube's faces, kDirectionCells x kDirectionCells on each) form a group k and share a weight c_k. A group acts by its
-/// exact tensor T_k = sum u u^T and its exact depth vector g_k = sum d u:
+/// exact tensor and its exact depth vector, as the formula of merged_shaping_entry says.
 ///
-///   S = sum c_k T_k,  f = -K sum c_k g_k,  c = argmin 1/2 |S - I|^2_F + (epsilon/2) |C|^2,  C_k = c_k tr T_k >= 0
-///
-/// which is the projection of the identity onto the cone of the groups' tensors. The mean stiffness ratio over a group
-/// with weight is 1 and lambda_max(S) <= (1 + sqrt 3)/2 as for exact_shaping (the proof needs tensors of trace 1, not
-/// of rank 1). With one contact in each group the law equals exact_shaping. A flat or gradually curved surface keeps
-/// all of its contacts. Contacts that the border of a cell divides form two groups, which share the weight. O(n) once,
-/// then O(groups) for each Newton step.
+/// The mean stiffness ratio over a group with weight is 1 and lambda_max(S) <= (1 + sqrt 3)/2 as for exact_shaping (the
+/// proof needs tensors of trace 1, not of rank 1). With one contact in each group the law equals exact_shaping.
+/// Contacts that the border of a cell divides form two groups, which share the weight. O(n) once, then O(groups) for
+/// each Newton step.
 class MergedShaping final : public ForceLaw {
  public:
   explicit MergedShaping(const RenderingConfig& config) : ForceLaw(config) { groups_.weight = weight_.data(); }
@@ -388,10 +355,16 @@ class MergedShaping final : public ForceLaw {
   Groups groups_;
 };
 
-constexpr AlgorithmTheory kExactShapingTheory = {.force_bound = exact_shaping_bound,
-                                                 .wedge_stiffness = exact_shaping_wedge};
+/// |f| / K <= sum c d = tr S d, and tr S <= 3 because at the optimum tr S >= |S|^2_F >= (tr S)^2 / 3.
+constexpr auto* kBound = bound_of_springs<3>;
 
 }  // namespace
+
+int solve_exact_shaping(ContactBuffer& contacts) noexcept {
+  set_weights(contacts, 1.0);
+  return cone_projection::solve(
+      GradientTensors{contacts, contacts.size(), contacts.padded_size(), contacts.weight.data()});
+}
 
 AlgorithmEntry exact_shaping_entry() {
   static constexpr ModelInfo kInfo = {
@@ -406,7 +379,7 @@ AlgorithmEntry exact_shaping_entry() {
           "2 sin^2 w / (1 + cos^2 2w) K for half angle w, about w^2 K",
       .parameters = kStiffnessAlone,
   };
-  return {.info = &kInfo, .make_law = law_of<ExactShaping>, .theory = kExactShapingTheory};
+  return {.info = &kInfo, .make_law = law_of<ExactShaping>, .force_bound = kBound};
 }
 
 AlgorithmEntry merged_shaping_entry() {
@@ -416,17 +389,14 @@ AlgorithmEntry merged_shaping_entry() {
           "exact shaping of groups of contacts with similar gradients, each with its whole tensor and depth vector",
       .formula =
           "groups: 1350 fixed cells of directions; S = sum c_k T_k, T_k = sum u u^T, f = -K sum c_k sum d u; C_k = c_k "
-          "tr "
-          "T_k "
-          "= argmin ½|S - I|²_F + (epsilon/2)|C|² over C >= 0, epsilon = 1e-6",
+          "tr T_k = argmin ½|S - I|²_F + (epsilon/2)|C|² over C >= 0, epsilon = 1e-6",
       .source = "ours, instead of the reduction of thesis C.3 and 4.1; takes no reduction",
       .known_failure =
           "contacts of a group share a weight, so single ratios stray from 1 by about the square of a cell's angle; a "
-          "cell's "
-          "border is a jump for a gradient that turns across it",
+          "cell's border is a jump for a gradient that turns across it",
       .parameters = kStiffnessAlone,
   };
-  return {.info = &kInfo, .make_law = law_of<MergedShaping>, .theory = kExactShapingTheory, .may_reduce = false};
+  return {.info = &kInfo, .make_law = law_of<MergedShaping>, .force_bound = kBound, .may_reduce = false};
 }
 
 }  // namespace hapbench

@@ -37,24 +37,6 @@ Vec3 mean_arm(const ContactBuffer& contacts, const Vec3& tip) noexcept {
   return sum > 0.0 ? Vec3(Vec3(simd::sum(x), simd::sum(y), simd::sum(z)) / sum) : Vec3::Zero();
 }
 
-SpringState shifted_springs(const ContactBuffer& contacts, const Vec3& shift, const Vec3& tip, double K) noexcept {
-  using simd::load, simd::Pack;
-  const Pack sx(shift.x()), sy(shift.y()), sz(shift.z());
-  const Pack tip_x(tip.x()), tip_y(tip.y()), tip_z(tip.z());
-  Pack energy(0.0), mx(0.0), my(0.0), mz(0.0);
-  for (std::size_t i = 0; i < contacts.padded_size(); i += simd::lanes) {
-    const Pack ux = load(&contacts.ux[i]), uy = load(&contacts.uy[i]), uz = load(&contacts.uz[i]);
-    const Pack d = load(&contacts.depth[i]) + (ux * sx + uy * sy + uz * sz);
-    const Pack x = load(&contacts.x[i]) - tip_x, y = load(&contacts.y[i]) - tip_y, z = load(&contacts.z[i]) - tip_z;
-    const Pack cd = load(&contacts.weight[i]) * d;
-    energy += cd * d;
-    mx += cd * (y * uz - z * uy);
-    my += cd * (z * ux - x * uz);
-    mz += cd * (x * uy - y * ux);
-  }
-  return {0.5 * K * simd::sum(energy), -K * Vec3(simd::sum(mx), simd::sum(my), simd::sum(mz))};
-}
-
 SpringState SingleSpringLaw::spring_state(const ContactBuffer& contacts, const Vec3& spring,
                                           const Vec3& tip) const noexcept {
   if (gives_weights_) return ForceLaw::spring_state(contacts, spring, tip);

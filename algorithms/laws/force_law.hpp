@@ -2,10 +2,9 @@
 
 #include <cstdint>
 
-#include "algorithms/parameters.hpp"
 #include "algorithms/rendering_config.hpp"
-#include "sim/contact/stiffness_tensor.hpp"
-#include "sim/core/model_info.hpp"
+#include "sim/contact/contact_buffer.hpp"
+#include "sim/core/types.hpp"
 #include "sim/loop/force_algorithm.hpp"
 
 namespace hapbench {
@@ -20,10 +19,9 @@ struct LawForce {
   Mat3 S = Mat3::Zero();       ///< stiffness tensor in units of K
 };
 
-/// A force law: merges the penalty springs of all contacts into one force (thesis C.4). All laws but
-/// `original_averaging`, `highest_depth` and those with a coupling (virtual_coupling, static_coupling, least_squares)
-/// are f_spring = -K sum c_i d_i u_i and S = sum c_i u_i u_i^T and differ in the weights c_i only. An object is the
-/// state of one run. One virtual call per step.
+/// A force law: merges the penalty springs of all contacts into one force (thesis C.4). Most are f_spring = -K sum c_i
+/// d_i u_i and S = sum c_i u_i u_i^T and differ in the weights c_i only (see gives_weights). An object is the state of
+/// one run. One virtual call per step.
 class ForceLaw {
  public:
   explicit ForceLaw(double stiffness) : K_(stiffness) {}
@@ -79,11 +77,26 @@ Vec3 gradient_sum(const ContactBuffer& contacts) noexcept;
 /// zero if their sum is. O(n).
 Vec3 mean_arm(const ContactBuffer& contacts, const Vec3& tip) noexcept;
 
-/// Energy and moment about `tip` of springs of stiffness K [N/m] with the weights in the buffer, whose ends have moved
-/// by `shift` [m], so the depths are d_i + <u_i, shift>. O(n).
-SpringState shifted_springs(const ContactBuffer& contacts, const Vec3& shift, const Vec3& tip, double K) noexcept;
-
 /// f_spring and S of the weights in the buffer. O(n).
 LawForce weighted_force(const ContactBuffer& contacts, double K) noexcept;
+
+/// Applies `iterations` updates c_i <- c_i / rho_i to weights of 1 (thesis C.4.2), leaves them in the buffer and
+/// returns their stiffness tensor. Precondition: padded contacts. O(n) per iteration; a zero gradient gets weight zero.
+/// From the first update on lambda_max(S) <= (1 + sqrt 3)/2, planar (1 + sqrt 2)/2 (proof:
+/// results/reference/BEYOND.md).
+Mat3 shape_weights(ContactBuffer& contacts, int iterations) noexcept;
+
+/// One update c_i <- c_i / (u_i^T S u_i); S must be the tensor of the weights in the buffer. Returns the new tensor.
+Mat3 update_shaped_weights(ContactBuffer& contacts, const Mat3& S) noexcept;
+
+/// epsilon of the definition: small enough that rho_i = 1 - epsilon c_i is 1 to six digits, large enough that the
+/// weights are unique and the six equations are solved to rounding.
+inline constexpr double kExactShapingEpsilon = 1e-6;
+
+/// Computes the weights that minimise ½|S - I|²_F + (epsilon/2)|c|², c >= 0, into the buffer and returns the number of
+/// Newton steps. At the optimum rho_i = 1 - epsilon c_i where c_i > 0 and rho_i >= 1 where c_i = 0; tr S >= |S|²_F,
+/// hence lambda_max(S) <= (1 + sqrt 3)/2 (planar: (1 + sqrt 2)/2). Precondition: padded contacts. O(n) per step, about
+/// two Newton steps. The result depends on the order of the contacts by rounding only.
+int solve_exact_shaping(ContactBuffer& contacts) noexcept;
 
 }  // namespace hapbench

@@ -1,10 +1,4 @@
-#include "algorithms/laws/shaped_stiffness.hpp"
-
-#include <algorithm>
-
-#include "algorithms/parameters.hpp"
 #include "algorithms/registry.hpp"
-#include "sim/core/math.hpp"
 #include "sim/core/simd.hpp"
 
 namespace hapbench {
@@ -30,10 +24,6 @@ Mat3 shape_weights(ContactBuffer& contacts, int iterations) noexcept {
   return S;
 }
 
-double shaped_wedge_weight(double w) noexcept {
-  return 1.0 / (1.0 + math::square(math::cos(2.0 * w)));
-}
-
 namespace {
 
 class ShapedStiffness final : public ForceLaw {
@@ -57,21 +47,17 @@ double shaped_stiffness_bound(const RenderingConfig& config, const ToolShape&, s
   return (config.iterations > 0 ? std::min(3.0, most) : most) * depth;
 }
 
-/// The closed form holds from the first update on.
-WedgeStiffness shaped_stiffness_wedge(const RenderingConfig& config, double w, double n) {
-  return wedge_of_weight(config.iterations == 0 ? n : shaped_wedge_weight(w), w);
-}
-
 constexpr ParameterInfo kShapingParameters[] = {
     kStiffnessParameter,
     {parameter::kIterations, "m: updates of the weights; 0 is summation"},
 };
 
-/// The law, which several algorithms use on depth models of their own.
-AlgorithmEntry shaping_entry(const ModelInfo& info) {
+/// The law, which several algorithms use, on a depth model of their own if there is one.
+AlgorithmEntry shaping_entry(const ModelInfo& info, std::string_view depth_model = {}) {
   return {.info = &info,
           .make_law = law_of<ShapedStiffness>,
-          .theory = {.force_bound = shaped_stiffness_bound, .wedge_stiffness = shaped_stiffness_wedge}};
+          .force_bound = shaped_stiffness_bound,
+          .fixed_depth_model = depth_model};
 }
 
 }  // namespace
@@ -101,10 +87,7 @@ AlgorithmEntry normal_projection_entry() {
       .known_failure = "the force jumps when a point appears at a corner (Fig. F.4)",
       .parameters = kShapingParameters,
   };
-  AlgorithmEntry entry = shaping_entry(kInfo);
-  entry.fixed_depth_model = "normal_projection";
-  entry.creates_energy = true;
-  return entry;
+  return shaping_entry(kInfo, "normal_projection");
 }
 
 AlgorithmEntry continuous_normal_projection_entry() {
@@ -119,9 +102,7 @@ AlgorithmEntry continuous_normal_projection_entry() {
           "depends on the way: under a face that it slid in below sideways, the tool feels the shortest distance only",
       .parameters = kShapingParameters,
   };
-  AlgorithmEntry entry = shaping_entry(kInfo);
-  entry.fixed_depth_model = "continuous_normal_projection";
-  return entry;
+  return shaping_entry(kInfo, "continuous_normal_projection");
 }
 
 }  // namespace hapbench

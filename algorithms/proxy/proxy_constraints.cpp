@@ -1,15 +1,12 @@
-#include "algorithms/proxy/proxy_constraints.hpp"
-
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
-#include <limits>
 #include <vector>
 
 #include "algorithms/laws/force_law.hpp"
-#include "sim/contact/push_hits.hpp"
+#include "algorithms/proxy/proxy_rendering.hpp"
 #include "sim/core/simd.hpp"
 
 namespace hapbench {
@@ -224,21 +221,6 @@ void solve_least_squares(const Vec3& wanted, double tolerance, ContactBuffer& co
   out.held = 0.5 * (out.held + out.held.transpose()).eval();
 }
 
-}  // namespace
-
-AllowedMove nearest_allowed(const Vec3& wanted, ContactBuffer& contacts) noexcept {
-  set_weights(contacts, 0.0);
-  AllowedMove out;
-  const double tolerance = kViolationTolerance * largest_length(contacts, wanted);
-  if (!solve_exactly(wanted, tolerance, contacts, out)) {
-    out.feasible = false;
-    solve_least_squares(wanted, tolerance, contacts, out);
-  }
-  return out;
-}
-
-namespace {
-
 /// The search looks a little further than the proxy moves, to allow for the rounding of both.
 constexpr double kQueryMargin = 1.0 + 1e-6;
 /// How far a point may lie inside one plane of an edge and still count as passing it, as a share of the spacing.
@@ -278,6 +260,17 @@ double distance_to_second(const PointShell& shell, std::size_t from) {
 
 }  // namespace
 
+AllowedMove nearest_allowed(const Vec3& wanted, ContactBuffer& contacts) noexcept {
+  set_weights(contacts, 0.0);
+  AllowedMove out;
+  const double tolerance = kViolationTolerance * largest_length(contacts, wanted);
+  if (!solve_exactly(wanted, tolerance, contacts, out)) {
+    out.feasible = false;
+    solve_least_squares(wanted, tolerance, contacts, out);
+  }
+  return out;
+}
+
 double typical_spacing(const PointShell& shell) {
   if (shell.size() < 3) return 0.0;
   const std::size_t samples = std::min(kSampled, shell.size());
@@ -288,15 +281,34 @@ double typical_spacing(const PointShell& shell) {
   return *middle;
 }
 
-void add_edge_constraints(const ToolShape& tool, const ToolPose& pose, double spacing, double margin,
-                          const PlaceArrays& places, ContactBuffer& contacts) noexcept {
-  using simd::load, simd::Pack;
+ShellConstraints::ShellConstraints(const PointShell& shell, const ToolShape& tool, Skips skips)
+    : tool_(&tool),
+      margin_(kProxyMargin * tool.half_width()),
+      spacing_(typical_spacing(shell)),
+      reach_(tool.grown(margin_ * kQueryMargin)),
+      near_(make_contact_query(shell, *reach_.shape, skips)),
+      places_x_(simd::padded(near_->capacity())),
+      places_y_(places_x_.size()),
+      places_z_(places_x_.size()) {}
+
+/// Keeps the edges of the tool from sinking in between the points of a shell: the edge of a drill on a wall would find
+/// up to 0.05 mm of room between two rows of points 0.1 mm apart, because it touches points with both of its faces. The
+/// surface is assumed to be flat about each point, as far as the next points. If the foremost place of the tool towards
+/// the surface, v_i = argmin <q, n_i> over the tool, lies on that patch, it must stay above it:
+///
+///     <n_i, v_i + x - x_i> >= 0, appended as contact with depth <n_i, x_i - v_i> and gradient -n_i.
+///
+/// Patches apply at distances up to the margin and depths up to a tenth of the spacing; a patch that lies further out
+/// belongs to another part of the surface, such as the other side of a rim. Call after ToolShape::surface_constraints.
+/// Precondition: room for twice the contacts. O(n).
+void ShellConstraints::add_edges(const ToolPose& proxy, ContactBuffer& contacts) noexcept {
   const std::size_t points = contacts.size(), padded = contacts.padded_size();
   const PackRange all{0, padded / simd::lanes, 0xff, static_cast<std::uint8_t>(0xffu >> (padded - points))};
   const PointColumns columns{contacts.index.data(), contacts.x.data(),  contacts.y.data(), contacts.z.data(),
                              contacts.nx.data(),    contacts.ny.data(), contacts.nz.data()};
-  const Pack highest(margin), deepest(-kDeepest * spacing), patch2(kPatch * spacing * kPatch * spacing);
-  tool.foremost_places(pose, contacts, places);
+  const Pack highest(margin_), deepest(-kDeepest * spacing_), patch2(kPatch * spacing_ * kPatch * spacing_);
+  const PlaceArrays places{places_x_.data(), places_y_.data(), places_z_.data()};
+  tool_->foremost_places(proxy, contacts, places);
   for (std::size_t i = 0; i < padded; i += simd::lanes) {
     const Pack nx = load(&contacts.nx[i]), ny = load(&contacts.ny[i]), nz = load(&contacts.nz[i]);
     const Pack dx = load(&places.x[i]) - load(&contacts.x[i]), dy = load(&places.y[i]) - load(&contacts.y[i]),
@@ -307,7 +319,7 @@ void add_edge_constraints(const ToolShape& tool, const ToolPose& pose, double sp
     const std::uint8_t patches = all.own(simd::bits(applies), i / simd::lanes);
     if (patches == 0) continue;
     const std::size_t to = contacts.size();
-    push_hits(patches, columns, i, contacts);
+    contacts.extend(simd::copy_selected(patches, columns, i, contacts, to));
     const auto write = [patches, to](const Pack& values, AlignedDoubles& column) {
       alignas(64) double eight[simd::lanes];
       simd::store(values, eight);
@@ -321,21 +333,10 @@ void add_edge_constraints(const ToolShape& tool, const ToolPose& pose, double sp
   contacts.pad();
 }
 
-ShellConstraints::ShellConstraints(const PointShell& shell, const ToolShape& tool, Skips skips)
-    : tool_(&tool),
-      margin_(kProxyMargin * tool.half_width()),
-      spacing_(typical_spacing(shell)),
-      reach_(tool.grown(margin_ * kQueryMargin)),
-      near_(make_contact_query(shell, *reach_.shape, skips)),
-      places_x_(simd::padded(near_->capacity())),
-      places_y_(places_x_.size()),
-      places_z_(places_x_.size()) {}
-
 void ShellConstraints::constraints_at(const ToolPose& proxy, const Vec3& wanted, ContactBuffer& contacts) noexcept {
   near_->contacts_at({proxy.position + reach_.forward * proxy.axis, proxy.axis, proxy.roll}, contacts);
   tool_->surface_constraints(proxy, wanted, kEdgeSlack * spacing_, contacts);
-  add_edge_constraints(*tool_, proxy, spacing_, margin_, {places_x_.data(), places_y_.data(), places_z_.data()},
-                       contacts);
+  add_edges(proxy, contacts);
 }
 
 void SpringConstraints::constraints_at(const ToolPose& proxy, const Vec3&, ContactBuffer& contacts) noexcept {

@@ -4,11 +4,9 @@
 #include <Eigen/Geometry>
 #include <array>
 #include <bit>
-#include <limits>
 #include <span>
 
 #include "algorithms/registry.hpp"
-#include "sim/contact/late_contacts.hpp"
 #include "sim/core/simd.hpp"
 
 namespace hapbench {
@@ -48,7 +46,6 @@ void for_each_holding(const ContactBuffer& contacts, const Use& use) {
 ProxyRendering::ProxyRendering(const RenderingConfig& config)
     : K_(config.stiffness),
       damping_time_(own_value(config, "proxy", kDampingTime[0])),
-      angular_velocity_cutoff_(config.angular_velocity_read()),
       damping_and_limits_(config),
       skips_(config.skips) {}
 
@@ -154,7 +151,7 @@ void ProxyRendering::follow_directions() noexcept {
 
 ContactVelocity ProxyRendering::velocity_at(const ToolState& tool) const noexcept {
   ContactVelocity velocity{tool.velocity, damped_ * tool.velocity};
-  if (!angular_velocity_cutoff_ || !constraints_->act_at_points() || tool.angular_velocity == Vec3::Zero()) {
+  if (!angular_velocity_cutoff() || !constraints_->act_at_points() || tool.angular_velocity == Vec3::Zero()) {
     return velocity;
   }
   Mat3 span = Mat3::Zero();
@@ -292,19 +289,10 @@ AlgorithmWork ProxyRendering::work() const noexcept {
   return work;
 }
 
-namespace {
-
 /// A proxy placed on the tool moves by at most one margin per pass, however deep the contacts are.
-double proxy_bound(const RenderingConfig&, const ToolShape& tool, std::size_t, double) {
+static double proxy_bound(const RenderingConfig&, const ToolShape& tool, std::size_t, double) {
   return kProxyPasses * kProxyMargin * tool.half_width();
 }
-
-/// The projector onto the plane that the two gradients span.
-WedgeStiffness proxy_wedge(const RenderingConfig&, double, double) {
-  return {1.0, 1.0};
-}
-
-}  // namespace
 
 AlgorithmEntry proxy_entry() {
   static constexpr ModelInfo kInfo = {
@@ -323,7 +311,7 @@ AlgorithmEntry proxy_entry() {
   };
   return {.info = &kInfo,
           .make = [](const RenderingConfig& config) { return std::make_unique<ProxyRendering>(config); },
-          .theory = {.force_bound = proxy_bound, .wedge_stiffness = proxy_wedge},
+          .force_bound = proxy_bound,
           .may_reduce = false,
           .reported_depth_model = "surface_normal",
           .own_parameters = kDampingTime};

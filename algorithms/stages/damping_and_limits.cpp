@@ -1,9 +1,9 @@
 #include "algorithms/stages/damping_and_limits.hpp"
 
 #include <cmath>
+#include <limits>
 
-#include "algorithms/parameters.hpp"
-#include "sim/contact/stiffness_tensor.hpp"
+#include "sim/contact/contact_buffer.hpp"
 
 namespace hapbench {
 
@@ -50,8 +50,6 @@ Mat3 DryFriction::damping_matrix() const noexcept {
   return cut_ * (K_t_ * dt_ + B_t_) * tangential_ * tangential_;
 }
 
-namespace {
-
 constexpr ParameterInfo kDampingParameters[] = {
     {parameter::kDampingRatio, "zeta of one spring-damper of stiffness K"},
     {parameter::kDamping, "B itself; null: from zeta"},
@@ -69,8 +67,6 @@ constexpr ParameterInfo kDampingParameters[] = {
     {parameter::kMaxDamping, "B_max; null: off"},
     {parameter::kMaxForce, "F_max; null: off"},
 };
-
-}  // namespace
 
 const ModelInfo kDampingAndLimitsInfo = {
     .name = "damping_and_limits",
@@ -102,26 +98,20 @@ Mat3 load_along(const Vec3& force) noexcept {
 }
 
 DampingAndLimits::DampingAndLimits(const RenderingConfig& config)
-    : B_(config.hunt_crossley ? 1.0 : normal_damping(config)),
-      mu_s_(config.mu_s),
-      mu_f_(config.mu_f),
-      chi_(config.hunt_crossley),
-      max_damping_(config.max_damping),
-      max_force_(config.max_force),
-      skips_(config.skips) {
+    : config_(config), B_(config.hunt_crossley ? 1.0 : normal_damping(config)) {
+  constexpr double kUnfiltered = std::numeric_limits<double>::infinity();
+  if (config.angular_damping) angular_velocity_cutoff_ = config.angular_velocity_cutoff.value_or(kUnfiltered);
   if (config.dry_friction) dry_friction_.emplace(*config.dry_friction, config);
 }
 
 double DampingAndLimits::limited_damping(const Mat3& S) const noexcept {
-  if (max_damping_) {
-    const double largest = B_ * lambda_max(S);
-    if (largest > *max_damping_) return B_ * (*max_damping_ / largest);
-  }
-  return B_;
+  const std::optional<double>& most = config_.max_damping;
+  const double largest = most ? B_ * lambda_max(S) : 0.0;
+  return most && largest > *most ? B_ * (*most / largest) : B_;
 }
 
 Mat3 DampingAndLimits::damping_matrix(const Vec3& spring, const Mat3& S) const noexcept {
-  Mat3 damping = chi_ ? damping_ : Mat3(limited_damping(S) * S);
+  Mat3 damping = config_.hunt_crossley ? damping_ : Mat3(limited_damping(S) * S);
   if (dry_friction_) return damping + dry_friction_->damping_matrix();
   return damping + friction(spring) * (Mat3::Identity() - S);
 }
@@ -129,8 +119,8 @@ Mat3 DampingAndLimits::damping_matrix(const Vec3& spring, const Mat3& S) const n
 Vec3 DampingAndLimits::rendered_force(const Vec3& spring, const Mat3& S, const ContactVelocity& velocity,
                                       const Mat3& loads) noexcept {
   Vec3 force;
-  if (chi_) {
-    damping_ = *chi_ * loads;
+  if (config_.hunt_crossley) {
+    damping_ = *config_.hunt_crossley * loads;
     damping_ *= limited_damping(damping_);
     force = spring - damping_ * velocity.mean;
   } else {
@@ -139,12 +129,12 @@ Vec3 DampingAndLimits::rendered_force(const Vec3& spring, const Mat3& S, const C
   const auto tangential = [&]() -> Vec3 { return friction(spring) * (velocity.mean - velocity.normal); };
   if (dry_friction_) {
     force += dry_friction_->force(loads, velocity.mean);
-  } else if (mu_s_ != 0.0 || mu_f_ != 0.0) {
+  } else if (config_.mu_s != 0.0 || config_.mu_f != 0.0) {
     force -= tangential();
-  } else if (skips_ == Skips::off) {
+  } else if (config_.skips == Skips::off) {
     force -= tangential() + Vec3::Zero();  // 0 and never -0: f - (-0) would turn a -0 of the force into 0
   }
-  return cut_to(force, max_force_);
+  return cut_to(force, config_.max_force);
 }
 
 }  // namespace hapbench

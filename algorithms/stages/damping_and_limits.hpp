@@ -4,28 +4,22 @@
 #include <optional>
 
 #include "algorithms/rendering_config.hpp"
-#include "sim/core/model_info.hpp"
 #include "sim/core/types.hpp"
 #include "sim/loop/force_algorithm.hpp"
 #include "sim/loop/integrators/table.hpp"
 
 namespace hapbench {
 
-/// The bristle as a spring and a damper, K_t and B_t = 2 zeta_t sqrt(K_t M). While the tool sticks, leapfrog steps it
-/// as it does a spring: f = -K_t (e + dt v) - B_t v and e <- e + dt v.
+/// The bristle as a spring and a damper, K_t and B_t = 2 zeta_t sqrt(K_t M), as which leapfrog steps it while the tool
+/// sticks: f = -K_t (e + dt v) - B_t v and e <- e + dt v.
 SpringDamper bristle_of(const DryFrictionConfig& config, const RenderingConfig& rendering, double dt) noexcept;
 
 /// Dry friction: one bristle e [m] for the whole tool, which sticks until its force reaches mu N and slides above, with
 /// N = sum N_i over the loads N_i = K c_i d_i > 0 of the contacts (Kikuuwe, Takesue, Sano, Mochiyama and Fujimoto 2006,
-/// whose one contact we extend to many). With w_i = N_i / N and P = I - sum w_i u_i u_i^T:
-///
-///   g  = K_t e + (K_t dt + B_t) P v;   cut to ||g|| <= mu N
-///   e <- (dt g + B_t e) / (K_t dt + B_t);   f = -P g,   B_t = 2 zeta_t sqrt(K_t M)
-///
-/// One face, a slot of two faces and the line of a wedge give Coulomb's force, a corner never more. Guarantee: passive
-/// for any motion, loads and normals, -<f, p_k - p_k-1> >= K_t/2 (||e_k||^2 - ||e_k-1||^2) where v is
-/// (p_k - p_k-1) / dt. Known failure: an explicit step is stable up to a K_t of the order of K's limit; beyond, a
-/// sticking tool chatters, within the bound of mu N.
+/// whose one contact we extend to many); kDampingAndLimitsInfo has the formula. One face, a slot of two faces and the
+/// line of a wedge give Coulomb's force, a corner never more. Guarantee: passive for any motion, loads and normals,
+/// -<f, p_k - p_k-1> >= K_t/2 (||e_k||^2 - ||e_k-1||^2) where v is (p_k - p_k-1) / dt. Known failure: an explicit step
+/// is stable up to a K_t of the order of K's limit; beyond, a sticking tool chatters, within the bound of mu N.
 class DryFriction {
  public:
   DryFriction(const DryFrictionConfig& config, const RenderingConfig& rendering);
@@ -77,31 +71,21 @@ inline Vec3 cut_to(const Vec3& force, const std::optional<double>& most) noexcep
   return most && length > *most ? Vec3(force * (*most / length)) : force;
 }
 
-/// Damping, friction and limits, the same for every law (thesis 2.5, 2.6, A.2.1, B.2, C.4.3):
-///
-///   f_dn = -B v_n, v_n = S v, B = 2 zeta sqrt(K M);  v_t = v - v_n, f_dt = -(mu_s + mu_f |f_spring|) v_t
+/// Damping, friction and limits, the same for every law (thesis 2.5, 2.6, A.2.1, B.2, C.4.3), by the formulas of
+/// kDampingAndLimitsInfo. The friction coefficients mu_s and mu_f are viscous, although the thesis calls them Coulomb
+/// friction.
 ///
 /// With angular damping (thesis 4.4: a tool that only turns is not damped) v is the velocity of the tool's material,
 /// v_i = v + omega x r_i at the contact r_i from the tip centre. omega is that of the step before, through a low-pass,
-/// because a trembling hand turns the tool much faster than it moves it:
-///
-///   v_n = sum c_i <v_i, u_i> u_i = S v + sum c_i <omega x r_i, u_i> u_i;  v_t = v + omega x r_mean - v_n
-///
-/// with r_mean weighted by c_i; laws that are not weighted springs define v_n by ForceLaw::turning_velocity.
+/// because a trembling hand turns the tool much faster than it moves it. The mean arm r_mean is weighted by c_i; laws
+/// that are not weighted springs define v_n by ForceLaw::turning_velocity.
 /// Guarantee: the dampers of weighted springs take the power B sum c_i <v_i, u_i>^2 >= 0 from the motion of the tool.
-/// Known failure: the device renders the translation of that motion only. A turn drives the tip sideways with energy of
-/// the turning hand, which the hand does not feel.
+/// Known failure: a turn drives the tip sideways with energy of the turning hand, which the hand does not feel, because
+/// the device renders translation only.
 ///
-/// Two alternatives, both ours, read the loads N_i = K c_i d_i > 0 of the contacts, for algorithms without weights one
-/// load ||f_spring|| along f_spring:
-///
-///   Hunt and Crossley (1975): f_dn = -chi sum N_i <v, u_i> u_i in place of -B v_n, so that the force is continuous at
-///   contact on and off and never pulls while |<v, u_i>| < 1 / chi
-///   DryFriction in place of f_dt
-///
-/// Max damping: the normal damping is scaled by B_max / lambda_max(B S) when that is below 1. Max force: f_render is
-/// scaled to norm F_max when it is longer. The friction coefficients are viscous, although the thesis calls them
-/// Coulomb friction.
+/// Hunt and Crossley's damping and DryFriction, both ours, read the loads N_i = K c_i d_i > 0 of the contacts, for
+/// algorithms without weights one load ||f_spring|| along f_spring. The former keeps the force continuous at contact on
+/// and off and never pulls while |<v, u_i>| < 1 / chi.
 class DampingAndLimits {
  public:
   explicit DampingAndLimits(const RenderingConfig& config);
@@ -115,7 +99,7 @@ class DampingAndLimits {
   }
 
   /// True when `rendered_force` reads loads.
-  bool needs_loads() const noexcept { return dry_friction_ || chi_; }
+  bool needs_loads() const noexcept { return dry_friction_ || config_.hunt_crossley; }
   /// f_render [N] from f_spring [N], S, the velocity of the tool and sum N_i u_i u_i^T [N], which is read
   /// only if needs_loads(). Eigenvalues are computed only if damping is limited. Zero friction is computed only with
   /// Skips::off.
@@ -125,23 +109,21 @@ class DampingAndLimits {
   /// -df_render/dv [N s/m] without the force limit: B S + (mu_s + mu_f |f_spring|)(I - S), or what stands for the two.
   Mat3 damping_matrix(const Vec3& spring, const Mat3& S) const noexcept;
 
+  /// That of the algorithm; none without angular damping.
+  const std::optional<double>& angular_velocity_cutoff() const noexcept { return angular_velocity_cutoff_; }
   double stored_energy() const noexcept { return dry_friction_ ? dry_friction_->energy() : 0.0; }  ///< of friction [J]
   Friction friction_state() const noexcept { return dry_friction_ ? dry_friction_->state() : Friction::none; }
 
  private:
   /// B, or 1 for chi N_i, cut so that no eigenvalue of it times the tensor is above the limit.
   double limited_damping(const Mat3& S) const noexcept;
-  double friction(const Vec3& spring) const noexcept { return mu_s_ + mu_f_ * spring.norm(); }
+  double friction(const Vec3& spring) const noexcept { return config_.mu_s + config_.mu_f * spring.norm(); }
 
+  RenderingConfig config_;
   double B_;
-  double mu_s_;
-  double mu_f_;
   std::optional<DryFriction> dry_friction_;
-  std::optional<double> chi_;    ///< of Hunt and Crossley [s/m]
-  Mat3 damping_ = Mat3::Zero();  ///< chi sum N_i u_i u_i^T of the last force, limited [N s/m]
-  std::optional<double> max_damping_;
-  std::optional<double> max_force_;
-  Skips skips_;
+  Mat3 damping_ = Mat3::Zero();  ///< of Hunt and Crossley, chi sum N_i u_i u_i^T of the last force, limited [N s/m]
+  std::optional<double> angular_velocity_cutoff_;
 };
 
 }  // namespace hapbench

@@ -1,21 +1,47 @@
-#include "algorithms/stages/point_stage.hpp"
-
 #include <algorithm>
 #include <bit>
 #include <numeric>
 #include <stdexcept>
 #include <vector>
 
-#include "algorithms/parameters.hpp"
+#include "algorithms/penalty_rendering.hpp"
 #include "sim/core/random.hpp"
 #include "sim/core/simd.hpp"
 
 namespace hapbench {
-namespace {
 
 constexpr ParameterInfo kLocalAverageParameters[] = {
     {parameter::kLocalAverage, "switches the stage on"},
 };
+constexpr ParameterInfo kReductionParameters[] = {
+    {parameter::kThreshold, "alpha_TH: gradients with a larger inner product are similar"},
+    {parameter::kMaxPoints, "n_ext: most points kept; further ones are dropped and counted"},
+    {parameter::kShuffleSeed, "visit the shell points in a fixed random order instead of ascending index"},
+};
+
+const ModelInfo kLocalAverageInfo = {
+    .name = "local_average",
+    .summary = "colliding points that share a grid cell of the shell become one",
+    .formula = "D = mean of d_i u_i over the cell's colliding points; d = |D|, u = D/|D|; dropped when D = 0",
+    .source = "thesis C.2 (optional step, off by default)",
+    .known_failure = "opposite points in one cell cancel",
+    .parameters = kLocalAverageParameters,
+};
+
+const ModelInfo kGradientReductionInfo = {
+    .name = "reduction",
+    .summary = "of colliding points with similar gradients only the deepest is kept",
+    .formula =
+        "visit contacts in order; the first kept k with <u_i, u_k> > alpha_TH absorbs i (replaced if d_i > d_k); "
+        "none similar: append, or drop when n_ext are kept",
+    .source =
+        "thesis C.3, 2.8; algorithm C.1 as printed appends replaced points and compares on after a similar one, which "
+        "cannot be meant",
+    .known_failure = "depends on the order of the points; collapses gradually curved surfaces (thesis 4.1)",
+    .parameters = kReductionParameters,
+};
+
+namespace {
 
 /// A merged contact has index, point and normal of the first colliding point of its cell. Merged contacts are in the
 /// order in which their cells first appear.
@@ -102,29 +128,6 @@ class LocalAverage final : public PointStage {
   AlignedDoubles count_;                     ///< contacts of each cell that has some, by slot
 };
 
-}  // namespace
-
-const ModelInfo kLocalAverageInfo = {
-    .name = "local_average",
-    .summary = "colliding points that share a grid cell of the shell become one",
-    .formula = "D = mean of d_i u_i over the cell's colliding points; d = |D|, u = D/|D|; dropped when D = 0",
-    .source = "thesis C.2 (optional step, off by default)",
-    .known_failure = "opposite points in one cell cancel",
-    .parameters = kLocalAverageParameters,
-};
-
-std::unique_ptr<PointStage> make_local_average() {
-  return std::make_unique<LocalAverage>();
-}
-
-namespace {
-
-constexpr ParameterInfo kReductionParameters[] = {
-    {parameter::kThreshold, "alpha_TH: gradients with a larger inner product are similar"},
-    {parameter::kMaxPoints, "n_ext: most points kept; further ones are dropped and counted"},
-    {parameter::kShuffleSeed, "visit the shell points in a fixed random order instead of ascending index"},
-};
-
 /// Takes O(n * kept) inner products.
 class GradientReduction final : public PointStage {
  public:
@@ -204,18 +207,9 @@ class GradientReduction final : public PointStage {
 
 }  // namespace
 
-const ModelInfo kGradientReductionInfo = {
-    .name = "reduction",
-    .summary = "of colliding points with similar gradients only the deepest is kept",
-    .formula =
-        "visit contacts in order; the first kept k with <u_i, u_k> > alpha_TH absorbs i (replaced if d_i > d_k); "
-        "none similar: append, or drop when n_ext are kept",
-    .source =
-        "thesis C.3, 2.8; algorithm C.1 as printed appends replaced points and compares on after a similar one, which "
-        "cannot be meant",
-    .known_failure = "depends on the order of the points; collapses gradually curved surfaces (thesis 4.1)",
-    .parameters = kReductionParameters,
-};
+std::unique_ptr<PointStage> make_local_average() {
+  return std::make_unique<LocalAverage>();
+}
 
 std::unique_ptr<PointStage> make_gradient_reduction(const ReductionConfig& config) {
   return std::make_unique<GradientReduction>(config);

@@ -6,31 +6,31 @@
 #include <limits>
 
 namespace hapbench {
-namespace {
 
 constexpr int kPasses = 3;
+/// Sine of the angle between direction and normal below which a path ends. Its square is the share of a step by which a
+/// path must advance along the direction; beyond the edge of a surface the nearest place is that edge.
+constexpr double kLeastProgress = 0.1;
 
-Box box_around(const Vec3& centre, double half) {
-  return {centre - Vec3::Constant(half), centre + Vec3::Constant(half)};
+/// Calls visit(i) for the sorted points in the cells of the grid that the cube around the centre meets.
+template <class Visit>
+static void for_each_near(const GridIndex& grid, const Vec3& centre, double half, const Visit& visit) {
+  const Box cube{centre - Vec3::Constant(half), centre + Vec3::Constant(half)};
+  grid.for_each_run(cube, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) visit(i);
+  });
 }
-
-}  // namespace
-
-SmoothedSurface::SmoothedSurface(const PointShell& shell, double radius)
-    : shell_(shell), grid_(shell), radius_(radius) {}
 
 std::size_t SmoothedSurface::nearest_point(const Vec3& at) const {
   std::size_t nearest = 0;
   double least2 = std::numeric_limits<double>::infinity();
   // Ends when the box contains the whole ball around `at` that has the nearest point found on its surface.
   for (double half = distance_to(grid_.bounds(), at) + grid_.cell_size(); least2 > half * half; half *= 2.0) {
-    grid_.for_each_run(box_around(at, half), [&](std::size_t first, std::size_t last) {
-      for (std::size_t i = first; i < last; ++i) {
-        const double distance2 = (Vec3(grid_.x()[i], grid_.y()[i], grid_.z()[i]) - at).squaredNorm();
-        if (distance2 >= least2) continue;
-        least2 = distance2;
-        nearest = grid_.shell_index(i);
-      }
+    for_each_near(grid_, at, half, [&](std::size_t i) {
+      const double distance2 = (Vec3(grid_.x()[i], grid_.y()[i], grid_.z()[i]) - at).squaredNorm();
+      if (distance2 >= least2) return;
+      least2 = distance2;
+      nearest = grid_.shell_index(i);
     });
   }
   return nearest;
@@ -42,16 +42,14 @@ SurfacePoint SmoothedSurface::nearest(const Vec3& at) const {
   for (int pass = 0; pass < kPasses; ++pass) {
     double weights = 0.0;
     Vec3 centre = Vec3::Zero(), normal = Vec3::Zero();
-    grid_.for_each_run(box_around(place.position, radius_), [&](std::size_t first, std::size_t last) {
-      for (std::size_t i = first; i < last; ++i) {
-        const SurfacePoint point = shell_.point(grid_.shell_index(i));
-        const double nearness = 1.0 - (point.position - place.position).squaredNorm() / (radius_ * radius_);
-        if (nearness <= 0.0 || point.normal.dot(start.normal) <= 0.0) continue;
-        const double weight = nearness * nearness;
-        weights += weight;
-        centre += weight * point.position;
-        normal += weight * point.normal;
-      }
+    for_each_near(grid_, place.position, radius_, [&](std::size_t i) {
+      const SurfacePoint point = shell_.point(grid_.shell_index(i));
+      const double nearness = 1.0 - (point.position - place.position).squaredNorm() / (radius_ * radius_);
+      if (nearness <= 0.0 || point.normal.dot(start.normal) <= 0.0) return;
+      const double weight = nearness * nearness;
+      weights += weight;
+      centre += weight * point.position;
+      normal += weight * point.normal;
     });
     if (!(weights > 0.0)) return before;
     normal.normalize();
@@ -62,22 +60,14 @@ SurfacePoint SmoothedSurface::nearest(const Vec3& at) const {
   return place;
 }
 
-namespace {
-
-/// Sine of the angle between direction and normal below which a path ends. Its square is the share of a step by which a
-/// path must advance along the direction; beyond the edge of a surface the nearest place is that edge.
-constexpr double kLeastProgress = 0.1;
-
 /// Interpolates between unit vectors.
-Vec3 between(const Vec3& a, const Vec3& b, double fraction) {
+static Vec3 between(const Vec3& a, const Vec3& b, double fraction) {
   return unit_or(a + fraction * (b - a), a);
 }
 
-SurfacePoint between(const SurfacePoint& a, const SurfacePoint& b, double fraction) {
+static SurfacePoint between(const SurfacePoint& a, const SurfacePoint& b, double fraction) {
   return {a.position + fraction * (b.position - a.position), between(a.normal, b.normal, fraction)};
 }
-
-}  // namespace
 
 SurfacePath::SurfacePath(const SmoothedSurface& surface, std::span<const SurfacePoint> places)
     : radius_(surface.radius()), spacing_(spacing(radius_)), entries_{places.front()} {
@@ -118,11 +108,9 @@ SurfacePath SurfacePath::over(const SmoothedSurface& surface, std::span<const Ve
   return {surface, places};
 }
 
-namespace {
-
 /// Places on the surface from `first` along the unit vector `forward`, `step` apart.
-std::vector<SurfacePoint> walk(const SmoothedSurface& surface, const SurfacePoint& first, const Vec3& forward,
-                               double length, double step) {
+static std::vector<SurfacePoint> walk(const SmoothedSurface& surface, const SurfacePoint& first, const Vec3& forward,
+                                      double length, double step) {
   std::vector<SurfacePoint> places = {first};
   for (double done = 0.0; done < length; done += step) {
     const SurfacePoint& here = places.back();
@@ -134,8 +122,6 @@ std::vector<SurfacePoint> walk(const SmoothedSurface& surface, const SurfacePoin
   }
   return places;
 }
-
-}  // namespace
 
 SurfacePath SurfacePath::along(const SmoothedSurface& surface, const Vec3& start, const Vec3& direction,
                                double length) {

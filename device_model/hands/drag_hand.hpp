@@ -7,15 +7,13 @@
 #include <vector>
 
 #include "sim/contact/grid_index.hpp"
-#include "sim/core/profile.hpp"
 #include "sim/geometry/point_shell.hpp"
 #include "sim/loop/device.hpp"
 #include "sim/tool/motion.hpp"
 
 namespace hapbench {
 
-/// A point shell as a smooth surface: place and normal are averages over the shell's points within a radius R, so that
-/// they change steadily from point to point.
+/// A point shell as a smooth surface: place and normal are averages over the shell's points within a radius R.
 ///
 /// The neighbours p_i of a place x are the points with |p_i - x| < R whose normals are within a right angle of the
 /// normal of the shell point nearest to the queried place; this excludes the far side of a thin wall. With the weights
@@ -25,7 +23,7 @@ namespace hapbench {
 class SmoothedSurface {
  public:
   /// `radius` R > 0 [m]. The shell must have a point and outlive this object. O(points).
-  SmoothedSurface(const PointShell& shell, double radius);
+  SmoothedSurface(const PointShell& shell, double radius) : shell_(shell), grid_(shell), radius_(radius) {}
 
   double radius() const { return radius_; }
   /// Returns the place of the surface below or above `at` and the outward normal there. Starts at the nearest shell
@@ -102,10 +100,8 @@ struct Drag {
 ///
 /// Along the normal there are only the force and a damping, so the tool presses with F independent of the stiffness of
 /// the surface. Before the first contact the same rule lowers it. Normals on the path alone would not suffice: pressed
-/// with F along a fixed direction, a tool slides sideways off a ridge of radius r if F / r > k. The hand knows the
-/// path, the normals about it, which are computed from the shell before the run, and the handle. It does not know the
-/// rendered force, so it is the same hand for every algorithm. A step takes a dozen look-ups in the table of the path
-/// and allocates nothing.
+/// with F along a fixed direction, a tool slides sideways off a ridge of radius r if F / r > k. The hand does not know
+/// the rendered force, so it is the same for every algorithm. A step takes a dozen look-ups and allocates nothing.
 class DragHand final : public Hand {
  public:
   DragHand(Drag drag, std::shared_ptr<const SurfacePath> path) : drag_(std::move(drag)), path_(std::move(path)) {}

@@ -8,9 +8,9 @@
 #include <utility>
 
 #include "sim/core/math.hpp"
-#include "sim/core/profile.hpp"
 #include "sim/core/random.hpp"
 #include "sim/loop/device.hpp"
+#include "sim/tool/motion.hpp"
 
 namespace hapbench {
 
@@ -20,8 +20,6 @@ namespace hapbench {
 struct TremorConfig {
   Vec3 rms = {30e-6, 30e-6, 30e-6};  ///< of each axis [m]
   double low = 8.0, high = 12.0;     ///< band [Hz]
-
-  static constexpr std::size_t kTones = 8;
 };
 
 /// A displacement in that band: tones with random frequency and phase, one in each of equal parts of the band, so that
@@ -41,12 +39,9 @@ class Tremor {
     }
   }
 
-  /// Displacement [m] and velocity [m/s] at a time [s].
-  struct State {
-    Vec3 position = Vec3::Zero(), velocity = Vec3::Zero();
-  };
-  State at(double t) const noexcept {
-    State state;
+  /// Displacement and its velocity at a time [s].
+  HandleState at(double t) const noexcept {
+    HandleState state;
     for (Eigen::Index axis = 0; axis < 3; ++axis) {
       for (const auto& [amplitude, rate, phase] : tones_[static_cast<std::size_t>(axis)]) {
         if (amplitude == 0.0) break;
@@ -59,7 +54,7 @@ class Tremor {
   }
 
  private:
-  static constexpr std::size_t kTones = TremorConfig::kTones;
+  static constexpr std::size_t kTones = 8;
   struct Tone {
     double amplitude, rate, phase;  ///< [m], [rad/s], [rad]
   };
@@ -109,7 +104,7 @@ class ImpedanceHand final : public Hand {
     Vec3 position{target_[0](t), target_[1](t), target_[2](t)};
     Vec3 velocity{target_[0].rate(t), target_[1].rate(t), target_[2].rate(t)};
     if (tremor_) {
-      const Tremor::State moved = tremor_->at(t);
+      const HandleState moved = tremor_->at(t);
       position += moved.position;
       velocity += moved.velocity;
     }

@@ -8,14 +8,10 @@
 #include "sim/core/math.hpp"
 
 namespace hapbench {
-namespace {
 
 constexpr double kTwoPi = 2.0 * std::numbers::pi;
 /// Range of the tilt [rad]: the wrist neither lays the tool flat nor turns it past upright.
-constexpr double kLeastTilt = 0.0;
-constexpr double kMostTilt = 1.4;
-
-}  // namespace
+constexpr double kLeastTilt = 0.0, kMostTilt = 1.4;
 
 TrackingHand::TrackingHand(const Subject& subject, TargetTask task, double initial_tilt, double dt, std::uint64_t seed)
     : subject_(subject),
@@ -45,7 +41,8 @@ Vec3 TrackingHand::force(double, const HandView& view) noexcept {
   started_ = true;
   task_.advance(view.tool.position, view.spring_force.z(), view.model_force.z(), dt_);
   follow(look(view));
-  hold_within_strength(view.handle);
+  const Vec3 reach = Vec3::Constant(subject_.max_force / subject_.stiffness);  // beyond it the arm yields
+  intended_ = intended_.cwiseMax(view.handle.position - reach).cwiseMin(view.handle.position + reach);
   for (double& component : force_noise_) component = coloured(component);
   return subject_.stiffness * (intended_ - view.handle.position) - subject_.damping * view.handle.velocity +
          subject_.motor_noise * force_noise_;
@@ -75,11 +72,6 @@ void TrackingHand::follow(const Seen& seen) noexcept {
   }
   const double press_rate = kTwoPi * subject_.press_bandwidth / subject_.stiffness;
   intended_.z() -= within(press_rate * (subject_.press - seen.gauge), subject_.max_speed) * dt_;
-}
-
-void TrackingHand::hold_within_strength(const HandleState& handle) noexcept {
-  const Vec3 reach = Vec3::Constant(subject_.max_force / subject_.stiffness);
-  intended_ = intended_.cwiseMax(handle.position - reach).cwiseMin(handle.position + reach);
 }
 
 /// The next sample of noise of unit variance with the hand's bandwidth.

@@ -29,9 +29,8 @@ struct Subject {
 };
 
 /// The subject at the display, who follows one target after the other and presses the tool down. The subject perceives
-/// what those of the thesis saw: one reaction delay late the distance from tip to target on the panel or height meter
-/// and the force gauge; without delay the handle between the fingers. The action is an intended (equilibrium) position
-/// x_e:
+/// one reaction delay late the distance from tip to target on the panel or height meter and the force gauge, without
+/// delay the handle between the fingers. The action is an intended (equilibrium) position x_e:
 ///
 ///   f = k (x_e - x_handle) - b v_handle + motor noise
 ///
@@ -63,7 +62,6 @@ class TrackingHand final : public Hand {
 
   Seen look(const HandView& view) noexcept;
   void follow(const Seen& seen) noexcept;
-  void hold_within_strength(const HandleState& handle) noexcept;
   double coloured(double state) noexcept;
 
   Subject subject_;

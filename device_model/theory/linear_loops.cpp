@@ -4,9 +4,13 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <limits>
+#include <numbers>
 #include <numeric>
 #include <unsupported/Eigen/MatrixFunctions>
+
+#include "sim/core/math.hpp"
 
 namespace hapbench {
 
@@ -19,6 +23,7 @@ namespace {
 /// Range of K T^2 / m. For smaller values the eigenvalues are so close to 1 that rounding decides.
 constexpr double kLeastEdge = 1e-8;
 constexpr double kNoEdge = 1e6;
+constexpr double kNever = std::numeric_limits<double>::infinity();
 
 /// Indices of the state of a SampledLoop.
 enum { kPosition, kVelocity, kLastPosition, kModes };
@@ -27,17 +32,7 @@ bool is_pair(const LowPassMode& mode) {
   return mode.taken.imag() != 0.0;
 }
 
-/// The matrix A of the motion dz/ds = A z over the share s of the period, with z = (x, T v, T^2/m f) and a constant
-/// force f. Here and below sizes are dynamic, so that the compiler meets the matrix exponential once.
-Eigen::MatrixXd motion_rate(const SampledLoop& loop) {
-  const double m = loop.moving_mass(), T = loop.period;
-  Eigen::MatrixXd rate = Eigen::MatrixXd::Zero(3, 3);
-  rate(0, 1) = 1.0;
-  rate.row(1) << -loop.hand.stiffness * T * T / m, -loop.total_damping() * T / m, 1.0;
-  return rate;
-}
-
-/// The same with (x, T v) of the motors and then of the handle, on a transmission.
+/// The matrix of motion_rate with (x, T v) of the motors and then of the handle, on a transmission.
 Eigen::MatrixXd elastic_motion_rate(const SampledLoop& loop, const Transmission& transmission) {
   const double T = loop.period, motor = transmission.motor_share * loop.device.handle_mass,
                handle = loop.moving_mass() - motor, k = transmission.stiffness * T * T, d = transmission.damping * T;
@@ -46,6 +41,17 @@ Eigen::MatrixXd elastic_motion_rate(const SampledLoop& loop, const Transmission&
   rate.row(1) << -k / motor, -(d + loop.device.viscous * T) / motor, k / motor, d / motor, loop.moving_mass() / motor;
   rate.row(3) << k / handle, d / handle, -(k + loop.hand.stiffness * T * T) / handle,
       -(d + loop.hand.damping * T) / handle, 0.0;
+  return rate;
+}
+
+/// The matrix A of the motion dz/ds = A z over the share s of the period, with z = (x, T v, T^2/m f) and a constant
+/// force f. Here and below sizes are dynamic, so that the compiler meets the matrix exponential once.
+Eigen::MatrixXd motion_rate(const SampledLoop& loop) {
+  if (loop.device.transmission) return elastic_motion_rate(loop, *loop.device.transmission);
+  const double m = loop.moving_mass(), T = loop.period;
+  Eigen::MatrixXd rate = Eigen::MatrixXd::Zero(3, 3);
+  rate(0, 1) = 1.0;
+  rate.row(1) << -loop.hand.stiffness * T * T / m, -loop.total_damping() * T / m, 1.0;
   return rate;
 }
 
@@ -62,16 +68,18 @@ void add_motion(Eigen::MatrixXd& A, const std::vector<Eigen::Index>& body, doubl
   for (Eigen::Index i = 0; i < n; ++i) A.row(body[static_cast<std::size_t>(i)]) = next.row(i);
 }
 
+/// The modes of the low-passes of the velocity and of the position; empty without such a filter.
+std::vector<LowPassMode> velocity_modes(const SampledLoop& loop) {
+  const auto* filter = std::get_if<LowPassFilter>(&loop.device.velocity_filter);
+  return filter != nullptr ? low_pass_modes(*filter, loop.period) : std::vector<LowPassMode>{};
+}
+
+std::vector<LowPassMode> position_modes(const SampledLoop& loop) {
+  const auto& filter = loop.device.position_filter;
+  return filter ? low_pass_modes(*filter, loop.period) : std::vector<LowPassMode>{};
+}
+
 }  // namespace
-
-std::vector<LowPassMode> SampledLoop::velocity_modes() const {
-  const auto* filter = std::get_if<LowPassFilter>(&device.velocity_filter);
-  return filter != nullptr ? low_pass_modes(*filter, period) : std::vector<LowPassMode>{};
-}
-
-std::vector<LowPassMode> SampledLoop::position_modes() const {
-  return device.position_filter ? low_pass_modes(*device.position_filter, period) : std::vector<LowPassMode>{};
-}
 
 const char* SampledLoop::nonlinearity() const {
   if (device.coulomb > 0.0 || device.encoder_step > 0.0 || device.force_step > 0.0)
@@ -85,9 +93,9 @@ Eigen::MatrixXd SampledLoop::state_matrix() const {
   const Eigen::Index whole = static_cast<Eigen::Index>(std::floor(delay));
   const double part = delay - static_cast<double>(whole);
   const Eigen::Index kept = whole + (part > 0.0 ? 1 : 0);
-  std::vector<LowPassMode> velocity = velocity_modes();
+  std::vector<LowPassMode> velocity = velocity_modes(*this);
   if (velocity.empty()) velocity.push_back({1.0, 1.0});
-  const std::vector<LowPassMode> position = position_modes();
+  const std::vector<LowPassMode> position = position_modes(*this);
   const auto states_of = [](const std::vector<LowPassMode>& modes) {
     return std::accumulate(modes.begin(), modes.end(), Eigen::Index{0},
                            [](Eigen::Index sum, const LowPassMode& mode) { return sum + (is_pair(mode) ? 2 : 1); });
@@ -125,12 +133,9 @@ Eigen::MatrixXd SampledLoop::state_matrix() const {
   };
 
   const Eigen::RowVectorXd before = part > 0.0 ? force_of(whole + 1) : Eigen::RowVectorXd();
-  if (device.transmission) {
-    add_motion(A, {kPosition, kVelocity, n - 2, n - 1}, part, elastic_motion_rate(*this, *device.transmission), before,
-               force_of(whole));
-  } else {
-    add_motion(A, {kPosition, kVelocity}, part, motion_rate(*this), before, force_of(whole));
-  }
+  std::vector<Eigen::Index> body = {kPosition, kVelocity};
+  if (device.transmission) body.insert(body.end(), {n - 2, n - 1});
+  add_motion(A, body, part, motion_rate(*this), before, force_of(whole));
   for (Eigen::Index age = 0; age < kept; ++age) A.row(forces + age) = force_of(age);
   return A;
 }
@@ -150,7 +155,7 @@ std::span<const AttachedHand> hand_family() {
 }
 
 double worst_hand_edge(SampledLoop loop) {
-  double least = std::numeric_limits<double>::infinity();
+  double least = kNever;
   for (const AttachedHand& hand : hand_family()) {
     loop.hand = hand;
     least = std::min(least, eigenvalue_edge(loop));
@@ -158,14 +163,9 @@ double worst_hand_edge(SampledLoop loop) {
   return least;
 }
 
-namespace {
-
-/// Indices of the state of an AdmittanceLoop.
-enum { kTool, kToolVelocity, kCarriage, kCarriageVelocity, kHandle, kHandleVelocity, kCommands };
-
 /// Carriage and handle after a step of the implicit midpoint rule (HandleMechanics). The columns belong to
 /// (x_c, v_c, x_h, v_h) and to constant forces on carriage and handle.
-Eigen::MatrixXd mechanics_step(const HandleMechanicsConfig& m, double dt) {
+static Eigen::MatrixXd mechanics_step(const HandleMechanicsConfig& m, double dt) {
   const double k = m.structure_stiffness, c = m.structure_damping;
   Eigen::MatrixXd rate(4, 4);
   rate << 0, 1, 0, 0,                                                                                       //
@@ -179,9 +179,8 @@ Eigen::MatrixXd mechanics_step(const HandleMechanicsConfig& m, double dt) {
   return (Eigen::MatrixXd::Identity(4, 4) - 0.5 * dt * rate).partialPivLu().solve(right);
 }
 
-}  // namespace
-
 Eigen::MatrixXd AdmittanceLoop::state_matrix() const {
+  enum { kTool, kToolVelocity, kCarriage, kCarriageVelocity, kHandle, kHandleVelocity, kCommands };  // of the state
   const auto delay = static_cast<Eigen::Index>(servo.delay);
   const Eigen::Index n = kCommands + delay;
   const auto unit = [n](Eigen::Index i) -> Eigen::RowVectorXd { return Eigen::RowVectorXd::Unit(n, i); };
@@ -204,6 +203,139 @@ Eigen::MatrixXd AdmittanceLoop::state_matrix() const {
   for (const Eigen::Index velocity : {kToolVelocity, kCarriageVelocity, kHandleVelocity}) scale[velocity] = tool.dt;
   scale.tail(delay).setConstant(tool.dt * tool.dt / tool.M);
   return scale.asDiagonal() * A * scale.cwiseInverse().asDiagonal();
+}
+
+namespace {
+
+// An elastic transmission is part of the hand, which the conditions of passivity leave open; others count on one mass.
+
+/// True if the velocity is the difference of positions (or a window, which is not linear) and neither is filtered.
+bool differentiates(const SampledLoop& loop) {
+  return velocity_modes(loop).empty() && !loop.device.position_filter;
+}
+
+std::optional<double> colgate_schenkel(const SampledLoop& loop) {
+  if (loop.device.delay_samples != 0.0 || !differentiates(loop)) return std::nullopt;
+  return std::max(0.0, 2.0 * (loop.device.viscous - std::abs(loop.wall_damping)) / loop.period);
+}
+
+/// The condition b > K p + B r at one angle theta = omega T, with e = exp(-j theta) and the filters F of the velocity
+/// and G of the position:
+///
+///   p = T/2 Re{(1 - e) G e^d} / (1 - cos theta),   r = 1/2 Re{(1 - e)^2 F e^d} / (1 - cos theta)
+struct PassivityAt {
+  double p, r;
+};
+
+PassivityAt passivity_at(const SampledLoop& loop, double theta) {
+  const double d = loop.device.delay_samples, turn = (d + 1.0) * theta, late = (d + 0.5) * theta;
+  const auto response = [theta](const std::vector<LowPassMode>& modes) {
+    std::complex<double> sum = modes.empty() ? 1.0 : 0.0;
+    for (const LowPassMode& mode : modes) sum += mode.response(theta);
+    return sum;
+  };
+  const std::complex<double> F = response(velocity_modes(loop)), G = response(position_modes(loop));
+  // 1 - e = 2 j sin(theta/2) e^(1/2) and (1 - e)^2 = -2 (1 - cos theta) e
+  return {loop.period * (G.real() * math::sin(late) - G.imag() * math::cos(late)) / (2.0 * math::sin(0.5 * theta)),
+          -(F.real() * math::cos(turn) + F.imag() * math::sin(turn))};
+}
+
+/// The least value of a function between two angles, on a grid and then on ever finer grids around its best point.
+template <class Function>
+double least_value(Function f, double low, double high, int points) {
+  double least = kNever;
+  for (int zoom = 0; zoom < 8; ++zoom) {
+    const double step = (high - low) / points;
+    double best = low;
+    for (int i = 0; i <= points; ++i) {
+      const double at = low + step * i, value = f(at);
+      if (value < least) least = value, best = at;
+    }
+    low = std::max(low, best - step);
+    high = std::min(high, best + step);
+    points = 16;
+  }
+  return least;
+}
+
+/// The condition bounds K from above where p > 0, from below where p < 0.
+std::optional<double> passive_with_delay(const SampledLoop& loop) {
+  const double d = loop.device.delay_samples;
+  if (d != std::floor(d)) return std::nullopt;
+  const auto bound = [&loop](double theta, bool above) {
+    const auto [p, r] = passivity_at(loop, theta);
+    return (above ? p > 0.0 : p < 0.0) ? (loop.device.viscous - loop.wall_damping * r) / std::abs(p) : kNever;
+  };
+  constexpr double kFirst = 1e-6;  // 0 / 0 at 0; the function is even and smooth there
+  const int points = 256 * (1 + static_cast<int>(d));
+  const double most = least_value([&](double t) { return bound(t, true); }, kFirst, std::numbers::pi, points);
+  const double least = -least_value([&](double t) { return bound(t, false); }, kFirst, std::numbers::pi, points);
+  return most > std::max(0.0, least) ? most : 0.0;
+}
+
+std::optional<double> gil_hulin(const SampledLoop& loop) {
+  constexpr double kLowDamping = 0.15;
+  const double damping = loop.total_damping() + loop.wall_damping;
+  const double late = loop.period * (1.0 + loop.device.delay_samples);
+  if (loop.device.transmission || !differentiates(loop) || damping * late / loop.moving_mass() > kLowDamping)
+    return std::nullopt;
+  return std::max(0.0, damping / (loop.period * (0.5 + loop.device.delay_samples)));
+}
+
+std::optional<double> abbott_okamura(const SampledLoop& loop) {
+  if (loop.device.delay_samples != 0.0 || loop.wall_damping != 0.0 || loop.device.encoder_step <= 0.0 ||
+      loop.device.position_filter)
+    return std::nullopt;
+  return std::min(2.0 * loop.device.viscous / loop.period, 2.0 * loop.device.coulomb / loop.device.encoder_step);
+}
+
+std::optional<double> undamped_handle(const SampledLoop& loop) {
+  const bool bare = loop.total_damping() == 0.0 && loop.hand.stiffness == 0.0;
+  if (loop.device.transmission || !bare || loop.device.delay_samples != 0.0 || !differentiates(loop))
+    return std::nullopt;
+  const double m = loop.moving_mass(), T = loop.period, beta = loop.wall_damping * T / m;
+  return std::max(0.0, 2.0 * beta * (2.0 - beta) / (2.0 + beta) * m / (T * T));
+}
+
+constexpr StiffnessLimit kLimits[] = {
+    {.name = "passive_colgate_schenkel",
+     .formula = "K < 2 (b - |B|) / T",
+     .source =
+         "J. E. Colgate, G. Schenkel, Passivity of a class of sampled-data systems, J. Robotic Systems 14(1), 1997",
+     .applies = "no delay, velocity by the difference; passive for every passive hand",
+     .largest = colgate_schenkel},
+    {.name = "passive_with_delay",
+     .formula = "b > max over theta of K T sin((d + 1/2) theta) / (2 sin(theta/2)) - B Re{F e^(-j (d + 1) theta)}",
+     .source =
+         "the general condition of Colgate and Schenkel for this wall, derived; F is the velocity filter, a filter of "
+         "the position also counts",
+     .applies = "whole delays; passive for every passive hand",
+     .largest = passive_with_delay},
+    {.name = "stable_gil_hulin",
+     .formula = "K < (b + B) / (T/2 + t_d), b with the hand's",
+     .source = "J. J. Gil, E. Sanchez, T. Hulin, C. Preusche, G. Hirzinger, J. Comput. Inf. Sci. Eng. 9(1), 2009",
+     .applies =
+         "an approximation for low damping and short delays, (b + B)(T + t_d) / m <= 0.15 (ours: at most 14 % above the exact "
+         "edge there); velocity by the difference",
+     .largest = gil_hulin},
+    {.name = "passive_abbott_okamura",
+     .formula = "K <= min(2 b / T, 2 c / q)",
+     .source =
+         "J. J. Abbott, A. M. Okamura, Effects of position quantization and sampling rate on virtual-wall passivity, IEEE "
+         "T-RO 21(5), 2005",
+     .applies = "no delay, B = 0, an encoder step q > 0",
+     .largest = abbott_okamura},
+    {.name = "exact_undamped_handle",
+     .formula = "K T^2/m < 2 beta (2 - beta) / (2 + beta), beta = B T/m",
+     .source = "derived",
+     .applies = "no delay, velocity by the difference, neither handle nor hand damp and no hand's spring",
+     .largest = undamped_handle},
+};
+
+}  // namespace
+
+std::span<const StiffnessLimit> stiffness_limits() {
+  return kLimits;
 }
 
 }  // namespace hapbench

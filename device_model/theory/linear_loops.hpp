@@ -26,9 +26,8 @@ inline bool is_stable_step(const Eigen::MatrixXd& A) {
 /// The largest value from `least` to `most` up to which the step `step_matrix(value)` is stable, with a relative error
 /// of 1e-11; zero if `least` is unstable, infinite if all values are stable.
 ///
-/// It is the first edge from below: values a tenth apart are tried from `least` on, and the first unstable one is
-/// bisected against the last stable one. An unstable range that begins and ends within a tenth is overlooked. The tests
-/// compare the edges of random loops with their frequency responses, which show every crossing.
+/// Values a tenth apart are tried from `least` on, and the first unstable one is bisected against the last stable one.
+/// An unstable range that begins and ends within a tenth is overlooked.
 template <class StepMatrix>
 double first_edge(double least, double most, StepMatrix step_matrix) {
   constexpr double kNext = 1.1, kPrecision = 1e-11;
@@ -46,16 +45,15 @@ double first_edge(double least, double most, StepMatrix step_matrix) {
   return low;
 }
 
-/// The loop of an impedance device at a wall, as a linear system along one axis in SI units: the loop without
-/// saturation, Coulomb friction, and steps of encoder and force. A handle m x'' = f - b x', with or without a hand,
-/// moves freely between samples. At sample k the wall answers
+/// The loop of an impedance device at a wall, as a linear system along one axis in SI units, without saturation,
+/// Coulomb friction, and steps of encoder and force. A handle m x'' = f - b x', with or without a hand, moves freely
+/// between samples. At sample k the wall answers
 ///
 ///   f_k = -K y_k - B w_k,   w_k = F((y_k' - y_{k-1}') / T)
 ///
 /// which is held on the handle from t_k + d T for one period. y' is the position with the sensor's noise, y that
-/// through the position filter, F the low-pass of the velocity filter, all by their modes (LowPassMode). The springs of
-/// the wall act to both sides; a wall that only pushes would let go of the handle. With an elastic transmission y, b
-/// and the force are the motors', and the hand is at the handle, a second mass.
+/// through the position filter, F the low-pass of the velocity filter. The springs of the wall act to both sides. With
+/// an elastic transmission y, b and the force are the motors', and the hand is at the handle, a second mass.
 struct SampledLoop {
   ImpedanceDeviceConfig device;  ///< with m, b, d and the velocity filter
   AttachedHand hand;             ///< zeros: no hand
@@ -65,13 +63,6 @@ struct SampledLoop {
 
   double moving_mass() const { return device.handle_mass + hand.mass; }   ///< handle and hand [kg]
   double total_damping() const { return device.viscous + hand.damping; }  ///< handle and hand [N s/m]
-  /// True if the velocity is the difference of positions (or a window, which is not linear) and neither is filtered.
-  bool differentiates() const {
-    return !std::holds_alternative<LowPassFilter>(device.velocity_filter) && !device.position_filter;
-  }
-  /// The modes of the low-passes of the velocity and of the position; empty without such a filter.
-  std::vector<LowPassMode> velocity_modes() const;
-  std::vector<LowPassMode> position_modes() const;
   /// Says which property of the device the linear system does not have; null if none.
   const char* nonlinearity() const;
 
@@ -84,8 +75,8 @@ struct SampledLoop {
   Eigen::MatrixXd state_matrix() const;
 };
 
-/// The exact limit: the largest K up to which no eigenvalue of the loop leaves the unit circle (first_edge), with the
-/// loop's other parameters. Zero if there is none above 1e-8 m / T^2. Takes about 0.5 ms.
+/// The largest K up to which the loop is stable (first_edge), with its other parameters. Zero if there is none above
+/// 1e-8 m / T^2. Takes about 0.5 ms.
 double eigenvalue_edge(SampledLoop loop);
 
 /// Typical hands (100 to 1000 N/m, 0.1 to 0.5 kg), and no hand. They add no damping, because a hand that does is safer.
@@ -109,9 +100,9 @@ struct StiffnessLimit {
 /// The table of limits, which everything that draws or writes limits reads.
 std::span<const StiffnessLimit> stiffness_limits();
 
-/// The loop of an AdmittanceDevice at a wall, as a linear system along one axis: the loop while neither the limiter of
-/// the input nor the servo saturates and the contact lasts. In each step, as in Simulation, the hand's force f = -k x_h
-/// - b v_h at the row drives the handle and the virtual mass, which the wall holds; the servo then follows the mass.
+/// The loop of an AdmittanceDevice at a wall, as a linear system along one axis, while neither the limiter of the input
+/// nor the servo saturates and the contact lasts. In each step the hand's force f = -k x_h - b v_h at the row drives
+/// the handle and the virtual mass, which the wall holds; the servo then follows the mass.
 struct AdmittanceLoop {
   SpringDamper tool;  ///< the virtual mass at the wall, with time step and integrator
   PositionServoConfig servo;
@@ -121,8 +112,7 @@ struct AdmittanceLoop {
 
   /// The map of the state at one row to that at the next,
   ///   (x, T v of the virtual mass, of the carriage, of the handle, T^2/M of the servo's delayed commands, last first)
-  /// with the time step T and the virtual mass M. All components are in metres, so that the eigenvalues are exact to
-  /// rounding.
+  /// with the time step T and the virtual mass M, all in metres.
   Eigen::MatrixXd state_matrix() const;
 };
 

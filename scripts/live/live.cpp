@@ -2,6 +2,7 @@
 // run. Exported functions take and return numbers and addresses in the instance's memory; texts end with a zero byte.
 // An exception ends the instance (runtime.cpp).
 #include <cstdlib>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "device_model/hands/scripted_hands.hpp"
@@ -12,6 +13,8 @@
 #include "scenarios/format/bundled_scenarios.hpp"
 #include "scenarios/format/text_lines.hpp"
 #include "scenarios/run/assemble.hpp"
+#include "scenarios/run/load_module.hpp"
+#include "scenarios/run/stop_signal.hpp"
 #include "sim/core/hash.hpp"
 #include "sim/loop/simulation.hpp"
 
@@ -52,14 +55,6 @@ class Session final : public Observer {
  public:
   /// If the pointer leads the run, call `aim` before the first row; if not, the scenario's own hand and motion do.
   Session(LoadedScenario loaded, bool is_led) : loaded_(checked(std::move(loaded))) {
-    const Scenario& scenario = loaded_.scenario;
-    parts_ = assemble(scenario, loaded_.files, make_shell(scenario, loaded_.files), {});
-    shell_ = parts_.shell;
-    tool_ = parts_.tool;
-    contacts_.emplace(parts_.source->capacity());
-    metrics_.emplace(scenario.time.step);
-    passivity_.emplace(scenario.time.step);
-    high_pass_ = vibration_filter(scenario.time.step);
     if (is_led)
       put_on_pointer();
     else
@@ -73,7 +68,7 @@ class Session final : public Observer {
       if (row.step == 0) high_pass_->settle_at(row.force.rendered);
       vibration = high_pass_->filter(row.force.rendered);
     }
-    contacts_->assign(*row.rendered);
+    contacts_.assign(*row.rendered);
     rows_.push_back(row.time);
     for (const Vec3& v : {row.tool.pose.position, row.tool.pose.axis, row.force.rendered, row.force.spring, vibration})
       rows_.insert(rows_.end(), {v.x(), v.y(), v.z()});
@@ -133,19 +128,19 @@ class Session final : public Observer {
   /// The state hash and totals of the run so far, and contacts and stiffness tensor of its last row, as JSON.
   const char* state() {
     nlohmann::json contacts = nlohmann::json::array();
-    for (std::size_t i = 0; i < contacts_->size(); ++i) {
-      const Vec3 p = contacts_->point(i), u = contacts_->gradient(i);
-      contacts.push_back({p.x(), p.y(), p.z(), u.x(), u.y(), u.z(), contacts_->depth[i], contacts_->weight[i]});
+    for (std::size_t i = 0; i < contacts_.size(); ++i) {
+      const Vec3 p = contacts_.point(i), u = contacts_.gradient(i);
+      contacts.push_back({p.x(), p.y(), p.z(), u.x(), u.y(), u.z(), contacts_.depth[i], contacts_.weight[i]});
     }
     nlohmann::json tensor = nlohmann::json::array();
     for (Eigen::Index i = 0; i < 3; ++i) tensor.push_back(list(last_.row(i).transpose()));
     const SimulationResult& result = simulation_->result();
     const bool diverged = result.outcome == Outcome::diverges;
     return text({{"rows", result.rows},
-                 {"state_hash", hash_text(metrics_->state_hash())},
+                 {"state_hash", hash_text(metrics_.state_hash())},
                  {"outcome", outcome_name(result.outcome)},
                  {"fault", diverged ? result.divergence.quantity : ""},
-                 {"energy_created_J", passivity_->net_created()},
+                 {"energy_created_J", passivity_.net_created()},
                  {"tensor", tensor},
                  {"contacts", contacts}});
   }
@@ -166,20 +161,20 @@ class Session final : public Observer {
 
   void begin() {
     simulation_.emplace(simulation_config(loaded_.scenario), std::move(parts_),
-                        std::vector<Observer*>{&*metrics_, &*passivity_, this});
+                        std::vector<Observer*>{&metrics_, &passivity_, this});
   }
 
   LoadedScenario loaded_;
-  SimulationParts parts_;
-  std::shared_ptr<const PointShell> shell_;
-  std::shared_ptr<const ToolShape> tool_;
+  SimulationParts parts_ = assemble(loaded_.scenario, loaded_.files, make_shell(loaded_.scenario, loaded_.files), {});
+  std::shared_ptr<const PointShell> shell_ = parts_.shell;
+  std::shared_ptr<const ToolShape> tool_ = parts_.tool;
   ImpedanceHand* hand_ = nullptr;     ///< the simulation's
   ScriptedMotion* motion_ = nullptr;  ///< the simulation's
   Pointer pointer_;
-  std::optional<MetricsObserver> metrics_;
-  std::optional<PassivityObserver> passivity_;
-  std::optional<HighPass> high_pass_;
-  std::optional<ContactBuffer> contacts_;
+  MetricsObserver metrics_{loaded_.scenario.time.step};
+  PassivityObserver passivity_{loaded_.scenario.time.step};
+  std::optional<HighPass> high_pass_ = vibration_filter(loaded_.scenario.time.step);
+  ContactBuffer contacts_{parts_.source->capacity()};
   std::optional<Simulation> simulation_;
   Mat3 last_ = Mat3::Zero();
   std::vector<double> rows_;
@@ -188,7 +183,32 @@ class Session final : public Observer {
 
 std::optional<Session> session;
 
+[[noreturn]] void refuse_library() {
+  throw InputError("a page loads no libraries; run this scenario with hapbench");
+}
+
 }  // namespace
+
+// The parts of the engine that need an operating system: the folder of an installation, modules and signals.
+
+/// A file of the page, or else a bundled scenario.
+std::filesystem::path find_scenario(const std::string& name, const std::filesystem::path& directory) {
+  std::vector<std::filesystem::path> places = {directory / name};
+  for (const char* group : kScenarioGroups)
+    places.push_back(std::filesystem::path("/scenarios") / group / (name + ".json"));
+  for (const auto& file : places)
+    if (std::error_code error; std::filesystem::exists(file, error)) return file;
+  throw InputError(name + ": no such file and no bundled scenario");
+}
+
+void require_contacts_in(const std::filesystem::path&) {
+  refuse_library();
+}
+std::unique_ptr<ContactSource> module_contacts(const std::filesystem::path&, const std::string&, const HapbenchRun&) {
+  refuse_library();
+}
+
+void throw_if_stopped() {}
 
 extern "C" {
 

@@ -12,10 +12,6 @@ PAGE = ROOT / "scripts" / "live" / "page"
 SCENARIOS = ROOT / "scenarios" / "library"
 REPLAY = ("replay_camera.js", "replay_scene.js", "replay_tool.js", "replay_field.js", "replay_tracks.js")
 
-def scenario_files():
-    """Bundled scenarios by name."""
-    return {file.stem: file for file in sorted(SCENARIOS.glob("*/*.json")) if file.parent.name not in ("studies", "presets")}
-
 
 def objects_in(value):
     """Every object in a value of JSON, itself first."""
@@ -27,7 +23,7 @@ def objects_in(value):
 
 def packed_files(scenes):
     """The bundled scenarios, and the files that those of the page name, by their paths in the page."""
-    bundled = scenario_files()
+    bundled = {file.stem: file for file in sorted(SCENARIOS.glob("*/*.json")) if file.parent.name not in ("studies", "presets")}  # by name
     place = lambda file: f"/scenarios/{file.relative_to(SCENARIOS).as_posix()}"
     files = {place(file): file.read_text(encoding="utf-8") for file in bundled.values()}
     for scene in scenes:

@@ -5,7 +5,6 @@
 #include <array>
 #include <cstddef>
 #include <exception>
-#include <functional>
 #include <limits>
 #include <vector>
 
@@ -45,31 +44,11 @@ class ContactArray {
   std::size_t rows_ = std::numeric_limits<std::size_t>::max();
 };
 
-/// Counts a call that computes. An error of Python in one of them ends all of them; the end of the last one lets work
-/// begin again. Precondition of both ends: the interpreter is held.
-class UnderWay {
- public:
-  UnderWay();
-  ~UnderWay();
-  UnderWay(const UnderWay&) = delete;
-  UnderWay& operator=(const UnderWay&) = delete;
-};
-
-/// Calls `work` on a thread of its own, with the interpreter released, and waits for it. Several threads of Python may
-/// call it at once. While it waits, it handles signals and progress twenty times a second. `progress`: None for bars
-/// on a terminal, False for none, or a function of (label, done, total). Throws what `work` throws. An error of a
-/// Python law, of the progress function or of a signal handler, such as KeyboardInterrupt, ends the work and is raised;
-/// it also ends the work of other threads. Precondition: the interpreter is held.
-void supervise(const pybind11::object& progress, const std::function<void()>& work);
-
 /// Keeps an error of Python, unless one is kept already, and stops all work. Precondition: the interpreter is held.
 void stop_work_by(const pybind11::error_already_set& error);
 
 /// True from an error of Python to the end of the work that it stops. Precondition: the interpreter is held.
 bool is_work_stopped();
-
-/// Raises the error that stop_work_by has kept, if any. Precondition: a call that is under way holds the interpreter.
-void raise_python_error();
 
 /// Runs `call` with the interpreter held, unless work is stopped. An exception becomes a Python error and stops all
 /// work. Returns whether `call` ended without one.
@@ -92,16 +71,7 @@ bool runs_in_python(const Call& call) noexcept {
 /// True while a call is under way. Precondition: the interpreter is held.
 bool is_work_under_way();
 
-/// Ends the calls of daemon threads, which would ask for the interpreter, by SystemExit before it ends, within 2 s.
-void end_work_before_interpreter();
-
-/// Makes loading of laws and computing by another thread exclude each other.
-void guard_law_loading();
-
 /// Adds the function that makes an algorithm of a Python function.
 void bind_force_laws(pybind11::module_& module);
-
-/// Adds the class Simulation.
-void bind_simulation(pybind11::module_& module);
 
 }  // namespace hapbench

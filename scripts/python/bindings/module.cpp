@@ -1,9 +1,20 @@
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
+#include <algorithm>
+#include <chrono>
+#include <csignal>
 #include <filesystem>
+#include <functional>
+#include <future>
+#include <memory>
+#include <mutex>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <string>
+#include <string_view>
+#include <thread>
+#include <tuple>
 
 #include "algorithms/registry.hpp"
 #include "bindings/bindings.hpp"
@@ -14,13 +25,113 @@
 #include "scenarios/program/command.hpp"
 #include "scenarios/program/run_table.hpp"
 #include "scenarios/run/assemble.hpp"
+#include "scenarios/run/load_module.hpp"
+#include "scenarios/run/progress_bar.hpp"
 #include "scenarios/run/run_scenario.hpp"
+#include "scenarios/run/stop_signal.hpp"
 
 /// The engine and the commands of the program for Python. Users call the package around it (hapbench/).
 namespace hapbench {
 namespace {
 
 namespace py = pybind11;
+using namespace std::chrono_literals;
+
+/// Interval of handling signals and progress.
+constexpr auto kLookEvery = 50ms;
+
+/// Time that work has to end before the interpreter does: a module may loop.
+constexpr auto kPatience = 2s;
+
+/// The number of calls under way, and the error that ends them, null if there is none. Both are guarded by the lock of
+/// the interpreter. A bare pointer, because at the end of the process there is no interpreter.
+int under_way = 0;
+PyObject* python_error = nullptr;
+
+/// Label, done and total; the total is 0 before the first report.
+using ProgressState = std::tuple<std::string, std::uint64_t, std::uint64_t>;
+
+/// Counts a call that computes. An error of Python in one of them ends all of them; the end of the last one lets work
+/// begin again. Precondition of both ends: the interpreter is held.
+class UnderWay {
+ public:
+  UnderWay() { ++under_way; }
+  ~UnderWay() {
+    if (--under_way > 0) return;
+    Py_CLEAR(python_error);
+    stop_work(0);
+  }
+  UnderWay(const UnderWay&) = delete;
+  UnderWay& operator=(const UnderWay&) = delete;
+};
+
+/// Raises the error that stop_work_by has kept, if any. Precondition: a call that is under way holds the interpreter.
+void raise_python_error() {
+  if (python_error == nullptr) return;
+  PyErr_SetObject(reinterpret_cast<PyObject*>(Py_TYPE(python_error)), python_error);
+  throw py::error_already_set();
+}
+
+/// Calls `work` on a thread of its own, with the interpreter released, and waits for it. Several threads of Python may
+/// call it at once. While it waits, it handles signals and progress twenty times a second. `progress`: None for bars
+/// on a terminal, False for none, or a function of (label, done, total). Throws what `work` throws. An error of a
+/// Python law, of the progress function or of a signal handler, such as KeyboardInterrupt, ends the work and is raised;
+/// it also ends the work of other threads. Precondition: the interpreter is held.
+void supervise(const py::object& progress, const std::function<void()>& work) {
+  const UnderWay counted;
+  const bool is_told = PyCallable_Check(progress.ptr()) != 0;
+  std::mutex mutex;
+  ProgressState reported, told;  // the work's last report, under the lock, and what Python was told
+  const auto last_report = [&] {
+    const std::lock_guard lock(mutex);
+    return reported;
+  };
+  const ProgressListener listener = [&](std::string_view label, std::uint64_t done, std::uint64_t total) {
+    const std::lock_guard lock(mutex);
+    reported = {std::string(label), done, total};
+  };
+  auto result = std::async(std::launch::async, [&] {
+    report_progress_to(progress.is_none() ? nullptr : &listener);
+    work();
+  });
+  const auto has_ended = [&result] {
+    const py::gil_scoped_release released;
+    return result.wait_for(kLookEvery) == std::future_status::ready;
+  };
+  while (!has_ended()) {
+    runs_in_python([&] {
+      if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+      ProgressState last = last_report();
+      if (!is_told || last == told) return;
+      told = std::move(last);
+      std::apply(progress, told);
+    });
+  }
+  raise_python_error();
+  result.get();
+  if (const auto [label, done, total] = last_report(); is_told && total > 0) progress(label, total, total);
+}
+
+/// Ends the calls of daemon threads, which would ask for the interpreter, by SystemExit before it ends, within 2 s.
+void end_work() {
+  if (under_way == 0) return;
+  PyErr_SetNone(PyExc_SystemExit);
+  stop_work_by(py::error_already_set());
+  const auto latest = std::chrono::steady_clock::now() + kPatience;
+  while (under_way > 0 && std::chrono::steady_clock::now() < latest) {
+    const py::gil_scoped_release released;
+    std::this_thread::sleep_for(10ms);
+  }
+}
+
+/// Makes loading of laws and computing by another thread exclude each other.
+void guard_law_loading() {
+  guard_loading([] {
+    auto held = std::make_shared<py::gil_scoped_acquire>();  // which work needs to begin
+    if (under_way > 1) throw InputError("a law cannot be loaded while another thread computes");
+    return held;
+  });
+}
 
 /// Raises InputError and IoError as hapbench.ScenarioError and OSError.
 void translate_errors() {
@@ -60,7 +171,7 @@ py::dict run(const std::string& scenario, const std::vector<std::string>& overri
   py::dict result;
   result["summary"] = summary_text(report);
   result["scenario"] = json_text(tables.effective);
-  result["timing"] = timing_text(report.timing, instruction_set(), report.provenance);
+  result["timing"] = timing_text(report);
   result["warnings"] = warnings;
   result["unmet"] = report.unmet;
   py::list trials;
@@ -75,31 +186,167 @@ py::dict run(const std::string& scenario, const std::vector<std::string>& overri
   return result;
 }
 
-int call(int (*program)(int, char**), std::vector<std::string> words) {
-  words.insert(words.begin(), "hapbench");
-  std::vector<char*> pointers;
-  for (std::string& word : words) pointers.push_back(word.data());
-  pointers.push_back(nullptr);
-  return program(static_cast<int>(words.size()), pointers.data());
-}
-
 py::tuple command(const std::vector<std::string>& words, const py::object& progress) {
   CapturedOutput output;
   int status = 0;
   supervise(progress, [&] {
     captured_output() = &output;
-    status = call(run_program, words);
+    status = run_program(words);
   });
   return py::make_tuple(status, output.text, output.warnings, output.errors);
 }
 
 int be_program(const std::vector<std::string>& words) {
   int status = 0;
-  supervise(py::none(), [&] { status = call(run_program_to_exit, words); });
+  supervise(py::none(), [&] { status = run_program_to_exit(words); });
   return status;
 }
 
+/// Keeps the last row, with its contacts.
+class LastRow final : public Observer {
+ public:
+  explicit LastRow(std::size_t capacity) : contacts(capacity) {}
+
+  void on_step(const StepRecord& record) noexcept override {
+    row = record;
+    contacts.assign(*record.rendered);
+  }
+
+  StepRecord row;
+  ContactBuffer contacts;
+};
+
+py::array_t<double> array_of(const Vec3& v) {
+  return py::array_t<double>(3, v.data());
+}
+
+/// A run, step by step.
+class PythonSimulation {
+ public:
+  PythonSimulation(const std::string& scenario, const std::vector<std::string>& overrides)
+      : loaded_(load_scenario(find_scenario(scenario), overrides)) {
+    const UnderWay counted;
+    {
+      const py::gil_scoped_release released;
+      SimulationParts parts = with_file(loaded_, [&] { return assemble(loaded_.scenario); });
+      last_.emplace(parts.source->capacity());
+      simulation_.emplace(simulation_config(loaded_.scenario), std::move(parts), std::vector<Observer*>{&*last_});
+    }
+    raise_python_error();
+  }
+
+  bool step() {
+    const UnderWay counted;
+    const bool more = simulation_->step();
+    raise_python_error();
+    return more;
+  }
+
+  /// Computes in pieces, between which signals are handled.
+  std::uint64_t advance(std::uint64_t steps) {
+    const UnderWay counted;
+    const std::uint64_t first = simulation_->result().rows;
+    for (bool more = true; more && steps > 0;) {
+      const std::uint64_t piece = std::min(steps, kAskEvery);
+      {
+        const py::gil_scoped_release released;
+        more = simulation_->advance(piece);
+      }
+      steps -= piece;
+      raise_python_error();
+      if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+    }
+    return simulation_->result().rows - first;
+  }
+
+  void reset() {
+    const UnderWay counted;
+    simulation_->reset();
+    last_->row = {};
+    last_->contacts.clear();
+    raise_python_error();
+  }
+
+  py::dict state() const {
+    const StepRecord& r = last_->row;
+    py::dict state;
+    state["step"] = r.step;
+    state["time_s"] = r.time;
+    state["position_m"] = array_of(r.tool.pose.position);
+    state["velocity_m_per_s"] = array_of(r.tool.velocity);
+    state["axis"] = array_of(r.tool.pose.axis);
+    state["force_N"] = array_of(r.force.rendered);
+    state["spring_force_N"] = array_of(r.force.spring);
+    const Mat3& S = r.force.S;  // symmetric
+    state["stiffness_tensor"] = py::array_t<double>({3, 3}, S.data());
+    state["measured_force_N"] = array_of(r.hand.measured);
+    state["input_force_N"] = array_of(r.hand.input);
+    state["handle_m"] = array_of(r.handle.position);
+    state["colliding"] = r.colliding;
+    state["depth_max_m"] = r.force.depth_max;
+    return state;
+  }
+
+  py::dict contacts() const {
+    const ContactBuffer& c = last_->contacts;
+    const std::size_t n = c.size();
+    py::dict contacts;
+    contacts["index"] = py::array_t<std::uint32_t>(static_cast<py::ssize_t>(n), c.index.data());
+    const auto array = [n](const auto&... columns) -> py::object {
+      return ContactArray(n, sizeof...(columns)).filled(n, {columns.data()...});
+    };
+    contacts["points_m"] = array(c.x, c.y, c.z);
+    contacts["normals"] = array(c.nx, c.ny, c.nz);
+    contacts["depths_m"] = array(c.depth);
+    contacts["gradients"] = array(c.ux, c.uy, c.uz);
+    contacts["weights"] = array(c.weight);
+    return contacts;
+  }
+
+  std::uint64_t rows() const { return simulation_->result().rows; }
+  double step_size() const { return loaded_.scenario.time.step; }
+  std::uint64_t steps() const { return static_cast<std::uint64_t>(loaded_.scenario.time.steps); }
+  std::string outcome() const { return std::string(outcome_name(simulation_->result().outcome)); }
+
+ private:
+  LoadedScenario loaded_;
+  std::optional<LastRow> last_;
+  std::optional<Simulation> simulation_;
+};
+
+/// hapbench.Simulation says what they do.
+void bind_simulation(py::module_& module) {
+  py::class_<PythonSimulation>(module, "Simulation")
+      .def(py::init<const std::string&, const std::vector<std::string>&>(), py::arg("scenario"), py::arg("overrides"))
+      .def("step", &PythonSimulation::step)
+      .def("advance", &PythonSimulation::advance, py::arg("steps"))
+      .def("reset", &PythonSimulation::reset)
+      .def_property_readonly("state", &PythonSimulation::state)
+      .def_property_readonly("contacts", &PythonSimulation::contacts)
+      .def_property_readonly("rows", &PythonSimulation::rows)
+      .def_property_readonly("time_step_s", &PythonSimulation::step_size)
+      .def_property_readonly("steps", &PythonSimulation::steps)
+      .def_property_readonly("outcome", &PythonSimulation::outcome);
+}
+
 }  // namespace
+
+void stop_work_by(const py::error_already_set& error) {
+  if (python_error == nullptr) {
+    python_error = py::object(error.value()).release().ptr();
+    if (error.trace()) PyException_SetTraceback(python_error, error.trace().ptr());
+  }
+  stop_work(SIGINT);
+}
+
+bool is_work_stopped() {
+  return python_error != nullptr;
+}
+
+bool is_work_under_way() {
+  return under_way > 0;
+}
+
 }  // namespace hapbench
 
 PYBIND11_MODULE(_hapbench, module) {
@@ -107,7 +354,7 @@ PYBIND11_MODULE(_hapbench, module) {
   module.doc() = "The compiled part of hapbench: use the package around it.";
   translate_errors();
   guard_law_loading();
-  end_work_before_interpreter();
+  py::module_::import("atexit").attr("register")(py::cpp_function(end_work));
   module.def(
       "set_program", [](const std::string& program) { this_program() = program; }, py::arg("program"),
       "Say which file is the program, for commands that name it.");

@@ -1,0 +1,259 @@
+#include "algorithms/stages/controllers.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "algorithms/stages/damping_and_limits.hpp"
+
+namespace hapbench {
+
+constexpr ParameterInfo kTankParameters[] = {
+    {parameter::kTankCapacity, "C, most energy that is kept for later"},
+    {parameter::kTankInitial, "energy at the start, besides that of the springs"},
+};
+constexpr ParameterInfo kActuatorParameters[] = {
+    {parameter::kActuatorForce, "F_j, most force of the actuator along each axis; null: no limit"},
+    {parameter::kActuatorDamping, "b, most damping; null: M / dt of the virtual tool, which stops it in one step"},
+};
+constexpr ParameterInfo kPassivityParameters[] = {
+    {parameter::kPassivityController, "switches the controller on, for any algorithm"},
+};
+
+const ModelInfo kEnergyTankInfo = {
+    .name = "energy_tank",
+    .summary = "a force stage that lets the rendering give away no more energy than its tank holds",
+    .formula = "T <- min(C, T + absorbed); f - (<f, v> dt - max(T, 0)) / (|v|^2 dt) v where <f, v> dt > max(T, 0)",
+    .source = "Franken, Stramigioli, Misra, Secchi and Macchelli 2011; Ferraguti et al. 2015; along the velocity: ours",
+    .known_failure =
+        "a capacity below the energy of the springs that are pressed takes their push back; it takes push away and "
+        "never damps, so that a vibration that creates no energy goes on; what an explicit step of a virtual mass creates "
+        "within the step it does not foresee",
+    .parameters = kTankParameters,
+};
+
+const ModelInfo kActuatorLimitedPassivityInfo = {
+    .name = "actuator_limited_passivity",
+    .summary = "a force stage: time-domain passivity whose damping no actuator is too weak for",
+    .formula =
+        "W = <f, v> - E / dt > 0 is dissipated by f1 = f - a1 <v, n> n, n = f / |f|, then f2 = f1 - a2 (v - <v, n> n); "
+        "a1 = W / <v, n>^2 and a2 = (W - a1 <v, n>^2) / |v - <v, n> n|^2, each at most b and such that |f_j| <= F_j; the "
+        "rest stays owed",
+    .source =
+        "Hannaford and Ryu 2002; priority of the force's direction and limits of each actuator after the abstract of "
+        "Porcini and Frisoli 2026 (arXiv 2603.26347), formulas ours",
+    .known_failure =
+        "foresees the coming step by the velocity alone: a force that throws the tool within a step is owed first and "
+        "paid afterwards, too late where the explicit step of a virtual mass is unstable; what damping has taken is credit, behind which a vibration may hide; a turn of the tool that "
+        "lifts it counts as energy created",
+    .parameters = kActuatorParameters,
+};
+
+const ModelInfo kPassivityControllerInfo = {
+    .name = "passivity_controller",
+    .summary = "adaptive damping that lets no algorithm give away more energy than it has taken in",
+    .formula =
+        "E = E_spring(0) - sum f_render . (v_k + v_k+1)/2 dt - sum (m_k + m_k+1)/2 . turn_k >= 0; "
+        "f_render = s f - alpha (v + f_in dt/2M), alpha = (1 - s) M/dt, largest s in [0, 1]",
+    .source = "Hannaford and Ryu, 2002 (observer and controller); the look-ahead and the rotation are ours",
+    .known_failure =
+        "what damping took in is credit, behind which a vibration may hide for a while; a law that creates "
+        "energy feels weak and sticky where it has none left",
+    .parameters = kPassivityParameters,
+};
+
+Vec3 EnergyTank::force(const StageStep& step) noexcept {
+  level_ = std::min(config_.capacity, begun_ ? level_ + (step.energy - energy_) : config_.initial + step.energy);
+  energy_ = step.energy;
+  begun_ = true;
+  const Vec3 &f = step.force, &v = step.velocity;
+  const double excess = f.dot(v) * dt_ - std::max(level_, 0.0);
+  return f.dot(v) > 0.0 && excess > 0.0 ? Vec3(f - excess / (v.squaredNorm() * dt_) * v) : f;
+}
+
+void ActuatorLimitedPassivity::prepare(double time_step, double mass) {
+  dt_ = time_step;
+  most_damping_ = config_.max_damping.value_or(mass / dt_);
+}
+
+Vec3 ActuatorLimitedPassivity::force(const StageStep& step) noexcept {
+  const Vec3 &f = step.force, &v = step.velocity;
+  const double size = f.norm();
+  double owed = f.dot(v) - step.energy / dt_;  // [W]
+  if (size == 0.0 || !(owed > 0.0)) return f;
+  const Vec3 most = config_.max_force.value_or(Vec3::Constant(std::numeric_limits<double>::infinity()));
+  // The damping a <= b that dissipates what is owed from the velocity `part`, with |g - a part|_j <= F_j for each j.
+  const auto damped = [&](const Vec3& g, const Vec3& part) -> Vec3 {
+    double a = std::min(most_damping_, owed / part.squaredNorm());
+    for (int j = 0; j < 3; ++j) {
+      if (part[j] == 0.0) continue;
+      const double room = most[j] + (part[j] > 0.0 ? g[j] : -g[j]);
+      a = std::min(a, std::max(0.0, room / std::abs(part[j])));
+    }
+    owed -= a * part.squaredNorm();
+    return g - a * part;
+  };
+  const Vec3 n = f / size, along = v.dot(n) * n, across = v - along;
+  const Vec3 f1 = along.isZero(0.0) ? f : damped(f, along);
+  return across.isZero(0.0) || !(owed > 0.0) ? f1 : damped(f1, across);
+}
+
+void StagedRendering::prepare(const Scene& scene) {
+  algorithm_->prepare(scene);
+  scene_ = scene;
+  given_ = asked_ = ObservedEnergy(scene.dt, scene.position_is_free);
+  const bool has_mass = scene.position_is_free && !scene.handle_moves_tool;
+  stage_->prepare(scene.dt, has_mass ? config_.mass : 0.0);
+}
+
+void StagedRendering::reset() noexcept {
+  algorithm_->reset();
+  stage_->reset();
+  given_.reset();
+  asked_.reset();
+  row_.reset();
+  change_.setZero();
+  steps_staged_ = 0;
+}
+
+void StagedRendering::compute(const ToolState& tool, ContactBuffer& contacts, RenderedForce& out) noexcept {
+  algorithm_->compute(tool, contacts, out);
+  const std::uint64_t row = scene_.row != nullptr ? *scene_.row : row_ ? *row_ + 1 : 0;
+  if (row_ == row) {
+    if (!change_.isZero(0.0)) out.rendered += change_;
+    return;
+  }
+  const bool first = !row_;
+  row_ = row;
+  for (ObservedEnergy* port : {&given_, &asked_}) port->move(tool, scene_.handle_moves_tool);
+  // The springs that a run begins with are energy to give back; the port of a stage is the tool's translation alone.
+  const SpringState springs{first ? algorithm_->spring_state(tool, contacts).energy : 0.0, Vec3::Zero()};
+  asked_.answer(tool, out.rendered, springs);
+  // Before its answer, the port has the energy that the row begins with.
+  given_.answer(tool, Vec3::Zero(), springs);
+  const Vec3 answer = cut_to(stage_->force({out.rendered, tool.velocity, given_.energy()}), config_.max_force);
+  given_.answer(tool, answer, springs);
+  if (answer == out.rendered) {
+    change_.setZero();
+    return;
+  }
+  ++steps_staged_;
+  change_ = answer - out.rendered;
+  out.rendered = answer;
+}
+
+AlgorithmWork StagedRendering::work() const noexcept {
+  AlgorithmWork work = algorithm_->work();
+  work.steps_staged = steps_staged_;
+  work.energy_staged = given_.energy() - asked_.energy();
+  return work;
+}
+
+/// The largest s in [0, 1] with a s^2 + b s <= c, a >= 0; if there is none, the s that comes closest.
+static double largest_share(double a, double b, double c) noexcept {
+  if (a + b <= c) return 1.0;
+  const double discriminant = std::max(0.0, b * b + 4.0 * a * c);
+  // Two forms of the same root, for b of either sign without cancellation.
+  const double root = std::sqrt(discriminant);
+  const double s = b > 0.0 ? 2.0 * c / (b + root) : a > 0.0 ? (root - b) / (2.0 * a) : 1.0;
+  return std::clamp(s, 0.0, 1.0);
+}
+
+/// True where there is something to control: springs, or the force of a force stage in free air.
+static bool acts(const ContactBuffer& contacts, const RenderedForce& force) noexcept {
+  return has_springs(contacts, force) || !force.rendered.isZero(0.0);
+}
+
+void PassivityController::prepare(const Scene& scene) {
+  algorithm_->prepare(scene);
+  dt_ = scene.dt;
+  row_ = scene.row;
+  input_ = scene.input;
+  observed_ = ObservedEnergy(dt_);
+}
+
+void PassivityController::reset() noexcept {
+  algorithm_->reset();
+  observed_.reset();
+  steps_controlled_ = 0;
+  largest_change_ = 0.0;
+  last_turn_.reset();
+  last_row_.reset();
+}
+
+void PassivityController::compute(const ToolState& tool, ContactBuffer& contacts, RenderedForce& out) noexcept {
+  algorithm_->compute(tool, contacts, out);
+  if (row_ == nullptr || last_row_ == *row_) {
+    // A state within the step is not observed and keeps the row's share and damping.
+    if (acts(contacts, out)) render(tool, out);
+    return;
+  }
+
+  last_row_ = *row_;
+  observed_.move(tool);
+  if (!observed_.first()) {
+    // The largest change of the turn so far predicts how much the hand may change it again.
+    const Vec3 turn = observed_.turned();
+    if (last_turn_) largest_change_ = std::max(largest_change_, (turn - *last_turn_).norm());
+    last_turn_ = turn;
+  }
+  share_ = spring_share_ = 1.0;
+  alpha_ = 0.0;
+  if (acts(contacts, out)) {
+    springs_ = algorithm_->spring_state(tool, contacts);
+    control(tool, out.rendered);
+    springs_.energy *= spring_share_;
+    springs_.moment *= spring_share_;
+    render(tool, out);
+  } else {
+    springs_ = {};
+  }
+  observed_.answer(tool, out.rendered, springs_);
+}
+
+/// Computes share and damping for the step.
+void PassivityController::control(const ToolState& tool, const Vec3& force) noexcept {
+  // Energy that the scripted rotation draws from the moment over the last step and, at the same rate, over the next.
+  const double drawn = springs_.moment.dot(observed_.turned());
+  const double energy = observed_.energy();
+  const double weakened = 0.5 * drawn > energy && drawn > 0.0 ? std::max(0.0, 2.0 * energy / drawn) : 1.0;
+
+  const Vec3 w = tool.velocity + half_kick();
+  const Vec3 u = w + force * (weakened * dt_ / mass_);
+  const double unforeseen = springs_.moment.norm() * largest_change_;
+  const double taken =
+      0.5 * drawn + std::max(0.0, 0.5 * drawn + unforeseen) - (observed_.first() ? springs_.energy : 0.0);
+  const double s =
+      largest_share(0.5 * mass_ * u.squaredNorm(), weakened * taken, energy + 0.5 * mass_ * w.squaredNorm());
+  share_ = spring_share_ = weakened * s;
+  alpha_ = (1.0 - s) * mass_ / dt_;
+  if (share_ == 1.0) return;
+  ++steps_controlled_;
+  // A force that the limit cuts absorbs less energy, so less is left for the moment.
+  const Vec3 whole = share_ * force - alpha_ * w;
+  if (const Vec3 rendered = cut_to(whole, max_force_); rendered != whole && taken > 0.0) {
+    const Vec3 after = w + rendered * (dt_ / mass_);
+    const double left = energy + 0.5 * mass_ * (w.squaredNorm() - after.squaredNorm());
+    spring_share_ = std::clamp(left / taken, 0.0, share_);
+  }
+}
+
+void PassivityController::render(const ToolState& tool, RenderedForce& out) const noexcept {
+  if (share_ == 1.0) return;
+  out.spring *= share_;
+  out.S *= share_;
+  out.rendered = cut_to(share_ * out.rendered - alpha_ * (tool.velocity + half_kick()), max_force_);
+}
+
+ForceJacobian PassivityController::jacobian() const noexcept {
+  const ForceJacobian inner = algorithm_->jacobian();
+  return {share_ * inner.stiffness, share_ * inner.damping + alpha_ * Mat3::Identity()};
+}
+
+AlgorithmWork PassivityController::work() const noexcept {
+  AlgorithmWork work = algorithm_->work();
+  work.steps_controlled = steps_controlled_;
+  return work;
+}
+
+}  // namespace hapbench
