@@ -21,13 +21,10 @@ class IoError : public std::runtime_error {
 
 class FileSet;
 
-/// A file that appears under its final name complete or not at all.
-///
-/// Bytes go to a hidden temporary beside it, .NAME.tmp, which `commit` gives the final name. It is locked (flock) while
-/// it is written: a second writer is refused. What a killed process left is overwritten by the next writer.
-///
-/// Safe against a killed process, not against a power cut: fsync would cost milliseconds for each of the thousands of
-/// files of a sweep, whose rows can be computed again.
+/// A file that appears under its final name complete or not at all: bytes go to a hidden temporary beside it,
+/// .NAME.tmp, which `commit` gives the final name. It is locked (flock) while it is written: a second writer is
+/// refused. What a killed process left is overwritten by the next writer. Not safe against a power cut: fsync would
+/// cost milliseconds for each of the thousands of files of a sweep, whose rows can be computed again.
 class AtomicFile {
  public:
   /// Opens the temporary. The directory must exist. Throws IoError, also when the file is being written.

@@ -80,7 +80,7 @@ std::string cell_text(const Cell& cell) {
 }
 
 const Metric* find_metric(const MetricList& list, std::string_view name) {
-  const auto metric = std::find_if(list.begin(), list.end(), [name](const Metric& m) { return m.name == name; });
+  const auto metric = std::ranges::find(list, name, &Metric::name);
   return metric != list.end() ? &*metric : nullptr;
 }
 
@@ -95,17 +95,6 @@ std::optional<double> number_of(const Cell& value) {
   return real != nullptr ? std::optional(*real) : std::nullopt;
 }
 
-std::optional<double> number_of(const MetricList& list, std::string_view name) {
-  return number_of(value_of(list, name));
-}
-
-Metric& Metric::within(double relative_part, double absolute_part) {
-  bounded = true;
-  relative = relative_part;
-  absolute = absolute_part;
-  return *this;
-}
-
 std::optional<double> Metric::tolerance() const {
   const auto number = number_of(value);
   return if_any(number && bounded, relative * std::abs(number.value_or(0.0)) + absolute);
@@ -118,17 +107,13 @@ std::string csv_cell(std::string_view text) {
   return quoted + "\"";
 }
 
-ordered_json columns_json(std::span<const Column> columns) {
-  return entries_json(columns);
-}
-
 ordered_json columns_json(const MetricList& metrics) {
   return entries_json(metrics);
 }
 
 ordered_json columns_json(std::span<const ResultTable> tables, const MetricList& metrics) {
   ordered_json json = {{"summary.json", columns_json(metrics)}};
-  for (const ResultTable& table : tables) json[table.file] = columns_json(table.columns);
+  for (const ResultTable& table : tables) json[table.file] = entries_json(table.columns);
   return json;
 }
 

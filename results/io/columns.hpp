@@ -36,7 +36,7 @@ class NumberText {
 };
 
 /// The text of a result file: keys in their order, two spaces of indentation, arrays of plain values on one line, a
-/// final newline. Doubles are as in NumberText, but null where they are not finite, for which JSON has no word.
+/// final newline. Doubles are as in NumberText, but null where they are not finite.
 std::string json_text(const nlohmann::ordered_json& value);
 
 /// A column of a result file: what its header, `hapbench describe` and columns.json say of it.
@@ -49,8 +49,8 @@ struct Column {
 /// A kind of CSV file among the results.
 struct ResultTable {
   const char* file;   ///< its name
-  const char* holds;  ///< what a line is, and when it is written
-  std::span<const Column> columns;
+  std::string holds;  ///< what a line is, and when it is written
+  std::vector<Column> columns;
 };
 
 /// The header line without its end: the names, separated by commas.
@@ -64,7 +64,7 @@ inline std::string header_of(std::span<const Column> columns) {
 inline constexpr Column kStepColumn = {"step", "1", "row number k, from 0"};
 inline constexpr Column kTimeColumn = {"time_s", "s", "time of the row, k times the time step"};
 
-/// The content of one cell of a table: nothing (empty in CSV, null in JSON), a count, a number, true or false, or text.
+/// One cell of a table: nothing (empty in CSV, null in JSON), a count, a number, true or false, or text.
 using Cell = std::variant<std::monostate, std::uint64_t, double, bool, std::string>;
 
 /// The cell of a value that need not exist.
@@ -91,7 +91,12 @@ struct Metric {
   bool bounded = false;                   ///< has a tolerance where it has a value
 
   /// Sets the tolerance: `relative` |value| + `absolute` [unit of the value].
-  Metric& within(double relative_part, double absolute_part);
+  Metric& within(double relative_part, double absolute_part) {
+    bounded = true;
+    relative = relative_part;
+    absolute = absolute_part;
+    return *this;
+  }
   /// How far the value may be off; empty if that is not known or there is no value.
   std::optional<double> tolerance() const;
 };
@@ -124,14 +129,15 @@ Cell value_of(const MetricList& list, std::string_view name);
 /// A count or a number as a number.
 std::optional<double> number_of(const Cell& value);
 /// The value of that name as a number; empty without such a metric or without a value.
-std::optional<double> number_of(const MetricList& list, std::string_view name);
+inline std::optional<double> number_of(const MetricList& list, std::string_view name) {
+  return number_of(value_of(list, name));
+}
 /// A text as a cell of a CSV file: in quotes where it has a comma, a quote or an end of a line (RFC 4180).
 std::string csv_cell(std::string_view text);
 
 /// columns.json, for other programs: the columns of each file and the metrics of summary.json by name, unit, meaning.
 nlohmann::ordered_json columns_json(std::span<const ResultTable> tables, const MetricList& metrics);
-/// The entries of one file, or of the metrics alone.
-nlohmann::ordered_json columns_json(std::span<const Column> columns);
+/// The entries of the metrics alone.
 nlohmann::ordered_json columns_json(const MetricList& metrics);
 
 }  // namespace hapbench

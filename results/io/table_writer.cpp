@@ -2,31 +2,7 @@
 
 #include <sys/mman.h>
 
-#include <algorithm>
-#include <cassert>
-
 namespace hapbench {
-
-CsvWriter::CsvWriter(std::filesystem::path file, std::string_view header)
-    : file_(std::move(file)), columns_(static_cast<std::size_t>(std::count(header.begin(), header.end(), ',')) + 1) {
-  constexpr std::size_t kLongestNumber = 25;  // with its comma
-  row_.reserve(columns_ * kLongestNumber + 1);
-  file_.append(header);
-  file_.append("\n");
-}
-
-void CsvWriter::cells(std::span<const Cell> cells) {
-  for (const Cell& held : cells) put(std::string_view(cell_text(held)));
-  end_row();
-}
-
-void CsvWriter::end_row() noexcept {
-  assert(cells_ == columns_);
-  cells_ = 0;
-  row_ += '\n';
-  file_.append(row_);
-  row_.clear();
-}
 
 MemoryTable::~MemoryTable() {
   if (data_ != nullptr) ::munmap(data_, capacity_ * sizeof(double));

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <cassert>
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
@@ -19,15 +21,25 @@
 
 namespace hapbench {
 
+/// Several cells of a row.
+template <class Values>
+concept CellRange = requires(const Values& values) {
+  values.begin();
+}
+&&!std::convertible_to<Values, std::string_view>;
+
 /// A comma-separated table with a header line, written by rows into an AtomicFile (RFC 4180, lines end in "\n"), with
 /// numbers as in NumberText. Allocates in the constructor only; about 30 ns a number.
 class CsvWriter {
  public:
   /// `header` is the first line, column names separated by commas. Throws IoError.
-  CsvWriter(std::filesystem::path file, std::string_view header);
-  /// The same with the names of these columns.
-  CsvWriter(std::filesystem::path file, std::span<const Column> columns)
-      : CsvWriter(std::move(file), header_of(columns)) {}
+  CsvWriter(std::filesystem::path file, std::string_view header)
+      : file_(std::move(file)), columns_(static_cast<std::size_t>(std::ranges::count(header, ',')) + 1) {
+    constexpr std::size_t kLongestNumber = 25;  // with its comma
+    row_.reserve(columns_ * kLongestNumber + 1);
+    file_.append(header);
+    file_.append("\n");
+  }
 
   /// One row: numbers, Vec3 (three cells), text (quoted if it must be), std::optional<double> (an empty cell for none),
   /// std::span of numbers or of optional ones (a cell each, perhaps none).
@@ -39,7 +51,10 @@ class CsvWriter {
   }
 
   /// Writes a row of cells whose types are known only at run time.
-  void cells(std::span<const Cell> cells);
+  void cells(std::span<const Cell> cells) {
+    for (const Cell& held : cells) put(std::string_view(cell_text(held)));
+    end_row();
+  }
 
   /// Puts the table under its final name, or leaves that to a set of files. Throws IoError, also for earlier rows.
   void finish(FileSet* together = nullptr) { file_.commit(together); }
@@ -49,14 +64,18 @@ class CsvWriter {
   void put(std::uint64_t value) noexcept { cell() += NumberText(value); }
   void put(const std::optional<double>& value) noexcept { value ? put(*value) : static_cast<void>(cell()); }
   void put(std::string_view text) noexcept { cell() += csv_cell(text); }
-  template <class Values>
-  requires(requires(const Values& v) { v.begin(); } &&
-           !std::convertible_to<Values, std::string_view>) void put(const Values& values) noexcept {
+  void put(const CellRange auto& values) noexcept {
     for (const auto& value : values) put(value);
   }
   /// Begins the next cell of the row; what is added to it is the cell.
   std::string& cell() noexcept { return cells_++ > 0 ? row_ += ',' : row_; }
-  void end_row() noexcept;
+  void end_row() noexcept {
+    assert(cells_ == columns_);
+    cells_ = 0;
+    row_ += '\n';
+    file_.append(row_);
+    row_.clear();
+  }
 
   AtomicFile file_;
   std::size_t columns_;
@@ -68,8 +87,7 @@ class CsvWriter {
 /// its own and not on the heap, so that a recorded step allocates nothing.
 class MemoryTable {
  public:
-  /// `columns` must outlive the table.
-  explicit MemoryTable(std::span<const Column> columns) : columns_(columns) {}
+  explicit MemoryTable(std::vector<Column> columns) : columns_(std::move(columns)) {}
   ~MemoryTable();
   MemoryTable(const MemoryTable&) = delete;
   MemoryTable& operator=(const MemoryTable&) = delete;
@@ -86,7 +104,7 @@ class MemoryTable {
     if (!complete_) throw std::bad_alloc();
   }
 
-  std::span<const Column> columns() const { return columns_; }
+  const std::vector<Column>& columns() const { return columns_; }
   std::size_t rows() const { return size_ / columns_.size(); }
   /// Row after row.
   std::span<const double> numbers() const { return {data_, size_}; }
@@ -98,13 +116,11 @@ class MemoryTable {
   void put(const std::optional<double>& value) noexcept {
     put(value.value_or(std::numeric_limits<double>::quiet_NaN()));
   }
-  template <class Values>
-  requires(requires(const Values& v) { v.begin(); } &&
-           !std::convertible_to<Values, std::string_view>) void put(const Values& values) noexcept {
+  void put(const CellRange auto& values) noexcept {
     for (const auto& value : values) put(value);
   }
 
-  std::span<const Column> columns_;
+  std::vector<Column> columns_;
   double* data_ = nullptr;
   std::size_t size_ = 0;      ///< numbers
   std::size_t capacity_ = 0;  ///< numbers
@@ -118,31 +134,22 @@ using TableTarget = std::variant<std::filesystem::path, MemoryTable*>;
 class TableWriter {
  public:
   /// A table in memory has the same `columns`. Throws IoError.
-  TableWriter(TableTarget target, std::span<const Column> columns) {
-    if (auto* file = std::get_if<std::filesystem::path>(&target)) {
-      csv_.emplace(std::move(*file), columns);
-    } else {
+  TableWriter(const TableTarget& target, std::span<const Column> columns) {
+    if (const auto* file = std::get_if<std::filesystem::path>(&target))
+      csv_.emplace(*file, header_of(columns));
+    else
       memory_ = std::get<MemoryTable*>(target);
-    }
   }
 
   /// As CsvWriter::row, for numeric cells only.
   template <class... Cells>
   void row(const Cells&... cells) noexcept {
-    if (memory_ != nullptr) {
-      memory_->row(cells...);
-    } else {
-      csv_->row(cells...);
-    }
+    memory_ != nullptr ? memory_->row(cells...) : csv_->row(cells...);
   }
 
   /// As CsvWriter::finish. Throws IoError or, for a row that memory has lost, std::bad_alloc.
   void finish(FileSet* together = nullptr) {
-    if (memory_ != nullptr) {
-      memory_->require_complete();
-    } else {
-      csv_->finish(together);
-    }
+    memory_ != nullptr ? memory_->require_complete() : csv_->finish(together);
   }
 
  private:

@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 #include <numeric>
+#include <utility>
 
 #include "sim/core/math.hpp"
 
@@ -73,27 +74,40 @@ std::optional<HighPass> vibration_filter(double dt) {
   return HighPass(kVibrationCutoff, sampling_rate);
 }
 
+void Vibration::add(std::uint64_t row, const Vec3& signal, bool counts) noexcept {
+  if (!high_pass_) return;
+  if (row == 0) high_pass_->settle_at(signal);
+  const double squared = high_pass_->filter(signal).squaredNorm();
+  if (!counts) return;
+  ++rows_;
+  sum_ += squared;
+}
+
+std::optional<double> Vibration::mean_square(std::optional<std::uint64_t> rows) const noexcept {
+  const std::uint64_t over = rows.value_or(rows_);
+  return if_any(high_pass_ && over > 0, per(sum_, over));
+}
+
+std::optional<double> Vibration::rms(std::optional<std::uint64_t> rows) const noexcept {
+  const auto square = mean_square(rows);
+  return square ? std::optional(std::sqrt(*square)) : std::nullopt;
+}
+
 void LastQuarterVibration::begin() noexcept {
   of_earlier_trials_ = value();
-  quarter_ = rows_ = 0;
-  sum_ = 0.0;
+  quarter_ = 0;
+  vibration_.count_anew();
 }
 
 void LastQuarterVibration::add(std::uint64_t step, const Vec3& velocity) noexcept {
-  if (!high_pass_ || steps_ == 0) return;
-  if (const std::uint64_t quarter = step * 4 / steps_; quarter != quarter_) {
-    quarter_ = quarter;
-    rows_ = 0;
-    sum_ = 0.0;
-  }
-  if (step == 0) high_pass_->settle_at(velocity);
-  ++rows_;
-  sum_ += high_pass_->filter(velocity).squaredNorm();
+  if (steps_ == 0) return;
+  const std::uint64_t quarter = step * 4 / steps_;
+  if (quarter != std::exchange(quarter_, quarter)) vibration_.count_anew();
+  vibration_.add(step, velocity);
 }
 
 std::optional<double> LastQuarterVibration::value() const noexcept {
-  // An empty optional is less than any number.
-  return std::max(of_earlier_trials_, if_any(rows_ > 0, std::sqrt(sum_ / static_cast<double>(rows_))));
+  return std::max(of_earlier_trials_, vibration_.rms());  // an empty optional is less than any number
 }
 
 void JudgedRows::touch(std::uint64_t step) noexcept {
@@ -104,26 +118,10 @@ void JudgedRows::touch(std::uint64_t step) noexcept {
   if (periods > 0.0) begin_ = steps_ - static_cast<std::uint64_t>(std::round(periods * period_));
 }
 
-void JudgedVibration::add(std::uint64_t step, const Vec3& velocity, const JudgedRows& judged) noexcept {
-  if (!high_pass_) return;
-  if (step == 0) high_pass_->settle_at(velocity);
-  const double squared = high_pass_->filter(velocity).squaredNorm();
-  if (!judged.begin() || step < *judged.begin()) return;
-  ++rows_;
-  sum_ += squared;
-}
-
-std::optional<double> JudgedVibration::value(const JudgedRows& judged, bool rests) const noexcept {
-  if (!high_pass_ || !judged.begin()) return std::nullopt;
-  const std::uint64_t rows = rests ? judged.end() - *judged.begin() : rows_;
-  return if_any(rows > 0, std::sqrt(sum_ / static_cast<double>(rows)));
-}
-
 ContactForces::ContactForces(double dt, const SettlingRule& rule)
-    : dt_(dt), settling_rows_(rows_in(rule.time, dt)), rows_away_(settling_rows_) {
+    : dt_(dt), settling_rows_(rows_in(rule.time, dt)), high_pass_(vibration_filter(dt)), rows_away_(settling_rows_) {
   assert(dt > 0.0);
   if (rule.from) settled_from_ = rows_in(*rule.from, dt);
-  high_pass_ = vibration_filter(dt);
 }
 
 void ContactForces::begin() noexcept {
@@ -185,12 +183,6 @@ ContactForces::Phase ContactForces::add(const Vec3& force, const ForceChange& ch
   return phase;
 }
 
-std::optional<double> ContactForces::step_p99() const noexcept {
-  if (!has_settled()) return std::nullopt;
-  // The middle of the highest bin may exceed all numbers in it.
-  return std::min(steps_.quantile(0.99), std::sqrt(step_max_squared_));
-}
-
 void ContactForces::tell(Section& s) const {
   const bool landed = landing_rows_ > 0, is_settled = has_settled();
   const auto rows = static_cast<double>(settled_rows_);
@@ -212,7 +204,8 @@ void ContactForces::tell(Section& s) const {
            if_any(is_settled, std::sqrt(max_squared_)));
   s.metric("force_step_p99_N", "N",
            "99 % of the rows in settled contact have at most this force step ||f_k - f_(k-1)||; within 0.8 %",
-           step_p99(), Better::less)
+           // The middle of the highest bin may exceed all numbers in it.
+           if_any(is_settled, std::min(steps_.quantile(0.99), std::sqrt(step_max_squared_))), Better::less)
       .within(MagnitudeHistogram::kRelativeError, MagnitudeHistogram::kLeast);
   s.metric("settled_force_step_max_N", "N", "largest force step ||f_k - f_(k-1)|| of the rows in settled contact",
            if_any(is_settled, std::sqrt(step_max_squared_)), Better::less);
@@ -223,7 +216,7 @@ void ContactForces::tell(Section& s) const {
            if_any(is_settled && high_pass_.has_value(), std::sqrt(above_cutoff_squares_ / rows)), Better::less);
   s.metric("force_reversals_per_s", "1/s",
            "rows in settled contact whose f has a negative inner product with that of the row before, per settled_s",
-           if_any(is_settled, static_cast<double>(reversals_) / settled()), Better::less);
+           if_any(is_settled, per(reversals_, settled())), Better::less);
 }
 
 }  // namespace hapbench

@@ -10,8 +10,8 @@
 
 namespace hapbench {
 
-/// Counts numbers >= 0 by size, by a shift and an increment each: quantiles in constant memory. A bin is the exponent
-/// and the first five bits of the mantissa of the number's square (norms come as squares): 32 bins to a factor of two.
+/// Quantiles of numbers >= 0 in constant memory, by a shift and an increment each. A bin is the exponent and the first
+/// five bits of the mantissa of the number's square (norms come as squares): 32 bins to a factor of two.
 class MagnitudeHistogram {
  public:
   /// Largest relative error of a quantile between kLeast and kMost: half a bin of sqrt(33 / 32) - 1 = 1.55 %.
@@ -22,7 +22,7 @@ class MagnitudeHistogram {
   /// Counts the number whose square this is. Precondition: square >= 0; at most 2^32 - 1 numbers in all.
   void add_square(double square) noexcept { ++counts_[bin_of(square)]; }
 
-  /// The smallest number that at least the share p of all do not exceed. Precondition: 0 < p <= 1 and not empty.
+  /// The smallest number that at least the share p of all do not exceed; 0 without numbers. Precondition: 0 < p <= 1.
   double quantile(double p) const noexcept;
 
  private:
@@ -68,11 +68,30 @@ inline constexpr double kVibrationCutoff = 30.0;
 /// The high-pass at kVibrationCutoff for a sample each `dt` seconds; nothing at a sampling rate of 60 Hz or less.
 std::optional<HighPass> vibration_filter(double dt);
 
+/// The mean square of a signal behind that high-pass.
+class Vibration {
+ public:
+  /// Rows are `dt` seconds apart.
+  explicit Vibration(double dt) : high_pass_(vibration_filter(dt)) {}
+  /// Adds a row; the first, 0, of a trial sets the filter at rest. Rows that do not count are only filtered.
+  void add(std::uint64_t row, const Vec3& signal, bool counts = true) noexcept;
+  /// Forgets the rows so far, but not what the filter has of them.
+  void count_anew() noexcept { rows_ = 0, sum_ = 0.0; }
+  /// Over the rows that count, or as if there were so many; none at 60 Hz or less and without rows. And its root.
+  std::optional<double> mean_square(std::optional<std::uint64_t> rows = {}) const noexcept;
+  std::optional<double> rms(std::optional<std::uint64_t> rows = {}) const noexcept;
+
+ private:
+  std::optional<HighPass> high_pass_;
+  std::uint64_t rows_ = 0;
+  double sum_ = 0.0;
+};
+
 /// Root mean square of the handle's speed behind that high-pass in the last quarter of a run.
 class LastQuarterVibration {
  public:
   /// The run has `steps` rows, `dt` seconds apart.
-  LastQuarterVibration(std::uint64_t steps, double dt) : steps_(steps), high_pass_(vibration_filter(dt)) {}
+  LastQuarterVibration(std::uint64_t steps, double dt) : steps_(steps), vibration_(dt) {}
   /// Begins another trial of the run.
   void begin() noexcept;
   void add(std::uint64_t step, const Vec3& velocity) noexcept;
@@ -80,20 +99,19 @@ class LastQuarterVibration {
   std::optional<double> value() const noexcept;
 
  private:
-  std::uint64_t steps_, quarter_ = 0, rows_ = 0;
-  std::optional<HighPass> high_pass_;
-  double sum_ = 0.0;
+  std::uint64_t steps_, quarter_ = 0;
+  Vibration vibration_;
   std::optional<double> of_earlier_trials_;
 };
 
-/// The rows by which a run is judged: from a quarter of its time in contact on, which begins with the first touch, to
-/// its end; where the script repeats, so many whole periods before the end as begin there or later, if one does: in
-/// less than a period the landing would also be judged.
+/// The rows by which a run is judged: from a quarter of the time between first touch and end on; where the script
+/// repeats, so many whole periods before the end as begin there or later, if one does.
 class JudgedRows {
  public:
   /// The run has `steps` rows, its script a period of so many rows; 0: it does not repeat.
   JudgedRows(std::uint64_t steps, double period) : steps_(steps), period_(period) {}
   void touch(std::uint64_t step) noexcept;
+  bool contain(std::uint64_t step) const noexcept { return begin_ && step >= *begin_; }
   /// The first of them; none before the first touch.
   const std::optional<std::uint64_t>& begin() const noexcept { return begin_; }
   std::uint64_t end() const noexcept { return steps_; }
@@ -104,29 +122,13 @@ class JudgedRows {
   std::optional<std::uint64_t> begin_;
 };
 
-/// Root mean square of the handle's speed behind that high-pass in the judged rows: for `limit --stable still`, `tune`.
-class JudgedVibration {
- public:
-  /// Rows are `dt` seconds apart.
-  explicit JudgedVibration(double dt) : high_pass_(vibration_filter(dt)) {}
-  void add(std::uint64_t step, const Vec3& velocity, const JudgedRows& judged) noexcept;
-  /// [m/s]; none at 60 Hz or less and without rows. `rests`: the run was cut short because nothing moves any more.
-  std::optional<double> value(const JudgedRows& judged, bool rests) const noexcept;
-
- private:
-  std::optional<HighPass> high_pass_;
-  std::uint64_t rows_ = 0;
-  double sum_ = 0.0;
-};
-
 /// Settled contact shorter than this has no metrics [s]: one period of the cutoff, the slowest vibration. Otherwise a
 /// run that hammers, and so hardly settles, would look the calmest.
 inline constexpr double kLeastSettled = 1.0 / kVibrationCutoff;
 
-/// Separates a landing from the contact that follows. The impact of a first touch depends on the speed of arrival and
-/// on the stiffness and is much the same under every algorithm; algorithms differ in what comes after. A first touch is
-/// a row in contact after at least the settling time without, or since the start; the rows within the settling time
-/// after it are its landing, the other rows in contact are settled. Times are rounded to whole rows.
+/// Separates a landing, whose impact is much the same under every algorithm, from the contact that follows. A first
+/// touch is a row in contact after at least the settling time without, or since the start; the rows within the settling
+/// time after it are its landing, the other rows in contact are settled. Times are rounded to whole rows.
 struct SettlingRule {
   /// If given [s], all rows before are landing, and all rows in contact from then on are settled.
   std::optional<double> from;
@@ -161,27 +163,21 @@ class ContactForces {
   Phase phase_of_next_row(bool in_contact) noexcept;
   Vec3 filtered(const Vec3& force, Phase phase) noexcept;
   double settled() const noexcept { return static_cast<double>(settled_rows_) * dt_; }  ///< [s]
-  std::optional<double> step_p99() const noexcept;
 
   double dt_;
   std::uint64_t settling_rows_;
   std::optional<std::uint64_t> settled_from_;  ///< the rule's `from`, as a row
   std::optional<HighPass> high_pass_;          ///< nothing when the sampling rate is too low
-  bool filtering_ = false;                     ///< the high-pass has started
-  std::uint64_t row_ = 0;
-  std::uint64_t landing_end_ = 0;  ///< the first row after the last landing
-  std::uint64_t rows_away_;        ///< since the last contact
-  bool touched_ = false;           ///< in this trial
+  bool filtering_ = false, touched_ = false;   ///< in this trial: the high-pass has started; there was contact
+  std::uint64_t row_ = 0, landing_end_ = 0;    ///< the next row, and the first after the last landing
+  std::uint64_t rows_away_;                    ///< since the last contact
 
-  std::uint64_t landings_ = 0, landing_rows_ = 0;
-  double landing_max_squared_ = 0.0;       ///< largest ||f||^2 [N^2]
-  double landing_step_max_squared_ = 0.0;  ///< largest ||f_k - f_(k-1)||^2 [N^2]
-  std::uint64_t settled_rows_ = 0;         ///< to which all that follows belongs
-  double sum_ = 0.0;                       ///< of ||f|| [N]
-  double max_squared_ = 0.0, step_max_squared_ = 0.0;
-  MagnitudeHistogram steps_;           ///< ||f_k - f_(k-1)||
-  double above_cutoff_squares_ = 0.0;  ///< sum of ||high-passed f||^2 [N^2]
-  std::uint64_t reversals_ = 0;        ///< f_k with a negative inner product with f_(k-1)
+  std::uint64_t landings_ = 0, landing_rows_ = 0, settled_rows_ = 0;
+  double landing_max_squared_ = 0.0, landing_step_max_squared_ = 0.0;  ///< as below, of landings
+  double max_squared_ = 0.0, step_max_squared_ = 0.0;  ///< of settled rows: largest ||f||^2, ||f_k - f_(k-1)||^2 [N^2]
+  double sum_ = 0.0, above_cutoff_squares_ = 0.0;      ///< of ||f|| [N]; of ||high-passed f||^2 [N^2]
+  MagnitudeHistogram steps_;                           ///< ||f_k - f_(k-1)||
+  std::uint64_t reversals_ = 0;                        ///< f_k with a negative inner product with f_(k-1)
 };
 
 }  // namespace hapbench

@@ -1,11 +1,14 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <vector>
 
 #include "results/observe/metric_observer.hpp"
-#include "sim/contact/late_contacts.hpp"
+#include "sim/contact/contact_source.hpp"
+#include "sim/loop/simulation.hpp"
 
 /// Metrics of contacts and of what is between them and the force on the tool.
 namespace hapbench {
@@ -15,12 +18,41 @@ namespace hapbench {
 class ContactAgeObserver final : public MetricObserver {
  public:
   /// Precondition: the trial's contacts are late.
-  void begin(const TrialParts& trial) override;
-  void on_step(const StepRecord& record) noexcept override;
-  void tell(Section& section) const override;
+  void begin(const TrialParts& trial) override {
+    constexpr std::uint64_t kMostAges = 1'000'000;
+    *this = {};
+    contacts_ = &dynamic_cast<const LateContacts&>(*trial.simulation.source);
+    dt_ = trial.config.dt;
+    rows_of_age_.resize(std::min(trial.config.steps, kMostAges) + 1);
+  }
+  void on_step(const StepRecord& record) noexcept override {
+    asked_ = contacts_->asked();
+    lost_ = contacts_->lost();
+    const LateContacts::Query* query = contacts_->used();
+    if (query == nullptr) return;
+    const std::uint64_t age = record.step - query->row;
+    ++rows_;
+    oldest_ = std::max(oldest_, age);
+    ++rows_of_age_[std::min(age, static_cast<std::uint64_t>(rows_of_age_.size() - 1))];
+  }
+  void tell(Section& s) const override {
+    s.metric("age_p50_s", "s", "half of the rows use contacts found at most so long before", age_of_rank(0.5));
+    s.metric("age_p95_s", "s", "95 % of the rows use contacts found at most so long before", age_of_rank(0.95));
+    s.metric("age_max_s", "s", "largest time from the query of contacts to a row that uses them",
+             if_any(rows_ > 0, dt_ * static_cast<double>(oldest_)));
+    s.metric("asked", "1", "times that contacts were asked for, lost ones included", asked_);
+    s.metric("lost_share", "1", "share of these that were lost", per(lost_, asked_));
+  }
 
  private:
-  std::optional<double> age_of_rank(double share) const noexcept;
+  /// The age that this share of the rows does not exceed: that of the nearest rank.
+  std::optional<double> age_of_rank(double share) const noexcept {
+    if (rows_ == 0) return std::nullopt;
+    auto left = static_cast<std::uint64_t>(std::ceil(share * static_cast<double>(rows_)));
+    std::size_t age = 0;
+    while (age + 1 < rows_of_age_.size() && rows_of_age_[age] < left) left -= rows_of_age_[age++];
+    return dt_ * static_cast<double>(age);
+  }
 
   const LateContacts* contacts_ = nullptr;
   double dt_ = 0.0;
@@ -36,8 +68,20 @@ class LostTorqueObserver final : public MetricObserver {
  public:
   void begin(const TrialParts&) override { *this = {}; }
   bool wants_springs() const noexcept override { return true; }
-  void on_step(const StepRecord& record) noexcept override;
-  void tell(Section& section) const override;
+  void on_step(const StepRecord& record) noexcept override {
+    const double squared = record.springs.moment.squaredNorm();
+    max_squared_ = std::max(max_squared_, squared);
+    if (record.colliding == 0) return;
+    ++rows_in_contact_;
+    sum_ += std::sqrt(squared);
+  }
+  void tell(Section& s) const override {
+    s.metric("lost_mean_Nm", "Nm",
+             "mean ||tau|| of the rows in contact; tau = sum r_i x f_i about the tip's centre is the torque that "
+             "the rendered contacts would exert by their shares f_i of f_spring, and that is lost",
+             per(sum_, rows_in_contact_));
+    s.metric("lost_max_Nm", "Nm", "largest ||tau|| of a row", if_any(rows_in_contact_ > 0, std::sqrt(max_squared_)));
+  }
 
  private:
   std::uint64_t rows_in_contact_ = 0;
@@ -48,9 +92,24 @@ class LostTorqueObserver final : public MetricObserver {
 /// Counts whether dry friction (algorithms/stages/damping_and_limits.hpp) sticks or slides. Constant memory.
 class FrictionObserver final : public MetricObserver {
  public:
-  void begin(const TrialParts& trial) override;
-  void on_step(const StepRecord& record) noexcept override;
-  void tell(Section& section) const override;
+  void begin(const TrialParts& trial) override {
+    *this = {};
+    dt_ = trial.config.dt;
+  }
+  void on_step(const StepRecord& record) noexcept override {
+    const Friction now = record.force.friction;
+    ++rows_;
+    sticking_ += now == Friction::sticks;
+    sliding_ += now == Friction::slides;
+    slips_ += now == Friction::slides && last_ == Friction::sticks;
+    last_ = now;
+  }
+  void tell(Section& s) const override {
+    const std::uint64_t with_load = sticking_ + sliding_;
+    s.metric("stick_share", "1", "share of the rows with load in which dry friction sticks", per(sticking_, with_load));
+    s.metric("slips_per_s", "1/s", "times that a sticking tool began to slide, per second of the run",
+             if_any(with_load > 0, per(slips_, dt_ * static_cast<double>(rows_))));
+  }
 
  private:
   double dt_ = 0.0;
@@ -61,12 +120,21 @@ class FrictionObserver final : public MetricObserver {
 /// Reads how much a force stage changes the force of its algorithm, from the algorithm's work in every row.
 class ForceStageObserver final : public MetricObserver {
  public:
-  void begin(const TrialParts& trial) override;
+  void begin(const TrialParts& trial) override {
+    *this = {};
+    algorithm_ = trial.simulation.algorithm.get();
+  }
   void on_step(const StepRecord&) noexcept override {
     ++rows_;
     work_ = algorithm_->work();
   }
-  void tell(Section& section) const override;
+  void tell(Section& s) const override {
+    s.metric("changed_share", "1", "share of the rows in which the force stage changes the force",
+             per(work_.steps_staged, rows_));
+    s.metric("taken_J", "J",
+             "energy that the force stage kept the force from giving to the tool, along the way it went",
+             if_any(rows_ > 0, work_.energy_staged));
+  }
 
  private:
   const ForceAlgorithm* algorithm_ = nullptr;

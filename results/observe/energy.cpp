@@ -1,11 +1,10 @@
 #include "results/observe/energy.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "sim/loop/simulation.hpp"
-#include "sim/tool/tool_state.hpp"
+#include "sim/tool/motion.hpp"
 
 namespace hapbench {
 namespace {
@@ -112,20 +111,13 @@ void EnergyLedger::note_event(const StepRecord& now, double created) noexcept {
   events_.back() = {.step = now.step,
                     .time = now.time,
                     .created = created,
-                    .colliding_before = last_.colliding,
-                    .colliding_after = now.colliding,
-                    .rendered_before = last_rendered_.size(),
-                    .rendered_after = rendered_.size(),
+                    .colliding = {last_.colliding, now.colliding},
+                    .rendered = {last_rendered_.size(), rendered_.size()},
                     .appeared = missing(rendered_, last_rendered_),
                     .vanished = missing(last_rendered_, rendered_)};
   for (std::size_t i = events_.size() - 1; i > 0 && events_[i].created > events_[i - 1].created; --i) {
     std::swap(events_[i], events_[i - 1]);
   }
-}
-
-std::span<const EnergyEvent> EnergyLedger::events() const noexcept {
-  const auto created_none = [](const EnergyEvent& event) { return !(event.created > 0.0); };
-  return {events_.begin(), std::find_if(events_.begin(), events_.end(), created_none)};
 }
 
 void EnergyLedger::tell(Section& s) const {
@@ -152,13 +144,13 @@ void EnergyLedger::tell(Section& s) const {
 }
 
 void EnergyLedger::add_members(nlohmann::ordered_json& section) const {
-  nlohmann::ordered_json& list = section["events"] = nlohmann::ordered_json::array();
+  auto& list = section["events"] = nlohmann::ordered_json::array();
   for (const EnergyEvent& e : events()) {
     list.push_back({{"step", e.step},
                     {"time_s", e.time},
                     {"created_J", e.created},
-                    {"colliding", {e.colliding_before, e.colliding_after}},
-                    {"rendered", {e.rendered_before, e.rendered_after}},
+                    {"colliding", e.colliding},
+                    {"rendered", e.rendered},
                     {"appeared", e.appeared},
                     {"vanished", e.vanished}});
   }

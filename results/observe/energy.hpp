@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <optional>
@@ -21,44 +22,38 @@ namespace hapbench {
 /// A tool that a handle moves has no virtual mass: kinetic, input and residual are zero, the work of a force is the
 /// row's force times the displacement to the next row, and script is the work of the handle on the rendering.
 ///
-/// If the integrator holds the row's force over the step (leapfrog), the work of a force is the row's force times dt
-/// times the mean of the velocities before and after the step, which equals its contribution to the kinetic energy
-/// exactly. Other integrators evaluate forces at intermediate states that are not recorded. For them, work is the mean
-/// of the forces of both rows (f_in is held) times the displacement between the rows, and the difference to the change
-/// of kinetic energy counts as the integrator's. A prescribed motion is treated alike, but what is left is the work of
-/// the script: nothing is integrated. Where a contact of stiffness K begins or ends between two rows d apart, the
-/// trapezoidal rule is off by up to K d^2 / 8.
+/// If the integrator holds the row's force over the step (leapfrog), its work is force times dt times the mean of the
+/// velocities before and after the step: exactly what it adds to the kinetic energy. Other integrators evaluate forces
+/// at states that are not recorded: for them, work is the mean of the forces of both rows (f_in is held) times the
+/// displacement between these, and the rest of the change of kinetic energy counts as the integrator's. So it is along
+/// a prescribed motion, where the rest is the work of the script. Where a contact of stiffness K begins or ends between
+/// two rows d apart, the trapezoidal rule is off by up to K d^2 / 8.
 struct EnergyBalance {
-  double kinetic = 0.0;  ///< of the virtual mass, now
-  double stored = 0.0;   ///< elastic energy of the penalty springs, now
-  double input = 0.0;    ///< work of f_in on the tool
-  double spring = 0.0;   ///< work of f_spring on the tool
-  /// Work of damping, friction and the force limit: of f_render - f_spring. It includes angular damping, which may
-  /// transfer energy from the tool's rotation, which has no balance of its own, to the tip's translation.
+  double kinetic = 0.0, stored = 0.0;  ///< of the virtual mass and of the penalty springs, now
+  double input = 0.0, spring = 0.0;    ///< work of f_in and f_spring on the tool
+  /// Work of f_render - f_spring: of damping, friction and the force limit. With angular damping, it may come from the
+  /// tool's rotation, which has no balance of its own.
   double damping = 0.0;
   double rotation = 0.0;  ///< work of the tool's rotation on the springs: a torque that the device cannot render
-  /// Energy stored in the springs beyond the work that translation and rotation did on them (trapezoidal rule): zero
-  /// for linear springs in lasting contact; contacts that appear, vanish or change their weight create or destroy it.
+  /// Energy stored in the springs beyond the work that translation and rotation did on them (trapezoidal rule): of
+  /// contacts that appear, vanish or change their weight; zero for linear springs in lasting contact.
   double created = 0.0;
   /// Energy made by the integrator, or by holding a device's force: `spring` plus the work of translation on the
   /// springs (leapfrog and held forces).
   double integration = 0.0;
   double script = 0.0;    ///< work of the prescribed motion, or of the handle that moves the tool
   double residual = 0.0;  ///< kinetic energy not explained by the terms above (free position): rounding errors
-  double hand = 0.0;      ///< work of the hand on the handle
-  double actuator = 0.0;  ///< work of the actuators: against the hand (ideal device) or on the carriage
+  double hand = 0.0, actuator = 0.0;   ///< work of the hand on the handle; of actuators against it or on the carriage
   std::optional<DeviceEnergy> device;  ///< for devices with mechanics of their own
 };
 
 /// A step in which the rendering created energy.
 struct EnergyEvent {
-  std::uint64_t step = 0;  ///< the row at whose contacts it appeared
-  double time = 0.0;       ///< [s]
-  double created = 0.0;    ///< [J], > 0
-  std::size_t colliding_before = 0, colliding_after = 0;
-  std::size_t rendered_before = 0, rendered_after = 0;
-  std::size_t appeared = 0;  ///< rendered contacts that were not rendered in the row before
-  std::size_t vanished = 0;  ///< contacts of the row before that are not rendered any more
+  std::uint64_t step = 0;                              ///< the row at whose contacts it appeared
+  double time = 0.0;                                   ///< [s]
+  double created = 0.0;                                ///< [J], > 0
+  std::array<std::size_t, 2> colliding{}, rendered{};  ///< contacts, in the row before and in this one
+  std::size_t appeared = 0, vanished = 0;              ///< rendered ones of this row only, and of that before only
 };
 
 /// Keeps the balance row by row. Allocates in the constructor and in `begin` only; about 100 ns a row.
@@ -67,10 +62,9 @@ class EnergyLedger final : public MetricObserver {
   static constexpr std::size_t kEvents = 10;
 
   /// `mass` of the virtual tool [kg], time step `dt` [s], most contacts of a row, `integrator` of a free position.
-  EnergyLedger(double mass, double dt, bool position_is_free, std::size_t capacity,
-               const IntegratorEntry& integrator = kLeapfrog);
-  /// To be given all that by `begin`.
-  EnergyLedger() : EnergyLedger(0.0, 0.0, true, 0) {}
+  /// `begin` sets them all.
+  explicit EnergyLedger(double mass = 0.0, double dt = 0.0, bool position_is_free = true, std::size_t capacity = 0,
+                        const IntegratorEntry& integrator = kLeapfrog);
 
   void begin(const TrialParts& trial) override;
   bool wants_energy() const noexcept override { return true; }
@@ -82,7 +76,9 @@ class EnergyLedger final : public MetricObserver {
 
   const EnergyBalance& balance() const noexcept { return balance_; }
   /// The steps that created the most energy, largest first.
-  std::span<const EnergyEvent> events() const noexcept;
+  std::span<const EnergyEvent> events() const noexcept {
+    return {events_.begin(), std::ranges::find(events_, 0.0, &EnergyEvent::created)};
+  }
 
  private:
   /// Work of each force over the step before a row [J].
@@ -98,19 +94,14 @@ class EnergyLedger final : public MetricObserver {
   double created_in_step(const StepRecord& now, double spring_work) noexcept;
   void note_event(const StepRecord& now, double created) noexcept;
 
-  double mass_;
-  double dt_;
-  bool free_;
-  bool row_force_moves_;  ///< the row's force acts during the whole step
+  double mass_, dt_;
+  bool free_, row_force_moves_;  ///< the row's force acts during the whole step
   bool has_row_ = false;
   StepRecord last_;                                      ///< the row before, but for its contacts
   std::vector<std::uint32_t> rendered_, last_rendered_;  ///< sorted shell indices of this row and of that
   EnergyBalance balance_;
-  double kinetic_at_start_ = 0.0;
-  double left_ = 0.0;  ///< sum of Works::left
-  double created_sum_ = 0.0;
-  double created_max_ = 0.0;
-  double residual_max_ = 0.0;
+  double kinetic_at_start_ = 0.0, left_ = 0.0;  ///< left: sum of Works::left
+  double created_sum_ = 0.0, created_max_ = 0.0, residual_max_ = 0.0;
   std::array<EnergyEvent, kEvents> events_{};  ///< largest first; unused entries have created = 0
 };
 

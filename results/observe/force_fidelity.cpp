@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <span>
 #include <stdexcept>
 
@@ -12,10 +13,9 @@ namespace hapbench {
 
 ReferenceForce::ReferenceForce(std::vector<Sample> samples) {
   if (samples.empty()) throw std::invalid_argument("a recorded force needs at least one sample");
-  for (std::size_t i = 1; i < samples.size(); ++i) {
-    if (!(samples[i - 1].time < samples[i].time))
-      throw std::invalid_argument("the times of a recorded force must increase strictly");
-  }
+  const auto out_of_order = [](const Sample& before, const Sample& after) { return !(before.time < after.time); };
+  if (std::ranges::adjacent_find(samples, out_of_order) != samples.end())
+    throw std::invalid_argument("the times of a recorded force must increase strictly");
   force_ = std::move(samples);
 }
 
@@ -38,12 +38,8 @@ constexpr double kFinestLag = 5e-4;  // [s]
 /// Pearson's coefficient over all components of two signals of equal length; none when either does not vary.
 std::optional<double> correlation(std::span<const Vec3> early, std::span<const Vec3> late) {
   const double n = static_cast<double>(early.size());
-  Vec3 early_sum = Vec3::Zero(), late_sum = Vec3::Zero();
-  for (std::size_t i = 0; i < early.size(); ++i) {
-    early_sum += early[i];
-    late_sum += late[i];
-  }
-  const Vec3 early_mean = early_sum / n, late_mean = late_sum / n;
+  const auto mean = [n](auto of) { return Vec3(std::accumulate(of.begin(), of.end(), Vec3(0.0, 0.0, 0.0)) / n); };
+  const Vec3 early_mean = mean(early), late_mean = mean(late);
   double both = 0.0, early_square = 0.0, late_square = 0.0;
   for (std::size_t i = 0; i < early.size(); ++i) {
     const Vec3 a = early[i] - early_mean, b = late[i] - late_mean;
@@ -68,7 +64,7 @@ struct Peak {
 /// apart by a dip of kDip between them, so that noise on a peak does not split it.
 std::vector<Peak> greatest_peaks(const std::vector<double>& found) {
   constexpr double kDip = 0.1, kSamePeak = 0.01;
-  const double least = *std::max_element(found.begin(), found.end()) - kDip;
+  const double least = std::ranges::max(found) - kDip;
   std::vector<Peak> peaks;
   for (auto from = found.begin(); from != found.end();) {
     from = std::find_if(from, found.end(), [least](double value) { return value >= least; });
@@ -139,10 +135,9 @@ void ForceFidelityObserver::on_step(const StepRecord& record) noexcept {
   if (!at_row_) return;
   const Vec3 &wanted = *at_row_, &rendered = record.force.rendered;
   const Vec3 error = rendered - wanted;
-  const double spring = record.force.spring.norm(), norm = wanted.norm(), rendered_norm = rendered.norm();
-  const Vec3 normal = spring > 0.0 ? Vec3(record.force.spring / spring)
-                      : norm > 0.0 ? Vec3(wanted / norm)
-                                   : Vec3::Zero();
+  const double norm = wanted.norm(), rendered_norm = rendered.norm();
+  const Vec3 line = unit_or(wanted, Vec3::Zero());
+  const Vec3 normal = unit_or(record.force.spring, line);
   const double along = normal.dot(error);
   ++rows_;
   reference_ += norm * norm;
@@ -152,7 +147,6 @@ void ForceFidelityObserver::on_step(const StepRecord& record) noexcept {
   const double load = std::max(0.0, normal.dot(wanted));
   loads_ += load * load;
   drag_ += load * (wanted - load * normal).norm();
-  const Vec3 line = norm > 0.0 ? Vec3(wanted / norm) : Vec3::Zero();
   across_ += (rendered - line.dot(rendered) * line).squaredNorm();
   rendered_ += rendered_norm * rendered_norm;
   if (norm > kLeastForce && rendered_norm > kLeastForce) {
@@ -167,15 +161,11 @@ void ForceFidelityObserver::on_step(const StepRecord& record) noexcept {
 }
 
 void ForceFidelityObserver::tell(Section& s) const {
-  const auto rows = static_cast<double>(rows_);
-  const auto rms = [&](double squares) { return if_any(rows_ > 0, std::sqrt(squares / rows)); };
-  const auto share = [&](double part, double whole) {
-    return if_any(whole > 0.0, std::sqrt(part / rows) / std::sqrt(whole / rows));
-  };
+  const auto rms = [this](double squares) { return std::sqrt(per(squares, rows_)); };
   s.metric("rows", "1", "rows that have a reference force f_m: measured with the stroke, or ideal", rows_);
   s.metric("reference_force_rms_N", "N", "root mean square of ||f_m||", rms(reference_));
   s.metric("force_error_rms_N", "N", "root mean square of ||f - f_m||", rms(error_), Better::less);
-  s.metric("force_error_relative", "1", "force_error_rms_N / reference_force_rms_N", share(error_, reference_),
+  s.metric("force_error_relative", "1", "force_error_rms_N / reference_force_rms_N", rms(error_) / rms(reference_),
            Better::less);
   s.metric("force_error_normal_rms_N", "N",
            "root mean square of n n^T (f - f_m); n is f_spring / ||f_spring||, what is rendered before damping and "
@@ -186,18 +176,18 @@ void ForceFidelityObserver::tell(Section& s) const {
   s.metric("reference_mu", "1",
            "coefficient of dry friction that fits f_m best by least squares: its part across n over that along n, with "
            "the same n; to be rendered with, the one with the least tangential error is found by a sweep",
-           if_any(loads_ > 0.0, drag_ / loads_));
+           drag_ / loads_);
   s.metric("force_artefact_share", "1",
            "root mean square of the part of f across f_m, all of it where f_m is zero, over that of ||f||",
-           share(across_, rendered_), Better::less);
+           rms(across_) / rms(rendered_), Better::less);
   s.metric("direction_rows", "1", "rows in which ||f|| and ||f_m|| are both above 0.1 N", direction_rows_);
   s.metric("force_direction_error_rad", "rad", "mean angle between f and f_m of those rows",
-           if_any(direction_rows_ > 0, direction_error_ / static_cast<double>(direction_rows_)), Better::less);
+           per(direction_error_, direction_rows_), Better::less);
   tell_lag(s);
 }
 
 void ForceFidelityObserver::tell_lag(Section& s) const {
-  const double apart = dt_ * static_cast<double>(every_);
+  const double apart = dt_ * static_cast<double>(every_);  // time between kept rows
   const auto lag = lag_between(kept_reference_, kept_rendered_, apart, kMostLag);
   s.metric("force_lag_s", "s",
            "time by which f follows f_m: where their correlation (Pearson's, all components) is greatest, within "
@@ -205,7 +195,7 @@ void ForceFidelityObserver::tell_lag(Section& s) const {
            "the ends of this range or where a force does not vary; told to half the time between the rows that "
            "are compared",
            lag ? std::optional(lag->time) : std::nullopt)
-      .within(0.0, 0.5 * dt_ * static_cast<double>(every_));
+      .within(0.0, 0.5 * apart);
   s.metric("force_lag_period_s", "s",
            "the lag is known up to multiples of this only: spacing of equally great correlations (to 0.01); none "
            "where the lag is unambiguous",

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "results/observe/metric_observer.hpp"
-#include "sim/core/profile.hpp"
 #include "sim/core/types.hpp"
+#include "sim/tool/motion.hpp"
 
 namespace hapbench {
 
@@ -43,22 +43,19 @@ struct Lag {
   std::optional<double> period;  ///< distance to the next equally good answer [s], as of periodic signals
 };
 
-/// Returns the time by which `late` follows `early`: the shift with the greatest correlation (Pearson's over all three
-/// components of the overlapping samples), refined by a parabola through the greatest value and its neighbours. Of
-/// equally great ones, to 0.01 of the coefficient, it is that nearest to 0. Nothing when either signal does not vary,
-/// or when the greatest value is at the end of the range +-`most` [s]. `dt`: time between samples [s]. O(n most / dt).
+/// The time by which `late` follows `early`: the shift with the greatest correlation (Pearson's over all components of
+/// the overlapping samples), refined by a parabola; of equally great ones, to 0.01, that nearest to 0. Nothing when
+/// a signal does not vary, or the greatest value is at the end of the range +-`most` [s]. `dt` [s]. O(n most / dt).
 std::optional<Lag> lag_between(const std::vector<Vec3>& early, const std::vector<Vec3>& late, double dt, double most);
 
 /// Deviation of the rendered force f from the reference force f_m over the rows that have one (the evaluation of
-/// Ruffaldi et al. 2006). The normal n of a row is that of the rendered force, f_spring / ||f_spring||, before damping
-/// and friction; where nothing is rendered, that of f_m. Hence the squares of the normal and the tangential error add
-/// up to the square of the whole error. Allocates nothing in a row, which takes about 50 ns.
+/// Ruffaldi et al. 2006). The normal n of a row is that of f_spring, before damping and friction; where nothing is
+/// rendered, that of f_m. Allocates nothing in a row, which takes about 50 ns.
 class ForceFidelityObserver final : public MetricObserver {
  public:
-  /// `reference` must outlive it. `dt`: time from row to row [s]; `steps`: the most rows.
-  ForceFidelityObserver(const ReferenceForce& reference, double dt, std::uint64_t steps);
-  /// To be given all that by `begin`.
   ForceFidelityObserver() = default;
+  /// As `begin` does. `reference` must outlive it. `dt`: time from row to row [s]; `steps`: the most rows.
+  ForceFidelityObserver(const ReferenceForce& reference, double dt, std::uint64_t steps);
 
   /// Precondition: the trial has a reference.
   void begin(const TrialParts& trial) override;

@@ -1,7 +1,6 @@
 #include "results/observe/ideal_trajectory.hpp"
 
 #include <Eigen/Geometry>
-#include <algorithm>
 #include <array>
 #include <cassert>
 #include <cmath>
@@ -175,44 +174,26 @@ void IdealTrajectoryObserver::on_step(const StepRecord& record) noexcept {
   (error.hand_force < kGentleForce ? gentle_ : firm_).add(error);
 }
 
-void IdealTrajectoryObserver::Errors::add(const TrajectoryError& error) noexcept {
-  const double height_error = error.actual.height - error.ideal.height;
-  const double lateral_error = error.actual.lateral - error.ideal.lateral;
-  height_min = rows == 0 ? height_error : std::min(height_min, height_error);
-  height_max = rows == 0 ? height_error : std::max(height_max, height_error);
-  height += height_error;
-  height_squares += height_error * height_error;
-  lateral += lateral_error;
-  lateral_squares += lateral_error * lateral_error;
-  lateral_max_abs = std::max(lateral_max_abs, std::abs(lateral_error));
-  interpenetration += error.interpenetration;
-  interpenetration_max = std::max(interpenetration_max, error.interpenetration);
-  ++rows;
-}
-
 void IdealTrajectoryObserver::Errors::tell(Section s) const {
-  const bool any = rows > 0;
-  const auto mean = [&](double sum) { return sum / static_cast<double>(rows); };
+  const auto rms = [this](const Spread& of) { return std::sqrt(per(of.squares, rows)); };
   s.metric(
       "rows", "1",
       "recorded rows at whose tilt the ideal trajectory exists, of a hand below 2 N (gentle) or from 2 N on (firm)",
       rows);
-  s.metric("height_error_mean_m", "m", "mean of tip height - ideal height; negative: sunk in",
-           if_any(any, mean(height)));
-  s.metric("height_error_rms_m", "m", "root mean square of tip height - ideal height",
-           if_any(any, std::sqrt(mean(height_squares))), Better::less);
-  s.metric("height_error_min_m", "m", "least tip height - ideal height", if_any(any, height_min));
-  s.metric("height_error_max_m", "m", "largest tip height - ideal height", if_any(any, height_max));
+  s.metric("height_error_mean_m", "m", "mean of tip height - ideal height; negative: sunk in", per(height.sum, rows));
+  s.metric("height_error_rms_m", "m", "root mean square of tip height - ideal height", rms(height), Better::less);
+  s.metric("height_error_min_m", "m", "least tip height - ideal height", height.min);
+  s.metric("height_error_max_m", "m", "largest tip height - ideal height", height.max);
   s.metric("lateral_error_mean_m", "m", "mean of lateral place of the tip - ideal one, towards the lean",
-           if_any(any, mean(lateral)));
-  s.metric("lateral_error_rms_m", "m", "root mean square of lateral place of the tip - ideal one",
-           if_any(any, std::sqrt(mean(lateral_squares))), Better::less);
-  s.metric("lateral_error_max_m", "m", "largest |lateral place of the tip - ideal one|", if_any(any, lateral_max_abs),
+           per(lateral.sum, rows));
+  s.metric("lateral_error_rms_m", "m", "root mean square of lateral place of the tip - ideal one", rms(lateral),
            Better::less);
+  s.metric("lateral_error_max_m", "m", "largest |lateral place of the tip - ideal one|",
+           std::max(lateral.max, -lateral.min), Better::less);
   s.metric("interpenetration_mean_m", "m", "mean true depth of the tool in the exact block",
-           if_any(any, mean(interpenetration)), Better::less);
-  s.metric("interpenetration_max_m", "m", "largest true depth of the tool in the exact block",
-           if_any(any, interpenetration_max), Better::less);
+           per(interpenetration.sum, rows), Better::less);
+  s.metric("interpenetration_max_m", "m", "largest true depth of the tool in the exact block", interpenetration.max,
+           Better::less);
 }
 
 void IdealTrajectoryObserver::tell(Section& s) const {

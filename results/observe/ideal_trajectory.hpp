@@ -1,6 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
+#include <limits>
 #include <optional>
 
 #include "results/observe/metric_observer.hpp"
@@ -16,10 +18,9 @@ namespace hapbench {
 /// Near the hole the depth is min(D, -z), D the signed distance from the hole without its mouth: a convex function,
 /// equal to rho - R above the hole's bottom. Along each straight line of the tool's side, going up from the tip, -z
 /// falls, so that the deepest point is the line's end in the tip or where D = -z, on the cone of 45 degrees that opens
-/// downwards from the rim: both closed forms. (Inside the tip's flat no point is deepest: a horizontal way out of it
-/// keeps z, and D does not fall both ways.) Neighbouring lines are at most radius * angle apart and so their deepest
-/// points differ by no more; of 64 lines round the tool, the angles about each one that is deeper than its neighbours
-/// are searched if they may hold the deepest, to 1e-8 rad, which gives the depth to about 1e-11 m. About 2 us.
+/// downwards from the rim. (Inside the tip's flat no point is deepest: a horizontal way out of it keeps z, and D does
+/// not fall both ways.) Depths of lines differ by at most radius * angle between them: of 64 lines round the tool, the
+/// angles about those deeper than their neighbours are searched to 1e-8 rad, for a depth to about 1e-11 m. About 2 us.
 /// Precondition: the tool does not point upwards, axis.z <= 0.
 double interpenetration(const BlockWithHole& block, const Cylinder& tool, const ToolPose& pose);
 
@@ -65,14 +66,29 @@ class IdealTrajectoryObserver final : public MetricObserver {
   void tell(Section& section) const override;
 
  private:
-  /// Sums and extremes over the compared rows of one kind of hand [m, m^2], of actual minus ideal.
+  /// Sums and extremes of a length over rows [m, m^2]; the extremes are not finite without rows.
+  struct Spread {
+    double sum = 0.0, squares = 0.0;
+    double min = std::numeric_limits<double>::infinity(), max = -std::numeric_limits<double>::infinity();
+
+    void add(double value) noexcept {
+      sum += value;
+      squares += value * value;
+      min = std::min(min, value);
+      max = std::max(max, value);
+    }
+  };
+  /// Of the compared rows of one kind of hand: of actual minus ideal place, and of the interpenetration.
   struct Errors {
     std::uint64_t rows = 0;
-    double height = 0.0, height_squares = 0.0, height_min = 0.0, height_max = 0.0;
-    double lateral = 0.0, lateral_squares = 0.0, lateral_max_abs = 0.0;
-    double interpenetration = 0.0, interpenetration_max = 0.0;
+    Spread height, lateral, interpenetration;
 
-    void add(const TrajectoryError& error) noexcept;
+    void add(const TrajectoryError& error) noexcept {
+      height.add(error.actual.height - error.ideal.height);
+      lateral.add(error.actual.lateral - error.ideal.lateral);
+      interpenetration.add(error.interpenetration);
+      ++rows;
+    }
     void tell(Section section) const;
   };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <queue>
 #include <tuple>
 #include <utility>
@@ -22,15 +23,32 @@ constexpr std::size_t kMostLooks = 8000, kMostLooksAtForms = 100000;
 /// length; one search is enough for rows in which no point of the tool differs by more than this.
 constexpr double kTogether = 0.1, kAlike = 0.01;
 
+/// Relative to the half width: the depth of a contact from which on the tip centre itself is part of the core, as a
+/// flat tip's is in the surface at any depth; the least step along the core and of its way.
+constexpr double kDeep = 0.9, kCoreStep = 5e-3;
+/// Relative to where the tool is thinnest, as at a neck: the depth of a contact from which on the core is looked at. A
+/// little less than kDeep, because points of a surface, which are some fifths of that apart, may miss the core.
+constexpr double kLookFrom = 0.8;
+/// The core ends where the axis comes so close to the body's surface, in half widths, as in a bent body.
+constexpr double kThinnest = 0.05;
+constexpr std::size_t kCoreSamples = 256;  ///< of the tool's thickness
+constexpr double kMostStepsOfWay = 256.0;  ///< in which the way of a row is followed through a solid
+
+SolidSide side_of(const SurfaceDistance& phi) noexcept {
+  return !phi.known ? SolidSide::unknown : phi.value < 0.0 ? SolidSide::inside : SolidSide::outside;
+}
+
+/// True for the normals of faces that look away from each other, by more than the rounding of a right angle.
+bool look_away(const Vec3& a, const Vec3& b) noexcept {
+  return a.dot(b) < -1e-3;
+}
+
 }  // namespace
 
 void InsideDepths::add(const InsideDepths& trial) {
-  const auto bound = [](const InsideDepths& m) {
-    return (1.0 + InsideSearch::kTolerance) * m.max.value_or(0.0) + m.max_within;
-  };
-  const double deepest = std::max(bound(*this), bound(trial));
+  const double deepest = std::max(searched_max() + max_within, trial.searched_max() + trial.max_within);
   max = std::max(max, trial.max);  // an empty optional is less than any number
-  max_within = deepest - (1.0 + InsideSearch::kTolerance) * max.value_or(0.0);
+  max_within = deepest - searched_max();
   settled_within = std::max(settled_within, trial.settled_within);
   settled.insert(settled.end(), trial.settled.begin(), trial.settled.end());
   rows += trial.rows;
@@ -59,7 +77,152 @@ void InsideDepths::tell(Section& s, bool has_settled) const {
       .within(InsideSearch::kTolerance, settled_within);
   s.metric("centre_inside_share", "1",
            "share of the rows with the tip centre below the surface; a flat tip's is when it is pressed in",
-           if_any(rows > 0, static_cast<double>(centre_inside) / static_cast<double>(rows)), Better::less);
+           per(centre_inside, rows), Better::less);
+}
+
+double way_to_core(const ToolShape& tool) {
+  ContactBuffer tip(1);
+  tip.push(0, Vec3::Zero(), Vec3::UnitZ());
+  tool.surface_constraints(ToolPose{}, Vec3::Zero(), 0.0, tip);
+  return std::clamp(tool.half_width() - tip.depth[0], 0.0, tool.half_width());
+}
+
+CorePassage::CorePassage(std::shared_ptr<const ToolShape> tool, std::shared_ptr<const Solid> solid)
+    : tool_(std::move(tool)), solid_(std::move(solid)), width_(tool_->half_width()) {
+  const double back = way_to_core(*tool_);
+  shallow_ = -kDeep * back;
+  far_ = 0.0;
+  for (const ProfilePoint& p : tool_->outline()) far_ = std::min(far_, p.s);
+  const ToolPose pose;
+  ContactBuffer axis(kCoreSamples);
+  const auto place = [this](std::size_t i) { return far_ * static_cast<double>(i) / (kCoreSamples - 1); };
+  for (std::size_t i = 0; i < kCoreSamples; ++i) axis.push(0, place(i) * pose.axis, Vec3::UnitZ());
+  tool_->surface_constraints(pose, Vec3::Zero(), 0.0, axis);
+  double thinnest = width_;
+  const double end = far_ + width_;  // behind it, the far end is nearest
+  for (std::size_t i = 0; i < kCoreSamples; ++i) {
+    const double s = place(i);
+    if (s > -back || s < end) continue;
+    if (axis.depth[i] < kThinnest * width_) {
+      far_ = s;
+      break;
+    }
+    thinnest = std::min(thinnest, axis.depth[i]);
+  }
+  looks_from_ = kLookFrom * thinnest;
+  looks_from_way_ = (1.0 - kDeep) * thinnest;
+}
+
+Vec3 CorePassage::normal_at(const Vec3& place) const noexcept {
+  return solid_->gradient(place, kNormalsOver * width_);
+}
+
+/// Follows the core from the row before in steps on which it cannot meet the surface.
+void CorePassage::look(const ToolPose& pose, double deepest_contact, double time) noexcept {
+  const Vec3 moved = began_ ? Vec3(pose.position - position_) : Vec3::Zero();
+  const Vec3 turned = began_ ? Vec3(pose.axis - axis_) : Vec3::Zero();
+  const double way = moved.norm() - far_ * turned.norm();
+  if (!std::isfinite(way)) return;
+  if (free_way_ > way) {
+    free_way_ -= way;
+    return;
+  }
+  const double front = deepest_contact >= kDeep * width_ ? 0.0 : shallow_;
+  const double least = std::max(kCoreStep * width_, way / kMostStepsOfWay);
+  double done = std::min(free_way_, way);
+  for (;;) {
+    const double rest = way > 0.0 ? 1.0 - done / way : 0.0;
+    const Vec3 position = pose.position - rest * moved, axis = (pose.axis - rest * turned).normalized();
+    Stretches now;
+    const double clear = find_inside(position, axis, front, now);
+    compare(position, axis, now, time);
+    inside_ = now;
+    follows_ = true;
+    if (event_ || done >= way) {
+      free_way_ = std::max(clear, kCoreStep * width_);
+      return;
+    }
+    done = std::min(way, done + std::max(clear, least));
+  }
+}
+
+/// Returns a way on which the core cannot meet the surface [m].
+double CorePassage::find_inside(const Vec3& position, const Vec3& axis, double front, Stretches& found) const noexcept {
+  SolidSide before = SolidSide::unknown;
+  double s = front, nearest = std::numeric_limits<double>::infinity();
+  Vec3 last = position + s * axis;
+  for (;;) {
+    const Vec3 place = position + s * axis;
+    const SurfaceDistance phi = solid_->at(place);
+    const SolidSide side = side_of(phi);
+    nearest = std::min(nearest, std::abs(phi.value));
+    if (side == SolidSide::inside) {
+      if (before != SolidSide::inside) {
+        if (found.count == found.of.size()) break;
+        Stretch& next = found.of[found.count++];
+        next = {s, s, {}, {}, phi.value, place};
+        if (before == SolidSide::outside) next.face_high = normal_at(last);
+      }
+      Stretch& stretch = found.of[found.count - 1];
+      stretch.low = s;
+      if (phi.value < stretch.deepest) {
+        stretch.deepest = phi.value;
+        stretch.deepest_place = place;
+      }
+    } else if (before == SolidSide::inside && side == SolidSide::outside) {
+      found.of[found.count - 1].face_low = normal_at(place);
+    }
+    if (!(s > far_)) break;
+    before = side;
+    last = place;
+    s = std::max(far_, s - std::max(std::abs(phi.value), kCoreStep * width_));
+  }
+  return 0.5 * nearest;  // between two looks it may be half as far
+}
+
+/// Matches the stretches that are inside now with those of the look before, which hand on the face of their entry.
+void CorePassage::compare(const Vec3& position, const Vec3& axis, Stretches& now, double time) noexcept {
+  std::array<bool, std::tuple_size_v<decltype(inside_.of)>> stays{};
+  const auto through = [this, time](const Vec3& entered, const Vec3& left, bool at_once) {
+    if (!event_) event_ = {time, entered, left, at_once};
+  };
+  for (std::size_t i = 0; i < now.count; ++i) {
+    Stretch& next = now.of[i];
+    const auto place = [&](double s) { return Vec3(position + s * axis); };
+    if (next.face_low && next.face_high && look_away(*next.face_low, *next.face_high))
+      through(place(next.high), place(next.low), true);
+    const Stretch* was = nullptr;
+    for (std::size_t k = 0; k < inside_.count; ++k) {
+      const Stretch& old = inside_.of[k];
+      if (old.low > next.high || next.low > old.high) continue;
+      stays[k] = true;
+      if (was == nullptr) was = &old;
+    }
+    if (was == nullptr) {
+      next.entered = next.deepest_place;
+      next.normal = normal_at(next.deepest_place);
+      next.own_low = next.low;
+      next.own_high = next.high;
+      continue;
+    }
+    next.entered = was->entered;
+    next.normal = was->normal;
+    // An end that comes out by a face opposite to the entry's has gone through, unless that end had come in by it.
+    const bool away_low = next.face_low && look_away(*next.face_low, next.normal);
+    const bool away_high = next.face_high && look_away(*next.face_high, next.normal);
+    if (away_low && next.low > was->own_low) through(next.entered, place(next.low), false);
+    if (away_high && next.high < was->own_high) through(next.entered, place(next.high), false);
+    next.own_low = away_low ? std::max(was->own_low, next.low) : next.low;
+    next.own_high = away_high ? std::min(was->own_high, next.high) : next.high;
+  }
+  if (!follows_) return;
+  for (std::size_t k = 0; k < inside_.count; ++k) {
+    const Stretch& old = inside_.of[k];
+    const Vec3 middle = position + 0.5 * (old.own_low + old.own_high) * axis;
+    if (stays[k]) continue;
+    const SurfaceDistance phi = solid_->at(middle);
+    if (phi.known && phi.value > 0.0 && look_away(normal_at(middle), old.normal)) through(old.entered, middle, false);
+  }
 }
 
 PoseSamples::Sample PoseSamples::joined(const Sample& a, const Sample& b) const noexcept {
@@ -93,7 +256,7 @@ InsideObserver::InsideObserver(std::shared_ptr<const ToolShape> tool, std::share
 
 void InsideObserver::on_step(const StepRecord& record) noexcept {
   const ToolPose& pose = record.tool.pose;
-  const double free2 = side_ == Side::inside ? tip_free2_inside_ : tip_free2_;
+  const double free2 = side_ == SolidSide::inside ? tip_free2_inside_ : tip_free2_;
   if (!((pose.position - tip_looked_).squaredNorm() < free2)) look_at_tip(record);
   if (tip_phi_.known) {
     ++depths_.rows;
@@ -109,19 +272,16 @@ void InsideObserver::on_step(const StepRecord& record) noexcept {
     march(core, began_ ? length : 0.0, record.time);
   }
   const bool settled = settled_by_ != nullptr && settled_by_->in_settled_contact();
-  if (every_ > 0) return search_row(record, settled);
+  if (every_ > 0) {
+    depth_ = record.step % every_ == 0 ? search_.depth(pose) : std::nullopt;
+    depths_.max = std::max(depths_.max, depth_);
+    if (depth_ && settled) depths_.settled.push_back(*depth_);
+    return;
+  }
   // The depth of contacts tells until the core is inside, and from there on that of the tip centre.
-  const bool deep = side_ == Side::inside;
+  const bool deep = side_ == SolidSide::inside;
   deepest_.add(pose, deep ? tool_->half_width() + std::max(0.0, -tip_phi_.value) : record.force.depth_max);
   if (settled) settled_.add(pose, 0.0);
-}
-
-void InsideObserver::search_row(const StepRecord& record, bool settled) noexcept {
-  depth_.reset();
-  if (record.step % every_ == 0) depth_ = search_.depth(record.tool.pose);
-  if (!depth_) return;
-  depths_.max = std::max(depths_.max, depth_);
-  if (settled) depths_.settled.push_back(*depth_);
 }
 
 void InsideObserver::look_at_tip(const StepRecord& record) noexcept {
@@ -161,19 +321,19 @@ void InsideObserver::march(const Vec3& place, double length, double time) noexce
 
 void InsideObserver::note_core(const Vec3& place, const SurfaceDistance& phi, double time) noexcept {
   const double step = kNormalsOver * tool_->half_width();
-  const Side before = std::exchange(side_, !phi.known ? Side::unknown : phi.value < 0.0 ? Side::inside : Side::outside);
-  if (!began_) passage_.began_inside = side_ == Side::inside;
-  passage_.ends_inside = side_ == Side::inside;
-  if (side_ == Side::inside && before == Side::outside) {
+  const SolidSide before = std::exchange(side_, side_of(phi));
+  if (!began_) passage_.began_inside = side_ == SolidSide::inside;
+  passage_.ends_inside = side_ == SolidSide::inside;
+  if (side_ == SolidSide::inside && before == SolidSide::outside) {
     entry_normal_ = solid_->gradient(outside_, step);
     if (!passage_.left) passage_.entered = place;
   }
-  if (side_ == Side::outside && before == Side::inside && entry_normal_ &&
+  if (side_ == SolidSide::outside && before == SolidSide::inside && entry_normal_ &&
       look_away(*entry_normal_, solid_->gradient(place, step)) && !passage_.left) {
     passage_.left = {time, place};
   }
-  if (side_ != Side::inside) entry_normal_.reset();
-  if (side_ == Side::outside) outside_ = place;
+  if (side_ != SolidSide::inside) entry_normal_.reset();
+  if (side_ == SolidSide::outside) outside_ = place;
 }
 
 InsideDepths InsideObserver::depths() {
@@ -186,7 +346,7 @@ InsideDepths InsideObserver::depths() {
     if (const auto depth = search_.depth(sample.pose)) depths.settled.push_back(*depth);
   }
   for (const double depth : depths.settled) depths.max = std::max(depths.max, std::optional(depth));
-  if (rest > 0.0) depths.max_within = rest - (1.0 + InsideSearch::kTolerance) * depths.max.value_or(0.0) + error;
+  if (rest > 0.0) depths.max_within = rest - depths.searched_max() + error;
   return depths;
 }
 
@@ -206,10 +366,8 @@ double InsideObserver::find_deepest(InsideDepths& depths) {
     const double tolerance = InsideSearch::kTolerance - way / width;
     depths.max = std::max(depths.max, search_.depth(pose, depths.max.value_or(0.0), tolerance));
   };
-  const auto enough = [&] {
-    return (1.0 + InsideSearch::kTolerance) * depths.max.value_or(0.0) + InsideSearch::kTolerance * width;
-  };
-  search(std::max_element(parts.begin(), parts.end(), [](auto& a, auto& b) { return a.key < b.key; })->pose, 0.0);
+  const auto enough = [&] { return depths.searched_max() + InsideSearch::kTolerance * width; };
+  search(std::ranges::max_element(parts, {}, &PoseSamples::Sample::key)->pose, 0.0);
   InsideBound bound(*tool_, *solid_);
   const auto bounded = [&](std::size_t first, std::size_t end) {
     const ToolPose& pose = parts[(first + end) / 2].pose;

@@ -2,7 +2,6 @@
 
 #include <cstddef>
 #include <nlohmann/json_fwd.hpp>
-#include <optional>
 #include <string>
 #include <string_view>
 
@@ -23,6 +22,11 @@ struct TrialParts {
   std::size_t subject = 0, trial = 0;         ///< of a tracking hand, from 0
 };
 
+/// A quotient of counts or sums, such as a mean or a share. Of nothing it is not finite, and so no value of a metric.
+inline double per(auto part, auto whole) {
+  return static_cast<double>(part) / static_cast<double>(whole);
+}
+
 /// Takes the metrics of an observer, in the order in which it tells them.
 class Section {
  public:
@@ -31,7 +35,8 @@ class Section {
     if (!prefix_.empty()) prefix_ += '.';
   }
 
-  /// A metric as Metric describes it. Its name, unit and meaning do not depend on the run.
+  /// A metric as Metric describes it. Its name, unit and meaning do not depend on the run. A value that is not finite
+  /// is none.
   template <class Given>
   Metric& metric(const std::string& name, const char* unit, const char* meaning, const Given& value,
                  Better better = Better::none) {
@@ -57,18 +62,5 @@ class MetricObserver : public Observer {
   /// Adds the members of its section in summary.json that are not metrics.
   virtual void add_members(nlohmann::ordered_json&) const {}
 };
-
-/// The metrics of an observer, named without a section.
-inline MetricList told(const MetricObserver& observer) {
-  MetricList list;
-  Section section(list, "");
-  observer.tell(section);
-  return list;
-}
-
-/// One number of it; none when the metric has no value.
-inline std::optional<double> told(const MetricObserver& observer, std::string_view name) {
-  return number_of(told(observer), name);
-}
 
 }  // namespace hapbench

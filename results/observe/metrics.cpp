@@ -1,6 +1,5 @@
 #include "results/observe/metrics.hpp"
 
-#include <algorithm>
 #include <cassert>
 #include <span>
 #include <utility>
@@ -25,22 +24,13 @@ void ReductionJumps::add(const ContactBuffer& kept, double step_squared, bool se
   if (!same) last_.assign(now.begin(), now.end());
 }
 
-TrialContact TrialContact::operator+(const TrialContact& other) const noexcept {
-  // An empty optional is less than any number.
-  return {rows + other.rows, in_contact + other.in_contact, std::max(last, other.last),
-          std::max(force_max_squared, other.force_max_squared)};
-}
-
 MetricsObserver::MetricsObserver(double dt, const MetricsConfig& config)
     : stride_(config.stride),
-      high_pass_(vibration_filter(dt)),
+      vibration_(dt),
       last_quarter_(config.steps, dt),
+      friction_limit_(config.friction_limit),
       contact_forces_(dt, config.settling) {
   assert(dt > 0.0);
-  if (config.friction_limit) {
-    friction_ = ExplicitFriction{*config.friction_limit, 0, {}};
-    friction_limit_squared_ = *config.friction_limit * *config.friction_limit;
-  }
   if (config.most_reduced) reduction_.emplace(*config.most_reduced);
 }
 
@@ -67,12 +57,8 @@ void MetricsObserver::on_step(const StepRecord& record) noexcept {
 }
 
 void MetricsObserver::add_motion(const Vec3& position, const Vec3& v) noexcept {
-  const bool first = now_.rows == 0;
-  if (!first) velocity_variation_ += (v - last_velocity_).norm();
-  if (high_pass_) {
-    if (first) high_pass_->settle_at(v);
-    vibration_sum_ += high_pass_->filter(v).squaredNorm();
-  }
+  if (now_.rows > 0) velocity_variation_ += (v - last_velocity_).norm();
+  vibration_.add(now_.rows, v);
   speed_max_squared_ = std::max(speed_max_squared_, v.squaredNorm());
   position_ = position;
   last_velocity_ = v;
@@ -87,9 +73,8 @@ ForceChange MetricsObserver::add_force(const RenderedForce& force) noexcept {
   if (now_.rows > 0) change.squared = (force.rendered - last_force_).squaredNorm();
   force_step_max_squared_ = std::max(force_step_max_squared_, change.squared);
   depth_max_ = std::max(depth_max_, force.depth_max);
-  if (force.spring.squaredNorm() > friction_limit_squared_) {
-    if (!friction_->first_step) friction_->first_step = now_.rows;
-    ++friction_->rows_beyond;
+  if (friction_limit_ && force.spring.squaredNorm() > *friction_limit_ * *friction_limit_) {
+    if (rows_beyond_friction_++ == 0) first_beyond_friction_ = now_.rows;
   }
   last_force_ = force.rendered;
   return change;
@@ -109,9 +94,8 @@ void MetricsObserver::add_contacts(const StepRecord& record, const ForceChange& 
     now_.last = record.time;
   }
   if (rendered == 0) return;
-  if (!ratio_) ratio_ = record.ratio;
-  ratio_->min = std::min(ratio_->min, record.ratio.min);
-  ratio_->max = std::max(ratio_->max, record.ratio.max);
+  ratio_.min = std::min(ratio_.min, record.ratio.min);
+  ratio_.max = std::max(ratio_.max, record.ratio.max);
 }
 
 std::uint64_t MetricsObserver::state_hash() const noexcept {
@@ -125,7 +109,12 @@ void MetricsObserver::tell(Section& s) const {
   tell_motion_and_force(s);
   tell_contacts(s);
   s.metric("speed_max_m_per_s", "m/s", "largest speed of the tip's centre", std::sqrt(speed_max_squared_));
-  tell_friction(s);
+  s.metric("explicit_friction_limit_N", "N",
+           "largest ||f_spring|| whose friction the explicit integrator steps stably, (B_max - mu_s) / mu_f",
+           friction_limit_);
+  s.metric("explicit_friction_rows_beyond", "1", "rows with a larger ||f_spring||",
+           if_any(friction_limit_.has_value(), rows_beyond_friction_), Better::less);
+  s.metric("explicit_friction_first_step", "1", "the first of those rows", first_beyond_friction_);
   contact_forces_.tell(s);
   s.metric("reduction_changes", "1",
            "rows in contact whose set of kept points is another than in the row before, in contact too; with "
@@ -148,43 +137,29 @@ void MetricsObserver::tell_motion_and_force(Section& s) const {
   s.metric("vibration_power_above_30Hz_m2_per_s2", "m2/s2",
            "mean ||v||^2 of all rows behind a high-pass (Butterworth, fourth order, 30 Hz); none at sampling rates of "
            "60 Hz or less",
-           if_any(high_pass_ && rows() > 0, vibration_sum_ / static_cast<double>(rows())), Better::less);
+           vibration_.mean_square(), Better::less);
   s.metric("depth_max_m", "m",
            "largest penetration depth of a colliding point: at most the tool's half width, however deep the tool is",
            depth_max_, Better::less);
 }
 
 void MetricsObserver::tell_contacts(Section& s) const {
-  const RatioRange ratio = ratio_.value_or(RatioRange{});
-  const bool any = rows() > 0;
-  const auto share = [this](std::uint64_t sum) { return static_cast<double>(sum) / static_cast<double>(rows()); };
   const TrialContact all = before_ + now_;
   s.metric("ratio_min", "1",
            "smallest stiffness ratio rho = u^T S u of a rendered contact: the combined stiffness along it, in units "
            "of K",
-           if_any(ratio_.has_value(), ratio.min));
-  s.metric("ratio_max", "1", "largest such ratio", if_any(ratio_.has_value(), ratio.max));
+           ratio_.min);
+  s.metric("ratio_max", "1", "largest such ratio", ratio_.max);
   s.metric("colliding_mean", "1", "colliding points per row, rows without contact included",
-           if_any(any, share(colliding_sum_)));
+           per(colliding_sum_, rows()));
   s.metric("colliding_max", "1", "most colliding points of a row", colliding_max_);
   s.metric("rendered_mean", "1",
            "points that the force law saw (after local average and reduction) per row, rows without contact included",
-           if_any(any, share(rendered_sum_)));
+           per(rendered_sum_, rows()));
   s.metric("rendered_max", "1", "most points that the force law saw in a row", rendered_max_);
   s.metric("steps_in_contact", "1", "rows with a colliding point", all.in_contact);
-  s.metric("contact_share", "1", "steps_in_contact / steps", if_any(any, share(all.in_contact)));
+  s.metric("contact_share", "1", "steps_in_contact / steps", per(all.in_contact, rows()));
   s.metric("last_contact_s", "s", "time of the last row with a colliding point", all.last);
-}
-
-void MetricsObserver::tell_friction(Section& s) const {
-  const ExplicitFriction friction = friction_.value_or(ExplicitFriction{});
-  const bool any = friction_.has_value();
-  s.metric("explicit_friction_limit_N", "N",
-           "largest ||f_spring|| whose friction the explicit integrator steps stably, (B_max - mu_s) / mu_f",
-           if_any(any, friction.limit));
-  s.metric("explicit_friction_rows_beyond", "1", "rows with a larger ||f_spring||", if_any(any, friction.rows_beyond),
-           Better::less);
-  s.metric("explicit_friction_first_step", "1", "the first of those rows", friction.first_step);
 }
 
 void MetricsObserver::tell_end(Section& s) const {

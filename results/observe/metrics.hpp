@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -14,23 +15,16 @@
 
 namespace hapbench {
 
-/// How often a run left the range in which its integrator steps friction stably. Friction is a damper of coefficient
-/// mu_s + mu_f |f_spring|, which a stiff law makes arbitrarily strong; an explicit integrator is stable up to some only
-/// (leapfrog: 2 M / dt). Beyond it, which is no fault of the law, each step reverses and enlarges the sliding velocity.
-struct ExplicitFriction {
-  double limit = 0.0;                            ///< largest |f_spring| whose friction is stepped stably [N]
-  std::uint64_t rows_beyond = 0;                 ///< rows with a larger |f_spring|
-  std::optional<std::uint64_t> first_step = {};  ///< the first of those rows, in its trial
-};
-
-/// Returns ExplicitFriction::limit [N], (B_max - mu_s) / mu_f with the largest coefficient B_max that the integrator
-/// steps stably, for a tool of `mass` [kg] under friction mu_s [N s/m], mu_f [s/m]. Zero when mu_s alone is too much;
-/// nothing when no force is too large: without mu_f, or where the integrator is stable on every damper.
+/// The largest |f_spring| whose friction the integrator steps stably [N]. Friction is a damper of coefficient
+/// mu_s + mu_f |f_spring|, which a stiff law makes arbitrarily strong; an explicit integrator is stable up to some
+/// B_max only (leapfrog: 2 M / dt). Beyond it, which is no fault of the law, each step reverses and enlarges the
+/// sliding velocity. Returns (B_max - mu_s) / mu_f for a tool of `mass` [kg] under friction mu_s [N s/m], mu_f [s/m]:
+/// zero when mu_s alone is too much; nothing when no force is too large: without mu_f, or where every damper is stable.
 std::optional<double> explicit_friction_limit(const IntegratorEntry& integrator, double mass, double dt, double mu_s,
                                               double mu_f);
 
-/// Force steps that the contact reduction causes: as the tool slides, other contacts are kept, and the force jumps.
-/// Compares the points that a law sees from row to row. Allocates in the constructor only; about 1 ns a point.
+/// Force steps that the contact reduction causes: as the tool slides, other points are kept, and the force jumps.
+/// Allocates in the constructor only; about 1 ns a point.
 class ReductionJumps {
  public:
   /// `capacity`: the most contacts a row can have.
@@ -56,13 +50,15 @@ class ReductionJumps {
 
 /// The contact of a trial.
 struct TrialContact {
-  std::uint64_t rows = 0;           ///< of the trial
-  std::uint64_t in_contact = 0;     ///< of these, with a colliding point
-  std::optional<double> last = {};  ///< time of the last of those [s]
-  double force_max_squared = 0.0;   ///< largest ||f||^2 of a row [N^2]
+  std::uint64_t rows = 0, in_contact = 0;  ///< all, and those with a colliding point
+  std::optional<double> last = {};         ///< time of the last of those [s]
+  double force_max_squared = 0.0;          ///< largest ||f||^2 of a row [N^2]
 
-  /// Adds the counts and keeps the later time and the larger force.
-  TrialContact operator+(const TrialContact& other) const noexcept;
+  /// Adds the counts and keeps the later time, where an empty one is the least, and the larger force.
+  TrialContact operator+(const TrialContact& other) const noexcept {
+    return {rows + other.rows, in_contact + other.in_contact, std::max(last, other.last),
+            std::max(force_max_squared, other.force_max_squared)};
+  }
 };
 
 /// Settings of the metrics.
@@ -74,8 +70,8 @@ struct MetricsConfig {
   std::uint64_t stride = 1;                      ///< one row in so many counts, as if the others were not there
 };
 
-/// The metrics that every run has, in constant memory; about 20 ns a row, 24 ns with a reduction, for which alone the
-/// constructor allocates. Of several trials they are those of one long run, with the last one's final position.
+/// The metrics that every run has, in constant memory; about 20 ns a row, 24 ns with a reduction, for which it
+/// allocates. Of several trials they are those of one long run, with the last one's final position.
 class MetricsObserver final : public MetricObserver {
  public:
   /// `dt`: time between rows that count [s], > 0.
@@ -106,7 +102,6 @@ class MetricsObserver final : public MetricObserver {
   void add_contacts(const StepRecord& record, const ForceChange& change) noexcept;
   void tell_motion_and_force(Section& section) const;
   void tell_contacts(Section& section) const;
-  void tell_friction(Section& section) const;
 
   std::uint64_t stride_;
   std::uint64_t trials_ = 0;  ///< begun so far
@@ -115,7 +110,6 @@ class MetricsObserver final : public MetricObserver {
   TrialContact now_;
   Hash64 hash_;
   bool settled_ = false;
-  std::optional<HighPass> high_pass_;  ///< none when the sampling rate is too low
   Vec3 last_velocity_ = Vec3::Zero();
   Vec3 last_force_ = Vec3::Zero();
   Vec3 position_ = Vec3::Zero();  ///< in the last row [m]
@@ -123,15 +117,18 @@ class MetricsObserver final : public MetricObserver {
   // Sums and extremes over all trials; "before": over the trials before the current one.
   TrialContact before_;
   Hash64 hashes_before_;
-  double velocity_variation_ = 0.0, speed_max_squared_ = 0.0, vibration_sum_ = 0.0;
+  double velocity_variation_ = 0.0, speed_max_squared_ = 0.0;
+  Vibration vibration_;
   LastQuarterVibration last_quarter_;
   std::uint64_t force_reversals_ = 0;
   double force_step_max_squared_ = 0.0;
   double depth_max_ = 0.0;
-  std::optional<RatioRange> ratio_;  ///< of all rendered contacts
+  /// Of all rendered contacts; not finite without any.
+  RatioRange ratio_{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
   std::uint64_t colliding_sum_ = 0, colliding_max_ = 0, rendered_sum_ = 0, rendered_max_ = 0;
-  double friction_limit_squared_ = std::numeric_limits<double>::infinity();
-  std::optional<ExplicitFriction> friction_;  ///< empty where friction cannot become unstable
+  std::optional<double> friction_limit_;  ///< [N]; empty where friction cannot become unstable
+  std::uint64_t rows_beyond_friction_ = 0;
+  std::optional<std::uint64_t> first_beyond_friction_;  ///< in its trial
   ContactForces contact_forces_;
   std::optional<ReductionJumps> reduction_;  ///< none without a reduction
 };

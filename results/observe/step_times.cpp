@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <limits>
+#include <utility>
 
 namespace hapbench {
 namespace {
@@ -16,11 +17,6 @@ using Times = std::vector<std::uint64_t>;
 std::uint64_t percentile(const Times& sorted, std::size_t per_mille) {
   const std::size_t rank = (sorted.size() * per_mille + 999) / 1000;
   return sorted[std::max<std::size_t>(rank, 1) - 1];
-}
-
-std::uint64_t longer_than(const Times& times, double seconds) {
-  const auto is_longer = [seconds](std::uint64_t time) { return static_cast<double>(time) > seconds * 1e9; };
-  return static_cast<std::uint64_t>(std::ranges::count_if(times, is_longer));
 }
 
 /// Bin k holds the times of k binary digits: 0, 1, 2 … 3, 4 … 7 and so on. The clock counts up to 63 of them.
@@ -69,8 +65,15 @@ void StepTimes::lap() noexcept {
   times_[size_++] = static_cast<std::uint64_t>(std::max<std::int64_t>(ns, 0));
 }
 
-StepSampler::StepSampler(std::uint64_t steps)
-    : every_(steps / kMostSamples + 1), times_(static_cast<std::size_t>(steps / every_) + 1) {}
+void StepSampler::on_step(const StepRecord& record) noexcept {
+  has_row_ = !has_row_;
+  if (has_row_) {
+    if (std::exchange(runs_, false)) times_.lap();
+  } else if (record.step % every_ == 0) {
+    runs_ = true;
+    times_.start();
+  }
+}
 
 StepLatency step_latency(std::span<const std::uint64_t> nanoseconds, std::uint64_t overhead) {
   StepLatency latency;
@@ -84,7 +87,10 @@ StepLatency step_latency(std::span<const std::uint64_t> nanoseconds, std::uint64
   latency.p99 = percentile(sorted, 990);
   latency.p99_9 = percentile(sorted, 999);
   latency.max = sorted.back();
-  for (std::size_t i = 0; i < kStepDeadlines.size(); ++i) latency.misses[i] = longer_than(sorted, kStepDeadlines[i]);
+  for (std::size_t i = 0; i < kStepDeadlines.size(); ++i) {
+    const auto is_late = [i](std::uint64_t time) { return static_cast<double>(time) > kStepDeadlines[i] * 1e9; };
+    latency.misses[i] = static_cast<std::uint64_t>(std::ranges::count_if(sorted, is_late));
+  }
   latency.histogram = histogram(sorted);
   latency.over_time = medians_over_time(nanoseconds);
   return latency;

@@ -5,15 +5,14 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "sim/loop/observer.hpp"
 
 namespace hapbench {
 
-/// The wall time of every step of a run, in a buffer that is allocated beforehand. One reading of the clock ends a step
-/// and starts the next, so that a step costs one reading and one store more than without. 8 bytes a step.
+/// The wall time of every step of a run, in a buffer that is allocated beforehand, 8 bytes a step. One reading of the
+/// clock ends a step and starts the next.
 class StepTimes {
  public:
   /// Room for `capacity` steps. Measures what reading the clock costs, which takes about 20 µs.
@@ -38,50 +37,27 @@ class StepTimes {
   Clock::time_point last_;
 };
 
-/// Samples the time that steps take by themselves, without observers and recorders: from after the last observer of a
-/// row to before the first one of the next row. That time covers the integrator's part of one step and hand, search,
-/// law and device of the next. Attach `first` before and `last` after all other observers.
-///
-/// Samples every step of a short run and at most kMostSamples of a long one, evenly spread: enough for a 99th
-/// percentile at a cost below a millisecond, two readings of the clock each. Allocates in the constructor only.
-class StepSampler {
+/// Samples the time that steps take by themselves, from after the last observer of a row to before the first one of the
+/// next: the integrator's part of one step and hand, search, law and device of the next. Attach it twice, before and
+/// after all other observers. Samples every step of a short run and at most kMostSamples of a long one, evenly spread:
+/// enough for a 99th percentile, two readings of the clock each. Allocates in the constructor only.
+class StepSampler final : public Observer {
  public:
   static constexpr std::uint64_t kMostSamples = 1 << 13;
 
   /// `steps`: the most rows the run can have.
-  explicit StepSampler(std::uint64_t steps);
-  StepSampler(const StepSampler&) = delete;
-  StepSampler& operator=(const StepSampler&) = delete;
-
-  Observer& first() { return first_; }
-  Observer& last() { return last_; }
+  explicit StepSampler(std::uint64_t steps)
+      : every_(steps / kMostSamples + 1), times_(static_cast<std::size_t>(steps / every_) + 1) {}
+  void on_step(const StepRecord& record) noexcept override;
 
   /// [ns], in their order, the cost of reading the clock subtracted.
   std::span<const std::uint64_t> nanoseconds() const { return times_.nanoseconds(); }
 
  private:
-  /// The end of a sample or the begin of the next.
-  struct End final : Observer {
-    End(StepSampler& sampler, void (StepSampler::*work)(std::uint64_t) noexcept) : of(sampler), does(work) {}
-    void on_step(const StepRecord& record) noexcept override { (of.*does)(record.step); }
-
-    StepSampler& of;
-    void (StepSampler::*does)(std::uint64_t step) noexcept;
-  };
-
-  void start(std::uint64_t step) noexcept {
-    if (step % every_ != 0) return;
-    runs_ = true;
-    times_.start();
-  }
-  void stop(std::uint64_t) noexcept {
-    if (std::exchange(runs_, false)) times_.lap();
-  }
-
   std::uint64_t every_;
   StepTimes times_;
-  bool runs_ = false;
-  End first_{*this, &StepSampler::stop}, last_{*this, &StepSampler::start};
+  bool runs_ = false;     ///< a sample has begun
+  bool has_row_ = false;  ///< the other observers see a row now
 };
 
 /// Deadlines of a haptic loop [s]: the thesis's simulations step at 2 kHz, its device at 2048 Hz.

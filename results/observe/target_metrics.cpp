@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <string>
 
 #include "sim/loop/simulation.hpp"
@@ -12,9 +13,7 @@ void TargetMetricsObserver::begin(const TrialParts& trial) {
   const TargetTask& task = *trial.simulation.hand->task();
   order_ = task.order();
   time_limit_ = task.rules().time_limit;
-  current_ = {};
-  current_.subject = trial.subject;
-  current_.trial = trial.trial;
+  current_ = {.subject = trial.subject, .trial = trial.trial};
   rows_before_ = rows_.size();
   rows_.reserve(rows_before_ + order_.size());
 }
@@ -31,12 +30,11 @@ void TargetMetricsObserver::on_step(const StepRecord& record) noexcept {
     row.target = ended();
     row.result = task.results().back();
     if (row.rows_on_target > 0) {
-      row.model_force /= static_cast<double>(row.rows_on_target);
-      row.speed /= static_cast<double>(row.rows_on_target);
+      row.model_force = per(row.model_force, row.rows_on_target);
+      row.speed = per(row.speed, row.rows_on_target);
     }
     rows_.push_back(row);
-    current_.rows_on_target = 0;
-    current_.model_force = current_.speed = 0.0;
+    current_ = {.subject = row.subject, .trial = row.trial};
   }
   if (task.finished() || !task.logs(record.tool.pose.position)) return;
   ++current_.rows_on_target;
@@ -46,33 +44,20 @@ void TargetMetricsObserver::on_step(const StepRecord& record) noexcept {
 
 namespace {
 
-struct Mean {
-  std::size_t count = 0;
-  double sum = 0.0;
-  void add(double value) {
-    ++count;
-    sum += value;
-  }
-};
+/// The values of one quantity at one place, by subject.
+using ValuesOfSubjects = std::map<std::size_t, std::vector<double>>;
 
-/// Means of one subject at one place.
-struct SubjectAtPlace {
-  Mean success, time, force, speed;
-};
+double mean_of(const std::vector<double>& values) {
+  return per(std::accumulate(values.begin(), values.end(), 0.0), values.size());
+}
 
-SubjectMean over_subjects(const std::map<std::size_t, SubjectAtPlace>& subjects, Mean SubjectAtPlace::*quantity) {
+SubjectMean over_subjects(const ValuesOfSubjects& subjects) {
   std::vector<double> means;
-  for (const auto& [subject, values] : subjects) {
-    const Mean& mean = values.*quantity;
-    if (mean.count > 0) means.push_back(mean.sum / static_cast<double>(mean.count));
-  }
-  SubjectMean result;
-  result.subjects = means.size();
-  if (means.empty()) return result;
-  const auto n = static_cast<double>(means.size());
-  for (const double mean : means) result.mean += mean;
-  result.mean /= n;
+  for (const auto& [subject, values] : subjects) means.push_back(mean_of(values));
+  if (means.empty()) return {};
+  SubjectMean result{means.size(), mean_of(means)};
   if (means.size() < 2) return result;
+  const auto n = static_cast<double>(means.size());
   double squares = 0.0;
   for (const double mean : means) squares += (mean - result.mean) * (mean - result.mean);
   result.standard_error = std::sqrt(squares / (n - 1.0) / n);
@@ -86,34 +71,25 @@ void tell_mean(Section s, const SubjectMean& m, const char* unit, const char* me
   s.metric("subjects", "1", "subjects that have a value", m.subjects);
 }
 
-void tell_place(Section s, const PlaceMetrics& place) {
-  tell_mean(s.part("success_rate"), place.success_rate, "1",
-            "share of the targets at this place that were removed, mean over subjects", Better::more);
-  tell_mean(s.part("completion_time_s"), place.completion_time, "s",
-            "time until a target at this place was removed or the limit was reached, mean over subjects", Better::less);
-  tell_mean(s.part("model_force_N"), place.model_force, "N",
-            "mean ||f|| of the rows logged at a target of this place, mean over subjects");
-  tell_mean(s.part("speed_m_per_s"), place.speed, "m/s",
-            "mean speed of the handle in the rows logged at a target of this place, mean over subjects");
-}
-
 }  // namespace
 
 std::vector<PlaceMetrics> place_metrics(const std::vector<TargetRow>& rows) {
-  std::map<std::size_t, std::map<std::size_t, SubjectAtPlace>> places;
+  struct Values {
+    ValuesOfSubjects success, time, force, speed;
+  };
+  std::map<std::size_t, Values> places;
   for (const TargetRow& row : rows) {
-    SubjectAtPlace& values = places[row.result.place][row.subject];
-    values.success.add(row.result.removed ? 1.0 : 0.0);
-    values.time.add(row.result.time);
+    Values& at = places[row.result.place];
+    at.success[row.subject].push_back(row.result.removed ? 1.0 : 0.0);
+    at.time[row.subject].push_back(row.result.time);
     if (row.rows_on_target == 0) continue;
-    values.force.add(row.model_force);
-    values.speed.add(row.speed);
+    at.force[row.subject].push_back(row.model_force);
+    at.speed[row.subject].push_back(row.speed);
   }
   std::vector<PlaceMetrics> metrics;
-  for (const auto& [place, subjects] : places) {
-    metrics.push_back({place, over_subjects(subjects, &SubjectAtPlace::success),
-                       over_subjects(subjects, &SubjectAtPlace::time), over_subjects(subjects, &SubjectAtPlace::force),
-                       over_subjects(subjects, &SubjectAtPlace::speed)});
+  for (const auto& [place, at] : places) {
+    metrics.push_back(
+        {place, over_subjects(at.success), over_subjects(at.time), over_subjects(at.force), over_subjects(at.speed)});
   }
   return metrics;
 }
@@ -124,7 +100,18 @@ void TargetMetricsObserver::tell(Section& s) const {
     places.resize(places_);
     for (std::size_t i = 0; i < places_; ++i) places[i].place = i;
   }
-  for (const PlaceMetrics& place : places) tell_place(s.part(std::to_string(place.place)), place);
+  for (const PlaceMetrics& place : places) {
+    const Section at = s.part(std::to_string(place.place));
+    tell_mean(at.part("success_rate"), place.success_rate, "1",
+              "share of the targets at this place that were removed, mean over subjects", Better::more);
+    tell_mean(at.part("completion_time_s"), place.completion_time, "s",
+              "time until a target at this place was removed or the limit was reached, mean over subjects",
+              Better::less);
+    tell_mean(at.part("model_force_N"), place.model_force, "N",
+              "mean ||f|| of the rows logged at a target of this place, mean over subjects");
+    tell_mean(at.part("speed_m_per_s"), place.speed, "m/s",
+              "mean speed of the handle in the rows logged at a target of this place, mean over subjects");
+  }
 }
 
 }  // namespace hapbench

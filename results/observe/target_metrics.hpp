@@ -13,7 +13,7 @@ struct TargetRow {
   std::size_t subject = 0;  ///< from 0, as are trial and target
   std::size_t trial = 0;
   std::size_t target = 0;
-  TargetResult result;
+  TargetResult result = {};
   std::uint64_t rows_on_target = 0;
   double model_force = 0.0;  ///< mean |f_render| [N]
   double speed = 0.0;        ///< mean speed of the handle [m/s]

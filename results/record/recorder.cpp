@@ -2,16 +2,21 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cassert>
 #include <memory>
-#include <optional>
 #include <string>
 #include <tuple>
 #include <utility>
 
-#include "sim/contact/stiffness_tensor.hpp"
+#include "results/observe/energy.hpp"
+#include "results/observe/force_fidelity.hpp"
+#include "results/observe/ideal_trajectory.hpp"
+#include "results/observe/inside_observer.hpp"
+#include "results/observe/target_metrics.hpp"
+#include "sim/contact/contact_buffer.hpp"
 
 namespace hapbench {
 namespace {
@@ -67,182 +72,208 @@ constexpr auto kUsual = std::tuple{
     filled({{"ratio_max", "1", "largest stiffness ratio u^T S u of a rendered contact; empty without contact"}},
            [](const StepRecord& r) { return if_any(!r.rendered->empty(), r.ratio.max); })};
 
-/// The columns with some of trajectory_groups(), of which each has a bit.
-std::span<const Column> trajectory_columns(std::size_t groups) {
-  static const auto kLists = [] {
-    const std::span<const TrajectoryGroup> all = trajectory_groups();
-    std::vector<std::vector<Column>> lists(std::size_t{1} << all.size());
-    for (std::size_t choice = 0; choice < lists.size(); ++choice) {
-      const auto add = [&list = lists[choice]](const auto& columns) {
-        list.insert(list.end(), columns.begin(), columns.end());
-      };
-      std::apply([&](const auto&... part) { (add(part.first), ...); }, kUsual);
-      for (std::size_t i = 0; i < all.size(); ++i)
-        if (((choice >> i) & 1u) != 0) add(all[i].columns);
-    }
-    return lists;
-  }();
-  return kLists[groups];
+/// w, x, y, z; of the two quaternions of one rotation the one with w >= 0.
+std::array<double, 4> quaternion(const Mat3& rotation) noexcept {
+  const Eigen::Quaterniond q(rotation);
+  const double sign = q.w() < 0.0 ? -1.0 : 1.0;
+  return {sign * q.w(), sign * q.x(), sign * q.y(), sign * q.z()};
+}
+
+constexpr Column kPoseColumns[] = {
+    {"qw", "1", "w of the unit quaternion that turns the tool's frame, its axis along -z, into the world's; >= 0"},
+    {"qx", "1", "x of this quaternion"},
+    {"qy", "1", "y of this quaternion"},
+    {"qz", "1", "z of this quaternion"}};
+constexpr Column kTorqueColumns[] = {
+    {"tx_Nm", "Nm",
+     "x of the lost torque: what the rendered contacts would exert on the tool about its tip's centre and the device "
+     "cannot render, sum r_i x f_i, f_i contact i's share of f_spring"},
+    {"ty_Nm", "Nm", "y of the lost torque"},
+    {"tz_Nm", "Nm", "z of the lost torque"}};
+constexpr Column kInsideColumns[] = {
+    {"inside_m", "m",
+     "largest distance below the environment's surface of any point of the tool (inside_max_m); empty of springs and "
+     "beyond the border of an open surface"}};
+
+constexpr TrajectoryGroup kGroups[] = {
+    {&TrajectoryExtras::pose, "pose", "add the tool's orientation to trajectory.csv, as a quaternion qw,qx,qy,qz",
+     kPoseColumns,
+     [](const StepRecord& r, const InsideObserver*, std::optional<double>* cells) {
+       const ToolPose pose{r.tool.pose.position, r.tool.pose.axis, r.roll};
+       std::ranges::copy(quaternion(pose.rotation()), cells);
+     },
+     true},
+    {&TrajectoryExtras::torque, "torque",
+     "add the torque that is lost to trajectory.csv, tx_Nm,ty_Nm,tz_Nm, and its metrics: what the rendered "
+     "contacts would exert about the tip centre and the device cannot render",
+     kTorqueColumns,
+     [](const StepRecord& r, const InsideObserver*, std::optional<double>* cells) {
+       std::copy(r.springs.moment.begin(), r.springs.moment.end(), cells);
+     },
+     false, true},
+    {&TrajectoryExtras::inside, "inside",
+     "add how deep the tool is in the environment to trajectory.csv, inside_m, and take its metrics from every "
+     "recorded row",
+     kInsideColumns, [](const StepRecord&, const InsideObserver* inside, std::optional<double>* cells) {
+       *cells = inside != nullptr ? inside->depth() : std::nullopt;
+     }}};
+
+/// The columns of trajectory.csv with these fields.
+std::vector<Column> trajectory_columns(const TrajectoryExtras& extras) {
+  std::vector<Column> columns;
+  const auto add = [&columns](const auto& more) { columns.insert(columns.end(), more.begin(), more.end()); };
+  std::apply([&](const auto&... part) { (add(part.first), ...); }, kUsual);
+  for (const TrajectoryGroup& group : kGroups)
+    if (extras.*group.is_wanted) add(group.columns);
+  return columns;
 }
 
 /// trajectory.csv with all its columns, and which of them it has with which field.
 ResultTable whole_trajectory() {
-  static const std::string kHolds = [] {
-    std::string text = "one line per recorded row, before the tool moves on";
-    for (const TrajectoryGroup& group : trajectory_groups()) {
-      const std::string first = group.columns.front().name, last = group.columns.back().name;
-      text += fmt::format("{} {}{} with record.{}", &group == trajectory_groups().data() ? ";" : ",", first,
-                          first == last ? "" : " to " + last, group.field);
-    }
-    return text;
-  }();
-  return {"trajectory.csv", kHolds.c_str(), trajectory_columns((std::size_t{1} << trajectory_groups().size()) - 1)};
+  ResultTable whole{"trajectory.csv", "one line per recorded row, before the tool moves on", {}};
+  TrajectoryExtras all;
+  for (const TrajectoryGroup& group : kGroups) {
+    const std::string first = group.columns.front().name, last = group.columns.back().name;
+    whole.holds += fmt::format("{} {}{} with record.{}", &group == kGroups ? ";" : ",", first,
+                               first == last ? "" : " to " + last, group.field);
+    all.*group.is_wanted = true;
+  }
+  whole.columns = trajectory_columns(all);
+  return whole;
 }
-
-constexpr Column kContactColumns[] = {
-    kStepColumn,
-    kTimeColumn,
-    {"index", "1", "number of the shell point, spring or, of another library's contact, triangle, from 0"},
-    {"x_m", "m", "x of the colliding point"},
-    {"y_m", "m", "y of the colliding point"},
-    {"z_m", "m", "z of the colliding point"},
-    {"nx", "1", "x of the environment's outward unit normal there"},
-    {"ny", "1", "y of the environment's outward unit normal there"},
-    {"nz", "1", "z of the environment's outward unit normal there"},
-    {"depth_m", "m", "penetration depth d, by the depth model"},
-    {"gradient_x", "1", "x of the unit gradient u, along which the point would leave the tool"},
-    {"gradient_y", "1", "y of the unit gradient u"},
-    {"gradient_z", "1", "z of the unit gradient u"},
-    {"weight", "1", "c_i of the law; 0 for laws without weights"}};
-
-constexpr Column kContactTraceColumns[] = {kTimeColumn,
-                                           {"x_m", "m", "x of the colliding point"},
-                                           {"y_m", "m", "y of the colliding point"},
-                                           {"z_m", "m", "z of the colliding point"},
-                                           {"ux", "1", "x of the unit gradient u, along which the tool gets deeper"},
-                                           {"uy", "1", "y of the unit gradient u"},
-                                           {"uz", "1", "z of the unit gradient u"},
-                                           {"depth_m", "m", "penetration depth d"}};
-
-constexpr Column kStiffnessColumns[] = {
-    kStepColumn,
-    kTimeColumn,
-    {"sxx", "1", "entry xx of the stiffness tensor S that the force was rendered with, in units of K"},
-    {"sxy", "1", "entry xy of S"},
-    {"sxz", "1", "entry xz of S"},
-    {"syy", "1", "entry yy of S"},
-    {"syz", "1", "entry yz of S"},
-    {"szz", "1", "entry zz of S"},
-    {"lambda_max", "1", "largest eigenvalue of S"}};
-
-constexpr Column kRatioColumns[] = {
-    kStepColumn,
-    kTimeColumn,
-    {"iteration", "1", "number m of shaping updates, from equal weights 1"},
-    {"rendered", "1", "points that the force law saw"},
-    {"ratio_min", "1", "smallest stiffness ratio u^T S u of a rendered contact after m updates"},
-    {"ratio_max", "1", "largest stiffness ratio u^T S u of a rendered contact after m updates"},
-    {"lambda_max", "1", "largest eigenvalue of S after m updates: the stiffness in units of K"}};
-
-constexpr Column kEnergyColumns[] = {
-    kStepColumn,
-    kTimeColumn,
-    {"kinetic_J", "J", "kinetic energy of the virtual mass, now"},
-    {"stored_J", "J", "elastic energy of the penalty springs, now"},
-    {"input_J", "J", "work of f_in on the tool since the first row"},
-    {"spring_J", "J", "work of f_spring on the tool since the first row"},
-    {"damping_J", "J", "work of damping, friction and force limit, of f - f_spring, since the first row"},
-    {"rotation_J", "J", "what the tool's turning put into the springs since the first row"},
-    {"created_J", "J", "what the springs store beyond the work that translation and rotation did on them"},
-    {"integration_J", "J", "energy made by the integrator since the first row"},
-    {"script_J", "J", "work of a prescribed motion since the first row"},
-    {"residual_J", "J", "kinetic energy that the other terms do not explain: rounding"},
-    {"hand_J", "J", "work of the hand on the handle since the first row"},
-    {"actuator_J", "J", "work of the device's actuators since the first row"},
-    {"device_dissipated_J", "J",
-     "work of the friction in the device's mechanics since the first row: what they dissipated, negative; empty when the "
-     "handle is the tool"},
-    {"device_stored_J", "J", "what the device's mechanics store, now; empty when the handle is the tool"}};
-
-constexpr Column kIdealTrajectoryColumns[] = {
-    kStepColumn,
-    kTimeColumn,
-    {"tilt_rad", "rad", "angle of the tool's axis to the hole's"},
-    {"height_m", "m", "tip's centre above the hole's mouth; negative in the hole"},
-    {"ideal_height_m", "m", "the same of the ideal trajectory"},
-    {"lateral_m", "m", "tip's centre from the hole's axis, towards where the tool leans"},
-    {"ideal_lateral_m", "m", "the same of the ideal trajectory"},
-    {"interpenetration_m", "m", "true depth of the tool in the exact block"},
-    {"hand_force_N", "N", "norm of the hand's force"}};
-
-constexpr Column kForceReferenceColumns[] = {
-    kStepColumn,
-    kTimeColumn,
-    {"mfx_N", "N", "x of the reference force f_m on the tool; empty where none was measured"},
-    {"mfy_N", "N", "y of f_m"},
-    {"mfz_N", "N", "z of f_m"},
-    {"force_error_x_N", "N", "x of f - f_m"},
-    {"force_error_y_N", "N", "y of f - f_m"},
-    {"force_error_z_N", "N", "z of f - f_m"}};
-
-constexpr Column kTargetColumns[] = {
-    {"subject", "1", "simulated subject, from 0"},
-    {"trial", "1", "its trial, from 0"},
-    {"target", "1", "target of the trial, from 0"},
-    {"place", "1", "where the target was: index of the task's places"},
-    {"removed", "1", "1 when the subject removed it, 0 when it disappeared at the time limit"},
-    {"time_s", "s", "from the press that activated the task to the end of the target"},
-    {"rows_on_target", "1", "rows with the tip on it"},
-    {"model_force_N", "N", "mean ||f|| of these rows; empty without any"},
-    {"speed_m_per_s", "m/s", "mean speed of the handle in these rows; empty without any"}};
 
 }  // namespace
 
+std::span<const TrajectoryGroup> trajectory_groups() {
+  return kGroups;
+}
+
 const ResultTable kTrajectoryTable = whole_trajectory();
-constinit const ResultTable kContactTable = {
-    "contacts.csv", "with record.contacts: one line per rendered contact of each recorded row", kContactColumns};
-constinit const ResultTable kContactTraceTable = {
+const ResultTable kContactTable = {
+    "contacts.csv",
+    "with record.contacts: one line per rendered contact of each recorded row",
+    {kStepColumn,
+     kTimeColumn,
+     {"index", "1", "number of the shell point, spring or, of another library's contact, triangle, from 0"},
+     {"x_m", "m", "x of the colliding point"},
+     {"y_m", "m", "y of the colliding point"},
+     {"z_m", "m", "z of the colliding point"},
+     {"nx", "1", "x of the environment's outward unit normal there"},
+     {"ny", "1", "y of the environment's outward unit normal there"},
+     {"nz", "1", "z of the environment's outward unit normal there"},
+     {"depth_m", "m", "penetration depth d, by the depth model"},
+     {"gradient_x", "1", "x of the unit gradient u, along which the point would leave the tool"},
+     {"gradient_y", "1", "y of the unit gradient u"},
+     {"gradient_z", "1", "z of the unit gradient u"},
+     {"weight", "1", "c_i of the law; 0 for laws without weights"}}};
+const ResultTable kContactTraceTable = {
     "contact_trace.csv",
     "with record.contacts: one line per colliding point of each recorded row, before local average and reduction; "
     "rendering.contact_source of type trace reads it",
-    kContactTraceColumns};
-constinit const ResultTable kStiffnessTable = {
-    "stiffness_tensor.csv", "with record.stiffness_tensor: one line per recorded row", kStiffnessColumns};
-constinit const ResultTable kRatioTable = {
-    "ratios.csv", "with record.ratio_iterations: one line per iteration of each recorded row in contact",
-    kRatioColumns};
-constinit const ResultTable kEnergyTable = {
-    "energy.csv", "with record.energy: the energy balance, one line per recorded row", kEnergyColumns};
-constinit const ResultTable kIdealTrajectoryTable = {
+    {kTimeColumn,
+     {"x_m", "m", "x of the colliding point"},
+     {"y_m", "m", "y of the colliding point"},
+     {"z_m", "m", "z of the colliding point"},
+     {"ux", "1", "x of the unit gradient u, along which the tool gets deeper"},
+     {"uy", "1", "y of the unit gradient u"},
+     {"uz", "1", "z of the unit gradient u"},
+     {"depth_m", "m", "penetration depth d"}}};
+const ResultTable kStiffnessTable = {
+    "stiffness_tensor.csv",
+    "with record.stiffness_tensor: one line per recorded row",
+    {kStepColumn,
+     kTimeColumn,
+     {"sxx", "1", "entry xx of the stiffness tensor S that the force was rendered with, in units of K"},
+     {"sxy", "1", "entry xy of S"},
+     {"sxz", "1", "entry xz of S"},
+     {"syy", "1", "entry yy of S"},
+     {"syz", "1", "entry yz of S"},
+     {"szz", "1", "entry zz of S"},
+     {"lambda_max", "1", "largest eigenvalue of S"}}};
+const ResultTable kRatioTable = {
+    "ratios.csv",
+    "with record.ratio_iterations: one line per iteration of each recorded row in contact",
+    {kStepColumn,
+     kTimeColumn,
+     {"iteration", "1", "number m of shaping updates, from equal weights 1"},
+     {"rendered", "1", "points that the force law saw"},
+     {"ratio_min", "1", "smallest stiffness ratio u^T S u of a rendered contact after m updates"},
+     {"ratio_max", "1", "largest stiffness ratio u^T S u of a rendered contact after m updates"},
+     {"lambda_max", "1", "largest eigenvalue of S after m updates: the stiffness in units of K"}}};
+const ResultTable kEnergyTable = {
+    "energy.csv",
+    "with record.energy: the energy balance, one line per recorded row",
+    {kStepColumn,
+     kTimeColumn,
+     {"kinetic_J", "J", "kinetic energy of the virtual mass, now"},
+     {"stored_J", "J", "elastic energy of the penalty springs, now"},
+     {"input_J", "J", "work of f_in on the tool since the first row"},
+     {"spring_J", "J", "work of f_spring on the tool since the first row"},
+     {"damping_J", "J", "work of damping, friction and force limit, of f - f_spring, since the first row"},
+     {"rotation_J", "J", "what the tool's turning put into the springs since the first row"},
+     {"created_J", "J", "what the springs store beyond the work that translation and rotation did on them"},
+     {"integration_J", "J", "energy made by the integrator since the first row"},
+     {"script_J", "J", "work of a prescribed motion since the first row"},
+     {"residual_J", "J", "kinetic energy that the other terms do not explain: rounding"},
+     {"hand_J", "J", "work of the hand on the handle since the first row"},
+     {"actuator_J", "J", "work of the device's actuators since the first row"},
+     {"device_dissipated_J", "J",
+      "work of the friction in the device's mechanics since the first row: what they dissipated, negative; empty when the "
+      "handle is the tool"},
+     {"device_stored_J", "J", "what the device's mechanics store, now; empty when the handle is the tool"}}};
+const ResultTable kIdealTrajectoryTable = {
     "ideal_trajectory.csv",
     "with record.ideal_trajectory: one line per recorded row at whose tilt the ideal trajectory exists",
-    kIdealTrajectoryColumns};
-constinit const ResultTable kForceReferenceTable = {
-    "force_reference.csv", "with record.force_reference: the measured force of a stroke, one line per recorded row",
-    kForceReferenceColumns};
-constinit const ResultTable kTargetTable = {"targets.csv", "of a tracking hand: one line per target of every trial",
-                                            kTargetColumns};
+    {kStepColumn,
+     kTimeColumn,
+     {"tilt_rad", "rad", "angle of the tool's axis to the hole's"},
+     {"height_m", "m", "tip's centre above the hole's mouth; negative in the hole"},
+     {"ideal_height_m", "m", "the same of the ideal trajectory"},
+     {"lateral_m", "m", "tip's centre from the hole's axis, towards where the tool leans"},
+     {"ideal_lateral_m", "m", "the same of the ideal trajectory"},
+     {"interpenetration_m", "m", "true depth of the tool in the exact block"},
+     {"hand_force_N", "N", "norm of the hand's force"}}};
+const ResultTable kForceReferenceTable = {
+    "force_reference.csv",
+    "with record.force_reference: the measured force of a stroke, one line per recorded row",
+    {kStepColumn,
+     kTimeColumn,
+     {"mfx_N", "N", "x of the reference force f_m on the tool; empty where none was measured"},
+     {"mfy_N", "N", "y of f_m"},
+     {"mfz_N", "N", "z of f_m"},
+     {"force_error_x_N", "N", "x of f - f_m"},
+     {"force_error_y_N", "N", "y of f - f_m"},
+     {"force_error_z_N", "N", "z of f - f_m"}}};
+const ResultTable kTargetTable = {
+    "targets.csv",
+    "of a tracking hand: one line per target of every trial",
+    {{"subject", "1", "simulated subject, from 0"},
+     {"trial", "1", "its trial, from 0"},
+     {"target", "1", "target of the trial, from 0"},
+     {"place", "1", "where the target was: index of the task's places"},
+     {"removed", "1", "1 when the subject removed it, 0 when it disappeared at the time limit"},
+     {"time_s", "s", "from the press that activated the task to the end of the target"},
+     {"rows_on_target", "1", "rows with the tip on it"},
+     {"model_force_N", "N", "mean ||f|| of these rows; empty without any"},
+     {"speed_m_per_s", "m/s", "mean speed of the handle in these rows; empty without any"}}};
 
-Recorder::Recorder(TableTarget target, RowSource source, std::uint64_t every)
-    : source_(std::move(source)), writer_(std::move(target), source_.columns), every_(every) {
+Recorder::Recorder(const TableTarget& target, RowSource source, std::uint64_t every)
+    : source_(std::move(source)), writer_(target, source_.columns), every_(every) {
   assert(every > 0);
 }
 
 RowSource trajectory_rows(const TrajectoryExtras& extras, const InsideObserver* inside) {
-  RowSource source = {.columns = {}, .write = {}, .wants_ratio = true};
+  RowSource source = {.columns = trajectory_columns(extras), .write = {}, .wants_ratio = true};
   std::vector<const TrajectoryGroup*> groups;
-  std::size_t choice = 0, count = 0;
-  for (const TrajectoryGroup& group : trajectory_groups()) {
+  std::vector<std::optional<double>> more;
+  for (const TrajectoryGroup& group : kGroups) {
     if (!(extras.*group.is_wanted)) continue;
     groups.push_back(&group);
-    choice |= std::size_t{1} << (&group - trajectory_groups().data());
-    count += group.columns.size();
+    more.resize(more.size() + group.columns.size());
     source.wants_roll |= group.wants_roll;
     source.wants_springs |= group.wants_springs;
   }
-  source.columns = trajectory_columns(choice);
-  source.write = [groups = std::move(groups), inside, more = std::vector<std::optional<double>>(count)](
-                     const StepRecord& record, TableWriter& table) mutable {
+  source.write = [groups, inside, more](const StepRecord& record, TableWriter& table) mutable {
     std::optional<double>* cells = more.data();
     for (const TrajectoryGroup* group : groups) {
       group->fill(record, inside, cells);
@@ -261,7 +292,7 @@ RowSource contact_rows() {
                 c.weight[i]);
     }
   };
-  return {.columns = kContactColumns, .write = write};
+  return {.columns = kContactTable.columns, .write = write};
 }
 
 RowSource contact_trace_rows() {
@@ -269,7 +300,7 @@ RowSource contact_trace_rows() {
     const ContactBuffer& c = *record.found;
     for (std::size_t i = 0; i < c.size(); ++i) table.row(record.time, c.point(i), c.gradient(i), c.depth[i]);
   };
-  return {.columns = kContactTraceColumns, .write = write, .wants_found = true};
+  return {.columns = kContactTraceTable.columns, .write = write, .wants_found = true};
 }
 
 RowSource stiffness_rows() {
@@ -277,7 +308,7 @@ RowSource stiffness_rows() {
     const Mat3& S = record.force.S;
     table.row(record.step, record.time, S(0, 0), S(0, 1), S(0, 2), S(1, 1), S(1, 2), S(2, 2), lambda_max(S));
   };
-  return {.columns = kStiffnessColumns, .write = write};
+  return {.columns = kStiffnessTable.columns, .write = write};
 }
 
 RowSource ratio_rows(std::vector<int> iterations, ShapingOperations shaping, std::size_t capacity) {
@@ -299,7 +330,7 @@ RowSource ratio_rows(std::vector<int> iterations, ShapingOperations shaping, std
                 lambda_max(S));
     }
   };
-  return {.columns = kRatioColumns, .write = write};
+  return {.columns = kRatioTable.columns, .write = write};
 }
 
 RowSource energy_rows(const EnergyLedger& ledger) {
@@ -310,7 +341,7 @@ RowSource energy_rows(const EnergyLedger& ledger) {
               b.device ? std::optional(b.device->dissipated) : std::nullopt,
               b.device ? std::optional(b.device->stored) : std::nullopt);
   };
-  return {.columns = kEnergyColumns, .write = write};
+  return {.columns = kEnergyTable.columns, .write = write};
 }
 
 RowSource ideal_trajectory_rows(const IdealTrajectoryObserver& observer) {
@@ -320,7 +351,7 @@ RowSource ideal_trajectory_rows(const IdealTrajectoryObserver& observer) {
     table.row(record.step, record.time, e.tilt, e.actual.height, e.ideal.height, e.actual.lateral, e.ideal.lateral,
               e.interpenetration, e.hand_force);
   };
-  return {.columns = kIdealTrajectoryColumns, .write = write};
+  return {.columns = kIdealTrajectoryTable.columns, .write = write};
 }
 
 RowSource force_reference_rows(const ForceFidelityObserver& observer) {
@@ -331,11 +362,11 @@ RowSource force_reference_rows(const ForceFidelityObserver& observer) {
     else
       table.row(record.step, record.time, std::array<std::optional<double>, 6>{});
   };
-  return {.columns = kForceReferenceColumns, .write = write};
+  return {.columns = kForceReferenceTable.columns, .write = write};
 }
 
-void write_target_table(TableTarget target, const std::vector<TargetRow>& rows, FileSet* together) {
-  TableWriter table(std::move(target), kTargetColumns);
+void write_target_table(const TableTarget& target, const std::vector<TargetRow>& rows, FileSet* together) {
+  TableWriter table(target, kTargetTable.columns);
   for (const TargetRow& row : rows) {
     const bool any = row.rows_on_target > 0;
     table.row(std::uint64_t{row.subject}, std::uint64_t{row.trial}, std::uint64_t{row.target},

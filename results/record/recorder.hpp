@@ -2,25 +2,46 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "results/io/table_writer.hpp"
-#include "results/observe/energy.hpp"
-#include "results/observe/force_fidelity.hpp"
-#include "results/observe/ideal_trajectory.hpp"
-#include "results/observe/inside_observer.hpp"
-#include "results/observe/target_metrics.hpp"
-#include "results/record/trajectory_extras.hpp"
-#include "sim/contact/contact_buffer.hpp"
 #include "sim/loop/observer.hpp"
 
 /// The tables that a run writes row by row. Everything is that before the integrator moves the tool.
 namespace hapbench {
 
+class EnergyLedger;
+class ForceFidelityObserver;
+class IdealTrajectoryObserver;
+class InsideObserver;
+struct TargetRow;
+
+/// The fields of a scenario's `record` that add columns to trajectory.csv.
+struct TrajectoryExtras {
+  bool pose = false;
+  bool torque = false;
+  bool inside = false;
+};
+
+/// One of these fields and its columns.
+struct TrajectoryGroup {
+  bool TrajectoryExtras::*is_wanted;
+  const char* field;   ///< its name
+  const char* effect;  ///< what it does
+  std::span<const Column> columns;
+  /// Writes a cell for each column. `inside` observes before the recorder; null without an inside.
+  void (*fill)(const StepRecord& record, const InsideObserver* inside, std::optional<double>* cells);
+  bool wants_roll = false, wants_springs = false;  ///< as those of Observer
+};
+
+/// All of them, in the order of their columns.
+std::span<const TrajectoryGroup> trajectory_groups();
+
 /// Makes the lines of a table from the rows of a run.
 struct RowSource {
-  std::span<const Column> columns;
+  std::vector<Column> columns;
   /// Writes the lines of one row, perhaps none. Allocates nothing.
   std::function<void(const StepRecord& record, TableWriter& table)> write;
   /// As those of Observer.
@@ -32,7 +53,7 @@ struct RowSource {
 class Recorder final : public Observer {
  public:
   /// Keeps rows 0, every, 2 every, … Precondition: every > 0. Throws IoError.
-  Recorder(TableTarget target, RowSource source, std::uint64_t every = 1);
+  Recorder(const TableTarget& target, RowSource source, std::uint64_t every = 1);
 
   bool wants_ratio() const noexcept override { return source_.wants_ratio; }
   bool wants_roll() const noexcept override { return source_.wants_roll; }
@@ -69,9 +90,9 @@ struct ShapingOperations {
 };
 
 /// ratios.csv: how the stiffness ratios of the rendered contacts converge with the number of shaping updates (thesis
-/// 3.4, Fig. 5), whatever law the run uses. For each row with contact, one line per requested number m of updates from
-/// equal weights 1. Works on a copy of the contacts. O(n) per update; as many updates as the largest m. `iterations`:
-/// the requested m >= 0 in any order, duplicates count once; `capacity`: the most contacts a row can have.
+/// 3.4, Fig. 5), whatever law the run uses. For each row with contact, one line per number m >= 0 of updates from equal
+/// weights 1, in `iterations` in any order, duplicates once. O(n) per update; as many updates as the largest m.
+/// `capacity`: the most contacts a row can have.
 RowSource ratio_rows(std::vector<int> iterations, ShapingOperations shaping, std::size_t capacity);
 
 /// energy.csv: the energy balance, one line per row. The recorder must observe after `ledger`.
@@ -83,7 +104,7 @@ RowSource ideal_trajectory_rows(const IdealTrajectoryObserver& observer);
 RowSource force_reference_rows(const ForceFidelityObserver& observer);
 
 /// targets.csv: the result of every target of every subject's trials, in that order. Throws IoError.
-void write_target_table(TableTarget target, const std::vector<TargetRow>& rows, FileSet* together = nullptr);
+void write_target_table(const TableTarget& target, const std::vector<TargetRow>& rows, FileSet* together = nullptr);
 
 /// The tables above with all their columns.
 extern const ResultTable kTrajectoryTable, kContactTable, kContactTraceTable, kStiffnessTable, kRatioTable,

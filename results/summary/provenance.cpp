@@ -1,8 +1,7 @@
-#include "results/summary/provenance.hpp"
-
 #include <fstream>
 
 #include "hapbench_commit.hpp"
+#include "results/summary/summary.hpp"
 
 #ifndef HAPBENCH_MARCH
 #define HAPBENCH_MARCH ""
@@ -11,16 +10,6 @@
 namespace hapbench {
 
 Provenance provenance() {
-  std::ifstream cpuinfo("/proc/cpuinfo");
-  return {.version = HAPBENCH_VERSION,
-          .commit = HAPBENCH_COMMIT,
-          .compiler = HAPBENCH_COMPILER,
-          .build_type = HAPBENCH_BUILD_TYPE,
-          .flags = HAPBENCH_FLAGS,
-          .cpu = cpu_model(cpuinfo)};
-}
-
-InstructionSet instruction_set() {
 #if defined(__AVX512F__)
   const char* widest = "avx512f";
 #elif defined(__AVX2__)
@@ -32,7 +21,16 @@ InstructionSet instruction_set() {
 #else
   const char* widest = "none known";
 #endif
-  return {.march = HAPBENCH_MARCH, .widest = widest, .simd = HAPBENCH_SIMD != 0};
+  std::ifstream cpuinfo("/proc/cpuinfo");
+  return {.version = HAPBENCH_VERSION,
+          .commit = HAPBENCH_COMMIT,
+          .compiler = HAPBENCH_COMPILER,
+          .build_type = HAPBENCH_BUILD_TYPE,
+          .flags = HAPBENCH_FLAGS,
+          .cpu = cpu_model(cpuinfo),
+          .march = HAPBENCH_MARCH,
+          .widest = widest,
+          .simd = HAPBENCH_SIMD != 0};
 }
 
 std::string cpu_model(std::istream& cpuinfo) {

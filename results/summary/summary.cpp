@@ -4,6 +4,7 @@
 #include <iterator>
 
 #include "sim/core/hash.hpp"
+#include "sim/tool/tool_shape.hpp"
 
 namespace hapbench {
 namespace {
@@ -99,15 +100,6 @@ ordered_json finding_json(const Diagnosed& f) {
           {"threshold", f.threshold}, {"says", f.says},     {"try", f.attempt}};
 }
 
-ordered_json tool_json(const ToolSummary& tool) {
-  ordered_json outline = ordered_json::array();
-  for (const auto& [s, rho] : tool.outline) outline.push_back({s, rho});
-  return {{"half_width_m", tool.half_width},
-          {"reach_m", tool.reach},
-          {"convex", tool.convex},
-          {"outline_m", std::move(outline)}};
-}
-
 ordered_json work_json(const RunWork& work) {
   return {{"queries", work.search.queries},
           {"points_tested", work.search.points_tested},
@@ -143,6 +135,15 @@ std::optional<Outcome> outcome_named(std::string_view name) noexcept {
   return static_cast<Outcome>(found - std::begin(kOutcomes));
 }
 
+ordered_json tool_json(const ToolShape& tool) {
+  ordered_json outline = ordered_json::array();
+  for (const auto& [s, rho] : tool.outline()) outline.push_back({s, rho});
+  return {{"half_width_m", tool.half_width()},
+          {"reach_m", tool.reach()},
+          {"convex", tool.convex()},
+          {"outline_m", std::move(outline)}};
+}
+
 ordered_json summary_json(const Result& run) {
   ordered_json warnings = ordered_json::array();
   for (const Warning& warning : run.warnings) warnings.push_back(warning.told());
@@ -159,12 +160,12 @@ ordered_json summary_json(const Result& run) {
     for (const Diagnosed& finding : *run.diagnosis) json["diagnosis"].push_back(finding_json(finding));
   }
   json["metrics"] = ordered_json::object();
-  for (const MetricSection& section : run.sections) {
-    json[section.name] = ordered_json::object();
-    if (section.name == "passivity" && run.tool) json["tool"] = tool_json(*run.tool);
+  for (const auto& [section, members] : run.sections.items()) {
+    json[section] = ordered_json::object();
+    if (section == "passivity" && !run.tool.is_null()) json["tool"] = run.tool;
   }
   add_metrics(json, run.metrics);
-  for (const MetricSection& section : run.sections) json[section.name].update(section.members);
+  for (const auto& [section, members] : run.sections.items()) json[section].update(members);
   json["tolerances"] = tolerances_json(run.metrics);
   json["state_hash"] = hash_text(run.state_hash);
   json["work"] = work_json(run.work);
@@ -198,25 +199,27 @@ ordered_json step_latency_json(const StepLatency& latency) {
   return json;
 }
 
-std::string timing_text(const RunTiming& timing, const InstructionSet& instructions, const Provenance& provenance) {
-  const auto mean = if_any(timing.steps > 0, timing.loop / static_cast<double>(timing.steps));
+std::string timing_text(const Result& run) {
+  const RunTiming& timing = run.timing;
+  const Provenance& build = run.provenance;
+  const auto mean = if_any(run.end.rows > 0, timing.loop / static_cast<double>(run.end.rows));
   return json_text({{"shell_s", timing.shell},
                     {"loop_s", timing.loop},
-                    {"steps", timing.steps},
+                    {"steps", run.end.rows},
                     {"step_mean_s", number_or_null(mean)},
                     {"step_p50_s", number_or_null(timing.step_p50)},
                     {"step_p99_s", number_or_null(timing.step_p99)},
                     {"step_latency", timing.latency ? step_latency_json(*timing.latency) : ordered_json(nullptr)},
                     {"preemptions", timing.preemptions},
                     {"build",
-                     {{"march", instructions.march},
-                      {"instruction_set", instructions.widest},
-                      {"simd", instructions.simd},
-                      {"compiler", provenance.compiler},
-                      {"build_type", provenance.build_type},
-                      {"flags", provenance.flags},
-                      {"commit", provenance.commit}}},
-                    {"cpu", provenance.cpu}});
+                     {{"march", build.march},
+                      {"instruction_set", build.widest},
+                      {"simd", build.simd},
+                      {"compiler", build.compiler},
+                      {"build_type", build.build_type},
+                      {"flags", build.flags},
+                      {"commit", build.commit}}},
+                    {"cpu", build.cpu}});
 }
 
 }  // namespace hapbench

@@ -1,7 +1,7 @@
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
+#include <istream>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
@@ -12,7 +12,6 @@
 #include "results/io/columns.hpp"
 #include "results/observe/step_times.hpp"
 #include "results/observe/target_metrics.hpp"
-#include "results/summary/provenance.hpp"
 #include "sim/core/types.hpp"
 #include "sim/loop/simulation.hpp"
 
@@ -31,6 +30,31 @@ std::string_view outcome_name(Outcome outcome) noexcept;
 /// Returns nothing if no outcome has that name.
 std::optional<Outcome> outcome_named(std::string_view name) noexcept;
 
+/// Identifies the program and the machine that computed a result: part of summary.json, but for the instruction set,
+/// of which only times depend. So summary.json is byte-identical between the scalar and the SIMD build of one tree, and
+/// timing.json names the set. Unknown parts are "unknown".
+struct Provenance {
+  std::string version;      ///< of hapbench
+  std::string commit;       ///< of the source tree at build time; ends in "-dirty" when tracked files differ from it
+  std::string compiler;     ///< name and version
+  std::string build_type;   ///< of CMake
+  std::string flags;        ///< compiler flags that can change numbers
+  std::string cpu;          ///< model name
+  std::string march = {};   ///< value of -march; empty for the compiler's default
+  std::string widest = {};  ///< vector extension allowed: "avx512f", "avx2", "avx", "sse2" or "none known"
+  bool simd = false;        ///< false for the scalar reference
+  std::string plugin = {};  ///< file of the plugin whose algorithm was used; else empty
+  std::string plugin_hash = {};  ///< of that file's content
+
+  /// True when the commit identifies the source.
+  bool identifies_source() const { return commit != "unknown" && !commit.ends_with("-dirty"); }
+};
+
+/// The provenance of the running program. Reads /proc/cpuinfo.
+Provenance provenance();
+/// The model name in a text like /proc/cpuinfo; "unknown" when it has none.
+std::string cpu_model(std::istream& cpuinfo);
+
 /// Counted work of a run. Counts are exact and repeatable; times are in timing.json.
 struct RunWork {
   SearchWork search;
@@ -45,20 +69,6 @@ struct RunWork {
     allocations += other.allocations;
     return *this;
   }
-};
-
-/// Shape of a tool that the scenario's fields do not show, for drawings.
-struct ToolSummary {
-  double half_width = 0.0;  ///< [m]
-  double reach = 0.0;       ///< of its furthest point from the tip centre [m]
-  bool convex = true;
-  std::vector<ProfilePoint> outline;  ///< ToolShape::outline
-};
-
-/// An object of summary.json with metrics of one kind.
-struct MetricSection {
-  std::string name;                ///< stands before the metrics' names, as in "energy.input_J"
-  nlohmann::ordered_json members;  ///< an object: what is not a metric, such as the events of the energy
 };
 
 /// Something that may make the numbers of a run mislead; nothing is refused for it.
@@ -84,7 +94,6 @@ struct Diagnosed {
 struct RunTiming {
   double shell = 0.0;                  ///< to make or fetch the environment's points [s]
   double loop = 0.0;                   ///< of the step loop, observers included [s]
-  std::uint64_t steps = 0;             ///< rows computed in that time
   std::optional<StepLatency> latency;  ///< of single steps, observers included; nothing when they were not timed
   /// Median and 99th percentile of the time of a step by itself, without observers and recorders [s] (StepSampler);
   /// nothing without steps, and no 99th percentile of fewer than a hundred.
@@ -92,7 +101,7 @@ struct RunTiming {
   std::uint64_t preemptions = 0;  ///< involuntary context switches during the step loop
 };
 
-/// The result of a run, or of all trials of a tracking hand, of which the JSON files and printed tables are views.
+/// The result of a run, or of all trials of a tracking hand.
 struct Result {
   std::string name;                ///< of the scenario
   std::string algorithm;           ///< as registered
@@ -104,9 +113,11 @@ struct Result {
   /// under their own names, the final position's coordinates, as "final_position_m.x", then those of the sections, as
   /// "energy.created_sum_J" or "targets.0.success_rate.mean".
   MetricList metrics;
-  std::vector<MetricSection> sections;              ///< passivity, and others for which the scenario asks
+  /// The sections, passivity and others for which the scenario asks, each with an object of what is not a metric, such
+  /// as the events of the energy.
+  nlohmann::ordered_json sections = nlohmann::ordered_json::object();
   std::uint64_t state_hash = 0;                     ///< MetricsObserver::state_hash
-  std::optional<ToolSummary> tool;                  ///< of a tool that is not a cylinder
+  nlohmann::ordered_json tool;                      ///< tool_json of a tool that is not a cylinder; else null
   std::vector<Warning> warnings;                    ///< about the files that the scenario names, then about the run
   std::optional<std::vector<Diagnosed>> diagnosis;  ///< of a run that asked for it
   RunWork work;
@@ -116,14 +127,15 @@ struct Result {
   std::string scenario_hash;    ///< of the effective scenario
   bool replaces_other = false;  ///< its directory had the results of another scenario
 
-  bool has_section(std::string_view section) const {
-    return std::ranges::find(sections, section, &MetricSection::name) != sections.end();
-  }
+  bool has_section(const char* section) const { return sections.contains(section); }
 };
 
 /// summary.json. The same run gives the same bytes: no time stamps, no timings, no instruction set. Numbers that do not
 /// exist (a ratio without contact, the final position without rows) or are not finite are null.
 nlohmann::ordered_json summary_json(const Result& run);
+
+/// Shape of a tool that the scenario's fields do not show, for drawings: half width, reach and outline [m].
+nlohmann::ordered_json tool_json(const ToolShape& tool);
 
 /// summary.json as text.
 std::string summary_text(const Result& run);
@@ -133,6 +145,6 @@ nlohmann::ordered_json step_latency_json(const StepLatency& latency);
 
 /// timing.json, separate from summary.json because no two runs take the same time. Names the build's instruction set
 /// and the CPU, which make times comparable. The mean is null without steps, the latency when steps were not timed.
-std::string timing_text(const RunTiming& timing, const InstructionSet& instructions, const Provenance& provenance);
+std::string timing_text(const Result& run);
 
 }  // namespace hapbench

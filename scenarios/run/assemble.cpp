@@ -5,7 +5,7 @@
 
 #include "algorithms/registry.hpp"
 #include "scenarios/run/load_module.hpp"
-#include "sim/contact/late_contacts.hpp"
+#include "sim/contact/contact_source.hpp"
 
 namespace hapbench {
 namespace {
@@ -13,7 +13,6 @@ namespace {
 /// Room for the contacts of a module, which need not come from triangles.
 constexpr std::size_t kMostModuleContacts = 10'000;
 
-/// The file of the library of rendering.contact_source.
 std::filesystem::path contact_library(const Scenario& scenario) {
   return scenario.directory / scenario.rendering.contact_file;
 }
@@ -34,18 +33,16 @@ std::unique_ptr<ContactSource> make_module_contacts(const Scenario& scenario, co
   return module_contacts(contact_library(scenario), scenario.rendering.contact_config, run);
 }
 
-/// The rules in a fixed order, whatever order the scenario names them in: the first that holds gives the run its
-/// outcome.
+/// The rules in an order that no scenario changes: the first that holds gives the run its outcome.
 std::vector<StopRule> stop_rules(const Scenario& scenario) {
   const auto wants = [&](StopCondition rule) { return std::ranges::count(scenario.time.stop_when, rule) > 0; };
   const Vec3 up = scenario.motion.orientation ? scenario.motion.orientation->up.normalized() : Vec3(0.0, 0.0, 1.0);
   std::vector<StopRule> rules;
-  if (wants(StopCondition::leaves_hole)) rules.push_back(when_tool_leaves_hole(up));
-  if (wants(StopCondition::tool_horizontal)) rules.push_back(when_tool_is_horizontal(up));
+  if (wants(StopCondition::leaves_hole)) rules.push_back({Outcome::leaves_hole, up});
+  if (wants(StopCondition::tool_horizontal)) rules.push_back({Outcome::tool_horizontal, up});
   return rules;
 }
 
-/// A stroke outside the time of the run.
 std::optional<Warning> clock_warning(const Stroke& stroke, const TimeFields& time) {
   const double start = stroke.motion.samples().front().time, stop = stroke.motion.samples().back().time;
   const double end = time.step * static_cast<double>(time.steps - 1);
@@ -114,7 +111,7 @@ SimulationConfig simulation_config(const Scenario& scenario) {
   config.steps = static_cast<std::uint64_t>(scenario.time.steps);
   config.mass = scenario.rendering.mass;
   config.integrator = scenario.integrator.type;
-  config.integrator_options = scenario.integrator.options;
+  config.event_tolerance = scenario.integrator.tolerance;
   config.position = scenario.initial.position;
   config.velocity = scenario.initial.velocity;
   config.stop_when = stop_rules(scenario);

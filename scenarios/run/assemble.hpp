@@ -9,8 +9,7 @@
 namespace hapbench {
 
 /// The scenario with the files that it names read and parsed, so that faults in them are found before anything is
-/// written. Its file_warnings tell of a mesh that is open or was mended, and of a stroke outside the time of the run.
-/// Throws InputError.
+/// written: throws InputError. Its file_warnings tell of a mesh that is open or mended, and of a stroke at other times.
 LoadedScenario checked(LoadedScenario loaded);
 
 /// The numbers of the run: steps, start, integrator, bounds.

@@ -5,14 +5,15 @@
 #include <cmath>
 
 #include "algorithms/stages/damping_and_limits.hpp"
-#include "device_model/velocity_filter.hpp"
+#include "device_model/impedance_device.hpp"
 #include "scenarios/run/scene_checks.hpp"
 #include "scenarios/run/scene_loop.hpp"
 
 namespace hapbench {
 namespace {
 
-constexpr double kAtLimit = 0.999;  ///< of a limit, from which on a force is at it
+constexpr double kAtLimit = 0.999;        ///< of a limit, from which on a force is at it
+constexpr std::uint64_t kLeastRows = 10;  ///< of a quarter that tells of motion
 
 /// The largest force that the device or the rendering lets through [N]; none without limits.
 std::optional<double> force_limit(const Scenario& scenario) {
@@ -80,7 +81,6 @@ Number buzz(const DiagnosedRun& run) {
 
 /// Half the sign changes of the strongest component of the force above 30 Hz in the last quarter, over its time.
 std::string buzz_frequency(const DiagnosedRun& run) {
-  constexpr std::uint64_t kLeastRows = 10;
   const SeenRows::Quarter& last = run.rows.last_quarter;
   Eigen::Index axis = 0;
   if (last.rows < kLeastRows || !(last.high_squares.maxCoeff(&axis) > 0.0)) return "";
@@ -130,8 +130,7 @@ Number encoder_force(const DiagnosedRun& run) {
   return quotient(normal_damping(run.scenario().rendering) * fastest, run.metric("force_mean_in_contact_N"));
 }
 
-/// B dt / m of the mass that moves, along the stiffest contact, over the most that the integrator bears; a handle bears
-/// at most 2.
+/// B dt / m of what moves, along the stiffest contact, over the most that the integrator bears; a handle bears 2.
 Number damping(const DiagnosedRun& run) {
   const Scenario& s = run.scenario();
   const auto* device = std::get_if<ImpedanceDeviceConfig>(&s.device);
@@ -144,7 +143,6 @@ Number damping(const DiagnosedRun& run) {
 }
 
 Number drift(const DiagnosedRun& run) {
-  constexpr std::uint64_t kLeastRows = 10;
   const SeenRows& rows = run.rows;
   const SeenRows::Quarter& last = rows.last_quarter;
   if (last.rows < kLeastRows || !last.touches || is_moved(run.scenario()) || !run.is_free()) return std::nullopt;
@@ -157,9 +155,8 @@ Number drift(const DiagnosedRun& run) {
 /// Those of the laws that the run does not use, with "or" between.
 std::string other_laws(const DiagnosedRun& run, std::initializer_list<const char*> laws) {
   std::string text;
-  for (const char* law : laws) {
+  for (const char* law : laws)
     if (run.result.algorithm != law) text += (text.empty() ? "" : " or ") + std::string(law);
-  }
   return text;
 }
 

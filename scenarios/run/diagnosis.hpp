@@ -12,8 +12,7 @@
 #include "sim/loop/observer.hpp"
 #include "sim/tool/tool_shape.hpp"
 
-/// What is wrong with a run and what to try, by rules, each a number above a threshold. The numbers are metrics, or
-/// come from an observer of all rows.
+/// What is wrong with a run and what to try, by rules: a metric, or a number of an observer, above a threshold.
 namespace hapbench {
 
 /// A rule. What it advises names no law that the run uses, and no cause that was not measured.
@@ -34,8 +33,7 @@ std::vector<Diagnosed> quiet_numbers(const LoadedScenario& loaded, const Result&
 /// What is told of a run that nobody diagnoses, as one of many: that it is not the law which made its numbers.
 std::vector<Warning> rule_warnings(const LoadedScenario& loaded, const Result& result);
 
-/// What rules need of the rows of a run, of all its trials. The last quarter is that of the last trial, or the quarter
-/// in which that ended.
+/// What rules need of the rows of a run, of all its trials; the last quarter is the one in which the last trial ended.
 struct SeenRows {
   std::uint64_t touching = 0;        ///< rows in contact; of these
   std::uint64_t at_force_limit = 0;  ///< with the largest force of device or rendering

@@ -23,8 +23,7 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kLargestModule = std::size_t{1} << 28;
 
-/// Symbols of the library and its dependencies take precedence over ours. Sanitizers replace functions of all
-/// libraries, so they exclude that.
+/// The library's own symbols take precedence over ours, but for sanitizers, which replace functions of all libraries.
 #ifdef HAPBENCH_SANITIZED
 constexpr int kApart = RTLD_NOW | RTLD_LOCAL;
 #else
@@ -45,11 +44,6 @@ std::string hash_of_file(const fs::path& file) {
 
 const char* kind_name(std::uint32_t kind) {
   return kind == HAPBENCH_LAW ? "law" : "source of contacts";
-}
-
-/// Where a module of this kind is named.
-const char* place_of(std::uint32_t kind) {
-  return kind == HAPBENCH_LAW ? "--module" : "rendering.contact_source of a scenario";
 }
 
 /// The function by which the library hands over its table.
@@ -95,8 +89,9 @@ const HapbenchModule& opened(const fs::path& file, std::uint32_t kind) {
   if (table->kind != HAPBENCH_LAW && table->kind != HAPBENCH_CONTACTS)
     fail_in_file(file, fmt::format("its kind is {}; allowed: HAPBENCH_LAW or HAPBENCH_CONTACTS", table->kind));
   if (table->kind != kind)
-    fail_in_file(file, fmt::format("holds a {}, not a {}; name it in {}", kind_name(table->kind), kind_name(kind),
-                                   place_of(table->kind)));
+    fail_in_file(file,
+                 fmt::format("holds a {}, not a {}; name it in {}", kind_name(table->kind), kind_name(kind),
+                             table->kind == HAPBENCH_LAW ? "--module" : "rendering.contact_source of a scenario"));
   return *table;
 }
 

@@ -23,13 +23,11 @@ struct LoadedLaw {
 /// called while another thread reads the table of algorithms. Throws InputError.
 void load_law(const std::filesystem::path& file);
 
-/// Loads every *.so in folders that are separated by colons, in the order of their names. `what` names the list in
-/// messages. Throws InputError.
+/// Loads every *.so in folders separated by colons, by name; `what` names the list in messages. Throws InputError.
 void load_laws_in(const std::string& what, const std::string& folders);
 
-/// Sets the function that is called before a new law is loaded. Its result is kept until the law is loaded. If several
-/// threads may load laws, it throws InputError while others read the table of algorithms, and its result keeps them
-/// from reading.
+/// Sets the function that is called before a new law is loaded; its result lives until that is done. If several threads
+/// may load laws, it throws InputError while others read the table of algorithms, and its result keeps them from it.
 void guard_loading(std::function<std::shared_ptr<void>()> guard);
 
 /// The loaded laws, in the order of loading.

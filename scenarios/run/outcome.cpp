@@ -57,8 +57,8 @@ class Approach {
     std::optional<double> rest = {};
   };
   /// In up to 256 rows before the first contact, of as many parts of the run those closest to the environment's box;
-  /// within a hundredth of the distance in these. Each search among all points tells how close the other rows can be at
-  /// the least, since no point of the tool comes closer than it moves: a straight approach takes two.
+  /// within 1 %. Each search among all points tells how close the other rows can be at the least, since no point of the
+  /// tool comes closer than it moves: a straight approach takes two.
   Closest closest_to_surface(const ToolShape& tool) const {
     constexpr double kWithin = 0.99;
     Closest closest{std::numeric_limits<double>::infinity(), 0.0};
@@ -125,8 +125,7 @@ class DragCourse {
     }
   }
 
-  /// From when on the tool came less than a tenth of the way of the point that leads it, over every width of its own
-  /// that the point went on.
+  /// Since when the tool came less than a tenth as far as the point that leads it, over each width that this went on.
   std::optional<Stuck> stuck() const {
     if (!stuck_) return std::nullopt;
     return Stuck{stuck_->time, now_.way - stuck_->way, now_.asked - stuck_->asked};
@@ -134,8 +133,7 @@ class DragCourse {
   double way() const { return now_.way; }      ///< furthest that the tool came on the path [m]
   double asked() const { return now_.asked; }  ///< how far its hand led it [m]
   /// How far the tool ended behind where its hand led it [m], if that is further than a tenth of the way and than the
-  /// tool's half width. Empty where it had been half as far behind at half way: friction holds a tool back by as much
-  /// as the hand's spring gives, and it comes along.
+  /// tool's half width, and than twice as far as at half way: a tool that friction holds back comes along.
   std::optional<double> left_behind() const {
     const double most = std::max({kMovingShare * now_.asked, 0.5 * width_, 2.0 * behind_at_half_way_});
     return behind_ > most ? std::optional(behind_) : std::nullopt;
@@ -157,8 +155,8 @@ class DragCourse {
 };
 
 /// Finds a tool that the spring of a hand, or of a subject that aims at an intended position, cannot move. A spring
-/// whose target goes into the surface only presses the tool on it. The tool is therefore stuck only if the target came
-/// away from it by more than its width across the direction in which the springs of the contacts push.
+/// whose target goes into the surface only presses the tool on it: the target must come away from the tool by more than
+/// its width across the push of the contacts' springs.
 class Standstill {
  public:
   /// `target`: of the spring, at the time of the row that was the last [s]. `width`: the tool's [m].
@@ -171,12 +169,10 @@ class Standstill {
     // Before the first touch nothing tells the direction of the push: how far away the target was then does not count.
     if (push_.isZero(0.0)) across_ = 0.0;
     push_ += kRows * (record.force.spring - push_);
-    const auto extend = [](Box& box, const Vec3& p) {
-      box = {box.min.cwiseMin(p), box.max.cwiseMax(p)};
-      return diagonal(box);
-    };
-    stuck_.way = extend(ways_, place);
-    stuck_.target_way = extend(target_ways_, target);
+    ways_.add(place);
+    target_ways_.add(target);
+    stuck_.way = diagonal(ways_);
+    stuck_.target_way = diagonal(target_ways_);
     if (!began_ || stuck_.way > kMovingShare * std::max(width_, stuck_.target_way)) {
       began_ = true;
       ways_ = {place, place};
@@ -240,9 +236,8 @@ class OutcomeWatch final : public OutcomeObserver {
 
   Outcome outcome(Outcome outcome) override {
     if (!approach_ || outcome != Outcome::completes) return outcome;
-    for (const Condition& condition : kConditions) {
+    for (const Condition& condition : kConditions)
       if ((this->*condition.holds)()) return condition.outcome;
-    }
     return outcome;
   }
 
@@ -255,8 +250,7 @@ class OutcomeWatch final : public OutcomeObserver {
         warnings.push_back({std::string(outcome_name(outcome)), "", std::move(text)});
     }
     if (drag_ == nullptr) return warnings;
-    if (auto ends = short_path_warning(std::get<DragHandFields>(scenario_.hand), drag_->path().length(),
-                                       drag_way_asked(), 2.0 * tool_->half_width()))
+    if (auto ends = short_path_warning(std::get<DragHandFields>(scenario_.hand), *drag_, time_, *tool_))
       warnings.push_back(std::move(*ends));
     return warnings;
   }
@@ -269,8 +263,7 @@ class OutcomeWatch final : public OutcomeObserver {
   }
 
  private:
-  /// What makes another outcome of one that completes, and a warning that says what happened and the likely cause;
-  /// empty where there is nothing to say. The diagnosis says what to try.
+  /// What makes another outcome of one that completes, and a warning of what happened and why, which may be empty.
   struct Condition {
     Outcome outcome;
     bool (OutcomeWatch::*holds)();
@@ -284,8 +277,6 @@ class OutcomeWatch final : public OutcomeObserver {
     return inside != nullptr ? inside->max.value_or(0.0) : 0.0;
   }
 
-  /// The way along which the hand has led the tool by the last row [m].
-  double drag_way_asked() const { return way_to_cover(std::get<DragHandFields>(scenario_.hand), time_); }
   /// True when a dragged tool had no contact in the end for so long that the next touch would be a landing.
   bool drag_lost() const {
     return drag_ != nullptr && drag_->drag().force(time_) > 0.0 && last_contact_ &&
@@ -389,11 +380,11 @@ class OutcomeWatch final : public OutcomeObserver {
         likely_cause());
   }
 
-  /// It was pressed on the surface, and its calm numbers tell nothing of a drag. The spring that leads a tool which
-  /// follows lags by less.
+  /// Its calm numbers tell nothing of a drag. The spring that leads a tool which follows lags by less.
   bool not_dragged() {
     const double width = 2.0 * tool_->half_width();
-    return course_ && course_->way() < width && drag_way_asked() > 2.0 * width;
+    return course_ && course_->way() < width &&
+           way_to_cover(std::get<DragHandFields>(scenario_.hand), time_) > 2.0 * width;
   }
   std::string stands_text() {
     const auto s = stuck();

@@ -19,8 +19,8 @@ class OutcomeObserver : public Observer {
   virtual Outcome outcome(Outcome outcome) = 0;
   /// After the run: warnings about its outcome and the path of a drag. Precondition: there are metrics.
   virtual std::vector<Warning> warnings(Outcome outcome) = 0;
-  /// The longest way of the tip in one step near the environment: in one that began no further from the environment's
-  /// box than it was long, so that it may have met the surface, or passed it; 0 without points [m].
+  /// The longest way of the tip in one step that began no further from the environment's box than it was long, so that
+  /// it may have met the surface, or passed it; 0 without points [m].
   virtual double longest_step() const = 0;
   /// Null without a solid.
   virtual const InsideObserver* inside() const = 0;
@@ -28,8 +28,7 @@ class OutcomeObserver : public Observer {
   virtual const InsideDepths* depths() = 0;
 };
 
-/// Scenario and parts must outlive the observer; `metrics` observes before, and may be null where nobody asks for
-/// warnings.
+/// Scenario and parts must outlive it; `metrics` observes before, and may be null where nobody asks for warnings.
 std::unique_ptr<OutcomeObserver> outcome_observer(const Scenario& scenario, const NamedFiles& files,
                                                   const SimulationParts& parts,
                                                   const MetricsObserver* metrics = nullptr);

@@ -28,8 +28,7 @@ bool is_terminal() {
   return isatty(STDERR_FILENO) == 1;
 }
 
-/// Shows a line on standard error: on a terminal in place of the one shown before, cut to its width, as a broken line
-/// could not be taken back.
+/// Shows a line; on a terminal in place of the one before, cut to its width, as a broken line could not be taken back.
 void show_status(std::string_view line) {
   if (!is_terminal()) {
     std::fprintf(stderr, "%.*s\n", static_cast<int>(line.size()), line.data());
@@ -71,11 +70,10 @@ void tell_progress(std::string_view label, std::uint64_t done, std::uint64_t tot
   if (thread_listener != nullptr) (*thread_listener)(label, done, total);
 }
 
-ProgressBar::ProgressBar(std::string label, std::uint64_t total, bool enabled)
+ProgressBar::ProgressBar(std::string label, std::uint64_t total)
     : listener_(thread_listener),
       label_(std::move(label)),
       total_(total),
-      enabled_(enabled),
       start_(Clock::now()),
       next_(start_ + kSilence) {}
 
@@ -84,7 +82,7 @@ ProgressBar::~ProgressBar() {
 }
 
 void ProgressBar::show(std::uint64_t done, bool counts) noexcept {
-  if (!enabled_) return;
+  if (label_.empty()) return;
   if (listener_ != nullptr) return (*listener_)(label_, done, total_);
   const auto now = Clock::now();
   if (now < next_ || (done == total_ && !is_terminal())) return;
@@ -105,9 +103,6 @@ void ProgressBar::show(std::uint64_t done, bool counts) noexcept {
   }
   show_status({line.data(), line.size()});
 }
-
-WaitNotice::WaitNotice(std::string what, bool enabled)
-    : WaitNotice([what = std::move(what)] { return what; }, enabled) {}
 
 WaitNotice::WaitNotice(std::function<std::string()> what, bool enabled) {
   if (!enabled) return;

@@ -19,12 +19,11 @@ void report_progress_to(const ProgressListener* listener) noexcept;
 void tell_progress(std::string_view label, std::uint64_t done, std::uint64_t total) noexcept;
 
 /// How much is done, as a line on standard error for work that takes longer than two seconds; silent otherwise. Where
-/// standard error is not a terminal, a line after 2 s, 4 s, 8 s and so on. Before a listener it tells that of every
-/// `show`.
+/// standard error is not a terminal, a line after 2 s, 4 s, 8 s and so on. A listener is told of every `show`.
 class ProgressBar {
  public:
-  /// `label` begins the line; `enabled` false silences it (--quiet).
-  ProgressBar(std::string label, std::uint64_t total, bool enabled);
+  /// `label` begins the line; an empty one silences it (--quiet).
+  ProgressBar(std::string label, std::uint64_t total);
   /// Removes the line.
   ~ProgressBar();
   ProgressBar(const ProgressBar&) = delete;
@@ -40,18 +39,16 @@ class ProgressBar {
   const ProgressListener* listener_;  ///< may be null
   std::string label_;
   std::uint64_t total_;
-  bool enabled_;
   bool drawn_ = false;
   Clock::time_point start_;
   Clock::time_point next_;
 };
 
-/// A line on standard error that says what takes so long, with the seconds, for work of unknown length; when, and where
-/// standard error is not a terminal, as ProgressBar does.
+/// As ProgressBar for work of unknown length: a line on standard error with what takes so long, and the seconds.
 class WaitNotice {
  public:
   /// `enabled` false silences it (--quiet).
-  WaitNotice(std::string what, bool enabled);
+  WaitNotice(const std::string& what, bool enabled) : WaitNotice([what] { return what; }, enabled) {}
   /// `what` is asked for each line, from another thread.
   WaitNotice(std::function<std::string()> what, bool enabled);
 

@@ -1,4 +1,4 @@
-#include "scenarios/run/result_folder.hpp"
+#include "scenarios/run/run_scenario.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -9,8 +9,10 @@
 #include <fstream>
 #include <string_view>
 
-#include "algorithms/laws/shaped_stiffness.hpp"
+#include "algorithms/laws/force_law.hpp"
 #include "results/io/columns.hpp"
+#include "results/observe/energy.hpp"
+#include "results/observe/ideal_trajectory.hpp"
 
 namespace hapbench {
 namespace {
@@ -72,18 +74,15 @@ double lines_a_row(const ResultTable& table, const RecordFields& record) {
 constexpr const char *kTrialDirectory = "subject_", *kEffectiveFile = "scenario.effective.json";
 
 void create(NewDirectories& directories, const fs::path& directory) {
-  std::error_code error;
-  directories.create(directory, error);
-  if (error) throw IoError("create", directory, error);
+  if (const auto error = directories.create(directory)) throw IoError("create", directory, error);
 }
 
 std::vector<fs::path> trial_directories(const fs::path& directory) {
   std::error_code ignored;
   std::vector<fs::path> found;
-  for (const auto& entry : fs::directory_iterator(directory, ignored)) {
+  for (const auto& entry : fs::directory_iterator(directory, ignored))
     if (entry.is_directory(ignored) && entry.path().filename().string().starts_with(kTrialDirectory))
       found.push_back(entry.path());
-  }
   return found;
 }
 
@@ -133,15 +132,16 @@ double expected_output_bytes(const Scenario& scenario) {
   return trial_count(scenario.hand) * rows * row;
 }
 
-void NewDirectories::create(const fs::path& directory, std::error_code& error) {
+std::error_code NewDirectories::create(const fs::path& directory) {
   std::vector<fs::path> missing;
-  std::error_code unknown;
+  std::error_code error, unknown;
   for (fs::path path = directory; !path.empty() && path != path.root_path() && !fs::exists(path, unknown);
        path = path.parent_path()) {
     missing.push_back(path);
   }
   made_.insert(made_.end(), missing.rbegin(), missing.rend());
   fs::create_directories(directory, error);
+  return error;
 }
 
 NewDirectories::~NewDirectories() {
@@ -185,7 +185,7 @@ bool ResultFolder::write(const RecordFields& record, const WrittenScenario& scen
   std::ifstream earlier(directory_ / kEffectiveFile, std::ios::binary);
   const std::string before{std::istreambuf_iterator<char>(earlier), {}};
   add("columns.json", json_text(columns_json(tables, result.metrics)));
-  if (record.timing) add("timing.json", timing_text(result.timing, instruction_set(), provenance()));
+  if (record.timing) add("timing.json", timing_text(result));
   // The summary, which says that a run is there, is the first to go and the last to come.
   add("summary.json", summary_text(result));
   files.commit();

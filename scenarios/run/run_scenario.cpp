@@ -24,15 +24,14 @@ using Clock = std::chrono::steady_clock;
 
 MetricsConfig metrics_config(const Scenario& scenario, const SimulationParts& parts) {
   const RenderingConfig& rendering = scenario.rendering;
-  MetricsConfig config;
+  MetricsConfig config = {.settling = scenario.metrics,
+                          .steps = static_cast<std::uint64_t>(scenario.time.steps / scenario.time.stride),
+                          .most_reduced = if_any(rendering.reduction.has_value(), parts.source->capacity()),
+                          .stride = static_cast<std::uint64_t>(scenario.time.stride)};
   // Where the position is prescribed, or a handle moves the tool, no integrator steps the friction.
   if (parts.motion->position_is_free() && !handle_moves_tool(scenario.device))
     config.friction_limit = explicit_friction_limit(*scenario.integrator.type, rendering.mass, scenario.time.step,
                                                     rendering.mu_s, rendering.mu_f);
-  config.settling = scenario.metrics;
-  config.stride = static_cast<std::uint64_t>(scenario.time.stride);
-  config.steps = static_cast<std::uint64_t>(scenario.time.steps / scenario.time.stride);
-  if (rendering.reduction) config.most_reduced = parts.source->capacity();
   return config;
 }
 
@@ -45,13 +44,6 @@ std::shared_ptr<const ReferenceForce> reference_force(const Scenario& scenario, 
   if (scenario.record.force_reference)
     throw InputError("/record/force_reference: got true; allowed: false, because the stroke has no measured force");
   return nullptr;
-}
-
-/// Takes kAskEvery steps and times each; returns false once the run has ended.
-bool advance_timed(Simulation& simulation, StepTimes& times) {
-  bool more = true;
-  for (std::uint64_t i = 0; i < kAskEvery && (more = simulation.step()); ++i) times.lap();
-  return more;
 }
 
 std::uint64_t involuntary_context_switches() {
@@ -68,13 +60,6 @@ RunWork work_of(const Simulation& simulation, std::uint64_t allocations) {
   work.algorithm = simulation.algorithm().work();
   work.search += work.algorithm.search;
   return work;
-}
-
-void add_step_times(const std::vector<std::uint64_t>& nanoseconds, RunTiming& timing) {
-  if (nanoseconds.empty()) return;
-  const StepLatency latency = step_latency(nanoseconds, 0);
-  timing.step_p50 = 1e-9 * static_cast<double>(latency.p50);
-  if (nanoseconds.size() >= 100) timing.step_p99 = 1e-9 * static_cast<double>(latency.p99);
 }
 
 /// A run between its trials: the observers that go on from trial to trial, and what the trials gave so far.
@@ -103,8 +88,8 @@ class Run {
 
     StepSampler sampler(static_cast<std::uint64_t>(time.steps));
     const auto seen = outcome_observer(scenario_, loaded_.files, parts, &*metrics_);
-    ProgressBar bar(label, static_cast<std::uint64_t>(time.steps), !label.empty());
-    std::vector<Observer*> observers = {&sampler.first(), &*metrics_};
+    ProgressBar bar(label, static_cast<std::uint64_t>(time.steps));
+    std::vector<Observer*> observers = {&sampler, &*metrics_};
     for (const auto& observer : sections_.all()) observers.push_back(observer.get());
     observers.push_back(seen.get());
     if (diagnosis_) observers.push_back(&*diagnosis_);
@@ -115,7 +100,7 @@ class Run {
         recorders_.push_back(std::move(recorder));
       }
     }
-    observers.push_back(&sampler.last());
+    observers.push_back(&sampler);
 
     Simulation simulation(config, std::move(parts), std::move(observers));
     const SimulationResult result = step_to_end(simulation, bar);
@@ -135,22 +120,22 @@ class Run {
     result.state_hash = metrics_->state_hash();
     result.work = work_;
     result.warnings = loaded_.file_warnings;
-    for (Warning& warning : warnings_) {
-      if (trials_ == 1) break;
-      warning.text = fmt::format("in {} of {} trials, first in number {}: {}", with_warnings_, trials_,
-                                 first_with_warnings_, warning.text);
+    if (trials_ > 1) {
+      for (Warning& warning : warnings_)
+        warning.text = fmt::format("in {} of {} trials, first in number {}: {}", with_warnings_, trials_,
+                                   first_with_warnings_, warning.text);
     }
     for (const auto& more : {warnings_, tool_warnings(scenario_.rendering, *tool_),
                              diagnosis_ ? std::vector<Warning>() : rule_warnings(loaded_, result)})
       result.warnings.insert(result.warnings.end(), more.begin(), more.end());
     // The fields of a cylinder say all.
-    if (!std::holds_alternative<CylinderFields>(scenario_.tool))
-      result.tool = ToolSummary{tool_->half_width(), tool_->reach(), tool_->convex(), tool_->outline()};
+    if (!std::holds_alternative<CylinderFields>(scenario_.tool)) result.tool = tool_json(*tool_);
     if (const auto* targets = sections_.find<TargetMetricsObserver>()) result.targets = targets->rows();
     if (diagnosis_) result.diagnosis = diagnosis_->findings(loaded_, result, *tool_);
     result.timing = timing_;
-    result.timing.steps = worst_->rows;
-    add_step_times(step_nanoseconds_, result.timing);
+    const StepLatency alone = step_latency(step_nanoseconds_, 0);
+    result.timing.step_p50 = if_any(alone.steps > 0, 1e-9 * static_cast<double>(alone.p50));
+    result.timing.step_p99 = if_any(alone.steps >= 100, 1e-9 * static_cast<double>(alone.p99));
     if (times_) result.timing.latency = step_latency(times_->nanoseconds(), times_->overhead());
     return result;
   }
@@ -160,17 +145,20 @@ class Run {
 
  private:
   SimulationResult step_to_end(Simulation& simulation, ProgressBar& bar) {
-    const std::uint64_t allocations_before = heap_allocations();
+    const AllocationCount allocations;
     const std::uint64_t preemptions_before = involuntary_context_switches();
     const auto start = Clock::now();
     if (times_) times_->start();
     SimulationResult result = run_to_end(simulation, [&] {
       bar.show(simulation.next_row());
-      return times_ ? advance_timed(simulation, *times_) : simulation.advance(kAskEvery);
+      if (!times_) return simulation.advance(kAskEvery);
+      bool more = true;
+      for (std::uint64_t i = 0; i < kAskEvery && (more = simulation.step()); ++i) times_->lap();
+      return more;
     });
     timing_.loop += std::chrono::duration<double>(Clock::now() - start).count();
     timing_.preemptions += involuntary_context_switches() - preemptions_before;
-    work_ += work_of(simulation, heap_allocations() - allocations_before);
+    work_ += work_of(simulation, allocations.value());
     return result;
   }
 
@@ -228,14 +216,28 @@ std::vector<Trial> trials_of(const Scenario& scenario) {
   return trials;
 }
 
-/// `tables`, if given, only without `output`.
-Result run_trials(const LoadedScenario& loaded, const std::shared_ptr<const PointShell>& shell,
-                  const std::optional<fs::path>& output, bool progress, RunTables* tables, bool diagnose,
-                  double shell_seconds) {
+std::string divergence_text(const SimulationResult& result) {
+  if (result.outcome != Outcome::diverges) return "";
+  const Divergence& d = result.divergence;
+  if (!d.fault.empty()) return fmt::format(" ({}, at step {})", d.fault, d.step);
+  return fmt::format(" ({} reached {:.4g} at step {}, beyond {:.4g})", d.quantity, d.magnitude, d.step, d.bound);
+}
+
+}  // namespace
+
+Result run_scenario(const LoadedScenario& loaded, const std::optional<fs::path>& output, bool progress,
+                    RunTables* tables, bool diagnose, std::shared_ptr<const PointShell> shell) {
   const Scenario& scenario = loaded.scenario;
+  const auto start = Clock::now();
+  if (!shell) {
+    const WaitNotice notice(scenario.name + ": building the shell", progress);
+    shell = make_shell(scenario, loaded.files);
+  }
+  const std::chrono::duration<double> shell_time = Clock::now() - start;
   const std::vector<Trial> trials = trials_of(scenario);
   std::optional<ResultFolder> folder;
   if (output) folder.emplace(*output);
+  if (output) tables = nullptr;
   if (tables != nullptr) tables->trials.reserve(trials.size());  // the recorders point into it
   Run run(loaded, shell, trials.size(), diagnose);
   for (std::size_t i = 0; i < trials.size(); ++i) {
@@ -247,7 +249,7 @@ Result run_trials(const LoadedScenario& loaded, const std::shared_ptr<const Poin
     run.make(trials[i], target, label);
   }
   Result result = run.result();
-  result.timing.shell = shell_seconds;
+  result.timing.shell = shell_time.count();
   result.unmet = unmet_expectations(scenario.expect, result);
   result.expected = result.unmet.empty();
   if (!folder && tables == nullptr) return result;
@@ -260,32 +262,6 @@ Result run_trials(const LoadedScenario& loaded, const std::shared_ptr<const Poin
   if (folder) result.replaces_other = folder->write(scenario.record, written, result, run.recorders());
   if (tables != nullptr) tables->write(written, result, run.recorders());
   return result;
-}
-
-std::string divergence_text(const SimulationResult& result) {
-  if (result.outcome != Outcome::diverges) return "";
-  const Divergence& d = result.divergence;
-  if (!d.fault.empty()) return fmt::format(" ({}, at step {})", d.fault, d.step);
-  return fmt::format(" ({} reached {:.4g} at step {}, beyond {:.4g})", d.quantity, d.magnitude, d.step, d.bound);
-}
-
-}  // namespace
-
-Result run_scenario(const LoadedScenario& loaded, const std::optional<fs::path>& output, bool progress,
-                    RunTables* tables, bool diagnose) {
-  double seconds = 0.0;
-  const auto shell = [&] {
-    const WaitNotice notice(loaded.scenario.name + ": building the shell", progress);
-    const auto start = Clock::now();
-    auto made = make_shell(loaded.scenario, loaded.files);
-    seconds = std::chrono::duration<double>(Clock::now() - start).count();
-    return made;
-  }();
-  return run_trials(loaded, shell, output, progress, output ? nullptr : tables, diagnose, seconds);
-}
-
-Result run_with_shell(const LoadedScenario& loaded, const std::shared_ptr<const PointShell>& shell) {
-  return run_trials(loaded, shell, {}, false, nullptr, false, 0.0);
 }
 
 std::vector<std::string> unmet_expectations(const ExpectFields& expect, const Result& run) {

@@ -37,7 +37,7 @@ const char* size_question(const Environment& environment) {
 
 /// An environment that no hand works on, whatever the size of the tool.
 std::optional<Warning> size_warning(const Environment& environment, const Box& box) {
-  const double longest = (box.max - box.min).maxCoeff();
+  const double longest = box.size().maxCoeff();
   const bool may_be_a_patch = std::holds_alternative<PointShellEnvironment>(environment);
   if (longest <= kLongestObject && (longest >= kShortestObject || may_be_a_patch)) return std::nullopt;
   return Warning{"size", "",
@@ -45,8 +45,7 @@ std::optional<Warning> size_warning(const Environment& environment, const Box& b
                              length_text(kShortestObject), length_text(kLongestObject), size_question(environment))};
 }
 
-/// Points of a mesh so far apart that the tool feels each of them. Surfaces of formulas have the spacing they were
-/// given.
+/// Points of a mesh so far apart that the tool feels each. Surfaces of formulas have the spacing they were given.
 std::optional<Warning> spacing_warning(const LoadedScenario& loaded, const ToolShape& tool) {
   constexpr double kSmooth = 0.1, kRough = 1.0 / 6.0;  // of the tool's width; "hapbench new" takes the former
   if (!std::holds_alternative<MeshEnvironment>(loaded.scenario.environment)) return std::nullopt;
@@ -59,24 +58,21 @@ std::optional<Warning> spacing_warning(const LoadedScenario& loaded, const ToolS
                              length_text(width), distance.path, kSmooth * width)};
 }
 
-/// Where the tool starts, against its own size and the environment's.
 std::optional<Warning> start_warning(const ToolShape& tool, const SceneFacts::Surface& surface) {
   const double least = std::min(diagonal(surface.box), tool.reach());
-  if (!(surface.gap > kUnitsApart * least)) return std::nullopt;
+  const double gap = surface.start.distance;
+  if (!(gap > kUnitsApart * least)) return std::nullopt;
   return Warning{
       "start", "",
       fmt::format("the tool starts {} from the environment, {:.0f} times the size of {}: is its place in metres?",
-                  length_text(surface.gap), surface.gap / least,
-                  least == tool.reach() ? "the tool" : "the environment")};
+                  length_text(gap), gap / least, least == tool.reach() ? "the tool" : "the environment")};
 }
 
-/// A recorded stroke, against the environment, the tool and the time step.
 std::vector<Warning> stroke_warnings(const Stroke& stroke, const TimeFields& time, const ToolShape& tool,
                                      const Box& environment) {
   const auto samples = stroke.motion.samples();
-  Box box{samples.front().position, samples.front().position};
-  for (const RecordedMotion::Sample& sample : samples)
-    box = {box.min.cwiseMin(sample.position), box.max.cwiseMax(sample.position)};
+  Box box = Box::nothing();
+  for (const RecordedMotion::Sample& sample : samples) box.add(sample.position);
   const double size = diagonal(environment), way = diagonal(box);
   const std::string of = fmt::format("the stroke's places are within {}", size_text(box));
   std::vector<Warning> warnings;
@@ -142,7 +138,6 @@ std::span<const Profile> scripts_of(const HandFields& hand) {
   return {};
 }
 
-/// The largest of what is said of a scenario's scripts.
 double largest(const Scenario& scenario, double (*of)(const Profile&)) {
   double most = 0.0;
   for (const Profile& script : scripts_of(scenario.hand)) most = std::max(most, of(script));
@@ -191,15 +186,17 @@ double way_to_cover(const DragHandFields& hand, double duration) {
   return std::min(way, legs);
 }
 
-std::optional<Warning> short_path_warning(const DragHandFields& hand, double path, double to_cover, double width) {
+std::optional<Warning> short_path_warning(const DragHandFields& fields, const DragHand& hand, double duration,
+                                          const ToolShape& tool) {
+  const double path = hand.path().length(), to_cover = way_to_cover(fields, duration);
   // By less than the tool is wide it is the edge that ends the way.
-  if (to_cover <= path + width) return std::nullopt;
+  if (to_cover <= path + 2.0 * tool.half_width()) return std::nullopt;
   const std::string ends =
       fmt::format("the path of the drag ends after {} of {}: ", length_text(path), length_text(to_cover));
   return Warning{"short_path", "",
-                 ends + (hand.path ? "hand.path_m leads no further over the surface; let its points lie on it"
-                                   : "beyond, the surface ends or turns against hand.direction; another "
-                                     "initial.position_m, a larger hand.smoothing_m or hand.path_m leads further")};
+                 ends + (fields.path ? "hand.path_m leads no further over the surface; let its points lie on it"
+                                     : "beyond, the surface ends or turns against hand.direction; another "
+                                       "initial.position_m, a larger hand.smoothing_m or hand.path_m leads further")};
 }
 
 std::string scale_question(const Scenario& scenario, const ToolShape& tool, const Box& environment) {
@@ -214,7 +211,7 @@ std::string scale_question(const Scenario& scenario, const ToolShape& tool, cons
 
 std::string odd_frame(const Box& tool) {
   constexpr double kOdd = 2.0;  // as far this way as the other, or further, is not an accident
-  const Vec3 size = tool.max - tool.min;
+  const Vec3 size = tool.size();
   const double gap = distance_to(tool, Vec3::Zero());
   if (gap > 0.0) return fmt::format("lies {} away from its tip centre", length_text(gap));
   const auto [short_side, long_side] = std::minmax(size.x(), size.y());
@@ -262,13 +259,12 @@ SceneFacts scene_facts(const LoadedScenario& loaded) {
     facts.is_closed = loaded.files.at(kEnvironmentFile).mesh().open_edges().empty();
   const SimulationParts parts = assemble(scenario, loaded.files, shell, {});
   if (const auto* hand = dynamic_cast<const DragHand*>(parts.hand.get())) {
-    const auto& fields = std::get<DragHandFields>(scenario.hand);
-    const double way = way_to_cover(fields, step * static_cast<double>(scenario.time.steps));
-    warn(short_path_warning(fields, hand->path().length(), way, 2.0 * tool.half_width()));
+    const double duration = step * static_cast<double>(scenario.time.steps);
+    warn(short_path_warning(std::get<DragHandFields>(scenario.hand), *hand, duration, tool));
   }
   const ToolPose pose = first_pose(scenario, parts);
-  const auto [gap, touching] = gap_between(tool, pose, *shell);
-  const auto& surface = facts.surface.emplace(SceneFacts::Surface{shell->bounds(), shell->size(), gap, touching});
+  const Gap gap = gap_between(tool, pose, *shell);
+  const auto& surface = facts.surface.emplace(SceneFacts::Surface{shell->bounds(), shell->size(), gap});
   if (surface.box.min != surface.box.max) {  // a single point has no size
     if (const auto scale = scale_warning(scenario, tool, surface.box)) {
       warn(scale);
@@ -345,9 +341,8 @@ std::string length_text(double metres) {
 }
 
 std::string size_text(const Box& box) {
-  const Vec3 size = box.max - box.min;
-  const Unit unit = unit_for(size.maxCoeff());
-  const Vec3 n = size * unit.per_metre;
+  const Unit unit = unit_for(box.size().maxCoeff());
+  const Vec3 n = box.size() * unit.per_metre;
   return fmt::format("{:.3g} x {:.3g} x {:.3g} {}", n.x(), n.y(), n.z(), unit.name);
 }
 

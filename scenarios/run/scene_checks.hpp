@@ -10,14 +10,20 @@
 
 namespace hapbench {
 
+/// The place of a tool against the points of a surface.
+struct Gap {
+  /// Distance of the tool from the nearest point [m]; when negative, how deep the deepest point lies in it.
+  double distance = 0.0;
+  std::size_t touching = 0;  ///< points in the tool
+};
+
 /// Facts about a scenario that are known before it runs.
 struct SceneFacts {
   /// The points of the environment; springs have none.
   struct Surface {
     Box box;
     std::size_t points = 0;
-    double gap = 0.0;          ///< Gap::distance where the tool starts [m]
-    std::size_t touching = 0;  ///< points in the tool where it starts
+    Gap start;  ///< where the tool starts
   };
   std::optional<Surface> surface;
   std::shared_ptr<const ToolShape> tool;
@@ -37,17 +43,16 @@ inline constexpr double kShortestObject = 0.001, kLongestObject = 1.0;
 /// time allows, along points at most to the last one [m].
 double way_to_cover(const DragHandFields& hand, double duration);
 
-/// A warning for a path over the surface that falls short of the way `to_cover` [m] by more than the tool's `width`
-/// [m]: how long it is and what to change. It is known before the run.
-std::optional<Warning> short_path_warning(const DragHandFields& hand, double path, double to_cover, double width);
+/// A warning for the path of a drag over the surface that falls short of the way to cover in `duration` [s] by more
+/// than the tool is wide: how long it is and what to change. It is known before the run.
+std::optional<Warning> short_path_warning(const DragHandFields& fields, const DragHand& hand, double duration,
+                                          const ToolShape& tool);
 
-/// Whether the sizes of tool and environment are right, as a question about the likeliest field, where they are out of
-/// proportion; empty where they are not.
+/// A question about the likeliest field where the sizes of tool and environment are out of proportion; else empty.
 std::string scale_question(const Scenario& scenario, const ToolShape& tool, const Box& environment);
 
-/// The odd thing about the place of a tool that fills the box in its own frame, as the end of a sentence such as "lies
-/// across its axis"; empty when nothing is odd. Tools have their tip centre at the origin, and their tip points along
-/// -z.
+/// The odd thing about the place of a tool that fills the box in its own frame, as "lies across its axis"; empty when
+/// nothing is odd. Tools have their tip centre at the origin, and their tip points along -z.
 std::string odd_frame(const Box& tool);
 
 /// Warnings about a tool: a proxy keeps points out of convex tools only, and a mesh may lie oddly in its frame.
@@ -63,11 +68,10 @@ double script_period(const Scenario& scenario);
 /// and 1 mm/s counts as motion, and once the script has ended all beyond 1 mm/s. A hand that trembles also moves it.
 bool is_moved(const Scenario& scenario);
 
-/// What a handle may vibrate unless it is said otherwise [m/s rms above 30 Hz]. It is a speed because hand-transmitted
-/// vibrations from 16 to 400 Hz of equal speed are about equally unpleasant (Griffin, "Frequency-dependence of
-/// psychophysical and physiological responses to hand-transmitted vibration", Industrial Health 50, 2012). Its value is
-/// our choice, the same as that of the classes of motion; a hand that holds a cylinder feels less than a hundredth of
-/// it at 150 to 200 Hz (Brisben, Hsiao and Johnson, Journal of Neurophysiology 81, 1999).
+/// What a handle may vibrate unless it is said otherwise [m/s rms above 30 Hz]. It is a speed because vibrations of the
+/// hand from 16 to 400 Hz of equal speed are about equally unpleasant (Griffin, Industrial Health 50, 2012). Its value
+/// is our choice, as of the classes of motion; a hand that holds a cylinder feels less than a hundredth of it at 150 to
+/// 200 Hz (Brisben, Hsiao and Johnson, Journal of Neurophysiology 81, 1999).
 inline constexpr double kMostVibration = 1e-3;
 
 // ---- Points and distances. ----
@@ -82,18 +86,12 @@ struct PointDistance {
 /// Empty where no field sets it.
 std::optional<PointDistance> point_distance(const LoadedScenario& loaded);
 
-/// The place of a tool against the points of a surface.
-struct Gap {
-  /// Distance of the tool from the nearest point [m]; when negative, how deep the deepest point lies in it.
-  double distance = 0.0;
-  std::size_t touching = 0;  ///< points in the tool
-};
 /// Looks at all points of the shell, which has some.
 Gap gap_between(const ToolShape& tool, const ToolPose& pose, const PointShell& shell);
 
 /// The length of a box from corner to corner [m].
 inline double diagonal(const Box& box) {
-  return (box.max - box.min).norm();
+  return box.size().norm();
 }
 
 // ---- Quantities as people read them. ----

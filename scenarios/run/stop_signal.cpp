@@ -21,8 +21,7 @@ static_assert(std::atomic<int>::is_always_lock_free && std::atomic<Clock::time_p
 /// Time after which a signal that nobody has asked for ends the process: a module may loop, a pipe may never deliver.
 constexpr unsigned kPatience = 2;  // [s]
 
-/// A signal that follows the first one within this time is taken for the same: timeout(1) sends each one twice, to its
-/// child and to the process group.
+/// Within this time a signal is taken for the first one: timeout(1) sends each twice, to its child and to the group.
 constexpr auto kSameSignal = std::chrono::milliseconds(200);
 
 void end_process(int signal) {

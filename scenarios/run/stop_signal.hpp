@@ -8,10 +8,9 @@
 /// destructors remove what is unfinished.
 namespace hapbench {
 
-/// While an object of this class exists, the first SIGINT or SIGTERM is only recorded, so that work can end cleanly;
-/// another one more than 0.2 s later terminates the process as usual, and so does the first one if the work has not
-/// ended after two seconds. Signals that were ignored stay ignored. At most one object of this class may exist at a
-/// time; the program has one. Without it no signal is received but by stop_work.
+/// While it exists, the first SIGINT or SIGTERM is only recorded, so that work can end cleanly; another one more than
+/// 0.2 s later terminates the process as usual, and so does the first if the work has not ended after two seconds.
+/// Signals that were ignored stay ignored. At most one may exist at a time. Without it only stop_work sends a signal.
 class StopSignal {
  public:
   StopSignal();
@@ -42,7 +41,7 @@ void throw_if_stopped();
 inline constexpr std::uint64_t kAskEvery = 512;
 
 /// Steps a simulation to its end by calls of `advance()`, each of which takes kAskEvery steps at most and returns false
-/// once the run has ended. Asks before each whether a signal wants the program to stop, and then throws Stopped.
+/// once the run has ended. Throws Stopped when a signal has come.
 template <class Advance>
 SimulationResult run_to_end(Simulation& simulation, Advance advance) {
   do {
