@@ -15,7 +15,6 @@
 #include <thread>
 #include <utility>
 
-#include "scenarios/cases/table_file.hpp"
 #include "scenarios/format/text_lines.hpp"
 #include "scenarios/format/writer.hpp"
 #include "scenarios/run/progress_bar.hpp"
@@ -30,17 +29,8 @@ namespace {
 /// not overflow.
 constexpr double kLargestEnd = 1e300;
 
-[[noreturn]] void refuse_axis(const std::string& text, const std::string& problem, const std::string& allowed) {
-  constexpr std::size_t kLongest = 200;
-  const std::string shown = text.size() > kLongest ? text.substr(0, kLongest) + "..." : text;
-  throw InputError(fmt::format("--vary \"{}\": {}; allowed: {}", shown, problem, allowed));
-}
-
-double range_end(const std::string& text, std::string_view word) {
-  const auto number = finite_number(word);
-  if (!number || std::abs(*number) > kLargestEnd)
-    refuse_axis(text, fmt::format("got \"{}\" for an end of the range", word), "a finite number");
-  return *number;
+[[noreturn]] void refuse_axis(const std::string& problem, const std::string& allowed) {
+  throw InputError(problem + "; allowed: " + allowed);
 }
 
 /// The i-th of the values 0 ... last between two ends, which are returned exactly. Weighting the ends, rather than
@@ -51,26 +41,29 @@ double linear_value(double a, double b, double i, double last) {
 }
 
 /// Reads "a:b", or "a:b:n" for a grid, optionally followed by ":log".
-void read_range(const std::string& text, std::string_view words, bool sampled, Axis& axis) {
+void read_range(std::string_view words, bool sampled, Axis& axis) {
   const Words parts = parts_of(words, ':');
   const std::size_t least = sampled ? 2 : 3;
   if (parts.size() != least && parts.size() != least + 1) {
-    refuse_axis(text, fmt::format("got {} parts between colons", parts.size()),
+    refuse_axis(fmt::format("got {} parts between colons", parts.size()),
                 sampled ? "a:b or a:b:log" : "a:b:n or a:b:n:log; a:b and a:b:log with --sample");
   }
-  const Range range{range_end(text, parts[0]), range_end(text, parts[1]), parts.size() > least};
-  if (range.logarithmic && parts.back() != "log") {
-    refuse_axis(text, fmt::format("got \"{}\"", parts.back()),
+  const auto end = [](std::string_view word) {
+    const auto number = finite_number(word);
+    if (number && std::abs(*number) <= kLargestEnd) return *number;
+    refuse_axis(fmt::format("got \"{}\" for an end of the range", word), "a finite number");
+  };
+  axis.range = {end(parts[0]), end(parts[1]), parts.size() > least};
+  if (axis.range->logarithmic && parts.back() != "log")
+    refuse_axis(fmt::format("got \"{}\"", parts.back()),
                 sampled ? "\"log\" or nothing, as --sample says how many" : "\"log\" or nothing");
-  }
-  if (range.logarithmic && !(range.from > 0.0 && range.to > 0.0))
-    refuse_axis(text, fmt::format("got ends {} and {} of a logarithmic range", range.from, range.to), "numbers > 0");
-  axis.range = range;
+  const auto [from, to, logarithmic] = *axis.range;
+  if (logarithmic && !(from > 0.0 && to > 0.0))
+    refuse_axis(fmt::format("got ends {} and {} of a logarithmic range", from, to), "numbers > 0");
   if (sampled) return;
-  const auto steps = whole_number(parts[2]);
-  if (!steps || *steps < 2 || *steps > kMostRuns)
-    refuse_axis(text, fmt::format("got \"{}\" values", parts[2]), fmt::format("an integer 2 ... {}", kMostRuns));
-  axis.steps = *steps;
+  axis.steps = whole_number(parts[2]).value_or(0);
+  if (axis.steps < 2 || axis.steps > kMostRuns)
+    refuse_axis(fmt::format("got \"{}\" values", parts[2]), fmt::format("an integer 2 ... {}", kMostRuns));
 }
 
 bool begins_json(std::string_view text) {
@@ -88,6 +81,8 @@ std::vector<std::string> listed_words(std::string_view list) {
       words.back().append(",").append(part);
     is_whole = !begins_json(words.back()) || Json::accept(words.back());
   }
+  if (words.size() > kMostRuns)
+    refuse_axis(fmt::format("got {} values", words.size()), fmt::format("at most {}", kMostRuns));
   return words;
 }
 
@@ -98,61 +93,37 @@ std::string axis_value(std::string_view text) {
   return begins_json(text) ? parse_json(std::string(text)).dump() : std::string(text);
 }
 
-std::vector<std::string> listed_values(const std::string& text, std::string_view list) {
-  const std::vector<std::string> words = listed_words(list);
-  if (words.size() > kMostRuns)
-    refuse_axis(text, fmt::format("got {} values", words.size()), fmt::format("at most {}", kMostRuns));
-  std::vector<std::string> values;
-  for (const std::string& word : words) {
-    try {
-      values.push_back(axis_value(word));
-    } catch (const InputError& error) {
-      refuse_axis(text, error.problem(), "numbers, names and JSON, separated by commas");
-    }
-  }
-  return values;
-}
-
-/// The description of a field by its path; null when there is none, or when it is in the entries of a list.
-const ValueGuide* guide_at(const ValueGuide& guide, std::string_view path) {
-  const std::size_t dot = std::min(path.find('.'), path.size());
-  for (const FieldGuide& field : guide.fields) {
-    if (field.name != path.substr(0, dot)) continue;
-    return dot == path.size() ? &field.value : guide_at(field.value, path.substr(dot + 1));
-  }
-  for (const ValueGuide& choice : guide.choices)
-    if (const ValueGuide* found = guide_at(choice, path)) return found;
-  return nullptr;
-}
-
+/// parse_axis without what is known of the field.
 Axis read_axis(const std::string& text, bool sampled) {
   const std::size_t equals = text.find('=');
   Axis axis{text.substr(0, equals)};
   constexpr const char* kPathCharacters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_.$";
   if (equals == std::string::npos || axis.path.empty() ||
       axis.path.find_first_not_of(kPathCharacters) != std::string::npos) {
-    refuse_axis(text, "has no path",
-                sampled ? "path=a:b, path=a:b:log or path=v,w, as in time.step_s=0.0001:0.001"
-                        : "path=a:b:n, path=a:b:n:log or path=v,w, as in time.step_s=0.0001:0.001:10");
+    refuse_axis("has no path", sampled ? "path=a:b, path=a:b:log or path=v,w, as in time.step_s=0.0001:0.001"
+                                       : "path=a:b:n, path=a:b:n:log or path=v,w, as in time.step_s=0.0001:0.001:10");
   }
   const std::string_view values = std::string_view(text).substr(equals + 1);
-  if (std::any_of(values.begin(), values.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }))
-    refuse_axis(text, "has control characters", "numbers, names and JSON");
-  const bool is_range =
-      !begins_json(values) && values.find(',') == std::string_view::npos && values.find(':') != std::string_view::npos;
-  if (is_range)
-    read_range(text, values, sampled, axis);
-  else
-    axis.values = listed_values(text, values);
+  if (std::ranges::any_of(values, [](unsigned char c) { return c < 0x20 || c == 0x7f; }))
+    refuse_axis("has control characters", "numbers, names and JSON");
+  if (!begins_json(values) && values.find(',') == values.npos && values.find(':') != values.npos) {
+    read_range(values, sampled, axis);
+    return axis;
+  }
+  for (const std::string& word : listed_words(values)) {
+    try {
+      axis.values.push_back(axis_value(word));
+    } catch (const InputError& error) {
+      refuse_axis(error.problem(), "numbers, names and JSON, separated by commas");
+    }
+  }
   return axis;
 }
 
-std::string number_text(const Axis& axis, double value) {
+std::string range_text(const Axis& axis, double part, double whole) {
+  const double value = axis.range->value_at(part, whole);
   return cell_text(axis.whole ? std::round(value) : value);
 }
-
-/// Indexed by the number of the method.
-constexpr std::string_view kMethodNames[] = {"lhs", "random", "points"};
 
 /// How slowly an axis varies in the order of runs, the slowest first: what a shell depends on before all else.
 int speed(const Axis& axis) {
@@ -170,18 +141,26 @@ double Range::value_at(double part, double whole) const {
 }
 
 Axis parse_axis(const std::string& text, bool sampled) {
-  Axis axis = read_axis(text, sampled);
-  const ValueGuide* guide = guide_at(scenario_guide(), axis.path);
-  if (guide == nullptr) return axis;
-  axis.whole = axis.range && guide->schema.value("type", Json()) == "integer";
-  if (axis.values == std::vector<std::string>{"all"} && guide->schema.contains("enum"))
-    axis.values = guide->schema["enum"].get<std::vector<std::string>>();
+  Axis axis;
+  try {
+    axis = read_axis(text, sampled);
+  } catch (const InputError& error) {
+    constexpr std::size_t kLongest = 200;
+    const std::string shown = text.size() > kLongest ? text.substr(0, kLongest) + "..." : text;
+    throw InputError(fmt::format("--vary \"{}\": {}", shown, error.problem()));
+  }
+  const std::vector<PlacedField> fields = placed_fields();
+  const auto place = std::ranges::find(fields, axis.path, &PlacedField::path);
+  if (place == fields.end()) return axis;
+  const Json& schema = place->field->value.schema;
+  axis.whole = axis.range && schema.value("type", Json()) == "integer";
+  if (axis.values == std::vector<std::string>{"all"} && schema.contains("enum"))
+    axis.values = schema["enum"].get<std::vector<std::string>>();
   return axis;
 }
 
 std::string Axis::value(std::size_t i) const {
-  return range ? number_text(*this, range->value_at(static_cast<double>(i), static_cast<double>(steps - 1)))
-               : values[i];
+  return range ? range_text(*this, static_cast<double>(i), static_cast<double>(steps - 1)) : values[i];
 }
 
 std::size_t Axis::place_at(double coordinate) const {
@@ -190,16 +169,12 @@ std::size_t Axis::place_at(double coordinate) const {
 }
 
 std::string Axis::value_at(double coordinate) const {
-  return range ? number_text(*this, range->value_at(coordinate)) : values[place_at(coordinate)];
+  return range ? range_text(*this, coordinate, 1.0) : values[place_at(coordinate)];
 }
 
 void append_new(std::vector<std::string>& texts, const std::vector<std::string>& more) {
   for (const std::string& text : more)
     if (std::find(texts.begin(), texts.end(), text) == texts.end()) texts.push_back(text);
-}
-
-std::string_view sampling_name(SamplingMethod method) {
-  return kMethodNames[static_cast<std::size_t>(method)];
 }
 
 Sampling parse_sampling(const std::string& text, std::uint64_t seed) {
@@ -210,19 +185,19 @@ Sampling parse_sampling(const std::string& text, std::uint64_t seed) {
         "--sample: \"sobol\" is no longer known; instead: lhs:N, or --points FILE.csv with the points of another program");
   }
   const auto count = parts.size() == 2 ? whole_number(parts[1]) : std::nullopt;
-  if ((name != "lhs" && name != "random") || !count || *count < 1 || *count > kMostRuns) {
+  if ((name != kLatinHypercube && name != kRandomPoints) || !count || *count < 1 || *count > kMostRuns) {
     throw InputError(
         fmt::format("--sample: got \"{}\"; allowed: lhs:N or random:N with 1 <= N <= {}", text, kMostRuns));
   }
-  return {name == "lhs" ? SamplingMethod::latin_hypercube : SamplingMethod::random, *count, seed, {}};
+  return {name == kLatinHypercube ? kLatinHypercube : kRandomPoints, *count, seed, {}};
 }
 
 std::vector<double> unit_sample(const Sampling& sampling, std::size_t axis) {
-  if (sampling.method == SamplingMethod::points) return sampling.of_file[axis];
+  if (sampling.method == kPointsOfFile) return sampling.of_file[axis];
   constexpr double kLast = 1.0 - 0x1.0p-53;  // rounding could move a point in the last stratum to 1
   Random random(Random::derive(sampling.seed, axis));
   std::vector<double> points(sampling.count);
-  if (sampling.method == SamplingMethod::random) {
+  if (sampling.method == kRandomPoints) {
     for (double& point : points) point = random.uniform();
     return points;
   }
@@ -235,11 +210,29 @@ std::vector<double> unit_sample(const Sampling& sampling, std::size_t axis) {
   return points;
 }
 
+std::vector<std::string> csv_cells(std::string_view line) {
+  if (line.ends_with('\r')) line.remove_suffix(1);
+  std::vector<std::string> cells(1);
+  bool in_quotes = false;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    if (line[i] == '"' && in_quotes && line.substr(i + 1).starts_with('"')) {
+      cells.back() += line[++i];
+    } else if (line[i] == '"') {
+      in_quotes = !in_quotes;
+    } else if (line[i] == ',' && !in_quotes) {
+      cells.emplace_back();
+    } else {
+      cells.back() += line[i];
+    }
+  }
+  return cells;
+}
+
 Sampling read_points(const std::filesystem::path& file, std::vector<Axis>& axes) {
   const std::string text = read_named_file(file);
   LineReader lines(text);
   for (const std::string& path : csv_cells(lines.next().value_or(""))) axes.push_back({path});
-  Sampling sampling{SamplingMethod::points, 0, 0, std::vector<std::vector<double>>(axes.size())};
+  Sampling sampling{kPointsOfFile, 0, 0, std::vector<std::vector<double>>(axes.size())};
   std::vector<std::map<std::string, std::size_t>> known(axes.size());
   while (const auto line = lines.next()) {
     const std::vector<std::string> cells = csv_cells(*line);
@@ -355,13 +348,13 @@ std::size_t available_threads() {
 }
 
 void for_each_job(std::size_t count, const JobOptions& options, const std::function<void(std::size_t)>& job) {
-  ProgressBar bar(options.label, count, !options.label.empty());
+  ProgressBar bar(options.label, count);
   std::mutex mutex;  // of all below; unlocked only while a job runs
-  std::size_t begun = 0, done = 0, lowest = count;
-  std::exception_ptr error;  // of the lowest job that failed
+  std::size_t begun = 0, done = 0;
+  std::map<std::size_t, std::exception_ptr> errors;  // by job
   const auto work = [&] {
     std::unique_lock lock(mutex);
-    while (begun < count && !error && StopSignal::received() == 0) {
+    while (begun < count && errors.empty() && StopSignal::received() == 0) {
       const std::size_t i = begun++;
       std::exception_ptr caught;
       lock.unlock();
@@ -371,12 +364,10 @@ void for_each_job(std::size_t count, const JobOptions& options, const std::funct
         caught = std::current_exception();
       }
       lock.lock();
-      if (!caught) {
+      if (caught)
+        errors.emplace(i, caught);
+      else
         bar.show(++done, true);
-      } else if (i < lowest) {
-        lowest = i;
-        error = caught;
-      }
     }
   };
   const std::size_t threads = std::max(1u, options.threads);
@@ -389,12 +380,12 @@ void for_each_job(std::size_t count, const JobOptions& options, const std::funct
     while (others.size() + 1 < std::min(threads, count)) others.emplace_back(work);
   } catch (const std::exception& reason) {
     const std::string text = fmt::format("{}; if threads or memory ran short: fewer --jobs", reason.what());
-    error = std::make_exception_ptr(std::runtime_error(text));
+    errors.emplace(0, std::make_exception_ptr(std::runtime_error(text)));
   }
   starting.unlock();
   work();
   others.clear();
-  if (error) std::rethrow_exception(error);
+  if (!errors.empty()) std::rethrow_exception(errors.begin()->second);
   if (done < count) throw_if_stopped();
 }
 

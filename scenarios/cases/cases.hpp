@@ -14,17 +14,16 @@
 /// Cases: scenes with overrides, of which fields vary.
 namespace hapbench {
 
-/// Maximum number of cases, and of the values of an axis.
+/// Most cases, and values of an axis.
 inline constexpr std::size_t kMostRuns = 1'000'000;
 
 /// An interval to sample, or to divide into equal steps or ratios.
 struct Range {
-  double from = 0.0;
-  double to = 0.0;
+  double from = 0.0, to = 0.0;
   bool logarithmic = false;
 
-  /// The value at a fraction part / whole of the interval in [0, 1], measured in the logarithm if the range is
-  /// logarithmic. Returns both ends exactly and never a value outside.
+  /// The value at the fraction part / whole in [0, 1] of the interval, or of its logarithm. Returns both ends exactly
+  /// and never a value outside.
   double value_at(double part, double whole = 1.0) const;
 };
 
@@ -67,19 +66,15 @@ void append_new(std::vector<std::string>& texts, const std::vector<std::string>&
 /// The path of the axis whose values name scenes.
 inline constexpr const char* kSceneAxis = "scenario";
 
-/// How points are distributed over the unit cube.
-enum class SamplingMethod {
-  latin_hypercube,  ///< along each axis one point in each of `count` equal strata (McKay, Beckman, Conover 1979)
-  random,           ///< independent and uniform
-  points            ///< as a file has them
-};
-
-/// The name of a method, as in --sample.
-std::string_view sampling_name(SamplingMethod method);
+// How points are distributed over the unit cube, as in --sample.
+/// Along each axis one point in each of `count` equal strata (McKay, Beckman, Conover 1979).
+inline constexpr std::string_view kLatinHypercube = "lhs";
+inline constexpr std::string_view kRandomPoints = "random";  ///< independent and uniform
+inline constexpr std::string_view kPointsOfFile = "points";
 
 /// A sample of the unit cube. Equal samples have the same points to the last bit on every machine.
 struct Sampling {
-  SamplingMethod method = SamplingMethod::latin_hypercube;
+  std::string_view method = kLatinHypercube;      ///< one of these names
   std::size_t count = 1;                          ///< points
   std::uint64_t seed = 1;                         ///< of the shuffles, or the points themselves
   std::vector<std::vector<double>> of_file = {};  ///< by axis: the coordinates of the points of a file
@@ -92,15 +87,16 @@ Sampling parse_sampling(const std::string& text, std::uint64_t seed);
 /// does not change the others.
 std::vector<double> unit_sample(const Sampling& sampling, std::size_t axis);
 
+/// The cells of a line of a table, without their quotes and a carriage return at its end.
+std::vector<std::string> csv_cells(std::string_view line);
+
 /// Reads the table of --points: a header of fields' paths, which become axes that list each value once, and a row of
 /// values for each point. Throws InputError with the line.
 Sampling read_points(const std::filesystem::path& file, std::vector<Axis>& axes);
 
-/// A part of the cases: those whose place in the order of the runs leaves the remainder `index` when divided by
-/// `count`. By default all.
+/// The cases whose place in the order of the runs leaves the remainder `index` when divided by `count`; by default all.
 struct Shard {
-  std::size_t index = 0;
-  std::size_t count = 1;
+  std::size_t index = 0, count = 1;
 };
 
 /// Reads "i/n" with 0 <= i < n. Throws InputError.
@@ -116,9 +112,9 @@ inline std::string shard_text(const Shard& shard) {
 /// fields of the environment vary.
 class Cases {
  public:
-  /// A grid, or a sample of the box that the axes span. `scenes` has one, or one for each value of the axis kSceneAxis.
-  /// `sets` are overrides of all cases, as in --set. Throws InputError for two axes of one path and for more than
-  /// kMostRuns combinations. Precondition: on a grid every axis has values.
+  /// `scenes` has one, or one for each value of the axis kSceneAxis. `sets` are overrides of all cases, as in --set.
+  /// Throws InputError for two axes of one path and for more than kMostRuns combinations. Precondition: without a
+  /// sampling every axis has values.
   Cases(std::vector<ScenarioText> scenes, std::vector<std::string> sets, std::vector<Axis> axes,
         std::optional<Sampling> sampling = {});
 
@@ -144,8 +140,8 @@ class Cases {
   std::vector<std::string> overrides(std::size_t i) const;
   /// The scenario. Thread-safe. Throws InputError.
   LoadedScenario load(std::size_t i) const;
-  /// The case that runs at a place of the order of runs. Scenes, then fields of the environment vary slowest there, so
-  /// that neighbours share a shell; apart from that cases are in order.
+  /// The case that runs at a place of the order of runs, in which scenes, then fields of the environment vary slowest,
+  /// so that neighbours share a shell; apart from that cases are in order.
   std::size_t at(std::size_t place) const { return sorted_.empty() ? place : sorted_[place]; }
 
  private:
@@ -174,10 +170,10 @@ struct JobOptions {
 };
 
 /// Calls job(0) … job(count - 1), each once, on several threads. Jobs begin in this order and at most `threads` of them
-/// are under way. They must be independent: each writes to its own place, so that the result does not depend on the
-/// number of threads. After an exception no further job starts, and the exception of the lowest job is rethrown. A
-/// signal (stop_signal.hpp) ends the loop the same way. Throws std::runtime_error before any job begins when there are
-/// not so many threads to be had. Overhead: some microseconds a job, some tens a thread.
+/// are under way; each writes to its own place, so that the result does not depend on the number of threads. After an
+/// exception no further job starts, and that of the lowest job is rethrown; a signal (stop_signal.hpp) ends the loop
+/// the same way. Throws std::runtime_error before any job begins when there are not so many threads to be had.
+/// Overhead: some microseconds a job, some tens a thread.
 void for_each_job(std::size_t count, const JobOptions& options, const std::function<void(std::size_t)>& job);
 
 }  // namespace hapbench

@@ -32,17 +32,17 @@ double order_in_step(const Scenario& scenario) {
 
 std::string noise_reason(const Scenario& scenario) {
   const auto* admittance = std::get_if<AdmittanceDeviceConfig>(&scenario.device);
-  const char* source = std::holds_alternative<TrackingHandFields>(scenario.hand) ? "hand"
-                       : admittance != nullptr && admittance->sensor.noise > 0.0 ? "force sensor"
-                                                                                 : nullptr;
-  return source == nullptr ? "" : fmt::format("the noise of the {} is drawn anew in every step", source);
+  if (std::holds_alternative<TrackingHandFields>(scenario.hand))
+    return "the noise of the hand is drawn anew in every step";
+  const bool senses = admittance != nullptr && admittance->sensor.noise > 0.0;
+  return senses ? "the noise of the force sensor is drawn anew in every step" : "";
 }
 
 LevelSweep step_levels(const Scenario& scenario, std::size_t levels, double ratio) {
   if (ratio != std::round(ratio))
     throw InputError(fmt::format(
         "--ratio: got {}; allowed for {}: whole numbers, so that the rows of all levels coincide", ratio, kStepPath));
-  LevelSweep sweep{.axis = {kStepPath}, .formal_order = order_in_step(scenario), .no_order = noise_reason(scenario)};
+  LevelSweep sweep{{kStepPath}, ratio, order_in_step(scenario), noise_reason(scenario)};
   std::int64_t times = 1;
   for (std::size_t i = 0; i < levels; ++i, times *= static_cast<std::int64_t>(ratio)) {
     std::vector<std::string> overrides = {fmt::format("time.steps={}", times * scenario.time.steps)};
@@ -88,10 +88,9 @@ std::string too_few_reason(std::span<const LevelResult> levels, std::size_t firs
   const std::size_t count = levels.size() - first;
   if (first == 0) return fmt::format("{} levels are fewer than three", count);
   const LevelResult& last = levels[first - 1];
-  if (count == 0)
-    return fmt::format("the finest run, at {}, has no value of the metric ({})", last.setting, last.outcome);
-  const std::string why = last.result ? fmt::format("ends with {}", last.outcome)
-                                      : fmt::format("has no value of the metric ({})", last.outcome);
+  const std::string why =
+      fmt::format(fmt::runtime(last.result ? "ends with {}" : "has no value of the metric ({})"), last.outcome);
+  if (count == 0) return fmt::format("the finest run, at {}, {}", last.setting, why);
   return fmt::format("the run at {} {}, which leaves {} levels; an order takes three", last.setting, why, count);
 }
 
@@ -151,16 +150,11 @@ std::string joined(std::span<const std::size_t> places, std::span<const std::str
 }  // namespace
 
 LevelSweep level_sweep(const LoadedScenario& loaded, const std::string& path, std::size_t levels, double ratio) {
-  LevelSweep sweep;
-  if (path == kStepPath) {
-    sweep = step_levels(loaded.scenario, levels, ratio);
-  } else {
-    sweep.axis = {path};
-    double value = coarsest_value(loaded, path);
-    for (std::size_t i = 0; i < levels; ++i, value /= ratio)
-      sweep.axis.values.emplace_back(std::string_view(NumberText(value)));
-  }
-  sweep.ratio = ratio;
+  if (path == kStepPath) return step_levels(loaded.scenario, levels, ratio);
+  LevelSweep sweep{{path}, ratio};
+  double value = coarsest_value(loaded, path);
+  for (std::size_t i = 0; i < levels; ++i, value /= ratio)
+    sweep.axis.values.emplace_back(std::string_view(NumberText(value)));
   return sweep;
 }
 

@@ -1,16 +1,6 @@
 #pragma once
 
-#include <cstdint>
-#include <optional>
-#include <span>
-#include <string>
-#include <utility>
-#include <vector>
-
-#include "results/summary/summary.hpp"
 #include "scenarios/cases/comparison.hpp"
-#include "scenarios/cases/league.hpp"
-#include "scenarios/format/load_scenario.hpp"
 
 /// How far a number is from converged in a scene's step or any field: observed order, Richardson's value and grid
 /// convergence index (Roache 1994; ASME V&V 20) at levels h, h/r, h/r^2, … of the field; or why no order can be stated.
@@ -23,13 +13,13 @@ struct LevelSweep {
   Axis axis;                  ///< the field's values, with what has to change along with them
   double ratio = 2.0;         ///< of each value to the next
   double formal_order = 2.0;  ///< of the integrator, or of whatever a distance between points or of a grid approximates
-  std::string no_order;       ///< why no metric of this scene can have an order; empty otherwise
+  std::string no_order = {};  ///< why no metric of this scene can have an order; empty otherwise
 };
 
-/// The levels of a field. With shorter steps the run lasts as long, delays of devices keep their length, and metrics of
-/// motion, force and contact are taken at the times of the coarsest rows. A mesh without a spacing begins with the mean
-/// distance of its vertices. Throws InputError when the field is not a number > 0 or an integer, and for a ratio of
-/// steps that is not whole.
+/// With shorter steps the run lasts as long, delays of devices keep their length, and metrics of motion, force and
+/// contact are taken at the times of the coarsest rows. A mesh without a spacing begins with the mean distance of its
+/// vertices. Throws InputError when the field is not a number > 0 or an integer, and for a ratio of steps that is not
+/// whole.
 LevelSweep level_sweep(const LoadedScenario& loaded, const std::string& path, std::size_t levels, double ratio);
 
 /// What a run at one level gave.
@@ -55,8 +45,8 @@ struct Convergence {
   std::optional<std::pair<double, double>> band;
   /// The observed order of each level over it and the two coarser levels, if defined.
   std::vector<std::optional<double>> orders;
-  /// The estimated error of each level [metric's unit], observed and no bound: with an order 1.25 |f - f*|, at the
-  /// finest level its GCI; otherwise the largest distance to a finer level, and at least the width of the band.
+  /// The estimated error of each level [metric's unit], no bound: with an order 1.25 |f - f*|, at the finest level its
+  /// GCI; otherwise the largest distance to a finer level, and at least the width of the band.
   std::vector<std::optional<double>> errors;
 };
 
@@ -70,7 +60,7 @@ Convergence convergence_of(std::span<const LevelResult> levels, double ratio, do
 /// What the run of a level gave of a metric; no result where it has none or diverges.
 LevelResult level_result(const LevelSweep& levels, std::size_t level, const Result& summary, const std::string& metric);
 
-/// The verdict on the results of the levels.
+/// The verdict on the results of all levels.
 Convergence convergence_of(const LevelSweep& levels, std::span<const LevelResult> results);
 
 /// The cases at the levels behind the first. Throws InputError where one of them cannot be run.

@@ -10,8 +10,11 @@
 #include <numbers>
 #include <utility>
 
+#include "device_model/impedance_device.hpp"
 #include "device_model/theory/linear_loops.hpp"
+#include "scenarios/format/parts.hpp"
 #include "scenarios/format/text_lines.hpp"
+#include "scenarios/format/writer.hpp"
 #include "scenarios/run/assemble.hpp"
 #include "scenarios/run/scene_loop.hpp"
 #include "sim/core/math.hpp"
@@ -36,8 +39,8 @@ bool SearchWay::apart(double a, double b) const {
   return high - low > resolution * (range.to - range.from);
 }
 
-std::map<double, bool> scanned(int intervals, const std::function<bool(double)>& stable) {
-  std::map<double, bool> tried;
+TriedParts scanned(int intervals, const IsStable& stable) {
+  TriedParts tried;
   for (int i = 0; i <= intervals; ++i) {
     const double part = static_cast<double>(i) / intervals;
     tried[part] = stable(part);
@@ -45,8 +48,7 @@ std::map<double, bool> scanned(int intervals, const std::function<bool(double)>&
   return tried;
 }
 
-FoundEdge find_edge(const SearchWay& way, std::map<double, bool>& tried, const std::function<bool(double)>& stable,
-                    bool beside) {
+FoundEdge find_edge(const SearchWay& way, TriedParts& tried, const IsStable& stable, bool beside) {
   constexpr int kBeside = 3;  // values tried on either side of the edge, up to an interval away
   constexpr int kRounds = 6;  // of bisection, each towards an edge that values beside the last one showed
   const auto holds = [&](double part) { return tried[part] = stable(part); };
@@ -107,14 +109,14 @@ std::vector<double> parts_between(double from, double to, std::size_t count) {
   return parts;
 }
 
-double near_part(const SearchWay& way, double part) {
+std::vector<double> parts_below(const SearchWay& way, double part) {
   const auto [from, to, logarithmic] = way.range;
-  if (logarithmic) return math::log(1.0 + kNear) / math::log(to / from);
-  return kNear * std::max(std::abs(way.value_at(part)) / (to - from), way.resolution);
+  const double near = logarithmic ? math::log(1.0 + kNear) / math::log(to / from)
+                                  : kNear * std::max(std::abs(way.value_at(part)) / (to - from), way.resolution);
+  return parts_between(part, std::max(0.0, part - near), kTriedNear);
 }
 
-FoundEdge find_tried_edge(const SearchWay& way, std::map<double, bool>& tried,
-                          const std::function<bool(double)>& stable, bool near,
+FoundEdge find_tried_edge(const SearchWay& way, TriedParts& tried, const IsStable& stable, bool near,
                           const std::function<void(std::span<const double>)>& ahead) {
   bool scattered = false;
   double begin = -1.0;  // up to here stable values are scattered
@@ -128,8 +130,7 @@ FoundEdge find_tried_edge(const SearchWay& way, std::map<double, bool>& tried,
     ahead(between);
     if (std::ranges::any_of(between, fails)) continue;
     if (!near || way.whole || !edge.beyond) return edge;
-    const double low = std::max(0.0, *edge.stable - near_part(way, *edge.stable));
-    const std::vector<double> below = parts_between(*edge.stable, low, kTriedNear);
+    const std::vector<double> below = parts_below(way, *edge.stable);
     ahead(below);
     const auto failing = std::ranges::find_if(below, fails);
     if (failing == below.end()) return edge;
@@ -161,36 +162,33 @@ namespace {
 
 /// The end nearest to 2^10 or 2^-10 times the own value that the field allows.
 double allowed_end(const LimitQuestion& question, double own, int sign) {
-  constexpr int kDoublings = 10;
-  for (int doublings = kDoublings; doublings > 0; --doublings) {
+  for (int doublings = 10; doublings > 0; --doublings) {
     const double end = std::ldexp(own, sign * doublings);
     try {
       question.at(end);
       return end;
-    } catch (const InputError&) {
-      continue;
+    } catch (const InputError&) {  // a nearer one
     }
   }
   return own;
 }
 
-[[noreturn]] void refuse(const LoadedScenario& loaded, const char* place, const std::string& problem) {
-  throw InputError(InputError::Kind::relation, loaded.file.string() + ": " + place, problem);
-}
-
 void check_scene(const LoadedScenario& loaded) {
   const Scenario& scenario = loaded.scenario;
   if (!position_is_free(scenario.motion))
-    refuse(loaded, "/motion/position/type", "a prescribed tool cannot become unstable; allowed for limit: \"free\"");
+    fail_at(loaded.file.string() + ": /motion/position/type",
+            "a prescribed tool cannot become unstable; allowed for limit: \"free\"");
   if (scenario.time.steps < 4)
-    refuse(loaded, "/time/steps", fmt::format("got {}; allowed for limit: at least 4", scenario.time.steps));
+    fail_at(loaded.file.string() + ": /time/steps",
+            fmt::format("got {}; allowed for limit: at least 4", scenario.time.steps));
 }
 
 void check_sampling(const LoadedScenario& loaded) {
-  if (kVibrationCutoff * loaded.scenario.time.step < 0.5) return;
-  refuse(loaded, "/time/step_s",
-         fmt::format("got {}; allowed for --vibration, which is what is above {} Hz: below {:.4g}",
-                     loaded.scenario.time.step, kVibrationCutoff, 0.5 / kVibrationCutoff));
+  const double step = loaded.scenario.time.step;
+  if (kVibrationCutoff * step < 0.5) return;
+  fail_at(loaded.file.string() + ": /time/step_s",
+          fmt::format("got {}; allowed for --vibration, which is what is above {} Hz: below {:.4g}", step,
+                      kVibrationCutoff, 0.5 / kVibrationCutoff));
 }
 
 // ---- Theory, which costs a thousandth of a run: it is scanned so much finer, and bisected to rounding whatever the
@@ -223,49 +221,35 @@ bool keeps_inequality(const Scenario& scenario) {
   return *tool_on_spring(scenario, stiffness_eigenvalues(scenario)[2]).margin() >= 0.0;
 }
 
-/// The edges of what is stable without a run, along the whole way.
-class Theory {
- public:
-  using Predicate = std::function<bool(const Scenario&)>;
-  /// Empty unless it `applies` to the scene at both ends.
-  Theory(const LimitQuestion& question, const Predicate& applies, Predicate stable, int intervals)
-      : question_(question), stable_(std::move(stable)) {
-    for (const double end : {0.0, 1.0})
-      if (!applies(question.at(question.value_at(end)).scenario)) return;
-    tried_ = scanned(intervals, [this](double part) { return holds(part); });
-  }
-
+/// What is stable without a run, along the whole way.
+struct Theory {
+  std::optional<double> edge = {};  ///< as FieldLimit::theory
   /// The middles of all stretches of stable values, for runs to try: a stretch may lie between the values of a scan.
-  std::vector<double> islands() const {
-    std::vector<double> middles;
-    for (auto from = tried_.begin(); from != tried_.end();) {
-      const auto to = std::find_if(from, tried_.end(), [](const auto& tried) { return !tried.second; });
-      if (to != from) middles.push_back(0.5 * (from->first + std::prev(to)->first));
-      from = to == tried_.end() ? to : std::next(to);
-    }
-    return middles;
-  }
-  /// True where no value is stable.
-  bool has_none() const { return !tried_.empty() && islands().empty(); }
-  std::optional<double> edge() const {
-    if (tried_.empty()) return std::nullopt;
-    std::map<double, bool> tried = tried_;
-    SearchWay way = question_;
-    way.resolution = kTheoryResolution;
-    const FoundEdge edge = find_edge(
-        way, tried, [this](double part) { return holds(part); }, false);
-    if (!edge.stable) return std::nullopt;
-    if (edge.beyond) return way.value_at(*edge.stable);
-    return way.smallest ? 0.0 : std::numeric_limits<double>::infinity();
-  }
-
- private:
-  bool holds(double part) const { return stable_(question_.at(question_.value_at(part)).scenario); }
-
-  const LimitQuestion& question_;
-  Predicate stable_;
-  std::map<double, bool> tried_;
+  std::vector<double> islands = {};
+  bool has_none = false;  ///< no value is stable
 };
+
+/// Empty unless it `applies` to the scene at both ends.
+Theory theory_of(const LimitQuestion& question, const std::function<bool(const Scenario&)>& applies,
+                 const std::function<bool(const Scenario&)>& stable, int intervals) {
+  const auto scenario_at = [&](double part) { return question.at(question.value_at(part)).scenario; };
+  const auto holds = [&](double part) { return stable(scenario_at(part)); };
+  Theory theory;
+  if (!applies(scenario_at(0.0)) || !applies(scenario_at(1.0))) return theory;
+  TriedParts tried = scanned(intervals, holds);
+  for (auto from = tried.begin(); from != tried.end();) {
+    const auto to = std::find_if(from, tried.end(), [](const auto& value) { return !value.second; });
+    if (to != from) theory.islands.push_back(0.5 * (from->first + std::prev(to)->first));
+    from = to == tried.end() ? to : std::next(to);
+  }
+  theory.has_none = theory.islands.empty();
+  SearchWay way = question;
+  way.resolution = kTheoryResolution;
+  const FoundEdge edge = find_edge(way, tried, holds, false);
+  if (edge.stable) theory.edge = way.smallest ? 0.0 : std::numeric_limits<double>::infinity();
+  if (edge.beyond) theory.edge = way.value_at(*edge.stable);
+  return theory;
+}
 
 /// FieldLimit::linear
 std::optional<double> edge_in_contact(const LimitQuestion& question, double lambda) {
@@ -276,7 +260,7 @@ std::optional<double> edge_in_contact(const LimitQuestion& question, double lamb
     return std::ranges::all_of(contact_loops(scenario, lambda, false),
                                [](const auto& loop) { return is_stable_step(loop.second); });
   };
-  return Theory(question, applies, stable, 2 * kEdgeIntervals).edge();
+  return theory_of(question, applies, stable, 2 * kEdgeIntervals).edge;
 }
 
 /// FieldLimit::closed_forms and worst_hand
@@ -317,6 +301,30 @@ void add_runs(const LimitQuestion& question, const std::map<double, RunStability
   }
   limit.has_effect = std::any_of(runs.begin(), runs.end(),
                                  [&](const auto& run) { return run.second.way != runs.begin()->second.way; });
+}
+
+// ---- Devices
+
+/// The device of a file that is one, or of a scenario, of which nothing else is looked at.
+DeviceFields read_device(const Json& file) {
+  const bool is_scenario = file.contains("device");
+  if (!is_scenario && !file.contains("type"))
+    throw InputError(
+        R"(got no device; allowed: an object such as {"type": "impedance", "handle_mass_kg": 0.1}, or a scenario with "device")");
+  DeviceFields device;
+  read_value(is_scenario ? file["device"] : file, is_scenario ? "/device" : "",
+             [&device](Fields& f) { describe(f, device); });
+  return device;
+}
+
+/// The scene's hand without its mass; null when it has none.
+Json massless_hand(const ScenarioText& scene) {
+  const auto hand = scene.json.find("hand");
+  if (hand == scene.json.end() || !hand->is_object() || hand->value("type", Json()) != "mass_spring_damper") return {};
+  Json massless = *hand;
+  massless["type"] = "impedance";
+  massless.erase("mass_kg");
+  return massless;
 }
 
 }  // namespace
@@ -370,13 +378,13 @@ FieldLimit field_limit(const LimitQuestion& question) {
     return question.holds(at_part(part).verdict);
   };
   FieldLimit limit;
-  const Theory theory(question, has_theory, step_is_stable, kTheoryIntervals);
-  limit.theory = theory.edge();
-  limit.theory_has_none = theory.has_none();
-  std::vector<double> first = theory.islands();
+  Theory theory = theory_of(question, has_theory, step_is_stable, kTheoryIntervals);
+  limit.theory = theory.edge;
+  limit.theory_has_none = theory.has_none;
+  std::vector<double> first = std::move(theory.islands);
   for (int i = 0; i <= kEdgeIntervals; ++i) first.push_back(static_cast<double>(i) / kEdgeIntervals);
   run_ahead(first);
-  std::map<double, bool> tried;
+  TriedParts tried;
   for (const double part : first) tried[part] = judge(part);
   const FoundEdge edge = question.between ? find_tried_edge(question, tried, judge, !limit.theory, run_ahead)
                                           : find_edge(question, tried, judge, true);
@@ -394,11 +402,72 @@ FieldLimit field_limit(const LimitQuestion& question) {
   const JudgedValue suspect = limit.beyond ? *limit.beyond : limit.runs.front();
   limit.unstable_alone =
       !question.holds(suspect.verdict) && unstable_without_contact(question.at(suspect.value), question.most_vibration);
-  limit.closed_form = Theory(question, has_inequality, keeps_inequality, kEdgeIntervals).edge();
+  limit.closed_form = theory_of(question, has_inequality, keeps_inequality, kEdgeIntervals).edge;
   add_closed_forms(question, limit);
   if (!limit.theory && limit.settled.lambda_max > 0.0 && !question.smallest)
     limit.linear = edge_in_contact(question, limit.settled.lambda_max);
   return limit;
+}
+
+// ---- Devices
+
+std::string delay_note(const Scenario& scenario) {
+  const double delay = delay_of(scenario), step = 1e3 * scenario.time.step;
+  if (!has_delay_in_samples(scenario) || delay == 0.0) return "";
+  return fmt::format(
+      "delay_samples: {:.4g} ({:.3g} ms in steps of {:.3g} ms); samples are time steps of the scene, not of the log that "
+      "a device was identified from",
+      delay, delay * step, step);
+}
+
+std::vector<ComparedDevice> compared_devices() {
+  std::vector<ComparedDevice> devices = {{"ideal", {{"type", "ideal"}}}, {"admittance", {{"type", "admittance"}}}};
+  for (const DevicePreset& preset : device_presets())
+    devices.push_back(
+        {preset.name, {{"type", "impedance"}, {"preset", preset.name}}, true, preset.max_stiffness.value});
+  return devices;
+}
+
+ComparedDevice device_of_file(const std::filesystem::path& file) {
+  const ScenarioText text = read_scenario_text(file);
+  LoadedScenario place;
+  place.file = file;
+  place.layers = text.layers;
+  const DeviceFields device = with_file(place, [&text] { return read_device(text.json); });
+  return {file.stem().string(), written(device), handle_moves_tool(device)};
+}
+
+std::optional<ComparedDevice> with_friction_times(ComparedDevice device, double factor) {
+  DeviceFields fields = read_device(device.json);
+  auto* impedance = std::get_if<ImpedanceDeviceConfig>(&fields);
+  if (impedance == nullptr || impedance->coulomb == 0.0) return std::nullopt;
+  impedance->coulomb *= factor;
+  device.json = written(fields);
+  device.name += fmt::format("[friction*{:g}]", factor);
+  return device;
+}
+
+std::vector<ComparedDevice> with_unpublished_numbers(const ComparedDevice& device) {
+  std::vector<ComparedDevice> ends;
+  const DevicePreset* preset = find_device_preset(device.json.value("preset", ""));
+  if (preset == nullptr) return ends;
+  for (const auto& [end, mark] : {std::pair(PresetEnd::soft, "[soft]"), {PresetEnd::stiff, "[stiff]"}}) {
+    ends.push_back(device);
+    ends.back().json = written(DeviceFields(config_of(*preset, end)));
+    ends.back().name += mark;
+  }
+  return ends;
+}
+
+std::vector<std::string> overrides_on(const ComparedDevice& device, const ScenarioText& scene,
+                                      const std::vector<std::string>& overrides) {
+  std::vector<std::string> all = {"device=" + device.json.dump()};
+  const Json hand = device.has_place_for_mass ? Json() : massless_hand(scene);
+  if (!hand.is_null()) all.push_back("hand=" + hand.dump());
+  for (const std::string& override : overrides) {
+    if (hand.is_null() || overridden_path(override) != "hand.mass_kg") all.push_back(override);
+  }
+  return all;
 }
 
 }  // namespace hapbench

@@ -9,7 +9,7 @@
 #include "scenarios/run/outcome.hpp"
 #include "scenarios/run/run_scenario.hpp"
 #include "scenarios/run/stop_signal.hpp"
-#include "sim/contact/stiffness_tensor.hpp"
+#include "sim/contact/contact_buffer.hpp"
 #include "sim/core/hash.hpp"
 
 namespace hapbench {
@@ -71,7 +71,7 @@ class SlowBounces {
   void land(std::uint64_t step, const JudgedRows& judged) noexcept {
     const std::uint64_t touching = std::exchange(touching_, 0);
     const bool slow = static_cast<double>(touching + away_) > slow_;
-    if (!slow || touching >= away_ || !pressed_ || !judged.begin() || step < *judged.begin()) return;
+    if (!slow || touching >= away_ || !pressed_ || !judged.contain(step)) return;
     const std::size_t half = 2 * (step - *judged.begin()) / (judged.end() - *judged.begin());
     ++counts_[half];
     highest_[half] = std::max(highest_[half], height_);
@@ -101,9 +101,8 @@ class LastRows final : public Observer {
 
   void on_step(const StepRecord& record) noexcept override {
     touches_ = record.colliding > 0;
-    touched_ = touched_ || touches_;
     if (touches_) judged_.touch(record.step);
-    vibration_.add(record.step, record.handle.velocity, judged_);
+    vibration_.add(record.step, record.handle.velocity, judged_.contain(record.step));
     bounces_.add(record, judged_);
     place_ = record.tool.pose.position;
     for (const double coordinate : record.handle.position) way_.real(coordinate);
@@ -118,8 +117,8 @@ class LastRows final : public Observer {
     S_sum_ += record.force.S;
   }
 
-  bool touched() const { return touched_; }           ///< in any row
-  std::uint64_t way() const { return way_.value(); }  ///< RunStability::way
+  bool touched() const { return judged_.begin().has_value(); }  ///< in any row
+  std::uint64_t way() const { return way_.value(); }            ///< RunStability::way
   bool goes_on_bouncing() const { return bounces_.go_on(); }
   bool has_left(const PointShell& shell, double reach) const {
     const Box bounds = shell.bounds();
@@ -129,7 +128,8 @@ class LastRows final : public Observer {
   /// `rests`: the run was cut short because nothing moves any more.
   SettledState state(bool rests) const {
     SettledState state;
-    state.vibration = vibration_.value(judged_, rests);
+    // Nothing moves in the rows that a tool at rest is spared.
+    state.vibration = vibration_.rms(if_any(rests && judged_.begin(), judged_.end() - judged_.begin().value_or(0)));
     if (rows_in_contact_ == 0) return state;
     const auto rows = static_cast<double>(rows_in_contact_);
     state.contacts = static_cast<double>(contacts_) / rows;
@@ -138,12 +138,12 @@ class LastRows final : public Observer {
   }
 
  private:
-  bool touched_ = false, touches_ = false;
+  bool touches_ = false;
   Vec3 place_ = Vec3::Zero();  ///< of the tip centre [m]
   Hash64 way_;
   std::uint64_t steps_;
   JudgedRows judged_;
-  JudgedVibration vibration_;
+  Vibration vibration_;
   SlowBounces bounces_;
   std::uint64_t quarter_ = 0, rows_in_contact_ = 0, contacts_ = 0;
   Mat3 S_sum_ = Mat3::Zero();

@@ -2,14 +2,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cstddef>
-#include <cstdint>
 #include <map>
-#include <memory>
-#include <optional>
-#include <span>
-#include <string>
-#include <string_view>
 
 #include "results/observe/contact_forces.hpp"
 #include "scenarios/format/load_scenario.hpp"
@@ -23,13 +16,12 @@
 ///
 /// The run is cut into quarters. The amplitude of a quarter is the largest speed of the tool in it (of a handle that
 /// moves the tool: an encoder turns its motion into jumps that nobody feels); a turn is a change of sign of a component
-/// of the velocity, whether or not dry friction holds a handle there. A quarter oscillates with two turns or more of
-/// one component. The rules of the classes are those of run_verdict_texts().
+/// of the velocity. A quarter oscillates with two turns or more of one component. The rules of the classes are those of
+/// run_verdict_texts().
 ///
-/// Both stable and dying_out come to rest in a longer run and count as stable for limits. A damped oscillation dies out
-/// to 1 % within three quarters of n steps when it loses more than 6.1 / n of its amplitude in a step, and vibrates
-/// when it loses less than 0.42 / n: a thin strip below the limit of a damped linear system, all that is stable of an
-/// undamped one, and the limit cycles of a nonlinear one.
+/// A damped oscillation dies out to 1 % within three quarters of n steps when it loses more than 6.1 / n of its
+/// amplitude in a step, and vibrates when it loses less than 0.42 / n: a thin strip below the limit of a damped linear
+/// system, all that is stable of an undamped one, and the limit cycles of a nonlinear one.
 namespace hapbench {
 
 /// The classes of motion, ends of a run that no motion tells (outcomes of the same name), and a bound that is not kept.
@@ -70,8 +62,8 @@ class MotionClassifier final : public Observer {
   explicit MotionClassifier(std::uint64_t steps) : steps_(steps) {}
   /// For a tool that a script moves, which is never at rest: what counts is its velocity above 30 Hz (all of it when
   /// steps are longer than a 60th of a second), in the last quarter beyond 1 mm/s, about what a hand can feel there.
-  /// If the script ends at the row `still` in the first half of the run, the motion from then on is judged as well, by
-  /// quarters of what is left: all of it that is faster than 1 mm/s counts.
+  /// If the script ends at the row `still` in the first half of the run, all motion from then on that is faster than
+  /// 1 mm/s counts as well, by quarters of what is left.
   static MotionClassifier of_moved_tool(std::uint64_t steps, double time_step, double still);
 
   void on_step(const StepRecord& record) noexcept override;
@@ -118,18 +110,17 @@ inline bool is_stable(RunVerdict verdict) noexcept {
 
 /// Means over the last quarter of a run, unless said otherwise.
 struct SettledState {
-  /// Root mean square of the handle's speed above 30 Hz in the judged rows (JudgedRows), from a quarter of the contact
-  /// on [m/s]; empty at sampling rates of 60 Hz or less.
+  /// Of the handle above 30 Hz in the judged rows (JudgedRows) [m/s rms]; empty at sampling rates of 60 Hz or less.
   std::optional<double> vibration;
   double contacts = 0.0;    ///< mean number of rendered contacts of the rows in contact
   double lambda_max = 0.0;  ///< largest eigenvalue of their mean S: the stiffness rendered, in units of K
 };
 
-/// What a run has to do to be stable: the one rule of limits, maps of devices and comparisons.
+/// What a run has to do to be stable.
 struct StabilityRule {
-  /// Most vibration of the handle in the judged rows [m/s rms], which then decides in place of the motion: a limit
-  /// cycle that is too small to be felt is stable, motion that is felt is not, though it may die out; nothing is stable
-  /// where no vibration is measured. A tool that bounces below 30 Hz vibrates while bounces do not get lower by 1 %.
+  /// Most vibration of the handle in the judged rows [m/s rms], which then decides in place of the motion: what is too
+  /// small to be felt is stable, what is felt is not, though it may die out; nothing is stable where no vibration is
+  /// measured. A tool that bounces below 30 Hz vibrates while bounces do not get lower by 1 %.
   std::optional<double> most_vibration = {};
   /// Bounds on metrics of summary.json; a metric without a value keeps none.
   std::map<std::string, MetricBound> bounds = {};
@@ -152,10 +143,9 @@ struct RunStability {
   bool undecided = false;
 };
 
-/// Runs the scenario's first trial, without records, and judges it, longer where that is too short to tell and no
-/// script ends (RunStability::undecided); where there are bounds and it is stable, runs it again for its metrics.
-/// `shell` is make_shell of the scenario, null for springs, which have neither an inside nor a place to leave. Throws
-/// Stopped when a signal ends it. Precondition: the position is free, and there are 4 steps or more.
+/// Runs the scenario's first trial, without records, and judges it, longer where that is too short to tell; where there
+/// are bounds and it is stable, runs it again for its metrics. `shell` is make_shell of the scenario. Throws Stopped.
+/// Precondition: the position is free, and there are 4 steps or more.
 RunStability stability_of(const LoadedScenario& loaded, std::shared_ptr<const PointShell> shell,
                           const StabilityRule& rule = {});
 

@@ -10,8 +10,8 @@
 
 #include "algorithms/depth/depth_model.hpp"
 #include "algorithms/registry.hpp"
+#include "sim/contact/contact_buffer.hpp"
 #include "sim/contact/contact_source.hpp"
-#include "sim/contact/stiffness_tensor.hpp"
 #include "sim/core/math.hpp"
 #include "sim/core/random.hpp"
 
@@ -148,7 +148,7 @@ void count_set(const ContactSet& set, std::uint64_t number, const PointShell& sh
   algorithm->compute({set.pose, set.velocity}, contacts, force);
   counts.points_dropped += algorithm->work().points_dropped;
 
-  const auto bound_of = find_algorithm(config.algorithm)->theory.force_bound;
+  const auto bound_of = find_algorithm(config.algorithm)->force_bound;
   const double size = force.spring.norm(), unit = config.stiffness * force.depth_max,
                bound = bound_of == nullptr
                            ? std::numeric_limits<double>::infinity()
@@ -171,7 +171,7 @@ std::vector<StressCounts> no_counts() {
   for (const AlgorithmEntry& entry : algorithms()) {
     StressCounts& of = counts.emplace_back();
     of.algorithm = entry.info->name;
-    if (entry.theory.force_bound != nullptr) of.largest_share = 0.0;
+    if (entry.force_bound != nullptr) of.largest_share = 0.0;
   }
   return counts;
 }

@@ -1,10 +1,5 @@
 #pragma once
 
-#include <cstdint>
-#include <optional>
-#include <string>
-#include <vector>
-
 #include "algorithms/rendering_config.hpp"
 #include "scenarios/cases/cases.hpp"
 #include "sim/geometry/point_shell.hpp"
@@ -40,7 +35,7 @@ struct StressCounts {
   std::uint64_t out_of_bound = 0;    ///< finite, but beyond a bound
   std::uint64_t points_dropped = 0;  ///< by a full reduction
   double largest_force = 0.0;        ///< largest |f_spring| in units of K d, d the deepest point of the set
-  /// Largest |f_spring| in units of its bound (AlgorithmTheory::force_bound); none for algorithms without one.
+  /// Largest |f_spring| in units of its bound (AlgorithmEntry::force_bound); none for algorithms without one.
   std::optional<double> largest_share;
   std::optional<std::uint64_t> first_bad;  ///< number of the first set that is not finite or out of bound
 };

@@ -1,15 +1,7 @@
 #pragma once
 
 #include <array>
-#include <functional>
-#include <map>
-#include <optional>
-#include <string>
-#include <string_view>
-#include <utility>
-#include <vector>
 
-#include "scenarios/format/load_scenario.hpp"
 #include "scenarios/limits/stability/field_limit.hpp"
 
 /// Which stiffness and damping to use: for a force law in a scene the largest K, over damping ratio, velocity filter
@@ -23,7 +15,7 @@ using TuneMetrics = std::map<std::string, double, std::less<>>;
 /// The value of that name times a factor, if there is one.
 std::optional<double> value_in(const TuneMetrics& metrics, std::string_view name, double factor = 1.0);
 
-/// What the runs differ in that a setting has to hold in besides the scene's own:
+/// The families of runs besides the scene's own that a setting has to hold in:
 ///   hands   that are springs with the scene's damping: the ends of hand_family(), 100 and 1000 N/m, on an impedance
 ///           device's handle with 0.1 and 0.5 kg each
 ///   seeds   four further seeds, started 10 um away: less than a hand repeats a place
@@ -34,8 +26,7 @@ struct FamilyMember {
   std::string name;                         ///< for people, as in "a hand of 0.5 kg and 1000 N/m"
   std::vector<std::string> overrides = {};  ///< none: the scene's own run
 };
-
-/// Those runs; empty where the scene has nothing to vary, as a hand whose force is a script.
+/// Empty where the scene has nothing to vary, as a hand whose force is a script.
 std::vector<FamilyMember> family_of(const LoadedScenario& loaded, const std::string& family);
 
 struct TuneQuestion {
@@ -60,15 +51,15 @@ struct TuneSetting {
   auto operator<=>(const TuneSetting&) const = default;
 };
 
-/// ", zeta = 0.3, 0.2 kg", for what was chosen.
+/// ", zeta = 0.3, 0.2 kg", of what is chosen.
 std::string setting_text(const TuneSetting& setting);
 
 /// A setting and K, tried for a law.
 struct TuneTrial : TuneSetting {
   std::string algorithm = {};
   double stiffness = 0.0;
-  /// The constraint that is not kept: "settled" (at K), "margin" (at G K), "runs" (the bound on them is reached) or the
-  /// limited metric; empty where all are.
+  /// The constraint that is not kept: "settled" (at K), "margin" (at G K), "runs" (the bound on them), "range" (the end
+  /// of the search) or the limited metric; empty where all are.
   std::string binding;
   std::string why;            ///< the same in words
   bool too_soft = false;      ///< a stiffer one may keep it
@@ -87,8 +78,8 @@ struct TuneTrial : TuneSetting {
   }
 };
 
-/// What a choice can bear before the worst run of the family is not settled any more; empty where it cannot be asked,
-/// as of the delay of an ideal device. At most kMostGain and kMostDelay.
+/// What a choice can bear before the worst run of the family is not settled any more, at most kMostGain and kMostDelay;
+/// empty where it cannot be asked, as of the delay of an ideal device.
 struct TuneMargins {
   std::optional<double> gain;           ///< factor on K
   std::optional<double> delay_samples;  ///< more delay of the device's force, or of an admittance device's servo
@@ -105,8 +96,8 @@ struct TunedLaw {
   std::string relax;  ///< where nothing is feasible: which limit to relax, and by how much
   TuneMargins margins;
   FieldLimit edge;  ///< of K in the scene as chosen, with its own hand: what `limit` finds
-  /// How far half the step, half the distance of the points and a look at the depth in every row move the metrics of
-  /// the own run, the largest of these; none of a metric that such a run does not have.
+  /// How far at most half the step, half the distance of the points and a look at the depth in every row move the
+  /// metrics of the own run; none of a metric that such a run does not have.
   TuneMetrics error;
   std::vector<TuneTrial> trials;       ///< all, by setting and K; those along K at the choice's setting among them
   std::size_t runs = 0;                ///< simulations in all
@@ -117,7 +108,7 @@ struct TunedLaw {
 /// Search of a law ends at so many simulations; margins, errors and verification take a few hundred more.
 inline constexpr std::size_t kMostTuneRuns = 6000;
 
-/// The range of zeta and of the virtual mass that are searched; empty where they have no part.
+/// The ranges that are searched, of zeta and the virtual mass where they have a part.
 struct TuneRanges {
   Range stiffness;
   std::optional<Range> damping_ratio, mass;
@@ -126,17 +117,16 @@ TuneRanges tune_ranges(const TuneQuestion& question, const std::string& algorith
 
 /// Tunes one law. The number of threads changes nothing.
 ///
-/// A setting at K is feasible when, for the scene's own run and each of the family, the run at K is settled (rule_of in
-/// run_stability.hpp) and keeps the limits (without limits of a user, the own run is quiet: quiet_numbers in
-/// diagnosis.hpp), the run at G K is settled, and the loop in contact (contact_loops, with hand_family() where a hand
-/// holds an impedance device's handle) has stable eigenvalues up to G K.
-/// Values of zeta in ratios of 10^(1/4) are tried; where K can be raised by half a percent, it is, to its first edge.
-/// Where only limits are in the way, the search walks from the trial nearest to them towards them. Then filters are
-/// tried with the best mass, and zeta and mass refined until a change by 0.4 % raises K no more.
-/// The choice has to be settled at 56 gains from 1 to G, the family taking turns, up to the edge that `limit` finds for
-/// the own run, and in runs twice as long unless a script leads on; and it has to keep limits of a user by as much as
-/// its metrics are known (TunedLaw::error). Otherwise the search goes on below it. Throws InputError for a scene
-/// without a free position, Stopped.
+/// A setting at K is feasible when, for the scene's own run and each of the family, the run at K is settled (rule_of)
+/// and keeps the limits (without limits of a user, the own run is quiet: quiet_numbers in diagnosis.hpp), the run at
+/// G K is settled, and the loop in contact (contact_loops, with hand_family() on an impedance device that a hand holds)
+/// has stable eigenvalues up to G K. Values of zeta in ratios of 10^(1/4) are tried; where K can be raised by half a
+/// percent, it is, to its first edge. Where only limits are in the way, the search walks from the trial nearest to them
+/// towards them. Then filters are tried with the best mass, and zeta and mass refined until a change by 0.4 % raises K
+/// no more. The choice has to be settled at 56 gains from 1 to G, the family taking turns, up to the edge that `limit`
+/// finds for the own run, and in runs twice as long unless a script leads on; and it has to keep limits of a user by as
+/// much as its metrics are known (TunedLaw::error). Otherwise the search goes on below it. Throws InputError for a
+/// scene without a free position, and Stopped.
 TunedLaw tuned_law(const TuneQuestion& question, const std::string& algorithm);
 
 }  // namespace hapbench
