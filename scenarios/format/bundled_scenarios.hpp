@@ -14,7 +14,6 @@ namespace hapbench {
 /// Throws InputError when there is none.
 std::filesystem::path installed_folder(const std::string& name);
 
-/// Folders of `scenarios` that hold bundled ones.
 inline constexpr const char* kScenarioGroups[] = {"thesis", "limits", "beyond", "quality", "examples"};
 
 /// A bundled scenario.

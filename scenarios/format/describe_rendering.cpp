@@ -1,6 +1,5 @@
 #include <algorithm>
 
-#include "algorithms/parameters.hpp"
 #include "algorithms/registry.hpp"
 #include "scenarios/format/parts.hpp"
 #include "scenarios/format/text_lines.hpp"
@@ -31,8 +30,7 @@ void number(Fields& f, const Parameter& parameter, Number& value, const char* do
 /// null, or what `each(Fields&, T&)` describes; left out of written scenarios that have none.
 template <class T, class Each>
 void if_not_null(Fields& f, std::string_view name, std::optional<T>& value, const char* doc, Each each) {
-  f.field(name, doc, value ? Presence::no_default : Presence::left_out,
-          [&](Fields& held) { held.nullable(value, each); });
+  f.nullable(name, value, doc, each, value ? Presence::no_default : Presence::left_out);
 }
 
 void own_parameters(Fields& f, RenderingConfig& rendering, const AlgorithmEntry& entry) {
@@ -53,19 +51,16 @@ void own_parameters(Fields& f, RenderingConfig& rendering) {
                          (entry.info->name == rendering.algorithm || rendering.parameters.contains(entry.info->name));
     return written ? Presence::no_default : Presence::left_out;
   };
-  const bool any = std::any_of(algorithms().begin(), algorithms().end(),
-                               [&](const AlgorithmEntry& entry) { return presence(entry) != Presence::left_out; });
-  f.group(
-      "parameters", "parameters that algorithms have for themselves: an object for each algorithm",
-      [&](Fields& all) {
-        for (const AlgorithmEntry& entry : algorithms()) {
-          if (entry.own_parameters.empty()) continue;
-          all.group(
-              entry.info->name, "parameters of this algorithm",
-              [&](Fields& own) { own_parameters(own, rendering, entry); }, presence(entry));
-        }
-      },
-      any ? Presence::no_default : Presence::left_out);
+  const bool any =
+      std::ranges::any_of(algorithms(), [&](auto& entry) { return presence(entry) != Presence::left_out; });
+  f.group("parameters", "parameters that algorithms have for themselves: an object for each algorithm",
+          any ? Presence::no_default : Presence::left_out, [&](Fields& all) {
+            for (const AlgorithmEntry& entry : algorithms()) {
+              if (entry.own_parameters.empty()) continue;
+              all.group(entry.info->name, "parameters of this algorithm", presence(entry),
+                        [&](Fields& own) { own_parameters(own, rendering, entry); });
+            }
+          });
 }
 
 }  // namespace
@@ -73,11 +68,9 @@ void own_parameters(Fields& f, RenderingConfig& rendering) {
 static void describe(Fields& f, ReductionConfig& reduction) {
   number(f, parameter::kThreshold, reduction.threshold, "alpha_TH: gradients with a larger inner product are similar");
   number(f, parameter::kMaxPoints, reduction.max_points, "n_ext: most points kept");
-  f.field(key(parameter::kShuffleSeed), "visit the points in a fixed random order; null: ascending index",
-          Presence::has_default, [&reduction](Fields& seed) {
-            seed.nullable(reduction.shuffle_seed,
-                          [](Fields& s, std::uint64_t& value) { s.integer(value, integers(parameter::kShuffleSeed)); });
-          });
+  f.nullable(key(parameter::kShuffleSeed), reduction.shuffle_seed,
+             "visit the points in a fixed random order; null: ascending index",
+             [](Fields& s, std::uint64_t& seed) { s.integer(seed, integers(parameter::kShuffleSeed)); });
 }
 
 static void describe(Fields& f, DryFrictionConfig& dry) {
@@ -130,13 +123,7 @@ static void describe_contact_source(Fields& f, RenderingConfig& rendering) {
   std::string& source = rendering.contact_source;
   const bool is_plugin = source == kContactPlugin;
   f.plain_or_object(
-      is_plugin || source == kTrace,
-      [&](Fields& plain) {
-        static const std::vector<std::string> kNames = {kOwnContacts};
-        std::size_t index = 0;
-        plain.name(index, kNames, "source of contacts");
-        if (plain.reads()) source = kOwnContacts;
-      },
+      is_plugin || source == kTrace, [&](Fields& plain) { plain.choice(source, {kOwnContacts}, "source of contacts"); },
       [&](Fields& object) {
         object.alternatives(
             "source of contacts", kTypes, Untyped::refused, is_plugin ? 1 : 0, [&](Fields& fields, std::size_t type) {
@@ -157,11 +144,9 @@ static void describe(Fields& f, EnergyTankConfig& tank) {
 }
 
 static void describe(Fields& f, ActuatorLimitedPassivityConfig& limited) {
-  f.field(key(parameter::kActuatorForce), "most force of the actuator along each axis of the world; null: no limit",
-          Presence::has_default, [&limited](Fields& force) {
-            force.nullable(limited.max_force,
-                           [](Fields& v, Vec3& most) { v.vector3(most, parameter::kActuatorForce.range); });
-          });
+  f.nullable(key(parameter::kActuatorForce), limited.max_force,
+             "most force of the actuator along each axis of the world; null: no limit",
+             [](Fields& v, Vec3& most) { v.vector3(most, parameter::kActuatorForce.range); });
   number(f, parameter::kActuatorDamping, limited.max_damping,
          "most damping; null: M / dt, which stops the virtual tool in one step");
 }
@@ -181,12 +166,12 @@ Scenario with_algorithm(Scenario scenario, std::string_view algorithm) {
 void describe(Fields& f, RenderingConfig& rendering) {
   static const std::vector<std::string> kDepthModels =
       names_of(depth_models(), [](const DepthModelEntry& entry) { return entry.info->name; });
-  f.name("algorithm", rendering.algorithm, algorithm_names(), "algorithm", "force algorithm");
+  f.choice("algorithm", rendering.algorithm, algorithm_names(), "algorithm", "force algorithm");
   // The stages that the algorithm fixes are the defaults of the fields below.
   if (f.reads()) rendering = with_fixed_stages(rendering);
   number(f, parameter::kIterations, rendering.iterations, "m of the shaping iteration");
-  f.name("depth_model", rendering.depth_model, kDepthModels, "depth model",
-         "default surface_normal, or what the algorithm's definition fixes", Presence::no_default);
+  f.choice("depth_model", rendering.depth_model, kDepthModels, "depth model",
+           "default surface_normal, or what the algorithm's definition fixes", Presence::no_default);
   f.field(
       "contact_source",
       "own: our search, with the depth model; else whose contacts, depths and directions are taken instead: of a file",
@@ -210,7 +195,7 @@ void describe(Fields& f, RenderingConfig& rendering) {
               "damping that grows with depth, in place of damping_ratio; null: off", describe_hunt_crossley);
   f.field("friction", "friction along the surface", Presence::has_default,
           [&rendering](Fields& friction) { describe_friction(friction, rendering); });
-  f.group("limits", "optional limits", [&rendering](Fields& limits) {
+  f.group("limits", "optional limits", Presence::has_default, [&rendering](Fields& limits) {
     number(limits, parameter::kMaxDamping, rendering.max_damping, "B_max; null: off");
     number(limits, parameter::kMaxForce, rendering.max_force, "F_max; null: off");
   });

@@ -9,9 +9,6 @@
 
 #include "algorithms/registry.hpp"
 #include "algorithms/stages/damping_and_limits.hpp"
-#include "results/summary/summary.hpp"
-#include "scenarios/format/input_error.hpp"
-#include "scenarios/format/json_file.hpp"
 #include "scenarios/format/load_scenario.hpp"
 #include "scenarios/format/metric_sections.hpp"
 #include "scenarios/format/parts.hpp"
@@ -48,10 +45,8 @@ void check_sizes(const Scenario& scenario, double steps) {
                                          rows, kMostRows));
   }
   // Every step of every trial has its time in memory.
-  const double timed = steps * trial_count(scenario.hand);
-  if (scenario.record.timing && timed > kMostRows) {
-    fail_at("/record/timing", fmt::format("got {:.3g} timed steps; allowed: at most {:.0g}", timed, kMostRows));
-  }
+  if (scenario.record.timing)
+    require_at_most(kMostRows, steps * trial_count(scenario.hand), "/record/timing", "timed steps");
 }
 
 void check_orientation(const MotionFields& motion) {
@@ -103,9 +98,7 @@ constexpr Rule kRules[] = {
        return s.record.ideal_trajectory && !(is<BlockEnvironment>(s.environment) && is_flat);
      }},
     {"/integrator/tolerance_s", "allowed for integrator.type \"event\" only",
-     [](const Scenario& s) {
-       return s.integrator.type != &kEvent && s.integrator.options.tolerance != IntegratorOptions{}.tolerance;
-     }},
+     [](const Scenario& s) { return s.integrator.type != &kEvent && s.integrator.tolerance != kEventTolerance; }},
     {"/reference_force", "contradicts motion.position of type \"free\"; allowed with a way that is known beforehand",
      [](const Scenario& s) { return s.reference_force && is<FreePosition>(s.motion.position); }},
     {"/record/force_reference",
@@ -189,16 +182,10 @@ void check_drag_hand(const Scenario& scenario, double steps) {
 void check_tracking_hand(const Scenario& scenario, double steps) {
   const auto* hand = std::get_if<TrackingHandFields>(&scenario.hand);
   if (hand == nullptr) return;
-  for (std::size_t i = 0; i < hand->subjects.size(); ++i) {
-    const double samples = hand->subjects[i].reaction_delay / scenario.time.step;
-    if (samples <= kMostDelaySamples) continue;
-    fail_at(fmt::format("/hand/subjects/{}/reaction_delay_s", i),
-            fmt::format("got {:.3g} time steps; allowed: at most {:.0g}", samples, kMostDelaySamples));
-  }
-  const double all_steps = trial_count(scenario.hand) * steps;
-  if (all_steps <= kMostSteps) return;
-  fail_at("/hand/trials",
-          fmt::format("got {:.3g} steps in all trials; allowed: at most {:.0g}", all_steps, kMostSteps));
+  for (std::size_t i = 0; i < hand->subjects.size(); ++i)
+    require_at_most(kMostDelaySamples, hand->subjects[i].reaction_delay / scenario.time.step,
+                    fmt::format("/hand/subjects/{}/reaction_delay_s", i), "time steps");
+  require_at_most(kMostSteps, trial_count(scenario.hand) * steps, "/hand/trials", "steps in all trials");
 }
 
 /// Throws InputError for fields that contradict each other. `steps` may be more than a scenario can hold.
@@ -316,8 +303,12 @@ bool records_rows(const RecordFields& record) {
 
 void require_direction(const Vec3& direction, const std::string& at) {
   if (direction.norm() >= kShortestDirection) return;
-  fail_at(at, fmt::format("got [{}, {}, {}]; allowed: a direction that is not zero, length at least {}", direction.x(),
-                          direction.y(), direction.z(), kShortestDirection));
+  fail_at(at, fmt::format("got [{}]; allowed: a direction that is not zero, length at least {}",
+                          fmt::join(direction, ", "), kShortestDirection));
+}
+
+void require_at_most(double most, double count, const std::string& at, const char* what) {
+  if (!(count <= most)) fail_at(at, fmt::format("got {:.3g} {}; allowed: at most {:.0g}", count, what, most));
 }
 
 std::vector<Warning> relation_warnings(const Scenario& scenario, const Json& json) {
@@ -431,10 +422,10 @@ static void describe(Fields& f, InitialFields& initial) {
 static void describe(Fields& f, IntegratorFields& integrator) {
   std::string type = integrator.type->info.name;
   const auto names = names_of(kIntegrators, [](const IntegratorEntry* entry) { return entry->info.name; });
-  f.name("type", type, names, "integrator", "leapfrog is the thesis's; \"hapbench describe NAME\" explains each",
-         Presence::required);
+  f.choice("type", type, names, "integrator", "leapfrog is the thesis's; \"hapbench describe NAME\" explains each",
+           Presence::required);
   if (f.reads()) integrator.type = *std::ranges::find(kIntegrators, type, [](auto* entry) { return entry->info.name; });
-  f.number("tolerance_s", integrator.options.tolerance, {1e-15, 1.0, "s"},
+  f.number("tolerance_s", integrator.tolerance, {1e-15, 1.0, "s"},
            "of event: within which it finds the times of contact on and off; 1e-9 unless it is given",
            integrator.type == &kEvent ? Presence::no_default : Presence::left_out);
 }
@@ -489,7 +480,7 @@ static void describe(Fields& f, ExpectFields& expect) {
   f.field("outcome", "how the run must end, or a list of ways", Presence::has_default,
           [&expect](Fields& value) { describe_outcomes(value, expect.outcomes); });
   f.group("metrics", "bounds on the run's metrics, min and max of each; \"hapbench describe metrics\" shows them",
-          [&expect](Fields& metrics) {
+          Presence::has_default, [&expect](Fields& metrics) {
             for (const Metric& metric : all_metrics()) {
               const auto known = expect.metrics.find(metric.name);
               std::optional<MetricBound> bound;
@@ -521,8 +512,7 @@ void describe(Fields& f, Scenario& scenario) {
   f.text("description", scenario.description, 10'000, "what it shows");
   f.text("source", scenario.source, 1000, "where the numbers come from");
   f.integer("seed", scenario.seed, {0, std::int64_t{1} << 53}, "of everything random");
-  f.group(
-      "time", "time steps", [&](Fields& time) { steps = describe_time(time, scenario.time); }, Presence::required);
+  f.group("time", "time steps", Presence::required, [&](Fields& time) { steps = describe_time(time, scenario.time); });
   f.value("environment", scenario.environment, "what the tool touches", Presence::required);
   if (f.reads()) set_scene_defaults(scenario);
   f.object("initial", scenario.initial, "state at t = 0");

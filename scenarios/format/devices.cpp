@@ -4,9 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "device_model/admittance_device.hpp"
-#include "device_model/device_presets.hpp"
-#include "device_model/impedance_device.hpp"
 #include "scenarios/format/input_error.hpp"
 #include "scenarios/format/parts.hpp"
 #include "scenarios/format/text_lines.hpp"
@@ -86,7 +83,7 @@ static void describe_preset(Fields& f, ImpedanceDeviceConfig& device) {
   const std::vector<std::string> names = names_of(device_presets(), &DevicePreset::name);
   f.if_any("preset", preset,
            "a published device, whose numbers hold where the file gives none; \"hapbench describe presets\" shows them",
-           [&names](Fields& n, std::string& name) { n.name(name, names, "preset"); });
+           [&names](Fields& n, std::string& name) { n.choice(name, names, "preset"); });
   if (!f.reads()) return;
   if (preset) {
     device = config_of(*find_device_preset(*preset));
@@ -146,10 +143,6 @@ void describe(Fields& f, DeviceFields& device) {
        {"impedance", "measures positions and renders forces: a light handle with motors, as most desktop devices"}});
 }
 
-bool handle_moves_tool(const DeviceFields& device) {
-  return std::holds_alternative<ImpedanceDeviceConfig>(device);
-}
-
 std::optional<double> input_force_limit(const DeviceFields& device) {
   if (const auto* ideal = std::get_if<IdealDeviceFields>(&device)) return ideal->force_limit;
   const auto* admittance = std::get_if<AdmittanceDeviceConfig>(&device);
@@ -176,9 +169,8 @@ void resolve_delay(Scenario& scenario) {
 }
 
 std::unique_ptr<Device> make_device(const Scenario& scenario, Trial trial) {
-  if (const auto* ideal = std::get_if<IdealDeviceFields>(&scenario.device)) {
+  if (const auto* ideal = std::get_if<IdealDeviceFields>(&scenario.device))
     return std::make_unique<IdealDevice>(ideal->force_limit);
-  }
   if (const auto* impedance = std::get_if<ImpedanceDeviceConfig>(&scenario.device)) {
     ImpedanceDeviceConfig config = *impedance;
     config.seed = derived_seed(scenario, trial, RandomUse::position_noise);

@@ -18,26 +18,10 @@ using Shell = std::shared_ptr<const PointShell>;
 
 constexpr IntegerRange kSpringCount = {0, 20'000'000};
 
-/// In the order of the variant.
-constexpr TypeName kEnvironmentTypes[] = {
-    {"springs", "springs on the tool's tip, without a surface"},
-    {"hole_2d", "a hole in the plane, with its mouth"},
-    {"plane", "a flat square"},
-    {"slot", "two parallel faces"},
-    {"block_with_hole", "a block with a round blind hole, its shell by marching cubes"},
-    {"point_shell", "points with normals from a CSV or PLY file"},
-    {"mesh", "a surface from an OBJ, PLY, STL or OFF file"},
-    {"conical_hole", "a hole that tapers to a point"},
-};
-
-void refuse_too_many(double count, const std::string& at, const char* what) {
-  if (count <= kMostPoints) return;
-  fail_at(at, fmt::format("got {:.3g} {}; allowed: at most {:.0g}", count, what, kMostPoints));
-}
-
 template <class Shell>
 void check_point_count(Fields& f, const Shell& shell) {
-  if (f.reads()) refuse_too_many(point_count(shell), f.at(), "shell points (from the lengths and spacing_m)");
+  if (f.reads())
+    require_at_most(kMostPoints, point_count(shell), f.at(), "shell points (from the lengths and spacing_m)");
 }
 
 void check_springs(const SpringsEnvironment& springs, const std::string& at) {
@@ -46,7 +30,7 @@ void check_springs(const SpringsEnvironment& springs, const std::string& at) {
     count += static_cast<double>(springs.groups[i].count);
     require_direction(springs.groups[i].direction, fmt::format("{}/groups/{}/direction", at, i));
   }
-  refuse_too_many(count, at, "springs");
+  require_at_most(kMostPoints, count, at, "springs");
   if (springs.bilateral || springs.signed_depths) return;
   fail_at(at + "/signed", "got false; allowed: true with \"bilateral\": false, whose depths are positive as they are");
 }
@@ -61,7 +45,7 @@ void check_block(const BlockEnvironment& environment, const std::string& at) {
   if (size.maxCoeff() > longest) fail("grid_m", fmt::format("got {}; allowed: at least size_m / 1e5", grid));
   const double area = 2.0 * (size.x() * size.y() + size.y() * size.z() + size.z() * size.x());
   const double copies = environment.vertices == BlockVertices::per_cell ? 4.0 : 1.0;  // on an edge of four cells
-  refuse_too_many(copies * area / (grid * grid), at, "shell points (from size_m, grid_m and vertices)");
+  require_at_most(kMostPoints, copies * area / (grid * grid), at, "shell points (from size_m, grid_m and vertices)");
   if (block.hole_diameter > std::min(size.x(), size.y()) - 2.0 * thinnest || block.hole_diameter < thinnest) {
     fail("hole_diameter_m",
          fmt::format("got {}; allowed: at least 3 grid_m, leaving walls of 3 grid_m", block.hole_diameter));
@@ -154,7 +138,15 @@ static void describe(Fields& f, MeshEnvironment& mesh) {
 }
 
 void describe(Fields& f, Environment& environment) {
-  f.variant(environment, "environment", kEnvironmentTypes);
+  f.variant(environment, "environment",
+            {{"springs", "springs on the tool's tip, without a surface"},
+             {"hole_2d", "a hole in the plane, with its mouth"},
+             {"plane", "a flat square"},
+             {"slot", "two parallel faces"},
+             {"block_with_hole", "a block with a round blind hole, its shell by marching cubes"},
+             {"point_shell", "points with normals from a CSV or PLY file"},
+             {"mesh", "a surface from an OBJ, PLY, STL or OFF file"},
+             {"conical_hole", "a hole that tapers to a point"}});
 }
 
 namespace {
@@ -176,27 +168,22 @@ struct Build {
 
   Shell operator()(const SpringsEnvironment&) const { return nullptr; }
   Shell operator()(const PointShellEnvironment& given) const {
-    return of(files.at(kEnvironmentFile).points(), given.grid.value_or(0.0));
+    return std::make_shared<const PointShell>(files.at(kEnvironmentFile).points(), given.grid.value_or(0.0));
   }
   Shell operator()(const MeshEnvironment& mesh) const {
     const double cell_size = mesh.grid.value_or(0.0);
-    return of(in_grid_order(files.at(kEnvironmentFile).mesh().points(), cell_size), cell_size);
+    const auto points = in_grid_order(files.at(kEnvironmentFile).mesh().points(), cell_size);
+    return std::make_shared<const PointShell>(points, cell_size);
   }
   Shell operator()(const BlockEnvironment& block) const {
     const DensityField field = density_field(block.block, block.grid, block.density);
     if (block.vertices == BlockVertices::shared) return std::make_shared<const PointShell>(surface_shell(field));
     ShellPoints points = points_by_cell(marching_cubes(field, {.cells = true}), block.grid);
-    return of(points.points, block.grid, std::move(points.cells));
+    return std::make_shared<const PointShell>(points.points, block.grid, std::move(points.cells));
   }
   template <class Analytic>
   Shell operator()(const Analytic& shape) const {
-    return of(surface_points(shape), shape.spacing);
-  }
-
- private:
-  /// cell_size: edge of the grid cells the local average merges in.
-  static Shell of(const std::vector<SurfacePoint>& points, double cell_size, std::vector<std::uint32_t> cells = {}) {
-    return std::make_shared<const PointShell>(points, cell_size, std::move(cells));
+    return std::make_shared<const PointShell>(surface_points(shape), shape.spacing);
   }
 };
 
@@ -230,10 +217,6 @@ Shell make_shell(const Scenario& scenario, const NamedFiles& files) {
       [&] { return std::visit(Build{files}, scenario.environment); }, bytes);
 }
 
-Shell make_shell(const Scenario& scenario) {
-  return make_shell(scenario, NamedFiles(scenario));
-}
-
 std::shared_ptr<const Solid> make_solid(const Scenario& scenario, const NamedFiles& files) {
   const auto make = [&] { return std::visit(BuildSolid{files}, scenario.environment); };
   if (files.find(kEnvironmentFile) == nullptr) return make();
@@ -253,9 +236,8 @@ SpringSet make_springs(const Scenario& scenario) {
     springs.gradients.insert(springs.gradients.end(), static_cast<std::size_t>(group.count), unit);
   }
   Random random(static_cast<std::uint64_t>(scenario.seed));
-  for (std::int64_t i = 0; i < fields.random.count; ++i) {
+  for (std::int64_t i = 0; i < fields.random.count; ++i)
     springs.gradients.push_back(fields.random.planar ? random.direction_in_plane() : random.direction());
-  }
   return springs;
 }
 

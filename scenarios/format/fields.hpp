@@ -13,7 +13,6 @@
 
 #include "scenarios/format/json_file.hpp"
 #include "scenarios/format/mesh_file.hpp"
-#include "sim/core/model_info.hpp"
 #include "sim/core/types.hpp"
 
 /// The format of scenario files, described once, so that program, files, schema and documentation cannot disagree. A
@@ -109,8 +108,9 @@ class Fields {
   virtual void name(std::size_t& index, const std::vector<std::string>& names, const char* what) = 0;
   /// Three numbers [x, y, z].
   virtual void vector3(Vec3& value, NumberRange component) = 0;
-  /// A list of two values; `allowed` says which, for messages.
-  virtual void pair(const char* allowed, Body first, Body second) = 0;
+  /// A list of two numbers; `allowed` says which, for messages.
+  virtual void pair(const char* allowed, double& first, NumberRange of_first, double& second,
+                    NumberRange of_second) = 0;
   /// A list that has `length` entries and can be resized. The entry behind the last is an example, for the schema.
   virtual void entries(std::size_t length, ListSize size, FunctionRef<std::size_t> resize,
                        FunctionRef<Fields&, std::size_t> entry) = 0;
@@ -134,9 +134,9 @@ class Fields {
   // Inside `fields`: the object's fields. Names must live as long as the visit, as literals do.
   virtual void field(std::string_view name, const char* doc, Presence presence, Body value) = 0;
   /// A field that may hold anything and means nothing, such as "$schema".
-  virtual void ignored(std::string_view name, const char* doc) = 0;
+  virtual void ignored(std::string_view /*name*/, const char* /*doc*/) {}
   /// Exactly one of two fields must be there. Called after both and at most once for an object.
-  virtual void exactly_one_of(const char* a, const char* b) = 0;
+  virtual void exactly_one_of(const char* /*a*/, const char* /*b*/) {}
 
   // Inside `fields`, for what a schema cannot say.
   /// True while fields are being read: what was described so far has its value.
@@ -170,15 +170,10 @@ class Fields {
     if (reads()) value = static_cast<Enum>(index);
   }
 
-  void name(std::string& value, const std::vector<std::string>& names, const char* what) {
+  void choice(std::string& value, const std::vector<std::string>& names, const char* what) {
     auto index = static_cast<std::size_t>(std::find(names.begin(), names.end(), value) - names.begin());
     name(index, names, what);
     if (reads()) value = names[index];
-  }
-
-  void pair(const char* allowed, double& first, NumberRange first_range, double& second, NumberRange second_range) {
-    pair(
-        allowed, [&](Fields& f) { f.number(first, first_range); }, [&](Fields& f) { f.number(second, second_range); });
   }
 
   /// `each(Fields&, T&)` describes an entry.
@@ -192,17 +187,10 @@ class Fields {
         });
   }
 
-  /// null without a value; `each(Fields&, T&)` describes the value, which starts as a default-constructed one.
-  template <class T, class Each>
-  void nullable(std::optional<T>& value, Each each) {
-    or_null(
-        !value, [&value] { value.reset(); }, [&value, &each](Fields& f) { describe_held(f, value, each); });
-  }
-
   /// The types of a variant, named in the variant's order; `each(Fields&, T&)` describes the fields of one.
   template <class... Ts, class Each>
-  void variant(std::variant<Ts...>& value, const char* what, const TypeName (&types)[sizeof...(Ts)], Each each,
-               Untyped untyped = Untyped::refused) {
+  void variant(std::variant<Ts...>& value, const char* what, const TypeName (&types)[sizeof...(Ts)], Untyped untyped,
+               Each each) {
     alternatives(what, types, untyped, value.index(), [&value, &each](Fields& f, std::size_t i) {
       if (f.reads()) emplace(value, i, std::index_sequence_for<Ts...>{});
       std::variant<Ts...> example;
@@ -214,8 +202,7 @@ class Fields {
   template <class... Ts>
   void variant(std::variant<Ts...>& value, const char* what, const TypeName (&types)[sizeof...(Ts)],
                Untyped untyped = Untyped::refused) {
-    variant(
-        value, what, types, [](Fields& f, auto& held) { describe(f, held); }, untyped);
+    variant(value, what, types, untyped, [](Fields& f, auto& held) { describe(f, held); });
   }
 
   // ---- Fields of the kinds above: a name, the member, its range, and what it means. ----
@@ -224,11 +211,19 @@ class Fields {
               Presence presence = Presence::has_default) {
     field(name, doc, presence, [&](Fields& f) { f.number(value, range); });
   }
-  /// null without a value.
+  /// null without a value, here and below; `each(Fields&, T&)` describes a value, at first a default-constructed one.
+  template <class T, class Each>
+  void nullable(std::string_view name, std::optional<T>& value, const char* doc, Each each,
+                Presence presence = Presence::has_default) {
+    field(name, doc, presence, [&](Fields& f) {
+      f.or_null(
+          !value, [&value] { value.reset(); }, [&](Fields& held) { describe_held(held, value, each); });
+    });
+  }
   void number(std::string_view name, std::optional<double>& value, NumberRange range, const char* doc,
               Presence presence = Presence::has_default) {
-    field(name, doc, presence,
-          [&](Fields& f) { f.nullable(value, [range](Fields& n, double& inner) { n.number(inner, range); }); });
+    nullable(
+        name, value, doc, [range](Fields& f, double& inner) { f.number(inner, range); }, presence);
   }
   void boolean(std::string_view name, bool& value, const char* doc) {
     field(name, doc, Presence::has_default, [&](Fields& f) { f.boolean(value); });
@@ -245,17 +240,13 @@ class Fields {
                Presence presence = Presence::has_default) {
     field(name, doc, presence, [&](Fields& f) { f.vector3(value, component); });
   }
-  void name(std::string_view name, std::string& value, const std::vector<std::string>& names, const char* what,
-            const char* doc, Presence presence = Presence::has_default) {
-    field(name, doc, presence, [&](Fields& f) { f.name(value, names, what); });
-  }
   template <class Integer>
   void integer(std::string_view name, Integer& value, IntegerRange range, const char* doc,
                Presence presence = Presence::has_default) {
     field(name, doc, presence, [&](Fields& f) { f.integer(value, range); });
   }
-  template <class Enum>
-  void choice(std::string_view name, Enum& value, const std::vector<std::string>& names, const char* what,
+  template <class Choice>
+  void choice(std::string_view name, Choice& value, const std::vector<std::string>& names, const char* what,
               const char* doc, Presence presence = Presence::has_default) {
     field(name, doc, presence, [&](Fields& f) { f.choice(value, names, what); });
   }
@@ -263,11 +254,9 @@ class Fields {
   void object(std::string_view name, T& value, const char* doc, Presence presence = Presence::has_default) {
     field(name, doc, presence, [&value](Fields& f) { f.object(value); });
   }
-  /// An object, or null without a value.
   template <class T>
   void object(std::string_view name, std::optional<T>& value, const char* doc) {
-    field(name, doc, Presence::has_default,
-          [&value](Fields& f) { f.nullable(value, [](Fields& n, T& inner) { n.object(inner); }); });
+    nullable(name, value, doc, [](Fields& f, T& inner) { f.object(inner); });
   }
   /// A value whose `describe` says of what kind it is.
   template <class T>
@@ -275,7 +264,7 @@ class Fields {
     field(name, doc, presence, [&value](Fields& f) { describe(f, value); });
   }
   /// Fields of the same C++ object that lie in a JSON object of their own.
-  void group(std::string_view name, const char* doc, Body fields, Presence presence = Presence::has_default) {
+  void group(std::string_view name, const char* doc, Presence presence, Body fields) {
     field(name, doc, presence, [&](Fields& f) { f.fields(fields); });
   }
   template <class T, class Each>

@@ -36,8 +36,8 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 }  // namespace
 
 std::string one_line(std::string text) {
-  std::replace_if(
-      text.begin(), text.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, '?');
+  std::ranges::replace_if(
+      text, [](unsigned char c) { return c < 0x20 || c == 0x7f; }, '?');
   return text;
 }
 
@@ -99,7 +99,7 @@ void require_valid_name(std::string_view got, const std::string& name, std::span
                         std::string_view shown_by) {
   if (std::find(valid.begin(), valid.end(), name) != valid.end()) return;
   throw InputError(
-      fmt::format("{} \"{}\"; allowed: {}{}", got, name, quoted_list(valid, shown_by), nearest_name_hint(name, valid)));
+      fmt::format("{} \"{}\"{}; allowed: {}", got, name, nearest_name_hint(name, valid), quoted_list(valid, shown_by)));
 }
 
 std::string quoted_list(std::span<const std::string> names, std::string_view shown_by) {

@@ -9,7 +9,7 @@
 
 namespace hapbench {
 
-/// Largest sizes of a scenario; larger requests, which may exceed every integer, are refused before they take memory.
+// Largest sizes of a scenario; larger requests, which may exceed every integer, are refused before they take memory.
 inline constexpr double kMostPoints = 2e7;  ///< shell points or springs of an environment
 inline constexpr double kMostSteps = 1e9;   ///< steps of a run
 inline constexpr double kMostRows = 2e7;    ///< rows that a run may record

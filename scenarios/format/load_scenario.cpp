@@ -53,13 +53,11 @@ void keep_files(Json& json, const fs::path& directory) {
 /// Refuses to extend a file that is in the chain already.
 void check_chain(const std::vector<ScenarioLayer>& layers, const fs::path& next) {
   std::error_code ignored;
+  const auto is_next = [&](const ScenarioLayer& layer) { return fs::equivalent(layer.file, next, ignored); };
+  if (std::ranges::none_of(layers, is_next)) return;
   std::string chain;
-  bool again = false;
-  for (const ScenarioLayer& layer : layers) {
-    chain += layer.file.string() + " -> ";
-    again = again || fs::equivalent(layer.file, next, ignored);
-  }
-  if (again) throw InputError(fmt::format("got a circle, {}{}; allowed: a chain that ends", chain, next.string()));
+  for (const ScenarioLayer& layer : layers) chain += layer.file.string() + " -> ";
+  throw InputError(fmt::format("got a circle, {}{}; allowed: a chain that ends", chain, next.string()));
 }
 
 /// The file that `json`, read from `file`, extends.
@@ -105,9 +103,8 @@ Json read_extended(const fs::path& file, std::vector<ScenarioLayer>& layers) {
 /// other one is removed, as where a scenario extends another.
 void apply_override(Json& json, const std::string& text) {
   const std::size_t equals = text.find('=');
-  if (equals == 0 || equals == std::string::npos) {
+  if (equals == 0 || equals == std::string::npos)
     throw InputError("--set: got \"" + text + "\"; allowed: path=value, as in rendering.stiffness_N_per_m=40000");
-  }
   const std::string path = text.substr(0, equals), value = text.substr(equals + 1);
   const Words keys = parts_of(path, '.');
   constexpr std::size_t kDeepestPath = 64;  // what walks through JSON goes down by a call for each
@@ -137,13 +134,12 @@ void apply_override(Json& json, const std::string& text) {
 
 /// True when a run with this field overridden is still the run that the scenario's expectations were written for.
 bool leaves_run_alone(std::string_view override) {
-  const std::string_view path = overridden_path(override);
-  const std::string_view section = path.substr(0, path.find('.'));
+  constexpr std::string_view kSections[] = {"expect", "record", "name", "description", "source"};
   // Metrics come and go with these, and those of the ideal trajectory are over the recorded rows.
-  if (path == "record.energy" || path == "record.ideal_trajectory" || path == "record.torque" || path == "record.every")
-    return false;
-  return section == "expect" || section == "record" || section == "name" || section == "description" ||
-         section == "source";
+  constexpr std::string_view kMeasured[] = {"record.energy", "record.ideal_trajectory", "record.torque",
+                                            "record.every"};
+  const std::string_view path = overridden_path(override), section = path.substr(0, path.find('.'));
+  return std::ranges::count(kSections, section) > 0 && std::ranges::count(kMeasured, path) == 0;
 }
 
 /// Removes the expectations that hold only for the run that the scenario describes: bounds on metrics and the exact
@@ -175,11 +171,13 @@ std::string hint_elsewhere(const std::string& place) {
 
 /// The fault with its file in front, and with hints.
 InputError in_file(const InputError& fault, const fs::path& file) {
+  constexpr std::string_view kUnknown = "unknown field";
   std::string problem = fault.problem();
   const bool has_hint = problem.find("nearest valid name") != std::string::npos;
-  if (problem.starts_with("unknown field") && !has_hint)
-    problem += fault.place().starts_with("/rendering/parameters/") ? "; a law from outside brings its own with --module"
-                                                                   : hint_elsewhere(fault.place());
+  if (problem.starts_with(kUnknown) && !has_hint)
+    problem.insert(kUnknown.size(), fault.place().starts_with("/rendering/parameters/")
+                                        ? "; a law from outside brings its own with --module"
+                                        : hint_elsewhere(fault.place()));
   if (fault.place() == "/rendering/algorithm" && !has_hint) problem += "; a law from outside comes with --module";
   const std::string place = fault.place().empty() ? file.string() : file.string() + ": " + fault.place();
   return {fault.kind(), place, problem};
@@ -204,7 +202,7 @@ LoadedScenario read_scenario(const Json& json, const fs::path& directory) {
   loaded.scenario.directory = directory;
   read_value(
       json, "", [&](Fields& f) { f.object(loaded.scenario); }, &loaded.warnings);
-  for (Warning& warning : relation_warnings(loaded.scenario, json)) loaded.warnings.push_back(std::move(warning));
+  std::ranges::move(relation_warnings(loaded.scenario, json), std::back_inserter(loaded.warnings));
   loaded.files = NamedFiles(loaded.scenario);
   return loaded;
 }
@@ -252,18 +250,13 @@ LoadedScenario load_scenario(const ScenarioText& text, std::span<const std::stri
       loaded.layers = std::move(layers);
     }
     LoadedScenario read = read_scenario(json, text.file.parent_path());
-    loaded.scenario = std::move(read.scenario);
-    loaded.files = std::move(read.files);
-    if (loaded.scenario.name.empty()) loaded.scenario.name = text.file.stem().string();
-    loaded.warnings = std::move(read.warnings);
-    return loaded;
+    read.file = loaded.file;
+    read.layers = loaded.layers;
+    if (read.scenario.name.empty()) read.scenario.name = text.file.stem().string();
+    return read;
   } catch (const InputError& error) {
     rethrow_with_file(error, loaded);
   }
-}
-
-LoadedScenario load_scenario(const fs::path& file, std::span<const std::string> overrides) {
-  return load_scenario(read_scenario_text(file), overrides);
 }
 
 WrittenScenario::WrittenScenario(const Scenario& scenario, NamedFiles files)
@@ -284,14 +277,6 @@ std::string WrittenScenario::hash() const {
   Json json = json_;
   for (const auto& file : files_.all()) json.at(Json::json_pointer(file->pointer())) = file->hash();
   return hash_text(hash_of(json_text(json)));
-}
-
-Json effective_scenario(const Scenario& scenario, const fs::path& directory) {
-  return WrittenScenario(scenario, NamedFiles(scenario)).effective(directory);
-}
-
-std::string scenario_hash(const Scenario& scenario, const NamedFiles& files) {
-  return WrittenScenario(scenario, files).hash();
 }
 
 }  // namespace hapbench

@@ -45,23 +45,23 @@ struct LoadedScenario {
 };
 
 /// Reads a scenario file and, over and over, the one that its field "extends" names: a file, relative to the one that
-/// names it, or else a bundled scenario. The fields of each are merged over those of the scenario that it extends.
-/// Objects merge field by field; anything else replaces what it meets, null too, which is a value like any other. An
-/// object replaces one of another "type", whose fields would mean nothing in it. Of two fields that exclude each other
-/// ("steps" and "duration_s") the one that is given drives out the other. "name" and "expect" are not taken over: they
-/// say what that one scenario is called and shows. A relative path in a field "file" stays relative to its own file.
-///
-/// Throws InputError that begins with the file at fault; a chain that comes back to itself is refused.
+/// names it, or else a bundled scenario. Its fields are merged over those of the scenario that it extends: objects
+/// field by field, but one of another "type" replaces the other, as does anything else, null too. Of two fields that
+/// exclude each other ("steps" and "duration_s") the one that is given drives out the other. "name" and "expect" are
+/// not taken over. A relative path in a field "file" stays relative to its own file. Throws InputError that begins with
+/// the file at fault, also for a chain that comes back to itself.
 ScenarioText read_scenario_text(const std::filesystem::path& file);
 
 /// Applies overrides and checks the scenario, as load_scenario does with the file. For several threads.
 LoadedScenario load_scenario(const ScenarioText& text, std::span<const std::string> overrides);
 
-/// Reads a scenario file and what it extends, applies overrides `path=value` (dotted path, value as
-/// JSON or else as text; later ones win) and checks it. Expectations of the file are about the run it describes: with
-/// any field overridden that changes the run, its bounds on metrics do not count, and the outcomes that count by
-/// default are allowed as well as its own. Throws InputError whose message starts with the name of the file at fault.
-LoadedScenario load_scenario(const std::filesystem::path& file, std::span<const std::string> overrides = {});
+/// Reads a scenario file and what it extends, applies overrides `path=value` (dotted path, value as JSON or else as
+/// text; later ones win) and checks it. Expectations of the file are about the run it describes: with any field
+/// overridden that changes the run, its bounds on metrics do not count, and the outcomes that count by default are
+/// allowed as well as its own. Throws InputError whose message starts with the name of the file at fault.
+inline LoadedScenario load_scenario(const std::filesystem::path& file, std::span<const std::string> overrides = {}) {
+  return load_scenario(read_scenario_text(file), overrides);
+}
 /// The same from JSON in memory, which extends nothing; `directory` is what relative paths start from.
 LoadedScenario read_scenario(const Json& json, const std::filesystem::path& directory);
 
@@ -91,12 +91,15 @@ auto with_file(const LoadedScenario& loaded, Work work) {
   }
 }
 
-/// A scenario with every default filled in, as JSON, of which effective_scenario and scenario_hash are made.
+/// A scenario with every default filled in, as JSON.
 class WrittenScenario {
  public:
   WrittenScenario(const Scenario& scenario, NamedFiles files);
 
+  /// Reading it again gives the same run. Paths start from `directory`.
   Json effective(const std::filesystem::path& directory) const;
+  /// Identifies what is simulated: FNV-1a over the scenario, with the contents of named files in place of their paths,
+  /// as 16 hexadecimal digits. Throws InputError.
   std::string hash() const;
 
  private:
@@ -104,11 +107,12 @@ class WrittenScenario {
   NamedFiles files_;
 };
 
-/// The scenario with every default filled in: reading it again gives the same run. Paths start from `directory`.
-Json effective_scenario(const Scenario& scenario, const std::filesystem::path& directory);
-
-/// Identifies what is simulated: FNV-1a over the effective scenario, with the contents of named files in place of their
-/// paths, as 16 hexadecimal digits. Throws InputError.
-std::string scenario_hash(const Scenario& scenario, const NamedFiles& files);
+// The same of a scenario that is written once.
+inline Json effective_scenario(const Scenario& scenario, const std::filesystem::path& directory) {
+  return WrittenScenario(scenario, NamedFiles(scenario)).effective(directory);
+}
+inline std::string scenario_hash(const Scenario& scenario, const NamedFiles& files) {
+  return WrittenScenario(scenario, files).hash();
+}
 
 }  // namespace hapbench

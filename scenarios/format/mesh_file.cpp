@@ -17,14 +17,11 @@ namespace fs = std::filesystem;
 
 constexpr double kFarthest = 1000.0;  // [m]
 
-TriangleSoup triangles_in(std::string_view text, const fs::path& file) {
-  const std::string extension = mesh_extension(file);
-  if (text.empty()) fail_in_file(file, "the file is empty; allowed: a mesh with faces");
-  if (extension == ".obj") return read_obj(text, file);
-  if (extension == ".ply") return read_ply(text, file);
-  if (extension == ".stl") return read_stl(text, file);
-  return read_off(text, file);
-}
+struct MeshFormat {
+  std::string_view extension;
+  TriangleSoup (*read)(std::string_view text, const fs::path& file);
+};
+constexpr MeshFormat kMeshFormats[] = {{".obj", read_obj}, {".ply", read_ply}, {".stl", read_stl}, {".off", read_off}};
 
 void check_indices(const TriangleSoup& soup, const fs::path& file) {
   for (std::size_t t = 0; t < soup.triangles.size(); ++t) {
@@ -94,7 +91,9 @@ constexpr double kMostFaces = 2.0 * kMostPoints;
 
 /// Reads the surface in a file and does all checks.
 CheckedMesh surface_in(std::string_view bytes, const fs::path& file, const MeshSampling& sampling) {
-  TriangleSoup soup = triangles_in(bytes, file);
+  const auto* format = std::ranges::find(kMeshFormats, mesh_extension(file), &MeshFormat::extension);
+  if (bytes.empty()) fail_in_file(file, "the file is empty; allowed: a mesh with faces");
+  TriangleSoup soup = format->read(bytes, file);
   check_indices(soup, file);
   scale_and_check(soup, sampling.scale, file);
   if (sampling.flip) {
@@ -148,8 +147,7 @@ void check_and_normalise(std::vector<SurfacePoint>& points, const fs::path& file
 std::string csv_text(const std::vector<SurfacePoint>& points) {
   std::string text = fmt::format("{}\n", kCsvHeader);
   for (const SurfacePoint& p : points) {
-    fmt::format_to(std::back_inserter(text), "{},{},{},{},{},{}\n", p.position.x(), p.position.y(), p.position.z(),
-                   p.normal.x(), p.normal.y(), p.normal.z());
+    fmt::format_to(std::back_inserter(text), "{},{}\n", fmt::join(p.position, ","), fmt::join(p.normal, ","));
   }
   return text;
 }
@@ -160,14 +158,10 @@ std::string ply_text(const std::vector<SurfacePoint>& points) {
       "property float nx\nproperty float ny\nproperty float nz\nelement face 0\n"
       "property list uchar int vertex_indices\nend_header\n",
       points.size());
-  // Nine digits are all that single precision holds.
-  const auto add = [&text](const Vec3& v, char end) {
-    fmt::format_to(std::back_inserter(text), "{:.9g} {:.9g} {:.9g}{}", static_cast<float>(v.x()),
-                   static_cast<float>(v.y()), static_cast<float>(v.z()), end);
-  };
   for (const SurfacePoint& p : points) {
-    add(p.position, ' ');
-    add(p.normal, '\n');
+    const Eigen::Vector3f position = p.position.cast<float>(), normal = p.normal.cast<float>();
+    // Nine digits are all that single precision holds.
+    fmt::format_to(std::back_inserter(text), "{:.9g} {:.9g}\n", fmt::join(position, " "), fmt::join(normal, " "));
   }
   return text;
 }
@@ -175,8 +169,8 @@ std::string ply_text(const std::vector<SurfacePoint>& points) {
 }  // namespace
 
 bool is_mesh_name(const fs::path& file) {
-  constexpr std::string_view kExtensions[] = {".obj", ".ply", ".stl", ".off"};
-  return std::ranges::find(kExtensions, lower_case(file.extension().string())) != std::end(kExtensions);
+  const std::string extension = lower_case(file.extension().string());
+  return std::ranges::find(kMeshFormats, extension, &MeshFormat::extension) != std::end(kMeshFormats);
 }
 
 std::string mesh_extension(const fs::path& file) {

@@ -22,7 +22,7 @@ struct MeshSampling {
   bool flip = false;              ///< turn all normals of an open surface round; a closed one is refused
 };
 
-/// Returns true if the file's extension is that of a supported mesh format.
+/// True when the file's extension is that of a supported mesh format.
 bool is_mesh_name(const std::filesystem::path& file);
 /// The extension of a mesh file, in lower case. Throws InputError if the format is not supported.
 std::string mesh_extension(const std::filesystem::path& file);
@@ -54,10 +54,9 @@ class MeshFile {
   std::vector<std::string> warnings_;
 };
 
-// ---- Readers of the formats. Each takes the contents of a file, whose name is for messages, and returns vertices and
-// faces in the file's unit. Numbers of a text are read in double precision, those of binary files as they are stored.
-// Vertex indices are not compared with the number of vertices, and coordinates of binary files may be infinite or NaN:
-// MeshFile checks both for all formats. They throw InputError that names the file, and the line of a text.
+// ---- Readers of the formats: vertices and faces in the file's unit. Numbers of a text are read in double precision,
+// those of binary files as they are stored. MeshFile checks for all formats that indices are those of vertices and that
+// coordinates are finite. They throw InputError that names the file, and the line of a text.
 
 /// Wavefront OBJ: the lines "v" and "f"; other lines are ignored.
 TriangleSoup read_obj(std::string_view text, const std::filesystem::path& file);
@@ -67,19 +66,19 @@ TriangleSoup read_off(std::string_view text, const std::filesystem::path& file);
 TriangleSoup read_stl(std::string_view text, const std::filesystem::path& file);
 /// PLY, text or binary of either byte order. Elements and properties that are not part of the surface are ignored.
 TriangleSoup read_ply(std::string_view text, const std::filesystem::path& file);
-/// The vertices of a PLY file, with properties x, y, z [m], nx, ny, nz of any type; what follows them is not read.
+/// The vertices of a PLY file, with properties x, y, z [m], nx, ny, nz of any type.
 std::vector<SurfacePoint> ply_points_in(std::string_view text, const std::filesystem::path& file);
 
 /// The extension of a point shell's file. Throws InputError when it is neither .csv nor .ply.
 std::string shell_extension(const std::filesystem::path& file);
 
-/// The point shell in the contents of a file: CSV with header x_m,y_m,z_m,nx,ny,nz, or PLY with vertex normals. Normals
-/// must be unit to 1e-3 and are normalised unless they are unit to rounding; coordinates must be finite and within
-/// 1 km. Throws InputError that names file and point.
+/// The point shell in the contents of a file: CSV with header x_m,y_m,z_m,nx,ny,nz, or PLY with vertex normals.
+/// Normals, normalised unless unit to rounding, must be unit to 1e-3, coordinates finite and within 1 km. Throws
+/// InputError that names file and point.
 std::vector<SurfacePoint> point_shell_in(std::string_view text, const std::filesystem::path& file);
 
-/// The shell as the text of a .csv (shortest round-trip numbers) or .ply file (single precision, for viewers), by the
-/// file's extension. Throws InputError for another extension.
+/// The shell as the text of a .csv (shortest round-trip numbers) or .ply file (single precision, for viewers). Throws
+/// InputError for another extension.
 std::string point_shell_text(const std::vector<SurfacePoint>& points, const std::filesystem::path& file);
 
 }  // namespace hapbench

@@ -3,11 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <charconv>
 #include <cstdint>
 #include <limits>
 #include <optional>
-#include <span>
 #include <type_traits>
 
 #include "scenarios/format/input_error.hpp"
@@ -20,9 +18,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Cuts a polygon into a fan of triangles from its first corner.
-void add_polygon(std::span<const std::uint32_t> corners, TriangleSoup& soup) {
-  for (std::size_t i = 2; i < corners.size(); ++i) soup.triangles.push_back({corners[0], corners[i - 1], corners[i]});
+/// Cuts a polygon into a fan of triangles from its first corner. `corner(k)` gives the next vertex, the k-th.
+template <class Corner>
+void add_polygon(std::size_t corners, TriangleSoup& soup, Corner corner) {
+  const std::uint32_t first = corner(0);
+  std::uint32_t last = corner(1);
+  for (std::size_t k = 2; k < corners; ++k) {
+    const std::uint32_t next = corner(k);
+    soup.triangles.push_back({first, last, next});
+    last = next;
+  }
 }
 
 /// The lines of a mesh file in text form, each as its words. Comments (from '#' to the end of the line) and blank lines
@@ -53,8 +58,7 @@ class MeshLines {
   /// Three coordinates from that word on.
   Vec3 position(std::size_t first) const {
     if (words_.size() < first + 3) fail(fmt::format("got {} coordinates; allowed: 3", words_.size() - first));
-    const double x = number(first), y = number(first + 1), z = number(first + 2);
-    return {x, y, z};
+    return {number(first), number(first + 1), number(first + 2)};
   }
   /// The word as a count or an index, within 31 bits; `what` it counts is for the message.
   std::size_t count(std::size_t word, const char* what) const {
@@ -99,16 +103,13 @@ class ByteReader {
 
 /// Index of the vertex that a face's corner names: "7/1/3" the file's seventh, "-1" the last of the `vertices` so far.
 std::uint32_t vertex_of(std::string_view word, std::size_t vertices, const MeshLines& lines) {
-  const std::string_view number = word.substr(0, word.find('/'));
-  int index = 0;
-  const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), index);
-  const bool parsed = error == std::errc() && end == number.data() + number.size();
+  const auto index = whole_word_as<int>(word.substr(0, word.find('/')));
   const auto count = static_cast<std::int64_t>(vertices);
-  if (!parsed || index == 0 || index < -count) {
+  if (!index || *index == 0 || *index < -count) {
     lines.fail(fmt::format("got {}; allowed: the number of a vertex, from 1, or back from -1, the last one",
                            quoted_word(word)));
   }
-  return static_cast<std::uint32_t>(index > 0 ? index - 1 : count + index);
+  return static_cast<std::uint32_t>(*index > 0 ? *index - 1 : count + *index);
 }
 
 // ---- OFF
@@ -127,16 +128,13 @@ TriangleSoup read_off_text(MeshLines& lines) {
     next(vertices, "vertices");
     soup.vertices.push_back(lines.position(0));
   }
-  std::vector<std::uint32_t> corners;
   for (std::size_t i = 0; i < faces; ++i) {
     next(faces, "faces");
     const std::size_t count = lines.count(0, "corners");
     if (count < 3 || lines.words().size() <= count)
       lines.fail(fmt::format("face {}: got {} corners; allowed: at least 3, and as many vertices", i, count));
-    corners.clear();
-    for (std::size_t k = 1; k <= count; ++k)
-      corners.push_back(static_cast<std::uint32_t>(lines.count(k, "as a vertex")));
-    add_polygon(corners, soup);
+    add_polygon(count, soup,
+                [&](std::size_t k) { return static_cast<std::uint32_t>(lines.count(k + 1, "as a vertex")); });
   }
   return soup;
 }
@@ -398,12 +396,11 @@ class PlyValues {
 struct Contents {
   Wanted wanted;
   TriangleSoup soup = {};
-  std::vector<Vec3> normals = {};  ///< of the vertices, where points are wanted
+  std::vector<SurfacePoint> points = {};  ///< instead of the vertices
 };
 
-/// Reads an entry, whose number is `i`. `corners` is room for those of a face.
-void read_entry(const Element& element, std::size_t i, PlyValues& values, std::vector<std::uint32_t>& corners,
-                Contents& contents) {
+/// Reads an entry, whose number is `i`.
+void read_entry(const Element& element, std::size_t i, PlyValues& values, Contents& contents) {
   values.begin(element);
   Values vertex{};
   for (const Property& p : element.properties) {
@@ -417,29 +414,29 @@ void read_entry(const Element& element, std::size_t i, PlyValues& values, std::v
     if (p.role == kNothing) {
       values.skip(static_cast<std::size_t>(length), *p.type);
     } else if (p.role == kCorners) {
-      corners.clear();
       // A negative index of a binary file becomes too large and is refused as such.
-      for (std::int64_t k = 0; k < length; ++k)
-        corners.push_back(static_cast<std::uint32_t>(values.whole(*p.type, "as a vertex")));
-      add_polygon(corners, contents.soup);
+      add_polygon(static_cast<std::size_t>(length), contents.soup,
+                  [&](std::size_t) { return static_cast<std::uint32_t>(values.whole(*p.type, "as a vertex")); });
     } else {
       vertex[p.role] = values.number(*p.type);
     }
   }
   if (!element.is_vertex()) return;
-  contents.soup.vertices.emplace_back(vertex[0], vertex[1], vertex[2]);
-  if (contents.wanted == Wanted::points) contents.normals.emplace_back(vertex[3], vertex[4], vertex[5]);
+  const Vec3 position(vertex[0], vertex[1], vertex[2]);
+  if (contents.wanted == Wanted::points)
+    contents.points.push_back({position, {vertex[3], vertex[4], vertex[5]}});
+  else
+    contents.soup.vertices.push_back(position);
 }
 
 Contents contents_of(std::string_view text, Wanted wanted, const fs::path& file) {
   LineReader lines(text);
   const PlyHeader header(lines, wanted, file);
   PlyValues values(lines, header, file);
-  std::vector<std::uint32_t> corners;
   Contents contents{wanted};
   for (const Element& element : header.elements())
     for (std::size_t i = 0; i < element.entries && !element.properties.empty(); ++i)
-      read_entry(element, i, values, corners, contents);
+      read_entry(element, i, values, contents);
   return contents;
 }
 
@@ -447,7 +444,6 @@ Contents contents_of(std::string_view text, Wanted wanted, const fs::path& file)
 
 TriangleSoup read_obj(std::string_view text, const fs::path& file) {
   TriangleSoup soup;
-  std::vector<std::uint32_t> corners;
   MeshLines lines{LineReader(text), file};
   while (lines.next()) {
     const Words& words = lines.words();
@@ -456,10 +452,8 @@ TriangleSoup read_obj(std::string_view text, const fs::path& file) {
     } else if (words[0] == "f") {
       if (words.size() < 4)
         lines.fail(fmt::format("got a face with {} corners; allowed: at least 3", words.size() - 1));
-      corners.clear();
-      for (std::size_t i = 1; i < words.size(); ++i)
-        corners.push_back(vertex_of(words[i], soup.vertices.size(), lines));
-      add_polygon(corners, soup);
+      add_polygon(words.size() - 1, soup,
+                  [&](std::size_t k) { return vertex_of(words[k + 1], soup.vertices.size(), lines); });
     }
   }
   return soup;
@@ -502,12 +496,7 @@ TriangleSoup read_ply(std::string_view text, const fs::path& file) {
 }
 
 std::vector<SurfacePoint> ply_points_in(std::string_view text, const fs::path& file) {
-  const Contents contents = contents_of(text, Wanted::points, file);
-  std::vector<SurfacePoint> points;
-  points.reserve(contents.normals.size());
-  for (std::size_t i = 0; i < contents.normals.size(); ++i)
-    points.push_back({contents.soup.vertices[i], contents.normals[i]});
-  return points;
+  return contents_of(text, Wanted::points, file).points;
 }
 
 }  // namespace hapbench

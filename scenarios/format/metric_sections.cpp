@@ -110,8 +110,7 @@ void SectionObservers::tell(Result& result) const {
     if (trials_ > 1 && !kind.merges) continue;
     Section section(result.metrics, kind.name);
     observers_[i]->tell(section);
-    result.sections.push_back({kind.name, nlohmann::ordered_json::object()});
-    observers_[i]->add_members(result.sections.back().members);
+    observers_[i]->add_members(result.sections[kind.name] = nlohmann::ordered_json::object());
   }
 }
 

@@ -22,14 +22,13 @@
 namespace hapbench {
 
 /// Values that take long to make, for all runs of a process: parsed files, point shells, distance grids. Thread-safe.
-///
-/// The values used last are kept, up to 128 of them and 512 MB. Twice as many as the machine has threads are kept in
-/// any case, so that runs side by side do not take each other's away. A dropped value lives on while a run holds it.
+/// Those used last are kept, up to 128 of them and 512 MB, but at least two for each thread of the machine, so that
+/// runs side by side do not take each other's away. A dropped value lives on while a run holds it.
 class SharedCache {
  public:
-  /// The value of that key, which says all that the value depends on. It is made by `make`, which returns a
-  /// std::shared_ptr<const T>, unless it is there; `bytes` of the value says about how large it is. Waits while another
-  /// thread makes it. What `make` throws is passed on, and the next caller tries again.
+  /// The value of that key, which says all that the value depends on. Unless it is there, `make` makes it, a
+  /// std::shared_ptr<const T>; `bytes` of the value says about how large it is. Waits while another thread makes it.
+  /// What `make` throws is passed on, and the next caller tries again.
   template <class T, class Make, class Bytes>
   std::shared_ptr<const T> get(const std::string& key, const Make& make, const Bytes& bytes) {
     return std::static_pointer_cast<const T>(get_untyped(key, [&]() -> Made {
@@ -77,15 +76,15 @@ struct Stroke {
   std::optional<ReferenceForce> force;
 };
 
-/// Reads a recorded stroke from the contents of a CSV file. Its header is time_s,px_m,py_m,pz_m, then
-/// axis_x,axis_y,axis_z or qw,qx,qy,qz, then optionally a measured force mfx_N,mfy_N,mfz_N. Times must increase
-/// strictly, axes must not be zero, and quaternions must have norm 1 within 0.001; both are normalised. A quaternion
-/// turns the tool's frame, whose axis points along -z, into the world's. Throws InputError.
+/// The stroke in the contents of a CSV file with the header time_s,px_m,py_m,pz_m, then axis_x,axis_y,axis_z or
+/// qw,qx,qy,qz, then perhaps a measured force mfx_N,mfy_N,mfz_N. Times must increase strictly, axes must not be zero,
+/// and quaternions must have norm 1 within 0.001; both are normalised. A quaternion turns the tool's frame, whose axis
+/// points along -z, into the world's. Throws InputError that names the sample.
 Stroke stroke_in(std::string_view text, const std::filesystem::path& file);
 
-/// Reads a trace of contacts from the contents of a CSV file with the header time_s,x_m,y_m,z_m,ux,uy,uz,depth_m, a row
-/// for each of at most 20 million contacts, 100 000 of one time. Times must not fall, depths must not be below 0, and
-/// gradients, normalised unless unit to rounding, must be unit to 0.001. Throws InputError that names the row.
+/// The contacts in a CSV file with the header time_s,x_m,y_m,z_m,ux,uy,uz,depth_m: at most 20 million, 100 000 of one
+/// time. Times must not fall, depths must not be below 0, and gradients, normalised unless unit to rounding, must be
+/// unit to 0.001. Throws InputError that names the contact.
 ContactTrace trace_in(std::string_view text, const std::filesystem::path& file);
 
 // Pointers of the files that have a use of their own.
@@ -95,8 +94,8 @@ inline constexpr std::string_view kMotionFile = "/motion/position/file";
 inline constexpr std::string_view kContactFile = "/rendering/contact_source/file";
 
 /// A file that a scenario names. It is read and parsed when something of it is first asked for, once for all scenarios
-/// of this process that take the same contents alike (SharedCache), and stays as it was then for this scenario. The
-/// functions that need its contents throw InputError when they cannot be used.
+/// that take the same contents alike (SharedCache), and stays as it was then for this one. Functions that need its
+/// contents throw InputError when they cannot be used.
 class NamedFile {
  public:
   NamedFile(std::string pointer, std::filesystem::path path, const FileContent& content)
@@ -142,11 +141,10 @@ class NamedFile {
   std::shared_ptr<const Read> read_;  ///< null until something of it is asked for
 };
 
-/// Every file that a scenario names, in the order of its fields: the one list, by which files are loaded, checked,
-/// hashed and rewritten. Copies share what was read, and must not be used by two threads at once.
+/// Every file that a scenario names, in the order of its fields: by this list files are loaded, checked, hashed and
+/// rewritten. Copies share what was read, and must not be used by two threads at once.
 class NamedFiles {
  public:
-  /// No files, for a scenario that names none.
   NamedFiles() = default;
   explicit NamedFiles(Scenario scenario);
 

@@ -13,17 +13,6 @@
 namespace hapbench {
 namespace {
 
-/// Code points of a UTF-8 text, which is what a schema counts.
-std::size_t characters(const std::string& text) {
-  const auto continues = [](char c) { return (static_cast<unsigned char>(c) & 0xc0) == 0x80; };
-  return text.size() - static_cast<std::size_t>(std::count_if(text.begin(), text.end(), continues));
-}
-
-template <class Name>
-bool contains(const std::vector<Name>& names, std::string_view name) {
-  return std::find(names.begin(), names.end(), name) != names.end();
-}
-
 /// Hint for users who passed the name of a file instead of its content.
 std::string text_of_file_hint(const Json& given) {
   if (!given.is_string() || !given.get_ref<const std::string&>().ends_with(".json")) return "";
@@ -63,7 +52,7 @@ class Reader final : public Fields {
   }
 
   void text(std::string& value, std::size_t max_length) override {
-    if (!json_.is_string() || characters(json_.get_ref<const std::string&>()) > max_length)
+    if (!json_.is_string() || characters_of(json_.get_ref<const std::string&>()) > max_length)
       refuse([&](Fields& f) { f.text(value, max_length); });
     value = json_.get<std::string>();
   }
@@ -73,7 +62,12 @@ class Reader final : public Fields {
     if (!json_.is_string()) refuse(allowed);
     const auto& given = json_.get_ref<const std::string&>();
     const auto found = std::find(names.begin(), names.end(), given);
-    if (found == names.end()) refuse(allowed, nearest_name_hint(given, names));
+    if (found == names.end()) {
+      const bool in_file_of_its_own = std::ranges::count(at(), '/') == 1;  // a device with its preset
+      const std::string shown_by = in_file_of_its_own ? fmt::format("hapbench describe {}s", what) : described_by("");
+      fail(fmt::format("got {}{}; allowed: {}{}: one of {}", shown(json_), nearest_name_hint(given, names), null_or(),
+                       what, quoted_list(names, shown_by)));
+    }
     index = static_cast<std::size_t>(found - names.begin());
   }
 
@@ -83,11 +77,11 @@ class Reader final : public Fields {
       Reader(json_[i], *this, i).number(value[static_cast<Eigen::Index>(i)], component);
   }
 
-  void pair(const char* allowed, Body first, Body second) override {
-    if (!json_.is_array() || json_.size() != 2) refuse([&](Fields& f) { f.pair(allowed, first, second); });
-    Reader first_reader(json_[0], *this, 0), second_reader(json_[1], *this, 1);
-    first(first_reader);
-    second(second_reader);
+  void pair(const char* allowed, double& first, NumberRange of_first, double& second, NumberRange of_second) override {
+    if (!json_.is_array() || json_.size() != 2)
+      refuse([&](Fields& f) { f.pair(allowed, first, of_first, second, of_second); });
+    Reader(json_[0], *this, 0).number(first, of_first);
+    Reader(json_[1], *this, 1).number(second, of_second);
   }
 
   void entries(std::size_t length, ListSize size, FunctionRef<std::size_t> resize,
@@ -131,12 +125,12 @@ class Reader final : public Fields {
       fail(fmt::format("missing field \"{}\"; allowed: {}: one of {}", kTypeField, what, quoted_list(types)));
     std::size_t index = 0;
     if (type != json_.end()) Reader(*type, *this, kTypeField).name(index, types, what);
-    read_fields([&](Fields& f) { fields(f, index); }, {kTypeField});
+    read_fields([&](Fields& f) { fields(f, index); }, {kTypeField}, what);
   }
 
   void fields(Body body) override {
     if (!json_.is_object()) refuse([&](Fields& f) { f.fields(body); });
-    read_fields(body, {});
+    read_fields(body, {}, "scenario");
   }
 
   void field(std::string_view name, const char*, Presence presence, Body value) override {
@@ -147,8 +141,8 @@ class Reader final : public Fields {
       return collect([&] { value(reader); });
     }
     // A misspelt name of this field has been reported already.
-    if (presence != Presence::required || contains(meant_, name)) return;
-    collect([&] { fail(fmt::format("missing field \"{}\"; allowed: {}", name, allowed_by(value))); });
+    if (presence != Presence::required || std::ranges::count(meant_, name) > 0) return;
+    collect([&] { fail(fmt::format("missing field \"{}\"; allowed: {}", name, guide_to(value).allowed)); });
   }
 
   void ignored(std::string_view name, const char*) override {
@@ -183,48 +177,51 @@ class Reader final : public Fields {
   [[noreturn]] void fail(const std::string& problem) const { throw InputError(InputError::Kind::shape, at(), problem); }
   /// Refuses the value: "got VALUE; allowed: ...", in the words that the schema writer has for `what`.
   [[noreturn]] void refuse(Body what, const std::string& hint = "") const {
-    fail(fmt::format("got {}; allowed: {}{}{}", shown(json_), null_allowed_ ? "null or " : "", allowed_by(what), hint));
+    fail(fmt::format("got {}; allowed: {}{}{}", shown(json_), null_or(), guide_to(what).allowed, hint));
   }
-  /// Calls `read` and keeps the error that it may throw.
+  const char* null_or() const { return null_allowed_ ? "null or " : ""; }
+  /// Calls `read` and keeps the error that it may throw for `throw_errors`, which throws all that were kept.
   void collect(FunctionRef<> read) {
     try {
       read();
     } catch (const InputError& error) {
-      keep(error);
+      errors_.push_back(error);
+      if (errors_.size() == kMostFaults) throw_errors();
     }
-  }
-  /// Keeps an error for `throw_errors`, which throws all that were kept.
-  void keep(const InputError& error) {
-    errors_.push_back(error);
-    if (errors_.size() == kMostFaults) throw_errors();
   }
   void throw_errors() const {
     if (!errors_.empty()) throw InputError::all(errors_);
   }
 
-  /// `names` are the fields that `body` does not describe.
-  void read_fields(Body body, std::vector<std::string_view> names) {
+  /// `names` are the fields that `body` does not describe; `root` is what a whole file of them is.
+  void read_fields(Body body, std::vector<std::string_view> names, std::string_view root) {
     names_ = &names;
     body(*this);
     names_ = nullptr;
     for (const auto& entry : json_.items()) {
-      if (contains(names, entry.key())) continue;
+      if (std::ranges::count(names, entry.key()) > 0) continue;
       const std::vector<std::string> allowed(names.begin(), names.end());
-      keep(InputError(InputError::Kind::shape, member(at(), entry.key()),
-                      fmt::format("unknown field{}; allowed here: {}", nearest_name_hint(entry.key(), allowed),
-                                  quoted_list(allowed, described_by()))));
+      const std::string hint = nearest_name_hint(entry.key(), allowed);
+      collect([&] {
+        throw InputError(
+            InputError::Kind::shape, member(at(), entry.key()),
+            fmt::format("unknown field{}; allowed here: {}", hint, quoted_list(allowed, described_by(root))));
+      });
       meant_.push_back(nearest_name(entry.key(), allowed));
     }
     collect([&] { body(*this); });
     throw_errors();
   }
 
-  /// The command that describes the object that is being read; empty for the whole file.
-  std::string described_by() const {
-    if (at().empty()) return "";
-    std::string section = at().substr(1);
-    std::replace(section.begin(), section.end(), '/', '.');
-    return "hapbench describe " + section;
+  /// The command that describes the object that is being read.
+  std::string described_by(std::string_view root) const {
+    const std::string place = at();
+    std::string section;
+    for (const std::string_view key : parts_of(place, '/')) {
+      if (whole_number(key)) break;  // entries are described with their list
+      if (!key.empty()) section += fmt::format("{}{}", section.empty() ? "" : ".", key);
+    }
+    return fmt::format("hapbench describe {}", section.empty() ? root : section);
   }
 
   const Json& json_;

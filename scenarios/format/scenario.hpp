@@ -17,16 +17,16 @@
 #include "device_model/hands/tracking_hand.hpp"
 #include "device_model/impedance_device.hpp"
 #include "results/observe/contact_forces.hpp"
-#include "results/record/trajectory_extras.hpp"
-#include "sim/core/profile.hpp"
+#include "results/record/recorder.hpp"
 #include "sim/core/types.hpp"
 #include "sim/geometry/analytic_shells.hpp"
 #include "sim/loop/simulation.hpp"
 #include "sim/mesh/marching_cubes.hpp"
-#include "sim/tool/bur.hpp"
+#include "sim/tool/motion.hpp"
+#include "sim/tool/revolved.hpp"
 
 /// A scenario file as plain structs, with every default in place: a default-constructed scenario is that of springs.
-/// Names, units and ranges of the file's fields: the functions `describe` of this folder.
+/// The functions `describe` of this folder have names, units and ranges of the file's fields.
 namespace hapbench {
 
 /// Conditions that end a run early, with the outcome of the same name.
@@ -130,7 +130,9 @@ struct MotionFields {
 };
 
 /// True when forces move the tool's tip, false when a script or a recording prescribes its place.
-bool position_is_free(const MotionFields& motion);
+inline bool position_is_free(const MotionFields& motion) {
+  return std::holds_alternative<FreePosition>(motion.position);
+}
 
 struct NoHandFields {};
 struct ForceHandFields {
@@ -171,7 +173,10 @@ using HandFields = std::variant<NoHandFields, ForceHandFields, PushHandFields, I
                                 TrackingHandFields, MassSpringDamperHandFields>;
 
 /// The spring and damper towards a target that a hand is, or is fixed to; null of other hands.
-const ImpedanceHandFields* spring_of(const HandFields& hand);
+inline const ImpedanceHandFields* spring_of(const HandFields& hand) {
+  const auto* passive = std::get_if<MassSpringDamperHandFields>(&hand);
+  return passive != nullptr ? &passive->spring : std::get_if<ImpedanceHandFields>(&hand);
+}
 
 struct IdealDeviceFields {
   std::optional<double> force_limit;  ///< [N]
@@ -179,13 +184,15 @@ struct IdealDeviceFields {
 using DeviceFields = std::variant<IdealDeviceFields, AdmittanceDeviceConfig, ImpedanceDeviceConfig>;
 
 /// True when the handle moves the tool: there is no virtual mass, so that the integrator and f_in have no part in it.
-bool handle_moves_tool(const DeviceFields& device);
+inline bool handle_moves_tool(const DeviceFields& device) {
+  return std::holds_alternative<ImpedanceDeviceConfig>(device);
+}
 /// Threshold of the input-force limiter [N], if the device has one.
 std::optional<double> input_force_limit(const DeviceFields& device);
 
 struct IntegratorFields {
   const IntegratorEntry* type = &kLeapfrog;  ///< never null
-  IntegratorOptions options;                 ///< of `event`
+  double tolerance = kEventTolerance;        ///< of `event` [s]
 };
 
 struct RecordFields : TrajectoryExtras {

@@ -2,9 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cctype>
-#include <charconv>
 #include <cmath>
 
 #include "scenarios/format/input_error.hpp"
@@ -12,6 +10,8 @@
 
 namespace hapbench {
 namespace {
+
+constexpr std::uintmax_t kLargestTable = std::uintmax_t{4} << 30;  ///< that is read [bytes]
 
 std::string_view trimmed(std::string_view text) {
   constexpr std::string_view kBlank = " \t\r";
@@ -24,14 +24,6 @@ Words cells_of(std::string_view row) {
   Words cells = parts_of(row, ',');
   for (std::string_view& cell : cells) cell = trimmed(cell);
   return cells;
-}
-
-template <class Number>
-std::optional<Number> whole_word_as(std::string_view word) {
-  Number value = 0;
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-  if (error != std::errc() || end != word.data() + word.size()) return std::nullopt;
-  return value;
 }
 
 }  // namespace
@@ -60,10 +52,6 @@ Words parts_of(std::string_view text, char separator) {
 std::optional<double> finite_number(std::string_view word) {
   const auto value = whole_word_as<double>(word);
   return value && std::isfinite(*value) ? value : std::nullopt;
-}
-
-std::optional<std::size_t> whole_number(std::string_view word) {
-  return whole_word_as<std::size_t>(word);
 }
 
 std::string quoted_word(std::string_view word) {

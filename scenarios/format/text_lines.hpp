@@ -1,7 +1,8 @@
 #pragma once
 
+#include <algorithm>
+#include <charconv>
 #include <cstddef>
-#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <initializer_list>
@@ -26,14 +27,33 @@ Words parts_of(std::string_view text, char separator);
 /// The whole word as a finite number, or none.
 std::optional<double> finite_number(std::string_view word);
 
+/// The whole word as a number of that type, or none.
+template <class Number>
+std::optional<Number> whole_word_as(std::string_view word) {
+  Number value = 0;
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  if (error != std::errc() || end != word.data() + word.size()) return std::nullopt;
+  return value;
+}
+
 /// The whole word as a count or index, or none.
-std::optional<std::size_t> whole_number(std::string_view word);
+inline std::optional<std::size_t> whole_number(std::string_view word) {
+  return whole_word_as<std::size_t>(word);
+}
 
 /// The word as an error message shows it: in quotes, control characters escaped, cut when long.
 std::string quoted_word(std::string_view word);
 
 /// The text with its ASCII letters in lower case.
 std::string lower_case(std::string_view text);
+
+/// True at the first byte of a character (code point) of UTF-8.
+inline bool begins_character(char byte) {
+  return (static_cast<unsigned char>(byte) & 0xC0U) != 0x80U;
+}
+inline std::size_t characters_of(std::string_view text) {
+  return static_cast<std::size_t>(std::ranges::count_if(text, begins_character));
+}
 
 /// The names of a table's entries, or of what its pointers point to.
 template <class Table, class Name>
@@ -51,10 +71,8 @@ class LineReader {
 
   /// The next line without its end; none at the end of the text.
   std::optional<std::string_view> next();
-  /// Number, from 1, of the last line returned.
-  std::size_t line() const { return line_; }
-  /// The text after the last line returned.
-  std::string_view rest() const { return rest_; }
+  std::size_t line() const { return line_; }       ///< number, from 1, of the last line returned
+  std::string_view rest() const { return rest_; }  ///< the text behind it
 
  private:
   std::string_view rest_;
@@ -67,8 +85,7 @@ class CsvReader {
   /// Takes the next line, if there is one, for the header. The text and the path must outlive the reader.
   CsvReader(LineReader lines, const std::filesystem::path& file);
 
-  /// The header's line.
-  std::string_view header() const { return header_; }
+  std::string_view header() const { return header_; }  ///< the line
   const Words& columns() const { return columns_; }
 
   /// Goes to the next row; false at the end. Throws InputError when it has more or fewer cells than there are columns.
@@ -86,9 +103,6 @@ class CsvReader {
   Words columns_, cells_;
 };
 
-/// Largest table read [bytes].
-inline constexpr std::uintmax_t kLargestTable = std::uintmax_t{4} << 30;
-
 /// The bytes of a file that a scenario names. Throws InputError that names the file.
 std::string read_named_file(const std::filesystem::path& file);
 
@@ -102,8 +116,8 @@ struct NumberTable {
 };
 
 /// Reads the contents of a CSV file of numbers. The first line must be exactly one of `headers`; blank lines are
-/// skipped, and lines may end with CR LF. Throws InputError that names file, line and column for another header, a
-/// wrong number of cells, a cell that is not a finite number, or more than `most_rows` rows.
+/// skipped. Throws InputError that names file, line and column for another header, a wrong number of cells, a cell that
+/// is not a finite number, or more than `most_rows` rows.
 NumberTable number_table_in(std::string_view text, const std::filesystem::path& file,
                             std::initializer_list<std::string_view> headers, std::size_t most_rows);
 

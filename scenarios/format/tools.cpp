@@ -5,9 +5,7 @@
 #include "scenarios/format/input_error.hpp"
 #include "scenarios/format/parts.hpp"
 #include "scenarios/format/text_lines.hpp"
-#include "scenarios/format/writer.hpp"
 #include "sim/tool/mesh_tool.hpp"
-#include "sim/tool/revolved.hpp"
 
 namespace hapbench {
 namespace {
@@ -33,9 +31,10 @@ void check_shape(const std::string& at, const char* allowed, const Make& make) {
 }
 
 /// Throws std::invalid_argument when there is none.
-BurProfile profile_of(const BurFields& bur) {
-  return bur_profile(bur.family, bur.diameter, bur.length.value_or(bur.diameter),
-                     bur.shank_diameter.value_or(BurFields::kShankShare * bur.diameter));
+Revolved revolved_of(const BurFields& bur) {
+  const BurProfile of_bur = bur_profile(bur.family, bur.diameter, bur.length.value_or(bur.diameter),
+                                        bur.shank_diameter.value_or(BurFields::kShankShare * bur.diameter));
+  return Revolved(of_bur.profile, of_bur.tip);
 }
 
 }  // namespace
@@ -72,11 +71,7 @@ static void describe(Fields& f, BurFields& tool) {
   f.number("length_m", tool.length, kLength, "of the head, its round end included; null: its diameter");
   f.number("shank_diameter_m", tool.shank_diameter, kLength,
            "of the shank, or neck, behind the head, which is ten times as long; null: 0.6 of the head's");
-  if (!f.reads()) return;
-  check_shape(f.at(), "lengths that suit the family", [&tool] {
-    const BurProfile bur = profile_of(tool);
-    Revolved(bur.profile, bur.tip);
-  });
+  if (f.reads()) check_shape(f.at(), "lengths that suit the family", [&tool] { revolved_of(tool); });
 }
 
 static void describe(Fields& f, MeshToolFields& tool) {
@@ -110,7 +105,7 @@ std::shared_ptr<const SignedDistanceGrid> make_grid(const MeshToolFields& fields
   for (Vec3& vertex : surface.vertices) vertex = to_file.transpose() * (vertex - fields.tip);
   try {
     const double spacing = fields.grid.value_or(SignedDistanceGrid::suggested_spacing(surface.vertices));
-    return std::make_shared<const SignedDistanceGrid>(surface.vertices, surface.triangles, spacing);
+    return std::make_shared<const SignedDistanceGrid>(ClosedSurface(surface.vertices, surface.triangles), spacing);
   } catch (const std::invalid_argument& error) {
     throw InputError(fmt::format("{}: {}", files.at(kToolFile).path().string(), error.what()));
   }
@@ -126,8 +121,7 @@ struct Make {
     return std::make_shared<Revolved>(f.profile, f.tip);
   }
   std::shared_ptr<const ToolShape> operator()(const BurFields& f) const {
-    const BurProfile bur = profile_of(f);
-    return std::make_shared<Revolved>(bur.profile, bur.tip);
+    return std::make_shared<Revolved>(revolved_of(f));
   }
   std::shared_ptr<const ToolShape> operator()(const MeshToolFields& f) const {
     const std::string content = fmt::format("grid {} {} {} {} {}", files.at(kToolFile).hash(), f.scale,

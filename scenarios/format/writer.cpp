@@ -7,7 +7,6 @@
 #include <stdexcept>
 
 #include "algorithms/registry.hpp"
-#include "scenarios/format/input_error.hpp"
 #include "scenarios/format/load_scenario.hpp"
 #include "scenarios/format/parts.hpp"
 #include "scenarios/format/text_lines.hpp"
@@ -52,9 +51,7 @@ class Writer final : public Fields {
     if (index >= names.size()) throw std::logic_error(std::string("a value without a name: ") + what);
     json_ = names[index];
   }
-  void pair(const char*, Body first, Body second) override {
-    json_ = Json::array({written("0", first), written("1", second)});
-  }
+  void pair(const char*, double& first, NumberRange, double& second, NumberRange) override { json_ = {first, second}; }
   void entries(std::size_t length, ListSize, FunctionRef<std::size_t>,
                FunctionRef<Fields&, std::size_t> entry) override {
     json_ = Json::array();
@@ -82,8 +79,6 @@ class Writer final : public Fields {
     if (presence == Presence::no_default && which_ == Which::with_default) return;
     json_[std::string(name)] = written(name, value);
   }
-  void ignored(std::string_view, const char*) override {}
-  void exactly_one_of(const char*, const char*) override {}
 
  private:
   Json written(std::string_view name, Body value) const {
@@ -96,16 +91,14 @@ class Writer final : public Fields {
   Json json_;
 };
 
-/// How much is described: which values are allowed in words, without the fields of objects, or everything.
-enum class Extent { words, whole };
-
 /// Describes which values are allowed (guide_to).
 class SchemaWriter final : public Fields {
  public:
-  static ValueGuide guide(Body value, Json* definitions, Extent extent) {
-    SchemaWriter writer(definitions, extent);
-    value(writer);
-    return std::move(writer.guide_);
+  explicit SchemaWriter(Json* definitions) : definitions_(definitions) {}
+
+  ValueGuide guide(Body value) && {
+    value(*this);
+    return std::move(guide_);
   }
 
   void number(double&, NumberRange range) override {
@@ -136,12 +129,12 @@ class SchemaWriter final : public Fields {
     guide_.allowed = fmt::format("{}: one of {}", what, quoted_list(names));
   }
   void vector3(Vec3& value, NumberRange component) override {
-    const ValueGuide item = guide_of([&](Fields& f) { f.number(value.x(), component); });
+    const ValueGuide item = guide_to_number(value.x(), component);
     guide_.schema = {{"type", "array"}, {"items", item.schema}, {"minItems", 3}, {"maxItems", 3}};
     guide_.allowed = "three numbers [x, y, z], each " + item.allowed;
   }
-  void pair(const char* allowed, Body first, Body second) override {
-    const Json items = {guide_of(first).schema, guide_of(second).schema};
+  void pair(const char* allowed, double& first, NumberRange of_first, double& second, NumberRange of_second) override {
+    const Json items = {guide_to_number(first, of_first).schema, guide_to_number(second, of_second).schema};
     guide_.schema = {{"type", "array"}, {"items", items}, {"minItems", 2}, {"maxItems", 2}};
     guide_.allowed = allowed;
   }
@@ -162,10 +155,9 @@ class SchemaWriter final : public Fields {
                     FunctionRef<Fields&, std::size_t> fields) override {
     guide_.allowed =
         fmt::format("an object whose \"{}\" is one of {}", kTypeField, quoted_list(names_of(types, &TypeName::name)));
-    if (extent_ == Extent::words) return;
     Json schemas = Json::array();
     for (std::size_t i = 0; i < types.size(); ++i) {
-      SchemaWriter choice(definitions_, extent_);
+      SchemaWriter choice(definitions_);
       choice.guide_.type = types[i].name;
       choice.guide_.summary = types[i].summary;
       choice.guide_.may_be_untyped = untyped == Untyped::first && i == 0;
@@ -195,7 +187,6 @@ class SchemaWriter final : public Fields {
     guide_.schema = {{"$ref", std::string("#/definitions/") + name}};
   }
   void field(std::string_view name, const char* doc, Presence presence, Body value) override {
-    if (extent_ == Extent::words) return ignored(name, doc);
     FieldGuide field{
         .name = std::string(name), .meaning = doc, .presence = presence, .initial = {}, .value = guide_of(value)};
     if (presence == Presence::has_default) field.initial = Writer(Which::with_default, value).json();
@@ -215,9 +206,10 @@ class SchemaWriter final : public Fields {
   }
 
  private:
-  SchemaWriter(Json* definitions, Extent extent) : definitions_(definitions), extent_(extent) {}
-
-  ValueGuide guide_of(Body value) const { return guide(value, definitions_, extent_); }
+  ValueGuide guide_of(Body value) const { return SchemaWriter(definitions_).guide(value); }
+  ValueGuide guide_to_number(double& value, NumberRange range) const {
+    return guide_of([&](Fields& f) { f.number(value, range); });
+  }
   /// One of two values, of which the second may be an object.
   void any_of(ValueGuide first, ValueGuide second) {
     guide_ = std::move(second);
@@ -226,7 +218,6 @@ class SchemaWriter final : public Fields {
   }
 
   Json* definitions_;
-  Extent extent_;
   ValueGuide guide_;
 };
 
@@ -237,11 +228,7 @@ Json json_of(Fields::Body value, std::vector<FoundFile>* files) {
 }
 
 ValueGuide guide_to(Fields::Body value, Json* definitions) {
-  return SchemaWriter::guide(value, definitions, Extent::whole);
-}
-
-std::string allowed_by(Fields::Body value) {
-  return SchemaWriter::guide(value, nullptr, Extent::words).allowed;
+  return SchemaWriter(definitions).guide(value);
 }
 
 namespace {
@@ -262,19 +249,16 @@ bool allows_parts(const Json& schema) {
   return std::all_of(schema.begin(), schema.end(), allows_parts);
 }
 
-bool is_object_of_optional_fields(const Json& schema) {
-  return schema.contains("properties") && !schema.contains("required") && !schema.contains("oneOf");
-}
-
 /// For a file that extends another and so may leave out anything: only fields that mean something without the other
 /// file are checked. The schema of a file in full is found at `at`.
 Json partial_schema(const ValueGuide& full, const std::string& at) {
   Json schema = {{"type", "object"}, {"properties", Json::object()}, {"additionalProperties", false}};
   for (const FieldGuide& field : full.fields) {
     Json& part = schema["properties"][field.name];
-    if (allows_parts(field.value.schema)) {
+    const Json& whole = field.value.schema;
+    if (allows_parts(whole)) {
       part = {{"$ref", at + "/properties/" + field.name}};
-    } else if (is_object_of_optional_fields(field.value.schema)) {
+    } else if (whole.contains("properties") && !whole.contains("required") && !whole.contains("oneOf")) {
       part = partial_schema(field.value, at + "/properties/" + field.name);
       part["description"] = field.meaning;
     } else {

@@ -3,7 +3,6 @@
 #include <nlohmann/json.hpp>
 
 #include "scenarios/format/fields.hpp"
-#include "scenarios/format/json_file.hpp"
 
 namespace hapbench {
 
@@ -58,9 +57,6 @@ struct FieldGuide {
 /// their names, and the schema refers to "#/definitions/NAME". Throws std::logic_error where two pairs of fields of one
 /// object exclude each other, for which the schema has no place.
 ValueGuide guide_to(Fields::Body value, Json* definitions = nullptr);
-
-/// ValueGuide::allowed alone, for a message: nothing is asked of the fields of an object.
-std::string allowed_by(Fields::Body value);
 
 /// The whole JSON Schema (draft 7) that scenarios/library/scenario.schema.json holds.
 Json scenario_schema();

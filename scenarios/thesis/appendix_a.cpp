@@ -5,7 +5,7 @@
 #include <map>
 
 #include "scenarios/limits/stability/field_limit.hpp"
-#include "scenarios/thesis/measurements.hpp"
+#include "scenarios/thesis/claims.hpp"
 #include "sim/core/math.hpp"
 
 /// Claims of appendix A: the planar peg (A.1), a mass on many springs (A.2), the stability limits of the integrator

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "scenarios/thesis/measurements.hpp"
+#include "scenarios/thesis/claims.hpp"
 #include "sim/core/math.hpp"
 
 /// Claims of appendices B, what is wrong with the original algorithm, C, what the proposed one does to point density
@@ -30,6 +30,13 @@ Finding judge_flipped_gradient(const MeasuredCase& m, const PublishedNumbers&) {
                                                    : "the original algorithm pushes the tool out here"};
 }
 
+/// damping_ratio_of_swings along x; NaN for none.
+double damping_ratio_of(const LoadedScenario& loaded) {
+  std::vector<double> way;
+  for_each_row(loaded, [&](const StepRecord& row) { way.push_back(row.tool.pose.position.x()); });
+  return damping_ratio_of_swings(way).value_or(std::nan(""));
+}
+
 // ---- B2: a mass that a hand presses into a groove of two springs and that starts beside its bottom. A case for each
 // half angle between the contacts' gradients, with the damping ratios of the swings across the groove; no number where
 // the mass does not swing, and what does not swing is not under-damped.
@@ -46,10 +53,8 @@ Measured measure_groove(const Evidence& e) {
         const LoadedScenario loaded = e.load(scene, {fmt::format("environment.groups.0.direction=[{},{},0]", -s, -c),
                                                      fmt::format("environment.groups.1.direction=[{},{},0]", s, -c),
                                                      "rendering.algorithm=" + algorithm});
-        std::vector<double> across;
-        for_each_row(loaded, [&](const StepRecord& row) { across.push_back(row.tool.pose.position.x()); });
         m.values["given"] = {loaded.scenario.rendering.damping_ratio};
-        m.values[scene + "_" + algorithm] = {damping_ratio_of_swings(across).value_or(std::nan(""))};
+        m.values[scene + "_" + algorithm] = {damping_ratio_of(loaded)};
       }
     }
   }
@@ -210,12 +215,8 @@ Measured measure_relative_damping(const Evidence& e) {
         "initial.position_m=[-0.005,0,0]", fmt::format("rendering.damping_ratio={}", kSpringDamping),
         // With a tenth of the step the integrator's own damping is negligible.
         "time.step_s=0.00005", "time.steps=10000"};
-    std::vector<double> way;
-    for_each_row(e.load("springs_unlimited_summation", overrides),
-                 [&](const StepRecord& row) { way.push_back(row.tool.pose.position.x()); });
-    measured.push_back(
-        {fmt::format("{}", count),
-         {{"count", {count}}, {"damping_ratio", {damping_ratio_of_swings(way).value_or(std::nan(""))}}}});
+    const double ratio = damping_ratio_of(e.load("springs_unlimited_summation", overrides));
+    measured.push_back({fmt::format("{}", count), {{"count", {count}}, {"damping_ratio", {ratio}}}});
   }
   return measured;
 }

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scenarios/cases/league.hpp"
 #include "scenarios/thesis/claims.hpp"
 #include "sim/core/math.hpp"
 
@@ -26,8 +25,7 @@ constexpr MeasuredColumn kMeasures[] = {{kSuccessRate, "removed", "success"},
 /// of the difference; half a unit of the last published digit is added.
 constexpr double kStandardErrors = 2.0;  // in words in the rule
 
-/// The columns of targets.csv that count here: place, subject, removed, time_s, model_force_N, speed_m_per_s; NaN where
-/// there is no value.
+/// The columns of targets.csv; NaN where there is no value.
 using TargetTable = std::map<std::string, std::vector<double>>;
 
 /// Mean of a column over each subject's targets at a place; subjects without a value are left out.
@@ -49,8 +47,7 @@ Measured measure(const Evidence& e, const std::string& task, double place) {
                     shaped = e.table(task + "_shaped_stiffness", "targets.csv");
   Measured measured;
   for (const MeasuredColumn& column : kMeasures) {
-    MeasuredCase& m = measured.emplace_back();
-    m.name = column.name;
+    MeasuredCase& m = measured.emplace_back(MeasuredCase{column.name, {}});
     const auto a = subject_means(original, column.column, place), b = subject_means(shaped, column.column, place);
     std::vector<double>&of_original = m.values["original"], &of_shaped = m.values["shaped"];
     for (const auto& [subject, value] : a) {

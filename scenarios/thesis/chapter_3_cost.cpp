@@ -2,16 +2,14 @@
 
 #include <cmath>
 
-#include "algorithms/laws/shaped_stiffness.hpp"
-#include "algorithms/stages/point_stage.hpp"
-#include "scenarios/thesis/measurements.hpp"
+#include "algorithms/penalty_rendering.hpp"
+#include "scenarios/thesis/claims.hpp"
 
 /// Claims of 1.2, 2.8, 3.4 and F.2: what the points cost. Times of this machine, so no two ledgers agree in digits.
 namespace hapbench {
 namespace {
 
 constexpr int kIterations = 3;  ///< the thesis's default
-constexpr int kRepetitions = 20;
 
 /// Stiffness shaping as the thesis writes it: with the n x n matrix of squared inner products.
 class DenseShaping {
@@ -123,7 +121,7 @@ MeasuredValues measure_proxy_cost(const Evidence& e) {
   MeasuredValues values;
   for (const std::string law : {"proxy", kProposedLaw}) {
     const Result run = e.run("task2_held", {"rendering.algorithm=" + law, "record.ideal_trajectory=false"});
-    const double step = run.duration / static_cast<double>(run.timing.steps);
+    const double step = run.duration / static_cast<double>(run.end.rows);
     values[law == kProposedLaw ? "shaped" : "other"] = {run.timing.step_p50.value_or(std::nan("")) / step};
   }
   return values;

@@ -1,24 +1,29 @@
 #pragma once
 
+#include <algorithm>
+#include <chrono>
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <limits>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "scenarios/cases/cases.hpp"
-#include "scenarios/run/run_scenario.hpp"
+#include "algorithms/registry.hpp"
+#include "scenarios/cases/comparison.hpp"
+#include "sim/tool/cylinder.hpp"
 
-/// The claims of the thesis, and how each is judged. results/reference/rules.json has their texts, the file of their
-/// chapter what is measured and the rule, results/reference/published.json the published numbers.
+/// The claims of the thesis, how each is judged, and the ledger of the verdicts. results/reference/rules.json has their
+/// texts, the file of their chapter what is measured and the rule, published.json there the published numbers.
 namespace hapbench {
 
 // ---- Published numbers, and what claims are measured by
 
-/// One number of results/reference/published.json. Parts that are not published have these values.
+/// A published number. Parts that are not published have these values.
 struct PublishedNumber {
   double mean = std::numeric_limits<double>::quiet_NaN();
   double spread = 0.0;  ///< standard deviation or standard error, whichever is published
@@ -36,9 +41,8 @@ class PublishedNumbers {
   /// Throws InputError for an id that is not there.
   const PublishedNumber& operator[](const std::string& id) const;
   /// The text with the numbers that it names by id: <T2.raw> becomes "37.8 ± 17.7", <T3.reduced.bound.at_most> "15".
-  /// A part (mean, spread, at_least or at_most) may have a factor and a format, as <J1.depth.mean*1000:.2f>; without a
-  /// format it is written as `plain` writes it (claims.hpp); no number is "none". Throws InputError for an id that is
-  /// not there.
+  /// A part (mean, spread, at_least or at_most) may have a factor and a format, as <J1.depth.mean*1000:.2f>; without
+  /// one it is `plain`; no number is "none". Throws InputError for an id that is not there.
   std::string fill(const std::string& text) const;
   /// Adds a number of ours that rules read as they read published ones: a threshold (choices.hpp).
   void set(const std::string& id, double value) { numbers_[id].mean = value; }
@@ -47,29 +51,25 @@ class PublishedNumbers {
   std::map<std::string, PublishedNumber> numbers_;
 };
 
-/// The sources of the measurements by which claims are judged.
+/// What claims are judged by.
 struct Evidence {
   PublishedNumbers published;
   std::filesystem::path directory;  ///< of results, those of a scenario in a subdirectory of its name
-  /// Called with the scenario's name before results are read: runs it, if scenarios are run on demand.
+  /// Called with a scenario's name before its results are read, to run it.
   std::function<void(const std::string& scenario)> provide;
-  /// Returns the overrides of a bundled scenario, as for load_scenario; empty for none.
+  /// The overrides of a bundled scenario, as for load_scenario; empty for none.
   std::function<std::vector<std::string>(const Scenario&)> overrides = {};
   /// Called with the name of every bundled scenario that a claim loads by itself; may be empty.
   std::function<void(const std::string& scenario)> used = {};
 
-  // Results of a scenario. Both throw InputError when the file is missing or none of ours.
+  // All functions throw InputError, also when the file of a result is missing or none of ours.
 
-  /// A number of summary.json, as in "metrics.force_max_N"; NaN for null.
+  /// A number of a scenario's summary.json, as in "metrics.force_max_N"; NaN for null.
   double number(const std::string& scenario, const std::string& path) const;
-  /// Columns of a CSV file, by name; a cell without a number is NaN.
+  /// Columns of a CSV file among its results, by name; a cell without a number is NaN.
   std::map<std::string, std::vector<double>> table(const std::string& scenario, const std::string& file) const;
-
-  // Claims that compute something by themselves start from these functions. Both throw InputError.
-
   /// A bundled scenario with `overrides`, and then with `more` overrides: a single case.
   Cases scene(const std::string& name, const std::vector<std::string>& more = {}) const;
-  /// Loads it.
   LoadedScenario load(const std::string& name, const std::vector<std::string>& more = {}) const {
     return scene(name, more).load(0);
   }
@@ -79,8 +79,7 @@ struct Evidence {
   }
 };
 
-/// Runs a scenario in memory and calls `row` for each row, which has the contacts as they were found. Throws
-/// InputError.
+/// Runs a scenario in memory and calls `row` for each row, with the contacts as found. Throws InputError.
 void for_each_row(const LoadedScenario& loaded, const std::function<void(const StepRecord&)>& row);
 
 // ---- Claims and verdicts
@@ -88,9 +87,8 @@ void for_each_row(const LoadedScenario& loaded, const std::function<void(const S
 /// The outcome of testing a published statement; the last two are those of findings of ours.
 enum class Verdict { reproduced, in_kind, not_reproduced, refuted, not_reproducible, holds, does_not_hold };
 
-/// A verdict in words.
 struct VerdictText {
-  std::string_view name;  ///< also in the ledger
+  std::string_view name;
   const char* meaning;
   const char* mark;  ///< in bars
 };
@@ -127,7 +125,7 @@ struct MeasuredCase {
   std::string name;  ///< empty where the claim has a single case
   MeasuredValues values;
 
-  /// The value of a name that has one. Throws std::out_of_range for other names.
+  /// The first value of a name. Throws std::out_of_range for one without.
   double operator[](const std::string& value) const { return all(value).at(0); }
   const std::vector<double>& all(const std::string& value) const { return values.at(value); }
 };
@@ -144,10 +142,15 @@ struct Finding {
   Measured cases = {};        ///< what was judged
 };
 
-/// Takes the deciding numbers from the results of scenarios, or computes them.
 using Measure = Measured (*)(const Evidence& evidence);
-/// Depends on its arguments alone.
 using Judge = Finding (*)(const Measured& measured, const PublishedNumbers& published);
+
+/// How a claim is measured, and judged by that alone. A constant that is no choice stands in the claim's text, too.
+struct ClaimRule {
+  const char* id = nullptr;
+  Measure measure = nullptr;
+  Judge judge = nullptr;
+};
 
 /// Appends an item to an enumeration in words.
 inline void append_item(std::string& list, std::string_view item, std::string_view separator = "; ") {
@@ -158,16 +161,15 @@ inline void append_item(std::string& list, std::string_view item, std::string_vi
 /// A number as the rules of claims write it, with six digits at most: "0.1", "15", "1e-9".
 std::string plain(double number);
 
-/// A row of results/reference/rules.json with its rule. Texts hold published numbers by id, which
-/// PublishedNumbers::fill puts in. A threshold of ours that `measure` or `judge` compares with is a choice on record
-/// without fields, such as rule.easily; the rule's text names it in the same way, which also tells that the choice
-/// reaches the claim.
+/// A row of rules.json with its rule. Texts hold published numbers by id, which PublishedNumbers::fill puts in. A
+/// threshold of ours is a choice on record without fields, such as rule.easily; the rule's text names it in the same
+/// way, which also tells that the choice reaches the claim.
 struct Claim {
   std::string id = {};
   std::string place = {};      ///< in the thesis
   std::string claim = {};      ///< in our words
   std::string published = {};  ///< its numbers, for people
-  std::string rule = {};       ///< of the verdict, for people: with the thresholds that `judge` compares with
+  std::string rule = {};       ///< of the verdict, for people, with its thresholds
   std::string why = {};        ///< why no simulation can show it; empty where one can
   std::string measured = {};   ///< for people, with measured numbers, as <rows> or <40 N.depth> of a case
   std::string each = {};       ///< the same of each case, for whose name {} stands; after `measured`
@@ -175,7 +177,7 @@ struct Claim {
   Judge judge = nullptr;
   bool timing = false;  ///< the finding holds times, so no two runs agree
   bool ours = false;    ///< found on the way: no claim of the thesis, and not counted among those
-  bool costly = false;  ///< takes long to measure: judged again for a part of a sample only (robustness.hpp)
+  bool costly = false;  ///< takes long to measure: judged again for a part of a sample only (choices.hpp)
   bool drawn = false;   ///< a figure draws the numbers of its cases, which the ledger then holds
 
   /// A main result in a few words: claim, published and, with measured numbers, ours. Empty for other claims.
@@ -195,7 +197,7 @@ struct JudgedClaim {
   std::string reach = {};                   ///< of the choices, as Choices::reach has it; empty: none reaches it
   double seconds = 0.0;                     ///< to run its scenarios and to measure it
 
-  /// Whether another reading of the choices could change the verdict: a simulation shows it, and a choice reaches it.
+  /// Whether another reading of the choices could change the verdict.
   bool can_be_sampled() const {
     return !claim.timing && finding.verdict != Verdict::not_reproducible && !reach.empty();
   }
@@ -212,13 +214,6 @@ inline double threshold(const PublishedNumbers& numbers, const std::string& name
 /// The algorithm that the thesis proposes.
 inline constexpr const char* kProposedLaw = "shaped_stiffness";
 
-/// How a claim of rules.json is measured and judged. A constant that is no choice stands in the claim's text, too.
-struct ClaimRule {
-  const char* id = nullptr;
-  Measure measure = nullptr;
-  Judge judge = nullptr;
-};
-
 /// The rule of a claim with a single case.
 template <MeasuredValues (*measure)(const Evidence&), Finding (*judge)(const MeasuredCase&, const PublishedNumbers&)>
 ClaimRule single_case(const char* id) {
@@ -229,15 +224,106 @@ ClaimRule single_case(const char* id) {
           [](const Measured& measured, const PublishedNumbers& p) { return judge(measured.at(0), p); }};
 }
 
-// By chapter.
-std::vector<ClaimRule> chapter_1_penetration();       ///< V, S1, B1b, B5
-std::vector<ClaimRule> chapter_3_tasks();             ///< T1 to T3, T2b, J, C5
-std::vector<ClaimRule> chapter_3_cost();              ///< T4, T5, P2, F3
-std::vector<ClaimRule> chapter_3_stiffness_ratios();  ///< R
-std::vector<ClaimRule> chapter_3_force_limit();       ///< L
-std::vector<ClaimRule> chapter_4();                   ///< G, B4, C1 to C3, C7, C8
-std::vector<ClaimRule> appendix_a();                  ///< A
-std::vector<ClaimRule> appendix_b_c_f();              ///< B1 to B3, P1, C6, F1, F2
-std::vector<ClaimRule> appendix_d_experiments();      ///< D
+// ---- Measurements and scenes that several claims share
+
+inline const Cylinder kDrill;
+inline const ToolPose kUpright{Vec3::Zero(), {0.0, 0.0, -1.0}};
+
+/// A wall point with normal +x, `beyond` the median line of an upright tool (so beyond > 0: the tool's axis is inside).
+inline ContactBuffer wall_point(double beyond, const char* depth_model) {
+  ContactBuffer contacts(1);
+  contacts.push(0, {beyond, 0.0, 0.001}, Vec3::UnitX());
+  find_depth_model(depth_model)->make()->evaluate(kDrill, kUpright, contacts);
+  contacts.pad();
+  return contacts;
+}
+
+/// How often what a claim times is repeated.
+inline constexpr int kRepetitions = 20;
+
+/// Seconds of a call of `work`: the least of `repetitions`, or of as many as a second allows.
+template <class Work>
+double seconds_of(int repetitions, Work work) {
+  using Clock = std::chrono::steady_clock;
+  double least = 0.0, all = 0.0;
+  for (int i = 0; i < repetitions && all < 1.0; ++i) {
+    const auto start = Clock::now();
+    work();
+    const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
+    if (i == 0 || seconds < least) least = seconds;
+    all += seconds;
+  }
+  return least;
+}
+
+/// A scenario in which a hand presses a drill into the block's hole, for measuring: with an ideal device of the same
+/// force limit, which adds no dynamics of its own, for one period of the tilt, and without records.
+Scenario drill_in_hole(Scenario scenario);
+
+/// Before or after the scenario's point stages.
+enum class Points { colliding, rendered };
+
+/// The points of every `stride`-th row of drill_in_hole(scenario) that has contact, with depth and gradient.
+std::vector<ContactBuffer> contact_sets(const Scenario& scenario, std::uint64_t stride,
+                                        Points points = Points::colliding);
+
+/// The largest set, of at least one, and its size, 0 without any.
+inline ContactBuffer largest_of(const std::vector<ContactBuffer>& sets) {
+  return *std::ranges::max_element(sets, {}, &ContactBuffer::size);
+}
+inline std::size_t largest_size(const std::vector<ContactBuffer>& sets) {
+  return sets.empty() ? 0 : largest_of(sets).size();
+}
+
+/// Seconds of `work` with a copy of each set, one after the other, and of copying them.
+template <class Work>
+double seconds_with(const std::vector<ContactBuffer>& sets, int repetitions, Work work) {
+  ContactBuffer copy(largest_size(sets));
+  return seconds_of(repetitions, [&] {
+    for (const ContactBuffer& set : sets) {
+      copy.assign(set);
+      work(copy);
+    }
+  });
+}
+
+/// Total variation of the velocity [m/s], power of the velocity above 30 Hz [m^2/s^2] and reversals of the force.
+MeasuredCase vibration(const std::string& name, const Result& run);
+
+/// Whether an algorithm vibrates, compared with a smooth one: it has rule.vibrates times the total variation and the
+/// square of it times the power; or more of both, and so many times the reversals of the force.
+bool vibrates_much_more(const MeasuredCase& a, const MeasuredCase& b, const PublishedNumbers& p);
+/// True if `a` has more of both.
+inline bool vibrates_more(const MeasuredCase& a, const MeasuredCase& b) {
+  return a["velocity_variation"] > b["velocity_variation"] && a["vibration_power"] > b["vibration_power"];
+}
+
+/// The damping ratio of a swing about zero [m], a value for each row, from the ratio q of successive extremes,
+/// zeta = -ln q / sqrt(pi^2 + ln^2 q). An extreme within a micrometre of zero ends the decay: rounding and grazing
+/// contact are no swings. None with fewer than two extremes.
+std::optional<double> damping_ratio_of_swings(std::span<const double> x);
+
+// ---- The rules, by chapter
+
+std::vector<ClaimRule> chapters_1_and_4();        ///< V, S1, B1b, B5, G, B4, C1 to C3, C7, C8
+std::vector<ClaimRule> chapter_3();               ///< T1 to T3, T2b, J, C5, R, L
+std::vector<ClaimRule> chapter_3_cost();          ///< T4, T5, P2, F3
+std::vector<ClaimRule> appendix_a();              ///< A
+std::vector<ClaimRule> appendix_b_c_f();          ///< B1 to B3, P1, C6, F1, F2
+std::vector<ClaimRule> appendix_d_experiments();  ///< D
+
+// ---- The ledger
+
+/// What robustness.json says of a claim, if the recorded verdict is this one and the choices that reach it are the
+/// same; else null. Throws InputError when it is no such record.
+Json robustness_on_record(const Json& record, const JudgedClaim& judged);
+
+/// claims.json: the headline and the claims; with the cases of those whose numbers a figure draws. `robustness` has
+/// what robustness.json holds.
+Json ledger_json(const std::vector<JudgedClaim>& judged, const PublishedNumbers& published, const Json& robustness);
+
+/// claims.md, of what ledger_json gives: the main results, counts by chapter, the claims of the thesis, those that are
+/// contradicted first, what was found on the way.
+std::string ledger_markdown(const Json& ledger);
 
 }  // namespace hapbench

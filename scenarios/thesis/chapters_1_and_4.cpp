@@ -3,14 +3,152 @@
 #include <algorithm>
 #include <cmath>
 
-#include "algorithms/stages/point_stage.hpp"
-#include "scenarios/cases/league.hpp"
-#include "scenarios/format/parts.hpp"
-#include "scenarios/thesis/measurements.hpp"
+#include "algorithms/penalty_rendering.hpp"
+#include "results/observe/ideal_trajectory.hpp"
+#include "scenarios/thesis/claims.hpp"
 
-/// Claims of chapter 4: the thesis's two depth models (4.2), and what else it discusses as limits.
+/// Claims of chapters 1 and 4: how far a drill pressed into the hole sinks in under other ways to merge forces, and
+/// what their plain sum does (1.1, 1.2, B.3.1); the thesis's two depth models (4.2), and what else it discusses as
+/// limits.
 namespace hapbench {
 namespace {
+
+// ---- V1, V2: a drill that a hand presses in the direction of that of task 2.
+
+constexpr double kPressedTilts[] = {0.35, 0.68, 1.0};  ///< [rad]
+/// Rows between evaluations of the depth: 4 ms.
+constexpr std::uint64_t kRowsBetweenLooks = 8;
+/// Rows before this time are ignored [s]: the start is not the resting place at every tilt.
+constexpr double kLanded = 0.5;
+
+/// The largest depth of the drill in the block after it has landed, at each tilt [m]. The largest one, because a drill
+/// that pops through has left the block at the end.
+MeasuredCase pressed(const Evidence& e, const std::string& name, const std::string& scene,
+                     std::vector<std::string> overrides) {
+  MeasuredCase m{name, {}};
+  overrides.emplace_back();
+  for (const double tilt : kPressedTilts) {
+    overrides.back() = fmt::format("motion.orientation.tilt_rad={}", tilt);
+    const LoadedScenario loaded = e.load(scene, overrides);
+    IdealTrajectoryObserver ideal(std::get<BlockEnvironment>(loaded.scenario.environment).block,
+                                  make_cylinder(loaded.scenario.tool));
+    double& deepest = m.values[fmt::format("at_{}", tilt)].emplace_back(0.0);
+    for_each_row(loaded, [&](const StepRecord& row) {
+      if (row.step % kRowsBetweenLooks != 0 || row.time < kLanded) return;
+      ideal.on_step(row);
+      if (ideal.error()) deepest = std::max(deepest, ideal.error()->interpenetration);
+    });
+  }
+  return m;
+}
+
+/// Stiffness shaping with the reduction, as the thesis has it.
+MeasuredCase pressed_shaped(const Evidence& e) {
+  return pressed(e, kProposedLaw, "press_towards_rim", {});
+}
+
+/// True if at every tilt `a` is at least `factor` times as deep as `b`.
+bool deeper(const MeasuredCase& a, const MeasuredCase& b, double factor) {
+  return std::ranges::all_of(a.values, [&](const auto& depth) { return a[depth.first] >= factor * b[depth.first]; });
+}
+
+/// Whether the drill sinks in easily with the second case's law, beside shaping, the first one.
+Finding judge_sinking(const Measured& m, const PublishedNumbers& p) {
+  const bool easily = deeper(m.at(1), m.at(0), threshold(p, "easily")), more = deeper(m.at(1), m.at(0), 1.0);
+  return {decide(easily, more), fmt::format("with {} the drill sinks in {}", m.at(1).name,
+                                            easily ? "easily"
+                                            : more ? "further than with stiffness shaping, not easily"
+                                                   : "less than with stiffness shaping at some tilt")};
+}
+
+Measured measure_averaging(const Evidence& e) {
+  return {pressed_shaped(e),
+          pressed(e, "mean", "press_towards_rim", {"rendering.algorithm=mean", "rendering.reduction=null"}),
+          pressed(e, "mean after the reduction", "press_towards_rim", {"rendering.algorithm=mean"})};
+}
+
+// ---- B1b, B5: a drill that is turned in the hole, as B.3.1 has it, with the proposed algorithm and the original one
+// of appendix B: its depth while it is near the hole [m], and under which hands it goes through the block's surface.
+
+constexpr const char* kOriginalLaw = "original_averaging";
+
+Result turned(const Evidence& e, const std::string& law, double force) {
+  std::vector<std::string> overrides = {fmt::format("hand.force_N={}", force)};
+  if (law == kOriginalLaw)
+    overrides.insert(overrides.end(), {"rendering.algorithm=" + law, "rendering.depth_model=shortest_distance",
+                                       "rendering.local_average=false", "rendering.reduction=null"});
+  return e.run("task2_held", overrides);
+}
+
+Measured measure_original(const Evidence& e) {
+  Measured measured;
+  for (const std::string law : {kProposedLaw, kOriginalLaw}) {
+    const Result run = turned(e, law, 1.0);
+    const auto depth = number_of(run.metrics, "ideal_trajectory.gentle.interpenetration_max_m");
+    measured.push_back({law, {{"depth", {depth.value_or(0.0)}}}});
+  }
+  return measured;
+}
+
+Finding judge_original(const Measured& m, const PublishedNumbers& p) {
+  const double times = m.at(1)["depth"] / m.at(0)["depth"];
+  return {decide(times >= threshold(p, "easily"), times > 1.0),
+          fmt::format("{:.2g} times as deep as with stiffness shaping", times)};
+}
+
+constexpr double kHands[] = {0.5, 1.0, 2.0, 3.5};  ///< [N]
+
+MeasuredValues measure_pop_through(const Evidence& e) {
+  MeasuredValues values = {{"hands", {static_cast<double>(std::size(kHands))}}};
+  for (const std::string law : {kProposedLaw, kOriginalLaw})
+    values[law] = {static_cast<double>(std::ranges::count_if(
+        kHands, [&](double force) { return turned(e, law, force).end.outcome == Outcome::went_through; }))};
+  return values;
+}
+
+Finding judge_pop_through(const MeasuredCase& m, const PublishedNumbers&) {
+  const double original = m[kOriginalLaw], proposed = m[kProposedLaw];
+  return {
+      decide(original > 0.0 && proposed == 0.0, original > proposed),
+      original > 0.0 ? "beyond the median line flipped gradients pull the drill on" : "the drill stays in the hole"};
+}
+
+// ---- S1, B4: the plain sum of all points, and the highest depth along the averaged direction, beside stiffness
+// shaping, in the planar peg and then in the turn of task 2: the vibrations, and with them "diverges", 1 or 0.
+
+Measured vibrations_beside_shaping(const Evidence& e, const std::string& law, const std::string& task,
+                                   const std::vector<std::string>& overrides_of_task) {
+  Measured measured;
+  for (const std::string& scene : {std::string("peg_in_hole_2d_frictionless_shaped_stiffness"), task}) {
+    for (const std::string& algorithm : {law, std::string(kProposedLaw)}) {
+      std::vector<std::string> overrides = {"rendering.algorithm=" + algorithm, "rendering.reduction=null",
+                                            "record.ratio_iterations=[]"};
+      if (scene == task) overrides.insert(overrides.end(), overrides_of_task.begin(), overrides_of_task.end());
+      const Result run = e.run(scene, overrides);
+      measured.push_back(vibration(algorithm + (scene == task ? ", task 2" : ", planar peg"), run));
+      measured.back().values["diverges"] = {run.end.outcome == Outcome::diverges ? 1.0 : 0.0};
+    }
+  }
+  return measured;
+}
+
+Finding judge_summation(const Measured& m, const PublishedNumbers& p) {
+  const auto unstable = [&](std::size_t i) {
+    return m.at(i)["diverges"] == 1.0 || vibrates_much_more(m.at(i), m.at(i + 1), p);
+  };
+  const bool peg = unstable(0), task = unstable(2);
+  return {decide(peg && task, peg || task),
+          fmt::format("n points are up to n K: in the planar peg the sum is {}, in task 2 {}",
+                      peg ? "unstable" : "stable", task ? "unstable" : "stable")};
+}
+
+Finding judge_highest_depth(const Measured& m, const PublishedNumbers& p) {
+  const bool peg = vibrates_much_more(m.at(0), m.at(1), p), task = vibrates_much_more(m.at(2), m.at(3), p);
+  return {decide(peg || task, vibrates_more(m.at(0), m.at(1)) && vibrates_more(m.at(2), m.at(3))),
+          fmt::format(
+              "the averaged direction turns quickly where gradients cancel: it {} in the planar peg and {} in task 2",
+              peg ? "vibrates" : "does not vibrate much more", task ? "vibrates" : "does not vibrate much more")};
+}
 
 // ---- G1: the median line.
 
@@ -50,7 +188,8 @@ MeasuredValues measure_underestimation(const Evidence& e) {
     if (row.step % kRowsBetweenSamples != 0) return;
     way.push_back(row.tool.pose.position);
     const auto with_depths = [&](const char* model) {
-      ContactBuffer contacts = copy_of(*row.found);
+      ContactBuffer contacts(row.found->size());
+      contacts.assign(*row.found);
       find_depth_model(model)->make()->evaluate(tool, row.tool.pose, contacts);
       contacts.pad();
       return contacts;
@@ -95,8 +234,6 @@ Finding judge_underestimation(const MeasuredCase& m, const PublishedNumbers& pub
 // ---- G2: the time that a contact's depth takes [s], for the contacts of task 2, along the normal and as the thesis
 // has it.
 
-constexpr int kRepetitions = 20;
-
 MeasuredValues measure_depth_cost(const Evidence& e) {
   const std::vector<ContactBuffer> sets =
       contact_sets(e.load("task2_rotate_signed_distance").scenario, kRowsBetweenSamples);
@@ -117,17 +254,6 @@ Finding judge_depth_cost(const MeasuredCase& m, const PublishedNumbers& p) {
   return {decide(times >= threshold(p, "huge"), times > 1.0),
           fmt::format("{:.2g} times as much, for a cylinder; a mesh, which the thesis means besides, is not looked at",
                       times)};
-}
-
-// ---- B4: the highest depth along the averaged direction, against stiffness shaping, in the planar peg and in the turn
-// of task 2.
-
-Finding judge_highest_depth(const Measured& m, const PublishedNumbers& p) {
-  const bool peg = vibrates_much_more(m.at(0), m.at(1), p), task = vibrates_much_more(m.at(2), m.at(3), p);
-  return {decide(peg || task, vibrates_more(m.at(0), m.at(1)) && vibrates_more(m.at(2), m.at(3))),
-          fmt::format(
-              "the averaged direction turns quickly where gradients cancel: it {} in the planar peg and {} in task 2",
-              peg ? "vibrates" : "does not vibrate much more", task ? "vibrates" : "does not vibrate much more")};
 }
 
 // ---- C8: on a flat, in task 1, the force of the highest depth, as [3] has it, and that of the points that are left.
@@ -229,8 +355,19 @@ Finding judge_parallel_faces(const MeasuredCase& m, const PublishedNumbers& p) {
 
 }  // namespace
 
-std::vector<ClaimRule> chapter_4() {
+std::vector<ClaimRule> chapters_1_and_4() {
   return {
+      {"V1", measure_averaging, judge_sinking},
+      {"V2",
+       [](const Evidence& e) -> Measured {
+         return {pressed_shaped(e), pressed(e, "virtual coupling", "press_coupled", {})};
+       },
+       judge_sinking},
+      {"S1",
+       [](const Evidence& e) { return vibrations_beside_shaping(e, "summation", "task2_held", {"metrics.from_s=0"}); },
+       judge_summation},
+      {"B1b", measure_original, judge_original},
+      single_case<measure_pop_through, judge_pop_through>("B5"),
       single_case<measure_median_line, judge_median_line>("G1"),
       single_case<measure_underestimation, judge_underestimation>("G1b"),
       single_case<measure_depth_cost, judge_depth_cost>("G2"),
